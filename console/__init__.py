@@ -1,0 +1,1 @@
+"""Command line, pictures and reports: everything that prints, asks or draws."""

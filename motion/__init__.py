@@ -1,0 +1,1 @@
+"""Ground floor: what all the other packages speak."""

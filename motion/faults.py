@@ -1,0 +1,81 @@
+"""The tree of domain faults.
+
+    Fault                    exit code   carries
+    ├── DrawingFault              3      the drawing cannot be used (also a ValueError)
+    ├── LineFault                 4      no line where one was asked for, or the line was lost: place and heading
+    ├── TapeFault                 5      not a tape, cut short, silent, format unknown (also a ValueError)
+    ├── LockFault                 6      a drive left the comparator's range: axis, tape time, positions
+    ├── MotionFault               7      a motion or path that cannot be recorded: axis, time, speed (also a ValueError)
+    └── FileFault                 8      a file that cannot be read or written (also an OSError)
+
+A message is one line: what was wrong, the value got, the values allowed, what to do next.
+"""
+
+from __future__ import annotations
+
+
+class Fault(Exception):
+    """Root of the tree; `exit_code` is what the command line ends with."""
+
+    exit_code = 1
+
+
+class DrawingFault(Fault, ValueError):
+    """The drawing cannot be used."""
+
+    exit_code = 3
+
+
+class LineFault(Fault):
+    """No line at the place asked for, or the head lost it; place in sheet mm, heading in radians."""
+
+    exit_code = 4
+
+    def __init__(
+        self,
+        message: str,
+        *,
+        x_mm: float | None = None,
+        y_mm: float | None = None,
+        heading_rad: float | None = None,
+    ) -> None:
+        super().__init__(message)
+        self.x_mm, self.y_mm, self.heading_rad = x_mm, y_mm, heading_rad
+
+
+class TapeFault(Fault, ValueError):
+    """The file is no tape that can be played; `time_s` is tape time where one is known."""
+
+    exit_code = 5
+
+    def __init__(self, message: str, *, time_s: float | None = None) -> None:
+        super().__init__(message)
+        self.time_s = time_s
+
+
+class LockFault(Fault):
+    """A drive left the comparator's range (fault circuit 162)."""
+
+    exit_code = 6
+
+    def __init__(self, message: str, *, axis: str, time_s: float, error_cycles: float, position_mm: float) -> None:
+        super().__init__(message)
+        self.axis, self.time_s, self.error_cycles, self.position_mm = axis, time_s, error_cycles, position_mm
+
+
+class MotionFault(Fault, ValueError):
+    """A motion or path file that cannot be recorded."""
+
+    exit_code = 7
+
+    def __init__(
+        self, message: str, *, axis: str | None = None, time_s: float | None = None, speed_mm_s: float | None = None
+    ) -> None:
+        super().__init__(message)
+        self.axis, self.time_s, self.speed_mm_s = axis, time_s, speed_mm_s
+
+
+class FileFault(Fault, OSError):
+    """A file that cannot be read or written."""
+
+    exit_code = 8
