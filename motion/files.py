@@ -1,0 +1,81 @@
+"""Files that appear under their name only when they are whole.
+
+A file is written beside its final name, in the same folder and so on the same disk, and renamed when it is complete.
+A broken run, a full disk or Ctrl-C leaves what stood there before, and no half file.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import secrets
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from motion.faults import FileFault
+
+_DISK_FULL = {
+    errno.ENOSPC: "the disk is full",
+    errno.EDQUOT: "the quota is used up",
+    errno.EFBIG: "files may not be so large here",
+}
+
+
+@contextmanager
+def written_beside(file: str | os.PathLike[str]) -> Iterator[Path]:
+    """Give a new, hidden file of the same suffix beside `file`; it is renamed to `file` on success, removed on failure.
+
+    Raises FileFault if the folder is missing or not writable, if `file` is no regular file, or if the disk is full.
+    """
+    final = Path(file)
+    beside = _create_beside(final)
+    try:
+        yield beside
+        _flush_to_disk(beside)
+        beside.replace(final.resolve())  # through a symbolic link, as writing in place would go
+    except BaseException as error:
+        beside.unlink(missing_ok=True)
+        if isinstance(error, OSError) and error.errno in _DISK_FULL:
+            raise disk_full_fault(final, error.errno) from error
+        raise
+
+
+def disk_full_fault(file: str | os.PathLike[str], code: int = errno.ENOSPC) -> FileFault:
+    """The fault of a file that the disk would not take whole."""
+    reason = _DISK_FULL.get(code, os.strerror(code))
+    return FileFault(f"cannot write {file}: {reason}; no half file is left; make room or write elsewhere")
+
+
+def _create_beside(final: Path) -> Path:
+    """Create the hidden file, empty, with the rights that a new file has here."""
+    if final.exists() and not final.is_file():
+        what = "is a folder" if final.is_dir() else "is not a regular file"
+        raise FileFault(f"cannot write {final}: it {what}; give the name of a file")
+    folder = final.resolve().parent
+    beside = folder / f".morfax-{secrets.token_hex(6)}{final.suffix}"
+    try:
+        os.close(os.open(beside, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
+    except OSError as error:
+        raise _folder_fault(final, folder, error) from error
+    return beside
+
+
+def _folder_fault(final: Path, folder: Path, error: OSError) -> FileFault:
+    """The fault of a folder in which no file can be made."""
+    if error.errno in _DISK_FULL:
+        return disk_full_fault(final, error.errno)
+    if not folder.exists():
+        return FileFault(f"cannot write {final}: the folder {folder} does not exist; make it first or write elsewhere")
+    if not folder.is_dir():
+        return FileFault(f"cannot write {final}: {folder} is not a folder; write elsewhere")
+    return FileFault(f"cannot write {final}: the folder {folder} takes no new file ({error.strerror}); write elsewhere")
+
+
+def _flush_to_disk(file: Path) -> None:
+    """Have the system put the file's contents on the disk before its name does."""
+    descriptor = os.open(file, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
