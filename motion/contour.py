@@ -1,0 +1,188 @@
+"""Contour measures: how far two paths are apart, how long one is, whether it closes.
+
+Signals: Path, Motion, (n, 2) arrays of mm, or lists of such polylines; of a Path or Motion only what is run with the
+tool in the work counts.
+
+Each polyline is sampled every 0.01 mm, its own points included. The nearest samples of the other are found in a k-d
+tree, and the sample is then projected on the straight pieces that meet there, so that equal curves with different
+points are zero apart, not half a sample. Figures are weighted with the length that each sample stands for: many points
+in a corner count no more than the corner is long.
+
+Questions: where the other path crosses itself within a sample, the nearest piece may not start at the nearest sample.
+The four nearest are tried.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion.faults import MotionFault
+from motion.motion import IN_WORK_BELOW_MM, Motion, Path
+
+SAMPLE_MM = 0.01
+LARGEST_SAMPLES = 1_000_000  # beyond 10 m of path the samples stand further apart: memory stays below 200 MB
+_NEIGHBOURS = 4
+_SAMPLES_AT_ONCE = 100_000
+
+Array = NDArray[np.float64]
+Contour = Path | Motion | Array | Sequence[Array]
+
+
+@dataclass(frozen=True, slots=True)
+class Summary:
+    """Distances of one path from another, mm: root mean square, 95 % of the length is nearer than, largest."""
+
+    rms_mm: float
+    p95_mm: float
+    max_mm: float
+
+    def __str__(self) -> str:
+        return f"RMS {self.rms_mm:.4f}, 95 % {self.p95_mm:.4f}, max {self.max_mm:.4f} mm"
+
+
+@dataclass(frozen=True, slots=True)
+class Distances:
+    """Distances both ways: what the path does wrong, and what of the reference it misses."""
+
+    path_to_reference: Summary
+    reference_to_path: Summary
+
+    @property
+    def hausdorff_mm(self) -> float:
+        """The larger of the two largest distances, mm."""
+        return max(self.path_to_reference.max_mm, self.reference_to_path.max_mm)
+
+    def __str__(self) -> str:
+        there, back = self.path_to_reference, self.reference_to_path
+        return f"path to reference {there}; reference to path {back}; Hausdorff {self.hausdorff_mm:.4f} mm"
+
+
+def distance(path: Contour, reference: Contour) -> Distances:
+    """Distances of a path from a reference and back, mm."""
+    ours, theirs = _sampled(path), _sampled(reference)
+    there, back = _Finder(theirs).distances_mm(ours.points_mm), _Finder(ours).distances_mm(theirs.points_mm)
+    return Distances(_summary(there, ours.weights_mm), _summary(back, theirs.weights_mm))
+
+
+def pointwise(path: Contour, reference: Contour, sample_mm: float = SAMPLE_MM) -> tuple[Array, Array]:
+    """Samples (n, 2) along a path, and the distance of each from the reference, mm."""
+    ours = _sampled(path, sample_mm)
+    return ours.points_mm, _Finder(_sampled(reference)).distances_mm(ours.points_mm)
+
+
+def length_mm(path: Contour) -> float:
+    """Length of the path in the work, mm."""
+    return float(sum(_steps_mm(run).sum() for run in polylines(path)))
+
+
+def closure_mm(path: Contour) -> float:
+    """Distance from the end of a run back to its start, mm; of several runs the largest."""
+    return float(max(np.hypot(*(run[-1] - run[0])) for run in polylines(path)))
+
+
+def polylines(path: Contour) -> list[Array]:
+    """The (n, 2) polylines in mm that count; raises MotionFault if there are none, ValueError if it is no contour."""
+    if isinstance(path, Motion):
+        path = Path(path.times_s, path.positions_mm)
+    if isinstance(path, Path):
+        runs = path.runs()
+        if not runs:
+            raise MotionFault(
+                f"the path never has its tool in the work; z must come down to {IN_WORK_BELOW_MM} mm or below somewhere"
+            )
+        return runs
+    runs = [path] if isinstance(path, np.ndarray) else [np.asarray(run) for run in path]
+    for run in runs:
+        if run.ndim != 2 or run.shape[1] != 2 or not len(run) or not np.isfinite(run).all():
+            raise ValueError(f"an array of shape {run.shape} is no polyline; it must be (n, 2), n > 0, of finite mm")
+    if not runs:
+        raise ValueError("the list of polylines is empty; it must hold at least one")
+    return runs
+
+
+@dataclass(frozen=True, slots=True)
+class _Sampled:
+    """Points (n, 2) along polylines, the length each stands for, and whether a straight piece leads on to the next."""
+
+    points_mm: Array
+    weights_mm: Array
+    leads_on: NDArray[np.bool_]
+
+
+def _sampled(path: Contour, sample_mm: float = SAMPLE_MM) -> _Sampled:
+    """Sample all polylines so densely, their own points included."""
+    runs = polylines(path)
+    apart_mm = max(sample_mm, sum(float(_steps_mm(run).sum()) for run in runs) / LARGEST_SAMPLES)
+    parts = [_along(run, apart_mm) for run in runs]
+    leads_on = np.concatenate([np.arange(len(part)) < len(part) - 1 for part in parts])
+    return _Sampled(np.vstack(parts), np.concatenate([_shares_mm(part) for part in parts]), leads_on)
+
+
+def _along(run: Array, apart_mm: float) -> Array:
+    """The polyline's points and, between them, points at most `apart_mm` from each other."""
+    s = np.r_[0.0, np.cumsum(_steps_mm(run))]
+    keep = np.r_[True, np.diff(s) > 0]
+    s, run = s[keep], run[keep]
+    between = np.linspace(0.0, s[-1], int(np.ceil(s[-1] / apart_mm)) + 1)
+    at = np.union1d(s, between)
+    return np.column_stack([np.interp(at, s, run[:, 0]), np.interp(at, s, run[:, 1])])
+
+
+def _shares_mm(points: Array) -> Array:
+    """The length that each point of a polyline stands for: half of the pieces on both its sides, mm."""
+    steps = _steps_mm(points)
+    return (np.r_[0.0, steps] + np.r_[steps, 0.0]) / 2
+
+
+def _steps_mm(run: Array) -> Array:
+    """Lengths of the straight pieces of a polyline, mm."""
+    return np.hypot(*np.diff(run, axis=0).T)
+
+
+class _Finder:
+    """Finds the nearest place on sampled polylines."""
+
+    def __init__(self, sampled: _Sampled) -> None:
+        from scipy.spatial import cKDTree  # half a second that `--help` need not wait for
+
+        self._sampled = sampled
+        self._tree = cKDTree(sampled.points_mm, balanced_tree=False, compact_nodes=False)
+
+    def distances_mm(self, points: Array) -> Array:
+        """Distance of each point (n, 2) from the nearest straight piece, mm."""
+        parts = [self._some(points[i : i + _SAMPLES_AT_ONCE]) for i in range(0, len(points), _SAMPLES_AT_ONCE)]
+        return np.concatenate(parts)
+
+    def _some(self, points: Array) -> Array:
+        """The same for so many points as fit into a little memory."""
+        k = min(_NEIGHBOURS, len(self._sampled.points_mm))
+        near_mm, near = self._tree.query(points, k=k)
+        best = near_mm.reshape(len(points), k)[:, 0]
+        for column in near.reshape(len(points), k).T:
+            best = np.minimum(best, self._to_piece(points, column))
+            best = np.minimum(best, self._to_piece(points, column - 1))
+        return best
+
+    def _to_piece(self, points: Array, piece: NDArray[np.int64]) -> Array:
+        """Distance of each point from the straight piece that leads on from a sample; infinite where none does."""
+        at, leads_on = self._sampled.points_mm, self._sampled.leads_on
+        start = at[piece]  # piece -1 is the last sample, from which none leads on
+        along = at[(piece + 1) % len(at)] - start
+        squared = np.einsum("ij,ij->i", along, along)
+        share = np.einsum("ij,ij->i", points - start, along) / np.where(squared > 0, squared, 1.0)
+        off = points - start - np.clip(share, 0.0, 1.0)[:, None] * along
+        return np.where(leads_on[piece], np.hypot(off[:, 0], off[:, 1]), np.inf)
+
+
+def _summary(distances_mm: Array, weights_mm: Array) -> Summary:
+    """Weighted figures; a path of single points weighs each the same."""
+    weights = weights_mm if weights_mm.sum() > 0 else np.ones_like(weights_mm)
+    order = np.argsort(distances_mm)
+    share = np.cumsum(weights[order])
+    p95 = distances_mm[order[np.searchsorted(share, 0.95 * share[-1]).clip(max=len(order) - 1)]]
+    rms = np.sqrt(np.average(distances_mm**2, weights=weights))
+    return Summary(float(rms), float(p95), float(distances_mm.max()))
