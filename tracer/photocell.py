@@ -1,0 +1,163 @@
+"""The photocells: what a cell sees at a place, swept across a line, and round a ring.
+
+Signals: places in sheet mm in, darkness out (0 paper, 1 ink), averaged over the cell's aperture.
+
+A cell swept across a line, u = centre + amplitude·sin(phase), sees a current whose fundamental tells the side and whose mean tells that the line is there:
+
+    first = 2/N · sum D(u)·sin(phase)       0 when the sweep is centred; its sign is the side
+    mean  = 1/N · sum D(u)                  falls when the line goes
+
+                      D     ___________
+                           /           \\           amplitude 0.6 of the line's width: the ends of the sweep stand
+                      ____/             \\____      just outside the edges, where the current changes most
+                         |<-- sweep --->|
+
+Source: patent ES 361967, figure 1: cell 101 on mount 42, eccentric pin 48, synchronous motor 45, amplifier FSA; cell 102.
+Questions: the patent gives no aperture. Chosen: a spot of Gaussian weight as wide as a disc of the aperture (standard deviation a quarter of it).
+"""
+
+from __future__ import annotations
+
+import math
+
+import cv2
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from tracer.drawing import Drawing
+
+TWO_PI = 2.0 * math.pi
+Cells = NDArray[np.float32]
+
+
+def behind_aperture(drawing: Drawing, aperture_mm: float) -> Cells:
+    """Darkness of the drawing averaged over an aperture centred on each pixel; (rows, columns) float32."""
+    sigma_px = aperture_mm / 4 / drawing.pitch_mm
+    if sigma_px < 0.2:
+        return drawing.darkness
+    return np.asarray(cv2.GaussianBlur(drawing.darkness, (0, 0), sigma_px), np.float32)
+
+
+@njit(cache=True, inline="always")
+def darkness_at(cells, pitch_mm, x_mm, y_mm):  # type: ignore[no-untyped-def]
+    """Darkness under a cell at a place in sheet mm; paper outside the sheet."""
+    rows, columns = cells.shape
+    x, y = x_mm / pitch_mm - 0.5, rows - y_mm / pitch_mm - 0.5
+    i, j = math.floor(y), math.floor(x)
+    if i < 0 or j < 0 or i >= rows - 1 or j >= columns - 1:
+        return 0.0
+    fx, fy = x - j, y - i
+    i, j = int(i), int(j)
+    above = cells[i, j] * (1 - fx) + cells[i, j + 1] * fx
+    below = cells[i + 1, j] * (1 - fx) + cells[i + 1, j + 1] * fx
+    return above * (1 - fy) + below * fy
+
+
+@njit(cache=True)
+def sweep(cells, pitch_mm, place, heading, centre_mm, amplitude_mm, samples):  # type: ignore[no-untyped-def]
+    """Fundamental and mean of one whole sweep across a heading at a standing place (x, y); (first, mean)."""
+    c, s = math.cos(heading), math.sin(heading)
+    first = mean = 0.0
+    for k in range(samples):
+        swing = math.sin(TWO_PI * (k + 0.5) / samples)
+        u = centre_mm + amplitude_mm * swing
+        d = darkness_at(cells, pitch_mm, place[0] - u * s, place[1] + u * c)
+        first += d * swing
+        mean += d
+    return 2.0 * first / samples, mean / samples
+
+
+@njit(cache=True)
+def edges(cells, pitch_mm, x_mm, y_mm, heading, reach_mm, level):  # type: ignore[no-untyped-def]
+    """Where the line under (x, y) ends to the right and to the left of a heading, mm; NaN for an edge out of reach or no ink.
+
+    An edge is where the darkness crosses `level`; the search starts at the darkest place within half the reach.
+    """
+    nx, ny = -math.sin(heading), math.cos(heading)
+    step = 0.35 * pitch_mm
+    half = int(math.ceil(reach_mm / step))
+    best, start = -1.0, 0
+    for k in range(-half // 2, half // 2 + 1):
+        d = darkness_at(cells, pitch_mm, x_mm + k * step * nx, y_mm + k * step * ny) - 1e-3 * abs(k * step)
+        if d > best:
+            best, start = d, k
+    right, left = math.nan, math.nan
+    if best < level:
+        return right, left
+    for side in (-1, 1):
+        before = darkness_at(cells, pitch_mm, x_mm + start * step * nx, y_mm + start * step * ny)
+        k = start
+        while -half <= k <= half:
+            k += side
+            now = darkness_at(cells, pitch_mm, x_mm + k * step * nx, y_mm + k * step * ny)
+            if now < level:
+                found = (k - side * (level - now) / (before - now)) * step
+                if side < 0:
+                    right = found
+                else:
+                    left = found
+                break
+            before = now
+    return right, left
+
+
+@njit(cache=True)
+def ring(cells, pitch_mm, centre, radius_mm, level):  # type: ignore[no-untyped-def]
+    """Dark arcs that a cell sees going once round a centre: (n, 2) angles where each begins and ends (end > begin), rad.
+
+    A ring that is dark all round is one arc of a whole turn.
+    """
+    samples = max(24, int(math.ceil(TWO_PI * radius_mm / (0.35 * pitch_mm))))
+    seen = np.empty(samples)
+    for k in range(samples):
+        a = TWO_PI * k / samples
+        seen[k] = darkness_at(cells, pitch_mm, centre[0] + radius_mm * math.cos(a), centre[1] + radius_mm * math.sin(a))
+    arcs = np.empty((samples // 2 + 1, 2))
+    first_light = -1
+    for k in range(samples):
+        if seen[k] < level:
+            first_light = k
+            break
+    if first_light < 0:
+        arcs[0, 0], arcs[0, 1] = -math.pi, math.pi
+        return arcs[:1].copy()
+    count, begin = 0, math.nan
+    for n in range(1, samples + 1):
+        now, before = seen[(first_light + n) % samples], seen[(first_light + n - 1) % samples]
+        if (now < level) != (before < level):
+            a = (first_light + n - 1 + (level - before) / (now - before)) * TWO_PI / samples
+            if now >= level:
+                begin = a
+            else:
+                arcs[count, 0], arcs[count, 1] = begin, a
+                count += 1
+    return arcs[:count].copy()
+
+
+@njit(cache=True)
+def scout(cells, pitch_mm, start, heading, step_mm, stations, width_mm, level, reach_mm):  # type: ignore[no-untyped-def]
+    """Feel along a line from a place on it: centres (n, 2) mm where the line is seen clean between two edges.
+
+    At each station the edges are found across the heading of the last few stations. It stops where an edge is missing, where the width is not the
+    line's (half to one and a third times), or where the centre leaps aside by a sixth of the width.
+    """
+    centres = np.empty((stations, 2))
+    x, y = start[0], start[1]
+    count = 0
+    for n in range(stations):
+        right, left = edges(cells, pitch_mm, x, y, heading, reach_mm, level)
+        width = left - right
+        aside = 0.5 * (left + right)
+        if not (0.5 * width_mm < width < 1.33 * width_mm) or (n > 0 and abs(aside) > width_mm / 6):
+            break
+        centres[n, 0], centres[n, 1] = x - aside * math.sin(heading), y + aside * math.cos(heading)
+        count = n + 1
+        if n >= 3:
+            back = centres[max(0, n - 8)]
+            turn = math.atan2(centres[n, 1] - back[1], centres[n, 0] - back[0]) - heading
+            heading += math.atan2(math.sin(turn), math.cos(turn))
+        elif n == 0 and abs(aside) > 0:
+            x, y = centres[0, 0], centres[0, 1]
+        x, y = centres[n, 0] + step_mm * math.cos(heading), centres[n, 1] + step_mm * math.sin(heading)
+    return centres[:count].copy()
