@@ -1,0 +1,155 @@
+"""Bearings: what the standstill at the start of a tape tells the machine, and the watch kept over its tracks.
+
+Signals in: the first frames of the tape (n, tracks) and the first rows of the discriminator; later all its rows. Out:
+level of each track (amplitude, full scale 1), frequency of the reference (Hz), zero of each axis (cycles); later the
+first row that cannot be trusted, with its fault.
+
+    zero of an axis = mean of its phase over the first 50 ms   (phase changer 155, turned until the drive stands)
+
+A track that starts at another phase, by another head or by skew that stands still, has thereby only another zero. A
+tape is refused when a track is silent or has no carrier, or when the strongest tone of track 1 is not the reference.
+A row cannot be trusted when the level of a track falls below a fifth of what it was at standstill, or when a phase
+lies a quarter of a cycle or more from where its motion was taking it (beyond half a cycle it would be counted as
+another turn).
+
+Source: patent ES 361967, figure 5 (phase changer 155, triggers 152 and 154, fault circuit 162).
+Questions: the patent sets the zero by hand and says nothing of levels. A tape that moves from its very first row has
+no standstill: its first row is then the zero. A splice that is a whole number of cycles out has no mark upon it here;
+the end position tells it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion.faults import Fault, LockFault, TapeFault
+from player.discriminator import Phases
+from recorder.tapeformat import TapeFormat
+
+STANDSTILL_S = 0.05
+STANDSTILL_CYCLES = 0.25  # phase that moves more than this within the 50 ms moves on purpose
+SILENT_LEVEL = 1e-3  # -60 dB of full scale
+CARRIER_SHARE = 0.5  # of a track's power; a tape at 20 dB signal-to-noise has 0.99, white noise 0.2
+REFERENCE_BAND = 0.1  # a tape's speed may be this much off
+LEVEL_KEPT = 0.2  # of the level at standstill; the discriminator's filter alone takes up to a half at full speed
+SURPRISE_CYCLES = 0.25
+SPECTRUM_FRAMES = 16384
+
+Float32s = NDArray[np.float32]
+Float64s = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Bearings:
+    """What the tracks are like at standstill; `names` are those of the axes."""
+
+    levels: Float64s
+    zero_cycles: Float64s
+    reference_hz: float
+    names: Sequence[str]
+
+    def first_fault(self, phases: Phases, rate_hz: float, positions_mm: Sequence[float]) -> tuple[int, Fault] | None:
+        """The first row of a block that cannot be trusted, and why; the screws stood at `positions_mm` before it."""
+        silent = ~(phases.levels >= LEVEL_KEPT * self.levels)
+        jumped = ~(np.abs(phases.surprise) < SURPRISE_CYCLES)
+        if not (silent.any() or jumped.any()):
+            return None
+        row = int(np.argmax(silent.any(axis=1) | jumped.any(axis=1)))
+        time_s = (phases.first_row + row) / rate_hz
+        if silent[row].any():
+            track = int(np.argmax(silent[row]))
+            return row, self._lost(track, float(phases.levels[row, track]), time_s)
+        axis = int(np.argmax(jumped[row]))
+        return row, self._jump(axis, float(phases.surprise[row, axis]), time_s, positions_mm[axis])
+
+    def _lost(self, track: int, level: float, time_s: float) -> TapeFault:
+        """The fault of a track whose carrier went."""
+        return TapeFault(
+            f"track {track + 1} ({track_name(track, self.names)}) lost its carrier at {time_s:.3f} s: level "
+            f"{decibels(level)}, at least {decibels(LEVEL_KEPT * float(self.levels[track]))} is needed; "
+            f"record or copy the tape again",
+            time_s=time_s,
+        )
+
+    def _jump(self, axis: int, surprise: float, time_s: float, position_mm: float) -> LockFault:
+        """The fault of a phase that no motion explains."""
+        return LockFault(
+            f"the phase of {self.names[axis].upper()} jumps by {surprise:+.2f} cycle at {time_s:.3f} s, position "
+            f"{position_mm:.3f} mm; the count is certain below {SURPRISE_CYCLES:g}; look for a splice or dropout there",
+            axis=self.names[axis],
+            time_s=time_s,
+            error_cycles=surprise,
+            position_mm=position_mm,
+        )
+
+
+def take_bearings(frames: Float32s, phases: Phases, fmt: TapeFormat) -> Bearings:
+    """Bearings from the first frames and rows of a tape; raises TapeFault where a track or the reference is missing."""
+    names, reference_hz = fmt.axes, fmt.reference_hz
+    power = np.mean(np.square(frames, dtype=np.float64), axis=0)
+    for track, mean_square in enumerate(power):
+        _demand_signal(track, float(mean_square), names)
+    found_hz = strongest_hz(frames[:, 0], fmt.sample_rate_hz)
+    if not abs(found_hz / reference_hz - 1) <= REFERENCE_BAND:
+        raise TapeFault(
+            f"track 1 carries {found_hz:.0f} Hz where the reference of {reference_hz:g} Hz should be, within "
+            f"{REFERENCE_BAND:.0%}; give the tape's own (--reference {found_hz:.0f}Hz), or its tracks in order"
+        )
+    rows = max(round(STANDSTILL_S * fmt.motion_rate_hz), 1)
+    levels = phases.levels[:rows].astype(np.float64).mean(axis=0)
+    for track in range(len(levels)):
+        _demand_carrier(track, float(levels[track]), float(power[track]), names)
+    return Bearings(levels, _zero(phases.cycles[:rows]), found_hz, names)
+
+
+def strongest_hz(samples: Float32s, sample_rate_hz: float) -> float:
+    """Frequency of the strongest tone in the first samples of a track, to a tenth of a line of the spectrum, Hz."""
+    samples = samples[:SPECTRUM_FRAMES]
+    spectrum = np.abs(np.fft.rfft((samples - samples.mean()) * np.hanning(len(samples))))
+    peak = min(max(int(np.argmax(spectrum)), 1), len(spectrum) - 2)
+    left, middle, right = np.log(spectrum[peak - 1 : peak + 2] + 1e-30)
+    bend = left - 2 * middle + right
+    shift = 0.5 * (left - right) / bend if bend < 0 else 0.0
+    return float((peak + shift) * sample_rate_hz / len(samples))
+
+
+def track_name(track: int, names: Sequence[str]) -> str:
+    """What a track carries."""
+    return "reference" if track == 0 else names[track - 1].upper()
+
+
+def decibels(level: float) -> str:
+    """An amplitude against full scale, as text."""
+    return f"{20 * math.log10(level):.0f} dB" if level > 0 else "none"
+
+
+def _zero(cycles: Float64s) -> Float64s:
+    """Phase at standstill, cycles; where an axis moves already, that of its first row."""
+    stands = np.ptp(cycles, axis=0) < STANDSTILL_CYCLES
+    return np.where(stands, cycles.mean(axis=0), cycles[0])
+
+
+def _demand_signal(track: int, mean_square: float, names: Sequence[str]) -> None:
+    """Raise TapeFault for a silent track."""
+    level = math.sqrt(2 * mean_square)
+    if not level >= SILENT_LEVEL:
+        raise TapeFault(
+            f"track {track + 1} ({track_name(track, names)}) is silent: level {decibels(level)}, at least "
+            f"{decibels(SILENT_LEVEL)} of full scale is needed; record the tape again, or give the tracks in the order "
+            f"reference, {', '.join(name.upper() for name in names)}"
+        )
+
+
+def _demand_carrier(track: int, level: float, mean_square: float, names: Sequence[str]) -> None:
+    """Raise TapeFault for a track with a signal but no carrier in it."""
+    share = level**2 / 2 / mean_square
+    if not share >= CARRIER_SHARE:
+        raise TapeFault(
+            f"track {track + 1} ({track_name(track, names)}) has no carrier: {share:.1%} of its power lies round the "
+            f"reference, at least {CARRIER_SHARE:.0%} is needed; this is no tape for it, or its reference is another"
+        )

@@ -1,0 +1,164 @@
+"""The machine: a tape in, the motion of the machine's own lead screws out.
+
+Signals in: the tape's frames in blocks. Signals out: Motion in blocks at the motion rate, sample 0 at the start of
+the tape, standstill included; a fault of the tape or a drive comes after the last sample that was still right. One
+block of tape is held at a time.
+
+The reference track turns the sector wheels through the synchronous motor 116, so the machine's clock is the tape: a
+tape that runs fast or flutters makes the machine run fast or flutter along the same path, and the times here are the
+tape's own. The zero of each axis is the phase at standstill; the tape holds displacements, and where they start from
+is in its text chunk or given by hand.
+
+Source: patent ES 361967, figure 5 and claims 15 to 17.
+Questions: which motion is "played" is not in doubt: that of the machine's screws, never of the tape; they differ by
+the following error. The end position, where the tape states one, is checked to a quarter of a cycle, as a whole cycle
+lost on the way shows nowhere else.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager
+from itertools import chain
+from os import PathLike
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion.faults import LockFault, TapeFault
+from motion.motion import AXES, Motion
+from player.bearings import Bearings, take_bearings
+from player.discriminator import Discriminator, Phases, discriminate
+from player.phase_lock import Drives, PhaseLock
+from recorder.tape import Tape, TapeFormat
+
+BLOCK_FRAMES = 65536
+END_CYCLES = 0.25  # a cycle lost is four times as much, and a drive at rest stands a hundred times nearer
+
+Array = NDArray[np.float64]
+
+
+def play(
+    file: str | PathLike[str],
+    *,
+    reference_hz: float | None = None,
+    cycles_per_mm: float | None = None,
+    start_mm: Sequence[float] | None = None,
+    settings: PhaseLock | None = None,
+) -> Playback:
+    """Put a tape in the machine; what is given by hand goes before its text chunk. Raises TapeFault, FileFault."""
+
+    def open_tape() -> AbstractContextManager[Tape]:
+        return Tape.open(file, reference_hz=reference_hz, cycles_per_mm=cycles_per_mm, start_mm=start_mm)
+
+    with open_tape() as tape:
+        fmt, frames = tape.format, tape.frames
+    return Playback(open_tape, fmt, frames, settings or PhaseLock.suited_to(fmt.motion_rate_hz))
+
+
+class Playback:
+    """A tape in the machine: iterate for the machine's motion, as often as wanted.
+
+    Known beforehand: `format`, `frames`, `duration_s`, `start_mm`. Figures of the last time through, one per axis of
+    the tape: `following_error_mm` (the largest), `end_mm` (where the machine stands), `end_error_mm` (against the end
+    that the tape states; None before the end, or if it states none).
+    """
+
+    def __init__(
+        self,
+        open_tape: Callable[[], AbstractContextManager[Tape]],
+        fmt: TapeFormat,
+        frames: int,
+        settings: PhaseLock,
+    ) -> None:
+        self._open_tape, self.format, self.frames, self.settings = open_tape, fmt, frames, settings
+        self.start_mm: Array = np.array(fmt.start_mm, dtype=np.float64)
+        self.end_mm: Array = self.start_mm.copy()
+        self.following_error_mm: Array = np.zeros(len(fmt.axes))
+        self.end_error_mm: Array | None = None
+
+    @property
+    def duration_s(self) -> float:
+        """Length of the tape, s."""
+        return self.frames / self.format.sample_rate_hz
+
+    def __iter__(self) -> Iterator[Motion]:
+        """Play: the machine's motion in blocks; raises TapeFault or LockFault after the last sample that was right."""
+        fmt = self.format
+        drives = Drives(len(fmt.axes), fmt.mm_per_cycle, fmt.motion_rate_hz, self.settings)
+        self.following_error_mm, self.end_error_mm = drives.largest_error_mm, None
+        for phases, bearings in self._phases():
+            found = bearings.first_fault(phases, fmt.motion_rate_hz, self.end_mm.tolist())
+            sound = len(phases) if found is None else found[0]
+            displacement_mm = drives.follow(phases.cycles[:sound] - bearings.zero_cycles)
+            self.end_mm = self.start_mm + drives.displacement_mm
+            if len(displacement_mm):
+                yield self._motion(displacement_mm, phases.first_row)
+            if len(displacement_mm) < sound:
+                raise self._out_of_range(drives, phases.first_row + len(displacement_mm))
+            if found is not None:
+                raise found[1]
+        self._check_end()
+
+    def _phases(self) -> Iterator[tuple[Phases, Bearings]]:
+        """The tape's phases in blocks, with the bearings taken from the first."""
+        fmt, bearings = self.format, None
+        discriminator = Discriminator(fmt.sample_rate_hz, fmt.reference_hz, fmt.samples_per_motion, fmt.tracks)
+        with self._open_tape() as tape:
+            blocks = iter(tape.blocks(BLOCK_FRAMES))
+            first = next(blocks, np.zeros((0, fmt.tracks), np.float32))
+            for phases in discriminate(chain([first], blocks), discriminator):
+                if bearings is None:
+                    bearings = take_bearings(first, phases, fmt)
+                yield phases, bearings
+        if bearings is None:
+            raise TapeFault(
+                f"the tape ends after {self.frames} frames; it must be longer than the discriminator's filter, "
+                f"{discriminator.filter_frames} frames; record it again"
+            )
+
+    def _motion(self, displacement_mm: Array, first_row: int) -> Motion:
+        """A block of positions: X, Y, Z and what other axes the tape has; an axis without a track stands at 0."""
+        rate_hz, names = self.format.motion_rate_hz, self.format.axes
+        if tuple(names[: len(AXES)]) == AXES:
+            return Motion(self.start_mm + displacement_mm, rate_hz, first_row / rate_hz)
+        columns = [*AXES, *(name for name in names if name not in AXES)]
+        positions_mm = np.zeros((len(displacement_mm), len(columns)))
+        for axis, name in enumerate(names):
+            positions_mm[:, columns.index(name)] = self.start_mm[axis] + displacement_mm[:, axis]
+        return Motion(positions_mm, rate_hz, first_row / rate_hz)
+
+    def _out_of_range(self, drives: Drives, row: int) -> LockFault:
+        """The fault of fault circuit 162: a drive that could not follow."""
+        error_mm = drives.error_mm
+        axis = int(np.argmax(np.where(np.isnan(error_mm), np.inf, np.abs(error_mm))))
+        name, time_s = self.format.axes[axis], row / self.format.motion_rate_hz
+        error_cycles, position_mm = float(error_mm[axis]) * self.format.cycles_per_mm, float(self.end_mm[axis])
+        return LockFault(
+            f"the drive of {name.upper()} lost its lock at {time_s:.3f} s, position {position_mm:.3f} mm: error "
+            f"{error_cycles:+.2f} cycles, allowed ±{self.settings.range_cycles:g}; the tape asks for more than "
+            f"{self.settings.drive.acceleration_mm_s2:g} mm/s²: record it slower or smoother",
+            axis=name,
+            time_s=time_s,
+            error_cycles=error_cycles,
+            position_mm=position_mm,
+        )
+
+    def _check_end(self) -> None:
+        """Compare where the machine stands with what the tape says; raises LockFault beyond a quarter of a cycle."""
+        fmt = self.format
+        if fmt.end_mm is None:
+            return
+        self.end_error_mm = self.end_mm - np.array(fmt.end_mm)
+        axis = int(np.argmax(np.abs(self.end_error_mm)))
+        error_mm, position_mm = float(self.end_error_mm[axis]), float(self.end_mm[axis])
+        if abs(error_mm) * fmt.cycles_per_mm <= END_CYCLES:
+            return
+        raise LockFault(
+            f"{fmt.axes[axis].upper()} ends at {position_mm:.3f} mm, {error_mm:+.3f} mm from the end that the tape "
+            f"states; allowed ±{END_CYCLES * fmt.mm_per_cycle:g} mm; cycles were lost, or it is cut short: get another",
+            axis=fmt.axes[axis],
+            time_s=self.duration_s,
+            error_cycles=error_mm * fmt.cycles_per_mm,
+            position_mm=position_mm,
+        )
