@@ -136,28 +136,29 @@ def ring(cells, pitch_mm, centre, radius_mm, level):  # type: ignore[no-untyped-
 
 
 @njit(cache=True)
-def scout(cells, pitch_mm, start, heading, step_mm, stations, width_mm, level, reach_mm):  # type: ignore[no-untyped-def]
-    """Feel along a line from a place on it: centres (n, 2) mm where the line is seen clean between two edges.
+def scout(cells, pitch_mm, start, heading, step_mm, stations, width_mm, level):  # type: ignore[no-untyped-def]
+    """Feel along a line from a place on it: (n, 3) centre x, y and width, mm, where the line is seen clean between two edges.
 
-    At each station the edges are found across the heading of the last few stations. It stops where an edge is missing, where the width is not the
-    line's (half to one and a third times), or where the centre leaps aside by a sixth of the width.
+    At each station the edges are found across the way that the last stations point. It stops where an edge is missing, where the width leaves what the
+    line has had by a fifth, or where the centre leaps aside by a sixth of the width.
     """
-    centres = np.empty((stations, 2))
-    x, y = start[0], start[1]
+    seen = np.empty((stations, 3))
+    reach = 0.8 * width_mm + 3.0 * pitch_mm
+    x, y, before = start[0], start[1], heading
     count = 0
     for n in range(stations):
-        right, left = edges(cells, pitch_mm, x, y, heading, reach_mm, level)
-        width = left - right
-        aside = 0.5 * (left + right)
-        if not (0.5 * width_mm < width < 1.33 * width_mm) or (n > 0 and abs(aside) > width_mm / 6):
+        right, left = edges(cells, pitch_mm, x, y, heading, reach, level)
+        width, aside = left - right, 0.5 * (left + right)
+        slack = 0.2 * width_mm + 0.4 * pitch_mm
+        if not abs(width - width_mm) < slack or (n > 0 and abs(aside) > width_mm / 6 + 0.2 * pitch_mm):
             break
-        centres[n, 0], centres[n, 1] = x - aside * math.sin(heading), y + aside * math.cos(heading)
+        seen[n, 0], seen[n, 1], seen[n, 2] = x - aside * math.sin(heading), y + aside * math.cos(heading), width
+        width_mm += 0.05 * (width - width_mm)
         count = n + 1
-        if n >= 3:
-            back = centres[max(0, n - 8)]
-            turn = math.atan2(centres[n, 1] - back[1], centres[n, 0] - back[0]) - heading
-            heading += math.atan2(math.sin(turn), math.cos(turn))
-        elif n == 0 and abs(aside) > 0:
-            x, y = centres[0, 0], centres[0, 1]
-        x, y = centres[n, 0] + step_mm * math.cos(heading), centres[n, 1] + step_mm * math.sin(heading)
-    return centres[:count].copy()
+        if n >= 2:  # the chord of the last stations, and on by what it has turned since
+            back = max(0, n - 4)
+            chord = math.atan2(seen[n, 1] - seen[back, 1], seen[n, 0] - seen[back, 0])
+            turn = math.atan2(math.sin(chord - before), math.cos(chord - before)) if n > 4 else 0.0
+            heading, before = chord + 2.0 * turn, chord
+        x, y = seen[n, 0] + step_mm * math.cos(heading), seen[n, 1] + step_mm * math.sin(heading)
+    return seen[:count].copy()

@@ -1,0 +1,117 @@
+"""Courses: the short ways that the head runs from memory through a knot.
+
+A course is a list of stretches, each a polyline (n, 2) in sheet mm with a place every few hundredths; between stretches the head stops and swivels.
+
+    smooth     from heading to heading by a cubic (Hermite), which is right to its fourth order
+    corner     along the incoming leg's line to the vertex, stop, swivel, along the outgoing leg's line
+    rounding   where the ink shows that the corner is rounded: an arc that touches both legs
+
+Whether a corner is sharp is seen on the outside of its ink: a pen of width w that turns on the vertex inks w/2 beyond it on the bisector; what is missing
+there is by how much the line passes the vertex.
+
+Source: our own, from first principles (the patent's head swivels on its axis; how sharply is left open).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from tracer import photocell
+from tracer.knot import Array, Leg, View, turn
+
+SPACING_MM = 0.02
+SHARP = 0.06  # of the line's width: a corner whose ink misses less than this on the outside is sharp
+
+
+def hermite(start: Array, heading: float, end: Array, end_heading: float) -> Array:
+    """The cubic from one place and heading to another, (n, 2) mm."""
+    chord = float(np.hypot(*(end - start)))
+    t = np.linspace(0, 1, max(2, math.ceil(chord / SPACING_MM) + 1))[:, None]
+    a = chord * np.array([math.cos(heading), math.sin(heading)])
+    b = chord * np.array([math.cos(end_heading), math.sin(end_heading)])
+    h = t * t * (3 - 2 * t)
+    return np.asarray(start * (1 - h) + end * h + a * t * (1 - t) ** 2 - b * t * t * (1 - t))
+
+
+def onto(place: Array, heading: float, leg: Leg, limit_mm: float) -> tuple[Array, float]:
+    """From where the head is onto the incoming leg's line; the way, and how far along the leg (mm from its end) it arrives.
+
+    It arrives at the leg's clean end, or beyond it if that is too near, but never beyond half the way to `limit_mm`.
+    """
+    t = np.array([math.cos(leg.heading_rad), math.sin(leg.heading_rad)])
+    ahead = float((leg.end_mm - place) @ t)
+    along = 0.0 if ahead > 0.2 else min(0.2 - ahead, 0.5 * (limit_mm - ahead) if limit_mm > -ahead else limit_mm)
+    return hermite(place, heading, leg.at(along), leg.heading_at(along)), along
+
+
+def along_leg(leg: Leg, start_mm: float, end_mm: float) -> Array:
+    """Places on a leg's line from one distance to another (from its clean end)."""
+    return leg.at(np.linspace(start_mm, end_mm, max(2, math.ceil(abs(end_mm - start_mm) / SPACING_MM) + 1)))
+
+
+def through_corner(view: View, incoming: Leg, outgoing: Leg, legs_mm: tuple[float, float], from_mm: float) -> list[Array]:
+    """Stretches from `from_mm` on the incoming leg through the corner to the outgoing leg's clean end."""
+    s, u = legs_mm
+    before, after = incoming.heading_at(s), outgoing.heading_at(-u)
+    deflection = abs(turn(before, after))
+    missing = missing_ink_mm(view, incoming.at(s), before, after, 0.5 * (incoming.width_mm + outgoing.width_mm))
+    if missing > SHARP * view.width_mm:
+        radius = missing / (1 / math.cos(deflection / 2) - 1)
+        touch = radius * math.tan(deflection / 2)
+        if touch < min(s - from_mm, u + 0.5 * view.leg_mm):
+            a, b = s - touch, -u + touch
+            bend = _arc(incoming.at(a), incoming.heading_at(a), outgoing.at(b), outgoing.heading_at(b))
+            out = along_leg(outgoing, b, max(b, 0.0)) if b < 0 else outgoing.at(np.array([b]))
+            return [np.vstack([along_leg(incoming, from_mm, a), bend, out])]
+        if missing > 0.3 * view.width_mm:
+            a = max(from_mm, min(0.0, s))
+            return [np.vstack([along_leg(incoming, from_mm, a), hermite(incoming.at(a), incoming.heading_at(a), outgoing.end_mm, outgoing.heading_rad)])]
+    vertex = 0.5 * (incoming.at(s) + outgoing.at(-u))
+    arriving, leaving = along_leg(incoming, from_mm, s), along_leg(outgoing, -u, max(0.0, -u))
+    arriving[-1] = leaving[0] = vertex
+    return [arriving, leaving]
+
+
+def missing_ink_mm(view: View, vertex: Array, before: float, after: float, width_mm: float) -> float:
+    """By how much the ink falls short of a sharp corner's on the outside of the bisector, mm (0 if it does not)."""
+    out = np.array([math.cos(before) - math.cos(after), math.sin(before) - math.sin(after)])
+    across = math.atan2(out[1], out[0]) - math.pi / 2
+    reach = 2.0 * width_mm + 3 * view.pitch_mm
+    _, outside = photocell.edges(view.cells, view.pitch_mm, vertex[0], vertex[1], across, reach, view.level)
+    return max(0.0, 0.5 * width_mm - outside) if math.isfinite(outside) else 0.0
+
+
+def _arc(start: Array, heading: float, end: Array, end_heading: float) -> Array:
+    """An arc that leaves along one heading and arrives along another: cubics of at most 30 degrees each."""
+    angle = turn(heading, end_heading)
+    pieces = max(1, math.ceil(abs(angle) / math.radians(30)))
+    radius = float(np.hypot(*(end - start))) / (2 * math.sin(abs(angle) / 2))
+    side = math.copysign(1.0, angle)
+    centre = start + side * radius * np.array([-math.sin(heading), math.cos(heading)])
+    headings = heading + angle * np.arange(pieces + 1) / pieces
+    nodes = centre + side * radius * np.column_stack([np.sin(headings), -np.cos(headings)])
+    nodes[-1] = end
+    return np.vstack([hermite(nodes[i], headings[i], nodes[i + 1], headings[i + 1]) for i in range(pieces)])
+
+
+def speeds(points: Array, speed_mm_s: float, acceleration_mm_s2: float, end_mm_s: float) -> Array:
+    """Highest speed at each place of a stretch: what bends and braking allow, `end_mm_s` at its end; mm/s."""
+    steps = np.diff(points, axis=0)
+    lengths = np.maximum(np.hypot(*steps.T), 1e-9)
+    headings = np.unwrap(np.arctan2(steps[:, 1], steps[:, 0]))
+    allowed = np.full(len(points), speed_mm_s)
+    if len(points) > 2:
+        bends = np.abs(np.diff(headings)) / (0.5 * (lengths[1:] + lengths[:-1]))
+        allowed[1:-1] = np.minimum(speed_mm_s, np.sqrt(acceleration_mm_s2 / np.maximum(bends, 1e-6)))
+    allowed[-1] = min(allowed[-1], end_mm_s)
+    for i in range(len(points) - 2, -1, -1):
+        allowed[i] = min(allowed[i], math.sqrt(allowed[i + 1] ** 2 + 2 * acceleration_mm_s2 * lengths[i]))
+    return allowed
+
+
+def distinct(points: Array) -> Array:
+    """The polyline without places that repeat the one before."""
+    keep = np.r_[True, np.hypot(*np.diff(points, axis=0).T) > 1e-6]
+    return points[keep]

@@ -1,0 +1,253 @@
+"""The follower: the head put down on a line, following it, taken through its knots, until the line closes, ends or is lost.
+
+Signals: a drawing, a place and a heading in; positions of the X and Y screws (n, 2) mm at the motion rate out, with the ending:
+
+    closed    the head is back where it began, on the same heading
+    ended     the line ended, or ran into what the head has followed already
+    lost      no clean line could be found on from there
+
+Between knots the kernel `head.follow` steers by the swinging cell. At a knot, `knot` says which legs there are, `course` draws the way through, and the
+head runs it from memory until the swinging cell stands on the clean outgoing leg.
+
+Source: patent ES 361967, figure 1. Questions: see `head`, `knot` and `course`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from motion.faults import LineFault
+from tracer import course, head
+from tracer.knot import Array, Leg, leg_of, reach_of_ink, turn
+from tracer.settings import Settings, tune
+from tracer.stance import Stance
+from tracer.survey import survey
+from tracer.trail import Trail
+
+CHUNK = 6000  # samples that the kernel follows before it tells how far it has come
+SMOOTH = math.radians(14)  # a smaller change of heading is no corner
+SETTLE_LAGS = 7  # a stop lasts this many lags of the drives: 1/1000 of the last speed is left
+
+
+@dataclass(slots=True)
+class Followed:
+    """What the head did: positions (n, 2) mm at the motion rate, how it ended, and the fault if the line was lost."""
+
+    positions_mm: Array
+    ending: str
+    heading_rad: float
+    travel_mm: float
+    fault: LineFault | None = None
+
+
+class Follower:
+    """A head on a line of a drawing."""
+
+    def __init__(self, stance: Stance, settings: Settings, rate_hz: float) -> None:
+        self.view, self.settings, self.rate_hz, self.stance = stance.view, settings, rate_hz, stance
+        self.tuning = tune(stance, settings, rate_hz)
+        self.state = np.zeros(head.STATES)
+        self.state[[head.X, head.Y]] = stance.place_mm
+        self.state[head.INK] = 1.0
+        self._parts: list[Array] = [stance.place_mm[None].copy()]
+        self._trail = Trail(stance.place_mm, self.view.step_mm)
+        self._away_mm = max(4 * self.tuning.lead_mm, 3.0 * self.view.width_mm)
+        self._aim(stance.place_mm, stance.heading_rad, 0.0)
+
+    @property
+    def travel_mm(self) -> float:
+        """How far the head has come, mm."""
+        return float(self.state[head.TRAVEL])
+
+    def follow(self, longest_mm: float, told: Callable[[float], None] | None = None) -> Followed:
+        """Follow until the line closes, ends or is lost; `told` hears the travel in mm. `longest_mm` bounds a run in circles."""
+        home = (*self.stance.place_mm, self.stance.heading_rad, self._away_mm)
+        out = np.empty((CHUNK, 2))
+        while self.travel_mm < longest_mm:
+            n, why = head.follow(self.view.cells, self.view.pitch_mm, self.state, self.tuning, home, out)
+            self._keep(out[:n])
+            if told is not None:
+                told(self.travel_mm)
+            if why == head.HOME:
+                self._drive([self._way_home()])
+                return self._done("closed")
+            if why != head.MORE:
+                ending = self._through_knot()
+                if ending is not None:
+                    return ending
+        return self._lost("the head has gone round without coming back to its start")
+
+    def _through_knot(self) -> Followed | None:
+        """Take the head through the knot ahead; what it did in all, if that was the end."""
+        seen = self._feel_ahead()
+        if len(seen) < 4:
+            return self._lost("the line is not clean between two edges")
+        if self._ahead(seen[-1, :2]) > self.tuning.guard_lead_mm + 0.8 * self.view.leg_mm:
+            return self._pass([self._smooth_way(seen)], leg_of(seen, True, 0.4 * self.view.leg_mm))
+        incoming = leg_of(seen, True, self.view.leg_mm)
+        outgoing, legs_mm = survey(self.view, incoming, self._trail, self.settings.gap_mm)
+        if outgoing is None:
+            return self._at_end(incoming)
+        return self._pass(self._course(incoming, outgoing, legs_mm), outgoing)
+
+    def _feel_ahead(self) -> Array:
+        """The line felt from behind the axis forward until it is no longer clean, (n, 3)."""
+        place, heading, since_mm = self._anchor
+        leg_mm = self.view.leg_mm
+        come_mm = self.travel_mm - since_mm
+        if come_mm > leg_mm:
+            place, heading = self._trail.back(leg_mm)
+            come_mm = leg_mm
+        return self.view.feel(place, heading, come_mm + self.tuning.guard_lead_mm + leg_mm)
+
+    def _course(self, incoming: Leg, outgoing: Leg, legs_mm: tuple[float, float] | None) -> list[Array]:
+        """Stretches from where the head is to the outgoing leg's clean end."""
+        deflection = abs(turn(incoming.heading_rad, outgoing.heading_rad))
+        if legs_mm is not None and deflection > SMOOTH and min(legs_mm) > -self.view.width_mm:
+            way, along = course.onto(*self._stands(), incoming, legs_mm[0])
+            stretches = course.through_corner(self.view, incoming, outgoing, legs_mm, along)
+            return [np.vstack([way, stretches[0]]), *stretches[1:]]
+        limit = float(np.hypot(*(outgoing.end_mm - incoming.end_mm)))
+        way, along = course.onto(*self._stands(), incoming, 0.5 * limit)
+        start, heading = incoming.at(along), incoming.heading_at(along)
+        return [np.vstack([way, course.hermite(start, heading, outgoing.end_mm, outgoing.heading_rad)])]
+
+    def _smooth_way(self, seen: Array) -> Array:
+        """The way along a line that was felt clean throughout: cubics between places that are fitted to a few stations each."""
+        span_mm = 0.25 * self.view.leg_mm
+        nodes = [self._stands()]
+        for i in range(len(seen)):
+            if self._ahead(seen[i, :2]) < 0.3 * span_mm or np.hypot(*(seen[i, :2] - nodes[-1][0])) < span_mm:
+                continue
+            near = leg_of(seen[max(0, i - 6) : i + 7], True, self.view.leg_mm)
+            back = float(np.hypot(*(seen[i, :2] - near.seen[-1, :2])))
+            nodes.append((near.at(-back), near.heading_at(-back)))
+        last = leg_of(seen, True, 0.4 * self.view.leg_mm)
+        nodes[-1] = (last.end_mm, last.heading_rad)
+        return np.vstack([course.hermite(*a, *b) for a, b in pairwise(nodes)])
+
+    def _at_end(self, incoming: Leg) -> Followed:
+        """Run to the end of the line, or to where it meets what was followed before."""
+        ink = reach_of_ink(self.view, incoming, 6 * self.view.width_mm + 2.0)
+        if ink is None:
+            return self._lost("no clean line leads on through the ink ahead")
+        end = max(0.0, ink - 0.5 * incoming.width_mm)
+        way, along = course.onto(*self._stands(), incoming, end)
+        self._drive([np.vstack([way, course.along_leg(incoming, along, max(along, end))])])
+        return self._done("ended")
+
+    def _way_home(self) -> Array:
+        """The way onto the place where the head began."""
+        return course.hermite(*self._stands(), self.stance.place_mm, self.stance.heading_rad)
+
+    # where the head stands, and moving it
+
+    def _stands(self) -> tuple[Array, float]:
+        """Where the drives' demand stands, and the heading."""
+        owed = head.owed_s(self.tuning.drive_gain, self.tuning.period_s)
+        s = self.state
+        place = np.array([s[head.X] + owed * s[head.VX], s[head.Y] + owed * s[head.VY]])
+        return place, float(s[head.HEADING])
+
+    def _ahead(self, place: Array) -> float:
+        """How far ahead of the axis a place is, mm along the heading."""
+        stands, heading = self._stands()
+        return float((place - stands) @ np.array([math.cos(heading), math.sin(heading)]))
+
+    def _pass(self, stretches: list[Array], outgoing: Leg) -> Followed | None:
+        """Run a course and go on following at its end; or stop at home if the course passes there."""
+        cut = self._home_on(stretches)
+        if cut is not None:
+            self._drive(cut)
+            return self._done("closed")
+        self._drive(stretches, self.settings.speed_mm_s)
+        self._aim(outgoing.end_mm, outgoing.heading_rad, outgoing.bend_per_mm)
+        return None
+
+    def _home_on(self, stretches: list[Array]) -> list[Array] | None:
+        """The course up to home, if it passes home on home's heading."""
+        if self.travel_mm < self._away_mm:
+            return None
+        home, heading = self.stance.place_mm, self.stance.heading_rad
+        for k, way in enumerate(stretches):
+            near = int(np.argmin(np.hypot(*(way - home).T)))
+            step = way[min(near + 1, len(way) - 1)] - way[min(near, len(way) - 2)]
+            on_it = np.hypot(*(way[near] - home)) < 0.3 * self.view.width_mm
+            if on_it and 0 < near and math.cos(math.atan2(step[1], step[0]) - heading) > 0.8:
+                return [*stretches[:k], np.vstack([way[:near], home])]
+        return None
+
+    def _drive(self, stretches: list[Array], end_mm_s: float = 0.0) -> None:
+        """Run along stretches, swivelling between them, and end at a speed."""
+        for k, stretch in enumerate(stretches):
+            way = course.distinct(stretch)
+            if len(way) < 2:
+                continue
+            step = way[1] - way[0]
+            if k > 0:
+                self._swivel(math.atan2(step[1], step[0]))
+            last = k == len(stretches) - 1
+            limits = course.speeds(
+                way, self.settings.speed_mm_s, self.settings.acceleration_mm_s2, end_mm_s if last else 0.0
+            )
+            self._run(way, limits)
+            step = way[-1] - way[-2]
+            self.state[head.HEADING] = math.atan2(step[1], step[0])
+            if limits[-1] == 0.0:
+                self._stand(SETTLE_LAGS * self.settings.drive.lag_s)
+
+    def _run(self, way: Array, limits: Array) -> None:
+        """Run along one stretch, however long it takes."""
+        length = float(np.hypot(*np.diff(way, axis=0).T).sum())
+        slowest = 0.02 * self.settings.speed_mm_s
+        out = np.empty((int(length / slowest * self.rate_hz) + 1000, 2))
+        n = head.run(self.state, self.tuning, way, limits, out)
+        self._keep(out[:n])
+
+    def _swivel(self, heading: float) -> None:
+        """Turn the standing head to a heading."""
+        self._stand(abs(turn(float(self.state[head.HEADING]), heading)) / self.settings.swivel_rad_s)
+        self.state[head.HEADING] = heading
+
+    def _stand(self, time_s: float) -> None:
+        """Stand for a time."""
+        out = np.empty((math.ceil(time_s * self.rate_hz), 2))
+        head.stand(self.state, self.tuning, out)
+        self._keep(out)
+
+    def _aim(self, place: Array, heading: float, bend_per_mm: float) -> None:
+        """Set the swinging cell on a line whose place, heading and bend are known, and remember where it was clean."""
+        s, lead = self.state, self.tuning.lead_mm
+        aside = 0.5 * bend_per_mm * lead * lead
+        s[head.HEADING], s[head.TURN], s[head.MIDDLE] = heading, s[head.SPEED] * bend_per_mm, aside
+        s[head.LINE_X] = place[0] + lead * math.cos(heading) - aside * math.sin(heading)
+        s[head.LINE_Y] = place[1] + lead * math.sin(heading) + aside * math.cos(heading)
+        s[head.SWEEP] = s[head.FIRST] = s[head.MEAN] = s[head.LEFT] = s[head.RIGHT] = 0.0
+        s[head.AHEAD] = 1.0
+        self._anchor = (place, heading, self.travel_mm)
+
+    def _keep(self, positions: Array) -> None:
+        self._parts.append(positions.copy())
+        self._trail.add(positions)
+
+    def _done(self, ending: str, fault: LineFault | None = None) -> Followed:
+        heading = float(self.state[head.HEADING])
+        return Followed(np.vstack(self._parts), ending, heading, self.travel_mm, fault)
+
+    def _lost(self, why: str) -> Followed:
+        """The end of a line that was lost: the fault says where."""
+        (x, y), heading = self._stands()
+        degrees = math.degrees(heading) % 360
+        fault = LineFault(
+            f"line lost at {x:.2f},{y:.2f} mm, heading {degrees:.0f} degrees, after {self.travel_mm:.1f} mm: {why};"
+            " look at the drawing there, bridge a gap with --gap, or scan at a higher resolution",
+            x_mm=float(x),
+            y_mm=float(y),
+            heading_rad=heading,
+        )
+        return self._done("lost", fault)

@@ -1,0 +1,243 @@
+"""Knots: places where the cells do not see one clean line, and what the head makes of them.
+
+Corners, crossings, junctions, touching lines, gaps and ends have this in common: near them the inks of several legs run together, and what a swinging
+cell sees there is not the line. So the head looks at the legs where they are clean, further out, and concludes:
+
+    incoming   the line felt forward from behind the axis until it is no longer clean: place, heading and bend at its last clean station
+    legs       cells on rings about the knot: an arc of ink that is joined to the knot by ink, ring by ring, and has the line's width for three rings, is
+               a leg; it is felt outward from there in the same way
+    outgoing   the leg that goes on straightest
+    vertex     where incoming and outgoing meet
+
+All places are sheet mm; a ring's radius grows until legs are found.
+
+Source: patent ES 361967, cell 102 senses an abrupt change of direction ahead of the follower; how it finds the way on is left to the two British patents
+named there. Questions: everything else is our own, from first principles.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer import photocell
+from tracer.photocell import Cells
+
+Array = NDArray[np.float64]
+
+LEG_MM = 1.2  # how much of a leg is felt for its direction, at a line of 0.5 mm
+FARTHEST_MM = 5.0  # rings do not grow beyond this, or ten widths
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """What the head knows of the line it is on: the cells' picture, the line's width, and the darkness at an edge."""
+
+    cells: Cells
+    pitch_mm: float
+    width_mm: float
+    level: float
+
+    @property
+    def step_mm(self) -> float:
+        """Distance of stations and rings."""
+        return max(0.05, 0.6 * self.pitch_mm)
+
+    @property
+    def leg_mm(self) -> float:
+        """How much of a leg is felt for its direction."""
+        return max(LEG_MM, 12 * self.pitch_mm, 1.5 * self.width_mm)
+
+    def feel(self, place: Array, heading: float, length_mm: float) -> Array:
+        """Centres and widths (n, 3) of the line from a place on it along a heading, while it is clean."""
+        stations = max(4, round(length_mm / self.step_mm) + 1)
+        return photocell.scout(
+            self.cells, self.pitch_mm, place, heading, self.step_mm, stations, self.width_mm, self.level
+        )
+
+    def dark(self, place: Array) -> bool:
+        """Whether there is ink at a place."""
+        return bool(photocell.darkness_at(self.cells, self.pitch_mm, place[0], place[1]) > self.level)
+
+
+@dataclass(frozen=True, slots=True)
+class Leg:
+    """A clean stretch of line at a knot: `end_mm` is its clean end, the heading there and the bend are along the travel."""
+
+    end_mm: Array
+    heading_rad: float
+    bend_per_mm: float
+    width_mm: float
+    seen: Array
+
+    def at(self, along_mm: float | Array) -> Array:
+        """Places (…, 2) at distances from the clean end along the travel (negative: before it)."""
+        s = np.asarray(along_mm, float)[..., None]
+        t = np.array([math.cos(self.heading_rad), math.sin(self.heading_rad)])
+        return self.end_mm + s * t + 0.5 * self.bend_per_mm * s * s * np.array([-t[1], t[0]])
+
+    def heading_at(self, along_mm: float) -> float:
+        """Heading at a distance from the clean end, rad."""
+        return self.heading_rad + math.atan(self.bend_per_mm * along_mm)
+
+
+def leg_of(seen: Array, last: bool, length_mm: float) -> Leg:
+    """Fit a leg to what was felt, (n, 3) in the order of travel; its clean end is the `last` station, or else the first.
+
+    Straight, unless a bend stands out of its own uncertainty fourfold.
+    """
+    end = seen[-1] if last else seen[0]
+    near = seen[np.hypot(*(seen[:, :2] - end[:2]).T) <= length_mm]
+    chord = near[-1, :2] - near[0, :2]
+    heading = math.atan2(chord[1], chord[0])
+    t = np.array([math.cos(heading), math.sin(heading)])
+    d = near[:, :2] - end[:2]
+    x, y = d @ t, d @ np.array([-t[1], t[0]])
+    slope, offset, bend = _fit(x, y)
+    return Leg(
+        end[:2] + offset * np.array([-t[1], t[0]]),
+        heading + math.atan(slope),
+        bend / (1 + slope * slope) ** 1.5,
+        float(np.median(near[:, 2])),
+        seen,
+    )
+
+
+def _fit(x: Array, y: Array) -> tuple[float, float, float]:
+    """Slope, offset and bend at x = 0 of y(x)."""
+    straight = np.polyfit(x, y, 1) if len(x) > 1 else np.array([0.0, float(y[0])])
+    if len(x) >= 8:
+        powers = np.vander(x, 3)
+        bent, *_ = np.linalg.lstsq(powers, y, rcond=None)
+        noise = float(np.sum((y - powers @ bent) ** 2)) / (len(x) - 3)
+        spread = math.sqrt(max(noise, 1e-10) * np.linalg.inv(powers.T @ powers)[0, 0])
+        if abs(bent[0]) > 4 * spread:
+            return float(bent[1]), float(bent[2]), 2 * float(bent[0])
+    return float(straight[0]), float(straight[1]), 0.0
+
+
+def turn(a: float, b: float) -> float:
+    """Angle from heading a to heading b, -pi..pi."""
+    return math.remainder(b - a, math.tau)
+
+
+def meet(incoming: Leg, outgoing: Leg) -> tuple[float, float] | None:
+    """Distances (beyond the incoming leg's end, before the outgoing leg's end) where their lines cross, mm; None if they do not."""
+    s = u = 0.0
+    for _ in range(6):
+        a, b = incoming.heading_at(s), outgoing.heading_at(-u)
+        cross = math.sin(turn(a, b))
+        if abs(cross) < 0.02:
+            return None
+        gap = outgoing.at(-u) - incoming.at(s)
+        ds = (gap[0] * math.sin(b) - gap[1] * math.cos(b)) / cross
+        du = (gap[0] * math.sin(a) - gap[1] * math.cos(a)) / cross
+        s, u = s + ds, u - du
+        if max(abs(s), abs(u)) > 2 * FARTHEST_MM:
+            return None
+    return s, u
+
+
+def reach_of_ink(view: View, incoming: Leg, farthest_mm: float) -> float | None:
+    """How far the ink goes on from the incoming leg's end along its line, mm; None if farther than asked."""
+    step = 0.35 * view.pitch_mm
+    before = 1.0
+    for k in range(int(farthest_mm / step)):
+        place = incoming.at(k * step)
+        now = photocell.darkness_at(view.cells, view.pitch_mm, place[0], place[1])
+        if now < view.level:
+            return max(0.0, (k - (view.level - now) / max(before - now, 1e-9)) * step)
+        before = now
+    return None
+
+
+def legs_around(view: View, centre: Array, trail: Array) -> list[Leg]:
+    """The clean legs that leave a knot, other than the one that the `trail` (n, 2), newest last, came in by."""
+    farthest = max(FARTHEST_MM, 10 * view.width_mm)
+    rings = np.arange(0.3 * view.width_mm, farthest, view.step_mm)
+    trail_mm = np.hypot(*(trail - centre).T)
+    joined: list[_Arc] = []
+    found: list[Leg] = []
+    found_at = math.inf
+    for radius in rings:
+        if radius > found_at + 0.5 * view.leg_mm:
+            break
+        arcs = photocell.ring(view.cells, view.pitch_mm, centre, radius, view.level)
+        joined = _join(arcs, joined, radius, view.width_mm, _crossing(trail, trail_mm, centre, radius))
+        if not joined:
+            break
+        for arc in joined:
+            if arc.clean == 3 and not arc.incoming and not arc.found:
+                leg = _leg_outward(view, centre, radius, arc)
+                if leg is not None:
+                    found.append(leg)
+                    arc.found = True
+        if found and found_at == math.inf:
+            found_at = radius
+        if found and any(not a.found and not a.incoming for a in joined):
+            found_at = radius  # some ink is still undecided: look further
+    return found
+
+
+@dataclass(slots=True)
+class _Arc:
+    """An arc of ink on a ring: where it begins and ends (rad), for how many rings it has been clean, whether it is the way in, or a leg already."""
+
+    begin: float
+    end: float
+    clean: int
+    incoming: bool
+    found: bool
+    track: tuple[float, ...]
+
+    @property
+    def middle(self) -> float:
+        return 0.5 * (self.begin + self.end)
+
+    def overlaps(self, begin: float, end: float) -> bool:
+        return abs(turn(self.middle, 0.5 * (begin + end))) < 0.5 * (self.end - self.begin + end - begin)
+
+
+def _crossing(trail: Array, trail_mm: Array, centre: Array, radius: float) -> float | None:
+    """Direction in which the trail crosses a ring, going back from its newest place; None if it does not reach so far."""
+    beyond = np.flatnonzero(trail_mm >= radius)
+    if not len(beyond):
+        return None
+    place = trail[beyond[-1]] - centre
+    return math.atan2(place[1], place[0])
+
+
+def _join(arcs: Array, inner: list[_Arc], radius: float, width_mm: float, back: float | None) -> list[_Arc]:
+    """The arcs of a ring that are joined by ink to those of the ring within it."""
+    out = []
+    for begin, end in arcs:
+        parents = [a for a in inner if a.overlaps(begin, end)]
+        if inner and not parents:
+            continue
+        arc = _Arc(begin, end, 0, False, any(a.found for a in parents), ())
+        if back is not None:
+            arc.incoming = arc.overlaps(back, back)
+        else:
+            arc.incoming = any(a.incoming for a in parents)
+        half = min(0.5 * (end - begin), 0.5 * math.pi)
+        width = 2 * radius * math.sin(half)
+        alone = len(parents) == 1 and sum(parents[0].overlaps(b, e) for b, e in arcs) == 1
+        if 0.6 * width_mm < width < 1.45 * width_mm and half < 1.2:
+            arc.clean = parents[0].clean + 1 if alone else 1
+            arc.track = ((*parents[0].track, arc.middle) if alone else (arc.middle,))[-3:]
+        out.append(arc)
+    return out
+
+
+def _leg_outward(view: View, centre: Array, radius: float, arc: _Arc) -> Leg | None:
+    """Feel outward along an arc that three rings have seen; None if the line there is not clean after all."""
+    radii = radius - view.step_mm * np.arange(2, -1, -1)
+    places = centre + radii[:, None] * np.column_stack([np.cos(arc.track), np.sin(arc.track)])
+    way = places[-1] - places[0]
+    seen = view.feel(places[0], math.atan2(way[1], way[0]), view.leg_mm)
+    if len(seen) < 4:
+        seen = view.feel(places[-1], math.atan2(way[1], way[0]), view.leg_mm)
+    return leg_of(seen, False, view.leg_mm) if len(seen) >= 4 else None

@@ -1,0 +1,81 @@
+"""Settings of the head, and the tuning that follows from them and from the line that it stands on.
+
+The sweep's amplitude is 0.6 of the line's width, so that its ends stand just outside the edges; the slope of the fundamental and the mean darkness are
+measured on the line itself, with the sweep set a little to one side and to the other.
+
+Source: patent ES 361967 gives no figures. Chosen for the precise head: a lead of 0.5 mm on a line of 0.5 mm; averaging along two leads is what beats the
+noise of a scan, and the error on a changing bend grows with the cube of the lead.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from motion.drive import Drive
+from tracer.head import Tuning
+from tracer.photocell import sweep
+from tracer.stance import Stance
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """Settings of the head (the precise set)."""
+
+    speed_mm_s: float = 10.0
+    slowed: float = 0.3  # share of the speed while the look-ahead relay holds
+    slow_s: float = 0.1
+    acceleration_mm_s2: float = 500.0
+    sweep_hz: float = 250.0
+    aperture_mm: float = 0.15
+    steering_lag_s: float = 0.001
+    swivel_rad_s: float = 20.0
+    gap_mm: float = 0.5
+    line_width_mm: float | None = None
+    drive: Drive = field(default_factory=Drive)
+
+
+def tune(stance: Stance, settings: Settings, rate_hz: float) -> Tuning:
+    """What the kernel needs to follow the line under a stance."""
+    width, pitch = stance.view.width_mm, stance.view.pitch_mm
+    lead = max(0.35 + 0.3 * width, 4 * pitch)
+    amplitude = max(0.6 * width, 1.5 * pitch)
+    slope, mean = _calibrate(stance, amplitude)
+    guard = 0.5 * width + max(0.17, 2 * pitch)
+    return Tuning(
+        period_s=1 / rate_hz,
+        speed_mm_s=settings.speed_mm_s,
+        slowed=settings.slowed,
+        slow_periods=settings.slow_s * rate_hz,
+        acceleration_mm_s2=settings.acceleration_mm_s2,
+        sweep_periods=max(8, round(rate_hz / settings.sweep_hz)),
+        lead_mm=lead,
+        amplitude_mm=amplitude,
+        along_mm=0.1 * amplitude,
+        guard_mm=guard,
+        guard_lead_mm=lead + max(0.15, 1.5 * pitch),
+        look_ahead_mm=3 * lead,
+        slope_per_mm=slope,
+        mean=mean,
+        drive_gain=settings.drive.gain(1 / rate_hz),
+        drive_change_mm_s=settings.drive.acceleration_mm_s2 / rate_hz,
+        steering_gain=1 - math.exp(-1 / rate_hz / settings.steering_lag_s),
+        width_mm=width,
+    )
+
+
+def _calibrate(stance: Stance, amplitude_mm: float) -> tuple[float, float]:
+    """Slope of the sweep's fundamental (per mm) and mean darkness, over a few stations of the line under the stance."""
+    view, aside = stance.view, 0.1 * stance.view.width_mm
+    c, s = math.cos(stance.heading_rad), math.sin(stance.heading_rad)
+    slopes, means = 0.0, 0.0
+    stations = 8
+    for k in range(stations):
+        place = stance.place_mm + view.step_mm * k * np.array([c, s])
+        left = sweep(view.cells, view.pitch_mm, place, stance.heading_rad, -aside, amplitude_mm, 24)
+        right = sweep(view.cells, view.pitch_mm, place, stance.heading_rad, aside, amplitude_mm, 24)
+        slopes += (left[0] - right[0]) / (2 * aside) / stations
+        means += (left[1] + right[1]) / 2 / stations
+    return max(slopes, 0.2), means

@@ -1,0 +1,52 @@
+"""The survey of a knot: which leg the head takes out of it.
+
+Signals: the incoming leg and the trail in; the outgoing leg out, and where the two meet.
+
+Straight on at a crossing; on along the only leg at a corner; never onto what has been followed already; across a gap no wider than allowed.
+
+Source: our own (see `knot`).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tracer.knot import Leg, View, leg_of, legs_around, meet, reach_of_ink, turn
+from tracer.trail import Trail
+
+
+def survey(view: View, incoming: Leg, trail: Trail, gap_mm: float) -> tuple[Leg | None, tuple[float, float] | None]:
+    """The outgoing leg (None if there is none), and the distances (mm) beyond the incoming and before the outgoing clean end where they meet.
+
+    The rings are centred where the legs meet, which is known only after the first look: up to three looks.
+    """
+    ink = reach_of_ink(view, incoming, 6 * view.width_mm + 2.0)
+    half = 0.5 * view.width_mm
+    centre = incoming.at(half + view.step_mm if ink is None else max(0.0, ink - half))
+    way_in = np.vstack([trail.recent(), incoming.seen[:, :2]])
+    outgoing, legs_mm = None, None
+    for _ in range(3):
+        legs = [leg for leg in legs_around(view, centre, way_in) if not trail.holds(leg, view.width_mm)]
+        if not legs:
+            break
+        outgoing = min(legs, key=lambda leg: abs(turn(incoming.heading_rad, leg.heading_rad)))
+        legs_mm = meet(incoming, outgoing)
+        if legs_mm is None or legs_mm[0] < -view.width_mm:
+            break
+        vertex = incoming.at(legs_mm[0])
+        if np.hypot(*(vertex - centre)) < 0.3 * view.width_mm:
+            break
+        centre = vertex
+    if outgoing is None and ink is not None:
+        outgoing = _over_gap(view, incoming, ink, gap_mm)
+    return outgoing, legs_mm
+
+
+def _over_gap(view: View, incoming: Leg, ink_mm: float, gap_mm: float) -> Leg | None:
+    """The leg that goes on straight across a gap no wider than allowed."""
+    for along in np.arange(ink_mm + 0.5 * view.pitch_mm, ink_mm + gap_mm, 0.35 * view.pitch_mm):
+        if view.dark(incoming.at(along)):
+            beyond = along + 0.6 * view.width_mm
+            seen = view.feel(incoming.at(beyond), incoming.heading_at(beyond), view.leg_mm)
+            return leg_of(seen, False, view.leg_mm) if len(seen) >= 4 else None
+    return None
