@@ -1,0 +1,138 @@
+"""The command line `morfax`: one verb per machine, and one line on stderr for whatever goes wrong.
+
+Signals in: the words on the command line. Signals out: figures on stdout, everything else on stderr, an exit code.
+Verbs are loaded when they are called, so that `morfax --help` does not wait for the machines.
+"""
+
+from __future__ import annotations
+
+import errno
+import importlib
+import os
+import sys
+import traceback
+from collections.abc import Sequence
+
+import click
+
+from console import kernels
+from motion.faults import Fault, FileFault
+
+VERBS = {
+    "trace": "Follow the line of a drawing and record the head's motion on a tape.",
+    "play": "Play a tape into the simulated machine and write the path it runs.",
+    "compare": "Say how far two contours are apart: paths, tapes, or one of them a drawing.",
+    "run": "Go the whole way: trace a drawing, play the tape, compare all three.",
+    "inspect": "Say what is on a tape: tracks, carriers, levels, travel, format.",
+    "record": "Record a path file on a tape.",
+}
+
+EXIT_CODES = """\b
+Exit codes:
+  0  done
+  1  the contours are further apart than --tolerance
+  2  wrong use of the command line
+  3  the drawing cannot be used
+  4  no line at that place, or the line was lost (what was traced is kept)
+  5  not a tape that can be played
+  6  a drive of the machine lost the tape
+  7  a motion that cannot be recorded
+  8  a file that cannot be read or written
+ 70  a mistake in morfax itself
+130  interrupted
+
+\b
+Examples:
+  morfax run samples/cam.png -o demo
+  morfax trace scan.png --width 120mm --start 40,62 -o cam.wav
+  morfax play cam.wav -o cam.csv -o cam.svg
+  morfax compare scan.png cam.csv --tolerance 50um -o cam-error.png
+"""
+CONTEXT = {"help_option_names": ["-h", "--help"], "max_content_width": 100}
+MISTAKE = 70  # EX_SOFTWARE of sysexits.h
+INTERRUPTED = 130  # 128 + SIGINT, as a shell says it
+
+
+class Verbs(click.Group):
+    """A group that imports the module of a verb only when the verb is called."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Name the verbs, in the order of the work."""
+        return list(VERBS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Import a verb; None if there is no such verb."""
+        if cmd_name not in VERBS:
+            return None
+        command = importlib.import_module(f"console.{cmd_name}").command
+        assert isinstance(command, click.Command)
+        return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the verbs and what they do, without importing them."""
+        with formatter.section("Verbs"):
+            formatter.write_dl(list(VERBS.items()))
+
+
+@click.group(cls=Verbs, epilog=EXIT_CODES, context_settings=CONTEXT, no_args_is_help=True)
+@click.version_option(package_name="morfax", prog_name="morfax")
+def cli() -> None:
+    """Follow a drawing, record the motion on a tape, play the tape on a machine, and compare.
+
+    Lengths, speeds and frequencies are given with their unit: 10mm, 0.4in, 50um, 1200mm/min, 6kHz. A bare number is in
+    mm, mm/s or Hz. Places are X,Y in mm from the lower-left corner of the sheet.
+    """
+
+
+def main(words: Sequence[str] | None = None) -> int:
+    """Run the command line; the exit code. Whatever goes wrong ends as one line on stderr."""
+    kernels.choose_cache()
+    try:
+        outcome = cli.main(args=None if words is None else list(words), prog_name="morfax", standalone_mode=False)
+        sys.stdout.flush()
+        return outcome if isinstance(outcome, int) else 0
+    except click.exceptions.NoArgsIsHelpError as nothing_asked:
+        nothing_asked.show()
+        return nothing_asked.exit_code
+    except click.ClickException as wrong_use:
+        return _say(_told(wrong_use), wrong_use.exit_code)
+    except (click.Abort, KeyboardInterrupt):
+        return _say("interrupted; no unfinished file was left under its final name", INTERRUPTED)
+    except Fault as fault:
+        return _say(str(fault), fault.exit_code)
+    except SystemExit:  # what click makes of a broken pipe
+        return _broken_pipe()
+    except OSError as error:
+        return _broken_pipe() if error.errno == errno.EPIPE else _say(_cause(error), FileFault.exit_code)
+    except MemoryError as error:
+        return _say(f"not enough memory ({error}); try a smaller drawing, or scan it at a lower resolution", MISTAKE)
+    except Exception as error:
+        if os.environ.get("MORFAX_TRACEBACK"):
+            traceback.print_exc()
+        told = " ".join(str(error).split())
+        return _say(f"a mistake in morfax: {type(error).__name__}: {told} (MORFAX_TRACEBACK=1 shows where)", MISTAKE)
+
+
+def _say(message: str, exit_code: int) -> int:
+    """Write one line on stderr; the exit code."""
+    click.echo(f"morfax: {' '.join(message.split())}", err=True)
+    return exit_code
+
+
+def _told(wrong_use: click.ClickException) -> str:
+    """What was wrong with the command line, and where to read how it is used."""
+    ctx = getattr(wrong_use, "ctx", None)
+    where = ctx.command_path if ctx is not None else "morfax"
+    return f"{wrong_use.format_message().rstrip('.')}; see {where} --help"
+
+
+def _cause(error: OSError) -> str:
+    """What the operating system says, with the file if it names one."""
+    said = error.strerror or str(error)
+    return f"{error.filename}: {said}" if error.filename else said
+
+
+def _broken_pipe() -> int:
+    """End quietly when the reader of our output has gone (`morfax inspect … | head -1`)."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return 0

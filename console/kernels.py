@@ -1,0 +1,57 @@
+"""Where the compiled kernels are kept, and whether they are there already.
+
+The sample loops of head, recorder and machine are compiled by numba on their first run and kept on disk: in
+`__pycache__` beside each module, or, where that folder cannot be written, in the user's cache folder
+(`$XDG_CACHE_HOME/morfax`, by default `~/.cache/morfax`), or at the worst in the folder for temporary files.
+"""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from pathlib import Path
+
+HOUSE = Path(__file__).parents[1]
+PACKAGES = ("motion", "tracer", "recorder", "player")
+
+
+def choose_cache() -> None:
+    """Send the kernels to a folder that can be written; only takes effect before numba is imported."""
+    if "NUMBA_CACHE_DIR" in os.environ or all(_writable(HOUSE / package / "__pycache__") for package in PACKAGES):
+        return
+    user = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "morfax"
+    temporary = Path(tempfile.gettempdir()) / f"morfax-{os.getuid() if hasattr(os, 'getuid') else 'user'}"
+    os.environ["NUMBA_CACHE_DIR"] = str(user if _writable(user) else temporary)
+
+
+def are_cold(packages: tuple[str, ...] = PACKAGES) -> bool:
+    """Whether a kernel of these packages has still to be compiled (never, or not since its source was changed)."""
+    return any(_is_cold(package) for package in packages)
+
+
+def _is_cold(package: str) -> bool:
+    """Whether a package that has kernels has none compiled, or older ones than its sources."""
+    sources = [file for file in (HOUSE / package).glob("*.py") if "@njit(cache=True" in file.read_text("utf-8")]
+    compiled = {file: _compiled_s(package, file.stem) for file in sources}
+    newest = max(compiled.values(), default=None)
+    if newest is None:
+        return False
+    # a kernel that is only ever part of others has no file of its own: 0 beside modules that have one
+    return newest == 0 or any(0 < when < file.stat().st_mtime for file, when in compiled.items())
+
+
+def _compiled_s(package: str, module: str) -> float:
+    """When a module's kernels were last compiled, s since the epoch; 0 if never."""
+    given = os.environ.get("NUMBA_CACHE_DIR")
+    folders = Path(given).glob(f"{package}_*") if given else [HOUSE / package / "__pycache__"]
+    found = [file.stat().st_mtime for folder in folders for file in folder.glob(f"{module}.*.nbi")]
+    return max(found, default=0.0)
+
+
+def _writable(folder: Path) -> bool:
+    """Whether files can be made in a folder, which is made if need be."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return False
+    return os.access(folder, os.W_OK)

@@ -1,0 +1,117 @@
+"""The files that lie on the desk: which kind each is, how it is opened, and where results may go.
+
+A file's kind is read off its first bytes, and off its name where they say nothing:
+
+    tape      RIFF, RF64, fLaC            or  .wav .rf64 .flac
+    drawing   PNG, JPEG, TIFF, BMP, …     or  .png .jpg .tif …
+    path      any other text              or  .csv
+
+A name that was given for a result is written over; a name that morfax made up is not, unless --force says so. A result
+never goes over the file that it is made from.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path as FilePath
+from typing import TYPE_CHECKING, Any, Literal
+
+import click
+
+from console.quantities import LENGTH
+from motion.faults import FileFault
+
+if TYPE_CHECKING:
+    from tracer.drawing import Drawing
+
+Kind = Literal["tape", "drawing", "path"]
+
+FILE = click.Path(path_type=FilePath)
+
+_FIRST_BYTES: dict[bytes, Kind] = {
+    b"RIFF": "tape",
+    b"RF64": "tape",
+    b"fLaC": "tape",
+    b"\x89PNG": "drawing",
+    b"\xff\xd8\xff": "drawing",
+    b"II*\0": "drawing",
+    b"MM\0*": "drawing",
+    b"BM": "drawing",
+    b"GIF8": "drawing",
+}
+_SUFFIXES: dict[str, Kind] = {
+    **dict.fromkeys((".wav", ".rf64", ".flac", ".w64"), "tape"),
+    **dict.fromkeys((".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".gif", ".webp", ".pgm"), "drawing"),
+    **dict.fromkeys((".csv", ".txt", ".tsv"), "path"),
+}
+
+
+def kind_of(file: FilePath) -> Kind:
+    """Tell which kind of file this is; raises FileFault if it cannot be read or is none of the three."""
+    try:
+        with file.open("rb") as opened:
+            first = opened.read(1024)
+    except OSError as error:
+        raise FileFault(f"cannot read {file}: {error.strerror}; check the name") from error
+    if first[:4] == b"RIFF" and first[8:12] == b"WEBP":
+        return "drawing"
+    by_bytes = next((kind for magic, kind in _FIRST_BYTES.items() if first.startswith(magic)), None)
+    kind = by_bytes or _SUFFIXES.get(file.suffix.lower())
+    if kind is None and b"\0" in first:
+        raise FileFault(f"{file} is no path file, no tape and no image that is known; give a .csv, a .wav or a .png")
+    return kind or "path"
+
+
+def outgoing(file: FilePath, *made_from: FilePath) -> FilePath:
+    """Make sure, before the work starts, that a result can go under this name; raises FileFault if not."""
+    folder = file.parent
+    if not folder.is_dir():
+        raise FileFault(f"cannot write {file}: there is no folder {folder}; make it first, or give another name")
+    if file.is_dir():
+        raise FileFault(f"cannot write {file}: it is a folder; give the name of a file")
+    if not os.access(folder, os.W_OK):
+        raise FileFault(f"cannot write {file}: the folder {folder} may not be written to; give another name")
+    if any(file.exists() and source.exists() and file.samefile(source) for source in made_from):
+        raise FileFault(f"cannot write {file}: the result would go over the file it is made from; give another name")
+    return file
+
+
+def made_up(name: FilePath, *made_from: FilePath, force: bool) -> FilePath:
+    """A name that nobody gave, for a result in the current folder; raises FileFault if it is taken and not `force`."""
+    if name.exists() and not force:
+        raise FileFault(f"{name} is there already; give a name with -o, or --force to write over it")
+    return outgoing(name, *made_from)
+
+
+def incomplete(file: FilePath) -> FilePath:
+    """The name for a result that a fault has cut short."""
+    return file.with_name(f"{file.stem}.incomplete{file.suffix}")
+
+
+def with_suffix_in(file: FilePath, suffixes: tuple[str, ...]) -> FilePath:
+    """The file itself if its name ends in one of the suffixes; else wrong use of the command line."""
+    if file.suffix.lower() not in suffixes:
+        raise click.BadParameter(f"{str(file)!r} must end in {', '.join(suffixes)}", param_hint="'-o'")
+    return file
+
+
+def drawing_options(verb: Callable[..., Any]) -> Callable[..., Any]:
+    """Give a verb --dpi and --width, for a drawing whose file states no resolution or a wrong one."""
+    verb = click.option(
+        "--width", "width_mm", type=LENGTH, help="Width of the whole sheet, such as 120mm; instead of --dpi."
+    )(verb)
+    return click.option(
+        "--dpi",
+        type=click.FloatRange(min=0, min_open=True),
+        help="Resolution of the drawing, dots per inch.  [default: what the file states]",
+    )(verb)
+
+
+def open_drawing(file: FilePath, dpi: float | None, width_mm: float | None) -> Drawing:
+    """Open a drawing; at most one of the two scales may be given."""
+    from tracer.drawing import Drawing
+
+    if dpi is not None and width_mm is not None:
+        raise click.UsageError("--dpi and --width were both given; give one of them")
+    return Drawing.open(file, dpi=dpi, width_mm=width_mm)

@@ -1,0 +1,194 @@
+"""Pictures: the path over its drawing, with the error along the contour in colour.
+
+Signals in: a path, and what it was compared with: the drawing it came from, or another path, with the error at each of
+some points along the contour, all in mm. Out: a picture; its axes are sheet coordinates in mm. The worst places are
+shown once more, enlarged so much that the error can be seen.
+
+matplotlib takes most of a second to import: nothing here does it before a picture is asked for.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path as FilePath
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion.files import written_beside
+from motion.motion import Path
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from tracer.drawing import Drawing
+
+Array = NDArray[np.float64]
+
+UM_PER_MM = 1000.0
+COLOURS = ("#1f5fa8", "#5fa8d3", "#f2a65a", "#c1121f")  # no error … largest error
+PLAIN = "#c1121f"
+REFERENCE = "#555555"
+MARGIN_SHARE = 0.06  # of the larger side, round the path
+LARGEST_IMAGE_PX = 2000  # a larger drawing is reduced for the picture
+LARGEST_POINTS = 20_000  # more points are gathered, and the largest error of each gathering is shown
+INSETS = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """What there is to be seen: a path, its reference, and the error at points along it."""
+
+    title: str
+    path: Path
+    drawing: Drawing | None = None
+    reference: Path | None = None
+    points_mm: Array | None = None  # (n, 2)
+    error_mm: Array | None = None  # (n,)
+
+
+def draw(picture: Picture, file: FilePath) -> None:
+    """Write the picture; the suffix says as what (.png, .svg, .pdf)."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    insets = _worst_places(picture)
+    view = _view(picture)
+    shape = np.clip((view[3] - view[2]) / (view[1] - view[0]), 0.35, 1.3)
+    figure = Figure(figsize=(11 if insets else 8.5, 1.4 + 8 * shape), layout="constrained")
+    FigureCanvasAgg(figure)
+    main, beside = _axes(figure, len(insets))
+    _fill(figure, main, picture, view)
+    for number, (axes, place_mm) in enumerate(zip(beside, insets, strict=True), 1):
+        _enlarge(axes, main, picture, place_mm, number)
+    with written_beside(file) as unfinished:
+        figure.savefig(unfinished, dpi=130)
+
+
+def _axes(figure: Figure, insets: int) -> tuple[Axes, list[Axes]]:
+    """The main axes, and one for each enlargement in a column beside them."""
+    if not insets:
+        return figure.add_subplot(), []
+    grid = figure.add_gridspec(INSETS, 2, width_ratios=(3.2, 1))
+    return figure.add_subplot(grid[:, 0]), [figure.add_subplot(grid[i, 1]) for i in range(insets)]
+
+
+def _fill(figure: Figure, axes: Axes, picture: Picture, view: tuple[float, float, float, float]) -> None:
+    """Draw the whole contour, with its marks and the scale of the colours."""
+    _ground(axes, picture, view)
+    coloured = _contour(axes, picture, line_pt=1.8)
+    _ends(axes, picture.path)
+    axes.set(xlim=view[:2], ylim=view[2:], xlabel="X, mm", ylabel="Y, mm", aspect="equal")
+    axes.set_title(picture.title, fontsize=10)
+    if coloured is not None:
+        figure.colorbar(coloured, ax=axes, orientation="horizontal", shrink=0.7, aspect=40, label="error, µm")
+
+
+def _ground(axes: Axes, picture: Picture, view: tuple[float, float, float, float]) -> None:
+    """Draw what the path was compared with: the drawing in light grey, or the other path."""
+    if picture.drawing is not None:
+        darkness, extent = _cut_out(picture.drawing, view)
+        axes.imshow(darkness, extent=extent, cmap="Greys", vmin=0, vmax=3.2, interpolation="nearest", zorder=0)
+    if picture.reference is not None:
+        for run in picture.reference.runs():
+            axes.plot(*run.T, color=REFERENCE, linewidth=0.8, linestyle=(0, (4, 2)), zorder=1)
+
+
+def _cut_out(
+    drawing: Drawing, view: tuple[float, float, float, float]
+) -> tuple[Any, tuple[float, float, float, float]]:
+    """The part of the drawing within the view, not larger than needed, and its extent in sheet mm."""
+    pitch_mm, (rows, columns) = drawing.pitch_mm, drawing.darkness.shape
+    left, right = (int(np.clip(x / pitch_mm + r, 0, columns)) for x, r in ((view[0], 0), (view[1], 1)))
+    top, bottom = (int(np.clip(rows - y / pitch_mm + r, 0, rows)) for y, r in ((view[3], 0), (view[2], 1)))
+    part: Any = drawing.darkness[top:bottom, left:right]
+    extent = (left * pitch_mm, right * pitch_mm, (rows - bottom) * pitch_mm, (rows - top) * pitch_mm)
+    if max(part.shape) > LARGEST_IMAGE_PX:
+        import cv2
+
+        scale = LARGEST_IMAGE_PX / max(part.shape)
+        part = cv2.resize(part, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
+    return part, extent
+
+
+def _contour(axes: Axes, picture: Picture, line_pt: float) -> Any:
+    """Draw the path: in the colours of its error where there is one (gives what a colour bar needs), else in one."""
+    if picture.points_mm is None or picture.error_mm is None or len(picture.points_mm) < 2:
+        for run in picture.path.runs():
+            axes.plot(*run.T, color=PLAIN, linewidth=line_pt * 0.6, zorder=2)
+        return None
+    from matplotlib.collections import LineCollection
+    from matplotlib.colors import LinearSegmentedColormap
+
+    points, error_um = _gathered(picture.points_mm, np.abs(picture.error_mm) * UM_PER_MM)
+    steps = np.hypot(*np.diff(points, axis=0).T)
+    joined = steps <= 10 * np.median(steps) + 0.05  # a wider step is a way with the tool up
+    pieces = np.stack([points[:-1], points[1:]], axis=1)[joined]
+    colours = LinearSegmentedColormap.from_list("error", COLOURS)
+    lines = LineCollection(list(pieces), cmap=colours, linewidths=line_pt, zorder=2, capstyle="round")
+    lines.set_array(np.maximum(error_um[:-1], error_um[1:])[joined])
+    lines.set_clim(0, max(float(error_um.max()), 1e-3))
+    axes.add_collection(lines)
+    return lines
+
+
+def _gathered(points: Array, error: Array) -> tuple[Array, Array]:
+    """Not more points than can be seen; each shows the largest error of those it stands for."""
+    step = -(-len(points) // LARGEST_POINTS)
+    starts = np.arange(0, len(points), step)
+    return points[starts], np.maximum.reduceat(error, starts)
+
+
+def _ends(axes: Axes, path: Path) -> None:
+    """Mark where the path starts and where it ends in the work."""
+    runs = path.runs()
+    if not runs:
+        return
+    start, end = runs[0][0], runs[-1][-1]
+    style: dict[str, Any] = {"linestyle": "none", "markersize": 7, "markerfacecolor": "none", "zorder": 3}
+    axes.plot(*start, marker="o", color="#2a7f3f", label="start", **style)
+    axes.plot(*end, marker="s", color="#7a3fa0", label="end", **style)
+    axes.legend(loc="upper right", fontsize=8, framealpha=0.8)
+
+
+def _enlarge(axes: Axes, main: Axes, picture: Picture, place_mm: Array, number: int) -> None:
+    """Draw one of the worst places so large that its error can be seen."""
+    assert picture.points_mm is not None and picture.error_mm is not None
+    nearest = int(np.argmin(((picture.points_mm - place_mm) ** 2).sum(axis=1)))
+    error_mm = abs(float(picture.error_mm[nearest]))
+    reach_mm = float(np.clip(20 * error_mm, 0.5, 4.0))
+    x, y = place_mm
+    view = (x - reach_mm, x + reach_mm, y - reach_mm, y + reach_mm)
+    _ground(axes, picture, view)
+    _contour(axes, picture, line_pt=2.2)
+    axes.set(xlim=view[:2], ylim=view[2:], aspect="equal")
+    axes.tick_params(labelsize=7)
+    axes.set_title(f"{number}: {error_mm * UM_PER_MM:.3g} µm at {x:.1f}, {y:.1f}", fontsize=8)
+    main.annotate(str(number), (x, y), xytext=(9, 9), textcoords="offset points", fontsize=9, zorder=4)
+    main.plot(x, y, marker="+", markersize=9, color="black", zorder=4)
+
+
+def _worst_places(picture: Picture) -> list[Array]:
+    """The places with the largest error, apart from each other."""
+    if picture.points_mm is None or picture.error_mm is None:
+        return []
+    left, size = np.abs(picture.error_mm).astype(float), np.abs(picture.error_mm).max(initial=0.0)
+    apart_mm = 0.12 * float(np.ptp(picture.points_mm, axis=0).max(initial=0.0))
+    places: list[Array] = []
+    while len(places) < INSETS and size > 0 and left.max() > 0:
+        worst = picture.points_mm[int(left.argmax())]
+        places.append(worst)
+        left[np.hypot(*(picture.points_mm - worst).T) < apart_mm] = 0
+    return places
+
+
+def _view(picture: Picture) -> tuple[float, float, float, float]:
+    """What part of the sheet to show, mm: the path and its reference with a margin, not beyond the sheet's edges."""
+    parts = [run for path in (picture.path, picture.reference) if path is not None for run in path.runs()]
+    every = np.vstack(parts) if parts else picture.path.xy_mm
+    low, high = every.min(axis=0), every.max(axis=0)
+    margin = max(MARGIN_SHARE * float((high - low).max()), 1.0)
+    low, high = low - margin, high + margin
+    return float(low[0]), float(high[0]), float(low[1]), float(high[1])

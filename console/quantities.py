@@ -1,0 +1,33 @@
+"""Lengths, speeds, frequencies and places as the command line takes them: text with a unit becomes mm, mm/s, Hz."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import click
+
+from motion.units import parse_frequency_hz, parse_length_mm, parse_place_mm, parse_speed_mm_s
+
+
+class Quantity(click.ParamType):
+    """A parameter with a unit; what cannot be read is wrong use of the command line."""
+
+    def __init__(self, name: str, parse: Callable[[str], Any], *, above_zero: bool = False) -> None:
+        self.name, self._parse, self._above_zero = name, parse, above_zero
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Read the text; a value that is a number already stays as it is."""
+        try:
+            quantity = self._parse(value) if isinstance(value, str) else value
+        except ValueError as refused:
+            self.fail(str(refused), param, ctx)
+        if self._above_zero and not quantity > 0:
+            self.fail(f"{value!r} is no {self.name} here; it must be above zero", param, ctx)
+        return quantity
+
+
+LENGTH = Quantity("length", parse_length_mm, above_zero=True)
+SPEED = Quantity("speed", parse_speed_mm_s)
+FREQUENCY = Quantity("frequency", parse_frequency_hz)
+PLACE = Quantity("x,y", parse_place_mm)
