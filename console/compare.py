@@ -1,0 +1,112 @@
+"""The verb `compare`: how far two contours are apart."""
+
+from __future__ import annotations
+
+from pathlib import Path as FilePath
+from typing import Any
+
+import click
+
+from console import comparison, medium
+from console.desk import Desk, desk_options
+from console.playing import Controls, tape_options
+from console.quantities import LENGTH
+from motion.motion import Path
+from motion.units import format_length_mm
+
+BEYOND_TOLERANCE = 1
+
+EXAMPLES = """\b
+Examples:
+  morfax compare scan.png cam.csv
+  morfax compare scan.png cam.wav --tolerance 50um -o cam-error.png
+  morfax compare traced.csv played.csv --json
+"""
+
+
+@click.command("compare", epilog=EXAMPLES)
+@click.argument("a", type=medium.FILE)
+@click.argument("b", type=medium.FILE)
+@click.option("--tolerance", "tolerance_mm", type=LENGTH, help="End with exit code 1 if any place is further off.")
+@click.option("-o", "picture", type=medium.FILE, help="Draw the path with its error in colour (.png, .svg, .pdf).")
+@medium.drawing_options
+@tape_options
+@desk_options
+@click.pass_context
+def command(
+    ctx: click.Context,
+    a: FilePath,
+    b: FilePath,
+    tolerance_mm: float | None,
+    picture: FilePath | None,
+    dpi: float | None,
+    width_mm: float | None,
+    controls: Controls,
+    desk: Desk,
+) -> None:
+    """Say how far two contours are apart: paths, tapes, or one of them a drawing.
+
+    A and B are path files (.csv), tapes (.wav; they are played first) or, one of them, a drawing. Only what is run with
+    the tool in the work counts. Between two paths the distance is measured both ways. Against a drawing it is the
+    distance to the ink's own centre, measured across the path in the image, and the ink that no path covers is counted.
+    """
+    drawing_file, paths = _sorted(a, b)
+    if picture is not None:
+        medium.outgoing(medium.with_suffix_in(picture, (".png", ".svg", ".pdf")), a, b)
+    drawing = medium.open_drawing(drawing_file, dpi, width_mm) if drawing_file else None
+    opened = [_path(file, controls, desk) for file in paths]
+    found = comparison.from_drawing(drawing, opened[0]) if drawing else comparison.from_path(opened[0], opened[1])
+    if picture is not None:
+        _draw(picture, f"{a.name} and {b.name}", found, opened, drawing)
+    _tell(desk, a, b, found, picture, tolerance_mm)
+    if tolerance_mm is not None and found.largest_mm > tolerance_mm:
+        ctx.exit(BEYOND_TOLERANCE)
+
+
+def _sorted(a: FilePath, b: FilePath) -> tuple[FilePath | None, list[FilePath]]:
+    """The drawing, if one of the two is one, and the paths and tapes in the order given."""
+    drawings = [file for file in (a, b) if medium.kind_of(file) == "drawing"]
+    if len(drawings) == 2:
+        raise click.UsageError(f"{a} and {b} are both drawings; trace one of them first, or give a path or a tape")
+    return (drawings[0] if drawings else None), [file for file in (a, b) if file not in drawings]
+
+
+def _path(file: FilePath, controls: Controls, desk: Desk) -> Path:
+    """Read a path file, or play a tape."""
+    if medium.kind_of(file) == "tape":
+        return controls.play_whole(file, desk)
+    from motion.pathfile import read_path
+
+    return read_path(file)
+
+
+def _draw(file: FilePath, names: str, found: comparison.Comparison, paths: list[Path], drawing: Any) -> None:
+    """Draw the first path with its error in colour over what it was compared with."""
+    from console.overlay import Picture, draw
+
+    title = f"{names}: largest distance {format_length_mm(found.largest_mm)}"
+    reference = paths[1] if len(paths) > 1 else None
+    draw(Picture(title, paths[0], drawing, reference, found.points_mm, found.error_mm), file)
+
+
+def _tell(
+    desk: Desk,
+    a: FilePath,
+    b: FilePath,
+    found: comparison.Comparison,
+    picture: FilePath | None,
+    tolerance_mm: float | None,
+) -> None:
+    """Print the figures."""
+    within = None if tolerance_mm is None else found.largest_mm <= tolerance_mm
+    desk.figures(
+        {
+            "a": str(a),
+            "b": str(b),
+            "picture": None if picture is None else str(picture),
+            "tolerance_mm": tolerance_mm,
+            "within_tolerance": within,
+            "largest_mm": found.largest_mm,
+            **found.figures,
+        }
+    )

@@ -1,0 +1,123 @@
+"""A tape played for a verb: the options that a bare tape needs, the bar, and the path that the machine ran.
+
+What the machine ran before a fault is kept: the path then holds the motion up to there, and the fault is given beside.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path as FilePath
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from console.desk import Desk
+from console.quantities import FREQUENCY, PLACE, Quantity
+from motion.faults import Fault
+
+if TYPE_CHECKING:
+    from motion.motion import Motion, Path
+    from player.machine import Playback
+    from recorder.tape import Tape
+
+CYCLES_PER_MM = Quantity("cycles", float, above_zero=True)
+
+
+@dataclass(frozen=True, slots=True)
+class Played:
+    """What a tape gave: the machine's path, the playback with its figures, and the fault that ended it early."""
+
+    path: Path
+    playback: Playback
+    fault: Fault | None
+
+
+@dataclass(frozen=True, slots=True)
+class Controls:
+    """What the operator sets by hand for a tape whose text chunk does not say it."""
+
+    reference_hz: float | None = None
+    cycles_per_mm: float | None = None
+    start_mm: tuple[float, float] | None = None
+
+    def open_tape(self, file: FilePath) -> Tape:
+        """Open a tape for reading; a context manager."""
+        from recorder.tape import Tape
+
+        return Tape.open(file, reference_hz=self.reference_hz, cycles_per_mm=self.cycles_per_mm, start_mm=self.start_mm)
+
+    def play(self, file: FilePath, desk: Desk, *, raw: bool = False) -> Played:
+        """Play a tape to its end or to its fault; raises the fault if nothing was played before it."""
+        from player.machine import play
+
+        desk.warn_of_compiling("the controls", "motion", "player")
+        playback = play(file, reference_hz=self.reference_hz, cycles_per_mm=self.cycles_per_mm, start_mm=self.start_mm)
+        met: list[Fault] = []
+        stream = desk.watched(_until_fault(playback, met), f"playing {file.name}", playback.duration_s)
+        path = _path(stream, raw, met)
+        return Played(path, playback, met[0] if met else None)
+
+    def play_whole(self, file: FilePath, desk: Desk) -> Path:
+        """Play a tape to its end, mm; raises its fault."""
+        played = self.play(file, desk)
+        if played.fault is not None:
+            raise played.fault
+        return played.path
+
+
+def tape_options(verb: Callable[..., Any]) -> Callable[..., Any]:
+    """Give a verb --reference, --cycles-per-mm and --from, and hand it the `controls`."""
+
+    @click.option(
+        "--reference",
+        "reference_hz",
+        type=FREQUENCY,
+        help="Reference frequency of the tape, such as 6kHz.  [default: what the tape says]",
+    )
+    @click.option(
+        "--cycles-per-mm",
+        type=CYCLES_PER_MM,
+        help="Cycles of phase per mm of travel, such as 20.  [default: what the tape says]",
+    )
+    @click.option(
+        "--from",
+        "start_mm",
+        type=PLACE,
+        help="Where the machine stands at the start, mm.  [default: what the tape says, else 0,0]",
+    )
+    @functools.wraps(verb)
+    def with_controls(
+        *args: Any,
+        reference_hz: float | None,
+        cycles_per_mm: float | None,
+        start_mm: tuple[float, float] | None,
+        **options: Any,
+    ) -> Any:
+        return verb(*args, controls=Controls(reference_hz, cycles_per_mm, start_mm), **options)
+
+    return with_controls
+
+
+def _until_fault(stream: Iterable[Motion], met: list[Fault]) -> Iterator[Motion]:
+    """Pass a stream on to its end or to its fault, which goes into `met`."""
+    try:
+        yield from stream
+    except Fault as fault:
+        met.append(fault)
+
+
+def _path(stream: Iterable[Motion], raw: bool, met: list[Fault]) -> Path:
+    """The stream as a path, thinned or `raw`; raises the fault if there was no motion before it."""
+    from motion.motion import Path, join, thin
+
+    try:
+        if not raw:
+            return thin(stream)
+        whole = join(stream)
+        return Path(whole.times_s, whole.positions_mm)
+    except ValueError:
+        if met:
+            raise met[0] from None
+        raise

@@ -1,0 +1,112 @@
+"""The verb `run`: the whole way, from the drawing over the tape to the machine, and how well the three agree."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path as FilePath
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from console import comparison, medium, table
+from console.desk import Desk, desk_options
+from console.playing import Controls, Played
+from console.tracing import Head, Traced, head_options
+from motion.faults import FileFault
+from motion.units import format_length_mm
+
+if TYPE_CHECKING:
+    from tracer.drawing import Drawing
+
+EXAMPLES = """\b
+Examples:
+  morfax run samples/cam.png -o demo
+  morfax run scan.png --width 120mm --start 40,62 -o cam
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class Folder:
+    """Where the results of one drawing go, all under its name."""
+
+    folder: FilePath
+    stem: str
+
+    def file(self, ending: str) -> FilePath:
+        """A file of this drawing."""
+        return self.folder / f"{self.stem}{ending}"
+
+
+@click.command("run", epilog=EXAMPLES)
+@click.argument("drawing", type=medium.FILE)
+@click.option(
+    "-o", "folder", type=medium.FILE, help="Folder for the results; it is made.  [default: the drawing's name, here]"
+)
+@medium.drawing_options
+@head_options
+@desk_options
+def command(
+    drawing: FilePath, folder: FilePath | None, dpi: float | None, width_mm: float | None, head: Head, desk: Desk
+) -> None:
+    """Go the whole way: trace a drawing, play the tape, compare all three.
+
+    The folder then holds the tape (.wav), the traced and the played path (.csv), the picture of the played path with
+    its error in colour (.png) and the figures (.json). What was there under these names is written over.
+    """
+    opened = medium.open_drawing(drawing, dpi, width_mm)
+    place = _make(folder or FilePath(drawing.stem), drawing)
+    traced = head.trace(opened, desk)
+    tape = traced.record(place.file(".wav"))
+    written = {"tape": str(tape), "traced_path": str(traced.write(place.file(".traced.csv")))}
+    played = Controls().play(tape, desk)
+    written["played_path"] = str(_write(played, traced, place))
+    figures = {"drawing": str(drawing), **written, **_compare(opened, traced, played, place, desk)}
+    traced.name(place.file(".json")).write_text(table.as_json(figures) + "\n", encoding="utf-8")
+    desk.figures(figures)
+    for fault in (traced.fault, played.fault):
+        if fault is not None:
+            raise fault
+
+
+def _make(folder: FilePath, drawing: FilePath) -> Folder:
+    """Make the folder; raises FileFault if it cannot be."""
+    try:
+        folder.mkdir(exist_ok=True)
+    except OSError as error:
+        raise FileFault(f"cannot make the folder {folder}: {error.strerror}; give another one with -o") from error
+    place = Folder(folder, drawing.stem)
+    medium.outgoing(place.file(".png"), drawing)
+    return place
+
+
+def _write(played: Played, traced: Traced, place: Folder) -> FilePath:
+    """Write the played path; its name."""
+    from motion.pathfile import write_path
+
+    file = place.file(".played.csv")
+    file = medium.incomplete(file) if played.fault else traced.name(file)
+    write_path(played.path, file)
+    return file
+
+
+def _compare(drawing: Drawing, traced: Traced, played: Played, place: Folder, desk: Desk) -> dict[str, Any]:
+    """Compare all three, and draw the played path with its error from the ink; the figures."""
+    desk.detail("comparing drawing, traced path and played path")
+    from_ink = comparison.from_drawing(drawing, played.path, "played")
+    picture = traced.name(place.file(".png"))
+    _draw(picture, f"{place.stem}, played", drawing, played, from_ink)
+    return {
+        "picture": str(picture),
+        **traced.figures(),
+        **comparison.from_drawing(drawing, traced.path, "traced").figures,
+        **from_ink.figures,
+        **comparison.from_path(played.path, traced.path, ("played", "traced")).figures,
+    }
+
+
+def _draw(file: FilePath, name: str, drawing: Drawing, played: Played, from_ink: comparison.Comparison) -> None:
+    """Draw the played path over the drawing, with its distance from the ink's centre in colour."""
+    from console.overlay import Picture, draw
+
+    title = f"{name}: largest distance from the ink's centre {format_length_mm(from_ink.largest_mm)}"
+    draw(Picture(title, played.path, drawing, None, from_ink.points_mm, from_ink.error_mm), file)

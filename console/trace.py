@@ -1,0 +1,103 @@
+"""The verb `trace`: a drawing becomes a tape."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path as FilePath
+from typing import TYPE_CHECKING
+
+import click
+
+from console import medium
+from console.desk import Desk, desk_options
+from console.tracing import Head, Traced, head_options
+
+if TYPE_CHECKING:
+    from tracer.drawing import Drawing
+
+TAPES = (".wav", ".rf64", ".flac")
+
+EXAMPLES = """\b
+Examples:
+  morfax trace samples/cam.png
+  morfax trace scan.png --width 120mm --start 40,62 -o cam.wav --path cam.csv
+  morfax trace scan.jpg --dpi 600 --speed 5mm/s --picture cam-traced.png
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class Outputs:
+    """Where the results go: the tape, the path, or both, and the picture."""
+
+    tape: FilePath | None
+    path: FilePath | None
+    picture: FilePath | None
+
+
+@click.command("trace", epilog=EXAMPLES)
+@click.argument("drawing", type=medium.FILE)
+@click.option(
+    "-o",
+    "output",
+    type=medium.FILE,
+    help="The tape (.wav), or a path file only (.csv).  [default: the drawing's name with .wav, in this folder]",
+)
+@click.option("--path", "path_file", type=medium.FILE, help="Write the head's path as well (.csv).")
+@click.option("--picture", type=medium.FILE, help="Draw the path over the drawing (.png, .svg, .pdf).")
+@click.option("--force", is_flag=True, help="Write over a tape that is there already under a name not given with -o.")
+@medium.drawing_options
+@head_options
+@desk_options
+def command(
+    drawing: FilePath,
+    output: FilePath | None,
+    path_file: FilePath | None,
+    picture: FilePath | None,
+    force: bool,
+    dpi: float | None,
+    width_mm: float | None,
+    head: Head,
+    desk: Desk,
+) -> None:
+    """Follow the line of a drawing and record the head's motion on a tape.
+
+    DRAWING is an image file (PNG, JPEG, TIFF) of known resolution. A closed line is followed until it closes, an open
+    one from end to end. If the line is lost, what was traced until then is kept, with `.incomplete` in the names.
+    """
+    outputs = _outputs(drawing, output, path_file, picture, force)
+    opened = medium.open_drawing(drawing, dpi, width_mm)
+    desk.detail(f"{drawing}: sheet of {opened.width_mm:.2f} x {opened.height_mm:.2f} mm")
+    traced = head.trace(opened, desk)
+    written = _write(traced, outputs, opened)
+    desk.figures({"drawing": str(drawing), **written, **traced.figures()})
+    if traced.fault is not None:
+        raise traced.fault
+
+
+def _outputs(
+    drawing: FilePath, output: FilePath | None, path_file: FilePath | None, picture: FilePath | None, force: bool
+) -> Outputs:
+    """Names for the results, each of which can be written; raises FileFault if not."""
+    for file, suffixes in ((output, (*TAPES, ".csv")), (path_file, (".csv",)), (picture, (".png", ".svg", ".pdf"))):
+        if file is not None:
+            medium.outgoing(medium.with_suffix_in(file, suffixes), drawing)
+    if output is None:
+        output = medium.made_up(FilePath(f"{drawing.stem}.wav"), drawing, force=force)
+    if output.suffix.lower() == ".csv":
+        return Outputs(None, output, picture)
+    return Outputs(output, path_file, picture)
+
+
+def _write(traced: Traced, outputs: Outputs, drawing: Drawing) -> dict[str, str]:
+    """Write what was asked for; the names under which it stands."""
+    written = {}
+    if outputs.tape is not None:
+        written["tape"] = str(traced.record(outputs.tape))
+    if outputs.path is not None:
+        written["path"] = str(traced.write(outputs.path))
+    if outputs.picture is not None:
+        from console.overlay import Picture, draw
+
+        draw(Picture(f"{outputs.picture.stem}, traced", traced.path, drawing), traced.name(outputs.picture))
+        written["picture"] = str(traced.name(outputs.picture))
+    return written

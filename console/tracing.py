@@ -1,0 +1,141 @@
+"""A drawing traced for a verb: the options of the head, the tape and the path that come of it, and the figures.
+
+When the head loses the line, what it traced until then is kept, with `.incomplete` in the names, and the fault is given
+beside.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path as FilePath
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from console import medium
+from console.desk import Desk
+from console.quantities import LENGTH, PLACE, SPEED
+from motion.faults import Fault
+
+if TYPE_CHECKING:
+    from motion.motion import Path
+    from tracer.drawing import Drawing
+    from tracer.sequence import Trace
+
+
+@dataclass(frozen=True, slots=True)
+class Head:
+    """What the operator sets for the head and the tool."""
+
+    start_mm: tuple[float, float] | None
+    speed_mm_s: float
+    depth_mm: float
+    clearance_mm: float
+    line_width_mm: float | None
+
+    def trace(self, drawing: Drawing, desk: Desk) -> Traced:
+        """Follow the drawing's line to its end, or until it is lost."""
+        from motion.motion import thin
+        from tracer.sequence import Settings, trace
+
+        desk.warn_of_compiling("the head", "motion", "tracer", "recorder")
+        settings = Settings(
+            speed_mm_s=self.speed_mm_s,
+            depth_mm=self.depth_mm,
+            clearance_mm=self.clearance_mm,
+            line_width_mm=self.line_width_mm,
+        )
+        traced = trace(drawing, start_mm=self.start_mm, settings=settings)
+        return Traced(traced, thin(traced))
+
+
+@dataclass(frozen=True, slots=True)
+class Traced:
+    """The head's motion, the same thinned to a path, and where both were written."""
+
+    trace: Trace
+    path: Path
+
+    @property
+    def fault(self) -> Fault | None:
+        """The fault of a line that was lost."""
+        return self.trace.fault
+
+    def name(self, file: FilePath) -> FilePath:
+        """The name for a result: marked if the line was lost."""
+        return medium.incomplete(file) if self.fault else file
+
+    def record(self, file: FilePath) -> FilePath:
+        """Record the motion on a tape; the tape's name."""
+        from recorder.tape import record
+
+        record(self.trace, self.name(file))
+        return self.name(file)
+
+    def write(self, file: FilePath) -> FilePath:
+        """Write the path file; its name."""
+        from motion.pathfile import write_path
+
+        write_path(self.path, self.name(file))
+        return self.name(file)
+
+    def figures(self) -> dict[str, Any]:
+        """What the head found, as figures."""
+        return {
+            "ending": self.trace.ending,
+            "incomplete": True if self.fault else None,
+            "length_mm": self.trace.length_mm,
+            "duration_s": float(self.path.t_s[-1] - self.path.t_s[0]),
+            "line_width_mm": self.trace.line_width_mm,
+            "start_place_mm": self.trace.start_mm,
+        }
+
+
+def head_options(verb: Callable[..., Any]) -> Callable[..., Any]:
+    """Give a verb the options of the head and the tool, and hand it the `head`."""
+
+    @click.option(
+        "--start",
+        "start_mm",
+        type=PLACE,
+        help="Where the head looks for the line, X,Y in mm from the sheet's lower-left corner.  [default: the longest "
+        "line, at a smooth place]",
+    )
+    @click.option("--speed", "speed_mm_s", type=SPEED, default="10mm/s", show_default=True, help="Tracing speed.")
+    @click.option(
+        "--depth",
+        "depth_mm",
+        type=LENGTH,
+        default="5mm",
+        show_default=True,
+        help="How deep the tool goes into the work along the line.",
+    )
+    @click.option(
+        "--clearance",
+        "clearance_mm",
+        type=LENGTH,
+        default="2mm",
+        show_default=True,
+        help="How far above the work the tool stands before and after.",
+    )
+    @click.option(
+        "--line-width",
+        "line_width_mm",
+        type=LENGTH,
+        help="Width of the line, such as 0.5mm.  [default: measured on the drawing]",
+    )
+    @functools.wraps(verb)
+    def with_head(
+        *args: Any,
+        start_mm: tuple[float, float] | None,
+        speed_mm_s: float,
+        depth_mm: float,
+        clearance_mm: float,
+        line_width_mm: float | None,
+        **options: Any,
+    ) -> Any:
+        return verb(*args, head=Head(start_mm, speed_mm_s, depth_mm, clearance_mm, line_width_mm), **options)
+
+    return with_head

@@ -1,0 +1,88 @@
+"""The command line as a user meets it: exit code, stdout, stderr."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from console.cli import main
+
+SAMPLES = Path(__file__).parents[2] / "samples"
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What `morfax` answered."""
+
+    exit_code: int
+    out: str
+    err: str
+
+    @property
+    def figures(self) -> dict[str, Any]:
+        """The figures, of a call with --json."""
+        read = json.loads(self.out)
+        assert isinstance(read, dict)
+        return read
+
+    @property
+    def fault(self) -> str:
+        """The one line of a fault, after what else was told on stderr; no traceback, ever."""
+        assert self.exit_code != 0 and "Traceback" not in self.err
+        lines = self.err.splitlines()
+        assert [line.startswith("morfax: ") for line in lines] == [False] * (len(lines) - 1) + [True]
+        return lines[-1]
+
+
+Morfax = Callable[..., Answer]
+
+
+@pytest.fixture
+def morfax(capfd: pytest.CaptureFixture[str]) -> Morfax:
+    """Call the command line in this process."""
+
+    def call(*words: object) -> Answer:
+        capfd.readouterr()
+        exit_code = main([str(word) for word in words])
+        return Answer(exit_code, *capfd.readouterr())
+
+    return call
+
+
+@pytest.fixture
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An empty folder to work in, which is the current one."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def _eased(share: np.ndarray) -> np.ndarray:
+    """From 0 to 1 without a step in speed: a cycloid, as on a cam."""
+    share = np.clip(share, 0, 1)
+    return np.asarray(share - np.sin(2 * np.pi * share) / (2 * np.pi))
+
+
+@pytest.fixture(scope="session")
+def path_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A path file: once round a circle of 10 mm about 30,30 in three seconds, with the tool going down and up."""
+    t_s = np.arange(0, 4.001, 0.01)
+    z_mm = 2 - 7 * (_eased(t_s / 0.5) - _eased((t_s - 3.5) / 0.5))
+    turn = 2 * np.pi * _eased((t_s - 0.5) / 3)
+    rows = np.column_stack([t_s, 30 + 10 * np.cos(turn), 30 + 10 * np.sin(turn), z_mm])
+    file = tmp_path_factory.mktemp("path") / "circle.csv"
+    np.savetxt(file, rows, delimiter=",", header="t_s,x_mm,y_mm,z_mm", comments="", fmt="%.6f")
+    return file
+
+
+@pytest.fixture(scope="session")
+def tape_file(path_file: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The tape of that path."""
+    file = tmp_path_factory.mktemp("tape") / "circle.wav"
+    assert main(["record", str(path_file), "-o", str(file), "--quiet"]) == 0
+    return file

@@ -1,0 +1,116 @@
+"""The command line as a whole: help, exit codes, one line for whatever goes wrong."""
+
+from __future__ import annotations
+
+import importlib
+import os
+import re
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import click
+import pytest
+
+from console import cli
+from motion import faults
+from tests.console.conftest import Morfax
+
+MORFAX = [sys.executable, "-c", "import sys; from console.cli import main; sys.exit(main())"]
+
+
+@pytest.mark.parametrize("verb", cli.VERBS)
+def test_every_verb_has_help_with_real_examples(morfax: Morfax, verb: str) -> None:
+    answer = morfax(verb, "--help")
+    assert answer.exit_code == 0 and answer.err == ""
+    examples = re.findall(r"^ +morfax (\w+)", answer.out.split("Examples:")[1], re.MULTILINE)
+    assert 2 <= len(examples) <= 4 and set(examples) == {verb}
+    assert cli.VERBS[verb] in " ".join(answer.out.split())
+
+
+@pytest.mark.parametrize("verb", cli.VERBS)
+def test_the_examples_in_the_help_are_commands_that_parse(verb: str) -> None:
+    """Each example is parsed by the verb itself; nothing is run."""
+    command = importlib.import_module(f"console.{verb}").command
+    for line in command.epilog.splitlines():
+        if line.strip().startswith("morfax"):
+            words = line.split()[2:]
+            assert command.make_context(verb, words, resilient_parsing=False).params
+
+
+def test_help_lists_the_verbs_and_every_exit_code(morfax: Morfax) -> None:
+    answer = morfax("--help")
+    assert all(verb in answer.out for verb in cli.VERBS)
+    kinds = [kind for kind in vars(faults).values() if isinstance(kind, type) and issubclass(kind, faults.Fault)]
+    codes = {kind.exit_code for kind in kinds} | {0, 2, 70, 130}
+    listed = {int(line.split()[0]) for line in cli.EXIT_CODES.splitlines() if line.strip()[:1].isdigit()}
+    assert listed == codes
+
+
+def test_help_is_quick_because_it_loads_none_of_the_machines() -> None:
+    check = "import sys; from console.cli import main; main(['--help']); print([m for m in sys.modules if m in %r])"
+    heavy = ["numpy", "numba", "scipy", "cv2", "soundfile", "matplotlib", "rich", "PIL"]
+    done = subprocess.run([sys.executable, "-c", check % heavy], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "[]"
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["dance"],
+        ["play"],
+        ["play", "a.wav", "--reference", "3mm"],
+        ["play", "a.wav", "--cycles-per-mm", "0"],
+        ["trace", "a.png", "--start", "4"],
+        ["trace", "a.png", "--speed", "0"],
+        ["trace", "a.png", "--depth=-3mm"],
+        ["trace", "a.png", "--dpi", "-300"],
+        ["compare", "a.csv"],
+        ["compare", "a.csv", "b.csv", "--tolerance", "soon"],
+    ],
+)
+def test_wrong_use_ends_with_2_and_one_line_that_says_where_help_is(morfax: Morfax, words: list[str]) -> None:
+    answer = morfax(*words)
+    assert answer.exit_code == 2 and answer.out == ""
+    assert answer.fault.endswith("--help") and len(answer.err.splitlines()) == 1
+
+
+def test_a_mistake_in_morfax_is_one_line_too(morfax: Morfax, monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(ctx: click.Context, name: str) -> None:
+        raise RuntimeError("two\nlines")
+
+    monkeypatch.setattr(cli.cli, "get_command", broken)
+    answer = morfax("play", "a.wav")
+    assert answer.exit_code == 70
+    assert "RuntimeError: two lines" in answer.fault
+
+
+def test_ctrl_c_ends_with_130_and_leaves_no_half_file(tmp_path: Path) -> None:
+    """A pipe that nobody writes to holds the command at the reading of its path file."""
+    os.mkfifo(tmp_path / "never.csv")
+    command = [*MORFAX, "record", "never.csv", "-o", "half.wav"]
+    with (
+        subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True, env=_with_house()) as process,
+        (tmp_path / "never.csv").open("w"),  # opens when the command does
+    ):
+        process.send_signal(signal.SIGINT)
+        _, err = process.communicate(timeout=20)
+    assert process.returncode == 130
+    assert err.split("\n")[-2:] == ["morfax: interrupted; no unfinished file was left under its final name", ""]
+    assert [file.name for file in tmp_path.iterdir()] == ["never.csv"]
+
+
+def test_a_reader_that_goes_away_is_no_fault(path_file: Path) -> None:
+    command = [*MORFAX, "compare", str(path_file), str(path_file), "--json"]
+    read, write = os.pipe()
+    os.close(read)
+    done = subprocess.run(command, stdout=write, stderr=subprocess.PIPE, text=True, env=_with_house(), check=False)
+    os.close(write)
+    assert done.stderr == ""
+    assert done.returncode == 0
+
+
+def _with_house() -> dict[str, str]:
+    """The environment, with the packages on the path wherever the command is called."""
+    return {**os.environ, "PYTHONPATH": str(Path(cli.__file__).parents[1])}

@@ -1,0 +1,66 @@
+"""compare between paths and tapes: both ways, the tolerance, the picture."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.console.conftest import SAMPLES, Morfax
+
+UM = 1e-3
+
+
+@pytest.fixture
+def aside(here: Path, path_file: Path) -> Path:
+    """The path, 0.1 mm further right, in the current folder."""
+    rows = np.loadtxt(path_file, delimiter=",", skiprows=1)
+    rows[:, 1] += 0.1
+    np.savetxt("aside.csv", rows, delimiter=",", header="t_s,x_mm,y_mm,z_mm", comments="", fmt="%.6f")
+    return here / "aside.csv"
+
+
+def test_a_path_is_no_distance_from_itself(morfax: Morfax, path_file: Path) -> None:
+    answer = morfax("compare", path_file, path_file, "--tolerance", "0.1um", "--json")
+    assert answer.exit_code == 0
+    assert answer.figures["a_to_b"] == {"rms_mm": 0, "p95_mm": 0, "max_mm": 0}
+    assert answer.figures["within_tolerance"] is True
+
+
+def test_a_shifted_circle_is_as_far_off_as_it_was_shifted(morfax: Morfax, aside: Path, path_file: Path) -> None:
+    figures = morfax("compare", aside, path_file, "--json").figures
+    assert figures["largest_mm"] == pytest.approx(0.1, abs=1 * UM)
+    # the distance is the shift's part across the circle: RMS of the cosine
+    assert figures["a_to_b"]["rms_mm"] == pytest.approx(0.1 / np.sqrt(2), abs=1 * UM)
+    assert figures["b_to_a"]["rms_mm"] == pytest.approx(0.1 / np.sqrt(2), abs=1 * UM)
+
+
+@pytest.mark.parametrize(("tolerance", "exit_code"), [("101um", 0), ("99um", 1)])
+def test_beyond_the_tolerance_the_exit_code_is_1(
+    morfax: Morfax, aside: Path, path_file: Path, tolerance: str, exit_code: int
+) -> None:
+    answer = morfax("compare", aside, path_file, "--tolerance", tolerance)
+    assert answer.exit_code == exit_code
+    assert "largest" in answer.out and answer.err == ""
+
+
+def test_a_tape_is_played_for_the_comparison(morfax: Morfax, path_file: Path, tape_file: Path) -> None:
+    answer = morfax("compare", tape_file, path_file, "--tolerance", "3um", "--json")
+    assert answer.exit_code == 0
+    assert answer.figures["a"] == str(tape_file)
+
+
+def test_the_picture_shows_the_error(morfax: Morfax, aside: Path, path_file: Path) -> None:
+    assert morfax("compare", aside, path_file, "-o", "error.png").exit_code == 0
+    assert Path("error.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_two_drawings_are_wrong_use(morfax: Morfax) -> None:
+    answer = morfax("compare", SAMPLES / "cam.png", SAMPLES / "gear.png")
+    assert answer.exit_code == 2 and "both drawings" in answer.fault
+
+
+def test_a_kind_is_read_off_the_content_before_the_name(morfax: Morfax, here: Path, tape_file: Path) -> None:
+    (here / "tape.csv").write_bytes(tape_file.read_bytes())
+    assert morfax("compare", "tape.csv", tape_file, "--tolerance", "1um").exit_code == 0

@@ -1,0 +1,50 @@
+"""Figures as text and as JSON."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+
+from console.table import as_json, as_text
+
+FIGURES = {
+    "tape": "cam.wav",
+    "paths": ["cam.csv", "cam.svg"],
+    "incomplete": None,
+    "within_tolerance": True,
+    "duration_s": 26.412,
+    "start_place_mm": np.array([40.1234567, 12.0, 2.0]),
+    "reference_hz": 6000.0,
+    "cycles_per_mm": 20.0,
+    "missed_ink_share": 0.0123,
+    "played_to_traced": {"rms_mm": 0.00012, "max_mm": np.float64(0.5)},
+    "played_to_ink": {"rms_mm": 3.0},
+}
+
+
+def test_json_keeps_the_keys_with_their_units_and_leaves_out_what_is_not_there() -> None:
+    read = json.loads(as_json(FIGURES))
+    assert read["duration_s"] == 26.412
+    assert read["start_place_mm"] == [40.12346, 12.0, 2.0]
+    assert read["within_tolerance"] is True
+    assert read["played_to_traced"] == {"rms_mm": 0.00012, "max_mm": 0.5}
+    assert "incomplete" not in read
+
+
+def test_text_tells_each_figure_in_the_unit_that_reads_best() -> None:
+    lines = {line.split("  ")[0]: line for line in as_text(FIGURES).splitlines()}
+    assert lines["duration"].endswith("26.41 s")
+    assert lines["start"].endswith("40.12, 12.00 mm")
+    assert lines["reference"].endswith("6 kHz")
+    assert lines["cycles"].endswith("20 per mm")
+    assert lines["missed ink"].endswith("1.23 %")
+    assert lines["paths"].endswith("cam.csv, cam.svg")
+    assert lines["within tolerance"].endswith("yes")
+
+
+def test_dictionaries_inside_become_one_table() -> None:
+    *_, head, played, ink = as_text(FIGURES).splitlines()
+    assert head.split() == ["RMS", "largest"]
+    assert played.split() == ["played", "to", "traced", "0.12", "um", "0.5", "mm"]
+    assert ink.split() == ["played", "to", "ink", "3", "mm", "–"]
