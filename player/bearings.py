@@ -80,7 +80,7 @@ class Bearings:
         """The fault of a phase that no motion explains."""
         return LockFault(
             f"the phase of {self.names[axis].upper()} jumps by {surprise:+.2f} cycle at {time_s:.3f} s, position "
-            f"{position_mm:.3f} mm; the count is certain below {SURPRISE_CYCLES:g}; look for a splice or dropout there",
+            f"{position_mm:.3f} mm; {SURPRISE_CYCLES:g} is allowed; look for a splice, dropout or sudden stop there",
             axis=self.names[axis],
             time_s=time_s,
             error_cycles=surprise,

@@ -42,6 +42,7 @@ from numpy.typing import NDArray
 PREDICTOR_HZ = 120.0
 STOP_BAND_BETA = 8.0  # Kaiser: stop band 80 dB down
 SMALLEST_TAP = 1e-12  # below it products are denormal numbers, which cost a factor of twelve
+SMALLEST_PRODUCT = 1e-300  # of two tracks; keeps a silent one from dividing by zero
 CHUNK_ROWS = 512  # what the kernel has in the processor's cache at a time
 
 Float32s = NDArray[np.float32]
@@ -93,6 +94,7 @@ class Discriminator:
         self.decimation = decimation
         self._taps_re, self._taps_im = translating_taps(sample_rate_hz, reference_hz, decimation)
         self._half = len(self._taps_re) // 2
+        self._reach = 2 * self._half // decimation  # rows that the filter reaches beyond its first
         self._gains = predictor_gains(sample_rate_hz / decimation)
         self._state = np.full((tracks - 1, 3), np.nan)
         self._tail = np.zeros((0, tracks), np.float32)
@@ -111,12 +113,13 @@ class Discriminator:
         frames = np.ascontiguousarray(frames, dtype=np.float32)
         row = max(self._row, -(-self._half // self.decimation))
         skipped = row * self.decimation - self._half - self._tail_frame
-        count = max((len(frames) - skipped - len(self._taps_re)) // self.decimation + 1, 0)
+        count = max((len(frames) - skipped) // self.decimation - self._reach, 0)
         keep = skipped + count * self.decimation if count else 0
         self._tail, self._tail_frame = frames[keep:].copy(), self._tail_frame + keep
         if not count:
             return self._held(0)
-        phases = self._demodulated(frames[skipped:], count, row)
+        whole = frames[skipped : skipped + (count + self._reach) * self.decimation]
+        phases = self._demodulated(whole.reshape(count + self._reach, -1), row)
         self._row, self._last = row + count, phases
         return phases
 
@@ -124,15 +127,13 @@ class Discriminator:
         """The rows at the end of the tape that the filter could not fill: the last one held."""
         return self._held(-(-(self._tail_frame + len(self._tail)) // self.decimation) - self._row)
 
-    def _demodulated(self, frames: Float32s, count: int, row: int) -> Phases:
+    def _demodulated(self, rows: Float32s, row: int) -> Phases:
         """Run the kernel; before the tape's first full row that row is held."""
-        tracks = frames.shape[1]
+        count, tracks = len(rows) - self._reach, rows.shape[1] // self.decimation
         cycles = np.empty((count, tracks - 1))
         surprise = np.empty((count, tracks - 1), np.float32)
         levels = np.empty((count, tracks), np.float32)
-        _demodulate(
-            frames, self._taps_re, self._taps_im, self.decimation, self._gains, self._state, cycles, surprise, levels
-        )
+        _demodulate(rows, self._taps_re, self._taps_im, self._gains, self._state, cycles, surprise, levels)
         lead = ((row - self._row, 0), (0, 0))
         if row > self._row:
             cycles = np.pad(cycles, lead, mode="edge")
@@ -162,67 +163,78 @@ def discriminate(blocks: Iterable[Float32s], discriminator: Discriminator) -> It
 
 
 @njit(cache=True, nogil=True)
-def _demodulate(frames, taps_re, taps_im, decimation, gains, state, cycles, surprise, levels):  # type: ignore[no-untyped-def]
-    """Fill `cycles`, `surprise` and `levels` from frames, the first filter beginning at frame 0."""
-    tracks = frames.shape[1]
-    lines = np.zeros((tracks, decimation, CHUNK_ROWS + len(taps_re) // decimation + 1), np.float32)
+def _demodulate(rows, taps_re, taps_im, gains, state, cycles, surprise, levels):  # type: ignore[no-untyped-def]
+    """Fill `cycles`, `surprise` and `levels` from rows of the tape (n, frame within the row · tracks + track)."""
+    tracks = levels.shape[1]
+    reach = (len(taps_re) - 1) // (rows.shape[1] // tracks)  # rows that a filter reaches beyond its first
+    columns = np.zeros((rows.shape[1], CHUNK_ROWS + reach), np.float32)
     re, im = np.empty((tracks, CHUNK_ROWS), np.float32), np.empty((tracks, CHUNK_ROWS), np.float32)
+    phase = np.empty(CHUNK_ROWS)
     for first in range(0, len(cycles), CHUNK_ROWS):
         last = min(first + CHUNK_ROWS, len(cycles))
-        _unlace(frames[first * decimation :], lines)
+        _unlace(rows[first : last + reach], columns)
         for track in range(tracks):
-            _translate(lines[track], taps_re, taps_im, re[track, : last - first], im[track, : last - first])
+            _translate(columns, tracks, track, taps_re, taps_im, re[track, : last - first], im[track, : last - first])
             for k in range(last - first):
                 levels[first + k, track] = 2 * math.sqrt(re[track, k] ** 2 + im[track, k] ** 2)
-        _count(re, im, gains, state, cycles[first:last], surprise[first:last])
+        for axis in range(tracks - 1):
+            _turn(re[axis + 1], im[axis + 1], re[0], im[0], phase[: last - first])
+            _count(phase[: last - first], gains, state[axis], cycles[first:last, axis], surprise[first:last, axis])
 
 
 @njit(cache=True, nogil=True)
-def _unlace(frames, lines):  # type: ignore[no-untyped-def]
-    """Lay frames (n, tracks) out as (track, frame within a row, row), so that a tap meets its samples side by side."""
-    tracks, decimation, rows = lines.shape
-    for row in range(min(rows, len(frames) // decimation)):
-        for i in range(decimation):
-            for track in range(tracks):
-                lines[track, i, row] = frames[row * decimation + i, track]
-    for i in range(len(frames) % decimation):
-        if len(frames) // decimation < rows:
-            for track in range(tracks):
-                lines[track, i, len(frames) // decimation] = frames[len(frames) // decimation * decimation + i, track]
+def _unlace(rows, columns):  # type: ignore[no-untyped-def]
+    """Turn rows into columns, so that a tap meets its samples side by side."""
+    for row in range(len(rows)):
+        for column in range(len(columns)):
+            columns[column, row] = rows[row, column]
 
 
 # The order of the sum is free (reassoc, contract), so that it runs in vectors; nan and inf keep their meaning.
 @njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "nsz"})
-def _translate(line, taps_re, taps_im, re, im):  # type: ignore[no-untyped-def]
-    """Filter one track's line (frame within a row, row) with complex taps, one output per row."""
-    decimation = line.shape[0]
+def _translate(columns, tracks, track, taps_re, taps_im, re, im):  # type: ignore[no-untyped-def]
+    """Filter one track's columns with complex taps, one output per row."""
+    decimation = len(columns) // tracks
     re[:] = 0
     im[:] = 0
     for n in range(len(taps_re)):
         tap_re, tap_im = taps_re[n], taps_im[n]
-        samples = line[n % decimation, n // decimation : n // decimation + len(re)]
+        samples = columns[n % decimation * tracks + track, n // decimation : n // decimation + len(re)]
         for k in range(len(re)):
             re[k] += tap_re * samples[k]
             im[k] += tap_im * samples[k]
 
 
+@njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "nsz"}, error_model="numpy")
+def _turn(re, im, ref_re, ref_im, phase):  # type: ignore[no-untyped-def]
+    """Phase of a track against the reference, cycles -0.5 to 0.5: an arc tangent that runs in vectors, 1e-8 cycle."""
+    for k in range(len(phase)):
+        along = float(re[k]) * float(ref_re[k]) + float(im[k]) * float(ref_im[k])
+        across = float(im[k]) * float(ref_re[k]) - float(re[k]) * float(ref_im[k])
+        small, large = min(abs(along), abs(across)), max(abs(along), abs(across))
+        oblique = small > 0.41421356237309503 * large  # tangent of an eighth of half a turn
+        t = (small - large if oblique else small) / max(small + large if oblique else large, SMALLEST_PRODUCT)
+        z = t * t  # polynomial: S. Moshier, Cephes, atanf
+        angle = (((8.05374449538e-2 * z - 1.38776856032e-1) * z + 1.99777106478e-1) * z - 3.33329491539e-1) * z * t + t
+        angle = angle + math.pi / 4 if oblique else angle
+        angle = math.pi / 2 - angle if abs(across) > abs(along) else angle
+        angle = math.pi - angle if along < 0 else angle
+        phase[k] = (-angle if across < 0 else angle) / (2 * math.pi)
+
+
 @njit(cache=True, nogil=True)
-def _count(re, im, gains, state, cycles, surprise):  # type: ignore[no-untyped-def]
-    """Phases of tracks 1… against track 0, counted on by the predictor; `state` (axes, 3) is carried."""
-    for axis in range(len(state)):
-        place, speed, bend = state[axis]  # cycles, cycles/row, half of cycles/row²
-        for k in range(len(cycles)):
-            x_re, x_im = float(re[axis + 1, k]), float(im[axis + 1, k])
-            r_re, r_im = float(re[0, k]), float(im[0, k])
-            phase = math.atan2(x_im * r_re - x_re * r_im, x_re * r_re + x_im * r_im) / (2 * math.pi)
-            if math.isnan(place):  # the first row of the tape
-                place, speed, bend = phase, 0.0, 0.0
-            place, speed = place + speed + bend, speed + 2 * bend
-            error = phase - place
-            error -= np.rint(error)
-            cycles[k, axis] = place + error
-            surprise[k, axis] = error
-            place += gains[0] * error
-            speed += gains[1] * error
-            bend += gains[2] * error
-        state[axis, 0], state[axis, 1], state[axis, 2] = place, speed, bend
+def _count(phase, gains, state, cycles, surprise):  # type: ignore[no-untyped-def]
+    """Count the phases of an axis on by the predictor; `state` is carried."""
+    place, speed, bend = state  # cycles, cycles/row, half of cycles/row²
+    for k in range(len(phase)):
+        if math.isnan(place):  # the first row of the tape
+            place, speed, bend = phase[k], 0.0, 0.0
+        place, speed = place + speed + bend, speed + 2 * bend
+        error = phase[k] - place
+        error -= np.rint(error)
+        cycles[k] = place + error
+        surprise[k] = error
+        place += gains[0] * error
+        speed += gains[1] * error
+        bend += gains[2] * error
+    state[0], state[1], state[2] = place, speed, bend

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -149,7 +151,7 @@ def test_kernels_agree_with_themselves_as_plain_python() -> None:
     for kernel in (organ._demodulate, organ._demodulate.py_func):
         state, cycles = np.full((3, 3), np.nan), np.empty((200, 3))
         surprise, levels = np.empty((200, 3), np.float32), np.empty((200, 4), np.float32)
-        kernel(frames, re, im, 8, predictor_gains(MOTION_RATE_HZ), state, cycles, surprise, levels)
+        kernel(frames.reshape(-1, 32), re, im, predictor_gains(MOTION_RATE_HZ), state, cycles, surprise, levels)
         results.append(np.hstack([cycles, surprise, levels]))
     assert np.abs(results[0] - results[1]).max() < 1e-6  # float32 sums in another order
 
@@ -157,11 +159,28 @@ def test_kernels_agree_with_themselves_as_plain_python() -> None:
 def test_stages_agree_with_themselves_as_plain_python(monkeypatch: pytest.MonkeyPatch) -> None:
     frames = tracks(swing, 0.3)[-600:]
     fast = Discriminator(RATE_HZ, REFERENCE_HZ, 8, 4).feed(frames)
-    for name in ("_demodulate", "_unlace", "_translate", "_count"):
+    for name in ("_demodulate", "_unlace", "_translate", "_turn", "_count"):
         monkeypatch.setattr(organ, name, getattr(organ, name).py_func)
     slow = Discriminator(RATE_HZ, REFERENCE_HZ, 8, 4).feed(frames)
     assert np.abs(fast.cycles - slow.cycles).max() < 1e-6
     assert np.abs(fast.levels - slow.levels).max() < 1e-6
+
+
+@pytest.mark.parametrize("kernel", [organ._turn, organ._turn.py_func])
+def test_the_arc_tangent_goes_all_the_way_round(kernel: Callable[..., None]) -> None:
+    cycles = np.r_[np.linspace(-0.499, 0.499, 997), 0.25, -0.25, 0.0]
+    axis, ref = 0.3 * np.exp(2j * np.pi * (cycles + 0.1)), np.full(len(cycles), 0.5 * np.exp(0.2j * np.pi))
+    parts = [part.astype(np.float32) for part in (axis.real, axis.imag, ref.real, ref.imag)]
+    phase = np.empty(len(cycles))
+    kernel(*parts, phase)
+    assert np.abs(phase - cycles).max() < 5e-8  # cycles: float32 parts, and 1e-8 of the polynomial
+
+
+def test_the_arc_tangent_of_nothing_is_nothing_and_of_no_number_is_none() -> None:
+    phase = np.empty(2)
+    organ._turn(*np.array([[0, np.nan], [0, 1], [0, 1], [0, 1]], np.float32), phase)
+    assert phase[0] == 0
+    assert np.isnan(phase[1])
 
 
 @pytest.mark.parametrize(("reference_hz", "tracks_"), [(0.0, 4), (24000.0, 4), (6000.0, 1)])

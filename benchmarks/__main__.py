@@ -1,0 +1,21 @@
+"""Run all benchmarks, or those named: `python -m benchmarks [tape …]`."""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+import sys
+from pathlib import Path
+
+
+def main(names: list[str]) -> None:
+    """Call `main()` of every module beside this one that has one."""
+    here = [module.name for module in pkgutil.iter_modules([str(Path(__file__).parent)])]
+    for name in names or [name for name in here if not name.startswith("_")]:
+        run = getattr(importlib.import_module(f"benchmarks.{name}"), "main", None)
+        if run is not None:
+            run()
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,171 @@
+"""Tapes: decoding against the analytic signal of scipy and against merely reading; playing against real time.
+
+All are run in turn, three times over, and the best of each is taken, so that what else the machine does falls on all
+alike. The tape is a minute of circles at 50 mm/s, four tracks of 48 kHz and 16 bit. Memory is what Python and numpy
+hold at most, for that tape and for one ten times as long.
+"""
+
+from __future__ import annotations
+
+import tempfile
+import time
+import tracemalloc
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import soundfile
+
+from motion.motion import MOTION_RATE_HZ, Motion
+from player.discriminator import Discriminator, discriminate
+from player.machine import play
+from recorder.tape import Tape, TapeFormat, record
+
+MINUTE_S = 60.0
+BLOCK_FRAMES = 65536
+ROUNDS = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A line of the table: what was measured, how much of what, and the ratio to what."""
+
+    what: str
+    value: float
+    unit: str
+    ratio: float | None = None
+    to_what: str = ""
+
+
+def circles(seconds: float) -> Iterator[Motion]:
+    """Motion round a circle of 20 mm at 50 mm/s, started and stopped within two seconds, in blocks of a second."""
+    rate = int(MOTION_RATE_HZ)
+    for second in range(round(seconds)):
+        t_s = second + np.arange(rate) / rate
+        way_mm = np.where(t_s < 2, 12.5 * t_s**2, 50 * (t_s - 1)) - 12.5 * np.clip(t_s - (seconds - 2), 0, None) ** 2
+        angle = way_mm / 20
+        columns = [20 * np.sin(angle), 20 * (1 - np.cos(angle)), 0 * angle]
+        yield Motion(np.column_stack(columns), MOTION_RATE_HZ, float(second))
+
+
+def read_only(file: Path) -> None:
+    """Read the file as float32 and do nothing with it."""
+    with soundfile.SoundFile(file) as sound:
+        while len(sound.read(BLOCK_FRAMES, dtype="float32")):
+            pass
+
+
+def decode(file: Path) -> None:
+    """File to phases with the player's discriminator."""
+    with Tape.open(file) as tape:
+        fmt = tape.format
+        organ = Discriminator(fmt.sample_rate_hz, fmt.reference_hz, fmt.samples_per_motion, fmt.tracks)
+        for _ in discriminate(tape.blocks(BLOCK_FRAMES), organ):
+            pass
+
+
+def decode_by_hilbert(file: Path) -> None:
+    """File to phases with the analytic signal of each block; what one would write first."""
+    from scipy.signal import hilbert
+
+    with soundfile.SoundFile(file) as sound:
+        while len(frames := sound.read(BLOCK_FRAMES, dtype="float32")):
+            analytic = hilbert(frames, axis=0)
+            np.unwrap(np.angle(analytic[:, 1:] * analytic[:, :1].conj()), axis=0)[::8] / (2 * np.pi)
+
+
+def play_whole(file: Path) -> None:
+    """File to the machine's motion, drives and all."""
+    for _ in play(file):
+        pass
+
+
+def best_s(tasks: dict[str, Callable[[], None]]) -> dict[str, float]:
+    """Shortest time of each task, s; they take turns."""
+    times: dict[str, list[float]] = {name: [] for name in tasks}
+    for _ in range(ROUNDS):
+        for name, task in tasks.items():
+            begun = time.perf_counter()
+            task()
+            times[name].append(time.perf_counter() - begun)
+    return {name: min(taken) for name, taken in times.items()}
+
+
+def peak_bytes(task: Callable[[], None]) -> int:
+    """The most memory that a task holds at once."""
+    tracemalloc.start()
+    task()
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    return peak
+
+
+def speed_rows(folder: Path) -> list[Row]:
+    """Times over one tape."""
+    file, again = folder / "minute.wav", folder / "again.wav"
+    record(circles(MINUTE_S), file, TapeFormat())
+    with Tape.open(file) as tape:
+        frames, seconds = tape.frames, tape.duration_s
+    motion = list(circles(MINUTE_S))
+    play_whole(file)  # kernels from their cache
+    took = best_s(
+        {
+            "read": lambda: read_only(file),
+            "decode": lambda: decode(file),
+            "hilbert": lambda: decode_by_hilbert(file),
+            "record": lambda: _record(motion, again),
+            "play": lambda: play_whole(file),
+        }
+    )
+    mega = {name: frames / taken / 1e6 for name, taken in took.items()}
+    both = took["record"] + took["play"]
+    return [
+        Row("reading as float32", mega["read"], "million frames/s"),
+        Row("decoding, file to phases", mega["decode"], "million frames/s", mega["decode"] / mega["read"], "reading"),
+        Row("scipy.signal.hilbert, blocks", mega["hilbert"], "million frames/s"),
+        Row("decoding", mega["decode"], "million frames/s", mega["decode"] / mega["hilbert"], "hilbert"),
+        Row("recording, motion to file", mega["record"], "million frames/s", mega["record"] / mega["read"], "reading"),
+        Row(
+            "playing, drives and all", seconds / took["play"], "x real time", took["play"] / took["decode"], "decoding"
+        ),
+        Row("recording and playing", seconds / both, "x real time"),
+    ]
+
+
+def memory_rows(folder: Path) -> list[Row]:
+    """Memory of play for a minute and for ten."""
+    peaks = []
+    for minutes in (1, 10):
+        file = folder / f"{minutes}.wav"
+        record(circles(minutes * MINUTE_S), file, TapeFormat())
+        peaks.append(peak_bytes(lambda file=file: play_whole(file)) / 1e6)  # type: ignore[misc]
+        file.unlink()
+    return [
+        Row("memory, 1 min played", peaks[0], "MB"),
+        Row("memory, 10 min played", peaks[1], "MB", peaks[1] / peaks[0], "1 min"),
+    ]
+
+
+def rows() -> list[Row]:
+    """All figures of this benchmark."""
+    with tempfile.TemporaryDirectory() as folder:
+        return speed_rows(Path(folder)) + memory_rows(Path(folder))
+
+
+def main() -> None:
+    """Print the figures as a table."""
+    print("tape: four tracks, 48 kHz, 16 bit")
+    for row in rows():
+        ratio = "" if row.ratio is None else f"{row.ratio:8.2f} x {row.to_what}"
+        print(f"  {row.what:32s}{row.value:10.1f} {row.unit:18s}{ratio}".rstrip())
+
+
+def _record(motion: list[Motion], file: Path) -> None:
+    """Record over whatever was there."""
+    file.unlink(missing_ok=True)
+    record(motion, file, TapeFormat())
+
+
+if __name__ == "__main__":
+    main()
