@@ -23,7 +23,7 @@ import numpy as np
 
 from motion.faults import LineFault
 from tracer import course, head
-from tracer.knot import Array, Leg, leg_of, reach_of_ink, turn
+from tracer.knot import Array, Leg, centre_at, leg_of, reach_of_ink, turn
 from tracer.settings import Settings, tune
 from tracer.stance import Stance
 from tracer.survey import survey
@@ -54,10 +54,11 @@ class Follower:
         self.state = np.zeros(head.STATES)
         self.state[[head.X, head.Y]] = stance.place_mm
         self.state[head.INK] = 1.0
+        self._drum = np.zeros((head.DRUM, 2))
         self._parts: list[Array] = [stance.place_mm[None].copy()]
         self._trail = Trail(stance.place_mm, self.view.step_mm)
         self._away_mm = max(4 * self.tuning.lead_mm, 3.0 * self.view.width_mm)
-        self._aim(stance.place_mm, stance.heading_rad, 0.0)
+        self._aim(self._first_leg())
 
     @property
     def travel_mm(self) -> float:
@@ -69,7 +70,9 @@ class Follower:
         home = (*self.stance.place_mm, self.stance.heading_rad, self._away_mm)
         out = np.empty((CHUNK, 2))
         while self.travel_mm < longest_mm:
-            n, why = head.follow(self.view.cells, self.view.pitch_mm, self.state, self.tuning, home, out)
+            n, why = head.follow(
+                self.view.cells, self.view.pitch_mm, self.state, self._drum, self.tuning, home, out
+            )
             self._keep(out[:n])
             if told is not None:
                 told(self.travel_mm)
@@ -87,8 +90,9 @@ class Follower:
         seen = self._feel_ahead()
         if len(seen) < 4:
             return self._lost("the line is not clean between two edges")
-        if self._ahead(seen[-1, :2]) > self.tuning.guard_lead_mm + 0.8 * self.view.leg_mm:
-            return self._pass([self._smooth_way(seen)], leg_of(seen, True, 0.4 * self.view.leg_mm))
+        if self._ahead(seen[-1, :2]) > self.view.leg_mm:
+            nodes = self._nodes(seen)
+            return self._pass([np.vstack([course.hermite(*a, *b) for a, b in pairwise(nodes[0])])], nodes[1])
         incoming = leg_of(seen, True, self.view.leg_mm)
         outgoing, legs_mm = survey(self.view, incoming, self._trail, self.settings.gap_mm)
         if outgoing is None:
@@ -117,19 +121,21 @@ class Follower:
         start, heading = incoming.at(along), incoming.heading_at(along)
         return [np.vstack([way, course.hermite(start, heading, outgoing.end_mm, outgoing.heading_rad)])]
 
-    def _smooth_way(self, seen: Array) -> Array:
-        """The way along a line that was felt clean throughout: cubics between places that are fitted to a few stations each."""
-        span_mm = 0.25 * self.view.leg_mm
+    def _nodes(self, seen: Array) -> tuple[list[tuple[Array, float]], Leg]:
+        """Places and headings along a line that was felt clean throughout, from where the head stands; the last also as a leg."""
+        half_mm = 0.3 * self.view.leg_mm
         nodes = [self._stands()]
+        end = seen[-1, :2]
+        leg = None
         for i in range(len(seen)):
-            if self._ahead(seen[i, :2]) < 0.3 * span_mm or np.hypot(*(seen[i, :2] - nodes[-1][0])) < span_mm:
+            if self._ahead(seen[i, :2]) < half_mm or np.hypot(*(seen[i, :2] - nodes[-1][0])) < half_mm / 3:
                 continue
-            near = leg_of(seen[max(0, i - 6) : i + 7], True, self.view.leg_mm)
-            back = float(np.hypot(*(seen[i, :2] - near.seen[-1, :2])))
-            nodes.append((near.at(-back), near.heading_at(-back)))
-        last = leg_of(seen, True, 0.4 * self.view.leg_mm)
-        nodes[-1] = (last.end_mm, last.heading_rad)
-        return np.vstack([course.hermite(*a, *b) for a, b in pairwise(nodes)])
+            if np.hypot(*(seen[i, :2] - end)) < half_mm:
+                break
+            leg = centre_at(seen, i, half_mm)
+            nodes.append((leg.end_mm, leg.heading_rad))
+        assert leg is not None
+        return nodes, leg
 
     def _at_end(self, incoming: Leg) -> Followed:
         """Run to the end of the line, or to where it meets what was followed before."""
@@ -166,7 +172,7 @@ class Follower:
             self._drive(cut)
             return self._done("closed")
         self._drive(stretches, self.settings.speed_mm_s)
-        self._aim(outgoing.end_mm, outgoing.heading_rad, outgoing.bend_per_mm)
+        self._aim(outgoing)
         return None
 
     def _home_on(self, stretches: list[Array]) -> list[Array] | None:
@@ -220,16 +226,29 @@ class Follower:
         head.stand(self.state, self.tuning, out)
         self._keep(out)
 
-    def _aim(self, place: Array, heading: float, bend_per_mm: float) -> None:
-        """Set the swinging cell on a line whose place, heading and bend are known, and remember where it was clean."""
+    def _first_leg(self) -> Leg:
+        """The line ahead of the stance, as felt."""
+        place, heading = self.stance.place_mm, self.stance.heading_rad
+        seen = self.view.feel(place, heading, self.view.leg_mm)
+        leg = leg_of(seen, False, self.view.leg_mm) if len(seen) >= 4 else None
+        bend = leg.bend_per_mm if leg is not None else 0.0
+        return Leg(place, heading, bend, self.view.width_mm, seen)
+
+    def _aim(self, leg: Leg) -> None:
+        """Set the head to follow from the clean end of a leg, and remember where that was.
+
+        The drum takes what was felt of the leg up to where the swinging cell takes over.
+        """
         s, lead = self.state, self.tuning.lead_mm
-        aside = 0.5 * bend_per_mm * lead * lead
-        s[head.HEADING], s[head.TURN], s[head.MIDDLE] = heading, s[head.SPEED] * bend_per_mm, aside
-        s[head.LINE_X] = place[0] + lead * math.cos(heading) - aside * math.sin(heading)
-        s[head.LINE_Y] = place[1] + lead * math.sin(heading) + aside * math.cos(heading)
+        s[head.HEADING], s[head.BEND], s[head.TURN] = leg.heading_rad, leg.bend_per_mm, s[head.SPEED] * leg.bend_per_mm
+        s[head.MIDDLE] = 0.5 * leg.bend_per_mm * lead * lead
+        s[head.POINT_X], s[head.POINT_Y] = leg.at(self.tuning.point_mm)
         s[head.SWEEP] = s[head.FIRST] = s[head.MEAN] = s[head.LEFT] = s[head.RIGHT] = 0.0
         s[head.AHEAD] = 1.0
-        self._anchor = (place, heading, self.travel_mm)
+        felt = leg.seen[np.hypot(*(leg.seen[:, :2] - leg.end_mm).T) < lead, :2]
+        self._drum[: len(felt)] = felt
+        s[head.PLACES] = len(felt)
+        self._anchor = (leg.end_mm, leg.heading_rad, self.travel_mm)
 
     def _keep(self, positions: Array) -> None:
         self._parts.append(positions.copy())

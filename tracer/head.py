@@ -3,22 +3,26 @@
 Signals: the drawing behind the aperture in; positions of the X and Y lead screws out, mm, at the motion rate.
 
 The cell swings across the line one lead ahead of the steering axis. Once a sweep, synchronous detection gives the side and distance of the line from the
-middle of the sweep, and the sweep is centred on it for the next time, so that the measure is a null. The line's place in sheet mm is kept, and the axis
-steers for it on the circle that touches its heading (pure pursuit), which is the steering law k = 2v/a² of the linear theory, and which has no error
-on a circle:
+middle of the sweep, and the sweep is centred on it for the next time, so that the measure is a null. The place of the line on the sheet is remembered (a
+drum of places), and when the axis comes to a place, as much of the line has been seen ahead of it as behind it: a parabola through the remembered
+places about a point just ahead of the axis averages the noise of the paper away, and leaves a line whose bend changes where it is. For that point the
+axis steers, on the circle that touches its heading (pure pursuit), which is the steering law k = 2v/a² of the linear theory and has no error on a circle:
 
-    turn rate = v · 2e / (l² + e²)          l, e: the line's place along and across the heading, as seen from the axis now
+    turn rate = v · 2e / (l² + e²)          l, e: the point along and across the heading, as seen from the axis now
 
 The speed is resolved by sine and cosine of the heading into demands on the two drives; the axis is where their screws have gone. What the drives owe
 (lag times speed, from the tachos) is added to the place that steers, so that their lag turns no corner.
 
+                      drum of places                  cell
+      . . . . . . . . .  o-> .  x  . . . . . . . . .  )|(      guards
+                       axis   point                         ||
     guard cells    beside the line's edges and on it, a little further ahead: when they see ink beside the line, or none on it, the head cannot trust the
-                   steering cell there; the kernel returns, and `knot` and `course` take the head through
+                   swinging cell there; the kernel returns, and `knot` and `course` take the head through
     look-ahead     cell 102, three leads ahead: when the line is not where the sweep's curve leads, the relay slows the head and holds it slow
 
 Source: patent ES 361967, figure 1: cell 101, mount 42, pin 48, motor 45, amplifier FSA, servo M and tacho T, potentiometer 59, drives DCX and DCY with
 tachos TX and TY, forward cell 102, relay RL, delay DL, resistor SR, speed control WC.
-Questions: the patent gives no figures and no guard cells. Chosen: see `Tuning.of`.
+Questions: the patent gives no figures, no drum and no guard cells. Chosen: see `settings`.
 """
 
 from __future__ import annotations
@@ -31,10 +35,12 @@ from numba import njit
 from motion.drive import Drive, drive_step
 from tracer.photocell import TWO_PI, darkness_at
 
-# State of the head, one float each: screws, speeds of the screws, heading, its rate, speed along, the sweep, the line's place, the cells' averages
-X, Y, VX, VY, HEADING, TURN, SPEED, SWEEP, FIRST, MEAN, MIDDLE, PLACE_X, PLACE_Y, INK = range(14)
-LEFT, AHEAD, RIGHT, SLOW, TRAVEL, LINE_X, LINE_Y = range(14, 21)
-STATES = 21
+# State of the head, one float each: screws, speeds of the screws, heading, its rate, speed along, the sweep, the ink, guard cells, relay, travel,
+# the point that is steered for, the bend there, and how many places are on the drum
+X, Y, VX, VY, HEADING, TURN, SPEED, SWEEP, FIRST, MEAN, MIDDLE, SWEPT_X, SWEPT_Y, INK = range(14)
+LEFT, AHEAD, RIGHT, SLOW, TRAVEL, POINT_X, POINT_Y, BEND, PLACES = range(14, 23)
+STATES = 23
+DRUM = 256  # places remembered
 
 MORE, KNOT, TIGHT, HOME = range(4)  # why the kernel returned
 
@@ -49,6 +55,9 @@ class Tuning(NamedTuple):
     acceleration_mm_s2: float
     sweep_periods: int
     lead_mm: float
+    point_mm: float  # from the axis to the point that is steered for
+    half_window_mm: float  # of the parabola about that point
+    tightest_per_mm: float  # a bend beyond this is a knot
     amplitude_mm: float
     along_mm: float  # lengthwise half-axis of the sweep's ellipse
     guard_mm: float  # beside the middle of the line
@@ -59,7 +68,6 @@ class Tuning(NamedTuple):
     drive_gain: float
     drive_change_mm_s: float
     steering_gain: float
-    width_mm: float
 
 
 def owed_s(tuning_gain: float, period_s: float) -> float:
@@ -73,15 +81,16 @@ def drive_gains(drive: Drive, period_s: float) -> tuple[float, float]:
 
 
 @njit(cache=True)
-def follow(cells, pitch_mm, state, t, home, out):  # type: ignore[no-untyped-def]
+def follow(cells, pitch_mm, state, drum, t, home, out):  # type: ignore[no-untyped-def]
     """Follow the line until something happens or `out` (n, 2) is full; (positions written, why).
 
-    `home` is (x, y, heading, travel from which on the head may close there).
+    `drum` (DRUM, 2) holds the places seen last; `home` is (x, y, heading, travel from which on the head may close there).
     """
     for n in range(len(out)):
         _swing(cells, pitch_mm, state, t)
         if state[SWEEP] >= t.sweep_periods:
-            _detect(state, t)
+            _detect(state, drum, t)
+            _fit(state, drum, t)
             why = _look(cells, pitch_mm, state, t)
             if why == MORE and _at_home(state, t, home):
                 why = HOME
@@ -104,21 +113,51 @@ def _swing(cells, pitch_mm, state, t):  # type: ignore[no-untyped-def]
     state[MEAN] += d
     state[SWEEP] += 1
     if state[SWEEP] == t.sweep_periods // 2:
-        state[PLACE_X], state[PLACE_Y] = state[X], state[Y]
+        state[SWEPT_X], state[SWEPT_Y] = state[X], state[Y]
 
 
 @njit(cache=True)
-def _detect(state, t):  # type: ignore[no-untyped-def]
-    """End of a sweep: where the line is, across the heading and on the sheet; the next sweep is centred on it."""
+def _detect(state, drum, t):  # type: ignore[no-untyped-def]
+    """End of a sweep: the line's place goes onto the drum, and the next sweep is centred on it."""
     mean = state[MEAN] / t.sweep_periods
     state[INK] += 0.1 * (min(max(mean / t.mean, 0.3), 2.0) - state[INK])
     aside = 2.0 * state[FIRST] / t.sweep_periods / (t.slope_per_mm * state[INK])
     limit = 0.5 * t.amplitude_mm
     state[MIDDLE] += min(max(aside, -limit), limit)
     c, s = math.cos(state[HEADING]), math.sin(state[HEADING])
-    state[LINE_X] = state[PLACE_X] + t.lead_mm * c - state[MIDDLE] * s
-    state[LINE_Y] = state[PLACE_Y] + t.lead_mm * s + state[MIDDLE] * c
+    place = int(state[PLACES]) % DRUM
+    drum[place, 0] = state[SWEPT_X] + t.lead_mm * c - state[MIDDLE] * s
+    drum[place, 1] = state[SWEPT_Y] + t.lead_mm * s + state[MIDDLE] * c
+    state[PLACES] += 1
     state[SWEEP] = state[FIRST] = state[MEAN] = 0.0
+
+
+@njit(cache=True)
+def _fit(state, drum, t):  # type: ignore[no-untyped-def]
+    """Parabola through the drum's places about the point ahead of the axis: where the line is there, and its bend.
+
+    Weights fall to nothing at the window's ends (1 - (x/h)²). The sums solve for y = p0 + p1·x + p2·x² from the point.
+    """
+    c, s = math.cos(state[HEADING]), math.sin(state[HEADING])
+    x0, y0 = state[X] + t.point_mm * c, state[Y] + t.point_mm * s
+    s0 = s1 = s2 = s3 = s4 = b0 = b1 = b2 = 0.0
+    for k in range(min(int(state[PLACES]), DRUM)):
+        dx, dy = drum[k, 0] - x0, drum[k, 1] - y0
+        x, y = dx * c + dy * s, dy * c - dx * s
+        if abs(x) < t.half_window_mm and abs(y) < t.half_window_mm:
+            w = 1.0 - (x / t.half_window_mm) ** 2
+            xx = x * x
+            s0, s1, s2, s3, s4 = s0 + w, s1 + w * x, s2 + w * xx, s3 + w * xx * x, s4 + w * xx * xx
+            b0, b1, b2 = b0 + w * y, b1 + w * x * y, b2 + w * xx * y
+    d0, d1, d2 = s2 * s4 - s3 * s3, s2 * s3 - s1 * s4, s1 * s3 - s2 * s2
+    det = s0 * d0 + s1 * d1 + s2 * d2
+    if det < 1e-9 * s0 * s2 * s4 or s0 == 0.0:
+        return
+    p0 = (d0 * b0 + d1 * b1 + d2 * b2) / det
+    p1 = (d1 * b0 + (s0 * s4 - s2 * s2) * b1 + (s1 * s2 - s0 * s3) * b2) / det
+    p2 = (d2 * b0 + (s1 * s2 - s0 * s3) * b1 + (s0 * s2 - s1 * s1) * b2) / det
+    state[POINT_X], state[POINT_Y] = x0 - p0 * s, y0 + p0 * c
+    state[BEND] = 2.0 * p2 / (1.0 + p1 * p1) ** 1.5
 
 
 @njit(cache=True)
@@ -138,7 +177,7 @@ def _look(cells, pitch_mm, state, t):  # type: ignore[no-untyped-def]
         state[SLOW] = t.slow_periods
     if max(state[LEFT], state[RIGHT]) > 0.4 or state[AHEAD] < 0.5:
         return KNOT
-    return TIGHT if abs(state[MIDDLE]) > 0.45 * t.lead_mm else MORE
+    return TIGHT if max(abs(state[BEND]), 2 * abs(curve)) > t.tightest_per_mm else MORE
 
 
 @njit(cache=True)
@@ -149,7 +188,7 @@ def _at_home(state, t, home):  # type: ignore[no-untyped-def]
     dx, dy = home[0] - state[X], home[1] - state[Y]
     c, s = math.cos(state[HEADING]), math.sin(state[HEADING])
     along, aside = dx * c + dy * s, dy * c - dx * s
-    return 0.0 < along < 1.2 * t.lead_mm and abs(aside) < 0.4 * t.lead_mm and math.cos(home[2] - state[HEADING]) > 0.8
+    return 0.0 < along < t.lead_mm and abs(aside) < 0.3 * t.lead_mm and math.cos(home[2] - state[HEADING]) > 0.8
 
 
 @njit(cache=True)
@@ -161,10 +200,10 @@ def _steer(state, t):  # type: ignore[no-untyped-def]
     change = t.acceleration_mm_s2 * t.period_s
     state[SPEED] += min(max(wanted - state[SPEED], -change), change)
     owed = t.period_s * (1.0 - t.drive_gain) / t.drive_gain
-    dx = state[LINE_X] - state[X] - owed * state[VX]
-    dy = state[LINE_Y] - state[Y] - owed * state[VY]
+    dx = state[POINT_X] - state[X] - owed * state[VX]
+    dy = state[POINT_Y] - state[Y] - owed * state[VY]
     c, s = math.cos(state[HEADING]), math.sin(state[HEADING])
-    along, aside = max(dx * c + dy * s, 0.2 * t.lead_mm), dy * c - dx * s
+    along, aside = max(dx * c + dy * s, 0.2 * t.point_mm), dy * c - dx * s
     demand = state[SPEED] * 2.0 * aside / (along * along + aside * aside)
     state[TURN] += t.steering_gain * (demand - state[TURN])
     state[HEADING] += state[TURN] * t.period_s

@@ -87,10 +87,12 @@ class Leg:
 def leg_of(seen: Array, last: bool, length_mm: float) -> Leg:
     """Fit a leg to what was felt, (n, 3) in the order of travel; its clean end is the `last` station, or else the first.
 
-    Straight, unless a bend stands out of its own uncertainty fourfold.
+    Straight, unless a bend stands out eightfold of the uncertainty that independent stations would have: neighbours share their ink.
     """
     end = seen[-1] if last else seen[0]
     near = seen[np.hypot(*(seen[:, :2] - end[:2]).T) <= length_mm]
+    if len(near) > 10:  # the two stations next to the knot have a little of its ink
+        near = near[:-2] if last else near[2:]
     chord = near[-1, :2] - near[0, :2]
     heading = math.atan2(chord[1], chord[0])
     t = np.array([math.cos(heading), math.sin(heading)])
@@ -114,9 +116,29 @@ def _fit(x: Array, y: Array) -> tuple[float, float, float]:
         bent, *_ = np.linalg.lstsq(powers, y, rcond=None)
         noise = float(np.sum((y - powers @ bent) ** 2)) / (len(x) - 3)
         spread = math.sqrt(max(noise, 1e-10) * np.linalg.inv(powers.T @ powers)[0, 0])
-        if abs(bent[0]) > 4 * spread:
+        if abs(bent[0]) > 8 * spread:
             return float(bent[1]), float(bent[2]), 2 * float(bent[0])
     return float(straight[0]), float(straight[1]), 0.0
+
+
+def centre_at(seen: Array, i: int, half_mm: float) -> Leg:
+    """The line about station i of what was felt: the parabola through the stations within `half_mm`, weighted towards the middle."""
+    d = seen[:, :2] - seen[i, :2]
+    near = np.flatnonzero(np.hypot(*d.T) < half_mm)
+    chord = d[near[-1]] - d[near[0]]
+    heading = math.atan2(chord[1], chord[0])
+    t = np.array([math.cos(heading), math.sin(heading)])
+    n = np.array([-t[1], t[0]])
+    x, y = d[near] @ t, d[near] @ n
+    weights = np.sqrt(np.maximum(1 - (x / half_mm) ** 2, 0.05))
+    bend, slope, offset = np.linalg.lstsq(np.vander(x, 3) * weights[:, None], y * weights, rcond=None)[0]
+    return Leg(
+        seen[i, :2] + offset * n,
+        heading + math.atan(slope),
+        2 * bend / (1 + slope * slope) ** 1.5,
+        float(np.median(seen[near, 2])),
+        seen[i:],
+    )
 
 
 def turn(a: float, b: float) -> float:

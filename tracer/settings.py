@@ -40,7 +40,9 @@ class Settings:
 def tune(stance: Stance, settings: Settings, rate_hz: float) -> Tuning:
     """What the kernel needs to follow the line under a stance."""
     width, pitch = stance.view.width_mm, stance.view.pitch_mm
-    lead = max(0.35 + 0.3 * width, 4 * pitch)
+    half_window = max(0.35 + 0.6 * width, 7 * pitch)
+    point = max(0.12, 1.2 * pitch)
+    lead = half_window + point + 2 * settings.speed_mm_s / settings.sweep_hz
     amplitude = max(0.6 * width, 1.5 * pitch)
     slope, mean = _calibrate(stance, amplitude)
     guard = 0.5 * width + max(0.17, 2 * pitch)
@@ -52,17 +54,19 @@ def tune(stance: Stance, settings: Settings, rate_hz: float) -> Tuning:
         acceleration_mm_s2=settings.acceleration_mm_s2,
         sweep_periods=max(8, round(rate_hz / settings.sweep_hz)),
         lead_mm=lead,
+        point_mm=point,
+        half_window_mm=half_window,
+        tightest_per_mm=0.23 / half_window,
         amplitude_mm=amplitude,
         along_mm=0.1 * amplitude,
         guard_mm=guard,
         guard_lead_mm=lead + max(0.15, 1.5 * pitch),
-        look_ahead_mm=3 * lead,
+        look_ahead_mm=lead + 1.0,
         slope_per_mm=slope,
         mean=mean,
         drive_gain=settings.drive.gain(1 / rate_hz),
         drive_change_mm_s=settings.drive.acceleration_mm_s2 / rate_hz,
         steering_gain=1 - math.exp(-1 / rate_hz / settings.steering_lag_s),
-        width_mm=width,
     )
 
 
