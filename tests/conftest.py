@@ -1,0 +1,31 @@
+"""What all tests share: the vectors and drawings that stand beside the repository, where there are any."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import settings
+
+SHARED = Path(__file__).parents[2] / "shared"
+
+# no deadline, as a first example compiles kernels; derandomized, so that a red test is red for everybody
+settings.register_profile("house", deadline=None, derandomize=True, print_blob=True)
+settings.load_profile("house")
+
+
+@pytest.fixture(scope="session")
+def shared() -> Path:
+    """The folder of drawings, specifications and vectors beside the repository; skips where it is absent."""
+    if not SHARED.is_dir():
+        pytest.skip("no folder ../shared beside the repository: its drawings and vectors are not part of it")
+    return SHARED
+
+
+@pytest.fixture(scope="session")
+def vectors(shared: Path) -> Callable[[str], Any]:
+    """Reads a file of test vectors by name: vectors("mf_tape")."""
+    return lambda name: json.loads((shared / "vectors" / f"{name}.json").read_text(encoding="utf-8"))

@@ -1,0 +1,27 @@
+"""Lead screw and sector wheel against the vectors worked out from figures 2 and 4 of the patent."""
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from motion.axis import LeadScrew
+
+
+def test_the_tape_s_own_screw_has_20_cycles_per_mm() -> None:
+    screw = LeadScrew()
+    assert screw.cycles_per_mm == 20.0
+    assert screw.mm_per_cycle == 0.05
+    assert screw.track_hz(6000.0, 100.0) == 8000.0
+    assert screw.track_hz(6000.0, -100.0) == 4000.0
+
+
+def test_the_historic_screw_as_worked_out(vectors: Callable[[str], Any]) -> None:
+    worked = vectors("mf_tape")
+    given = worked["params"]
+    screw = LeadScrew(given["pitch_mm"], given["sectors"])
+    assert screw.mm_per_cycle == given["mm_per_cycle"]
+    for row in worked["rows"]:
+        speed_mm_s = row["axis_speed_mm_s"]
+        assert screw.track_hz(given["f_ref_hz"], speed_mm_s) == pytest.approx(row["tape_hz"], abs=1e-9)
+        assert speed_mm_s * screw.cycles_per_mm == pytest.approx(row["phase_rate_cycles_s"], abs=1e-9)
