@@ -13,6 +13,7 @@ from console.desk import Desk, desk_options
 from console.playing import Controls, Played
 from console.tracing import Head, Traced, head_options
 from motion.faults import FileFault
+from motion.files import written_beside
 from motion.units import format_length_mm
 
 if TYPE_CHECKING:
@@ -61,7 +62,8 @@ def command(
     played = Controls().play(tape, desk)
     written["played_path"] = str(_write(played, traced, place))
     figures = {"drawing": str(drawing), **written, **_compare(opened, traced, played, place, desk)}
-    traced.name(place.file(".json")).write_text(table.as_json(figures) + "\n", encoding="utf-8")
+    with written_beside(traced.name(place.file(".json"))) as beside:
+        beside.write_text(table.as_json(figures) + "\n", encoding="utf-8")
     desk.figures(figures)
     for fault in (traced.fault, played.fault):
         if fault is not None:

@@ -86,7 +86,7 @@ def _grid(rows: Mapping[str, Figures]) -> Any:
 def _told(key: str, value: Any) -> tuple[str, str]:
     """Label and value of a figure, as people read it."""
     suffix = next((suffix for suffix in _UNITS if key.endswith(suffix)), "")
-    name = key.removesuffix(suffix)
+    name = key if suffix == "_share" else key.removesuffix(suffix)
     label = _LABELS.get(name, name.replace("_", " "))
     if value is None:
         return label, "–"

@@ -38,7 +38,7 @@ def test_text_tells_each_figure_in_the_unit_that_reads_best() -> None:
     assert lines["start"].endswith("40.12, 12.00 mm")
     assert lines["reference"].endswith("6 kHz")
     assert lines["cycles"].endswith("20 per mm")
-    assert lines["missed ink"].endswith("1.23 %")
+    assert lines["missed ink share"].endswith("1.23 %")
     assert lines["paths"].endswith("cam.csv, cam.svg")
     assert lines["within tolerance"].endswith("yes")
 
