@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from motion.contour import closure_mm, distance, length_mm, pointwise
@@ -30,6 +30,7 @@ def as_path(run: np.ndarray, z_mm: float = 0.0) -> Path:
     return Path(np.arange(len(run), dtype=float), np.column_stack([run, np.full(len(run), z_mm)]))
 
 
+@settings(max_examples=30)
 @given(st.integers(0, 10_000), st.integers(2, 5000))
 def test_equal_curves_with_other_points_are_nothing_apart(seed: int, points: int) -> None:
     corners = np.random.default_rng(seed).uniform(-20, 20, (8, 2))  # crosses itself, too
@@ -113,6 +114,7 @@ def test_length_and_closure_of_a_circle() -> None:
     assert closure_mm([ring, ring[:-500]]) == closure_mm(ring[:-500])
 
 
+@settings(max_examples=30)
 @given(st.floats(-50, 50), st.floats(-50, 50), st.floats(0, 7))
 def test_a_distance_does_not_depend_on_where_the_sheet_lies(x_mm: float, y_mm: float, turn_rad: float) -> None:
     path, reference = circle(5, 200), resampled(np.array([[-5.0, -5.0], [5.0, -5.0], [5.0, 5.0]]), 10)
