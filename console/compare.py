@@ -58,7 +58,8 @@ def command(
     found = comparison.from_drawing(drawing, opened[0]) if drawing else comparison.from_path(opened[0], opened[1])
     if picture is not None:
         _draw(picture, f"{a.name} and {b.name}", found, opened, drawing)
-    _tell(desk, a, b, found, picture, tolerance_mm)
+    files = {"a": str(a), "b": str(b), "picture": None if picture is None else str(picture)}
+    desk.figures({**files, **_judged(found, tolerance_mm), **found.figures})
     if tolerance_mm is not None and found.largest_mm > tolerance_mm:
         ctx.exit(BEYOND_TOLERANCE)
 
@@ -89,24 +90,7 @@ def _draw(file: FilePath, names: str, found: comparison.Comparison, paths: list[
     draw(Picture(title, paths[0], drawing, reference, found.points_mm, found.error_mm), file)
 
 
-def _tell(
-    desk: Desk,
-    a: FilePath,
-    b: FilePath,
-    found: comparison.Comparison,
-    picture: FilePath | None,
-    tolerance_mm: float | None,
-) -> None:
-    """Print the figures."""
+def _judged(found: comparison.Comparison, tolerance_mm: float | None) -> dict[str, Any]:
+    """The largest distance, and whether it is within the tolerance."""
     within = None if tolerance_mm is None else found.largest_mm <= tolerance_mm
-    desk.figures(
-        {
-            "a": str(a),
-            "b": str(b),
-            "picture": None if picture is None else str(picture),
-            "tolerance_mm": tolerance_mm,
-            "within_tolerance": within,
-            "largest_mm": found.largest_mm,
-            **found.figures,
-        }
-    )
+    return {"tolerance_mm": tolerance_mm, "within_tolerance": within, "largest_mm": found.largest_mm}
