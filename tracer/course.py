@@ -40,9 +40,8 @@ def onto(place: Array, heading: float, leg: Leg, limit_mm: float) -> tuple[Array
 
     It arrives at the leg's clean end, or beyond it if that is too near, but never beyond half the way to `limit_mm`.
     """
-    t = np.array([math.cos(leg.heading_rad), math.sin(leg.heading_rad)])
-    ahead = float((leg.end_mm - place) @ t)
-    along = 0.0 if ahead > 0.2 else min(0.2 - ahead, 0.5 * (limit_mm - ahead) if limit_mm > -ahead else limit_mm)
+    ahead = float((leg.end_mm - place) @ np.array([math.cos(leg.heading_rad), math.sin(leg.heading_rad)]))
+    along = min(0.0 if ahead > 0.2 else min(0.2 - ahead, 0.5 * (limit_mm - ahead)), limit_mm)
     return hermite(place, heading, leg.at(along), leg.heading_at(along)), along
 
 

@@ -23,7 +23,7 @@ import numpy as np
 
 from motion.faults import LineFault
 from tracer import course, head
-from tracer.knot import Array, Leg, centre_at, leg_of, reach_of_ink, turn
+from tracer.knot import Array, Leg, centre_at, end_of, leg_of, turn
 from tracer.settings import Settings, tune
 from tracer.stance import Stance
 from tracer.survey import survey
@@ -43,6 +43,9 @@ class Followed:
     heading_rad: float
     travel_mm: float
     fault: LineFault | None = None
+
+
+Anchor = tuple[Array, float, float]  # a place from which on the line is clean, the heading there, and the travel
 
 
 class Follower:
@@ -90,9 +93,10 @@ class Follower:
         seen = self._feel_ahead()
         if len(seen) < 4:
             return self._lost("the line is not clean between two edges")
-        if self._ahead(seen[-1, :2]) > self.view.leg_mm:
-            nodes = self._nodes(seen)
-            return self._pass([np.vstack([course.hermite(*a, *b) for a, b in pairwise(nodes[0])])], nodes[1])
+        here = int(np.argmin(np.hypot(*(seen[:, :2] - self._stands()[0]).T)))
+        if (len(seen) - here) * self.view.step_mm > self.view.leg_mm:
+            nodes, leg = self._nodes(seen)
+            return self._pass([np.vstack([course.hermite(*a, *b) for a, b in pairwise(nodes)])], leg, seen)
         incoming = leg_of(seen, True, self.view.leg_mm)
         outgoing, legs_mm = survey(self.view, incoming, self._trail, self.settings.gap_mm)
         if outgoing is None:
@@ -139,12 +143,11 @@ class Follower:
 
     def _at_end(self, incoming: Leg) -> Followed:
         """Run to the end of the line, or to where it meets what was followed before."""
-        ink = reach_of_ink(self.view, incoming, 6 * self.view.width_mm + 2.0)
-        if ink is None:
+        end = end_of(self.view, incoming)
+        if end is None:
             return self._lost("no clean line leads on through the ink ahead")
-        end = max(0.0, ink - 0.5 * incoming.width_mm)
         way, along = course.onto(*self._stands(), incoming, end)
-        self._drive([np.vstack([way, course.along_leg(incoming, along, max(along, end))])])
+        self._drive([np.vstack([way, course.along_leg(incoming, along, end)])])
         return self._done("ended")
 
     def _way_home(self) -> Array:
@@ -165,15 +168,23 @@ class Follower:
         stands, heading = self._stands()
         return float((place - stands) @ np.array([math.cos(heading), math.sin(heading)]))
 
-    def _pass(self, stretches: list[Array], outgoing: Leg) -> Followed | None:
-        """Run a course and go on following at its end; or stop at home if the course passes there."""
+    def _pass(self, stretches: list[Array], outgoing: Leg, seen: Array | None = None) -> Followed | None:
+        """Run a course and go on following at its end; or stop at home if the course passes there. `seen` is what was clean on the way."""
         cut = self._home_on(stretches)
         if cut is not None:
             self._drive(cut)
             return self._done("closed")
         self._drive(stretches, self.settings.speed_mm_s)
-        self._aim(outgoing)
+        self._aim(outgoing, None if seen is None else self._clean_from(outgoing, seen))
         return None
+
+    def _clean_from(self, leg: Leg, seen: Array) -> Anchor:
+        """The place about a leg's length behind the end of a course from which on the line was felt clean."""
+        back = np.hypot(*(seen[:, :2] - leg.end_mm).T)
+        here = int(np.argmin(back))
+        i = max(0, here - round(self.view.leg_mm / self.view.step_mm))
+        way = seen[i + 2, :2] - seen[i, :2]
+        return seen[i, :2], math.atan2(way[1], way[0]), self.travel_mm - (here - i) * self.view.step_mm
 
     def _home_on(self, stretches: list[Array]) -> list[Array] | None:
         """The course up to home, if it passes home on home's heading."""
@@ -234,21 +245,23 @@ class Follower:
         bend = leg.bend_per_mm if leg is not None else 0.0
         return Leg(place, heading, bend, self.view.width_mm, seen)
 
-    def _aim(self, leg: Leg) -> None:
-        """Set the head to follow from the clean end of a leg, and remember where that was.
+    def _aim(self, leg: Leg, clean_from: Anchor | None = None) -> None:
+        """Set the head to follow from the clean end of a leg; the line is clean from there, or from further back.
 
         The drum takes what was felt of the leg up to where the swinging cell takes over.
         """
         s, lead = self.state, self.tuning.lead_mm
+        felt = leg.seen[np.hypot(*(leg.seen[:, :2] - leg.end_mm).T) < lead, :2]
+        c, n = math.cos(leg.heading_rad), math.sin(leg.heading_rad)
+        along, aside = (felt[-1] - leg.end_mm) @ np.array([[c, -n], [n, c]]) if len(felt) else (0.0, 0.0)
         s[head.HEADING], s[head.BEND], s[head.TURN] = leg.heading_rad, leg.bend_per_mm, s[head.SPEED] * leg.bend_per_mm
-        s[head.MIDDLE] = 0.5 * leg.bend_per_mm * lead * lead
+        s[head.MIDDLE] = aside * (lead / along) ** 2 if along > 0.5 * lead else 0.5 * leg.bend_per_mm * lead * lead
         s[head.POINT_X], s[head.POINT_Y] = leg.at(self.tuning.point_mm)
         s[head.SWEEP] = s[head.FIRST] = s[head.MEAN] = s[head.LEFT] = s[head.RIGHT] = 0.0
         s[head.AHEAD] = 1.0
-        felt = leg.seen[np.hypot(*(leg.seen[:, :2] - leg.end_mm).T) < lead, :2]
         self._drum[: len(felt)] = felt
         s[head.PLACES] = len(felt)
-        self._anchor = (leg.end_mm, leg.heading_rad, self.travel_mm)
+        self._anchor = (leg.end_mm, leg.heading_rad, self.travel_mm) if clean_from is None else clean_from
 
     def _keep(self, positions: Array) -> None:
         self._parts.append(positions.copy())

@@ -125,10 +125,11 @@ def _detect(state, drum, t):  # type: ignore[no-untyped-def]
     limit = 0.5 * t.amplitude_mm
     state[MIDDLE] += min(max(aside, -limit), limit)
     c, s = math.cos(state[HEADING]), math.sin(state[HEADING])
-    place = int(state[PLACES]) % DRUM
-    drum[place, 0] = state[SWEPT_X] + t.lead_mm * c - state[MIDDLE] * s
-    drum[place, 1] = state[SWEPT_Y] + t.lead_mm * s + state[MIDDLE] * c
-    state[PLACES] += 1
+    if abs(aside) < limit:  # or else the sweep was not on the line
+        place = int(state[PLACES]) % DRUM
+        drum[place, 0] = state[SWEPT_X] + t.lead_mm * c - state[MIDDLE] * s
+        drum[place, 1] = state[SWEPT_Y] + t.lead_mm * s + state[MIDDLE] * c
+        state[PLACES] += 1
     state[SWEEP] = state[FIRST] = state[MEAN] = 0.0
 
 

@@ -85,40 +85,68 @@ class Leg:
 
 
 def leg_of(seen: Array, last: bool, length_mm: float) -> Leg:
-    """Fit a leg to what was felt, (n, 3) in the order of travel; its clean end is the `last` station, or else the first.
+    """Fit a leg to what was felt, (n, 3) in the order of travel; its clean end is towards the `last` station, or else the first.
 
-    Straight, unless a bend stands out eightfold of the uncertainty that independent stations would have: neighbours share their ink.
+    As long a stretch is taken as one parabola fits about as well as the nearest part of it.
     """
+    seen = _without_blot(seen, last)
     end = seen[-1] if last else seen[0]
-    near = seen[np.hypot(*(seen[:, :2] - end[:2]).T) <= length_mm]
-    if len(near) > 10:  # the two stations next to the knot have a little of its ink
-        near = near[:-2] if last else near[2:]
+    away = np.hypot(*(seen[:, :2] - end[:2]).T)
+    best, limit = _leg(seen[away <= 0.5 * length_mm], end, seen)
+    for share in (0.75, 1.0):
+        leg, misfit = _leg(seen[away <= share * length_mm], end, seen)
+        if misfit > 1.3 * limit + 0.001:
+            break
+        best, limit = leg, misfit
+    return best
+
+
+def _without_blot(seen: Array, last: bool) -> Array:
+    """The stations without those next to the knot whose width shows a little of its ink already: a third of them at most."""
+    widths = seen[::-1, 2] if last else seen[:, 2]
+    usual = float(np.median(widths))
+    spread = 1.4826 * float(np.median(np.abs(widths - usual)))
+    most = len(seen) // 3
+    clean = np.abs(widths[: most + 1] - usual) < max(3 * spread, 0.03 * usual)
+    first = int(np.argmax(clean)) if clean.any() else most
+    first = min(first + 1, most)
+    return seen[: len(seen) - first] if last else seen[first:]
+
+
+def _leg(near: Array, end: Array, seen: Array) -> tuple[Leg, float]:
+    """The leg through some stations, and their root mean square distance from it, mm."""
     chord = near[-1, :2] - near[0, :2]
     heading = math.atan2(chord[1], chord[0])
     t = np.array([math.cos(heading), math.sin(heading)])
+    n = np.array([-t[1], t[0]])
     d = near[:, :2] - end[:2]
-    x, y = d @ t, d @ np.array([-t[1], t[0]])
-    slope, offset, bend = _fit(x, y)
-    return Leg(
-        end[:2] + offset * np.array([-t[1], t[0]]),
-        heading + math.atan(slope),
-        bend / (1 + slope * slope) ** 1.5,
-        float(np.median(near[:, 2])),
-        seen,
-    )
+    (slope, offset, bend), misfit = _fit(d @ t, d @ n)
+    place, width = end[:2] + offset * n, float(np.median(near[:, 2]))
+    return Leg(place, heading + math.atan(slope), bend / (1 + slope * slope) ** 1.5, width, seen), misfit
 
 
-def _fit(x: Array, y: Array) -> tuple[float, float, float]:
-    """Slope, offset and bend at x = 0 of y(x)."""
-    straight = np.polyfit(x, y, 1) if len(x) > 1 else np.array([0.0, float(y[0])])
-    if len(x) >= 8:
+def _fit(x: Array, y: Array) -> tuple[tuple[float, float, float], float]:
+    """Slope, offset and bend at x = 0 of y(x), and the misfit; stations off by more than three times the usual are left out.
+
+    Straight, unless a bend stands out fivefold of the uncertainty that independent stations would have: neighbours share their ink.
+    """
+    degree = 2 if len(x) >= 8 else min(1, len(x) - 1)
+    for _ in range(3):
+        found = np.polyfit(x, y, degree)
+        away = np.abs(y - np.polyval(found, x))
+        good = away <= 3 * max(1.4826 * float(np.median(away)), 0.001)
+        if good.all() or good.sum() < 8:
+            break
+        x, y = x[good], y[good]
+    if degree == 2:
         powers = np.vander(x, 3)
-        bent, *_ = np.linalg.lstsq(powers, y, rcond=None)
-        noise = float(np.sum((y - powers @ bent) ** 2)) / (len(x) - 3)
-        spread = math.sqrt(max(noise, 1e-10) * np.linalg.inv(powers.T @ powers)[0, 0])
-        if abs(bent[0]) > 8 * spread:
-            return float(bent[1]), float(bent[2]), 2 * float(bent[0])
-    return float(straight[0]), float(straight[1]), 0.0
+        rest = y - powers @ found
+        spread = math.sqrt(max(rest @ rest / (len(x) - 3), 1e-7) * np.linalg.inv(powers.T @ powers)[0, 0])
+        if abs(found[0]) < 5 * spread:
+            found = np.r_[0.0, np.polyfit(x, y, 1)]
+    misfit = float(np.sqrt(np.mean((y - np.polyval(found, x)) ** 2)))
+    bend, slope, offset = np.r_[np.zeros(3 - len(found)), found]
+    return (float(slope), float(offset), 2 * float(bend)), misfit
 
 
 def centre_at(seen: Array, i: int, half_mm: float) -> Leg:
@@ -263,3 +291,9 @@ def _leg_outward(view: View, centre: Array, radius: float, arc: _Arc) -> Leg | N
     if len(seen) < 4:
         seen = view.feel(places[-1], math.atan2(way[1], way[0]), view.leg_mm)
     return leg_of(seen, False, view.leg_mm) if len(seen) >= 4 else None
+
+
+def end_of(view: View, incoming: Leg) -> float | None:
+    """How far beyond a leg's clean end the pen was lifted, mm: half a width within the end of the ink; None if the ink goes on."""
+    ink = reach_of_ink(view, incoming, 6 * view.width_mm + 2.0)
+    return None if ink is None else ink - 0.5 * incoming.width_mm

@@ -139,26 +139,48 @@ def ring(cells, pitch_mm, centre, radius_mm, level):  # type: ignore[no-untyped-
 def scout(cells, pitch_mm, start, heading, step_mm, stations, width_mm, level):  # type: ignore[no-untyped-def]
     """Feel along a line from a place on it: (n, 3) centre x, y and width, mm, where the line is seen clean between two edges.
 
-    At each station the edges are found across the way that the last stations point. It stops where an edge is missing, where the width leaves what the
-    line has had by a fifth, or where the centre leaps aside by a sixth of the width.
+    At each station the edges are found across the way that the last stations point. A station is not clean where an edge is missing, where the width
+    leaves what the line has had by a fifth, or where the centre leaps aside by a sixth of the width. A speck may spoil a few stations: they are passed
+    over if the line is clean for longer behind them; else the clean line ends before them.
     """
     seen = np.empty((stations, 3))
     reach = 0.8 * width_mm + 3.0 * pitch_mm
-    x, y, before = start[0], start[1], heading
-    count = 0
-    for n in range(stations):
+    passed_over = int(max(0.16, 2.5 * pitch_mm) / step_mm)
+    x, y = start[0], start[1]
+    count = spoilt = 0
+    before_speck, since_speck = 0, passed_over + 1
+    for _ in range(stations):
         right, left = edges(cells, pitch_mm, x, y, heading, reach, level)
         width, aside = left - right, 0.5 * (left + right)
         slack = 0.2 * width_mm + 0.4 * pitch_mm
-        if not abs(width - width_mm) < slack or (n > 0 and abs(aside) > width_mm / 6 + 0.2 * pitch_mm):
-            break
-        seen[n, 0], seen[n, 1], seen[n, 2] = x - aside * math.sin(heading), y + aside * math.cos(heading), width
-        width_mm += 0.05 * (width - width_mm)
-        count = n + 1
-        if n >= 2:  # the chord of the last stations, and on by what it has turned since
-            back = max(0, n - 4)
-            chord = math.atan2(seen[n, 1] - seen[back, 1], seen[n, 0] - seen[back, 0])
-            turn = math.atan2(math.sin(chord - before), math.cos(chord - before)) if n > 4 else 0.0
-            heading, before = chord + 2.0 * turn, chord
-        x, y = seen[n, 0] + step_mm * math.cos(heading), seen[n, 1] + step_mm * math.sin(heading)
-    return seen[:count].copy()
+        if abs(width - width_mm) < slack and (count == 0 or abs(aside) < width_mm / 6 + 0.2 * pitch_mm):
+            seen[count, 0], seen[count, 1] = x - aside * math.sin(heading), y + aside * math.cos(heading)
+            seen[count, 2] = width
+            width_mm += 0.05 * (width - width_mm)
+            count += 1
+            since_speck += 1
+            spoilt = 0
+            x, y = seen[count - 1, 0], seen[count - 1, 1]
+            if count >= 3:
+                heading = _onward(seen, count)
+        else:
+            if since_speck > passed_over:
+                before_speck = count
+            since_speck = 0
+            spoilt += 1
+            if spoilt > passed_over or count == 0:
+                break
+        x, y = x + step_mm * math.cos(heading), y + step_mm * math.sin(heading)
+    return seen[: count if since_speck > passed_over else before_speck].copy()
+
+
+@njit(cache=True)
+def _onward(seen, count):  # type: ignore[no-untyped-def]
+    """Heading from the newest of some stations to the next: that of the last stations' chord, and on by what the chords have turned."""
+    last, back = count - 1, max(0, count - 5)
+    chord = math.atan2(seen[last, 1] - seen[back, 1], seen[last, 0] - seen[back, 0])
+    if count < 9:
+        return chord
+    before = math.atan2(seen[back, 1] - seen[back - 4, 1], seen[back, 0] - seen[back - 4, 0])
+    turned = math.atan2(math.sin(chord - before), math.cos(chord - before))
+    return chord + 0.625 * turned  # from the chord's middle to half a step beyond its end

@@ -18,7 +18,7 @@ import numpy as np
 from motion.faults import LineFault
 from tracer import photocell
 from tracer.drawing import Drawing
-from tracer.knot import Array, Leg, View, leg_of, turn
+from tracer.knot import Array, Leg, View, centre_at, end_of, leg_of, turn
 from tracer.lines import Sheet, Stroke
 
 CATCH_MM = 3.0  # how far from a given place the line may be
@@ -120,9 +120,7 @@ def _both_ways(view: View, place: Array, heading: float) -> tuple[Leg, float] | 
     if shorter < 6:
         return None
     both = np.vstack([behind[shorter - 1 : 0 : -1], ahead[:shorter]])
-    along = leg_of(both, True, 4 * length)
-    back = float(np.hypot(*(both[shorter - 1, :2] - both[-1, :2])))
-    middle = Leg(along.at(-back), along.heading_at(-back), along.bend_per_mm, along.width_mm, both)
+    middle = centre_at(both, shorter - 1, 0.6 * view.leg_mm)
     return middle, round((shorter - 1) * view.step_mm, 1)
 
 
@@ -145,18 +143,10 @@ def _at_an_end(view: View, stroke: Stroke) -> Stance | None:
         seen = local.feel(inward, heading, max(4 * local.width_mm, local.leg_mm))
         if len(seen) * local.step_mm < 4 * local.width_mm - radius:
             continue  # a burr, not an end
-        return _on_the_end(local, leg_of(seen, False, local.leg_mm))
+        outward = leg_of(local.feel(inward, heading + math.pi, local.leg_mm), True, local.leg_mm)
+        end = end_of(local, outward)
+        if end is None:
+            continue
+        local = replace(local, width_mm=outward.width_mm)
+        return Stance(outward.at(end), math.remainder(outward.heading_at(end) + math.pi, math.tau), local)
     return None
-
-
-def _on_the_end(view: View, leg: Leg) -> Stance:
-    """The stance half a width within the end of the ink, where the pen was set down."""
-    step, out = 0.25 * view.pitch_mm, 0.0
-    while view.dark(leg.at(-out)) and out < 6 * view.width_mm:
-        out += step
-    before = leg.at(-out)
-    a = photocell.darkness_at(view.cells, view.pitch_mm, *leg.at(-(out - step)))
-    b = photocell.darkness_at(view.cells, view.pitch_mm, before[0], before[1])
-    out -= step * (view.level - b) / max(a - b, 1e-9)
-    back = out - 0.5 * leg.width_mm
-    return Stance(leg.at(-back), leg.heading_at(-back), replace(view, width_mm=leg.width_mm))
