@@ -50,7 +50,9 @@ def along_leg(leg: Leg, start_mm: float, end_mm: float) -> Array:
     return leg.at(np.linspace(start_mm, end_mm, max(2, math.ceil(abs(end_mm - start_mm) / SPACING_MM) + 1)))
 
 
-def through_corner(view: View, incoming: Leg, outgoing: Leg, legs_mm: tuple[float, float], from_mm: float) -> list[Array]:
+def through_corner(
+    view: View, incoming: Leg, outgoing: Leg, legs_mm: tuple[float, float], from_mm: float
+) -> list[Array]:
     """Stretches from `from_mm` on the incoming leg through the corner to the outgoing leg's clean end."""
     s, u = legs_mm
     before, after = incoming.heading_at(s), outgoing.heading_at(-u)
@@ -66,7 +68,14 @@ def through_corner(view: View, incoming: Leg, outgoing: Leg, legs_mm: tuple[floa
             return [np.vstack([along_leg(incoming, from_mm, a), bend, out])]
         if missing > 0.3 * view.width_mm:
             a = max(from_mm, min(0.0, s))
-            return [np.vstack([along_leg(incoming, from_mm, a), hermite(incoming.at(a), incoming.heading_at(a), outgoing.end_mm, outgoing.heading_rad)])]
+            return [
+                np.vstack(
+                    [
+                        along_leg(incoming, from_mm, a),
+                        hermite(incoming.at(a), incoming.heading_at(a), outgoing.end_mm, outgoing.heading_rad),
+                    ]
+                )
+            ]
     vertex = 0.5 * (incoming.at(s) + outgoing.at(-u))
     arriving, leaving = along_leg(incoming, from_mm, s), along_leg(outgoing, -u, max(0.0, -u))
     arriving[-1] = leaving[0] = vertex

@@ -69,7 +69,7 @@ class Drawing:
         pitch = _pitches_mm(file, grey.shape[1], stated, dpi, width_mm)
         if abs(pitch[0] / pitch[1] - 1) > 1e-3:  # a fax has oblong pixels
             rows = round(grey.shape[0] * pitch[1] / pitch[0])
-            grey = cv2.resize(grey, (grey.shape[1], rows), interpolation=cv2.INTER_LINEAR)
+            grey = np.asarray(cv2.resize(grey, (grey.shape[1], rows), interpolation=cv2.INTER_LINEAR), np.float32)
         return cls(darkness_of(grey, pitch[0]), pitch[0], file)
 
 
@@ -99,7 +99,9 @@ def _read(file: Path) -> Image:
     except FileNotFoundError:
         raise FileFault(f"{file} does not exist; check the name") from None
     except MemoryError:
-        raise DrawingFault(f"{file} is too large for the memory of this computer; scan it at a lower resolution") from None
+        raise DrawingFault(
+            f"{file} is too large for the memory of this computer; scan it at a lower resolution"
+        ) from None
     except (OSError, SyntaxError, ValueError) as error:
         if isinstance(error, OSError) and error.errno is not None:
             raise FileFault(f"{file} cannot be read: {error.strerror}") from None
@@ -169,7 +171,7 @@ def _paper(grey: Grey, pitch_mm: float) -> tuple[Grey, bool]:
     dark = float((relief**3).sum()) <= 0  # strokes take less room than paper: the few stand out further
     level = cv2.morphologyEx(small, cv2.MORPH_CLOSE if dark else cv2.MORPH_OPEN, stroke)
     level = cv2.GaussianBlur(level, (0, 0), across / 2)
-    return cv2.resize(level, grey.shape[::-1], interpolation=cv2.INTER_LINEAR), dark
+    return np.asarray(cv2.resize(level, grey.shape[::-1], interpolation=cv2.INTER_LINEAR), np.float32), dark
 
 
 def _ink_contrast(contrast: Grey, pitch_mm: float) -> float:
@@ -178,7 +180,7 @@ def _ink_contrast(contrast: Grey, pitch_mm: float) -> float:
     centre = float(np.median(soft[::4, ::4]))
     noise = 1.4826 * float(np.median(np.abs(soft[::4, ::4] - centre)))
     least = max(LEAST_CONTRAST, centre + 6 * noise)
-    labels, numbers, stats, _ = cv2.connectedComponentsWithStats((soft > least).astype(np.uint8))
+    _, numbers, stats, _ = cv2.connectedComponentsWithStats((soft > least).astype(np.uint8))
     longest = stats[:, [cv2.CC_STAT_WIDTH, cv2.CC_STAT_HEIGHT]].max(axis=1)
     strokes = longest >= max(12, LEAST_STROKE_MM / pitch_mm)
     strokes[0] = False

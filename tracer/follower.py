@@ -73,9 +73,7 @@ class Follower:
         home = (*self.stance.place_mm, self.stance.heading_rad, self._away_mm)
         out = np.empty((CHUNK, 2))
         while self.travel_mm < longest_mm:
-            n, why = head.follow(
-                self.view.cells, self.view.pitch_mm, self.state, self._drum, self.tuning, home, out
-            )
+            n, why = head.follow(self.view.cells, self.view.pitch_mm, self.state, self._drum, self.tuning, home, out)
             self._keep(out[:n])
             if told is not None:
                 told(self.travel_mm)
@@ -195,7 +193,7 @@ class Follower:
             near = int(np.argmin(np.hypot(*(way - home).T)))
             step = way[min(near + 1, len(way) - 1)] - way[min(near, len(way) - 2)]
             on_it = np.hypot(*(way[near] - home)) < 0.3 * self.view.width_mm
-            if on_it and 0 < near and math.cos(math.atan2(step[1], step[0]) - heading) > 0.8:
+            if on_it and near > 0 and math.cos(math.atan2(step[1], step[0]) - heading) > 0.8:
                 return [*stretches[:k], np.vstack([way[:near], home])]
         return None
 

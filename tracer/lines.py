@@ -73,7 +73,9 @@ class Sheet:
         lengths[0] = 0.0
         if lengths.max(initial=0.0) < max(LEAST_LENGTH_MM, LEAST_LENGTH_PX * drawing.pitch_mm):
             raise DrawingFault("no line on the drawing: nothing on it is long enough; check the file and its scale")
-        return cls(drawing, labels, depth, lengths, widths * drawing.pitch_mm)
+        return cls(
+            drawing, np.asarray(labels, np.int32), np.asarray(depth, np.float32), lengths, widths * drawing.pitch_mm
+        )
 
     def longest(self) -> Stroke:
         """The longest line."""

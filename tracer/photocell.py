@@ -76,7 +76,7 @@ def edges(cells, pitch_mm, x_mm, y_mm, heading, reach_mm, level):  # type: ignor
     """
     nx, ny = -math.sin(heading), math.cos(heading)
     step = 0.35 * pitch_mm
-    half = int(math.ceil(reach_mm / step))
+    half = math.ceil(reach_mm / step)
     best, start = -1.0, 0
     for k in range(-half // 2, half // 2 + 1):
         d = darkness_at(cells, pitch_mm, x_mm + k * step * nx, y_mm + k * step * ny) - 1e-3 * abs(k * step)
@@ -108,7 +108,7 @@ def ring(cells, pitch_mm, centre, radius_mm, level):  # type: ignore[no-untyped-
 
     A ring that is dark all round is one arc of a whole turn.
     """
-    samples = max(24, int(math.ceil(TWO_PI * radius_mm / (0.35 * pitch_mm))))
+    samples = max(24, math.ceil(TWO_PI * radius_mm / (0.35 * pitch_mm)))
     seen = np.empty(samples)
     for k in range(samples):
         a = TWO_PI * k / samples

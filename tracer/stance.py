@@ -33,16 +33,17 @@ class Stance:
     place_mm: Array
     heading_rad: float
     view: View
+    at_end: bool = False
 
-    def reversed(self, place_mm: Array, heading_rad: float) -> Stance:
-        """The same line from another place, the other way."""
-        return replace(self, place_mm=place_mm, heading_rad=math.remainder(heading_rad + math.pi, math.tau))
+    def reversed(self, end_mm: Array, heading_rad: float) -> Stance:
+        """The same line from its end, where the head arrived on a heading."""
+        return Stance(end_mm, math.remainder(heading_rad + math.pi, math.tau), self.view, True)
 
 
 def put_down(
     drawing: Drawing, start_mm: tuple[float, float] | None, aperture_mm: float, line_width_mm: float | None
-) -> Stance:
-    """Put the head down near a place, or on the longest line: at an open end if it has one, else where it is smooth.
+) -> tuple[Stance, float]:
+    """Put the head down near a place, or on the longest line: at an open end if it has one, else where it is smooth; and the line's length, mm.
 
     Raises LineFault if there is no line near the place, or no clean stretch on the line.
     """
@@ -54,14 +55,14 @@ def put_down(
     if start_mm is None:
         at_end = _at_an_end(view, stroke)
         if at_end is not None:
-            return at_end
+            return at_end, stroke.length_mm
     stances = _stances(view, _tried(stroke, start_mm, catch_mm))
     if not stances:
         raise LineFault(
             f"no clean stretch of line to start on, {stroke.length_mm:.0f} mm of line {width_mm:.2f} mm wide;"
             " give --line-width, or --start X,Y at a plain stretch"
         )
-    return max(stances, key=lambda s: s[0])[1]
+    return max(stances, key=lambda s: s[0])[1], stroke.length_mm
 
 
 def _tried(stroke: Stroke, start_mm: tuple[float, float] | None, catch_mm: float) -> Array:
@@ -148,5 +149,5 @@ def _at_an_end(view: View, stroke: Stroke) -> Stance | None:
         if end is None:
             continue
         local = replace(local, width_mm=outward.width_mm)
-        return Stance(outward.at(end), math.remainder(outward.heading_at(end) + math.pi, math.tau), local)
+        return Stance(outward.at(end), math.remainder(outward.heading_at(end) + math.pi, math.tau), local, True)
     return None

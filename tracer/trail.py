@@ -62,5 +62,3 @@ def heading_of(way: Array) -> float:
     """Heading of the last step of a polyline, rad."""
     step = way[-1] - way[-2]
     return math.atan2(step[1], step[0])
-
-
