@@ -22,7 +22,7 @@ from tracer import photocell
 from tracer.knot import Array, Leg, View, turn
 
 SPACING_MM = 0.02
-SHARP = 0.06  # of the line's width: a corner whose ink misses less than this on the outside is sharp
+SHARP = 0.08  # of the line's width: a corner whose ink misses less than this on the outside is sharp
 
 
 def hermite(start: Array, heading: float, end: Array, end_heading: float) -> Array:
@@ -55,9 +55,8 @@ def through_corner(
 ) -> list[Array]:
     """Stretches from `from_mm` on the incoming leg through the corner to the outgoing leg's clean end."""
     s, u = legs_mm
-    before, after = incoming.heading_at(s), outgoing.heading_at(-u)
-    deflection = abs(turn(before, after))
-    missing = missing_ink_mm(view, incoming.at(s), before, after, 0.5 * (incoming.width_mm + outgoing.width_mm))
+    deflection = abs(turn(incoming.heading_at(s), outgoing.heading_at(-u)))
+    missing = missing_ink_mm(view, incoming, outgoing, legs_mm)
     if missing > SHARP * view.width_mm:
         radius = missing / (1 / math.cos(deflection / 2) - 1)
         touch = radius * math.tan(deflection / 2)
@@ -82,13 +81,26 @@ def through_corner(
     return [arriving, leaving]
 
 
-def missing_ink_mm(view: View, vertex: Array, before: float, after: float, width_mm: float) -> float:
+def is_sharp(view: View, incoming: Leg, outgoing: Leg, legs_mm: tuple[float, float]) -> bool:
+    """Whether the ink of a corner is that of a sharp one."""
+    return missing_ink_mm(view, incoming, outgoing, legs_mm) <= SHARP * view.width_mm
+
+
+def missing_ink_mm(view: View, incoming: Leg, outgoing: Leg, legs_mm: tuple[float, float]) -> float:
     """By how much the ink falls short of a sharp corner's on the outside of the bisector, mm (0 if it does not)."""
+    vertex, width_mm = incoming.at(legs_mm[0]), 0.5 * (incoming.width_mm + outgoing.width_mm)
+    before, after = incoming.heading_at(legs_mm[0]), outgoing.heading_at(-legs_mm[1])
     out = np.array([math.cos(before) - math.cos(after), math.sin(before) - math.sin(after)])
     across = math.atan2(out[1], out[0]) - math.pi / 2
     reach = 2.0 * width_mm + 3 * view.pitch_mm
-    _, outside = photocell.edges(view.cells, view.pitch_mm, vertex[0], vertex[1], across, reach, view.level)
-    return max(0.0, 0.5 * width_mm - outside) if math.isfinite(outside) else 0.0
+    aside = np.array([math.cos(across), math.sin(across)])
+    outside = []
+    for off in np.linspace(-0.15, 0.15, 5) * width_mm:  # the pen's round leaves the tangent by off²/width
+        place = vertex + off * aside
+        _, edge = photocell.edges(view.cells, view.pitch_mm, place[0], place[1], across, reach, view.level)
+        outside.append(edge + off * off / width_mm)
+    found = float(np.median(outside))
+    return max(0.0, 0.5 * width_mm - found) if math.isfinite(found) else 0.0
 
 
 def _arc(start: Array, heading: float, end: Array, end_heading: float) -> Array:

@@ -23,7 +23,7 @@ import numpy as np
 
 from motion.faults import LineFault
 from tracer import course, head
-from tracer.knot import Array, Leg, centre_at, end_of, leg_of, turn
+from tracer.knot import Array, Leg, centre_at, corner_in, end_of, leg_of, meet, turn
 from tracer.settings import Settings, tune
 from tracer.stance import Stance
 from tracer.survey import survey
@@ -93,6 +93,9 @@ class Follower:
             return self._lost("the line is not clean between two edges")
         here = int(np.argmin(np.hypot(*(seen[:, :2] - self._stands()[0]).T)))
         if (len(seen) - here) * self.view.step_mm > self.view.leg_mm:
+            sharp = self._sharp_corner(seen, here)
+            if sharp is not None:
+                return self._pass(self._course(*sharp), sharp[1])
             nodes, leg = self._nodes(seen)
             return self._pass([np.vstack([course.hermite(*a, *b) for a, b in pairwise(nodes)])], leg, seen)
         incoming = leg_of(seen, True, self.view.leg_mm)
@@ -123,16 +126,29 @@ class Follower:
         start, heading = incoming.at(along), incoming.heading_at(along)
         return [np.vstack([way, course.hermite(start, heading, outgoing.end_mm, outgoing.heading_rad)])]
 
+    def _sharp_corner(self, seen: Array, here: int) -> tuple[Leg, Leg, tuple[float, float]] | None:
+        """The legs of a corner so obtuse that the line was felt clean round it, if its ink shows it to be sharp."""
+        i = corner_in(seen, here + 4)
+        if i is None:
+            return None
+        incoming = leg_of(seen[: i - 2], True, self.view.leg_mm)
+        outgoing = leg_of(seen[i + 3 :], False, self.view.leg_mm)
+        legs_mm = meet(incoming, outgoing)
+        if legs_mm is None or not course.is_sharp(self.view, incoming, outgoing, legs_mm):
+            return None
+        return incoming, outgoing, legs_mm
+
     def _nodes(self, seen: Array) -> tuple[list[tuple[Array, float]], Leg]:
         """Places and headings along a line that was felt clean throughout, from where the head stands; the last also as a leg."""
         half_mm = 0.3 * self.view.leg_mm
+        left_mm = 0.55 * self.view.leg_mm  # too little to tell a corner by
         nodes = [self._stands()]
         end = seen[-1, :2]
         leg = None
         for i in range(len(seen)):
             if self._ahead(seen[i, :2]) < half_mm or np.hypot(*(seen[i, :2] - nodes[-1][0])) < half_mm / 3:
                 continue
-            if np.hypot(*(seen[i, :2] - end)) < half_mm:
+            if np.hypot(*(seen[i, :2] - end)) < left_mm:
                 break
             leg = centre_at(seen, i, half_mm)
             nodes.append((leg.end_mm, leg.heading_rad))

@@ -29,6 +29,7 @@ from tracer.photocell import Cells
 Array = NDArray[np.float64]
 
 LEG_MM = 1.2  # how much of a leg is felt for its direction, at a line of 0.5 mm
+CORNER = math.radians(20)  # a line that turns less within a few stations is smooth
 FARTHEST_MM = 5.0  # rings do not grow beyond this, or ten widths
 
 
@@ -169,6 +170,27 @@ def centre_at(seen: Array, i: int, half_mm: float) -> Leg:
     )
 
 
+def corner_in(seen: Array, first: int) -> int | None:
+    """The station, from `first` on, at which a line that was felt clean turns sharply; None if it does not.
+
+    Chords of ten stations before and after, three stations away from it, differ most there, by more than `CORNER`.
+    """
+    n, skip = 10, 3
+    places = seen[:, :2]
+    middle = np.arange(max(first, n + skip), len(seen) - n - skip)
+    if not len(middle):
+        return None
+    before = places[middle - skip] - places[middle - skip - n]
+    after = places[middle + skip + n] - places[middle + skip]
+    cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
+    turned = np.abs(np.arctan2(cross, np.sum(before * after, axis=1)))
+    sharp = np.flatnonzero(turned > CORNER)
+    if not len(sharp):
+        return None
+    run = sharp[: int(np.argmax(np.diff(np.r_[sharp, 10**9]) > 1)) + 1]
+    return int(middle[run[np.argmax(turned[run])]])
+
+
 def turn(a: float, b: float) -> float:
     """Angle from heading a to heading b, -pi..pi."""
     return math.remainder(b - a, math.tau)
@@ -220,7 +242,7 @@ def legs_around(view: View, centre: Array, trail: Array) -> list[Leg]:
         if not joined:
             break
         for arc in joined:
-            if arc.clean == 3 and not arc.incoming and not arc.found:
+            if arc.clean >= 3 and not arc.incoming and not arc.found:
                 leg = _leg_outward(view, centre, radius, arc)
                 if leg is not None:
                     found.append(leg)

@@ -138,7 +138,7 @@ def _at_an_end(view: View, stroke: Stroke) -> Stance | None:
         right, left = photocell.edges(
             local.cells, local.pitch_mm, inward[0], inward[1], heading, 2 * local.width_mm, local.level
         )
-        if not math.isfinite(left - right):
+        if not abs(left - right - view.width_mm) < 0.25 * view.width_mm + 0.5 * view.pitch_mm:
             continue
         local = replace(local, width_mm=left - right)
         seen = local.feel(inward, heading, max(4 * local.width_mm, local.leg_mm))
