@@ -1,8 +1,8 @@
 """How far a path is from another path, or from the ink of a drawing: figures, and the error along the contour.
 
 A path from a path: the distance of each sample of the first from the nearest place of the second, and back. A path from
-a drawing: the distance of each point from the ink's own centre, measured across the path in the image; and the ink that
-no path covers.
+a drawing: the distance of each point from the ink's own centre, measured across the path in the image, not a number
+where the ink has no centre that means anything (crossings, corners); and the ink that no path covers.
 """
 
 from __future__ import annotations
@@ -57,6 +57,7 @@ def from_drawing(drawing: Drawing, path: Path, name: str = "path") -> Comparison
 
     found = deviation(drawing, path)
     row = {"rms_mm": found.rms_mm, "p95_mm": found.p95_mm, "max_mm": found.max_mm}
+    row["measured_share"] = found.measured_share
     missed = {"missed_ink_mm": found.missed_mm, "missed_ink_share": found.missed_share}
     return Comparison({f"{name}_to_ink": row}, found.max_mm, found.points_mm, found.error_mm, missed)
 

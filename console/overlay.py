@@ -30,11 +30,14 @@ Array = NDArray[np.float64]
 UM_PER_MM = 1000.0
 COLOURS = ("#1f5fa8", "#5fa8d3", "#f2a65a", "#c1121f")  # no error … largest error
 PLAIN = "#c1121f"
+UNMEASURED = "#8a8a8a"  # the path where it has no error that means anything
 REFERENCE = "#555555"
 MARGIN_SHARE = 0.06  # of the larger side, round the path
 LARGEST_IMAGE_PX = 2000  # a larger drawing is reduced for the picture
 LARGEST_POINTS = 20_000  # more points are gathered, and the largest error of each gathering is shown
 INSETS = 3
+WIDE = 0.6  # height to width
+DPI = 130
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +49,7 @@ class Picture:
     drawing: Drawing | None = None
     reference: Path | None = None
     points_mm: Array | None = None  # (n, 2)
-    error_mm: Array | None = None  # (n,)
+    error_mm: Array | None = None  # (n,); not a number where there is none that means anything
 
 
 def draw(picture: Picture, file: FilePath) -> None:
@@ -56,21 +59,27 @@ def draw(picture: Picture, file: FilePath) -> None:
 
     insets = _worst_places(picture)
     view = _view(picture)
-    shape = np.clip((view[3] - view[2]) / (view[1] - view[0]), 0.35, 1.3)
-    figure = Figure(figsize=(11 if insets else 8.5, 1.4 + 8 * shape), layout="constrained")
+    figure = Figure(layout="compressed")
     FigureCanvasAgg(figure)
-    main, beside = _axes(figure, len(insets))
+    main, beside = _axes(figure, len(insets), (view[3] - view[2]) / (view[1] - view[0]))
     _fill(figure, main, picture, view)
     for number, (axes, place_mm) in enumerate(zip(beside, insets, strict=True), 1):
         _enlarge(axes, main, picture, place_mm, number)
     with written_beside(file) as unfinished:
-        figure.savefig(unfinished, dpi=130)
+        figure.savefig(unfinished, dpi=DPI, bbox_inches="tight", pad_inches=0.15)
 
 
-def _axes(figure: Figure, insets: int) -> tuple[Axes, list[Axes]]:
-    """The main axes, and one for each enlargement in a column beside them."""
+def _axes(figure: Figure, insets: int, height_to_width: float) -> tuple[Axes, list[Axes]]:
+    """The main axes, and one for each enlargement: in a column beside them, or below them if they are wide."""
+    shape = float(np.clip(height_to_width, 0.2, 1.4))
     if not insets:
+        figure.set_size_inches(8.5, 1.4 + 8 * shape)
         return figure.add_subplot(), []
+    if shape < WIDE:
+        figure.set_size_inches(11, 4.5 + 10 * shape)
+        grid = figure.add_gridspec(2, INSETS, height_ratios=(10 * shape + 1, 3))
+        return figure.add_subplot(grid[0, :]), [figure.add_subplot(grid[1, i]) for i in range(insets)]
+    figure.set_size_inches(11, 1.4 + 8 * shape)
     grid = figure.add_gridspec(INSETS, 2, width_ratios=(3.2, 1))
     return figure.add_subplot(grid[:, 0]), [figure.add_subplot(grid[i, 1]) for i in range(insets)]
 
@@ -115,21 +124,28 @@ def _cut_out(
 
 def _contour(axes: Axes, picture: Picture, line_pt: float) -> Any:
     """Draw the path: in the colours of its error where there is one (gives what a colour bar needs), else in one."""
-    if picture.points_mm is None or picture.error_mm is None or len(picture.points_mm) < 2:
-        for run in picture.path.runs():
-            axes.plot(*run.T, color=PLAIN, linewidth=line_pt * 0.6, zorder=2)
-        return None
+    measured = picture.points_mm is not None and picture.error_mm is not None and np.isfinite(picture.error_mm).any()
+    for run in picture.path.runs():
+        axes.plot(*run.T, color=UNMEASURED if measured else PLAIN, linewidth=line_pt * 0.6, zorder=2)
+    return _coloured(axes, picture, line_pt) if measured else None
+
+
+def _coloured(axes: Axes, picture: Picture, line_pt: float) -> Any:
+    """Draw the error along the path in colours, where there is one; gives what a colour bar needs."""
     from matplotlib.collections import LineCollection
     from matplotlib.colors import LinearSegmentedColormap
 
+    assert picture.points_mm is not None and picture.error_mm is not None
     points, error_um = _gathered(picture.points_mm, np.abs(picture.error_mm) * UM_PER_MM)
     steps = np.hypot(*np.diff(points, axis=0).T)
-    joined = steps <= 10 * np.median(steps) + 0.05  # a wider step is a way with the tool up
-    pieces = np.stack([points[:-1], points[1:]], axis=1)[joined]
+    shown = steps <= 10 * np.median(steps) + 0.05  # a wider step is a way with the tool up
+    larger = np.fmax(error_um[:-1], error_um[1:])
+    shown &= np.isfinite(larger)
     colours = LinearSegmentedColormap.from_list("error", COLOURS)
-    lines = LineCollection(list(pieces), cmap=colours, linewidths=line_pt, zorder=2, capstyle="round")
-    lines.set_array(np.maximum(error_um[:-1], error_um[1:])[joined])
-    lines.set_clim(0, max(float(error_um.max()), 1e-3))
+    pieces = np.stack([points[:-1], points[1:]], axis=1)[shown]
+    lines = LineCollection(list(pieces), cmap=colours, linewidths=line_pt, zorder=3, capstyle="round")
+    lines.set_array(larger[shown])
+    lines.set_clim(0, max(float(np.nanmax(error_um)), 1e-3))
     axes.add_collection(lines)
     return lines
 
@@ -138,7 +154,7 @@ def _gathered(points: Array, error: Array) -> tuple[Array, Array]:
     """Not more points than can be seen; each shows the largest error of those it stands for."""
     step = -(-len(points) // LARGEST_POINTS)
     starts = np.arange(0, len(points), step)
-    return points[starts], np.maximum.reduceat(error, starts)
+    return points[starts], np.fmax.reduceat(error, starts)
 
 
 def _ends(axes: Axes, path: Path) -> None:
@@ -147,7 +163,7 @@ def _ends(axes: Axes, path: Path) -> None:
     if not runs:
         return
     start, end = runs[0][0], runs[-1][-1]
-    style: dict[str, Any] = {"linestyle": "none", "markersize": 7, "markerfacecolor": "none", "zorder": 3}
+    style: dict[str, Any] = {"linestyle": "none", "markersize": 7, "markerfacecolor": "none", "zorder": 4}
     axes.plot(*start, marker="o", color="#2a7f3f", label="start", **style)
     axes.plot(*end, marker="s", color="#7a3fa0", label="end", **style)
     axes.legend(loc="upper right", fontsize=8, framealpha=0.8)
@@ -156,8 +172,7 @@ def _ends(axes: Axes, path: Path) -> None:
 def _enlarge(axes: Axes, main: Axes, picture: Picture, place_mm: Array, number: int) -> None:
     """Draw one of the worst places so large that its error can be seen."""
     assert picture.points_mm is not None and picture.error_mm is not None
-    nearest = int(np.argmin(((picture.points_mm - place_mm) ** 2).sum(axis=1)))
-    error_mm = abs(float(picture.error_mm[nearest]))
+    error_mm = float(np.nanmax(np.abs(picture.error_mm[(picture.points_mm == place_mm).all(axis=1)])))
     reach_mm = float(np.clip(20 * error_mm, 0.5, 4.0))
     x, y = place_mm
     view = (x - reach_mm, x + reach_mm, y - reach_mm, y + reach_mm)
@@ -166,18 +181,18 @@ def _enlarge(axes: Axes, main: Axes, picture: Picture, place_mm: Array, number: 
     axes.set(xlim=view[:2], ylim=view[2:], aspect="equal")
     axes.tick_params(labelsize=7)
     axes.set_title(f"{number}: {error_mm * UM_PER_MM:.3g} µm at {x:.1f}, {y:.1f}", fontsize=8)
-    main.annotate(str(number), (x, y), xytext=(9, 9), textcoords="offset points", fontsize=9, zorder=4)
-    main.plot(x, y, marker="+", markersize=9, color="black", zorder=4)
+    main.annotate(str(number), (x, y), xytext=(9, 9), textcoords="offset points", fontsize=9, zorder=5)
+    main.plot(x, y, marker="+", markersize=9, color="black", zorder=5)
 
 
 def _worst_places(picture: Picture) -> list[Array]:
     """The places with the largest error, apart from each other."""
     if picture.points_mm is None or picture.error_mm is None:
         return []
-    left, size = np.abs(picture.error_mm).astype(float), np.abs(picture.error_mm).max(initial=0.0)
+    left = np.nan_to_num(np.abs(picture.error_mm))
     apart_mm = 0.12 * float(np.ptp(picture.points_mm, axis=0).max(initial=0.0))
     places: list[Array] = []
-    while len(places) < INSETS and size > 0 and left.max() > 0:
+    while len(places) < INSETS and left.max(initial=0.0) > 0:
         worst = picture.points_mm[int(left.argmax())]
         places.append(worst)
         left[np.hypot(*(picture.points_mm - worst).T) < apart_mm] = 0

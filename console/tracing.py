@@ -34,20 +34,18 @@ class Head:
     depth_mm: float
     clearance_mm: float
     line_width_mm: float | None
+    gap_mm: float
 
     def trace(self, drawing: Drawing, desk: Desk) -> Traced:
         """Follow the drawing's line to its end, or until it is lost."""
         from motion.motion import thin
-        from tracer.sequence import Settings, trace
+        from tracer.sequence import Settings, Work, trace
 
         desk.warn_of_compiling("the head", "motion", "tracer", "recorder")
-        settings = Settings(
-            speed_mm_s=self.speed_mm_s,
-            depth_mm=self.depth_mm,
-            clearance_mm=self.clearance_mm,
-            line_width_mm=self.line_width_mm,
-        )
-        traced = trace(drawing, start_mm=self.start_mm, settings=settings)
+        settings = Settings(speed_mm_s=self.speed_mm_s, line_width_mm=self.line_width_mm, gap_mm=self.gap_mm)
+        work = Work(depth_mm=self.depth_mm, clearance_mm=self.clearance_mm)
+        with desk.bar("following the line", total=1.0) as advance:
+            traced = trace(drawing, self.start_mm, settings, work, lambda come, length: advance(come / length))
         return Traced(traced, thin(traced))
 
 
@@ -126,6 +124,14 @@ def head_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         type=LENGTH,
         help="Width of the line, such as 0.5mm.  [default: measured on the drawing]",
     )
+    @click.option(
+        "--gap",
+        "gap_mm",
+        type=LENGTH,
+        default="0.5mm",
+        show_default=True,
+        help="Widest gap in the line that the head goes across.",
+    )
     @functools.wraps(verb)
     def with_head(
         *args: Any,
@@ -134,8 +140,9 @@ def head_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         depth_mm: float,
         clearance_mm: float,
         line_width_mm: float | None,
+        gap_mm: float,
         **options: Any,
     ) -> Any:
-        return verb(*args, head=Head(start_mm, speed_mm_s, depth_mm, clearance_mm, line_width_mm), **options)
+        return verb(*args, head=Head(start_mm, speed_mm_s, depth_mm, clearance_mm, line_width_mm, gap_mm), **options)
 
     return with_head

@@ -82,8 +82,9 @@ def through_corner(
 
 
 def is_sharp(view: View, incoming: Leg, outgoing: Leg, legs_mm: tuple[float, float]) -> bool:
-    """Whether the ink of a corner is that of a sharp one."""
-    return missing_ink_mm(view, incoming, outgoing, legs_mm) <= SHARP * view.width_mm
+    """Whether the ink of an obtuse corner is that of a sharp one: it misses less than a third of what an arc over eight stations would."""
+    deflection = abs(turn(incoming.heading_at(legs_mm[0]), outgoing.heading_at(-legs_mm[1])))
+    return missing_ink_mm(view, incoming, outgoing, legs_mm) <= 8 * view.step_mm * math.tan(deflection / 4) / 3
 
 
 def missing_ink_mm(view: View, incoming: Leg, outgoing: Leg, legs_mm: tuple[float, float]) -> float:

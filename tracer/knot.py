@@ -294,6 +294,8 @@ def _join(arcs: Array, inner: list[_Arc], radius: float, width_mm: float, back: 
             arc.incoming = arc.overlaps(back, back)
         else:
             arc.incoming = any(a.incoming for a in parents)
+        if parents and all(a.incoming and a.clean > 1 for a in parents):
+            arc.incoming = True  # it hangs on the way in, not on the knot
         half = min(0.5 * (end - begin), 0.5 * math.pi)
         width = 2 * radius * math.sin(half)
         alone = len(parents) == 1 and sum(parents[0].overlaps(b, e) for b, e in arcs) == 1

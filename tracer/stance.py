@@ -144,6 +144,9 @@ def _at_an_end(view: View, stroke: Stroke) -> Stance | None:
         seen = local.feel(inward, heading, max(4 * local.width_mm, local.leg_mm))
         if len(seen) * local.step_mm < 4 * local.width_mm - radius:
             continue  # a burr, not an end
+        middle = seen[len(seen) // 4 : -len(seen) // 4, 2]
+        if np.median(middle[-4:]) > 1.08 * np.median(middle[:4]):
+            continue  # the tip of two lines that part, not the end of one
         outward = leg_of(local.feel(inward, heading + math.pi, local.leg_mm), True, local.leg_mm)
         end = end_of(local, outward)
         if end is None:
