@@ -9,20 +9,38 @@ Source: our own (see `knot`).
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
-from tracer.knot import Leg, View, leg_of, legs_around, meet, reach_of_ink, turn
+from tracer.knot import Array, Leg, View, leg_of, legs_around, meet, reach_of_ink, turn
 from tracer.trail import Trail
 
+STRAIGHT = math.radians(40)  # straight on is within this
 
-def survey(view: View, incoming: Leg, trail: Trail, gap_mm: float) -> tuple[Leg | None, tuple[float, float] | None]:
+
+Way = tuple[Leg | None, tuple[float, float] | None]  # the outgoing leg, and how far the legs meet beyond the one and before the other, mm
+
+
+def survey(view: View, incoming: Leg, trail: Trail, gap_mm: float) -> Way:
     """The outgoing leg (None if there is none), and the distances (mm) beyond the incoming and before the outgoing clean end where they meet.
 
-    The rings are centred where the legs meet, which is known only after the first look: up to three looks.
+    Looked for where the line stops being clean, and, unless it goes straight on from there, where the ink ahead ends: at the tip of a sharp corner.
     """
     ink = reach_of_ink(view, incoming, 6 * view.width_mm + 2.0)
     half = 0.5 * view.width_mm
-    centre = incoming.at(half + view.step_mm if ink is None else max(0.0, ink - half))
+    near = half + view.step_mm
+    found = _look(view, incoming, trail, incoming.at(near if ink is None else max(0.0, min(near, ink - half))))
+    if ink is not None and ink - half > near and not _straight(incoming, found[0]):
+        at_tip = _look(view, incoming, trail, incoming.at(ink - half))
+        found = at_tip if at_tip[0] is not None else found
+    if found[0] is None and ink is not None:
+        return _over_gap(view, incoming, ink, gap_mm), None
+    return found
+
+
+def _look(view: View, incoming: Leg, trail: Trail, centre: Array) -> Way:
+    """Look for legs about a centre, and again about the place where incoming and outgoing meet, until that is known."""
     way_in = np.vstack([trail.recent(), incoming.seen[:, :2]])
     outgoing, legs_mm = None, None
     for _ in range(3):
@@ -37,9 +55,12 @@ def survey(view: View, incoming: Leg, trail: Trail, gap_mm: float) -> tuple[Leg 
         if np.hypot(*(vertex - centre)) < 0.3 * view.width_mm:
             break
         centre = vertex
-    if outgoing is None and ink is not None:
-        outgoing = _over_gap(view, incoming, ink, gap_mm)
     return outgoing, legs_mm
+
+
+def _straight(incoming: Leg, outgoing: Leg | None) -> bool:
+    """Whether a leg goes on straight from another."""
+    return outgoing is not None and abs(turn(incoming.heading_rad, outgoing.heading_rad)) < STRAIGHT
 
 
 def _over_gap(view: View, incoming: Leg, ink_mm: float, gap_mm: float) -> Leg | None:
