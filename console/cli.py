@@ -16,7 +16,7 @@ from collections.abc import Sequence
 import click
 
 from console import kernels
-from motion.faults import Fault, FileFault
+from motion.faults import DrawingFault, Fault, FileFault
 
 VERBS = {
     "trace": "Follow the line of a drawing and record the head's motion on a tape.",
@@ -32,7 +32,7 @@ Exit codes:
   0  done
   1  the contours are further apart than --tolerance
   2  wrong use of the command line
-  3  the drawing cannot be used
+  3  the drawing cannot be used (or is too large for the memory)
   4  no line at that place, or the line was lost (what was traced is kept)
   5  not a tape that can be played
   6  a drive of the machine lost the tape
@@ -49,6 +49,7 @@ Examples:
   morfax compare scan.png cam.csv --tolerance 50um -o cam-error.png
 """
 CONTEXT = {"help_option_names": ["-h", "--help"], "max_content_width": 100}
+NO_MEMORY = "not enough memory; scan the drawing at a lower resolution, or cut out the part to be traced"
 MISTAKE = 70  # EX_SOFTWARE of sysexits.h
 INTERRUPTED = 130  # 128 + SIGINT, as a shell says it
 
@@ -104,9 +105,9 @@ def main(words: Sequence[str] | None = None) -> int:
         return _broken_pipe()
     except OSError as error:
         return _broken_pipe() if error.errno == errno.EPIPE else _say(_cause(error), FileFault.exit_code)
-    except MemoryError as error:
-        return _say(f"not enough memory ({error}); try a smaller drawing, or scan it at a lower resolution", MISTAKE)
     except Exception as error:
+        if _is_out_of_memory(error):
+            return _say(NO_MEMORY, DrawingFault.exit_code)
         if os.environ.get("MORFAX_TRACEBACK"):
             traceback.print_exc()
         told = " ".join(str(error).split())
@@ -130,6 +131,11 @@ def _cause(error: OSError) -> str:
     """What the operating system says, with the file if it names one."""
     said = error.strerror or str(error)
     return f"{error.filename}: {said}" if error.filename else said
+
+
+def _is_out_of_memory(error: Exception) -> bool:
+    """Whether Python, numpy or OpenCV (which has its own error for it, with the code StsNoMem) found no memory."""
+    return isinstance(error, MemoryError) or getattr(error, "code", None) == -4
 
 
 def _broken_pipe() -> int:

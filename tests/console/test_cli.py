@@ -86,6 +86,15 @@ def test_a_mistake_in_morfax_is_one_line_too(morfax: Morfax, monkeypatch: pytest
     assert "RuntimeError: two lines" in answer.fault
 
 
+def test_a_lack_of_memory_says_what_to_do(morfax: Morfax, monkeypatch: pytest.MonkeyPatch) -> None:
+    def too_large(ctx: click.Context, name: str) -> None:
+        raise MemoryError
+
+    monkeypatch.setattr(cli.cli, "get_command", too_large)
+    answer = morfax("trace", "a.png")
+    assert answer.exit_code == 3 and "resolution" in answer.fault
+
+
 def test_ctrl_c_ends_with_130_and_leaves_no_half_file(tmp_path: Path) -> None:
     """A pipe that nobody writes to holds the command at the reading of its path file."""
     os.mkfifo(tmp_path / "never.csv")

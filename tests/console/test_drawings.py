@@ -1,0 +1,143 @@
+"""trace and run by their behaviour, and what they say of drawings that cannot be traced."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from PIL import Image
+
+from console.trace import command
+from console.tracing import Head
+from motion.contour import closure_mm, distance
+from motion.pathfile import read_path
+from tests.console.conftest import SAMPLES, Morfax
+from tracer.sequence import Settings, Work
+
+UM = 1e-3
+CAM = SAMPLES / "cam.png"
+TRACED_WITHIN_MM = 25 * UM  # what the issue allows at any place of a smooth line
+PLAYED_WITHIN_MM = 3 * UM
+CLOSED_WITHIN_MM = 20 * UM
+DPI = (300.0, 300.0)
+
+
+@pytest.fixture(scope="module")
+def small() -> np.ndarray:
+    """Grey values of a small drawing: a line of 0.5 mm round an ellipse of 19 x 14 mm."""
+    grey = np.full((320, 320), 240, np.uint8)
+    cv2.ellipse(grey, (160, 160), (110, 80), 20, 0, 360, 30, 6, cv2.LINE_AA)
+    return grey
+
+
+def test_a_drawing_becomes_a_tape_and_the_tape_the_drawn_contour(morfax: Morfax, here: Path) -> None:
+    traced = morfax("trace", CAM, "--path", "traced.csv", "--json")
+    assert traced.exit_code == 0 and traced.figures["ending"] == "closed" and traced.figures["tape"] == "cam.wav"
+    assert morfax("play", "cam.wav", "-o", "played.csv").exit_code == 0
+    path, played, truth = read_path("traced.csv"), read_path("played.csv"), read_path(SAMPLES / "cam.csv")
+    assert distance(path, truth).hausdorff_mm < TRACED_WITHIN_MM
+    assert distance(played, path).hausdorff_mm < PLAYED_WITHIN_MM
+    assert closure_mm(path) < CLOSED_WITHIN_MM
+    answer = morfax("compare", CAM, "cam.wav", "--tolerance", "25um", "-o", "error.png", "--json")
+    assert answer.exit_code == 0 and answer.figures["missed_ink_share"] < 0.01
+    assert answer.figures["path_to_ink"]["rms_mm"] < 4 * UM
+    assert (here / "error.png").exists()
+
+
+def test_run_goes_the_whole_way_and_tells_all_three(morfax: Morfax, here: Path) -> None:
+    answer = morfax("run", SAMPLES / "gear.png", "-o", "results", "--json")
+    assert answer.exit_code == 0
+    rows = {"traced_to_ink", "played_to_ink", "played_to_traced", "traced_to_played"}
+    assert rows <= answer.figures.keys()
+    names = {"gear.wav", "gear.traced.csv", "gear.played.csv", "gear.png", "gear.json"}
+    assert {file.name for file in (here / "results").iterdir()} == names
+    assert (here / "results" / "gear.json").read_text() == answer.out
+
+
+def test_another_line_is_traced_from_its_start(morfax: Morfax, here: Path) -> None:
+    """The bracket's slot, 8 x 30 mm, instead of its outline."""
+    answer = morfax("trace", SAMPLES / "bracket.png", "--start", "48,26", "-o", "slot.csv", "--json")
+    assert answer.exit_code == 0 and answer.figures["ending"] == "closed"
+    assert answer.figures["length_mm"] == pytest.approx(2 * 22 + 8 * np.pi, rel=0.005)
+
+
+def test_a_start_with_no_line_near_it_says_how_far_the_nearest_is(morfax: Morfax, here: Path) -> None:
+    answer = morfax("trace", CAM, "--start", "45,45")
+    assert answer.exit_code == 4 and "mm" in answer.fault
+    assert list(here.iterdir()) == []
+
+
+def test_a_lost_line_keeps_what_was_traced_marked_incomplete(morfax: Morfax, here: Path) -> None:
+    """A line into a patch of hatching, which leaves no clean line to follow."""
+    grey = np.full((500, 1200), 255, np.uint8)
+    cv2.line(grey, (50, 250), (1100, 250), 0, 6)
+    for column in range(600, 920, 8):
+        cv2.line(grey, (column, 100), (column, 400), 0, 3)
+    Image.fromarray(grey).save("hatch.png", dpi=DPI)
+    answer = morfax("trace", "hatch.png", "--path", "hatch.csv", "--picture", "seen.png", "--json")
+    assert answer.exit_code == 4 and "heading" in answer.fault
+    assert answer.figures["ending"] == "lost" and answer.figures["incomplete"] is True
+    kept = {"hatch.incomplete.wav", "hatch.incomplete.csv", "seen.incomplete.png"}
+    assert {file.name for file in here.iterdir()} == kept | {"hatch.png"}
+    assert np.ptp(read_path("hatch.incomplete.csv").xy_mm[:, 0]) > 40
+    assert morfax("play", "hatch.incomplete.wav").exit_code == 0
+
+
+def test_the_drawing_s_name_is_never_written_over(morfax: Morfax, here: Path, small: np.ndarray) -> None:
+    Image.fromarray(small).save("part.png", dpi=DPI)
+    before = (here / "part.png").read_bytes()
+    assert morfax("run", "part.png", "-o", ".").exit_code == 8
+    assert morfax("trace", "part.png", "--picture", "part.png").exit_code == 8
+    assert (here / "part.png").read_bytes() == before
+    assert [file.name for file in here.iterdir()] == ["part.png"]
+
+
+@pytest.mark.parametrize("kind", ["1", "I;16", "LA", "RGBA", "CMYK", "P"])
+def test_every_kind_of_image_can_be_traced(morfax: Morfax, here: Path, small: np.ndarray, kind: str) -> None:
+    grey = Image.fromarray(small)
+    image = Image.fromarray(small.astype(np.uint16) * 257) if kind == "I;16" else grey.convert(kind)
+    image.save("part.tif", dpi=DPI)
+    answer = morfax("trace", "part.tif", "-o", "part.csv", "--json")
+    assert answer.exit_code == 0 and answer.figures["ending"] == "closed"
+
+
+def test_an_image_without_a_resolution_asks_for_one(morfax: Morfax, here: Path, small: np.ndarray) -> None:
+    Image.fromarray(small).save("photo.png")
+    answer = morfax("trace", "photo.png")
+    assert answer.exit_code == 3 and "--dpi" in answer.fault and "--width" in answer.fault
+    by_dpi = morfax("trace", "photo.png", "--dpi", 300, "-o", "a.csv", "--json").figures
+    by_width = morfax("trace", "photo.png", "--width", f"{320 * 25.4 / 300}mm", "-o", "b.csv", "--json").figures
+    assert by_dpi["length_mm"] == pytest.approx(by_width["length_mm"], abs=1 * UM)
+    assert morfax("trace", "photo.png", "--dpi", 300, "--width", "20mm").exit_code == 2
+
+
+@pytest.mark.parametrize("blank", [255, 0, 128])
+def test_a_blank_sheet_holds_no_line(morfax: Morfax, here: Path, blank: int) -> None:
+    Image.fromarray(np.full((400, 400), blank, np.uint8)).save("blank.png", dpi=DPI)
+    answer = morfax("trace", "blank.png")
+    assert answer.exit_code == 3 and "no line" in answer.fault
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")  # Pillow leaves a damaged file open
+def test_what_is_no_image_is_told(morfax: Morfax, here: Path) -> None:
+    (here / "words.png").write_text("these are words")
+    (here / "cut.png").write_bytes(CAM.read_bytes()[:5000])
+    for file in ("words.png", "cut.png"):
+        answer = morfax("trace", file)
+        assert answer.exit_code == 3 and file in answer.fault
+
+
+def test_the_defaults_of_the_command_line_are_those_of_the_tracer() -> None:
+    """They are stated twice, since --help shall not wait for the tracer."""
+    given = command.make_context("trace", ["a.png"]).params
+    settings, work = Settings(), Work()
+    assert Head(**{name: given[name] for name in Head.__dataclass_fields__}) == Head(
+        start_mm=None,
+        speed_mm_s=settings.speed_mm_s,
+        depth_mm=work.depth_mm,
+        clearance_mm=work.clearance_mm,
+        line_width_mm=settings.line_width_mm,
+        gap_mm=settings.gap_mm,
+    )
