@@ -24,9 +24,10 @@ import numpy as np
 from motion.faults import LineFault
 from tracer import course, head
 from tracer.knot import Array, Leg, centre_at, corner_in, end_of, leg_of, meet, turn
+from tracer.riding import Ride, ride_past
 from tracer.settings import Settings, tune
 from tracer.stance import Stance
-from tracer.survey import survey
+from tracer.survey import goes_straight, survey
 from tracer.trail import Trail
 
 CHUNK = 6000  # samples that the kernel follows before it tells how far it has come
@@ -97,9 +98,13 @@ class Follower:
             if sharp is not None:
                 return self._pass(self._course(*sharp), sharp[1])
             nodes, leg = self._nodes(seen)
-            return self._pass([np.vstack([course.hermite(*a, *b) for a, b in pairwise(nodes)])], leg, seen)
+            return self._pass([self._through(nodes)], leg, seen)
         incoming = leg_of(seen, True, self.view.leg_mm)
         outgoing, legs_mm = survey(self.view, incoming, self._trail, self.settings.gap_mm)
+        if not goes_straight(incoming, outgoing):
+            ride = ride_past(self.view, incoming)
+            if ride is not None:
+                return self._ride(incoming, ride)
         if outgoing is None:
             return self._at_end(incoming)
         return self._pass(self._course(incoming, outgoing, legs_mm), outgoing)
@@ -138,15 +143,36 @@ class Follower:
             return None
         return incoming, outgoing, legs_mm
 
-    def _nodes(self, seen: Array) -> tuple[list[tuple[Array, float]], Leg]:
-        """Places and headings along a line that was felt clean throughout, from where the head stands; the last also as a leg."""
-        half_mm = 0.3 * self.view.leg_mm
-        left_mm = 0.55 * self.view.leg_mm  # too little to tell a corner by
-        nodes = [self._stands()]
+    def _ride(self, incoming: Leg, ride: Ride) -> Followed | None:
+        """Run along a line that was felt on one edge; round the tip and back, if that is how it went."""
+        there = np.vstack([incoming.seen, ride.seen])
+        if ride.back is None:
+            nodes, leg = self._nodes(there)
+            return self._pass([self._through(nodes)], leg, ride.seen)
+        to_tip, _ = self._nodes(there, 0.0)
+        tip = ride.back[0, :2]
+        from_tip, leg = self._nodes(ride.back, 0.0, (tip, to_tip[-1][1] + math.pi))
+        return self._pass([self._through([*to_tip[:-1], (tip, to_tip[-1][1])]), self._through(from_tip)], leg)
+
+    @staticmethod
+    def _through(nodes: list[tuple[Array, float]]) -> Array:
+        """Cubics through places and headings."""
+        return np.vstack([course.hermite(*a, *b) for a, b in pairwise(nodes)])
+
+    def _nodes(
+        self, seen: Array, left: float = 0.55, start: tuple[Array, float] | None = None
+    ) -> tuple[list[tuple[Array, float]], Leg]:
+        """Places and headings along a line that was felt throughout, from where the head stands; the last also as a leg.
+
+        A share of a leg is `left` over: too little to tell a corner by.
+        """
+        half_mm, left_mm = 0.3 * self.view.leg_mm, left * self.view.leg_mm
+        nodes = [start or self._stands()]
         end = seen[-1, :2]
         leg = None
-        for i in range(len(seen)):
-            if self._ahead(seen[i, :2]) < half_mm or np.hypot(*(seen[i, :2] - nodes[-1][0])) < half_mm / 3:
+        here = int(np.argmin(np.hypot(*(seen[:, :2] - nodes[0][0]).T)))
+        for i in range(here, len(seen)):
+            if i < here + half_mm / self.view.step_mm or np.hypot(*(seen[i, :2] - nodes[-1][0])) < half_mm / 3:
                 continue
             if np.hypot(*(seen[i, :2] - end)) < left_mm:
                 break

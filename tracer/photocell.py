@@ -162,7 +162,7 @@ def scout(cells, pitch_mm, start, heading, step_mm, stations, width_mm, level): 
             spoilt = 0
             x, y = seen[count - 1, 0], seen[count - 1, 1]
             if count >= 3:
-                heading = _onward(seen, count)
+                heading = onward(seen, count)
         else:
             if since_speck > passed_over:
                 before_speck = count
@@ -175,7 +175,7 @@ def scout(cells, pitch_mm, start, heading, step_mm, stations, width_mm, level): 
 
 
 @njit(cache=True)
-def _onward(seen, count):  # type: ignore[no-untyped-def]
+def onward(seen, count):  # type: ignore[no-untyped-def]
     """Heading from the newest of some stations to the next: that of the last stations' chord, and on by what the chords have turned."""
     last, back = count - 1, max(0, count - 5)
     chord = math.atan2(seen[last, 1] - seen[back, 1], seen[last, 0] - seen[back, 0])

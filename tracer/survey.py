@@ -31,7 +31,7 @@ def survey(view: View, incoming: Leg, trail: Trail, gap_mm: float) -> Way:
     half = 0.5 * view.width_mm
     near = half + view.step_mm
     found = _look(view, incoming, trail, incoming.at(near if ink is None else max(0.0, min(near, ink - half))))
-    if ink is not None and ink - half > near and not _straight(incoming, found[0]):
+    if ink is not None and ink - half > near and not goes_straight(incoming, found[0]):
         at_tip = _look(view, incoming, trail, incoming.at(ink - half))
         found = at_tip if at_tip[0] is not None else found
     if found[0] is None and ink is not None:
@@ -58,7 +58,7 @@ def _look(view: View, incoming: Leg, trail: Trail, centre: Array) -> Way:
     return outgoing, legs_mm
 
 
-def _straight(incoming: Leg, outgoing: Leg | None) -> bool:
+def goes_straight(incoming: Leg, outgoing: Leg | None) -> bool:
     """Whether a leg goes on straight from another."""
     return outgoing is not None and abs(turn(incoming.heading_rad, outgoing.heading_rad)) < STRAIGHT
 

@@ -1,0 +1,129 @@
+"""Riding on an edge: how the head gets past ink that runs beside its line for longer than a knot.
+
+Two lines that come closer than a width run together: the edge between them is gone, but each line's outer edge is as clean as before, and the line's
+middle is half a width within it. So the line is felt on along that edge.
+
+            ____________________ left edge: clean                    After a while the other edge comes back: the line goes on.
+             . . . . . . . . . .   the line, half a width within     Or the ink ends in a tip: there the line turned back, and came
+            ____      ___________                                     along the other outer edge, half a width within that.
+                 \\__/  another line, or the same on its way back
+
+Signals: a place on the line and a heading in; stations of the line out, and where it turned back.
+
+Source: our own (see `knot`).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+
+from tracer.knot import Array, Leg, View
+from tracer.photocell import darkness_at, onward
+
+FARTHEST_MM = 40.0
+REGAINED_MM = 1.5  # this much of both edges, and the line is by itself again
+BESIDE = 3.0  # widths; ink that is beside the line for less is a corner or a crossing
+WIDE = 0.62  # of the width, from the middle to the far edge: ink beside the line
+
+
+@dataclass(frozen=True, slots=True)
+class Ride:
+    """Stations of a line felt along one edge, (n, 3) centre and width; `back` are those of the way back if it turned at a tip."""
+
+    seen: Array
+    back: Array | None
+
+
+def ride_past(view: View, incoming: Leg) -> Ride | None:
+    """Feel on from a leg's clean end along one of its edges; None if neither edge leads past the ink beside the line."""
+    rides = [_ride(view, incoming, side) for side in (-1.0, 1.0)]
+    found = [r for r in rides if r is not None]
+    return max(found, key=lambda r: len(r.seen)) if found else None
+
+
+def _ride(view: View, incoming: Leg, side: float) -> Ride | None:
+    """Feel on along the edge on one side (1 left, -1 right)."""
+    step, width = view.step_mm, incoming.width_mm
+    regained = max(6, round(REGAINED_MM / step))
+    stations = _along_edge(
+        view.cells, view.pitch_mm, incoming.end_mm, incoming.heading_rad, side, step, round(FARTHEST_MM / step),
+        width, view.level, regained,
+    )  # fmt: skip
+    wide = np.flatnonzero(~(stations[:, 2] < WIDE * width))
+    if not len(wide) or (wide[-1] - wide[0]) * step < BESIDE * width:
+        return None
+    seen = np.column_stack([stations[:, :2], np.full(len(stations), width)])
+    if len(stations) - wide[-1] > regained:
+        return Ride(seen, None)
+    return _turned_back(stations, seen, int(wide[0]), int(wide[-1]), side, width)
+
+
+def _turned_back(stations: Array, seen: Array, first: int, last: int, side: float, width_mm: float) -> Ride | None:
+    """The ride to the tip where the ink beside the line ends with it, and the way back along the far edge."""
+    excess = stations[:, 2] - 0.5 * width_mm
+    at_tip = np.flatnonzero(excess[last:] <= 0.1 * width_mm)
+    if not len(at_tip):
+        return None
+    tip = last + int(at_tip[0])
+    measured = [i for i in range(first, tip + 1) if math.isfinite(excess[i])]
+    if len(measured) < 6 or tip < 6:
+        return None
+    back = np.empty((len(measured), 3))
+    for k, i in enumerate(reversed(measured)):
+        a, b = seen[max(0, i - 3), :2], seen[min(len(seen) - 1, i + 3), :2]
+        t = (b - a) / np.hypot(*(b - a))
+        back[k, :2] = seen[i, :2] - side * max(excess[i], 0.0) * np.array([-t[1], t[0]])
+        back[k, 2] = width_mm
+    return Ride(seen[: tip + 1], back)
+
+
+@njit(cache=True)
+def _along_edge(cells, pitch_mm, start, heading, side, step_mm, stations, width_mm, level, regained):  # type: ignore[no-untyped-def]
+    """Stations (n, 3): middle half a width within the edge on one side, and distance to the first light on the other (NaN beyond three widths).
+
+    It stops where that edge or the ink under the middle is lost, or when the line has been by itself for `regained` stations after ink beside it.
+    """
+    out = np.empty((stations, 3))
+    fine = 0.35 * pitch_mm
+    x, y = start[0], start[1]
+    alone, been_wide = 0, False
+    for n in range(stations):
+        nx, ny = -side * math.sin(heading), side * math.cos(heading)
+        if darkness_at(cells, pitch_mm, x, y) < level:
+            return out[:n].copy()
+        edge = _first_light(cells, pitch_mm, x, y, nx, ny, 0.2 * width_mm, 0.85 * width_mm, fine, level)
+        aside = edge - 0.5 * width_mm
+        if not abs(aside) < width_mm / 6 + 0.2 * pitch_mm:
+            return out[:n].copy()
+        x, y = x + aside * nx, y + aside * ny
+        out[n, 0], out[n, 1] = x, y
+        out[n, 2] = _first_light(cells, pitch_mm, x, y, -nx, -ny, 0.0, 3.0 * width_mm, fine, level)
+        wide = not out[n, 2] < 0.62 * width_mm
+        been_wide = been_wide or wide
+        alone = 0 if wide else alone + 1
+        if (been_wide and alone > regained) or (not been_wide and alone > 2 * regained):
+            return out[: n + 1].copy()
+        if n >= 2:
+            heading = onward(out, n + 1)
+        x, y = x + step_mm * math.cos(heading), y + step_mm * math.sin(heading)
+    return out
+
+
+@njit(cache=True)
+def _first_light(cells, pitch_mm, x, y, nx, ny, begin_mm, end_mm, step_mm, level):  # type: ignore[no-untyped-def]
+    """Distance along a direction at which the darkness falls through the level; NaN if it does not, or is light at the beginning."""
+    u = begin_mm
+    before = darkness_at(cells, pitch_mm, x + u * nx, y + u * ny)
+    if before < level:
+        return math.nan
+    while u < end_mm:
+        u += step_mm
+        now = darkness_at(cells, pitch_mm, x + u * nx, y + u * ny)
+        if now < level:
+            return u - step_mm * (level - now) / (before - now)
+        before = now
+    return math.nan
