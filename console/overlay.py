@@ -36,6 +36,7 @@ MARGIN_SHARE = 0.06  # of the larger side, round the path
 LARGEST_IMAGE_PX = 2000  # a larger drawing is reduced for the picture
 LARGEST_POINTS = 20_000  # more points are gathered, and the largest error of each gathering is shown
 INSETS = 3
+NARROWEST = 0.35  # shorter to longer side of what is shown
 WIDE = 0.6  # height to width
 DPI = 130
 
@@ -200,10 +201,13 @@ def _worst_places(picture: Picture) -> list[Array]:
 
 
 def _view(picture: Picture) -> tuple[float, float, float, float]:
-    """What part of the sheet to show, mm: the path and its reference with a margin, not beyond the sheet's edges."""
+    """What part of the sheet to show, mm: all of it where there is no error to look at, else what was compared."""
+    if picture.drawing is not None and picture.points_mm is None:
+        return 0.0, picture.drawing.width_mm, 0.0, picture.drawing.height_mm
     parts = [run for path in (picture.path, picture.reference) if path is not None for run in path.runs()]
     every = np.vstack(parts) if parts else picture.path.xy_mm
     low, high = every.min(axis=0), every.max(axis=0)
-    margin = max(MARGIN_SHARE * float((high - low).max()), 1.0)
+    longer_mm = max(float((high - low).max()), 1.0)
+    margin = np.maximum(MARGIN_SHARE * longer_mm, (NARROWEST * longer_mm - (high - low)) / 2)
     low, high = low - margin, high + margin
     return float(low[0]), float(high[0]), float(low[1]), float(high[1])

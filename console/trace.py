@@ -98,6 +98,7 @@ def _write(traced: Traced, outputs: Outputs, drawing: Drawing) -> dict[str, str]
     if outputs.picture is not None:
         from console.overlay import Picture, draw
 
-        draw(Picture(f"{outputs.picture.stem}, traced", traced.path, drawing), traced.name(outputs.picture))
+        name = drawing.file.name if drawing.file else "drawing"
+        draw(Picture(f"{name}, traced", traced.path, drawing), traced.name(outputs.picture))
         written["picture"] = str(traced.name(outputs.picture))
     return written
