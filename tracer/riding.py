@@ -53,6 +53,7 @@ def _ride(view: View, incoming: Leg, side: float) -> Ride | None:
         view.cells, view.pitch_mm, incoming.end_mm, incoming.heading_rad, side, step, round(FARTHEST_MM / step),
         width, view.level, regained,
     )  # fmt: skip
+    stations = stations[:-2]  # the last stand on the round of a tip, if there is one
     wide = np.flatnonzero(~(stations[:, 2] < WIDE * width))
     if not len(wide) or (wide[-1] - wide[0]) * step < BESIDE * width:
         return None
@@ -65,10 +66,10 @@ def _ride(view: View, incoming: Leg, side: float) -> Ride | None:
 def _turned_back(stations: Array, seen: Array, first: int, last: int, side: float, width_mm: float) -> Ride | None:
     """The ride to the tip where the ink beside the line ends with it, and the way back along the far edge."""
     excess = stations[:, 2] - 0.5 * width_mm
-    at_tip = np.flatnonzero(excess[last:] <= 0.1 * width_mm)
-    if not len(at_tip):
+    if excess[-1] > 0.25 * width_mm:
         return None
-    tip = last + int(at_tip[0])
+    at_tip = np.flatnonzero(excess[last:] <= 0)
+    tip = last + int(at_tip[0]) if len(at_tip) else len(stations) - 1
     measured = [i for i in range(first, tip + 1) if math.isfinite(excess[i])]
     if len(measured) < 6 or tip < 6:
         return None
