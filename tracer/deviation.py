@@ -69,6 +69,7 @@ def deviation(drawing: Drawing, path: Path | Sequence[Array]) -> Deviation:
     """Measure a path, or its runs as (n, 2) polylines in sheet mm, against the drawing; MotionFault if it never touches the ink."""
     runs = path.runs() if isinstance(path, Path) else list(path)
     places = [_places(run) for run in runs if len(run) > 1]
+    places = [(points, headings) for points, headings in places if len(points)]
     if not places:
         raise MotionFault("the path has no run with the tool in the work; nothing to compare with the drawing")
     width_mm = _line_width(drawing, places)

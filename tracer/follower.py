@@ -16,18 +16,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 
 from motion.faults import LineFault
-from tracer import course, head
+from tracer import course, head, photocell
 from tracer.knot import Array, Leg, centre_at, corner_in, end_of, leg_of, meet, turn
 from tracer.riding import Ride, ride_past
 from tracer.settings import Settings, tune
-from tracer.stance import Stance
-from tracer.survey import goes_straight, survey
+from tracer.stance import LEVEL, Stance
+from tracer.survey import goes_straight, straight_on, survey
 from tracer.trail import Trail
 
 CHUNK = 6000  # samples that the kernel follows before it tells how far it has come
@@ -90,8 +90,8 @@ class Follower:
     def _through_knot(self) -> Followed | None:
         """Take the head through the knot ahead; what it did in all, if that was the end."""
         seen = self._feel_ahead()
-        if len(seen) < 4:
-            return self._lost("the line is not clean between two edges")
+        if len(seen) < 4:  # nothing clean behind the axis: the axis itself has been on the line
+            seen = self._trail_behind()
         here = int(np.argmin(np.hypot(*(seen[:, :2] - self._stands()[0]).T)))
         if (len(seen) - here) * self.view.step_mm > self.view.leg_mm:
             sharp = self._sharp_corner(seen, here)
@@ -100,11 +100,13 @@ class Follower:
             nodes, leg = self._nodes(seen)
             return self._pass([self._through(nodes)], leg, seen)
         incoming = leg_of(seen, True, self.view.leg_mm)
-        outgoing, legs_mm = survey(self.view, incoming, self._trail, self.settings.gap_mm)
+        outgoing, legs_mm = survey(self.view, incoming, self._trail)
         if not goes_straight(incoming, outgoing):
             ride = ride_past(self.view, incoming)
             if ride is not None:
                 return self._ride(incoming, ride)
+        if outgoing is None:
+            outgoing = straight_on(self.view, incoming, self.settings.gap_mm)
         if outgoing is None:
             return self._at_end(incoming)
         return self._pass(self._course(incoming, outgoing, legs_mm), outgoing)
@@ -117,7 +119,24 @@ class Follower:
         if come_mm > leg_mm:
             place, heading = self._trail.back(leg_mm)
             come_mm = leg_mm
+        self._see_line_at(place, heading)
         return self.view.feel(place, heading, come_mm + self.tuning.guard_lead_mm + leg_mm)
+
+    def _see_line_at(self, place: Array, heading: float) -> None:
+        """Take the width and the darkness of the line from a place on it, if it is like what it was: lines swell and fade."""
+        view = self.view
+        ink = photocell.darkness_at(view.cells, view.pitch_mm, place[0], place[1])
+        level = LEVEL * min(max(ink, view.level), 4 * view.level)
+        right, left = photocell.edges(
+            view.cells, view.pitch_mm, place[0], place[1], heading, 1.5 * view.width_mm + 2 * view.pitch_mm, level
+        )
+        if 0.6 < (left - right) / view.width_mm < 1.6:
+            self.view = replace(view, width_mm=left - right, level=level)
+
+    def _trail_behind(self) -> Array:
+        """The last stretch of the trail as stations of the line, (n, 3)."""
+        places = np.vstack([self._trail.recent()[-round(self.view.leg_mm / self.view.step_mm) :], self._stands()[0]])
+        return np.column_stack([places, np.full(len(places), self.view.width_mm)])
 
     def _course(self, incoming: Leg, outgoing: Leg, legs_mm: tuple[float, float] | None) -> list[Array]:
         """Stretches from where the head is to the outgoing leg's clean end."""
@@ -215,6 +234,7 @@ class Follower:
             self._drive(cut)
             return self._done("closed")
         self._drive(stretches, self.settings.speed_mm_s)
+        self.tuning = tune(Stance(outgoing.end_mm, outgoing.heading_rad, self.view), self.settings, self.rate_hz)
         self._aim(outgoing, None if seen is None else self._clean_from(outgoing, seen))
         return None
 

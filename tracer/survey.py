@@ -17,12 +17,13 @@ from tracer.knot import Array, Leg, View, leg_of, legs_around, meet, reach_of_in
 from tracer.trail import Trail
 
 STRAIGHT = math.radians(40)  # straight on is within this
+FARTHEST_WIDTHS = 6.0  # how far the heading is held through a blot, in widths of the line
 
 
 Way = tuple[Leg | None, tuple[float, float] | None]  # the outgoing leg, and how far the legs meet beyond the one and before the other, mm
 
 
-def survey(view: View, incoming: Leg, trail: Trail, gap_mm: float) -> Way:
+def survey(view: View, incoming: Leg, trail: Trail) -> Way:
     """The outgoing leg (None if there is none), and the distances (mm) beyond the incoming and before the outgoing clean end where they meet.
 
     Looked for where the line stops being clean, and, unless it goes straight on from there, where the ink ahead ends: at the tip of a sharp corner.
@@ -34,8 +35,6 @@ def survey(view: View, incoming: Leg, trail: Trail, gap_mm: float) -> Way:
     if ink is not None and ink - half > near and not goes_straight(incoming, found[0]):
         at_tip = _look(view, incoming, trail, incoming.at(ink - half))
         found = at_tip if at_tip[0] is not None else found
-    if found[0] is None and ink is not None:
-        return _over_gap(view, incoming, ink, gap_mm), None
     return found
 
 
@@ -63,11 +62,20 @@ def goes_straight(incoming: Leg, outgoing: Leg | None) -> bool:
     return outgoing is not None and abs(turn(incoming.heading_rad, outgoing.heading_rad)) < STRAIGHT
 
 
-def _over_gap(view: View, incoming: Leg, ink_mm: float, gap_mm: float) -> Leg | None:
-    """The leg that goes on straight across a gap no wider than allowed."""
-    for along in np.arange(ink_mm + 0.5 * view.pitch_mm, ink_mm + gap_mm, 0.35 * view.pitch_mm):
-        if view.dark(incoming.at(along)):
-            beyond = along + 0.6 * view.width_mm
-            seen = view.feel(incoming.at(beyond), incoming.heading_at(beyond), view.leg_mm)
-            return leg_of(seen, False, view.leg_mm) if len(seen) >= 4 else None
+def straight_on(view: View, incoming: Leg, gap_mm: float) -> Leg | None:
+    """The clean line met by going straight on with the heading held, through a blot, or across a gap no wider than allowed."""
+    light_mm, step = 0.0, 0.35 * view.pitch_mm
+    for along in np.arange(0.5 * view.width_mm, FARTHEST_WIDTHS * view.width_mm + gap_mm, step):
+        place = incoming.at(along)
+        light_mm = 0.0 if view.dark(place) else light_mm + step
+        if light_mm > gap_mm + step:
+            return None
+        if light_mm:
+            continue
+        seen = view.feel(place, incoming.heading_at(along), view.leg_mm)
+        if len(seen) < 8 or np.hypot(*(seen[0, :2] - place)) > 0.5 * view.width_mm:
+            continue
+        leg = leg_of(seen, False, view.leg_mm)
+        if goes_straight(incoming, leg):
+            return leg
     return None
