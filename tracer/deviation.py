@@ -164,9 +164,10 @@ def _averaged(errors: Array) -> Array:
     """Running mean along the path, over what could be measured."""
     span = np.ones(max(1, round(AVERAGED_MM / EVERY_MM)))
     good = np.isfinite(errors)
-    total = np.convolve(np.where(good, errors, 0.0), span, "same")
-    count = np.convolve(good.astype(float), span, "same")
-    return np.asarray(np.where(good, total / np.maximum(count, 1), np.nan)[: len(errors)], float)
+    first = len(span) // 2
+    total = np.convolve(np.where(good, errors, 0.0), span)[first : first + len(errors)]
+    count = np.convolve(good.astype(float), span)[first : first + len(errors)]
+    return np.asarray(np.where(good, total / np.maximum(count, 1), np.nan), float)
 
 
 def _missed(drawing: Drawing, runs: Sequence[Array], width_mm: float) -> tuple[float, float]:

@@ -3,7 +3,8 @@
 Signals: a drawing, a place and a heading in; positions of the X and Y screws (n, 2) mm at the motion rate out, with the ending:
 
     closed    the head is back where it began, on the same heading
-    ended     the line ended, or ran into what the head has followed already
+    ended     the line ended
+    joined    the line ran into what the head has followed already
     lost      no clean line could be found on from there
 
 Between knots the kernel `head.follow` steers by the swinging cell. At a knot, `knot` says which legs there are, `course` draws the way through, and the
@@ -44,6 +45,7 @@ class Followed:
     heading_rad: float
     travel_mm: float
     fault: LineFault | None = None
+    junctions: int = 0
 
 
 Anchor = tuple[Array, float, float]  # a place from which on the line is clean, the heading there, and the travel
@@ -52,12 +54,14 @@ Anchor = tuple[Array, float, float]  # a place from which on the line is clean, 
 class Follower:
     """A head on a line of a drawing."""
 
-    def __init__(self, stance: Stance, settings: Settings, rate_hz: float) -> None:
+    def __init__(self, stance: Stance, settings: Settings, rate_hz: float, turn_at: int | None = None) -> None:
+        """Put a head down at a stance. At junction number `turn_at` it takes the second straightest leg."""
         self.view, self.settings, self.rate_hz, self.stance = stance.view, settings, rate_hz, stance
         self.tuning = tune(stance, settings, rate_hz)
         self.state = np.zeros(head.STATES)
         self.state[[head.X, head.Y]] = stance.place_mm
         self.state[head.INK] = 1.0
+        self.junctions, self._turn_at = 0, turn_at
         self._drum = np.zeros((head.DRUM, 2))
         self._parts: list[Array] = [stance.place_mm[None].copy()]
         self._trail = Trail(stance.place_mm, self.view.step_mm)
@@ -90,7 +94,7 @@ class Follower:
     def _through_knot(self) -> Followed | None:
         """Take the head through the knot ahead; what it did in all, if that was the end."""
         seen = self._feel_ahead()
-        if len(seen) < 4:  # nothing clean behind the axis: the axis itself has been on the line
+        if len(seen) < 4 or self._ahead(seen[-1, :2]) < 0:  # not clean even behind the axis, but that has been on the line
             seen = self._trail_behind()
         here = int(np.argmin(np.hypot(*(seen[:, :2] - self._stands()[0]).T)))
         if (len(seen) - here) * self.view.step_mm > self.view.leg_mm:
@@ -100,7 +104,8 @@ class Follower:
             nodes, leg = self._nodes(seen)
             return self._pass([self._through(nodes)], leg, seen)
         incoming = leg_of(seen, True, self.view.leg_mm)
-        outgoing, legs_mm = survey(self.view, incoming, self._trail)
+        outgoing, legs_mm, choices = survey(self.view, incoming, self._trail, self._rank())
+        self.junctions += choices > 1
         if not goes_straight(incoming, outgoing):
             ride = ride_past(self.view, incoming)
             if ride is not None:
@@ -108,7 +113,7 @@ class Follower:
         if outgoing is None:
             outgoing = straight_on(self.view, incoming, self.settings.gap_mm)
         if outgoing is None:
-            return self._at_end(incoming)
+            return self._at_end(incoming, choices)
         return self._pass(self._course(incoming, outgoing, legs_mm), outgoing)
 
     def _feel_ahead(self) -> Array:
@@ -137,6 +142,10 @@ class Follower:
         """The last stretch of the trail as stations of the line, (n, 3)."""
         places = np.vstack([self._trail.recent()[-round(self.view.leg_mm / self.view.step_mm) :], self._stands()[0]])
         return np.column_stack([places, np.full(len(places), self.view.width_mm)])
+
+    def _rank(self) -> int:
+        """Which leg to take here if there are several: the straightest (0), or the next straightest where the turn is to be changed."""
+        return 1 if self.junctions == self._turn_at else 0
 
     def _course(self, incoming: Leg, outgoing: Leg, legs_mm: tuple[float, float] | None) -> list[Array]:
         """Stretches from where the head is to the outgoing leg's clean end."""
@@ -200,14 +209,14 @@ class Follower:
         assert leg is not None
         return nodes, leg
 
-    def _at_end(self, incoming: Leg) -> Followed:
+    def _at_end(self, incoming: Leg, choices: int) -> Followed:
         """Run to the end of the line, or to where it meets what was followed before."""
         end = end_of(self.view, incoming)
         if end is None:
             return self._lost("no clean line leads on through the ink ahead")
         way, along = course.onto(*self._stands(), incoming, end)
         self._drive([np.vstack([way, course.along_leg(incoming, along, end)])])
-        return self._done("ended")
+        return self._done("ended" if choices == 0 else "joined")
 
     def _way_home(self) -> Array:
         """The way onto the place where the head began."""
@@ -329,7 +338,7 @@ class Follower:
 
     def _done(self, ending: str, fault: LineFault | None = None) -> Followed:
         heading = float(self.state[head.HEADING])
-        return Followed(np.vstack(self._parts), ending, heading, self.travel_mm, fault)
+        return Followed(np.vstack(self._parts), ending, heading, self.travel_mm, fault, self.junctions)
 
     def _lost(self, why: str) -> Followed:
         """The end of a line that was lost: the fault says where."""

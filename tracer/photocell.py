@@ -152,8 +152,8 @@ def scout(cells, pitch_mm, start, heading, step_mm, stations, width_mm, level): 
     for _ in range(stations):
         right, left = edges(cells, pitch_mm, x, y, heading, reach, level)
         width, aside = left - right, 0.5 * (left + right)
-        slack = 0.2 * width_mm + 0.4 * pitch_mm
-        if abs(width - width_mm) < slack and (count == 0 or abs(aside) < width_mm / 6 + 0.2 * pitch_mm):
+        slack = 0.2 * width_mm + 0.5 * pitch_mm
+        if abs(width - width_mm) < slack and (count == 0 or abs(aside) < width_mm / 6 + 0.4 * pitch_mm):
             seen[count, 0], seen[count, 1] = x - aside * math.sin(heading), y + aside * math.cos(heading)
             seen[count, 2] = width
             width_mm += 0.05 * (width - width_mm)

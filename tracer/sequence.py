@@ -7,7 +7,7 @@ Signals: a Drawing in; out a Trace, which is a stream of Motion (X, Y, Z in shee
        -depth      ╰────── the line ───────────╯
 
 A line that turns out to be open is followed from end to end: the head that was put down on its middle runs to one end first, with nothing recorded, and
-begins there.
+begins there. A line that runs into what has been followed already, without coming back to its start, is tried with another turn at a junction.
 
 Source: patent ES 361967, section on use, in its plainest form: one line, down at its start and up at its end.
 """
@@ -26,7 +26,7 @@ from tracer.drawing import Drawing
 from tracer.follower import Followed, Follower
 from tracer.knot import Array
 from tracer.settings import Settings
-from tracer.stance import put_down
+from tracer.stance import Stance, put_down
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +41,7 @@ class Work:
 
 @dataclass(frozen=True, slots=True)
 class Trace:
-    """What the head did: a stream of Motion, and how it ended ("closed", "ended" or "lost", with the fault)."""
+    """What the head did: a stream of Motion, and how it ended ("closed", "ended", "joined" or "lost", with the fault)."""
 
     xy_mm: Array
     ending: str
@@ -122,7 +122,18 @@ def trace(
     if run.ending == "ended" and not stance.at_end:
         stance = stance.reversed(run.positions_mm[-1], run.heading_rad)
         run = Follower(stance, settings, MOTION_RATE_HZ).follow(longest_mm, told)
+    elif run.ending == "joined" and not stance.at_end:
+        run = _with_another_turn(stance, settings, longest_mm, run)
     return _trace(run, stance.view.width_mm, work)
+
+
+def _with_another_turn(stance: Stance, settings: Settings, longest_mm: float, run: Followed) -> Followed:
+    """A run that closes, if another turn at one of the junctions makes it close: the latest such junction; else the run as it was."""
+    for junction in reversed(range(run.junctions)):
+        other = Follower(stance, settings, MOTION_RATE_HZ, junction).follow(longest_mm)
+        if other.ending == "closed":
+            return other
+    return run
 
 
 def _trace(run: Followed, width_mm: float, work: Work) -> Trace:

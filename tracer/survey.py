@@ -20,33 +20,38 @@ STRAIGHT = math.radians(40)  # straight on is within this
 FARTHEST_WIDTHS = 6.0  # how far the heading is held through a blot, in widths of the line
 
 
-Way = tuple[Leg | None, tuple[float, float] | None]  # the outgoing leg, and how far the legs meet beyond the one and before the other, mm
+Way = tuple[Leg | None, tuple[float, float] | None, int]
 
 
-def survey(view: View, incoming: Leg, trail: Trail) -> Way:
-    """The outgoing leg (None if there is none), and the distances (mm) beyond the incoming and before the outgoing clean end where they meet.
+def survey(view: View, incoming: Leg, trail: Trail, rank: int = 0) -> Way:
+    """The outgoing leg (None if there is none), the distances (mm) beyond the incoming and before the outgoing clean end where they meet, and how many
+    legs there were, counting 1 more where one was left out because it has been followed already.
 
     Looked for where the line stops being clean, and, unless it goes straight on from there, where the ink ahead ends: at the tip of a sharp corner.
+    `rank` 1 takes the second straightest leg.
     """
     ink = reach_of_ink(view, incoming, 6 * view.width_mm + 2.0)
     half = 0.5 * view.width_mm
     near = half + view.step_mm
-    found = _look(view, incoming, trail, incoming.at(near if ink is None else max(0.0, min(near, ink - half))))
+    found = _look(view, incoming, trail, incoming.at(near if ink is None else max(0.0, min(near, ink - half))), rank)
     if ink is not None and ink - half > near and not goes_straight(incoming, found[0]):
-        at_tip = _look(view, incoming, trail, incoming.at(ink - half))
+        at_tip = _look(view, incoming, trail, incoming.at(ink - half), rank)
         found = at_tip if at_tip[0] is not None else found
     return found
 
 
-def _look(view: View, incoming: Leg, trail: Trail, centre: Array) -> Way:
+def _look(view: View, incoming: Leg, trail: Trail, centre: Array, rank: int) -> Way:
     """Look for legs about a centre, and again about the place where incoming and outgoing meet, until that is known."""
     way_in = np.vstack([trail.recent(), incoming.seen[:, :2]])
-    outgoing, legs_mm = None, None
+    outgoing, legs_mm, choices = None, None, 0
     for _ in range(3):
-        legs = [leg for leg in legs_around(view, centre, way_in) if not trail.holds(leg, view.width_mm)]
+        every = legs_around(view, centre, way_in)
+        legs = [leg for leg in every if not trail.holds(leg, view.width_mm)]
+        choices = max(choices, len(legs) + (len(legs) < len(every)))
         if not legs:
             break
-        outgoing = min(legs, key=lambda leg: abs(turn(incoming.heading_rad, leg.heading_rad)))
+        legs.sort(key=lambda leg: abs(turn(incoming.heading_rad, leg.heading_rad)))
+        outgoing = legs[min(rank, len(legs) - 1)]
         legs_mm = meet(incoming, outgoing)
         if legs_mm is None or legs_mm[0] < -view.width_mm:
             break
@@ -54,7 +59,7 @@ def _look(view: View, incoming: Leg, trail: Trail, centre: Array) -> Way:
         if np.hypot(*(vertex - centre)) < 0.3 * view.width_mm:
             break
         centre = vertex
-    return outgoing, legs_mm
+    return outgoing, legs_mm, choices
 
 
 def goes_straight(incoming: Leg, outgoing: Leg | None) -> bool:
