@@ -17,17 +17,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
 from motion.faults import LineFault
-from tracer import course, head, photocell
+from tracer import course, head
 from tracer.knot import Array, Leg, centre_at, corner_in, end_of, leg_of, meet, turn
 from tracer.riding import Ride, ride_past
 from tracer.settings import Settings, tune
-from tracer.stance import LEVEL, Stance
+from tracer.stance import Stance
 from tracer.survey import goes_straight, straight_on, survey
 from tracer.trail import Trail
 
@@ -124,19 +124,8 @@ class Follower:
         if come_mm > leg_mm:
             place, heading = self._trail.back(leg_mm)
             come_mm = leg_mm
-        self._see_line_at(place, heading)
+        self.view = self.view.like(place, heading)
         return self.view.feel(place, heading, come_mm + self.tuning.guard_lead_mm + leg_mm)
-
-    def _see_line_at(self, place: Array, heading: float) -> None:
-        """Take the width and the darkness of the line from a place on it, if it is like what it was: lines swell and fade."""
-        view = self.view
-        ink = photocell.darkness_at(view.cells, view.pitch_mm, place[0], place[1])
-        level = LEVEL * min(max(ink, view.level), 4 * view.level)
-        right, left = photocell.edges(
-            view.cells, view.pitch_mm, place[0], place[1], heading, 1.5 * view.width_mm + 2 * view.pitch_mm, level
-        )
-        if 0.6 < (left - right) / view.width_mm < 1.6:
-            self.view = replace(view, width_mm=left - right, level=level)
 
     def _trail_behind(self) -> Array:
         """The last stretch of the trail as stations of the line, (n, 3)."""

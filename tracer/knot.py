@@ -18,7 +18,7 @@ named there. Questions: everything else is our own, from first principles.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +28,7 @@ from tracer.photocell import Cells
 
 Array = NDArray[np.float64]
 
+LEVEL = 0.5  # an edge is at this share of the line's darkness
 LEG_MM = 1.2  # how much of a leg is felt for its direction, at a line of 0.5 mm
 CORNER = math.radians(20)  # a line that turns less within a few stations is smooth
 FARTHEST_MM = 5.0  # rings do not grow beyond this, or ten widths
@@ -58,6 +59,16 @@ class View:
         return photocell.scout(
             self.cells, self.pitch_mm, place, heading, self.step_mm, stations, self.width_mm, self.level
         )
+
+    def like(self, place: Array, heading: float) -> View:
+        """The view with the width and the darkness that the line has at a place, if they are like what they were: lines swell and fade."""
+        ink = photocell.darkness_at(self.cells, self.pitch_mm, place[0], place[1])
+        level = LEVEL * min(max(ink, self.level), 4 * self.level)
+        reach = 1.5 * self.width_mm + 2 * self.pitch_mm
+        right, left = photocell.edges(self.cells, self.pitch_mm, place[0], place[1], heading, reach, level)
+        if not 0.5 < (left - right) / self.width_mm < 1.6:
+            return self
+        return replace(self, width_mm=left - right, level=level)
 
     def dark(self, place: Array) -> bool:
         """Whether there is ink at a place."""
@@ -299,7 +310,7 @@ def _join(arcs: Array, inner: list[_Arc], radius: float, width_mm: float, back: 
         half = min(0.5 * (end - begin), 0.5 * math.pi)
         width = 2 * radius * math.sin(half)
         alone = len(parents) == 1 and sum(parents[0].overlaps(b, e) for b, e in arcs) == 1
-        if 0.6 * width_mm < width < 1.45 * width_mm and half < 1.2:
+        if 0.5 * width_mm < width < 1.45 * width_mm and half < 1.2:
             arc.clean = parents[0].clean + 1 if alone else 1
             arc.track = ((*parents[0].track, arc.middle) if alone else (arc.middle,))[-3:]
         out.append(arc)
@@ -311,9 +322,11 @@ def _leg_outward(view: View, centre: Array, radius: float, arc: _Arc) -> Leg | N
     radii = radius - view.step_mm * np.arange(2, -1, -1)
     places = centre + radii[:, None] * np.column_stack([np.cos(arc.track), np.sin(arc.track)])
     way = places[-1] - places[0]
-    seen = view.feel(places[0], math.atan2(way[1], way[0]), view.leg_mm)
+    heading = math.atan2(way[1], way[0])
+    view = view.like(places[-1], heading)
+    seen = view.feel(places[0], heading, view.leg_mm)
     if len(seen) < 4:
-        seen = view.feel(places[-1], math.atan2(way[1], way[0]), view.leg_mm)
+        seen = view.feel(places[-1], heading, view.leg_mm)
     return leg_of(seen, False, view.leg_mm) if len(seen) >= 4 else None
 
 

@@ -18,12 +18,11 @@ import numpy as np
 from motion.faults import LineFault
 from tracer import photocell
 from tracer.drawing import Drawing
-from tracer.knot import Array, Leg, View, centre_at, end_of, leg_of, turn
+from tracer.knot import LEVEL, Array, Leg, View, centre_at, end_of, leg_of, turn
 from tracer.lines import Sheet, Stroke
 
 CATCH_MM = 3.0  # how far from a given place the line may be
 PLACES = 80  # tried along a line
-LEVEL = 0.5  # an edge is at half the darkness of the line
 
 
 @dataclass(frozen=True, slots=True)
