@@ -94,7 +94,9 @@ class Follower:
     def _through_knot(self) -> Followed | None:
         """Take the head through the knot ahead; what it did in all, if that was the end."""
         seen = self._feel_ahead()
-        if len(seen) < 4 or self._ahead(seen[-1, :2]) < 0:  # not clean even behind the axis, but that has been on the line
+        if (
+            len(seen) < 4 or self._ahead(seen[-1, :2]) < 0
+        ):  # not clean even behind the axis, but that has been on the line
             seen = self._trail_behind()
         here = int(np.argmin(np.hypot(*(seen[:, :2] - self._stands()[0]).T)))
         if (len(seen) - here) * self.view.step_mm > self.view.leg_mm:
