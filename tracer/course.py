@@ -19,7 +19,7 @@ import math
 import numpy as np
 
 from tracer import photocell
-from tracer.knot import Array, Leg, View, turn
+from tracer.knot import Array, Leg, Meeting, View, turn
 
 SPACING_MM = 0.02
 SHARP = 0.08  # of the line's width: a corner whose ink misses less than this on the outside is sharp
@@ -40,7 +40,7 @@ def onto(place: Array, heading: float, leg: Leg, limit_mm: float) -> tuple[Array
 
     It arrives at the leg's clean end, or beyond it if that is too near, but never beyond half the way to `limit_mm`.
     """
-    ahead = float((leg.end_mm - place) @ np.array([math.cos(leg.heading_rad), math.sin(leg.heading_rad)]))
+    ahead = ahead_mm(place, leg)
     along = min(0.0 if ahead > 0.2 else min(0.2 - ahead, 0.5 * (limit_mm - ahead)), limit_mm)
     return hermite(place, heading, leg.at(along), leg.heading_at(along)), along
 
@@ -51,43 +51,48 @@ def along_leg(leg: Leg, start_mm: float, end_mm: float) -> Array:
 
 
 def through_corner(
-    view: View, incoming: Leg, outgoing: Leg, legs_mm: tuple[float, float], from_mm: float
+    view: View, stands: tuple[Array, float], incoming: Leg, outgoing: Leg, legs_mm: Meeting, end_mm: float
 ) -> list[Array]:
-    """Stretches from `from_mm` on the incoming leg through the corner to the outgoing leg's clean end."""
+    """Stretches from where the head stands (place, heading) through a corner to `end_mm` beyond the outgoing leg's first station."""
     s, u = legs_mm
-    deflection = abs(turn(incoming.heading_at(s), outgoing.heading_at(-u)))
-    missing = missing_ink_mm(view, incoming, outgoing, legs_mm)
-    if missing > SHARP * view.width_mm:
-        radius = missing / (1 / math.cos(deflection / 2) - 1)
-        touch = radius * math.tan(deflection / 2)
-        if touch < min(s - from_mm, u + 0.5 * view.leg_mm):
-            a, b = s - touch, -u + touch
-            bend = _arc(incoming.at(a), incoming.heading_at(a), outgoing.at(b), outgoing.heading_at(b))
-            out = along_leg(outgoing, b, max(b, 0.0)) if b < 0 else outgoing.at(np.array([b]))
-            return [np.vstack([along_leg(incoming, from_mm, a), bend, out])]
-        if missing > 0.3 * view.width_mm:
-            a = max(from_mm, min(0.0, s))
-            return [
-                np.vstack(
-                    [
-                        along_leg(incoming, from_mm, a),
-                        hermite(incoming.at(a), incoming.heading_at(a), outgoing.end_mm, outgoing.heading_rad),
-                    ]
-                )
-            ]
+    missing, touch = rounding(view, incoming, outgoing, legs_mm)
+    bent = touch > 0 and missing > 0.3 * view.width_mm
+    if touch > 0 and touch < u + end_mm and touch < s + ahead_mm(stands[0], incoming):
+        way, along = onto(*stands, incoming, s - touch)
+        a, b = s - touch, -u + touch
+        bend = _arc(incoming.at(a), incoming.heading_at(a), outgoing.at(b), outgoing.heading_at(b))
+        return [np.vstack([way, along_leg(incoming, along, a), bend, along_leg(outgoing, b, end_mm)])]
+    way, along = onto(*stands, incoming, min(s, 0.0) if bent else s)
+    if bent:
+        start, end = incoming.at(along), outgoing.at(end_mm)
+        return [np.vstack([way, hermite(start, incoming.heading_at(along), end, outgoing.heading_at(end_mm))])]
     vertex = 0.5 * (incoming.at(s) + outgoing.at(-u))
-    arriving, leaving = along_leg(incoming, from_mm, s), along_leg(outgoing, -u, max(0.0, -u))
+    arriving, leaving = along_leg(incoming, along, s), along_leg(outgoing, -u, end_mm)
     arriving[-1] = leaving[0] = vertex
-    return [arriving, leaving]
+    return [np.vstack([way, arriving]), leaving]
 
 
-def is_sharp(view: View, incoming: Leg, outgoing: Leg, legs_mm: tuple[float, float]) -> bool:
+def ahead_mm(place: Array, leg: Leg) -> float:
+    """How far ahead of a place a leg's clean end is, mm along the leg."""
+    return float((leg.end_mm - place) @ np.array([math.cos(leg.heading_rad), math.sin(leg.heading_rad)]))
+
+
+def rounding(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> tuple[float, float]:
+    """The ink missing on the outside of a corner, mm, and how far from the vertex its round touches the legs (0: it is sharp), mm."""
+    missing = missing_ink_mm(view, incoming, outgoing, legs_mm)
+    if missing <= SHARP * view.width_mm:
+        return missing, 0.0
+    deflection = abs(turn(incoming.heading_at(legs_mm[0]), outgoing.heading_at(-legs_mm[1])))
+    return missing, missing * math.tan(deflection / 2) / (1 / math.cos(deflection / 2) - 1)
+
+
+def is_sharp(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> bool:
     """Whether the ink of an obtuse corner is that of a sharp one: it misses less than a third of what an arc over eight stations would."""
     deflection = abs(turn(incoming.heading_at(legs_mm[0]), outgoing.heading_at(-legs_mm[1])))
     return missing_ink_mm(view, incoming, outgoing, legs_mm) <= 8 * view.step_mm * math.tan(deflection / 4) / 3
 
 
-def missing_ink_mm(view: View, incoming: Leg, outgoing: Leg, legs_mm: tuple[float, float]) -> float:
+def missing_ink_mm(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> float:
     """By how much the ink falls short of a sharp corner's on the outside of the bisector, mm (0 if it does not)."""
     vertex, width_mm = incoming.at(legs_mm[0]), 0.5 * (incoming.width_mm + outgoing.width_mm)
     before, after = incoming.heading_at(legs_mm[0]), outgoing.heading_at(-legs_mm[1])

@@ -24,8 +24,8 @@ import numpy as np
 
 from motion.faults import LineFault
 from tracer import course, head
-from tracer.knot import Array, Leg, centre_at, corner_in, end_of, leg_of, meet, turn
-from tracer.riding import Ride, ride_past
+from tracer.knot import Array, Leg, Meeting, centre_at, corner_in, end_of, leg_of, meet, turn
+from tracer.riding import Ride, ride_past, to_vertex
 from tracer.settings import Settings, tune
 from tracer.stance import Stance
 from tracer.survey import goes_straight, straight_on, survey
@@ -102,7 +102,7 @@ class Follower:
         if (len(seen) - here) * self.view.step_mm > self.view.leg_mm:
             sharp = self._sharp_corner(seen, here)
             if sharp is not None:
-                return self._pass(self._course(*sharp), sharp[1])
+                return self._pass(*self._course(*sharp))
             nodes, leg = self._nodes(seen)
             return self._pass([self._through(nodes)], leg, seen)
         incoming = leg_of(seen, True, self.view.leg_mm)
@@ -116,7 +116,7 @@ class Follower:
             outgoing = straight_on(self.view, incoming, self.settings.gap_mm)
         if outgoing is None:
             return self._at_end(incoming, choices)
-        return self._pass(self._course(incoming, outgoing, legs_mm), outgoing)
+        return self._pass(*self._course(incoming, outgoing, legs_mm))
 
     def _feel_ahead(self) -> Array:
         """The line felt from behind the axis forward until it is no longer clean, (n, 3)."""
@@ -138,19 +138,20 @@ class Follower:
         """Which leg to take here if there are several: the straightest (0), or the next straightest where the turn is to be changed."""
         return 1 if self.junctions == self._turn_at else 0
 
-    def _course(self, incoming: Leg, outgoing: Leg, legs_mm: tuple[float, float] | None) -> list[Array]:
-        """Stretches from where the head is to the outgoing leg's clean end."""
+    def _course(self, incoming: Leg, outgoing: Leg, legs_mm: Meeting | None) -> tuple[list[Array], Leg]:
+        """Stretches from where the head is to the outgoing leg's clean end, and that leg."""
         deflection = abs(turn(incoming.heading_rad, outgoing.heading_rad))
         if legs_mm is not None and deflection > SMOOTH and min(legs_mm) > -self.view.width_mm:
-            way, along = course.onto(*self._stands(), incoming, legs_mm[0])
-            stretches = course.through_corner(self.view, incoming, outgoing, legs_mm, along)
-            return [np.vstack([way, stretches[0]]), *stretches[1:]]
+            arriving, leaving, met = to_vertex(self.view, incoming, outgoing, legs_mm)
+            end_mm = max(0.05 - met[1], course.ahead_mm(leaving.end_mm, outgoing))
+            stretches = course.through_corner(self.view, self._stands(), arriving, leaving, met, end_mm)
+            return stretches, leaving.shifted(end_mm, outgoing.seen)
         limit = float(np.hypot(*(outgoing.end_mm - incoming.end_mm)))
         way, along = course.onto(*self._stands(), incoming, 0.5 * limit)
         start, heading = incoming.at(along), incoming.heading_at(along)
-        return [np.vstack([way, course.hermite(start, heading, outgoing.end_mm, outgoing.heading_rad)])]
+        return [np.vstack([way, course.hermite(start, heading, outgoing.end_mm, outgoing.heading_rad)])], outgoing
 
-    def _sharp_corner(self, seen: Array, here: int) -> tuple[Leg, Leg, tuple[float, float]] | None:
+    def _sharp_corner(self, seen: Array, here: int) -> tuple[Leg, Leg, Meeting] | None:
         """The legs of a corner so obtuse that the line was felt clean round it, if its ink shows it to be sharp."""
         i = corner_in(seen, here + 4)
         if i is None:

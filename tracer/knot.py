@@ -27,6 +27,7 @@ from tracer import photocell
 from tracer.photocell import Cells
 
 Array = NDArray[np.float64]
+Meeting = tuple[float, float]  # how far two legs meet beyond the one's clean end and before the other's, mm
 
 LEVEL = 0.5  # an edge is at this share of the line's darkness
 LEG_MM = 1.2  # how much of a leg is felt for its direction, at a line of 0.5 mm
@@ -90,6 +91,10 @@ class Leg:
         s = np.asarray(along_mm, float)[..., None]
         t = np.array([math.cos(self.heading_rad), math.sin(self.heading_rad)])
         return self.end_mm + s * t + 0.5 * self.bend_per_mm * s * s * np.array([-t[1], t[0]])
+
+    def shifted(self, along_mm: float, seen: Array) -> Leg:
+        """The same line from a place further along it, with what was felt from there."""
+        return Leg(self.at(along_mm), self.heading_at(along_mm), self.bend_per_mm, self.width_mm, seen)
 
     def heading_at(self, along_mm: float) -> float:
         """Heading at a distance from the clean end, rad."""
@@ -207,7 +212,7 @@ def turn(a: float, b: float) -> float:
     return math.remainder(b - a, math.tau)
 
 
-def meet(incoming: Leg, outgoing: Leg) -> tuple[float, float] | None:
+def meet(incoming: Leg, outgoing: Leg) -> Meeting | None:
     """Distances (beyond the incoming leg's end, before the outgoing leg's end) where their lines cross, mm; None if they do not."""
     s = u = 0.0
     for _ in range(6):

@@ -21,7 +21,8 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
-from tracer.knot import Array, Leg, View
+from tracer.course import rounding
+from tracer.knot import Array, Leg, Meeting, View, leg_of, meet, turn
 from tracer.photocell import darkness_at, onward
 
 FARTHEST_MM = 40.0
@@ -43,6 +44,34 @@ def ride_past(view: View, incoming: Leg) -> Ride | None:
     rides = [_ride(view, incoming, side) for side in (-1.0, 1.0)]
     found = [r for r in rides if r is not None]
     return max(found, key=lambda r: len(r.seen)) if found else None
+
+
+def to_vertex(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> tuple[Leg, Leg, Meeting]:
+    """The legs of a corner felt on along their outer edges, which stay clean up to the vertex, and where they meet then.
+
+    A corner that is rounded is felt up to where its round begins.
+    """
+    side = -math.copysign(1.0, turn(incoming.heading_at(legs_mm[0]), outgoing.heading_at(-legs_mm[1])))
+    round_mm = rounding(view, incoming, outgoing, legs_mm)[1]
+    there = _felt_on(view, incoming, incoming.heading_rad, side, legs_mm[0] - round_mm)
+    back = _felt_on(view, outgoing, outgoing.heading_rad + math.pi, -side, legs_mm[1] - round_mm)
+    arriving = leg_of(np.vstack([incoming.seen, there]), True, view.leg_mm) if len(there) else incoming
+    leaving = leg_of(np.vstack([back[::-1], outgoing.seen]), False, view.leg_mm) if len(back) else outgoing
+    met = meet(arriving, leaving)
+    if met is None or min(met) < -0.5 * view.width_mm or max(met) > max(legs_mm) + view.width_mm:
+        return incoming, outgoing, legs_mm
+    return arriving, leaving, met
+
+
+def _felt_on(view: View, leg: Leg, heading: float, side: float, length_mm: float) -> Array:
+    """Stations (n, 3) felt on from a leg's clean end along one edge, for at most a length."""
+    count = math.floor(length_mm / view.step_mm)
+    if count < 2:
+        return np.empty((0, 3))
+    felt = _along_edge(
+        view.cells, view.pitch_mm, leg.end_mm, heading, side, view.step_mm, count + 1, leg.width_mm, view.level, count + 1
+    )  # fmt: skip
+    return np.column_stack([felt[1:, :2], np.full(max(0, len(felt) - 1), leg.width_mm)])
 
 
 def _ride(view: View, incoming: Leg, side: float) -> Ride | None:

@@ -13,14 +13,14 @@ import math
 
 import numpy as np
 
-from tracer.knot import Array, Leg, View, leg_of, legs_around, meet, reach_of_ink, turn
+from tracer.knot import Array, Leg, Meeting, View, leg_of, legs_around, meet, reach_of_ink, turn
 from tracer.trail import Trail
 
 STRAIGHT = math.radians(40)  # straight on is within this
 FARTHEST_WIDTHS = 6.0  # how far the heading is held through a blot, in widths of the line
 
 
-Way = tuple[Leg | None, tuple[float, float] | None, int]
+Way = tuple[Leg | None, Meeting | None, int]
 
 
 def survey(view: View, incoming: Leg, trail: Trail, rank: int = 0) -> Way:
