@@ -62,14 +62,17 @@ class View:
         )
 
     def like(self, place: Array, heading: float) -> View:
-        """The view with the width and the darkness that the line has at a place, if they are like what they were: lines swell and fade."""
-        ink = photocell.darkness_at(self.cells, self.pitch_mm, place[0], place[1])
+        """The view with the width and the darkness that the line has about a place, if they are like what they were: lines swell and fade."""
+        way = np.array([math.cos(heading), math.sin(heading)])
+        places = [place + k * self.step_mm * way for k in range(5)]
+        ink = float(np.median([photocell.darkness_at(self.cells, self.pitch_mm, p[0], p[1]) for p in places]))
         level = LEVEL * min(max(ink, self.level), 4 * self.level)
         reach = 1.5 * self.width_mm + 2 * self.pitch_mm
-        right, left = photocell.edges(self.cells, self.pitch_mm, place[0], place[1], heading, reach, level)
-        if not 0.5 < (left - right) / self.width_mm < 1.6:
+        found = [photocell.edges(self.cells, self.pitch_mm, p[0], p[1], heading, reach, level) for p in places]
+        width = float(np.median([left - right for right, left in found]))  # NaN if any has no edge
+        if not 0.5 < width / self.width_mm < 1.6:
             return self
-        return replace(self, width_mm=left - right, level=level)
+        return replace(self, width_mm=width, level=level)
 
     def dark(self, place: Array) -> bool:
         """Whether there is ink at a place."""
