@@ -24,7 +24,7 @@ import numpy as np
 
 from motion.faults import LineFault
 from tracer import course, head
-from tracer.knot import Array, Leg, Meeting, centre_at, corner_in, end_of, leg_of, meet, turn
+from tracer.knot import Array, Leg, Meeting, centre_at, corner_in, end_of, fork_in, leg_of, meet, turn
 from tracer.riding import Ride, ride_past, to_vertex
 from tracer.settings import Settings, tune
 from tracer.stance import Stance
@@ -100,12 +100,18 @@ class Follower:
             seen = self._trail_behind()
         here = int(np.argmin(np.hypot(*(seen[:, :2] - self._stands()[0]).T)))
         if (len(seen) - here) * self.view.step_mm > self.view.leg_mm:
+            fork = fork_in(self.view, seen, here)
+            if fork is not None:
+                return self._through_legs(leg_of(seen[: fork + 1], True, self.view.leg_mm))
             sharp = self._sharp_corner(seen, here)
             if sharp is not None:
                 return self._pass(*self._course(*sharp))
             nodes, leg = self._nodes(seen)
             return self._pass([self._through(nodes)], leg, seen)
-        incoming = leg_of(seen, True, self.view.leg_mm)
+        return self._through_legs(leg_of(seen, True, self.view.leg_mm))
+
+    def _through_legs(self, incoming: Leg) -> Followed | None:
+        """Take the head from an incoming leg onto the straightest leg that leads on; what it did in all, if there is none."""
         outgoing, legs_mm, choices = survey(self.view, incoming, self._trail, self._rank())
         self.junctions += choices > 1
         if not goes_straight(incoming, outgoing):

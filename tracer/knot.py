@@ -210,6 +210,26 @@ def corner_in(seen: Array, first: int) -> int | None:
     return int(middle[run[np.argmax(turned[run])]])
 
 
+def fork_in(view: View, seen: Array, first: int) -> int | None:
+    """The station, from `first` on, from which ink goes straight on although the line that was felt bends away from it; None if there is none.
+
+    Where the felt line has left the straight one by nearly a width, its own ink no longer reaches there: ink there is that of another leg.
+    """
+    back = 6
+    for i in range(max(first, back), len(seen) - 4, 4):
+        way = seen[i, :2] - seen[i - back, :2]
+        t = way / np.hypot(*way)
+        d = seen[i:, :2] - seen[i, :2]
+        aside = np.abs(d[:, 1] * t[0] - d[:, 0] * t[1])
+        away = np.flatnonzero(aside > 0.9 * view.width_mm)
+        if not len(away):
+            break
+        along = float(d[away[0]] @ t)
+        if all(view.dark(seen[i, :2] + share * t) for share in np.linspace(0, along + 0.8 * view.width_mm, 12)):
+            return i
+    return None
+
+
 def turn(a: float, b: float) -> float:
     """Angle from heading a to heading b, -pi..pi."""
     return math.remainder(b - a, math.tau)
