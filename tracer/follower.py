@@ -24,7 +24,7 @@ import numpy as np
 
 from motion.faults import LineFault
 from tracer import course, head
-from tracer.knot import Array, Leg, Meeting, centre_at, corner_in, end_of, fork_in, leg_of, meet, turn
+from tracer.knot import Array, Leg, Meeting, View, centre_at, corner_in, end_of, fork_in, leg_of, meet, turn
 from tracer.riding import Ride, ride_past, to_vertex
 from tracer.settings import Settings, tune
 from tracer.stance import Stance
@@ -33,6 +33,7 @@ from tracer.trail import Trail
 
 CHUNK = 6000  # samples that the kernel follows before it tells how far it has come
 SMOOTH = math.radians(14)  # a smaller change of heading is no corner
+LEAST_GAP_PX = 2.5  # a scan can lose this much of a line
 SETTLE_LAGS = 7  # a stop lasts this many lags of the drives: 1/1000 of the last speed is left
 
 
@@ -44,8 +45,9 @@ class Followed:
     ending: str
     heading_rad: float
     travel_mm: float
+    view: View
+    junctions: int
     fault: LineFault | None = None
-    junctions: int = 0
 
 
 Anchor = tuple[Array, float, float]  # a place from which on the line is clean, the heading there, and the travel
@@ -94,13 +96,13 @@ class Follower:
     def _through_knot(self) -> Followed | None:
         """Take the head through the knot ahead; what it did in all, if that was the end."""
         seen = self._feel_ahead()
-        if (
-            len(seen) < 4 or self._ahead(seen[-1, :2]) < 0
-        ):  # not clean even behind the axis, but that has been on the line
-            seen = self._trail_behind()
+        if len(seen) < 4 or self._ahead(seen[-1, :2]) < 0:
+            seen = self._trail_behind()  # not clean even behind the axis, but that has been on the line
         here = int(np.argmin(np.hypot(*(seen[:, :2] - self._stands()[0]).T)))
         if (len(seen) - here) * self.view.step_mm > self.view.leg_mm:
             fork = fork_in(self.view, seen, here)
+            if fork is None and max(self.state[head.LEFT], self.state[head.RIGHT]) > head.BESIDE:
+                fork = self._turn_off(here)
             if fork is not None:
                 return self._through_legs(leg_of(seen[: fork + 1], True, self.view.leg_mm))
             sharp = self._sharp_corner(seen, here)
@@ -119,7 +121,7 @@ class Follower:
             if ride is not None:
                 return self._ride(incoming, ride)
         if outgoing is None:
-            outgoing = straight_on(self.view, incoming, self.settings.gap_mm)
+            outgoing = straight_on(self.view, incoming, max(self.settings.gap_mm, LEAST_GAP_PX * self.view.pitch_mm))
         if outgoing is None:
             return self._at_end(incoming, choices)
         return self._pass(*self._course(incoming, outgoing, legs_mm))
@@ -143,6 +145,13 @@ class Follower:
         """The last stretch of the trail as stations of the line, (n, 3)."""
         places = np.vstack([self._trail.recent()[-round(self.view.leg_mm / self.view.step_mm) :], self._stands()[0]])
         return np.column_stack([places, np.full(len(places), self.view.width_mm)])
+
+    def _turn_off(self, here: int) -> int | None:
+        """The station before ink beside a clean line, if the head is to leave the line there; None to go by."""
+        if self._rank() == 0:
+            self.junctions += 1
+            return None
+        return here + round(self.tuning.guard_lead_mm / self.view.step_mm) - 3
 
     def _rank(self) -> int:
         """Which leg to take here if there are several: the straightest (0), or the next straightest where the turn is to be changed."""
@@ -340,7 +349,7 @@ class Follower:
 
     def _done(self, ending: str, fault: LineFault | None = None) -> Followed:
         heading = float(self.state[head.HEADING])
-        return Followed(np.vstack(self._parts), ending, heading, self.travel_mm, fault, self.junctions)
+        return Followed(np.vstack(self._parts), ending, heading, self.travel_mm, self.view, self.junctions, fault)
 
     def _lost(self, why: str) -> Followed:
         """The end of a line that was lost: the fault says where."""

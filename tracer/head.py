@@ -41,6 +41,7 @@ X, Y, VX, VY, HEADING, TURN, SPEED, SWEEP, FIRST, MEAN, MIDDLE, SWEPT_X, SWEPT_Y
 LEFT, AHEAD, RIGHT, SLOW, TRAVEL, POINT_X, POINT_Y, BEND, PLACES = range(14, 23)
 STATES = 23
 DRUM = 256  # places remembered
+BESIDE = 0.4  # of the ink, averaged by the guard cells: there is ink beside the line
 
 MORE, KNOT, TIGHT, HOME = range(4)  # why the kernel returned
 
@@ -176,7 +177,7 @@ def _look(cells, pitch_mm, state, t):  # type: ignore[no-untyped-def]
     u = curve * far * far
     if darkness_at(cells, pitch_mm, state[X] + far * c - u * s, state[Y] + far * s + u * c) < 0.5 * state[INK]:
         state[SLOW] = t.slow_periods
-    if max(state[LEFT], state[RIGHT]) > 0.4 or state[AHEAD] < 0.5:
+    if max(state[LEFT], state[RIGHT]) > BESIDE or state[AHEAD] < 0.5:
         return KNOT
     return TIGHT if max(abs(state[BEND]), 2 * abs(curve)) > t.tightest_per_mm else MORE
 

@@ -26,7 +26,9 @@ from tracer.drawing import Drawing
 from tracer.follower import Followed, Follower
 from tracer.knot import Array
 from tracer.settings import Settings
-from tracer.stance import Stance, put_down
+from tracer.stance import Stance, put_down, turned_round
+
+TURNS = 32  # junctions at which another turn is tried
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,7 +122,7 @@ def trace(
     longest_mm = 4 * length_mm + 20
     run = Follower(stance, settings, MOTION_RATE_HZ).follow(longest_mm, told)
     if run.ending == "ended" and not stance.at_end:
-        stance = stance.reversed(run.positions_mm[-1], run.heading_rad)
+        stance = turned_round(run.positions_mm[-1], run.heading_rad, run.view)
         run = Follower(stance, settings, MOTION_RATE_HZ).follow(longest_mm, told)
     elif run.ending == "joined" and not stance.at_end:
         run = _with_another_turn(stance, settings, longest_mm, run)
@@ -128,12 +130,12 @@ def trace(
 
 
 def _with_another_turn(stance: Stance, settings: Settings, longest_mm: float, run: Followed) -> Followed:
-    """A run that closes, if another turn at one of the junctions makes it close: the latest such junction; else the run as it was."""
-    for junction in reversed(range(run.junctions)):
-        other = Follower(stance, settings, MOTION_RATE_HZ, junction).follow(longest_mm)
-        if other.ending == "closed":
-            return other
-    return run
+    """The shortest run that closes because it takes another turn at one of the junctions; else the run as it was."""
+    others = [
+        Follower(stance, settings, MOTION_RATE_HZ, k).follow(longest_mm) for k in range(min(run.junctions, TURNS))
+    ]
+    closed = [other for other in others if other.ending == "closed"]
+    return min(closed, key=lambda other: other.travel_mm, default=run)
 
 
 def _trace(run: Followed, width_mm: float, work: Work) -> Trace:

@@ -34,9 +34,10 @@ class Stance:
     view: View
     at_end: bool = False
 
-    def reversed(self, end_mm: Array, heading_rad: float) -> Stance:
-        """The same line from its end, where the head arrived on a heading."""
-        return Stance(end_mm, math.remainder(heading_rad + math.pi, math.tau), self.view, True)
+
+def turned_round(end_mm: Array, heading_rad: float, view: View) -> Stance:
+    """The head at the end of a line where it arrived on a heading, to go back along it."""
+    return Stance(end_mm, math.remainder(heading_rad + math.pi, math.tau), view, True)
 
 
 def put_down(
