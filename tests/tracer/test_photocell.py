@@ -1,0 +1,243 @@
+"""The photocells against closed forms: a swept cell on a straight line, edges, rings and the way felt along a line."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from tests.tracer.inked import UM, WIDTH_MM, arc, inked, polyline
+from tracer import photocell
+from tracer.drawing import Drawing
+
+WIDE_MM, AMPLITUDE_MM, APERTURE_MM = 0.7, 1.0, 0.3  # the line, sweep and cell of the vectors
+FINE_MM = 0.005
+COMPILED_AND_PLAIN = pytest.mark.parametrize("plain", [False, True], ids=["compiled", "plain"])
+
+
+def kernel(function: Any, plain: bool) -> Callable[..., Any]:
+    """A kernel as numba compiles it, or as plain Python."""
+    return function.py_func if plain else function
+
+
+@pytest.fixture(scope="module")
+def strip() -> Drawing:
+    """A line of 0.7 mm along X through the middle of a strip of 6 mm, in pixels of 5 um."""
+    y = (np.arange(1200) + 0.5) * FINE_MM - 3.0
+    return Drawing(np.repeat((np.abs(y) < WIDE_MM / 2)[:, None], 240, axis=1).astype(np.float32), FINE_MM)
+
+
+@pytest.fixture(scope="module")
+def behind(strip: Drawing) -> photocell.Cells:
+    return photocell.behind_aperture(strip, APERTURE_MM)
+
+
+def swept(cells: photocell.Cells, offset_mm: float, plain: bool = False, samples: int = 4000) -> tuple[float, float]:
+    """Fundamental and mean of a sweep centred so far to the left of the line."""
+    middle = np.array([0.6, 3.0])
+    return kernel(photocell.sweep, plain)(cells, FINE_MM, middle, 0.0, offset_mm, AMPLITUDE_MM, samples)
+
+
+def point_cell(offset_mm: float) -> float:
+    """b1 = (2/pi)(sqrt(1-s1²) - sqrt(1-s2²)), s = (±w/2 - e)/A clipped to ±1: the vectors' closed form."""
+    s1, s2 = (min(max((edge - offset_mm) / AMPLITUDE_MM, -1), 1) for edge in (-WIDE_MM / 2, WIDE_MM / 2))
+    return 2 / math.pi * (math.sqrt(1 - s1 * s1) - math.sqrt(1 - s2 * s2))
+
+
+# the swept cell
+
+
+@COMPILED_AND_PLAIN
+def test_a_swept_point_cell_sees_the_closed_form(strip: Drawing, vectors: Callable[[str], Any], plain: bool) -> None:
+    for row in vectors("mf_scan")["rows"]:
+        offset_mm = row["offset_mm"]
+        assert point_cell(offset_mm) == pytest.approx(row["point_cell_closed_form"], abs=1e-5)
+        # pixels of 5 um make an edge a ramp of that; where it stands at the turn of the sweep (0.65 mm), that is 0.1 of
+        # the sweep's time
+        share = 0.03 if abs(abs(offset_mm) - 0.65) < 0.01 else 0.003
+        assert swept(strip.darkness, offset_mm, plain)[0] == pytest.approx(row["point_cell_closed_form"], abs=share)
+
+
+def test_a_swept_cell_with_an_aperture_sees_the_vectors(behind: photocell.Cells, vectors: Callable[[str], Any]) -> None:
+    """The vectors' aperture is a disc of 0.3 mm, ours a Gaussian of the same variance: 3 % of the peak of 0.566 apart."""
+    for row in vectors("mf_scan")["rows"]:
+        assert swept(behind, row["offset_mm"])[0] == pytest.approx(row["first_sin"], abs=0.017)
+
+
+def test_the_fundamental_is_odd_and_the_mean_even(behind: photocell.Cells) -> None:
+    assert abs(swept(behind, 0.0)[0]) < 1e-6  # float32 darkness
+    for offset_mm in np.linspace(0.05, 1.6, 32):
+        left, right = swept(behind, offset_mm), swept(behind, -offset_mm)
+        assert left[0] == pytest.approx(-right[0], abs=1e-6)
+        assert left[1] == pytest.approx(right[1], abs=1e-6)
+        assert left[0] < 1e-6  # the head stands to the left, the line is on its right
+
+
+def test_the_signal_is_linear_then_monotonic_then_gone(behind: photocell.Cells) -> None:
+    """The facts stated with the vectors: linear within 15 % to 0.4 mm, monotonic to 0.79 mm, gone beyond 1.5 mm.
+
+    Monotonic to 0.79 mm is with a disc; the Gaussian's skirts bring the peak 0.03 mm nearer.
+    """
+    slope = (swept(behind, -0.02)[0] - swept(behind, 0.02)[0]) / 0.04
+    assert slope == pytest.approx(0.484, rel=0.01)  # numeric with a disc, in the vectors
+    for offset_mm in np.linspace(0.05, 0.4, 8):
+        assert -swept(behind, offset_mm)[0] == pytest.approx(slope * offset_mm, rel=0.15)
+    rising = [-swept(behind, offset_mm)[0] for offset_mm in np.linspace(0, 0.76, 50)]
+    assert np.all(np.diff(rising) > 0)
+    # amplitude + half the line + half the aperture = 1.5 mm; the Gaussian's skirt there is 1/40 of a cell's light
+    assert swept(behind, 1.5)[0] == pytest.approx(0, abs=0.005) and swept(behind, 1.6)[0] == pytest.approx(0, abs=3e-4)
+    assert swept(behind, 1.7)[1] < 3e-4
+
+
+def test_the_mean_falls_when_the_line_goes(behind: photocell.Cells) -> None:
+    on_it = swept(behind, 0.0)[1]
+    assert on_it == pytest.approx(2 / math.pi * math.asin(WIDE_MM / 2 / AMPLITUDE_MM), abs=0.005)  # share of the time
+    assert swept(behind, 1.6)[1] < 0.01 * on_it
+
+
+# a cell at a place
+
+
+@COMPILED_AND_PLAIN
+def test_a_cell_reads_pixels_in_sheet_coordinates(plain: bool) -> None:
+    """Pixel i covers [i, i+1) pitches; rows run down from the top, Y up; straight in between; paper outside."""
+    read = kernel(photocell.darkness_at, plain)
+    cells = np.arange(12, dtype=np.float32).reshape(3, 4) / 12
+    assert read(cells, 0.1, 0.05, 0.25) == 0.0
+    assert read(cells, 0.1, 0.15, 0.15) == pytest.approx(5 / 12)  # second of the second row
+    assert read(cells, 0.1, 0.20, 0.15) == pytest.approx(5.5 / 12)
+    assert read(cells, 0.1, 0.15, 0.10) == pytest.approx(7 / 12)
+    for x_mm, y_mm in ((-1, 0.1), (5, 0.1), (0.1, -1), (0.1, 5), (1e9, -1e9)):
+        assert read(np.ones((3, 4), np.float32), 0.1, x_mm, y_mm) == 0.0
+
+
+def test_an_aperture_narrower_than_a_pixel_changes_nothing(strip: Drawing) -> None:
+    assert photocell.behind_aperture(strip, 0.003) is strip.darkness
+
+
+def test_an_aperture_keeps_the_ink(strip: Drawing, behind: photocell.Cells) -> None:
+    assert behind.sum() == pytest.approx(strip.darkness.sum(), rel=1e-4)
+
+
+# edges
+
+
+def analytic(offset_mm: float, heading: float) -> NDArray[np.float32]:
+    """Soft ink of a line of 0.5 mm at a distance to the left of (3, 3) mm, on 6 x 6 mm at 300 dpi, by its closed form."""
+    from scipy.special import erf
+
+    pitch = 25.4 / 300
+    at = (np.arange(round(6 / pitch)) + 0.5) * pitch
+    x, y = np.meshgrid(at, at[::-1] + (6 - at[-1] - at[0]))
+    aside = -(x - 3) * math.sin(heading) + (y - 3) * math.cos(heading) - offset_mm
+    sigma = math.hypot(0.05, 0.0375, pitch / math.sqrt(12)) * math.sqrt(2)  # lens, aperture and pixel
+    return np.asarray((erf((aside + 0.25) / sigma) - erf((aside - 0.25) / sigma)) / 2, np.float32)
+
+
+@COMPILED_AND_PLAIN
+@settings(max_examples=30)
+@given(offset_mm=st.floats(-0.3, 0.3), heading=st.floats(-math.pi, math.pi))
+def test_a_straight_line_s_edges_are_where_they_are_at_any_heading_and_place(
+    plain: bool, offset_mm: float, heading: float
+) -> None:
+    height = analytic(0, 0).shape[0] * 25.4 / 300
+    place = 3.0, 3.0 - (6 - height)
+    find = kernel(photocell.edges, plain)
+    right, left = find(analytic(offset_mm, heading), 25.4 / 300, *place, heading, 1.0, 0.5)
+    # straight between pixels of 85 um, an edge 0.1 mm soft is off by up to 3 um; both are off alike, away from the ink
+    assert left - right == pytest.approx(0.5, abs=8 * UM)
+    assert (left + right) / 2 == pytest.approx(offset_mm, abs=3 * UM)
+
+
+@COMPILED_AND_PLAIN
+def test_edges_that_are_not_there_are_nan(strip: Drawing, plain: bool) -> None:
+    find = kernel(photocell.edges, plain)
+    assert np.isnan(find(strip.darkness, FINE_MM, 0.6, 5.0, 0.0, 0.8, 0.5)).all()  # no ink within half the reach
+    right, left = find(strip.darkness, FINE_MM, 0.6, 3.1, 0.0, 0.3, 0.5)
+    assert math.isnan(right) and left == pytest.approx(0.25, abs=FINE_MM)  # 0.45 mm to the right is out of reach
+
+
+# rings
+
+
+@COMPILED_AND_PLAIN
+@pytest.mark.parametrize("aside_mm", [0.0, 0.1, -0.2])
+@pytest.mark.parametrize("radius_mm", [0.8, 1.0, 2.0])
+def test_a_ring_on_a_line_sees_two_arcs(strip: Drawing, aside_mm: float, radius_mm: float, plain: bool) -> None:
+    long = Drawing(np.repeat(strip.darkness[:, :1], 1200, axis=1), FINE_MM)
+    centre = np.array([3.0, 3.0 + aside_mm])
+    arcs = kernel(photocell.ring, plain)(long.darkness, FINE_MM, centre, radius_mm, 0.5)
+    low, high = math.asin((-WIDE_MM / 2 - aside_mm) / radius_mm), math.asin((WIDE_MM / 2 - aside_mm) / radius_mm)
+    told = sorted([(low % math.tau, high % math.tau), ((math.pi - high) % math.tau, (math.pi - low) % math.tau)])
+    found = sorted((begin % math.tau, end % math.tau) for begin, end in arcs)
+    assert np.array(found) == pytest.approx(np.array(told), abs=2 * FINE_MM / radius_mm)
+    assert np.all(arcs[:, 1] > arcs[:, 0])
+
+
+@COMPILED_AND_PLAIN
+def test_a_ring_all_dark_or_all_light(plain: bool) -> None:
+    go_round = kernel(photocell.ring, plain)
+    centre, black = np.array([2.0, 2.0]), np.ones((400, 400), np.float32)
+    assert go_round(black, 0.01, centre, 1.0, 0.5).tolist() == [[-math.pi, math.pi]]
+    assert len(go_round(0 * black, 0.01, centre, 1.0, 0.5)) == 0
+
+
+# scouting
+
+
+@COMPILED_AND_PLAIN
+@pytest.mark.parametrize("radius_mm", [2.0, 5.0, 20.0])
+def test_a_circle_is_felt_along_its_middle(radius_mm: float, plain: bool) -> None:
+    middle = radius_mm + 2
+    cells = photocell.behind_aperture(inked(arc((middle, middle), radius_mm)), 0.15)
+    start = np.array([middle + radius_mm, middle])
+    feel = kernel(photocell.scout, plain)
+    seen = feel(cells, 25.4 / 300, start, math.pi / 2, 0.05, 40, WIDTH_MM + 25 * UM, 0.5)
+    assert len(seen) == 40
+    radial = np.hypot(*(seen[:, :2] - middle).T) - radius_mm
+    assert np.abs(radial).max() < 6 * UM  # between pixels of 85 um, on a clean drawing
+    assert abs(radial.mean()) < 1.5 * UM  # over 2 mm of line: two dozen pixels
+    assert np.hypot(*np.diff(seen[:, :2], axis=0).T) == pytest.approx(0.05, abs=5 * UM)
+    # the softness of lens, aperture and pixel widens a line at half its darkness hardly; the pen draws to 10 um
+    assert seen[:, 2] == pytest.approx(WIDTH_MM, abs=40 * UM)
+
+
+@COMPILED_AND_PLAIN
+def test_feeling_stops_at_the_end_of_a_line_and_before_a_crossing(plain: bool) -> None:
+    drawing = inked(polyline((2, 4), (10, 4)), polyline((6, 2), (6, 6)))
+    cells = photocell.behind_aperture(drawing, 0.15)
+    feel = kernel(photocell.scout, plain)
+    to_crossing = feel(cells, drawing.pitch_mm, np.array([4.0, 4.0]), 0.0, 0.05, 200, WIDTH_MM, 0.5)
+    assert to_crossing[-1, 0] == pytest.approx(5.7, abs=0.1)  # the other line's ink begins at 5.75
+    to_end = feel(cells, drawing.pitch_mm, np.array([7.0, 4.0]), 0.0, 0.05, 200, WIDTH_MM, 0.5)
+    assert to_end[-1, 0] == pytest.approx(10.15, abs=0.1)  # the round of the pen ends at 10.25
+    assert np.abs(to_end[:-4, 1] - 4).max() < 6 * UM  # a line along the pixels: they do not average out
+    nowhere = feel(cells, drawing.pitch_mm, np.array([3.0, 6.0]), 0.0, 0.05, 200, WIDTH_MM, 0.5)
+    assert len(nowhere) == 0
+
+
+def test_a_speck_is_passed_over() -> None:
+    drawing = inked(polyline((2, 4), (10, 4)), specks=[arc((6, 4.3), 0.08)])
+    cells = photocell.behind_aperture(drawing, 0.15)
+    seen = photocell.scout(cells, drawing.pitch_mm, np.array([4.0, 4.0]), 0.0, 0.05, 80, WIDTH_MM + 25 * UM, 0.5)
+    assert seen[-1, 0] > 7.5
+    assert np.abs(seen[:, 1] - 4).max() < 0.08  # what is taken of the speck's edge stays below its half width
+
+
+@settings(max_examples=15)
+@given(heading=st.floats(-math.pi, math.pi), shift=st.tuples(st.floats(0, 0.0847), st.floats(0, 0.0847)))
+def test_what_is_felt_moves_and_turns_with_the_line(heading: float, shift: tuple[float, float]) -> None:
+    way = np.array([math.cos(heading), math.sin(heading)])
+    middle = np.array([8.0, 8.0]) + shift
+    drawing = inked(np.array([middle - 4 * way, middle + 4 * way]))
+    cells = photocell.behind_aperture(drawing, 0.15)
+    seen = photocell.scout(cells, drawing.pitch_mm, middle - way, heading, 0.05, 40, WIDTH_MM + 25 * UM, 0.5)
+    assert len(seen) == 40
+    aside = (seen[:, :2] - middle) @ np.array([-way[1], way[0]])
+    assert np.abs(aside).max() < 5 * UM  # between pixels of 85 um
