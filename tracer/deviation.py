@@ -6,7 +6,7 @@ path lies to the left of the ink's middle), and the length of ink that lies besi
 Across the path, the ink's two edges are where the darkness falls through half of what it is between them; the middle is halfway. Where the ink is much
 wider than the line usually is (a crossing, a corner) the middle means nothing, and the place is not measured.
 
-Source: our own; the darkness is the drawing's, interpolated by OpenCV, and not the head's cells.
+Source: our own; the darkness is the drawing's, interpolated by scipy, and not the head's cells.
 """
 
 from __future__ import annotations
@@ -17,10 +17,12 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import map_coordinates
 
 from motion.faults import MotionFault
 from motion.motion import Path
 from tracer.drawing import Drawing
+from tracer.patches import Mask, Patches, runs_of, strips
 
 Array = NDArray[np.float64]
 
@@ -98,16 +100,9 @@ def _profile(drawing: Drawing, points: Array, headings: Array, across: Array) ->
     y = points[:, 1:] + np.cos(headings)[:, None] * across
     columns = x / drawing.pitch_mm - 0.5
     rows = drawing.darkness.shape[0] - y / drawing.pitch_mm - 0.5
-    seen = [
-        cv2.remap(
-            drawing.darkness,
-            columns[i : i + 8000].astype(np.float32),
-            rows[i : i + 8000].astype(np.float32),
-            cv2.INTER_LINEAR,
-        )
-        for i in range(0, len(points), 8000)
-    ]
-    return np.asarray(np.vstack(seen), float)
+    seen = np.empty(columns.shape)
+    map_coordinates(drawing.darkness, [rows, columns], seen, order=1, mode="constant")
+    return seen
 
 
 def _line_width(drawing: Drawing, places: list[tuple[Array, Array]]) -> float:
@@ -172,17 +167,26 @@ def _averaged(errors: Array) -> Array:
 
 def _missed(drawing: Drawing, runs: Sequence[Array], width_mm: float) -> tuple[float, float]:
     """Length of ink that no path covers, and of all ink, mm: area over the line's width; specks do not count."""
-    ink = (cv2.GaussianBlur(drawing.darkness, (0, 0), 0.7) > 0.5).astype(np.uint8)
-    _, labels, stats, _ = cv2.connectedComponentsWithStats(ink)
-    speck = stats[:, cv2.CC_STAT_AREA] * drawing.pitch_mm**2 < width_mm**2
-    speck[0] = True
-    ink[speck[labels]] = 0
-    covered = np.zeros_like(ink)
-    for run in runs:
-        pixels = np.column_stack(
-            [run[:, 0] / drawing.pitch_mm - 0.5, ink.shape[0] - run[:, 1] / drawing.pitch_mm - 0.5]
-        )
-        thickness = max(1, round((1.6 * width_mm) / drawing.pitch_mm))
-        cv2.polylines(covered, [np.round(pixels * 16).astype(np.int32)], False, 1, thickness, cv2.LINE_8, 4)
+    patches = Patches.of(
+        runs_of((cv2.GaussianBlur(drawing.darkness[rows], (0, 0), 0.7) > 0.5)[top - rows.start :][: bottom - top], top)
+        for top, bottom, rows in strips(drawing.darkness.shape, halo=8)
+    )
+    counts = patches.areas * drawing.pitch_mm**2 >= width_mm**2
+    covered, columns = _covered(drawing, runs, width_mm), drawing.darkness.shape[1]
+    missed = sum(
+        np.count_nonzero(patches.painted(counts, top, bottom, 0, columns) > covered[top:bottom])
+        for top, bottom, _ in strips(covered.shape)
+    )
     area_mm = drawing.pitch_mm**2 / width_mm
-    return float(np.count_nonzero(ink & ~covered & 1) * area_mm), float(np.count_nonzero(ink) * area_mm)
+    return float(missed * area_mm), float(patches.areas[counts].sum() * area_mm)
+
+
+def _covered(drawing: Drawing, runs: Sequence[Array], width_mm: float) -> Mask:
+    """Mask of the sheet where a pen a little wider than the line, run along the paths, would have inked it."""
+    rows, columns = drawing.darkness.shape
+    covered = np.zeros((rows, columns), np.uint8)
+    thickness = max(1, round((1.6 * width_mm) / drawing.pitch_mm))
+    for run in runs:
+        pixels = np.column_stack([run[:, 0] / drawing.pitch_mm - 0.5, rows - run[:, 1] / drawing.pitch_mm - 0.5])
+        cv2.polylines(covered, [np.round(pixels * 16).astype(np.int32)], False, 1, thickness, cv2.LINE_8, 4)
+    return covered

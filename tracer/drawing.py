@@ -9,12 +9,16 @@ local mean: strokes are the smaller part, so they stand out further.
 
 Sheet coordinates: mm from the lower-left corner, X right, Y up; pixel i covers [i, i+1) pitches, so the centre of pixel 0 is at half a pitch.
 
+A sheet may have a thousand million pixels: all that is done to every pixel is done strip by strip, and only the darkness is kept as a whole.
+
 Questions: the patent takes the drawing for granted. A resolution that the file does not state is asked for, never guessed.
 """
 
 from __future__ import annotations
 
+import math
 import warnings
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -24,6 +28,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion.faults import DrawingFault, FileFault
+from tracer import room
+from tracer.patches import Patches, runs_of, strips
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -32,16 +38,18 @@ MM_PER_INCH = 25.4
 WIDEST_STROKE_MM = 6.0  # broader dark areas count as paper that is dark
 LEAST_CONTRAST = 10.0  # grey levels of 255 between paper and ink
 LEAST_STROKE_MM = 2.0  # shorter strokes are specks
-FLATTEN_BY = 4  # the paper is estimated on a picture reduced by this
+PAPER_PITCH_MM = 0.34  # the paper is estimated on a picture reduced to this, by 4 at least
+FEWEST_SAMPLES = 1 << 22  # that tell the noise of the paper, and the darkness of the ink
 
-Grey = NDArray[np.float32]
+Darkness = NDArray[np.float32]
+Grey = NDArray[np.uint8] | NDArray[np.float32]  # levels 0..255
 
 
 @dataclass(frozen=True, slots=True)
 class Drawing:
     """A drawing as the cells see it: `darkness` (rows from the top, columns) on pixels of `pitch_mm`."""
 
-    darkness: Grey
+    darkness: Darkness
     pitch_mm: float
     file: Path | None = None
 
@@ -64,36 +72,43 @@ class Drawing:
         file = Path(file)
         if dpi is not None and width_mm is not None:
             raise DrawingFault("both a resolution and a width were given; give one of --dpi and --width")
-        image = _read(file)
-        grey, stated = _grey(image), _stated_dpi(image)
+        grey, stated = _read(file)
         pitch = _pitches_mm(file, grey.shape[1], stated, dpi, width_mm)
         if abs(pitch[0] / pitch[1] - 1) > 1e-3:  # a fax has oblong pixels
-            rows = round(grey.shape[0] * pitch[1] / pitch[0])
-            grey = np.asarray(cv2.resize(grey, (grey.shape[1], rows), interpolation=cv2.INTER_LINEAR), np.float32)
+            size = grey.shape[1], round(grey.shape[0] * pitch[1] / pitch[0])
+            grey = np.asarray(cv2.resize(grey.astype(np.float32), size, interpolation=cv2.INTER_LINEAR), np.float32)
         return cls(darkness_of(grey, pitch[0]), pitch[0], file)
 
 
-def darkness_of(grey: Grey, pitch_mm: float) -> Grey:
+def darkness_of(grey: Grey, pitch_mm: float) -> Darkness:
     """Darkness 0..1 of a grey picture (0..255): paper levelled, contrast of the strokes 1.
 
     Raises DrawingFault if nothing on it is long and dark enough to be a line.
     """
-    paper, dark = _paper(grey, pitch_mm)
-    contrast = (paper - grey) if dark else (grey - paper)
-    return np.asarray(contrast / _ink_contrast(contrast, pitch_mm), np.float32)
+    paper, dark, reduced_by = _paper(grey, pitch_mm)
+    contrast = np.empty(grey.shape, np.float32)
+    for top, bottom, _ in strips(grey.shape):
+        level = _enlarged(paper, reduced_by, top, bottom, grey.shape[1])
+        first, second = (level, grey[top:bottom]) if dark else (grey[top:bottom], level)
+        np.subtract(first, second, out=contrast[top:bottom], dtype=np.float32)
+    contrast /= np.float32(_ink_contrast(contrast, pitch_mm))
+    return contrast
 
 
-def _read(file: Path) -> Image:
-    """The first page of an image file, loaded and upright."""
+def _read(file: Path) -> tuple[Grey, tuple[float, float] | None]:
+    """Grey levels of the first page of an image file, upright, and the resolution that the file states."""
     from PIL import Image, ImageOps, UnidentifiedImageError
 
     Image.MAX_IMAGE_PIXELS = None  # a large sheet is no attack; a lack of memory is said below
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            image = Image.open(file)
-            image.load()
-            turned = ImageOps.exif_transpose(image)
+            with Image.open(file) as image:
+                room.make_sure(file, *image.size)
+                image.load()
+                stated = _stated_dpi(image)
+                ImageOps.exif_transpose(image, in_place=True)
+                return _grey(image), stated
     except UnidentifiedImageError:
         raise DrawingFault(f"{file} is not an image that can be read; give a PNG, JPEG or TIFF file") from None
     except FileNotFoundError:
@@ -102,13 +117,12 @@ def _read(file: Path) -> Image:
         raise DrawingFault(
             f"{file} is too large for the memory of this computer; scan it at a lower resolution"
         ) from None
+    except DrawingFault:
+        raise
     except (OSError, SyntaxError, ValueError) as error:
         if isinstance(error, OSError) and error.errno is not None:
             raise FileFault(f"{file} cannot be read: {error.strerror}") from None
         raise DrawingFault(f"{file} is a damaged image ({error}); scan or save it again") from None
-    turned.info.update({k: v for k, v in image.info.items() if k not in turned.info})
-    turned.info["stated"] = _states_resolution(image)
-    return turned
 
 
 def _states_resolution(image: Image) -> bool:
@@ -121,23 +135,32 @@ def _states_resolution(image: Image) -> bool:
 
 def _grey(image: Image) -> Grey:
     """Grey levels 0..255 of an image of any mode; the darkest colour channel, so that a coloured line is as dark as it can be."""
-    if image.mode in ("I;16", "I;16B", "I;16L", "I", "F"):
-        values = np.asarray(image, np.float32)
-        top = 255.0 if values.max() <= 255 and image.mode != "I;16" else 65535.0
-        return np.ascontiguousarray(values * (255.0 / top))
+    columns, rows = image.size
+    deep = image.mode in ("I;16", "I;16B", "I;16L", "I", "F")
+    grey = np.empty((rows, columns), np.float32 if deep else np.uint8)
+    for top, bottom, _ in strips(grey.shape):
+        strip = image.crop((0, top, columns, bottom))  # as a whole it would be held twice more
+        grey[top:bottom] = np.asarray(strip) if deep else _darkest_channel(strip)
+    if deep:
+        np.multiply(grey, 1 if grey.max() <= 255 and image.mode != "I;16" else 255 / 65535, out=grey)
+    return grey
+
+
+def _darkest_channel(image: Image) -> NDArray[np.uint8]:
+    """The darkest of the colour channels of an image of eight bits or fewer, on white where it is transparent."""
     if image.mode in ("1", "L"):
-        return np.asarray(image.convert("L"), np.float32)
+        return np.asarray(image.convert("L"))
     if image.mode in ("LA", "PA", "RGBA", "La", "RGBa") or "transparency" in image.info:
         from PIL import Image as Images
 
         rgba = image.convert("RGBA")
         image = Images.alpha_composite(Images.new("RGBA", rgba.size, "white"), rgba)
-    return np.asarray(image.convert("RGB")).min(axis=2).astype(np.float32)
+    return np.asarray(np.asarray(image.convert("RGB")).min(axis=2))
 
 
 def _stated_dpi(image: Image) -> tuple[float, float] | None:
     """Resolution that the file states, dots per inch in X and Y; whole numbers where the file rounds to dots per metre."""
-    if not image.info.get("stated"):
+    if not _states_resolution(image):
         return None
     x, y = (float(v) for v in image.info["dpi"])
     if not (np.isfinite(x) and np.isfinite(y) and x > 1 and y > 1):
@@ -161,33 +184,61 @@ def _pitches_mm(
     return MM_PER_INCH / stated[0], MM_PER_INCH / stated[1]
 
 
-def _paper(grey: Grey, pitch_mm: float) -> tuple[Grey, bool]:
-    """Grey level of the paper everywhere, and whether the strokes are darker than it."""
-    size = (max(1, grey.shape[1] // FLATTEN_BY), max(1, grey.shape[0] // FLATTEN_BY))
-    small = cv2.resize(grey, size, interpolation=cv2.INTER_AREA)
-    across = 2 * (max(24, round(WIDEST_STROKE_MM / pitch_mm)) // (2 * FLATTEN_BY)) + 1
+def _paper(grey: Grey, pitch_mm: float) -> tuple[Darkness, bool, int]:
+    """Grey level of the paper on a reduced picture, whether the strokes are darker than it, and by how much the picture is reduced."""
+    reduced_by = max(4, round(PAPER_PITCH_MM / pitch_mm))
+    small = _reduced(grey, reduced_by)
+    across = 2 * (max(24, round(WIDEST_STROKE_MM / pitch_mm)) // (2 * reduced_by)) + 1
     stroke = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (across, across))
     relief = small - cv2.blur(small, (across, across))
     dark = float((relief**3).sum()) <= 0  # strokes take less room than paper: the few stand out further
     level = cv2.morphologyEx(small, cv2.MORPH_CLOSE if dark else cv2.MORPH_OPEN, stroke)
-    level = cv2.GaussianBlur(level, (0, 0), across / 2)
-    return np.asarray(cv2.resize(level, grey.shape[::-1], interpolation=cv2.INTER_LINEAR), np.float32), dark
+    return np.asarray(cv2.GaussianBlur(level, (0, 0), across / 2), np.float32), dark, reduced_by
 
 
-def _ink_contrast(contrast: Grey, pitch_mm: float) -> float:
+def _reduced(grey: Grey, by: int) -> Darkness:
+    """The mean of each square of `by` pixels; the last squares go on over the edge with what is there."""
+    rows, columns = (-(-side // by) for side in grey.shape)
+    small = np.empty((rows, columns), np.float32)
+    for top, bottom, _ in strips((rows, columns * by * by)):
+        part = grey[top * by : bottom * by].astype(np.float32)
+        below, beside = (bottom - top) * by - part.shape[0], columns * by - part.shape[1]
+        whole = cv2.copyMakeBorder(part, 0, below, 0, beside, cv2.BORDER_REPLICATE)
+        small[top:bottom] = cv2.resize(whole, (columns, bottom - top), interpolation=cv2.INTER_AREA)
+    return small
+
+
+def _enlarged(small: Darkness, by: int, top: int, bottom: int, columns: int) -> Darkness:
+    """Rows of the picture that a reduced one stands for, between its values."""
+    first, last = max(0, top // by - 1), min(len(small), -(-bottom // by) + 1)
+    large = cv2.resize(small[first:last], None, fx=by, fy=by, interpolation=cv2.INTER_LINEAR)
+    return np.asarray(large[top - first * by : bottom - first * by, :columns], np.float32)
+
+
+def _ink_contrast(contrast: Darkness, pitch_mm: float) -> float:
     """Contrast of the strokes against the paper, grey levels: what the darker part of the longer strokes has."""
-    soft = cv2.GaussianBlur(contrast, (0, 0), 1.0)
-    centre = float(np.median(soft[::4, ::4]))
-    noise = 1.4826 * float(np.median(np.abs(soft[::4, ::4] - centre)))
+    every = max(4, math.isqrt(contrast.size // FEWEST_SAMPLES))
+    sample = np.concatenate([soft[-top % every :: every, ::every].ravel() for top, soft in _softened(contrast)])
+    centre = float(np.median(sample))
+    noise = 1.4826 * float(np.median(np.abs(sample - centre)))
     least = max(LEAST_CONTRAST, centre + 6 * noise)
-    _, numbers, stats, _ = cv2.connectedComponentsWithStats((soft > least).astype(np.uint8))
-    longest = stats[:, [cv2.CC_STAT_WIDTH, cv2.CC_STAT_HEIGHT]].max(axis=1)
-    strokes = longest >= max(12, LEAST_STROKE_MM / pitch_mm)
-    strokes[0] = False
-    inked = contrast[strokes[numbers]]
-    if not inked.size:
+    patches = Patches.of(runs_of(soft > least, top) for top, soft in _softened(contrast))
+    strokes = patches.longer_sides >= max(12, LEAST_STROKE_MM / pitch_mm)
+    if not strokes.any():
         raise DrawingFault(
             f"no line on the drawing: nothing longer than {LEAST_STROKE_MM:g} mm is {least:.0f} or more of 255 grey levels"
             " darker than the paper; check the file, or scan it with more contrast"
         )
-    return float(np.percentile(inked, 80))
+    every = max(1, int(patches.areas[strokes].sum()) // (4 * FEWEST_SAMPLES))
+    inked = [
+        contrast[top:bottom][patches.painted(strokes, top, bottom, 0, contrast.shape[1]).view(bool)][::every]
+        for top, bottom, _ in strips(contrast.shape)
+    ]
+    return float(np.percentile(np.concatenate(inked), 80))
+
+
+def _softened(contrast: Darkness) -> Iterator[tuple[int, Darkness]]:
+    """The picture behind a spot of one pixel (standard deviation), strip by strip: first row, and the strip."""
+    for top, bottom, rows in strips(contrast.shape, halo=8):
+        soft = cv2.GaussianBlur(contrast[rows], (0, 0), 1.0)
+        yield top, np.asarray(soft[top - rows.start : bottom - rows.start], np.float32)

@@ -11,6 +11,7 @@ Source: patent ES 361967 leaves the choice of the line to the operator, who brin
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import cv2
 import numpy as np
@@ -18,12 +19,16 @@ from numpy.typing import NDArray
 
 from motion.faults import DrawingFault, LineFault
 from tracer.drawing import Drawing
+from tracer.patches import Mask, Patches, runs_of, strips
 
 Array = NDArray[np.float64]
+Pixels = NDArray[Any]
 
 INK = 0.5
 LEAST_LENGTH_MM = 2.0
 LEAST_LENGTH_PX = 12
+DEEPEST_PX = 200  # a line of 6 mm at 1200 dpi is 142 deep; the middle of a darker patch is not that of a line
+TILE_PX = 2048
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,31 +56,30 @@ class Stroke:
 
 @dataclass(frozen=True, slots=True)
 class Sheet:
-    """The patches of ink on a drawing."""
+    """The patches of ink on a drawing, with the length and the width that each has as a line."""
 
     drawing: Drawing
-    labels: NDArray[np.int32]
-    depth_px: NDArray[np.float32]
+    patches: Patches
     lengths_mm: Array
     widths_mm: Array
 
     @classmethod
     def of(cls, drawing: Drawing) -> Sheet:
         """Find the patches; raises DrawingFault if none is long enough to be a line."""
-        ink = (cv2.GaussianBlur(drawing.darkness, (0, 0), 0.7) > INK).astype(np.uint8)
-        count, labels, stats, _ = cv2.connectedComponentsWithStats(ink)
-        depth = cv2.distanceTransform(ink, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
-        areas = stats[:, cv2.CC_STAT_AREA].astype(float)
-        inked = labels > 0
-        depths = np.bincount(labels[inked], weights=depth[inked], minlength=count) / np.maximum(areas, 1)
-        widths = np.maximum(4 * depths - 2, 1.0)  # a line of w pixels has depths 1, 2 … w/2 … 2, 1
-        lengths = areas / widths * drawing.pitch_mm
-        lengths[0] = 0.0
-        if lengths.max(initial=0.0) < max(LEAST_LENGTH_MM, LEAST_LENGTH_PX * drawing.pitch_mm):
+        runs, depths = [], []
+        for top, bottom, rows in strips(drawing.darkness.shape, DEEPEST_PX):
+            ink = (cv2.GaussianBlur(drawing.darkness[rows], (0, 0), 0.7) > INK).view(np.uint8)
+            inner = slice(top - rows.start, bottom - rows.start)
+            runs.append(runs_of(ink[inner], top))
+            depths.append(_run_sums(_depth(ink)[inner], ink[inner], runs[-1]))
+        patches = Patches.of(runs)
+        areas = patches.areas
+        deep = np.bincount(patches.patch, np.concatenate(depths), patches.count) / areas
+        widths = np.maximum(4 * deep - 2, 1.0)  # a line of w pixels has depths 1, 2 … w/2 … 2, 1
+        sheet = cls(drawing, patches, areas / widths * drawing.pitch_mm, widths * drawing.pitch_mm)
+        if not sheet._long_enough().any():
             raise DrawingFault("no line on the drawing: nothing on it is long enough; check the file and its scale")
-        return cls(
-            drawing, np.asarray(labels, np.int32), np.asarray(depth, np.float32), lengths, widths * drawing.pitch_mm
-        )
+        return sheet
 
     def longest(self) -> Stroke:
         """The longest line."""
@@ -83,40 +87,78 @@ class Sheet:
 
     def nearest(self, place_mm: tuple[float, float], within_mm: float) -> Stroke:
         """The line nearest to a place; raises LineFault if none is within reach, and says how far the nearest is."""
-        long = self.lengths_mm >= max(LEAST_LENGTH_MM, LEAST_LENGTH_PX * self.drawing.pitch_mm)
-        rows, columns = np.nonzero(long[self.labels])
-        x, y = self._mm(rows, columns).T
-        distances = np.hypot(x - place_mm[0], y - place_mm[1])
-        best = int(np.argmin(distances))
-        if distances[best] > within_mm:
+        distance_mm, (x, y), patch = self._nearest_ink(place_mm)
+        if distance_mm > within_mm:
             raise LineFault(
-                f"no line within {within_mm:g} mm of {place_mm[0]:g},{place_mm[1]:g} mm: the nearest is {distances[best]:.1f} mm away,"
-                f" at {x[best]:.1f},{y[best]:.1f}; start there, or leave --start out for the longest line",
+                f"no line within {within_mm:g} mm of {place_mm[0]:g},{place_mm[1]:g} mm: the nearest is {distance_mm:.1f} mm away,"
+                f" at {x:.1f},{y:.1f}; start there, or leave --start out for the longest line",
                 x_mm=place_mm[0],
                 y_mm=place_mm[1],
             )
-        return self._stroke(int(self.labels[rows[best], columns[best]]))
+        return self._stroke(patch)
 
-    def _mm(self, rows: NDArray[np.intp], columns: NDArray[np.intp]) -> Array:
+    def _long_enough(self) -> NDArray[np.bool_]:
+        """Which patches are long enough to be lines."""
+        return self.lengths_mm >= max(LEAST_LENGTH_MM, LEAST_LENGTH_PX * self.drawing.pitch_mm)
+
+    def _nearest_ink(self, place_mm: tuple[float, float]) -> tuple[float, Array, int]:
+        """Distance of the ink of a line nearest to a place, mm, where it is, and the patch that it belongs to."""
+        runs = self.patches
+        column = np.clip(round(place_mm[0] / self.drawing.pitch_mm - 0.5), runs.begin, runs.end - 1)
+        places = self._mm(runs.row, column)
+        distances = np.hypot(*(places - np.asarray(place_mm)).T)
+        distances[~self._long_enough()[runs.patch]] = np.inf
+        best = int(np.argmin(distances))
+        return float(distances[best]), places[best], int(runs.patch[best])
+
+    def _mm(self, rows: Pixels, columns: Pixels) -> Array:
         pitch = self.drawing.pitch_mm
-        return np.column_stack([(columns + 0.5) * pitch, (self.labels.shape[0] - rows - 0.5) * pitch])
+        return np.column_stack([(columns + 0.5) * pitch, (self.drawing.darkness.shape[0] - rows - 0.5) * pitch])
 
-    def _stroke(self, label: int) -> Stroke:
-        """The patch of a label with its middle places: pixels no neighbour of which is deeper in the ink."""
-        rows, columns = np.nonzero(self.labels == label)
-        top, left = rows.min(), columns.min()
-        patch = (slice(top, rows.max() + 1), slice(left, columns.max() + 1))
-        own = (self.labels[patch] == label).astype(np.float32)
-        depth = self.depth_px[patch] * own
-        middle = (depth > 0) & (depth >= cv2.dilate(depth, np.ones((3, 3), np.uint8)) - 0.3)
-        disc_px = max(4, round(1.5 * self.widths_mm[label] / self.drawing.pitch_mm))
-        size = 2 * disc_px + 1
-        disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size)).astype(np.float32)
-        filled = cv2.filter2D(own, cv2.CV_32F, disc, borderType=cv2.BORDER_CONSTANT)
-        i, j = np.nonzero(middle)
+    def _stroke(self, patch: int) -> Stroke:
+        """A patch with its middle places."""
+        chosen = np.arange(self.patches.count) == patch
+        disc_px = max(4, round(1.5 * self.widths_mm[patch] / self.drawing.pitch_mm))
+        top, bottom, left, right = self.patches.box(chosen)
+        tiles = [
+            self._middles(chosen, disc_px, (row, min(row + TILE_PX, bottom)), (column, min(column + TILE_PX, right)))
+            for row in range(top, bottom, TILE_PX)
+            for column in range(left, right, TILE_PX)
+        ]
+        rows, columns, filled = (np.concatenate(part) for part in zip(*tiles, strict=True))
         return Stroke(
-            float(self.lengths_mm[label]),
-            float(self.widths_mm[label]),
-            self._mm(i + top, j + left),
-            filled[i, j].astype(float),
+            float(self.lengths_mm[patch]), float(self.widths_mm[patch]), self._mm(rows, columns), filled.astype(float)
         )
+
+    def _middles(
+        self, chosen: NDArray[np.bool_], disc_px: int, rows: tuple[int, int], columns: tuple[int, int]
+    ) -> tuple[Pixels, Pixels, Array]:
+        """Row, column and ink about it of the pixels in a tile no neighbour of which is deeper in the patch's ink."""
+        halo = max(disc_px, DEEPEST_PX) + 1
+        part = [
+            edge for (a, b), size in zip((rows, columns), self.drawing.darkness.shape, strict=True)
+            for edge in (max(0, a - halo), min(size, b + halo))
+        ]  # fmt: skip
+        ink = self.patches.painted(chosen, *part)
+        inner = slice(rows[0] - part[0], rows[1] - part[0]), slice(columns[0] - part[2], columns[1] - part[2])
+        if not ink[inner].any():
+            return np.empty(0, int), np.empty(0, int), np.empty(0)
+        depth = _depth(ink)
+        middle = (depth > 0) & (depth >= cv2.dilate(depth, np.ones((3, 3), np.uint8)) - 0.3)
+        disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * disc_px + 1,) * 2).astype(np.float32)
+        filled = np.rint(cv2.filter2D(ink.astype(np.float32), -1, disc, borderType=cv2.BORDER_CONSTANT))
+        i, j = np.nonzero(middle[inner])
+        return i + rows[0], j + columns[0], filled[inner][i, j]
+
+
+def _depth(ink: Mask) -> NDArray[np.float32]:
+    """How far each pixel of ink is from the paper, pixels."""
+    return np.asarray(cv2.distanceTransform(ink, cv2.DIST_L2, cv2.DIST_MASK_PRECISE), np.float32)
+
+
+def _run_sums(values: NDArray[np.float32], ink: Mask, runs: tuple[Pixels, Pixels, Pixels]) -> Array:
+    """Sum of the values over each run of a strip."""
+    _, begin, end = runs
+    if not len(begin):
+        return np.empty(0)
+    return np.asarray(np.add.reduceat(values[ink.view(bool)].astype(float), np.r_[0, np.cumsum(end - begin)[:-1]]))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import struct
+import zlib
 from pathlib import Path
 
 import cv2
@@ -14,6 +16,10 @@ from console.tracing import Head
 from motion.contour import closure_mm, distance
 from motion.pathfile import read_path
 from tests.console.conftest import SAMPLES, Morfax
+from tracer import patches, room
+from tracer.drawing import Drawing
+from tracer.lines import Sheet
+from tracer.patches import Patches, runs_of
 from tracer.sequence import Settings, Work
 
 UM = 1e-3
@@ -70,19 +76,19 @@ def test_a_start_with_no_line_near_it_says_how_far_the_nearest_is(morfax: Morfax
 
 
 def test_a_lost_line_keeps_what_was_traced_marked_incomplete(morfax: Morfax, here: Path) -> None:
-    """A line into a patch of hatching, which leaves no clean line to follow."""
+    """A line into a bar as broad as ten lines, which is no line to follow."""
     grey = np.full((500, 1200), 255, np.uint8)
     cv2.line(grey, (50, 250), (1100, 250), 0, 6)
-    for column in range(600, 920, 8):
-        cv2.line(grey, (column, 100), (column, 400), 0, 3)
-    Image.fromarray(grey).save("hatch.png", dpi=DPI)
-    answer = morfax("trace", "hatch.png", "--path", "hatch.csv", "--picture", "seen.png", "--json")
+    cv2.rectangle(grey, (600, 230), (1190, 270), 0, -1)
+    Image.fromarray(grey).save("bar.png", dpi=DPI)
+    head = ("--start", "20,21", "--line-width", "0.5mm")
+    answer = morfax("trace", "bar.png", *head, "--path", "bar.csv", "--picture", "seen.png", "--json")
     assert answer.exit_code == 4 and "heading" in answer.fault
     assert answer.figures["ending"] == "lost" and answer.figures["incomplete"] is True
-    kept = {"hatch.incomplete.wav", "hatch.incomplete.csv", "seen.incomplete.png"}
-    assert {file.name for file in here.iterdir()} == kept | {"hatch.png"}
-    assert np.ptp(read_path("hatch.incomplete.csv").xy_mm[:, 0]) > 40
-    assert morfax("play", "hatch.incomplete.wav").exit_code == 0
+    kept = {"bar.incomplete.wav", "bar.incomplete.csv", "seen.incomplete.png"}
+    assert {file.name for file in here.iterdir()} == kept | {"bar.png"}
+    assert np.ptp(read_path("bar.incomplete.csv").xy_mm[:, 0]) > 40
+    assert morfax("play", "bar.incomplete.wav").exit_code == 0
 
 
 def test_the_drawing_s_name_is_never_written_over(morfax: Morfax, here: Path, small: np.ndarray) -> None:
@@ -120,13 +126,51 @@ def test_a_blank_sheet_holds_no_line(morfax: Morfax, here: Path, blank: int) -> 
     assert answer.exit_code == 3 and "no line" in answer.fault
 
 
-@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")  # Pillow leaves a damaged file open
 def test_what_is_no_image_is_told(morfax: Morfax, here: Path) -> None:
     (here / "words.png").write_text("these are words")
     (here / "cut.png").write_bytes(CAM.read_bytes()[:5000])
     for file in ("words.png", "cut.png"):
         answer = morfax("trace", file)
         assert answer.exit_code == 3 and file in answer.fault
+
+
+def test_a_sheet_larger_than_the_memory_says_what_it_needs(
+    morfax: Morfax, here: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Asked before it is unpacked: of this one there is nothing but the head of the file."""
+    monkeypatch.setattr(room, "free_bytes", lambda: 4_000_000_000)
+    Image.fromarray(np.zeros((10, 10), np.uint8)).save("huge.png", dpi=DPI)
+    whole = bytearray((here / "huge.png").read_bytes())
+    whole[16:24] = struct.pack(">II", 30_000, 30_000)
+    whole[29:33] = struct.pack(">I", zlib.crc32(whole[12:29]))
+    (here / "huge.png").write_bytes(whole)
+    answer = morfax("trace", "huge.png")
+    assert answer.exit_code == 3
+    for said in ("30000 x 30000 pixels", "8.4 GB", "4.0 GB", "lower resolution"):
+        assert said in answer.fault
+
+
+def test_a_sheet_in_strips_is_the_same_sheet(monkeypatch: pytest.MonkeyPatch) -> None:
+    whole = Drawing.open(CAM)
+    lines = Sheet.of(whole)
+    monkeypatch.setattr(patches, "STRIP_PX", 64 * 1024)
+    in_strips = Drawing.open(CAM)
+    assert np.allclose(in_strips.darkness, whole.darkness, atol=1e-5)
+    again = Sheet.of(in_strips)
+    assert again.longest().length_mm == pytest.approx(lines.longest().length_mm, abs=1 * UM)
+    assert again.longest().middles_mm == pytest.approx(lines.longest().middles_mm)
+
+
+def test_patches_are_those_of_opencv() -> None:
+    """On paper strewn with ink at random, where many touch at a corner only, and in strips."""
+    ink = (np.random.default_rng(3).random((300, 200)) < 0.35).astype(np.uint8)
+    found = Patches.of(runs_of(ink[top : top + 70], top) for top in range(0, 300, 70))
+    count, labels, stats, _ = cv2.connectedComponentsWithStats(ink)
+    assert found.count == count - 1
+    assert sorted(found.areas) == sorted(stats[1:, cv2.CC_STAT_AREA])
+    largest = np.arange(found.count) == np.argmax(found.areas)
+    own = labels == 1 + np.argmax(stats[1:, cv2.CC_STAT_AREA])
+    assert (found.painted(largest, 20, 250, 30, 190) == own[20:250, 30:190]).all()
 
 
 def test_the_defaults_of_the_command_line_are_those_of_the_tracer() -> None:
