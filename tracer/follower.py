@@ -178,7 +178,9 @@ class Follower:
         incoming = leg_of(seen[: i - 2], True, self.view.leg_mm)
         outgoing = leg_of(seen[i + 3 :], False, self.view.leg_mm)
         legs_mm = meet(incoming, outgoing)
-        if legs_mm is None or not course.is_sharp(self.view, incoming, outgoing, legs_mm):
+        if legs_mm is None or min(legs_mm) < self.view.step_mm:  # the bend is not between the legs
+            return None
+        if not course.is_sharp(self.view, incoming, outgoing, legs_mm):
             return None
         return incoming, outgoing, legs_mm
 

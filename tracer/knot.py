@@ -21,6 +21,7 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from tracer import photocell
@@ -145,28 +146,42 @@ def _leg(near: Array, end: Array, seen: Array) -> tuple[Leg, float]:
     return Leg(place, heading + math.atan(slope), bend / (1 + slope * slope) ** 1.5, width, seen), misfit
 
 
-def _fit(x: Array, y: Array) -> tuple[tuple[float, float, float], float]:
-    """Slope, offset and bend at x = 0 of y(x), and the misfit; stations off by more than three times the usual are left out.
+@njit(cache=True)
+def _fit(x, y):  # type: ignore[no-untyped-def]
+    """(slope, offset, bend) at x = 0 of y(x), and the misfit; stations off by more than three times the usual are left out.
 
     Straight, unless a bend stands out fivefold of the uncertainty that independent stations would have: neighbours share their ink.
     """
     degree = 2 if len(x) >= 8 else min(1, len(x) - 1)
-    for _ in range(3):
-        found = np.polyfit(x, y, degree)
-        away = np.abs(y - np.polyval(found, x))
-        good = away <= 3 * max(1.4826 * float(np.median(away)), 0.001)
+    found, unsure = _parabola(x, y, np.ones(len(x)), degree)
+    for _ in range(2):
+        away = np.abs(y - found[0] - found[1] * x - found[2] * x * x)
+        good = away <= 3 * max(1.4826 * np.median(away), 0.001)
         if good.all() or good.sum() < 8:
             break
         x, y = x[good], y[good]
-    if degree == 2:
-        powers = np.vander(x, 3)
-        rest = y - powers @ found
-        spread = math.sqrt(max(rest @ rest / (len(x) - 3), 1e-7) * np.linalg.inv(powers.T @ powers)[0, 0])
-        if abs(found[0]) < 5 * spread:
-            found = np.r_[0.0, np.polyfit(x, y, 1)]
-    misfit = float(np.sqrt(np.mean((y - np.polyval(found, x)) ** 2)))
-    bend, slope, offset = np.r_[np.zeros(3 - len(found)), found]
-    return (float(slope), float(offset), 2 * float(bend)), misfit
+        found, unsure = _parabola(x, y, np.ones(len(x)), degree)
+    rest = y - found[0] - found[1] * x - found[2] * x * x
+    if degree == 2 and abs(found[2]) < 5 * unsure * math.sqrt(max(np.sum(rest * rest) / (len(x) - 3), 1e-7)):
+        found, _ = _parabola(x, y, np.ones(len(x)), 1)
+        rest = y - found[0] - found[1] * x
+    return (found[1], found[0], 2 * found[2]), math.sqrt(np.mean(rest * rest))
+
+
+@njit(cache=True)
+def _parabola(x, y, weights, degree):  # type: ignore[no-untyped-def]
+    """Coefficients of 1, x, x² of the weighted parabola (or straight line, or mean), and the last one's uncertainty per unit of noise in y."""
+    n = degree + 1
+    sums, right = np.zeros((n, n)), np.zeros(n)
+    for k in range(len(x)):
+        for i in range(n):
+            right[i] += weights[k] * y[k] * x[k] ** i
+            for j in range(n):
+                sums[i, j] += weights[k] * x[k] ** (i + j)
+    inverse = np.linalg.inv(sums + 1e-12 * np.eye(n))
+    found = np.zeros(3)
+    found[:n] = inverse @ right
+    return found, math.sqrt(abs(inverse[n - 1, n - 1]))
 
 
 def centre_at(seen: Array, i: int, half_mm: float) -> Leg:
@@ -178,8 +193,7 @@ def centre_at(seen: Array, i: int, half_mm: float) -> Leg:
     t = np.array([math.cos(heading), math.sin(heading)])
     n = np.array([-t[1], t[0]])
     x, y = d[near] @ t, d[near] @ n
-    weights = np.sqrt(np.maximum(1 - (x / half_mm) ** 2, 0.05))
-    bend, slope, offset = np.linalg.lstsq(np.vander(x, 3) * weights[:, None], y * weights, rcond=None)[0]
+    offset, slope, bend = _parabola(x, y, np.maximum(1 - (x / half_mm) ** 2, 0.05), 2)[0]
     return Leg(
         seen[i, :2] + offset * n,
         heading + math.atan(slope),

@@ -54,6 +54,10 @@ class Trail:
         if not len(old):
             return False
         first = leg.seen[: max(3, len(leg.seen) // 3), :2]
+        low, high = first.min(axis=0) - width_mm, first.max(axis=0) + width_mm
+        old = old[np.all((old > low) & (old < high), axis=1)]
+        if not len(old):
+            return False
         near = [np.min(np.hypot(*(old - place).T)) < 0.3 * width_mm for place in first]
         return bool(np.mean(near) > 0.5)
 
