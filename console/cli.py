@@ -24,7 +24,7 @@ VERBS = {
     "compare": "Say how far two contours are apart: paths, tapes, or one of them a drawing.",
     "run": "Go the whole way: trace a drawing, play the tape, compare all three.",
     "inspect": "Say what is on a tape: tracks, carriers, levels, travel, format.",
-    "record": "Record a path file on a tape.",
+    "record": "Record a path file, or another program, in the medium that the name after -o says.",
 }
 
 EXIT_CODES = """\b

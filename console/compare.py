@@ -73,8 +73,8 @@ def _sorted(a: FilePath, b: FilePath) -> tuple[FilePath | None, list[FilePath]]:
 
 
 def _path(file: FilePath, controls: Controls, desk: Desk) -> Path:
-    """Read a path file, or play a tape."""
-    if medium.kind_of(file) == "tape":
+    """Read a path file, or play a tape or another program."""
+    if medium.kind_of(file) in ("tape", "program"):
         return controls.play_whole(file, desk)
     from motion.pathfile import read_path
 

@@ -3,6 +3,7 @@
 A file's kind is read off its first bytes, and off its name where they say nothing:
 
     tape      RIFF, RF64, fLaC            or  .wav .rf64 .flac
+    program   any other text              and .steps .cubic .ngc
     drawing   PNG, JPEG, TIFF, BMP, …     or  .png .jpg .tif …
     path      any other text              or  .csv
 
@@ -20,12 +21,16 @@ from typing import TYPE_CHECKING, Any, Literal
 import click
 
 from console.quantities import LENGTH
+from console.table import Figures
 from motion.faults import FileFault
 
 if TYPE_CHECKING:
+    from recorder.media import Report
     from tracer.drawing import Drawing
 
-Kind = Literal["tape", "drawing", "path"]
+Kind = Literal["tape", "program", "drawing", "path"]
+
+TAPES = (".wav", ".rf64", ".flac")
 
 FILE = click.Path(path_type=FilePath)
 
@@ -42,13 +47,14 @@ _FIRST_BYTES: dict[bytes, Kind] = {
 }
 _SUFFIXES: dict[str, Kind] = {
     **dict.fromkeys((".wav", ".rf64", ".flac", ".w64"), "tape"),
+    **dict.fromkeys((".steps", ".cubic", ".ngc"), "program"),
     **dict.fromkeys((".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".gif", ".webp", ".pgm"), "drawing"),
     **dict.fromkeys((".csv", ".txt", ".tsv"), "path"),
 }
 
 
 def kind_of(file: FilePath) -> Kind:
-    """Tell which kind of file this is; raises FileFault if it cannot be read or is none of the three."""
+    """Tell which kind of file this is; raises FileFault if it cannot be read or is of no kind that is known."""
     try:
         with file.open("rb") as opened:
             first = opened.read(1024)
@@ -82,6 +88,12 @@ def made_up(name: FilePath, *made_from: FilePath, force: bool) -> FilePath:
     if name.exists() and not force:
         raise FileFault(f"{name} is there already; give a name with -o, or --force to write over it")
     return outgoing(name, *made_from)
+
+
+def told(report: Report) -> Figures:
+    """What a recorder tells of its program beyond size and time, where it tells more."""
+    figures: Figures = getattr(report, "figures", {})
+    return figures
 
 
 def incomplete(file: FilePath) -> FilePath:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
@@ -19,7 +19,7 @@ from motion.faults import Fault
 
 if TYPE_CHECKING:
     from motion.motion import Motion, Path
-    from player.machine import Playback
+    from player.controls import Playback
     from recorder.tape import Tape
 
 CYCLES_PER_MM = Quantity("cycles", float, above_zero=True)
@@ -50,14 +50,24 @@ class Controls:
 
     def play(self, file: FilePath, desk: Desk, *, raw: bool = False) -> Played:
         """Play a tape to its end or to its fault; raises the fault if nothing was played before it."""
-        from player.machine import play
+        from player.controls import play
 
+        by_hand = self._by_hand(file)
         desk.warn_of_compiling("the controls", "motion", "player")
-        playback = play(file, reference_hz=self.reference_hz, cycles_per_mm=self.cycles_per_mm, start_mm=self.start_mm)
+        playback = play(file, **by_hand)
         met: list[Fault] = []
         stream = desk.watched(_until_fault(playback, met), f"playing {file.name}", playback.duration_s)
         path = _path(stream, raw, met)
         return Played(path, playback, met[0] if met else None)
+
+    def _by_hand(self, file: FilePath) -> dict[str, Any]:
+        """What was given by hand, which only the control of a tape takes."""
+        from player.controls import TAPE, control_of
+
+        given = {name: value for name, value in asdict(self).items() if value is not None}
+        if given and control_of(file) != TAPE:
+            raise click.UsageError(f"--reference, --cycles-per-mm and --from are for tapes; {file} is none")
+        return given
 
     def play_whole(self, file: FilePath, desk: Desk) -> Path:
         """Play a tape to its end, mm; raises its fault."""

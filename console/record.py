@@ -1,29 +1,37 @@
-"""The verb `record`: a path file becomes a tape."""
+"""The verb `record`: a path file, or a program played on its own control, becomes a program in any medium."""
 
 from __future__ import annotations
 
 from pathlib import Path as FilePath
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from console import medium
 from console.desk import Desk, desk_options
-from console.playing import CYCLES_PER_MM
-from console.quantities import FREQUENCY, SPEED
+from console.playing import CYCLES_PER_MM, Controls
+from console.quantities import FREQUENCY, LENGTH, SPEED
 
-TAPES = (".wav", ".rf64", ".flac")
+if TYPE_CHECKING:
+    from motion.motion import Path
 
 EXAMPLES = """\b
 Examples:
   morfax record cam.csv -o cam.wav
+  morfax record cam.wav -o cam.steps --tolerance 20um
   morfax record outline.csv -o slow.wav --feed 300mm/min
   morfax record cam.csv -o coarse.wav --reference 400Hz --cycles-per-mm 8
 """
 
 
 @click.command("record", epilog=EXAMPLES)
-@click.argument("path", type=medium.FILE)
-@click.option("-o", "output", type=medium.FILE, help="The tape (.wav).  [default: the path's name with .wav, here]")
+@click.argument("source", type=medium.FILE)
+@click.option(
+    "-o",
+    "output",
+    type=medium.FILE,
+    help="The program (.wav, .steps, .cubic, .ngc).  [default: the source's name with .wav, here]",
+)
 @click.option(
     "--feed", "feed_mm_s", type=SPEED, default="10mm/s", show_default=True, help="Speed of a path without times."
 )
@@ -33,44 +41,78 @@ Examples:
 @click.option(
     "--cycles-per-mm", type=CYCLES_PER_MM, default=20.0, show_default=True, help="Cycles of phase per mm of travel."
 )
+@click.option(
+    "--tolerance",
+    "tolerance_mm",
+    type=LENGTH,
+    help="How far the program's path may be off; not for tapes.  [default: the medium's own]",
+)
 @click.option("--force", is_flag=True, help="Write over a tape that is there already under a name not given with -o.")
 @desk_options
 def command(
-    path: FilePath,
+    source: FilePath,
     output: FilePath | None,
     feed_mm_s: float,
     reference_hz: float,
     cycles_per_mm: float,
+    tolerance_mm: float | None,
     force: bool,
     desk: Desk,
 ) -> None:
-    """Record a path file on a tape.
+    """Record a path file, or another program, in the medium that the name after -o says.
 
-    PATH is a CSV file with the columns t_s, x_mm, y_mm, z_mm, tool (x_mm and y_mm, or x and y, are enough; without
-    times the path is run at the feed).
+    SOURCE is a CSV file with the columns t_s, x_mm, y_mm, z_mm, tool (x_mm and y_mm, or x and y, are enough; without
+    times the path is run at the feed), or a program in any medium, which is first played on its own control.
     """
     from motion.contour import length_mm
-    from motion.pathfile import read_path
-    from recorder.tape import TapeFormat, record
+    from recorder.media import record
 
-    tape = _tape(output, path, force)
-    read = read_path(path, feed_mm_s)
+    program = _program(output, source, force)
+    settings = _settings(program, reference_hz, cycles_per_mm, tolerance_mm)
+    read = _path(source, feed_mm_s, desk)
     desk.warn_of_compiling("the recorder", "motion", "recorder")
-    stream = desk.watched(read.motion(), f"recording {tape.name}", float(read.t_s[-1] - read.t_s[0]))
-    recording = record(stream, tape, TapeFormat(reference_hz=reference_hz, cycles_per_mm=cycles_per_mm))
+    stream = desk.watched(read.motion(), f"recording {program.name}", float(read.t_s[-1] - read.t_s[0]))
+    recording = record(stream, program, **settings)
+    length = length_mm(read) if read.tool.any() else 0.0
     desk.figures(
         {
-            "tape": str(tape),
+            ("tape" if program.suffix.lower() in medium.TAPES else "program"): str(program),
             "duration_s": recording.duration_s,
-            "length_mm": length_mm(read) if read.tool.any() else 0.0,
+            "length_mm": length,
             "start_place_mm": read.positions_mm[0],
             "end_place_mm": read.positions_mm[-1],
+            "bits_per_mm": 8 * recording.bytes / length if length else None,
+            **medium.told(recording),
         }
     )
 
 
-def _tape(output: FilePath | None, path: FilePath, force: bool) -> FilePath:
-    """The name for the tape, which can be written; raises FileFault if not."""
+def _program(output: FilePath | None, source: FilePath, force: bool) -> FilePath:
+    """The name for the program, which can be written; raises FileFault if not."""
+    from recorder.media import MEDIA
+
     if output is None:
-        return medium.made_up(FilePath(f"{path.stem}.wav"), path, force=force)
-    return medium.outgoing(medium.with_suffix_in(output, TAPES), path)
+        return medium.made_up(FilePath(f"{source.stem}.wav"), source, force=force)
+    return medium.outgoing(medium.with_suffix_in(output, tuple(MEDIA)), source)
+
+
+def _settings(
+    program: FilePath, reference_hz: float, cycles_per_mm: float, tolerance_mm: float | None
+) -> dict[str, Any]:
+    """What the recorder of this medium is told."""
+    if program.suffix.lower() not in medium.TAPES:
+        return {} if tolerance_mm is None else {"tolerance_mm": tolerance_mm}
+    from recorder.tape import TapeFormat
+
+    if tolerance_mm is not None:
+        raise click.UsageError("--tolerance is not for tapes: a tape holds the motion itself; leave it out")
+    return {"fmt": TapeFormat(reference_hz=reference_hz, cycles_per_mm=cycles_per_mm)}
+
+
+def _path(source: FilePath, feed_mm_s: float, desk: Desk) -> Path:
+    """Read a path file, or play a program."""
+    if medium.kind_of(source) in ("tape", "program"):
+        return Controls().play_whole(source, desk)
+    from motion.pathfile import read_path
+
+    return read_path(source, feed_mm_s)

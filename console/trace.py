@@ -15,8 +15,6 @@ from console.tracing import Head, Traced, head_options
 if TYPE_CHECKING:
     from tracer.drawing import Drawing
 
-TAPES = (".wav", ".rf64", ".flac")
-
 EXAMPLES = """\b
 Examples:
   morfax trace samples/cam.png
@@ -40,7 +38,8 @@ class Outputs:
     "-o",
     "output",
     type=medium.FILE,
-    help="The tape (.wav), or a path file only (.csv).  [default: the drawing's name with .wav, in this folder]",
+    help="The tape (.wav), another program (.steps, .cubic, .ngc), or a path file only (.csv).  [default: the "
+    "drawing's name with .wav, in this folder]",
 )
 @click.option("--path", "path_file", type=medium.FILE, help="Write the head's path as well (.csv).")
 @click.option("--picture", type=medium.FILE, help="Draw the path over the drawing (.png, .svg, .pdf).")
@@ -78,7 +77,9 @@ def _outputs(
     drawing: FilePath, output: FilePath | None, path_file: FilePath | None, picture: FilePath | None, force: bool
 ) -> Outputs:
     """Names for the results, each of which can be written; raises FileFault if not."""
-    for file, suffixes in ((output, (*TAPES, ".csv")), (path_file, (".csv",)), (picture, (".png", ".svg", ".pdf"))):
+    from recorder.media import MEDIA
+
+    for file, suffixes in ((output, (*MEDIA, ".csv")), (path_file, (".csv",)), (picture, (".png", ".svg", ".pdf"))):
         if file is not None:
             medium.outgoing(medium.with_suffix_in(file, suffixes), drawing)
     if output is None:

@@ -66,8 +66,8 @@ class Traced:
         return medium.incomplete(file) if self.fault else file
 
     def record(self, file: FilePath) -> FilePath:
-        """Record the motion on a tape; the tape's name."""
-        from recorder.tape import record
+        """Record the motion on a tape, or in the medium that the name says; the program's name."""
+        from recorder.media import record
 
         record(self.trace, self.name(file))
         return self.name(file)

@@ -4,6 +4,7 @@
     ├── DrawingFault              3      the drawing cannot be used (also a ValueError)
     ├── LineFault                 4      no line where one was asked for, or the line was lost: place and heading
     ├── TapeFault                 5      not a tape, cut short, silent, format unknown (also a ValueError)
+    │   └── ProgramFault          5      not a program of its kind, cut short, garbled, format unknown: line of the file
     ├── LockFault                 6      a drive left the comparator's range: axis, tape time, positions
     ├── MotionFault               7      a motion or path that cannot be recorded: axis, time, speed (also a ValueError)
     └── FileFault                 8      a file that cannot be read or written (also an OSError)
@@ -51,6 +52,14 @@ class TapeFault(Fault, ValueError):
     def __init__(self, message: str, *, time_s: float | None = None) -> None:
         super().__init__(message)
         self.time_s = time_s
+
+
+class ProgramFault(TapeFault):
+    """The file is no program of its medium that can be played; `line` is the line of the file where one is known."""
+
+    def __init__(self, message: str, *, line: int | None = None, time_s: float | None = None) -> None:
+        super().__init__(message, time_s=time_s)
+        self.line = line
 
 
 class LockFault(Fault):

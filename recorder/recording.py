@@ -56,6 +56,11 @@ class Recording:
         return self.frames / self.format.sample_rate_hz
 
     @property
+    def bytes(self) -> int:
+        """Size of the file."""
+        return self.file.stat().st_size
+
+    @property
     def motion_s(self) -> float:
         """Length of the motion alone, s."""
         return self.duration_s - 2 * _dwell_samples(self.format) / self.format.motion_rate_hz

@@ -1,0 +1,78 @@
+"""The controls: which of them plays a program of which suffix.
+
+Signals: a program file in, blocks of Motion out: the simulated machine's own motion, whatever the control. A control is
+only imported when a program asks for it; each has the signature
+
+    play_xxx(file, **by_hand) -> Playback
+
+A file of any other suffix is taken for a magnetic tape, whose control says what is wrong with it if it is none.
+"""
+
+from __future__ import annotations
+
+import importlib
+import os
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path as FilePath
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion.motion import Motion
+
+Array = NDArray[np.float64]
+
+
+class Playback(Protocol):
+    """A program in its machine: iterate for the motion; the figures, one per axis, are those of the last time through.
+
+    `following_error_mm` is the largest, `end_mm` where the machine stands, `end_error_mm` the same against the end that
+    the program states (None before the end, or if it states none).
+    """
+
+    start_mm: Array
+    end_mm: Array
+    following_error_mm: Array
+    end_error_mm: Array | None
+
+    @property
+    def duration_s(self) -> float: ...
+
+    def __iter__(self) -> Iterator[Motion]: ...
+
+
+@dataclass(frozen=True, slots=True)
+class Control:
+    """A control: whose it is, and the function that plays a file on it."""
+
+    what: str
+    module: str
+    function: str
+
+    def player(self) -> Callable[..., Playback]:
+        """Import the control."""
+        player: Callable[..., Playback] = getattr(importlib.import_module(self.module), self.function)
+        return player
+
+
+TAPE = Control("phase-locked drives", "player.machine", "play")
+
+CONTROLS: dict[str, Control] = {
+    ".wav": TAPE,
+    ".rf64": TAPE,
+    ".flac": TAPE,
+    ".steps": Control("stepping motors at selected pulse rates", "player.stepping", "play_steps"),
+    ".cubic": Control("difference interpolator and servo", "player.cubic", "play_cubic"),
+}
+
+
+def control_of(file: str | os.PathLike[str]) -> Control:
+    """The control that plays a file, by its suffix."""
+    return CONTROLS.get(FilePath(file).suffix.lower(), TAPE)
+
+
+def play(file: str | os.PathLike[str], **by_hand: Any) -> Playback:
+    """Put a program in the machine under its own control; raises TapeFault (or ProgramFault) and FileFault."""
+    return control_of(file).player()(file, **by_hand)

@@ -1,0 +1,70 @@
+"""The media: which recorder makes a program of which suffix.
+
+Signals: a stream of Motion in, a program file out, and a report of what was recorded with its `bytes` and its
+`duration_s`. A recorder is only imported when it is asked for; each has the signature
+
+    record_xxx(stream, file, **settings) -> Report
+
+Questions: none of the patents speaks of another's medium; that the suffix of the file tells which it is, is this
+project's own rule.
+"""
+
+from __future__ import annotations
+
+import importlib
+import os
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path as FilePath
+from typing import Any, Protocol
+
+from motion.faults import FileFault
+from motion.motion import Motion, Path
+
+Source = Iterable[Motion] | Motion | Path
+
+
+class Report(Protocol):
+    """What every recorder tells of its program: size of the file in bytes, and how long it runs, s."""
+
+    @property
+    def bytes(self) -> int: ...
+
+    @property
+    def duration_s(self) -> float: ...
+
+
+@dataclass(frozen=True, slots=True)
+class Medium:
+    """A medium: what it is, and the recorder that writes it."""
+
+    what: str
+    module: str
+    function: str
+
+    def recorder(self) -> Callable[..., Report]:
+        """Import the recorder."""
+        recorder: Callable[..., Report] = getattr(importlib.import_module(self.module), self.function)
+        return recorder
+
+
+_TAPE = Medium("magnetic tape", "recorder.tape", "record")
+
+MEDIA: dict[str, Medium] = {
+    ".wav": _TAPE,
+    ".rf64": _TAPE,
+    ".flac": _TAPE,
+    ".steps": Medium("punched tape of step vectors", "recorder.steps", "record_steps"),
+    ".cubic": Medium("differences of cubics", "recorder.cubics", "record_cubics"),
+}
+
+
+def record(stream: Source, file: str | os.PathLike[str], **settings: Any) -> Report:
+    """Record a motion in the medium that the file's suffix names; the settings are that recorder's own.
+
+    Raises FileFault for a suffix that names no medium, and whatever the recorder raises.
+    """
+    medium = MEDIA.get(FilePath(file).suffix.lower())
+    if medium is None:
+        raise FileFault(f"{file} names no medium; its name must end in {', '.join(MEDIA)}")
+    return medium.recorder()(stream, file, **settings)
