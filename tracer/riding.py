@@ -22,10 +22,11 @@ import numpy as np
 from numba import njit
 
 from tracer.course import rounding
-from tracer.knot import Array, Leg, Meeting, View, leg_of, meet, turn
+from tracer.knot import Array, Leg, Meeting, View, end_of, leg_of, meet, turn
 from tracer.photocell import darkness_at, onward
 
 FARTHEST_MM = 40.0
+TIP = math.radians(150)  # a corner that turns by more is a tip
 REGAINED_MM = 1.5  # this much of both edges, and the line is by itself again
 BESIDE = 3.0  # widths; ink that is beside the line for less is a corner or a crossing
 WIDE = 0.62  # of the width, from the middle to the far edge: ink beside the line
@@ -59,8 +60,17 @@ def to_vertex(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> tup
     leaving = leg_of(np.vstack([back[::-1], outgoing.seen]), False, view.leg_mm) if len(back) else outgoing
     met = meet(arriving, leaving)
     if met is None or min(met) < -0.5 * view.width_mm or max(met) > max(legs_mm) + view.width_mm:
-        return incoming, outgoing, legs_mm
-    return arriving, leaving, met
+        arriving, leaving, met = incoming, outgoing, legs_mm
+    return arriving, leaving, _within_ink(view, arriving, leaving, met)
+
+
+def _within_ink(view: View, arriving: Leg, leaving: Leg, met: Meeting) -> Meeting:
+    """Where the legs of a sharp tip meet, but not beyond where the pen turned: lines that are nearly parallel meet anywhere."""
+    if abs(turn(arriving.heading_rad, leaving.heading_rad)) < TIP:
+        return met
+    end = end_of(view, arriving)
+    beyond = 0.0 if end is None else max(0.0, met[0] - end)
+    return met[0] - beyond, met[1] - beyond
 
 
 def _felt_on(view: View, leg: Leg, heading: float, side: float, length_mm: float) -> Array:

@@ -17,6 +17,7 @@ from tracer.knot import Array, Leg, Meeting, View, leg_of, legs_around, meet, re
 from tracer.trail import Trail
 
 STRAIGHT = math.radians(40)  # straight on is within this
+PASSES = math.radians(12)  # two legs in line with each other within this are one line that passes
 FARTHEST_WIDTHS = 6.0  # how far the heading is held through a blot, in widths of the line
 
 
@@ -50,6 +51,8 @@ def _look(view: View, incoming: Leg, trail: Trail, centre: Array, rank: int) -> 
         choices = max(choices, len(legs) + (len(legs) < len(every)))
         if not legs:
             break
+        if rank == 0:
+            legs = _without_pairs(view, incoming, legs, every) or legs
         legs.sort(key=lambda leg: abs(turn(incoming.heading_rad, leg.heading_rad)))
         outgoing = legs[min(rank, len(legs) - 1)]
         legs_mm = meet(incoming, outgoing)
@@ -60,6 +63,20 @@ def _look(view: View, incoming: Leg, trail: Trail, centre: Array, rank: int) -> 
             break
         centre = vertex
     return outgoing, legs_mm, choices
+
+
+def _without_pairs(view: View, incoming: Leg, legs: list[Leg], every: list[Leg]) -> list[Leg]:
+    """The legs that are not the two ends of a line that passes here, straighter than any leg goes on from the incoming one."""
+    taken: list[Leg] = []
+    for i, a in enumerate(every):
+        for b in every[i + 1 :]:
+            bent = abs(turn(a.heading_rad + math.pi, b.heading_rad))
+            gap = b.end_mm - a.end_mm
+            aside = abs(gap[0] * math.sin(a.heading_rad) - gap[1] * math.cos(a.heading_rad))
+            own = min(abs(turn(incoming.heading_rad, leg.heading_rad)) for leg in (a, b))
+            if bent < PASSES and aside < 0.35 * view.width_mm and own > bent + PASSES:
+                taken += [a, b]
+    return [leg for leg in legs if not any(leg is other for other in taken)]
 
 
 def goes_straight(incoming: Leg, outgoing: Leg | None) -> bool:
