@@ -30,8 +30,8 @@ Points = NDArray[np.float64]
 def inked(
     *lines: Points, width_mm: float = WIDTH_MM, dpi: float = DPI, seed: int | None = None, specks: Sequence[Points] = ()
 ) -> Drawing:
-    """The drawing of lines (n, 2) mm on a sheet with a margin above and right of them; specks are filled outlines."""
-    high = np.vstack(lines).max(axis=0) + MARGIN_MM
+    """The drawing of lines (n, 2) mm on a sheet with a margin above and right of all; specks are filled outlines."""
+    high = np.vstack([*lines, *specks]).max(axis=0) + MARGIN_MM
     pixels = np.ceil(high * dpi / MM_PER_INCH).astype(int)
     fine = np.zeros((pixels[1] * OVERSAMPLE, pixels[0] * OVERSAMPLE), np.uint8)
     scale = dpi / MM_PER_INCH * OVERSAMPLE
