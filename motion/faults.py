@@ -6,6 +6,7 @@
     ├── TapeFault                 5      not a tape, cut short, silent, format unknown (also a ValueError)
     │   └── ProgramFault          5      not a program of its kind, cut short, garbled, format unknown: line of the file
     ├── LockFault                 6      a drive left the comparator's range: axis, tape time, positions
+    ├── FollowingFault            6      a drive lags more than its speed explains: axis, time, demand, actual, limit
     ├── MotionFault               7      a motion or path that cannot be recorded: axis, time, speed (also a ValueError)
     └── FileFault                 8      a file that cannot be read or written (also an OSError)
 
@@ -70,6 +71,19 @@ class LockFault(Fault):
     def __init__(self, message: str, *, axis: str, time_s: float, error_cycles: float, position_mm: float) -> None:
         super().__init__(message)
         self.axis, self.time_s, self.error_cycles, self.position_mm = axis, time_s, error_cycles, position_mm
+
+
+class FollowingFault(Fault):
+    """A drive is further behind its demand than the speed of the demand allows (patent ES 414458, figure 1)."""
+
+    exit_code = 6
+
+    def __init__(
+        self, message: str, *, axis: str, time_s: float, demand_mm: float, actual_mm: float, limit_mm: float
+    ) -> None:
+        super().__init__(message)
+        self.axis, self.time_s = axis, time_s
+        self.demand_mm, self.actual_mm, self.limit_mm = demand_mm, actual_mm, limit_mm
 
 
 class MotionFault(Fault, ValueError):
