@@ -17,6 +17,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
@@ -117,16 +118,30 @@ def trace(
     the way is no exception, but the trace's `fault`.
     """
     settings, work = settings or Settings(), work or Work()
-    stance, length_mm = put_down(drawing, start_mm, settings.aperture_mm, settings.line_width_mm)
-    told = None if progress is None else lambda come_mm: progress(min(come_mm, length_mm), length_mm)
-    longest_mm = 4 * length_mm + 20
+    best: Followed | None = None
+    for stance, length_mm in put_down(drawing, start_mm, settings.aperture_mm, settings.line_width_mm):
+        told = None if progress is None else partial(_tell, progress, length_mm)
+        run = _all_of_it(stance, settings, 4 * length_mm + 20, told)
+        best = run if best is None or run.travel_mm > best.travel_mm else best
+        if run.ending == "closed" or run.travel_mm > 0.5 * length_mm:
+            break
+    assert best is not None  # put_down gives a stance, or raises
+    return Trace(best.positions_mm, best.ending, best.view.width_mm, best.travel_mm, best.fault, work)
+
+
+def _tell(progress: Callable[[float, float], None], length_mm: float, come_mm: float) -> None:
+    progress(min(come_mm, length_mm), length_mm)
+
+
+def _all_of_it(stance: Stance, settings: Settings, longest_mm: float, told: Callable[[float], None] | None) -> Followed:
+    """Follow a line from a stance: an open one from end to end, and one that does not come back with another turn."""
     run = Follower(stance, settings, MOTION_RATE_HZ).follow(longest_mm, told)
     if run.ending == "ended" and not stance.at_end:
-        stance = turned_round(run.positions_mm[-1], run.heading_rad, run.view)
-        run = Follower(stance, settings, MOTION_RATE_HZ).follow(longest_mm, told)
-    elif run.ending == "joined" and not stance.at_end:
-        run = _with_another_turn(stance, settings, longest_mm, run)
-    return _trace(run, stance.view.width_mm, work)
+        back = turned_round(run.positions_mm[-1], run.heading_rad, run.view)
+        return max(run, Follower(back, settings, MOTION_RATE_HZ).follow(longest_mm, told), key=lambda r: r.travel_mm)
+    if run.ending == "joined" and not stance.at_end:
+        return _with_another_turn(stance, settings, longest_mm, run)
+    return run
 
 
 def _with_another_turn(stance: Stance, settings: Settings, longest_mm: float, run: Followed) -> Followed:
@@ -136,10 +151,6 @@ def _with_another_turn(stance: Stance, settings: Settings, longest_mm: float, ru
     ]
     closed = [other for other in others if other.ending == "closed"]
     return min(closed, key=lambda other: other.travel_mm, default=run)
-
-
-def _trace(run: Followed, width_mm: float, work: Work) -> Trace:
-    return Trace(run.positions_mm, run.ending, width_mm, run.travel_mm, run.fault, work)
 
 
 def _standing(xy_mm: Array, z_mm: Array) -> Array:

@@ -11,6 +11,7 @@ Source: patent ES 361967, section on use: the operator brings the head over the 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -42,8 +43,8 @@ def turned_round(end_mm: Array, heading_rad: float, view: View) -> Stance:
 
 def put_down(
     drawing: Drawing, start_mm: tuple[float, float] | None, aperture_mm: float, line_width_mm: float | None
-) -> tuple[Stance, float]:
-    """Put the head down near a place, or on the longest line: at an open end if it has one, else where it is smooth; and the line's length, mm.
+) -> Iterator[tuple[Stance, float]]:
+    """Put the head down near a place, or on the longest line: at an open end if it has one, then where it is smooth; and the line's length, mm.
 
     Raises LineFault if there is no line near the place, or no clean stretch on the line.
     """
@@ -52,17 +53,17 @@ def put_down(
     stroke = sheet.longest() if start_mm is None else sheet.nearest(start_mm, catch_mm)
     width_mm = line_width_mm or stroke.width_mm
     view = View(photocell.behind_aperture(drawing, aperture_mm), drawing.pitch_mm, width_mm, LEVEL)
-    if start_mm is None:
-        at_end = _at_an_end(view, stroke)
-        if at_end is not None:
-            return at_end, stroke.length_mm
+    at_end = _at_an_end(view, stroke) if start_mm is None else None
+    if at_end is not None:
+        yield at_end, stroke.length_mm
     stances = _stances(view, _tried(stroke, start_mm, catch_mm))
-    if not stances:
+    if stances:
+        yield max(stances, key=lambda s: s[0])[1], stroke.length_mm
+    elif at_end is None:
         raise LineFault(
             f"no clean stretch of line to start on, {stroke.length_mm:.0f} mm of line {width_mm:.2f} mm wide;"
             " give --line-width, or --start X,Y at a plain stretch"
         )
-    return max(stances, key=lambda s: s[0])[1], stroke.length_mm
 
 
 def _tried(stroke: Stroke, start_mm: tuple[float, float] | None, catch_mm: float) -> Array:
