@@ -56,14 +56,14 @@ Anchor = tuple[Array, float, float]  # a place from which on the line is clean, 
 class Follower:
     """A head on a line of a drawing."""
 
-    def __init__(self, stance: Stance, settings: Settings, rate_hz: float, turn_at: int | None = None) -> None:
-        """Put a head down at a stance. At junction number `turn_at` it takes the second straightest leg."""
+    def __init__(self, stance: Stance, settings: Settings, rate_hz: float, turns: tuple[int, ...] = ()) -> None:
+        """Put a head down at a stance. At the junctions numbered in `turns` it takes the second straightest leg."""
         self.view, self.settings, self.rate_hz, self.stance = stance.view, settings, rate_hz, stance
         self.tuning = tune(stance, settings, rate_hz)
         self.state = np.zeros(head.STATES)
         self.state[[head.X, head.Y]] = stance.place_mm
         self.state[head.INK] = 1.0
-        self.junctions, self._turn_at = 0, turn_at
+        self.junctions, self._turns = 0, turns
         self._drum = np.zeros((head.DRUM, 2))
         self._parts: list[Array] = [stance.place_mm[None].copy()]
         self._trail = Trail(stance.place_mm, self.view.step_mm)
@@ -155,7 +155,7 @@ class Follower:
 
     def _rank(self) -> int:
         """Which leg to take here if there are several: the straightest (0), or the next straightest where the turn is to be changed."""
-        return 1 if self.junctions == self._turn_at else 0
+        return 1 if self.junctions in self._turns else 0
 
     def _course(self, incoming: Leg, outgoing: Leg, legs_mm: Meeting | None) -> tuple[list[Array], Leg]:
         """Stretches from where the head is to the outgoing leg's clean end, and that leg."""

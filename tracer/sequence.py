@@ -18,6 +18,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import partial
+from itertools import combinations
 
 import numpy as np
 
@@ -29,7 +30,7 @@ from tracer.knot import Array
 from tracer.settings import Settings
 from tracer.stance import Stance, put_down, turned_round
 
-TURNS = 32  # junctions at which another turn is tried
+TURNS = 12  # junctions at which another turn is tried
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,17 +141,19 @@ def _all_of_it(stance: Stance, settings: Settings, longest_mm: float, told: Call
         back = turned_round(run.positions_mm[-1], run.heading_rad, run.view)
         return max(run, Follower(back, settings, MOTION_RATE_HZ).follow(longest_mm, told), key=lambda r: r.travel_mm)
     if run.ending == "joined" and not stance.at_end:
-        return _with_another_turn(stance, settings, longest_mm, run)
+        return _with_other_turns(stance, settings, longest_mm, run)
     return run
 
 
-def _with_another_turn(stance: Stance, settings: Settings, longest_mm: float, run: Followed) -> Followed:
-    """The shortest run that closes because it takes another turn at one of the junctions; else the run as it was."""
-    others = [
-        Follower(stance, settings, MOTION_RATE_HZ, k).follow(longest_mm) for k in range(min(run.junctions, TURNS))
-    ]
-    closed = [other for other in others if other.ending == "closed"]
-    return min(closed, key=lambda other: other.travel_mm, default=run)
+def _with_other_turns(stance: Stance, settings: Settings, longest_mm: float, run: Followed) -> Followed:
+    """The shortest run that closes because it takes another turn at one junction, or else at two; else the run as it was."""
+    places = range(min(run.junctions, TURNS))
+    for turns in ([(k,) for k in places], list(combinations(places, 2))):
+        others = [Follower(stance, settings, MOTION_RATE_HZ, t).follow(longest_mm) for t in turns]
+        closed = [other for other in others if other.ending == "closed"]
+        if closed:
+            return min(closed, key=lambda other: other.travel_mm)
+    return run
 
 
 def _standing(xy_mm: Array, z_mm: Array) -> Array:
