@@ -1,0 +1,227 @@
+"""The whole way round: a drawing is traced, the motion recorded, the tape played, and the played contour is the drawn one.
+
+Bounds of drawings are the issue's; where it is measured to be far better, the bound stands at about one and a half times what was measured (in brackets,
+RMS/largest, um), so that a change for the worse is seen. Distances are exact, between polylines, of `motion.contour`.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+from dataclasses import dataclass
+from pathlib import Path as FilePath
+from types import ModuleType
+
+import numpy as np
+import pytest
+import soundfile
+from numpy.typing import NDArray
+from PIL import Image
+
+from motion.contour import Distances, closure_mm, distance, length_mm
+from motion.motion import Path, join, thin
+from player.machine import play
+from recorder.tape import TapeFormat, record
+from tests.tracer.inked import UM, inked, polyline
+from tracer.deviation import deviation
+from tracer.drawing import Drawing
+from tracer.sequence import Trace, trace
+
+Array = NDArray[np.float64]
+SAMPLES = FilePath(__file__).parents[2] / "samples"
+PLAYED_RMS_MM, PLAYED_MAX_MM = 0.5 * UM, 3 * UM  # the issue's: a tenth of a cycle of 50 um, and less
+CLOSED_WITHIN_MM = 20 * UM
+SKIPPED = "no folder ../shared beside the repository: its drawings and vectors are not part of it"
+
+
+@dataclass(frozen=True)
+class Case:
+    """A drawing and what its path must reach against the truth: RMS and largest distance, mm."""
+
+    name: str
+    rms_mm: float
+    max_mm: float
+    ending: str = "closed"
+    loops: tuple[int, ...] | None = None
+    size_mm: float | None = None
+    dpi: float = 300.0
+    scan: bool = True
+    skew_deg: float = 0.0
+    seed: int = 1
+
+    def __str__(self) -> str:
+        return f"{self.name}-{self.dpi:g}dpi" + (f"-{self.skew_deg:g}deg" if self.skew_deg else "")
+
+
+def hold(found: Distances, rms_mm: float, max_mm: float) -> None:
+    """Both ways: what the path does wrong, and what it misses."""
+    for way in (found.path_to_reference, found.reference_to_path):
+        assert way.rms_mm < rms_mm and way.max_mm < max_mm, str(found)
+
+
+def taped(run: Trace, file: FilePath) -> Path:
+    """Record a trace and play the tape."""
+    record(run, file, TapeFormat())
+    return thin(play(file))
+
+
+# the samples
+
+
+SHARP_AND_SMOOTH = [
+    Case("cam", 4 * UM, 15 * UM),
+    Case("curve", 4 * UM, 30 * UM, "ended"),  # an end is seen in the pen's round, 30 um
+    Case("bracket", 4 * UM, 25 * UM),
+    Case("gear", 5 * UM, 40 * UM),
+]
+
+
+@pytest.mark.parametrize("case", SHARP_AND_SMOOTH, ids=str)
+def test_a_sample_comes_off_the_machine_as_it_was_drawn(tmp_path: FilePath, case: Case) -> None:
+    drawing = Drawing.open(SAMPLES / f"{case.name}.png")
+    truth = np.loadtxt(SAMPLES / f"{case.name}.csv", delimiter=",", skiprows=1)
+    truth = truth[truth[:, 0] == 0, 1:]  # the outline; the bracket's slot is another line
+    run = trace(drawing)
+    played = taped(run, tmp_path / "tape.wav")
+    assert run.ending == case.ending
+    hold(distance(played, truth), case.rms_mm, case.max_mm)
+    hold(distance(played, thin(run)), PLAYED_RMS_MM, PLAYED_MAX_MM)
+    assert length_mm(played) == pytest.approx(length_mm(truth), rel=0.002)  # once, nothing doubled
+    if case.ending == "closed":
+        assert closure_mm(played) < CLOSED_WITHIN_MM
+    found = deviation(drawing, played)
+    assert found.rms_mm < 5 * UM  # the other measure, of the ink and not of the truth, agrees
+    assert np.ptp(played.positions_mm[:, 2]) == pytest.approx(7.0, abs=1 * UM)  # 2 above to 5 below
+
+
+# real parts, drawn and scanned
+
+
+PARTS = [
+    Case("v04_star.ngc", 3.5 * UM, 16 * UM),  # issue 4/25 um (2.3/10)
+    Case("v16_spiral_open.dxf", 4 * UM, 25 * UM, "ended"),  # issue 4/25 um (3.0/22: its ends)
+    Case("v01_scroll_fixed.ngc", 4 * UM, 40 * UM),  # issue 4/40 um (3.1/16)
+    Case("v07_wrench_plasma.ngc", 4 * UM, 40 * UM, "", (0,)),  # issue 25/250 um (2.3/22)
+    Case("v13_fork_part.dxf", 4 * UM, 25 * UM, loops=(0,)),  # issue 25/250 um (2.2/12)
+    Case("v21_voron_deck.dxf", 4 * UM, 40 * UM, size_mm=100.0),  # issue 25/250 um at 200 mm (2.1/11)
+    Case("v06_dolphin.ngc", 5 * UM, 70 * UM),  # issue 60/700 um, sharp tips (2.8/22)
+    Case("v11_stretching_cat.dxf", 7 * UM, 150 * UM),  # issue 60/700 um, sharp tips (3.7/93)
+    Case("v04_star.ngc", 1.6 * UM, 10 * UM, dpi=600.0, scan=False),  # issue 2.5 um RMS (1.0/6)
+    Case("v16_spiral_open.dxf", 2.5 * UM, 15 * UM, "ended", dpi=600.0, scan=False),  # issue 2.5 um RMS (2.1/6)
+    Case("v01_scroll_fixed.ngc", 2.5 * UM, 15 * UM, dpi=600.0, scan=False),  # issue 2.5 um RMS (2.3/10)
+    Case("v04_star.ngc", 4 * UM, 25 * UM, skew_deg=7.0, seed=2),  # turned on the sheet, other noise: issue 4/25 um
+]
+
+
+@pytest.fixture(scope="module")
+def render() -> ModuleType:
+    """The script that draws the parts."""
+    file = FilePath(__file__).parents[3] / "shared" / "drawings" / "render.py"
+    if not file.is_file():
+        pytest.skip(SKIPPED)
+    spec = importlib.util.spec_from_file_location("render", file)
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def drawn(case: Case, render: ModuleType, folder: FilePath) -> tuple[Drawing, list[Array]]:
+    """A part as an image file, opened, and its truth on the sheet."""
+    truth = FilePath(render.__file__ or "").parent / "truth" / f"{case.name}.csv"
+    loops = render.read_truth(truth, None if case.loops is None else set(case.loops))
+    loops, sheet_mm = render.place(loops, 8.0, case.size_mm, case.skew_deg)
+    ink = render.ink(loops, sheet_mm, case.dpi, 0.5)
+    image = render.photograph(ink, case.dpi, case.scan, np.random.default_rng(case.seed))
+    file = folder / "part.png"
+    Image.fromarray(image).save(file, dpi=(case.dpi, case.dpi), compress_level=1)
+    return Drawing.open(file), list(loops.values())
+
+
+@pytest.mark.parametrize("case", PARTS, ids=str)
+def test_a_part_is_one_path_nothing_missed_nothing_doubled(tmp_path: FilePath, render: ModuleType, case: Case) -> None:
+    drawing, truth = drawn(case, render, tmp_path)
+    run = trace(drawing)
+    assert run.fault is None and run.ending == (case.ending or run.ending)
+    hold(distance(run.xy_mm[::6], truth), case.rms_mm, case.max_mm)
+    assert run.length_mm == pytest.approx(length_mm(truth), rel=0.01)  # the cat has spikes narrower than the pen
+    if run.ending == "closed":
+        assert np.hypot(*(run.xy_mm[-1] - run.xy_mm[0])) < CLOSED_WITHIN_MM
+
+
+@pytest.mark.parametrize("case", [PARTS[0], PARTS[3], PARTS[6]], ids=str)
+def test_a_part_is_played_as_it_was_traced(tmp_path: FilePath, render: ModuleType, case: Case) -> None:
+    drawing, truth = drawn(case, render, tmp_path)
+    run = trace(drawing)
+    playback_file = tmp_path / "part.wav"
+    played = taped(run, playback_file)
+    hold(distance(played, thin(run)), PLAYED_RMS_MM, PLAYED_MAX_MM)
+    hold(distance(played, truth), case.rms_mm, case.max_mm)
+
+
+# a real tape machine
+
+
+@pytest.fixture(scope="module")
+def star() -> Trace:
+    """A closed line of 55 mm with ten sharp corners, of which half are tips."""
+    angle = np.arange(11) * np.pi / 5
+    radius = np.where(np.arange(11) % 2, 4.5, 9.0)
+    return trace(
+        inked(np.array([14.0, 14.0]) + radius[:, None] * np.column_stack([np.cos(angle), np.sin(angle)]), seed=1)
+    )
+
+
+def worn(file: FilePath, flutter: float, noise_db: float) -> FilePath:
+    """A tape as a tape machine gives it back: flutter of 8 Hz on all tracks together, noise below the carrier."""
+    with soundfile.SoundFile(file) as sound:
+        frames, rate_hz, text = sound.read(), sound.samplerate, sound.comment
+    w = 2 * np.pi * 8.0
+    t_s = np.arange(len(frames)) / rate_hz
+    fluttered = interpolated(frames, (t_s + flutter * (1 - np.cos(w * t_s)) / w) * rate_hz)
+    level = np.sqrt(np.mean(frames[:, 0] ** 2))
+    fluttered += np.random.default_rng(1969).normal(0, level * 10 ** (-noise_db / 20), fluttered.shape)
+    out = file.with_name("worn.wav")
+    with soundfile.SoundFile(out, "w", rate_hz, frames.shape[1], "PCM_16") as sound:
+        sound.comment = text
+        sound.write(np.clip(fluttered, -1, 1))
+    return out
+
+
+def interpolated(frames: Array, at: Array) -> Array:
+    """Frames at places between them: 32 taps of a windowed sinc, 80 dB at 10 kHz of 48."""
+    first = np.floor(at).astype(int) - 15
+    out = np.zeros_like(frames)
+    for k in range(32):
+        x = at - (first + k)
+        weight = np.sinc(x) * np.cos(np.pi * np.clip(x / 33, -0.5, 0.5)) ** 2
+        out += weight[:, None] * frames[np.clip(first + k, 0, len(frames) - 1)]
+    return out
+
+
+def test_a_worn_tape_loses_no_cycle(tmp_path: FilePath, star: Trace) -> None:
+    """40 dB signal to noise and 0.5 % flutter on all tracks, as the issue has it."""
+    file = tmp_path / "star.wav"
+    record(star, file, TapeFormat())
+    playback = play(worn(file, 0.005, 40.0))
+    played = thin(playback)
+    hold(distance(played, thin(star)), 1 * UM, 4 * UM)
+    assert playback.end_error_mm == pytest.approx((0, 0, 0), abs=1 * UM)  # a cycle lost would be 50 um
+
+
+def test_the_machine_ends_where_the_head_did(tmp_path: FilePath, star: Trace) -> None:
+    file = tmp_path / "star.wav"
+    recording = record(star, file, TapeFormat())
+    motion = join(play(file)).positions_mm
+    assert motion[-1] == pytest.approx([*star.xy_mm[-1], star.work.clearance_mm], abs=0.1 * UM)  # noise of 16 bit
+    assert recording.duration_s == pytest.approx(star.duration_s + 2.0, abs=0.01)  # a second of standstill at both ends
+
+
+def test_a_path_beside_the_truth_is_not_let_through() -> None:
+    """The measure itself: 20 um aside, half the line, the line run twice as far."""
+    line = polyline((0, 0), (10, 0), (10, 10))
+    aside, half = line + np.array([0.02, -0.02]), line[:2]
+    with pytest.raises(AssertionError):
+        hold(distance(aside, line), 5 * UM, 40 * UM)
+    with pytest.raises(AssertionError):
+        hold(distance(half, line), 5 * UM, 40 * UM)
+    assert length_mm(np.vstack([line, line[::-1]])) == pytest.approx(2 * length_mm(line))
