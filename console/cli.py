@@ -25,6 +25,7 @@ VERBS = {
     "run": "Go the whole way: trace a drawing, play the tape, compare all three.",
     "inspect": "Say what is on a tape: tracks, carriers, levels, travel, format.",
     "record": "Record a path file, or another program, in the medium that the name after -o says.",
+    "age": "Wear a tape as a real recorder and the years do.",
 }
 
 EXIT_CODES = """\b

@@ -2,7 +2,7 @@
 
 A file's kind is read off its first bytes, and off its name where they say nothing:
 
-    tape      RIFF, RF64, fLaC            or  .wav .rf64 .flac
+    tape      RIFF, RF64, fLaC, FORM, riff  or  .wav .rf64 .flac .aiff .w64
     program   any other text              and .steps .cubic .ngc
     drawing   PNG, JPEG, TIFF, BMP, …     or  .png .jpg .tif …
     path      any other text              or  .csv
@@ -38,6 +38,8 @@ _FIRST_BYTES: dict[bytes, Kind] = {
     b"RIFF": "tape",
     b"RF64": "tape",
     b"fLaC": "tape",
+    b"FORM": "tape",
+    b"riff": "tape",
     b"\x89PNG": "drawing",
     b"\xff\xd8\xff": "drawing",
     b"II*\0": "drawing",
@@ -46,7 +48,7 @@ _FIRST_BYTES: dict[bytes, Kind] = {
     b"GIF8": "drawing",
 }
 _SUFFIXES: dict[str, Kind] = {
-    **dict.fromkeys((".wav", ".rf64", ".flac", ".w64"), "tape"),
+    **dict.fromkeys((".wav", ".rf64", ".flac", ".w64", ".aiff", ".aif"), "tape"),
     **dict.fromkeys((".steps", ".cubic", ".ngc"), "program"),
     **dict.fromkeys((".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".gif", ".webp", ".pgm"), "drawing"),
     **dict.fromkeys((".csv", ".txt", ".tsv"), "path"),

@@ -1,6 +1,6 @@
 """The recording: a stream of Motion becomes a sound file with a carrier per track.
 
-Signals: Motion in, at the format's motion rate; a WAV, RF64 or FLAC out. One block is held at a time, however long the
+Signals: Motion in, at the format's motion rate; a sound file out (see spool.py). One block is held at a time, however long the
 tape. The tape starts and ends with standstill, the reference frequency on all tracks:
 
     speed            ___________
@@ -24,15 +24,14 @@ import numpy as np
 import soundfile
 from numpy.typing import NDArray
 
-from motion.faults import FileFault, MotionFault, TapeFault
+from motion.faults import MotionFault
 from motion.files import disk_full_fault, written_beside
 from motion.motion import Motion, Path
 from recorder.carrier import Carrier, Frames
 from recorder.riff import make_plain, replace_text
+from recorder.spool import Spool, medium, sidecar
 from recorder.tapeformat import TapeFormat
 
-_CONTAINERS = {".wav": "RF64", ".rf64": "RF64", ".flac": "FLAC"}
-_SUBTYPES = {"16": "PCM_16", "24": "PCM_24", "32": "PCM_32", "float": "FLOAT"}
 _BLOCK_SAMPLES = 8192  # a megabyte of frames, which stays in the processor's cache
 _PLACE_DECIMALS = 6  # of the start and end in the text chunk: a nanometre
 _PLACE_CHARACTERS = 24  # room for one coordinate of the end
@@ -78,14 +77,14 @@ def record(
     progress: Progress | None = None,
     sample: str = "16",
 ) -> Recording:
-    """Record a motion as a tape: .wav (RF64 inside from 4 GiB on), .rf64 or .flac, samples "16", "24", "32" or "float".
+    """Record a motion as a tape: .wav (RF64 inside from 4 GiB on), .rf64, .w64, .flac or .aiff, samples as in SUBTYPES.
 
     Start and end in `fmt` are those of the motion, whatever is given. `progress(done_s, total_s)` is called after each
     block; the total is None where a stream does not tell. Raises MotionFault for a motion that is empty, of another
     rate, not finite or too fast, and FileFault; nothing is left under the name then.
     """
     fmt = fmt or TapeFormat()
-    container, subtype = _medium(FilePath(file), sample)
+    kind = medium(FilePath(file), sample)
     blocks = _blocks(stream, fmt)
     first = next(blocks, None)
     if first is None:
@@ -94,10 +93,10 @@ def record(
     tape = _Take(fmt, first[0], progress, _total_s(stream))
     with written_beside(file) as beside:
         try:
-            with _opened(beside, fmt, container, subtype) as out:
+            spool = Spool(beside, fmt.sample_rate_hz, fmt.tracks, kind, _placeholder(fmt), name=FilePath(file))
+            with spool as out:
                 for frames in tape.frames(chain([first], blocks)):
-                    _put(out, frames)
-            _check_whole(beside, tape.count)
+                    out.put(frames)
         except soundfile.SoundFileError as error:
             raise disk_full_fault(file) from error
         fmt = replace(fmt, end_mm=_place(tape.last_mm))
@@ -195,43 +194,12 @@ def _too_fast(fmt: TapeFormat, axis: int, time_s: float, speed_mm_s: float) -> M
     return MotionFault(message, axis=fmt.axes[axis], time_s=time_s, speed_mm_s=speed_mm_s)
 
 
-def _medium(file: FilePath, sample: str) -> tuple[str, str]:
-    """Container and kind of sample for libsndfile."""
-    if sample not in _SUBTYPES:
-        raise ValueError(f"sample is {sample!r}; it must be one of {', '.join(_SUBTYPES)}")
-    suffix = file.suffix.lower()
-    if suffix not in _CONTAINERS:
-        raise FileFault(f"cannot write {file}: a tape's name ends in {', '.join(_CONTAINERS)}; give it one of these")
-    if suffix == ".flac" and sample not in ("16", "24"):
-        raise TapeFault(f"a FLAC has no samples of {sample}; it takes 16 or 24 bit: write a .wav for more")
-    return _CONTAINERS[suffix], _SUBTYPES[sample]
-
-
-def _opened(beside: FilePath, fmt: TapeFormat, container: str, subtype: str) -> soundfile.SoundFile:
-    """The sound file, open, with the text chunk in its header."""
-    out = soundfile.SoundFile(beside, "w", fmt.sample_rate_hz, fmt.tracks, subtype, format=container)
-    out.comment = _placeholder(fmt)
-    return out
-
-
-def _put(out: soundfile.SoundFile, frames: Frames) -> None:
-    """Write frames; raises SoundFileRuntimeError when the disk takes only a part."""
-    try:
-        out.write(frames)
-    except AssertionError:  # soundfile asserts that libsndfile wrote all of it
-        raise soundfile.SoundFileRuntimeError("not all frames were written") from None
-
-
-def _check_whole(beside: FilePath, frames: int) -> None:
-    """Raise SoundFileError unless the last frame is there: a FLAC meets the full disk only when it is closed."""
-    with soundfile.SoundFile(beside) as written:
-        written.seek(frames - 1)
-        if written.frames != frames or len(written.read(1)) != 1:
-            raise soundfile.SoundFileRuntimeError("the last frame is missing")
-
-
 def _finish(beside: FilePath, fmt: TapeFormat, file: FilePath) -> None:
     """Put the end position in, and make an RF64 that is small enough and not asked for a plain WAV."""
+    if file.suffix.lower() == ".w64":
+        with written_beside(sidecar(file)) as text:
+            text.write_text(fmt.to_json() + "\n", encoding="utf-8")
+        return
     replace_text(beside, _placeholder(fmt), fmt.to_json())
     if file.suffix.lower() == ".wav":
         make_plain(beside)

@@ -47,9 +47,13 @@ class Sizes:
 
 
 def read_sizes(file: str | os.PathLike[str]) -> Sizes | None:
-    """Sizes of a WAV or RF64; None if it is neither, or has no data chunk."""
+    """Sizes of a WAV, RF64, W64 or AIFF; None if it is none of them, or has no data chunk."""
     with Path(file).open("rb") as opened:
-        kind = opened.read(12)
+        kind = opened.read(24)
+        if kind[:4] in (b"FORM", b"riff") and len(kind) == 24:
+            return _whole_file(kind, os.fstat(opened.fileno()).st_size)
+        opened.seek(12)
+        kind = kind[:12]
         if len(kind) < 12 or kind[:4] not in (b"RIFF", b"RF64", b"BW64") or kind[8:] != b"WAVE":
             return None
         end = os.fstat(opened.fileno()).st_size
@@ -88,6 +92,12 @@ def _name_samples_plainly(opened: BinaryIO, format_at: int) -> None:
     if body[:2] == _EXTENSIBLE and len(body) == 40:
         opened.seek(format_at)
         opened.write(body[24:26])
+
+
+def _whole_file(head: bytes, held: int) -> Sizes:
+    """Sizes of an AIFF or a W64, whose outermost chunk says how long the whole file is."""
+    stated = struct.unpack(">I", head[4:8])[0] + 8 if head[:4] == b"FORM" else struct.unpack("<Q", head[16:24])[0]
+    return Sizes(head[:4], 0, 0, stated, held)
 
 
 def _find_data(opened: BinaryIO, kind: bytes, end: int) -> Sizes | None:

@@ -25,7 +25,8 @@ from motion.faults import FileFault, TapeFault
 from recorder.carrier import Frames
 from recorder.recording import Recording, record
 from recorder.riff import read_sizes
-from recorder.tapeformat import TapeFormat, is_format_text
+from recorder.spool import sidecar
+from recorder.tapeformat import LARGEST_TEXT_BYTES, TapeFormat, is_format_text
 
 __all__ = ["Recording", "Tape", "TapeFormat", "record"]
 
@@ -97,7 +98,7 @@ class Tape:
     @property
     def text(self) -> str:
         """The text chunk as it stands in the file; empty if there is none."""
-        return str(self._sound.comment).strip()
+        return _text(self.file, self._sound).strip()
 
     def blocks(self, frames: int = BLOCK_FRAMES) -> Iterator[Frames]:
         """The tape from its start in blocks (n, tracks) of so many frames, the last one shorter."""
@@ -192,7 +193,7 @@ def _format(file: FilePath, sound: soundfile.SoundFile, by_hand: dict[str, float
 
 def _stated(file: FilePath, sound: soundfile.SoundFile) -> TapeFormat | None:
     """The format in the text chunk; None if there is none."""
-    text = str(sound.comment)
+    text = _text(file, sound)
     if not is_format_text(text):
         return None
     try:
@@ -205,6 +206,18 @@ def _stated(file: FilePath, sound: soundfile.SoundFile) -> TapeFormat | None:
             f"{', '.join(fmt.axes)}; take the file as it was recorded"
         )
     return fmt
+
+
+def _text(file: FilePath, sound: soundfile.SoundFile) -> str:
+    """The text chunk, or what a file beside the tape says in its place (a W64 has none)."""
+    text = str(sound.comment)
+    if text.strip():
+        return text
+    try:
+        with sidecar(file).open("rb") as beside:
+            return beside.read(LARGEST_TEXT_BYTES + 1).decode("utf-8", "replace")
+    except OSError:
+        return ""
 
 
 def _unnamed(sound: soundfile.SoundFile, given: dict[str, Any]) -> TapeFormat:
