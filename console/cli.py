@@ -9,9 +9,12 @@ from __future__ import annotations
 import errno
 import importlib
 import os
+import signal
 import sys
+import threading
 import traceback
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 
 import click
 
@@ -40,7 +43,7 @@ Exit codes:
   7  a motion that cannot be recorded
   8  a file that cannot be read or written
  70  a mistake in morfax itself
-130  interrupted
+130  interrupted by Ctrl-C (143: asked to end, 129: the terminal was closed)
 
 \b
 Examples:
@@ -52,7 +55,6 @@ Examples:
 CONTEXT = {"help_option_names": ["-h", "--help"], "max_content_width": 100}
 NO_MEMORY = "not enough memory; scan the drawing at a lower resolution, or cut out the part to be traced"
 MISTAKE = 70  # EX_SOFTWARE of sysexits.h
-INTERRUPTED = 130  # 128 + SIGINT, as a shell says it
 
 
 class Verbs(click.Group):
@@ -89,6 +91,12 @@ def cli() -> None:
 def main(words: Sequence[str] | None = None) -> int:
     """Run the command line; the exit code. Whatever goes wrong ends as one line on stderr."""
     kernels.choose_cache()
+    with _stopped_by_signals():
+        return _ended(words)
+
+
+def _ended(words: Sequence[str] | None) -> int:
+    """Run the verb, and tell how it ended."""
     try:
         outcome = cli.main(args=None if words is None else list(words), prog_name="morfax", standalone_mode=False)
         sys.stdout.flush()
@@ -98,8 +106,8 @@ def main(words: Sequence[str] | None = None) -> int:
         return nothing_asked.exit_code
     except click.ClickException as wrong_use:
         return _say(_told(wrong_use), wrong_use.exit_code)
-    except (click.Abort, KeyboardInterrupt):
-        return _say("interrupted; no unfinished file was left under its final name", INTERRUPTED)
+    except (click.Abort, KeyboardInterrupt) as stop:
+        return _say("interrupted; no unfinished file was left under its final name", 128 + _signal_of(stop))
     except Fault as fault:
         return _say(str(fault), fault.exit_code)
     except SystemExit:  # what click makes of a broken pipe
@@ -113,6 +121,32 @@ def main(words: Sequence[str] | None = None) -> int:
             traceback.print_exc()
         told = " ".join(str(error).split())
         return _say(f"a mistake in morfax: {type(error).__name__}: {told} (MORFAX_TRACEBACK=1 shows where)", MISTAKE)
+
+
+@contextmanager
+def _stopped_by_signals() -> Iterator[None]:
+    """Have the signals that ask a program to end stop the work as Ctrl-C does, so that unfinished files are removed."""
+
+    def stop(number: int, frame: object) -> None:
+        raise KeyboardInterrupt(number)
+
+    before = {}
+    if threading.current_thread() is threading.main_thread():  # no other one may
+        for name in ("SIGTERM", "SIGHUP"):
+            number = getattr(signal, name, None)  # SIGHUP: not on every system; ignored under nohup
+            if number is not None and signal.getsignal(number) is not signal.SIG_IGN:
+                before[number] = signal.signal(number, stop)
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def _signal_of(stop: BaseException) -> int:
+    """The number of the signal that interrupted: what click makes of it has it as its cause."""
+    cause = stop.__cause__ or stop
+    return int(cause.args[0]) if cause.args and isinstance(cause.args[0], int) else int(signal.SIGINT)
 
 
 def _say(message: str, exit_code: int) -> int:

@@ -103,10 +103,10 @@ def incomplete(file: FilePath) -> FilePath:
     return file.with_name(f"{file.stem}.incomplete{file.suffix}")
 
 
-def with_suffix_in(file: FilePath, suffixes: tuple[str, ...]) -> FilePath:
+def with_suffix_in(file: FilePath, suffixes: tuple[str, ...], option: str = "-o") -> FilePath:
     """The file itself if its name ends in one of the suffixes; else wrong use of the command line."""
     if file.suffix.lower() not in suffixes:
-        raise click.BadParameter(f"{str(file)!r} must end in {', '.join(suffixes)}", param_hint="'-o'")
+        raise click.BadParameter(f"{str(file)!r} must end in {', '.join(suffixes)}", param_hint=f"'{option}'")
     return file
 
 

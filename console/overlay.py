@@ -9,6 +9,7 @@ matplotlib takes most of a second to import: nothing here does it before a pictu
 
 from __future__ import annotations
 
+import io
 from dataclasses import dataclass
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
@@ -39,6 +40,7 @@ INSETS = 3
 NARROWEST = 0.35  # shorter to longer side of what is shown
 WIDE = 0.6  # height to width
 DPI = 130
+PLACE_MARKS = (("x", "#c1121f"), ("+", "#1f5fa8"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,8 +68,35 @@ def draw(picture: Picture, file: FilePath) -> None:
     _fill(figure, main, picture, view)
     for number, (axes, place_mm) in enumerate(zip(beside, insets, strict=True), 1):
         _enlarge(axes, main, picture, place_mm, number)
+    _save(figure, file)
+
+
+def draw_sheet(drawing: Drawing, places_mm: dict[str, tuple[float, float]], file: FilePath) -> None:
+    """Write a picture of the whole sheet, with a grid and with places that have a name (those beyond its edges left out)."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(layout="compressed")
+    FigureCanvasAgg(figure)
+    axes, _ = _axes(figure, 0, drawing.height_mm / drawing.width_mm)
+    darkness, extent = _cut_out(drawing, (0.0, drawing.width_mm, 0.0, drawing.height_mm))
+    axes.imshow(darkness, extent=extent, cmap="Greys", vmin=0, vmax=1.5, interpolation="nearest", zorder=0)
+    axes.set(xlim=extent[:2], ylim=extent[2:], xlabel="X, mm", ylabel="Y, mm", aspect="equal")
+    axes.grid(color=REFERENCE, linewidth=0.4, alpha=0.4)
+    for (name, (x, y)), (marker, colour) in zip(places_mm.items(), PLACE_MARKS, strict=False):
+        if extent[0] <= x <= extent[1] and extent[2] <= y <= extent[3]:
+            axes.plot(x, y, marker, color=colour, markersize=12, label=f"{name} {x:.1f},{y:.1f}", linestyle="none")
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend(loc="upper right", fontsize=8, framealpha=0.8)
+    _save(figure, file)
+
+
+def _save(figure: Figure, file: FilePath) -> None:
+    """Write a figure whole or not at all; made in memory first, since not every kind of picture tells of a full disk."""
+    made = io.BytesIO()
+    figure.savefig(made, format=file.suffix[1:].lower(), dpi=DPI, bbox_inches="tight", pad_inches=0.15)
     with written_beside(file) as unfinished:
-        figure.savefig(unfinished, dpi=DPI, bbox_inches="tight", pad_inches=0.15)
+        unfinished.write_bytes(made.getvalue())
 
 
 def _axes(figure: Figure, insets: int, height_to_width: float) -> tuple[Axes, list[Axes]]:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from console.desk import Desk
-from console.quantities import FREQUENCY, PLACE, Quantity
+from console.quantities import FREQUENCY, NUMBER, PLACE
 from motion.faults import Fault
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from player.controls import Playback
     from recorder.tape import Tape
 
-CYCLES_PER_MM = Quantity("cycles", float, above_zero=True)
+CYCLES_PER_MM = NUMBER
 
 
 @dataclass(frozen=True, slots=True)

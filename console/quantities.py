@@ -27,7 +27,16 @@ class Quantity(click.ParamType):
         return quantity
 
 
+def _number(text: str) -> float:
+    """Read a bare number."""
+    try:
+        return float(text)
+    except ValueError:
+        raise ValueError(f"{text!r} is no number; give one such as 20") from None
+
+
 LENGTH = Quantity("length", parse_length_mm, above_zero=True)
 SPEED = Quantity("speed", parse_speed_mm_s)
 FREQUENCY = Quantity("frequency", parse_frequency_hz)
+NUMBER = Quantity("number", _number, above_zero=True)
 PLACE = Quantity("x,y", parse_place_mm)

@@ -106,7 +106,10 @@ def _settings(
 
     if tolerance_mm is not None:
         raise click.UsageError("--tolerance is not for tapes: a tape holds the motion itself; leave it out")
-    return {"fmt": TapeFormat(reference_hz=reference_hz, cycles_per_mm=cycles_per_mm)}
+    try:
+        return {"fmt": TapeFormat(reference_hz=reference_hz, cycles_per_mm=cycles_per_mm)}
+    except ValueError as refused:
+        raise click.UsageError(f"there is no such tape: {refused}") from None
 
 
 def _path(source: FilePath, feed_mm_s: float, desk: Desk) -> Path:

@@ -56,7 +56,7 @@ def command(
     """
     opened = medium.open_drawing(drawing, dpi, width_mm)
     place = _make(folder or FilePath(drawing.stem), drawing)
-    traced = head.trace(opened, desk)
+    traced = head.trace(opened, desk, place.file(".png"))
     tape = traced.record(place.file(".wav"))
     written = {"tape": str(tape), "traced_path": str(traced.write(place.file(".traced.csv")))}
     played = Controls().play(tape, desk)

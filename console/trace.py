@@ -61,12 +61,13 @@ def command(
     """Follow the line of a drawing and record the head's motion on a tape.
 
     DRAWING is an image file (PNG, JPEG, TIFF) of known resolution. A closed line is followed until it closes, an open
-    one from end to end. If the line is lost, what was traced until then is kept, with `.incomplete` in the names.
+    one from end to end. If the line is lost, what was traced until then is kept, with `.incomplete` in the names. If
+    there is none to start on, --picture shows the sheet, so that a place for --start can be read off it.
     """
     outputs = _outputs(drawing, output, path_file, picture, force)
     opened = medium.open_drawing(drawing, dpi, width_mm)
     desk.detail(f"{drawing}: sheet of {opened.width_mm:.2f} x {opened.height_mm:.2f} mm")
-    traced = head.trace(opened, desk)
+    traced = head.trace(opened, desk, outputs.picture)
     written = _write(traced, outputs, opened)
     desk.figures({"drawing": str(drawing), **written, **traced.figures()})
     if traced.fault is not None:
@@ -79,9 +80,14 @@ def _outputs(
     """Names for the results, each of which can be written; raises FileFault if not."""
     from recorder.media import MEDIA
 
-    for file, suffixes in ((output, (*MEDIA, ".csv")), (path_file, (".csv",)), (picture, (".png", ".svg", ".pdf"))):
+    pictures = (".png", ".svg", ".pdf")
+    for option, file, suffixes in (
+        ("-o", output, (*MEDIA, ".csv")),
+        ("--path", path_file, (".csv",)),
+        ("--picture", picture, pictures),
+    ):
         if file is not None:
-            medium.outgoing(medium.with_suffix_in(file, suffixes), drawing)
+            medium.outgoing(medium.with_suffix_in(file, suffixes, option), drawing)
     if output is None:
         output = medium.made_up(FilePath(f"{drawing.stem}.wav"), drawing, force=force)
     if output.suffix.lower() == ".csv":

@@ -17,7 +17,7 @@ import click
 from console import medium
 from console.desk import Desk
 from console.quantities import LENGTH, PLACE, SPEED
-from motion.faults import Fault
+from motion.faults import Fault, LineFault
 
 if TYPE_CHECKING:
     from motion.motion import Path
@@ -36,17 +36,33 @@ class Head:
     line_width_mm: float | None
     gap_mm: float
 
-    def trace(self, drawing: Drawing, desk: Desk) -> Traced:
-        """Follow the drawing's line to its end, or until it is lost."""
+    def trace(self, drawing: Drawing, desk: Desk, picture: FilePath | None = None) -> Traced:
+        """Follow the drawing's line to its end, or until it is lost.
+
+        Raises LineFault if there is none to start on; the sheet is then drawn, if a name for a picture is given.
+        """
         from motion.motion import thin
         from tracer.sequence import Settings, Work, trace
 
         desk.warn_of_compiling("the head", "motion", "tracer", "recorder")
         settings = Settings(speed_mm_s=self.speed_mm_s, line_width_mm=self.line_width_mm, gap_mm=self.gap_mm)
         work = Work(depth_mm=self.depth_mm, clearance_mm=self.clearance_mm)
-        with desk.bar("following the line", total=1.0) as advance:
-            traced = trace(drawing, self.start_mm, settings, work, lambda come, length: advance(come / length))
+        try:
+            with desk.bar("following the line", total=1.0) as advance:
+                traced = trace(drawing, self.start_mm, settings, work, lambda come, length: advance(come / length))
+        except LineFault as fault:
+            if picture is not None:
+                self._show_sheet(drawing, fault, medium.incomplete(picture), desk)
+            raise
         return Traced(traced, thin(traced))
+
+    def _show_sheet(self, drawing: Drawing, fault: LineFault, file: FilePath, desk: Desk) -> None:
+        """Draw the sheet with the place that was asked for and the nearest line's."""
+        from console.overlay import draw_sheet
+
+        places = {"--start": self.start_mm, "nearest line": fault.nearest_mm}
+        draw_sheet(drawing, {name: place for name, place in places.items() if place is not None}, file)
+        desk.note(f"the sheet is drawn in {file}; read a place for --start off its axes")
 
 
 @dataclass(frozen=True, slots=True)

@@ -29,7 +29,7 @@ class DrawingFault(Fault, ValueError):
 
 
 class LineFault(Fault):
-    """No line at the place asked for, or the head lost it; place in sheet mm, heading in radians."""
+    """No line at the place asked for (the nearest is at `nearest_mm`), or the head lost it; sheet mm, radians."""
 
     exit_code = 4
 
@@ -40,9 +40,10 @@ class LineFault(Fault):
         x_mm: float | None = None,
         y_mm: float | None = None,
         heading_rad: float | None = None,
+        nearest_mm: tuple[float, float] | None = None,
     ) -> None:
         super().__init__(message)
-        self.x_mm, self.y_mm, self.heading_rad = x_mm, y_mm, heading_rad
+        self.x_mm, self.y_mm, self.heading_rad, self.nearest_mm = x_mm, y_mm, heading_rad, nearest_mm
 
 
 class TapeFault(Fault, ValueError):

@@ -68,7 +68,7 @@ class Deviation:
 
 
 def deviation(drawing: Drawing, path: Path | Sequence[Array]) -> Deviation:
-    """Measure a path, or its runs as (n, 2) polylines in sheet mm, against the drawing; MotionFault if it never touches the ink."""
+    """Measure a path, or its runs as (n, 2) polylines in sheet mm, against the drawing; MotionFault if it nowhere follows the ink."""
     runs = path.runs() if isinstance(path, Path) else list(path)
     places = [_places(run) for run in runs if len(run) > 1]
     places = [(points, headings) for points, headings in places if len(points)]
@@ -76,6 +76,10 @@ def deviation(drawing: Drawing, path: Path | Sequence[Array]) -> Deviation:
         raise MotionFault("the path has no run with the tool in the work; nothing to compare with the drawing")
     width_mm = _line_width(drawing, places)
     errors = [_averaged(_across(drawing, points, headings, width_mm)) for points, headings in places]
+    if not any(np.isfinite(error).any() for error in errors):
+        raise MotionFault(
+            "the path nowhere follows the drawing's ink, it only crosses it; check that both have the same scale and origin"
+        )
     missed, ink = _missed(drawing, runs, width_mm)
     return Deviation(np.vstack([p for p, _ in places]), np.concatenate(errors), width_mm, missed, ink)
 

@@ -142,8 +142,15 @@ def _grey(image: Image) -> Grey:
         strip = image.crop((0, top, columns, bottom))  # as a whole it would be held twice more
         grey[top:bottom] = np.asarray(strip) if deep else _darkest_channel(strip)
     if deep:
-        np.multiply(grey, 1 if grey.max() <= 255 and image.mode != "I;16" else 255 / 65535, out=grey)
+        np.multiply(grey, 255 / _white(image.mode, float(grey.max())), out=grey)
     return grey
+
+
+def _white(mode: str, lightest: float) -> float:
+    """The level that stands for white in a picture of 16 bits, or of whole or broken numbers."""
+    if mode == "I;16" or lightest > 255:
+        return 65535.0
+    return 1.0 if mode == "F" and lightest <= 1 else 255.0
 
 
 def _darkest_channel(image: Image) -> NDArray[np.uint8]:

@@ -94,6 +94,7 @@ class Sheet:
                 f" at {x:.1f},{y:.1f}; start there, or leave --start out for the longest line",
                 x_mm=place_mm[0],
                 y_mm=place_mm[1],
+                nearest_mm=(float(x), float(y)),
             )
         return self._stroke(patch)
 

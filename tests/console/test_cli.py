@@ -62,6 +62,7 @@ def test_help_is_quick_because_it_loads_none_of_the_machines() -> None:
         ["play"],
         ["play", "a.wav", "--reference", "3mm"],
         ["play", "a.wav", "--cycles-per-mm", "0"],
+        ["play", "a.wav", "--cycles-per-mm", "many"],
         ["trace", "a.png", "--start", "4"],
         ["trace", "a.png", "--speed", "0"],
         ["trace", "a.png", "--depth=-3mm"],
@@ -95,7 +96,10 @@ def test_a_lack_of_memory_says_what_to_do(morfax: Morfax, monkeypatch: pytest.Mo
     assert answer.exit_code == 3 and "resolution" in answer.fault
 
 
-def test_ctrl_c_ends_with_130_and_leaves_no_half_file(tmp_path: Path) -> None:
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_ctrl_c_or_being_asked_to_end_stops_the_work_and_leaves_no_half_file(
+    tmp_path: Path, number: signal.Signals
+) -> None:
     """A pipe that nobody writes to holds the command at the reading of its path file."""
     os.mkfifo(tmp_path / "never.csv")
     command = [*MORFAX, "record", "never.csv", "-o", "half.wav"]
@@ -103,9 +107,9 @@ def test_ctrl_c_ends_with_130_and_leaves_no_half_file(tmp_path: Path) -> None:
         subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True, env=_with_house()) as process,
         (tmp_path / "never.csv").open("w"),  # opens when the command does
     ):
-        process.send_signal(signal.SIGINT)
+        process.send_signal(number)
         _, err = process.communicate(timeout=20)
-    assert process.returncode == 130
+    assert process.returncode == 128 + number
     assert err.split("\n")[-2:] == ["morfax: interrupted; no unfinished file was left under its final name", ""]
     assert [file.name for file in tmp_path.iterdir()] == ["never.csv"]
 

@@ -64,3 +64,9 @@ def test_two_drawings_are_wrong_use(morfax: Morfax) -> None:
 def test_a_kind_is_read_off_the_content_before_the_name(morfax: Morfax, here: Path, tape_file: Path) -> None:
     (here / "tape.csv").write_bytes(tape_file.read_bytes())
     assert morfax("compare", "tape.csv", tape_file, "--tolerance", "1um").exit_code == 0
+
+
+def test_a_path_that_only_crosses_the_ink_is_no_path_of_that_drawing(morfax: Morfax, here: Path) -> None:
+    (here / "across.csv").write_text("x,y\n5,60\n85,61\n")
+    answer = morfax("compare", SAMPLES / "cam.png", "across.csv", "--tolerance", "1mm")
+    assert answer.exit_code == 7 and "scale" in answer.fault

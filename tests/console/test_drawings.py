@@ -73,6 +73,10 @@ def test_a_start_with_no_line_near_it_says_how_far_the_nearest_is(morfax: Morfax
     answer = morfax("trace", CAM, "--start", "45,45")
     assert answer.exit_code == 4 and "mm" in answer.fault
     assert list(here.iterdir()) == []
+    assert morfax("trace", CAM, "--start", "45,45", "--picture", "sheet.png").exit_code == 4
+    assert (here / "sheet.incomplete.png").exists()  # to read a place off
+    assert morfax("run", CAM, "--start", "45,45", "-o", "results").exit_code == 4
+    assert [file.name for file in (here / "results").iterdir()] == ["cam.incomplete.png"]
 
 
 def test_a_lost_line_keeps_what_was_traced_marked_incomplete(morfax: Morfax, here: Path) -> None:

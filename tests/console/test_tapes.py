@@ -143,3 +143,10 @@ def test_record_takes_a_path_without_times_at_the_feed(morfax: Morfax, here: Pat
     assert answer.exit_code == 0
     assert answer.figures["duration_s"] == pytest.approx(2 + 2, abs=0.01)  # a second of standstill at both ends
     assert (here / "line.wav").exists()
+
+
+def test_a_tape_that_cannot_be_is_wrong_use(morfax: Morfax, here: Path, path_file: Path) -> None:
+    """A carrier of 30 kHz has no place on a tape of 48 kHz."""
+    answer = morfax("record", path_file, "-o", "high.wav", "--reference", "30kHz")
+    assert answer.exit_code == 2 and "sample rate" in answer.fault
+    assert list(here.iterdir()) == []
