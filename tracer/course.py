@@ -122,6 +122,13 @@ def _arc(start: Array, heading: float, end: Array, end_heading: float) -> Array:
     return np.vstack([hermite(nodes[i], headings[i], nodes[i + 1], headings[i + 1]) for i in range(pieces)])
 
 
+def on_ink(view: View, stretches: list[Array]) -> bool:
+    """Whether a course lies on ink, faint or not, for the most part: it may cross a gap."""
+    places = np.vstack(stretches)[::5]
+    seen = [photocell.darkness_at(view.cells, view.pitch_mm, x, y) for x, y in places]
+    return float(np.mean(np.array(seen) > 0.5 * view.level)) > 0.65
+
+
 def speeds(points: Array, speed_mm_s: float, acceleration_mm_s2: float, end_mm_s: float) -> Array:
     """Highest speed at each place of a stretch: what bends and braking allow, `end_mm_s` at its end; mm/s."""
     steps = np.diff(points, axis=0)

@@ -120,11 +120,15 @@ class Follower:
             ride = ride_past(self.view, incoming)
             if ride is not None:
                 return self._ride(incoming, ride)
-        if outgoing is None:
-            outgoing = straight_on(self.view, incoming, max(self.settings.gap_mm, LEAST_GAP_PX * self.view.pitch_mm))
+        if outgoing is not None:
+            way = self._course(incoming, outgoing, legs_mm)
+            if course.on_ink(self.view, way[0]):
+                return self._pass(*way)
+            choices = 0  # that leg is another line's
+        outgoing = straight_on(self.view, incoming, max(self.settings.gap_mm, LEAST_GAP_PX * self.view.pitch_mm))
         if outgoing is None:
             return self._at_end(incoming, choices)
-        return self._pass(*self._course(incoming, outgoing, legs_mm))
+        return self._pass(*self._course(incoming, outgoing, None))
 
     def _feel_ahead(self) -> Array:
         """The line felt from behind the axis forward until it is no longer clean, (n, 3)."""

@@ -23,6 +23,7 @@ from tracer.knot import LEVEL, Array, Leg, View, centre_at, end_of, leg_of, turn
 from tracer.lines import Sheet, Stroke
 
 CATCH_MM = 3.0  # how far from a given place the line may be
+SPUR = 2.7  # a line that ends sooner, in widths, is a burr
 PLACES = 80  # tried along a line
 
 
@@ -143,7 +144,7 @@ def _at_an_end(view: View, stroke: Stroke) -> Stance | None:
             continue
         local = replace(local, width_mm=left - right)
         seen = local.feel(inward, heading, max(4 * local.width_mm, local.leg_mm))
-        if len(seen) * local.step_mm < 4 * local.width_mm - radius:
+        if len(seen) * local.step_mm < SPUR * local.width_mm - radius:
             continue  # a burr, not an end
         middle = seen[len(seen) // 4 : -len(seen) // 4, 2]
         if np.median(middle[-4:]) > 1.08 * np.median(middle[:4]):
