@@ -28,7 +28,7 @@ from tracer.sequence import Trace, trace
 
 Array = NDArray[np.float64]
 SAMPLES = FilePath(__file__).parents[2] / "samples"
-PLAYED_RMS_MM, PLAYED_MAX_MM = 0.5 * UM, 3 * UM  # the issue's: a tenth of a cycle of 50 um, and less
+PLAYED_RMS_MM, PLAYED_MAX_MM = 0.15 * UM, 1.5 * UM  # issue 0.5/3 um (0.07/0.8, the following error where it stops)
 CLOSED_WITHIN_MM = 20 * UM
 SKIPPED = "no folder ../shared beside the repository: its drawings and vectors are not part of it"
 
@@ -204,7 +204,7 @@ def test_a_worn_tape_loses_no_cycle(tmp_path: FilePath, star: Trace) -> None:
     record(star, file, TapeFormat())
     playback = play(worn(file, 0.005, 40.0))
     played = thin(playback)
-    hold(distance(played, thin(star)), 1 * UM, 4 * UM)
+    hold(distance(played, thin(star)), 0.3 * UM, 1.5 * UM)  # issue 1 um RMS (0.1/0.5)
     assert playback.end_error_mm == pytest.approx((0, 0, 0), abs=1 * UM)  # a cycle lost would be 50 um
 
 

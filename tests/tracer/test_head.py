@@ -50,7 +50,7 @@ def speeds_mm_s(positions_mm: Array) -> Array:
 def followed(drawing: Drawing, settings: Settings | None = None, **tuning: float) -> Followed:
     """Put a head down by itself and follow, with its tuning changed by hand."""
     settings = settings or Settings()
-    stance, length_mm = put_down(drawing, None, settings.aperture_mm, None)
+    stance, length_mm = next(iter(put_down(drawing, None, settings.aperture_mm, None)))
     follower = Follower(stance, settings, MOTION_RATE_HZ)
     follower.tuning = follower.tuning._replace(**tuning)
     return follower.follow(2 * length_mm)
@@ -204,7 +204,7 @@ def plain_head(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 def _some_steps(drawing: Drawing) -> tuple[Any, Any]:
     """A head's state and positions after following for 40 ms, running round a corner from memory and standing."""
-    stance, _ = put_down(drawing, None, 0.15, None)
+    stance, _ = next(iter(put_down(drawing, None, 0.15, None)))
     follower = Follower(stance, Settings(), MOTION_RATE_HZ)
     out = np.zeros((400, 2))
     drum, home = follower._drum, (0.0, 0.0, 0.0, 1e9)

@@ -1,0 +1,117 @@
+"""The survey of a knot and the ride past ink beside the line: which way the head goes on."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from tests.tracer.inked import UM, WIDTH_MM, inked, polyline
+from tracer import photocell
+from tracer.drawing import Drawing
+from tracer.knot import LEVEL, Leg, View, leg_of
+from tracer.riding import ride_past
+from tracer.survey import goes_straight, straight_on, survey
+from tracer.trail import Trail
+
+Array = NDArray[np.float64]
+VERTEX_MM = 10 * UM  # to which straight legs, 5 um aside on clean ink, meet at 45 degrees and more
+X_MM = 14.0
+WAY_IN = polyline((4, 10), (X_MM, 10))
+Seen = tuple[View, Leg, Trail]
+
+
+def come_along(drawing: Drawing, to_mm: float = X_MM) -> Seen:
+    """A head that has come along y = 10 mm, and feels the line ahead up to a knot, at most to x = `to_mm`."""
+    eyes = View(photocell.behind_aperture(drawing, 0.15), drawing.pitch_mm, WIDTH_MM + 25 * UM, LEVEL)
+    start = np.array([to_mm - 3.0, 10.0])
+    trail = Trail(np.array([4.0, 10.0]), eyes.step_mm)
+    trail.add(np.column_stack([np.arange(4, to_mm - 2, 0.01), np.full(round((to_mm - 6) * 100), 10.0)]))
+    return eyes, leg_of(eyes.feel(start, 0.0, 3.0 + 1.0), True, eyes.leg_mm), trail
+
+
+def degrees(leg: Leg | None) -> float:
+    assert leg is not None
+    return math.degrees(leg.heading_rad)
+
+
+@pytest.mark.parametrize("out_deg", [90.0, -90.0, 120.0, 144.0])
+def test_a_corner_has_one_way_on_and_a_vertex(out_deg: float) -> None:
+    a = math.radians(out_deg)
+    line = np.vstack([WAY_IN, [X_MM + 6 * math.cos(a), 10 + 6 * math.sin(a)]])
+    eyes, incoming, trail = come_along(inked(line))
+    outgoing, legs_mm, choices = survey(eyes, incoming, trail)
+    assert choices == 1 and degrees(outgoing) == pytest.approx(out_deg, abs=1)
+    assert legs_mm is not None
+    within_mm = VERTEX_MM / math.sin(a) ** 2  # legs that meet at a smaller angle say less of where
+    assert incoming.at(legs_mm[0]) == pytest.approx(np.array([X_MM, 10]), abs=abs(within_mm))
+
+
+@pytest.mark.parametrize("other_deg", [45.0, 60.0, 90.0, 120.0])
+def test_a_crossing_is_gone_straight_over(other_deg: float) -> None:
+    a = math.radians(other_deg)
+    way = 6 * np.array([math.cos(a), math.sin(a)])
+    other = np.array([X_MM, 10]) + np.array([-way, way])
+    eyes, incoming, trail = come_along(inked(polyline((4, 10), (24, 10)), other))
+    outgoing, _, choices = survey(eyes, incoming, trail)
+    assert choices == 3 and goes_straight(incoming, outgoing)
+    assert degrees(outgoing) == pytest.approx(0, abs=0.5)
+
+
+def test_at_a_fork_without_a_straight_leg_the_straightest_is_taken_and_the_next_can_be() -> None:
+    drawing = inked(WAY_IN, polyline((X_MM, 10), (X_MM + 4, 16)), polyline((X_MM, 10), (X_MM, 4)))
+    eyes, incoming, trail = come_along(drawing)
+    first, _, choices = survey(eyes, incoming, trail)
+    second, _, _ = survey(eyes, incoming, trail, rank=1)
+    assert choices == 2
+    assert degrees(first) == pytest.approx(56.3, abs=1) and degrees(second) == pytest.approx(-90, abs=1)
+
+
+def test_what_has_been_followed_already_is_not_taken_again() -> None:
+    eyes, incoming, _ = come_along(inked(WAY_IN, polyline((X_MM, 10), (X_MM, 18))))
+    up = Trail(np.array([X_MM, 18.0]), eyes.step_mm)
+    up.add(np.column_stack([np.full(800, X_MM), np.arange(18, 10, -0.01)]))  # came down here first, then round again
+    up.add(np.column_stack([np.arange(4, X_MM - 2, 0.01), np.full(800, 10.0)]))
+    outgoing, _, choices = survey(eyes, incoming, up)
+    assert outgoing is None and choices == 1  # counted, as the line is joined and not ended
+
+
+def test_at_an_end_there_is_no_way_on() -> None:
+    eyes, incoming, trail = come_along(inked(WAY_IN))
+    assert survey(eyes, incoming, trail) == (None, None, 0)
+    assert straight_on(eyes, incoming, 0.5) is None
+
+
+@pytest.mark.parametrize(("paper_mm", "carried"), [(0.2, True), (0.4, True), (0.7, False), (1.5, False)])
+def test_a_gap_is_carried_if_it_is_no_wider_than_allowed(paper_mm: float, carried: bool) -> None:
+    eyes, incoming, _ = come_along(inked(WAY_IN, polyline((X_MM + WIDTH_MM + paper_mm, 10), (24, 10))))
+    leg = straight_on(eyes, incoming, 0.5)
+    assert (leg is not None) == carried
+    if leg is not None:
+        assert leg.end_mm[1] == pytest.approx(10, abs=6 * UM) and degrees(leg) == pytest.approx(0, abs=0.5)
+
+
+def test_a_gap_is_not_carried_to_a_line_aside() -> None:
+    eyes, incoming, _ = come_along(inked(WAY_IN, polyline((X_MM + 0.8, 10.6), (24, 10.6))))
+    assert straight_on(eyes, incoming, 0.5) is None
+
+
+# riding on an edge
+
+
+def test_two_lines_that_run_into_a_tip_are_one_that_turned_back() -> None:
+    tip = (26.0, 10.0)
+    eyes, incoming, _ = come_along(inked(polyline((4, 10), tip, (4, 12))), 19.0)
+    ride = ride_past(eyes, incoming)
+    assert ride is not None and ride.back is not None
+    assert np.hypot(*(ride.back[0, :2] - tip)) < 0.7  # the issue's bound for sharp tips
+    back = polyline(tip, (4, 12))
+    aside = (ride.back[:, :2] - tip) @ np.array([back[1, 1] - 10, tip[0] - back[1, 0]]) / np.hypot(*(back[1] - tip))
+    assert np.abs(aside[ride.back[:, 0] < 24]).max() < 25 * UM  # on the way back, where the ink is broader than the pen
+
+
+def test_a_clean_line_is_not_ridden() -> None:
+    eyes, incoming, _ = come_along(inked(polyline((4, 10), (30, 10))))
+    assert ride_past(eyes, incoming) is None
