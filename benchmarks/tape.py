@@ -8,15 +8,14 @@ hold at most, for that tape and for one ten times as long.
 from __future__ import annotations
 
 import tempfile
-import time
 import tracemalloc
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import soundfile
 
+from benchmarks.rows import Row, best_s, tell
 from motion.motion import MOTION_RATE_HZ, Motion
 from player.discriminator import Discriminator, discriminate
 from player.machine import play
@@ -24,18 +23,6 @@ from recorder.tape import Tape, TapeFormat, record
 
 MINUTE_S = 60.0
 BLOCK_FRAMES = 65536
-ROUNDS = 3
-
-
-@dataclass(frozen=True, slots=True)
-class Row:
-    """A line of the table: what was measured, how much of what, and the ratio to what."""
-
-    what: str
-    value: float
-    unit: str
-    ratio: float | None = None
-    to_what: str = ""
 
 
 def circles(seconds: float) -> Iterator[Motion]:
@@ -79,17 +66,6 @@ def play_whole(file: Path) -> None:
     """File to the machine's motion, drives and all."""
     for _ in play(file):
         pass
-
-
-def best_s(tasks: dict[str, Callable[[], None]]) -> dict[str, float]:
-    """Shortest time of each task, s; they take turns."""
-    times: dict[str, list[float]] = {name: [] for name in tasks}
-    for _ in range(ROUNDS):
-        for name, task in tasks.items():
-            begun = time.perf_counter()
-            task()
-            times[name].append(time.perf_counter() - begun)
-    return {name: min(taken) for name, taken in times.items()}
 
 
 def peak_bytes(task: Callable[[], None]) -> int:
@@ -155,10 +131,7 @@ def rows() -> list[Row]:
 
 def main() -> None:
     """Print the figures as a table."""
-    print("tape: four tracks, 48 kHz, 16 bit")
-    for row in rows():
-        ratio = "" if row.ratio is None else f"{row.ratio:8.2f} x {row.to_what}"
-        print(f"  {row.what:32s}{row.value:10.1f} {row.unit:18s}{ratio}".rstrip())
+    tell("tape: four tracks, 48 kHz, 16 bit", rows())
 
 
 def _record(motion: list[Motion], file: Path) -> None:

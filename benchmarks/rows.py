@@ -1,0 +1,39 @@
+"""What all benchmarks share: the line of a table, the best of a few rounds taken in turn, and the table."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+ROUNDS = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A line of the table: what was measured, how much of what, and the ratio to what."""
+
+    what: str
+    value: float
+    unit: str
+    ratio: float | None = None
+    to_what: str = ""
+
+
+def best_s(tasks: dict[str, Callable[[], object]], clock: Callable[[], float] = time.perf_counter) -> dict[str, float]:
+    """Shortest time of each task, s; they take turns, so that what else the machine does falls on all alike."""
+    times: dict[str, list[float]] = {name: [] for name in tasks}
+    for _ in range(ROUNDS):
+        for name, task in tasks.items():
+            begun = clock()
+            task()
+            times[name].append(clock() - begun)
+    return {name: min(taken) for name, taken in times.items()}
+
+
+def tell(title: str, rows: list[Row]) -> None:
+    """Print a table."""
+    print(title)
+    for row in rows:
+        ratio = "" if row.ratio is None else f"{row.ratio:8.2f} x {row.to_what}"
+        print(f"  {row.what:46s}{row.value:10.1f} {row.unit:18s}{ratio}".rstrip())
