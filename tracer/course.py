@@ -126,7 +126,7 @@ def on_ink(view: View, stretches: list[Array]) -> bool:
     """Whether a course lies on ink, faint or not, for the most part: it may cross a gap."""
     places = np.vstack(stretches)[::5]
     seen = [photocell.darkness_at(view.cells, view.pitch_mm, x, y) for x, y in places]
-    return float(np.mean(np.array(seen) > 0.5 * view.level)) > 0.65
+    return float(np.mean(np.array(seen) > 0.5 * view.level)) > 0.8
 
 
 def speeds(points: Array, speed_mm_s: float, acceleration_mm_s2: float, end_mm_s: float) -> Array:

@@ -168,7 +168,7 @@ class Follower:
             arriving, leaving, met = to_vertex(self.view, incoming, outgoing, legs_mm)
             end_mm = max(0.05 - met[1], course.ahead_mm(leaving.end_mm, outgoing))
             stretches = course.through_corner(self.view, self._stands(), arriving, leaving, met, end_mm)
-            return stretches, leaving.shifted(end_mm, outgoing.seen)
+            return stretches, leaving.shifted(end_mm, leaving.seen)
         limit = float(np.hypot(*(outgoing.end_mm - incoming.end_mm)))
         way, along = course.onto(*self._stands(), incoming, 0.5 * limit)
         start, heading = incoming.at(along), incoming.heading_at(along)

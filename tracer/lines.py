@@ -15,6 +15,7 @@ from typing import Any
 
 import cv2
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from motion.faults import DrawingFault, LineFault
@@ -146,10 +147,21 @@ class Sheet:
             return np.empty(0, int), np.empty(0, int), np.empty(0)
         depth = _depth(ink)
         middle = (depth > 0) & (depth >= cv2.dilate(depth, np.ones((3, 3), np.uint8)) - 0.3)
-        disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * disc_px + 1,) * 2).astype(np.float32)
-        filled = np.rint(cv2.filter2D(ink.astype(np.float32), -1, disc, borderType=cv2.BORDER_CONSTANT))
         i, j = np.nonzero(middle[inner])
-        return i + rows[0], j + columns[0], filled[inner][i, j]
+        disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * disc_px + 1,) * 2)
+        return i + rows[0], j + columns[0], _ink_about(ink, i + inner[0].start, j + inner[1].start, disc)
+
+
+@njit(cache=True)
+def _ink_about(ink, rows, columns, disc):  # type: ignore[no-untyped-def]
+    """Pixels of ink under a disc centred on each of some pixels."""
+    half = len(disc) // 2
+    filled = np.zeros(len(rows))
+    for k in range(len(rows)):
+        for i in range(max(0, half - rows[k]), min(len(disc), ink.shape[0] + half - rows[k])):
+            for j in range(max(0, half - columns[k]), min(len(disc), ink.shape[1] + half - columns[k])):
+                filled[k] += ink[rows[k] - half + i, columns[k] - half + j] * disc[i, j]
+    return filled
 
 
 def _depth(ink: Mask) -> NDArray[np.float32]:

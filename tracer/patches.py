@@ -65,15 +65,11 @@ class Patches:
 
     def painted(self, chosen: NDArray[np.bool_], top: int, bottom: int, left: int, right: int) -> Mask:
         """Mask (rows, columns) of the chosen patches in a part of the sheet."""
+        mask = np.zeros((bottom - top, right - left), np.uint8)
         first, last = np.searchsorted(self.row, (top, bottom))
-        part = slice(first, last)
-        begin, end = np.maximum(self.begin[part], left) - left, np.minimum(self.end[part], right) - left
-        own = chosen[self.patch[part]] & (begin < end)
-        row = self.row[part][own] - top
-        steps = np.zeros((bottom - top, right - left + 1), np.int8)
-        steps[row, begin[own]] = 1
-        steps[row, end[own]] = -1
-        return np.asarray(np.cumsum(steps, axis=1, dtype=np.int8)[:, :-1].view(np.uint8))
+        own = first + np.flatnonzero(chosen[self.patch[first:last]])
+        _paint(mask, self.row[own] - top, self.begin[own] - left, self.end[own] - left)
+        return mask
 
 
 def strips(shape: tuple[int, ...], halo: int = 0) -> Iterator[tuple[int, int, slice]]:
@@ -93,6 +89,14 @@ def runs_of(mask: Mask | NDArray[np.bool_], top: int) -> tuple[Numbers, Numbers,
     edges = np.flatnonzero(padded[:, 1:] != padded[:, :-1])
     row, column = np.divmod(edges, columns + 1)
     return (row[::2] + top).astype(np.int32), column[::2].astype(np.int32), column[1::2].astype(np.int32)
+
+
+@njit(cache=True)
+def _paint(mask, row, begin, end):  # type: ignore[no-untyped-def]
+    """Set what of the runs lies within the mask."""
+    for k in range(len(row)):
+        for column in range(max(begin[k], 0), min(end[k], mask.shape[1])):
+            mask[row[k], column] = 1
 
 
 @njit(cache=True)

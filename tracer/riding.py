@@ -26,6 +26,7 @@ from tracer.knot import Array, Leg, Meeting, View, end_of, leg_of, meet, turn
 from tracer.photocell import darkness_at, onward
 
 FARTHEST_MM = 40.0
+WELL_WITHIN = 10  # stations from a leg's clean end: both edges are clean there
 TIP = math.radians(150)  # a corner that turns by more is a tip
 REGAINED_MM = 1.5  # this much of both edges, and the line is by itself again
 BESIDE = 3.0  # widths; ink that is beside the line for less is a corner or a crossing
@@ -54,10 +55,8 @@ def to_vertex(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> tup
     """
     side = -math.copysign(1.0, turn(incoming.heading_at(legs_mm[0]), outgoing.heading_at(-legs_mm[1])))
     round_mm = rounding(view, incoming, outgoing, legs_mm)[1]
-    there = _felt_on(view, incoming, incoming.heading_rad, side, legs_mm[0] - round_mm)
-    back = _felt_on(view, outgoing, outgoing.heading_rad + math.pi, -side, legs_mm[1] - round_mm)
-    arriving = leg_of(np.vstack([incoming.seen, there]), True, view.leg_mm) if len(there) else incoming
-    leaving = leg_of(np.vstack([back[::-1], outgoing.seen]), False, view.leg_mm) if len(back) else outgoing
+    arriving = _along_outside(view, incoming.seen[::-1], side, legs_mm[0] - round_mm, True) or incoming
+    leaving = _along_outside(view, outgoing.seen, -side, legs_mm[1] - round_mm, False) or outgoing
     met = meet(arriving, leaving)
     if met is None or min(met) < -0.5 * view.width_mm or max(met) > max(legs_mm) + view.width_mm:
         arriving, leaving, met = incoming, outgoing, legs_mm
@@ -73,15 +72,28 @@ def _within_ink(view: View, arriving: Leg, leaving: Leg, met: Meeting) -> Meetin
     return met[0] - beyond, met[1] - beyond
 
 
-def _felt_on(view: View, leg: Leg, heading: float, side: float, length_mm: float) -> Array:
-    """Stations (n, 3) felt on from a leg's clean end along one edge, for at most a length."""
-    count = math.floor(length_mm / view.step_mm)
-    if count < 2:
-        return np.empty((0, 3))
+def _along_outside(view: View, seen: Array, side: float, beyond_mm: float, last: bool) -> Leg | None:
+    """A leg felt along one edge to `beyond_mm` past its clean end: from well within it, where the knot's ink has not yet reached the other edge.
+
+    `seen` is in order from the knot outwards, the side is that of somebody who goes towards the knot; the leg's clean end is the `last` in travel, or
+    the first. None if there is nothing to feel.
+    """
+    base = min(WELL_WITHIN, len(seen) // 2)
+    way = seen[base, :2] - seen[min(base + 5, len(seen) - 1), :2]
+    length_mm = float(np.hypot(*(seen[base, :2] - seen[0, :2]).T)) + beyond_mm
+    count = math.floor(length_mm / view.step_mm) + 1
+    if count < 4 or base < 2:
+        return None
+    width = float(np.median(seen[base:, 2]))
+    heading = math.atan2(way[1], way[0])
     felt = _along_edge(
-        view.cells, view.pitch_mm, leg.end_mm, heading, side, view.step_mm, count + 1, leg.width_mm, view.level, count + 1
-    )  # fmt: skip
-    return np.column_stack([felt[1:, :2], np.full(max(0, len(felt) - 1), leg.width_mm)])
+        view.cells, view.pitch_mm, seen[base, :2], heading, side, view.step_mm, count, width, view.level, count
+    )
+    if len(felt) < 4:
+        return None
+    outside = np.column_stack([felt[:, :2], np.full(len(felt), width)])[:0:-1]
+    both = np.vstack([outside, seen[base:]])
+    return leg_of(both[::-1] if last else both, last, view.leg_mm + length_mm)
 
 
 def _ride(view: View, incoming: Leg, side: float) -> Ride | None:
