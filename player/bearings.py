@@ -8,9 +8,8 @@ first row that cannot be trusted, with its fault.
 
 A track that starts at another phase, by another head or by skew that stands still, has thereby only another zero. A
 tape is refused when a track is silent or has no carrier, or when the strongest tone of track 1 is not the reference.
-A row cannot be trusted when the level of a track falls below a fifth of what it was at standstill, or when a phase
-lies a quarter of a cycle or more from where its motion was taking it (beyond half a cycle it would be counted as
-another turn).
+A row cannot be trusted when a phase lies a quarter of a cycle or more from where its motion was taking it (beyond half
+a cycle it would be counted as another turn). What a lost level means is in dropouts.py.
 
 Source: patent ES 361967, figure 5 (phase changer 155, triggers 152 and 154, fault circuit 162).
 Questions: the patent sets the zero by hand and says nothing of levels. A tape that moves from its very first row has
@@ -36,7 +35,6 @@ STANDSTILL_CYCLES = 0.25  # phase that moves more than this within the 50 ms mov
 SILENT_LEVEL = 1e-3  # -60 dB of full scale
 CARRIER_SHARE = 0.5  # of a track's power; a tape at 20 dB signal-to-noise has 0.99, white noise 0.2
 REFERENCE_BAND = 0.1  # a tape's speed may be this much off
-LEVEL_KEPT = 0.2  # of the level at standstill; the discriminator's filter alone takes up to a half at full speed
 SURPRISE_CYCLES = 0.25
 SPECTRUM_FRAMES = 16384
 
@@ -54,27 +52,13 @@ class Bearings:
     names: Sequence[str]
 
     def first_fault(self, phases: Phases, rate_hz: float, positions_mm: Sequence[float]) -> tuple[int, Fault] | None:
-        """The first row of a block that cannot be trusted, and why; the screws stood at `positions_mm` before it."""
-        silent = ~(phases.levels >= LEVEL_KEPT * self.levels)
+        """The first row of a block that no motion explains, and why; the screws stood at `positions_mm` before it."""
         jumped = ~(np.abs(phases.surprise) < SURPRISE_CYCLES)
-        if not (silent.any() or jumped.any()):
+        if not jumped.any():
             return None
-        row = int(np.argmax(silent.any(axis=1) | jumped.any(axis=1)))
-        time_s = (phases.first_row + row) / rate_hz
-        if silent[row].any():
-            track = int(np.argmax(silent[row]))
-            return row, self._lost(track, float(phases.levels[row, track]), time_s)
-        axis = int(np.argmax(jumped[row]))
+        row = int(np.argmax(jumped.any(axis=1)))
+        time_s, axis = (phases.first_row + row) / rate_hz, int(np.argmax(jumped[row]))
         return row, self._jump(axis, float(phases.surprise[row, axis]), time_s, positions_mm[axis])
-
-    def _lost(self, track: int, level: float, time_s: float) -> TapeFault:
-        """The fault of a track whose carrier went."""
-        return TapeFault(
-            f"track {track + 1} ({track_name(track, self.names)}) lost its carrier at {time_s:.3f} s: level "
-            f"{decibels(level)}, at least {decibels(LEVEL_KEPT * float(self.levels[track]))} is needed; "
-            f"record or copy the tape again",
-            time_s=time_s,
-        )
 
     def _jump(self, axis: int, surprise: float, time_s: float, position_mm: float) -> LockFault:
         """The fault of a phase that no motion explains."""

@@ -61,6 +61,20 @@ class Phases:
     def __len__(self) -> int:
         return len(self.cycles)
 
+    def joined(self, after: Phases) -> Phases:
+        """These rows and those after them."""
+        names = ("cycles", "surprise", "levels")
+        return Phases(self.first_row, *(np.concatenate([getattr(self, n), getattr(after, n)]) for n in names))
+
+    def moved(self, rows: int) -> Phases:
+        """The same rows, so many later on the tape."""
+        return Phases(self.first_row + rows, self.cycles, self.surprise, self.levels)
+
+    def cut(self, first: int, last: int) -> Phases:
+        """Rows `first` to before `last` of these."""
+        rows = slice(max(first, 0), max(last, first, 0))
+        return Phases(self.first_row + rows.start, self.cycles[rows], self.surprise[rows], self.levels[rows])
+
 
 def translating_taps(sample_rate_hz: float, reference_hz: float, decimation: int) -> tuple[Float32s, Float32s]:
     """Real and imaginary taps of the filter that moves the reference to 0 Hz and keeps what lies near it."""
@@ -95,8 +109,8 @@ class Discriminator:
         self._taps_re, self._taps_im = translating_taps(sample_rate_hz, reference_hz, decimation)
         self._half = len(self._taps_re) // 2
         self._reach = 2 * self._half // decimation  # rows that the filter reaches beyond its first
-        self._gains = predictor_gains(sample_rate_hz / decimation)
-        self._state = np.full((tracks - 1, 3), np.nan)
+        self.gains = predictor_gains(sample_rate_hz / decimation)
+        self.state = np.full((tracks - 1, 3), np.nan)
         self._tail = np.zeros((0, tracks), np.float32)
         self._tail_frame = 0  # the tape's frame at which the tail begins
         self._row = 0  # the next row to come out
@@ -133,7 +147,7 @@ class Discriminator:
         cycles = np.empty((count, tracks - 1))
         surprise = np.empty((count, tracks - 1), np.float32)
         levels = np.empty((count, tracks), np.float32)
-        _demodulate(rows, self._taps_re, self._taps_im, self._gains, self._state, cycles, surprise, levels)
+        _demodulate(rows, self._taps_re, self._taps_im, self.gains, self.state, cycles, surprise, levels)
         lead = ((row - self._row, 0), (0, 0))
         if row > self._row:
             cycles = np.pad(cycles, lead, mode="edge")
@@ -160,6 +174,15 @@ def discriminate(blocks: Iterable[Float32s], discriminator: Discriminator) -> It
     rest = discriminator.finish()
     if len(rest):
         yield rest
+
+
+def recount(phase: Float64s, gains: Float64s, state: Float64s, surprise: Float32s) -> Float64s:
+    """Count the phases of an axis anew from a state (place, speed, bend); they and the surprise are written over."""
+    turns = np.ascontiguousarray(phase)
+    counted, told, state = np.empty(len(turns)), np.empty(len(turns), np.float32), state.copy()
+    _count(turns, gains, state, counted, told)
+    phase[:], surprise[:] = counted, told
+    return state
 
 
 @njit(cache=True, nogil=True)

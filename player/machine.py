@@ -25,10 +25,11 @@ from os import PathLike
 import numpy as np
 from numpy.typing import NDArray
 
-from motion.faults import LockFault, TapeFault
+from motion.faults import Fault, LockFault, TapeFault
 from motion.motion import AXES, Motion
 from player.bearings import Bearings, take_bearings
 from player.discriminator import Discriminator, Phases, discriminate
+from player.dropouts import Gaps, under_way
 from player.phase_lock import Drives, PhaseLock
 from recorder.tape import Tape, TapeFormat
 
@@ -45,15 +46,32 @@ def play(
     cycles_per_mm: float | None = None,
     start_mm: Sequence[float] | None = None,
     settings: PhaseLock | None = None,
+    acceleration_mm_s2: float | None = None,
+    resume_at_s: float = 0.0,
 ) -> Playback:
-    """Put a tape in the machine; what is given by hand goes before its text chunk. Raises TapeFault, FileFault."""
+    """Put a tape in the machine; what is given by hand goes before its text chunk. Raises TapeFault, FileFault.
+
+    `acceleration_mm_s2` is the most that the program asks of an axis (else what the motors can do); a dropout is ridden
+    over as long as that makes the count certain. `resume_at_s` is a tape time at which the machine stands at `start_mm`.
+    """
 
     def open_tape() -> AbstractContextManager[Tape]:
         return Tape.open(file, reference_hz=reference_hz, cycles_per_mm=cycles_per_mm, start_mm=start_mm)
 
     with open_tape() as tape:
         fmt, frames = tape.format, tape.frames
-    return Playback(open_tape, fmt, frames, settings or PhaseLock.suited_to(fmt.motion_rate_hz))
+    settings = settings or PhaseLock.suited_to(fmt.motion_rate_hz)
+    most = settings.drive.acceleration_mm_s2 if acceleration_mm_s2 is None else acceleration_mm_s2
+    _check_resumption(resume_at_s, start_mm, frames / fmt.sample_rate_hz)
+    return Playback(open_tape, fmt, frames, settings, most, resume_at_s)
+
+
+def _check_resumption(resume_at_s: float, start_mm: Sequence[float] | None, duration_s: float) -> None:
+    """Raise ValueError for a tape time from which a tape cannot be gone on with."""
+    if not 0 <= resume_at_s < duration_s:
+        raise ValueError(f"the tape cannot be resumed at {resume_at_s:g} s; it lasts from 0 to {duration_s:.3f} s")
+    if resume_at_s and start_mm is None:
+        raise ValueError(f"where the machine stands at {resume_at_s:g} s must be said; give the place (--from X,Y,Z)")
 
 
 class Playback:
@@ -70,8 +88,12 @@ class Playback:
         fmt: TapeFormat,
         frames: int,
         settings: PhaseLock,
+        acceleration_mm_s2: float,
+        resume_at_s: float = 0.0,
     ) -> None:
         self._open_tape, self.format, self.frames, self.settings = open_tape, fmt, frames, settings
+        self.acceleration_mm_s2, self.resume_at_s = acceleration_mm_s2, resume_at_s
+        self.bridged: dict[tuple[float, str], float] = {}
         self.start_mm: Array = np.array(fmt.start_mm, dtype=np.float64)
         self.end_mm: Array = self.start_mm.copy()
         self.following_error_mm: Array = np.zeros(len(fmt.axes))
@@ -87,9 +109,9 @@ class Playback:
         fmt = self.format
         drives = Drives(len(fmt.axes), fmt.mm_per_cycle, fmt.motion_rate_hz, self.settings)
         self.following_error_mm, self.end_error_mm = drives.largest_error_mm, None
-        for phases, bearings in self._phases():
-            found = bearings.first_fault(phases, fmt.motion_rate_hz, self.end_mm.tolist())
-            sound = len(phases) if found is None else found[0]
+        for phases, bearings, gap in self._phases():
+            found = bearings.first_fault(phases, fmt.motion_rate_hz, self.end_mm.tolist()) or gap
+            sound = len(phases) if found is None or found is gap else found[0]
             displacement_mm = drives.follow(phases.cycles[:sound] - bearings.zero_cycles)
             self.end_mm = self.start_mm + drives.displacement_mm
             if len(displacement_mm):
@@ -100,22 +122,46 @@ class Playback:
                 raise found[1]
         self._check_end()
 
-    def _phases(self) -> Iterator[tuple[Phases, Bearings]]:
-        """The tape's phases in blocks, with the bearings taken from the first."""
-        fmt, bearings = self.format, None
+    def _phases(self) -> Iterator[tuple[Phases, Bearings, tuple[int, Fault] | None]]:
+        """The tape's phases in blocks, the bearings taken from the first, and the gap that ends it, if one does."""
+        fmt, rate_hz = self.format, self.format.motion_rate_hz
         discriminator = Discriminator(fmt.sample_rate_hz, fmt.reference_hz, fmt.samples_per_motion, fmt.tracks)
+        first_row = round(self.resume_at_s * rate_hz)
         with self._open_tape() as tape:
-            blocks = iter(tape.blocks(BLOCK_FRAMES))
+            blocks = iter(tape.blocks(BLOCK_FRAMES, first_row * fmt.samples_per_motion))
             first = next(blocks, np.zeros((0, fmt.tracks), np.float32))
-            for phases in discriminate(chain([first], blocks), discriminator):
-                if bearings is None:
-                    bearings = take_bearings(first, phases, fmt)
-                yield phases, bearings
-        if bearings is None:
-            raise TapeFault(
-                f"the tape ends after {self.frames} frames; it must be longer than the discriminator's filter, "
-                f"{discriminator.filter_frames} frames; record it again"
-            )
+            rows = (rows.moved(first_row) for rows in discriminate(chain([first], blocks), discriminator))
+            start = next(rows, None)
+            if start is None:
+                raise self._too_short(discriminator.filter_frames)
+            if first_row:
+                under_way(start, discriminator)
+            bearings = take_bearings(first, start, fmt)
+            gaps = self._gaps(discriminator, bearings)
+            for phases in chain([start], rows):
+                out, fault = gaps.feed(phases)
+                yield out, bearings, fault
+            out, fault = gaps.feed(phases.cut(len(phases), len(phases)), last=True)
+            yield out, bearings, fault
+
+    def _gaps(self, discriminator: Discriminator, bearings: Bearings) -> Gaps:
+        """What bridges the dropouts of this tape."""
+        fmt, start_mm = self.format, self.start_mm
+
+        def place_mm(axis: int, cycles: float) -> float:
+            return float(start_mm[axis] + (cycles - bearings.zero_cycles[axis]) * fmt.mm_per_cycle)
+
+        most = self.acceleration_mm_s2 * fmt.cycles_per_mm / fmt.motion_rate_hz**2
+        gaps = Gaps(discriminator, bearings.levels, fmt.motion_rate_hz, most, place_mm, fmt.axes)
+        self.bridged = gaps.bridged
+        return gaps
+
+    def _too_short(self, filter_frames: int) -> TapeFault:
+        """The fault of a tape that ends before it has begun."""
+        return TapeFault(
+            f"the tape ends after {self.frames} frames; it must be longer than the discriminator's filter, "
+            f"{filter_frames} frames; record it again"
+        )
 
     def _motion(self, displacement_mm: Array, first_row: int) -> Motion:
         """A block of positions: X, Y, Z and what other axes the tape has; an axis without a track stands at 0."""

@@ -100,12 +100,12 @@ class Tape:
         """The text chunk as it stands in the file; empty if there is none."""
         return _text(self.file, self._sound).strip()
 
-    def blocks(self, frames: int = BLOCK_FRAMES) -> Iterator[Frames]:
-        """The tape from its start in blocks (n, tracks) of so many frames, the last one shorter."""
+    def blocks(self, frames: int = BLOCK_FRAMES, first: int = 0) -> Iterator[Frames]:
+        """The tape from frame `first` on in blocks (n, tracks) of so many frames, the last one shorter."""
         if frames < 1:
             raise ValueError(f"a block of {frames} frames holds nothing; it must be at least 1")
-        done = 0
-        self._sound.seek(0)
+        done = first
+        self._sound.seek(first)
         while done < self.frames:
             block = self._read(frames, done)
             done += len(block)

@@ -90,20 +90,6 @@ def test_nothing_wrong_is_nothing_found() -> None:
     assert WATCH.first_fault(block(), MOTION_RATE_HZ, [0, 0, 0]) is None
 
 
-@pytest.mark.parametrize(("level", "bad"), [(0.11, False), (0.09, True), (np.nan, True)])
-def test_a_lost_carrier_is_a_fault_at_its_time(level: float, bad: bool) -> None:
-    phases = block()
-    phases.levels[60:, 3] = level
-    found = WATCH.first_fault(phases, MOTION_RATE_HZ, [0, 0, 0])
-    assert (found is not None) == bad
-    if found:
-        row, fault = found
-        assert row == 60
-        assert isinstance(fault, TapeFault)
-        assert fault.time_s == pytest.approx(6060 / MOTION_RATE_HZ)
-        assert "track 4 (Z) lost its carrier at 1.010 s" in str(fault)
-
-
 @pytest.mark.parametrize(("surprise", "bad"), [(0.24, False), (-0.26, True), (np.nan, True)])
 def test_a_jump_is_a_fault_with_axis_and_position(surprise: float, bad: bool) -> None:
     phases = block()

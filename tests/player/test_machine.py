@@ -170,19 +170,19 @@ def test_a_jump_stops_the_machine_before_it(tmp_path: Path) -> None:
     frames = tracks(swing, SECONDS)
     frames[RATE_HZ:, 1] *= -1  # half a cycle, at 1 s
     seen: list[Motion] = []
-    with pytest.raises(LockFault, match="the phase of X jumps") as caught:
+    with pytest.raises(LockFault, match=r"the phase of X jumps|X was lost for 1\.. ms") as caught:
         for motion in by_hand(tape(tmp_path / "t.wav", frames)):
             seen.append(motion)
-    assert caught.value.time_s == pytest.approx(1.0, abs=0.001)
+    assert caught.value.time_s == pytest.approx(1.0, abs=0.0015)
     assert len(join(seen).positions_mm) == pytest.approx(MOTION_RATE_HZ, abs=6)
 
 
 def test_a_lost_carrier_stops_the_machine(tmp_path: Path) -> None:
     frames = tracks(swing, SECONDS)
     frames[RATE_HZ : RATE_HZ + 480, 2] = 0  # 10 ms
-    with pytest.raises((TapeFault, LockFault)) as caught:
+    with pytest.raises(LockFault, match="Y was lost for 11") as caught:
         join(by_hand(tape(tmp_path / "t.wav", frames)))
-    assert caught.value.time_s == pytest.approx(1.0, abs=0.001)  # type: ignore[union-attr]
+    assert caught.value.time_s == pytest.approx(1.0, abs=0.0015)
 
 
 @settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
