@@ -103,7 +103,10 @@ def _read(file: Path) -> tuple[Grey, tuple[float, float] | None]:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            with Image.open(file) as image:
+            with (
+                file.open("rb") as stream,
+                Image.open(stream) as image,
+            ):  # a stream is never mapped: Pillow turns maps wrongly
                 room.make_sure(file, *image.size)
                 image.load()
                 stated = _stated_dpi(image)

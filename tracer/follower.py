@@ -34,6 +34,7 @@ from tracer.trail import Trail
 CHUNK = 6000  # samples that the kernel follows before it tells how far it has come
 SMOOTH = math.radians(14)  # a smaller change of heading is no corner
 LEAST_GAP_PX = 2.5  # a scan can lose this much of a line
+FAR_WIDTHS = 4.0  # to where the line goes on clean
 SETTLE_LAGS = 7  # a stop lasts this many lags of the drives: 1/1000 of the last speed is left
 
 
@@ -116,7 +117,7 @@ class Follower:
         """Take the head from an incoming leg onto the straightest leg that leads on; what it did in all, if there is none."""
         outgoing, legs_mm, choices = survey(self.view, incoming, self._trail, self._rank())
         self.junctions += choices > 1
-        if not goes_straight(incoming, outgoing):
+        if not goes_straight(incoming, outgoing) or self._far(incoming, outgoing):
             ride = ride_past(self.view, incoming)
             if ride is not None:
                 return self._ride(incoming, ride)
@@ -129,6 +130,10 @@ class Follower:
         if outgoing is None:
             return self._at_end(incoming, choices)
         return self._pass(*self._course(incoming, outgoing, None))
+
+    def _far(self, incoming: Leg, outgoing: Leg | None) -> bool:
+        """Whether the ink runs beside the line for so long that it may be the line's own way back."""
+        return outgoing is not None and course.ahead_mm(incoming.end_mm, outgoing) > FAR_WIDTHS * self.view.width_mm
 
     def _feel_ahead(self) -> Array:
         """The line felt from behind the axis forward until it is no longer clean, (n, 3)."""
@@ -277,6 +282,7 @@ class Follower:
         if self.travel_mm < self._away_mm:
             return None
         home, heading = self.stance.place_mm, self.stance.heading_rad
+        stretches = [course.distinct(way) for way in stretches]  # a step of no length has no heading
         for k, way in enumerate(stretches):
             near = int(np.argmin(np.hypot(*(way - home).T)))
             step = way[min(near + 1, len(way) - 1)] - way[min(near, len(way) - 2)]

@@ -125,7 +125,8 @@ def _detect(state, drum, t):  # type: ignore[no-untyped-def]
     aside = 2.0 * state[FIRST] / t.sweep_periods / (t.slope_per_mm * state[INK])
     limit = 0.5 * t.amplitude_mm
     state[MIDDLE] += min(max(aside, -limit), limit)
-    c, s = math.cos(state[HEADING]), math.sin(state[HEADING])
+    middle = state[HEADING] - 0.5 * t.sweep_periods * t.period_s * state[TURN]  # as it was in the middle of the sweep
+    c, s = math.cos(middle), math.sin(middle)
     if abs(aside) < limit:  # or else the sweep was not on the line
         place = int(state[PLACES]) % DRUM
         drum[place, 0] = state[SWEPT_X] + t.lead_mm * c - state[MIDDLE] * s
@@ -238,7 +239,10 @@ def run(state, t, points, speeds, out):  # type: ignore[no-untyped-def]
             return n
         gap = math.hypot(points[leg + 1, 0] - x, points[leg + 1, 1] - y)
         braking = math.sqrt(speeds[leg + 1] ** 2 + 2 * t.acceleration_mm_s2 * gap)
-        state[SPEED] = max(min(state[SPEED] + change, braking, max(speeds[leg], speeds[leg + 1])), slowest)
+        held = t.speed_mm_s * (t.slowed if state[SLOW] > 0 else 1.0)
+        state[SLOW] = max(state[SLOW] - 1, 0)
+        allowed = min(braking, max(speeds[leg], speeds[leg + 1]), max(held, state[SPEED] - change))
+        state[SPEED] = max(min(state[SPEED] + change, allowed), slowest)
         step = state[SPEED] * t.period_s
         old_x, old_y = x, y
         while leg < last and step >= gap:

@@ -44,6 +44,7 @@ class View:
     pitch_mm: float
     width_mm: float
     level: float
+    usual_mm: float | None = None  # the line's width as a rule, where the width here differs
 
     @property
     def step_mm(self) -> float:
@@ -71,9 +72,10 @@ class View:
         reach = 1.5 * self.width_mm + 2 * self.pitch_mm
         found = [photocell.edges(self.cells, self.pitch_mm, p[0], p[1], heading, reach, level) for p in places]
         width = float(np.median([left - right for right, left in found]))  # NaN if any has no edge
-        if not 0.5 < width / self.width_mm < 1.6:
+        usual = self.usual_mm or self.width_mm
+        if not 0.5 < width / usual < 1.6:
             return self
-        return replace(self, width_mm=width, level=level)
+        return replace(self, width_mm=width, level=level, usual_mm=usual + 0.1 * (width - usual))
 
     def dark(self, place: Array) -> bool:
         """Whether there is ink at a place."""

@@ -109,9 +109,20 @@ def _ride(view: View, incoming: Leg, side: float) -> Ride | None:
     if not len(wide) or (wide[-1] - wide[0]) * step < BESIDE * width:
         return None
     seen = np.column_stack([stations[:, :2], np.full(len(stations), width)])
-    if len(stations) - wide[-1] > regained:
+    if len(stations) + 2 - wide[-1] > regained:  # the two that were left out count
         return Ride(seen, None)
-    return _turned_back(stations, seen, int(wide[0]), int(wide[-1]), side, width)
+    turned = _turned_back(stations, seen, int(wide[0]), int(wide[-1]), side, width)
+    return turned if turned is not None and _ends_ahead(view, turned.seen, width) else None
+
+
+def _ends_ahead(view: View, seen: Array, width_mm: float) -> bool:
+    """Whether the ink ends within a width ahead of the last of some stations."""
+    way = seen[-1, :2] - seen[max(0, len(seen) - 6), :2]
+    t = way / np.hypot(*way)
+    end = _first_light(
+        view.cells, view.pitch_mm, seen[-1, 0], seen[-1, 1], t[0], t[1], 0.0, width_mm, 0.35 * view.pitch_mm, view.level
+    )
+    return math.isfinite(end)
 
 
 def _turned_back(stations: Array, seen: Array, first: int, last: int, side: float, width_mm: float) -> Ride | None:

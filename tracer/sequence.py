@@ -120,7 +120,8 @@ def trace(
     """
     settings, work = settings or Settings(), work or Work()
     best: Followed | None = None
-    for stance, length_mm in put_down(drawing, start_mm, settings.aperture_mm, settings.line_width_mm):
+    stances = put_down(drawing, start_mm, settings.aperture_mm, settings.line_width_mm, settings.gap_mm)
+    for stance, length_mm in stances:
         told = None if progress is None else partial(_tell, progress, length_mm)
         run = _all_of_it(stance, settings, 4 * length_mm + 20, told)
         best = run if best is None or run.travel_mm > best.travel_mm else best

@@ -21,6 +21,7 @@ from tracer import photocell
 from tracer.drawing import Drawing
 from tracer.knot import LEVEL, Array, Leg, View, centre_at, end_of, leg_of, turn
 from tracer.lines import Sheet, Stroke
+from tracer.survey import straight_on
 
 CATCH_MM = 3.0  # how far from a given place the line may be
 SPUR = 2.7  # a line that ends sooner, in widths, is a burr
@@ -43,7 +44,11 @@ def turned_round(end_mm: Array, heading_rad: float, view: View) -> Stance:
 
 
 def put_down(
-    drawing: Drawing, start_mm: tuple[float, float] | None, aperture_mm: float, line_width_mm: float | None
+    drawing: Drawing,
+    start_mm: tuple[float, float] | None,
+    aperture_mm: float,
+    line_width_mm: float | None,
+    gap_mm: float = 0.5,
 ) -> Iterator[tuple[Stance, float]]:
     """Put the head down near a place, or on the longest line: at an open end if it has one, then where it is smooth; and the line's length, mm.
 
@@ -54,7 +59,7 @@ def put_down(
     stroke = sheet.longest() if start_mm is None else sheet.nearest(start_mm, catch_mm)
     width_mm = line_width_mm or stroke.width_mm
     view = View(photocell.behind_aperture(drawing, aperture_mm), drawing.pitch_mm, width_mm, LEVEL)
-    at_end = _at_an_end(view, stroke) if start_mm is None else None
+    at_end = _at_an_end(view, stroke, gap_mm) if start_mm is None else None
     if at_end is not None:
         yield at_end, stroke.length_mm
     stances = _stances(view, _tried(stroke, start_mm, catch_mm))
@@ -127,7 +132,7 @@ def _both_ways(view: View, place: Array, heading: float) -> tuple[Leg, float] | 
     return middle, round((shorter - 1) * view.step_mm, 1)
 
 
-def _at_an_end(view: View, stroke: Stroke) -> Stance | None:
+def _at_an_end(view: View, stroke: Stroke, gap_mm: float) -> Stance | None:
     """A stance at an open end of the line, heading inward; None if the line has no end."""
     for place in stroke.ends_mm():
         local = _local(view, place)
@@ -151,8 +156,8 @@ def _at_an_end(view: View, stroke: Stroke) -> Stance | None:
             continue  # the tip of two lines that part, not the end of one
         outward = leg_of(local.feel(inward, heading + math.pi, local.leg_mm), True, local.leg_mm)
         end = end_of(local, outward)
-        if end is None:
-            continue
+        if end is None or straight_on(local, outward, gap_mm) is not None:
+            continue  # the edge of a gap
         local = replace(local, width_mm=outward.width_mm)
         return Stance(outward.at(end), math.remainder(outward.heading_at(end) + math.pi, math.tau), local, True)
     return None
