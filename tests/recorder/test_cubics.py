@@ -1,0 +1,168 @@
+"""The cubic recorder: points and slopes at equal intervals, exact differences, corners as stops."""
+
+from __future__ import annotations
+
+from pathlib import Path as FilePath
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from motion.contour import distance
+from motion.faults import MotionFault, ProgramFault
+from motion.motion import Path, thin
+from player.cubic import play_cubic
+from player.interpolator import Interpolator
+from recorder.cubicfile import CubicFormat, CubicProgram, read_program, write_program
+from recorder.cubics import differences, hermite, record_cubics
+from recorder.legs import Limits
+from tests.recorder.test_steps import SQUARE, STAR, TOOL, circle
+
+UM = 1e-3
+SAMPLES = st.lists(
+    st.tuples(*[st.tuples(st.integers(-(10**6), 10**6), st.integers(-(10**5), 10**5))] * 3), min_size=2, max_size=6
+)
+
+
+@pytest.mark.parametrize("path", [circle(10, 10), circle(1, 10), SQUARE, STAR], ids=["10 mm", "1 mm", "square", "star"])
+def test_the_machine_runs_what_was_recorded(tmp_path: FilePath, path: Path) -> None:
+    report = record_cubics(path, tmp_path / "a.cubic")
+    assert report.deviation_mm <= 2 * UM
+    found = distance(thin(play_cubic(tmp_path / "a.cubic")), path)
+    assert found.hausdorff_mm <= 2 * UM + 2 * UM  # and the servo's lag round the bends
+
+
+def test_a_tolerance_sets_the_interval(tmp_path: FilePath) -> None:
+    reports = [record_cubics(circle(10, 10), tmp_path / "a.cubic", tolerance_mm=um * UM) for um in (50, 2, 0.6)]
+    intervals_s = [report.format.interval_s for report in reports]
+    assert sorted(intervals_s, reverse=True) == intervals_s and intervals_s[0] > intervals_s[-1]
+    for report, um in zip(reports, (50, 2, 0.6), strict=True):
+        assert report.deviation_mm <= um * UM
+        assert 2800 < report.format.point_rate_hz < 5700
+    with pytest.raises(MotionFault, match="give a larger tolerance"):
+        record_cubics(circle(10, 10), tmp_path / "b.cubic", tolerance_mm=1e-5)
+    assert not (tmp_path / "b.cubic").exists()
+
+
+def test_corners_are_stops(tmp_path: FilePath) -> None:
+    report = record_cubics(SQUARE, tmp_path / "a.cubic")
+    assert report.stops == 5
+    program = read_program(tmp_path / "a.cubic")
+    places = np.cumsum(program.words[..., 0], axis=0)
+    assert len(places) == report.intervals
+    corner = distance(thin(play_cubic(tmp_path / "a.cubic")), SQUARE).reference_to_path
+    assert corner.max_mm < 2.5 * UM  # the corner itself is reached, but for what is left of the lag
+
+
+def test_the_tool_goes_down_and_up(tmp_path: FilePath) -> None:
+    record_cubics(TOOL, tmp_path / "a.cubic")
+    played = thin(play_cubic(tmp_path / "a.cubic"))
+    assert played.positions_mm[0] == pytest.approx([3, 3, 2], abs=1 * UM)
+    assert played.positions_mm[-1] == pytest.approx([9, 7, 2], abs=1 * UM)
+    assert played.positions_mm[:, 2].min() == pytest.approx(-1, abs=1 * UM)
+
+
+@given(SAMPLES, st.sampled_from([(16, 1), (32, 1), (64, 4), (16, 4), (256, 2)]))
+def test_ends_and_slopes_meet_to_the_digit(rows: list, steps: tuple[int, int]) -> None:  # type: ignore[type-arg]
+    """Path continuous in slope across intervals, whatever the samples; and each sample met exactly."""
+    from player.interpolator import ends, slopes
+
+    samples, (points, linear) = np.array(rows, np.int64), steps
+    words = differences(samples, points, linear)
+    interpolator = Interpolator(samples[0, :, 0], points, linear)
+    ran = interpolator.run(words)[points - 1 :: points]
+    assert (ran == samples[1:, :, 0] * points**3).all()
+    assert (np.cumsum(ends(words, points, linear), axis=0) + samples[0, :, 0] * points**3 == ran).all()
+    start, end = slopes(words, points, linear)
+    assert (end[:-1] == start[1:]).all()
+    assert (start == 6 * samples[:-1, :, 1] * points**2).all()
+
+
+@given(SAMPLES)
+def test_the_registers_run_along_the_closed_form(rows: list) -> None:  # type: ignore[type-arg]
+    samples = np.array(rows, np.int64)
+    ran = Interpolator(samples[0, :, 0], 16).run(differences(samples, 16)) / 16**3
+    at = np.arange(1, len(ran) + 1) / 16
+    assert ran == pytest.approx(hermite(samples, at), rel=1e-12, abs=1e-6)
+
+
+def test_a_program_whose_steps_are_partly_linear_ends_exactly_and_runs_coarser(tmp_path: FilePath) -> None:
+    path, wide = circle(1, 5), Limits(100, 500, spacing_mm=0.005, window_mm=0.02, corner_rad=0.2)
+    fine = record_cubics(path, tmp_path / "fine.cubic", fmt=CubicFormat(points=64), limits=wide)
+    coarse = record_cubics(path, tmp_path / "coarse.cubic", fmt=CubicFormat(points=64, linear=16), limits=wide)
+    assert coarse.format.linear == 16 and fine.format.interval_s == coarse.format.interval_s
+    off = [distance(thin(play_cubic(report.file)), path).path_to_reference.rms_mm for report in (fine, coarse)]
+    assert off[0] < off[1] < 20 * UM
+
+
+def test_what_cannot_be_recorded_is_refused(tmp_path: FilePath) -> None:
+    with pytest.raises(MotionFault, match="empty"):
+        record_cubics([], tmp_path / "a.cubic")
+    with pytest.raises(ValueError, match="above zero"):
+        record_cubics(SQUARE, tmp_path / "a.cubic", tolerance_mm=0)
+    with pytest.raises(ValueError, match="powers of two"):
+        differences(np.zeros((2, 3, 2), np.int64), 12)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_motion_that_stands_is_a_program_without_words(tmp_path: FilePath) -> None:
+    record_cubics(Path(np.array([0.0, 1]), np.array([[1.0, 2, 3]] * 2)), tmp_path / "a.cubic")
+    assert thin(play_cubic(tmp_path / "a.cubic")).positions_mm[-1] == pytest.approx([1, 2, 3])
+
+
+# the file
+
+
+def test_a_program_comes_back_from_its_file(tmp_path: FilePath) -> None:
+    fmt = CubicFormat(0.05, 32, 4, 1000, 150)
+    words = np.random.default_rng(1).integers(-(10**12), 10**12, (5, 3, 3))
+    write_program(CubicProgram(fmt, words, {0: (1, -2, 3), 3: (4, 5, 6), 5: (7, 8, 9)}), tmp_path / "a.cubic")
+    read = read_program(tmp_path / "a.cubic")
+    assert read.format == fmt and (read.words == words).all()
+    assert read.checks == {0: (1, -2, 3), 3: (4, 5, 6), 5: (7, 8, 9)}
+    assert read.lines == [11, 12, 13, 15, 16]
+
+
+GOOD = (
+    "morfax cubic 1\ninterval_s 0.064\npoints 16\nlinear 1\ncounts_per_mm 2000\nmodulus_per_s 50\naxes x y z\n"
+    "intervals 1\n\nat 0 0 0\n46000 84000 -12000  0 0 0  0 0 0\nat 1000 0 0\nend\n"
+)
+BAD = [
+    ("", "must begin with", 1),
+    (GOOD.replace("cubic 1", "cubic 7"), "version 7; this program reads 1", 1),
+    (GOOD.replace("points 16", "points 17"), "power of two", None),
+    (GOOD.replace("points 16", "dots 16"), "instead of points", 3),
+    (GOOD.replace("linear 1", "linear 3"), "divisor", None),
+    (GOOD.replace("linear 1", "linear 1.5"), "whole number", None),
+    (GOOD.replace("2000", "many"), "is not one number", 5),
+    (GOOD.replace("axes x y z", "axes x y"), "instead of axes x y z", 7),
+    (GOOD.replace("at 0 0 0\n", ""), "no 'at' with a start", 10),
+    (GOOD.replace("46000", "46000.5"), "9 whole numbers", 11),
+    (GOOD.replace("46000", "9" * 30), "below 2\\^63", 11),
+    (GOOD.replace("46000 ", ""), "9 whole numbers", 11),
+    (GOOD.replace("intervals 1", "intervals 2"), "1 intervals where 2", None),
+    (GOOD.replace("intervals 1", "intervals 0"), "more than the 0", 11),
+    (GOOD.replace("end\n", ""), "cut short", None),
+    (GOOD[:140], "9 whole numbers", 11),
+    (GOOD.replace("46000", "46001"), "comes to 1000", 11),
+    (GOOD.replace("at 1000", "at 999"), "the program states 999 0 0", 11),
+    (GOOD.replace("46000 84000 -12000", "256000 0 0"), "a corner there", 11),
+    (GOOD.replace("at 0 0 0", "at 4000000 0 0").replace("at 1000", "at 4001000"), "X goes to 2000.50 mm", 11),
+    (GOOD.replace("-12000", str(2**60)), "too large for the registers", 11),
+    ("\xff", "no ASCII text", None),
+]
+
+
+@pytest.mark.parametrize(("text", "told", "line"), BAD, ids=range(len(BAD)))
+def test_a_garbled_file_is_one_line_with_its_place(tmp_path: FilePath, text: str, told: str, line: int | None) -> None:
+    (tmp_path / "a.cubic").write_text(text, encoding="latin-1")
+    with pytest.raises(ProgramFault, match=told) as met:
+        play_cubic(tmp_path / "a.cubic")
+    assert "\n" not in str(met.value)
+    assert met.value.line == line or told.startswith("line")
+
+
+def test_the_good_file_is_good(tmp_path: FilePath) -> None:
+    (tmp_path / "a.cubic").write_text(GOOD.replace("\nat 1000", "\n# a remark\n\nat 1000"))
+    assert thin(play_cubic(tmp_path / "a.cubic")).positions_mm[-1] == pytest.approx([0.5, 0, 0], abs=1 * UM)
