@@ -33,7 +33,9 @@ from recorder.tapeformat import TapeFormat
 STANDSTILL_S = 0.05
 STANDSTILL_CYCLES = 0.25  # phase that moves more than this within the 50 ms moves on purpose
 SILENT_LEVEL = 1e-3  # -60 dB of full scale
-CARRIER_SHARE = 0.5  # of a track's power; a tape at 20 dB signal-to-noise has 0.99, white noise 0.2
+CARRIER_SHARE = 0.9  # of a track's power; 20 dB of noise leave 0.99, clipping to a square 0.81, white noise has 0.2
+LEAST_CREST = 1.24  # 1.31 and more of a sine with eight samples, 1.20 where two thirds of it are cut off
+UNSTEADY_CYCLES = 0.009  # RMS at standstill: five times as much is a twentieth of a cycle; 20 dB of noise make 0.0079
 REFERENCE_BAND = 0.1  # a tape's speed may be this much off
 SURPRISE_CYCLES = 0.25
 SPECTRUM_FRAMES = 16384
@@ -75,7 +77,8 @@ class Bearings:
 def take_bearings(frames: Float32s, phases: Phases, fmt: TapeFormat) -> Bearings:
     """Bearings from the first frames and rows of a tape; raises TapeFault where a track or the reference is missing."""
     names, reference_hz = fmt.axes, fmt.reference_hz
-    power = np.mean(np.square(frames, dtype=np.float64), axis=0)
+    still = frames[: round(STANDSTILL_S * fmt.sample_rate_hz)]
+    power = np.var(still, axis=0, dtype=np.float64)  # without a DC offset
     for track, mean_square in enumerate(power):
         _demand_signal(track, float(mean_square), names)
     found_hz = strongest_hz(frames[:, 0], fmt.sample_rate_hz)
@@ -87,8 +90,49 @@ def take_bearings(frames: Float32s, phases: Phases, fmt: TapeFormat) -> Bearings
     rows = max(round(STANDSTILL_S * fmt.motion_rate_hz), 1)
     levels = phases.levels[:rows].astype(np.float64).mean(axis=0)
     for track in range(len(levels)):
+        _demand_round(track, still[:, track], names)
         _demand_carrier(track, float(levels[track]), float(power[track]), names)
-    return Bearings(levels, _zero(phases.cycles[:rows]), found_hz, names)
+    zero = _zero(phases.cycles[:rows])
+    if fmt.dwell_s >= STANDSTILL_S and not phases.first_row:
+        _demand_standstill(phases.cycles[:rows], names)
+    standing = phases.cycles[: _standing(phases.cycles, zero, fmt, rows)]
+    if len(standing) > rows:
+        off = standing - zero - np.round(standing - zero)  # a dropout may have cost whole cycles by now
+        _demand_steady(off, names)
+        zero = zero + np.median(off, axis=0)
+    return Bearings(levels, zero, found_hz, names)
+
+
+def _standing(cycles: Float64s, zero: Float64s, fmt: TapeFormat, least: int) -> int:
+    """Rows of the standstill at the start, as far as it is stated and all axes stay near their zero."""
+    stated = cycles[: round(0.9 * fmt.dwell_s * fmt.motion_rate_hz)]
+    if len(stated) < least:
+        return 0
+    moved = (np.abs(stated - zero) > STANDSTILL_CYCLES).mean(axis=1)
+    steps = np.flatnonzero(np.convolve(moved > 0, np.ones(least), "valid") == least)  # longer than a dropout
+    return max(int(steps[0]) - least, 0) if len(steps) else len(stated)  # an axis may have crept before it was seen
+
+
+def _demand_standstill(cycles: Float64s, names: Sequence[str]) -> None:
+    """Raise TapeFault where a tape that states a standstill starts under way: where it starts from is not known."""
+    moved = np.ptp(cycles, axis=0)
+    axis = int(np.argmax(moved))
+    if moved[axis] >= STANDSTILL_CYCLES:
+        raise TapeFault(
+            f"the tape starts while {names[axis].upper()} moves, and states a standstill: its start is missing, so where "
+            f"it starts from is not known; get the whole tape, or go on from a place (--resume-at 0.1s --from X,Y,Z)"
+        )
+
+
+def _demand_steady(standing: Float64s, names: Sequence[str]) -> None:
+    """Raise TapeFault where the phases of a standing machine swing so far that no position is certain."""
+    swing = np.diff(np.percentile(standing, [2.3, 97.7], axis=0), axis=0)[0] / 4  # dropouts left out
+    axis = int(np.argmax(swing))
+    if not swing[axis] <= UNSTEADY_CYCLES:
+        raise TapeFault(
+            f"the phase of {names[axis].upper()} swings by {swing[axis]:.3f} cycle (RMS) at standstill, at most "
+            f"{UNSTEADY_CYCLES:g} is allowed: noise, crosstalk or tape that weaves; copy the tape on a better machine"
+        )
 
 
 def strongest_hz(samples: Float32s, sample_rate_hz: float) -> float:
@@ -126,6 +170,17 @@ def _demand_signal(track: int, mean_square: float, names: Sequence[str]) -> None
             f"track {track + 1} ({track_name(track, names)}) is silent: level {decibels(level)}, at least "
             f"{decibels(SILENT_LEVEL)} of full scale is needed; record the tape again, or give the tracks in the order "
             f"reference, {', '.join(name.upper() for name in names)}"
+        )
+
+
+def _demand_round(track: int, samples: Float32s, names: Sequence[str]) -> None:
+    """Raise TapeFault for a track that is clipped so far that its harmonics fold back upon the carrier."""
+    swing = samples - np.median(samples)
+    crest = float(np.percentile(np.abs(swing), 98) / np.std(swing))
+    if not crest >= LEAST_CREST:
+        raise TapeFault(
+            f"track {track + 1} ({track_name(track, names)}) is clipped: its peak is {crest:.2f} of its root mean square, at "
+            f"least {LEAST_CREST:g} is needed; copy the tape again at a lower level"
         )
 
 

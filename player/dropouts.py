@@ -107,11 +107,14 @@ def filled(before: Side, after: Side, travel: float, rows: int) -> Array:
     return np.asarray(before.place + v0 * u + (3 * way - 2 * v0 - v1) * u**2 + (v0 + v1 - 2 * way) * u**3)
 
 
-def under_way(rows: Phases, discriminator: Discriminator) -> None:
-    """Count the first rows of a tape that is taken up in the middle of a motion, whose speed they tell."""
+def under_way(rows: Phases, discriminator: Discriminator) -> Array:
+    """Count the first rows of a tape taken up in the middle of a motion, whose speed they tell; where it starts."""
+    places = np.zeros(rows.cycles.shape[1])
     for axis in range(rows.cycles.shape[1]):
         first = side(np.unwrap(rows.cycles[:SIDE_ROWS, axis], period=1.0), 0)
         _count_on(discriminator, axis, first, rows.cycles[:, axis], rows.surprise[:, axis])
+        places[axis] = first.place
+    return places
 
 
 def _count_on(discriminator: Discriminator, axis: int, at: Side, cycles: Array, surprise: NDArray[np.float32]) -> None:
@@ -155,9 +158,9 @@ class Gaps:
         fault: tuple[int, Fault] | None = None
         if self._lost.any():
             ready, fault = self._bridge_all(rows, ready, last)
-        first = rows.first_row + ready
         out = rows.cut(self._given - rows.first_row, ready)
-        self._given = max(self._given, first)
+        self._given = max(self._given, rows.first_row + ready)
+        fault = fault and (len(out), fault[1])
         keep = max(ready - self._side - self._spread, 0)
         self._rows, self._lost = rows.cut(keep, len(rows)), self._lost[keep:]
         return out, fault
@@ -180,7 +183,7 @@ class Gaps:
                     break
         if first is not None and first[0] > ready:
             first = None  # an earlier gap is still open
-        return ready, first and (rows.first_row + first[0], first[1])
+        return ready, first
 
     def _gaps_of(self, axis: int) -> list[tuple[int, int]]:
         """First and last row (past it) of each gap of an axis; gaps with too little between them are one."""

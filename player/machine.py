@@ -19,6 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager
+from dataclasses import replace
 from itertools import chain
 from os import PathLike
 
@@ -27,10 +28,11 @@ from numpy.typing import NDArray
 
 from motion.faults import Fault, LockFault, TapeFault
 from motion.motion import AXES, Motion
-from player.bearings import Bearings, take_bearings
-from player.discriminator import Discriminator, Phases, discriminate
+from player.bearings import STANDSTILL_S, Bearings, take_bearings
+from player.discriminator import Discriminator, Float32s, Phases, discriminate
 from player.dropouts import Gaps, under_way
 from player.phase_lock import Drives, PhaseLock
+from player.watch import Watch, demand_apart
 from recorder.tape import Tape, TapeFormat
 
 BLOCK_FRAMES = 65536
@@ -111,7 +113,7 @@ class Playback:
         self.following_error_mm, self.end_error_mm = drives.largest_error_mm, None
         for phases, bearings, gap in self._phases():
             found = bearings.first_fault(phases, fmt.motion_rate_hz, self.end_mm.tolist()) or gap
-            sound = len(phases) if found is None or found is gap else found[0]
+            sound = len(phases) if found is None else min(found[0], len(phases))
             displacement_mm = drives.follow(phases.cycles[:sound] - bearings.zero_cycles)
             self.end_mm = self.start_mm + drives.displacement_mm
             if len(displacement_mm):
@@ -130,19 +132,37 @@ class Playback:
         with self._open_tape() as tape:
             blocks = iter(tape.blocks(BLOCK_FRAMES, first_row * fmt.samples_per_motion))
             first = next(blocks, np.zeros((0, fmt.tracks), np.float32))
-            rows = (rows.moved(first_row) for rows in discriminate(chain([first], blocks), discriminator))
+            held = [first]
+
+            def noted() -> Iterator[Float32s]:
+                for block in chain([first], blocks):
+                    held[0] = block
+                    yield block
+
+            rows = (rows.moved(first_row) for rows in discriminate(noted(), discriminator))
             start = next(rows, None)
             if start is None:
                 raise self._too_short(discriminator.filter_frames)
             if first_row:
-                under_way(start, discriminator)
-            bearings = take_bearings(first, start, fmt)
+                places = under_way(start, discriminator)
+                bearings = replace(take_bearings(first, start, fmt), zero_cycles=places)
+            else:
+                bearings = take_bearings(first, start, fmt)
+                demand_apart(first[: round(STANDSTILL_S * fmt.sample_rate_hz)], bearings.levels, fmt.axes)
             gaps = self._gaps(discriminator, bearings)
+            watch = Watch(fmt, bearings)
             for phases in chain([start], rows):
                 out, fault = gaps.feed(phases)
-                yield out, bearings, fault
+                wrong = None if self.resume_at_s else watch.wrong_reference(held[0], self._time_s(phases))
+                if wrong is not None:
+                    raise wrong
+                yield out, bearings, fault or watch.skewed(out, self.end_mm.tolist())
             out, fault = gaps.feed(phases.cut(len(phases), len(phases)), last=True)
             yield out, bearings, fault
+
+    def _time_s(self, phases: Phases) -> float:
+        """Tape time at the end of some rows, s."""
+        return (phases.first_row + len(phases)) / self.format.motion_rate_hz
 
     def _gaps(self, discriminator: Discriminator, bearings: Bearings) -> Gaps:
         """What bridges the dropouts of this tape."""

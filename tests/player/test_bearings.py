@@ -75,7 +75,10 @@ def test_a_track_of_noise_is_told() -> None:
 def test_a_tape_without_a_standstill_starts_at_its_first_row() -> None:
     frames = tracks(lambda t_s: swing(t_s + 1.0), 0.3)
     first = Discriminator(RATE_HZ, REFERENCE_HZ, 8, 4).feed(frames).cycles[0]
-    assert np.array_equal(bearings(frames).zero_cycles[:2], first[:2])
+    by_hand = TapeFormat(dwell_s=0.0)
+    assert np.array_equal(bearings(frames, by_hand).zero_cycles[:2], first[:2])
+    with pytest.raises(TapeFault, match="the tape starts while . moves, and states a standstill"):
+        bearings(frames)
 
 
 def block(rows: int = 100) -> Phases:

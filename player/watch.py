@@ -1,0 +1,127 @@
+"""The watch: whether track 1 is the reference, the skew is small enough for the speed, and no two tracks are one.
+
+Signals in: blocks of frames (n, tracks) and rows of phases; out: nothing, or a fault.
+
+    reference     the frequency of each track at 64 moments of a block, against that at standstill; what all tracks share
+                  is the tape's speed. The reference is the steadiest; if another is twice as steady, that is it.
+    skew          a track that is late by s seconds stands s · reference off at standstill, and is wrong by s · deviation
+                  under way:       |zero| / reference · speed / q  <  0.05 cycle
+    stuck         two tracks with the same noise, sample for sample, are one signal
+
+Source: patent ES 361967, figure 5 (fault circuit 162).
+Questions: half a cycle of zero is a track with the other polarity and no skew. A skew of a quarter of the reference's
+period and more (42 us at 6 kHz) cannot be told from a smaller one with it, and one of a half not from none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion.faults import Fault, LockFault, TapeFault
+from player.bearings import Bearings, track_name
+from player.discriminator import Phases, translating_taps
+from recorder.tapeformat import TapeFormat
+
+MOMENTS = 64  # in a block
+STEADIER = 4.0  # of the mean square, before another track is taken for the reference
+LEAST_MOTION_HZ = 8.0  # of track 1, RMS: 0.4 mm/s; 30 dB of noise leave 3
+FEWEST_MOMENTS = 64
+SKEW_CYCLES = 0.05
+STUCK_NOISE = 1e-4  # of full scale and of the carrier: below it noise may be the rounding of the samples
+
+Float32s = NDArray[np.float32]
+Array = NDArray[np.float64]
+
+
+class Watch:
+    """Keeps watch over one tape, block by block."""
+
+    def __init__(self, fmt: TapeFormat, bearings: Bearings) -> None:
+        self._format, self._bearings = fmt, bearings
+        re, im = translating_taps(fmt.sample_rate_hz, fmt.reference_hz, fmt.samples_per_motion)
+        self._taps = re.astype(np.float64) + 1j * im
+        self._still_hz = bearings.reference_hz
+        self._sums, self._moments = np.zeros(fmt.tracks), 0
+
+    def wrong_reference(self, frames: Float32s, time_s: float) -> Fault | None:
+        """The fault of a track 1 that moves more than another; frames of one block."""
+        found = self._frequencies(frames)
+        self._sums += np.square(found - self._still_hz).sum(axis=0)
+        self._moments += len(found)
+        if self._moments < FEWEST_MOMENTS:
+            return None
+        mean = self._sums / self._moments
+        steadiest = int(np.argmin(mean))
+        if mean[0] < LEAST_MOTION_HZ**2 or mean[0] < STEADIER * mean[steadiest]:
+            return None
+        name = track_name(steadiest, self._format.axes)
+        return TapeFault(
+            f"track 1 moves by {np.sqrt(mean[0]):.0f} Hz and track {steadiest + 1} ({name}) stands at "
+            f"{np.sqrt(mean[steadiest]):.0f} Hz, so the reference is on track {steadiest + 1}, found at {time_s:.3f} s; "
+            f"put the tracks in order: reference, {', '.join(axis.upper() for axis in self._format.axes)}",
+            time_s=time_s,
+        )
+
+    def _frequencies(self, frames: Float32s) -> Array:
+        """Frequency of each track at some moments, Hz (moments, tracks)."""
+        step, length = self._format.samples_per_motion, len(self._taps)
+        spare = len(frames) - length - step
+        if spare < MOMENTS:
+            return np.zeros((0, frames.shape[1]))
+        starts = np.linspace(0, spare, MOMENTS).astype(np.int64)
+        at = starts[:, None] + np.arange(length + step)
+        seen = frames[at].astype(np.float64)
+        first = np.einsum("n,mnt->mt", self._taps, seen[:, :length])
+        after = np.einsum("n,mnt->mt", self._taps, seen[:, step:])
+        rate_hz, hz = self._format.sample_rate_hz / step, self._format.reference_hz
+        turned = np.angle(after * first.conj()) / (2 * np.pi) - hz / rate_hz  # the taps do not turn along
+        return np.asarray(hz + (turned - np.round(turned)) * rate_hz)
+
+    def skewed(self, phases: Phases, positions_mm: Sequence[float]) -> tuple[int, Fault] | None:
+        """The first row where an axis is too fast for the skew of its track, and the fault."""
+        if len(phases) < 2 or not self._format.dwell_s:  # another's tape may start at any phase
+            return None
+        offset = np.abs(self._bearings.zero_cycles - np.round(self._bearings.zero_cycles))
+        skew_s = np.minimum(offset, np.abs(0.5 - offset)) / self._bearings.reference_hz
+        rate_hz = self._format.motion_rate_hz
+        stride = max(round(rate_hz * 0.002), 1)  # speeds over 2 ms, above the noise
+        speed = np.abs(phases.cycles[stride:] - phases.cycles[:-stride]) * (rate_hz / stride)
+        wrong = speed * skew_s > SKEW_CYCLES
+        if not wrong.any():
+            return None
+        row, axis = (int(i) for i in np.argwhere(wrong)[0])
+        name, time_s = self._format.axes[axis], (phases.first_row + row) / rate_hz
+        return row, LockFault(
+            f"{name.upper()} moves at {speed[row, axis] * self._format.mm_per_cycle:.3g} mm/s at {time_s:.3f} s, and its "
+            f"track is {skew_s[axis] * 1e6:.0f} us off the reference: that is {speed[row, axis] * skew_s[axis]:.2f} cycle, "
+            f"{SKEW_CYCLES:g} is allowed; copy the tape with the head set straight",
+            axis=name,
+            time_s=time_s,
+            error_cycles=float(speed[row, axis] * skew_s[axis]),
+            position_mm=positions_mm[axis],
+        )
+
+
+def demand_apart(frames: Float32s, levels: Array, names: Sequence[str]) -> None:
+    """Raise TapeFault for two tracks that carry the same noise, in frames of standstill."""
+    equal = frames / levels.astype(np.float32)
+    for one in range(1, frames.shape[1]):
+        floor = _noise(frames[:, one])
+        if floor < max(STUCK_NOISE, STUCK_NOISE * float(levels[one])):
+            continue
+        for other in range(one):
+            if float(np.std(equal[:, one] - equal[:, other])) * levels[one] < 0.05 * floor:
+                raise TapeFault(
+                    f"tracks {other + 1} ({track_name(other, names)}) and {one + 1} ({track_name(one, names)}) carry the "
+                    f"same signal, noise and all; look to the cables, and copy the tape again"
+                )
+
+
+def _noise(samples: Float32s) -> float:
+    """White noise of a track, RMS: by the weakest tenth of its spectrum's lines, which tones and flutter do not reach."""
+    window = np.hanning(len(samples))
+    lines = np.abs(np.fft.rfft(samples * window)) ** 2 / np.sum(window**2)
+    return float(np.sqrt(np.percentile(lines, 10) / -np.log(0.9)))
