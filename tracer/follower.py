@@ -117,9 +117,10 @@ class Follower:
         """Take the head from an incoming leg onto the straightest leg that leads on; what it did in all, if there is none."""
         outgoing, legs_mm, choices = survey(self.view, incoming, self._trail, self._rank())
         self.junctions += choices > 1
-        if not goes_straight(incoming, outgoing) or self._far(incoming, outgoing):
+        straight = goes_straight(incoming, outgoing)
+        if not straight or self._far(incoming, outgoing):
             ride = ride_past(self.view, incoming)
-            if ride is not None:
+            if ride is not None and not (straight and ride.back is None):
                 return self._ride(incoming, ride)
         if outgoing is not None:
             way = self._course(incoming, outgoing, legs_mm)
