@@ -62,6 +62,9 @@ def play(
 
     with open_tape() as tape:
         fmt, frames = tape.format, tape.frames
+    if resume_at_s and fmt.end_mm is not None:  # the place is not the tape's start, so the end does not go along
+        with Tape.open(file, reference_hz=reference_hz, cycles_per_mm=cycles_per_mm) as tape:
+            fmt = replace(fmt, end_mm=tape.format.end_mm)
     settings = settings or PhaseLock.suited_to(fmt.motion_rate_hz)
     most = settings.drive.acceleration_mm_s2 if acceleration_mm_s2 is None else acceleration_mm_s2
     _check_resumption(resume_at_s, start_mm, frames / fmt.sample_rate_hz)
@@ -130,7 +133,8 @@ class Playback:
         discriminator = Discriminator(fmt.sample_rate_hz, fmt.reference_hz, fmt.samples_per_motion, fmt.tracks)
         first_row = round(self.resume_at_s * rate_hz)
         with self._open_tape() as tape:
-            blocks = iter(tape.blocks(BLOCK_FRAMES, first_row * fmt.samples_per_motion))
+            lead = min(first_row, discriminator.filter_frames // fmt.samples_per_motion)  # rows that the filter needs
+            blocks = iter(tape.blocks(BLOCK_FRAMES, (first_row - lead) * fmt.samples_per_motion))
             first = next(blocks, np.zeros((0, fmt.tracks), np.float32))
             held = [first]
 
@@ -139,11 +143,12 @@ class Playback:
                     held[0] = block
                     yield block
 
-            rows = (rows.moved(first_row) for rows in discriminate(noted(), discriminator))
+            rows = (rows.moved(first_row - lead) for rows in discriminate(noted(), discriminator))
             start = next(rows, None)
             if start is None:
                 raise self._too_short(discriminator.filter_frames)
             if first_row:
+                start = start.cut(lead, len(start))
                 places = under_way(start, discriminator)
                 bearings = replace(take_bearings(first, start, fmt), zero_cycles=places)
             else:
