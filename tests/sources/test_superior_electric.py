@@ -1,0 +1,284 @@
+"""Patent ES 443122 (Superior Electric, 1975): its worked examples, and one test for each claim.
+
+`docs/claims-superior-electric.md` has the table from claim to test.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from motion.motion import join
+from player.stepping import decode, play_steps, pulse_ticks, pulses_of, ring_memory, tick_table
+from recorder.rings import RINGS
+from recorder.stepfile import Program, StepFormat, write_program
+from recorder.steps import encode
+
+Vectors = Callable[[str], Any]
+
+LINEAR = (1, 2, 3, 4, 5, 6, 7)
+SAME, X_UP, X_DOWN, Y_UP, Y_DOWN = 0b10000, 0b10001, 0b10010, 0b10100, 0b11000
+PREVIOUS, NEXT, REPEAT = 0b00001, 0b00010, 0b00000
+INTO_RING_OF_SIX = [X_UP] * 6  # to (6, 0)
+
+
+def program(rows: list[int], **fmt: Any) -> Program:
+    """Rows of a tape of five channels, one vector command in each unless told otherwise."""
+    return Program(StepFormat(**{"vectors": 1, "channels": 5, **fmt}), np.array(rows, np.uint8))
+
+
+def counts(rows: list[int], **fmt: Any) -> list[list[int]]:
+    """Counts of X and Y in each interval."""
+    return [count[:2] for count in decode(program(rows, **fmt))[0].tolist()]
+
+
+def pulses(rows: list[int], **fmt: Any) -> list[list[int]]:
+    """Pulses to X and Y in each interval."""
+    tape = program(rows, **fmt)
+    return [steps[:2] for steps in pulses_of(decode(tape)[0], tape.format.rates).tolist()]
+
+
+# worked examples
+
+
+def test_figures_7_and_8_give_the_printed_counts_in_all_15_intervals(vectors: Vectors) -> None:
+    orders = vectors("se_fig8")["orders"]
+    rows = [int(order["tape5"], 2) for order in orders]
+    assert len(orders) == 15
+    assert counts(rows) == [[order["count_x"], order["count_y"]] for order in orders]
+    assert pulses(rows) == [[order["steps_x"], order["steps_y"]] for order in orders]
+    assert np.cumsum(pulses(rows), axis=0).tolist() == [[order["sum_x"], order["sum_y"]] for order in orders]
+
+
+def test_figure_8_ends_at_53_and_minus_9_after_93_75_ms(vectors: Vectors, tmp_path: Path) -> None:
+    rows = [int(order["tape5"], 2) for order in vectors("se_fig8")["orders"]]
+    write_program(program(rows, end_mm=(0.53, -0.09, 0)), tmp_path / "fig8.steps")
+    playback = play_steps(tmp_path / "fig8.steps")
+    assert playback.duration_s == pytest.approx(0.09375)
+    assert join(playback).positions_mm[-1] == pytest.approx([0.53, -0.09, 0])
+
+
+def test_the_recorder_punches_figure_8_as_it_is_printed(vectors: Vectors) -> None:
+    orders = vectors("se_fig8")["orders"]
+    lengths = np.array([[order["steps_x"], order["steps_y"], 0] for order in orders])
+    rows = encode(lengths, np.zeros(15, bool), StepFormat(vectors=1, channels=5))
+    assert [f"{row:05b}" for row in rows] == [order["tape5"] for order in orders]
+
+
+def test_the_example_of_the_memory(vectors: Vectors) -> None:
+    example = vectors("se_fig8")["rom_example"]
+    x, y = example["counts"]
+    memory = ring_memory()
+    for direction, name in ((1, "next"), (0, "previous")):
+        out = int(memory[x << 5 | y << 1 | direction])
+        moved = [x + (out & 1) - (out >> 1 & 1), y + (out >> 2 & 1) - (out >> 3 & 1)]
+        assert moved == example[name]
+
+
+def test_the_rings_are_those_of_figures_5_and_10(vectors: Vectors) -> None:
+    """The vectors run towards +Y; figure 8, and so the rings here, towards -Y."""
+    told = vectors("se_series")
+    for speed, ring in told["series"].items():
+        ours = [[x, -y] for x, y in RINGS[int(speed)]]
+        assert ours == ring["vectors"]
+        along = np.cumsum(ours, axis=0)
+        assert np.ptp(along[:, 0]) / 2 == ring["radius_half_extent"]
+        lengths = np.hypot(*np.array(ours).T)
+        assert [lengths.min(), lengths.max()] == pytest.approx([ring["len_min"], ring["len_max"]], abs=1e-4)
+    assert sum(map(len, RINGS.values())) == told["total_vectors"]
+
+
+def test_the_clock_and_the_printed_pulses(vectors: Vectors) -> None:
+    told = vectors("se_clock")
+    for case in told["cases"]:
+        fmt = StepFormat(oscillator_hz=case["oscillator_hz"])
+        assert fmt.interval_s == pytest.approx(case["interval_s"]) and fmt.rate_hz == case["K_hz"]
+        assert fmt.acceleration_steps_s2 == case["accel_steps_s2"]
+    for rate, ticks in told["pulse_counts_printed"].items():
+        assert list(pulse_ticks(int(rate[0]))) == ticks
+    ticks = pulse_ticks(3)
+    assert sorted(np.diff([*ticks, ticks[0] + 64]).tolist()) == told["gaps_3K"]
+
+
+def test_the_guards_of_figure_4(vectors: Vectors) -> None:
+    assert len(vectors("se_clock")["guards"]) == 3
+    assert counts([X_UP] * 20)[-1] == [15, 8]  # UP barred at 15
+    assert counts([Y_DOWN] * 20)[-1] == [8, 1]  # DOWN barred at 1
+    assert counts([0b10011, 0b11100, SAME]) == [[8, 8]] * 3  # 00 and 11 change nothing
+
+
+# claims
+
+
+def test_claim_1_pulses_at_the_rate_that_the_order_names_until_the_next_order() -> None:
+    assert pulses([X_UP, X_UP, X_DOWN]) == [[1, 0], [2, 0], [1, 0]]
+    assert len({pulses_of(np.array([[count]], np.int8), LINEAR)[0, 0] for count in range(1, 16)}) == 15
+
+
+def test_claim_2_the_next_rate_begins_with_its_order(tmp_path: Path) -> None:
+    write_program(program([X_UP, X_UP, X_DOWN, X_DOWN], end_mm=(0.04, 0, 0)), tmp_path / "a.steps")
+    playback = play_steps(tmp_path / "a.steps")
+    x = join(playback).positions_mm[:, 0]
+    assert x[[0, 8, 16, 24, 32]] == pytest.approx([0, 0.01, 0.03, 0.04, 0.04])  # at the ends of the intervals
+
+
+def test_claim_3_an_order_is_the_difference_between_two_representations() -> None:
+    for before in range(6):
+        rows = [X_UP] * before
+        assert counts([*rows, X_UP])[-1][0] - (8 + before) == 1
+
+
+def test_claim_4_in_one_direction_a_higher_rate_has_a_higher_number() -> None:
+    forward = pulses_of(np.arange(9, 16, dtype=np.int8)[:, None], LINEAR)[:, 0]
+    assert (forward > 0).all() and (np.diff(np.abs(forward)) > 0).all()
+
+
+def test_claim_5_in_the_other_a_lower_rate_has_a_higher_number() -> None:
+    backward = pulses_of(np.arange(1, 8, dtype=np.int8)[:, None], LINEAR)[:, 0]
+    assert (backward < 0).all() and (np.diff(np.abs(backward)) < 0).all()
+
+
+def test_claims_6_and_7_each_rate_has_one_count_of_a_counter() -> None:
+    """Seven to one: figure 2, minus lines; eight: none; nine to fifteen: plus lines, growing."""
+    by_count = pulses_of(np.arange(1, 16, dtype=np.int8)[:, None], LINEAR)[:, 0]
+    assert by_count.tolist() == list(range(-7, 8))
+
+
+def test_claim_8_the_count_itself_can_be_the_order() -> None:
+    assert pulses_of(np.array([[11, 8, 3]], np.int8), LINEAR).tolist() == [[3, 0, -5]]
+
+
+def test_claim_9_the_next_order_is_the_difference_of_the_counts() -> None:
+    lengths = np.array([[1, 0, 0], [1, -1, 0], [0, -1, 0]])
+    rows = encode(lengths, np.zeros(3, bool), StepFormat(vectors=1, channels=5))
+    assert [f"{row:05b}" for row in rows] == ["10001", "11000", "10010"]
+
+
+def test_claim_10_the_choice_is_one_up_one_down_or_the_same() -> None:
+    for code in range(4):
+        (after,) = counts([0b10000 | code])
+        assert after[0] - 8 in (-1, 0, 1)
+    with pytest.raises(ValueError, match="more than one step"):
+        encode(np.array([[2, 0, 0]]), np.zeros(1, bool), StepFormat())
+
+
+def test_claim_11_two_axes_run_in_the_same_interval() -> None:
+    assert pulses([0b11001]) == [[1, -1]]
+
+
+def test_claim_12_orders_of_both_axes_are_stored_together_and_taken_at_the_end_of_the_pulses(tmp_path: Path) -> None:
+    rows = [0b10101, 0b10101, 0b11010, 0b11010]
+    write_program(program(rows, end_mm=(0.04, 0.04, 0)), tmp_path / "a.steps")
+    motion = join(play_steps(tmp_path / "a.steps")).positions_mm
+    assert (motion[:, 0] == motion[:, 1]).all()
+    assert motion[8::8, 0] == pytest.approx([0.01, 0.03, 0.04, 0.04])  # all pulses of an order before the next
+
+
+@pytest.mark.parametrize("oscillator_hz", [10240, 7680])
+def test_claim_13_the_interval_is_the_same_for_every_order(tmp_path: Path, oscillator_hz: float) -> None:
+    rows = [X_UP, X_UP, SAME, X_DOWN, X_DOWN]
+    write_program(program(rows, end_mm=(0.06, 0, 0), oscillator_hz=oscillator_hz), tmp_path / "a.steps")
+    playback = play_steps(tmp_path / "a.steps")
+    assert playback.duration_s == pytest.approx(len(rows) * 64 / oscillator_hz)
+
+
+def test_claim_14_each_rate_gives_a_whole_number_of_pulses() -> None:
+    table = tick_table()
+    assert [table[rate, 64] for rate in LINEAR] == list(LINEAR)
+    assert table.dtype == np.int64
+
+
+def test_claim_15_the_rates_differ_by_one_pulse() -> None:
+    assert {b - a for a, b in pairwise(StepFormat().rates)} == {1}
+
+
+def test_claim_16_an_order_of_a_vector_gives_its_extents_on_both_axes() -> None:
+    assert pulses([*INTO_RING_OF_SIX, NEXT, NEXT, NEXT])[-3:] == [[6, -1], [6, -2], [5, -3]]
+
+
+def test_claim_17_an_order_is_a_difference_of_places_in_the_endless_series() -> None:
+    ring = RINGS[6]
+    run = pulses([*INTO_RING_OF_SIX, *[NEXT] * 40])[6:]
+    assert run == [list(ring[(k + 1) % len(ring)]) for k in range(40)]  # past the end it begins again
+
+
+def test_claim_18_the_same_vector_the_one_before_or_the_one_after() -> None:
+    present = [*INTO_RING_OF_SIX, NEXT]
+    after = [pulses([*present, order])[-1] for order in (PREVIOUS, REPEAT, NEXT, 0b00011)]
+    assert after == [[6, 0], [6, -1], [6, -2], [6, -1]]
+
+
+def test_claim_19_there_are_rings_of_several_speeds() -> None:
+    assert sorted(RINGS) == [2, 3, 4, 5, 6, 7]
+    for speed, ring in RINGS.items():
+        lengths = np.hypot(*np.array(ring).T)
+        assert np.abs(lengths - speed).max() <= 0.5  # steps
+
+
+def test_claim_20_no_vector_is_like_any_other() -> None:
+    every = [vector for ring in RINGS.values() for vector in ring]
+    assert len(set(every)) == len(every) == 148
+
+
+def test_claim_21_bit_5_tells_a_vector_from_extents() -> None:
+    assert pulses([*INTO_RING_OF_SIX, NEXT])[-1] == [6, -1]
+    assert pulses([*INTO_RING_OF_SIX, NEXT | 0b10000])[-1] == [5, 0]
+
+
+def test_claim_22_a_vector_is_only_taken_where_the_extents_are_one() -> None:
+    assert pulses([X_UP, NEXT, PREVIOUS, REPEAT])[1:] == [[1, 0]] * 3  # (1, 0) is in no ring
+    assert pulses([X_UP, X_UP, NEXT])[-1] == [2, -1]
+
+
+@pytest.mark.parametrize("speed", [2, 3, 4, 5, 6, 7])
+def test_claim_23_the_present_vector_tells_the_ring(speed: int) -> None:
+    assert pulses([*[X_UP] * speed, NEXT])[-1] == list(RINGS[speed][1])
+    assert pulses([*[X_UP] * speed, PREVIOUS])[-1] == list(RINGS[speed][-1])
+
+
+def test_claim_24_a_second_vector_waits_while_the_first_is_run() -> None:
+    """Figure 11: bits 2 and 1 are the first vector's, bits 4 and 3 the second's; a row lasts two intervals."""
+    both = pulses([*INTO_RING_OF_SIX, NEXT | NEXT << 2, PREVIOUS << 2], vectors=2)
+    assert both[6:] == [[6, -1], [6, -2], [6, -2], [6, -1]]
+
+
+def test_claim_25_two_bits_for_the_same_a_lower_and_a_higher_speed() -> None:
+    assert pulses([X_UP, X_UP, SAME, X_DOWN]) == [[1, 0], [2, 0], [2, 0], [1, 0]]
+
+
+def test_claim_28_the_difference_is_a_whole_number_of_increments() -> None:
+    steps = np.array(pulses([X_UP, X_UP, X_UP, 0b11001, X_DOWN, 0b10110]))
+    assert steps.dtype.kind == "i" and set(np.diff(steps, axis=0).ravel().tolist()) <= {-1, 0, 1}
+
+
+def test_claims_29_and_32_the_difference_is_one_of_places_in_the_order_of_the_rates() -> None:
+    rates = (1, 3, 5, 7, 8, 9, 10)
+    assert [x for x, _ in pulses([X_UP] * 7 + [X_DOWN], rates=rates)] == [*rates, 9]
+
+
+def test_claim_30_the_rates_may_differ_by_a_constant_number() -> None:
+    assert [x for x, _ in pulses([X_UP] * 7, rates=(2, 4, 6, 8, 10, 12, 14))] == [2, 4, 6, 8, 10, 12, 14]
+
+
+def test_claim_33_the_rates_are_in_the_order_of_their_speed() -> None:
+    faster = [x for x, _ in pulses([X_UP] * 7)]
+    assert faster == sorted(faster)
+
+
+def test_claims_38_and_39_neighbours_in_a_ring_differ_by_one_on_an_axis_at_most() -> None:
+    for ring in RINGS.values():
+        closed = np.array([*ring, ring[0]])
+        assert np.abs(np.diff(closed, axis=0)).max() == 1
+
+
+def test_every_claim_stands_in_the_table() -> None:
+    table = (Path(__file__).parents[2] / "docs" / "claims-superior-electric.md").read_text(encoding="utf-8")
+    rows = [line.split("|") for line in table.splitlines() if line.startswith("| ") and line[2].isdigit()]
+    assert [int(row[1]) for row in rows] == list(range(1, 40))
+    for row in rows:
+        assert row[3].strip().strip("`") in globals()
