@@ -15,8 +15,7 @@ Register I is loaded once; II, III and IV anew in each interval, so that nothing
 Source: patent US 3062995, table I, figure 2 (stores I to IV, adders 50, gates 51 and 53) and figure 3 (dividers 58, 59).
 Questions: the text adds IV to III before III to II, which is not table I; the table holds. The divider 59 is said to
 make a ratio p + q; two dividers in a row make p·q. Registers with fewer digits to the left, as claim 9 has them, end up
-to 20 counts off at 16 steps, and the next interval starts there; all four have all digits here, and `digits` may be
-given for each to show it.
+to 20 counts off at 16 steps, and the next interval starts there (`truncated_end`); all four have all digits here.
 """
 
 from __future__ import annotations

@@ -25,6 +25,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from player.interpolator import TimeBase
+
 RIGHT_LAG = 0.5  # of a coarse digit
 Codes = NDArray[np.int64]
 
@@ -60,6 +62,12 @@ def read_scales(position_counts: NDArray[np.float64], scales: Scales, seed: int 
     fine = np.floor(position_counts + noise[0] * scales.fine_noise_counts).astype(np.int64) % scales.pitch_counts
     coarse = np.floor(position_counts / half - scales.late_digits + noise[1] * scales.coarse_noise_digits)
     return fine, coarse.astype(np.int64)
+
+
+def gated_pulses(phase_cycles: float, base: TimeBase) -> int:
+    """Fast pulses that pass a gate which a resolver's phase holds open: the count of its place within the pitch."""
+    open_s = phase_cycles % 1.0 / base.carrier_hz
+    return int(open_s * base.fast_hz + 1e-9)
 
 
 def joined(fine: Codes, coarse: Codes, pitch_counts: int) -> Codes:
