@@ -65,6 +65,7 @@ CONTROLS: dict[str, Control] = {
     ".flac": TAPE,
     ".steps": Control("stepping motors at selected pulse rates", "player.stepping", "play_steps"),
     ".cubic": Control("difference interpolator and servo", "player.cubic", "play_cubic"),
+    ".ngc": Control("pulse interpolator and pulse servos", "player.pulses", "play_pulses"),
 }
 
 

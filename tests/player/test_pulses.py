@@ -1,0 +1,227 @@
+"""The pulse control: residue loops, feed counter, unit circuit, servo, and whole programs."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from motion.faults import FollowingFault, ProgramFault
+from motion.motion import MOTION_RATE_HZ, join
+from player import feed_control, pulse_servo, residues
+from player.feed_control import CLOCKS, FEED_BITS, OVERRIDE_BITS, count_feed, feed_number, override_number
+from player.pulse_servo import HISTORIC, PulseServo, PulseServos, lag, unit_circuit
+from player.pulses import PulseControl, PulsePlayback, play_pulses
+from player.residues import Feed, Interpolator
+from player.rs274 import parse_rs274
+
+RECIRCULATIONS_HZ = 8 * MOTION_RATE_HZ
+PULSE_MM = PulseServo().pulse_mm
+MOVES = 10_000  # the figure asked for, half lines and half arcs
+LINE_PULSES, ARC_PULSES = 1.8, 4.0  # measured 1.6 and 3.3; 3 and 4 are asked for
+
+
+def ways(pulses: np.ndarray, start: tuple[int, int, int]) -> np.ndarray:
+    """Places after each recirculation, the start first."""
+    return np.vstack([np.zeros((1, 3), np.int64), np.cumsum(pulses, axis=0, dtype=np.int64)]) + start
+
+
+def playback(*lines: str, control: PulseControl | None = None) -> PulsePlayback:
+    return PulsePlayback(parse_rs274([*lines, "M2"]), control or PulseControl())
+
+
+def test_10_000_random_moves_end_exactly_and_keep_to_their_line_or_arc() -> None:
+    random = np.random.default_rng(631214)
+    deviation = np.zeros((MOVES, 2))
+    feed = Feed(feed_number(15000, RECIRCULATIONS_HZ))
+    for i in range(MOVES // 2):
+        end = tuple(int(v) for v in random.integers(-1, 2, 3) * np.exp(random.uniform(0, 8.5, 3)))
+        interpolator = Interpolator(servo_constant=int(random.choice([16, 240])))
+        way = ways(interpolator.line(end, feed), (0, 0, 0))
+        assert tuple(way[-1]) == end
+        along = np.array(end) / max(math.hypot(*end), 1.0)
+        deviation[i, 0] = np.linalg.norm(way - np.outer(way @ along, along), axis=1).max()
+    for i in range(MOVES // 2):
+        radius, sense = math.exp(random.uniform(math.log(50), math.log(4000))), int(random.choice([-1, 1]))
+        angles = random.uniform(0, 7) + np.array([0.0, sense * random.uniform(0.01, math.radians(170))])
+        centre = random.integers(-900, 900, 2)
+        (x0, y0), (x1, y1) = np.rint(centre + radius * np.column_stack([np.cos(angles), np.sin(angles)])).astype(int)
+        interpolator = Interpolator((x0, y0, 7))
+        pulses = interpolator.arc((x1, y1, 7), centre, sense, feed) if (x0, y0) != (x1, y1) else np.zeros((0, 3))
+        way = ways(pulses, (x0, y0, 7))
+        assert tuple(way[-1]) == (x1, y1, 7)
+        off = np.hypot(*(way[:, :2] - centre).T) - radius
+        deviation[i, 1] = np.abs(off).max()
+    assert deviation[:, 0].max() <= LINE_PULSES
+    assert deviation[:, 1].max() <= ARC_PULSES
+
+
+@given(st.integers(1, 2**FEED_BITS - 1), st.integers(0, 2**OVERRIDE_BITS))
+def test_rate_multipliers_pass_their_share_of_the_clocks(number: int, override: int) -> None:
+    recirculations = 4096
+    fed = recirculations * CLOCKS * number / 2**FEED_BITS
+    passed = count_feed(recirculations, number, override)
+    # evenly: each stage is off by a pulse at most, whenever one looks
+    assert abs(passed - fed * override / 2**OVERRIDE_BITS) <= FEED_BITS + OVERRIDE_BITS
+
+
+def test_a_whole_turn_of_the_multiplier_passes_exactly_its_number() -> None:
+    assert count_feed(2**FEED_BITS // CLOCKS, 654_321, 1 << OVERRIDE_BITS) == 654_321
+
+
+def measured(end: tuple[int, int, int], speed: float, **how: float | bool) -> float:
+    """Speed along a line over the programmed one, off the approach."""
+    override = override_number(float(how.get("override", 1.0)))
+    feed = Feed(feed_number(speed, RECIRCULATIONS_HZ), override, bool(how.get("true_norm", False)))
+    way = ways(Interpolator(servo_constant=16).line(end, feed), (0, 0, 0))
+    half = len(way) // 2
+    return float(np.linalg.norm(way[half]) / half * RECIRCULATIONS_HZ / speed)
+
+
+@pytest.mark.parametrize("axes", [2, 3])
+def test_the_speed_is_held_within_what_the_weights_allow(axes: int) -> None:
+    random = np.random.default_rng(axes)
+    low, high = (0.894, 1.019) if axes == 3 else (0.928, 1.011)
+    for _ in range(40):
+        direction = np.r_[random.normal(size=axes), [0.0] * (3 - axes)]
+        end = tuple(int(v) for v in np.rint(direction / np.linalg.norm(direction) * 15_000))
+        speed = random.uniform(3_000, 16_000)
+        assert low - 0.005 < measured(end, speed) < high + 0.005  # half of 1 %: the counter fills at the start
+        assert measured(end, speed, true_norm=True) == pytest.approx(1.0, abs=0.005)
+
+
+def test_the_override_lowers_the_speed() -> None:
+    full = measured((30_000, 10_000, 0), 10_000)
+    assert measured((30_000, 10_000, 0), 10_000, override=0.25) == pytest.approx(0.25 * full, rel=0.01)
+
+
+def test_the_approach_depends_on_the_error_alone() -> None:
+    interpolator = Interpolator(servo_constant=240)
+    way = ways(interpolator.line((20_000, 0, 0), Feed(feed_number(10_000, RECIRCULATIONS_HZ))), (0, 0, 0))
+    assert interpolator.counter > 27  # of 32: saturated, so the gates stay open
+    left = 20_000 - way[-3000:, 0].astype(float)
+    rate = -np.gradient(left, 100)[::100]
+    assert np.isfinite(rate).all() and left[-1] == 0 and (np.diff(left) <= 0).all()
+
+
+def test_the_guard_keeps_idle_axes_still() -> None:
+    feed = Feed(gate_period=1)
+    bare = Interpolator(guard=False).line((700, -300, 0), feed, residue=0)
+    guarded = Interpolator().line((700, -300, 0), feed, residue=0)
+    assert np.count_nonzero(bare[:, 2]) > 0 == np.count_nonzero(guarded[:, 2])
+
+
+def test_residues_stay_within_one_bit_more_than_the_sum() -> None:
+    interpolator = Interpolator()
+    for part in interpolator.recirculate((9000, -4000, 77), (0, 0), 0, Feed(gate_period=3)):
+        assert np.abs(part).max() <= 1
+        assert np.abs(interpolator.residues).max() <= 2 * (9000 + 16)
+
+
+@given(st.integers(-30_000, 30_000), st.integers(-15, 16))
+def test_the_unit_circuit_is_right_for_every_lag_of_its_range(position: int, behind: int) -> None:
+    command = position + behind
+    assert unit_circuit(position, command & 31) == command
+    assert lag(position, command & 31) == behind
+
+
+@pytest.mark.parametrize("behind", [-16, 17, 24, -24])  # 24: the text's own example
+def test_and_wrong_beyond(behind: int) -> None:
+    assert unit_circuit(99_999, (99_999 + behind) & 31) != 99_999 + behind
+
+
+def test_a_lag_out_of_range_is_a_fault_and_not_a_wrong_position() -> None:
+    fast = PulseControl(servo=PulseServo(icr_bits=5))
+    run = playback("G1 X0 F1200", "G1 X5", control=fast)
+    with pytest.raises(FollowingFault, match=r"the lag of X left the range of the 5 bits .* -15 to 16 counts"):
+        list(run)
+    assert run.end_mm[0] < 1.0
+
+
+def test_the_historic_control_has_pulses_of_half_a_thousandth() -> None:
+    slow = PulseServo(HISTORIC.pulse_mm, HISTORIC.register_bits, HISTORIC.icr_bits, lag_stages=10)
+    run = playback("G20 G1 X0 Y0 F24", "G1 X1 Y0.5", control=PulseControl(servo=slow, servo_constant=60))
+    join(run)
+    assert np.abs(run.end_error_mm).max() <= 0.0127
+    assert HISTORIC.travel_mm == pytest.approx(32.767 * 25.4, rel=1e-3)
+
+
+def test_a_program_is_played_to_its_pulse() -> None:
+    run = playback(
+        "G0 X10 Y10 Z2",
+        "G1 Z-1 F300",
+        "G1 X30 F600",
+        "G3 X40 Y20 J10",
+        "G2 X40 Y20 I5",
+        "G4 P0.1",
+        "G1 X10 Y10",
+        "G0 Z2",
+    )
+    motion = join(run)
+    assert run.start_mm.tolist() == [10, 10, 2]
+    assert np.abs(run.end_error_mm).max() <= PULSE_MM
+    assert np.abs(motion.positions_mm[0] - run.start_mm).max() <= PULSE_MM
+    assert motion.duration_s == pytest.approx(run.duration_s, rel=0.15)
+    assert (run.following_error_mm > 0).all()
+    circle = motion.positions_mm[motion.positions_mm[:, 0] > 40.01, :2]
+    assert np.abs(np.hypot(*(circle - [45, 20]).T) - 5).max() < 5 * PULSE_MM  # 4 of the arc, 1 of the servo
+    assert circle.max(axis=0) == pytest.approx([50, 25], abs=5 * PULSE_MM)  # a whole turn, in three arcs
+
+
+def test_it_plays_again_as_before() -> None:
+    run = playback("G1 X0 Y0 F600", "G2 X3 Y3 R3")
+    assert (join(run).positions_mm == join(run).positions_mm).all()
+
+
+def test_what_cannot_be_run_is_refused_before_anything_moves() -> None:
+    with pytest.raises(ProgramFault, match=r"line 2: X goes to 90000.000 mm; the registers of 24 bits hold"):
+        playback("G1 X0 F600", "G1 X90000")
+    with pytest.raises(
+        ProgramFault, match=r"line 1: F9000: a speed of 150000 pulses/s has no feed number; give 0.256 to"
+    ):
+        playback("G1 X5 F9000")
+    with pytest.raises(ValueError, match="an override of 2 is none"):
+        playback("G1 X5 F600", control=PulseControl(override=2.0))
+
+
+@pytest.mark.parametrize("speed", [0.0, -1.0, math.inf, math.nan, 1e9])
+def test_a_speed_without_a_feed_number_is_refused(speed: float) -> None:
+    with pytest.raises(ValueError, match=r"has no feed number; give"):
+        feed_number(speed, RECIRCULATIONS_HZ)
+
+
+def test_arcs_that_are_none_are_refused() -> None:
+    with pytest.raises(ValueError, match="helix"):
+        Interpolator().arc((1, 1, 1), (0, 1), 1, Feed())
+    with pytest.raises(ValueError, match="not 0"):
+        Interpolator().arc((1, 1, 0), (0, 1), 0, Feed())
+    with pytest.raises(ValueError, match="L = 0"):
+        Interpolator(servo_constant=0)
+
+
+def test_a_file_is_played(tmp_path: Path) -> None:
+    file = tmp_path / "part.ngc"
+    file.write_text("G1 X0 F600\nG1 X1\nM2\n")
+    assert play_pulses(file, start_mm=(0, 5, 0)).start_mm.tolist() == [0, 5, 0]
+
+
+def test_the_compiled_kernels_are_the_plain_ones(monkeypatch: pytest.MonkeyPatch) -> None:
+    feed = Feed(feed_number(12_000, RECIRCULATIONS_HZ), override_number(0.7))
+    results = []
+    for plain in (False, True):
+        if plain:
+            monkeypatch.setattr(residues, "_recirculate", residues._recirculate.py_func)
+            monkeypatch.setattr(pulse_servo, "_follow", pulse_servo._follow.py_func)
+            monkeypatch.setattr(residues, "AT_ONCE", 4096)
+        interpolator = Interpolator()
+        pulses = np.vstack([interpolator.line((120, -30, 4), feed), interpolator.arc((80, 10, 4), (100, -30), 1, feed)])
+        commands, places, done = PulseServos(np.zeros(3, np.int64), RECIRCULATIONS_HZ).follow(pulses)
+        results.append((pulses, commands, places, done))
+    for compiled, interpreted in zip(*results, strict=True):
+        assert np.abs(np.asarray(compiled) - interpreted).max() < 1e-12
+    assert count_feed.py_func(64, feed.number, feed.override) == count_feed(64, feed.number, feed.override)
+    assert sum(feed_control.passes.py_func(count, 0b1101, 4) for count in range(1, 17)) == 0b1101
