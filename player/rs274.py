@@ -33,6 +33,7 @@ from motion.faults import FileFault, ProgramFault
 
 RAPID, LINE, CLOCKWISE, COUNTER_CLOCKWISE, DWELL = "G0", "G1", "G2", "G3", "G4"
 INCH_MM = 25.4
+LONGEST_DWELL_S = 86400.0
 TURN = 2 * math.pi
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)"
@@ -191,8 +192,8 @@ class _Reader:
 
     def _dwell(self, values: dict[str, float]) -> None:
         """G4: stand still."""
-        if values.get("P", -1.0) < 0 or not values.keys().isdisjoint("XYZIJR"):
-            raise self._fault("G4", "wants a time in seconds and no place; give G4 P0.5")
+        if not 0 <= values.get("P", -1.0) <= LONGEST_DWELL_S or not values.keys().isdisjoint("XYZIJR"):
+            raise self._fault("G4", "wants a time in seconds, a day at most, and no place; give G4 P0.5")
         self.moves.append(
             Move(self.number, DWELL, (self.place[0], self.place[1], self.place[2]), 0.0, (0, 0), 0.0, values["P"])
         )
@@ -201,7 +202,8 @@ class _Reader:
         """G0 to G3: to the place that the axis words give."""
         kind, place, scale = self.kind, self.place, self.scale
         if not kind:
-            raise self._fault(next(iter(values)), "asks for a move, but none of G0 G1 G2 G3 was given; give one first")
+            word = next(f"{letter}{values[letter]:g}" for letter in "XYZIJR" if letter in values)
+            raise self._fault(word, "asks for a move, but none of G0 G1 G2 G3 was given; give one first")
         begin = place[0], place[1], place[2]
         for axis, letter in enumerate("XYZ"):
             if letter in values:
