@@ -19,7 +19,8 @@ import math
 import numpy as np
 
 from tracer import photocell
-from tracer.knot import Array, Leg, Meeting, View, turn
+from tracer.leg import Leg, Meeting, turn
+from tracer.view import Array, View
 
 SPACING_MM = 0.02
 SHARP = 0.08  # of the line's width: a corner whose ink misses less than this on the outside is sharp

@@ -24,18 +24,18 @@ import numpy as np
 
 from motion.faults import LineFault
 from tracer import course, head
-from tracer.knot import Array, Leg, Meeting, View, centre_at, corner_in, end_of, fork_in, leg_of, meet, turn
+from tracer.carriage import Carriage
+from tracer.knot import corner_in, fork_in
+from tracer.leg import Leg, Meeting, centre_at, end_of, leg_of, meet, turn
 from tracer.riding import Ride, ride_past, to_vertex
-from tracer.settings import Settings, tune
+from tracer.settings import Settings
 from tracer.stance import Stance
 from tracer.survey import goes_straight, straight_on, survey
-from tracer.trail import Trail
+from tracer.view import Array, View
 
-CHUNK = 6000  # samples that the kernel follows before it tells how far it has come
 SMOOTH = math.radians(14)  # a smaller change of heading is no corner
 LEAST_GAP_PX = 2.5  # a scan can lose this much of a line
 FAR_WIDTHS = 4.0  # to where the line goes on clean
-SETTLE_LAGS = 7  # a stop lasts this many lags of the drives: 1/1000 of the last speed is left
 
 
 @dataclass(slots=True)
@@ -59,34 +59,21 @@ class Follower:
 
     def __init__(self, stance: Stance, settings: Settings, rate_hz: float, turns: tuple[int, ...] = ()) -> None:
         """Put a head down at a stance. At the junctions numbered in `turns` it takes the second straightest leg."""
-        self.view, self.settings, self.rate_hz, self.stance = stance.view, settings, rate_hz, stance
-        self.tuning = tune(stance, settings, rate_hz)
-        self.state = np.zeros(head.STATES)
-        self.state[[head.X, head.Y]] = stance.place_mm
-        self.state[head.INK] = 1.0
+        self.view, self.settings, self.stance = stance.view, settings, stance
         self.junctions, self._turns = 0, turns
-        self._drum = np.zeros((head.DRUM, 2))
-        self._parts: list[Array] = [stance.place_mm[None].copy()]
-        self._trail = Trail(stance.place_mm, self.view.step_mm)
-        self._away_mm = max(4 * self.tuning.lead_mm, 3.0 * self.view.width_mm)
+        self.carriage = Carriage(stance, settings, rate_hz)
+        self._away_mm = max(4 * self.carriage.tuning.lead_mm, 3.0 * self.view.width_mm)
         self._aim(self._first_leg())
-
-    @property
-    def travel_mm(self) -> float:
-        """How far the head has come, mm."""
-        return float(self.state[head.TRAVEL])
 
     def follow(self, longest_mm: float, told: Callable[[float], None] | None = None) -> Followed:
         """Follow until the line closes, ends or is lost; `told` hears the travel in mm. `longest_mm` bounds a run in circles."""
         home = (*self.stance.place_mm, self.stance.heading_rad, self._away_mm)
-        out = np.empty((CHUNK, 2))
-        while self.travel_mm < longest_mm:
-            n, why = head.follow(self.view.cells, self.view.pitch_mm, self.state, self._drum, self.tuning, home, out)
-            self._keep(out[:n])
+        while self.carriage.travel_mm < longest_mm:
+            why = self.carriage.follow(self.view, home)
             if told is not None:
-                told(self.travel_mm)
+                told(self.carriage.travel_mm)
             if why == head.HOME:
-                self._drive([self._way_home()])
+                self.carriage.run([self._way_home()])
                 return self._done("closed")
             if why != head.MORE:
                 ending = self._through_knot()
@@ -97,12 +84,12 @@ class Follower:
     def _through_knot(self) -> Followed | None:
         """Take the head through the knot ahead; what it did in all, if that was the end."""
         seen = self._feel_ahead()
-        if len(seen) < 4 or self._ahead(seen[-1, :2]) < 0:
+        if len(seen) < 4 or self.carriage.ahead(seen[-1, :2]) < 0:
             seen = self._trail_behind()  # not clean even behind the axis, but that has been on the line
-        here = int(np.argmin(np.hypot(*(seen[:, :2] - self._stands()[0]).T)))
+        here = int(np.argmin(np.hypot(*(seen[:, :2] - self.carriage.stands()[0]).T)))
         if (len(seen) - here) * self.view.step_mm > self.view.leg_mm:
             fork = fork_in(self.view, seen, here)
-            if fork is None and max(self.state[head.LEFT], self.state[head.RIGHT]) > head.BESIDE:
+            if fork is None and self.carriage.ink_beside:
                 fork = self._turn_off(here)
             if fork is not None:
                 return self._through_legs(leg_of(seen[: fork + 1], True, self.view.leg_mm))
@@ -115,7 +102,7 @@ class Follower:
 
     def _through_legs(self, incoming: Leg) -> Followed | None:
         """Take the head from an incoming leg onto the straightest leg that leads on; what it did in all, if there is none."""
-        outgoing, legs_mm, choices = survey(self.view, incoming, self._trail, self._rank())
+        outgoing, legs_mm, choices = survey(self.view, incoming, self.carriage.trail, self._rank())
         self.junctions += choices > 1
         straight = goes_straight(incoming, outgoing)
         if not straight or self._far(incoming, outgoing):
@@ -138,22 +125,24 @@ class Follower:
 
     def _feel_ahead(self) -> Array:
         """The line felt from behind the axis forward until it is no longer clean, (n, 3)."""
-        leg_mm, come_mm = self.view.leg_mm, self.travel_mm - self._anchor[2]
+        leg_mm, come_mm = self.view.leg_mm, self.carriage.travel_mm - self._anchor[2]
         for share in (1.0, 0.6, 0.3):  # nearer, if a speck spoils the first place
             back_mm = share * leg_mm
             if come_mm > back_mm:
-                place, heading = self._trail.back(back_mm)
+                place, heading = self.carriage.trail.back(back_mm)
             else:
                 (place, heading, _), back_mm = self._anchor, come_mm
             self.view = self.view.like(place, heading)
-            seen = self.view.feel(place, heading, back_mm + self.tuning.guard_lead_mm + leg_mm)
+            seen = self.view.feel(place, heading, back_mm + self.carriage.tuning.guard_lead_mm + leg_mm)
             if len(seen) >= 4:
                 break
         return seen
 
     def _trail_behind(self) -> Array:
         """The last stretch of the trail as stations of the line, (n, 3)."""
-        places = np.vstack([self._trail.recent()[-round(self.view.leg_mm / self.view.step_mm) :], self._stands()[0]])
+        places = np.vstack(
+            [self.carriage.trail.recent()[-round(self.view.leg_mm / self.view.step_mm) :], self.carriage.stands()[0]]
+        )
         return np.column_stack([places, np.full(len(places), self.view.width_mm)])
 
     def _turn_off(self, here: int) -> int | None:
@@ -161,7 +150,7 @@ class Follower:
         if self._rank() == 0:
             self.junctions += 1
             return None
-        return here + round(self.tuning.guard_lead_mm / self.view.step_mm) - 3
+        return here + round(self.carriage.tuning.guard_lead_mm / self.view.step_mm) - 3
 
     def _rank(self) -> int:
         """Which leg to take here if there are several: the straightest (0), or the next straightest where the turn is to be changed."""
@@ -173,10 +162,10 @@ class Follower:
         if legs_mm is not None and deflection > SMOOTH and min(legs_mm) > -self.view.width_mm:
             arriving, leaving, met = to_vertex(self.view, incoming, outgoing, legs_mm)
             end_mm = max(0.05 - met[1], course.ahead_mm(leaving.end_mm, outgoing))
-            stretches = course.through_corner(self.view, self._stands(), arriving, leaving, met, end_mm)
+            stretches = course.through_corner(self.view, self.carriage.stands(), arriving, leaving, met, end_mm)
             return stretches, leaving.shifted(end_mm, leaving.seen)
         limit = float(np.hypot(*(outgoing.end_mm - incoming.end_mm)))
-        way, along = course.onto(*self._stands(), incoming, 0.5 * limit)
+        way, along = course.onto(*self.carriage.stands(), incoming, 0.5 * limit)
         start, heading = incoming.at(along), incoming.heading_at(along)
         return [np.vstack([way, course.hermite(start, heading, outgoing.end_mm, outgoing.heading_rad)])], outgoing
 
@@ -218,7 +207,7 @@ class Follower:
         A share of a leg is `left` over: too little to tell a corner by.
         """
         half_mm, left_mm = 0.3 * self.view.leg_mm, left * self.view.leg_mm
-        nodes = [start or self._stands()]
+        nodes = [start or self.carriage.stands()]
         end = seen[-1, :2]
         leg = None
         here = int(np.argmin(np.hypot(*(seen[:, :2] - nodes[0][0]).T)))
@@ -237,36 +226,21 @@ class Follower:
         end = end_of(self.view, incoming)
         if end is None:
             return self._lost("no clean line leads on through the ink ahead")
-        way, along = course.onto(*self._stands(), incoming, end)
-        self._drive([np.vstack([way, course.along_leg(incoming, along, end)])])
+        way, along = course.onto(*self.carriage.stands(), incoming, end)
+        self.carriage.run([np.vstack([way, course.along_leg(incoming, along, end)])])
         return self._done("ended" if choices == 0 else "joined")
 
     def _way_home(self) -> Array:
         """The way onto the place where the head began."""
-        return course.hermite(*self._stands(), self.stance.place_mm, self.stance.heading_rad)
-
-    # where the head stands, and moving it
-
-    def _stands(self) -> tuple[Array, float]:
-        """Where the drives' demand stands, and the heading."""
-        owed = head.owed_s(self.tuning.drive_gain, self.tuning.period_s)
-        s = self.state
-        place = np.array([s[head.X] + owed * s[head.VX], s[head.Y] + owed * s[head.VY]])
-        return place, float(s[head.HEADING])
-
-    def _ahead(self, place: Array) -> float:
-        """How far ahead of the axis a place is, mm along the heading."""
-        stands, heading = self._stands()
-        return float((place - stands) @ np.array([math.cos(heading), math.sin(heading)]))
+        return course.hermite(*self.carriage.stands(), self.stance.place_mm, self.stance.heading_rad)
 
     def _pass(self, stretches: list[Array], outgoing: Leg, seen: Array | None = None) -> Followed | None:
         """Run a course and go on following at its end; or stop at home if the course passes there. `seen` is what was clean on the way."""
         cut = self._home_on(stretches)
         if cut is not None:
-            self._drive(cut)
+            self.carriage.run(cut)
             return self._done("closed")
-        self._drive(stretches, self.settings.speed_mm_s)
-        self.tuning = tune(Stance(outgoing.end_mm, outgoing.heading_rad, self.view), self.settings, self.rate_hz)
+        self.carriage.run(stretches, self.settings.speed_mm_s)
         self._aim(outgoing, None if seen is None else self._clean_from(outgoing, seen))
         return None
 
@@ -276,11 +250,11 @@ class Follower:
         here = int(np.argmin(back))
         i = max(0, here - round(self.view.leg_mm / self.view.step_mm))
         way = seen[i + 2, :2] - seen[i, :2]
-        return seen[i, :2], math.atan2(way[1], way[0]), self.travel_mm - (here - i) * self.view.step_mm
+        return seen[i, :2], math.atan2(way[1], way[0]), self.carriage.travel_mm - (here - i) * self.view.step_mm
 
     def _home_on(self, stretches: list[Array]) -> list[Array] | None:
         """The course up to home, if it passes home on home's heading."""
-        if self.travel_mm < self._away_mm:
+        if self.carriage.travel_mm < self._away_mm:
             return None
         home, heading = self.stance.place_mm, self.stance.heading_rad
         stretches = [course.distinct(way) for way in stretches]  # a step of no length has no heading
@@ -292,44 +266,6 @@ class Follower:
                 return [*stretches[:k], np.vstack([way[:near], home])]
         return None
 
-    def _drive(self, stretches: list[Array], end_mm_s: float = 0.0) -> None:
-        """Run along stretches, swivelling between them, and end at a speed."""
-        for k, stretch in enumerate(stretches):
-            way = course.distinct(stretch)
-            if len(way) < 2:
-                continue
-            step = way[1] - way[0]
-            if k > 0:
-                self._swivel(math.atan2(step[1], step[0]))
-            last = k == len(stretches) - 1
-            limits = course.speeds(
-                way, self.settings.speed_mm_s, self.settings.acceleration_mm_s2, end_mm_s if last else 0.0
-            )
-            self._run(way, limits)
-            step = way[-1] - way[-2]
-            self.state[head.HEADING] = math.atan2(step[1], step[0])
-            if limits[-1] == 0.0:
-                self._stand(SETTLE_LAGS * self.settings.drive.lag_s)
-
-    def _run(self, way: Array, limits: Array) -> None:
-        """Run along one stretch, however long it takes."""
-        length = float(np.hypot(*np.diff(way, axis=0).T).sum())
-        slowest = 0.02 * self.settings.speed_mm_s
-        out = np.empty((int(length / slowest * self.rate_hz) + 1000, 2))
-        n = head.run(self.state, self.tuning, way, limits, out)
-        self._keep(out[:n])
-
-    def _swivel(self, heading: float) -> None:
-        """Turn the standing head to a heading."""
-        self._stand(abs(turn(float(self.state[head.HEADING]), heading)) / self.settings.swivel_rad_s)
-        self.state[head.HEADING] = heading
-
-    def _stand(self, time_s: float) -> None:
-        """Stand for a time."""
-        out = np.empty((math.ceil(time_s * self.rate_hz), 2))
-        head.stand(self.state, self.tuning, out)
-        self._keep(out)
-
     def _first_leg(self) -> Leg:
         """The line ahead of the stance, as felt."""
         place, heading = self.stance.place_mm, self.stance.heading_rad
@@ -339,37 +275,20 @@ class Follower:
         return Leg(place, heading, bend, self.view.width_mm, seen)
 
     def _aim(self, leg: Leg, clean_from: Anchor | None = None) -> None:
-        """Set the head to follow from the clean end of a leg; the line is clean from there, or from further back.
-
-        The drum takes what was felt of the leg up to where the swinging cell takes over.
-        """
-        s, lead = self.state, self.tuning.lead_mm
-        felt = leg.seen[np.hypot(*(leg.seen[:, :2] - leg.end_mm).T) < lead, :2]
-        c, n = math.cos(leg.heading_rad), math.sin(leg.heading_rad)
-        along, aside = (felt[-1] - leg.end_mm) @ np.array([[c, -n], [n, c]]) if len(felt) else (0.0, 0.0)
-        s[head.HEADING], s[head.BEND], s[head.TURN] = leg.heading_rad, leg.bend_per_mm, s[head.SPEED] * leg.bend_per_mm
-        s[head.MIDDLE] = aside * (lead / along) ** 2 if along > 0.5 * lead else 0.5 * leg.bend_per_mm * lead * lead
-        s[head.POINT_X], s[head.POINT_Y] = leg.at(self.tuning.point_mm)
-        s[head.SWEEP] = s[head.FIRST] = s[head.MEAN] = s[head.LEFT] = s[head.RIGHT] = 0.0
-        s[head.AHEAD] = 1.0
-        self._drum[: len(felt)] = felt
-        s[head.PLACES] = len(felt)
-        self._anchor = (leg.end_mm, leg.heading_rad, self.travel_mm) if clean_from is None else clean_from
-
-    def _keep(self, positions: Array) -> None:
-        self._parts.append(positions.copy())
-        self._trail.add(positions)
+        """Follow from the clean end of a leg; the line is clean from there, or from further back."""
+        self.carriage.aim(self.view, leg)
+        self._anchor = clean_from or (leg.end_mm, leg.heading_rad, self.carriage.travel_mm)
 
     def _done(self, ending: str, fault: LineFault | None = None) -> Followed:
-        heading = float(self.state[head.HEADING])
-        return Followed(np.vstack(self._parts), ending, heading, self.travel_mm, self.view, self.junctions, fault)
+        went = self.carriage
+        return Followed(went.positions_mm, ending, went.heading_rad, went.travel_mm, self.view, self.junctions, fault)
 
     def _lost(self, why: str) -> Followed:
         """The end of a line that was lost: the fault says where."""
-        (x, y), heading = self._stands()
-        degrees = math.degrees(heading) % 360
+        (x, y), heading = self.carriage.stands()
+        degrees = round(math.degrees(heading)) % 360
         fault = LineFault(
-            f"line lost at {x:.2f},{y:.2f} mm, heading {degrees:.0f} degrees, after {self.travel_mm:.1f} mm: {why};"
+            f"line lost at {x:.2f},{y:.2f} mm, heading {degrees} degrees, after {self.carriage.travel_mm:.1f} mm: {why};"
             " look at the drawing there, bridge a gap with --gap, or scan at a higher resolution",
             x_mm=float(x),
             y_mm=float(y),

@@ -18,7 +18,7 @@ The speed is resolved by sine and cosine of the heading into demands on the two 
                        axis   point                         ||
     guard cells    beside the line's edges and on it, a little further ahead: when they see ink beside the line, or none on it, the head cannot trust the
                    swinging cell there; the kernel returns, and `knot` and `course` take the head through
-    look-ahead     cell 102, three leads ahead: when the line is not where the sweep's curve leads, the relay slows the head and holds it slow
+    look-ahead     cell 102, a mm ahead of the swinging cell: when the line is not where the sweep's curve leads, the relay slows the head and holds it slow
 
 Source: patent ES 361967, figure 1: cell 101, mount 42, pin 48, motor 45, amplifier FSA, servo M and tacho T, potentiometer 59, drives DCX and DCY with
 tachos TX and TY, forward cell 102, relay RL, delay DL, resistor SR, speed control WC.

@@ -22,8 +22,9 @@ import numpy as np
 from numba import njit
 
 from tracer.course import rounding
-from tracer.knot import Array, Leg, Meeting, View, end_of, leg_of, meet, turn
+from tracer.leg import Leg, Meeting, end_of, leg_of, meet, turn
 from tracer.photocell import darkness_at, onward
+from tracer.view import Array, View
 
 FARTHEST_MM = 40.0
 WELL_WITHIN = 10  # stations from a leg's clean end: both edges are clean there

@@ -26,9 +26,10 @@ from motion.faults import LineFault
 from motion.motion import BLOCK_SAMPLES, MOTION_RATE_HZ, Motion
 from tracer.drawing import Drawing
 from tracer.follower import Followed, Follower
-from tracer.knot import Array
+from tracer.lines import INK
 from tracer.settings import Settings
 from tracer.stance import Stance, put_down, turned_round
+from tracer.view import Array
 
 TURNS = 12  # junctions at which another turn is tried
 
@@ -123,12 +124,17 @@ def trace(
     stances = put_down(drawing, start_mm, settings.aperture_mm, settings.line_width_mm, settings.gap_mm)
     for stance, length_mm in stances:
         told = None if progress is None else partial(_tell, progress, length_mm)
-        run = _all_of_it(stance, settings, 4 * length_mm + 20, told)
+        run = _all_of_it(stance, settings, _longest_mm(drawing, stance.view.width_mm), told)
         best = run if best is None or run.travel_mm > best.travel_mm else best
         if run.ending == "closed" or run.travel_mm > 0.5 * length_mm:
             break
     assert best is not None  # put_down gives a stance, or raises
     return Trace(best.positions_mm, best.ending, best.view.width_mm, best.travel_mm, best.fault, work)
+
+
+def _longest_mm(drawing: Drawing, width_mm: float) -> float:
+    """How far a run may go before it is going round in circles: four times all the ink."""
+    return 4 * float(np.count_nonzero(drawing.darkness > INK)) * drawing.pitch_mm**2 / width_mm + 20
 
 
 def _tell(progress: Callable[[float, float], None], length_mm: float, come_mm: float) -> None:

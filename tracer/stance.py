@@ -19,9 +19,10 @@ import numpy as np
 from motion.faults import LineFault
 from tracer import photocell
 from tracer.drawing import Drawing
-from tracer.knot import LEVEL, Array, Leg, View, centre_at, end_of, leg_of, turn
+from tracer.leg import Leg, centre_at, end_of, leg_of, turn
 from tracer.lines import Sheet, Stroke
 from tracer.survey import straight_on
+from tracer.view import LEVEL, Array, View
 
 CATCH_MM = 3.0  # how far from a given place the line may be
 SPUR = 2.7  # a line that ends sooner, in widths, is a burr
@@ -62,7 +63,9 @@ def put_down(
     at_end = _at_an_end(view, stroke, gap_mm) if start_mm is None else None
     if at_end is not None:
         yield at_end, stroke.length_mm
-    stances = _stances(view, _tried(stroke, start_mm, catch_mm))
+    stances = _stances(view, _tried(stroke, start_mm, 2 * stroke.width_mm))
+    if not stances and start_mm is not None:
+        stances = _stances(view, _tried(stroke, start_mm, catch_mm))
     if stances:
         yield max(stances, key=lambda s: s[0])[1], stroke.length_mm
     elif at_end is None:
@@ -72,12 +75,12 @@ def put_down(
         )
 
 
-def _tried(stroke: Stroke, start_mm: tuple[float, float] | None, catch_mm: float) -> Array:
-    """Places of a line to try."""
+def _tried(stroke: Stroke, start_mm: tuple[float, float] | None, about_mm: float) -> Array:
+    """Places of a line to try: all along it, or about the place nearest to a start."""
     places = stroke.middles_mm
     if start_mm is not None:
         away = np.hypot(*(places - np.asarray(start_mm)).T)
-        places = places[away <= max(away.min() + 2 * stroke.width_mm, catch_mm)]
+        places = places[away <= away.min() + about_mm]
     return places[:: max(1, len(places) // PLACES)]
 
 

@@ -13,8 +13,10 @@ import math
 
 import numpy as np
 
-from tracer.knot import Array, Leg, Meeting, View, leg_of, legs_around, meet, reach_of_ink, turn
+from tracer.knot import legs_around
+from tracer.leg import Leg, Meeting, leg_of, meet, reach_of_ink, turn
 from tracer.trail import Trail
+from tracer.view import Array, View
 
 STRAIGHT = math.radians(40)  # straight on is within this
 PASSES = math.radians(12)  # two legs in line with each other within this are one line that passes

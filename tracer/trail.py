@@ -9,7 +9,8 @@ import math
 
 import numpy as np
 
-from tracer.knot import Array, Leg
+from tracer.leg import Leg
+from tracer.view import Array
 
 MEMORY_MM = 8.0  # how far back the way in is remembered for the rings
 FRESH_MM = 3.0  # the newest stretch does not count as followed before

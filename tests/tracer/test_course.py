@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from tests.tracer.inked import UM, WIDTH_MM, corner, inked
 from tracer import course, photocell
-from tracer.knot import LEVEL, Leg, View, meet
+from tracer.leg import Leg, meet
+from tracer.view import LEVEL, View
 
 Array = NDArray[np.float64]
 NO_STATIONS = np.empty((0, 3))

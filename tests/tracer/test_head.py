@@ -52,7 +52,7 @@ def followed(drawing: Drawing, settings: Settings | None = None, **tuning: float
     settings = settings or Settings()
     stance, length_mm = next(iter(put_down(drawing, None, settings.aperture_mm, None)))
     follower = Follower(stance, settings, MOTION_RATE_HZ)
-    follower.tuning = follower.tuning._replace(**tuning)
+    follower.carriage.tuning = follower.carriage.tuning._replace(**tuning)
     return follower.follow(2 * length_mm)
 
 
@@ -207,13 +207,15 @@ def _some_steps(drawing: Drawing) -> tuple[Any, Any]:
     stance, _ = next(iter(put_down(drawing, None, 0.15, None)))
     follower = Follower(stance, Settings(), MOTION_RATE_HZ)
     out = np.zeros((400, 2))
-    drum, home = follower._drum, (0.0, 0.0, 0.0, 1e9)
-    n, why = head.follow(follower.view.cells, drawing.pitch_mm, follower.state, drum, follower.tuning, home, out[:240])
+    drum, home = follower.carriage._drum, (0.0, 0.0, 0.0, 1e9)
+    n, why = head.follow(
+        follower.view.cells, drawing.pitch_mm, follower.carriage.state, drum, follower.carriage.tuning, home, out[:240]
+    )
     assert (n, why) == (240, head.MORE)
-    way = follower.state[[head.X, head.Y]] + np.array([[0.0, 0.0], [0.2, 0.0], [0.2, 0.2]])
-    n += head.run(follower.state, follower.tuning, way, np.array([10.0, 2.0, 0.0]), out[240:360])
-    head.stand(follower.state, follower.tuning, out[360:])
-    return follower.state.copy(), out
+    way = follower.carriage.state[[head.X, head.Y]] + np.array([[0.0, 0.0], [0.2, 0.0], [0.2, 0.2]])
+    n += head.run(follower.carriage.state, follower.carriage.tuning, way, np.array([10.0, 2.0, 0.0]), out[240:360])
+    head.stand(follower.carriage.state, follower.carriage.tuning, out[360:])
+    return follower.carriage.state.copy(), out
 
 
 def test_compiled_and_plain_head_do_the_same(request: pytest.FixtureRequest) -> None:

@@ -13,7 +13,9 @@ from numpy.typing import NDArray
 from tests.tracer.inked import UM, WIDTH_MM, arc, inked, polyline
 from tracer import photocell
 from tracer.drawing import Drawing
-from tracer.knot import LEVEL, Leg, View, centre_at, corner_in, end_of, leg_of, legs_around, meet, reach_of_ink, turn
+from tracer.knot import corner_in, legs_around
+from tracer.leg import Leg, centre_at, end_of, leg_of, meet, reach_of_ink, turn
+from tracer.view import LEVEL, View
 
 Array = NDArray[np.float64]
 ALONG_PIXELS_MM = 6 * UM  # a line along pixels of 85 um is seen 5 um off its middle

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from motion.faults import DrawingFault, LineFault
 from tests.tracer.inked import UM, WIDTH_MM, arc, corner, inked, polyline
 from tracer.drawing import Drawing
-from tracer.knot import Leg
+from tracer.leg import Leg
 from tracer.lines import Sheet
 from tracer.stance import Stance, put_down
 from tracer.trail import Trail

@@ -1,0 +1,187 @@
+"""Legs: clean stretches of line, as parabolas through what was felt of them.
+
+Signals: stations of the line (n, 3: centre x, y and width, mm) in; place, heading (rad) and bend (1/mm) of the line out, and where two legs meet.
+
+    place(s) = end + s·t + bend/2·s²·n          t, n: along and across the heading at the leg's clean end
+
+Source: our own (see `knot`).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+
+from tracer import photocell
+from tracer.view import Array, View
+
+Meeting = tuple[float, float]  # how far two legs meet beyond the one's clean end and before the other's, mm
+
+FARTHEST_MM = 10.0  # legs that meet further away do not meet
+
+
+@dataclass(frozen=True, slots=True)
+class Leg:
+    """A clean stretch of line at a knot: `end_mm` is its clean end, the heading there and the bend are along the travel."""
+
+    end_mm: Array
+    heading_rad: float
+    bend_per_mm: float
+    width_mm: float
+    seen: Array
+
+    def at(self, along_mm: float | Array) -> Array:
+        """Places (…, 2) at distances from the clean end along the travel (negative: before it)."""
+        s = np.asarray(along_mm, float)[..., None]
+        t = np.array([math.cos(self.heading_rad), math.sin(self.heading_rad)])
+        return self.end_mm + s * t + 0.5 * self.bend_per_mm * s * s * np.array([-t[1], t[0]])
+
+    def shifted(self, along_mm: float, seen: Array) -> Leg:
+        """The same line from a place further along it, with what was felt from there."""
+        return Leg(self.at(along_mm), self.heading_at(along_mm), self.bend_per_mm, self.width_mm, seen)
+
+    def heading_at(self, along_mm: float) -> float:
+        """Heading at a distance from the clean end, rad."""
+        return self.heading_rad + math.atan(self.bend_per_mm * along_mm)
+
+
+def leg_of(seen: Array, last: bool, length_mm: float) -> Leg:
+    """Fit a leg to what was felt, (n, 3) in the order of travel; its clean end is towards the `last` station, or else the first.
+
+    As long a stretch is taken as one parabola fits about as well as the nearest part of it.
+    """
+    seen = _without_blot(seen, last)
+    end = seen[-1] if last else seen[0]
+    away = np.hypot(*(seen[:, :2] - end[:2]).T)
+    best, limit = _leg(seen[away <= 0.5 * length_mm], end, seen)
+    for share in (0.75, 1.0):
+        leg, misfit = _leg(seen[away <= share * length_mm], end, seen)
+        if misfit > 1.3 * limit + 0.001:
+            break
+        best, limit = leg, misfit
+    return best
+
+
+def _without_blot(seen: Array, last: bool) -> Array:
+    """The stations without those next to the knot whose width shows a little of its ink already: a third of them at most."""
+    widths = seen[::-1, 2] if last else seen[:, 2]
+    usual = float(np.median(widths))
+    spread = 1.4826 * float(np.median(np.abs(widths - usual)))
+    most = len(seen) // 3
+    clean = np.abs(widths[: most + 1] - usual) < max(3 * spread, 0.03 * usual)
+    first = int(np.argmax(clean)) if clean.any() else most
+    first = min(first + 1, most)
+    return seen[: len(seen) - first] if last else seen[first:]
+
+
+def _leg(near: Array, end: Array, seen: Array) -> tuple[Leg, float]:
+    """The leg through some stations, and their root mean square distance from it, mm."""
+    chord = near[-1, :2] - near[0, :2]
+    heading = math.atan2(chord[1], chord[0])
+    t = np.array([math.cos(heading), math.sin(heading)])
+    n = np.array([-t[1], t[0]])
+    d = near[:, :2] - end[:2]
+    (slope, offset, bend), misfit = _fit(d @ t, d @ n)
+    place, width = end[:2] + offset * n, float(np.median(near[:, 2]))
+    return Leg(place, heading + math.atan(slope), bend / (1 + slope * slope) ** 1.5, width, seen), misfit
+
+
+@njit(cache=True)
+def _fit(x, y):  # type: ignore[no-untyped-def]
+    """(slope, offset, bend) at x = 0 of y(x), and the misfit; stations off by more than three times the usual are left out.
+
+    Straight, unless a bend stands out fivefold of the uncertainty that independent stations would have: neighbours share their ink.
+    """
+    degree = 2 if len(x) >= 8 else min(1, len(x) - 1)
+    found, unsure = _parabola(x, y, np.ones(len(x)), degree)
+    for _ in range(2):
+        away = np.abs(y - found[0] - found[1] * x - found[2] * x * x)
+        good = away <= 3 * max(1.4826 * np.median(away), 0.001)
+        if good.all() or good.sum() < 8:
+            break
+        x, y = x[good], y[good]
+        found, unsure = _parabola(x, y, np.ones(len(x)), degree)
+    rest = y - found[0] - found[1] * x - found[2] * x * x
+    if degree == 2 and abs(found[2]) < 5 * unsure * math.sqrt(max(np.sum(rest * rest) / (len(x) - 3), 1e-7)):
+        found, _ = _parabola(x, y, np.ones(len(x)), 1)
+        rest = y - found[0] - found[1] * x
+    return (found[1], found[0], 2 * found[2]), math.sqrt(np.mean(rest * rest))
+
+
+@njit(cache=True)
+def _parabola(x, y, weights, degree):  # type: ignore[no-untyped-def]
+    """Coefficients of 1, x, x² of the weighted parabola (or straight line, or mean), and the last one's uncertainty per unit of noise in y."""
+    n = degree + 1
+    sums, right = np.zeros((n, n)), np.zeros(n)
+    for k in range(len(x)):
+        for i in range(n):
+            right[i] += weights[k] * y[k] * x[k] ** i
+            for j in range(n):
+                sums[i, j] += weights[k] * x[k] ** (i + j)
+    inverse = np.linalg.inv(sums + 1e-12 * np.eye(n))
+    found = np.zeros(3)
+    found[:n] = inverse @ right
+    return found, math.sqrt(abs(inverse[n - 1, n - 1]))
+
+
+def centre_at(seen: Array, i: int, half_mm: float) -> Leg:
+    """The line about station i of what was felt: the parabola through the stations within `half_mm`, weighted towards the middle."""
+    d = seen[:, :2] - seen[i, :2]
+    near = np.flatnonzero(np.hypot(*d.T) < half_mm)
+    chord = d[near[-1]] - d[near[0]]
+    heading = math.atan2(chord[1], chord[0])
+    t = np.array([math.cos(heading), math.sin(heading)])
+    n = np.array([-t[1], t[0]])
+    x, y = d[near] @ t, d[near] @ n
+    offset, slope, bend = _parabola(x, y, np.maximum(1 - (x / half_mm) ** 2, 0.05), 2)[0]
+    return Leg(
+        seen[i, :2] + offset * n,
+        heading + math.atan(slope),
+        2 * bend / (1 + slope * slope) ** 1.5,
+        float(np.median(seen[near, 2])),
+        seen[i:],
+    )
+
+
+def turn(a: float, b: float) -> float:
+    """Angle from heading a to heading b, -pi..pi."""
+    return math.remainder(b - a, math.tau)
+
+
+def meet(incoming: Leg, outgoing: Leg) -> Meeting | None:
+    """Distances (beyond the incoming leg's end, before the outgoing leg's end) where their lines cross, mm; None if they do not."""
+    s = u = 0.0
+    for _ in range(6):
+        a, b = incoming.heading_at(s), outgoing.heading_at(-u)
+        cross = math.sin(turn(a, b))
+        if abs(cross) < 0.02:
+            return None
+        gap = outgoing.at(-u) - incoming.at(s)
+        ds = (gap[0] * math.sin(b) - gap[1] * math.cos(b)) / cross
+        du = (gap[0] * math.sin(a) - gap[1] * math.cos(a)) / cross
+        s, u = s + ds, u - du
+        if max(abs(s), abs(u)) > FARTHEST_MM:
+            return None
+    return s, u
+
+
+def reach_of_ink(view: View, incoming: Leg, farthest_mm: float) -> float | None:
+    """How far the ink goes on from the incoming leg's end along its line, mm; None if farther than asked."""
+    step = 0.35 * view.pitch_mm
+    before = 1.0
+    for k in range(int(farthest_mm / step)):
+        place = incoming.at(k * step)
+        now = photocell.darkness_at(view.cells, view.pitch_mm, place[0], place[1])
+        if now < view.level:
+            return max(0.0, (k - (view.level - now) / max(before - now, 1e-9)) * step)
+        before = now
+    return None
+
+
+def end_of(view: View, incoming: Leg) -> float | None:
+    """How far beyond a leg's clean end the pen was lifted, mm: half a width within the end of the ink; None if the ink goes on."""
+    ink = reach_of_ink(view, incoming, 6 * view.width_mm + 2.0)
+    return None if ink is None else ink - 0.5 * incoming.width_mm

@@ -1,0 +1,68 @@
+"""How the head sees the line that it is on: through which cells, how wide, and how dark at its edges.
+
+Signals: the darkness behind the aperture; places and headings in sheet mm in, clean stations of the line out.
+
+Source: our own (see `knot`).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer import photocell
+from tracer.photocell import Cells
+
+Array = NDArray[np.float64]
+
+LEVEL = 0.5  # an edge is at this share of the line's darkness
+LEG_MM = 1.2  # how much of a leg is felt for its direction, at a line of 0.5 mm
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """What the head knows of the line it is on: the cells' picture, the line's width, and the darkness at an edge."""
+
+    cells: Cells
+    pitch_mm: float
+    width_mm: float
+    level: float
+    usual_mm: float | None = None  # the line's width as a rule, where the width here differs
+
+    @property
+    def step_mm(self) -> float:
+        """Distance of stations and rings."""
+        return max(0.05, 0.6 * self.pitch_mm)
+
+    @property
+    def leg_mm(self) -> float:
+        """How much of a leg is felt for its direction."""
+        return max(LEG_MM, 12 * self.pitch_mm, 1.5 * self.width_mm)
+
+    def feel(self, place: Array, heading: float, length_mm: float) -> Array:
+        """Centres and widths (n, 3) of the line from a place on it along a heading, while it is clean."""
+        stations = max(4, round(length_mm / self.step_mm) + 1)
+        return photocell.scout(
+            self.cells, self.pitch_mm, place, heading, self.step_mm, stations, self.width_mm, self.level
+        )
+
+    def like(self, place: Array, heading: float) -> View:
+        """The view with the width and the darkness that the line has about a place, if they are like what they were: lines swell and fade."""
+        way = np.array([math.cos(heading), math.sin(heading)])
+        places = [place + k * self.step_mm * way for k in range(5)]
+        ink = float(np.median([photocell.darkness_at(self.cells, self.pitch_mm, p[0], p[1]) for p in places]))
+        level = LEVEL * min(max(ink, self.level), 4 * self.level)
+        reach = 1.5 * self.width_mm + 2 * self.pitch_mm
+        found = [photocell.edges(self.cells, self.pitch_mm, p[0], p[1], heading, reach, level) for p in places]
+        width = float(np.median([left - right for right, left in found]))  # NaN if any has no edge
+        usual = self.usual_mm or self.width_mm
+        if not 0.5 < width / usual < 1.6:
+            return self
+        return replace(self, width_mm=width, level=level, usual_mm=usual + 0.1 * (width - usual))
+
+    def dark(self, place: Array) -> bool:
+        """Whether there is ink at a place."""
+        return bool(photocell.darkness_at(self.cells, self.pitch_mm, place[0], place[1]) > self.level)
