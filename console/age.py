@@ -11,8 +11,7 @@ import click
 
 from console import medium
 from console.desk import Desk, desk_options
-from console.quantities import FREQUENCY, Quantity
-from motion.units import parse_time_s
+from console.quantities import FREQUENCY, TIME, Quantity
 
 SETS = ("studio-15ips", "instrumentation", "cassette")
 
@@ -51,7 +50,6 @@ def _tracks(text: str) -> tuple[int, ...]:
 
 
 SHARE, DECIBELS, TRACKS = Quantity("share", _share), Quantity("dB", _decibels), Quantity("tracks", _tracks)
-TIME = Quantity("time", parse_time_s)
 
 PARTS: tuple[tuple[str, str, Any, str], ...] = (
     ("--speed", "speed", SHARE, "Speed error, such as 1.5% or -1.5%."),

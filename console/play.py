@@ -9,7 +9,9 @@ import click
 
 from console import medium
 from console.desk import Desk, desk_options
-from console.playing import Controls, Played, tape_options
+from console.playing import PIPE, Controls, Played, tape_options
+from console.quantities import NUMBER, TIME
+from motion.faults import Fault
 from motion.motion import Path
 
 SUFFIXES = (".csv", ".svg", ".png")
@@ -18,6 +20,8 @@ EXAMPLES = """\b
 Examples:
   morfax play cam.wav -o cam.csv
   morfax play cam.wav -o cam.csv -o cam.svg -o cam.png
+  morfax play cam.wav --resume-at 83.2s --from 40,62,-2 -o rest.csv
+  arecord -c4 -r48000 -fS16_LE | morfax play - --reference 6kHz --cycles-per-mm 20
   morfax play found.wav --reference 6kHz --cycles-per-mm 20 --from 40,62 -o found.csv
 """
 
@@ -28,17 +32,48 @@ Examples:
     "-o", "outputs", type=medium.FILE, multiple=True, help="Write the machine's path: .csv, .svg (true size) or .png."
 )
 @click.option("--raw", is_flag=True, help="Keep every sample of the motion.  [default: thinned to within 0.2 um]")
+@click.option(
+    "--resume-at",
+    "resume_at_s",
+    type=TIME,
+    help="Go on from this tape time, such as 83.2s; --from says where it stands.",
+)
+@click.option(
+    "--acceleration",
+    "acceleration_mm_s2",
+    type=NUMBER,
+    help="The most that the program asks of an axis, mm/s²: less of it bridges longer dropouts.  [default: 5000]",
+)
 @tape_options
 @desk_options
-def command(tape: FilePath, outputs: tuple[FilePath, ...], raw: bool, controls: Controls, desk: Desk) -> None:
+def command(
+    tape: FilePath,
+    outputs: tuple[FilePath, ...],
+    raw: bool,
+    resume_at_s: float | None,
+    acceleration_mm_s2: float | None,
+    controls: Controls,
+    desk: Desk,
+) -> None:
     """Play a tape into the simulated machine and write the path it runs.
 
     The path is that of the machine's own lead screws, phase-locked to the tape. Without -o only the figures are
-    printed. If the machine faults, the path up to there is kept, with `.incomplete` in its name.
+    printed. TAPE - is a pipe: a WAV, or raw 16-bit samples of four tracks. If the machine faults, the path up to there is kept, with `.incomplete` in its name.
     """
     for file in outputs:
         medium.outgoing(medium.with_suffix_in(file, SUFFIXES), tape)
-    played = controls.play(tape, desk, raw=raw)
+    settings = {"resume_at_s": resume_at_s, "acceleration_mm_s2": acceleration_mm_s2}
+    given = {name: value for name, value in settings.items() if value is not None}
+    if given and str(tape) == PIPE:
+        raise click.UsageError("--resume-at and --acceleration are for files, not for a pipe")
+    if resume_at_s is not None and controls.start_mm is None:
+        raise click.UsageError("--resume-at wants to be told where the machine stands then; give --from X,Y,Z")
+    try:
+        played = controls.play(tape, desk, raw=raw, **given)
+    except ValueError as refused:
+        if isinstance(refused, Fault):
+            raise
+        raise click.UsageError(str(refused)) from None
     written = [medium.incomplete(file) if played.fault else file for file in outputs]
     for file in written:
         write(played.path, file, f"{tape.name}, played")
@@ -57,6 +92,7 @@ def figures(played: Played) -> dict[str, Any]:
         "start_place_mm": path.positions_mm[0],
         "end_place_mm": path.positions_mm[-1],
         "largest_following_error_mm": float(max(playback.following_error_mm)),
+        "bridged_dropouts": len(getattr(playback, "bridged", ())) or None,
     }
 
 

@@ -6,6 +6,7 @@ What the machine ran before a fault is kept: the path then holds the motion up t
 from __future__ import annotations
 
 import functools
+import sys
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path as FilePath
@@ -14,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from console.desk import Desk
-from console.quantities import FREQUENCY, NUMBER, PLACE
+from console.quantities import FREQUENCY, NUMBER, PLACES
 from motion.faults import Fault
 
 if TYPE_CHECKING:
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from recorder.tape import Tape
 
 CYCLES_PER_MM = NUMBER
+PIPE = "-"
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +42,7 @@ class Controls:
 
     reference_hz: float | None = None
     cycles_per_mm: float | None = None
-    start_mm: tuple[float, float] | None = None
+    start_mm: tuple[float, ...] | None = None
 
     def open_tape(self, file: FilePath) -> Tape:
         """Open a tape for reading; a context manager."""
@@ -48,17 +50,27 @@ class Controls:
 
         return Tape.open(file, reference_hz=self.reference_hz, cycles_per_mm=self.cycles_per_mm, start_mm=self.start_mm)
 
-    def play(self, file: FilePath, desk: Desk, *, raw: bool = False) -> Played:
-        """Play a tape to its end or to its fault; raises the fault if nothing was played before it."""
-        from player.controls import play
+    def play(self, file: FilePath, desk: Desk, *, raw: bool = False, **settings: Any) -> Played:
+        """Play a tape, or what comes through a pipe (-), to its end or to its fault; `settings` as `play` takes them.
 
-        by_hand = self._by_hand(file)
+        Raises the fault if nothing was played before it.
+        """
         desk.warn_of_compiling("the controls", "motion", "player")
-        playback = play(file, **by_hand)
+        playback = self._put_in(file, settings)
         met: list[Fault] = []
         stream = desk.watched(_until_fault(playback, met), f"playing {file.name}", playback.duration_s)
         path = _path(stream, raw, met)
         return Played(path, playback, met[0] if met else None)
+
+    def _put_in(self, file: FilePath, settings: dict[str, Any]) -> Playback:
+        """Put a file, or the pipe, in its machine."""
+        from player.controls import play
+
+        if str(file) != PIPE:
+            return play(file, **self._by_hand(file), **settings)
+        from player.machine import play_pipe
+
+        return play_pipe(sys.stdin.buffer, **{name: value for name, value in asdict(self).items() if value is not None})
 
     def _by_hand(self, file: FilePath) -> dict[str, Any]:
         """What was given by hand, which only the control of a tape takes."""
@@ -94,15 +106,15 @@ def tape_options(verb: Callable[..., Any]) -> Callable[..., Any]:
     @click.option(
         "--from",
         "start_mm",
-        type=PLACE,
-        help="Where the machine stands at the start, mm.  [default: what the tape says, else 0,0]",
+        type=PLACES,
+        help="Where the machine stands at the start, mm: X,Y or X,Y,Z.  [default: what the tape says, else 0,0]",
     )
     @functools.wraps(verb)
     def with_controls(
         *args: Any,
         reference_hz: float | None,
         cycles_per_mm: float | None,
-        start_mm: tuple[float, float] | None,
+        start_mm: tuple[float, ...] | None,
         **options: Any,
     ) -> Any:
         return verb(*args, controls=Controls(reference_hz, cycles_per_mm, start_mm), **options)

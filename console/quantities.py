@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from motion.units import parse_frequency_hz, parse_length_mm, parse_place_mm, parse_speed_mm_s
+from motion.units import parse_frequency_hz, parse_length_mm, parse_place_mm, parse_speed_mm_s, parse_time_s
 
 
 class Quantity(click.ParamType):
@@ -35,8 +35,18 @@ def _number(text: str) -> float:
         raise ValueError(f"{text!r} is no number; give one such as 20") from None
 
 
+def _parse_places_mm(text: str) -> tuple[float, ...]:
+    """Place in mm of "X,Y" or "X,Y,Z", each a length."""
+    *first, last = text.split(",")
+    if len(first) != 2:
+        return parse_place_mm(text)
+    return (*parse_place_mm(",".join(first)), parse_length_mm(last))
+
+
 LENGTH = Quantity("length", parse_length_mm, above_zero=True)
 SPEED = Quantity("speed", parse_speed_mm_s)
 FREQUENCY = Quantity("frequency", parse_frequency_hz)
 NUMBER = Quantity("number", _number, above_zero=True)
 PLACE = Quantity("x,y", parse_place_mm)
+PLACES = Quantity("x,y,z", _parse_places_mm)
+TIME = Quantity("time", parse_time_s)

@@ -22,6 +22,7 @@ from contextlib import AbstractContextManager
 from dataclasses import replace
 from itertools import chain
 from os import PathLike
+from typing import BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +34,7 @@ from player.discriminator import Discriminator, Float32s, Phases, discriminate
 from player.dropouts import Gaps, under_way
 from player.phase_lock import Drives, PhaseLock
 from player.watch import Watch, demand_apart
+from recorder.pipe import Pipe, Samples
 from recorder.tape import Tape, TapeFormat
 
 BLOCK_FRAMES = 65536
@@ -57,7 +59,7 @@ def play(
     over as long as that makes the count certain. `resume_at_s` is a tape time at which the machine stands at `start_mm`.
     """
 
-    def open_tape() -> AbstractContextManager[Tape]:
+    def open_tape() -> AbstractContextManager[Tape | Pipe]:
         return Tape.open(file, reference_hz=reference_hz, cycles_per_mm=cycles_per_mm, start_mm=start_mm)
 
     with open_tape() as tape:
@@ -69,6 +71,21 @@ def play(
     most = settings.drive.acceleration_mm_s2 if acceleration_mm_s2 is None else acceleration_mm_s2
     _check_resumption(resume_at_s, start_mm, frames / fmt.sample_rate_hz)
     return Playback(open_tape, fmt, frames, settings, most, resume_at_s)
+
+
+def play_pipe(
+    stream: BinaryIO,
+    *,
+    reference_hz: float | None = None,
+    cycles_per_mm: float | None = None,
+    start_mm: Sequence[float] | None = None,
+    samples: Samples | None = None,
+) -> Playback:
+    """Put a tape that comes through a pipe in the machine, as it comes; it can be played once. Raises TapeFault."""
+    start = None if start_mm is None else tuple(start_mm)
+    pipe = Pipe.open(stream, reference_hz=reference_hz, cycles_per_mm=cycles_per_mm, start_mm=start, samples=samples)
+    settings = PhaseLock.suited_to(pipe.format.motion_rate_hz)
+    return Playback(lambda: pipe, pipe.format, 0, settings, settings.drive.acceleration_mm_s2)
 
 
 def _check_resumption(resume_at_s: float, start_mm: Sequence[float] | None, duration_s: float) -> None:
@@ -89,7 +106,7 @@ class Playback:
 
     def __init__(
         self,
-        open_tape: Callable[[], AbstractContextManager[Tape]],
+        open_tape: Callable[[], AbstractContextManager[Tape | Pipe]],
         fmt: TapeFormat,
         frames: int,
         settings: PhaseLock,
@@ -99,6 +116,7 @@ class Playback:
         self._open_tape, self.format, self.frames, self.settings = open_tape, fmt, frames, settings
         self.acceleration_mm_s2, self.resume_at_s = acceleration_mm_s2, resume_at_s
         self.bridged: dict[tuple[float, str], float] = {}
+        self._rows = 0
         self.start_mm: Array = np.array(fmt.start_mm, dtype=np.float64)
         self.end_mm: Array = self.start_mm.copy()
         self.following_error_mm: Array = np.zeros(len(fmt.axes))
@@ -120,6 +138,7 @@ class Playback:
             displacement_mm = drives.follow(phases.cycles[:sound] - bearings.zero_cycles)
             self.end_mm = self.start_mm + drives.displacement_mm
             if len(displacement_mm):
+                self._rows = phases.first_row + len(displacement_mm)
                 yield self._motion(displacement_mm, phases.first_row)
             if len(displacement_mm) < sound:
                 raise self._out_of_range(drives, phases.first_row + len(displacement_mm))
@@ -229,7 +248,7 @@ class Playback:
             f"{fmt.axes[axis].upper()} ends at {position_mm:.3f} mm, {error_mm:+.3f} mm from the end that the tape "
             f"states; allowed ±{END_CYCLES * fmt.mm_per_cycle:g} mm; cycles were lost, or it is cut short: get another",
             axis=fmt.axes[axis],
-            time_s=self.duration_s,
+            time_s=self._rows / fmt.motion_rate_hz,
             error_cycles=error_mm * fmt.cycles_per_mm,
             position_mm=position_mm,
         )

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -32,3 +34,27 @@ def test_wrong_use_is_one_line(morfax: Morfax, here: Path, tape_file: Path, word
     answer = morfax("age", tape_file, "-o", "w.wav", *words)
     assert answer.exit_code == 2 and said in answer.fault
     assert list(here.iterdir()) == []
+
+
+def test_a_fault_is_gone_on_from_by_hand(morfax: Morfax, here: Path, tape_file: Path) -> None:
+    words = ("--dropouts", 60, "--dropout-length", "30ms", "--dropout-depth", "60dB", "--cut-start", "0", "--seed", 5)
+    assert morfax("age", tape_file, "-o", "holes.wav", *words).exit_code == 0
+    told = morfax("play", "holes.wav", "-o", "a.csv")
+    assert told.exit_code == 6 and "last certain position" in told.fault and "--resume-at" in told.fault
+    assert morfax("play", tape_file, "--resume-at", "2s").exit_code == 2
+    assert morfax("play", tape_file, "--resume-at", "99s", "--from", "1,2,3").exit_code == 2
+    whole = morfax("play", tape_file, "--json").figures
+    rest = morfax("play", tape_file, "--resume-at", "0.5s", "--from", "40,30,2", "--json").figures
+    assert rest["end_place_mm"] == pytest.approx(whole["end_place_mm"], abs=1e-3)
+    assert rest["duration_s"] == pytest.approx(whole["duration_s"] - 0.5, abs=0.01)
+
+
+def test_a_tape_through_a_pipe(here: Path, tape_file: Path) -> None:
+    with tape_file.open("rb") as tape:
+        words = ["play", "-", "-o", "piped.csv", "--json"]
+        code = "import sys; from console.cli import main; sys.exit(main(sys.argv[1:]))"
+        answer = subprocess.run(
+            [sys.executable, "-c", code, *words], stdin=tape, capture_output=True, text=True, check=False
+        )
+    assert answer.returncode == 0, answer.stderr
+    assert '"end_place_mm"' in answer.stdout and (here / "piped.csv").exists()

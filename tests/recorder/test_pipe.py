@@ -1,0 +1,72 @@
+"""Tapes through a pipe: WAV and raw, of every kind of sample, as the file would be."""
+
+from __future__ import annotations
+
+import io
+import struct
+from pathlib import Path
+
+import numpy as np
+import pytest
+import soundfile
+
+from motion.faults import TapeFault
+from motion.motion import Motion, join
+from player.machine import play, play_pipe
+from recorder.pipe import Pipe, Samples
+from recorder.tape import record
+from tests.player.worn import program
+
+BY_HAND = {"reference_hz": 6000.0, "cycles_per_mm": 20.0}
+
+
+@pytest.fixture(scope="module")
+def tape(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A circle."""
+    file = tmp_path_factory.mktemp("pipe") / "a.wav"
+    record(Motion(program(2.0)), file)
+    return file
+
+
+@pytest.mark.parametrize("sample", ["16", "24", "32", "float"])
+def test_a_wav_in_a_pipe_is_the_wav(tmp_path: Path, sample: str) -> None:
+    record(Motion(program(1.0)), tmp_path / "a.wav", sample=sample)
+    with Pipe.open(io.BytesIO((tmp_path / "a.wav").read_bytes())) as pipe:
+        frames = np.vstack(list(pipe.blocks(10_000)))
+    assert np.array_equal(frames, soundfile.read(tmp_path / "a.wav", dtype="float32")[0])
+
+
+def test_a_wav_of_no_stated_length_plays_as_the_file(tape: Path) -> None:
+    data = bytearray(tape.read_bytes())
+    at = data.find(b"data")
+    data[4:8] = data[at + 4 : at + 8] = struct.pack("<I", 0xFFFFFFFF)
+    assert np.array_equal(join(play_pipe(io.BytesIO(bytes(data)))).positions_mm, join(play(tape)).positions_mm)
+
+
+def test_raw_samples_play_with_what_is_given_by_hand(tape: Path) -> None:
+    frames = soundfile.read(tape, dtype="int16")[0]
+    went = join(play_pipe(io.BytesIO(frames.tobytes() + b"\0\0\0"), **BY_HAND)).positions_mm
+    whole = join(play(tape)).positions_mm
+    assert len(went) == len(whole)
+    assert np.abs(went - whole).max() < 1e-6  # mm: the zero is taken from less of the standstill
+
+
+@pytest.mark.parametrize(
+    ("data", "said"),
+    [
+        (b"", "nothing came"),
+        (b"RIFF\0\0\0\0WAVE", "within its header"),
+        (b"RIFF\0\0\0\0WAVEdata\0\0\0\0", "no format before"),
+        (b"RIFF\0\0\0\0WAVEjunk\xff\xff\xff\x7f", "header chunk"),
+        (b"RIFF\0\0\0\0WAVEfmt \x04\0\0\0abcd", "broken format"),
+        (b"RIFF\0\0\0\0WAVEfmt \x10\0\0\0" + struct.pack("<HHIIHH", 1, 1, 48000, 0, 0, 16), "3 or more"),
+        (b"0123456789abcdef" * 9, "does not say its format"),
+    ],
+)
+def test_what_is_no_tape(data: bytes, said: str) -> None:
+    with pytest.raises(TapeFault, match=said):
+        Pipe.open(io.BytesIO(data))
+
+
+def test_samples_of_a_frame() -> None:
+    assert Samples(3, bits=24).frames(b"\xff\xff\x7f\0\0\0\0\0\x80").tolist() == [[pytest.approx(1, abs=1e-6), 0, -1]]
