@@ -7,7 +7,8 @@ Signals: a Drawing in; out a Trace, which is a stream of Motion (X, Y, Z in shee
        -depth      ╰────── the line ───────────╯
 
 A line that turns out to be open is followed from end to end: the head that was put down on its middle runs to one end first, with nothing recorded, and
-begins there. A line that runs into what has been followed already, without coming back to its start, is tried with another turn at a junction.
+begins there. A line that does not come back one way round is tried the other way; one that runs into what has been followed already is tried with
+other turns at its junctions, as an operator would.
 
 Source: patent ES 361967, section on use, in its plainest form: one line, down at its start and up at its end.
 """
@@ -16,7 +17,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import combinations
 
@@ -142,12 +143,18 @@ def _tell(progress: Callable[[float, float], None], length_mm: float, come_mm: f
 
 
 def _all_of_it(stance: Stance, settings: Settings, longest_mm: float, told: Callable[[float], None] | None) -> Followed:
-    """Follow a line from a stance: an open one from end to end, and one that does not come back with another turn."""
+    """Follow a line from a stance: either way round, an open one from end to end, and one that does not come back with other turns."""
     run = Follower(stance, settings, MOTION_RATE_HZ).follow(longest_mm, told)
-    if run.ending == "ended" and not stance.at_end:
+    if run.ending == "closed" or stance.at_end:
+        return run
+    round_about = replace(stance, heading_rad=math.remainder(stance.heading_rad + math.pi, math.tau))
+    other = Follower(round_about, settings, MOTION_RATE_HZ).follow(longest_mm)
+    if other.ending == "closed":
+        return other
+    if run.ending == "ended":
         back = turned_round(run.positions_mm[-1], run.heading_rad, run.view)
         return max(run, Follower(back, settings, MOTION_RATE_HZ).follow(longest_mm, told), key=lambda r: r.travel_mm)
-    if run.ending == "joined" and not stance.at_end:
+    if run.ending == "joined":
         return _with_other_turns(stance, settings, longest_mm, run)
     return run
 
