@@ -19,7 +19,7 @@ import click
 import numpy as np
 from numpy.typing import NDArray
 
-from console import medium
+from console import medium, programs
 from console.desk import Desk, desk_options
 from console.playing import Controls, tape_options
 from console.table import Figures
@@ -39,6 +39,7 @@ Examples:
   morfax inspect cam.wav
   morfax inspect found.wav --reference 6kHz --cycles-per-mm 20
   morfax inspect cam.wav --json
+  morfax inspect cam.steps -o cam-tape.svg
 """
 
 
@@ -62,13 +63,20 @@ class Carrier:
 
 @click.command("inspect", epilog=EXAMPLES)
 @click.argument("tape", type=medium.FILE)
+@click.option("-o", "picture", type=medium.FILE, help="Draw the punched tape of a .steps program (.png, .svg).")
 @tape_options
 @desk_options
-def command(tape: FilePath, controls: Controls, desk: Desk) -> None:
+def command(tape: FilePath, picture: FilePath | None, controls: Controls, desk: Desk) -> None:
     """Say what is on a tape: tracks, carriers, levels, travel, format.
 
-    A tape that cannot be played is told as far as it goes, and then why it cannot.
+    A tape that cannot be played is told as far as it goes, and then why it cannot. Of a program in another medium
+    (.steps, .cubic, .ngc) its format and what it does are told.
     """
+    if medium.kind_of(tape) == "program":
+        desk.figures(programs.inspect(tape, picture, desk))
+        return
+    if picture is not None:
+        raise click.UsageError(f"{tape} has no punched tape to draw; -o is for .steps")
     stated: dict[str, Any] = {}
     travels: dict[str, Figures] = {}
     fault: TapeFault | None = None
