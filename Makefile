@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo test check bench figures clean
+.PHONY: demo test check bench figures soak fuzz clean
 
 $(VENV)/installed: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -26,6 +26,16 @@ bench: $(VENV)/installed
 
 figures: $(VENV)/installed
 	$(BIN)/python -m docs.figures
+
+# the tests of trust at full length: every pair of wear, ten thousand dropouts; an hour or two
+soak: $(VENV)/installed
+	MORFAX_SOAK=1 $(BIN)/pytest tests/player/test_worn.py -s
+
+# broken tapes until something breaks: RUNS=1000000
+RUNS ?= 1000000
+fuzz: $(VENV)/installed
+	$(BIN)/pip install --quiet --disable-pip-version-check -e '.[fuzz]'
+	$(BIN)/python -m fuzz.tapes -runs=$(RUNS) -timeout=2 -rss_limit_mb=1024 -max_len=4096
 
 clean:
 	rm -rf $(VENV) demo

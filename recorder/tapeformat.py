@@ -177,4 +177,4 @@ def _is_number(value: object) -> TypeGuard[float]:
 def _demand(good: bool, name: str, value: object, allowed: str) -> None:
     """Raise ValueError with the entry, the value got and the values allowed."""
     if not good:
-        raise ValueError(f"{name} is {str(value)[:60]}; it must be {allowed}")
+        raise ValueError(f"{name} is {' '.join(str(value)[:60].split())}; it must be {allowed}")
