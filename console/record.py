@@ -74,17 +74,27 @@ def command(
     stream = desk.watched(read.motion(), f"recording {program.name}", float(read.t_s[-1] - read.t_s[0]))
     recording = record(stream, program, **settings)
     length = length_mm(read) if read.tool.any() else 0.0
+    is_tape = program.suffix.lower() in medium.TAPES
     desk.figures(
         {
-            ("tape" if program.suffix.lower() in medium.TAPES else "program"): str(program),
+            ("tape" if is_tape else "program"): str(program),
             "duration_s": recording.duration_s,
             "length_mm": length,
             "start_place_mm": read.positions_mm[0],
             "end_place_mm": read.positions_mm[-1],
             "bits_per_mm": 8 * recording.bytes / length if length else None,
+            "as_tape_bits_per_mm": _tape_bits(recording.duration_s) / length if length and not is_tape else None,
             **medium.told(recording),
         }
     )
+
+
+def _tape_bits(duration_s: float) -> float:
+    """Bits of a magnetic tape of the usual format that runs so long, to set beside those of another medium."""
+    from recorder.tape import TapeFormat
+
+    fmt = TapeFormat()
+    return 16 * fmt.tracks * fmt.sample_rate_hz * (duration_s + 2 * fmt.dwell_s)
 
 
 def _program(output: FilePath | None, source: FilePath, force: bool) -> FilePath:

@@ -44,7 +44,7 @@ VERSION = 1
 STEP_MM = 0.01
 HEADER = "morfax steps"
 TICKS = 64  # oscillator pulses in an interval
-MOST_ROWS = 20_000_000  # a day and a half at 160 rows/s
+MOST_ROWS = 2_000_000  # three and a half hours at 160 rows/s
 _MOST_MM = 1e6
 
 Rows = NDArray[np.uint8]

@@ -33,7 +33,7 @@ from motion.motion import IN_WORK_BELOW_MM
 from recorder.legs import Leg, Limits, Source, as_path, legs
 from recorder.lengths import cut
 from recorder.rings import LARGEST, SAME, commands
-from recorder.stepfile import STEP_MM, Program, StepFormat, write_program
+from recorder.stepfile import MOST_ROWS, STEP_MM, Program, StepFormat, write_program
 
 AXIS_ROW, TOOL_DOWN = 0b0001_0000, 0b1000_0000
 _UP_DOWN_SAME = {0: 0b00, 1: 0b01, -1: 0b10}
@@ -95,6 +95,8 @@ def record_steps(
     end_mm = tuple(np.round(path.positions_mm[0] + lengths.sum(axis=0) * fmt.step_mm, 6).tolist())
     fmt = replace(fmt, start_mm=start_mm, end_mm=end_mm)
     rows = encode(lengths, down, fmt)
+    if len(rows) > MOST_ROWS:
+        raise MotionFault(f"the program has {len(rows)} rows; at most {MOST_ROWS} are allowed: record it in parts")
     write_program(Program(fmt, rows), file)
     vectors = len(lengths) - int(np.count_nonzero(rows & AXIS_ROW))
     steps = int(np.abs(lengths).sum())

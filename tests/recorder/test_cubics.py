@@ -166,3 +166,17 @@ def test_a_garbled_file_is_one_line_with_its_place(tmp_path: FilePath, text: str
 def test_the_good_file_is_good(tmp_path: FilePath) -> None:
     (tmp_path / "a.cubic").write_text(GOOD.replace("\nat 1000", "\n# a remark\n\nat 1000"))
     assert thin(play_cubic(tmp_path / "a.cubic")).positions_mm[-1] == pytest.approx([0.5, 0, 0], abs=1 * UM)
+
+
+@given(st.binary(max_size=200), st.integers(0, len(GOOD)), st.integers(0, 60))
+def test_whatever_stands_in_a_file_is_played_or_refused_in_one_line(
+    tmp_path_factory: pytest.TempPathFactory, junk: bytes, at: int, over: int
+) -> None:
+    file = tmp_path_factory.mktemp("junk") / "a.cubic"
+    good = GOOD.encode()
+    for content in (junk, good[:at] + junk + good[at + over :]):
+        file.write_bytes(content)
+        try:
+            play_cubic(file)
+        except ProgramFault as fault:
+            assert "\n" not in str(fault)

@@ -227,3 +227,18 @@ def test_the_kernels_do_as_plain_python_what_they_do_compiled() -> None:
     again = lengths_module.cut(places, speeds, leg.spacing_mm / STEP_MM, np.zeros(3, np.int64))
     plain.undo()
     assert (compiled[0] == again[0]).all() and compiled[0].sum(axis=0).tolist() == [30, 10, 0]
+
+
+@given(st.binary(max_size=200), st.integers(0, len(GOOD)), st.integers(0, 60))
+def test_whatever_stands_in_a_file_is_played_or_refused_in_one_line(
+    tmp_path_factory: pytest.TempPathFactory, junk: bytes, at: int, over: int
+) -> None:
+    file = tmp_path_factory.mktemp("junk") / "a.steps"
+    good = GOOD.encode()
+    for content in (junk, good[:at] + junk + good[at + over :]):
+        file.write_bytes(content)
+        try:
+            playback = play_steps(file)
+            assert list(playback) and not playback.following_error_mm.any()
+        except ProgramFault as fault:
+            assert "\n" not in str(fault)
