@@ -33,6 +33,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
@@ -43,6 +44,7 @@ PREDICTOR_HZ = 120.0
 STOP_BAND_BETA = 8.0  # Kaiser: stop band 80 dB down
 SMALLEST_TAP = 1e-12  # below it products are denormal numbers, which cost a factor of twelve
 SMALLEST_PRODUCT = 1e-300  # of two tracks; keeps a silent one from dividing by zero
+FEWEST_SHARED_ROWS = 2048  # below it handing over costs more than it saves
 CHUNK_ROWS = 512  # what the kernel has in the processor's cache at a time
 
 Float32s = NDArray[np.float32]
@@ -115,6 +117,7 @@ class Discriminator:
         self._tail_frame = 0  # the tape's frame at which the tail begins
         self._row = 0  # the next row to come out
         self._last: Phases | None = None
+        self._helper = ThreadPoolExecutor(1)  # its thread starts with the first block that is shared
 
     @property
     def filter_frames(self) -> int:
@@ -147,7 +150,16 @@ class Discriminator:
         cycles = np.empty((count, tracks - 1))
         surprise = np.empty((count, tracks - 1), np.float32)
         levels = np.empty((count, tracks), np.float32)
-        _demodulate(rows, self._taps_re, self._taps_im, self.gains, self.state, cycles, surprise, levels)
+        taps = self._taps_re, self._taps_im
+        if count < FEWEST_SHARED_ROWS:
+            _demodulate(rows, *taps, self.gains, self.state, cycles, surprise, levels)
+        else:  # the filter on two cores; only the counting has to go in order
+            phase, half = np.empty((tracks - 1, count)), count // 2
+            other = self._helper.submit(_wrap, rows[half:], *taps, phase[:, half:], levels[half:])
+            _wrap(rows[: half + self._reach], *taps, phase[:, :half], levels[:half])
+            other.result()
+            for axis in range(tracks - 1):
+                _count(phase[axis], self.gains, self.state[axis], cycles[:, axis], surprise[:, axis])
         lead = ((row - self._row, 0), (0, 0))
         if row > self._row:
             cycles = np.pad(cycles, lead, mode="edge")
@@ -188,21 +200,28 @@ def recount(phase: Float64s, gains: Float64s, state: Float64s, surprise: Float32
 @njit(cache=True, nogil=True)
 def _demodulate(rows, taps_re, taps_im, gains, state, cycles, surprise, levels):  # type: ignore[no-untyped-def]
     """Fill `cycles`, `surprise` and `levels` from rows of the tape (n, frame within the row · tracks + track)."""
+    phase = np.empty((cycles.shape[1], len(cycles)))
+    _wrap(rows, taps_re, taps_im, phase, levels)
+    for axis in range(len(phase)):
+        _count(phase[axis], gains, state[axis], cycles[:, axis], surprise[:, axis])
+
+
+@njit(cache=True, nogil=True)
+def _wrap(rows, taps_re, taps_im, phase, levels):  # type: ignore[no-untyped-def]
+    """Fill `phase` (axes, n), each from -0.5 to 0.5 cycle, and `levels`, by chunks that fit the processor's cache."""
     tracks = levels.shape[1]
     reach = (len(taps_re) - 1) // (rows.shape[1] // tracks)  # rows that a filter reaches beyond its first
     columns = np.zeros((rows.shape[1], CHUNK_ROWS + reach), np.float32)
     re, im = np.empty((tracks, CHUNK_ROWS), np.float32), np.empty((tracks, CHUNK_ROWS), np.float32)
-    phase = np.empty(CHUNK_ROWS)
-    for first in range(0, len(cycles), CHUNK_ROWS):
-        last = min(first + CHUNK_ROWS, len(cycles))
+    for first in range(0, len(levels), CHUNK_ROWS):
+        last = min(first + CHUNK_ROWS, len(levels))
         _unlace(rows[first : last + reach], columns)
         for track in range(tracks):
             _translate(columns, tracks, track, taps_re, taps_im, re[track, : last - first], im[track, : last - first])
             for k in range(last - first):
                 levels[first + k, track] = 2 * math.sqrt(re[track, k] ** 2 + im[track, k] ** 2)
         for axis in range(tracks - 1):
-            _turn(re[axis + 1], im[axis + 1], re[0], im[0], phase[: last - first])
-            _count(phase[: last - first], gains, state[axis], cycles[first:last, axis], surprise[first:last, axis])
+            _turn(re[axis + 1], im[axis + 1], re[0], im[0], phase[axis, first:last])
 
 
 @njit(cache=True, nogil=True)

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from dataclasses import replace
 from pathlib import Path as FilePath
 from types import TracebackType
@@ -44,6 +45,7 @@ class Tape:
 
     def __init__(self, file: FilePath, sound: soundfile.SoundFile, fmt: TapeFormat) -> None:
         self.file, self.format, self._sound = file, fmt, sound
+        self._reading: Future[Frames] | None = None
 
     @classmethod
     def open(
@@ -74,7 +76,9 @@ class Tape:
         self.close()
 
     def close(self) -> None:
-        """Close the file."""
+        """Close the file, after a block that is still being read."""
+        if self._reading is not None:
+            wait([self._reading])
         self._sound.close()
 
     @property
@@ -108,10 +112,14 @@ class Tape:
             raise ValueError(f"a block of {frames} frames holds nothing; it must be at least 1")
         done = first
         self._sound.seek(first)
-        while done < self.frames:
-            block = self._read(frames, done)
-            done += len(block)
-            yield block
+        with ThreadPoolExecutor(1) as reader:  # the next block is read while this one is worked on
+            self._reading = reader.submit(self._read, frames, done)
+            while done < self.frames:
+                block = self._reading.result()
+                done += len(block)
+                if done < self.frames:
+                    self._reading = reader.submit(self._read, frames, done)
+                yield block
 
     def _read(self, frames: int, done: int) -> Frames:
         """The next block; raises TapeFault where the file ends early or cannot be decoded."""
