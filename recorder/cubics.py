@@ -13,11 +13,12 @@ them has exact differences, for steps of 1/n of the interval:
     A  = a/n³ + b/n² + c/n       A² = 6a/n³ + 2b/n²             A³ = 6a/n³
 
 The interval is the longest of a series of halves with which the path stays within the tolerance, and the program takes
-no more than a tenth longer than the motion.
+no more than a tenth longer than the motion. What counts as a corner is tried from blunt to sharp, and taken is the
+program with the fewest intervals.
 
 Source: patent US 3062995, column 3 and relations (III) to (IX).
 Questions: the patent leaves places and slopes to a desk calculator (slopes by a formula that is lost in the print).
-Rounded slopes cost a quarter of a count at most between the samples, nothing at them.
+Rounded slopes cost an eighth of a count at most between the samples, nothing at them.
 """
 
 from __future__ import annotations
@@ -32,6 +33,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion.faults import MotionFault
+from motion.motion import Path
 from recorder.cubicfile import STEPS_PER_CONSTANT, CubicFormat, CubicProgram, write_program
 from recorder.legs import Leg, Limits, Source, as_path, legs
 
@@ -43,7 +45,8 @@ LONGEST_S, SHORTEST_S = 0.512, 0.004
 POINT_RATE_HZ = 4000.0  # nearly, of the interpolated points: the servo is as fast
 STRETCH = 1.1  # of the motion's own time
 CHECK_EVERY = 64  # intervals from one checked position to the next
-SPEED_MM_S, ACCELERATION_MM_S2 = 100.0, 500.0
+LIMITS = Limits(100.0, 500.0, spacing_mm=0.005, window_mm=0.02, corner_rad=0.2)
+CORNER_SHARES = (1.0, 0.5, 0.25)  # of that angle
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,6 +80,16 @@ class CubicReport:
         }
 
 
+@dataclass(frozen=True, slots=True)
+class _Fit:
+    """Samples (k + 1, axes, 2) in whole counts at an interval, and how far they are off the path."""
+
+    interval_s: float
+    samples: Words
+    off_mm: float
+    stops: int
+
+
 def record_cubics(
     stream: Source,
     file: str | os.PathLike[str],
@@ -92,19 +105,16 @@ def record_cubics(
     tolerance_mm = TOLERANCE_MM if tolerance_mm is None else tolerance_mm
     if not tolerance_mm > 0:
         raise ValueError(f"a tolerance of {tolerance_mm} mm leaves no room; give one above zero")
-    limits = limits or Limits(SPEED_MM_S, ACCELERATION_MM_S2, spacing_mm=0.005, window_mm=0.02, corner_rad=0.2)
     path = as_path(stream)
-    parts = legs(path, limits)
-    counts_per_mm = (fmt or CubicFormat()).counts_per_mm
-    interval_s, samples, off_mm = _fitted(parts, path.positions_mm[0], tolerance_mm, counts_per_mm)
-    fmt = replace(fmt or CubicFormat(points=_points(interval_s)), interval_s=interval_s)
+    fit = _best_fit(path, tolerance_mm, limits or LIMITS, (fmt or CubicFormat()).counts_per_mm)
+    fmt = replace(fmt or CubicFormat(points=_points(fit.interval_s)), interval_s=fit.interval_s)
     fmt = replace(fmt, modulus_per_s=min(fmt.modulus_per_s, fmt.point_rate_hz / STEPS_PER_CONSTANT))
-    words = differences(samples, fmt.points, fmt.linear)
-    places = samples[:, :, 0]
+    words = differences(fit.samples, fmt.points, fmt.linear)
+    places = fit.samples[:, :, 0]
     checks = {k: tuple(places[k].tolist()) for k in range(0, len(places), CHECK_EVERY)}
     checks[len(places) - 1] = tuple(places[-1].tolist())
     write_program(CubicProgram(fmt, words, checks), file)
-    return CubicReport(FilePath(file), fmt, len(words), len(parts) + 1, off_mm)
+    return CubicReport(FilePath(file), fmt, len(words), fit.stops, fit.off_mm)
 
 
 def differences(samples: Words, points: int, linear: int = 1) -> Words:
@@ -136,20 +146,36 @@ def hermite(samples: Words, at: Array) -> Array:
     return np.asarray(((a * u + b) * u + m1) * u + x1)
 
 
-def _fitted(parts: list[Leg], start_mm: Array, tolerance_mm: float, counts_per_mm: float) -> tuple[float, Words, float]:
-    """The longest interval that will do, the samples of the whole motion, and the largest distance from it, mm."""
-    interval_s, off_mm = LONGEST_S, 0.0
+def _best_fit(path: Path, tolerance_mm: float, limits: Limits, counts_per_mm: float) -> _Fit:
+    """The fit with the fewest intervals; raises MotionFault where none is within the tolerance."""
+    fits = [
+        _fitted(
+            legs(path, replace(limits, corner_rad=share * limits.corner_rad)),
+            path.positions_mm[0],
+            counts_per_mm,
+            tolerance_mm,
+        )
+        for share in CORNER_SHARES
+    ]
+    good = [fit for fit in fits if fit.off_mm <= tolerance_mm]
+    if not good:
+        raise MotionFault(
+            f"the cubics come no nearer to the motion than {min(fit.off_mm for fit in fits):.4f} mm with intervals of "
+            f"{SHORTEST_S:g} s; allowed {tolerance_mm:g} mm: give a larger tolerance, or trace slower"
+        )
+    return min(good, key=lambda fit: len(fit.samples))
+
+
+def _fitted(parts: list[Leg], start_mm: Array, counts_per_mm: float, tolerance_mm: float) -> _Fit:
+    """The fit with the longest interval that will do, or with the shortest if none will."""
+    interval_s = LONGEST_S
     longest_s = STRETCH * sum(float(leg.times_s[-1]) + leg.rest_s for leg in parts)
-    while interval_s >= SHORTEST_S:
+    while True:
         samples, off_mm = _samples(parts, start_mm, interval_s, counts_per_mm)
-        long = (len(samples) - 1) * interval_s > longest_s and interval_s > SHORTEST_S
-        if off_mm <= tolerance_mm and not long:
-            return interval_s, samples, off_mm
+        long = (len(samples) - 1) * interval_s > longest_s
+        if (off_mm <= tolerance_mm and not long) or interval_s <= SHORTEST_S:
+            return _Fit(interval_s, samples, off_mm, len(parts) + 1)
         interval_s /= 2
-    raise MotionFault(
-        f"the cubics come no nearer to the motion than {off_mm:.4f} mm with intervals of {2 * interval_s:g} s; allowed "
-        f"{tolerance_mm:g} mm: give a larger tolerance, or trace slower"
-    )
 
 
 def _samples(parts: list[Leg], start_mm: Array, interval_s: float, counts_per_mm: float) -> tuple[Words, float]:

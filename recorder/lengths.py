@@ -16,8 +16,8 @@ moves, and the best of all these are kept. A course pays for each interval
 The last keeps the courses that stand from being the cheapest.
 
 Source: patent ES 443122, page 25 ("calculate each length required to produce a trajectory within the tolerance").
-Questions: the patent leaves the way to the programmer. A width of 32 courses is as good as one of 128 within 2 % of a
-step, root mean square, on lines, circles and corners.
+Questions: the patent leaves the way to the programmer. Widths of 8 to 128 courses came within 0.3 % of each other in
+distance (root mean square), share of vectors and time, on the sample drawings.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from recorder.rings import LARGEST, commands
 Array = NDArray[np.float64]
 Steps = NDArray[np.int64]
 
-WIDTH = 32
+WIDTH = 16
 SPARE_LEVELS = 400  # intervals that a course may take beyond twice the leg's own time
 _SPEED, _TOO_FAST, _NO_VECTOR, _STANDING = 0.05, 1.0, 0.4, 0.5
 _SLOWEST = 0.7  # steps per interval: near a stop the speed goes to nothing, and a course must still arrive
