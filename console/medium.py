@@ -92,6 +92,11 @@ def made_up(name: FilePath, *made_from: FilePath, force: bool) -> FilePath:
     return outgoing(name, *made_from)
 
 
+def called(file: FilePath) -> str:
+    """What a program is called in the figures: a tape, or a program in another medium."""
+    return "program" if _SUFFIXES.get(file.suffix.lower()) == "program" else "tape"
+
+
 def told(report: Report) -> Figures:
     """What a recorder tells of its program beyond size and time, where it tells more."""
     figures: Figures = getattr(report, "figures", {})

@@ -77,7 +77,7 @@ def command(
     written = [medium.incomplete(file) if played.fault else file for file in outputs]
     for file in written:
         write(played.path, file, f"{tape.name}, played")
-    desk.figures({"tape": str(tape), "paths": [str(file) for file in written] or None, **figures(played)})
+    desk.figures({medium.called(tape): str(tape), "paths": [str(file) for file in written] or None, **figures(played)})
     if played.fault:
         raise played.fault
 

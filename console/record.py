@@ -77,7 +77,7 @@ def command(
     is_tape = program.suffix.lower() in medium.TAPES
     desk.figures(
         {
-            ("tape" if is_tape else "program"): str(program),
+            medium.called(program): str(program),
             "duration_s": recording.duration_s,
             "length_mm": length,
             "start_place_mm": read.positions_mm[0],

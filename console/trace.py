@@ -99,7 +99,7 @@ def _write(traced: Traced, outputs: Outputs, drawing: Drawing) -> dict[str, str]
     """Write what was asked for; the names under which it stands."""
     written = {}
     if outputs.tape is not None:
-        written["tape"] = str(traced.record(outputs.tape))
+        written[medium.called(outputs.tape)] = str(traced.record(outputs.tape))
     if outputs.path is not None:
         written["path"] = str(traced.write(outputs.path))
     if outputs.picture is not None:

@@ -49,7 +49,7 @@ def test_any_program_becomes_any_other(morfax: Morfax, here: Path, path_file: Pa
 @pytest.mark.parametrize("suffix", WITHIN_MM)
 def test_a_drawing_is_traced_into_any_medium(morfax: Morfax, here: Path, suffix: str) -> None:
     traced = morfax("trace", SAMPLES / "curve.png", "-o", f"part{suffix}", "--path", "part.csv", "--json")
-    assert traced.exit_code == 0 and traced.figures["tape"] == f"part{suffix}"
+    assert traced.exit_code == 0 and traced.figures["program"] == f"part{suffix}"
     assert morfax("compare", f"part{suffix}", "part.csv", "--tolerance", WITHIN_MM[suffix]).exit_code == 0
 
 
