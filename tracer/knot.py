@@ -27,6 +27,7 @@ from tracer.leg import Leg, leg_of, turn
 from tracer.view import Array, View
 
 CORNER = math.radians(20)  # a line that turns less within a few stations is smooth
+LEAST_WIDTHS = 0.8  # of clean line make a leg
 FARTHEST_MM = 5.0  # rings do not grow beyond this, or ten widths
 
 
@@ -161,4 +162,5 @@ def _leg_outward(view: View, centre: Array, radius: float, arc: _Arc) -> Leg | N
     seen = view.feel(places[0], heading, view.leg_mm)
     if len(seen) < 4:
         seen = view.feel(places[-1], heading, view.leg_mm)
-    return leg_of(seen, False, view.leg_mm) if len(seen) >= 4 else None
+    least = max(4, math.ceil(LEAST_WIDTHS * view.width_mm / view.step_mm))  # less may be the blunt end of a tip
+    return leg_of(seen, False, view.leg_mm) if len(seen) >= least else None

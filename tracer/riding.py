@@ -30,7 +30,7 @@ FARTHEST_MM = 40.0
 WELL_WITHIN = 10  # stations from a leg's clean end: both edges are clean there
 TIP = math.radians(150)  # a corner that turns by more is a tip
 REGAINED_MM = 1.5  # this much of both edges, and the line is by itself again
-BESIDE = 3.0  # widths; ink that is beside the line for less is a corner or a crossing
+BESIDE = 4.0  # widths; ink that is beside the line for less is a corner or a crossing
 WIDE = 0.62  # of the width, from the middle to the far edge: ink beside the line
 
 

@@ -32,6 +32,7 @@ from tracer.settings import Settings
 from tracer.stance import Stance, put_down, turned_round
 from tracer.view import Array
 
+SHORTER = 0.95  # the other way round is the line itself if it is shorter than this: straight on has led elsewhere
 TURNS = 12  # junctions at which another turn is tried
 
 
@@ -145,10 +146,12 @@ def _tell(progress: Callable[[float, float], None], length_mm: float, come_mm: f
 def _all_of_it(stance: Stance, settings: Settings, longest_mm: float, told: Callable[[float], None] | None) -> Followed:
     """Follow a line from a stance: either way round, an open one from end to end, and one that does not come back with other turns."""
     run = Follower(stance, settings, MOTION_RATE_HZ).follow(longest_mm, told)
-    if run.ending == "closed" or stance.at_end:
+    if stance.at_end or (run.ending == "closed" and run.junctions == 0):
         return run
     round_about = replace(stance, heading_rad=math.remainder(stance.heading_rad + math.pi, math.tau))
     other = Follower(round_about, settings, MOTION_RATE_HZ).follow(longest_mm)
+    if run.ending == "closed":
+        return other if other.ending == "closed" and other.travel_mm < SHORTER * run.travel_mm else run
     if other.ending == "closed":
         return other
     if run.ending == "ended":

@@ -52,7 +52,7 @@ class View:
     def like(self, place: Array, heading: float) -> View:
         """The view with the width and the darkness that the line has about a place, if they are like what they were: lines swell and fade."""
         way = np.array([math.cos(heading), math.sin(heading)])
-        places = [place + k * self.step_mm * way for k in range(5)]
+        places = [place + 2 * k * self.step_mm * way for k in range(5)]  # more of them than a speck spoils
         ink = float(np.median([photocell.darkness_at(self.cells, self.pitch_mm, p[0], p[1]) for p in places]))
         level = LEVEL * min(max(ink, self.level), 4 * self.level)
         reach = 1.5 * self.width_mm + 2 * self.pitch_mm
