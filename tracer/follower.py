@@ -75,6 +75,8 @@ class Follower:
             if why == head.HOME:
                 self.carriage.run([self._way_home()])
                 return self._done("closed")
+            if why != head.MORE and self.settings.direct_rad_s_mm > 0:
+                return self._lost("the swinging cell sees no more ink, and this head has no guard cells to find on by")
             if why != head.MORE:
                 ending = self._through_knot()
                 if ending is not None:

@@ -20,6 +20,8 @@ The speed is resolved by sine and cosine of the heading into demands on the two 
                    swinging cell there; the kernel returns, and `knot` and `course` take the head through
     look-ahead     cell 102, a mm ahead of the swinging cell: when the line is not where the sweep's curve leads, the relay slows the head and holds it slow
 
+A head without a drum, as in 1969, steers straight by what the cell sees aside, turn rate = k·e, and has neither guard cells nor a way through knots.
+
 Source: patent ES 361967, figure 1: cell 101, mount 42, pin 48, motor 45, amplifier FSA, servo M and tacho T, potentiometer 59, drives DCX and DCY with
 tachos TX and TY, forward cell 102, relay RL, delay DL, resistor SR, speed control WC.
 Questions: the patent gives no figures, no drum and no guard cells. Chosen: see `settings`.
@@ -32,15 +34,16 @@ from typing import NamedTuple
 
 from numba import njit
 
-from motion.drive import Drive, drive_step
+from motion.drive import drive_step
 from tracer.photocell import TWO_PI, darkness_at
 
 # State of the head, one float each: screws, speeds of the screws, heading, its rate, speed along, the sweep, the ink, guard cells, relay, travel,
-# the point that is steered for, the bend there, and how many places are on the drum
+# the point that is steered for, the bend there, how many places are on the drum, and how far aside the cell of a head without a drum sees the line
 X, Y, VX, VY, HEADING, TURN, SPEED, SWEEP, FIRST, MEAN, MIDDLE, SWEPT_X, SWEPT_Y, INK = range(14)
-LEFT, AHEAD, RIGHT, SLOW, TRAVEL, POINT_X, POINT_Y, BEND, PLACES = range(14, 23)
-STATES = 23
+LEFT, AHEAD, RIGHT, SLOW, TRAVEL, POINT_X, POINT_Y, BEND, PLACES, ASIDE = range(14, 24)
+STATES = 24
 DRUM = 256  # places remembered
+LOST = 0.2  # of the ink, over a sweep: the line has gone from under a head without guard cells
 BESIDE = 0.4  # of the ink, averaged by the guard cells: there is ink beside the line
 
 MORE, KNOT, TIGHT, HOME = range(4)  # why the kernel returned
@@ -69,16 +72,12 @@ class Tuning(NamedTuple):
     drive_gain: float
     drive_change_mm_s: float
     steering_gain: float
+    direct_rad_s_mm: float  # turn rate per mm that the cell sees the line aside; 0 for a head with a drum
 
 
 def owed_s(tuning_gain: float, period_s: float) -> float:
     """Time by which a drive of this gain per period lags its demand, s."""
     return period_s * (1.0 - tuning_gain) / tuning_gain
-
-
-def drive_gains(drive: Drive, period_s: float) -> tuple[float, float]:
-    """Gain per period and largest change of speed per period (mm/s) of a drive."""
-    return drive.gain(period_s), drive.acceleration_mm_s2 * period_s
 
 
 @njit(cache=True)
@@ -91,7 +90,8 @@ def follow(cells, pitch_mm, state, drum, t, home, out):  # type: ignore[no-untyp
         _swing(cells, pitch_mm, state, t)
         if state[SWEEP] >= t.sweep_periods:
             _detect(state, drum, t)
-            _fit(state, drum, t)
+            if t.direct_rad_s_mm == 0:
+                _fit(state, drum, t)
             why = _look(cells, pitch_mm, state, t)
             if why == MORE and _at_home(state, t, home):
                 why = HOME
@@ -123,6 +123,11 @@ def _detect(state, drum, t):  # type: ignore[no-untyped-def]
     mean = state[MEAN] / t.sweep_periods
     state[INK] += 0.1 * (min(max(mean / t.mean, 0.3), 2.0) - state[INK])
     aside = 2.0 * state[FIRST] / t.sweep_periods / (t.slope_per_mm * state[INK])
+    if t.direct_rad_s_mm > 0:
+        state[ASIDE] = aside
+        state[AHEAD] = mean / t.mean
+        state[MIDDLE] = state[SWEEP] = state[FIRST] = state[MEAN] = 0.0  # the mount turns with the head only
+        return
     limit = 0.5 * t.amplitude_mm
     state[MIDDLE] += min(max(aside, -limit), limit)
     middle = state[HEADING] - 0.5 * t.sweep_periods * t.period_s * state[TURN]  # as it was in the middle of the sweep
@@ -170,7 +175,7 @@ def _look(cells, pitch_mm, state, t):  # type: ignore[no-untyped-def]
     ahead = t.guard_lead_mm
     curve = state[MIDDLE] / (t.lead_mm * t.lead_mm)
     slant = math.hypot(1.0, 2.0 * curve * ahead)
-    for k in range(3):
+    for k in range(3 if t.direct_rad_s_mm == 0 else 0):
         u = curve * ahead * ahead + (1 - k) * t.guard_mm * slant
         d = darkness_at(cells, pitch_mm, state[X] + ahead * c - u * s, state[Y] + ahead * s + u * c)
         state[LEFT + k] += 0.5 * (d / state[INK] - state[LEFT + k])
@@ -178,6 +183,8 @@ def _look(cells, pitch_mm, state, t):  # type: ignore[no-untyped-def]
     u = curve * far * far
     if darkness_at(cells, pitch_mm, state[X] + far * c - u * s, state[Y] + far * s + u * c) < 0.5 * state[INK]:
         state[SLOW] = t.slow_periods
+    if t.direct_rad_s_mm > 0:
+        return KNOT if state[AHEAD] < LOST else MORE
     if max(state[LEFT], state[RIGHT]) > BESIDE or state[AHEAD] < 0.5:
         return KNOT
     return TIGHT if max(abs(state[BEND]), 2 * abs(curve)) > t.tightest_per_mm else MORE
@@ -208,6 +215,8 @@ def _steer(state, t):  # type: ignore[no-untyped-def]
     c, s = math.cos(state[HEADING]), math.sin(state[HEADING])
     along, aside = max(dx * c + dy * s, 0.2 * t.point_mm), dy * c - dx * s
     demand = state[SPEED] * 2.0 * aside / (along * along + aside * aside)
+    if t.direct_rad_s_mm > 0:
+        demand = t.direct_rad_s_mm * state[ASIDE]
     state[TURN] += t.steering_gain * (demand - state[TURN])
     state[HEADING] += state[TURN] * t.period_s
     move(state, t, state[SPEED] * math.cos(state[HEADING]), state[SPEED] * math.sin(state[HEADING]))

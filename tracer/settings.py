@@ -22,7 +22,7 @@ from tracer.stance import Stance
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """Settings of the head (the precise set)."""
+    """Settings of the head: by default the precise set. What is None follows from the line."""
 
     speed_mm_s: float = 10.0
     slowed: float = 0.3  # share of the speed while the look-ahead relay holds
@@ -34,7 +34,24 @@ class Settings:
     swivel_rad_s: float = 20.0
     gap_mm: float = 0.5
     line_width_mm: float | None = None
+    lead_mm: float | None = None
+    amplitude_mm: float | None = None
+    look_ahead_mm: float | None = None
+    direct_rad_s_mm: float = 0.0  # steer straight by the swinging cell, turn rate per mm aside; 0: by the drum
     drive: Drive = field(default_factory=Drive)
+
+
+HISTORIC = Settings(
+    speed_mm_s=10.0,
+    sweep_hz=50.0,
+    aperture_mm=0.3,
+    steering_lag_s=0.03,
+    lead_mm=2.0,
+    amplitude_mm=1.0,
+    look_ahead_mm=6.0,
+    direct_rad_s_mm=5.0,  # 2v/a²: damped to 0.71
+)  # our own figures within what the patent says
+HEADS = {"precise": Settings(), "historic": HISTORIC}
 
 
 def tune(stance: Stance, settings: Settings, rate_hz: float) -> Tuning:
@@ -42,8 +59,8 @@ def tune(stance: Stance, settings: Settings, rate_hz: float) -> Tuning:
     width, pitch = stance.view.width_mm, stance.view.pitch_mm
     half_window = max(0.35 + 0.6 * width, 7 * pitch)
     point = max(0.12, 1.2 * pitch)
-    lead = half_window + point + 2 * settings.speed_mm_s / settings.sweep_hz
-    amplitude = max(0.6 * width, 1.5 * pitch)
+    lead = settings.lead_mm or half_window + point + 2 * settings.speed_mm_s / settings.sweep_hz
+    amplitude = settings.amplitude_mm or max(0.6 * width, 1.5 * pitch)
     slope, mean = _calibrate(stance, amplitude)
     guard = 0.5 * width + max(0.17, 2 * pitch)
     return Tuning(
@@ -61,12 +78,13 @@ def tune(stance: Stance, settings: Settings, rate_hz: float) -> Tuning:
         along_mm=0.1 * amplitude,
         guard_mm=guard,
         guard_lead_mm=lead + max(0.15, 1.5 * pitch),
-        look_ahead_mm=lead + 1.0,
+        look_ahead_mm=settings.look_ahead_mm or lead + 1.0,
         slope_per_mm=slope,
         mean=mean,
         drive_gain=settings.drive.gain(1 / rate_hz),
         drive_change_mm_s=settings.drive.acceleration_mm_s2 / rate_hz,
-        steering_gain=1 - math.exp(-1 / rate_hz / settings.steering_lag_s),
+        steering_gain=1 - math.exp(-1 / rate_hz / settings.steering_lag_s) if settings.steering_lag_s > 0 else 1.0,
+        direct_rad_s_mm=settings.direct_rad_s_mm,
     )
 
 
