@@ -10,7 +10,8 @@ noise of a scan, and the error on a changing bend grows with the cube of the lea
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 
@@ -52,6 +53,36 @@ HISTORIC = Settings(
     direct_rad_s_mm=5.0,  # 2v/a²: damped to 0.71
 )  # our own figures within what the patent says
 HEADS = {"precise": Settings(), "historic": HISTORIC}
+
+
+def choose(head: str = "precise", changes: Mapping[str, object] | None = None) -> Settings:
+    """A named set of settings with changes by name; `drive_lag_s` and `drive_acceleration_mm_s2` reach the drives.
+
+    Raises ValueError for a head or a setting that there is not, and for a value that is no number or less than 0.
+    """
+    if head not in HEADS:
+        raise ValueError(f"there is no head {head!r}; give one of {', '.join(HEADS)}")
+    settings = HEADS[head]
+    for name, value in (changes or {}).items():
+        settings = _changed(settings, name, value)
+    return settings
+
+
+def _changed(settings: Settings, name: str, value: object) -> Settings:
+    """Settings with one of them set to a number."""
+    own = [f.name for f in fields(Settings) if f.name != "drive"]
+    of_drive = [f"drive_{f.name}" for f in fields(Drive)]
+    if name not in own + of_drive:
+        raise ValueError(f"the head has no setting {name!r}; it has {', '.join(own + of_drive)}")
+    try:
+        number = float(str(value))
+    except ValueError:
+        number = math.nan
+    if not (math.isfinite(number) and number >= 0):
+        raise ValueError(f"{name} is {value!r}; it must be a number of at least 0, in the unit that its name ends with")
+    if name in of_drive:
+        return replace(settings, drive=replace(settings.drive, **{name.removeprefix("drive_"): number}))
+    return replace(settings, **{name: number})  # type: ignore[arg-type]
 
 
 def tune(stance: Stance, settings: Settings, rate_hz: float) -> Tuning:
