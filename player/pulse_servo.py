@@ -24,7 +24,7 @@ Questions: with an ICR of 5 bits the unit circuit is right for lags of -15 … +
 is not); beyond that is a fault here. The lag counts half position counts, as the command does: with the whole counts of
 the text an axis told to stand between two counts would never rest. The text says that the lag stays in proportion to
 the speed; its counter adds up lag pulses, so here the lag goes to nothing at constant speed. A lag register of 5 stages
-asks for a servo faster than the motor; chosen: 10 stages, and a gain of 300 1/s.
+asks for a servo faster than the motor; chosen: 10 stages, and a gain of 500 1/s.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ class PulseServo:
     register_bits: int = 24
     icr_bits: int = 8
     lag_stages: int = 10
-    gain_per_s: float = 300.0
+    gain_per_s: float = 500.0
     drive: Drive = field(default_factory=Drive)
 
     @property

@@ -15,7 +15,7 @@ The interpolator works on where the axes have been told to be. The unit circuit 
 it would not is a fault; so interpolator and servos can be stepped one after the other, a block at a time.
 
 Source: patent from US application 631 214 of 1967, figures 3, 7 and 9.
-Questions: the patent gives no rate and no L. Chosen: 48 000 recirculations per s (8 to a sample), L = 240 (5 ms), pulses
+Questions: the patent gives no rate and no L. Chosen: 48 000 recirculations per s (8 to a sample), L = 480 (10 ms), pulses
 of 1 um, rapids at 20 mm/s, which the servos start to at once within their lag. The cut of long arcs is ours; arcs up to
 170 degrees are run whole.
 """
@@ -53,7 +53,7 @@ class PulseControl:
 
     servo: PulseServo = field(default_factory=PulseServo)
     recirculations_hz: float = 8 * MOTION_RATE_HZ
-    servo_constant: int = 240
+    servo_constant: int = 480
     rapid_mm_s: float = 20.0
     override: float = 1.0
     true_norm: bool = False
@@ -158,17 +158,14 @@ class PulsePlayback:
     def _check_travel(self, move: Move) -> None:
         """Raise ProgramFault if a move leaves the range of the registers."""
         travel_mm = self.settings.servo.travel_mm
-        reach = [abs(place) for place in move.end_mm]
-        if move.turned_rad:
-            radius = math.dist(move.centre_mm, move.end_mm[:2])
-            reach[:2] = [abs(place) + radius for place in move.centre_mm]
-        for axis, place in zip(AXES, reach, strict=True):
-            if place > travel_mm:
-                raise ProgramFault(
-                    f"{self.name}, line {move.line}: {axis.upper()} goes to {place:.3f} mm; the registers of "
-                    f"{self.settings.servo.register_bits} bits hold ±{travel_mm:.3f} mm: move the zero, or use longer ones",
-                    line=move.line,
-                )
+        for place in _reached(move):
+            for axis, place_mm in zip(AXES, place, strict=False):
+                if not abs(place_mm) <= travel_mm:
+                    raise ProgramFault(
+                        f"{self.name}, line {move.line}: {axis.upper()} goes to {place_mm:.3f} mm; the registers of "
+                        f"{self.settings.servo.register_bits} bits hold ±{travel_mm:.3f} mm: move the zero, or use longer ones",
+                        line=move.line,
+                    )
 
     def _run(self, move: Move, feed: Feed, interpolator: Interpolator) -> Iterator[Pulses]:
         """Command pulses of a line or an arc."""
@@ -206,6 +203,24 @@ class PulsePlayback:
             actual_mm=actual_mm,
             limit_mm=limit_mm,
         )
+
+
+def _reached(move: Move) -> Iterator[tuple[float, ...]]:
+    """The places that the registers must hold: end, and of an arc the centre and where it is furthest out."""
+    yield move.end_mm
+    if not move.turned_rad:
+        return
+    x, y = move.centre_mm
+    yield x, y
+    radius = math.dist(move.centre_mm, move.end_mm[:2])
+    last = math.atan2(move.end_mm[1] - y, move.end_mm[0] - x)
+    for quarter in range(4):
+        before = math.copysign(1, move.turned_rad) * (last - quarter * math.pi / 2) % (2 * math.pi)
+        if before <= abs(move.turned_rad):
+            yield (
+                x + radius * (quarter == 0) - radius * (quarter == 2),
+                y + radius * (quarter == 1) - radius * (quarter == 3),
+            )
 
 
 def _length_mm(place: tuple[float, float, float], move: Move) -> float:

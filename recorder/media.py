@@ -56,6 +56,7 @@ MEDIA: dict[str, Medium] = {
     ".flac": _TAPE,
     ".steps": Medium("punched tape of step vectors", "recorder.steps", "record_steps"),
     ".cubic": Medium("differences of cubics", "recorder.cubics", "record_cubics"),
+    ".ngc": Medium("lines and arcs in RS-274", "recorder.blocks", "record_blocks"),
 }
 
 

@@ -1,0 +1,250 @@
+"""The block recorder: the fewest lines and arcs within a tolerance, tangent where smooth, corners kept; RS-274 text."""
+
+from __future__ import annotations
+
+import math
+import shutil
+import subprocess
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from motion.contour import distance
+from motion.faults import MotionFault
+from motion.motion import Motion
+from motion.motion import Path as MotionPath
+from motion.pathfile import read_path
+from player.rs274 import Move, Program, read_rs274
+from recorder.arcs import BREAK_RAD, Segment, fit
+from recorder.blocks import TOLERANCE_MM, WRITTEN_MM, record_blocks
+from recorder.media import record
+from recorder.pieces import corners, longest_pieces, off_circle_mm, off_line_mm, resample
+
+SAMPLES = Path(__file__).parents[2] / "samples"
+FEWEST = {"gear": 16, "bracket": 9 + 4, "cam": 15, "curve": 25}  # drawn; cam and curve: circles that need not meet
+ASKED = 1.3  # times as many segments at most
+
+
+def bend(points: list[tuple[float, float]]) -> np.ndarray:
+    return np.array(points, np.float64)
+
+
+def arc(radius: float, first: float, last: float, centre: tuple[float, float] = (0, 0)) -> np.ndarray:
+    """Points of an arc, 1 um of sagitta or less apart."""
+    t = np.linspace(first, last, 2 + int(abs(last - first) * math.sqrt(radius / 0.008)))
+    return np.array(centre) + radius * np.column_stack([np.cos(t), np.sin(t)])
+
+
+def path_of(xy: np.ndarray, z_mm: float = 0.0, speed_mm_s: float = 10.0) -> MotionPath:
+    """The tool goes down, round, and up."""
+    around = np.vstack([xy[:1], xy, xy[-1:]])
+    z = np.full(len(around), z_mm)
+    z[0] = z[-1] = 2.0
+    points = np.column_stack([around, z])
+    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    return MotionPath(np.r_[0.0, np.cumsum(steps / speed_mm_s)], points)
+
+
+def run_of(program: Program) -> list[np.ndarray]:
+    """The (n, 2) polylines that a program runs at and below the surface, arcs drawn out."""
+    place, runs = np.array(program.start_mm), []
+    for move in program.moves:
+        points = _drawn(place, move)
+        if place[2] <= 0.05 and move.end_mm[2] <= 0.05:
+            runs.append(points)
+        place = np.array(move.end_mm)
+    return runs
+
+
+def _drawn(place: np.ndarray, move: Move) -> np.ndarray:
+    if not move.turned_rad:
+        return np.array([place[:2], move.end_mm[:2]])
+    first = math.atan2(place[1] - move.centre_mm[1], place[0] - move.centre_mm[0])
+    radius = math.dist(place[:2], move.centre_mm)
+    return arc(radius, first, first + move.turned_rad, move.centre_mm)
+
+
+def segments(points: np.ndarray, tolerance_mm: float = TOLERANCE_MM) -> list[list[Segment]]:
+    return [chain.segments for chain in fit(points, tolerance_mm)]
+
+
+@pytest.mark.parametrize("name", list(FEWEST))
+def test_the_samples_need_hardly_more_than_the_fewest_segments(name: str, tmp_path: Path) -> None:
+    path = read_path(SAMPLES / f"{name}.csv")
+    chains = [chain for run in path.runs() for chain in fit(run, TOLERANCE_MM)]
+    assert sum(len(chain.segments) for chain in chains) <= ASKED * FEWEST[name]
+    report = record_blocks(path, tmp_path / "part.ngc")
+    assert report.deviation_mm <= TOLERANCE_MM
+    there_and_back = distance(run_of(read_rs274(report.file)), path.runs())
+    assert there_and_back.hausdorff_mm <= report.deviation_mm + 0.001  # 1 um: sagitta of what is drawn out here
+
+
+def test_a_rounded_square_is_four_lines_and_four_arcs() -> None:
+    sides = [
+        arc(3, a, a + math.pi / 2, c)
+        for a, c in zip(np.arange(4) * math.pi / 2, [(7, 7), (3, 7), (3, 3), (7, 3)], strict=True)
+    ]
+    points = np.vstack([[[10.0, 5.0]], *sides, [[10.0, 5.0]]])
+    (chain,) = segments(points)
+    assert len(chain) == 9  # the side on which it starts is in two
+    assert sorted(round(1 / s.curvature_per_mm, 2) for s in chain if s.curvature_per_mm) == pytest.approx(
+        [3.0] * 4, abs=0.02
+    )
+
+
+def test_a_circle_is_two_arcs() -> None:
+    ((one, two),) = segments(arc(20, 0.3, 0.3 + 2 * math.pi))
+    assert one.turned_rad + two.turned_rad == pytest.approx(2 * math.pi, abs=1e-3)
+    assert 1 / one.curvature_per_mm == pytest.approx(20, abs=0.002)
+
+
+def test_a_line_is_one_line() -> None:
+    ((line,),) = segments(np.column_stack([np.linspace(0, 90, 500), np.linspace(0, -20, 500)]))
+    assert (line.curvature_per_mm, line.end_mm) == (0.0, pytest.approx((90, -20)))
+
+
+@pytest.mark.parametrize("turn_deg", [15, 36, 90, 150, 174])
+def test_corners_are_kept(turn_deg: float) -> None:
+    turn = math.radians(turn_deg)
+    points = np.vstack(
+        [np.linspace([-30, 0], [0, 0], 300), np.linspace([0, 0], [30 * math.cos(turn), 30 * math.sin(turn)], 300)[1:]]
+    )
+    chains = segments(points)
+    assert [len(chain) for chain in chains] == [1, 1]
+    assert chains[1][0].begin_mm == pytest.approx((0, 0), abs=1e-9)
+
+
+def test_a_bend_is_no_corner() -> None:
+    assert (
+        len(
+            corners(
+                np.vstack(
+                    [
+                        np.linspace([-9, -1], [0, -1], 9),
+                        arc(1.0, -math.pi / 2, math.pi / 2),
+                        np.linspace([0, 1], [-9, 1], 9),
+                    ]
+                )
+            )
+        )
+        == 0
+    )
+
+
+@given(st.integers(0, 10_000))
+@settings(max_examples=25)
+def test_a_smooth_line_is_run_tangent_at_every_joint_within_the_tolerance(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    t = np.linspace(0, 1, 900)
+    waves = sum(
+        random.uniform(0.1, 4) * np.sin(2 * math.pi * random.uniform(0.2, 2) * t + random.uniform(0, 6))
+        for _ in range(3)
+    )
+    points = np.column_stack([50 * t, waves])
+    (chain,) = fit(points, TOLERANCE_MM)
+    for before, after in pairwise(chain.segments):
+        assert before.end_mm == pytest.approx(after.begin_mm, abs=1e-9)
+        jump = math.remainder(after.heading_rad - before.heading_rad - before.turned_rad, 2 * math.pi)
+        assert abs(jump) <= 10 * BREAK_RAD
+    assert chain.deviation_mm <= TOLERANCE_MM
+    drawn = np.vstack([_drawn_segment(segment) for segment in chain.segments])
+    assert distance(drawn, points).hausdorff_mm <= TOLERANCE_MM + 0.002  # 1 um of sagitta, 1 um between samples
+    fewest = len(longest_pieces(resample(points), TOLERANCE_MM))
+    assert len(chain.segments) <= max(ASKED * fewest, fewest + 2)
+
+
+def _drawn_segment(segment: Segment) -> np.ndarray:
+    return np.array(
+        [
+            segment.begin_mm,
+            *(
+                Segment(
+                    segment.begin_mm, segment.heading_rad, share * segment.length_mm, segment.curvature_per_mm
+                ).end_mm
+                for share in np.linspace(0, 1, 60)[1:]
+            ),
+        ]
+    )
+
+
+def test_what_fits_no_chain_is_given_as_chords() -> None:
+    zigzag = np.column_stack([np.linspace(0, 2, 400), 0.05 * (np.arange(400) // 7 % 2)])
+    for chain in fit(zigzag, 0.004):
+        assert chain.deviation_mm <= 0.004
+
+
+@given(st.floats(0.5, 500), st.floats(0, 6), st.floats(0.2, 3.0))
+def test_the_fits_of_line_and_circle_leave_nothing_of_a_line_and_a_circle(
+    radius: float, first: float, turn: float
+) -> None:
+    assert np.abs(off_circle_mm(arc(radius, first, first + turn))).max() < 1e-6
+    assert np.abs(off_line_mm(np.linspace([0, 0], [radius, first], 9))).max() < 1e-9
+
+
+def test_the_tool_goes_up_and_down_by_z_and_feeds_are_those_of_the_motion(tmp_path: Path) -> None:
+    path = path_of(np.vstack([np.linspace([1, 2], [21, 2], 50), arc(5, -math.pi / 2, 0, (21, 7))]), z_mm=-1.5)
+    report = record_blocks(path, tmp_path / "part.ngc")
+    assert report.file.read_text().split("\n") == [
+        "G17 G21 G90 G94",
+        "G0 X1 Y2 Z2",
+        "G1 Z-1.5 F600",
+        *report.file.read_text().split("\n")[3:5],
+        "G0 Z2",
+        "M2",
+        "",
+    ]
+    line, turn = read_rs274(report.file).moves[2:4]
+    assert line.end_mm == pytest.approx((21, 2, -1.5), abs=0.1) and line.feed_mm_s == pytest.approx(10)
+    assert turn.centre_mm == pytest.approx((21, 7), abs=0.1) and turn.end_mm == pytest.approx(
+        (26, 7, -1.5), abs=2 * WRITTEN_MM
+    )
+    assert (report.lines, report.arcs, report.bytes) == (3, 1, report.file.stat().st_size)
+    assert report.duration_s == pytest.approx(path.t_s[-1], rel=1e-3)
+
+
+def test_a_slope_is_run_with_lines(tmp_path: Path) -> None:
+    points = np.array([[0, 0, 0], [10, 0, -1], [20, 5, -1.5], [20, 5, 2]], np.float64)
+    report = record_blocks(MotionPath(np.arange(4.0), points), tmp_path / "part.ngc")
+    assert [move.end_mm for move in read_rs274(report.file).moves[1:]] == [tuple(row) for row in points[1:].tolist()]
+
+
+def test_the_suffix_makes_the_medium(tmp_path: Path) -> None:
+    report = record(path_of(arc(5, 0, 3)), tmp_path / "part.ngc", tolerance_mm=0.02)
+    assert read_rs274(tmp_path / "part.ngc").moves and report.bytes > 50
+
+
+def test_what_cannot_be_recorded_leaves_no_file(tmp_path: Path) -> None:
+    file = tmp_path / "part.ngc"
+    with pytest.raises(MotionFault, match="stands still"):
+        record_blocks(Motion(np.ones((50, 3))), file)
+    with pytest.raises(MotionFault, match="not a finite number"):
+        record_blocks(MotionPath(np.arange(2.0), np.array([[0, 0, 0], [np.nan, 0, 0]])), file)
+    with pytest.raises(MotionFault, match="empty"):
+        record_blocks([], file)
+    with pytest.raises(ValueError, match="cannot be written"):
+        record_blocks(path_of(arc(5, 0, 3)), file, tolerance_mm=0.0)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.skipif(shutil.which("rs274") is None, reason="rs274 of linuxcnc-uspace is not installed")
+@pytest.mark.parametrize("name", list(FEWEST))
+def test_linuxcnc_takes_every_program(name: str, tmp_path: Path) -> None:
+    file = tmp_path / "part.ngc"
+    record_blocks(read_path(SAMPLES / f"{name}.csv"), file)
+    (tmp_path / "tool.tbl").touch()  # else it looks for the example's of a whole installation
+    told = subprocess.run(
+        ["rs274", "-t", "tool.tbl", "-g", file.name],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert told.returncode == 0, told.stderr
+    assert "PROGRAM_END" in told.stdout
+    moves = [move for move in read_rs274(file).moves if move.kind != "G0"]
+    assert told.stdout.count("STRAIGHT_FEED") + told.stdout.count("ARC_FEED") == len(moves)
