@@ -77,7 +77,7 @@ def test_a_tape_without_a_standstill_starts_at_its_first_row() -> None:
     first = Discriminator(RATE_HZ, REFERENCE_HZ, 8, 4).feed(frames).cycles[0]
     by_hand = TapeFormat(dwell_s=0.0)
     assert np.array_equal(bearings(frames, by_hand).zero_cycles[:2], first[:2])
-    with pytest.raises(TapeFault, match="the tape starts while . moves, and states a standstill"):
+    with pytest.raises(TapeFault, match=r"the tape starts while . moves, and states a standstill"):
         bearings(frames)
 
 
