@@ -94,6 +94,11 @@ class PulseServos:
         return self._registers[:, LARGEST].copy()
 
     @property
+    def count(self) -> Counts:
+        """Counter 104 of each axis, in quantizer pulses."""
+        return self._registers[:, COUNT].copy()
+
+    @property
     def command(self) -> Counts:
         """Where each axis has been told to be, pulses."""
         return self._registers[:, COMMAND].copy()
