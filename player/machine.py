@@ -180,7 +180,7 @@ class Playback:
                 wrong = None if self.resume_at_s else watch.wrong_reference(held[0], self._time_s(phases))
                 if wrong is not None:
                     raise wrong
-                yield out, bearings, fault or watch.skewed(out, self.end_mm.tolist())
+                yield out, bearings, watch.first_fault(out, self.end_mm.tolist()) or fault
             out, fault = gaps.feed(phases.cut(len(phases), len(phases)), last=True)
             yield out, bearings, fault
 

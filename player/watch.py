@@ -1,4 +1,4 @@
-"""The watch: whether track 1 is the reference, the skew is small enough for the speed, and no two tracks are one.
+"""The watch: whether track 1 is the reference, skew and shaking are small enough, and no two tracks are one.
 
 Signals in: blocks of frames (n, tracks) and rows of phases; out: nothing, or a fault.
 
@@ -6,6 +6,8 @@ Signals in: blocks of frames (n, tracks) and rows of phases; out: nothing, or a 
                   is the tape's speed. The reference is the steadiest; if another is twice as steady, that is it.
     skew          a track that is late by s seconds stands s · reference off at standstill, and is wrong by s · deviation
                   under way:       |zero| / reference · speed / q  <  0.05 cycle
+    shaking       the middle of what surprises the predictor within 48 ms: noise, crosstalk and print-through beat against
+                  the carrier, and beyond 0.0042 cycle bring the motors to the limit of their current
     stuck         two tracks with the same noise, sample for sample, are one signal
 
 Source: patent ES 361967, figure 5 (fault circuit 162).
@@ -30,6 +32,9 @@ STEADIER = 4.0  # of the mean square, before another track is taken for the refe
 LEAST_MOTION_HZ = 8.0  # of track 1, RMS: 0.4 mm/s; 30 dB of noise leave 3
 FEWEST_MOMENTS = 64
 SKEW_CYCLES = 0.05
+SHAKE_S = 0.048  # 288 rows at 6 kHz
+SHAKE_STRIDE = 4
+SHAKE_CYCLES = 0.0042  # 26 dB of noise shake by 0.0037; a corner shakes less than half of the window
 STUCK_NOISE = 1e-4  # of full scale and of the carrier: below it noise may be the rounding of the samples
 
 Float32s = NDArray[np.float32]
@@ -80,6 +85,11 @@ class Watch:
         turned = np.angle(after * first.conj()) / (2 * np.pi) - hz / rate_hz  # the taps do not turn along
         return np.asarray(hz + (turned - np.round(turned)) * rate_hz)
 
+    def first_fault(self, phases: Phases, positions_mm: Sequence[float]) -> tuple[int, Fault] | None:
+        """The first row of a block that skew or shaking make uncertain, with its fault."""
+        found = [f for f in (self.skewed(phases, positions_mm), self.unsteady(phases, positions_mm)) if f is not None]
+        return min(found, key=lambda one: one[0], default=None)
+
     def skewed(self, phases: Phases, positions_mm: Sequence[float]) -> tuple[int, Fault] | None:
         """The first row where an axis is too fast for the skew of its track, and the fault."""
         if len(phases) < 2 or not self._format.dwell_s:  # another's tape may start at any phase
@@ -101,6 +111,28 @@ class Watch:
             axis=name,
             time_s=time_s,
             error_cycles=float(speed[row, axis] * skew_s[axis]),
+            position_mm=positions_mm[axis],
+        )
+
+    def unsteady(self, phases: Phases, positions_mm: Sequence[float]) -> tuple[int, Fault] | None:
+        """The first row of a window in which the phase of an axis shakes, and the fault."""
+        window = max(round(SHAKE_S * self._format.motion_rate_hz / SHAKE_STRIDE), 1) * SHAKE_STRIDE
+        whole = len(phases) // window * window
+        if not whole:
+            return None
+        parts = np.abs(phases.surprise[:whole:SHAKE_STRIDE]).reshape(whole // window, -1, phases.surprise.shape[1])
+        shakes = np.median(parts, axis=1)
+        if not (shakes > SHAKE_CYCLES).any():
+            return None
+        at, axis = (int(i) for i in np.argwhere(shakes > SHAKE_CYCLES)[0])
+        name, time_s = self._format.axes[axis], (phases.first_row + at * window) / self._format.motion_rate_hz
+        return at * window, LockFault(
+            f"the phase of {name.upper()} shakes by {shakes[at, axis]:.4f} cycle (median) at {time_s:.3f} s, "
+            f"{SHAKE_CYCLES:g} is allowed: noise, crosstalk or print-through, which the motors cannot follow; copy the tape "
+            f"on a better machine",
+            axis=name,
+            time_s=time_s,
+            error_cycles=float(shakes[at, axis]),
             position_mm=positions_mm[axis],
         )
 

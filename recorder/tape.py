@@ -14,7 +14,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor, wait
 from dataclasses import replace
 from pathlib import Path as FilePath
 from types import TracebackType
@@ -45,7 +44,6 @@ class Tape:
 
     def __init__(self, file: FilePath, sound: soundfile.SoundFile, fmt: TapeFormat) -> None:
         self.file, self.format, self._sound = file, fmt, sound
-        self._reading: Future[Frames] | None = None
 
     @classmethod
     def open(
@@ -76,9 +74,7 @@ class Tape:
         self.close()
 
     def close(self) -> None:
-        """Close the file, after a block that is still being read."""
-        if self._reading is not None:
-            wait([self._reading])
+        """Close the file."""
         self._sound.close()
 
     @property
@@ -112,14 +108,10 @@ class Tape:
             raise ValueError(f"a block of {frames} frames holds nothing; it must be at least 1")
         done = first
         self._sound.seek(first)
-        with ThreadPoolExecutor(1) as reader:  # the next block is read while this one is worked on
-            self._reading = reader.submit(self._read, frames, done)
-            while done < self.frames:
-                block = self._reading.result()
-                done += len(block)
-                if done < self.frames:
-                    self._reading = reader.submit(self._read, frames, done)
-                yield block
+        while done < self.frames:
+            block = self._read(frames, done)
+            done += len(block)
+            yield block
 
     def _read(self, frames: int, done: int) -> Frames:
         """The next block; raises TapeFault where the file ends early or cannot be decoded."""
