@@ -30,7 +30,7 @@ class Settings:
     slow_s: float = 0.1
     acceleration_mm_s2: float = 500.0
     sweep_hz: float = 250.0
-    aperture_mm: float = 0.15
+    aperture_mm: float | None = None
     steering_lag_s: float = 0.001
     swivel_rad_s: float = 20.0
     gap_mm: float = 0.5

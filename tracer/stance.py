@@ -25,6 +25,8 @@ from tracer.survey import straight_on
 from tracer.view import LEVEL, Array, View
 
 CATCH_MM = 3.0  # how far from a given place the line may be
+APERTURE = 0.3  # of the line's width, within bounds that a scan's noise and a corner set
+LEAST_APERTURE_MM, LARGEST_APERTURE_MM = 0.1, 0.24
 SPUR = 2.7  # a line that ends sooner, in widths, is a burr
 PLACES = 80  # tried along a line
 
@@ -47,7 +49,7 @@ def turned_round(end_mm: Array, heading_rad: float, view: View) -> Stance:
 def put_down(
     drawing: Drawing,
     start_mm: tuple[float, float] | None,
-    aperture_mm: float,
+    aperture_mm: float | None,
     line_width_mm: float | None,
     gap_mm: float = 0.5,
 ) -> Iterator[tuple[Stance, float]]:
@@ -59,6 +61,7 @@ def put_down(
     catch_mm = max(CATCH_MM, 12 * drawing.pitch_mm)
     stroke = sheet.longest() if start_mm is None else sheet.nearest(start_mm, catch_mm)
     width_mm = line_width_mm or stroke.width_mm
+    aperture_mm = aperture_mm or min(max(APERTURE * width_mm, LEAST_APERTURE_MM), LARGEST_APERTURE_MM)
     view = View(photocell.behind_aperture(drawing, aperture_mm), drawing.pitch_mm, width_mm, LEVEL)
     at_end = _at_an_end(view, stroke, gap_mm) if start_mm is None else None
     if at_end is not None:
