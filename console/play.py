@@ -44,6 +44,12 @@ Examples:
     type=NUMBER,
     help="The most that the program asks of an axis, mm/s²: less of it bridges longer dropouts.  [default: 5000]",
 )
+@click.option(
+    "--norm",
+    type=click.Choice(["weights", "true"]),
+    help="Resultant speed of an .ngc program: by the patent's weights, or true.  [default: weights]",
+)
+@click.option("--override", type=NUMBER, help="Share of the programmed feeds of an .ngc program, 0 to 1.  [default: 1]")
 @tape_options
 @desk_options
 def command(
@@ -52,6 +58,8 @@ def command(
     raw: bool,
     resume_at_s: float | None,
     acceleration_mm_s2: float | None,
+    norm: str | None,
+    override: float | None,
     controls: Controls,
     desk: Desk,
 ) -> None:
@@ -62,10 +70,13 @@ def command(
     """
     for file in outputs:
         medium.outgoing(medium.with_suffix_in(file, SUFFIXES), tape)
-    settings = {"resume_at_s": resume_at_s, "acceleration_mm_s2": acceleration_mm_s2}
+    settings: dict[str, Any] = {"resume_at_s": resume_at_s, "acceleration_mm_s2": acceleration_mm_s2}
     given = {name: value for name, value in settings.items() if value is not None}
     if given and str(tape) == PIPE:
         raise click.UsageError("--resume-at and --acceleration are for files, not for a pipe")
+    settings |= {"true_norm": None if norm is None else norm == "true", "override": override}
+    given = {name: value for name, value in settings.items() if value is not None}
+    _refuse_foreign(tape, given)
     if resume_at_s is not None and controls.start_mm is None:
         raise click.UsageError("--resume-at wants to be told where the machine stands then; give --from X,Y,Z")
     try:
@@ -80,6 +91,17 @@ def command(
     desk.figures({medium.called(tape): str(tape), "paths": [str(file) for file in written] or None, **figures(played)})
     if played.fault:
         raise played.fault
+
+
+def _refuse_foreign(tape: FilePath, given: dict[str, Any]) -> None:
+    """Raise UsageError for a setting that is for another control than the one that plays the file."""
+    from player.controls import CONTROLS, TAPE, control_of
+
+    control = control_of(tape)
+    if control != TAPE and not given.keys().isdisjoint(("resume_at_s", "acceleration_mm_s2")):
+        raise click.UsageError(f"--resume-at and --acceleration are for tapes; {tape} is none")
+    if control != CONTROLS[".ngc"] and not given.keys().isdisjoint(("true_norm", "override")):
+        raise click.UsageError(f"--norm and --override are for programs of lines and arcs, .ngc; {tape} is none")
 
 
 def figures(played: Played) -> dict[str, Any]:

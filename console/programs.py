@@ -16,7 +16,7 @@ def inspect(file: FilePath, picture: FilePath | None, desk: Desk) -> dict[str, A
     """The figures of a program; draws its punched tape if asked to. Raises ProgramFault, FileFault."""
     if picture is not None:
         medium.outgoing(medium.with_suffix_in(picture, punched.SUFFIXES), file)
-    told = {".steps": _of_steps, ".cubic": _of_cubic}.get(file.suffix.lower())
+    told = {".steps": _of_steps, ".cubic": _of_cubic, ".ngc": _of_blocks}.get(file.suffix.lower())
     if picture is not None and told is not _of_steps:
         raise click.UsageError(f"{file} has no punched tape to draw; -o is for .steps")
     desk.warn_of_compiling("the controls", "motion", "player")
@@ -75,6 +75,26 @@ def _of_cubic(file: FilePath) -> dict[str, Any]:
         "duration_s": playback.duration_s,
         "start_place_mm": checks[0],
         "end_place_mm": checks[-1],
+    }
+
+
+def _of_blocks(file: FilePath) -> dict[str, Any]:
+    """A program of lines and arcs: what it holds, its feeds, and where it goes."""
+    from player.pulses import play_pulses
+    from player.rs274 import DWELL, RAPID
+
+    playback = play_pulses(file)
+    moves = playback.program.moves
+    feeds = [move.feed_mm_s for move in moves if move.feed_mm_s] or [0.0]
+    places = np.array([playback.program.start_mm, *(move.end_mm for move in moves)])
+    return {
+        "rapids": sum(move.kind == RAPID for move in moves),
+        "arcs": sum(move.turned_rad != 0 for move in moves),
+        "lines": sum(move.kind not in (RAPID, DWELL) and not move.turned_rad for move in moves),
+        "slowest_feed_mm_s": min(feeds),
+        "fastest_feed_mm_s": max(feeds),
+        "duration_s": playback.duration_s,
+        **_places(places),
     }
 
 

@@ -25,7 +25,8 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -66,10 +67,20 @@ class PulseControl:
 
 
 def play_pulses(
-    file: str | os.PathLike[str], *, settings: PulseControl | None = None, start_mm: Sequence[float] | None = None
+    file: str | os.PathLike[str],
+    *,
+    settings: PulseControl | None = None,
+    start_mm: Sequence[float] | None = None,
+    true_norm: bool | None = None,
+    override: float | None = None,
 ) -> PulsePlayback:
-    """Put an RS-274 program in the control; raises ProgramFault with the line, or FileFault, before anything moves."""
-    return PulsePlayback(read_rs274(file, start_mm), settings or PulseControl(), str(file))
+    """Put an RS-274 program in the control; `true_norm` and `override` go before what the settings say of them.
+
+    Raises ProgramFault with the line, FileFault, or ValueError for an override that is none, before anything moves.
+    """
+    asked: dict[str, Any] = {"true_norm": true_norm, "override": override}
+    control = replace(settings or PulseControl(), **{name: value for name, value in asked.items() if value is not None})
+    return PulsePlayback(read_rs274(file, start_mm), control, str(file))
 
 
 class PulsePlayback:

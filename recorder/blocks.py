@@ -112,6 +112,8 @@ def _stretches(path: Path, tolerance_mm: float) -> Iterator[_Stretch]:
         steps = kept[group]
         points = path.positions_mm[np.r_[steps, steps[-1] + 1]]
         lengths, seconds = np.sqrt((step[steps] ** 2).sum(axis=1)), took_s[steps]
+        if kind[group[0]] == 2 and np.ptp(points[:, :2], axis=0).max() <= tolerance_mm / 4:
+            points[:, :2] = points[0, :2]  # a sample that was taken in the corner where the tool turns upwards
         level = kind[group[0]] == 1 and float(np.ptp(points[:, 2])) <= tolerance_mm / 2
         yield _Stretch(points, level, _speed_mm_s(lengths, seconds))
 
