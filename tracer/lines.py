@@ -84,7 +84,7 @@ class Sheet:
 
     def longest(self) -> Stroke:
         """The longest line."""
-        return self._stroke(int(np.argmax(self.lengths_mm)))
+        return self.stroke(int(np.argmax(self.lengths_mm)))
 
     def nearest(self, place_mm: tuple[float, float], within_mm: float) -> Stroke:
         """The line nearest to a place; raises LineFault if none is within reach, and says how far the nearest is."""
@@ -97,7 +97,7 @@ class Sheet:
                 y_mm=place_mm[1],
                 nearest_mm=(float(x), float(y)),
             )
-        return self._stroke(patch)
+        return self.stroke(patch)
 
     def _long_enough(self) -> NDArray[np.bool_]:
         """Which patches are long enough to be lines."""
@@ -117,8 +117,8 @@ class Sheet:
         pitch = self.drawing.pitch_mm
         return np.column_stack([(columns + 0.5) * pitch, (self.drawing.darkness.shape[0] - rows - 0.5) * pitch])
 
-    def _stroke(self, patch: int) -> Stroke:
-        """A patch with its middle places."""
+    def stroke(self, patch: int) -> Stroke:
+        """A patch as a line, with its middle places."""
         chosen = np.arange(self.patches.count) == patch
         disc_px = max(4, round(1.5 * self.widths_mm[patch] / self.drawing.pitch_mm))
         top, bottom, left, right = self.patches.box(chosen)

@@ -6,11 +6,13 @@ Signals: a Drawing in; out a Trace, which is a stream of Motion (X, Y, Z in shee
        0           │ X, Y stand     X, Y stand │
        -depth      ╰────── the line ───────────╯
 
+Of several lines each is cut so, and from one to the next the tool goes straight at clearance (see `tour`).
+
 A line that turns out to be open is followed from end to end: the head that was put down on its middle runs to one end first, with nothing recorded, and
 begins there. A line that does not come back one way round is tried the other way; one that runs into what has been followed already is tried with
 other turns at its junctions, as an operator would.
 
-Source: patent ES 361967, section on use, in its plainest form: one line, down at its start and up at its end.
+Source: patent ES 361967, section on use, in its plainest form: down at the start of a line and up at its end.
 """
 
 from __future__ import annotations
@@ -19,10 +21,11 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from functools import partial
-from itertools import combinations
+from itertools import combinations, pairwise, zip_longest
 
 import numpy as np
 
+from motion import ramp
 from motion.faults import LineFault
 from motion.motion import BLOCK_SAMPLES, MOTION_RATE_HZ, Motion
 from tracer.drawing import Drawing
@@ -36,6 +39,9 @@ SHORTER = 0.95  # the other way round is the line itself if it is shorter than t
 TURNS = 12  # junctions at which another turn is tried
 
 
+ENDINGS = ("lost", "joined", "ended", "closed")  # the one that tells most first
+
+
 @dataclass(frozen=True, slots=True)
 class Work:
     """How deep the tool goes, where it stands above the work between lines, and how fast it goes down and up."""
@@ -44,52 +50,108 @@ class Work:
     clearance_mm: float = 2.0
     feed_mm_s: float = 5.0
     acceleration_mm_s2: float = 200.0
+    rapid_mm_s: float = 50.0  # from line to line, half of what a tape of 6 kHz and 20 cycles per mm carries
 
 
 @dataclass(frozen=True, slots=True)
-class Trace:
-    """What the head did: a stream of Motion, and how it ended ("closed", "ended", "joined" or "lost", with the fault)."""
+class Line:
+    """One line as it was followed: positions (n, 2) mm at the motion rate, how it ended ("closed", "ended", "joined", "lost"), its number on the drawing."""
 
     xy_mm: Array
     ending: str
-    line_width_mm: float
-    travel_mm: float
+    width_mm: float
+    length_mm: float
     fault: LineFault | None = None
-    work: Work = field(default_factory=Work)
-    rate_hz: float = MOTION_RATE_HZ
+    number: int = 1
+
+    @classmethod
+    def of(cls, run: Followed, number: int = 1) -> Line:
+        """What the head did, as a line of the drawing."""
+        return cls(run.positions_mm, run.ending, run.view.width_mm, run.travel_mm, run.fault, number)
 
     @property
     def start_mm(self) -> tuple[float, float]:
         """Where the line was begun, mm."""
         return float(self.xy_mm[0, 0]), float(self.xy_mm[0, 1])
 
+
+@dataclass(frozen=True, slots=True)
+class Trace:
+    """What the head did: a stream of Motion over its lines, in the order in which they are cut; `left_out` patches of ink were too short to be lines."""
+
+    lines: tuple[Line, ...]
+    work: Work = field(default_factory=Work)
+    rate_hz: float = MOTION_RATE_HZ
+    left_out: int = 0
+
+    @property
+    def xy_mm(self) -> Array:
+        """Positions along the lines, one behind the other, (n, 2) mm."""
+        return self.lines[0].xy_mm if len(self.lines) == 1 else np.vstack([line.xy_mm for line in self.lines])
+
+    @property
+    def ending(self) -> str:
+        """How the line ended; of several the ending that tells most: "lost", "joined", "ended", "closed"."""
+        return min((line.ending for line in self.lines), key=ENDINGS.index)
+
+    @property
+    def fault(self) -> LineFault | None:
+        """The fault of the line that was lost; of several the first one's, with the numbers of all that are incomplete."""
+        if len(self.lines) == 1:
+            return self.lines[0].fault
+        lost = [line for line in self.lines if line.fault is not None]
+        return _incomplete(lost, len(self.lines)) if lost else None
+
+    @property
+    def start_mm(self) -> tuple[float, float]:
+        """Where the first line was begun, mm."""
+        return self.lines[0].start_mm
+
+    @property
+    def line_width_mm(self) -> float:
+        """Width of the first line, mm."""
+        return self.lines[0].width_mm
+
     @property
     def length_mm(self) -> float:
-        """How far the head travelled along the line, mm."""
-        return self.travel_mm
+        """How far the head travelled along the lines, mm."""
+        return sum(line.length_mm for line in self.lines)
+
+    @property
+    def idle_mm(self) -> float:
+        """How far the tool goes from line to line, mm."""
+        return float(sum(np.hypot(*(b.xy_mm[0] - a.xy_mm[-1])) for a, b in pairwise(self.lines)))
 
     @property
     def duration_s(self) -> float:
-        """Length of the motion, Z moves included, s."""
-        return (len(self.xy_mm) + 2 * len(self._plunge())) / self.rate_hz
+        """Length of the motion, Z moves and rapid moves included, s."""
+        rapid = sum(len(self._rapid(a, b)) for a, b in pairwise(self.lines))
+        along = sum(len(line.xy_mm) + 2 * len(self._plunge()) for line in self.lines if len(line.xy_mm) > 1)
+        return (along + rapid) / self.rate_hz
 
     def __iter__(self) -> Iterator[Motion]:
-        """Blocks of Motion: down, along the line, up."""
-        down = self._plunge()
+        """Blocks of Motion: down, along the line, up, and over to the next."""
         first = 0
-        for block in (
-            _standing(self.xy_mm[0], down),
-            *self._along_the_line(),
-            _standing(self.xy_mm[-1], down[::-1]),
-        ):
-            yield Motion(block, self.rate_hz, first / self.rate_hz)
-            first += len(block)
+        for line, after in zip_longest(self.lines, self.lines[1:]):
+            for block in (*self._cut(line), *([] if after is None else [self._rapid(line, after)])):
+                yield Motion(block, self.rate_hz, first / self.rate_hz)
+                first += len(block)
 
-    def _along_the_line(self) -> Iterator[Array]:
-        """The line at depth, in blocks (n, 3) mm."""
-        for first in range(0, len(self.xy_mm), BLOCK_SAMPLES):
-            part = self.xy_mm[first : first + BLOCK_SAMPLES]
+    def _cut(self, line: Line) -> Iterator[Array]:
+        """Down, along a line at depth, and up, in blocks (n, 3) mm; nothing of a line that was never begun."""
+        if len(line.xy_mm) < 2:
+            return
+        down = self._plunge()
+        yield _standing(line.xy_mm[0], down)
+        for first in range(0, len(line.xy_mm), BLOCK_SAMPLES):
+            part = line.xy_mm[first : first + BLOCK_SAMPLES]
             yield np.column_stack([part, np.full(len(part), -self.work.depth_mm)])
+        yield _standing(line.xy_mm[-1], down[::-1])
+
+    def _rapid(self, line: Line, after: Line) -> Array:
+        """Straight from the end of a line to the start of the next at clearance, (n, 3) mm."""
+        way = ramp.positions_mm(line.xy_mm[-1], after.xy_mm[0], self.work.rapid_mm_s, rate_hz=self.rate_hz)
+        return np.column_stack([way, np.full(len(way), self.work.clearance_mm)])
 
     def _plunge(self) -> Array:
         """Z of the move from clearance to depth: up to the feed at constant acceleration, and down again; mm at the motion rate."""
@@ -121,7 +183,17 @@ def trace(
     `progress` hears how far the head has come and the length of the line, mm. Raises LineFault if there is no line to start on; a line that is lost on
     the way is no exception, but the trace's `fault`.
     """
-    settings, work = settings or Settings(), work or Work()
+    run = followed(drawing, start_mm, settings or Settings(), progress)
+    return Trace((Line.of(run),), work or Work())
+
+
+def followed(
+    drawing: Drawing,
+    start_mm: tuple[float, float] | None,
+    settings: Settings,
+    progress: Callable[[float, float], None] | None,
+) -> Followed:
+    """The head's best run along the line at a place, or along the longest."""
     best: Followed | None = None
     stances = put_down(drawing, start_mm, settings.aperture_mm, settings.line_width_mm, settings.gap_mm)
     for stance, length_mm in stances:
@@ -131,7 +203,7 @@ def trace(
         if run.ending == "closed" or run.travel_mm > 0.5 * length_mm:
             break
     assert best is not None  # put_down gives a stance, or raises
-    return Trace(best.positions_mm, best.ending, best.view.width_mm, best.travel_mm, best.fault, work)
+    return best
 
 
 def _longest_mm(drawing: Drawing, width_mm: float) -> float:
@@ -171,6 +243,20 @@ def _with_other_turns(stance: Stance, settings: Settings, longest_mm: float, run
         if closed:
             return min(closed, key=lambda other: other.travel_mm)
     return run
+
+
+def _incomplete(lost: list[Line], lines: int) -> LineFault:
+    """The fault of the first of several lines that were lost, with the numbers of all."""
+    numbers = ", ".join(str(line.number) for line in lost)
+    first = lost[0].fault
+    assert first is not None
+    which = f"line {numbers} of {lines} is" if len(lost) == 1 else f"lines {numbers} of {lines} are"
+    return LineFault(
+        f"{which} incomplete, the others are cut; line {lost[0].number}: {first}",
+        x_mm=first.x_mm,
+        y_mm=first.y_mm,
+        heading_rad=first.heading_rad,
+    )
 
 
 def _standing(xy_mm: Array, z_mm: Array) -> Array:

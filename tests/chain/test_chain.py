@@ -25,6 +25,7 @@ from tests.tracer.inked import UM, inked, polyline
 from tracer.deviation import deviation
 from tracer.drawing import Drawing
 from tracer.sequence import Trace, trace
+from tracer.tour import trace_lines
 
 Array = NDArray[np.float64]
 SAMPLES = FilePath(__file__).parents[2] / "samples"
@@ -125,12 +126,12 @@ def render() -> ModuleType:
     return module
 
 
-def drawn(case: Case, render: ModuleType, folder: FilePath) -> tuple[Drawing, list[Array]]:
+def drawn(case: Case, render: ModuleType, folder: FilePath, line_mm: float = 0.5) -> tuple[Drawing, list[Array]]:
     """A part as an image file, opened, and its truth on the sheet."""
     truth = FilePath(render.__file__ or "").parent / "truth" / f"{case.name}.csv"
     loops = render.read_truth(truth, None if case.loops is None else set(case.loops))
     loops, sheet_mm = render.place(loops, 8.0, case.size_mm, case.skew_deg)
-    ink = render.ink(loops, sheet_mm, case.dpi, 0.5)
+    ink = render.ink(loops, sheet_mm, case.dpi, line_mm)
     image = render.photograph(ink, case.dpi, case.scan, np.random.default_rng(case.seed))
     file = folder / "part.png"
     Image.fromarray(image).save(file, dpi=(case.dpi, case.dpi), compress_level=1)
@@ -156,6 +157,28 @@ def test_a_part_is_played_as_it_was_traced(tmp_path: FilePath, render: ModuleTyp
     played = taped(run, playback_file)
     hold(distance(played, thin(run)), PLAYED_RMS_MM, PLAYED_MAX_MM)
     hold(distance(played, truth), case.rms_mm, case.max_mm)
+
+
+# several lines
+
+
+def test_the_bracket_comes_off_the_machine_with_its_slot_cut_first(tmp_path: FilePath) -> None:
+    truth = np.loadtxt(SAMPLES / "bracket.csv", delimiter=",", skiprows=1)
+    run = trace_lines(Drawing.open(SAMPLES / "bracket.png"))
+    runs = taped(run, tmp_path / "tape.wav").runs()
+    assert [line.number for line in run.lines] == [2, 1] and len(runs) == 2
+    for played, loop in zip(runs, (1, 0), strict=True):
+        hold(distance(played, truth[truth[:, 0] == loop, 1:]), 4 * UM, 25 * UM)
+
+
+@pytest.mark.parametrize("line_mm", [0.3, 0.5, 0.8])
+def test_all_fifteen_lines_of_a_panel_are_one_program(tmp_path: FilePath, render: ModuleType, line_mm: float) -> None:
+    """Issue 15/200 um (4.0/26 at 0.3 mm; 3.7/22; 3.9/22), with holes of 3.2 and 4 mm."""
+    drawing, truth = drawn(Case("v18_front_panel.dxf", 6 * UM, 40 * UM), render, tmp_path, line_mm)
+    run = trace_lines(drawing)
+    assert run.fault is None and [line.ending for line in run.lines] == ["closed"] * 15 and run.lines[-1].number == 1
+    hold(distance(thin(run), truth), 6 * UM, 40 * UM)
+    assert run.length_mm == pytest.approx(sum(length_mm(loop) for loop in truth), rel=0.002)
 
 
 # a real tape machine

@@ -13,7 +13,7 @@ from motion.contour import distance
 from motion.faults import DrawingFault, LineFault
 from motion.motion import IN_WORK_BELOW_MM, MOTION_RATE_HZ, join, thin
 from tests.tracer.inked import UM, arc, inked, polyline
-from tracer.sequence import Trace, Work, trace
+from tracer.sequence import Line, Trace, Work, trace
 
 CIRCLE = arc((9, 9), 5)
 OPEN = polyline((4, 6), (24, 9))
@@ -26,7 +26,7 @@ def run() -> Trace:
 
 def over_the_line(work: Work) -> Trace:
     """A trace that stays where it is for 50 ms: its Z moves are all there is to it."""
-    return Trace(np.tile([3.0, 4.0], (300, 1)), "ended", 0.5, 0.0, work=work)
+    return Trace((Line(np.tile([3.0, 4.0], (300, 1)), "ended", 0.5, 0.0),), work)
 
 
 # Z

@@ -1,0 +1,111 @@
+"""The tour over several lines of a drawing: which the head follows, and in what order they become one program.
+
+Signals: a Drawing and what is asked for in; out a Trace over all those lines, inner before outer, the idle way from one to the next short.
+
+The lines are followed one after the other, the widest spread first, and ordered when it is known where each begins and ends. One that is lost is cut as far as
+it was followed, and the others all the same. A stroke along which a line was followed before is a piece of that line, which has gaps.
+
+Source: patent ES 361967 has one contour to a tape, and an operator who brings the head over it; the tour is that operator's, our own.
+Questions: a small stroke on which the head can nowhere be put down is taken for a letter, as is one too short (see `contours`); a larger one counts as lost.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+
+from motion.faults import LineFault
+from tracer import contours
+from tracer.contours import Contour, Which
+from tracer.drawing import Drawing
+from tracer.sequence import Line, Trace, Work, followed
+from tracer.settings import Settings
+from tracer.view import Array
+
+THINNED = 30  # of the positions one in so many tells where a line is: every 50 um at 10 mm/s
+
+Told = Callable[[float, float], None]
+
+
+def trace_lines(
+    drawing: Drawing,
+    which: Which = "all",
+    settings: Settings | None = None,
+    work: Work | None = None,
+    progress: Told | None = None,
+) -> Trace:
+    """Follow several lines of the drawing: "all", those that lie inside no other ("outer"), or some by their numbers (1 is the longest).
+
+    `progress` hears how far the head has come and the length of all the lines, mm. Raises LineFault if there is no line to start on, or none of a number.
+    """
+    asked, left_out = contours.plan(drawing, which)
+    total_mm, lines = sum(contour.stroke.length_mm for contour in asked), list[Line]()
+    for contour in asked:
+        if _is_done(contour, lines) or (which == "outer" and _is_inner(contour, lines)):
+            continue
+        told = (
+            None if progress is None else partial(_tell_on, progress, sum(line.length_mm for line in lines), total_mm)
+        )
+        line = _follow(drawing, contour, settings or Settings(), told)
+        if line is None:
+            left_out += 1
+        else:
+            lines.append(line)
+    if not any(len(line.xy_mm) > 1 for line in lines):
+        raise _none_begun(lines)
+    return Trace(tuple(_in_order(lines)), work or Work(), left_out=left_out)
+
+
+def _follow(drawing: Drawing, contour: Contour, settings: Settings, told: Told | None) -> Line | None:
+    """Follow a line from the plainest of its places where the head can be put down; None for a letter, where it cannot be."""
+    stroke, starts_mm = contour.stroke, contour.starts_mm()
+    for start_mm in starts_mm:
+        try:
+            return Line.of(followed(drawing, start_mm, settings, told), contour.number)
+        except LineFault as fault:
+            refused = fault
+    if contour.reach_mm < contours.LETTER_MM:
+        return None
+    return Line(np.array(starts_mm[:1]), "lost", stroke.width_mm, 0.0, refused, contour.number)
+
+
+def _none_begun(lines: list[Line]) -> LineFault:
+    """The fault of a tour on which no line could be begun."""
+    fault = lines[0].fault if lines else None
+    return fault or LineFault(
+        "none of the lines can be begun; look at the drawing, or give --start X,Y at a plain stretch"
+    )
+
+
+def _is_done(contour: Contour, lines: list[Line]) -> bool:
+    """Whether one of the lines was followed along this stroke already."""
+    return any(contour.lies_on(_places(line)) for line in lines)
+
+
+def _is_inner(contour: Contour, lines: list[Line]) -> bool:
+    """Whether this stroke lies inside one of the lines."""
+    return any(_goes_round(line) and contour.lies_in(_places(line)) for line in lines)
+
+
+def _in_order(lines: list[Line]) -> list[Line]:
+    """The lines in the order in which they are cut."""
+    inner = contours.nested([_places(line) for line in lines], [_goes_round(line) for line in lines])
+    starts, ends = (np.array([line.xy_mm[end] for line in lines]) for end in (0, -1))
+    return [lines[i] for i in contours.in_order(starts, ends, inner)]
+
+
+def _goes_round(line: Line) -> bool:
+    """Whether something can lie inside a line: not if it is known to be open."""
+    return line.ending != "ended"
+
+
+def _places(line: Line) -> Array:
+    """Places along a line, (n, 2) mm."""
+    return line.xy_mm[::THINNED]
+
+
+def _tell_on(progress: Told, before_mm: float, total_mm: float, come_mm: float, length_mm: float) -> None:
+    """Tell how far the head has come in all, within a line of a known length."""
+    progress(min(before_mm + come_mm, total_mm), total_mm)
