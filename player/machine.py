@@ -183,6 +183,9 @@ class Playback:
                 yield out, bearings, watch.first_fault(out, self.end_mm.tolist()) or fault
             out, fault = gaps.feed(phases.cut(len(phases), len(phases)), last=True)
             yield out, bearings, fault
+            doubt = None if self.resume_at_s else watch.doubtful_reference(self._time_s(phases))
+            if doubt is not None:
+                raise doubt
 
     def _time_s(self, phases: Phases) -> float:
         """Tape time at the end of some rows, s."""

@@ -3,11 +3,12 @@
 Signals in: blocks of frames (n, tracks) and rows of phases; out: nothing, or a fault.
 
     reference     the frequency of each track at 64 moments of a block, against that at standstill; what all tracks share
-                  is the tape's speed. The reference is the steadiest; if another is twice as steady, that is it.
+                  is the tape's speed. The reference is the steadiest; if another is twice as steady, that is it. At the
+                  end it is enough that another was steadier at all: flutter may hide how much
     skew          a track that is late by s seconds stands s · reference off at standstill, and is wrong by s · deviation
                   under way:       |zero| / reference · speed / q  <  0.05 cycle
-    shaking       the middle of what surprises the predictor within 48 ms: noise, crosstalk and print-through beat against
-                  the carrier, and beyond 0.0042 cycle bring the motors to the limit of their current
+    shaking       the middle of what surprises the predictor within 96 ms: noise, crosstalk and print-through beat against
+                  the carrier, and beyond 0.0047 cycle bring the motors to the limit of their current
     stuck         two tracks with the same noise, sample for sample, are one signal
 
 Source: patent ES 361967, figure 5 (fault circuit 162).
@@ -31,10 +32,14 @@ MOMENTS = 64  # in a block
 STEADIER = 4.0  # of the mean square, before another track is taken for the reference
 LEAST_MOTION_HZ = 8.0  # of track 1, RMS: 0.4 mm/s; 30 dB of noise leave 3
 FEWEST_MOMENTS = 64
+MOVED = 2.0  # of the mean square at standstill: a track that moved against track 1
+LEAST_APART_HZ = 1.0
 SKEW_CYCLES = 0.05
-SHAKE_S = 0.048  # 288 rows at 6 kHz
+SHAKE_S = 0.096  # 576 rows at 6 kHz
 SHAKE_STRIDE = 4
-SHAKE_CYCLES = 0.0042  # 26 dB of noise shake by 0.0037; a corner shakes less than half of the window
+SHAKE_CYCLES = (
+    0.0047  # 26 dB of noise shake by 0.0033, and seldom by 0.0045; a corner shakes less than half of the window
+)
 STUCK_NOISE = 1e-4  # of full scale and of the carrier: below it noise may be the rounding of the samples
 
 Float32s = NDArray[np.float32]
@@ -49,19 +54,38 @@ class Watch:
         re, im = translating_taps(fmt.sample_rate_hz, fmt.reference_hz, fmt.samples_per_motion)
         self._taps = re.astype(np.float64) + 1j * im
         self._still_hz = bearings.reference_hz
-        self._sums, self._moments = np.zeros(fmt.tracks), 0
+        self._sums, self._apart, self._moments = np.zeros(fmt.tracks), np.zeros(fmt.tracks), 0
+        self._noise: Array | None = None  # mean square of a frequency less that of track 1, at standstill
 
     def wrong_reference(self, frames: Float32s, time_s: float) -> Fault | None:
         """The fault of a track 1 that moves more than another; frames of one block."""
         found = self._frequencies(frames)
         self._sums += np.square(found - self._still_hz).sum(axis=0)
         self._moments += len(found)
+        apart = np.square(found - found[:, :1])
+        self._apart += apart.sum(axis=0)
+        if self._noise is None and len(apart):
+            self._noise = apart[: len(apart) // 2].mean(axis=0)
         if self._moments < FEWEST_MOMENTS:
             return None
         mean = self._sums / self._moments
         steadiest = int(np.argmin(mean))
         if mean[0] < LEAST_MOTION_HZ**2 or mean[0] < STEADIER * mean[steadiest]:
             return None
+        return self._elsewhere(steadiest, mean, time_s)
+
+    def doubtful_reference(self, time_s: float) -> Fault | None:
+        """The fault of a track that moved against track 1 and was the steadier one over the whole tape."""
+        if self._moments < FEWEST_MOMENTS or self._noise is None:
+            return None
+        mean, apart = self._sums / self._moments, self._apart / self._moments
+        steadier = (mean < mean[0]) & (apart > MOVED * self._noise + LEAST_APART_HZ**2)
+        return (
+            self._elsewhere(int(np.argmin(np.where(steadier, mean, np.inf))), mean, time_s) if steadier.any() else None
+        )
+
+    def _elsewhere(self, steadiest: int, mean: Array, time_s: float) -> TapeFault:
+        """The fault of a reference that is on another track; `mean` squares in Hz²."""
         name = track_name(steadiest, self._format.axes)
         return TapeFault(
             f"track 1 moves by {np.sqrt(mean[0]):.0f} Hz and track {steadiest + 1} ({name}) stands at "
