@@ -10,7 +10,8 @@ matplotlib takes most of a second to import: nothing here does it before a pictu
 from __future__ import annotations
 
 import io
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
@@ -53,6 +54,7 @@ class Picture:
     reference: Path | None = None
     points_mm: Array | None = None  # (n, 2)
     error_mm: Array | None = None  # (n,); not a number where there is none that means anything
+    numbers_mm: Mapping[str, tuple[float, float]] = field(default_factory=dict)  # where each numbered line begins
 
 
 def draw(picture: Picture, file: FilePath) -> None:
@@ -119,6 +121,7 @@ def _fill(figure: Figure, axes: Axes, picture: Picture, view: tuple[float, float
     _ground(axes, picture, view)
     coloured = _contour(axes, picture, line_pt=1.8)
     _ends(axes, picture.path)
+    _numbers(axes, picture)
     axes.set(xlim=view[:2], ylim=view[2:], xlabel="X, mm", ylabel="Y, mm", aspect="equal")
     axes.set_title(picture.title, fontsize=10)
     if coloured is not None:
@@ -197,6 +200,13 @@ def _ends(axes: Axes, path: Path) -> None:
     axes.plot(*start, marker="o", color="#2a7f3f", label="start", **style)
     axes.plot(*end, marker="s", color="#7a3fa0", label="end", **style)
     axes.legend(loc="upper right", fontsize=8, framealpha=0.8)
+
+
+def _numbers(axes: Axes, picture: Picture) -> None:
+    """Number several lines, each beside its start, in a ring: the enlargements have plain numbers."""
+    ring = {"boxstyle": "circle,pad=0.2", "facecolor": "white", "edgecolor": REFERENCE, "alpha": 0.85}
+    for number, place_mm in picture.numbers_mm.items():
+        axes.annotate(number, place_mm, (-11, -11), textcoords="offset points", fontsize=8, bbox=ring, zorder=6)
 
 
 def _enlarge(axes: Axes, main: Axes, picture: Picture, place_mm: Array, number: int) -> None:

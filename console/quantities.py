@@ -1,4 +1,4 @@
-"""Lengths, speeds, frequencies and places as the command line takes them: text with a unit becomes mm, mm/s, Hz."""
+"""Lengths, speeds, frequencies, places and lines as the command line takes them: text with a unit becomes mm, mm/s, Hz."""
 
 from __future__ import annotations
 
@@ -43,6 +43,17 @@ def _parse_places_mm(text: str) -> tuple[float, ...]:
     return (*parse_place_mm(",".join(first)), parse_length_mm(last))
 
 
+def _parse_lines(text: str) -> str | tuple[int, ...]:
+    """Which lines of a drawing: "all", "outer", or their numbers."""
+    word = text.strip().lower()
+    if word in ("all", "outer"):
+        return word
+    try:
+        return tuple(int(number) for number in word.split(","))
+    except ValueError:
+        raise ValueError(f"{text!r} names no lines; give all, outer, or numbers such as 1,3") from None
+
+
 LENGTH = Quantity("length", parse_length_mm, above_zero=True)
 SPEED = Quantity("speed", parse_speed_mm_s)
 FREQUENCY = Quantity("frequency", parse_frequency_hz)
@@ -50,3 +61,4 @@ NUMBER = Quantity("number", _number, above_zero=True)
 PLACE = Quantity("x,y", parse_place_mm)
 PLACES = Quantity("x,y,z", _parse_places_mm)
 TIME = Quantity("time", parse_time_s)
+LINES = Quantity("lines", _parse_lines)

@@ -96,7 +96,7 @@ def _compare(drawing: Drawing, traced: Traced, played: Played, place: Folder, de
     desk.detail("comparing drawing, traced path and played path")
     from_ink = comparison.from_drawing(drawing, played.path, "played")
     picture = traced.name(place.file(".png"))
-    _draw(picture, f"{place.stem}, played", drawing, played, from_ink)
+    _draw(picture, f"{place.stem}, played", drawing, (traced, played), from_ink)
     return {
         "picture": str(picture),
         **traced.figures(),
@@ -106,9 +106,15 @@ def _compare(drawing: Drawing, traced: Traced, played: Played, place: Folder, de
     }
 
 
-def _draw(file: FilePath, name: str, drawing: Drawing, played: Played, from_ink: comparison.Comparison) -> None:
+def _draw(
+    file: FilePath, name: str, drawing: Drawing, paths: tuple[Traced, Played], from_ink: comparison.Comparison
+) -> None:
     """Draw the played path over the drawing, with its distance from the ink's centre in colour."""
     from console.overlay import Picture, draw
 
     title = f"{name}: largest distance from the ink's centre {format_length_mm(from_ink.largest_mm)}"
-    draw(Picture(title, played.path, drawing, None, from_ink.points_mm, from_ink.error_mm), file)
+    traced, played = paths
+    shown = Picture(
+        title, played.path, drawing, None, from_ink.points_mm, from_ink.error_mm, numbers_mm=traced.places_mm
+    )
+    draw(shown, file)

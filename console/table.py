@@ -2,7 +2,7 @@
 
 Signals in: a dictionary whose keys carry the unit (`rms_mm`, `duration_s`); a value may itself be such a dictionary,
 and values of None are left out. Out: JSON with just those keys, or text with the figures in the unit that reads best.
-Dictionaries inside become the columns of one table:
+Dictionaries inside become the rows of one table, and a list of them one of its own, whose rows are called by their first figure:
 
     duration  26.4 s
                          RMS    95 %  largest
@@ -48,13 +48,27 @@ def as_text(figures: Figures) -> str:
 
     out = io.StringIO()
     console = Console(file=out, width=_WIDEST, highlight=False, emoji=False, markup=False)
-    alone = {key: value for key, value in figures.items() if value is not None and not isinstance(value, Mapping)}
-    rows = {key: value for key, value in figures.items() if isinstance(value, Mapping)}
+    told = {key: value for key, value in figures.items() if value is not None}
+    rows = {key: value for key, value in told.items() if isinstance(value, Mapping)}
+    lists = {key: value for key, value in told.items() if _is_listing(value)}
+    alone = {key: value for key, value in told.items() if key not in rows and key not in lists}
     if alone:
         console.print(_lines(alone))
-    if rows:
-        console.print(_grid(rows))
+    for listing in (*(_named(value) for value in lists.values()), rows):
+        if listing:
+            console.print(_grid(listing))
     return "\n".join(line.rstrip() for line in out.getvalue().splitlines())
+
+
+def _is_listing(value: Any) -> bool:
+    """Whether a figure is a list of dictionaries."""
+    return isinstance(value, list) and bool(value) and all(isinstance(row, Mapping) for row in value)
+
+
+def _named(listing: list[Figures]) -> dict[str, Figures]:
+    """The rows of a list of dictionaries, called by the first figure of each: "line 3"."""
+    first = next(iter(listing[0]))
+    return {f"{first} {row[first]}": {key: row[key] for key in row if key != first} for row in listing}
 
 
 def _lines(figures: Figures) -> Any:

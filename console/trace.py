@@ -19,6 +19,7 @@ EXAMPLES = """\b
 Examples:
   morfax trace samples/cam.png
   morfax trace scan.png --width 120mm --start 40,62 -o cam.wav --path cam.csv
+  morfax trace samples/bracket.png --lines all --picture bracket-lines.png
   morfax trace scan.jpg --dpi 600 --speed 5mm/s --picture cam-traced.png
 """
 
@@ -61,8 +62,9 @@ def command(
     """Follow the line of a drawing and record the head's motion on a tape.
 
     DRAWING is an image file (PNG, JPEG, TIFF) of known resolution. A closed line is followed until it closes, an open
-    one from end to end. If the line is lost, what was traced until then is kept, with `.incomplete` in the names. If
-    there is none to start on, --picture shows the sheet, so that a place for --start can be read off it.
+    one from end to end. If the line is lost, what was traced until then is kept, with `.incomplete` in the names; of
+    several lines (--lines) the others are cut all the same. The picture numbers them. If there is no line to start on,
+    --picture shows the sheet, so that a place for --start can be read off it.
     """
     outputs = _outputs(drawing, output, path_file, picture, force)
     opened = medium.open_drawing(drawing, dpi, width_mm)
@@ -106,6 +108,8 @@ def _write(traced: Traced, outputs: Outputs, drawing: Drawing) -> dict[str, str]
         from console.overlay import Picture, draw
 
         name = drawing.file.name if drawing.file else "drawing"
-        draw(Picture(f"{name}, traced", traced.path, drawing), traced.name(outputs.picture))
+        draw(
+            Picture(f"{name}, traced", traced.path, drawing, numbers_mm=traced.places_mm), traced.name(outputs.picture)
+        )
         written["picture"] = str(traced.name(outputs.picture))
     return written

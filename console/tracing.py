@@ -16,7 +16,7 @@ import click
 
 from console import medium
 from console.desk import Desk
-from console.quantities import LENGTH, PLACE, SPEED
+from console.quantities import LENGTH, LINES, PLACE, SPEED
 from motion.faults import Fault, LineFault
 
 if TYPE_CHECKING:
@@ -35,26 +35,31 @@ class Head:
     clearance_mm: float
     line_width_mm: float | None
     gap_mm: float
+    lines: str | tuple[int, ...] | None = None  # the one line at the start, or the longest
 
     def trace(self, drawing: Drawing, desk: Desk, picture: FilePath | None = None) -> Traced:
-        """Follow the drawing's line to its end, or until it is lost.
+        """Follow the drawing's line, or all that are asked for, to the end or until it is lost.
 
         Raises LineFault if there is none to start on; the sheet is then drawn, if a name for a picture is given.
         """
         from motion.motion import thin
         from tracer.sequence import Settings, Work, trace
+        from tracer.tour import trace_lines
 
         desk.warn_of_compiling("the head", "motion", "tracer", "recorder")
         settings = Settings(speed_mm_s=self.speed_mm_s, line_width_mm=self.line_width_mm, gap_mm=self.gap_mm)
         work = Work(depth_mm=self.depth_mm, clearance_mm=self.clearance_mm)
         try:
             with desk.bar("following the line", total=1.0) as advance:
-                traced = trace(drawing, self.start_mm, settings, work, lambda come, length: advance(come / length))
+                if self.lines is None:
+                    traced = trace(drawing, self.start_mm, settings, work, lambda come, length: advance(come / length))
+                else:
+                    traced = trace_lines(drawing, self.lines, settings, work, lambda come, all_: advance(come / all_))
         except LineFault as fault:
             if picture is not None:
                 self._show_sheet(drawing, fault, medium.incomplete(picture), desk)
             raise
-        return Traced(traced, thin(traced))
+        return Traced(traced, thin(traced), several=self.lines is not None)
 
     def _show_sheet(self, drawing: Drawing, fault: LineFault, file: FilePath, desk: Desk) -> None:
         """Draw the sheet with the place that was asked for and the nearest line's."""
@@ -71,6 +76,12 @@ class Traced:
 
     trace: Trace
     path: Path
+    several: bool = False  # lines were asked for, not one line
+
+    @property
+    def places_mm(self) -> dict[str, tuple[float, float]]:
+        """Where each of several lines begins, by its number."""
+        return {str(line.number): line.start_mm for line in self.trace.lines} if self.several else {}
 
     @property
     def fault(self) -> Fault | None:
@@ -104,7 +115,22 @@ class Traced:
             "duration_s": float(self.path.t_s[-1] - self.path.t_s[0]),
             "line_width_mm": self.trace.line_width_mm,
             "start_place_mm": self.trace.start_mm,
+            **(self._of_lines() if self.several else {}),
         }
+
+    def _of_lines(self) -> dict[str, Any]:
+        """What the head found of each line, in the order in which they are cut."""
+        lines = [
+            {
+                "line": line.number,
+                "ending": line.ending,
+                "length_mm": line.length_mm,
+                "line_width_mm": line.width_mm,
+                "start_place_mm": line.start_mm,
+            }
+            for line in self.trace.lines
+        ]
+        return {"idle_mm": self.trace.idle_mm, "patches_left_out": self.trace.left_out, "lines": lines}
 
 
 def head_options(verb: Callable[..., Any]) -> Callable[..., Any]:
@@ -116,6 +142,12 @@ def head_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         type=PLACE,
         help="Where the head looks for the line, X,Y in mm from the sheet's lower-left corner.  [default: the longest "
         "line, at a smooth place]",
+    )
+    @click.option(
+        "--lines",
+        type=LINES,
+        help="Several lines as one program, inner before outer: all, outer (what lies in no other), or numbers such as "
+        "1,3; 1 is the longest.  [default: one line, the longest or that at --start]",
     )
     @click.option("--speed", "speed_mm_s", type=SPEED, default="10mm/s", show_default=True, help="Tracing speed.")
     @click.option(
@@ -157,8 +189,12 @@ def head_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         clearance_mm: float,
         line_width_mm: float | None,
         gap_mm: float,
+        lines: str | tuple[int, ...] | None,
         **options: Any,
     ) -> Any:
-        return verb(*args, head=Head(start_mm, speed_mm_s, depth_mm, clearance_mm, line_width_mm, gap_mm), **options)
+        if lines is not None and start_mm is not None:
+            raise click.UsageError("--start picks one line, --lines several; give one of them")
+        head = Head(start_mm, speed_mm_s, depth_mm, clearance_mm, line_width_mm, gap_mm, lines)
+        return verb(*args, head=head, **options)
 
     return with_head

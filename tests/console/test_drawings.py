@@ -69,6 +69,56 @@ def test_another_line_is_traced_from_its_start(morfax: Morfax, here: Path) -> No
     assert answer.figures["length_mm"] == pytest.approx(2 * 22 + 8 * np.pi, rel=0.005)
 
 
+def test_all_lines_are_one_program_listed_and_numbered(morfax: Morfax, here: Path) -> None:
+    """The bracket's slot, then its outline; the table has a row for each, the JSON an entry."""
+    call = ("trace", SAMPLES / "bracket.png", "--lines", "all", "-o", "bracket.csv")
+    answer = morfax(*call, "--picture", "lines.svg", "--json")
+    assert answer.exit_code == 0 and answer.figures["patches_left_out"] == 0
+    slot, outline = answer.figures["lines"]
+    assert (slot["line"], outline["line"]) == (2, 1) and slot["ending"] == outline["ending"] == "closed"
+    assert answer.figures["length_mm"] == pytest.approx(slot["length_mm"] + outline["length_mm"], abs=1e-3)
+    assert len(read_path("bracket.csv").runs()) == 2
+    from_slot = np.subtract(slot["start_place_mm"], outline["start_place_mm"])
+    assert answer.figures["idle_mm"] == pytest.approx(np.hypot(*from_slot), abs=0.1)
+    assert Path("lines.svg").read_text().count("<!-- 2 -->") == 1  # the axes count in tens
+    rows = morfax(*call).out.splitlines()[-3:]
+    assert rows[0].split() == ["ending", "length", "line", "width", "start"]
+    assert [row.split()[:3] for row in rows[1:]] == [["line", "2", "closed"], ["line", "1", "closed"]]
+
+
+def test_run_plays_all_lines_off_one_tape(morfax: Morfax, here: Path) -> None:
+    answer = morfax("run", SAMPLES / "bracket.png", "--lines", "all", "-o", "results", "--json")
+    assert answer.exit_code == 0 and answer.figures["missed_ink_share"] < 0.01
+    assert answer.figures["played_to_traced"]["max_mm"] < PLAYED_WITHIN_MM
+
+
+def test_lines_that_there_are_not_are_refused(morfax: Morfax, here: Path) -> None:
+    bracket = SAMPLES / "bracket.png"
+    answer = morfax("trace", bracket, "--lines", "1,3")
+    assert answer.exit_code == 4 and "no line 3: the drawing has 2" in answer.fault
+    answer = morfax("trace", bracket, "--lines", "inner")
+    assert answer.exit_code == 2 and "give all, outer, or numbers such as 1,3" in answer.fault
+    answer = morfax("trace", bracket, "--lines", "all", "--start", "1,1")
+    assert answer.exit_code == 2 and "--start picks one line, --lines several" in answer.fault
+    assert list(here.iterdir()) == []
+
+
+def test_a_lost_line_among_several_leaves_the_others_cut(morfax: Morfax, here: Path) -> None:
+    """A ring, and a line into a bar as broad as ten lines."""
+    grey = np.full((600, 1200), 255, np.uint8)
+    cv2.line(grey, (50, 350), (1100, 350), 0, 6)
+    cv2.rectangle(grey, (600, 330), (1190, 370), 0, -1)
+    cv2.circle(grey, (200, 150), 100, 0, 6, cv2.LINE_AA)
+    Image.fromarray(grey).save("bar.png", dpi=DPI)
+    answer = morfax("trace", "bar.png", "--lines", "all", "--line-width", "0.5mm", "-o", "bar.csv", "--json")
+    assert answer.exit_code == 4 and answer.figures["incomplete"] is True
+    endings = {line["line"]: line["ending"] for line in answer.figures["lines"]}
+    (lost,) = (number for number, ending in endings.items() if ending == "lost")
+    assert sorted(endings.values()) == ["closed", "lost"]
+    assert f"line {lost} of 2 is incomplete, the others are cut" in answer.fault and "heading" in answer.fault
+    assert len(read_path("bar.incomplete.csv").runs()) == 2
+
+
 def test_a_start_with_no_line_near_it_says_how_far_the_nearest_is(morfax: Morfax, here: Path) -> None:
     answer = morfax("trace", CAM, "--start", "45,45")
     assert answer.exit_code == 4 and "mm" in answer.fault
