@@ -6,7 +6,8 @@ Signals: a Drawing in; out a Trace, which is a stream of Motion (X, Y, Z in shee
        0           │ X, Y stand     X, Y stand │
        -depth      ╰────── the line ───────────╯
 
-Of several lines each is cut so, and from one to the next the tool goes straight at clearance (see `tour`).
+The Z moves are the Z unit's (see `zunit`). A line of several passes is run at each depth: a closed one straight on from its end, another one from its start
+again, with the tool up on the way. Of several lines each is cut so, and from one to the next the tool goes straight at clearance (see `tour`).
 
 A line that turns out to be open is followed from end to end: the head that was put down on its middle runs to one end first, with nothing recorded, and
 begins there. A line that does not come back one way round is tried the other way; one that runs into what has been followed already is tried with
@@ -34,6 +35,7 @@ from tracer.lines import INK
 from tracer.settings import Settings
 from tracer.stance import Stance, put_down, turned_round
 from tracer.view import Array
+from tracer.zunit import ACCELERATION_MM_S2, Move, z_moves
 
 SHORTER = 0.95  # the other way round is the line itself if it is shorter than this: straight on has led elsewhere
 TURNS = 12  # junctions at which another turn is tried
@@ -49,8 +51,14 @@ class Work:
     depth_mm: float = 5.0
     clearance_mm: float = 2.0
     feed_mm_s: float = 5.0
-    acceleration_mm_s2: float = 200.0
+    acceleration_mm_s2: float = ACCELERATION_MM_S2
     rapid_mm_s: float = 50.0  # from line to line, half of what a tape of 6 kHz and 20 cycles per mm carries
+    passes_mm: tuple[float, ...] = ()  # depths at which each line is run before it is run at its depth
+
+    @property
+    def depths_mm(self) -> tuple[float, ...]:
+        """Depths at which each line is run, one after the other, mm."""
+        return (*self.passes_mm, self.depth_mm)
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,50 +133,57 @@ class Trace:
     @property
     def duration_s(self) -> float:
         """Length of the motion, Z moves and rapid moves included, s."""
-        rapid = sum(len(self._rapid(a, b)) for a, b in pairwise(self.lines))
-        along = sum(len(line.xy_mm) + 2 * len(self._plunge()) for line in self.lines if len(line.xy_mm) > 1)
-        return (along + rapid) / self.rate_hz
+        return sum(len(block) for block in self._blocks()) / self.rate_hz
 
     def __iter__(self) -> Iterator[Motion]:
         """Blocks of Motion: down, along the line, up, and over to the next."""
         first = 0
+        for block in self._blocks():
+            yield Motion(block, self.rate_hz, first / self.rate_hz)
+            first += len(block)
+
+    def _blocks(self) -> Iterator[Array]:
+        """Positions of those blocks, (n, 3) mm."""
         for line, after in zip_longest(self.lines, self.lines[1:]):
-            for block in (*self._cut(line), *([] if after is None else [self._rapid(line, after)])):
-                yield Motion(block, self.rate_hz, first / self.rate_hz)
-                first += len(block)
+            yield from self._cut(line)
+            if after is not None:
+                yield self._rapid(line, after)
 
     def _cut(self, line: Line) -> Iterator[Array]:
-        """Down, along a line at depth, and up, in blocks (n, 3) mm; nothing of a line that was never begun."""
+        """Down, along a line at each depth, and up, in blocks (n, 3) mm; nothing of a line that was never begun."""
         if len(line.xy_mm) < 2:
             return
-        down = self._plunge()
-        yield _standing(line.xy_mm[0], down)
-        for first in range(0, len(line.xy_mm), BLOCK_SAMPLES):
-            part = line.xy_mm[first : first + BLOCK_SAMPLES]
-            yield np.column_stack([part, np.full(len(part), -self.work.depth_mm)])
-        yield _standing(line.xy_mm[-1], down[::-1])
+        z_mm = self.work.clearance_mm
+        for depth_mm in self.work.depths_mm:
+            if z_mm < 0:
+                for block in self._back(line, z_mm):
+                    yield block
+                    z_mm = float(block[-1, 2])
+            yield _standing(line.xy_mm[0], self._z(z_mm, -depth_mm))
+            z_mm = -depth_mm
+            for first in range(0, len(line.xy_mm), BLOCK_SAMPLES):
+                yield _at(line.xy_mm[first : first + BLOCK_SAMPLES], z_mm)
+        yield _standing(line.xy_mm[-1], self._z(z_mm, self.work.clearance_mm))
+
+    def _back(self, line: Line, z_mm: float) -> Iterator[Array]:
+        """From the end of a line to its start for the next pass, (n, 3) mm: at depth where it closes, else up and over."""
+        if line.ending == "closed":
+            yield _at(self._over(line, line, self.work.feed_mm_s), z_mm)
+        else:
+            yield _standing(line.xy_mm[-1], self._z(z_mm, self.work.clearance_mm))
+            yield self._rapid(line, line)
 
     def _rapid(self, line: Line, after: Line) -> Array:
         """Straight from the end of a line to the start of the next at clearance, (n, 3) mm."""
-        way = ramp.positions_mm(line.xy_mm[-1], after.xy_mm[0], self.work.rapid_mm_s, rate_hz=self.rate_hz)
-        return np.column_stack([way, np.full(len(way), self.work.clearance_mm)])
+        return _at(self._over(line, after, self.work.rapid_mm_s), self.work.clearance_mm)
 
-    def _plunge(self) -> Array:
-        """Z of the move from clearance to depth: up to the feed at constant acceleration, and down again; mm at the motion rate."""
-        w = self.work
-        way = w.clearance_mm + w.depth_mm
-        feed = min(w.feed_mm_s, math.sqrt(w.acceleration_mm_s2 * way))
-        rise_s = feed / w.acceleration_mm_s2
-        total_s = way / feed + rise_s
-        t = np.arange(math.ceil(total_s * self.rate_hz) + 1) / self.rate_hz
-        up = np.minimum(t, rise_s)
-        down = np.clip(t - (total_s - rise_s), 0.0, rise_s)
-        gone = (
-            0.5 * w.acceleration_mm_s2 * up**2 + feed * np.maximum(t - rise_s, 0) - 0.5 * w.acceleration_mm_s2 * down**2
-        )
-        late = t >= total_s
-        gone[late] = way
-        return w.clearance_mm - gone
+    def _over(self, line: Line, after: Line, feed_mm_s: float) -> Array:
+        """Straight from the end of a line to the start of the next, (n, 2) mm."""
+        return ramp.positions_mm(line.xy_mm[-1], after.xy_mm[0], feed_mm_s, rate_hz=self.rate_hz)
+
+    def _z(self, from_mm: float, to_mm: float) -> Array:
+        """Z of a move that the Z unit makes, (n,) mm at the motion rate."""
+        return z_moves(from_mm, [Move(to_mm, self.work.feed_mm_s)], self.work.acceleration_mm_s2, self.rate_hz)
 
 
 def trace(
@@ -257,6 +272,11 @@ def _incomplete(lost: list[Line], lines: int) -> LineFault:
         y_mm=first.y_mm,
         heading_rad=first.heading_rad,
     )
+
+
+def _at(xy_mm: Array, z_mm: float) -> Array:
+    """X and Y move while Z stands, (n, 3) mm."""
+    return np.column_stack([xy_mm, np.full(len(xy_mm), z_mm)])
 
 
 def _standing(xy_mm: Array, z_mm: Array) -> Array:

@@ -55,6 +55,36 @@ def test_z_goes_down_to_depth_and_up_to_clearance_within_feed_and_acceleration(
     assert np.all(np.diff(down) <= 1e-12)
 
 
+def test_without_a_card_the_z_unit_goes_from_clearance_to_depth_and_back_exactly() -> None:
+    z = join(over_the_line(Work(1 / 3, np.pi))).positions_mm[:, 2]  # no whole counts
+    assert (z[0], z.min(), z[-1]) == (np.pi, -1 / 3, np.pi)
+
+
+PASSES = Work(depth_mm=5.0, passes_mm=(2.0, 4.0))
+
+
+def test_a_closed_line_of_several_passes_is_run_on_at_each_depth(run: Trace) -> None:
+    passes = Trace(run.lines, PASSES)
+    path = thin(passes)
+    assert len(path.runs()) == 1  # the tool stays in the work
+    x, y, z = join(passes).positions_mm.T
+    for depth_mm in PASSES.depths_mm:
+        assert distance(np.column_stack([x, y])[z == -depth_mm], CIRCLE).hausdorff_mm < 25 * UM
+    assert np.all(np.diff(z[: np.argmin(z) + 1]) <= 0)  # from depth to depth, and never up in between
+    assert np.hypot(np.diff(x), np.diff(y)).max() * MOTION_RATE_HZ < 10.1  # no leap from the end to the start
+    assert passes.duration_s == pytest.approx(len(z) / MOTION_RATE_HZ)
+
+
+def test_an_open_line_of_several_passes_is_begun_again_with_the_tool_up() -> None:
+    xy_mm = np.column_stack([np.linspace(0, 10, 6001), np.zeros(6001)])
+    passes = Trace((Line(xy_mm, "ended", 0.5, 10.0),), PASSES)
+    path = thin(passes)
+    assert [tuple(in_work[0]) for in_work in path.runs()] == [(0, 0)] * 3
+    assert [tuple(in_work[-1]) for in_work in path.runs()] == [(10, 0)] * 3
+    moved = np.diff(join(passes).positions_mm, axis=0)
+    assert not np.any(moved[:, :2].any(axis=1) & (moved[:, 2] != 0))  # X and Y stand while Z moves
+
+
 def test_x_and_y_stand_while_z_moves(run: Trace) -> None:
     positions = join(run).positions_mm
     moving = np.flatnonzero(np.diff(positions[:, 2]) != 0)
