@@ -8,7 +8,8 @@
     ├── LockFault                 6      a drive left the comparator's range: axis, tape time, positions
     ├── FollowingFault            6      a drive lags more than its speed explains: axis, time, demand, actual, limit
     ├── MotionFault               7      a motion or path that cannot be recorded: axis, time, speed (also a ValueError)
-    └── FileFault                 8      a file that cannot be read or written (also an OSError)
+    ├── FileFault                 8      a file that cannot be read or written (also an OSError)
+    └── CardFault                 9      a mistake in the operator's card: line, field, what it holds (also a ValueError)
 
 A message is one line: what was wrong, the value got, the values allowed, what to do next.
 """
@@ -103,3 +104,13 @@ class FileFault(Fault, OSError):
     """A file that cannot be read or written."""
 
     exit_code = 8
+
+
+class CardFault(Fault, ValueError):
+    """A mistake in the operator's card: the line of the file, the field, and what it holds."""
+
+    exit_code = 9
+
+    def __init__(self, message: str, *, line: int, field: str, holds: str) -> None:
+        super().__init__(message)
+        self.line, self.field, self.holds = line, field, holds
