@@ -75,7 +75,9 @@ def test_coincidence_and_rest_fall_together_on_the_count(start: int, counts: int
     counters, preset = Counters(start), Preset(counts, sense, feed_mm_s)  # type: ignore[arg-type]
     z_mm = run(counters, preset)
     assert z_mm[0] == counters.z_mm and z_mm[-1] == counters.after(preset).z_mm  # exactly
-    assert coincidence(z_mm, counters, preset) == len(z_mm) - 1
+    met = coincidence(z_mm, counters, preset)
+    assert met is not None and len(z_mm) - 2 <= met <= len(z_mm) - 1  # the last period may move by less than a rounding
+    assert abs(z_mm[met] - z_mm[-1]) < 1e-6  # mm: the disc tells no such part of a count
     assert np.all(np.diff(z_mm) * (1 if sense == "up" else -1) >= 0)  # and it never comes back
     assert np.abs(np.diff(z_mm)).max() * MOTION_RATE_HZ <= feed_mm_s * (1 + 1e-9)  # rounding
 
