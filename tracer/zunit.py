@@ -38,6 +38,7 @@ COUNTS_PER_MM = 100
 LARGEST_COUNT = 99_999  # five decades
 ACCELERATION_MM_S2 = 200.0
 _OFF_COUNT = 1e-6  # of a count: what arithmetic with inches leaves
+_PULSE = 1e-9  # of a count: what rounding takes off a pulse that has passed, 1e5 counts in 53 bits
 
 Array = NDArray[np.float64]
 Sense = Literal["up", "down"]
@@ -144,7 +145,7 @@ def z_moves(
 
 def counted(z_mm: Array) -> NDArray[np.int64]:
     """What the counters show at each place of a move: the pulses of disc 128 that have passed, from the surface."""
-    return np.trunc(z_mm * COUNTS_PER_MM + np.copysign(_OFF_COUNT, z_mm)).astype(np.int64)
+    return np.trunc(z_mm * COUNTS_PER_MM + np.copysign(_PULSE, z_mm)).astype(np.int64)
 
 
 def coincidence(z_mm: Array, start: Counters, preset: Preset) -> int | None:

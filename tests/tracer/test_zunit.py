@@ -23,6 +23,7 @@ from tracer.zunit import (
 
 SENSES = st.sampled_from(["up", "down"])
 FEEDS = st.floats(0.5, 50)
+ROUNDING_MM = 2e-11  # two thousand-millionths of a count, see `zunit.counted`
 
 
 def run(start: Counters, *presets: Preset) -> np.ndarray:
