@@ -20,7 +20,7 @@ Examples:
   morfax trace samples/cam.png
   morfax trace scan.png --width 120mm --start 40,62 -o cam.wav --path cam.csv
   morfax trace samples/bracket.png --lines all --picture bracket-lines.png
-  morfax trace scan.jpg --dpi 600 --speed 5mm/s --picture cam-traced.png
+  morfax trace scan.jpg --dpi 600 --card part.toml --picture cam-traced.png
 """
 
 

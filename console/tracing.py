@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
 import click
+from click.core import ParameterSource
 
 from console import medium
 from console.desk import Desk
@@ -21,8 +22,9 @@ from motion.faults import Fault, LineFault
 
 if TYPE_CHECKING:
     from motion.motion import Path
+    from tracer.card import Card
     from tracer.drawing import Drawing
-    from tracer.sequence import Trace
+    from tracer.sequence import Trace, Work
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +38,7 @@ class Head:
     line_width_mm: float | None
     gap_mm: float
     lines: str | tuple[int, ...] | None = None  # the one line at the start, or the longest
+    card: Card | None = None
 
     def trace(self, drawing: Drawing, desk: Desk, picture: FilePath | None = None) -> Traced:
         """Follow the drawing's line, or all that are asked for, to the end or until it is lost.
@@ -43,12 +46,13 @@ class Head:
         Raises LineFault if there is none to start on; the sheet is then drawn, if a name for a picture is given.
         """
         from motion.motion import thin
-        from tracer.sequence import Settings, Work, trace
+        from tracer.sequence import Settings, trace
         from tracer.tour import trace_lines
 
         desk.warn_of_compiling("the head", "motion", "tracer", "recorder")
         settings = Settings(speed_mm_s=self.speed_mm_s, line_width_mm=self.line_width_mm, gap_mm=self.gap_mm)
-        work = Work(depth_mm=self.depth_mm, clearance_mm=self.clearance_mm)
+        work = self._work()
+        self._note_what_waits(desk)
         try:
             with desk.bar("following the line", total=1.0) as advance:
                 if self.lines is None:
@@ -60,6 +64,33 @@ class Head:
                 self._show_sheet(drawing, fault, medium.incomplete(picture), desk)
             raise
         return Traced(traced, thin(traced), several=self.lines is not None)
+
+    def by_card(self, card: Card, given: Callable[[str], bool]) -> Head:
+        """The same with what the card says, but for the options that were given on the command line."""
+        depth_mm = card.depths_mm[-1] if card.depths_mm else None
+        says = {"speed_mm_s": card.trace_mm_s, "depth_mm": depth_mm, "clearance_mm": card.start_mm}
+        set_by_card: dict[str, Any] = {name: v for name, v in says.items() if v is not None and not given(name)}
+        return replace(self, card=card, **set_by_card)
+
+    def _work(self) -> Work:
+        """Depths, feeds and clearance of the tool: of the card's passes those that are less deep than the depth."""
+        from tracer.sequence import Work
+
+        work = Work(depth_mm=self.depth_mm, clearance_mm=self.clearance_mm)
+        if self.card is None:
+            return work
+        return replace(
+            work,
+            feed_mm_s=self.card.feed_mm_s or work.feed_mm_s,
+            rapid_mm_s=self.card.rapid_mm_s or work.rapid_mm_s,
+            passes_mm=tuple(depth_mm for depth_mm in self.card.depths_mm if depth_mm < self.depth_mm),
+        )
+
+    def _note_what_waits(self, desk: Desk) -> None:
+        """Say what stands on the card and is not done yet."""
+        card = self.card
+        if card is not None and (card.stops or card.turns or card.override != "none" or card.restart != "automatic"):
+            desk.note("the card's stops, turns, override and manual restart are not followed yet; all else on it is")
 
     def _show_sheet(self, drawing: Drawing, fault: LineFault, file: FilePath, desk: Desk) -> None:
         """Draw the sheet with the place that was asked for and the nearest line's."""
@@ -180,6 +211,12 @@ def head_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         show_default=True,
         help="Widest gap in the line that the head goes across.",
     )
+    @click.option(
+        "--card",
+        "card_file",
+        type=medium.FILE,
+        help="The operator's card (.toml): start position, depths, speeds. Options given beside it go before it.",
+    )
     @functools.wraps(verb)
     def with_head(
         *args: Any,
@@ -190,11 +227,24 @@ def head_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         line_width_mm: float | None,
         gap_mm: float,
         lines: str | tuple[int, ...] | None,
+        card_file: FilePath | None,
         **options: Any,
     ) -> Any:
         if lines is not None and start_mm is not None:
             raise click.UsageError("--start picks one line, --lines several; give one of them")
         head = Head(start_mm, speed_mm_s, depth_mm, clearance_mm, line_width_mm, gap_mm, lines)
-        return verb(*args, head=head, **options)
+        return verb(*args, head=head if card_file is None else head.by_card(_opened(card_file), _given), **options)
 
     return with_head
+
+
+def _opened(card_file: FilePath) -> Card:
+    """The card; raises CardFault for a mistake on it."""
+    from tracer.card import Card
+
+    return Card.open(card_file)
+
+
+def _given(option: str) -> bool:
+    """Whether an option was given on the command line."""
+    return click.get_current_context().get_parameter_source(option) is ParameterSource.COMMANDLINE

@@ -231,7 +231,7 @@ def test_the_defaults_of_the_command_line_are_those_of_the_tracer() -> None:
     """They are stated twice, since --help shall not wait for the tracer."""
     given = command.make_context("trace", ["a.png"]).params
     settings, work = Settings(), Work()
-    assert Head(**{name: given[name] for name in Head.__dataclass_fields__}) == Head(
+    assert Head(**{name: given[name] for name in Head.__dataclass_fields__ if name in given}) == Head(
         start_mm=None,
         speed_mm_s=settings.speed_mm_s,
         depth_mm=work.depth_mm,

@@ -63,6 +63,12 @@ def test_a_card_says_what_is_set() -> None:
     )
 
 
+def test_the_card_of_the_documentation_is_one() -> None:
+    text = (Path(__file__).parents[2] / "docs" / "card.md").read_text(encoding="utf-8")
+    card = Card.parse(text.split("```toml\n")[1].split("```")[0])
+    assert card.depths_mm == (2.0, 4.0) and card.stop(1).moves and card.stop(2).drill == Drill(800, 300, dwell_s=0.2)
+
+
 def test_an_empty_card_says_nothing() -> None:
     assert Card.parse("") == Card.parse("# nothing\r\n") == Card()
 
