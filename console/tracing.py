@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from motion.motion import Path
     from tracer.card import Card
     from tracer.drawing import Drawing
-    from tracer.sequence import Trace, Work
+    from tracer.sequence import Settings, Trace, Work
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +39,8 @@ class Head:
     gap_mm: float
     lines: str | tuple[int, ...] | None = None  # the one line at the start, or the longest
     card: Card | None = None
+    kind: str = "precise"
+    changes: tuple[str, ...] = ()  # NAME=VALUE
 
     def trace(self, drawing: Drawing, desk: Desk, picture: FilePath | None = None) -> Traced:
         """Follow the drawing's line, or all that are asked for, to the end or until it is lost.
@@ -46,11 +48,11 @@ class Head:
         Raises LineFault if there is none to start on; the sheet is then drawn, if a name for a picture is given.
         """
         from motion.motion import thin
-        from tracer.sequence import Settings, trace
+        from tracer.sequence import trace
         from tracer.tour import trace_lines
 
         desk.warn_of_compiling("the head", "motion", "tracer", "recorder")
-        settings = Settings(speed_mm_s=self.speed_mm_s, line_width_mm=self.line_width_mm, gap_mm=self.gap_mm)
+        settings = self._settings()
         work = self._work()
         self._note_what_waits(desk)
         try:
@@ -64,6 +66,20 @@ class Head:
                 self._show_sheet(drawing, fault, medium.incomplete(picture), desk)
             raise
         return Traced(traced, thin(traced), several=self.lines is not None)
+
+    def _settings(self) -> Settings:
+        """Settings of the head; raises UsageError for one that there is not, or that is no number."""
+        from tracer.settings import choose
+
+        options = {"speed_mm_s": self.speed_mm_s, "gap_mm": self.gap_mm, "line_width_mm": self.line_width_mm}
+        changes: dict[str, object] = {name: value for name, value in options.items() if value is not None}
+        for change in self.changes:
+            name, _, value = change.partition("=")
+            changes[name.strip()] = value.strip()
+        try:
+            return choose(self.kind, changes)
+        except ValueError as error:
+            raise click.UsageError(f"--set: {error}") from None
 
     def by_card(self, card: Card, given: Callable[[str], bool]) -> Head:
         """The same with what the card says, but for the options that were given on the command line."""
@@ -217,6 +233,21 @@ def head_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         type=medium.FILE,
         help="The operator's card (.toml): start position, depths, speeds. Options given beside it go before it.",
     )
+    @click.option(
+        "--head",
+        "kind",
+        type=click.Choice(["precise", "historic"]),
+        default="precise",
+        show_default=True,
+        help="The head: precise, or that of 1969, which steers straight by its cell and cuts corners.",
+    )
+    @click.option(
+        "--set",
+        "changes",
+        multiple=True,
+        metavar="NAME=VALUE",
+        help="Change a setting of the head by name, such as sweep_hz=50; the unit is in the name.",
+    )
     @functools.wraps(verb)
     def with_head(
         *args: Any,
@@ -228,11 +259,13 @@ def head_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         gap_mm: float,
         lines: str | tuple[int, ...] | None,
         card_file: FilePath | None,
+        kind: str,
+        changes: tuple[str, ...],
         **options: Any,
     ) -> Any:
         if lines is not None and start_mm is not None:
             raise click.UsageError("--start picks one line, --lines several; give one of them")
-        head = Head(start_mm, speed_mm_s, depth_mm, clearance_mm, line_width_mm, gap_mm, lines)
+        head = Head(start_mm, speed_mm_s, depth_mm, clearance_mm, line_width_mm, gap_mm, lines, None, kind, changes)
         return verb(*args, head=head if card_file is None else head.by_card(_opened(card_file), _given), **options)
 
     return with_head
