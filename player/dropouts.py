@@ -47,7 +47,6 @@ BETWEEN_CYCLES = 0.05
 ROUGH_CYCLES = 0.04  # what is left of the parabola; 26 dB of noise leave 0.015
 
 Array = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, slots=True)

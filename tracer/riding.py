@@ -166,7 +166,7 @@ def _along_edge(cells, pitch_mm, start, heading, side, step_mm, stations, width_
         x, y = x + aside * nx, y + aside * ny
         out[n, 0], out[n, 1] = x, y
         out[n, 2] = _first_light(cells, pitch_mm, x, y, -nx, -ny, 0.0, 3.0 * width_mm, fine, level)
-        wide = not out[n, 2] < 0.62 * width_mm
+        wide = not out[n, 2] < WIDE * width_mm
         been_wide = been_wide or wide
         alone = 0 if wide else alone + 1
         if (been_wide and alone > regained) or (not been_wide and alone > 2 * regained):

@@ -104,7 +104,8 @@ def tune(stance: Stance, settings: Settings, rate_hz: float) -> Tuning:
         lead_mm=lead,
         point_mm=point,
         half_window_mm=half_window,
-        tightest_per_mm=0.23 / half_window,
+        tightest_per_mm=0.23
+        / half_window,  # the window then turns by a quarter of a radian, which a parabola still follows
         amplitude_mm=amplitude,
         along_mm=0.1 * amplitude,
         guard_mm=guard,

@@ -61,9 +61,3 @@ class Trail:
             return False
         near = [np.min(np.hypot(*(old - place).T)) < 0.3 * width_mm for place in first]
         return bool(np.mean(near) > 0.5)
-
-
-def heading_of(way: Array) -> float:
-    """Heading of the last step of a polyline, rad."""
-    step = way[-1] - way[-2]
-    return math.atan2(step[1], step[0])
