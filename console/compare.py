@@ -11,6 +11,7 @@ from console import comparison, medium
 from console.desk import Desk, desk_options
 from console.playing import Controls, tape_options
 from console.quantities import LENGTH
+from console.sheet import Sheet, sheet_options
 from motion.motion import Path
 from motion.units import format_length_mm
 
@@ -29,7 +30,7 @@ Examples:
 @click.argument("b", type=medium.FILE)
 @click.option("--tolerance", "tolerance_mm", type=LENGTH, help="End with exit code 1 if any place is further off.")
 @click.option("-o", "picture", type=medium.FILE, help="Draw the path with its error in colour (.png, .svg, .pdf).")
-@medium.drawing_options
+@sheet_options
 @tape_options
 @desk_options
 @click.pass_context
@@ -39,8 +40,7 @@ def command(
     b: FilePath,
     tolerance_mm: float | None,
     picture: FilePath | None,
-    dpi: float | None,
-    width_mm: float | None,
+    sheet: Sheet,
     controls: Controls,
     desk: Desk,
 ) -> None:
@@ -53,7 +53,7 @@ def command(
     drawing_file, paths = _sorted(a, b)
     if picture is not None:
         medium.outgoing(medium.with_suffix_in(picture, (".png", ".svg", ".pdf")), a, b)
-    drawing = medium.open_drawing(drawing_file, dpi, width_mm) if drawing_file else None
+    drawing = sheet.open(drawing_file) if drawing_file else None
     opened = [_path(file, controls, desk) for file in paths]
     found = comparison.from_drawing(drawing, opened[0]) if drawing else comparison.from_path(opened[0], opened[1])
     if picture is not None:

@@ -14,19 +14,16 @@ never goes over the file that it is made from.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
 from pathlib import Path as FilePath
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import click
 
-from console.quantities import LENGTH
 from console.table import Figures
 from motion.faults import FileFault
 
 if TYPE_CHECKING:
     from recorder.media import Report
-    from tracer.drawing import Drawing
 
 Kind = Literal["tape", "program", "drawing", "path"]
 
@@ -113,24 +110,3 @@ def with_suffix_in(file: FilePath, suffixes: tuple[str, ...], option: str = "-o"
     if file.suffix.lower() not in suffixes:
         raise click.BadParameter(f"{str(file)!r} must end in {', '.join(suffixes)}", param_hint=f"'{option}'")
     return file
-
-
-def drawing_options(verb: Callable[..., Any]) -> Callable[..., Any]:
-    """Give a verb --dpi and --width, for a drawing whose file states no resolution or a wrong one."""
-    verb = click.option(
-        "--width", "width_mm", type=LENGTH, help="Width of the whole sheet, such as 120mm; instead of --dpi."
-    )(verb)
-    return click.option(
-        "--dpi",
-        type=click.FloatRange(min=0, min_open=True),
-        help="Resolution of the drawing, dots per inch.  [default: what the file states]",
-    )(verb)
-
-
-def open_drawing(file: FilePath, dpi: float | None, width_mm: float | None) -> Drawing:
-    """Open a drawing; at most one of the two scales may be given."""
-    from tracer.drawing import Drawing
-
-    if dpi is not None and width_mm is not None:
-        raise click.UsageError("--dpi and --width were both given; give one of them")
-    return Drawing.open(file, dpi=dpi, width_mm=width_mm)

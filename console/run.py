@@ -10,8 +10,10 @@ import click
 
 from console import comparison, medium, table
 from console.desk import Desk, desk_options
+from console.panel import head_options
 from console.playing import Controls, Played
-from console.tracing import Head, Traced, head_options
+from console.sheet import Sheet, sheet_options
+from console.tracing import Head, Traced
 from motion.faults import FileFault
 from motion.files import written_beside
 from motion.units import format_length_mm
@@ -43,18 +45,16 @@ class Folder:
 @click.option(
     "-o", "folder", type=medium.FILE, help="Folder for the results; it is made.  [default: the drawing's name, here]"
 )
-@medium.drawing_options
+@sheet_options
 @head_options
 @desk_options
-def command(
-    drawing: FilePath, folder: FilePath | None, dpi: float | None, width_mm: float | None, head: Head, desk: Desk
-) -> None:
+def command(drawing: FilePath, folder: FilePath | None, sheet: Sheet, head: Head, desk: Desk) -> None:
     """Go the whole way: trace a drawing, play the tape, compare all three.
 
     The folder then holds the tape (.wav), the traced and the played path (.csv), the picture of the played path with
     its error in colour (.png) and the figures (.json). What was there under these names is written over.
     """
-    opened = medium.open_drawing(drawing, dpi, width_mm)
+    opened = sheet.open(drawing)
     place = _make(folder or FilePath(drawing.stem), drawing)
     traced = head.trace(opened, desk, place.file(".png"))
     tape = traced.record(place.file(".wav"))

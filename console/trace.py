@@ -10,7 +10,9 @@ import click
 
 from console import medium
 from console.desk import Desk, desk_options
-from console.tracing import Head, Traced, head_options
+from console.panel import head_options
+from console.sheet import Sheet, sheet_options
+from console.tracing import Head, Traced
 
 if TYPE_CHECKING:
     from tracer.drawing import Drawing
@@ -45,7 +47,7 @@ class Outputs:
 @click.option("--path", "path_file", type=medium.FILE, help="Write the head's path as well (.csv).")
 @click.option("--picture", type=medium.FILE, help="Draw the path over the drawing (.png, .svg, .pdf).")
 @click.option("--force", is_flag=True, help="Write over a tape that is there already under a name not given with -o.")
-@medium.drawing_options
+@sheet_options
 @head_options
 @desk_options
 def command(
@@ -54,8 +56,7 @@ def command(
     path_file: FilePath | None,
     picture: FilePath | None,
     force: bool,
-    dpi: float | None,
-    width_mm: float | None,
+    sheet: Sheet,
     head: Head,
     desk: Desk,
 ) -> None:
@@ -67,7 +68,7 @@ def command(
     --picture shows the sheet, so that a place for --start can be read off it.
     """
     outputs = _outputs(drawing, output, path_file, picture, force)
-    opened = medium.open_drawing(drawing, dpi, width_mm)
+    opened = sheet.open(drawing)
     desk.detail(f"{drawing}: sheet of {opened.width_mm:.2f} x {opened.height_mm:.2f} mm")
     traced = head.trace(opened, desk, outputs.picture)
     written = _write(traced, outputs, opened)

@@ -1,0 +1,121 @@
+"""The panel: the options of the head and the tool, which become the `Head` of a verb."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from pathlib import Path as FilePath
+from typing import TYPE_CHECKING, Any
+
+import click
+from click.core import ParameterSource
+
+from console import medium
+from console.quantities import LENGTH, LINES, PLACE, SPEED
+from console.tracing import Head
+
+if TYPE_CHECKING:
+    from tracer.card import Card
+
+
+def head_options(verb: Callable[..., Any]) -> Callable[..., Any]:
+    """Give a verb the options of the head and the tool, and hand it the `head`."""
+
+    @click.option(
+        "--start",
+        "start_mm",
+        type=PLACE,
+        help="Where the head looks for the line, X,Y in mm from the sheet's lower-left corner.  [default: the longest "
+        "line, at a smooth place]",
+    )
+    @click.option(
+        "--lines",
+        type=LINES,
+        help="Several lines as one program, inner before outer: all, outer (what lies in no other), or numbers such as "
+        "1,3; 1 is the longest.  [default: one line, the longest or that at --start]",
+    )
+    @click.option("--speed", "speed_mm_s", type=SPEED, default="10mm/s", show_default=True, help="Tracing speed.")
+    @click.option(
+        "--depth",
+        "depth_mm",
+        type=LENGTH,
+        default="5mm",
+        show_default=True,
+        help="How deep the tool goes into the work along the line.",
+    )
+    @click.option(
+        "--clearance",
+        "clearance_mm",
+        type=LENGTH,
+        default="2mm",
+        show_default=True,
+        help="How far above the work the tool stands before and after.",
+    )
+    @click.option(
+        "--line-width",
+        "line_width_mm",
+        type=LENGTH,
+        help="Width of the line, such as 0.5mm.  [default: measured on the drawing]",
+    )
+    @click.option(
+        "--gap",
+        "gap_mm",
+        type=LENGTH,
+        default="0.5mm",
+        show_default=True,
+        help="Widest gap in the line that the head goes across.",
+    )
+    @click.option(
+        "--card",
+        "card_file",
+        type=medium.FILE,
+        help="The operator's card (.toml): start position, depths, speeds. Options given beside it go before it.",
+    )
+    @click.option(
+        "--head",
+        "kind",
+        type=click.Choice(["precise", "historic"]),
+        default="precise",
+        show_default=True,
+        help="The head: precise, or that of 1969, which steers straight by its cell and cuts corners.",
+    )
+    @click.option(
+        "--set",
+        "changes",
+        multiple=True,
+        metavar="NAME=VALUE",
+        help="Change a setting of the head by name, such as sweep_hz=50; the unit is in the name.",
+    )
+    @functools.wraps(verb)
+    def with_head(
+        *args: Any,
+        start_mm: tuple[float, float] | None,
+        speed_mm_s: float,
+        depth_mm: float,
+        clearance_mm: float,
+        line_width_mm: float | None,
+        gap_mm: float,
+        lines: str | tuple[int, ...] | None,
+        card_file: FilePath | None,
+        kind: str,
+        changes: tuple[str, ...],
+        **options: Any,
+    ) -> Any:
+        if lines is not None and start_mm is not None:
+            raise click.UsageError("--start picks one line, --lines several; give one of them")
+        head = Head(start_mm, speed_mm_s, depth_mm, clearance_mm, line_width_mm, gap_mm, lines, None, kind, changes)
+        return verb(*args, head=head if card_file is None else head.by_card(_opened(card_file), _given), **options)
+
+    return with_head
+
+
+def _opened(card_file: FilePath) -> Card:
+    """The card; raises CardFault for a mistake on it."""
+    from tracer.card import Card
+
+    return Card.open(card_file)
+
+
+def _given(option: str) -> bool:
+    """Whether an option was given on the command line."""
+    return click.get_current_context().get_parameter_source(option) is ParameterSource.COMMANDLINE

@@ -1,0 +1,48 @@
+"""The drawing put in: the options that say how an image file is to be read, which become the `Sheet` of a verb."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path as FilePath
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from console.quantities import LENGTH
+
+if TYPE_CHECKING:
+    from tracer.drawing import Drawing
+
+
+@dataclass(frozen=True, slots=True)
+class Sheet:
+    """How the operator puts a drawing in: its scale, where its file states none or a wrong one."""
+
+    dpi: float | None = None
+    width_mm: float | None = None
+
+    def open(self, file: FilePath) -> Drawing:
+        """Open a drawing; at most one of the two scales may be given."""
+        from tracer.drawing import Drawing
+
+        if self.dpi is not None and self.width_mm is not None:
+            raise click.UsageError("--dpi and --width were both given; give one of them")
+        return Drawing.open(file, dpi=self.dpi, width_mm=self.width_mm)
+
+
+def sheet_options(verb: Callable[..., Any]) -> Callable[..., Any]:
+    """Give a verb the options of a drawing, and hand it the `sheet`."""
+
+    @click.option(
+        "--dpi",
+        type=click.FloatRange(min=0, min_open=True),
+        help="Resolution of the drawing, dots per inch.  [default: what the file states]",
+    )
+    @click.option("--width", "width_mm", type=LENGTH, help="Width of the whole sheet, such as 120mm; instead of --dpi.")
+    @functools.wraps(verb)
+    def with_sheet(*args: Any, dpi: float | None, width_mm: float | None, **options: Any) -> Any:
+        return verb(*args, sheet=Sheet(dpi, width_mm), **options)
+
+    return with_sheet
