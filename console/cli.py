@@ -42,7 +42,7 @@ Exit codes:
   6  a drive of the machine lost the tape
   7  a motion that cannot be recorded
   8  a file that cannot be read or written
-  9  a mistake in the operator's card
+  9  a mistake in the operator's card, or in a file of settings
  70  a mistake in morfax itself
 130  interrupted by Ctrl-C (143: asked to end, 129: the terminal was closed)
 

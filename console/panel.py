@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path as FilePath
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 from click.core import ParameterSource
@@ -86,6 +87,18 @@ def head_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         metavar="NAME=VALUE",
         help="Change a setting of the head by name, such as sweep_hz=50; the unit is in the name.",
     )
+    @click.option(
+        "--settings",
+        "settings_file",
+        type=medium.FILE,
+        help="Settings of the head from a file (.toml), one to a line, as --print-settings writes them. --set and other "
+        "options go before it.",
+    )
+    @click.option(
+        "--print-settings",
+        is_flag=True,
+        help="Print the settings that the head would follow with, and do nothing else.",
+    )
     @functools.wraps(verb)
     def with_head(
         *args: Any,
@@ -99,12 +112,21 @@ def head_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         card_file: FilePath | None,
         kind: str,
         changes: tuple[str, ...],
+        settings_file: FilePath | None,
+        print_settings: bool,
         **options: Any,
     ) -> Any:
         if lines is not None and start_mm is not None:
             raise click.UsageError("--start picks one line, --lines several; give one of them")
-        head = Head(start_mm, speed_mm_s, depth_mm, clearance_mm, line_width_mm, gap_mm, lines, None, kind, changes)
-        return verb(*args, head=head if card_file is None else head.by_card(_opened(card_file), _given), **options)
+        head = Head(start_mm, speed_mm_s, depth_mm, clearance_mm, line_width_mm, gap_mm, lines, None, kind)
+        head = replace(head, changes=changes)
+        if settings_file is not None:
+            head = head.by_file(_settings_in(settings_file), _given)
+        if card_file is not None:
+            head = head.by_card(_opened(card_file), _given)
+        if print_settings:
+            _print_settings(head)
+        return verb(*args, head=head, **options)
 
     return with_head
 
@@ -114,6 +136,21 @@ def _opened(card_file: FilePath) -> Card:
     from tracer.card import Card
 
     return Card.open(card_file)
+
+
+def _settings_in(settings_file: FilePath) -> dict[str, float]:
+    """Settings by name; raises CardFault for a mistake."""
+    from tracer.headfile import read_changes
+
+    return read_changes(settings_file)
+
+
+def _print_settings(head: Head) -> NoReturn:
+    """Print the settings of the head as a file that can be given again, and end."""
+    from tracer.headfile import as_toml
+
+    click.echo(as_toml(head.settings()), nl=False)
+    raise click.exceptions.Exit
 
 
 def _given(option: str) -> bool:

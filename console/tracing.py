@@ -6,8 +6,8 @@ beside.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from tracer.drawing import Drawing
     from tracer.sequence import Settings, Trace, Work
 
+SET_BY_OPTIONS = ("speed_mm_s", "gap_mm", "line_width_mm")  # settings of the head that have an option of their own
+
 
 @dataclass(frozen=True, slots=True)
 class Head:
@@ -37,6 +39,7 @@ class Head:
     lines: str | tuple[int, ...] | None = None  # the one line at the start, or the longest
     card: Card | None = None
     kind: str = "precise"
+    filed: Mapping[str, float] = field(default_factory=dict)  # settings from a file
     changes: tuple[str, ...] = ()  # NAME=VALUE
 
     def trace(self, drawing: Drawing, desk: Desk, picture: FilePath | None = None) -> Traced:
@@ -49,7 +52,7 @@ class Head:
         from tracer.tour import trace_lines
 
         desk.warn_of_compiling("the head", "motion", "tracer", "recorder")
-        settings = self._settings()
+        settings = self.settings()
         work = self._work()
         self._note_what_waits(desk)
         try:
@@ -64,19 +67,24 @@ class Head:
             raise
         return Traced(traced, thin(traced), several=self.lines is not None)
 
-    def _settings(self) -> Settings:
-        """Settings of the head; raises UsageError for one that there is not, or that is no number."""
+    def settings(self) -> Settings:
+        """Settings of the head; raises UsageError for one that there is not, or that is out of bounds."""
         from tracer.settings import choose
 
-        options = {"speed_mm_s": self.speed_mm_s, "gap_mm": self.gap_mm, "line_width_mm": self.line_width_mm}
-        changes: dict[str, object] = {name: value for name, value in options.items() if value is not None}
+        options = {name: getattr(self, name) for name in SET_BY_OPTIONS}
+        changes: dict[str, object] = {**self.filed, **{name: v for name, v in options.items() if v is not None}}
         for change in self.changes:
             name, _, value = change.partition("=")
             changes[name.strip()] = value.strip()
         try:
             return choose(self.kind, changes)
         except ValueError as error:
-            raise click.UsageError(f"--set: {error}") from None
+            raise click.UsageError(str(error)) from None
+
+    def by_file(self, filed: Mapping[str, float], given: Callable[[str], bool]) -> Head:
+        """The same with the settings of a file, but for the options that were given on the command line."""
+        own: dict[str, Any] = {name: v for name, v in filed.items() if name in SET_BY_OPTIONS and not given(name)}
+        return replace(self, filed=filed, **own)
 
     def by_card(self, card: Card, given: Callable[[str], bool]) -> Head:
         """The same with what the card says, but for the options that were given on the command line."""

@@ -9,7 +9,7 @@
     ├── FollowingFault            6      a drive lags more than its speed explains: axis, time, demand, actual, limit
     ├── MotionFault               7      a motion or path that cannot be recorded: axis, time, speed (also a ValueError)
     ├── FileFault                 8      a file that cannot be read or written (also an OSError)
-    └── CardFault                 9      a mistake in the operator's card: line, field, what it holds (also a ValueError)
+    └── CardFault                 9      a mistake in the operator's card or the head's file of settings: line, field, what it holds (also a ValueError)
 
 A message is one line: what was wrong, the value got, the values allowed, what to do next.
 """

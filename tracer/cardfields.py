@@ -35,10 +35,11 @@ D = TypeVar("D")
 
 @dataclass(frozen=True, slots=True)
 class Page:
-    """The paper: the name of the card, and the line of each field."""
+    """The paper: the name of the card, the line of each field, and what the whole is called in a fault."""
 
     name: str
     lines: Mapping[Path, int]
+    called: str = "the card"
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +58,7 @@ class Field:
     def refuse(self, allowed: str, held: str | None = None) -> NoReturn:
         """Raise the CardFault of this field."""
         line, holds = self.page.lines.get(self.path, 1), held or _shown(self.value)
-        where = self.name or "the card"
+        where = self.name or self.page.called
         raise CardFault(
             f"{self.page.name}, line {line}: {where} holds {holds}; {allowed}", line=line, field=where, holds=holds
         )
@@ -112,7 +113,7 @@ class Field:
         fields = {key: Field(value, (*self.path, key), self.page) for key, value in self.value.items()}
         for key, field in fields.items():
             if key not in keys:
-                field.refuse(f"there is no such field; {self.name or 'the card'} may hold {', '.join(keys)}")
+                field.refuse(f"there is no such field; {self.name or self.page.called} may hold {', '.join(keys)}")
         return fields
 
     def _quantity(self, allowed: str) -> str:
@@ -132,26 +133,26 @@ class Field:
         return value
 
 
-def opened(file: FilePath) -> Field:
+def opened(file: FilePath, called: str = "the card", option: str = "--card") -> Field:
     """The whole card in a file; raises FileFault if it cannot be read, CardFault if it is no TOML."""
     try:
         raw = file.read_bytes()
     except OSError as error:
-        raise FileFault(f"cannot read the card {file}: {error.strerror}; give another one with --card") from error
+        raise FileFault(f"cannot read {called} {file}: {error.strerror}; give another one with {option}") from error
     try:
-        return parsed(raw.decode("utf-8-sig"), file.name)
+        return parsed(raw.decode("utf-8-sig"), file.name, called)
     except UnicodeDecodeError as error:
         line = raw.count(b"\n", 0, error.start) + 1
-        allowed = "a card may hold text in UTF-8"
-        return Field(None, (), Page(file.name, {(): line})).refuse(allowed, "bytes that are no UTF-8")
+        allowed = "it may hold text in UTF-8"
+        return Field(None, (), Page(file.name, {(): line}, called)).refuse(allowed, "bytes that are no UTF-8")
 
 
-def parsed(text: str, name: str = "card") -> Field:
+def parsed(text: str, name: str = "card", called: str = "the card") -> Field:
     """The whole card in a text; raises CardFault if it is no TOML."""
     try:
-        return Field(tomllib.loads(text), (), Page(name, lines_of(text)))
+        return Field(tomllib.loads(text), (), Page(name, lines_of(text), called))
     except RecursionError:
-        return Field(None, (), Page(name, {})).refuse("it may hold a few", "too many brackets in one another")
+        return Field(None, (), Page(name, {}, called)).refuse("it may hold a few", "too many brackets in one another")
     except ValueError as error:
         refused = str(error)
     at = _AT.search(refused)
@@ -159,7 +160,7 @@ def parsed(text: str, name: str = "card") -> Field:
     held = (text.splitlines() or [""])[min(line, len(text.splitlines())) - 1].strip()
     why = " ".join(_AT.sub("", refused).split())
     allowed = f'a line may hold key = "value", a quantity with its unit in quotes ({why})'
-    return Field(held, (), Page(name, {(): line})).refuse(allowed)
+    return Field(held, (), Page(name, {(): line}, called)).refuse(allowed)
 
 
 def read(fields: Mapping[str, Field], key: str, how: Callable[[Field], T], otherwise: D) -> T | D:

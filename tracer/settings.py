@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
+from typing import Any
 
 import numpy as np
 
@@ -20,25 +21,43 @@ from tracer.head import Tuning
 from tracer.photocell import sweep
 from tracer.stance import Stance
 
+OF_DRIVE = "drive_"  # what the name of a setting of the drives begins with
+
+
+@dataclass(frozen=True, slots=True)
+class Bounds:
+    """What a setting may hold, in the unit that its name ends with, and what it is."""
+
+    least: float
+    most: float
+    what: str
+
+
+def _within(usual: float | None, least: float, most: float, what: str) -> Any:
+    """A setting with its usual value; what is None follows from the line."""
+    return field(default=usual, metadata={"bounds": Bounds(least, most, what)})
+
 
 @dataclass(frozen=True, slots=True)
 class Settings:
     """Settings of the head: by default the precise set. What is None follows from the line."""
 
-    speed_mm_s: float = 10.0
-    slowed: float = 0.3  # share of the speed while the look-ahead relay holds
-    slow_s: float = 0.1
-    acceleration_mm_s2: float = 500.0
-    sweep_hz: float = 250.0
-    aperture_mm: float | None = None
-    steering_lag_s: float = 0.001
-    swivel_rad_s: float = 20.0
-    gap_mm: float = 0.5
-    line_width_mm: float | None = None
-    lead_mm: float | None = None
-    amplitude_mm: float | None = None
-    look_ahead_mm: float | None = None
-    direct_rad_s_mm: float = 0.0  # steer straight by the swinging cell, turn rate per mm aside; 0: by the drum
+    speed_mm_s: float = _within(10.0, 0.01, 1000, "tracing speed (WC)")
+    slowed: float = _within(0.3, 0.01, 1, "share of the speed while the look-ahead relay holds (SR)")
+    slow_s: float = _within(0.1, 0, 10, "how long the relay holds (DL)")
+    acceleration_mm_s2: float = _within(500.0, 1, 100_000, "of the tracing speed")
+    sweep_hz: float = _within(250.0, 1, 750, "how often the cell swings (motor 45)")
+    aperture_mm: float | None = _within(None, 0, 10, "spot through which a cell sees the drawing")
+    steering_lag_s: float = _within(0.001, 0, 1, "lag of the steering servo (M, T)")
+    swivel_rad_s: float = _within(20.0, 0.1, 1000, "turn rate of the swivel at a sharp corner")
+    gap_mm: float = _within(0.5, 0, 20, "widest gap that the head goes across")
+    line_width_mm: float | None = _within(None, 0.01, 20, "width of the line")
+    lead_mm: float | None = _within(None, 0.01, 20, "how far the cell is ahead of the steering axis")
+    amplitude_mm: float | None = _within(None, 0.01, 20, "of the swing to either side")
+    look_ahead_mm: float | None = _within(None, 0.01, 100, "how far cell 102 is ahead of the steering axis")
+    direct_rad_s_mm: float = _within(
+        0.0, 0, 10_000, "steer straight by the swinging cell, turn rate per mm aside; 0: by the drum"
+    )
     drive: Drive = field(default_factory=Drive)
 
 
@@ -55,33 +74,56 @@ HISTORIC = Settings(
 HEADS = {"precise": Settings(), "historic": HISTORIC}
 
 
+BOUNDS: dict[str, Bounds] = {
+    **{f.name: f.metadata["bounds"] for f in fields(Settings) if f.name != "drive"},
+    "drive_lag_s": Bounds(0, 1, "lag of the X and Y drives (DCX, DCY)"),
+    "drive_acceleration_mm_s2": Bounds(1, 1_000_000, "what the drives' amplifiers allow"),
+}
+
+
 def choose(head: str = "precise", changes: Mapping[str, object] | None = None) -> Settings:
     """A named set of settings with changes by name; `drive_lag_s` and `drive_acceleration_mm_s2` reach the drives.
 
-    Raises ValueError for a head or a setting that there is not, and for a value that is no number or less than 0.
+    Raises ValueError for a head or a setting that there is not, and for a value that is no number or out of bounds.
     """
     if head not in HEADS:
         raise ValueError(f"there is no head {head!r}; give one of {', '.join(HEADS)}")
     settings = HEADS[head]
     for name, value in (changes or {}).items():
-        settings = _changed(settings, name, value)
+        if name not in BOUNDS:
+            raise ValueError(f"the head has no setting {name!r}; it has {', '.join(BOUNDS)}")
+        settings = _changed(settings, name, _number(name, value))
     return settings
 
 
-def _changed(settings: Settings, name: str, value: object) -> Settings:
-    """Settings with one of them set to a number."""
-    own = [f.name for f in fields(Settings) if f.name != "drive"]
-    of_drive = [f"drive_{f.name}" for f in fields(Drive)]
-    if name not in own + of_drive:
-        raise ValueError(f"the head has no setting {name!r}; it has {', '.join(own + of_drive)}")
+def value_of(settings: Settings, name: str) -> float | None:
+    """What a setting holds, by its name; None if it follows from the line."""
+    if name.startswith(OF_DRIVE):
+        return float(getattr(settings.drive, name.removeprefix(OF_DRIVE)))
+    value = getattr(settings, name)
+    return None if value is None else float(value)
+
+
+def allowed(name: str) -> str:
+    """What a setting may hold, in words."""
+    return f"a number from {BOUNDS[name].least:g} to {BOUNDS[name].most:g}, in the unit that its name ends with"
+
+
+def _number(name: str, value: object) -> float:
+    """A value of a setting; raises ValueError if it is none."""
     try:
         number = float(str(value))
     except ValueError:
         number = math.nan
-    if not (math.isfinite(number) and number >= 0):
-        raise ValueError(f"{name} is {value!r}; it must be a number of at least 0, in the unit that its name ends with")
-    if name in of_drive:
-        return replace(settings, drive=replace(settings.drive, **{name.removeprefix("drive_"): number}))
+    if not BOUNDS[name].least <= number <= BOUNDS[name].most:
+        raise ValueError(f"{name} is {value!r}; it must be {allowed(name)}")
+    return number
+
+
+def _changed(settings: Settings, name: str, number: float) -> Settings:
+    """Settings with one of them set."""
+    if name.startswith(OF_DRIVE):
+        return replace(settings, drive=replace(settings.drive, **{name.removeprefix(OF_DRIVE): number}))
     return replace(settings, **{name: number})  # type: ignore[arg-type]
 
 

@@ -6,7 +6,8 @@ from dataclasses import fields
 
 import pytest
 
-from tracer.settings import HEADS, Settings, choose
+from motion.drive import Drive
+from tracer.settings import BOUNDS, HEADS, Settings, choose, value_of
 
 
 def test_the_precise_set_is_the_default() -> None:
@@ -14,9 +15,9 @@ def test_the_precise_set_is_the_default() -> None:
 
 
 def test_every_setting_can_be_changed_by_name() -> None:
-    for field in fields(Settings):
-        if field.name != "drive":
-            assert getattr(choose("historic", {field.name: "1.5"}), field.name) == 1.5
+    for name, bounds in BOUNDS.items():
+        assert value_of(choose("historic", {name: str(bounds.most)}), name) == bounds.most
+    assert len(BOUNDS) == len(fields(Settings)) - 1 + len(fields(Drive))
     assert choose(changes={"drive_lag_s": 0.004}).drive.lag_s == 0.004
 
 
@@ -26,8 +27,9 @@ def test_every_setting_can_be_changed_by_name() -> None:
         ("modern", {}, "there is no head 'modern'; give one of precise, historic"),
         ("precise", {"colour": 1}, "the head has no setting 'colour'; it has speed_mm_s"),
         ("precise", {"lead_mm": "two"}, "lead_mm is 'two'; it must be a number"),
-        ("precise", {"lead_mm": -1}, "lead_mm is -1; it must be a number of at least 0"),
+        ("precise", {"lead_mm": -1}, "lead_mm is -1; it must be a number from 0.01 to 20"),
         ("precise", {"lead_mm": "nan"}, "lead_mm is 'nan'"),
+        ("precise", {"sweep_hz": 0}, "sweep_hz is 0; it must be a number from 1 to 750, in the unit"),
     ],
 )
 def test_a_mistake_is_said_in_one_line(head: str, changes: dict[str, object], said: str) -> None:
