@@ -8,16 +8,23 @@ The tacho closes the loop round the motor, so that what is left is one lag, and 
 
 stepped exactly for the lag: v += clip((demand - v)·(1 - exp(-dt/lag)), ±acceleration·dt).
 
+What may be wrong with a drive is its `Condition`: of the demand a share is left, friction takes a part of what is left,
+a runaway adds to it, and a stuck axis does not turn.
+
 Source: patent ES 361967, figure 1 (amplifiers DCX and DCY, tachos TX and TY, motors 17 and 12) and figure 5 (amplifier 161, motor 163).
 Questions: the patent gives no figures. Chosen: a lag of 1 ms and 5 m/s², a modern servo; the historic set takes 30 ms.
+Conditions are in no patent; they are what a monitor is for.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,8 +39,34 @@ class Drive:
         return 1.0 - math.exp(-dt_s / self.lag_s) if self.lag_s > 0 else 1.0
 
 
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """What is wrong with a drive: share of its gain left, friction that holds it, a speed it runs away with."""
+
+    gain_share: float = 1.0
+    friction_mm_s: float = 0.0
+    runaway_mm_s: float = 0.0
+    stuck: bool = False
+
+
+SOUND = Condition()
+
+
+def as_rows(conditions: Sequence[Condition]) -> NDArray[np.float64]:
+    """Conditions as `conditioned_step` takes them, a row for each axis."""
+    return np.array([[c.gain_share, c.friction_mm_s, c.runaway_mm_s, not c.stuck] for c in conditions], np.float64)
+
+
 @njit(cache=True, inline="always")
 def drive_step(speed_mm_s, demand_mm_s, gain, largest_change_mm_s):  # type: ignore[no-untyped-def]
     """Speed of the screw after one period, mm/s."""
     change = (demand_mm_s - speed_mm_s) * gain
     return speed_mm_s + min(max(change, -largest_change_mm_s), largest_change_mm_s)
+
+
+@njit(cache=True, inline="always")
+def conditioned_step(speed_mm_s, demand_mm_s, gain, largest_change_mm_s, condition):  # type: ignore[no-untyped-def]
+    """Speed of the screw after one period, mm/s, with what is wrong with the drive."""
+    left = demand_mm_s * condition[0]
+    wanted = left - min(max(left, -condition[1]), condition[1]) + condition[2]
+    return drive_step(speed_mm_s, wanted, gain, largest_change_mm_s) * condition[3]

@@ -34,11 +34,13 @@ class Playback(Protocol):
 
     start_mm: Array
     end_mm: Array
-    following_error_mm: Array
     end_error_mm: Array | None
 
     @property
     def duration_s(self) -> float: ...
+
+    @property
+    def following_error_mm(self) -> Array: ...
 
     def __iter__(self) -> Iterator[Motion]: ...
 

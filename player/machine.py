@@ -27,12 +27,14 @@ from typing import BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
+from motion.drive import SOUND
 from motion.faults import Fault, LockFault, TapeFault
 from motion.motion import AXES, Motion
 from player.bearings import STANDSTILL_S, Bearings, take_bearings
 from player.discriminator import Discriminator, Float32s, Phases, discriminate
 from player.dropouts import Gaps, under_way
-from player.phase_lock import Drives, PhaseLock
+from player.monitor import Supervised
+from player.phase_lock import Drives, PhaseLock, following_limit
 from player.watch import Watch, demand_apart
 from recorder.pipe import Pipe, Samples
 from recorder.tape import Tape, TapeFormat
@@ -96,12 +98,12 @@ def _check_resumption(resume_at_s: float, start_mm: Sequence[float] | None, dura
         raise ValueError(f"where the machine stands at {resume_at_s:g} s must be said; give the place (--from X,Y,Z)")
 
 
-class Playback:
+class Playback(Supervised):
     """A tape in the machine: iterate for the machine's motion, as often as wanted.
 
     Known beforehand: `format`, `frames`, `duration_s`, `start_mm`. Figures of the last time through, one per axis of
     the tape: `following_error_mm` (the largest), `end_mm` (where the machine stands), `end_error_mm` (against the end
-    that the tape states; None before the end, or if it states none).
+    that the tape states; None before the end, or if it states none). `conditions`: what is wrong with the drives.
     """
 
     def __init__(
@@ -119,8 +121,10 @@ class Playback:
         self._rows = 0
         self.start_mm: Array = np.array(fmt.start_mm, dtype=np.float64)
         self.end_mm: Array = self.start_mm.copy()
-        self.following_error_mm: Array = np.zeros(len(fmt.axes))
         self.end_error_mm: Array | None = None
+        self.conditions = [SOUND] * len(fmt.axes)
+        self.limit = following_limit(settings, fmt.mm_per_cycle, fmt.motion_rate_hz)
+        self.supervise(fmt.axes, fmt.motion_rate_hz)
 
     @property
     def duration_s(self) -> float:
@@ -128,20 +132,26 @@ class Playback:
         return self.frames / self.format.sample_rate_hz
 
     def __iter__(self) -> Iterator[Motion]:
-        """Play: the machine's motion in blocks; raises TapeFault or LockFault after the last sample that was right."""
+        """Play: the motion in blocks; raises TapeFault, LockFault or FollowingFault after the last sample that was right."""
         fmt = self.format
         drives = Drives(len(fmt.axes), fmt.mm_per_cycle, fmt.motion_rate_hz, self.settings)
-        self.following_error_mm, self.end_error_mm = drives.largest_error_mm, None
+        drives.conditions = self.conditions
+        monitor, self.end_error_mm = self.supervise(fmt.axes, fmt.motion_rate_hz), None
         for phases, bearings, gap in self._phases():
             found = bearings.first_fault(phases, fmt.motion_rate_hz, self.end_mm.tolist()) or gap
             sound = len(phases) if found is None else min(found[0], len(phases))
-            displacement_mm = drives.follow(phases.cycles[:sound] - bearings.zero_cycles)
-            self.end_mm = self.start_mm + drives.displacement_mm
-            if len(displacement_mm):
-                self._rows = phases.first_row + len(displacement_mm)
-                yield self._motion(displacement_mm, phases.first_row)
-            if len(displacement_mm) < sound:
-                raise self._out_of_range(drives, phases.first_row + len(displacement_mm))
+            cycles = phases.cycles[:sound] - bearings.zero_cycles
+            places_mm = drives.follow(cycles) + self.start_mm
+            demand_mm = cycles[: len(places_mm)] * fmt.mm_per_cycle + self.start_mm
+            monitor.rows_seen = phases.first_row
+            rows = monitor.watch(demand_mm, places_mm)
+            if rows:
+                self._rows, self.end_mm = phases.first_row + rows, places_mm[rows - 1]
+                yield self._motion(places_mm[:rows], phases.first_row)
+            if rows < len(places_mm):
+                raise monitor.warnings[-1]
+            if rows < sound:
+                raise self._out_of_range(drives, phases.first_row + rows)
             if found is not None:
                 raise found[1]
         self._check_end()
@@ -210,15 +220,14 @@ class Playback:
             f"{filter_frames} frames; record it again"
         )
 
-    def _motion(self, displacement_mm: Array, first_row: int) -> Motion:
+    def _motion(self, places_mm: Array, first_row: int) -> Motion:
         """A block of positions: X, Y, Z and what other axes the tape has; an axis without a track stands at 0."""
         rate_hz, names = self.format.motion_rate_hz, self.format.axes
         if tuple(names[: len(AXES)]) == AXES:
-            return Motion(self.start_mm + displacement_mm, rate_hz, first_row / rate_hz)
+            return Motion(places_mm, rate_hz, first_row / rate_hz)
         columns = [*AXES, *(name for name in names if name not in AXES)]
-        positions_mm = np.zeros((len(displacement_mm), len(columns)))
-        for axis, name in enumerate(names):
-            positions_mm[:, columns.index(name)] = self.start_mm[axis] + displacement_mm[:, axis]
+        positions_mm = np.zeros((len(places_mm), len(columns)))
+        positions_mm[:, [columns.index(name) for name in names]] = places_mm
         return Motion(positions_mm, rate_hz, first_row / rate_hz)
 
     def _out_of_range(self, drives: Drives, row: int) -> LockFault:

@@ -30,22 +30,26 @@ comparator (feed-forward is not in the patent); natural frequency 250 Hz, dampin
 0.5 m/s² to 0.5 um, a phase margin of 49 degrees. Twice as fast would follow noise of 26 dB up to the motor's limit.
 Without the lead in amplifier 161 a loop beyond about 70 Hz round a motor of 1 ms cannot be damped. While the motor's
 current is at its limit the integrator stands, else it would run on and the screw far past. The decoder's range is 4
-cycles (0.2 mm): a start or stop from 40 mm/s at once is still followed, more is a fault.
+cycles (0.2 mm): a start or stop from 40 mm/s at once is still followed, more is a fault. That range is one limit for
+all speeds; below it `following_limit` allows what a sound drive needs at the speed that the tape asks for.
 """
 
 from __future__ import annotations
 
 import cmath
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from motion.drive import Drive, drive_step
+from motion.drive import SOUND, Drive, as_rows, conditioned_step
+from player.monitor import FollowingLimit, learn_table
 
 Array = NDArray[np.float64]
+TOLERANCE_CYCLES = 0.25  # of following: noise of the phase, and what a dropout leaves unknown
+TRIED_SPEEDS = 16
 STEPS_PER_PERIOD = 20.0
 FEWEST_STEPS = 10.0  # per natural period
 POSITION, SPEED, DEMAND, LEAD, ERROR = range(5)  # columns of the state of an axis
@@ -110,7 +114,7 @@ class Drives:
         drive = self.settings.drive
         self._drive = np.array([drive.gain(self._dt_s), drive.acceleration_mm_s2 * self._dt_s])
         self._state = np.zeros((axes, 5))
-        self.largest_error_mm = np.zeros(axes)
+        self.conditions = [SOUND] * axes
 
     def follow(self, cycles: Array) -> Array:
         """Displacements (n, axes) in mm for phases (n, axes); fewer rows where a drive left the decoder's range."""
@@ -118,7 +122,7 @@ class Drives:
         moved = np.empty_like(cycles)
         range_mm = self.settings.range_cycles * self._mm_per_cycle
         scale = np.array([self._mm_per_cycle, range_mm, self._dt_s])
-        rows = _follow(cycles, scale, self._network, self._drive, self._state, self.largest_error_mm, moved)
+        rows = _follow(cycles, scale, self._network, self._drive, as_rows(self.conditions), self._state, moved)
         return moved[:rows]
 
     @property
@@ -126,14 +130,26 @@ class Drives:
         """What the comparators last saw, mm."""
         return self._state[:, ERROR].copy()
 
-    @property
-    def displacement_mm(self) -> Array:
-        """Where the screws now stand, mm from the start."""
-        return self._state[:, POSITION].copy()
+
+def following_limit(settings: PhaseLock, mm_per_cycle: float, rate_hz: float) -> FollowingLimit:
+    """The following error that a tape's speed explains: at each the largest of a sound drive turned round at once.
+
+    No program whose axis runs at a speed can ask for a greater change than from there to as fast the other way. A rate
+    is held for twice the time in which the motor stops out of the fastest speed that it can be stopped from at once.
+    """
+    range_mm, most_mm_s2 = settings.range_cycles * mm_per_cycle, settings.drive.acceleration_mm_s2
+    speeds = np.linspace(0, math.sqrt(range_mm * most_mm_s2 / 2), TRIED_SPEEDS + 1)[1:]
+    half = round(rate_hz * (0.05 + 4 * speeds[-1] / most_mm_s2))
+    turn = (half - np.abs(np.arange(2 * half) - half))[:, None] / rate_hz * speeds
+    sound = Drives(TRIED_SPEEDS, 1.0, rate_hz, replace(settings, range_cycles=math.inf)).follow(turn)
+    learnt = learn_table(turn, sound, rate_hz, [0.0, *(speeds[:-1] * (1 + 1e-6))])
+    hold_s = 2 * math.sqrt(2 * range_mm / most_mm_s2)
+    points = [(speed, min(error_mm, range_mm)) for speed, error_mm in learnt] + [(float(speeds[-1]), range_mm)]
+    return FollowingLimit.table(points, TOLERANCE_CYCLES * mm_per_cycle, hold_s=hold_s)
 
 
 @njit(cache=True, nogil=True)
-def _follow(cycles, scale, network, drive, state, largest_mm, moved_mm):  # type: ignore[no-untyped-def]
+def _follow(cycles, scale, network, drive, conditions, state, moved_mm):  # type: ignore[no-untyped-def]
     """Step all axes through a block; the number of rows done before an error was out of range."""
     mm_per_cycle, range_mm, dt_s = scale
     gain, zero, lead_zero, lead_pole = network
@@ -146,11 +162,10 @@ def _follow(cycles, scale, network, drive, state, largest_mm, moved_mm):  # type
             state[axis, ERROR] = now
             if not abs(now) <= range_mm:  # fault circuit 162; also where the phase is no number
                 return row
-            largest_mm[axis] = max(largest_mm[axis], abs(now))
             lead_now = lead_pole * lead + now - lead_zero * error  # amplifier 161
             demand += gain * (lead_now - zero * lead)  # integrator 159
             demand = min(max(demand, speed - reach), speed + reach)  # it runs no further than the motor's current
-            speed_now = drive_step(speed, demand, drive[0], drive[1])  # motor 163 under its tacho
+            speed_now = conditioned_step(speed, demand, drive[0], drive[1], conditions[axis])  # motor 163, tacho
             state[axis, POSITION] = position + (speed + speed_now) / 2 * dt_s
             state[axis, SPEED], state[axis, DEMAND], state[axis, LEAD] = speed_now, demand, lead_now
     return len(cycles)

@@ -12,7 +12,7 @@ A servo of type 1: at constant speed it is behind by speed / gain, the following
 
 Source: patent ES 414458, figure 1 and claim 1; the computer that steps it under its micro-program is this kernel.
 Questions: the patent gives no figures. Chosen: gain 16.667 1/s (1 m/min per mm), increments of 1 um, the drive of
-`motion.drive`. `Condition` is what may be wrong with a drive; nothing of that is in the patent.
+`motion.drive`, whose `Condition` says what may be wrong with it.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from motion.drive import Drive, drive_step
+from motion.drive import SOUND, Drive, as_rows, conditioned_step
 from motion.motion import MOTION_RATE_HZ
 
 POSITION, MOVING = range(2)  # columns of the state of an axis: mm and mm/s
@@ -45,19 +45,6 @@ class PositionServo:
         return 1 / self.gain_per_s
 
 
-@dataclass(frozen=True, slots=True)
-class Condition:
-    """What is wrong with a drive: share of its gain left, friction that holds it, a speed it runs away with."""
-
-    gain_share: float = 1.0
-    friction_mm_s: float = 0.0
-    runaway_mm_s: float = 0.0
-    stuck: bool = False
-
-
-SOUND = Condition()
-
-
 class PositionServos:
     """The servos of a machine; state is carried from block to block, so a drive may break between two of them."""
 
@@ -76,25 +63,21 @@ class PositionServos:
         common = np.array(
             [drive.gain(dt_s), drive.acceleration_mm_s2 * dt_s, self.settings.increment_mm, dt_s], np.float64
         )
-        each = np.array([[c.gain_share, c.friction_mm_s, c.runaway_mm_s, not c.stuck] for c in self.conditions])
-        each[:, 0] *= self.settings.gain_per_s
         actual = np.empty_like(demand)
-        _follow(demand, common, each, self._state, actual)
+        _follow(demand, self.settings.gain_per_s, common, as_rows(self.conditions), self._state, actual)
         return actual
 
 
 @njit(cache=True, nogil=True)
-def _follow(demand_mm, common, each, state, actual_mm):  # type: ignore[no-untyped-def]
+def _follow(demand_mm, gain_per_s, common, conditions, state, actual_mm):  # type: ignore[no-untyped-def]
     """Step all axes through a block."""
     share, largest_change, increment_mm, dt_s = common
     for axis in range(len(state)):
-        gain, friction, runaway, free = each[axis]
         position, speed = state[axis]
         for row in range(len(demand_mm)):
             seen = round(position / increment_mm) * increment_mm
             actual_mm[row, axis] = seen
-            wanted = gain * (demand_mm[row, axis] - seen)
-            wanted = wanted - min(max(wanted, -friction), friction) + runaway
-            speed = drive_step(speed, wanted, share, largest_change) * free
+            wanted = gain_per_s * (demand_mm[row, axis] - seen)
+            speed = conditioned_step(speed, wanted, share, largest_change, conditions[axis])
             position += speed * dt_s
         state[axis, POSITION], state[axis, MOVING] = position, speed

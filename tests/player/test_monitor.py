@@ -10,11 +10,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from motion.drive import Condition
 from motion.motion import MOTION_RATE_HZ
 from motion.ramp import Ramp, positions_mm
 from player import monitor, position_servo
+from player.chart import Chart
 from player.monitor import FollowingLimit, Monitor, allowed_mm, learn_table
-from player.position_servo import Condition, PositionServo, PositionServos
+from player.position_servo import PositionServo, PositionServos
 
 INCREMENT_MM = PositionServo().increment_mm
 WIDE_MM = 6.1  # the single limit that a rapid of 100 mm/s wants
@@ -114,11 +116,36 @@ def test_blocks_are_as_the_whole() -> None:
     assert parts.rows_seen == whole.rows_seen
 
 
-def test_limits_for_a_plot_are_the_limits() -> None:
-    demand = move(10.0, 0.5)
-    watch, limits = Monitor("x", MOTION_RATE_HZ), np.empty((len(demand), 1))
-    watch.watch(demand, demand, limits)
-    assert limits[0, 0] == pytest.approx(0.1) and limits.max() == pytest.approx(0.7, abs=1e-6)
+def test_a_chart_of_every_row_holds_demand_actual_and_limit() -> None:
+    demand, chart = move(10.0, 0.5), Chart(every_s=0)
+    actual = PositionServos(demand[0]).follow(demand)
+    Monitor("x", MOTION_RATE_HZ, FollowingLimit.linear(settle_s=0.06), chart=chart).watch(demand, actual)
+    assert (chart.demand_mm == demand).all() and (chart.actual_mm == actual).all()
+    assert chart.limit_mm[0, 0] == pytest.approx(0.1) and chart.limit_mm.max() == pytest.approx(0.7, abs=1e-3)
+    assert chart.t_s == pytest.approx(np.arange(len(demand)) / MOTION_RATE_HZ)
+
+
+@given(st.integers(1, 400), st.integers(1, 90))
+def test_a_chart_keeps_of_each_stretch_and_axis_the_row_nearest_to_its_limit(block: int, stretch: int) -> None:
+    rng, chart = np.random.default_rng(block), Chart(every_s=stretch / 1000)
+    actual = rng.normal(size=(500, 2))
+    watch = Monitor("xy", 1000.0, FollowingLimit.linear(tolerance_mm=9.0), stop=False, chart=chart)
+    for first in range(0, 500, block):
+        watch.watch(np.zeros_like(actual[first : first + block]), actual[first : first + block])
+    assert np.abs(chart.error_mm).max(axis=0) == pytest.approx(watch.largest_error_mm)
+    starts = np.rint(chart.t_s * 1000).astype(int)
+    kept = np.maximum.reduceat(np.abs(actual), starts, axis=0)
+    assert (np.abs(chart.error_mm) == kept).all() and (np.diff(starts) <= stretch).all()
+
+
+def test_a_chart_begins_anew_with_each_run_and_ends_with_the_row_of_the_fault() -> None:
+    demand, chart = move(1.0), Chart()
+    assert len(chart.t_s) == len(chart.limit_mm) == 0
+    for _ in range(2):
+        watch = Monitor("x", MOTION_RATE_HZ, chart=chart)
+        rows = watch.watch(demand, run(demand, 6000, Condition(stuck=True)))
+    assert chart.t_s[-1] <= rows / MOTION_RATE_HZ < chart.t_s[-1] + 0.01
+    assert chart.error_mm[-1, 0] == watch.warnings[0].demand_mm - watch.warnings[0].actual_mm
 
 
 def test_a_position_that_is_no_number_is_a_fault() -> None:
@@ -156,7 +183,7 @@ def test_the_servo_is_behind_by_its_lag_and_arrives() -> None:
 def test_the_compiled_kernels_are_the_plain_ones(monkeypatch: pytest.MonkeyPatch) -> None:
     demand = np.column_stack([move(5.0, 0.1), -move(5.0, 0.1)])
     broken = Condition(gain_share=0.4, friction_mm_s=0.1, runaway_mm_s=0.2)
-    limit = FollowingLimit.table([(0, 0), (3, 0.02), (4, 0.1)], 0.01, settle_s=0.01)
+    limit = FollowingLimit.table([(0, 0), (3, 0.02), (4, 0.1)], 0.01, settle_s=0.01, hold_s=0.002)
     results = []
     for plain in (False, True):
         if plain:

@@ -11,7 +11,8 @@ from scipy.signal import dlsim, dlti
 from motion.contour import distance
 from motion.drive import Drive
 from player import phase_lock as organ
-from player.phase_lock import Drives, PhaseLock, place
+from player.monitor import Monitor
+from player.phase_lock import Drives, PhaseLock, following_limit, place
 from tests.player.carriers import CYCLES_PER_MM, MOTION_RATE_HZ, UM, Course, along, circle, square
 
 DT_S = 1 / MOTION_RATE_HZ
@@ -96,6 +97,33 @@ def test_a_stop_at_once_is_followed() -> None:
     assert len(moved) == len(told)
     assert abs(moved[-1, 0] - told[-1, 0]) < 1e-6 * UM
     assert np.abs(moved - told).max() < 1.05 * 40.0**2 / (2 * 5000.0)  # 3.2 cycles: what 5 m/s² needs, hardly more
+
+
+LOCKS = (PhaseLock(), PhaseLock(150, 0.707), PhaseLock(drive=Drive(lag_s=0.004, acceleration_mm_s2=800.0)))
+
+
+@pytest.mark.parametrize("lock", LOCKS)
+@given(share=st.floats(0.01, 0.99), onto=st.sampled_from([-1.0, -0.5, 0.0, 0.5]), noise_um=st.sampled_from([0.0, 0.04]))
+@settings(max_examples=30, deadline=None)
+def test_a_sound_drive_passes_the_monitor_at_any_start_stop_and_turn_at_once(
+    lock: PhaseLock, share: float, onto: float, noise_um: float
+) -> None:
+    # From rest to the fastest speed that it can be turned round from within its range, and at once to another one.
+    speed = share * np.sqrt(lock.range_cycles * Q_MM * lock.drive.acceleration_mm_s2 / 2)
+    t_s = np.arange(4800) * DT_S
+    told = speed * (np.clip(t_s - 0.1, 0, 0.3) + onto * np.clip(t_s - 0.4, 0, None))[:, None]
+    told = told + np.random.default_rng(7).normal(0, noise_um * UM, told.shape)
+    watch = Monitor("x", MOTION_RATE_HZ, following_limit(lock, Q_MM, MOTION_RATE_HZ))
+    moved = follow(told, lock)  # near the range the slower loop leaves it: that is the fault circuit's to say
+    assert watch.watch(told[: len(moved)], moved) == len(moved) and (len(moved) == len(told) or share > 0.9)
+
+
+def test_the_limit_of_a_tape_drive_is_its_own_error_at_low_speed_and_its_range_at_high() -> None:
+    limit = following_limit(PhaseLock(), Q_MM, MOTION_RATE_HZ)
+    assert limit.limit_mm(1.0) < 17 * UM  # a twelfth of the range: a quarter of a cycle, and 4 um of turning round
+    braked_mm = 2 * 10.0**2 / 5000.0  # from 10 mm/s to as fast the other way, at the limit of the current
+    assert braked_mm < limit.limit_mm(10.0) - limit.tolerance_mm < 1.6 * braked_mm
+    assert limit.limit_mm(100.0) == pytest.approx(4.25 * Q_MM)
 
 
 def test_noise_of_40_db_stays_below_a_tenth_of_a_micrometre() -> None:
