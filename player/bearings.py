@@ -21,13 +21,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from motion.faults import Fault, LockFault, TapeFault
 from player.discriminator import Phases
+from recorder.pickups import DEFAULT_PICK_UP, PICK_UPS
 from recorder.tapeformat import TapeFormat
 
 STANDSTILL_S = 0.05
@@ -90,8 +91,11 @@ def take_bearings(frames: Float32s, phases: Phases, fmt: TapeFormat) -> Bearings
     rows = max(round(STANDSTILL_S * fmt.motion_rate_hz), 1)
     levels = phases.levels[:rows].astype(np.float64).mean(axis=0)
     for track in range(len(levels)):
-        _demand_round(track, still[:, track], names)
-        _demand_carrier(track, float(levels[track]), float(power[track]), names)
+        sensor = PICK_UPS[DEFAULT_PICK_UP] if track == 0 else fmt.sensor  # the reference comes from its source, a sine
+        share = CARRIER_SHARE * sensor.fundamental_share(reference_hz, fmt.sample_rate_hz)
+        if not sensor.flat:
+            _demand_round(track, still[:, track], names)
+        _demand_carrier(track, float(levels[track]), float(power[track]), share, names)
     zero = _zero(phases.cycles[:rows])
     if fmt.dwell_s >= STANDSTILL_S and not phases.first_row:
         _demand_standstill(phases.cycles[:rows], names)
@@ -133,6 +137,17 @@ def _demand_steady(standing: Float64s, names: Sequence[str]) -> None:
             f"the phase of {names[axis].upper()} swings by {swing[axis]:.3f} cycle (RMS) at standstill, at most "
             f"{UNSTEADY_CYCLES:g} is allowed: noise, crosstalk or tape that weaves; copy the tape on a better machine"
         )
+
+
+def evened(phases: Phases, fmt: TapeFormat) -> Phases:
+    """The rows with levels as they would be at standstill: those of a coil grow with the frequency of their track."""
+    if not fmt.sensor.by_speed or len(phases) < 2:
+        return phases
+    speed = np.gradient(phases.cycles, axis=0) * fmt.motion_rate_hz
+    most = fmt.largest_deviation_hz  # what the phase does in a dropout is no speed
+    levels = phases.levels.copy()
+    levels[:, 1:] /= 1 + np.clip(speed, -most, most) / fmt.reference_hz
+    return replace(phases, levels=levels)
 
 
 def strongest_hz(samples: Float32s, sample_rate_hz: float) -> float:
@@ -184,11 +199,11 @@ def _demand_round(track: int, samples: Float32s, names: Sequence[str]) -> None:
         )
 
 
-def _demand_carrier(track: int, level: float, mean_square: float, names: Sequence[str]) -> None:
+def _demand_carrier(track: int, level: float, mean_square: float, least: float, names: Sequence[str]) -> None:
     """Raise TapeFault for a track with a signal but no carrier in it."""
     share = level**2 / 2 / mean_square
-    if not share >= CARRIER_SHARE:
+    if not share >= least:
         raise TapeFault(
             f"track {track + 1} ({track_name(track, names)}) has no carrier: {share:.1%} of its power lies round the "
-            f"reference, at least {CARRIER_SHARE:.0%} is needed; this is no tape for it, or its reference is another"
+            f"reference, at least {least:.0%} is needed; this is no tape for it, or its reference is another"
         )

@@ -30,7 +30,7 @@ from numpy.typing import NDArray
 from motion.drive import SOUND
 from motion.faults import Fault, LockFault, TapeFault
 from motion.motion import AXES, Motion
-from player.bearings import STANDSTILL_S, Bearings, take_bearings
+from player.bearings import STANDSTILL_S, Bearings, evened, take_bearings
 from player.discriminator import Discriminator, Float32s, Phases, discriminate
 from player.dropouts import Gaps, under_way
 from player.monitor import Supervised
@@ -172,7 +172,7 @@ class Playback(Supervised):
                     held[0] = block
                     yield block
 
-            rows = (rows.moved(first_row - lead) for rows in discriminate(noted(), discriminator))
+            rows = (evened(rows.moved(first_row - lead), fmt) for rows in discriminate(noted(), discriminator))
             start = next(rows, None)
             if start is None:
                 raise self._too_short(discriminator.filter_frames)

@@ -109,7 +109,7 @@ class _Take:
 
     def __init__(self, fmt: TapeFormat, first_mm: Array, progress: Progress | None, total_s: float | None) -> None:
         self._format, self._progress, self._total_s = fmt, progress, total_s
-        self._carrier = Carrier(fmt.pick_up, first_mm)
+        self._carrier = Carrier(fmt.carrier, first_mm)
         self._samples = 0
         self.count = 0
         self.last_mm = first_mm

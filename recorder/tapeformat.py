@@ -4,6 +4,8 @@
      "start_mm": [40.1, 12.0, 2.0], "end_mm": [40.1, 12.0, 2.0], "dwell_s": 1.0, "level": 0.5,
      "samples_per_motion": 8}
 
+A tape whose pick-ups are not resolvers has one more entry, `"pickup": "photocell"`, and is of version 2.
+
 Signals: track 1 is the reference, then one per axis; phase of a track - phase of the reference = displacement from
 `start_mm` times `cycles_per_mm`, in cycles. An axis may use a third of the reference as deviation, which leaves room to
 tell the tracks from hum below and from the reference's own harmonics above.
@@ -20,8 +22,9 @@ from typing import Any, TypeGuard
 
 from motion.faults import TapeFault
 from recorder.carrier import PickUp
+from recorder.pickups import DEFAULT_PICK_UP, PICK_UPS, Sensor
 
-VERSION = 1
+VERSION = 2  # the latest; version 1 has no entry `pickup`
 LARGEST_TEXT_BYTES = 2000  # libsndfile 1.2 reads no text chunk of a WAV from 2048 bytes on
 LARGEST_DEVIATION = 1.0 / 3.0  # of the reference
 _MOST_AXES = 15
@@ -31,12 +34,13 @@ _AGAIN = "record the tape again"
 
 @dataclass(frozen=True, slots=True)
 class TapeFormat:
-    """Format of a tape; raises ValueError if it cannot be. `level` is the peak of a carrier, full scale 1.
+    """Format of a tape; raises ValueError if it cannot be. `level` is the amplitude of a carrier, full scale 1.
 
-    Without `start_mm` the start is zero on all axes; `end_mm` is None where it is not known.
+    Without `start_mm` the start is zero on all axes; `end_mm` is None where it is not known. The version is the lowest
+    that can say it.
     """
 
-    version: int = VERSION
+    version: int = 1
     sample_rate_hz: int = 48000
     reference_hz: float = 6000.0
     cycles_per_mm: float = 20.0
@@ -46,10 +50,15 @@ class TapeFormat:
     dwell_s: float = 1.0
     level: float = 0.5
     samples_per_motion: int = 8
+    pickup: str = DEFAULT_PICK_UP
 
     def __post_init__(self) -> None:
         _check_numbers(self)
         _check_axes(self)
+        _demand(self.pickup in PICK_UPS, "pickup", self.pickup, f"one of {', '.join(PICK_UPS)}")
+        most = 1 / self.sensor.largest
+        _demand(self.level <= most, "level", self.level, f"at most {most:.3g}, where a {self.pickup} reaches full scale")
+        object.__setattr__(self, "version", 1 if self.pickup == DEFAULT_PICK_UP else 2)
         object.__setattr__(self, "start_mm", self.start_mm or (0.0,) * len(self.axes))
         for name in ("start_mm", "end_mm"):
             _check_place(self, name)
@@ -87,14 +96,20 @@ class TapeFormat:
         return self.largest_deviation_hz / self.cycles_per_mm
 
     @property
-    def pick_up(self) -> PickUp:
+    def sensor(self) -> Sensor:
+        """The kind of pick-up that made the tracks of the axes."""
+        return PICK_UPS[self.pickup]
+
+    @property
+    def carrier(self) -> PickUp:
         """What the carrier needs of the format."""
         hz, rate = self.reference_hz, self.sample_rate_hz
-        return PickUp(hz, self.cycles_per_mm, rate, self.samples_per_motion, self.level)
+        return PickUp(hz, self.cycles_per_mm, rate, self.samples_per_motion, self.level, self.sensor)
 
     def to_json(self) -> str:
         """The format as one line of JSON."""
-        return json.dumps(asdict(self), allow_nan=False)
+        entries = _entries(self.version)
+        return json.dumps({name: value for name, value in asdict(self).items() if name in entries}, allow_nan=False)
 
     @classmethod
     def from_json(cls, text: str) -> TapeFormat:
@@ -131,7 +146,7 @@ def _object(text: str) -> dict[str, Any]:
 
 def _check_entries(values: dict[str, Any]) -> None:
     """Raise TapeFault unless exactly the entries of this version are there."""
-    known = {field.name for field in fields(TapeFormat)}
+    known = _entries(values.get("version"))
     missing, unknown = sorted(known - values.keys()), sorted(values.keys() - known)
     if missing:
         raise TapeFault(f"the tape's text chunk lacks {missing[0]}; {_AGAIN}")
@@ -139,16 +154,20 @@ def _check_entries(values: dict[str, Any]) -> None:
         raise TapeFault(f"the tape's text chunk has an unknown entry {unknown[0][:30]!r}; {_AGAIN}")
 
 
+def _entries(version: object) -> set[str]:
+    """The entries that a text of a version has."""
+    return {field.name for field in fields(TapeFormat)} - (set() if version == 2 else {"pickup"})
+
+
 def _check_numbers(fmt: TapeFormat) -> None:
     """Raise ValueError for the first number that cannot be."""
-    _demand(_is_number(fmt.version) and fmt.version == VERSION, "version", fmt.version, f"{VERSION}")
+    _demand(_is_number(fmt.version) and fmt.version in (1, 2), "version", fmt.version, "1 or 2")
     for name, most in (("sample_rate_hz", 2**31), ("samples_per_motion", 10_000)):
         value = getattr(fmt, name)
         _demand(isinstance(value, int) and 2 <= value <= most, name, value, f"a whole number from 2 to {most}")
     for name in ("reference_hz", "cycles_per_mm", "level"):
         value = getattr(fmt, name)
         _demand(_is_number(value) and value > 0, name, value, "a number above zero")
-    _demand(fmt.level <= 1, "level", fmt.level, "at most 1, full scale")
     _demand(
         _is_number(fmt.dwell_s) and 0 <= fmt.dwell_s <= 3600, "dwell_s", fmt.dwell_s, "a number of s from 0 to 3600"
     )
