@@ -26,6 +26,8 @@ bench: $(VENV)/installed
 
 figures: $(VENV)/installed
 	$(BIN)/python -m docs.figures
+	$(BIN)/python -m docs.pulse_figures
+	$(BIN)/python -m docs.tape_figures
 
 # the tests of trust at full length: every pair of wear, ten thousand dropouts; an hour or two
 soak: $(VENV)/installed

@@ -7,7 +7,15 @@ from typing import Any
 
 import click
 
-from motion.units import parse_frequency_hz, parse_length_mm, parse_place_mm, parse_speed_mm_s, parse_time_s
+from motion.units import (
+    parse_angle_rad,
+    parse_frequency_hz,
+    parse_length_mm,
+    parse_place_mm,
+    parse_share,
+    parse_speed_mm_s,
+    parse_time_s,
+)
 
 
 class Quantity(click.ParamType):
@@ -57,6 +65,8 @@ def _parse_lines(text: str) -> str | tuple[int, ...]:
 LENGTH = Quantity("length", parse_length_mm, above_zero=True)
 SPEED = Quantity("speed", parse_speed_mm_s)
 FREQUENCY = Quantity("frequency", parse_frequency_hz)
+ANGLE = Quantity("angle", parse_angle_rad)
+SHARE = Quantity("share", parse_share)
 NUMBER = Quantity("number", _number, above_zero=True)
 PLACE = Quantity("x,y", parse_place_mm)
 PLACES = Quantity("x,y,z", _parse_places_mm)

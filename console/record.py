@@ -11,6 +11,7 @@ from console import medium
 from console.desk import Desk, desk_options
 from console.playing import CYCLES_PER_MM, Controls
 from console.quantities import FREQUENCY, LENGTH, SPEED
+from console.unit import Unit, unit_options
 
 if TYPE_CHECKING:
     from motion.motion import Path
@@ -20,7 +21,7 @@ Examples:
   morfax record cam.csv -o cam.wav
   morfax record cam.wav -o cam.steps --tolerance 20um
   morfax record outline.csv -o slow.wav --feed 300mm/min
-  morfax record cam.csv -o coarse.wav --reference 400Hz --cycles-per-mm 8
+  morfax record cam.wav -o left-hand.wav --mirror x --pickup photocell
 """
 
 
@@ -39,7 +40,9 @@ Examples:
     "--reference", "reference_hz", type=FREQUENCY, default="6kHz", show_default=True, help="Reference frequency."
 )
 @click.option(
-    "--cycles-per-mm", type=CYCLES_PER_MM, default=20.0, show_default=True, help="Cycles of phase per mm of travel."
+    "--cycles-per-mm",
+    type=CYCLES_PER_MM,
+    help="Cycles of phase per mm of travel.  [default: those of the pick-up: 20, of the scale 10]",
 )
 @click.option(
     "--tolerance",
@@ -48,15 +51,17 @@ Examples:
     help="How far the program's path may be off; not for tapes.  [default: the medium's own]",
 )
 @click.option("--force", is_flag=True, help="Write over a tape that is there already under a name not given with -o.")
+@unit_options
 @desk_options
 def command(
     source: FilePath,
     output: FilePath | None,
     feed_mm_s: float,
     reference_hz: float,
-    cycles_per_mm: float,
+    cycles_per_mm: float | None,
     tolerance_mm: float | None,
     force: bool,
+    unit: Unit,
     desk: Desk,
 ) -> None:
     """Record a path file, or another program, in the medium that the name after -o says.
@@ -68,8 +73,10 @@ def command(
     from recorder.media import record
 
     program = _program(output, source, force)
-    settings = _settings(program, reference_hz, cycles_per_mm, tolerance_mm)
-    read = _path(source, feed_mm_s, desk)
+    unit.check(program)
+    settings = _settings(program, unit, reference_hz, cycles_per_mm, tolerance_mm)
+    read = unit.placement.path(_path(source, feed_mm_s, desk))
+    unit.warn(desk)
     desk.warn_of_compiling("the recorder", "motion", "recorder")
     stream = desk.watched(read.motion(), f"recording {program.name}", float(read.t_s[-1] - read.t_s[0]))
     recording = record(stream, program, **settings)
@@ -85,6 +92,7 @@ def command(
             "bits_per_mm": 8 * recording.bytes / length if length else None,
             "as_tape_bits_per_mm": _tape_bits(recording.duration_s) / length if length and not is_tape else None,
             **medium.told(recording),
+            **unit.figures(),
         }
     )
 
@@ -107,17 +115,15 @@ def _program(output: FilePath | None, source: FilePath, force: bool) -> FilePath
 
 
 def _settings(
-    program: FilePath, reference_hz: float, cycles_per_mm: float, tolerance_mm: float | None
+    program: FilePath, unit: Unit, reference_hz: float, cycles_per_mm: float | None, tolerance_mm: float | None
 ) -> dict[str, Any]:
     """What the recorder of this medium is told."""
     if program.suffix.lower() not in medium.TAPES:
         return {} if tolerance_mm is None else {"tolerance_mm": tolerance_mm}
-    from recorder.tape import TapeFormat
-
     if tolerance_mm is not None:
         raise click.UsageError("--tolerance is not for tapes: a tape holds the motion itself; leave it out")
     try:
-        return {"fmt": TapeFormat(reference_hz=reference_hz, cycles_per_mm=cycles_per_mm)}
+        return {"fmt": unit.tape_format(reference_hz=reference_hz, cycles_per_mm=cycles_per_mm)}
     except ValueError as refused:
         raise click.UsageError(f"there is no such tape: {refused}") from None
 

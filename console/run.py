@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +14,7 @@ from console.panel import head_options
 from console.playing import Controls, Played
 from console.sheet import Sheet, sheet_options
 from console.tracing import Head, Traced
+from console.unit import Unit, unit_options
 from motion.faults import FileFault
 from motion.files import written_beside
 from motion.units import format_length_mm
@@ -47,21 +48,25 @@ class Folder:
 )
 @sheet_options
 @head_options
+@unit_options
 @desk_options
-def command(drawing: FilePath, folder: FilePath | None, sheet: Sheet, head: Head, desk: Desk) -> None:
+def command(drawing: FilePath, folder: FilePath | None, sheet: Sheet, head: Head, unit: Unit, desk: Desk) -> None:
     """Go the whole way: trace a drawing, play the tape, compare all three.
 
     The folder then holds the tape (.wav), the traced and the played path (.csv), the picture of the played path with
-    its error in colour (.png) and the figures (.json). What was there under these names is written over.
+    its error in colour (.png) and the figures (.json). What was there under these names is written over. Mirrored,
+    scaled or turned paths are compared with the drawing as they were before.
     """
     opened = sheet.open(drawing)
     place = _make(folder or FilePath(drawing.stem), drawing)
     traced = head.trace(opened, desk, place.file(".png"))
-    tape = traced.record(place.file(".wav"))
-    written = {"tape": str(tape), "traced_path": str(traced.write(place.file(".traced.csv")))}
+    tape = traced.record(place.file(".wav"), unit)
+    written = {"tape": str(tape), "traced_path": str(traced.write(place.file(".traced.csv"), unit))}
     played = Controls().play(tape, desk)
     written["played_path"] = str(_write(played, traced, place))
-    figures = {"drawing": str(drawing), **written, **_compare(opened, traced, played, place, desk)}
+    unit.warn(desk)
+    played = replace(played, path=unit.placement.about(traced.path.positions_mm[0]).back(played.path))
+    figures = {"drawing": str(drawing), **written, **_compare(opened, traced, played, place, desk), **unit.figures()}
     with written_beside(traced.name(place.file(".json"))) as beside:
         beside.write_text(table.as_json(figures) + "\n", encoding="utf-8")
     desk.figures(figures)

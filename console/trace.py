@@ -13,6 +13,7 @@ from console.desk import Desk, desk_options
 from console.panel import head_options
 from console.sheet import Sheet, sheet_options
 from console.tracing import Head, Traced
+from console.unit import Unit, unit_options
 
 if TYPE_CHECKING:
     from tracer.drawing import Drawing
@@ -49,6 +50,7 @@ class Outputs:
 @click.option("--force", is_flag=True, help="Write over a tape that is there already under a name not given with -o.")
 @sheet_options
 @head_options
+@unit_options
 @desk_options
 def command(
     drawing: FilePath,
@@ -58,6 +60,7 @@ def command(
     force: bool,
     sheet: Sheet,
     head: Head,
+    unit: Unit,
     desk: Desk,
 ) -> None:
     """Follow the line of a drawing and record the head's motion on a tape.
@@ -65,14 +68,17 @@ def command(
     DRAWING is an image file (PNG, JPEG, TIFF) of known resolution. A closed line is followed until it closes, an open
     one from end to end. If the line is lost, what was traced until then is kept, with `.incomplete` in the names; of
     several lines (--lines) the others are cut all the same. The picture numbers them. If there is no line to start on,
-    --picture shows the sheet, so that a place for --start can be read off it.
+    --picture shows the sheet, so that a place for --start can be read off it. The picture is the drawing's; tape and
+    path are mirrored, scaled and turned as asked for.
     """
     outputs = _outputs(drawing, output, path_file, picture, force)
+    unit.check(outputs.tape)
     opened = sheet.open(drawing)
     desk.detail(f"{drawing}: sheet of {opened.width_mm:.2f} x {opened.height_mm:.2f} mm")
     traced = head.trace(opened, desk, outputs.picture)
-    written = _write(traced, outputs, opened)
-    desk.figures({"drawing": str(drawing), **written, **traced.figures()})
+    written = _write(traced, outputs, opened, unit)
+    unit.warn(desk)
+    desk.figures({"drawing": str(drawing), **written, **traced.figures(), **unit.figures()})
     if traced.fault is not None:
         raise traced.fault
 
@@ -98,13 +104,13 @@ def _outputs(
     return Outputs(output, path_file, picture)
 
 
-def _write(traced: Traced, outputs: Outputs, drawing: Drawing) -> dict[str, str]:
+def _write(traced: Traced, outputs: Outputs, drawing: Drawing, unit: Unit) -> dict[str, str]:
     """Write what was asked for; the names under which it stands."""
     written = {}
     if outputs.tape is not None:
-        written[medium.called(outputs.tape)] = str(traced.record(outputs.tape))
+        written[medium.called(outputs.tape)] = str(traced.record(outputs.tape, unit))
     if outputs.path is not None:
-        written["path"] = str(traced.write(outputs.path))
+        written["path"] = str(traced.write(outputs.path, unit))
     if outputs.picture is not None:
         from console.overlay import Picture, draw
 

@@ -18,6 +18,7 @@ from console.desk import Desk
 from motion.faults import Fault, LineFault
 
 if TYPE_CHECKING:
+    from console.unit import Unit
     from motion.motion import Path
     from tracer.card import Card
     from tracer.drawing import Drawing
@@ -144,18 +145,16 @@ class Traced:
         """The name for a result: marked if the line was lost."""
         return medium.incomplete(file) if self.fault else file
 
-    def record(self, file: FilePath) -> FilePath:
+    def record(self, file: FilePath, unit: Unit) -> FilePath:
         """Record the motion on a tape, or in the medium that the name says; the program's name."""
-        from recorder.media import record
-
-        record(self.trace, self.name(file))
+        unit.record(self.trace, self.name(file))
         return self.name(file)
 
-    def write(self, file: FilePath) -> FilePath:
-        """Write the path file; its name."""
+    def write(self, file: FilePath, unit: Unit) -> FilePath:
+        """Write the path file, placed as the tape is; its name."""
         from motion.pathfile import write_path
 
-        write_path(self.path, self.name(file))
+        write_path(unit.placement.path(self.path), self.name(file))
         return self.name(file)
 
     def figures(self) -> dict[str, Any]:

@@ -1,10 +1,11 @@
 """Units at the edge: "10mm" becomes 10.0 and back again. Inside the house there are mm, s and Hz only.
 
-A bare number has one documented unit: mm, mm/s, Hz or s. A space may stand between number and unit, and capitals do
+A bare number has one documented unit: mm, mm/s, Hz, s or degrees. A space may stand between number and unit, and capitals do
 not matter.
 
     length      um µm mm cm m in "           speed    mm/s mm/min m/min um/s cm/s in/s in/min
     frequency   Hz kHz MHz                   time     us ms s min h
+    angle       deg ° rad turn               share    % or a bare number (1 is 100 %)
 """
 
 from __future__ import annotations
@@ -26,7 +27,9 @@ _SPEED_MM_S = {
     "in/s": MM_PER_INCH,
     "in/min": MM_PER_INCH / 60.0,
 }
-_NUMBER_AND_UNIT = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)\s*([a-z/\"]*)", re.ASCII)
+_ANGLE_RAD = {"": math.pi / 180, "deg": math.pi / 180, "°": math.pi / 180, "rad": 1.0, "turn": 2 * math.pi}
+_SHARE = {"%": 0.01}
+_NUMBER_AND_UNIT = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)\s*([a-z/\"°%]*)", re.ASCII)
 
 
 def parse_length_mm(text: str) -> float:
@@ -53,6 +56,18 @@ def parse_time_s(text: str) -> float:
     if time_s < 0:
         raise ValueError(_refusal(text, "time", allowed))
     return time_s
+
+
+def parse_angle_rad(text: str) -> float:
+    """Angle in rad of "90deg", "1.57rad", "0.25turn" or a bare number of degrees; it may be negative."""
+    allowed = "90deg, -45deg, 1.57rad or a bare number of degrees"
+    return _parse(text, "angle", _ANGLE_RAD, allowed)
+
+
+def parse_share(text: str) -> float:
+    """Share of "120%" or a bare number (1.2); above zero."""
+    allowed = "120%, 50% or a bare number such as 1.2, above zero"
+    return _positive(_parse(text, "share", _SHARE, allowed), text, "share", allowed)
 
 
 def parse_place_mm(text: str) -> tuple[float, float]:
@@ -107,7 +122,7 @@ def _parse(text: str, kind: str, units: dict[str, float], allowed: str) -> float
     """Number times unit; raises ValueError that says what was got and what is allowed."""
     plain = text.strip().lower().replace("\u00b5", "u").replace("\u03bc", "u")  # micro sign, Greek mu
     found = _NUMBER_AND_UNIT.fullmatch(plain)
-    scale = units.get(found[2]) if found and found[2] else 1.0
+    scale = {"": 1.0, **units}.get(found[2]) if found else None
     value = float(found[1]) * scale if found and scale is not None else math.nan
     if not math.isfinite(value):
         raise ValueError(_refusal(text, kind, allowed))

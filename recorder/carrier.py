@@ -18,8 +18,8 @@ no images of the motion rate and no kink in the phase:
 A wave with harmonics is summed up harmonic by harmonic. Each fades out by its own frequency at the moment, before half
 the sample rate, so that nothing folds back upon the carrier:
 
-    weight  1 ________                         frequency of the harmonic over the sample rate
-                      \_____ 0                0.4 ... 0.475
+    weight  1 _________                        frequency of the harmonic over the sample rate
+                       ╲_____ 0                0.4 ... 0.475
 
 Source: patent ES 361967, figures 2 and 4 (sector wheel 115, motor 116, lamp 119, photocell 141 on arm 118).
 Questions: the patent's photocell gives a square wave; recorded sample by sample it aliases (0.16 cycle of error), so it

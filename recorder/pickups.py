@@ -84,10 +84,17 @@ PICK_UPS: dict[str, Sensor] = {
         by_speed=True,
     ),
     "hall": Sensor(
-        "toothed magnetic wheel and Hall cell", f"{_WHEEL} teeth", _SCREW.cycles_per_mm, lambda n, k: DECAY ** (n - 1) / n
+        "toothed magnetic wheel and Hall cell",
+        f"{_WHEEL} teeth",
+        _SCREW.cycles_per_mm,
+        lambda n, k: DECAY ** (n - 1) / n,
     ),
     "scale": Sensor(
-        "toothed scale along the slide", "pitch of 0.1 mm", 1 / SCALE_PITCH_MM, lambda n, k: (-1) ** k / n**2, math.pi**2 / 8
+        "toothed scale along the slide",
+        "pitch of 0.1 mm",
+        1 / SCALE_PITCH_MM,
+        lambda n, k: (-1) ** k / n**2,
+        math.pi**2 / 8,
     ),
 }
 DEFAULT_PICK_UP = "resolver"

@@ -57,7 +57,9 @@ class TapeFormat:
         _check_axes(self)
         _demand(self.pickup in PICK_UPS, "pickup", self.pickup, f"one of {', '.join(PICK_UPS)}")
         most = 1 / self.sensor.largest
-        _demand(self.level <= most, "level", self.level, f"at most {most:.3g}, where a {self.pickup} reaches full scale")
+        _demand(
+            self.level <= most, "level", self.level, f"at most {most:.3g}, where a {self.pickup} reaches full scale"
+        )
         object.__setattr__(self, "version", 1 if self.pickup == DEFAULT_PICK_UP else 2)
         object.__setattr__(self, "start_mm", self.start_mm or (0.0,) * len(self.axes))
         for name in ("start_mm", "end_mm"):

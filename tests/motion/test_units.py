@@ -49,6 +49,25 @@ def test_times(text: str, time_s: float) -> None:
     assert units.parse_time_s(text) == pytest.approx(time_s, rel=1e-15)
 
 
+@pytest.mark.parametrize(
+    ("text", "angle_deg"),
+    [("90deg", 90.0), ("-45", -45.0), ("30°", 30.0), ("0.25turn", 90.0), ("3.141592653589793rad", 180.0)],
+)
+def test_angles(text: str, angle_deg: float) -> None:
+    assert math.degrees(units.parse_angle_rad(text)) == pytest.approx(angle_deg, rel=1e-15)
+
+
+@pytest.mark.parametrize(("text", "share"), [("120%", 1.2), ("50 %", 0.5), ("1.5", 1.5)])
+def test_shares(text: str, share: float) -> None:
+    assert units.parse_share(text) == pytest.approx(share, rel=1e-15)
+
+
+@pytest.mark.parametrize("text", ["0%", "-5%", "90deg", ""])
+def test_a_share_that_is_none(text: str) -> None:
+    with pytest.raises(ValueError, match=r"is no share; give 120%"):
+        units.parse_share(text)
+
+
 def test_places() -> None:
     assert units.parse_place_mm("12.5,-30") == (12.5, -30.0)
     assert units.parse_place_mm("1in, 2 cm") == (25.4, 20.0)

@@ -44,8 +44,8 @@ def test_the_defaults_are_those_of_the_design() -> None:
 @pytest.mark.parametrize(
     ("entry", "value", "fault"),
     [
-        ("version", 2, "version 2; this program reads 1"),
-        ("version", "1", "version is 1; it must be 1"),
+        ("version", 3, "version 3; this program reads 2"),
+        ("version", "1", "version is 1; it must be 1 or 2"),
         ("version", True, "version is True"),
         ("sample_rate_hz", 48000.5, "sample_rate_hz is 48000.5; it must be a whole number"),
         ("sample_rate_hz", 0, "sample_rate_hz is 0"),
