@@ -54,7 +54,7 @@ def decode(file: Path) -> None:
     with Tape.open(file) as tape:
         fmt = tape.format
         organ = Discriminator(fmt.sample_rate_hz, fmt.reference_hz, fmt.samples_per_motion, fmt.tracks)
-        for _ in discriminate(tape.blocks(BLOCK_FRAMES), organ):
+        for _ in discriminate(tape.stored_blocks(BLOCK_FRAMES), organ):
             pass
 
 

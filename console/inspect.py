@@ -118,7 +118,7 @@ def _travels(tape: Tape, desk: Desk) -> dict[str, Figures]:
     discriminator = Discriminator(fmt.sample_rate_hz, fmt.reference_hz, fmt.samples_per_motion, fmt.tracks)
     low, high = np.full(len(fmt.axes), np.inf), np.full(len(fmt.axes), -np.inf)
     zero: Array | None = None
-    for phases in discriminate(tape.blocks(BLOCK_FRAMES), discriminator):
+    for phases in discriminate(tape.stored_blocks(BLOCK_FRAMES), discriminator):
         zero = phases.cycles[0] if zero is None else zero
         low, high = np.fmin(low, phases.cycles.min(axis=0)), np.fmax(high, phases.cycles.max(axis=0))
     if zero is None:

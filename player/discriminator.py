@@ -1,8 +1,8 @@
 """Discriminator: the phases of the X, Y and Z tracks against the reference track, in cycles, at the motion rate.
 
-Signals in: frames of the tape, float32 (n, tracks), track 1 the reference, at the sample rate. Signals out, one row
-per `decimation` frames, row i standing at frame i·decimation: cycles (axes), levels (tracks, amplitude), surprise
-(axes, cycles: how far a phase lay from the predicted one).
+Signals in: frames of the tape (n, tracks), float32 of full scale 1 or 16-bit samples as they are stored, track 1 the
+reference, at the sample rate. Signals out, one row per `decimation` frames, row i standing at frame i·decimation:
+cycles (axes), levels (tracks, amplitude), surprise (axes, cycles: how far a phase lay from the predicted one).
 
     y(t) = sum over n of  h(n) · exp(-j w n) · x(t + n)          translating filter: h low-pass, w the nominal reference
     cycles = arg( y_axis · conj(y_reference) ) / 2 pi            counted on from the predictor's guess, nearest turn
@@ -45,8 +45,11 @@ STOP_BAND_BETA = 8.0  # Kaiser: stop band 80 dB down
 SMALLEST_TAP = 1e-12  # below it products are denormal numbers, which cost a factor of twelve
 SMALLEST_PRODUCT = 1e-300  # of two tracks; keeps a silent one from dividing by zero
 FEWEST_SHARED_ROWS = 2048  # below it handing over costs more than it saves
+SHARED = 0.58  # of the rows, filtered by the other core: this one counts the rest meanwhile
 CHUNK_ROWS = 512  # what the kernel has in the processor's cache at a time
+GROUP = 8  # taps that the kernel has in its registers at a time
 
+Frames = NDArray[np.float32 | np.int16]
 Float32s = NDArray[np.float32]
 Float64s = NDArray[np.float64]
 
@@ -90,6 +93,13 @@ def translating_taps(sample_rate_hz: float, reference_hz: float, decimation: int
     return parts[0].astype(np.float32), parts[1].astype(np.float32)
 
 
+def by_column(taps: Float32s, decimation: int) -> Float32s:
+    """Taps by the column of a row that they stand at, in the order of the rows (decimation, rows in whole groups)."""
+    rows = np.pad(taps, (0, -len(taps) % decimation)).reshape(-1, decimation)
+    rows = rows[: int(np.flatnonzero(rows.any(axis=1))[-1]) + 1]  # the window is nothing at its ends
+    return np.ascontiguousarray(np.pad(rows, ((0, -len(rows) % GROUP), (0, 0))).T)
+
+
 def predictor_gains(rate_hz: float, natural_hz: float = PREDICTOR_HZ) -> Float64s:
     """Shares of the surprise that go to position, velocity per row and half acceleration per row²."""
     theta = math.exp(-2 * math.pi * natural_hz / rate_hz)
@@ -108,26 +118,22 @@ class Discriminator:
         if tracks < 2:
             raise ValueError(f"{tracks} track(s) hold no displacement; give the reference track and at least one axis")
         self.decimation = decimation
-        self._taps_re, self._taps_im = translating_taps(sample_rate_hz, reference_hz, decimation)
-        self._half = len(self._taps_re) // 2
+        taps = translating_taps(sample_rate_hz, reference_hz, decimation)
+        self._taps = by_column(taps[0], decimation), by_column(taps[1], decimation)
+        self.filter_frames = len(taps[0])
+        self._half = self.filter_frames // 2
         self._reach = 2 * self._half // decimation  # rows that the filter reaches beyond its first
         self.gains = predictor_gains(sample_rate_hz / decimation)
         self.state = np.full((tracks - 1, 3), np.nan)
-        self._tail = np.zeros((0, tracks), np.float32)
+        self._tail: Frames = np.zeros((0, tracks), np.float32)
         self._tail_frame = 0  # the tape's frame at which the tail begins
         self._row = 0  # the next row to come out
         self._last: Phases | None = None
         self._helper = ThreadPoolExecutor(1)  # its thread starts with the first block that is shared
 
-    @property
-    def filter_frames(self) -> int:
-        """Length of the translating filter, frames."""
-        return len(self._taps_re)
-
-    def feed(self, frames: Float32s) -> Phases:
+    def feed(self, frames: Frames) -> Phases:
         """Take the next frames (n, tracks) of the tape; the rows that are complete by now, perhaps none."""
-        frames = np.concatenate([self._tail, frames]) if len(self._tail) else frames
-        frames = np.ascontiguousarray(frames, dtype=np.float32)
+        frames = np.concatenate([self._tail, frames]) if len(self._tail) else np.ascontiguousarray(frames)
         row = max(self._row, -(-self._half // self.decimation))
         skipped = row * self.decimation - self._half - self._tail_frame
         count = max((len(frames) - skipped) // self.decimation - self._reach, 0)
@@ -144,22 +150,18 @@ class Discriminator:
         """The rows at the end of the tape that the filter could not fill: the last one held."""
         return self._held(-(-(self._tail_frame + len(self._tail)) // self.decimation) - self._row)
 
-    def _demodulated(self, rows: Float32s, row: int) -> Phases:
-        """Run the kernel; before the tape's first full row that row is held."""
+    def _demodulated(self, rows: Frames, row: int) -> Phases:
+        """Run the kernels, the filter on two cores; before the tape's first full row that row is held."""
         count, tracks = len(rows) - self._reach, rows.shape[1] // self.decimation
-        cycles = np.empty((count, tracks - 1))
-        surprise = np.empty((count, tracks - 1), np.float32)
-        levels = np.empty((count, tracks), np.float32)
-        taps = self._taps_re, self._taps_im
-        if count < FEWEST_SHARED_ROWS:
-            _demodulate(rows, *taps, self.gains, self.state, cycles, surprise, levels)
-        else:  # the filter on two cores; only the counting has to go in order
-            phase, half = np.empty((tracks - 1, count)), count // 2
-            other = self._helper.submit(_wrap, rows[half:], *taps, phase[:, half:], levels[half:])
-            _wrap(rows[: half + self._reach], *taps, phase[:, :half], levels[:half])
-            other.result()
-            for axis in range(tracks - 1):
-                _count(phase[axis], self.gains, self.state[axis], cycles[:, axis], surprise[:, axis])
+        phase, levels = np.empty((tracks - 1, count)), np.empty((count, tracks), np.float32)
+        cycles, surprise = np.empty((count, tracks - 1)), np.empty((count, tracks - 1), np.float32)
+        scale = np.float32(1 / 32768 if rows.dtype == np.int16 else 1)
+        own = count if count < FEWEST_SHARED_ROWS else round((1 - SHARED) * count)
+        other = self._helper.submit(_wrap, rows[own:], scale, *self._taps, phase[:, own:], levels[own:])
+        _wrap(rows[: own + self._reach], scale, *self._taps, phase[:, :own], levels[:own])
+        _count(phase[:, :own], self.gains, self.state, cycles[:own], surprise[:own])
+        other.result()
+        _count(phase[:, own:], self.gains, self.state, cycles[own:], surprise[own:])
         lead = ((row - self._row, 0), (0, 0))
         if row > self._row:
             cycles = np.pad(cycles, lead, mode="edge")
@@ -177,7 +179,7 @@ class Discriminator:
         return Phases(self._row, cycles, surprise, np.repeat(self._last.levels[-1:], count, axis=0))
 
 
-def discriminate(blocks: Iterable[Float32s], discriminator: Discriminator) -> Iterator[Phases]:
+def discriminate(blocks: Iterable[Frames], discriminator: Discriminator) -> Iterator[Phases]:
     """Phases of a whole tape, from its blocks of frames; blocks without a row are left out."""
     for frames in blocks:
         phases = discriminator.feed(frames)
@@ -190,34 +192,28 @@ def discriminate(blocks: Iterable[Float32s], discriminator: Discriminator) -> It
 
 def recount(phase: Float64s, gains: Float64s, state: Float64s, surprise: Float32s) -> Float64s:
     """Count the phases of an axis anew from a state (place, speed, bend); they and the surprise are written over."""
-    turns = np.ascontiguousarray(phase)
-    counted, told, state = np.empty(len(turns)), np.empty(len(turns), np.float32), state.copy()
-    _count(turns, gains, state, counted, told)
-    phase[:], surprise[:] = counted, told
-    return state
+    turns, states = np.ascontiguousarray(phase)[None], state[None].copy()
+    counted, told = np.empty((len(phase), 1)), np.empty((len(phase), 1), np.float32)
+    _count(turns, gains, states, counted, told)
+    phase[:], surprise[:] = counted[:, 0], told[:, 0]
+    return np.asarray(states[0])
 
 
 @njit(cache=True, nogil=True)
-def _demodulate(rows, taps_re, taps_im, gains, state, cycles, surprise, levels):  # type: ignore[no-untyped-def]
-    """Fill `cycles`, `surprise` and `levels` from rows of the tape (n, frame within the row · tracks + track)."""
-    phase = np.empty((cycles.shape[1], len(cycles)))
-    _wrap(rows, taps_re, taps_im, phase, levels)
-    for axis in range(len(phase)):
-        _count(phase[axis], gains, state[axis], cycles[:, axis], surprise[:, axis])
+def _wrap(rows, scale, taps_re, taps_im, phase, levels):  # type: ignore[no-untyped-def]
+    """Fill `phase` (axes, n), each from -0.5 to 0.5 cycle, and `levels`, by chunks that fit the processor's cache.
 
-
-@njit(cache=True, nogil=True)
-def _wrap(rows, taps_re, taps_im, phase, levels):  # type: ignore[no-untyped-def]
-    """Fill `phase` (axes, n), each from -0.5 to 0.5 cycle, and `levels`, by chunks that fit the processor's cache."""
+    `rows` of the tape (n, frame within the row · tracks + track), `scale` of a sample; taps as `by_column` has them.
+    """
     tracks = levels.shape[1]
-    reach = (len(taps_re) - 1) // (rows.shape[1] // tracks)  # rows that a filter reaches beyond its first
-    columns = np.zeros((rows.shape[1], CHUNK_ROWS + reach), np.float32)
+    reach = len(rows) - len(levels)  # rows that a filter reaches beyond its first
+    columns = np.zeros((rows.shape[1], CHUNK_ROWS + max(reach, taps_re.shape[1])), np.float32)
     re, im = np.empty((tracks, CHUNK_ROWS), np.float32), np.empty((tracks, CHUNK_ROWS), np.float32)
     for first in range(0, len(levels), CHUNK_ROWS):
         last = min(first + CHUNK_ROWS, len(levels))
-        _unlace(rows[first : last + reach], columns)
+        _unlace(rows[first : last + reach], scale, columns)
         for track in range(tracks):
-            _translate(columns, tracks, track, taps_re, taps_im, re[track, : last - first], im[track, : last - first])
+            _translate(columns, track, taps_re, taps_im, re[track, : last - first], im[track, : last - first])
             for k in range(last - first):
                 levels[first + k, track] = 2 * math.sqrt(re[track, k] ** 2 + im[track, k] ** 2)
         for axis in range(tracks - 1):
@@ -225,26 +221,37 @@ def _wrap(rows, taps_re, taps_im, phase, levels):  # type: ignore[no-untyped-def
 
 
 @njit(cache=True, nogil=True)
-def _unlace(rows, columns):  # type: ignore[no-untyped-def]
+def _unlace(rows, scale, columns):  # type: ignore[no-untyped-def]
     """Turn rows into columns, so that a tap meets its samples side by side."""
     for row in range(len(rows)):
         for column in range(len(columns)):
-            columns[column, row] = rows[row, column]
+            columns[column, row] = rows[row, column] * scale
 
 
 # The order of the sum is free (reassoc, contract), so that it runs in vectors; nan and inf keep their meaning.
+# Eight taps at a time: with one, most of the time went into taking the sums out of memory and putting them back.
 @njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "nsz"})
-def _translate(columns, tracks, track, taps_re, taps_im, re, im):  # type: ignore[no-untyped-def]
-    """Filter one track's columns with complex taps, one output per row."""
-    decimation = len(columns) // tracks
+def _translate(columns, track, taps_re, taps_im, re, im):  # type: ignore[no-untyped-def]
+    """Filter one track's columns with complex taps (columns, rows), one output per row."""
     re[:] = 0
     im[:] = 0
-    for n in range(len(taps_re)):
-        tap_re, tap_im = taps_re[n], taps_im[n]
-        samples = columns[n % decimation * tracks + track, n // decimation : n // decimation + len(re)]
-        for k in range(len(re)):
-            re[k] += tap_re * samples[k]
-            im[k] += tap_im * samples[k]
+    tracks = len(columns) // len(taps_re)
+    for column in range(len(taps_re)):
+        for row in range(0, taps_re.shape[1], GROUP):
+            a0, a1, a2, a3, a4, a5, a6, a7 = _group(taps_re[column], row)
+            b0, b1, b2, b3, b4, b5, b6, b7 = _group(taps_im[column], row)
+            x = columns[column * tracks + track, row:]
+            for k in range(len(re)):
+                re[k] += a0 * x[k] + a1 * x[k + 1] + a2 * x[k + 2] + a3 * x[k + 3]
+                re[k] += a4 * x[k + 4] + a5 * x[k + 5] + a6 * x[k + 6] + a7 * x[k + 7]
+                im[k] += b0 * x[k] + b1 * x[k + 1] + b2 * x[k + 2] + b3 * x[k + 3]
+                im[k] += b4 * x[k + 4] + b5 * x[k + 5] + b6 * x[k + 6] + b7 * x[k + 7]
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _group(taps, i):  # type: ignore[no-untyped-def]
+    """Eight taps as numbers."""
+    return taps[i], taps[i + 1], taps[i + 2], taps[i + 3], taps[i + 4], taps[i + 5], taps[i + 6], taps[i + 7]
 
 
 @njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "nsz"}, error_model="numpy")
@@ -266,17 +273,20 @@ def _turn(re, im, ref_re, ref_im, phase):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def _count(phase, gains, state, cycles, surprise):  # type: ignore[no-untyped-def]
-    """Count the phases of an axis on by the predictor; `state` is carried."""
-    place, speed, bend = state  # cycles, cycles/row, half of cycles/row²
-    for k in range(len(phase)):
-        if math.isnan(place):  # the first row of the tape
-            place, speed, bend = phase[k], 0.0, 0.0
-        place, speed = place + speed + bend, speed + 2 * bend
-        error = phase[k] - place
-        error -= np.rint(error)
-        cycles[k] = place + error
-        surprise[k] = error
-        place += gains[0] * error
-        speed += gains[1] * error
-        bend += gains[2] * error
-    state[0], state[1], state[2] = place, speed, bend
+    """Count the phases (axes, n) on by the predictor; `state` (axes: cycles, cycles/row, half of cycles/row²) is carried.
+
+    All axes row by row: each waits for its own last row, and they can wait together.
+    """
+    for k in range(phase.shape[1]):
+        for axis in range(len(state)):
+            place, speed, bend = state[axis]
+            if math.isnan(place):  # the first row of the tape
+                place, speed, bend = phase[axis, k], 0.0, 0.0
+            place, speed = place + speed + bend, speed + 2 * bend
+            error = phase[axis, k] - place
+            error -= np.rint(error)
+            cycles[k, axis] = place + error
+            surprise[k, axis] = error
+            state[axis, 0] = place + gains[0] * error
+            state[axis, 1] = speed + gains[1] * error
+            state[axis, 2] = bend + gains[2] * error

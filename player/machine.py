@@ -31,13 +31,13 @@ from motion.drive import SOUND
 from motion.faults import Fault, LockFault, TapeFault
 from motion.motion import AXES, Motion
 from player.bearings import STANDSTILL_S, Bearings, evened, take_bearings
-from player.discriminator import Discriminator, Float32s, Phases, discriminate
+from player.discriminator import Discriminator, Phases, discriminate
 from player.dropouts import Gaps, under_way
 from player.monitor import Supervised
 from player.phase_lock import Drives, PhaseLock, following_limit
 from player.watch import Watch, demand_apart
 from recorder.pipe import Pipe, Samples
-from recorder.tape import Tape, TapeFormat
+from recorder.tape import Stored, Tape, TapeFormat, full_scale
 
 BLOCK_FRAMES = 65536
 END_CYCLES = 0.25  # a cycle lost is four times as much, and a drive at rest stands a hundred times nearer
@@ -163,12 +163,12 @@ class Playback(Supervised):
         first_row = round(self.resume_at_s * rate_hz)
         with self._open_tape() as tape:
             lead = min(first_row, discriminator.filter_frames // fmt.samples_per_motion)  # rows that the filter needs
-            blocks = iter(tape.blocks(BLOCK_FRAMES, (first_row - lead) * fmt.samples_per_motion))
+            blocks = iter(tape.stored_blocks(BLOCK_FRAMES, (first_row - lead) * fmt.samples_per_motion))
             first = next(blocks, np.zeros((0, fmt.tracks), np.float32))
             held = [first]
 
-            def noted() -> Iterator[Float32s]:
-                for block in chain([first], blocks):
+            def noted() -> Iterator[Stored]:
+                for block in chain([held[0]], blocks):
                     held[0] = block
                     yield block
 
@@ -176,6 +176,7 @@ class Playback(Supervised):
             start = next(rows, None)
             if start is None:
                 raise self._too_short(discriminator.filter_frames)
+            first = full_scale(first)
             if first_row:
                 start = start.cut(lead, len(start))
                 places = under_way(start, discriminator)

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from motion.faults import Fault, LockFault, TapeFault
 from player.bearings import Bearings, track_name
-from player.discriminator import Phases, translating_taps
+from player.discriminator import Frames, Phases, translating_taps
 from recorder.tapeformat import TapeFormat
 
 MOMENTS = 64  # in a block
@@ -57,7 +57,7 @@ class Watch:
         self._sums, self._apart, self._moments = np.zeros(fmt.tracks), np.zeros(fmt.tracks), 0
         self._noise: Array | None = None  # mean square of a frequency less that of track 1, at standstill
 
-    def wrong_reference(self, frames: Float32s, time_s: float) -> Fault | None:
+    def wrong_reference(self, frames: Frames, time_s: float) -> Fault | None:
         """The fault of a track 1 that moves more than another; frames of one block."""
         found = self._frequencies(frames)
         self._sums += np.square(found - self._still_hz).sum(axis=0)
@@ -94,7 +94,7 @@ class Watch:
             time_s=time_s,
         )
 
-    def _frequencies(self, frames: Float32s) -> Array:
+    def _frequencies(self, frames: Frames) -> Array:
         """Frequency of each track at some moments, Hz (moments, tracks)."""
         step, length = self._format.samples_per_motion, len(self._taps)
         spare = len(frames) - length - step

@@ -112,6 +112,10 @@ class Pipe:
                 self.frames += whole // step
                 yield self._samples.frames(data[:whole])
 
+    def stored_blocks(self, frames: int = PIPE_FRAMES, first: int = 0) -> Iterator[Frames]:
+        """As `blocks`: what comes through a pipe is made full scale at once."""
+        return self.blocks(frames, first)
+
 
 def _whole(stream: BinaryIO, size: int) -> bytes:
     """So many bytes; fewer only where the pipe ends."""

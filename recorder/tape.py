@@ -21,6 +21,7 @@ from typing import Any
 
 import numpy as np
 import soundfile
+from numpy.typing import NDArray
 
 from motion.faults import FileFault, TapeFault
 from recorder.carrier import Frames
@@ -36,6 +37,7 @@ _UNNAMED_AXES = ("x", "y", "z", "a", "b", "c", "u", "v", "w")
 _MOTION_RATE_HZ = 6000.0  # of a tape without a format, as nearly as a whole number of frames allows
 _FEWEST_TRACKS = 3
 _INT16_STEP = np.float32(1 / 32768)  # full scale 1
+Stored = NDArray[np.float32 | np.int16]
 _EXAMPLES = {"reference_hz": "--reference 6kHz", "cycles_per_mm": "--cycles-per-mm 20"}
 
 
@@ -104,6 +106,10 @@ class Tape:
 
     def blocks(self, frames: int = BLOCK_FRAMES, first: int = 0) -> Iterator[Frames]:
         """The tape from frame `first` on in blocks (n, tracks) of so many frames, the last one shorter."""
+        return map(full_scale, self.stored_blocks(frames, first))
+
+    def stored_blocks(self, frames: int = BLOCK_FRAMES, first: int = 0) -> Iterator[Stored]:
+        """The same with samples of 16 bit as they are stored, for who can take them so."""
         if frames < 1:
             raise ValueError(f"a block of {frames} frames holds nothing; it must be at least 1")
         done = first
@@ -113,18 +119,21 @@ class Tape:
             done += len(block)
             yield block
 
-    def _read(self, frames: int, done: int) -> Frames:
+    def _read(self, frames: int, done: int) -> Stored:
         """The next block; raises TapeFault where the file ends early or cannot be decoded."""
+        kind = "int16" if self._sound.subtype == "PCM_16" else "float32"  # libsndfile is slow to make one of the other
         try:
-            if self._sound.subtype == "PCM_16":  # libsndfile takes three times as long to make float32 of them
-                block: Frames = self._sound.read(frames, dtype="int16", always_2d=True) * _INT16_STEP
-            else:
-                block = self._sound.read(frames, dtype="float32", always_2d=True)
+            block: Stored = self._sound.read(frames, dtype=kind, always_2d=True)
         except soundfile.SoundFileError as error:
             raise _cut_short(self.file, done / self.format.sample_rate_hz, self.duration_s) from error
         if not len(block):
             raise _cut_short(self.file, done / self.format.sample_rate_hz, self.duration_s)
         return block
+
+
+def full_scale(frames: Stored) -> Frames:
+    """Samples of full scale 1, whichever way they are stored."""
+    return np.asarray(frames * _INT16_STEP if frames.dtype == np.int16 else frames, np.float32)
 
 
 def _open_sound(file: FilePath) -> soundfile.SoundFile:

@@ -89,4 +89,4 @@ class Bench:
         ends = slice(60, max(61, len(went) - 60))  # the filter of the transport's own ends
         error, speed = (went - wanted)[ends], np.gradient(wanted, axis=0)[ends]  # mm, and mm per row
         late = np.clip((error * speed).sum() / max((speed**2).sum(), 1e-12), -0.6, 0.6)  # of all axes: the tape's clock
-        return float(np.abs(error - late * speed).max() * 20), fault
+        return float(np.abs(error - late * speed).max(initial=0) * 20), fault
