@@ -33,7 +33,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
@@ -44,14 +43,13 @@ PREDICTOR_HZ = 120.0
 STOP_BAND_BETA = 8.0  # Kaiser: stop band 80 dB down
 SMALLEST_TAP = 1e-12  # below it products are denormal numbers, which cost a factor of twelve
 SMALLEST_PRODUCT = 1e-300  # of two tracks; keeps a silent one from dividing by zero
-FEWEST_SHARED_ROWS = 2048  # below it handing over costs more than it saves
-SHARED = 0.58  # of the rows, filtered by the other core: this one counts the rest meanwhile
-CHUNK_ROWS = 512  # what the kernel has in the processor's cache at a time
+CHUNK_ROWS = 1024  # what the kernel has in the processor's cache at a time
 GROUP = 8  # taps that the kernel has in its registers at a time
 
 Frames = NDArray[np.float32 | np.int16]
 Float32s = NDArray[np.float32]
 Float64s = NDArray[np.float64]
+Complexes = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,21 +81,40 @@ class Phases:
 
 def translating_taps(sample_rate_hz: float, reference_hz: float, decimation: int) -> tuple[Float32s, Float32s]:
     """Real and imaginary taps of the filter that moves the reference to 0 Hz and keeps what lies near it."""
+    low_pass, turns = _low_pass(sample_rate_hz, reference_hz, decimation)
+    return _taps((low_pass * turns).real), _taps((low_pass * turns).imag)
+
+
+def _low_pass(sample_rate_hz: float, reference_hz: float, decimation: int) -> tuple[Float64s, Complexes]:
+    """Taps h of the low-pass, and how far each is turned, exp(-j w n)."""
     cut_hz = min(sample_rate_hz / decimation, reference_hz) / 2
     half = round(2 * sample_rate_hz / cut_hz)
     n = np.arange(-half, half + 1)
     low_pass = np.sinc(2 * cut_hz / sample_rate_hz * n) * np.kaiser(2 * half + 1, STOP_BAND_BETA)
-    taps = low_pass / low_pass.sum() * np.exp(-2j * np.pi * reference_hz / sample_rate_hz * n)
-    parts = np.array([taps.real, taps.imag])
-    parts[np.abs(parts) < SMALLEST_TAP] = 0.0
-    return parts[0].astype(np.float32), parts[1].astype(np.float32)
+    return low_pass / low_pass.sum(), np.exp(-2j * np.pi * reference_hz / sample_rate_hz * n)
 
 
-def by_column(taps: Float32s, decimation: int) -> Float32s:
-    """Taps by the column of a row that they stand at, in the order of the rows (decimation, rows in whole groups)."""
-    rows = np.pad(taps, (0, -len(taps) % decimation)).reshape(-1, decimation)
-    rows = rows[: int(np.flatnonzero(rows.any(axis=1))[-1]) + 1]  # the window is nothing at its ends
-    return np.ascontiguousarray(np.pad(rows, ((0, -len(rows) % GROUP), (0, 0))).T)
+def _taps(values: Float64s) -> Float32s:
+    """Taps without those that are nothing."""
+    return np.where(np.abs(values) < SMALLEST_TAP, 0.0, values).astype(np.float32)
+
+
+def branches(sample_rate_hz: float, reference_hz: float, decimation: int) -> tuple[Float32s, Float32s, Float32s]:
+    """The filter as real sums down the columns of a row, each sum turned once: taps (branches, columns, rows), turns.
+
+    With a whole number of reference cycles to a row, as most tapes have, all taps of a column turn alike and one real
+    branch is enough; else there is one for the real and one for the imaginary taps.
+    """
+    low_pass, turns = _low_pass(sample_rate_hz, reference_hz, decimation)
+    if (reference_hz * decimation / sample_rate_hz).is_integer():
+        taps, turned = [low_pass], turns[None, :decimation]
+    else:
+        taps = [(low_pass * turns).real, (low_pass * turns).imag]
+        turned = np.repeat([[1], [1j]], decimation, axis=1)
+    rows = np.stack([np.pad(one, (0, -len(one) % decimation)).reshape(-1, decimation).T for one in map(_taps, taps)])
+    rows = rows[:, :, : int(np.flatnonzero(rows.any(axis=(0, 1)))[-1]) + 1]  # the window is nothing at its ends
+    rows = np.pad(rows, ((0, 0), (0, 0), (0, -rows.shape[2] % GROUP)))
+    return rows, turned.real.astype(np.float32), turned.imag.astype(np.float32)
 
 
 def predictor_gains(rate_hz: float, natural_hz: float = PREDICTOR_HZ) -> Float64s:
@@ -118,9 +135,8 @@ class Discriminator:
         if tracks < 2:
             raise ValueError(f"{tracks} track(s) hold no displacement; give the reference track and at least one axis")
         self.decimation = decimation
-        taps = translating_taps(sample_rate_hz, reference_hz, decimation)
-        self._taps = by_column(taps[0], decimation), by_column(taps[1], decimation)
-        self.filter_frames = len(taps[0])
+        self.filter_frames = len(translating_taps(sample_rate_hz, reference_hz, decimation)[0])
+        self._filter = branches(sample_rate_hz, reference_hz, decimation)
         self._half = self.filter_frames // 2
         self._reach = 2 * self._half // decimation  # rows that the filter reaches beyond its first
         self.gains = predictor_gains(sample_rate_hz / decimation)
@@ -129,7 +145,6 @@ class Discriminator:
         self._tail_frame = 0  # the tape's frame at which the tail begins
         self._row = 0  # the next row to come out
         self._last: Phases | None = None
-        self._helper = ThreadPoolExecutor(1)  # its thread starts with the first block that is shared
 
     def feed(self, frames: Frames) -> Phases:
         """Take the next frames (n, tracks) of the tape; the rows that are complete by now, perhaps none."""
@@ -151,17 +166,13 @@ class Discriminator:
         return self._held(-(-(self._tail_frame + len(self._tail)) // self.decimation) - self._row)
 
     def _demodulated(self, rows: Frames, row: int) -> Phases:
-        """Run the kernels, the filter on two cores; before the tape's first full row that row is held."""
+        """Run the kernels; before the tape's first full row that row is held."""
         count, tracks = len(rows) - self._reach, rows.shape[1] // self.decimation
         phase, levels = np.empty((tracks - 1, count)), np.empty((count, tracks), np.float32)
         cycles, surprise = np.empty((count, tracks - 1)), np.empty((count, tracks - 1), np.float32)
         scale = np.float32(1 / 32768 if rows.dtype == np.int16 else 1)
-        own = count if count < FEWEST_SHARED_ROWS else round((1 - SHARED) * count)
-        other = self._helper.submit(_wrap, rows[own:], scale, *self._taps, phase[:, own:], levels[own:])
-        _wrap(rows[: own + self._reach], scale, *self._taps, phase[:, :own], levels[:own])
-        _count(phase[:, :own], self.gains, self.state, cycles[:own], surprise[:own])
-        other.result()
-        _count(phase[:, own:], self.gains, self.state, cycles[own:], surprise[own:])
+        _wrap(rows, scale, *self._filter, phase, levels)
+        _count(phase, self.gains, self.state, cycles, surprise)
         lead = ((row - self._row, 0), (0, 0))
         if row > self._row:
             cycles = np.pad(cycles, lead, mode="edge")
@@ -200,22 +211,24 @@ def recount(phase: Float64s, gains: Float64s, state: Float64s, surprise: Float32
 
 
 @njit(cache=True, nogil=True)
-def _wrap(rows, scale, taps_re, taps_im, phase, levels):  # type: ignore[no-untyped-def]
+def _wrap(rows, scale, taps, turns_re, turns_im, phase, levels):  # type: ignore[no-untyped-def]
     """Fill `phase` (axes, n), each from -0.5 to 0.5 cycle, and `levels`, by chunks that fit the processor's cache.
 
-    `rows` of the tape (n, frame within the row · tracks + track), `scale` of a sample; taps as `by_column` has them.
+    `rows` of the tape (n, frame within the row · tracks + track), `scale` of a sample; the filter as `branches` has it.
     """
     tracks = levels.shape[1]
     reach = len(rows) - len(levels)  # rows that a filter reaches beyond its first
-    columns = np.zeros((rows.shape[1], CHUNK_ROWS + max(reach, taps_re.shape[1])), np.float32)
+    columns = np.zeros((rows.shape[1], CHUNK_ROWS + max(reach, taps.shape[2])), np.float32)
     re, im = np.empty((tracks, CHUNK_ROWS), np.float32), np.empty((tracks, CHUNK_ROWS), np.float32)
+    level = np.empty(CHUNK_ROWS, np.float32)
     for first in range(0, len(levels), CHUNK_ROWS):
         last = min(first + CHUNK_ROWS, len(levels))
         _unlace(rows[first : last + reach], scale, columns)
         for track in range(tracks):
-            _translate(columns, track, taps_re, taps_im, re[track, : last - first], im[track, : last - first])
-            for k in range(last - first):
-                levels[first + k, track] = 2 * math.sqrt(re[track, k] ** 2 + im[track, k] ** 2)
+            track_re, track_im = re[track, : last - first], im[track, : last - first]
+            _translate(columns, track, taps, turns_re, turns_im, track_re, track_im)
+            _amplitude(track_re, track_im, level)
+            levels[first:last, track] = level[: last - first]
         for axis in range(tracks - 1):
             _turn(re[axis + 1], im[axis + 1], re[0], im[0], phase[axis, first:last])
 
@@ -231,27 +244,35 @@ def _unlace(rows, scale, columns):  # type: ignore[no-untyped-def]
 # The order of the sum is free (reassoc, contract), so that it runs in vectors; nan and inf keep their meaning.
 # Eight taps at a time: with one, most of the time went into taking the sums out of memory and putting them back.
 @njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "nsz"})
-def _translate(columns, track, taps_re, taps_im, re, im):  # type: ignore[no-untyped-def]
-    """Filter one track's columns with complex taps (columns, rows), one output per row."""
+def _translate(columns, track, taps, turns_re, turns_im, re, im):  # type: ignore[no-untyped-def]
+    """Filter one track's columns, one output per row."""
     re[:] = 0
     im[:] = 0
-    tracks = len(columns) // len(taps_re)
-    for column in range(len(taps_re)):
-        for row in range(0, taps_re.shape[1], GROUP):
-            a0, a1, a2, a3, a4, a5, a6, a7 = _group(taps_re[column], row)
-            b0, b1, b2, b3, b4, b5, b6, b7 = _group(taps_im[column], row)
-            x = columns[column * tracks + track, row:]
-            for k in range(len(re)):
-                re[k] += a0 * x[k] + a1 * x[k + 1] + a2 * x[k + 2] + a3 * x[k + 3]
-                re[k] += a4 * x[k + 4] + a5 * x[k + 5] + a6 * x[k + 6] + a7 * x[k + 7]
-                im[k] += b0 * x[k] + b1 * x[k + 1] + b2 * x[k + 2] + b3 * x[k + 3]
-                im[k] += b4 * x[k + 4] + b5 * x[k + 5] + b6 * x[k + 6] + b7 * x[k + 7]
+    tracks = len(columns) // taps.shape[1]
+    for branch in range(len(taps)):
+        for column in range(taps.shape[1]):
+            turn_re, turn_im = turns_re[branch, column], turns_im[branch, column]
+            for row in range(0, taps.shape[2], GROUP):
+                h0, h1, h2, h3, h4, h5, h6, h7 = _group(taps[branch, column], row)
+                x = columns[column * tracks + track, row:]
+                for k in range(len(re)):
+                    total = h0 * x[k] + h1 * x[k + 1] + h2 * x[k + 2] + h3 * x[k + 3]
+                    total += h4 * x[k + 4] + h5 * x[k + 5] + h6 * x[k + 6] + h7 * x[k + 7]
+                    re[k] += turn_re * total
+                    im[k] += turn_im * total
 
 
 @njit(cache=True, nogil=True, inline="always")
 def _group(taps, i):  # type: ignore[no-untyped-def]
     """Eight taps as numbers."""
     return taps[i], taps[i + 1], taps[i + 2], taps[i + 3], taps[i + 4], taps[i + 5], taps[i + 6], taps[i + 7]
+
+
+@njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "nsz"})
+def _amplitude(re, im, level):  # type: ignore[no-untyped-def]
+    """Peak of a carrier: what the filter leaves of it is half."""
+    for k in range(len(re)):
+        level[k] = np.float32(2) * np.sqrt(re[k] * re[k] + im[k] * im[k])
 
 
 @njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "nsz"}, error_model="numpy")

@@ -154,7 +154,7 @@ def test_taps_have_no_denormals_and_pass_the_reference_whole() -> None:
 def test_stages_agree_with_themselves_as_plain_python(monkeypatch: pytest.MonkeyPatch) -> None:
     frames = tracks(swing, 0.3)[-600:]
     fast = Discriminator(RATE_HZ, REFERENCE_HZ, 8, 4).feed(frames)
-    for name in ("_wrap", "_unlace", "_translate", "_group", "_turn", "_count"):
+    for name in ("_wrap", "_unlace", "_translate", "_group", "_amplitude", "_turn", "_count"):
         monkeypatch.setattr(organ, name, getattr(organ, name).py_func)
     slow = Discriminator(RATE_HZ, REFERENCE_HZ, 8, 4).feed(frames)
     assert np.abs(fast.cycles - slow.cycles).max() < 1e-6
