@@ -21,6 +21,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion.motion import Motion
+from player.chart import Chart
+from player.monitor import FollowingLimit, Monitor
 
 Array = NDArray[np.float64]
 
@@ -29,12 +31,18 @@ class Playback(Protocol):
     """A program in its machine: iterate for the motion; the figures, one per axis, are those of the last time through.
 
     `following_error_mm` is the largest, `end_mm` where the machine stands, `end_error_mm` the same against the end that
-    the program states (None before the end, or if it states none).
+    the program states (None before the end, or if it states none). The `monitor` (Herbert's) watches every drive by the
+    `limit`; a `chart` put in takes the run down; `conditions` are what is wrong with the drives, and may be changed
+    while it runs.
     """
 
     start_mm: Array
     end_mm: Array
     end_error_mm: Array | None
+    limit: FollowingLimit
+    monitor: Monitor
+    chart: Chart | None
+    conditions: list[Any]
 
     @property
     def duration_s(self) -> float: ...

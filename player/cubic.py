@@ -4,14 +4,15 @@ Signals: a `.cubic` file in; the machine's own motion out, one sample for each i
 
     tape ─► interpolator 32 ─► predicted ─┐
                                           ├─► difference 29 ─► register 34 ─► decoder 35 ─► servo 36 ─► motor 9
-    scales ─► counters 18, 19 ─► present ─┘        counts      limited           × modulus    mm/s
+    scales ─► counters 18, 19 ─► present ─┘        counts  │   limited           × modulus    mm/s
+                                                           └─► monitor
 
     speed demand = modulus · (predicted place of the next point - present place)
 
 The difference carries the speed and the correction both: at a constant speed v the machine lags by v / modulus, on all
 axes alike, so that straight lines stay straight and a circle of radius r shrinks by about v² / (2 r modulus²). A larger
 modulus makes a faster machine of the same program (rough), a smaller one a smoother (fine). Dropping the lowest digits of
-the difference makes a rough pass.
+the difference makes a rough pass. The monitor allows the lag that the speed explains, and no more.
 
 Source: patent US 3062995, figures 1 and 3, claims 1 to 10.
 Questions: the patent gives no modulus; 200 mm/s for each mm here. Register 34 has 12 digits and a sign: 4095 counts, 2
@@ -30,10 +31,11 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from motion.drive import Drive, drive_step
+from motion.drive import SOUND, Drive, as_rows, conditioned_step
 from motion.faults import LockFault, ProgramFault
 from motion.motion import AXES, Motion
 from player.interpolator import Interpolator, ends, slopes
+from player.monitor import FollowingLimit, Supervised
 from player.scales import Scales, measured
 from recorder.cubicfile import STEPS_PER_CONSTANT, CubicProgram, read_program
 
@@ -42,6 +44,7 @@ REGISTER_DIGITS = 12  # of register 34, sign apart
 _SETTLING = 15.0  # time constants of the servo: the lag falls to 3e-7 of itself
 _BLOCK_INTERVALS = 256
 _LARGEST_WORD = 2**62  # of register I with its digits
+_TOLERANCE_MM = 0.005  # of following: a tenth of the lag at 10 mm/s
 
 Array = NDArray[np.float64]
 
@@ -57,6 +60,15 @@ class Servo:
     drive: Drive = field(default_factory=Drive)
     seed: int = 0
 
+    def limit(self, modulus_per_s: float, counts_per_mm: float, point_rate_hz: float) -> FollowingLimit:
+        """The following error that is allowed.
+
+        It is the lag of modulus, motor and one point, as the next one is predicted, and what scales and dropped digits add.
+        """
+        lag_s, settle_s = 1 / modulus_per_s + self.drive.lag_s + 1 / point_rate_hz, 1 / modulus_per_s
+        added = 2**self.dropped_digits + 2 * self.scales.fine_noise_counts
+        return FollowingLimit.linear(lag_s, _TOLERANCE_MM + added / counts_per_mm, settle_s)
+
 
 def play_cubic(
     file: str | os.PathLike[str], *, servo: Servo | None = None, travel_mm: float = TRAVEL_MM
@@ -65,11 +77,11 @@ def play_cubic(
     return CubicPlayback(read_program(file), servo or Servo(), travel_mm, str(file))
 
 
-class CubicPlayback:
+class CubicPlayback(Supervised):
     """A cubic program in the machine: iterate for the machine's motion, as often as wanted.
 
     Known beforehand: `format`, `duration_s`, `start_mm`. Figures of the last time through, one per axis:
-    `following_error_mm` (the largest difference), `end_mm`, `end_error_mm`.
+    `following_error_mm` (the largest difference), `end_mm`, `end_error_mm`. `conditions`: what is wrong with the drives.
     """
 
     def __init__(self, program: CubicProgram, servo: Servo, travel_mm: float, name: str) -> None:
@@ -77,14 +89,16 @@ class CubicPlayback:
         self._modulus_per_s = servo.modulus_per_s or program.format.modulus_per_s
         self.start_mm: Array = np.array(program.checks[0]) / self.format.counts_per_mm
         self.end_mm: Array = self.start_mm.copy()
-        self.following_error_mm: Array = np.zeros(len(AXES))
         self.end_error_mm: Array | None = None
+        self.conditions = [SOUND] * len(AXES)
         if self._modulus_per_s * STEPS_PER_CONSTANT > self.format.point_rate_hz:
             raise ProgramFault(
                 f"{name}: a speed modulus of {self._modulus_per_s:g} per s is too much for {self.format.point_rate_hz:g} "
                 f"points per s; give at most {self.format.point_rate_hz / STEPS_PER_CONSTANT:g}, or record more points"
             )
         self._check(travel_mm)
+        self.limit = servo.limit(self._modulus_per_s, self.format.counts_per_mm, self.format.point_rate_hz)
+        self.supervise(AXES, self.format.point_rate_hz)
 
     @property
     def duration_s(self) -> float:
@@ -96,22 +110,25 @@ class CubicPlayback:
         return math.ceil(_SETTLING / self._modulus_per_s * self.format.point_rate_hz)
 
     def __iter__(self) -> Iterator[Motion]:
-        """Play: the machine's motion in blocks; raises LockFault after the last sample that was right."""
+        """Play: the machine's motion in blocks; raises LockFault or FollowingFault after the last sample that was right."""
         fmt, start = self.format, np.array(self.program.checks[0], np.int64)
         state = np.zeros((len(AXES), 2))
         state[:, 0] = self.start_mm
-        self.following_error_mm, self.end_error_mm = np.zeros(len(AXES)), None
+        monitor, self.end_error_mm = self.supervise(AXES, fmt.point_rate_hz), None
         noise = np.random.default_rng(self.servo.seed)
         yield Motion(self.start_mm[None], fmt.point_rate_hz, 0.0)
         done = 0
         for predicted in self._predicted(start):
-            moved = self._follow(predicted, state, noise)
-            self.end_mm = state[:, 0].copy()
-            if len(moved):
-                yield Motion(moved, fmt.point_rate_hz, (done + 1) / fmt.point_rate_hz)
-            done += len(moved)
-            if len(moved) < len(predicted):
-                raise self._out_of_range(predicted[len(moved)], done)
+            moved, present = self._follow(predicted, state, noise)
+            rows = monitor.watch(predicted[: len(moved)] / fmt.counts_per_mm, present / fmt.counts_per_mm)
+            if rows:
+                self.end_mm = moved[rows - 1].copy()
+                yield Motion(moved[:rows], fmt.point_rate_hz, (done + 1) / fmt.point_rate_hz)
+            done += rows
+            if rows < len(moved):
+                raise monitor.warnings[-1]
+            if rows < len(predicted):
+                raise self._out_of_range(predicted[rows], done)
         self.end_error_mm = self.end_mm - np.array(self.program.checks[len(self.program.words)]) / fmt.counts_per_mm
 
     def _predicted(self, start: NDArray[np.int64]) -> Iterator[NDArray[np.int64]]:
@@ -122,16 +139,20 @@ class CubicPlayback:
             yield interpolator.counts(interpolator.run(self.program.words[first : first + _BLOCK_INTERVALS]))
         yield np.repeat(interpolator.at[None], self._settling_points, axis=0)
 
-    def _follow(self, predicted: NDArray[np.int64], state: Array, noise: np.random.Generator) -> Array:
-        """Places of the machine in mm after each point; fewer rows where a difference was too large for its register."""
+    def _follow(self, predicted: NDArray[np.int64], state: Array, noise: np.random.Generator) -> tuple[Array, Array]:
+        """Places of the machine in mm after each point, and as its scales had them before, in counts.
+
+        Fewer rows where a difference was too large for its register.
+        """
         servo, fmt = self.servo, self.format
         dt_s = 1 / fmt.point_rate_hz
-        moved = np.empty(predicted.shape)
+        moved, present = np.empty(predicted.shape), np.empty(predicted.shape)
         jitter = noise.uniform(-1, 1, (*predicted.shape, 2)) if self._noisy else np.zeros((1, len(AXES), 2))
         register = np.array([fmt.counts_per_mm, 2.0**servo.register_digits, 2.0**servo.dropped_digits])
         drive = np.array([self._modulus_per_s, servo.drive.gain(dt_s), servo.drive.acceleration_mm_s2 * dt_s, dt_s])
-        rows = _servo(predicted, jitter, servo.scales.table(), register, drive, state, self.following_error_mm, moved)
-        return moved[:rows]
+        wrong = as_rows(self.conditions)
+        rows = _servo(predicted, jitter, servo.scales.table(), register, drive, wrong, state, present, moved)
+        return moved[:rows], present[:rows]
 
     @property
     def _noisy(self) -> bool:
@@ -194,7 +215,7 @@ class CubicPlayback:
 
 
 @njit(cache=True)
-def _servo(predicted, noise, scales, register, drive, state, largest_mm, moved_mm):  # type: ignore[no-untyped-def]
+def _servo(predicted, noise, scales, register, drive, conditions, state, seen, moved_mm):  # type: ignore[no-untyped-def]
     """Run the servos of all axes through a block; the number of rows done before a difference was too large."""
     counts_per_mm, largest, dropped = register
     modulus, gain, change, dt_s = drive
@@ -205,10 +226,10 @@ def _servo(predicted, noise, scales, register, drive, state, largest_mm, moved_m
             difference = predicted[row, axis] - present  # adder 29
             if abs(difference) >= largest:  # register 34 is full
                 return row
-            largest_mm[axis] = max(largest_mm[axis], abs(difference) / counts_per_mm)
+            seen[row, axis] = present
             kept = np.trunc(difference / dropped) * dropped
             demand = modulus * kept / counts_per_mm  # decoder 35 at its reference voltage
-            speed = drive_step(state[axis, 1], demand, gain, change)
+            speed = conditioned_step(state[axis, 1], demand, gain, change, conditions[axis])
             state[axis, 0] += (state[axis, 1] + speed) / 2 * dt_s
             state[axis, 1] = speed
             moved_mm[row, axis] = state[axis, 0]

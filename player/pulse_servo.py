@@ -36,7 +36,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from motion.drive import Drive, drive_step
+from motion.drive import SOUND, Drive, as_rows, conditioned_step
 
 PULSES_PER_COUNT = 2  # 0.0005 in and 0.001 in
 QUANTA_PER_PULSE = 2  # multiplier 111
@@ -87,6 +87,7 @@ class PulseServos:
         self._registers[:, ICR] = (self._registers[:, COMMAND] >> 1) & ((1 << self.settings.icr_bits) - 1)
         self._registers[:, QUANTA] = self._registers[:, COMMAND] * QUANTA_PER_PULSE
         self._tables[:, PLACE] = self._registers[:, COMMAND] * self.settings.pulse_mm
+        self.conditions = [SOUND] * len(start)
 
     @property
     def largest_lag(self) -> Counts:
@@ -115,7 +116,8 @@ class PulseServos:
         quantum_mm = s.pulse_mm / QUANTA_PER_PULSE
         analogue = np.array([s.gain_per_s * quantum_mm, *drive, quantum_mm, self._dt_s, s.pulse_mm])
         timing = np.array([sampled, phase, s.icr_bits, s.lag_stages])
-        done = _follow(pulses, analogue, timing, self._registers, self._tables, commands, places)
+        wrong = as_rows(self.conditions)
+        done = _follow(pulses, analogue, timing, wrong, self._registers, self._tables, commands, places)
         self._phase = (phase + done) % sampled
         kept = (done + phase) // sampled
         return commands[:kept], places[:kept], done
@@ -155,7 +157,7 @@ def _lag(position, icr, bits):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
-def _follow(pulses, analogue, timing, registers, tables, commands, places):  # type: ignore[no-untyped-def]
+def _follow(pulses, analogue, timing, conditions, registers, tables, commands, places):  # type: ignore[no-untyped-def]
     """Step all axes through a block; recirculations done before a lag was out of range. One loop: all of figure 7."""
     speed_per_count, share, largest_change, quantum_mm, dt_s, pulse_mm = analogue
     sampled, phase, bits, stages = timing
@@ -182,7 +184,7 @@ def _follow(pulses, analogue, timing, registers, tables, commands, places):  # t
                 further = 1 if lags > 0 else -1
                 lags -= further * overflow
                 count += 2 * further
-            speed = drive_step(speed, count * speed_per_count, share, largest_change)
+            speed = conditioned_step(speed, count * speed_per_count, share, largest_change, conditions[axis])
             place += speed * dt_s
             moved = math.floor(place / quantum_mm + 0.5) - quanta
             quanta += moved

@@ -31,10 +31,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from motion.drive import SOUND
 from motion.faults import FollowingFault, ProgramFault
 from motion.motion import AXES, MOTION_RATE_HZ, Motion
 from player.feed_control import feed_number, override_number
-from player.monitor import FollowingLimit, Monitor
+from player.monitor import FollowingLimit, Supervised
 from player.pulse_servo import PulseServo, PulseServos
 from player.residues import LINE, Feed, Interpolator
 from player.rs274 import DWELL, RAPID, Move, Program, read_rs274
@@ -83,16 +84,19 @@ def play_pulses(
     return PulsePlayback(read_rs274(file, start_mm), control, str(file))
 
 
-class PulsePlayback:
-    """A program in the control: iterate for the machine's motion; the figures are those of the last time through."""
+class PulsePlayback(Supervised):
+    """A program in the control: iterate for the machine's motion; the figures are those of the last time through.
+
+    `conditions` say what is wrong with the drives.
+    """
 
     def __init__(self, program: Program, settings: PulseControl, name: str = "program") -> None:
         self.program, self.settings, self.name = program, settings, name
         self.start_mm: Array = np.array(program.start_mm)
         self.end_mm: Array = self.start_mm.copy()
-        self.following_error_mm: Array = np.zeros(len(AXES))
         self.end_error_mm: Array | None = None
-        self.warnings: list[FollowingFault] = []
+        self.conditions, self.limit = [SOUND] * len(AXES), settings.limit
+        self.supervise(AXES, MOTION_RATE_HZ)
         self._jobs = [self._job(move) for move in program.moves]
 
     @property
@@ -114,12 +118,11 @@ class PulsePlayback:
         start = self._pulses(self.start_mm)
         interpolator = Interpolator(start, control.servo_constant)
         servos = PulseServos(start, control.recirculations_hz, control.servo, self._sampled)
-        monitor = Monitor(AXES, MOTION_RATE_HZ, control.limit)
-        self.end_error_mm, self.warnings, samples = None, monitor.warnings, 0
+        servos.conditions = self.conditions
+        monitor, self.end_error_mm, samples = self.supervise(AXES, MOTION_RATE_HZ), None, 0
         for pulses in self._all_pulses(interpolator):
             commands, places, done = servos.follow(pulses)
             rows = monitor.watch(commands, places)
-            self.following_error_mm = monitor.largest_error_mm
             if rows:
                 self.end_mm = places[rows - 1].copy()
                 yield Motion(places[:rows], MOTION_RATE_HZ, samples / MOTION_RATE_HZ)

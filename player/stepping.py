@@ -7,11 +7,13 @@ the interval, evenly spread over its 64 oscillator ticks; out come blocks of Mot
     pulses    -7  -6  -5  -4  -3  -2  -1   0   1   2   3   4   5   6   7     per interval, K = 1/interval each
 
     row ─► bit 5 = 1: axis decoders (figure 4) ──┐
-           bit 5 = 0: ring memory (figure 9)    ─┴─► UP, DOWN ─► counters ─► gates ─► pulses ─► motors
+           bit 5 = 0: ring memory (figure 9)    ─┴─► UP, DOWN ─► counters ─► gates ─► pulses ─┬─► motors
+                                                                                         └──► monitor
 
 The counters go up or down by one, and never above 15 or below 1: no tape of any content can ask a motor for a change of
 more than one rate in an interval. The ring memory has nine inputs, both counts and the direction, and gives nothing
-where the counts are no vector of a ring.
+where the counts are no vector of a ring. The control never learns what the motors did; the monitor counts their steps
+beside the pulses, and stops the machine at the first that is lost.
 
 Source: patent ES 443122, figures 1, 2, 4 and 9, claims 1 to 39.
 Questions: the AND gate on bits 1 and 2 cannot tell 01 from 10; the direction is bit 2 here. Printed are the ticks 32;
@@ -31,7 +33,8 @@ from numpy.typing import NDArray
 
 from motion.faults import ProgramFault
 from motion.motion import AXES, Motion
-from player.motor import Motor, Motors
+from player.monitor import FollowingLimit, Supervised
+from player.motor import SOUND, Motor, Motors
 from recorder.rings import RINGS
 from recorder.stepfile import TICKS, Program, StepFormat, read_program
 
@@ -96,11 +99,12 @@ class ToolChange:
     down: bool
 
 
-class StepPlayback:
+class StepPlayback(Supervised):
     """A step program in the machine: iterate for the machine's motion, as often as wanted.
 
     Known beforehand: `format`, `counts`, `pulses`, `duration_s`, `start_mm`. Figures of the last time through, one per
     axis: `following_error_mm` (steps lost), `end_mm`, `end_error_mm` against the end that the program states.
+    `conditions`: what is wrong with the motors.
     """
 
     def __init__(self, program: Program, motor: Motor, travel_mm: float, name: str) -> None:
@@ -110,9 +114,11 @@ class StepPlayback:
         self.pulses = pulses_of(self.counts, program.format.rates)
         self.start_mm: Array = np.array(program.format.start_mm)
         self.end_mm: Array = self.start_mm.copy()
-        self.following_error_mm: Array = np.zeros(len(AXES))
         self.end_error_mm: Array | None = None
+        self.conditions = [SOUND] * len(AXES)
+        self.limit = FollowingLimit.table([(0.0, 0.0)], self.format.step_mm / 2, settle_s=self.format.interval_s)
         self._check(travel_mm)
+        self.supervise(AXES, SAMPLES_PER_INTERVAL * self.format.rate_hz)
 
     @property
     def duration_s(self) -> float:
@@ -127,18 +133,23 @@ class StepPlayback:
         return [ToolChange(k * self.format.interval_s, bool(down[k])) for k in at]
 
     def __iter__(self) -> Iterator[Motion]:
-        """Play: the machine's motion in blocks."""
+        """Play: the machine's motion in blocks; raises FollowingFault after the last sample before a step was lost."""
         fmt = self.format
         rate_hz = SAMPLES_PER_INTERVAL * fmt.rate_hz
         motors = Motors(len(AXES), fmt.interval_s, self._motor)
-        self.following_error_mm, self.end_error_mm = np.zeros(len(AXES)), None
+        motors.conditions = self.conditions
+        monitor, self.end_error_mm = self.supervise(AXES, rate_hz), None
         yield Motion(self.start_mm[None], rate_hz, 0.0)
         for first in range(0, len(self.pulses), _BLOCK_INTERVALS):
-            steps = motors.run(self.pulses[first : first + _BLOCK_INTERVALS], tick_table(), SAMPLES_PER_INTERVAL)
-            self.following_error_mm = motors.largest_lost * fmt.step_mm
-            self.end_mm = self.start_mm + motors.steps * fmt.step_mm
-            start_s = (first + 1 / SAMPLES_PER_INTERVAL) * fmt.interval_s
-            yield Motion(self.start_mm + steps * fmt.step_mm, rate_hz, start_s)
+            told, made = motors.run(self.pulses[first : first + _BLOCK_INTERVALS], tick_table(), SAMPLES_PER_INTERVAL)
+            places_mm = self.start_mm + made * fmt.step_mm
+            monitor.rows_seen = first * SAMPLES_PER_INTERVAL + 1
+            rows = monitor.watch(self.start_mm + told * fmt.step_mm, places_mm)
+            if rows:
+                self.end_mm = places_mm[rows - 1]
+                yield Motion(places_mm[:rows], rate_hz, (first + 1 / SAMPLES_PER_INTERVAL) * fmt.interval_s)
+            if rows < len(places_mm):
+                raise monitor.warnings[-1]
         self.end_error_mm = self.end_mm - np.array(fmt.end_mm)
 
     def _check(self, travel_mm: float) -> None:

@@ -43,6 +43,7 @@ Words = NDArray[np.int64]
 TOLERANCE_MM = 0.002
 LONGEST_S, SHORTEST_S = 0.512, 0.004
 POINT_RATE_HZ = 4000.0  # nearly, of the interpolated points: the servo is as fast
+_NEIGHBOURS = 4  # places whose pieces are tried
 STRETCH = 1.1  # of the motion's own time
 CHECK_EVERY = 64  # intervals from one checked position to the next
 LIMITS = Limits(100.0, 500.0, spacing_mm=0.005, window_mm=0.02, corner_rad=0.2)
@@ -223,16 +224,20 @@ def _off_mm(leg: Leg, samples: Words, counts_per_mm: float) -> float:
     """The largest distance of the cubics from the leg's path, mm: across it, as time may run a little differently."""
     at = np.linspace(0, len(samples) - 1, max(64, 4 * len(leg.places_mm) // 3))
     run_mm = hermite(samples, at) / counts_per_mm
-    return float(_nearest_mm(leg.places_mm, leg.spacing_mm, run_mm).max())
+    return float(_nearest_mm(leg.places_mm, run_mm).max())
 
 
-def _nearest_mm(places: Array, spacing_mm: float, run_mm: Array) -> Array:
-    """Distance of each point of a run from the leg's places, straight in between."""
+def _nearest_mm(places: Array, run_mm: Array) -> Array:
+    """Distance of each point of a run from the leg's places, straight in between.
+
+    The piece that leads to the nearest place or on from it may be the wrong one where a closed leg ends beside its start.
+    """
     from scipy.spatial import cKDTree
 
-    _, near = cKDTree(places).query(run_mm)
+    _, near = cKDTree(places).query(run_mm, k=min(_NEIGHBOURS, len(places)))
     best = np.full(len(run_mm), np.inf)
-    for first in (np.maximum(near - 1, 0), np.minimum(near, len(places) - 2)):
+    for piece in (*(near.T - 1), *near.T):
+        first = np.clip(piece, 0, len(places) - 2)
         along = places[first + 1] - places[first]
         squared = np.maximum(np.einsum("ij,ij->i", along, along), 1e-30)
         share = np.clip(np.einsum("ij,ij->i", run_mm - places[first], along) / squared, 0, 1)

@@ -16,6 +16,7 @@ from motion.motion import MOTION_RATE_HZ, Motion
 from motion.ramp import Ramp, positions_mm
 from player.controls import play
 from player.monitor import FollowingLimit
+from player.motor import MotorCondition
 from recorder.media import record
 
 SPEED_MM_S, LENGTH_MM, REST_S = 1.0, 0.15, 0.3
@@ -40,6 +41,37 @@ RIGS = {
             "lost gain": (Condition(gain_share=0.1), 0.06),
             "stuck axis": (Condition(stuck=True), 0.03),
             "runaway": (Condition(runaway_mm_s=6.0), 0.03),
+        },
+    ),
+    "steps": Rig(
+        ".steps",
+        # A motor loses steps at any speed alike, so half a step is the limit for all; this is what a servo would want.
+        0.2,
+        {
+            "friction": (MotorCondition(friction_share=1.0), 0.02),
+            "lost gain": (MotorCondition(torque_share=0.3), 0.02),
+            "stuck axis": (MotorCondition(stuck=True), 0.02),
+            "runaway": (MotorCondition(stray_hz=25.0), 0.0),  # a quarter of a mm/s, from the first standstill on
+        },
+    ),
+    "cubic": Rig(
+        ".cubic",
+        0.63,  # the lag at 100 mm/s
+        {
+            "friction": (Condition(friction_mm_s=5.0), 0.06),
+            "lost gain": (Condition(gain_share=0.1), 0.06),
+            "stuck axis": (Condition(stuck=True), 0.06),
+            "runaway": (Condition(runaway_mm_s=5.0), 0.0),
+        },
+    ),
+    "pulses": Rig(
+        ".ngc",
+        0.25,  # the range of the instantaneous command register
+        {
+            "friction": (Condition(friction_mm_s=100.0), 0.1),
+            "lost gain": (Condition(gain_share=0.005), 0.1),
+            "stuck axis": (Condition(stuck=True), 0.1),
+            "runaway": (Condition(runaway_mm_s=100.0), 0.0),
         },
     ),
 }

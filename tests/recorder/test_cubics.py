@@ -180,3 +180,14 @@ def test_whatever_stands_in_a_file_is_played_or_refused_in_one_line(
             play_cubic(file)
         except ProgramFault as fault:
             assert "\n" not in str(fault)
+
+
+def test_a_loop_that_ends_where_it_began_is_no_further_off_there(tmp_path: FilePath) -> None:
+    ring = circle(10, 10)
+    ring.positions_mm[-1, 2] += 0.25 * UM  # the tool is about to rise: the first place is nearer than the last
+    report = record_cubics(ring, tmp_path / "a.cubic", tolerance_mm=1 * UM)
+    assert report.deviation_mm <= 1 * UM
+    assert (
+        report.format.interval_s
+        == record_cubics(circle(10, 10, 0.9), tmp_path / "b.cubic", tolerance_mm=1 * UM).format.interval_s
+    )
