@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path as FilePath
 from typing import Any
 
@@ -10,17 +11,27 @@ import click
 from console import medium
 from console.desk import Desk, desk_options
 from console.playing import PIPE, Controls, Played, tape_options
-from console.quantities import NUMBER, TIME
+from console.quantities import NUMBER, PLACES, SHARE, TIME
 from motion.faults import Fault
 from motion.motion import Path
 
 SUFFIXES = (".csv", ".svg", ".png")
+MOTORS = ("electric", "hydraulic")  # player.phase_lock; the first is the default
+OPTIONS = {
+    "resume_at_s": "--resume-at",
+    "acceleration_mm_s2": "--acceleration",
+    "settings": "--motor",
+    "zero_mm": "--zero",
+    "true_norm": "--norm",
+    "override": "--feed-override",
+}
+FOR_TAPES = {"resume_at_s", "acceleration_mm_s2", "settings", "zero_mm"}
 
 EXAMPLES = """\b
 Examples:
   morfax play cam.wav -o cam.csv
   morfax play cam.wav -o cam.csv -o cam.svg -o cam.png
-  morfax play cam.wav --resume-at 83.2s --from 40,62,-2 -o rest.csv
+  morfax play cam.wav --feed-override 120% --motor hydraulic --zero 0,0,-0.05
   arecord -c4 -r48000 -fS16_LE | morfax play - --reference 6kHz --cycles-per-mm 20
   morfax play found.wav --reference 6kHz --cycles-per-mm 20 --from 40,62 -o found.csv
 """
@@ -49,7 +60,25 @@ Examples:
     type=click.Choice(["weights", "true"]),
     help="Resultant speed of an .ngc program: by the patent's weights, or true.  [default: weights]",
 )
-@click.option("--override", type=NUMBER, help="Share of the programmed feeds of an .ngc program, 0 to 1.  [default: 1]")
+@click.option(
+    "--feed-override",
+    "--override",
+    "override",
+    type=SHARE,
+    help="Speed against the program's, along the same path: of a tape 10% to 200%, of an .ngc program 0% to 100%.  "
+    "[default: 100%]",
+)
+@click.option(
+    "--motor",
+    type=click.Choice(MOTORS),
+    help=f"Motors of the machine that plays a tape: lag, acceleration and top speed.  [default: {MOTORS[0]}]",
+)
+@click.option(
+    "--zero",
+    "zero_mm",
+    type=PLACES,
+    help="Zero adjustment of a tape's axes, X,Y or X,Y,Z in mm: the machine stands so far from where the tape has it.",
+)
 @tape_options
 @desk_options
 def command(
@@ -60,6 +89,8 @@ def command(
     acceleration_mm_s2: float | None,
     norm: str | None,
     override: float | None,
+    motor: str | None,
+    zero_mm: tuple[float, ...] | None,
     controls: Controls,
     desk: Desk,
 ) -> None:
@@ -70,13 +101,20 @@ def command(
     """
     for file in outputs:
         medium.outgoing(medium.with_suffix_in(file, SUFFIXES), tape)
-    settings: dict[str, Any] = {"resume_at_s": resume_at_s, "acceleration_mm_s2": acceleration_mm_s2}
-    given = {name: value for name, value in settings.items() if value is not None}
-    if given and str(tape) == PIPE:
-        raise click.UsageError("--resume-at and --acceleration are for files, not for a pipe")
-    settings |= {"true_norm": None if norm is None else norm == "true", "override": override}
+    settings: dict[str, Any] = {
+        "resume_at_s": resume_at_s,
+        "acceleration_mm_s2": acceleration_mm_s2,
+        "true_norm": None if norm is None else norm == "true",
+        "override": override,
+        "settings": motor,
+        "zero_mm": zero_mm,
+    }
     given = {name: value for name, value in settings.items() if value is not None}
     _refuse_foreign(tape, given)
+    if motor is not None:
+        from player.phase_lock import MOTORS as LOCKS
+
+        given["settings"] = LOCKS[motor]
     if resume_at_s is not None and controls.start_mm is None:
         raise click.UsageError("--resume-at wants to be told where the machine stands then; give --from X,Y,Z")
     try:
@@ -98,10 +136,19 @@ def _refuse_foreign(tape: FilePath, given: dict[str, Any]) -> None:
     from player.controls import CONTROLS, TAPE, control_of
 
     control = control_of(tape)
-    if control != TAPE and not given.keys().isdisjoint(("resume_at_s", "acceleration_mm_s2")):
-        raise click.UsageError(f"--resume-at and --acceleration are for tapes; {tape} is none")
-    if control != CONTROLS[".ngc"] and not given.keys().isdisjoint(("true_norm", "override")):
-        raise click.UsageError(f"--norm and --override are for programs of lines and arcs, .ngc; {tape} is none")
+    if str(tape) == PIPE and given:
+        raise click.UsageError(f"{_options(given)} is for files, not for a pipe")
+    if control != TAPE and not given.keys().isdisjoint(FOR_TAPES):
+        raise click.UsageError(f"{_options(given.keys() & FOR_TAPES)} is for tapes; {tape} is none")
+    if control != CONTROLS[".ngc"] and "true_norm" in given:
+        raise click.UsageError(f"--norm is for programs of lines and arcs, .ngc; {tape} is none")
+    if control not in (TAPE, CONTROLS[".ngc"]) and "override" in given:
+        raise click.UsageError(f"--feed-override is for tapes and for programs of lines and arcs, .ngc; {tape} is none")
+
+
+def _options(given: Iterable[str]) -> str:
+    """The options of some settings."""
+    return ", ".join(sorted(OPTIONS[name] for name in given))
 
 
 def figures(played: Played) -> dict[str, Any]:

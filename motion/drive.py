@@ -29,10 +29,11 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True, slots=True)
 class Drive:
-    """Settings of a velocity servo."""
+    """Settings of a velocity servo; the top speed is that of a machine's motors, and none of a follower's."""
 
     lag_s: float = 0.001
     acceleration_mm_s2: float = 5000.0
+    top_speed_mm_s: float = math.inf
 
     def gain(self, dt_s: float) -> float:
         """Share of the speed error made good in one period, 0..1."""

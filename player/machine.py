@@ -6,8 +6,8 @@ block of tape is held at a time.
 
 The reference track turns the sector wheels through the synchronous motor 116, so the machine's clock is the tape: a
 tape that runs fast or flutters makes the machine run fast or flutter along the same path, and the times here are the
-tape's own. The zero of each axis is the phase at standstill; the tape holds displacements, and where they start from
-is in its text chunk or given by hand.
+tape's own (at an override, the machine's: see setting.py). The zero of each axis is the phase at standstill; the tape
+holds displacements, and where they start from is in its text chunk or given by hand.
 
 Source: patent ES 361967, figure 5 and claims 15 to 17.
 Questions: which motion is "played" is not in doubt: that of the machine's screws, never of the tape; they differ by
@@ -17,6 +17,7 @@ lost on the way shows nowhere else.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import replace
@@ -35,6 +36,7 @@ from player.discriminator import Discriminator, Phases, discriminate
 from player.dropouts import Gaps, under_way
 from player.monitor import Supervised
 from player.phase_lock import Drives, PhaseLock, following_limit
+from player.setting import Setting
 from player.watch import Watch, demand_apart
 from recorder.pipe import Pipe, Samples
 from recorder.tape import Stored, Tape, TapeFormat, full_scale
@@ -54,8 +56,13 @@ def play(
     settings: PhaseLock | None = None,
     acceleration_mm_s2: float | None = None,
     resume_at_s: float = 0.0,
+    zero_mm: Sequence[float] = (),
+    override: float = 1.0,
 ) -> Playback:
     """Put a tape in the machine; what is given by hand goes before its text chunk. Raises TapeFault, FileFault.
+
+    `settings` are those of the drives (MOTORS). `zero_mm`: by how much the phase changers move each axis; `override`: how
+    fast the tape runs against the speed at which it was recorded. Raises ValueError for what cannot be of these.
 
     `acceleration_mm_s2` is the most that the program asks of an axis (else what the motors can do); a dropout is ridden
     over as long as that makes the count certain. `resume_at_s` is a tape time at which the machine stands at `start_mm`.
@@ -69,10 +76,9 @@ def play(
     if resume_at_s and fmt.end_mm is not None:  # the place is not the tape's start, so the end does not go along
         with Tape.open(file, reference_hz=reference_hz, cycles_per_mm=cycles_per_mm) as tape:
             fmt = replace(fmt, end_mm=tape.format.end_mm)
-    settings = settings or PhaseLock.suited_to(fmt.motion_rate_hz)
-    most = settings.drive.acceleration_mm_s2 if acceleration_mm_s2 is None else acceleration_mm_s2
+    setting = Setting(settings or PhaseLock(), tuple(zero_mm), override)
     _check_resumption(resume_at_s, start_mm, frames / fmt.sample_rate_hz)
-    return Playback(open_tape, fmt, frames, settings, most, resume_at_s)
+    return Playback(open_tape, fmt, frames, setting, acceleration_mm_s2, resume_at_s)
 
 
 def play_pipe(
@@ -86,8 +92,7 @@ def play_pipe(
     """Put a tape that comes through a pipe in the machine, as it comes; it can be played once. Raises TapeFault."""
     start = None if start_mm is None else tuple(start_mm)
     pipe = Pipe.open(stream, reference_hz=reference_hz, cycles_per_mm=cycles_per_mm, start_mm=start, samples=samples)
-    settings = PhaseLock.suited_to(pipe.format.motion_rate_hz)
-    return Playback(lambda: pipe, pipe.format, 0, settings, settings.drive.acceleration_mm_s2)
+    return Playback(lambda: pipe, pipe.format, 0, Setting())
 
 
 def _check_resumption(resume_at_s: float, start_mm: Sequence[float] | None, duration_s: float) -> None:
@@ -104,6 +109,7 @@ class Playback(Supervised):
     Known beforehand: `format`, `frames`, `duration_s`, `start_mm`. Figures of the last time through, one per axis of
     the tape: `following_error_mm` (the largest), `end_mm` (where the machine stands), `end_error_mm` (against the end
     that the tape states; None before the end, or if it states none). `conditions`: what is wrong with the drives.
+    The rate and the times of the motion are the machine's, as are those of a drive's fault; a tape's fault has tape time.
     """
 
     def __init__(
@@ -111,38 +117,46 @@ class Playback(Supervised):
         open_tape: Callable[[], AbstractContextManager[Tape | Pipe]],
         fmt: TapeFormat,
         frames: int,
-        settings: PhaseLock,
-        acceleration_mm_s2: float,
+        setting: Setting,
+        acceleration_mm_s2: float | None = None,
         resume_at_s: float = 0.0,
     ) -> None:
-        self._open_tape, self.format, self.frames, self.settings = open_tape, fmt, frames, settings
-        self.acceleration_mm_s2, self.resume_at_s = acceleration_mm_s2, resume_at_s
+        self._open_tape, self.format, self.frames, self.setting = open_tape, fmt, frames, setting
+        self.rate_hz = fmt.motion_rate_hz * setting.override
+        self.settings = setting.lock.suited_to(fmt.motion_rate_hz)
+        self._steps = math.ceil(1 / setting.override)  # of the loop to a row: it is no slower where the tape is
+        motors_mm_s2 = self.settings.drive.acceleration_mm_s2 / setting.override**2  # as it would be on the tape
+        self.acceleration_mm_s2 = motors_mm_s2 if acceleration_mm_s2 is None else acceleration_mm_s2
+        self.resume_at_s = resume_at_s
+        self._zero_mm = setting.zeros_mm(fmt.axes)
         self.bridged: dict[tuple[float, str], float] = {}
         self._rows = 0
-        self.start_mm: Array = np.array(fmt.start_mm, dtype=np.float64)
+        self.start_mm: Array = np.array(fmt.start_mm, dtype=np.float64) + self._zero_mm
         self.end_mm: Array = self.start_mm.copy()
         self.end_error_mm: Array | None = None
         self.conditions = [SOUND] * len(fmt.axes)
-        self.limit = following_limit(settings, fmt.mm_per_cycle, fmt.motion_rate_hz)
-        self.supervise(fmt.axes, fmt.motion_rate_hz)
+        self.limit = following_limit(self.settings, fmt.mm_per_cycle, self.rate_hz * self._steps)
+        self.supervise(fmt.axes, self.rate_hz)
 
     @property
     def duration_s(self) -> float:
-        """Length of the tape, s."""
-        return self.frames / self.format.sample_rate_hz
+        """How long the tape runs, s."""
+        return self.frames / self.format.sample_rate_hz / self.setting.override
 
     def __iter__(self) -> Iterator[Motion]:
         """Play: the motion in blocks; raises TapeFault, LockFault or FollowingFault after the last sample that was right."""
         fmt = self.format
-        drives = Drives(len(fmt.axes), fmt.mm_per_cycle, fmt.motion_rate_hz, self.settings)
+        drives = Drives(len(fmt.axes), fmt.mm_per_cycle, self.rate_hz, self.settings, steps=self._steps)
+        drives.adjust(self._zero_mm)
         drives.conditions = self.conditions
-        monitor, self.end_error_mm = self.supervise(fmt.axes, fmt.motion_rate_hz), None
+        rest_mm = self.start_mm - self._zero_mm  # where the screws stood before that
+        monitor, self.end_error_mm = self.supervise(fmt.axes, self.rate_hz), None
         for phases, bearings, gap in self._phases():
             found = bearings.first_fault(phases, fmt.motion_rate_hz, self.end_mm.tolist()) or gap
             sound = len(phases) if found is None else min(found[0], len(phases))
-            cycles = phases.cycles[:sound] - bearings.zero_cycles
-            places_mm = drives.follow(cycles) + self.start_mm
-            demand_mm = cycles[: len(places_mm)] * fmt.mm_per_cycle + self.start_mm
+            cycles = phases.cycles[:sound] - bearings.zero_cycles + self._zero_mm * fmt.cycles_per_mm
+            places_mm = drives.follow(cycles) + rest_mm
+            demand_mm = cycles[: len(places_mm)] * fmt.mm_per_cycle + rest_mm
             monitor.rows_seen = phases.first_row
             rows = monitor.watch(demand_mm, places_mm)
             if rows:
@@ -223,7 +237,7 @@ class Playback(Supervised):
 
     def _motion(self, places_mm: Array, first_row: int) -> Motion:
         """A block of positions: X, Y, Z and what other axes the tape has; an axis without a track stands at 0."""
-        rate_hz, names = self.format.motion_rate_hz, self.format.axes
+        rate_hz, names = self.rate_hz, self.format.axes
         if tuple(names[: len(AXES)]) == AXES:
             return Motion(places_mm, rate_hz, first_row / rate_hz)
         columns = [*AXES, *(name for name in names if name not in AXES)]
@@ -233,14 +247,14 @@ class Playback(Supervised):
 
     def _out_of_range(self, drives: Drives, row: int) -> LockFault:
         """The fault of fault circuit 162: a drive that could not follow."""
-        error_mm = drives.error_mm
+        error_mm, drive = drives.error_mm, self.settings.drive
         axis = int(np.argmax(np.where(np.isnan(error_mm), np.inf, np.abs(error_mm))))
-        name, time_s = self.format.axes[axis], row / self.format.motion_rate_hz
+        name, time_s = self.format.axes[axis], row / self.rate_hz
         error_cycles, position_mm = float(error_mm[axis]) * self.format.cycles_per_mm, float(self.end_mm[axis])
         return LockFault(
             f"the drive of {name.upper()} lost its lock at {time_s:.3f} s, position {position_mm:.3f} mm: error "
             f"{error_cycles:+.2f} cycles, allowed ±{self.settings.range_cycles:g}; the tape asks for more than "
-            f"{self.settings.drive.acceleration_mm_s2:g} mm/s²: record it slower or smoother",
+            f"{drive.acceleration_mm_s2:g} mm/s² or {drive.top_speed_mm_s:g} mm/s: play it slower, or record it smoother",
             axis=name,
             time_s=time_s,
             error_cycles=error_cycles,
@@ -252,7 +266,7 @@ class Playback(Supervised):
         fmt = self.format
         if fmt.end_mm is None:
             return
-        self.end_error_mm = self.end_mm - np.array(fmt.end_mm)
+        self.end_error_mm = self.end_mm - np.array(fmt.end_mm) - self._zero_mm
         axis = int(np.argmax(np.abs(self.end_error_mm)))
         error_mm, position_mm = float(self.end_error_mm[axis]), float(self.end_mm[axis])
         if abs(error_mm) * fmt.cycles_per_mm <= END_CYCLES:

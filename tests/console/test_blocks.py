@@ -33,9 +33,9 @@ def test_the_norm_and_the_override_change_the_time(bracket: Path, morfax: Morfax
 
 
 def test_what_is_for_another_control_is_refused(bracket: Path, morfax: Morfax) -> None:
-    assert "are for tapes" in morfax("play", bracket, "--acceleration", "3000").fault
+    assert "is for tapes" in morfax("play", bracket, "--acceleration", "3000").fault
     assert morfax("record", bracket, "-o", "bracket.wav").exit_code == 0  # played on its own control first
-    assert "are for programs of lines and arcs" in morfax("play", "bracket.wav", "--norm", "true").fault
+    assert "is for programs of lines and arcs" in morfax("play", "bracket.wav", "--norm", "true").fault
     assert "an override of 3 is none" in morfax("play", bracket, "--override", "3").fault
 
 

@@ -165,5 +165,5 @@ def test_kernel_agrees_with_itself_as_plain_python(monkeypatch: pytest.MonkeyPat
 def test_a_rate_too_low_for_the_loop_is_refused_and_a_suited_loop_is_not() -> None:
     with pytest.raises(ValueError, match="at most 50 Hz"):
         place(PhaseLock(), 1 / 500)
-    assert place(PhaseLock.suited_to(500), 1 / 500).gain > 0
-    assert PhaseLock.suited_to(MOTION_RATE_HZ) == PhaseLock()
+    assert place(PhaseLock().suited_to(500), 1 / 500).gain > 0
+    assert PhaseLock().suited_to(MOTION_RATE_HZ) == PhaseLock()
