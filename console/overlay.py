@@ -70,7 +70,7 @@ def draw(picture: Picture, file: FilePath) -> None:
     _fill(figure, main, picture, view)
     for number, (axes, place_mm) in enumerate(zip(beside, insets, strict=True), 1):
         _enlarge(axes, main, picture, place_mm, number)
-    _save(figure, file)
+    save(figure, file)
 
 
 def draw_sheet(drawing: Drawing, places_mm: dict[str, tuple[float, float]], file: FilePath) -> None:
@@ -90,10 +90,10 @@ def draw_sheet(drawing: Drawing, places_mm: dict[str, tuple[float, float]], file
             axes.plot(x, y, marker, color=colour, markersize=12, label=f"{name} {x:.1f},{y:.1f}", linestyle="none")
     if axes.get_legend_handles_labels()[0]:
         axes.legend(loc="upper right", fontsize=8, framealpha=0.8)
-    _save(figure, file)
+    save(figure, file)
 
 
-def _save(figure: Figure, file: FilePath) -> None:
+def save(figure: Figure, file: FilePath) -> None:
     """Write a figure whole or not at all; made in memory first, since not every kind of picture tells of a full disk."""
     made = io.BytesIO()
     figure.savefig(made, format=file.suffix[1:].lower(), dpi=DPI, bbox_inches="tight", pad_inches=0.15)

@@ -4,16 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path as FilePath
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from console import medium
+from console import following, medium
 from console.desk import Desk, desk_options
 from console.playing import PIPE, Controls, Played, tape_options
 from console.quantities import NUMBER, PLACES, SHARE, TIME
 from motion.faults import Fault
 from motion.motion import Path
+
+if TYPE_CHECKING:
+    from player.chart import Chart
+    from player.controls import Playback
 
 SUFFIXES = (".csv", ".svg", ".png")
 MOTORS = ("electric", "hydraulic")  # player.phase_lock; the first is the default
@@ -32,6 +36,7 @@ Examples:
   morfax play cam.wav -o cam.csv
   morfax play cam.wav -o cam.csv -o cam.svg -o cam.png
   morfax play cam.wav --feed-override 120% --motor hydraulic --zero 0,0,-0.05
+  morfax play cam.ngc --following servos.png --following servos.csv
   arecord -c4 -r48000 -fS16_LE | morfax play - --reference 6kHz --cycles-per-mm 20
   morfax play found.wav --reference 6kHz --cycles-per-mm 20 --from 40,62 -o found.csv
 """
@@ -42,7 +47,19 @@ Examples:
 @click.option(
     "-o", "outputs", type=medium.FILE, multiple=True, help="Write the machine's path: .csv, .svg (true size) or .png."
 )
-@click.option("--raw", is_flag=True, help="Keep every sample of the motion.  [default: thinned to within 0.2 um]")
+@click.option(
+    "--following",
+    "followed",
+    type=medium.FILE,
+    multiple=True,
+    help="Draw (.png, .svg, .pdf) or write (.csv) the following error of each axis against its limit; of an .ngc "
+    "program the picture also shows the speed held.",
+)
+@click.option(
+    "--raw",
+    is_flag=True,
+    help="Keep every sample of the motion.  [default: thinned to within 0.2 um, following errors every 10 ms]",
+)
 @click.option(
     "--resume-at",
     "resume_at_s",
@@ -84,6 +101,7 @@ Examples:
 def command(
     tape: FilePath,
     outputs: tuple[FilePath, ...],
+    followed: tuple[FilePath, ...],
     raw: bool,
     resume_at_s: float | None,
     acceleration_mm_s2: float | None,
@@ -101,6 +119,8 @@ def command(
     """
     for file in outputs:
         medium.outgoing(medium.with_suffix_in(file, SUFFIXES), tape)
+    for file in followed:
+        medium.outgoing(medium.with_suffix_in(file, following.SUFFIXES, "--following"), tape)
     settings: dict[str, Any] = {
         "resume_at_s": resume_at_s,
         "acceleration_mm_s2": acceleration_mm_s2,
@@ -118,7 +138,7 @@ def command(
     if resume_at_s is not None and controls.start_mm is None:
         raise click.UsageError("--resume-at wants to be told where the machine stands then; give --from X,Y,Z")
     try:
-        played = controls.play(tape, desk, raw=raw, **given)
+        played = controls.play(tape, desk, raw=raw, chart=_chart(raw) if followed else None, **given)
     except ValueError as refused:
         if isinstance(refused, Fault):
             raise
@@ -126,7 +146,9 @@ def command(
     written = [medium.incomplete(file) if played.fault else file for file in outputs]
     for file in written:
         write(played.path, file, f"{tape.name}, played")
-    desk.figures({medium.called(tape): str(tape), "paths": [str(file) for file in written] or None, **figures(played)})
+    charts = _write_following(played, followed, tape.name)
+    results = {"paths": [str(file) for file in written] or None, "following": charts or None}
+    desk.figures({medium.called(tape): str(tape), **results, **figures(played)})
     if played.fault:
         raise played.fault
 
@@ -161,8 +183,44 @@ def figures(played: Played) -> dict[str, Any]:
         "start_place_mm": path.positions_mm[0],
         "end_place_mm": path.positions_mm[-1],
         "largest_following_error_mm": float(max(playback.following_error_mm)),
+        **_following(playback),
         "bridged_dropouts": len(getattr(playback, "bridged", ())) or None,
     }
+
+
+def _chart(raw: bool) -> Chart:
+    """What takes the following errors down: every sample, or the worst of each 10 ms."""
+    from player.chart import Chart
+
+    return Chart(0.0) if raw else Chart()
+
+
+def _write_following(played: Played, files: tuple[FilePath, ...], name: str) -> list[str]:
+    """Write the following errors where they were asked for; the names under which they stand."""
+    written = [medium.incomplete(file) if played.fault else file for file in files]
+    pictures = any(file.suffix.lower() != ".csv" for file in files)
+    for file in written:
+        assert played.playback.chart is not None
+        title = f"{name}: following error against its limit"
+        following.write(played.playback.chart, file, title, _speeds(played.playback) if pictures else None)
+    return [str(file) for file in written]
+
+
+def _speeds(playback: Playback) -> dict[str, Any] | None:
+    """The speed that a program of lines and arcs holds, either way."""
+    from player.held_speed import held_speed
+    from player.pulses import PulsePlayback
+
+    if not isinstance(playback, PulsePlayback):
+        return None
+    return {"weights": held_speed(playback, False), "--norm true": held_speed(playback, True)}
+
+
+def _following(playback: Playback) -> dict[str, Any]:
+    """The largest following error of each axis, and the share of its limit."""
+    watch = playback.monitor
+    each = zip(watch.axes, watch.largest_error_mm.tolist(), watch.largest_share.tolist(), strict=True)
+    return {f"{axis}_axis": {"following_error_mm": error_mm, "limit_share": share} for axis, error_mm, share in each}
 
 
 def write(path: Path, file: FilePath, title: str) -> None:

@@ -20,6 +20,7 @@ from motion.faults import Fault
 
 if TYPE_CHECKING:
     from motion.motion import Motion, Path
+    from player.chart import Chart
     from player.controls import Playback
     from recorder.tape import Tape
 
@@ -50,13 +51,16 @@ class Controls:
 
         return Tape.open(file, reference_hz=self.reference_hz, cycles_per_mm=self.cycles_per_mm, start_mm=self.start_mm)
 
-    def play(self, file: FilePath, desk: Desk, *, raw: bool = False, **settings: Any) -> Played:
+    def play(
+        self, file: FilePath, desk: Desk, *, raw: bool = False, chart: Chart | None = None, **settings: Any
+    ) -> Played:
         """Play a tape, or what comes through a pipe (-), to its end or to its fault; `settings` as `play` takes them.
 
-        Raises the fault if nothing was played before it.
+        The chart takes down the following errors. Raises the fault if nothing was played before it.
         """
         desk.warn_of_compiling("the controls", "motion", "player")
         playback = self._put_in(file, settings)
+        playback.chart = chart
         met: list[Fault] = []
         stream = desk.watched(_until_fault(playback, met), f"playing {file.name}", playback.duration_s)
         path = _path(stream, raw, met)

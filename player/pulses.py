@@ -62,9 +62,15 @@ class PulseControl:
 
     @property
     def limit(self) -> FollowingLimit:
-        """The following error that is allowed: what the servo needs to get to a speed at once, and some pulses."""
-        lag_s = 1 / self.servo.gain_per_s
-        return FollowingLimit.linear(lag_s, 0.05 + 4 * self.servo.pulse_mm, settle_s=2 * lag_s)
+        """The following error that is allowed: what the servo needs to get to a speed at once, and some pulses.
+
+        That is its lag, and at speed what the motor's current takes to bring it there.
+        """
+        lag_s, most_mm_s2 = 1 / self.servo.gain_per_s, self.servo.drive.acceleration_mm_s2
+        speeds = np.linspace(0, self.recirculations_hz * self.servo.pulse_mm, 17)  # a pulse in each recirculation
+        errors_mm = lag_s * speeds + speeds**2 / (2 * most_mm_s2)
+        points = list(zip(speeds.tolist(), errors_mm.tolist(), strict=True))
+        return FollowingLimit.table(points, 0.05 + 4 * self.servo.pulse_mm, settle_s=2 * lag_s)
 
 
 def play_pulses(
@@ -145,6 +151,13 @@ class PulsePlayback(Supervised):
         for move, (_, run) in zip(self.program.moves, self._jobs, strict=True):
             yield from self._stand(move.dwell_s) if move.kind == DWELL else run(interpolator)
         yield from self._stand(STANDSTILL_S)
+
+    def run_moves(self) -> Iterator[tuple[float, Iterator[Pulses]]]:
+        """Programmed speed in mm/s and command pulses of each move but dwells, to be taken one after the other."""
+        interpolator = Interpolator(self._pulses(self.start_mm), self.settings.servo_constant)
+        for move, (speed_mm_s, run) in zip(self.program.moves, self._jobs, strict=True):
+            if move.kind != DWELL:
+                yield speed_mm_s, run(interpolator)
 
     def _stand(self, seconds: float) -> Iterator[Pulses]:
         """No pulses for a time, in whole samples."""

@@ -225,3 +225,12 @@ def test_the_compiled_kernels_are_the_plain_ones(monkeypatch: pytest.MonkeyPatch
         assert np.abs(np.asarray(compiled) - interpreted).max() < 1e-12
     assert count_feed.py_func(64, feed.number, feed.override) == count_feed(64, feed.number, feed.override)
     assert sum(feed_control.passes.py_func(count, 0b1101, 4) for count in range(1, 17)) == 0b1101
+
+
+@pytest.mark.parametrize("speed_mm_s", [5, 20, 30, 40])
+def test_a_start_at_once_at_any_feed_passes_the_monitor(tmp_path: Path, speed_mm_s: float) -> None:
+    file = tmp_path / "fast.ngc"
+    file.write_text(f"G21 G90 G94\nG0 X0 Y0 Z0\nG1 X20 F{60 * speed_mm_s}\nG1 X20 Y20\nG1 X0\nM2\n")
+    run = play_pulses(file)
+    assert list(run) and run.end_error_mm == pytest.approx([0, 0, 0], abs=0.002)
+    assert run.monitor.largest_share.max() < 0.9
