@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from player.chart import Chart
+    from player.controls import Playback
     from player.held_speed import HeldSpeed
 
 SUFFIXES = (".png", ".svg", ".pdf", ".csv")
@@ -30,6 +31,30 @@ PANEL_IN = 1.9  # height
 _HEADINGS = ("demand", "actual", "error", "limit")
 
 Speeds = dict[str, "HeldSpeed"]
+
+
+def new_chart(raw: bool) -> Chart:
+    """What takes the following errors down: every sample, or the worst of each 10 ms."""
+    from player.chart import Chart
+
+    return Chart(0.0) if raw else Chart()
+
+
+def speeds_held(playback: Playback) -> Speeds | None:
+    """The speed that a program of lines and arcs holds, either way."""
+    from player.held_speed import held_speed
+    from player.pulses import PulsePlayback
+
+    if not isinstance(playback, PulsePlayback):
+        return None
+    return {"weights": held_speed(playback, False), "--norm true": held_speed(playback, True)}
+
+
+def figures(playback: Playback) -> dict[str, Any]:
+    """The largest following error of each axis, and the share of its limit."""
+    watch = playback.monitor
+    each = zip(watch.axes, watch.largest_error_mm.tolist(), watch.largest_share.tolist(), strict=True)
+    return {f"{axis}_axis": {"following_error_mm": error_mm, "limit_share": share} for axis, error_mm, share in each}
 
 
 def write(chart: Chart, file: FilePath, title: str, speeds: Speeds | None = None) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path as FilePath
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
@@ -14,10 +14,6 @@ from console.playing import PIPE, Controls, Played, tape_options
 from console.quantities import NUMBER, PLACES, SHARE, TIME
 from motion.faults import Fault
 from motion.motion import Path
-
-if TYPE_CHECKING:
-    from player.chart import Chart
-    from player.controls import Playback
 
 SUFFIXES = (".csv", ".svg", ".png")
 MOTORS = ("electric", "hydraulic")  # player.phase_lock; the first is the default
@@ -138,7 +134,7 @@ def command(
     if resume_at_s is not None and controls.start_mm is None:
         raise click.UsageError("--resume-at wants to be told where the machine stands then; give --from X,Y,Z")
     try:
-        played = controls.play(tape, desk, raw=raw, chart=_chart(raw) if followed else None, **given)
+        played = controls.play(tape, desk, raw=raw, chart=following.new_chart(raw) if followed else None, **given)
     except ValueError as refused:
         if isinstance(refused, Fault):
             raise
@@ -183,16 +179,9 @@ def figures(played: Played) -> dict[str, Any]:
         "start_place_mm": path.positions_mm[0],
         "end_place_mm": path.positions_mm[-1],
         "largest_following_error_mm": float(max(playback.following_error_mm)),
-        **_following(playback),
+        **following.figures(playback),
         "bridged_dropouts": len(getattr(playback, "bridged", ())) or None,
     }
-
-
-def _chart(raw: bool) -> Chart:
-    """What takes the following errors down: every sample, or the worst of each 10 ms."""
-    from player.chart import Chart
-
-    return Chart(0.0) if raw else Chart()
 
 
 def _write_following(played: Played, files: tuple[FilePath, ...], name: str) -> list[str]:
@@ -202,25 +191,10 @@ def _write_following(played: Played, files: tuple[FilePath, ...], name: str) -> 
     for file in written:
         assert played.playback.chart is not None
         title = f"{name}: following error against its limit"
-        following.write(played.playback.chart, file, title, _speeds(played.playback) if pictures else None)
+        following.write(
+            played.playback.chart, file, title, following.speeds_held(played.playback) if pictures else None
+        )
     return [str(file) for file in written]
-
-
-def _speeds(playback: Playback) -> dict[str, Any] | None:
-    """The speed that a program of lines and arcs holds, either way."""
-    from player.held_speed import held_speed
-    from player.pulses import PulsePlayback
-
-    if not isinstance(playback, PulsePlayback):
-        return None
-    return {"weights": held_speed(playback, False), "--norm true": held_speed(playback, True)}
-
-
-def _following(playback: Playback) -> dict[str, Any]:
-    """The largest following error of each axis, and the share of its limit."""
-    watch = playback.monitor
-    each = zip(watch.axes, watch.largest_error_mm.tolist(), watch.largest_share.tolist(), strict=True)
-    return {f"{axis}_axis": {"following_error_mm": error_mm, "limit_share": share} for axis, error_mm, share in each}
 
 
 def write(path: Path, file: FilePath, title: str) -> None:
