@@ -29,9 +29,10 @@ Questions: the patent gives neither the networks nor a figure. Chosen: no path f
 comparator (feed-forward is not in the patent); natural frequency 250 Hz, damping 1, third pole at 500 Hz: a stop with
 0.5 m/s² to 0.5 um, a phase margin of 49 degrees. Twice as fast would follow noise of 26 dB up to the motor's limit.
 Without the lead in amplifier 161 a loop beyond about 70 Hz round a motor of 1 ms cannot be damped. While the motor's
-current is at its limit the integrator stands, else it would run on and the screw far past. The decoder's range is 4
-cycles (0.2 mm): a start or stop from 40 mm/s at once is still followed, more is a fault. That range is one limit for
-all speeds; below it `following_limit` allows what a sound drive needs at the speed that the tape asks for.
+current is at its limit the integrator goes back to what that gives, else it would run on and the screw far past; in
+half a millisecond and not at once, else noise that meets the limit on one side only would push the screw off the tape.
+The decoder's range is 4 cycles (0.2 mm): a start or stop from 40 mm/s at once is still followed, more is a fault. That
+range is one limit for all speeds; below it `following_limit` allows what a sound drive needs at the tape's speed.
 """
 
 from __future__ import annotations
@@ -53,6 +54,7 @@ TOLERANCE_CYCLES = 0.25  # of following: noise of the phase, and what a dropout 
 TRIED_SPEEDS = 16
 ADJUSTING_MM_S = 10.0  # how fast the machine creeps while the phase changer is turned
 SETTLING_S = 0.1
+BACK_S = 0.5e-3  # a third of the way in a period of 6 kHz
 STEPS_PER_PERIOD = 20.0
 FEWEST_STEPS = 10.0  # per natural period
 POSITION, SPEED, DEMAND, LEAD, ERROR = range(5)  # columns of the state of an axis
@@ -137,7 +139,8 @@ class Drives:
         cycles = self._between(np.ascontiguousarray(cycles, dtype=np.float64))
         moved = np.empty_like(cycles)
         range_mm = self.settings.range_cycles * self._mm_per_cycle
-        scale = np.array([self._mm_per_cycle, range_mm, self._dt_s])
+        back = -math.expm1(-self._dt_s / BACK_S)
+        scale = np.array([self._mm_per_cycle, range_mm, self._dt_s, back])
         rows = _follow(cycles, scale, self._network, self._drive, as_rows(self.conditions), self._state, moved)
         return moved[self._steps - 1 : rows : self._steps]
 
@@ -182,7 +185,7 @@ def following_limit(settings: PhaseLock, mm_per_cycle: float, rate_hz: float) ->
 @njit(cache=True, nogil=True)
 def _follow(cycles, scale, network, drive, conditions, state, moved_mm):  # type: ignore[no-untyped-def]
     """Step all axes through a block; the number of rows done before an error was out of range."""
-    mm_per_cycle, range_mm, dt_s = scale
+    mm_per_cycle, range_mm, dt_s, back = scale
     gain, zero, lead_zero, lead_pole = network
     reach = drive[1] / drive[0]  # mm/s that a demand may lie off the speed before the current is at its limit
     top = drive[2]
@@ -196,9 +199,10 @@ def _follow(cycles, scale, network, drive, conditions, state, moved_mm):  # type
                 return row
             lead_now = lead_pole * lead + now - lead_zero * error  # amplifier 161
             demand += gain * (lead_now - zero * lead)  # integrator 159
-            demand = min(max(demand, speed - reach), speed + reach)  # it runs no further than the motor's current,
-            demand = min(max(demand, -top), top)  # nor than its speed
-            speed_now = conditioned_step(speed, demand, drive[0], drive[1], conditions[axis])  # motor 163, tacho
+            given = min(max(demand, speed - reach), speed + reach)  # what the motor's current can answer,
+            given = min(max(given, -top), top)  # and its speed
+            demand += back * (given - demand)
+            speed_now = conditioned_step(speed, given, drive[0], drive[1], conditions[axis])  # motor 163, tacho
             speed_now = min(max(speed_now, -top), top)
             state[axis, POSITION] = position + (speed + speed_now) / 2 * dt_s
             state[axis, SPEED], state[axis, DEMAND], state[axis, LEAD] = speed_now, demand, lead_now

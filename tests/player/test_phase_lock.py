@@ -132,6 +132,13 @@ def test_noise_of_40_db_stays_below_a_tenth_of_a_micrometre() -> None:
     assert np.sqrt(np.mean(moved**2)) < 0.05 * UM  # 0.038 um in, the loop's band of some 800 of 3000 Hz out
 
 
+def test_noise_that_meets_the_limit_of_the_current_on_one_side_does_not_push_the_screw_off() -> None:
+    told = circle(10, 90)(np.arange(9000) * DT_S)  # 0.8 m/s² of the motor's 5, to and fro
+    noise = np.random.default_rng(1).normal(0, 4.4e-3, told.shape) * Q_MM  # 25 dB, from which the motors are at the limit
+    off_cycles = np.abs(follow(told + noise) - follow(told)).max() * CYCLES_PER_MM
+    assert off_cycles < 0.022  # 0.01 to 0.017 by the seed; 0.036 to 0.045 where the integrator fell back at once
+
+
 def test_beyond_the_range_the_rows_end() -> None:
     cycles = np.zeros((600, 2))
     cycles[300:, 1] = 4.5

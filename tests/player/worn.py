@@ -17,6 +17,7 @@ from tests.player.carriers import MOTION_RATE_HZ, circle, square
 
 RIGHT_CYCLES = 0.05
 RATE_HZ = 48000
+ENDS = 60  # rows that the filter of the transport's own ends reaches into
 
 HOLES = ((0.0003, 6), (0.001, 12), (0.002, 30), (0.005, 40), (0.02, 40))
 STRENGTHS: dict[str, list[dict[str, Any]]] = {
@@ -81,12 +82,12 @@ class Bench:
                 blocks.append(block)
         except (TapeFault, LockFault) as met:
             fault = met
-        if not blocks:
+        went = join(blocks).positions_mm if blocks else np.zeros((0, 3))
+        if len(went) < 2 * ENDS:
             return 0.0, fault
-        went = join(blocks).positions_mm
         rows = (aged.timebase.programme_s(np.arange(len(went)) / 6000) + parts.get("cut_start_s", 0.0)) * 6000
         wanted = np.column_stack([np.interp(rows, np.arange(len(self.clean)), column) for column in self.clean.T])
-        ends = slice(60, max(61, len(went) - 60))  # the filter of the transport's own ends
+        ends = slice(ENDS, len(went) - ENDS + 1)
         error, speed = (went - wanted)[ends], np.gradient(wanted, axis=0)[ends]  # mm, and mm per row
         late = np.clip((error * speed).sum() / max((speed**2).sum(), 1e-12), -0.6, 0.6)  # of all axes: the tape's clock
-        return float(np.abs(error - late * speed).max(initial=0) * 20), fault
+        return float(np.abs(error - late * speed).max() * 20), fault
