@@ -133,8 +133,8 @@ def test_noise_of_40_db_stays_below_a_tenth_of_a_micrometre() -> None:
 
 
 def test_noise_that_meets_the_limit_of_the_current_on_one_side_does_not_push_the_screw_off() -> None:
-    told = circle(10, 90)(np.arange(9000) * DT_S)  # 0.8 m/s² of the motor's 5, to and fro
-    noise = np.random.default_rng(1).normal(0, 4.4e-3, told.shape) * Q_MM  # 25 dB, from which the motors are at the limit
+    told = circle(10, 90)(np.arange(9000) * DT_S)  # 0.8 m/s² of 5, to and fro; 25 dB of noise
+    noise = np.random.default_rng(1).normal(0, 4.4e-3, told.shape) * Q_MM
     off_cycles = np.abs(follow(told + noise) - follow(told)).max() * CYCLES_PER_MM
     assert off_cycles < 0.022  # 0.01 to 0.017 by the seed; 0.036 to 0.045 where the integrator fell back at once
 
