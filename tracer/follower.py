@@ -4,7 +4,7 @@ Signals: a drawing, a place and a heading in; positions of the X and Y screws (n
 
     closed    the head is back where it began, on the same heading
     ended     the line ended
-    joined    the line ran into what the head has followed already
+    joined    the line ran into what the head has followed already: a lead line, and the loop that it led to (see `loop`)
     lost      no clean line could be found on from there
 
 Between knots the kernel `head.follow` steers by the swinging cell. At a knot, `knot` says which legs there are, `course` draws the way through, and the
@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -27,6 +27,7 @@ from tracer import course, head
 from tracer.carriage import Carriage
 from tracer.knot import corner_in, fork_in
 from tracer.leg import Leg, Meeting, centre_at, end_of, leg_of, meet, turn
+from tracer.loop import loop_in
 from tracer.riding import Ride, ride_past, to_vertex
 from tracer.settings import Settings
 from tracer.stance import Stance
@@ -49,6 +50,7 @@ class Followed:
     view: View
     junctions: int
     fault: LineFault | None = None
+    loop_from: int | None = None  # the position at which the loop of a joined line begins: before it is the lead line
 
 
 Anchor = tuple[Array, float, float]  # a place from which on the line is clean, the heading there, and the travel
@@ -81,6 +83,8 @@ class Follower:
                 ending = self._through_knot()
                 if ending is not None:
                     return ending
+            if self.carriage.trail.comes_again(self.view.width_mm):
+                return self._done("joined")
         return self._lost("the head has gone round without coming back to its start")
 
     def _through_knot(self) -> Followed | None:
@@ -283,7 +287,8 @@ class Follower:
 
     def _done(self, ending: str, fault: LineFault | None = None) -> Followed:
         went = self.carriage
-        return Followed(went.positions_mm, ending, went.heading_rad, went.travel_mm, self.view, self.junctions, fault)
+        done = Followed(went.positions_mm, ending, went.heading_rad, went.travel_mm, self.view, self.junctions, fault)
+        return done if ending != "joined" else _without_repeat(done)
 
     def _lost(self, why: str) -> Followed:
         """The end of a line that was lost: the fault says where."""
@@ -297,3 +302,14 @@ class Follower:
             heading_rad=heading,
         )
         return self._done("lost", fault)
+
+
+def _without_repeat(run: Followed) -> Followed:
+    """A joined run cut off where it came back to its own way, with the loop that it made."""
+    found = loop_in(run.positions_mm, run.view.width_mm)
+    if found is None:
+        return run
+    first, last = found
+    kept = run.positions_mm[: last + 1]
+    travel_mm = float(np.hypot(*np.diff(kept, axis=0).T).sum())
+    return replace(run, positions_mm=kept, travel_mm=travel_mm, loop_from=first)

@@ -9,6 +9,7 @@ import math
 
 import numpy as np
 
+from tracer import loop
 from tracer.leg import Leg
 from tracer.view import Array
 
@@ -48,6 +49,10 @@ class Trail:
         j = min(i + 4, len(places) - 1)
         way = places[j] - places[max(0, j - 4)]
         return places[i], math.atan2(way[1], way[0])
+
+    def comes_again(self, width_mm: float) -> bool:
+        """Whether the axis runs along its own trail, in the same sense."""
+        return loop.comes_again(self._places[: self._count], self.step_mm, width_mm)
 
     def holds(self, leg: Leg, width_mm: float) -> bool:
         """Whether the beginning of a leg has been followed already, in either sense."""

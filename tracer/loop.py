@@ -1,0 +1,83 @@
+"""Where a run comes back onto its own way: a lead line, and the loop that it leads to.
+
+Signals: positions of the head (n, 2) mm in; out the positions between which the run is a loop.
+
+                     ╭──────╮         first    where the loop begins: the head came here from the lead line,
+    start ───────────┤ loop │         last     and came back here at the end
+                     ╰──────╯
+
+The end of a run that has come onto its own way again may lie some way beyond that place, on what was followed already: the way is then gone back, on the run
+and on what it repeats together, for as long as they are one.
+
+Source: patent ES 361967, section on use: a lead line from the reference point to the contour, and round that to where it was joined.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from tracer.view import Array
+
+STEP_MM = 0.03
+FRESH_MM = 3.0  # the newest stretch is no earlier one
+TOGETHER = 0.25  # of the line's width: two ways nearer than this, on about one heading, are one
+AT_ALL = 1.0  # of the line's width: further away the run has not come back to its own way
+ALIKE = math.cos(math.radians(30))
+
+
+def loop_in(positions: Array, width_mm: float) -> tuple[int, int] | None:
+    """The first and the last position of the loop with which a run ends; None if its end does not lie on its own way."""
+    lengths = np.r_[0.0, np.cumsum(np.hypot(*np.diff(positions, axis=0).T))]
+    at_mm = np.arange(0.0, lengths[-1], STEP_MM)
+    if not len(at_mm):
+        return None
+    index = np.searchsorted(lengths, at_mm)
+    places = positions[index]
+    m = len(places) - 1
+    old = places[: max(0, m - round(FRESH_MM / STEP_MM))]
+    if not len(old):
+        return None
+    away = np.hypot(*(old - positions[-1]).T)
+    j = int(np.argmin(away))
+    if away[j] > AT_ALL * width_mm:
+        return None
+    back = _together(places[m::-1], places[j::-1], TOGETHER * width_mm)
+    if back == 0:
+        return int(index[j]), len(positions) - 1
+    return int(index[j - back]), int(index[m - back])
+
+
+def comes_again(places: Array, step_mm: float, width_mm: float) -> bool:
+    """Whether the newest stretch of a trail (n, 2), a place every `step_mm`, runs along an earlier one in the same sense."""
+    fresh = round(FRESH_MM / step_mm)
+    old, newest = places[: -2 * fresh], places[-fresh:]
+    if len(old) < fresh:
+        return False
+    away = np.hypot(*(old - newest[-1]).T)
+    j = int(np.argmin(away))
+    if away[j] > TOGETHER * width_mm:
+        return False
+    return _together(newest[::-1], old[j::-1], TOGETHER * width_mm) == len(newest) - 1
+
+
+def _together(run: Array, old: Array, within_mm: float) -> int:
+    """For how many places two ways, both given from their newest place back, go together."""
+    n = min(len(run), len(old))
+    apart = np.full(n, math.inf)
+    for shift in (-1, 0, 1):  # the places of one need not fall on the other's
+        shifted = old[np.clip(np.arange(n) + shift, 0, len(old) - 1)]
+        apart = np.minimum(apart, np.hypot(*(run[:n] - shifted).T))
+    headings = [_headings(way[:n]) for way in (run, old)]
+    alike = np.sum(headings[0] * headings[1], axis=1) > ALIKE
+    one = (apart < within_mm) & alike
+    return n - 1 if one.all() else max(0, int(np.argmin(one)) - 1)
+
+
+def _headings(places: Array) -> Array:
+    """Unit vectors along a way, from the places about each."""
+    if len(places) < 2:
+        return np.zeros((len(places), 2))
+    steps = np.gradient(places, axis=0)
+    return np.asarray(steps / np.maximum(np.hypot(*steps.T), 1e-12)[:, None])
