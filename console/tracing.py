@@ -22,7 +22,9 @@ if TYPE_CHECKING:
     from motion.motion import Path
     from tracer.card import Card
     from tracer.drawing import Drawing
-    from tracer.sequence import Settings, Trace, Work
+    from tracer.operator import Operator
+    from tracer.program import Trace
+    from tracer.settings import Settings
 
 SET_BY_OPTIONS = ("speed_mm_s", "gap_mm", "line_width_mm")  # settings of the head that have an option of their own
 
@@ -54,14 +56,17 @@ class Head:
 
         desk.warn_of_compiling("the head", "motion", "tracer", "recorder")
         settings = self.settings()
-        work = self._work()
-        self._note_what_waits(desk)
+        operator = self._operator()
         try:
             with desk.bar("following the line", total=1.0) as advance:
                 if self.lines is None:
-                    traced = trace(drawing, self.start_mm, settings, work, lambda come, length: advance(come / length))
+                    traced = trace(
+                        drawing, self.start_mm, settings, operator, lambda come, length: advance(come / length)
+                    )
                 else:
-                    traced = trace_lines(drawing, self.lines, settings, work, lambda come, all_: advance(come / all_))
+                    traced = trace_lines(
+                        drawing, self.lines, settings, operator, lambda come, all_: advance(come / all_)
+                    )
         except LineFault as fault:
             if picture is not None:
                 self._show_sheet(drawing, fault, medium.incomplete(picture), desk)
@@ -94,25 +99,20 @@ class Head:
         set_by_card: dict[str, Any] = {name: v for name, v in says.items() if v is not None and not given(name)}
         return replace(self, card=card, **set_by_card)
 
-    def _work(self) -> Work:
-        """Depths, feeds and clearance of the tool: of the card's passes those that are less deep than the depth."""
-        from tracer.sequence import Work
+    def _operator(self) -> Operator:
+        """What is done at the stops: depths, feeds and clearance of the tool (of the card's passes those less deep than the depth), and the card."""
+        from tracer.card import Card
+        from tracer.operator import Operator, Work
 
         work = Work(depth_mm=self.depth_mm, clearance_mm=self.clearance_mm)
-        if self.card is None:
-            return work
-        return replace(
+        card = self.card or Card()
+        work = replace(
             work,
-            feed_mm_s=self.card.feed_mm_s or work.feed_mm_s,
-            rapid_mm_s=self.card.rapid_mm_s or work.rapid_mm_s,
-            passes_mm=tuple(depth_mm for depth_mm in self.card.depths_mm if depth_mm < self.depth_mm),
+            feed_mm_s=card.feed_mm_s or work.feed_mm_s,
+            rapid_mm_s=card.rapid_mm_s or work.rapid_mm_s,
+            passes_mm=tuple(depth_mm for depth_mm in card.depths_mm if depth_mm < self.depth_mm),
         )
-
-    def _note_what_waits(self, desk: Desk) -> None:
-        """Say what stands on the card and is not done yet."""
-        card = self.card
-        if card is not None and (card.stops or card.turns or card.override != "none" or card.restart != "automatic"):
-            desk.note("the card's stops, turns, override and manual restart are not followed yet; all else on it is")
+        return Operator(work, card)
 
     def _show_sheet(self, drawing: Drawing, fault: LineFault, file: FilePath, desk: Desk) -> None:
         """Draw the sheet with the place that was asked for and the nearest line's."""

@@ -111,6 +111,6 @@ class CardFault(Fault, ValueError):
 
     exit_code = 9
 
-    def __init__(self, message: str, *, line: int, field: str, holds: str) -> None:
+    def __init__(self, message: str, *, line: int | None = None, field: str = "", holds: str = "") -> None:
         super().__init__(message)
         self.line, self.field, self.holds = line, field, holds

@@ -30,7 +30,6 @@ from numba import njit
 from numpy.typing import NDArray
 
 from motion.faults import LineFault
-from tracer.drawing import Drawing
 from tracer.lines import Array, Sheet, Stroke
 
 Which = str | tuple[int, ...]  # "all", "outer", or the numbers of lines
@@ -80,13 +79,12 @@ class Contour:
         return _inside(self.stroke.middles_mm, line_mm)
 
 
-def plan(drawing: Drawing, which: Which) -> tuple[list[Contour], int]:
+def plan(sheet: Sheet, which: Which) -> tuple[list[Contour], int]:
     """Contours that are asked for, the widest spread first (so none comes before one that it lies in), and how many patches are too short.
 
     "outer" is still all of them: what lies inside which is known when they have been followed. Raises LineFault for a number that no line has.
     """
-    sheet = Sheet.of(drawing)
-    reach_mm = sheet.patches.longer_sides * drawing.pitch_mm
+    reach_mm = sheet.patches.longer_sides * sheet.drawing.pitch_mm
     long_enough = sheet.lengths_mm >= np.maximum(LEAST_MM, LEAST_WIDTHS * sheet.widths_mm)
     long_enough |= reach_mm >= LETTER_MM
     patches = np.flatnonzero(long_enough)

@@ -39,6 +39,15 @@ LEAST_GAP_PX = 2.5  # a scan can lose this much of a line
 FAR_WIDTHS = 4.0  # to where the line goes on clean
 
 
+@dataclass(frozen=True, slots=True)
+class Guide:
+    """A guide line off the line that is followed, by positions: where the line was left, the guide's end, and where the line went on."""
+
+    leave: int
+    tip: int
+    back: int
+
+
 @dataclass(slots=True)
 class Followed:
     """What the head did: positions (n, 2) mm at the motion rate, how it ended, and the fault if the line was lost."""
@@ -51,6 +60,7 @@ class Followed:
     junctions: int
     fault: LineFault | None = None
     loop_from: int | None = None  # the position at which the loop of a joined line begins: before it is the lead line
+    guides: tuple[Guide, ...] = ()
 
 
 Anchor = tuple[Array, float, float]  # a place from which on the line is clean, the heading there, and the travel

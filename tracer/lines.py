@@ -40,6 +40,7 @@ class Stroke:
     width_mm: float
     middles_mm: Array
     filled: Array
+    patch: int
 
     def ends_mm(self) -> Array:
         """Places that may be ends of the line, most likely first; (n, 2) mm, none closer together than two widths."""
@@ -129,7 +130,11 @@ class Sheet:
         ]
         rows, columns, filled = (np.concatenate(part) for part in zip(*tiles, strict=True))
         return Stroke(
-            float(self.lengths_mm[patch]), float(self.widths_mm[patch]), self._mm(rows, columns), filled.astype(float)
+            float(self.lengths_mm[patch]),
+            float(self.widths_mm[patch]),
+            self._mm(rows, columns),
+            filled.astype(float),
+            patch,
         )
 
     def _middles(

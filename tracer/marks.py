@@ -25,6 +25,7 @@ from numba import njit
 
 from tracer import photocell
 from tracer.leg import turn
+from tracer.rounds import ANGLES, WAYS, circle_through, spokes
 from tracer.view import Array, View
 
 LEAST_WIDTHS = 0.8
@@ -107,7 +108,10 @@ def marks_along(view: View, positions: Array) -> list[Mark]:
     if len(way.at_mm) < 3:
         return []
     found = _dots(view, way)
-    dots = [way.at_mm[np.searchsorted(way.position, dot.at)] if dot.at < way.position[-1] else way.at_mm[-1] for dot in found]
+    dots = [
+        way.at_mm[np.searchsorted(way.position, dot.at)] if dot.at < way.position[-1] else way.at_mm[-1]
+        for dot in found
+    ]
     for foot_mm in _ticks(view, way):
         if all(abs(foot_mm - dot) > 3 * view.width_mm for dot in dots):
             found.append(Mark("tick", way.place(foot_mm), way.position_at(foot_mm)))
@@ -178,7 +182,9 @@ def _felt(view: View, way: Way, side: int, i: int, away_mm: float) -> _Stroke | 
     """The stroke that a cell beside station i of the way is on; None if it is not like a line's."""
     longest = max(LONGEST_MM, LONGEST_WIDTHS * view.width_mm)
     t = way.along[i]
-    seen = _stroke_at(view.cells, view.pitch_mm, way.places[i], t, side, away_mm, longest + view.width_mm, view.width_mm, view.level)
+    seen = _stroke_at(
+        view.cells, view.pitch_mm, way.places[i], t, side, away_mm, longest + view.width_mm, view.width_mm, view.level
+    )
     inner = seen[:, 1] > 0.9 * view.width_mm  # nearer, its ink and the line's run together
     if inner.sum() < 3 or not LIKE[0] < np.median(seen[inner, 2]) / view.width_mm < LIKE[1]:
         return None
@@ -236,7 +242,9 @@ def _across(cells, pitch_mm, place, along, side, u_mm, v_mm, reach_mm, level):  
 def _dots(view: View, way: Way) -> list[Mark]:
     """Dots on the way and at its ends: discs of ink, about which there is no more than the line."""
     least = 0.85 * view.width_mm
-    inked = np.minimum(*(_row(view.cells, view.pitch_mm, way.places, way.along, side * 0.75 * least) for side in (1, -1)))
+    inked = np.minimum(
+        *(_row(view.cells, view.pitch_mm, way.places, way.along, side * 0.75 * least) for side in (1, -1))
+    )
     edges = np.flatnonzero(np.diff(np.r_[False, inked > view.level, False].astype(np.int8)))
     found: list[Mark] = []
     for begin, end in zip(edges[::2], edges[1::2], strict=True):
@@ -253,42 +261,12 @@ def _dots(view: View, way: Way) -> list[Mark]:
 def _disc(view: View, place: Array, along: Array, least_mm: float) -> Array | None:
     """The centre of a round of ink about a place on the way; None if there is none."""
     for _ in range(3):
-        spokes = _spokes(view, place, 6 * view.width_mm)
-        usual = float(np.nanmedian(spokes[:, 1])) if np.isfinite(spokes[:, 1]).sum() > 12 else math.inf
-        round_ones = np.abs(spokes[:, 1] - usual) < 0.15 * usual
+        reach = spokes(view, place, 6 * view.width_mm)[:, 0]
+        usual = float(np.nanmedian(reach)) if np.isfinite(reach).mean() > 0.6 else math.inf
+        round_ones = np.abs(reach - usual) < 0.15 * usual
         if not least_mm < usual < math.inf or round_ones.mean() < 0.6:
             return None
-        edge = place + spokes[round_ones, 1:] * np.column_stack([np.cos(spokes[round_ones, 0]), np.sin(spokes[round_ones, 0])])
-        place = _centre(edge)
-    arms = np.flatnonzero(~round_ones)
-    on_line = [min(abs(turn(math.atan2(along[1], along[0]) + k * math.pi, spokes[i, 0])) for k in (0, 1)) for i in arms]
+        place, _, _ = circle_through(place + reach[round_ones, None] * WAYS[round_ones])
+    heading = math.atan2(along[1], along[0])
+    on_line = [min(abs(turn(heading + k * math.pi, angle)) for k in (0, 1)) for angle in ANGLES[~round_ones]]
     return place if not on_line or max(on_line) < math.radians(50) else None
-
-
-def _spokes(view: View, place: Array, reach_mm: float) -> Array:
-    """Directions round a place, rad, and how far the ink reaches in each, mm (NaN: beyond reach); (n, 2)."""
-    angles = np.arange(36) * math.tau / 36
-    t = np.array([1.0, 0.0])
-    reach = [_reach(view.cells, view.pitch_mm, place, math.cos(a) * t[0], math.sin(a), reach_mm, view.level) for a in angles]
-    return np.column_stack([angles, reach])
-
-
-@njit(cache=True)
-def _reach(cells, pitch_mm, place, cos, sin, reach_mm, level):  # type: ignore[no-untyped-def]
-    """How far ink reaches from a place in a direction, mm; NaN if further than asked."""
-    step, before, r = 0.35 * pitch_mm, 1.0, 0.0
-    while r <= reach_mm:
-        now = photocell.darkness_at(cells, pitch_mm, place[0] + r * cos, place[1] + r * sin)
-        if now < level:
-            return max(0.0, r - step * (level - now) / max(before - now, 1e-9))
-        before = now
-        r += step
-    return math.nan
-
-
-def _centre(edge: Array) -> Array:
-    """Centre of the circle through places (n, 2), least squares."""
-    middle = edge.mean(axis=0)
-    d = edge - middle
-    found = np.linalg.lstsq(np.column_stack([2 * d, np.ones(len(d))]), np.sum(d * d, axis=1), rcond=None)[0]
-    return np.asarray(middle + found[:2])

@@ -19,14 +19,18 @@ import numpy as np
 from motion.faults import LineFault
 from tracer import photocell
 from tracer.drawing import Drawing
-from tracer.leg import Leg, centre_at, end_of, leg_of, turn
+from tracer.leg import Leg, centre_at, end_of, leg_of, reach_of_ink, turn
 from tracer.lines import Sheet, Stroke
+from tracer.marks import LONGEST_MM, LONGEST_WIDTHS
+from tracer.reference import references
 from tracer.survey import straight_on
 from tracer.view import LEVEL, Array, View
 
 CATCH_MM = 3.0  # how far from a given place the line may be
 APERTURE = 0.3  # of the line's width, within bounds that a scan's noise and a corner set
 LEAST_APERTURE_MM, LARGEST_APERTURE_MM = 0.1, 0.24
+LEAD_MM = 8.0  # from a reference point to the lead line that comes from it
+LEADS_AWAY = math.radians(45)
 SPUR = 2.7  # a line that ends sooner, in widths, is a burr
 PLACES = 80  # tried along a line
 
@@ -39,6 +43,7 @@ class Stance:
     heading_rad: float
     view: View
     at_end: bool = False
+    reference_mm: tuple[float, float] | None = None  # the reference point from which it goes
 
 
 def turned_round(end_mm: Array, heading_rad: float, view: View) -> Stance:
@@ -47,35 +52,75 @@ def turned_round(end_mm: Array, heading_rad: float, view: View) -> Stance:
 
 
 def put_down(
-    drawing: Drawing,
+    drawing: Drawing | Sheet,
     start_mm: tuple[float, float] | None,
     aperture_mm: float | None,
     line_width_mm: float | None,
     gap_mm: float = 0.5,
+    reference_mm: tuple[float, float] | None = None,
 ) -> Iterator[tuple[Stance, float]]:
-    """Put the head down near a place, or on the longest line: at an open end if it has one, then where it is smooth; and the line's length, mm.
+    """Put the head down near a place, or on the longest line: where it comes from a reference point, else at an open end if it has one, then where it is
+    smooth; and the line's length, mm.
 
-    Raises LineFault if there is no line near the place, or no clean stretch on the line.
+    A reference point that is not given is looked for. Raises LineFault if there is no line near the place, or no clean stretch on the line.
     """
-    sheet = Sheet.of(drawing)
-    catch_mm = max(CATCH_MM, 12 * drawing.pitch_mm)
+    sheet = drawing if isinstance(drawing, Sheet) else Sheet.of(drawing)
+    catch_mm = max(CATCH_MM, 12 * sheet.drawing.pitch_mm)
     stroke = sheet.longest() if start_mm is None else sheet.nearest(start_mm, catch_mm)
-    width_mm = line_width_mm or stroke.width_mm
-    aperture_mm = aperture_mm or min(max(APERTURE * width_mm, LEAST_APERTURE_MM), LARGEST_APERTURE_MM)
-    view = View(photocell.behind_aperture(drawing, aperture_mm), drawing.pitch_mm, width_mm, LEVEL)
-    at_end = _at_an_end(view, stroke, gap_mm) if start_mm is None else None
-    if at_end is not None:
-        yield at_end, stroke.length_mm
+    view = _view(sheet, aperture_mm, line_width_mm or stroke.width_mm)
+    at_ends = _at_ends(view, sheet, stroke, gap_mm, reference_mm) if start_mm is None else []
+    for stance in at_ends[:1]:
+        yield stance, stroke.length_mm
     stances = _stances(view, _tried(stroke, start_mm, 2 * stroke.width_mm))
     if not stances and start_mm is not None:
         stances = _stances(view, _tried(stroke, start_mm, catch_mm))
     if stances:
         yield max(stances, key=lambda s: s[0])[1], stroke.length_mm
-    elif at_end is None:
+    elif not at_ends:
         raise LineFault(
-            f"no clean stretch of line to start on, {stroke.length_mm:.0f} mm of line {width_mm:.2f} mm wide;"
+            f"no clean stretch of line to start on, {stroke.length_mm:.0f} mm of line {view.width_mm:.2f} mm wide;"
             " give --line-width, or --start X,Y at a plain stretch"
         )
+
+
+def _view(sheet: Sheet, aperture_mm: float | None, width_mm: float) -> View:
+    """The sheet through cells for a line of a width."""
+    aperture_mm = aperture_mm or min(max(APERTURE * width_mm, LEAST_APERTURE_MM), LARGEST_APERTURE_MM)
+    return View(photocell.behind_aperture(sheet.drawing, aperture_mm), sheet.drawing.pitch_mm, width_mm, LEVEL)
+
+
+def _at_ends(
+    view: View, sheet: Sheet, stroke: Stroke, gap_mm: float, reference_mm: tuple[float, float] | None
+) -> list[Stance]:
+    """Stances at the open ends of a line, that which comes from a reference point first."""
+    ends = [stance for place in stroke.ends_mm() if (stance := _at_end(view, place, gap_mm)) is not None]
+    if reference_mm is not None:
+        return _from_reference(reference_mm, ends) or ends
+    for reference in references(sheet, view, stroke):
+        if reference.lead is not None:
+            lead = reference.lead
+            place = np.array(reference.place_mm)
+            return [
+                Stance(
+                    lead.end_mm, lead.heading_rad, view.like(lead.end_mm, lead.heading_rad), True, reference.place_mm
+                )
+            ]
+        from_it = _from_reference(reference.place_mm, ends)
+        if from_it:
+            return from_it
+    return ends
+
+
+def _from_reference(place_mm: tuple[float, float], ends: list[Stance]) -> list[Stance]:
+    """The stances at ends that are near a reference point and lead away from it."""
+    out = []
+    for end in ends:
+        way = end.place_mm - np.asarray(place_mm)
+        away = float(np.hypot(*way))
+        ahead = abs(turn(math.atan2(way[1], way[0]), end.heading_rad)) < LEADS_AWAY
+        if away < LEAD_MM and (ahead or away < 0.5 * end.view.width_mm):
+            out.append((away, replace(end, reference_mm=place_mm)))
+    return [stance for _, stance in sorted(out, key=lambda found: found[0])]
 
 
 def _tried(stroke: Stroke, start_mm: tuple[float, float] | None, about_mm: float) -> Array:
@@ -138,32 +183,42 @@ def _both_ways(view: View, place: Array, heading: float) -> tuple[Leg, float] | 
     return middle, round((shorter - 1) * view.step_mm, 1)
 
 
-def _at_an_end(view: View, stroke: Stroke, gap_mm: float) -> Stance | None:
-    """A stance at an open end of the line, heading inward; None if the line has no end."""
-    for place in stroke.ends_mm():
-        local = _local(view, place)
-        radius = max(1.5 * view.width_mm, 6 * view.pitch_mm)
-        arcs = photocell.ring(local.cells, local.pitch_mm, place, radius, local.level)
-        if len(arcs) != 1 or arcs[0, 1] - arcs[0, 0] > math.pi / 2:
-            continue
-        heading = float(arcs.mean())
-        inward = place + radius * np.array([math.cos(heading), math.sin(heading)])
-        right, left = photocell.edges(
-            local.cells, local.pitch_mm, inward[0], inward[1], heading, 2 * local.width_mm, local.level
-        )
-        if not abs(left - right - view.width_mm) < 0.25 * view.width_mm + 0.5 * view.pitch_mm:
-            continue
-        local = replace(local, width_mm=left - right)
-        seen = local.feel(inward, heading, max(4 * local.width_mm, local.leg_mm))
-        if len(seen) * local.step_mm < SPUR * local.width_mm - radius:
-            continue  # a burr, not an end
-        middle = seen[len(seen) // 4 : -len(seen) // 4, 2]
-        if np.median(middle[-4:]) > 1.08 * np.median(middle[:4]):
-            continue  # the tip of two lines that part, not the end of one
-        outward = leg_of(local.feel(inward, heading + math.pi, local.leg_mm), True, local.leg_mm)
-        end = end_of(local, outward)
-        if end is None or straight_on(local, outward, gap_mm) is not None:
-            continue  # the edge of a gap
-        local = replace(local, width_mm=outward.width_mm)
-        return Stance(outward.at(end), math.remainder(outward.heading_at(end) + math.pi, math.tau), local, True)
-    return None
+def _at_end(view: View, place: Array, gap_mm: float) -> Stance | None:
+    """A stance at an open end of the line, heading inward; None if there is none at this place."""
+    local = _local(view, place)
+    radius = max(1.5 * view.width_mm, 6 * view.pitch_mm)
+    arcs = photocell.ring(local.cells, local.pitch_mm, place, radius, local.level)
+    if len(arcs) != 1 or arcs[0, 1] - arcs[0, 0] > math.pi / 2:
+        return None
+    heading = float(arcs.mean())
+    inward = place + radius * np.array([math.cos(heading), math.sin(heading)])
+    right, left = photocell.edges(
+        local.cells, local.pitch_mm, inward[0], inward[1], heading, 2 * local.width_mm, local.level
+    )
+    if not abs(left - right - view.width_mm) < 0.25 * view.width_mm + 0.5 * view.pitch_mm:
+        return None
+    local = replace(local, width_mm=left - right)
+    if not _is_end(local, inward, heading, radius):
+        return None
+    outward = leg_of(local.feel(inward, heading + math.pi, local.leg_mm), True, local.leg_mm)
+    end = end_of(local, outward)
+    if end is None or straight_on(local, outward, gap_mm) is not None:
+        return None  # the edge of a gap
+    local = replace(local, width_mm=outward.width_mm)
+    return Stance(outward.at(end), math.remainder(outward.heading_at(end) + math.pi, math.tau), local, True)
+
+
+def _is_end(view: View, inward: Array, heading: float, radius: float) -> bool:
+    """Whether a line goes on from its end: not a burr, not the tip of two lines that part, not a mark on another line."""
+    seen = view.feel(inward, heading, max(4 * view.width_mm, view.leg_mm))
+    if len(seen) * view.step_mm < SPUR * view.width_mm - radius:
+        return False
+    middle = seen[len(seen) // 4 : -len(seen) // 4, 2]
+    if np.median(middle[-4:]) > 1.08 * np.median(middle[:4]):
+        return False
+    longest = max(LONGEST_MM, LONGEST_WIDTHS * view.width_mm)
+    seen = view.feel(inward, heading, longest)
+    if len(seen) < 4 or (len(seen) - 1) * view.step_mm + radius > longest:
+        return True
+    on = reach_of_ink(view, leg_of(seen, True, view.leg_mm), 2 * longest + 2 * view.width_mm)
+    return on is None or len(seen) * view.step_mm + radius + on > 2 * longest

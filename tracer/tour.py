@@ -20,7 +20,11 @@ from motion.faults import LineFault
 from tracer import contours
 from tracer.contours import Contour, Which
 from tracer.drawing import Drawing
-from tracer.sequence import Line, Trace, Work, followed
+from tracer.line import Line
+from tracer.lines import Sheet
+from tracer.operator import Operator
+from tracer.program import Trace
+from tracer.sequence import followed
 from tracer.settings import Settings
 from tracer.view import Array
 
@@ -33,14 +37,15 @@ def trace_lines(
     drawing: Drawing,
     which: Which = "all",
     settings: Settings | None = None,
-    work: Work | None = None,
+    operator: Operator | None = None,
     progress: Told | None = None,
 ) -> Trace:
     """Follow several lines of the drawing: "all", those that lie inside no other ("outer"), or some by their numbers (1 is the longest).
 
     `progress` hears how far the head has come and the length of all the lines, mm. Raises LineFault if there is no line to start on, or none of a number.
     """
-    asked, left_out = contours.plan(drawing, which)
+    sheet, operator = Sheet.of(drawing), operator or Operator()
+    asked, left_out = contours.plan(sheet, which)
     total_mm, lines = sum(contour.stroke.length_mm for contour in asked), list[Line]()
     for contour in asked:
         if _is_done(contour, lines) or (which == "outer" and _is_inner(contour, lines)):
@@ -48,22 +53,22 @@ def trace_lines(
         told = (
             None if progress is None else partial(_tell_on, progress, sum(line.length_mm for line in lines), total_mm)
         )
-        line = _follow(drawing, contour, settings or Settings(), told)
+        line = _follow(sheet, contour, settings or Settings(), operator, told)
         if line is None:
             left_out += 1
         else:
             lines.append(line)
     if not any(len(line.xy_mm) > 1 for line in lines):
         raise _none_begun(lines)
-    return Trace(tuple(_in_order(lines)), work or Work(), left_out=left_out)
+    return Trace(tuple(_in_order(lines)), operator, left_out=left_out)
 
 
-def _follow(drawing: Drawing, contour: Contour, settings: Settings, told: Told | None) -> Line | None:
+def _follow(sheet: Sheet, contour: Contour, settings: Settings, operator: Operator, told: Told | None) -> Line | None:
     """Follow a line from the plainest of its places where the head can be put down; None for a letter, where it cannot be."""
     stroke, starts_mm = contour.stroke, contour.starts_mm()
     for start_mm in starts_mm:
         try:
-            return Line.of(followed(drawing, start_mm, settings, told), contour.number)
+            return followed(sheet, start_mm, settings, operator, told, contour.number)
         except LineFault as fault:
             refused = fault
     if contour.reach_mm < contours.LETTER_MM:
@@ -92,7 +97,7 @@ def _is_inner(contour: Contour, lines: list[Line]) -> bool:
 def _in_order(lines: list[Line]) -> list[Line]:
     """The lines in the order in which they are cut."""
     inner = contours.nested([_places(line) for line in lines], [_goes_round(line) for line in lines])
-    starts, ends = (np.array([line.xy_mm[end] for line in lines]) for end in (0, -1))
+    starts, ends = (np.array([getattr(line, end) for line in lines]) for end in ("begin_mm", "end_mm"))
     return [lines[i] for i in contours.in_order(starts, ends, inner)]
 
 

@@ -1,0 +1,103 @@
+"""One line as it was followed: the head's way along it, how it ended, and what the drawing says on the way.
+
+Signals: what a Follower did, and the marks along it, in; out the line as the operator and the program need it: mm at the motion rate.
+
+    lead line    ├───────●───────┐loop       begins at a reference point, or bears a tick, and runs into its loop
+    guide line   ├───────────────●           begins at a reference point and ends
+    guides of a line                         left for a guide line, to its end and back
+
+Source: patent ES 361967, section on use: reference point, lead line, guide lines to drill points and back.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from motion.faults import LineFault
+from tracer.follower import Followed, Guide
+from tracer.marks import Mark, marks_along
+from tracer.view import Array
+
+REFERENCE_MM = 3.0  # a stroke nearer to a reference point is one of its own
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """One line as it was followed: positions (n, 2) mm at the motion rate, how it ended ("closed", "ended", "joined", "lost"), its number on the drawing."""
+
+    xy_mm: Array
+    ending: str
+    width_mm: float
+    length_mm: float
+    fault: LineFault | None = None
+    number: int = 1
+    loop_from: int | None = None
+    marks: tuple[Mark, ...] = ()
+    guides: tuple[Guide, ...] = ()
+    reference_mm: tuple[float, float] | None = None  # the reference point from which it begins
+
+    @classmethod
+    def of(cls, run: Followed, number: int = 1, reference_mm: tuple[float, float] | None = None) -> Line:
+        """What the head did, as a line of the drawing, with the marks along it; those at the reference point are that point's."""
+        marks = [
+            mark
+            for mark in marks_along(run.view, run.positions_mm)
+            if reference_mm is None or not _near(mark, reference_mm)
+        ]
+        return cls(
+            run.positions_mm,
+            run.ending,
+            run.view.width_mm,
+            run.travel_mm,
+            run.fault,
+            number,
+            run.loop_from,
+            tuple(marks),
+            run.guides,
+            reference_mm,
+        )
+
+    @property
+    def start_mm(self) -> tuple[float, float]:
+        """Where the line was begun, mm."""
+        return self.place(0)
+
+    @property
+    def is_lead(self) -> bool:
+        """Whether it is a lead line and the loop that it leads to."""
+        if self.loop_from is None:
+            return False
+        return self.reference_mm is not None or any(
+            mark.kind == "tick" and mark.at < self.loop_from for mark in self.marks
+        )
+
+    @property
+    def is_guide(self) -> bool:
+        """Whether it is a guide line from the reference point."""
+        return self.reference_mm is not None and self.ending == "ended"
+
+    @property
+    def goes_back(self) -> bool:
+        """Whether the tool goes back along it to where it began."""
+        return self.is_lead or self.is_guide
+
+    @property
+    def begin_mm(self) -> tuple[float, float]:
+        """Where its program begins: at its reference point, or at its start, mm."""
+        return self.reference_mm or self.start_mm
+
+    @property
+    def end_mm(self) -> tuple[float, float]:
+        """Where its program ends, mm."""
+        return self.begin_mm if self.goes_back else self.place(len(self.xy_mm) - 1)
+
+    def place(self, at: float) -> tuple[float, float]:
+        """Where the axis is at a position, fractions included, mm."""
+        rows = np.arange(len(self.xy_mm))
+        return float(np.interp(at, rows, self.xy_mm[:, 0])), float(np.interp(at, rows, self.xy_mm[:, 1]))
+
+
+def _near(mark: Mark, reference_mm: tuple[float, float]) -> bool:
+    return float(np.hypot(mark.place_mm[0] - reference_mm[0], mark.place_mm[1] - reference_mm[1])) < REFERENCE_MM

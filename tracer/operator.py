@@ -1,0 +1,208 @@
+"""The operator at the panel: what the Z unit does at the start of a line, at its stops, where it is left and come back to, and at its end.
+
+Signals: a line as it was followed, with its marks, in; actions out: at which position of the line X and Y stand, and what moves Z makes there.
+
+    plain line     down at its start                                                      X,Y  ──●──
+    lead line      raised; down at the last tick before the loop, or where that begins         ▼ stand ▲
+    guide line     raised; at its end, or at a dot, a hole is drilled                     Z    ╲______╱
+    stop           what the card says; without one Z stands for half a second
+
+A lead line begins at a reference point, or bears a tick, and runs into a loop; a line that begins at a reference point and ends is a guide line. Any other is
+cut from its start. Stops are numbered along the way, over all the lines; those that the operator overrides are passed by.
+
+Source: patent ES 361967, section on use, and figure 3; override button of figure 1. Questions: the patent's operator knows what a line is for; here its marks say it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import Literal, Protocol
+
+from motion.faults import CardFault
+from tracer import zunit
+from tracer.card import Card, Stop
+from tracer.line import Line
+from tracer.zunit import Counters, Move
+
+STAND_S = 0.5
+NEAR_WIDTHS = 3.0  # a dot at the end of a guide line is the hole drilled there, and no other
+
+
+@dataclass(frozen=True, slots=True)
+class Work:
+    """How deep the tool goes, where it stands above the work between lines, and how fast it goes down and up."""
+
+    depth_mm: float = 5.0
+    clearance_mm: float = 2.0
+    feed_mm_s: float = 5.0
+    acceleration_mm_s2: float = zunit.ACCELERATION_MM_S2
+    rapid_mm_s: float = 50.0  # from line to line, half of what a tape of 6 kHz and 20 cycles per mm carries
+    passes_mm: tuple[float, ...] = ()  # depths at which each line is run before it is run at its depth
+
+    @property
+    def depths_mm(self) -> tuple[float, ...]:
+        """Depths at which each line is run, one after the other, mm."""
+        return (*self.passes_mm, self.depth_mm)
+
+
+@dataclass(frozen=True, slots=True)
+class Halt:
+    """Where the axis stands: which position of the line, why, and the number of the stop if it is one."""
+
+    at: float
+    kind: Literal["begin", "tick", "dot", "hole", "leave", "back", "loop"]
+    place_mm: tuple[float, float]
+    number: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Action:
+    """What is done where the axis stands: moves of Z one after the other, each with its dwell."""
+
+    halt: Halt
+    moves: tuple[Move, ...]
+
+
+class Panel(Protocol):
+    """An operator who is there during the run."""
+
+    def ask(self, halt: Halt, z_mm: float) -> Stop | None:
+        """What to do at a stop; None: nothing."""
+
+    def wait(self, halt: Halt) -> float:
+        """Wait until the button is pressed; the time that it took, s."""
+
+
+@dataclass(frozen=True, slots=True)
+class Operator:
+    """What is to be done at the stops: the card, or somebody at the panel."""
+
+    work: Work = field(default_factory=Work)
+    card: Card = field(default_factory=Card)
+    panel: Panel | None = None
+    reference_mm: tuple[float, float] | None = None  # where the reference point is, if it is not to be looked for
+
+    def actions(self, lines: Sequence[Line]) -> list[list[Action]]:
+        """The actions along each of several lines, in the order in which they are cut; raises CardFault for moves that the Z unit cannot make."""
+        made, first = [], 1
+        for line in lines:
+            halts = self._halts(line, first)
+            first += sum(1 for halt in halts if halt.number is not None)
+            made.append(self._along([halt for halt in halts if not self._overridden(halt)], line))
+        return made
+
+    def _halts(self, line: Line, first: int) -> list[Halt]:
+        """Every place of a line where something may be done, in order, its stops numbered from `first`."""
+        stops = [Halt(mark.at, "tick" if mark.kind == "tick" else "dot", mark.place_mm) for mark in line.marks]
+        near = NEAR_WIDTHS * line.width_mm
+        holes = [(guide.tip, guide) for guide in line.guides]
+        if line.is_guide:
+            holes.append((len(line.xy_mm) - 1, None))
+        for tip, _ in holes:
+            place = line.place(tip)
+            stops = [s for s in stops if s.kind != "dot" or (abs(s.at - tip) > 0 and _apart(s.place_mm, place) > near)]
+            stops.append(Halt(tip, "hole", place))
+        stops.sort(key=lambda halt: halt.at)
+        halts = [replace(stop, number=first + k) for k, stop in enumerate(stops)]
+        for guide in line.guides:
+            halts += [
+                Halt(guide.leave, "leave", line.place(guide.leave)),
+                Halt(guide.back, "back", line.place(guide.back)),
+            ]
+        if line.loop_from is not None and line.is_lead:
+            halts.append(Halt(line.loop_from, "loop", line.place(line.loop_from)))
+        elif not line.is_guide:
+            halts.append(Halt(0, "begin", line.start_mm))
+        return sorted(halts, key=lambda halt: halt.at)
+
+    def _overridden(self, halt: Halt) -> bool:
+        """Whether the operator lets a stop mark pass by; a hole at the end of a guide line is none."""
+        override = self.card.override
+        return halt.kind in ("tick", "dot") and (override == "all" or (override != "none" and halt.number in override))
+
+    def depths_mm(self, line: Line) -> tuple[float, ...]:
+        """Depths at which a line is run: the passes of the stop where it begins, or those of the work."""
+        down = self._down(self._halts(line, 1), line)
+        return self.work.depths_mm if down is None else self._depths(down)
+
+    def _depths(self, halt: Halt) -> tuple[float, ...]:
+        own = () if halt.number is None else self.card.stop(halt.number).passes_mm
+        return own or self.work.depths_mm
+
+    def _down(self, halts: Sequence[Halt], line: Line) -> Halt | None:
+        """Where the tool goes down into the line."""
+        if line.is_lead:
+            before = [halt for halt in halts if halt.kind == "tick" and halt.at < (line.loop_from or 0)]
+            return before[-1] if before else next(halt for halt in halts if halt.kind == "loop")
+        if line.is_guide:
+            return next((halt for halt in halts if halt.kind == "tick"), None)
+        return next(halt for halt in halts if halt.kind == "begin")
+
+    def _along(self, halts: list[Halt], line: Line) -> list[Action]:
+        """What is done at each halt, the tool at clearance before the first."""
+        down, actions, z_mm, left_mm = (
+            self._down(halts, line),
+            list[Action](),
+            self.work.clearance_mm,
+            self.work.clearance_mm,
+        )
+        for halt in halts:
+            if halt.kind == "leave":
+                left_mm, moves = z_mm, self._to(max(z_mm, self.work.clearance_mm))
+            elif halt.kind == "back":
+                moves = self._to(left_mm)
+            else:
+                moves = self._at_stop(halt, z_mm, is_down=halt is down)
+            if moves:
+                actions.append(Action(halt, moves))
+                z_mm = moves[-1].to_mm
+        return actions
+
+    def _to(self, z_mm: float) -> tuple[Move, ...]:
+        return (Move(z_mm, self.work.feed_mm_s),)
+
+    def _at_stop(self, halt: Halt, z_mm: float, *, is_down: bool) -> tuple[Move, ...]:
+        """What is done at a stop, or where the line begins: the card's entry, or what is usual without one."""
+        if halt.number is None:
+            return self._to(-self.work.depths_mm[0]) if is_down else ()
+        stop = self.panel.ask(halt, z_mm) if self.panel is not None else None
+        stop = stop or self.card.stop(halt.number)
+        moves = self._asked(halt, stop, z_mm)
+        if not moves and is_down:
+            moves = [Move(-self._depths(halt)[0], self.work.feed_mm_s, stop.dwell_s)]
+        elif not moves and halt.kind in ("dot", "hole") and z_mm > 0:
+            moves = [Move(-self.work.depth_mm, self.work.feed_mm_s, stop.dwell_s), Move(z_mm, self.work.feed_mm_s)]
+        elif not moves:
+            moves = [Move(z_mm, self.work.feed_mm_s, STAND_S)]
+        return tuple(self._restarted(halt, stop, moves))
+
+    def _asked(self, halt: Halt, stop: Stop, z_mm: float) -> list[Move]:
+        """The moves that a card's entry asks for."""
+        if not stop.moves and stop.drill is None and not stop.dwell_s:
+            return []
+        if not stop.moves and stop.drill is None and halt.kind != "tick":
+            return []  # a dwell alone belongs to what is usual there
+        try:
+            at = Counters(zunit.counts_of(z_mm))
+            return zunit.moves(at, stop.presets(at, self.work.rapid_mm_s))
+        except ValueError as error:
+            raise CardFault(
+                f"stop {halt.number} at {halt.place_mm[0]:.2f},{halt.place_mm[1]:.2f} mm: {error}"
+            ) from None
+
+    def _restarted(self, halt: Halt, stop: Stop, moves: list[Move]) -> list[Move]:
+        """The moves, the last with the time that the operator takes to press the button."""
+        if (stop.restart or self.card.restart) == "automatic":
+            return moves
+        if self.panel is None:
+            raise CardFault(
+                f'stop {halt.number} waits for the operator\'s button (restart = "manual"), and nobody is at the panel;'
+                ' run it at a terminal, or set restart = "automatic"'
+            )
+        last = moves[-1]
+        return [*moves[:-1], replace(last, dwell_s=last.dwell_s + self.panel.wait(halt))]
+
+
+def _apart(a: tuple[float, float], b: tuple[float, float]) -> float:
+    return float(((a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2) ** 0.5)

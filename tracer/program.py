@@ -1,0 +1,197 @@
+"""The program: the lines that the head followed, cut one after the other, with the Z moves of the operator.
+
+Signals: lines and what the operator does along them in; out a Trace, which is a stream of Motion (X, Y, Z in sheet mm at the motion rate).
+
+    Z  clearance ──╮                           ╭── clearance
+       0           │ X, Y stand     X, Y stand │
+       -depth      ╰────── the line ───────────╯
+
+A line of several passes is run at each depth: a closed one straight on from its end, another one from its start again, with the tool up on the way; its marks
+stop the head on the first pass. From one line to the next the tool goes straight at clearance; from a lead line's loop it goes back along the lead line, and
+so to the reference point, as it came.
+
+Source: patent ES 361967, section on use; the Z moves are the Z unit's (see `zunit`), and when they are made is the operator's (see `operator`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import pairwise, zip_longest
+
+import numpy as np
+
+from motion import ramp
+from motion.faults import LineFault
+from motion.motion import BLOCK_SAMPLES, MOTION_RATE_HZ, Motion
+from tracer import stops
+from tracer.line import Line
+from tracer.operator import Action, Operator, Work
+from tracer.view import Array
+from tracer.zunit import Move, z_moves
+
+ENDINGS = ("lost", "joined", "ended", "closed")  # the one that tells most first
+
+
+ENDINGS = ("lost", "joined", "ended", "closed")  # the one that tells most first
+BRAKE_MM_S2 = 500.0  # of X and Y, as the head's own
+
+
+@dataclass(frozen=True)
+class Trace:
+    """What the head did: a stream of Motion over its lines, in the order in which they are cut; `left_out` patches of ink were too short to be lines."""
+
+    lines: tuple[Line, ...]
+    operator: Operator = field(default_factory=Operator)
+    rate_hz: float = MOTION_RATE_HZ
+    left_out: int = 0
+
+    @property
+    def work(self) -> Work:
+        """How deep the tool goes, and how fast."""
+        return self.operator.work
+
+    @property
+    def xy_mm(self) -> Array:
+        """Positions along the lines, one behind the other, (n, 2) mm."""
+        return self.lines[0].xy_mm if len(self.lines) == 1 else np.vstack([line.xy_mm for line in self.lines])
+
+    @property
+    def ending(self) -> str:
+        """How the line ended; of several the ending that tells most: "lost", "joined", "ended", "closed"."""
+        return min((line.ending for line in self.lines), key=ENDINGS.index)
+
+    @property
+    def fault(self) -> LineFault | None:
+        """The fault of the line that was lost; of several the first one's, with the numbers of all that are incomplete."""
+        if len(self.lines) == 1:
+            return self.lines[0].fault
+        lost = [line for line in self.lines if line.fault is not None]
+        return _incomplete(lost, len(self.lines)) if lost else None
+
+    @property
+    def start_mm(self) -> tuple[float, float]:
+        """Where the first line was begun, mm."""
+        return self.lines[0].start_mm
+
+    @property
+    def line_width_mm(self) -> float:
+        """Width of the first line, mm."""
+        return self.lines[0].width_mm
+
+    @property
+    def length_mm(self) -> float:
+        """How far the head travelled along the lines, mm."""
+        return sum(line.length_mm for line in self.lines)
+
+    @property
+    def idle_mm(self) -> float:
+        """How far the tool goes from line to line, mm."""
+        return float(sum(np.hypot(*np.subtract(b.begin_mm, a.end_mm)) for a, b in pairwise(self.lines)))
+
+    @property
+    def duration_s(self) -> float:
+        """Length of the motion, Z moves and rapid moves included, s."""
+        return sum(len(block) for block in self._blocks()) / self.rate_hz
+
+    @cached_property
+    def actions(self) -> list[list[Action]]:
+        """What the operator does along each line."""
+        return self.operator.actions(self.lines)
+
+    def __iter__(self) -> Iterator[Motion]:
+        """Blocks of Motion: down, along the line, up, and over to the next."""
+        first = 0
+        for block in self._blocks():
+            yield Motion(block, self.rate_hz, first / self.rate_hz)
+            first += len(block)
+
+    def _blocks(self) -> Iterator[Array]:
+        """Positions of those blocks, (n, 3) mm."""
+        for line, after, actions in zip_longest(self.lines, self.lines[1:], self.actions):
+            if len(line.xy_mm) > 1:  # not one that was never begun
+                yield from self._cut(line, actions)
+            if after is not None:
+                yield self._rapid(line.end_mm, after.begin_mm)
+
+    def _cut(self, line: Line, actions: list[Action]) -> Iterator[Array]:
+        """From where a line's program begins to where it ends, at each depth, in blocks (n, 3) mm."""
+        if line.begin_mm != line.start_mm:
+            yield self._rapid(line.begin_mm, line.start_mm)
+        z_mm = self.work.clearance_mm
+        for block in self._first_pass(line, actions):
+            yield block
+            z_mm = float(block[-1, 2])
+        for depth_mm in self.operator.depths_mm(line)[1:] if z_mm < 0 else ():
+            for block in self._again(line, z_mm, depth_mm):
+                yield block
+                z_mm = float(block[-1, 2])
+        if z_mm != self.work.clearance_mm:
+            yield _standing(line.xy_mm[-1], self._z(z_mm, self.work.clearance_mm))
+        yield from self._home(line)
+
+    def _first_pass(self, line: Line, actions: list[Action]) -> Iterator[Array]:
+        """Along a line, with what is done on the way, (n, 3) mm."""
+        z_mm = self.work.clearance_mm
+        pieces = stops.pieces(line.xy_mm, [action.halt.at for action in actions], BRAKE_MM_S2, self.rate_hz)
+        for piece, action in zip_longest(pieces, actions):
+            for first in range(0, len(piece), BLOCK_SAMPLES):
+                yield _at(piece[first : first + BLOCK_SAMPLES], z_mm)
+            if action is not None:
+                yield _standing(piece[-1], z_moves(z_mm, action.moves, self.work.acceleration_mm_s2, self.rate_hz))
+                z_mm = action.moves[-1].to_mm
+
+    def _again(self, line: Line, z_mm: float, depth_mm: float) -> Iterator[Array]:
+        """Along a line, or the loop that it leads to, once more at another depth, (n, 3) mm: straight on where it closes, else up and over."""
+        xy_mm = line.xy_mm[line.loop_from if line.is_lead else 0 :]
+        if line.ending == "closed" or line.is_lead:
+            yield _at(ramp.positions_mm(xy_mm[-1], xy_mm[0], self.work.feed_mm_s, rate_hz=self.rate_hz), z_mm)
+        else:
+            yield _standing(xy_mm[-1], self._z(z_mm, self.work.clearance_mm))
+            z_mm = self.work.clearance_mm
+            yield self._rapid(xy_mm[-1], xy_mm[0])
+        yield _standing(xy_mm[0], self._z(z_mm, -depth_mm))
+        for first in range(0, len(xy_mm), BLOCK_SAMPLES):
+            yield _at(xy_mm[first : first + BLOCK_SAMPLES], -depth_mm)
+
+    def _home(self, line: Line) -> Iterator[Array]:
+        """Back along a lead or guide line to where it began, and to the reference point, at clearance, (n, 3) mm."""
+        if line.goes_back:
+            back = line.xy_mm[: (line.loop_from or len(line.xy_mm) - 1) + 1][::-1]
+            yield _at(stops.run(back, self.work.rapid_mm_s, BRAKE_MM_S2, self.rate_hz), self.work.clearance_mm)
+        if line.begin_mm != line.start_mm:
+            yield self._rapid(line.start_mm, line.begin_mm)
+
+    def _rapid(self, start_mm: tuple[float, float], end_mm: tuple[float, float]) -> Array:
+        """Straight from a place to another at clearance, (n, 3) mm."""
+        way = ramp.positions_mm(start_mm, end_mm, self.work.rapid_mm_s, rate_hz=self.rate_hz)
+        return _at(way, self.work.clearance_mm)
+
+    def _z(self, from_mm: float, to_mm: float) -> Array:
+        """Z of a move that the Z unit makes, (n,) mm at the motion rate."""
+        return z_moves(from_mm, [Move(to_mm, self.work.feed_mm_s)], self.work.acceleration_mm_s2, self.rate_hz)
+
+
+def _incomplete(lost: list[Line], lines: int) -> LineFault:
+    """The fault of the first of several lines that were lost, with the numbers of all."""
+    numbers = ", ".join(str(line.number) for line in lost)
+    first = lost[0].fault
+    assert first is not None
+    which = f"line {numbers} of {lines} is" if len(lost) == 1 else f"lines {numbers} of {lines} are"
+    return LineFault(
+        f"{which} incomplete, the others are cut; line {lost[0].number}: {first}",
+        x_mm=first.x_mm,
+        y_mm=first.y_mm,
+        heading_rad=first.heading_rad,
+    )
+
+
+def _at(xy_mm: Array, z_mm: float) -> Array:
+    """X and Y move while Z stands, (n, 3) mm."""
+    return np.column_stack([xy_mm, np.full(len(xy_mm), z_mm)])
+
+
+def _standing(xy_mm: Array, z_mm: Array) -> Array:
+    """X and Y stand while Z moves, (n, 3) mm."""
+    return np.column_stack([np.tile(xy_mm, (len(z_mm), 1)), z_mm])

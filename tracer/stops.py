@@ -1,0 +1,84 @@
+"""Stops on the way: the axis brakes, stands on a place exactly, and goes on.
+
+Signals: positions of the head (n, 2) mm at the motion rate, and which of them to stand on (fractions included), in; pieces (n, 2) mm out, each of which comes to
+rest on the place where the next begins.
+
+    speed ─────╮         ╭──────       within the braking distance the speed is the lower of what it was and of what the brake allows:
+                ╲       ╱
+                 ╲__●__╱                    v² = 2 · acceleration · distance to the place
+
+The way stays the same, only its timing changes; outside the braking distances that too stays as it was.
+
+Source: patent ES 361967, figure 1: a stop mark stops the follower; X and Y tracks then carry the reference frequency while the tape runs on.
+Questions: how far before a mark the follower brakes the patent leaves open. The cell sees the mark one lead before the axis, which is enough for it at 10 mm/s.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from tracer import course
+from tracer.view import Array
+
+_NOTHING_MM = 1e-9
+RUN_MM = 0.1  # nodes of a way that is run from memory
+SLOWEST_MM_S = 0.02  # where the head swivels it stands: its time there is kept
+
+
+def pieces(xy_mm: Array, halts: Sequence[float], acceleration_mm_s2: float, rate_hz: float) -> list[Array]:
+    """The way cut where it is to stand, in order: one piece more than `halts`, each at rest at the cuts; positions before the first are row 0."""
+    rows = np.arange(len(xy_mm), dtype=float)
+    at = np.clip(np.asarray(halts, float), 0, len(xy_mm) - 1)
+    nodes = np.unique(np.r_[rows, at])
+    places = np.column_stack([np.interp(nodes, rows, xy_mm[:, k]) for k in (0, 1)])
+    steps_mm, steps_s = np.hypot(*np.diff(places, axis=0).T), np.diff(nodes) / rate_hz
+    cuts = np.searchsorted(nodes, at)
+    speeds = _speeds(steps_mm, steps_s, cuts, acceleration_mm_s2)
+    mean = np.maximum(0.5 * (speeds[1:] + speeds[:-1]), SLOWEST_MM_S)
+    took_s = np.maximum(steps_s, steps_mm / mean)
+    ends = [0, *cuts, len(nodes) - 1]
+    return [
+        _timed(places[a : b + 1], took_s[a:b], steps_mm[a:b], speeds[a : b + 1], rate_hz)
+        for a, b in zip(ends, ends[1:], strict=False)
+    ]
+
+
+def run(way_mm: Array, speed_mm_s: float, acceleration_mm_s2: float, rate_hz: float) -> Array:
+    """Along a way (n, 2) mm from rest to rest, as fast as its bends allow and no faster than asked; at a uniform rate."""
+    lengths = np.r_[0.0, np.cumsum(np.hypot(*np.diff(way_mm, axis=0).T))]
+    some = np.r_[np.arange(0.0, lengths[-1], RUN_MM), lengths[-1]]
+    places = np.column_stack([np.interp(some, lengths, way_mm[:, k]) for k in (0, 1)])
+    speeds = course.speeds(places, speed_mm_s, acceleration_mm_s2, 0.0)
+    speeds = np.minimum(speeds, course.speeds(places[::-1], speed_mm_s, acceleration_mm_s2, 0.0)[::-1])
+    steps_mm = np.hypot(*np.diff(places, axis=0).T)
+    took_s = steps_mm / np.maximum(0.5 * (speeds[1:] + speeds[:-1]), SLOWEST_MM_S)
+    return _timed(places, took_s, steps_mm, speeds, rate_hz)
+
+
+def _speeds(steps_mm: Array, steps_s: Array, cuts: Array, acceleration_mm_s2: float) -> Array:
+    """Speed at each node: what it was, or what braking for the nearest cut allows, mm/s."""
+    was = np.r_[steps_mm / np.maximum(steps_s, 1e-12), 0.0]
+    was[1:-1] = 0.5 * (was[1:-1] + was[:-2])
+    lengths = np.r_[0.0, np.cumsum(steps_mm)]
+    allowed = np.full(len(was), np.inf)
+    for cut in cuts:
+        allowed = np.minimum(allowed, np.sqrt(2 * acceleration_mm_s2 * np.abs(lengths - lengths[cut])))
+    return np.minimum(was, allowed)
+
+
+def _timed(places: Array, took_s: Array, steps_mm: Array, speeds: Array, rate_hz: float) -> Array:
+    """Nodes with the times that their steps take, as positions at a uniform rate: first and last exactly, the last one perhaps a part of a period late."""
+    times = np.r_[0.0, np.cumsum(took_s)]
+    if times[-1] <= 0 or len(places) < 2:
+        return places[:1]
+    uniform = np.arange(1, int(np.ceil(times[-1] * rate_hz - 1e-6))) / rate_hz
+    i = np.clip(np.searchsorted(times, uniform, side="right") - 1, 0, len(took_s) - 1)
+    tau = uniform - times[i]
+    share = tau / np.maximum(took_s[i], 1e-12)
+    braked = (steps_mm[i] > _NOTHING_MM) & (np.abs(speeds[i + 1] - speeds[i]) > 1e-6)
+    even = speeds[i] * tau + 0.5 * (speeds[i + 1] - speeds[i]) / np.maximum(took_s[i], 1e-12) * tau**2
+    share = np.where(braked, np.clip(even / np.maximum(steps_mm[i], _NOTHING_MM), 0, 1), share)
+    between = places[i] + share[:, None] * (places[i + 1] - places[i])
+    return np.vstack([places[:1], between, places[-1:]])
