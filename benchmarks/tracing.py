@@ -32,7 +32,8 @@ from motion.pathfile import read_path
 from player.machine import play
 from recorder.tape import TapeFormat, record
 from tracer.drawing import MM_PER_INCH, Drawing
-from tracer.sequence import Trace, trace
+from tracer.program import Trace
+from tracer.sequence import trace
 
 Points = NDArray[np.float64]
 

@@ -1,17 +1,18 @@
 """Marks on the line: what tells the operator's machine to stop.
 
-Signals: the way of the head (n, 2) mm at the motion rate, and the cells' picture, in; marks out, each with the place of the way on which the axis is to stand.
+Signals: the way of the head (n, 2) mm at the motion rate, and the cells' picture, in; marks out, each with the place of the way on which the axis is to
+stand.
 
     tick     a short stroke across the line, or beside it     the line ───┼───    ───┴───    ─── ╵ ───
     dot      a round of ink on the line, wider than it                 ───●───    or at its end  ───●
 
-Two rows of cells ride beside the line, right and left. Where one sees a pulse of ink as wide as a line is, the stroke is felt outward until it ends: a mark ends
-within `LONGEST_MM`, a crossing line goes on beyond it. The foot of the mark is where its own middle line meets the way of the head. No mark is at a corner: the
-line goes straight on through the foot of one.
+Two rows of cells ride beside the line, right and left. Where one sees a pulse of ink as wide as a line is, the stroke is felt outward until it ends: a mark
+ends within `LONGEST_MM`, a crossing line goes on beyond it. The foot of the mark is where its own middle line meets the way of the head. No mark is at a
+corner: the line goes straight on through the foot of one.
 
-Source: patent ES 361967, figure 1, stop marks: a line across the contour, or a mark beside it. Questions: the patent gives no sizes. Chosen: a mark reaches from
-0.8 of the line's width to 5 mm beyond its edge (ten widths, of wide lines), stands within 40 degrees of square to it and not further from it than 1.5 mm, and is
-drawn with a pen like the line's; a dot is at least 1.7 times as wide as the line.
+Source: patent ES 361967, figure 1, stop marks: a line across the contour, or a mark beside it. Questions: the patent gives no sizes. Chosen: a mark reaches
+from 0.8 of the line's width to 5 mm beyond its edge on each side (ten widths, of wide lines), to 3.5 mm (seven) if it is on one side only, stands within 40 degrees of square to it and not further from it than 1.5
+mm, and is drawn with a pen like the line's; a dot is at least 1.7 times as wide as the line.
 """
 
 from __future__ import annotations
@@ -29,7 +30,8 @@ from tracer.rounds import ANGLES, WAYS, circle_through, spokes
 from tracer.view import Array, View
 
 LEAST_WIDTHS = 0.8
-LONGEST_MM, LONGEST_WIDTHS = 5.0, 10.0
+LONGEST_MM, LONGEST_WIDTHS = 5.0, 10.0  # of a mark across the line, beyond its edge on each side
+BESIDE_MM, BESIDE_WIDTHS = 3.5, 7.0  # of a mark on one side: what is longer is a line that begins there
 FARTHEST_MM = 1.5  # from the line's edge to a mark beside it
 SLANT = math.tan(math.radians(40))
 LIKE = (0.5, 1.6)  # a mark's width, of the line's
@@ -47,12 +49,14 @@ class Mark:
 
 @dataclass(frozen=True, slots=True)
 class _Stroke:
-    """Ink beside the line, felt outward: its middles (n, 2) as mm along and away from the way, whether it touches the line, and whether it ends."""
+    """Ink beside the line, felt outward: its middles (n, 2) as mm along and away from the way, whether it touches the line, whether it ends, and how far
+    beyond the line's edge."""
 
     side: int
     middles: Array
     touches: bool
     ends: bool
+    reach_mm: float
 
     @property
     def foot_mm(self) -> float:
@@ -102,6 +106,11 @@ class Way:
         return bool(np.abs(aside).max() < within_mm)
 
 
+def longest_mm(view: View, *, across: bool = True) -> float:
+    """How far a mark reaches beyond the line's edge at most, mm."""
+    return max(LONGEST_MM, LONGEST_WIDTHS * view.width_mm) if across else max(BESIDE_MM, BESIDE_WIDTHS * view.width_mm)
+
+
 def marks_along(view: View, positions: Array) -> list[Mark]:
     """The ticks and dots of a way, in the order in which the head comes to them."""
     way = Way(positions, SPACING * view.pitch_mm)
@@ -134,6 +143,8 @@ def _ticks(view: View, way: Way) -> list[float]:
         if _is_way(view, way, stroke):
             continue
         across = [o for o in opposite if o.ends and o.straight]
+        if not across and stroke.reach_mm > longest_mm(view, across=False):
+            continue
         feet.append(float(np.mean([foot, *(o.foot_mm for o in across)])))
     return feet
 
@@ -180,7 +191,7 @@ def _row(cells, pitch_mm, places, along, away_mm):  # type: ignore[no-untyped-de
 
 def _felt(view: View, way: Way, side: int, i: int, away_mm: float) -> _Stroke | None:
     """The stroke that a cell beside station i of the way is on; None if it is not like a line's."""
-    longest = max(LONGEST_MM, LONGEST_WIDTHS * view.width_mm)
+    longest = longest_mm(view)
     t = way.along[i]
     seen = _stroke_at(
         view.cells, view.pitch_mm, way.places[i], t, side, away_mm, longest + view.width_mm, view.width_mm, view.level
@@ -194,7 +205,7 @@ def _felt(view: View, way: Way, side: int, i: int, away_mm: float) -> _Stroke | 
     if not long_enough or nearest - 0.5 * view.width_mm > FARTHEST_MM:
         return None
     middles = seen[inner, :2] + [way.at_mm[i], 0.0]
-    return _Stroke(side, middles, touches, reach < longest)
+    return _Stroke(side, middles, touches, reach < longest, reach)
 
 
 @njit(cache=True)

@@ -7,10 +7,11 @@ Signals: a line as it was followed, with its marks, in; actions out: at which po
     guide line     raised; at its end, or at a dot, a hole is drilled                     Z    ╲______╱
     stop           what the card says; without one Z stands for half a second
 
-A lead line begins at a reference point, or bears a tick, and runs into a loop; a line that begins at a reference point and ends is a guide line. Any other is
-cut from its start. Stops are numbered along the way, over all the lines; those that the operator overrides are passed by.
+A lead line begins at a reference point, or bears a tick, and runs into a loop; a line that begins at a reference point and ends is a guide line. Any other
+is cut from its start. Stops are numbered along the way, over all the lines; those that the operator overrides are passed by.
 
-Source: patent ES 361967, section on use, and figure 3; override button of figure 1. Questions: the patent's operator knows what a line is for; here its marks say it.
+Source: patent ES 361967, section on use, and figure 3; override button of figure 1. Questions: the patent's operator knows what a line is for; here its
+marks say it.
 """
 
 from __future__ import annotations
@@ -96,12 +97,10 @@ class Operator:
         """Every place of a line where something may be done, in order, its stops numbered from `first`."""
         stops = [Halt(mark.at, "tick" if mark.kind == "tick" else "dot", mark.place_mm) for mark in line.marks]
         near = NEAR_WIDTHS * line.width_mm
-        holes = [(guide.tip, guide) for guide in line.guides]
-        if line.is_guide:
-            holes.append((len(line.xy_mm) - 1, None))
-        for tip, _ in holes:
+        tips = [guide.tip for guide in line.guides] + ([len(line.xy_mm) - 1] if line.is_guide else [])
+        for tip in tips:
             place = line.place(tip)
-            stops = [s for s in stops if s.kind != "dot" or (abs(s.at - tip) > 0 and _apart(s.place_mm, place) > near)]
+            stops = [s for s in stops if s.kind != "dot" or _apart(s.place_mm, place) > near]
             stops.append(Halt(tip, "hole", place))
         stops.sort(key=lambda halt: halt.at)
         halts = [replace(stop, number=first + k) for k, stop in enumerate(stops)]

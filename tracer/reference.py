@@ -4,11 +4,12 @@ Signals: the patches of ink of a drawing and the cells' picture in; places (shee
 
     ─┼─   ○       alone on the paper           ─┼────  ○────       with the lead line drawn from it
 
-A cross: a ring of cells sees four arms, square to each other, of which all end alike, or three if the fourth is the lead line. Its place is where the middle lines
-of the arms meet. A ring: spokes from its middle meet paper, then ink as wide as a line, then paper again; its place is the middle of the circle through them.
+A cross: a ring of cells sees four arms, square to each other, of which all end alike, or three if the fourth is the lead line. Its place is where the
+middle lines of the arms meet. A ring: spokes from its middle meet paper, then ink as wide as a line, then paper again; its place is the middle of the
+circle through them.
 
-Source: patent ES 361967, section on use: a reference point, normally outside the contour. Questions: the patent says neither how it is drawn nor how large it is.
-Chosen: 1.5 to 10 mm across.
+Source: patent ES 361967, section on use: a reference point, normally outside the contour. Questions: the patent says neither how it is drawn nor how large
+it is. Chosen: 1.5 to 10 mm across.
 """
 
 from __future__ import annotations

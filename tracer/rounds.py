@@ -51,4 +51,4 @@ def circle_through(places: Array) -> tuple[Array, float, float]:
     a, b, c = np.linalg.lstsq(np.column_stack([2 * d, np.ones(len(d))]), squares, rcond=None)[0]
     radius = math.sqrt(max(c + a * a + b * b, 0.0))
     misfit = np.sqrt(np.mean((np.hypot(*(d - [a, b]).T) - radius) ** 2))
-    return middle + [a, b], radius, float(misfit)
+    return middle + np.array([a, b]), radius, float(misfit)

@@ -21,7 +21,7 @@ from tracer import photocell
 from tracer.drawing import Drawing
 from tracer.leg import Leg, centre_at, end_of, leg_of, reach_of_ink, turn
 from tracer.lines import Sheet, Stroke
-from tracer.marks import LONGEST_MM, LONGEST_WIDTHS
+from tracer.marks import longest_mm
 from tracer.reference import references
 from tracer.survey import straight_on
 from tracer.view import LEVEL, Array, View
@@ -99,7 +99,6 @@ def _at_ends(
     for reference in references(sheet, view, stroke):
         if reference.lead is not None:
             lead = reference.lead
-            place = np.array(reference.place_mm)
             return [
                 Stance(
                     lead.end_mm, lead.heading_rad, view.like(lead.end_mm, lead.heading_rad), True, reference.place_mm
@@ -216,9 +215,21 @@ def _is_end(view: View, inward: Array, heading: float, radius: float) -> bool:
     middle = seen[len(seen) // 4 : -len(seen) // 4, 2]
     if np.median(middle[-4:]) > 1.08 * np.median(middle[:4]):
         return False
-    longest = max(LONGEST_MM, LONGEST_WIDTHS * view.width_mm)
+    return not _is_mark(view, inward, heading, radius)
+
+
+def _is_mark(view: View, inward: Array, heading: float, radius: float) -> bool:
+    """Whether the end of a line is that of a stop mark across another line, or beside it."""
+    longest = longest_mm(view)
     seen = view.feel(inward, heading, longest)
-    if len(seen) < 4 or (len(seen) - 1) * view.step_mm + radius > longest:
-        return True
-    on = reach_of_ink(view, leg_of(seen, True, view.leg_mm), 2 * longest + 2 * view.width_mm)
-    return on is None or len(seen) * view.step_mm + radius + on > 2 * longest
+    reach = (len(seen) - 1) * view.step_mm + radius
+    if len(seen) < 4 or reach > longest:
+        return False
+    on = leg_of(seen, True, view.leg_mm)
+    ink = reach_of_ink(view, on, longest + 2 * view.width_mm)
+    if ink is None:
+        return False
+    if ink < 2 * view.width_mm:
+        return reach < longest_mm(view, across=False)
+    far_end = photocell.ring(view.cells, view.pitch_mm, on.at(ink - 0.5 * view.width_mm), radius, view.level)
+    return len(far_end) == 1

@@ -1,7 +1,7 @@
 """Stops on the way: the axis brakes, stands on a place exactly, and goes on.
 
-Signals: positions of the head (n, 2) mm at the motion rate, and which of them to stand on (fractions included), in; pieces (n, 2) mm out, each of which comes to
-rest on the place where the next begins.
+Signals: positions of the head (n, 2) mm at the motion rate, and which of them to stand on (fractions included), in; pieces (n, 2) mm out, each of which
+comes to rest on the place where the next begins.
 
     speed ─────╮         ╭──────       within the braking distance the speed is the lower of what it was and of what the brake allows:
                 ╲       ╱
@@ -9,13 +9,14 @@ rest on the place where the next begins.
 
 The way stays the same, only its timing changes; outside the braking distances that too stays as it was.
 
-Source: patent ES 361967, figure 1: a stop mark stops the follower; X and Y tracks then carry the reference frequency while the tape runs on.
-Questions: how far before a mark the follower brakes the patent leaves open. The cell sees the mark one lead before the axis, which is enough for it at 10 mm/s.
+Source: patent ES 361967, figure 1: a stop mark stops the follower; X and Y tracks then carry the reference frequency while the tape runs on. Questions: how
+far before a mark the follower brakes the patent leaves open. The cell sees the mark one lead before the axis, which is enough for it at 10 mm/s.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 
@@ -40,8 +41,7 @@ def pieces(xy_mm: Array, halts: Sequence[float], acceleration_mm_s2: float, rate
     took_s = np.maximum(steps_s, steps_mm / mean)
     ends = [0, *cuts, len(nodes) - 1]
     return [
-        _timed(places[a : b + 1], took_s[a:b], steps_mm[a:b], speeds[a : b + 1], rate_hz)
-        for a, b in zip(ends, ends[1:], strict=False)
+        _timed(places[a : b + 1], took_s[a:b], steps_mm[a:b], speeds[a : b + 1], rate_hz) for a, b in pairwise(ends)
     ]
 
 

@@ -24,7 +24,8 @@ from recorder.tape import TapeFormat, record
 from tests.tracer.inked import UM, inked, polyline
 from tracer.deviation import deviation
 from tracer.drawing import Drawing
-from tracer.sequence import Trace, trace
+from tracer.program import Trace
+from tracer.sequence import trace
 from tracer.tour import trace_lines
 
 Array = NDArray[np.float64]

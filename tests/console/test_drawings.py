@@ -19,8 +19,9 @@ from tests.console.conftest import SAMPLES, Morfax
 from tracer import patches, room
 from tracer.drawing import Drawing
 from tracer.lines import Sheet
+from tracer.operator import Work
 from tracer.patches import Patches, runs_of
-from tracer.sequence import Settings, Work
+from tracer.settings import Settings
 
 UM = 1e-3
 CAM = SAMPLES / "cam.png"

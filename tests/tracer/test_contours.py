@@ -16,7 +16,9 @@ from motion.motion import MOTION_RATE_HZ, join, thin
 from tests.tracer.inked import UM, Points, arc, inked, polyline
 from tracer import tour
 from tracer.contours import idle_way_mm, in_order, nested, plan
-from tracer.sequence import Line, Trace
+from tracer.line import Line
+from tracer.lines import Sheet
+from tracer.program import Trace
 from tracer.settings import Settings
 from tracer.tour import trace_lines
 
@@ -97,7 +99,7 @@ def test_what_lies_inside_what() -> None:
 def test_specks_letters_and_burrs_are_counted_and_left_out() -> None:
     speck = np.array([(28, 8), (29, 8), (29, 9), (28, 9)])
     letter = polyline((8, 6), (10.5, 6))
-    contours, left_out = plan(inked(FRAME, HOLE, letter, specks=[speck]), "all")
+    contours, left_out = plan(Sheet.of(inked(FRAME, HOLE, letter, specks=[speck])), "all")
     assert [c.number for c in contours] == [1, 2] and left_out == 2
     assert contours[1].stroke.length_mm == pytest.approx(6 * np.pi, rel=0.1)
 

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from motion.contour import distance, length_mm, pointwise
 from tests.tracer.inked import UM, arc, corner, inked, polyline
 from tracer.drawing import Drawing
-from tracer.sequence import Trace, trace
+from tracer.program import Trace
+from tracer.sequence import trace
 from tracer.settings import Settings
 
 Array = NDArray[np.float64]

@@ -13,7 +13,10 @@ from motion.contour import distance
 from motion.faults import DrawingFault, LineFault
 from motion.motion import IN_WORK_BELOW_MM, MOTION_RATE_HZ, join, thin
 from tests.tracer.inked import UM, arc, inked, polyline
-from tracer.sequence import Line, Trace, Work, trace
+from tracer.line import Line
+from tracer.operator import Operator, Work
+from tracer.program import Trace
+from tracer.sequence import trace
 
 CIRCLE = arc((9, 9), 5)
 OPEN = polyline((4, 6), (24, 9))
@@ -26,7 +29,7 @@ def run() -> Trace:
 
 def over_the_line(work: Work) -> Trace:
     """A trace that stays where it is for 50 ms: its Z moves are all there is to it."""
-    return Trace((Line(np.tile([3.0, 4.0], (300, 1)), "ended", 0.5, 0.0),), work)
+    return Trace((Line(np.tile([3.0, 4.0], (300, 1)), "ended", 0.5, 0.0),), Operator(work))
 
 
 # Z
@@ -64,7 +67,7 @@ PASSES = Work(depth_mm=5.0, passes_mm=(2.0, 4.0))
 
 
 def test_a_closed_line_of_several_passes_is_run_on_at_each_depth(run: Trace) -> None:
-    passes = Trace(run.lines, PASSES)
+    passes = Trace(run.lines, Operator(PASSES))
     path = thin(passes)
     assert len(path.runs()) == 1  # the tool stays in the work
     x, y, z = join(passes).positions_mm.T
@@ -77,7 +80,7 @@ def test_a_closed_line_of_several_passes_is_run_on_at_each_depth(run: Trace) -> 
 
 def test_an_open_line_of_several_passes_is_begun_again_with_the_tool_up() -> None:
     xy_mm = np.column_stack([np.linspace(0, 10, 6001), np.zeros(6001)])
-    passes = Trace((Line(xy_mm, "ended", 0.5, 10.0),), PASSES)
+    passes = Trace((Line(xy_mm, "ended", 0.5, 10.0),), Operator(PASSES))
     path = thin(passes)
     assert [tuple(in_work[0]) for in_work in path.runs()] == [(0, 0)] * 3
     assert [tuple(in_work[-1]) for in_work in path.runs()] == [(10, 0)] * 3
