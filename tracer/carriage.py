@@ -36,6 +36,7 @@ class Carriage:
         self.state[head.INK] = 1.0
         self._drum = np.zeros((head.DRUM, 2))
         self._parts: list[Array] = [stance.place_mm[None].copy()]
+        self.count = 1  # positions so far
 
     @property
     def travel_mm(self) -> float:
@@ -83,7 +84,7 @@ class Carriage:
                 continue
             step = way[1] - way[0]
             if k > 0:
-                self._swivel(math.atan2(step[1], step[0]))
+                self.swivel(math.atan2(step[1], step[0]))
             last = k == len(stretches) - 1
             limits = course.speeds(
                 way, self.settings.speed_mm_s, self.settings.acceleration_mm_s2, end_mm_s if last else 0.0
@@ -102,7 +103,7 @@ class Carriage:
         n = head.run(self.state, self.tuning, way, limits, out)
         self._keep(out[:n])
 
-    def _swivel(self, heading: float) -> None:
+    def swivel(self, heading: float) -> None:
         """Turn the standing head to a heading."""
         self._stand(abs(turn(float(self.state[head.HEADING]), heading)) / self.settings.swivel_rad_s)
         self.state[head.HEADING] = heading
@@ -133,4 +134,5 @@ class Carriage:
 
     def _keep(self, positions: Array) -> None:
         self._parts.append(positions.copy())
+        self.count += len(positions)
         self.trail.add(positions)

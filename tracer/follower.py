@@ -25,27 +25,21 @@ import numpy as np
 from motion.faults import LineFault
 from tracer import course, head
 from tracer.carriage import Carriage
+from tracer.dots import dot_at_end
+from tracer.junctions import Guide, Junctions
 from tracer.knot import corner_in, fork_in
 from tracer.leg import Leg, Meeting, centre_at, end_of, leg_of, meet, turn
 from tracer.loop import loop_in
 from tracer.riding import Ride, ride_past, to_vertex
 from tracer.settings import Settings
 from tracer.stance import Stance
-from tracer.survey import goes_straight, straight_on, survey
+from tracer.survey import Side, Way, goes_straight, straight_on, survey
 from tracer.view import Array, View
 
 SMOOTH = math.radians(14)  # a smaller change of heading is no corner
 LEAST_GAP_PX = 2.5  # a scan can lose this much of a line
+BACK_MM = 2.0  # a junction that the head comes back to is no further ahead
 FAR_WIDTHS = 4.0  # to where the line goes on clean
-
-
-@dataclass(frozen=True, slots=True)
-class Guide:
-    """A guide line off the line that is followed, by positions: where the line was left, the guide's end, and where the line went on."""
-
-    leave: int
-    tip: int
-    back: int
 
 
 @dataclass(slots=True)
@@ -57,7 +51,9 @@ class Followed:
     heading_rad: float
     travel_mm: float
     view: View
-    junctions: int
+    junctions_mm: tuple[
+        tuple[float, float], ...
+    ]  # places of the junctions, in the order in which the head came to them
     fault: LineFault | None = None
     loop_from: int | None = None  # the position at which the loop of a joined line begins: before it is the lead line
     guides: tuple[Guide, ...] = ()
@@ -69,13 +65,21 @@ Anchor = tuple[Array, float, float]  # a place from which on the line is clean, 
 class Follower:
     """A head on a line of a drawing."""
 
-    def __init__(self, stance: Stance, settings: Settings, rate_hz: float, turns: tuple[int, ...] = ()) -> None:
-        """Put a head down at a stance. At the junctions numbered in `turns` it takes the second straightest leg."""
+    def __init__(
+        self,
+        stance: Stance,
+        settings: Settings,
+        rate_hz: float,
+        turns: tuple[int, ...] = (),
+        sides: tuple[Side | None, ...] = (),
+    ) -> None:
+        """Put a head down at a stance. At the junctions numbered in `turns` it takes the second straightest leg; at the first, the second … it turns off
+        to its side in `sides`, where there is one, and comes back if the line that it takes ends."""
         self.view, self.settings, self.stance = stance.view, settings, stance
-        self.junctions, self._turns = 0, turns
+        self._junctions, self._turns, self._sides = Junctions(), turns, sides
         self.carriage = Carriage(stance, settings, rate_hz)
         self._away_mm = max(4 * self.carriage.tuning.lead_mm, 3.0 * self.view.width_mm)
-        self._aim(self._first_leg())
+        self._aim(self._first_leg(stance))
 
     def follow(self, longest_mm: float, told: Callable[[float], None] | None = None) -> Followed:
         """Follow until the line closes, ends or is lost; `told` hears the travel in mm. `longest_mm` bounds a run in circles."""
@@ -106,7 +110,7 @@ class Follower:
         if (len(seen) - here) * self.view.step_mm > self.view.leg_mm:
             fork = fork_in(self.view, seen, here)
             if fork is None and self.carriage.ink_beside:
-                fork = self._turn_off(here)
+                fork = self._turn_off(seen, here)
             if fork is not None:
                 return self._through_legs(leg_of(seen[: fork + 1], True, self.view.leg_mm))
             sharp = self._sharp_corner(seen, here)
@@ -118,9 +122,11 @@ class Follower:
 
     def _through_legs(self, incoming: Leg) -> Followed | None:
         """Take the head from an incoming leg onto the straightest leg that leads on; what it did in all, if there is none."""
-        outgoing, legs_mm, choices = survey(self.view, incoming, self.carriage.trail, self._rank())
-        self.junctions += choices > 1
+        outgoing, legs_mm, choices = self._survey(incoming)
         straight = goes_straight(incoming, outgoing)
+        dot = None if straight else dot_at_end(self.view, incoming)
+        if dot is not None:
+            return self._end(incoming, dot)
         if not straight or self._far(incoming, outgoing):
             ride = ride_past(self.view, incoming)
             if ride is not None and not (straight and ride.back is None):
@@ -161,16 +167,35 @@ class Follower:
         )
         return np.column_stack([places, np.full(len(places), self.view.width_mm)])
 
-    def _turn_off(self, here: int) -> int | None:
-        """The station before ink beside a clean line, if the head is to leave the line there; None to go by."""
-        if self._rank() == 0:
-            self.junctions += 1
-            return None
-        return here + round(self.carriage.tuning.guard_lead_mm / self.view.step_mm) - 3
+    def _survey(self, incoming: Leg) -> Way:
+        """The way out of a knot, as the operator has it at a junction."""
+        trail, went = self.carriage.trail, self.carriage.count
+        if self._junctions.is_back(incoming.end_mm, 2 * self.view.width_mm + BACK_MM, went):
+            return survey(self.view, incoming, trail)
+        number = self._junctions.next(self.carriage.travel_mm)
+        side = self._sides[number] if number < len(self._sides) else None
+        found = outgoing, legs_mm, choices = survey(self.view, incoming, trail, int(number in self._turns), side)
+        if choices > 1:
+            place = incoming.end_mm if legs_mm is None else incoming.at(legs_mm[0])
+            self._junctions.come_to(place, self.carriage.travel_mm)
+            if side is not None and not goes_straight(incoming, outgoing) and self._goes_on(incoming):
+                self._junctions.take(place, went)
+        return found
 
-    def _rank(self) -> int:
-        """Which leg to take here if there are several: the straightest (0), or the next straightest where the turn is to be changed."""
-        return 1 if self.junctions in self._turns else 0
+    def _goes_on(self, incoming: Leg) -> bool:
+        """Whether a line goes straight on at a junction."""
+        return goes_straight(incoming, survey(self.view, incoming, self.carriage.trail)[0])
+
+    def _turn_off(self, seen: Array, here: int) -> int | None:
+        """The station before ink beside a clean line, if the head is to leave the line there; None to go by."""
+        station = here + round(self.carriage.tuning.guard_lead_mm / self.view.step_mm) - 3
+        number = self._junctions.next(self.carriage.travel_mm)
+        if number in self._turns or any(self._sides[number : number + 1]):
+            return station
+        incoming = leg_of(seen[: station + 1], True, self.view.leg_mm)
+        if survey(self.view, incoming, self.carriage.trail)[2] > 1:
+            self._junctions.come_to(incoming.end_mm, self.carriage.travel_mm)
+        return None
 
     def _course(self, incoming: Leg, outgoing: Leg, legs_mm: Meeting | None) -> tuple[list[Array], Leg]:
         """Stretches from where the head is to the outgoing leg's clean end, and that leg."""
@@ -237,14 +262,26 @@ class Follower:
         assert leg is not None
         return nodes, leg
 
-    def _at_end(self, incoming: Leg, choices: int) -> Followed:
+    def _at_end(self, incoming: Leg, choices: int) -> Followed | None:
         """Run to the end of the line, or to where it meets what was followed before."""
         end = end_of(self.view, incoming)
         if end is None:
             return self._lost("no clean line leads on through the ink ahead")
-        way, along = course.onto(*self.carriage.stands(), incoming, end)
-        self.carriage.run([np.vstack([way, course.along_leg(incoming, along, end)])])
-        return self._done("ended" if choices == 0 else "joined")
+        return self._end(incoming, end, joined=choices > 0)
+
+    def _end(self, incoming: Leg, end_mm: float, *, joined: bool = False) -> Followed | None:
+        """Run to an end of the line; on from there, if it is a guide line's."""
+        way, along = course.onto(*self.carriage.stands(), incoming, end_mm)
+        self.carriage.run([np.vstack([way, course.along_leg(incoming, along, end_mm)])])
+        if joined:
+            return self._done("joined")
+        if not self._junctions.turn_round(self.carriage.count):
+            return self._done("ended")
+        back = incoming.turned_round()
+        self.carriage.swivel(incoming.heading_at(end_mm) + math.pi)
+        self.carriage.run([course.along_leg(incoming, end_mm, 0.0)], self.settings.speed_mm_s)
+        self._aim(back)
+        return None
 
     def _way_home(self) -> Array:
         """The way onto the place where the head began."""
@@ -282,9 +319,9 @@ class Follower:
                 return [*stretches[:k], np.vstack([way[:near], home])]
         return None
 
-    def _first_leg(self) -> Leg:
-        """The line ahead of the stance, as felt."""
-        place, heading = self.stance.place_mm, self.stance.heading_rad
+    def _first_leg(self, stance: Stance) -> Leg:
+        """The line ahead of a stance, as felt."""
+        place, heading = stance.place_mm, stance.heading_rad
         seen = self.view.feel(place, heading, self.view.leg_mm)
         leg = leg_of(seen, False, self.view.leg_mm) if len(seen) >= 4 else None
         bend = leg.bend_per_mm if leg is not None else 0.0
@@ -296,8 +333,17 @@ class Follower:
         self._anchor = clean_from or (leg.end_mm, leg.heading_rad, self.carriage.travel_mm)
 
     def _done(self, ending: str, fault: LineFault | None = None) -> Followed:
-        went = self.carriage
-        done = Followed(went.positions_mm, ending, went.heading_rad, went.travel_mm, self.view, self.junctions, fault)
+        positions = self.carriage.positions_mm
+        done = Followed(
+            positions,
+            ending,
+            self.carriage.heading_rad,
+            self.carriage.travel_mm,
+            self.view,
+            tuple(self._junctions.places_mm),
+            fault,
+            guides=self._junctions.guides(positions),
+        )
         return done if ending != "joined" else _without_repeat(done)
 
     def _lost(self, why: str) -> Followed:

@@ -43,6 +43,11 @@ class Leg:
         """The same line from a place further along it, with what was felt from there."""
         return Leg(self.at(along_mm), self.heading_at(along_mm), self.bend_per_mm, self.width_mm, seen)
 
+    def turned_round(self) -> Leg:
+        """The same leg, to go back along it."""
+        heading = math.remainder(self.heading_rad + math.pi, math.tau)
+        return Leg(self.end_mm, heading, -self.bend_per_mm, self.width_mm, self.seen[::-1])
+
     def heading_at(self, along_mm: float) -> float:
         """Heading at a distance from the clean end, rad."""
         return self.heading_rad + math.atan(self.bend_per_mm * along_mm)
@@ -179,6 +184,20 @@ def reach_of_ink(view: View, incoming: Leg, farthest_mm: float) -> float | None:
             return max(0.0, (k - (view.level - now) / max(before - now, 1e-9)) * step)
         before = now
     return None
+
+
+def stroke_end(view: View, leg: Leg, farthest_mm: float) -> float | None:
+    """How far the ink of a stroke goes on from a leg's end, mm, if the stroke ends there: no ink leaves its tip but the stroke's own; None if not."""
+    ink = reach_of_ink(view, leg, farthest_mm)
+    if ink is None:
+        return None
+    return ink if is_tip(view, leg.at(ink - 0.5 * view.width_mm)) else None
+
+
+def is_tip(view: View, place: Array) -> bool:
+    """Whether a place half a width within the end of ink is the tip of a single stroke."""
+    radius = max(1.2 * view.width_mm, 5 * view.pitch_mm)
+    return len(photocell.ring(view.cells, view.pitch_mm, place, radius, view.level)) == 1
 
 
 def end_of(view: View, incoming: Leg) -> float | None:

@@ -16,7 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from motion.faults import LineFault
-from tracer.follower import Followed, Guide
+from tracer.follower import Followed
+from tracer.junctions import Guide
 from tracer.marks import Mark, marks_along
 from tracer.view import Array
 

@@ -11,8 +11,8 @@ ends within `LONGEST_MM`, a crossing line goes on beyond it. The foot of the mar
 corner: the line goes straight on through the foot of one.
 
 Source: patent ES 361967, figure 1, stop marks: a line across the contour, or a mark beside it. Questions: the patent gives no sizes. Chosen: a mark reaches
-from 0.8 of the line's width to 5 mm beyond its edge on each side (ten widths, of wide lines), to 3.5 mm (seven) if it is on one side only, stands within 40 degrees of square to it and not further from it than 1.5
-mm, and is drawn with a pen like the line's; a dot is at least 1.7 times as wide as the line.
+from 0.8 of the line's width to 5 mm beyond its edge on each side (ten widths, of wide lines), to 3.5 mm (seven) if it is on one side only, stands within 40
+degrees of square to it and not further from it than 1.5 mm, and is drawn with a pen like the line's.
 """
 
 from __future__ import annotations
@@ -24,9 +24,8 @@ from typing import Literal
 import numpy as np
 from numba import njit
 
-from tracer import photocell
-from tracer.leg import turn
-from tracer.rounds import ANGLES, WAYS, circle_through, spokes
+from tracer import dots, photocell
+from tracer.leg import is_tip
 from tracer.view import Array, View
 
 LEAST_WIDTHS = 0.8
@@ -204,8 +203,10 @@ def _felt(view: View, way: Way, side: int, i: int, away_mm: float) -> _Stroke | 
     long_enough = reach - max(0.0, nearest - 0.5 * view.width_mm) > LEAST_WIDTHS * view.width_mm
     if not long_enough or nearest - 0.5 * view.width_mm > FARTHEST_MM:
         return None
-    middles = seen[inner, :2] + [way.at_mm[i], 0.0]
-    return _Stroke(side, middles, touches, reach < longest, reach)
+    n = side * np.array([-t[1], t[0]])
+    u, v = seen[np.argmax(seen[:, 1]), :2]
+    ends = reach < longest and is_tip(view, way.places[i] + u * t + (v - 0.5 * view.width_mm) * n)
+    return _Stroke(side, seen[inner, :2] + [way.at_mm[i], 0.0], touches, ends, reach)
 
 
 @njit(cache=True)
@@ -251,8 +252,8 @@ def _across(cells, pitch_mm, place, along, side, u_mm, v_mm, reach_mm, level):  
 
 
 def _dots(view: View, way: Way) -> list[Mark]:
-    """Dots on the way and at its ends: discs of ink, about which there is no more than the line."""
-    least = 0.85 * view.width_mm
+    """Dots on the way and at its ends (see `dots`)."""
+    least = dots.LEAST_WIDTHS * view.width_mm
     inked = np.minimum(
         *(_row(view.cells, view.pitch_mm, way.places, way.along, side * 0.75 * least) for side in (1, -1))
     )
@@ -260,24 +261,10 @@ def _dots(view: View, way: Way) -> list[Mark]:
     found: list[Mark] = []
     for begin, end in zip(edges[::2], edges[1::2], strict=True):
         middle = (begin + end - 1) // 2
-        centre = _disc(view, way.places[middle], way.along[middle], least)
+        centre = dots.disc(view, way.places[middle], way.along[middle])
         if centre is None:
             continue
         nearest = int(np.argmin(np.hypot(*(way.places - centre).T)))
         if all(abs(way.position_at(way.at_mm[nearest]) - o.at) > 1 for o in found):
             found.append(Mark("dot", way.place(way.at_mm[nearest]), way.position_at(way.at_mm[nearest])))
     return found
-
-
-def _disc(view: View, place: Array, along: Array, least_mm: float) -> Array | None:
-    """The centre of a round of ink about a place on the way; None if there is none."""
-    for _ in range(3):
-        reach = spokes(view, place, 6 * view.width_mm)[:, 0]
-        usual = float(np.nanmedian(reach)) if np.isfinite(reach).mean() > 0.6 else math.inf
-        round_ones = np.abs(reach - usual) < 0.15 * usual
-        if not least_mm < usual < math.inf or round_ones.mean() < 0.6:
-            return None
-        place, _, _ = circle_through(place + reach[round_ones, None] * WAYS[round_ones])
-    heading = math.atan2(along[1], along[0])
-    on_line = [min(abs(turn(heading + k * math.pi, angle)) for k in (0, 1)) for angle in ANGLES[~round_ones]]
-    return place if not on_line or max(on_line) < math.radians(50) else None

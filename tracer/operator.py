@@ -24,8 +24,10 @@ from motion.faults import CardFault
 from tracer import zunit
 from tracer.card import Card, Stop
 from tracer.line import Line
+from tracer.survey import Side
 from tracer.zunit import Counters, Move
 
+Direction = Literal["cw", "ccw", "left", "right"]
 STAND_S = 0.5
 NEAR_WIDTHS = 3.0  # a dot at the end of a guide line is the hole drilled there, and no other
 
@@ -83,6 +85,12 @@ class Operator:
     card: Card = field(default_factory=Card)
     panel: Panel | None = None
     reference_mm: tuple[float, float] | None = None  # where the reference point is, if it is not to be looked for
+    direction: Direction | None = None  # in which the head takes the line
+
+    @property
+    def sides(self) -> tuple[Side | None, ...]:
+        """Where the head turns off at the junctions."""
+        return tuple(None if side == "straight" else side for side in self.card.turns)
 
     def actions(self, lines: Sequence[Line]) -> list[list[Action]]:
         """The actions along each of several lines, in the order in which they are cut; raises CardFault for moves that the Z unit cannot make."""

@@ -4,7 +4,7 @@ Signals: the patches of ink of a drawing and the cells' picture in; places (shee
 
     ─┼─   ○       alone on the paper           ─┼────  ○────       with the lead line drawn from it
 
-A cross: a ring of cells sees four arms, square to each other, of which all end alike, or three if the fourth is the lead line. Its place is where the
+A cross: a ring of cells sees arms square to each other that end alike, four of them, or three and the lead line. Its place is where the
 middle lines of the arms meet. A ring: spokes from its middle meet paper, then ink as wide as a line, then paper again; its place is the middle of the
 circle through them.
 
@@ -23,13 +23,13 @@ import cv2
 import numpy as np
 
 from tracer import photocell
-from tracer.leg import Leg, leg_of, reach_of_ink, turn
+from tracer.leg import Leg, leg_of, reach_of_ink, stroke_end
 from tracer.lines import Sheet, Stroke
 from tracer.rounds import WAYS, circle_through, spokes
 from tracer.view import Array, View
 
 LEAST_MM, LARGEST_MM = 1.5, 10.0  # across
-SQUARE = math.radians(15)
+SQUARE = math.sin(math.radians(30))  # of twice the angle between arms: 15 degrees
 ALIKE = 0.4  # arms differ by less than this share
 MOST_PX = 50_000_000  # of a patch that is looked through for rings
 
@@ -97,36 +97,39 @@ def _holes(sheet: Sheet, patch: int) -> Iterator[Array]:
 
 
 def _cross(view: View, place: Array) -> Reference | None:
-    """The cross about a place."""
+    """The cross about a place: three or four arms that end, alike and square to each other."""
+    if not view.dark(place):
+        return None
+    arms = []
     for radius in (1.0, 1.4):
         arcs = photocell.ring(
             view.cells, view.pitch_mm, place, max(radius * view.width_mm, 5 * view.pitch_mm), view.level
         )
-        if len(arcs) == 4:
+        if len(arcs) in (4, 5):
+            legs = [leg for direction in arcs.mean(axis=1) if (leg := _arm(view, place, float(direction))) is not None]
+            arms = [leg for leg in legs if stroke_end(view, leg, LARGEST_MM / 2) is not None]
             break
-    if len(arcs) != 4 or not view.dark(place):
+    if len(arms) not in (3, 4) or any(
+        abs(math.sin(2 * (leg.heading_rad - arms[0].heading_rad))) > SQUARE for leg in arms
+    ):
         return None
-    directions = np.sort(arcs.mean(axis=1))
-    if any(abs(turn(a, b) - math.pi / 2) > SQUARE for a, b in zip(directions, np.roll(directions, -1), strict=True)):
+    centre = _meeting(arms)
+    lengths = np.array([_length(view, leg, centre) for leg in arms])
+    usual = float(np.median(lengths))
+    if np.ptp(lengths) > ALIKE * usual or not LEAST_MM < 2 * usual < LARGEST_MM:
         return None
-    arms = [_arm(view, place, direction) for direction in directions]
-    if any(arm is None for arm in arms):
-        return None
-    legs = [arm for arm in arms if arm is not None]
-    centre = _meeting(legs)
-    lengths = np.array([_length(view, leg, centre) for leg in legs])
-    ended = lengths[np.isfinite(lengths)]
-    if len(ended) < 3 or np.ptp(ended) > ALIKE * np.median(ended) or not LEAST_MM < 2 * np.median(ended) < LARGEST_MM:
-        return None
-    leads = [leg for leg, length in zip(legs, lengths, strict=True) if not math.isfinite(length)]
-    return Reference((float(centre[0]), float(centre[1])), "cross", leads[0] if leads else None)
+    leads = photocell.ring(view.cells, view.pitch_mm, centre, usual + 1.5 * view.width_mm, view.level)
+    if len(leads) + len(arms) < 4:
+        return None  # three arms and nothing more: a corner of three strokes
+    lead = _arm(view, centre, float(leads[0].mean()), (usual + view.width_mm) / view.width_mm) if len(leads) else None
+    return Reference((float(centre[0]), float(centre[1])), "cross", lead)
 
 
-def _arm(view: View, place: Array, direction: float) -> Leg | None:
-    """The clean stretch that leaves a place in a direction."""
-    for start in (1.0, 1.3, 1.6):
+def _arm(view: View, place: Array, direction: float, widths: float = 1.0) -> Leg | None:
+    """The clean stretch that leaves a place in a direction, so many widths away from it or a little more."""
+    for start in (0.0, 0.3, 0.6):
         seen = view.feel(
-            place + start * max(view.width_mm, 4 * view.pitch_mm) * _unit(direction), direction, view.leg_mm
+            place + max((widths + start) * view.width_mm, 4 * view.pitch_mm) * _unit(direction), direction, view.leg_mm
         )
         if len(seen) >= 4:
             return leg_of(seen, False, view.leg_mm)
@@ -134,9 +137,8 @@ def _arm(view: View, place: Array, direction: float) -> Leg | None:
 
 
 def _length(view: View, arm: Leg, centre: Array) -> float:
-    """How far an arm reaches from the centre, mm; infinite if it goes on beyond a reference point's size."""
-    reach = reach_of_ink(view, arm, LARGEST_MM / 2)
-    return math.inf if reach is None else reach + float(np.hypot(*(arm.end_mm - centre)))
+    """How far an arm that ends reaches from the centre, mm."""
+    return (reach_of_ink(view, arm, LARGEST_MM / 2) or 0.0) + float(np.hypot(*(arm.end_mm - centre)))
 
 
 def _meeting(legs: list[Leg]) -> Array:

@@ -13,24 +13,30 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import combinations
 
 import numpy as np
 
+from motion.faults import LineFault
 from motion.motion import MOTION_RATE_HZ
 from tracer.drawing import Drawing
 from tracer.follower import Followed, Follower
+from tracer.leg import turn
 from tracer.line import Line
 from tracer.lines import INK, Sheet
-from tracer.operator import Operator
+from tracer.operator import Direction, Operator
 from tracer.program import Trace
 from tracer.settings import Settings
 from tracer.stance import Stance, put_down, turned_round
+from tracer.survey import Side
 
 SHORTER = 0.95  # the other way round is the line itself if it is shorter than this: straight on has led elsewhere
 TURNS = 12  # junctions at which another turn is tried
+SIDES: tuple[Side, Side] = ("left", "right")
+
+Told = Callable[[float], None]
 
 
 def trace(
@@ -64,12 +70,33 @@ def followed(
     )
     for stance, length_mm in stances:
         told = None if progress is None else partial(_tell, progress, length_mm)
-        run = _all_of_it(stance, settings, _longest_mm(sheet.drawing, stance.view.width_mm), told)
+        run = _run(stance, start_mm, operator, settings, _longest_mm(sheet.drawing, stance.view.width_mm), told)
         best = (run, stance) if best is None or run.travel_mm > best[0].travel_mm else best
         if run.ending == "closed" or run.travel_mm > 0.5 * length_mm:
             break
     assert best is not None  # put_down gives a stance, or raises
     return Line.of(best[0], number, best[1].reference_mm)
+
+
+def _run(
+    stance: Stance,
+    start_mm: tuple[float, float] | None,
+    operator: Operator,
+    settings: Settings,
+    longest_mm: float,
+    told: Told | None,
+) -> Followed:
+    """The run from a stance, in the direction and with the turns that the operator asks for."""
+    direction, sides = operator.direction, operator.sides
+    if direction in ("left", "right"):
+        if stance.at_end:
+            sides = sides or (direction,)
+        else:
+            stance = _turned_to(stance, start_mm, direction)
+    attempts = _Attempts(settings, sides, longest_mm, told)
+    if direction is None:
+        return attempts.all_of_it(stance)
+    return attempts.round_about(stance, direction)
 
 
 def _longest_mm(drawing: Drawing, width_mm: float) -> float:
@@ -81,31 +108,78 @@ def _tell(progress: Callable[[float, float], None], length_mm: float, come_mm: f
     progress(min(come_mm, length_mm), length_mm)
 
 
-def _all_of_it(stance: Stance, settings: Settings, longest_mm: float, told: Callable[[float], None] | None) -> Followed:
-    """Follow a line from a stance: either way round, an open one from end to end, and one that does not come back with other turns."""
-    run = Follower(stance, settings, MOTION_RATE_HZ).follow(longest_mm, told)
-    if stance.at_end or (run.ending == "closed" and run.junctions == 0):
+@dataclass(frozen=True, slots=True)
+class _Attempts:
+    """How a line may be followed: the head's settings, the turns that the operator asks for, and how long a run may be."""
+
+    settings: Settings
+    sides: tuple[Side | None, ...]
+    longest_mm: float
+    told: Told | None
+
+    def run(self, stance: Stance, turns: tuple[int, ...] = (), *, aloud: bool = True) -> Followed:
+        """Follow from a stance."""
+        follower = Follower(stance, self.settings, MOTION_RATE_HZ, turns, self.sides)
+        return follower.follow(self.longest_mm, self.told if aloud else None)
+
+    def all_of_it(self, stance: Stance) -> Followed:
+        """Follow a line from a stance: either way round, an open one from end to end, and one that does not come back with other turns."""
+        run = self.run(stance)
+        if stance.at_end or (run.ending == "closed" and not run.junctions_mm):
+            return run
+        other = self.run(_about(stance), aloud=False)
+        if run.ending == "closed":
+            return other if other.ending == "closed" and other.travel_mm < SHORTER * run.travel_mm else run
+        if other.ending == "closed":
+            return other
+        if run.ending == "ended":
+            back = turned_round(run.positions_mm[-1], run.heading_rad, run.view)
+            return max(run, self.run(back), key=lambda r: r.travel_mm)
+        return self._with_other_turns(stance, run) if run.ending == "joined" else run
+
+    def _with_other_turns(self, stance: Stance, run: Followed) -> Followed:
+        """The shortest run that closes because it takes another turn at one junction, or else at two; else the run as it was."""
+        places = range(min(len(run.junctions_mm), TURNS))
+        for turns in ([(k,) for k in places], list(combinations(places, 2))):
+            closed = [other for t in turns if (other := self.run(stance, t, aloud=False)).ending == "closed"]
+            if closed:
+                return min(closed, key=lambda other: other.travel_mm)
         return run
-    round_about = replace(stance, heading_rad=math.remainder(stance.heading_rad + math.pi, math.tau))
-    other = Follower(round_about, settings, MOTION_RATE_HZ).follow(longest_mm)
-    if run.ending == "closed":
-        return other if other.ending == "closed" and other.travel_mm < SHORTER * run.travel_mm else run
-    if other.ending == "closed":
-        return other
-    if run.ending == "ended":
-        back = turned_round(run.positions_mm[-1], run.heading_rad, run.view)
-        return max(run, Follower(back, settings, MOTION_RATE_HZ).follow(longest_mm, told), key=lambda r: r.travel_mm)
-    if run.ending == "joined":
-        return _with_other_turns(stance, settings, longest_mm, run)
-    return run
+
+    def round_about(self, stance: Stance, direction: Direction) -> Followed:
+        """Follow a line in the direction that the operator asks for; raises LineFault if it has none, or does not come back in it."""
+        run = self.all_of_it(stance)
+        if direction in ("left", "right") or _goes(run, direction):
+            return run
+        sided = [replace(self, sides=(side,)) for side in SIDES]
+        tries = [other.run(stance) for other in sided] if stance.at_end else [self.run(_about(stance))]
+        for other in tries:
+            if other.ending == run.ending and _goes(other, direction):
+                return other
+        what = "the line is open" if run.ending == "ended" else "the line does not come back that way round"
+        raise LineFault(f"direction {direction}: {what}; leave --direction out, or look at the drawing")
 
 
-def _with_other_turns(stance: Stance, settings: Settings, longest_mm: float, run: Followed) -> Followed:
-    """The shortest run that closes because it takes another turn at one junction, or else at two; else the run as it was."""
-    places = range(min(run.junctions, TURNS))
-    for turns in ([(k,) for k in places], list(combinations(places, 2))):
-        others = [Follower(stance, settings, MOTION_RATE_HZ, t).follow(longest_mm) for t in turns]
-        closed = [other for other in others if other.ending == "closed"]
-        if closed:
-            return min(closed, key=lambda other: other.travel_mm)
-    return run
+def _goes(run: Followed, direction: Direction) -> bool:
+    """Whether a run goes round in a direction."""
+    if run.ending not in ("closed", "joined") or (run.ending == "joined" and run.loop_from is None):
+        return False
+    x, y = run.positions_mm[run.loop_from or 0 :].T
+    area = float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
+    return (area > 0) == (direction == "ccw")
+
+
+def _about(stance: Stance) -> Stance:
+    """The same place, the other way."""
+    return replace(stance, heading_rad=math.remainder(stance.heading_rad + math.pi, math.tau))
+
+
+def _turned_to(stance: Stance, start_mm: tuple[float, float] | None, side: Side) -> Stance:
+    """The stance as the head comes to it from the place where it was put down, turning to a side; raises LineFault if that is on the line."""
+    way = stance.place_mm - np.asarray(stance.place_mm if start_mm is None else start_mm)
+    if np.hypot(*way) < 0.5 * stance.view.width_mm:
+        raise LineFault(
+            f"direction {side}: the head comes to the line from nowhere; give --start X,Y beside the line, or --direction cw or ccw"
+        )
+    ahead = turn(math.atan2(way[1], way[0]), stance.heading_rad)
+    return stance if (ahead > 0) == (side == "left") else _about(stance)

@@ -19,7 +19,7 @@ import numpy as np
 from motion.faults import LineFault
 from tracer import photocell
 from tracer.drawing import Drawing
-from tracer.leg import Leg, centre_at, end_of, leg_of, reach_of_ink, turn
+from tracer.leg import Leg, centre_at, end_of, is_tip, leg_of, reach_of_ink, turn
 from tracer.lines import Sheet, Stroke
 from tracer.marks import longest_mm
 from tracer.reference import references
@@ -231,5 +231,4 @@ def _is_mark(view: View, inward: Array, heading: float, radius: float) -> bool:
         return False
     if ink < 2 * view.width_mm:
         return reach < longest_mm(view, across=False)
-    far_end = photocell.ring(view.cells, view.pitch_mm, on.at(ink - 0.5 * view.width_mm), radius, view.level)
-    return len(far_end) == 1
+    return is_tip(view, on.at(ink - 0.5 * view.width_mm))

@@ -2,7 +2,9 @@
 
 Signals: the incoming leg and the trail in; the outgoing leg out, and where the two meet.
 
-Straight on at a crossing; on along the only leg at a corner; never onto what has been followed already; across a gap no wider than allowed.
+Straight on at a crossing; on along the only leg at a corner; never onto what has been followed already; across a gap no wider than allowed. A stroke that
+ends soon and is not straight on is a mark, no leg. At a junction the operator may turn left or right; where a lead line ends square on another the head
+turns left, which is clockwise round a contour that it comes to from outside.
 
 Source: our own (see `knot`).
 """
@@ -10,53 +12,61 @@ Source: our own (see `knot`).
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from functools import partial
+from typing import Literal
 
 import numpy as np
 
 from tracer.knot import legs_around
-from tracer.leg import Leg, Meeting, leg_of, meet, reach_of_ink, turn
+from tracer.leg import Leg, Meeting, leg_of, meet, reach_of_ink, stroke_end, turn
+from tracer.marks import longest_mm
 from tracer.trail import Trail
 from tracer.view import Array, View
 
 STRAIGHT = math.radians(40)  # straight on is within this
+TURNS_OFF = math.radians(20)  # a leg turns off to a side by more than this
+SQUARE = math.radians(20)  # two legs that turn off to both sides alike, within this, are a line that the head comes to
 PASSES = math.radians(12)  # two legs in line with each other within this are one line that passes
 FARTHEST_WIDTHS = 6.0  # how far the heading is held through a blot, in widths of the line
 
 
 Way = tuple[Leg | None, Meeting | None, int]
+Side = Literal["left", "right"]
 
 
-def survey(view: View, incoming: Leg, trail: Trail, rank: int = 0) -> Way:
+def survey(view: View, incoming: Leg, trail: Trail, rank: int = 0, side: Side | None = None) -> Way:
     """The outgoing leg (None if there is none), the distances (mm) beyond the incoming and before the outgoing clean end where they meet, and how many
     legs there were, counting 1 more where one was left out because it has been followed already.
 
     Looked for where the line stops being clean, and, unless it goes straight on from there, where the ink ahead ends: at the tip of a sharp corner.
-    `rank` 1 takes the second straightest leg.
+    `rank` 1 takes the second straightest leg, `side` the straightest that turns off to that side, if there is one.
     """
     ink = reach_of_ink(view, incoming, 6 * view.width_mm + 2.0)
     half = 0.5 * view.width_mm
     near = half + view.step_mm
-    found = _look(view, incoming, trail, incoming.at(near if ink is None else max(0.0, min(near, ink - half))), rank)
+    choose = partial(_chosen, incoming, rank, side)
+    found = _look(view, incoming, trail, incoming.at(near if ink is None else max(0.0, min(near, ink - half))), choose)
     if ink is not None and ink - half > near and not goes_straight(incoming, found[0]):
-        at_tip = _look(view, incoming, trail, incoming.at(ink - half), rank)
+        at_tip = _look(view, incoming, trail, incoming.at(ink - half), choose)
         found = at_tip if at_tip[0] is not None else found
     return found
 
 
-def _look(view: View, incoming: Leg, trail: Trail, centre: Array, rank: int) -> Way:
+def _look(
+    view: View, incoming: Leg, trail: Trail, centre: Array, choose: Callable[[list[Leg], list[Leg], View], Leg]
+) -> Way:
     """Look for legs about a centre, and again about the place where incoming and outgoing meet, until that is known."""
     way_in = np.vstack([trail.recent(), incoming.seen[:, :2]])
     outgoing, legs_mm, choices = None, None, 0
     for _ in range(3):
         every = legs_around(view, centre, way_in)
+        every = _without_marks(view, incoming, every)
         legs = [leg for leg in every if not trail.holds(leg, view.width_mm)]
         choices = max(choices, len(legs) + (len(legs) < len(every)))
         if not legs:
             break
-        if rank == 0:
-            legs = _without_pairs(view, incoming, legs, every) or legs
-        legs.sort(key=lambda leg: abs(turn(incoming.heading_rad, leg.heading_rad)))
-        outgoing = legs[min(rank, len(legs) - 1)]
+        outgoing = choose(legs, every, view)
         legs_mm = meet(incoming, outgoing)
         if legs_mm is None or legs_mm[0] < -view.width_mm:
             break
@@ -65,6 +75,37 @@ def _look(view: View, incoming: Leg, trail: Trail, centre: Array, rank: int) -> 
             break
         centre = vertex
     return outgoing, legs_mm, choices
+
+
+def _chosen(incoming: Leg, rank: int, side: Side | None, legs: list[Leg], every: list[Leg], view: View) -> Leg:
+    """The leg to take: by side, if one turns off there; else by how straight it goes on."""
+    turns = {id(leg): turn(incoming.heading_rad, leg.heading_rad) for leg in legs}
+    if side is not None:
+        aside = [leg for leg in legs if (turns[id(leg)] > 0) == (side == "left") and abs(turns[id(leg)]) > TURNS_OFF]
+        if aside:
+            return min(aside, key=lambda leg: abs(turns[id(leg)]))
+    if rank == 0:
+        legs = _without_pairs(view, incoming, legs, every) or legs
+    legs = sorted(legs, key=lambda leg: abs(turns[id(leg)]))
+    if (
+        rank == 0
+        and len(legs) > 1
+        and abs(turns[id(legs[0])]) > STRAIGHT
+        and abs(turns[id(legs[0])] + turns[id(legs[1])]) < SQUARE
+    ):
+        return max(legs[:2], key=lambda leg: turns[id(leg)])
+    return legs[min(rank, len(legs) - 1)]
+
+
+def _without_marks(view: View, incoming: Leg, legs: list[Leg]) -> list[Leg]:
+    """The legs but for those that end soon and are not straight on, if others are left."""
+    kept = [leg for leg in legs if goes_straight(incoming, leg) or not _ends_soon(view, leg)]
+    return kept or legs
+
+
+def _ends_soon(view: View, leg: Leg) -> bool:
+    """Whether a leg is no longer than a mark."""
+    return stroke_end(view, leg, longest_mm(view) - 0.5 * view.width_mm) is not None
 
 
 def _without_pairs(view: View, incoming: Leg, legs: list[Leg], every: list[Leg]) -> list[Leg]:

@@ -1,0 +1,62 @@
+"""Dots: rounds of ink on the line, wider than it, that mark a place to drill.
+
+Signals: places near the line's middle in; the dot's centre out, or how far ahead of a leg a dot ends the line (mm).
+
+    ───●───      ───●         spokes from its middle end alike all round, but for those along the line
+
+Source: patent ES 361967, section on use: guide lines to drill points. Questions: the patent does not say how a drill point is drawn. Chosen: the end of a
+guide line, or a dot at least 1.7 times as wide as the line.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from tracer.leg import Leg, turn
+from tracer.rounds import ANGLES, WAYS, circle_through, spokes
+from tracer.view import Array, View
+
+LEAST_WIDTHS = 0.85  # radius of a dot
+LARGEST_WIDTHS = 6.0
+ROUND = 0.15  # spokes of a dot differ by less than this share
+ALONG = math.radians(50)  # the line leaves a dot within this of its heading
+
+
+def disc(view: View, place: Array, along: Array) -> Array | None:
+    """The centre of a dot about a place on the line, which has the direction `along` there; None if there is none."""
+    found = _disc(view, place)
+    if found is None:
+        return None
+    heading = math.atan2(along[1], along[0])
+    on_line = [min(abs(turn(heading + k * math.pi, angle)) for k in (0, 1)) for angle in found[1]]
+    return found[0] if not on_line or max(on_line) < ALONG else None
+
+
+def dot_at_end(view: View, incoming: Leg) -> float | None:
+    """How far beyond a leg's clean end the centre of a dot is at which the line ends, mm; None if there is none."""
+    for along in np.arange(0.25, LARGEST_WIDTHS, 0.25) * view.width_mm:
+        place = incoming.at(along)
+        if not view.dark(place):
+            return None
+        found = _disc(view, place)
+        if found is None:
+            continue
+        centre, arms = found
+        heading = incoming.heading_at(float(along))
+        if all(abs(turn(heading + math.pi, angle)) < ALONG for angle in arms):
+            return float((centre - incoming.end_mm) @ np.array([math.cos(heading), math.sin(heading)]))
+    return None
+
+
+def _disc(view: View, place: Array) -> tuple[Array, Array] | None:
+    """Centre of the round of ink about a place, and the directions in which ink leaves it, rad."""
+    for _ in range(3):
+        reach = spokes(view, place, LARGEST_WIDTHS * view.width_mm)[:, 0]
+        usual = float(np.nanmedian(reach)) if np.isfinite(reach).mean() > 0.6 else math.inf
+        even = np.abs(reach - usual) < ROUND * usual
+        if not LEAST_WIDTHS * view.width_mm < usual < math.inf or even.mean() < 0.6:
+            return None
+        place, _, _ = circle_through(place + reach[even, None] * WAYS[even])
+    return place, ANGLES[~even]
