@@ -32,6 +32,7 @@ Array = NDArray[np.float64]
 UM_PER_MM = 1000.0
 COLOURS = ("#1f5fa8", "#5fa8d3", "#f2a65a", "#c1121f")  # no error … largest error
 PLAIN = "#c1121f"
+RAISED = "#1f5fbf"  # stops, and ways with the tool up
 UNMEASURED = "#8a8a8a"  # the path where it has no error that means anything
 REFERENCE = "#555555"
 MARGIN_SHARE = 0.06  # of the larger side, round the path
@@ -55,6 +56,7 @@ class Picture:
     points_mm: Array | None = None  # (n, 2)
     error_mm: Array | None = None  # (n,); not a number where there is none that means anything
     numbers_mm: Mapping[str, tuple[float, float]] = field(default_factory=dict)  # where each numbered line begins
+    stops_mm: Mapping[str, tuple[float, float]] = field(default_factory=dict)  # where the head stops, by name
 
 
 def draw(picture: Picture, file: FilePath) -> None:
@@ -122,6 +124,7 @@ def _fill(figure: Figure, axes: Axes, picture: Picture, view: tuple[float, float
     coloured = _contour(axes, picture, line_pt=1.8)
     _ends(axes, picture.path)
     _numbers(axes, picture)
+    _stops(axes, picture)
     axes.set(xlim=view[:2], ylim=view[2:], xlabel="X, mm", ylabel="Y, mm", aspect="equal")
     axes.set_title(picture.title, fontsize=10)
     if coloured is not None:
@@ -207,6 +210,18 @@ def _numbers(axes: Axes, picture: Picture) -> None:
     ring = {"boxstyle": "circle,pad=0.2", "facecolor": "white", "edgecolor": REFERENCE, "alpha": 0.85}
     for number, place_mm in picture.numbers_mm.items():
         axes.annotate(number, place_mm, (-11, -11), textcoords="offset points", fontsize=8, bbox=ring, zorder=6)
+
+
+def _stops(axes: Axes, picture: Picture) -> None:
+    """Mark the stops, and the ways with the tool up, which they part from those in the work."""
+    if not picture.stops_mm:
+        return
+    raised = np.where(picture.path.tool[:, None], np.nan, picture.path.xy_mm)
+    axes.plot(*raised.T, color=RAISED, linewidth=1.2, linestyle=(0, (4, 2)), zorder=2, label="tool up")
+    for name, place_mm in picture.stops_mm.items():
+        axes.plot(*place_mm, marker="D", markersize=6, markerfacecolor="none", color=RAISED, zorder=5)
+        axes.annotate(name, place_mm, (7, 7), textcoords="offset points", fontsize=8, color=RAISED, zorder=6)
+    axes.legend(loc="upper right", fontsize=8, framealpha=0.8)
 
 
 def _enlarge(axes: Axes, main: Axes, picture: Picture, place_mm: Array, number: int) -> None:

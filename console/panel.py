@@ -12,8 +12,8 @@ import click
 from click.core import ParameterSource
 
 from console import medium
-from console.quantities import LENGTH, LINES, PLACE, SPEED
-from console.tracing import Head
+from console.quantities import LENGTH, LINES, OVERRIDE, PLACE, SPEED
+from console.tracing import Head, Marks
 
 if TYPE_CHECKING:
     from tracer.card import Card
@@ -67,10 +67,35 @@ def head_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         help="Widest gap in the line that the head goes across.",
     )
     @click.option(
+        "--reference",
+        "reference_mm",
+        type=PLACE,
+        help="The reference point, X,Y in mm.  [default: a small cross or ring from which a line comes, if there is one]",
+    )
+    @click.option(
+        "--origin",
+        type=click.Choice(["sheet", "reference"]),
+        default="sheet",
+        show_default=True,
+        help="The machine's zero: the sheet's lower-left corner, or the reference point.",
+    )
+    @click.option(
+        "--direction",
+        type=click.Choice(["cw", "ccw", "left", "right"]),
+        help="Which way round; or to which side the head turns where its lead line, or its way from --start, meets the "
+        "line.  [default: as it comes; left from a lead line]",
+    )
+    @click.option(
+        "--override",
+        type=OVERRIDE,
+        help="Stop marks that do not stop the head: none, all, or numbers such as 1,3.  [default: the card's, or none]",
+    )
+    @click.option("--ask", is_flag=True, help="Stop at every mark and ask for the Z moves, at a terminal.")
+    @click.option(
         "--card",
         "card_file",
         type=medium.FILE,
-        help="The operator's card (.toml): start position, depths, speeds. Options given beside it go before it.",
+        help="The operator's card (.toml): depths, speeds, what to do at the stops, turns. Options given beside it go before it.",
     )
     @click.option(
         "--head",
@@ -108,6 +133,11 @@ def head_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         clearance_mm: float,
         line_width_mm: float | None,
         gap_mm: float,
+        reference_mm: tuple[float, float] | None,
+        origin: str,
+        direction: Any,
+        override: Any,
+        ask: bool,
         lines: str | tuple[int, ...] | None,
         card_file: FilePath | None,
         kind: str,
@@ -119,7 +149,7 @@ def head_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         if lines is not None and start_mm is not None:
             raise click.UsageError("--start picks one line, --lines several; give one of them")
         head = Head(start_mm, speed_mm_s, depth_mm, clearance_mm, line_width_mm, gap_mm, lines, None, kind)
-        head = replace(head, changes=changes)
+        head = replace(head, changes=changes, marks=Marks(reference_mm, origin, direction, override, ask))
         if settings_file is not None:
             head = head.by_file(_settings_in(settings_file), _given)
         if card_file is not None:

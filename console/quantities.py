@@ -62,6 +62,17 @@ def _parse_lines(text: str) -> str | tuple[int, ...]:
         raise ValueError(f"{text!r} names no lines; give all, outer, or numbers such as 1,3") from None
 
 
+def _parse_override(text: str) -> str | tuple[int, ...]:
+    """Which stop marks do not stop the head: "none", "all", or their numbers."""
+    word = text.strip().lower()
+    if word in ("none", "all"):
+        return word
+    try:
+        return tuple(int(number) for number in word.split(","))
+    except ValueError:
+        raise ValueError(f"{text!r} names no stops; give none, all, or numbers such as 1,3") from None
+
+
 LENGTH = Quantity("length", parse_length_mm, above_zero=True)
 SPEED = Quantity("speed", parse_speed_mm_s)
 FREQUENCY = Quantity("frequency", parse_frequency_hz)
@@ -72,3 +83,4 @@ PLACE = Quantity("x,y", parse_place_mm)
 PLACES = Quantity("x,y,z", _parse_places_mm)
 TIME = Quantity("time", parse_time_s)
 LINES = Quantity("lines", _parse_lines)
+OVERRIDE = Quantity("stops", _parse_override)

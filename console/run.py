@@ -60,6 +60,7 @@ def command(drawing: FilePath, folder: FilePath | None, sheet: Sheet, head: Head
     opened = sheet.open(drawing)
     place = _make(folder or FilePath(drawing.stem), drawing)
     traced = head.trace(opened, desk, place.file(".png"))
+    unit = unit.at(traced.origin_mm)
     tape = traced.record(place.file(".wav"), unit)
     written = {"tape": str(tape), "traced_path": str(traced.write(place.file(".traced.csv"), unit))}
     played = Controls().play(tape, desk)

@@ -76,6 +76,7 @@ def command(
     opened = sheet.open(drawing)
     desk.detail(f"{drawing}: sheet of {opened.width_mm:.2f} x {opened.height_mm:.2f} mm")
     traced = head.trace(opened, desk, outputs.picture)
+    unit = unit.at(traced.origin_mm)
     written = _write(traced, outputs, opened, unit)
     unit.warn(desk)
     desk.figures({"drawing": str(drawing), **written, **traced.figures(), **unit.figures()})
@@ -115,8 +116,9 @@ def _write(traced: Traced, outputs: Outputs, drawing: Drawing, unit: Unit) -> di
         from console.overlay import Picture, draw
 
         name = drawing.file.name if drawing.file else "drawing"
-        draw(
-            Picture(f"{name}, traced", traced.path, drawing, numbers_mm=traced.places_mm), traced.name(outputs.picture)
+        picture = Picture(
+            f"{name}, traced", traced.path, drawing, numbers_mm=traced.places_mm, stops_mm=traced.stops_mm
         )
+        draw(picture, traced.name(outputs.picture))
         written["picture"] = str(traced.name(outputs.picture))
     return written

@@ -15,18 +15,30 @@ import click
 
 from console import medium
 from console.desk import Desk
-from motion.faults import Fault, LineFault
+from motion.faults import CardFault, Fault, LineFault
 
 if TYPE_CHECKING:
+    from console.attended import Attended
     from console.unit import Unit
     from motion.motion import Path
-    from tracer.card import Card
+    from tracer.card import Card, Override
     from tracer.drawing import Drawing
-    from tracer.operator import Operator
+    from tracer.operator import Direction, Operator
     from tracer.program import Trace
     from tracer.settings import Settings
 
 SET_BY_OPTIONS = ("speed_mm_s", "gap_mm", "line_width_mm")  # settings of the head that have an option of their own
+
+
+@dataclass(frozen=True, slots=True)
+class Marks:
+    """What the operator says of the marks on the drawing."""
+
+    reference_mm: tuple[float, float] | None = None  # None: looked for
+    origin: str = "sheet"
+    direction: Direction | None = None
+    override: Override | None = None  # None: the card's
+    ask: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +56,7 @@ class Head:
     kind: str = "precise"
     filed: Mapping[str, float] = field(default_factory=dict)  # settings from a file
     changes: tuple[str, ...] = ()  # NAME=VALUE
+    marks: Marks = field(default_factory=lambda: Marks())
 
     def trace(self, drawing: Drawing, desk: Desk, picture: FilePath | None = None) -> Traced:
         """Follow the drawing's line, or all that are asked for, to the end or until it is lost.
@@ -71,7 +84,14 @@ class Head:
             if picture is not None:
                 self._show_sheet(drawing, fault, medium.incomplete(picture), desk)
             raise
-        return Traced(traced, thin(traced), several=self.lines is not None)
+        origin_mm = (0.0, 0.0) if self.marks.origin == "sheet" else self._reference_mm(drawing, traced)
+        return Traced(traced, thin(traced), several=self.lines is not None, origin_mm=origin_mm)
+
+    def _reference_mm(self, drawing: Drawing, trace: Trace) -> tuple[float, float]:
+        """The reference point: the one given, that from which the program begins, or the only one on the sheet; raises LineFault without one."""
+        from tracer.stance import reference_on
+
+        return self.marks.reference_mm or trace.reference_mm or reference_on(drawing, trace.line_width_mm)
 
     def settings(self) -> Settings:
         """Settings of the head; raises UsageError for one that there is not, or that is out of bounds."""
@@ -112,7 +132,26 @@ class Head:
             rapid_mm_s=card.rapid_mm_s or work.rapid_mm_s,
             passes_mm=tuple(depth_mm for depth_mm in card.depths_mm if depth_mm < self.depth_mm),
         )
-        return Operator(work, card)
+        marks = self.marks
+        if marks.override is not None:
+            card = replace(card, override=marks.override)
+        return Operator(work, card, self._panel(card), marks.reference_mm, marks.direction)
+
+    def _panel(self, card: Card) -> Attended | None:
+        """The operator at the terminal, if he is needed; raises UsageError or CardFault if there is none."""
+        from console.attended import Attended, at_terminal, waits
+
+        if not self.marks.ask and not waits(card):
+            return None
+        if at_terminal():
+            return Attended(asking=self.marks.ask)
+        if self.marks.ask:
+            raise click.UsageError("--ask needs a terminal to ask at; write a card instead, see docs/card.md")
+        raise CardFault(
+            'restart = "manual" waits for the operator\'s button, and there is no terminal; run it at one, or set "automatic"',
+            field="restart",
+            holds="manual",
+        )
 
     def _show_sheet(self, drawing: Drawing, fault: LineFault, file: FilePath, desk: Desk) -> None:
         """Draw the sheet with the place that was asked for and the nearest line's."""
@@ -130,6 +169,7 @@ class Traced:
     trace: Trace
     path: Path
     several: bool = False  # lines were asked for, not one line
+    origin_mm: tuple[float, float] = (0.0, 0.0)  # the machine's zero on the sheet
 
     @property
     def places_mm(self) -> dict[str, tuple[float, float]]:
@@ -166,8 +206,36 @@ class Traced:
             "duration_s": float(self.path.t_s[-1] - self.path.t_s[0]),
             "line_width_mm": self.trace.line_width_mm,
             "start_place_mm": self.trace.start_mm,
+            "reference_place_mm": self.trace.reference_mm,
+            "origin_place_mm": self.origin_mm if any(self.origin_mm) else None,
             **(self._of_lines() if self.several else {}),
+            "stops": self._stops() or None,
+            "junctions": self._junctions() or None,
         }
+
+    def _stops(self) -> list[dict[str, Any]]:
+        """The stops, by number: what kind of mark, where, and where Z goes."""
+        return [
+            {
+                "stop": action.halt.number,
+                "mark": action.halt.kind,
+                "stop_place_mm": action.halt.place_mm,
+                "z": ", ".join(f"{move.to_mm:+.2f} mm" for move in action.moves),
+            }
+            for actions in self.trace.actions
+            for action in actions
+            if action.halt.number is not None
+        ]
+
+    def _junctions(self) -> list[dict[str, Any]]:
+        """The junctions that the head came to, in order, as the card's `turns` count them."""
+        places_mm = [place_mm for line in self.trace.lines for place_mm in line.junctions_mm]
+        return [{"junction": k, "junction_place_mm": place_mm} for k, place_mm in enumerate(places_mm, 1)]
+
+    @property
+    def stops_mm(self) -> dict[str, tuple[float, float]]:
+        """Where the stops are, by number."""
+        return {f"stop {row['stop']}": row["stop_place_mm"] for row in self._stops()}
 
     def _of_lines(self) -> dict[str, Any]:
         """What the head found of each line, in the order in which they are cut."""

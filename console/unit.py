@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
@@ -30,6 +30,10 @@ class Unit:
 
     pickup: str | None
     placement: Placement
+
+    def at(self, origin_mm: tuple[float, float]) -> Unit:
+        """The same with the machine's zero at a place."""
+        return replace(self, placement=replace(self.placement, origin_mm=origin_mm))
 
     def check(self, program: FilePath | None) -> None:
         """Raise UsageError where the pick-up is for another medium than the program's."""

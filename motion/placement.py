@@ -2,7 +2,7 @@
 
 Signals: a stream of Motion or a Path in, the same out. With c the point that stays where it is:
 
-    place' = c + scale · R(turn) · M (place - c)           M: X or Y the other way; R: counter-clockwise
+    place' = c + scale · R(turn) · M (place - c) - origin      M: X or Y the other way; R: counter-clockwise
 
 The point is the start of the motion (the reference point of the patent, where the head stands when the tape starts)
 unless another is given. Times stay, so what is scaled by 2 runs twice as fast.
@@ -30,12 +30,13 @@ _MIRRORS = {"": (1.0, 1.0), "x": (-1.0, 1.0), "y": (1.0, -1.0)}
 
 @dataclass(frozen=True, slots=True)
 class Placement:
-    """What is done to a motion: the axis that runs the other way ("x", "y" or none), scale, turn, about which point."""
+    """What is done to a motion: the axis that runs the other way ("x", "y" or none), scale, turn, about which point; and where the zero is."""
 
     mirror: str = ""
     scale: float = 1.0
     turn_rad: float = 0.0
     about_mm: tuple[float, float] | None = None
+    origin_mm: tuple[float, float] = (0.0, 0.0)  # the machine's zero, before anything is done
 
     def __post_init__(self) -> None:
         if self.mirror not in _MIRRORS:
@@ -46,7 +47,7 @@ class Placement:
     @property
     def is_plain(self) -> bool:
         """Whether it changes nothing."""
-        return bool(np.array_equal(self.matrix, np.eye(2)))
+        return bool(np.array_equal(self.matrix, np.eye(2))) and not any(self.origin_mm)
 
     @property
     def matrix(self) -> Array:
@@ -68,7 +69,10 @@ class Placement:
 
     def back(self, path: Path) -> Path:
         """A path that was placed about a known point, as it was before."""
-        return replace(path, positions_mm=self._moved(path.positions_mm, np.asarray(np.linalg.inv(self.matrix))))
+        moved = np.array(path.positions_mm, np.float64)
+        moved[:, :2] += self.origin_mm
+        undo = replace(self, origin_mm=(0.0, 0.0))
+        return replace(path, positions_mm=undo._moved(moved, np.asarray(np.linalg.inv(self.matrix))))
 
     def _placed(self, stream: Iterable[Motion]) -> Iterator[Motion]:
         """Place block by block."""
@@ -81,5 +85,5 @@ class Placement:
     def _moved(self, positions_mm: Array, matrix: Array) -> Array:
         """Positions with X and Y put through a matrix about the point."""
         moved, point_mm = np.array(positions_mm, np.float64), np.array(self.about_mm, np.float64)
-        moved[:, :2] = (moved[:, :2] - point_mm) @ matrix.T + point_mm
+        moved[:, :2] = (moved[:, :2] - point_mm) @ matrix.T + point_mm - self.origin_mm
         return moved

@@ -29,6 +29,7 @@ from tracer.zunit import COUNTS_PER_MM, Counters, Preset
 
 Restart = Literal["automatic", "manual"]
 Turn = Literal["straight", "left", "right"]
+Override = Literal["none", "all"] | tuple[int, ...]
 FEED_MM_S = 5.0  # of a move that names none on a card that names none
 CLEAR_COUNTS = 50  # 0.5 mm
 _KEYS = ("start", "depth", "passes", "restart", "turns", "override", "speeds", "stop")
@@ -88,7 +89,7 @@ class Card:
     rapid_mm_s: float | None = None
     restart: Restart = "automatic"
     turns: tuple[Turn, ...] = ()  # at the junctions, in the order in which the head comes to them
-    override: Literal["none", "all"] | tuple[int, ...] = "none"  # stop marks that do not stop the head
+    override: Override = "none"  # stop marks that do not stop the head
     stops: tuple[Stop, ...] = ()
 
     @classmethod
@@ -152,7 +153,7 @@ def _turns(field: Field) -> tuple[Turn, ...]:
     return tuple(cast(Turn, turn.choice("straight", "left", "right")) for turn in field.elements(allowed))
 
 
-def _override(field: Field) -> Literal["none", "all"] | tuple[int, ...]:
+def _override(field: Field) -> Override:
     """Which stop marks do not stop the head."""
     if field.value in ("none", "all"):
         return cast(Literal["none", "all"], field.value)

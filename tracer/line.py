@@ -38,6 +38,7 @@ class Line:
     marks: tuple[Mark, ...] = ()
     guides: tuple[Guide, ...] = ()
     reference_mm: tuple[float, float] | None = None  # the reference point from which it begins
+    junctions_mm: tuple[tuple[float, float], ...] = ()  # in the order in which the head came to them
 
     @classmethod
     def of(cls, run: Followed, number: int = 1, reference_mm: tuple[float, float] | None = None) -> Line:
@@ -58,6 +59,7 @@ class Line:
             tuple(marks),
             run.guides,
             reference_mm,
+            run.junctions_mm,
         )
 
     @property

@@ -104,12 +104,12 @@ class Operator:
     def _halts(self, line: Line, first: int) -> list[Halt]:
         """Every place of a line where something may be done, in order, its stops numbered from `first`."""
         stops = [Halt(mark.at, "tick" if mark.kind == "tick" else "dot", mark.place_mm) for mark in line.marks]
-        near = NEAR_WIDTHS * line.width_mm
         tips = [guide.tip for guide in line.guides] + ([len(line.xy_mm) - 1] if line.is_guide else [])
         for tip in tips:
-            place = line.place(tip)
-            stops = [s for s in stops if s.kind != "dot" or _apart(s.place_mm, place) > near]
-            stops.append(Halt(tip, "hole", place))
+            place, near = line.place(tip), NEAR_WIDTHS * line.width_mm
+            dots = [stop for stop in stops if stop.kind == "dot" and _apart(stop.place_mm, place) < near]
+            stops = [stop for stop in stops if stop not in dots]
+            stops.append(replace(dots[0], kind="hole") if dots else Halt(tip, "hole", place))
         stops.sort(key=lambda halt: halt.at)
         halts = [replace(stop, number=first + k) for k, stop in enumerate(stops)]
         for guide in line.guides:

@@ -76,6 +76,11 @@ class Trace:
         return self.lines[0].start_mm
 
     @property
+    def reference_mm(self) -> tuple[float, float] | None:
+        """The reference point from which a line begins, mm; None if none does."""
+        return next((line.reference_mm for line in self.lines if line.reference_mm is not None), None)
+
+    @property
     def line_width_mm(self) -> float:
         """Width of the first line, mm."""
         return self.lines[0].width_mm

@@ -83,6 +83,17 @@ def put_down(
         )
 
 
+def reference_on(drawing: Drawing, width_mm: float) -> tuple[float, float]:
+    """The place of the only reference point of a drawing whose line has a width, mm; raises LineFault if there is none, or several."""
+    sheet = Sheet.of(drawing)
+    found = list(references(sheet, _view(sheet, None, width_mm), sheet.longest()))
+    if len(found) == 1:
+        return found[0].place_mm
+    places = "; ".join(f"{x:.1f},{y:.1f}" for x, y in (reference.place_mm for reference in found[:8]))
+    what = f"{len(found)} crosses and rings, at {places}" if found else "no small cross or ring"
+    raise LineFault(f"no reference point is certain: there is {what}; give --reference X,Y")
+
+
 def _view(sheet: Sheet, aperture_mm: float | None, width_mm: float) -> View:
     """The sheet through cells for a line of a width."""
     aperture_mm = aperture_mm or min(max(APERTURE * width_mm, LEAST_APERTURE_MM), LARGEST_APERTURE_MM)
