@@ -90,7 +90,7 @@ Examples:
     "--zero",
     "zero_mm",
     type=PLACES,
-    help="Zero adjustment of a tape's axes, X,Y or X,Y,Z in mm: the machine stands so far from where the tape has it.",
+    help="Zero adjustment of a tape's axes, X,Y or X,Y,Z … in mm: the machine stands so far from where the tape has it.",
 )
 @tape_options
 @desk_options

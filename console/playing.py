@@ -111,7 +111,7 @@ def tape_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         "--from",
         "start_mm",
         type=PLACES,
-        help="Where the machine stands at the start, mm: X,Y or X,Y,Z.  [default: what the tape says, else 0,0]",
+        help="Where the machine stands at the start, mm: X,Y or X,Y,Z …  [default: what the tape says, else 0,0]",
     )
     @functools.wraps(verb)
     def with_controls(
@@ -142,7 +142,7 @@ def _path(stream: Iterable[Motion], raw: bool, met: list[Fault]) -> Path:
         if not raw:
             return thin(stream)
         whole = join(stream)
-        return Path(whole.times_s, whole.positions_mm)
+        return Path(whole.times_s, whole.positions_mm, whole.axes)
     except ValueError:
         if met:
             raise met[0] from None

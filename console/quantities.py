@@ -44,11 +44,9 @@ def _number(text: str) -> float:
 
 
 def _parse_places_mm(text: str) -> tuple[float, ...]:
-    """Place in mm of "X,Y" or "X,Y,Z", each a length."""
-    *first, last = text.split(",")
-    if len(first) != 2:
-        return parse_place_mm(text)
-    return (*parse_place_mm(",".join(first)), parse_length_mm(last))
+    """Place in mm of "X,Y", "X,Y,Z" or more axes, each a length."""
+    parts = text.split(",")
+    return (*parse_place_mm(",".join(parts[:2])), *(parse_length_mm(part) for part in parts[2:]))
 
 
 def _parse_lines(text: str) -> str | tuple[int, ...]:

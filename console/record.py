@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
@@ -67,7 +68,8 @@ def command(
     """Record a path file, or another program, in the medium that the name after -o says.
 
     SOURCE is a CSV file with the columns t_s, x_mm, y_mm, z_mm, tool (x_mm and y_mm, or x and y, are enough; without
-    times the path is run at the feed), or a program in any medium, which is first played on its own control.
+    times the path is run at the feed), and u_mm, v_mm … for further axes (A, B, C, U, V, W), which only a tape takes; or
+    a program in any medium, which is first played on its own control.
     """
     from motion.contour import length_mm
     from recorder.media import record
@@ -76,6 +78,8 @@ def command(
     unit.check(program)
     settings = _settings(program, unit, reference_hz, cycles_per_mm, tolerance_mm)
     read = unit.placement.path(_path(source, feed_mm_s, desk))
+    if "fmt" in settings:
+        settings["fmt"] = replace(settings["fmt"], axes=read.axes, start_mm=())
     unit.warn(desk)
     desk.warn_of_compiling("the recorder", "motion", "recorder")
     stream = desk.watched(read.motion(), f"recording {program.name}", float(read.t_s[-1] - read.t_s[0]))

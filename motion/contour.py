@@ -87,7 +87,7 @@ def closure_mm(path: Contour) -> float:
 def polylines(path: Contour) -> list[Array]:
     """The (n, 2) polylines in mm that count; raises MotionFault if there are none, ValueError if it is no contour."""
     if isinstance(path, Motion):
-        path = Path(path.times_s, path.positions_mm)
+        path = Path(path.times_s, path.positions_mm, path.axes)
     if isinstance(path, Path):
         runs = path.runs()
         if not runs:

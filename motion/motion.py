@@ -1,6 +1,7 @@
 """Motion: positions of the axes at a uniform rate, in blocks; and Path: the same motion thinned.
 
-Signals: positions in mm, columns in the order of `AXES`, at the motion rate (the tape's sample rate over 8, 6 kHz by default). A long program is a
+Signals: positions in mm, a column for each axis (X, Y, Z, and further ones where a machine has them), at the motion rate
+(the tape's sample rate over 8, 6 kHz by default). A long program is a
 stream of blocks, so that nothing has to hold a whole tape in memory. A Path keeps only the samples between which straight interpolation in time gives
 every sample back within a tolerance on each axis (a swinging-door compression: J. Bristol, "Swinging door trending", ISA 1990).
 """
@@ -14,7 +15,15 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-AXES = ("x", "y", "z")
+AXES: tuple[str, ...] = ("x", "y", "z")
+FURTHER_AXES = (
+    "a",
+    "b",
+    "c",
+    "u",
+    "v",
+    "w",
+)  # what a fourth and later axis may be called; all in mm of their own screws
 MOTION_RATE_HZ = 6000.0  # 48 kHz / 8
 IN_WORK_BELOW_MM = 0.05  # the tool is in the work at and below the surface; the margin is for a servo's rest error
 THINNING_TOLERANCE_MM = 2e-4
@@ -30,6 +39,7 @@ class Motion:
     positions_mm: Array
     rate_hz: float = MOTION_RATE_HZ
     start_s: float = 0.0
+    axes: tuple[str, ...] = AXES
 
     @property
     def times_s(self) -> Array:
@@ -44,10 +54,11 @@ class Motion:
 
 @dataclass(frozen=True, slots=True)
 class Path:
-    """A thinned motion: times (n,) s and positions (n, 3) mm, straight in between."""
+    """A thinned motion: times (n,) s and positions (n, axes) mm, straight in between."""
 
     t_s: Array
     positions_mm: Array
+    axes: tuple[str, ...] = AXES
 
     @property
     def xy_mm(self) -> Array:
@@ -70,7 +81,7 @@ class Path:
         for first in range(0, samples, block_samples):
             t_s = start_s + np.arange(first, min(first + block_samples, samples)) / rate_hz
             columns = [np.interp(t_s, self.t_s, column) for column in self.positions_mm.T]
-            yield Motion(np.column_stack(columns), rate_hz, float(t_s[0]))
+            yield Motion(np.column_stack(columns), rate_hz, float(t_s[0]), self.axes)
 
 
 def join(stream: Iterable[Motion]) -> Motion:
@@ -78,20 +89,20 @@ def join(stream: Iterable[Motion]) -> Motion:
     blocks = list(stream)
     if not blocks:
         raise ValueError("the stream of motion is empty; it must hold at least one block")
-    return Motion(np.vstack([b.positions_mm for b in blocks]), blocks[0].rate_hz, blocks[0].start_s)
+    return Motion(np.vstack([b.positions_mm for b in blocks]), blocks[0].rate_hz, blocks[0].start_s, blocks[0].axes)
 
 
 def thin(stream: Iterable[Motion], tolerance_mm: float = THINNING_TOLERANCE_MM) -> Path:
     """Thin a stream to the samples that give all others back within `tolerance_mm` per axis; memory grows with the path only."""
     kept: list[Array] = []
     state: Array | None = None
-    samples, start_s, rate_hz = 0, 0.0, MOTION_RATE_HZ
+    samples, start_s, rate_hz, axes = 0, 0.0, MOTION_RATE_HZ, AXES
     for block in stream:
         positions = np.ascontiguousarray(block.positions_mm)
         if not len(positions):
             continue
         if state is None:
-            start_s, rate_hz = block.start_s, block.rate_hz
+            start_s, rate_hz, axes = block.start_s, block.rate_hz, block.axes
             state = _closed_door(positions[0])
             kept.append(state[0:1, 1:].copy())
         kept.append(_swing(positions, samples, state, tolerance_mm))
@@ -101,7 +112,7 @@ def thin(stream: Iterable[Motion], tolerance_mm: float = THINNING_TOLERANCE_MM) 
     rows = np.vstack([np.c_[0.0, kept[0]], *kept[1:]])
     if samples > 1:
         rows = np.vstack([rows, state[1]])
-    return Path(start_s + rows[:, 0] / rate_hz, np.ascontiguousarray(rows[:, 1:]))
+    return Path(start_s + rows[:, 0] / rate_hz, np.ascontiguousarray(rows[:, 1:]), axes)
 
 
 def _closed_door(first_mm: Array) -> Array:

@@ -1,4 +1,4 @@
-"""Path files: CSV with the columns t_s, x_mm, y_mm, z_mm, tool.
+"""Path files: CSV with the columns t_s, x_mm, y_mm, z_mm, tool, and one for each further axis: u_mm, v_mm …
 
 Signals: times in s, places in mm; `tool` is 1 where the tool is in the work. Written to 0.1 us and 0.01 um, well inside
 the thinning's 0.2 um.
@@ -8,6 +8,7 @@ and y, in mm) are required:
 
     no t_s     the points are run through at the feed, along the polyline
     no z_mm    the tool column gives Z: in the work 0, up +2 mm; without either the tool is always in the work
+    u_mm …     (A, B, C, U, V or W) a further axis, in the order of the columns
     loop       (truth files) where it changes a new contour starts, and the tool goes over to it at +2 mm
 
 Where Z follows from tool or loop, X and Y stand while Z moves at the feed:
@@ -34,13 +35,13 @@ from numpy.typing import NDArray
 
 from motion.faults import FileFault, MotionFault
 from motion.files import written_beside
-from motion.motion import IN_WORK_BELOW_MM, Path
+from motion.motion import AXES, FURTHER_AXES, IN_WORK_BELOW_MM, Path
 
 CLEARANCE_MM = 2.0  # where the tool stands when it is up, docs/design.md
 FEED_MM_S = 10.0
 
 _NAMES = {"t": "t_s", "time_s": "t_s", "x": "x_mm", "y": "y_mm", "z": "z_mm"}  # short names of the columns
-_COLUMNS = ("t_s", "x_mm", "y_mm", "z_mm", "tool", "loop")
+_COLUMNS = ("t_s", "x_mm", "y_mm", "z_mm", "tool", "loop", *(f"{axis}_mm" for axis in FURTHER_AXES))
 _UP = {"0", "0.0", "false", "up"}
 _DOWN = {"1", "1.0", "true", "down"}
 _ROWS_AT_ONCE = 4096
@@ -50,15 +51,17 @@ Array = NDArray[np.float64]
 
 
 def write_path(path: Path, file: str | os.PathLike[str]) -> None:
-    """Write a path as CSV: t_s, x_mm, y_mm, z_mm, tool."""
-    rows = (
-        np.column_stack([np.round(path.t_s, 7), np.round(path.positions_mm, 5), path.tool]) + 0.0
-    )  # + 0.0: no minus zero
+    """Write a path as CSV: t_s, x_mm, y_mm, z_mm, tool, further axes."""
+    places_mm = np.round(path.positions_mm, 5)
+    columns = [np.round(path.t_s, 7), places_mm[:, :3], path.tool, places_mm[:, 3:]]
+    rows = np.column_stack(columns) + 0.0  # no minus zero
+    further = path.axes[3:]
+    line = "%.7f,%.5f,%.5f,%.5f,%d" + ",%.5f" * len(further) + "\n"
     with written_beside(file) as beside, beside.open("w", encoding="ascii", newline="") as out:
-        out.write("t_s,x_mm,y_mm,z_mm,tool\n")
+        out.write(",".join(["t_s,x_mm,y_mm,z_mm,tool", *(f"{axis}_mm" for axis in further)]) + "\n")
         for first in range(0, len(rows), _ROWS_AT_ONCE):
             some = rows[first : first + _ROWS_AT_ONCE]
-            out.write("%.7f,%.5f,%.5f,%.5f,%d\n" * len(some) % tuple(some.ravel()))
+            out.write(line * len(some) % tuple(some.ravel()))
 
 
 def read_path(file: str | os.PathLike[str], feed_mm_s: float = FEED_MM_S) -> Path:
@@ -72,7 +75,7 @@ def read_path(file: str | os.PathLike[str], feed_mm_s: float = FEED_MM_S) -> Pat
     keep = np.r_[True, np.diff(t_s) > 0]  # points that take no time are doubled points
     if np.count_nonzero(keep) < 2:
         raise MotionFault(f"{file}: the path stands still at one place; a path needs at least two different points")
-    return Path(t_s[keep], np.ascontiguousarray(rows.positions_mm[keep]))
+    return Path(t_s[keep], np.ascontiguousarray(rows.positions_mm[keep]), (*AXES, *table.further))
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,6 +88,16 @@ class _Table:
     @property
     def xy_mm(self) -> Array:
         return np.column_stack([self.columns["x_mm"], self.columns["y_mm"]])
+
+    @property
+    def further(self) -> tuple[str, ...]:
+        """The axes beyond X, Y and Z, in the order of their columns."""
+        return tuple(axis for axis in (name.removesuffix("_mm") for name in self.columns) if axis in FURTHER_AXES)
+
+    @property
+    def further_mm(self) -> Array:
+        """Their places, (n, axes beyond Z)."""
+        return np.column_stack([np.empty((len(self.lines), 0)), *(self.columns[f"{axis}_mm"] for axis in self.further)])
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,7 +149,7 @@ def _find_columns(header: str, separator: str, place: str) -> dict[str, int]:
     for name in _COLUMNS:
         if names.count(name) > 1:
             raise MotionFault(f"{place}: column {name} stands there {names.count(name)} times; leave one")
-    return {name: names.index(name) for name in _COLUMNS if name in names}
+    return {name: names.index(name) for name in names if name in _COLUMNS}
 
 
 def _convert(lines: list[str], where: dict[str, int], separator: str) -> Array | None:
@@ -187,6 +200,7 @@ def _check(table: _Table, file: str | os.PathLike[str]) -> None:
     moves = np.any(np.diff(table.xy_mm, axis=0) != 0, axis=1)
     if "z_mm" in table.columns:
         moves |= np.diff(table.columns["z_mm"]) != 0
+    moves |= np.any(np.diff(table.further_mm, axis=0) != 0, axis=1)
     bad = np.flatnonzero((step_s < 0) | ((step_s == 0) & moves))
     if len(bad):
         before, now = table.columns["t_s"][bad[0] : bad[0] + 2]
@@ -199,7 +213,8 @@ def _with_z_moves(table: _Table) -> _Rows:
     """The table's points with Z, and with the moves of Z that follow from tool and loop put in."""
     n = len(table.lines)
     down = table.columns.get("tool", np.ones(n)) > 0
-    points = np.column_stack([table.xy_mm, table.columns.get("z_mm", np.where(down, 0.0, CLEARANCE_MM))])
+    z_mm = table.columns.get("z_mm", np.where(down, 0.0, CLEARANCE_MM))
+    points = np.column_stack([table.xy_mm, z_mm, table.further_mm])
     times = table.columns.get("t_s")
     since = np.full(n, np.nan) if times is None else np.r_[0.0, np.diff(times)]
     after, over, over_since = _z_moves(table, points, since)
@@ -210,20 +225,25 @@ def _with_z_moves(table: _Table) -> _Rows:
 def _z_moves(table: _Table, points: Array, since: Array) -> tuple[NDArray[np.int64], Array, Array]:
     """After which rows new points come, the points, their times since the last; changes `since` for the step after."""
     after: list[int] = []
-    over: list[tuple[float, float, float]] = []
+    over: list[Array] = []
     over_since: list[float] = []
     for i in np.flatnonzero(_changes(table, points)).tolist():
-        (x0, y0, z0), (x1, y1, z1) = points[i], points[i + 1]
+        z0, z1 = points[i, 2], points[i + 1, 2]
         if z0 <= IN_WORK_BELOW_MM:  # up over the last point in the work, at the feed
             after.append(i)
-            over.append((x0, y0, CLEARANCE_MM))
+            over.append(_raised(points[i]))
             over_since.append(np.nan)
         if z1 <= IN_WORK_BELOW_MM:  # over to the first point in the work, then down at the feed
             after.append(i)
-            over.append((x1, y1, CLEARANCE_MM))
+            over.append(_raised(points[i + 1]))
             over_since.append(since[i + 1] if z0 > IN_WORK_BELOW_MM else np.nan)
             since[i + 1] = np.nan
-    return np.array(after, np.int64), np.array(over).reshape(-1, 3), np.array(over_since)
+    return np.array(after, np.int64), np.array(over).reshape(-1, points.shape[1]), np.array(over_since)
+
+
+def _raised(point_mm: Array) -> Array:
+    """The same point with the tool up."""
+    return np.r_[point_mm[:2], CLEARANCE_MM, point_mm[3:]]
 
 
 def _changes(table: _Table, points: Array) -> NDArray[np.bool_]:

@@ -239,11 +239,11 @@ class Playback(Supervised):
         """A block of positions: X, Y, Z and what other axes the tape has; an axis without a track stands at 0."""
         rate_hz, names = self.rate_hz, self.format.axes
         if tuple(names[: len(AXES)]) == AXES:
-            return Motion(places_mm, rate_hz, first_row / rate_hz)
+            return Motion(places_mm, rate_hz, first_row / rate_hz, names)
         columns = [*AXES, *(name for name in names if name not in AXES)]
         positions_mm = np.zeros((len(places_mm), len(columns)))
         positions_mm[:, [columns.index(name) for name in names]] = places_mm
-        return Motion(positions_mm, rate_hz, first_row / rate_hz)
+        return Motion(positions_mm, rate_hz, first_row / rate_hz, tuple(columns))
 
     def _out_of_range(self, drives: Drives, row: int) -> LockFault:
         """The fault of fault circuit 162: a drive that could not follow."""

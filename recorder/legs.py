@@ -101,6 +101,11 @@ def as_path(source: Source) -> Path:
     if len(bad):
         time_s = float(path.t_s[bad[0]])
         raise MotionFault(f"the position at {time_s:.3f} s is not a finite number; trace again", time_s=time_s)
+    moving = [
+        axis.upper() for axis, mm in zip(path.axes[3:], np.ptp(path.positions_mm[:, 3:], axis=0), strict=False) if mm
+    ]
+    if moving:
+        raise MotionFault(f"the motion has {', '.join(moving)} beside X, Y, Z, which only a tape takes; give a .wav")
     positions_mm = np.zeros((len(path.t_s), 3))
     columns = min(3, path.positions_mm.shape[1])
     positions_mm[:, :columns] = path.positions_mm[:, :columns]

@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 
 from motion.faults import MotionFault
 from motion.files import disk_full_fault, written_beside
-from motion.motion import Motion, Path
+from motion.motion import AXES, Motion, Path
 from recorder.carrier import Carrier, Frames
 from recorder.riff import make_plain, replace_text
 from recorder.spool import Spool, medium, sidecar
@@ -79,11 +79,13 @@ def record(
 ) -> Recording:
     """Record a motion as a tape: .wav (RF64 inside from 4 GiB on), .rf64, .w64, .flac or .aiff, samples as in SUBTYPES.
 
-    Start and end in `fmt` are those of the motion, whatever is given. `progress(done_s, total_s)` is called after each
-    block; the total is None where a stream does not tell. Raises MotionFault for a motion that is empty, of another
+    Start and end in `fmt` are those of the motion, whatever is given; without `fmt` it is the usual one for its axes.
+    `progress(done_s, total_s)` is called after each block; the total is None where a stream does not tell. Raises MotionFault for a motion that is empty, of another
     rate, not finite or too fast, and FileFault; nothing is left under the name then.
     """
-    fmt = fmt or TapeFormat()
+    if fmt is None:
+        stream, axes = _axes_of(stream)
+        fmt = TapeFormat(axes=axes)
     kind = medium(FilePath(file), sample)
     blocks = _blocks(stream, fmt)
     first = next(blocks, None)
@@ -153,6 +155,15 @@ class _Take:
         """Report the progress in s of the motion."""
         if self._progress is not None:
             self._progress(self._samples / self._format.motion_rate_hz, self._total_s)
+
+
+def _axes_of(stream: Iterable[Motion] | Motion | Path) -> tuple[Iterable[Motion] | Motion | Path, tuple[str, ...]]:
+    """The axes of a motion, and the motion with nothing taken off it."""
+    if isinstance(stream, Motion | Path):
+        return stream, stream.axes
+    blocks = iter(stream)
+    first = next(blocks, None)
+    return (blocks, AXES) if first is None else (chain([first], blocks), first.axes)
 
 
 def _blocks(stream: Iterable[Motion] | Motion | Path, fmt: TapeFormat) -> Iterator[Array]:

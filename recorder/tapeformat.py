@@ -178,7 +178,8 @@ def _check_numbers(fmt: TapeFormat) -> None:
 def _check_axes(fmt: TapeFormat) -> None:
     """Raise ValueError unless the axes are a few different short names."""
     axes = fmt.axes
-    good = isinstance(axes, tuple) and 1 <= len(axes) <= _MOST_AXES and all(isinstance(a, str) and a for a in axes)
+    good = isinstance(axes, tuple) and 1 <= len(axes) <= _MOST_AXES
+    good = good and all(isinstance(a, str) and a.isascii() and a.isidentifier() for a in axes)
     good = good and len(set(axes)) == len(axes) and max(map(len, axes)) <= 10
     _demand(good, "axes", axes, f"1 to {_MOST_AXES} different names such as x, y, z")
 
