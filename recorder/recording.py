@@ -80,8 +80,9 @@ def record(
     """Record a motion as a tape: .wav (RF64 inside from 4 GiB on), .rf64, .w64, .flac or .aiff, samples as in SUBTYPES.
 
     Start and end in `fmt` are those of the motion, whatever is given; without `fmt` it is the usual one for its axes.
-    `progress(done_s, total_s)` is called after each block; the total is None where a stream does not tell. Raises MotionFault for a motion that is empty, of another
-    rate, not finite or too fast, and FileFault; nothing is left under the name then.
+    `progress(done_s, total_s)` is called after each block; the total is None where a stream does not tell. Raises
+    MotionFault for a motion that is empty, of another rate, not finite or too fast, and FileFault; nothing is left under
+    the name then.
     """
     if fmt is None:
         stream, axes = _axes_of(stream)

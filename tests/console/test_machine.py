@@ -45,7 +45,8 @@ def test_hydraulic_motors_follow_later(morfax: Morfax, here: Path, tape_file: Pa
     [
         (("--feed-override", "300%"), "an override of 300% is none; give 10% to 200%"),
         (("--feed-override", "0"), "'0' is no share; give 120%"),
-        (("--zero", "1,2,3,4"), "is no place"),
+        (("--zero", "1"), "is no place"),
+        (("--zero", "1,2,3,4"), "a zero of 4 places does not fit; the tape has 3 axes"),
         (("--zero", "0,5m"), "a zero of 5000 mm is too far"),
         (("--motor", "steam"), "'steam' is not one of 'electric', 'hydraulic'"),
     ],
