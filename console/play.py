@@ -29,7 +29,6 @@ FOR_TAPES = {"resume_at_s", "acceleration_mm_s2", "settings", "zero_mm"}
 
 EXAMPLES = """\b
 Examples:
-  morfax play cam.wav -o cam.csv
   morfax play cam.wav -o cam.csv -o cam.svg -o cam.png
   morfax play cam.wav --feed-override 120% --motor hydraulic --zero 0,0,-0.05
   morfax play cam.ngc --following servos.png --following servos.csv
