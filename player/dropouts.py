@@ -133,7 +133,10 @@ class Gaps:
         acceleration: float,
         place_mm: Callable[[int, float], float],
         names: Sequence[str],
+        told: dict[tuple[int, int], int] | None = None,
     ) -> None:
+        self._told = told  # whole cycles to add at a gap (row, axis); None: what is not certain is a fault
+        self.doubtful: dict[tuple[int, int], Bridge] = {}
         self._discriminator, self._rate_hz, self._place_mm, self._names = discriminator, rate_hz, place_mm, names
         self._levels, self._tracked = levels, levels.copy()
         self._acceleration = acceleration  # cycles/row²
@@ -205,7 +208,11 @@ class Gaps:
         after = side(np.unwrap(cycles[b : b + self._side], period=1.0), 0)
         found = bridge(before, after, b - a + 1, self._acceleration)
         if not found.certain:
-            return self._uncertain(axis, before.place, time_s, (b - a) / self._rate_hz)
+            if self._told is None:
+                return self._uncertain(axis, before.place, time_s, (b - a) / self._rate_hz)
+            gap = rows.first_row + a, axis
+            self.doubtful[gap] = found
+            found = replace(found, travel=found.travel + self._told.get(gap, 0))
         cycles[a:b] = filled(before, after, found.travel, b - a + 1)
         after = replace(after, place=before.place + found.travel)
         rows.surprise[a:b, axis] = 0

@@ -21,7 +21,6 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import replace
-from itertools import chain
 from os import PathLike
 from typing import BinaryIO
 
@@ -29,19 +28,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion.drive import SOUND
-from motion.faults import Fault, LockFault, TapeFault
+from motion.faults import LockFault
 from motion.motion import AXES, Motion
-from player.bearings import STANDSTILL_S, Bearings, evened, take_bearings
-from player.discriminator import Discriminator, Phases, discriminate
-from player.dropouts import Gaps, under_way
 from player.monitor import Supervised
 from player.phase_lock import Drives, PhaseLock, following_limit
+from player.reader import Reader
 from player.setting import Setting
-from player.watch import Watch, demand_apart
 from recorder.pipe import Pipe, Samples
-from recorder.tape import Stored, Tape, TapeFormat, full_scale
+from recorder.tape import Tape, TapeFormat
 
-BLOCK_FRAMES = 65536
 END_CYCLES = 0.25  # a cycle lost is four times as much, and a drive at rest stands a hundred times nearer
 
 Array = NDArray[np.float64]
@@ -121,22 +116,26 @@ class Playback(Supervised):
         acceleration_mm_s2: float | None = None,
         resume_at_s: float = 0.0,
     ) -> None:
-        self._open_tape, self.format, self.frames, self.setting = open_tape, fmt, frames, setting
+        self.format, self.frames, self.setting = fmt, frames, setting
         self.rate_hz = fmt.motion_rate_hz * setting.override
         self.settings = setting.lock.suited_to(fmt.motion_rate_hz)
         self._steps = math.ceil(1 / setting.override)  # of the loop to a row: it is no slower where the tape is
         motors_mm_s2 = self.settings.drive.acceleration_mm_s2 / setting.override**2  # as it would be on the tape
         self.acceleration_mm_s2 = motors_mm_s2 if acceleration_mm_s2 is None else acceleration_mm_s2
-        self.resume_at_s = resume_at_s
         self._zero_mm = setting.zeros_mm(fmt.axes)
-        self.bridged: dict[tuple[float, str], float] = {}
         self._rows = 0
         self.start_mm: Array = np.array(fmt.start_mm, dtype=np.float64) + self._zero_mm
+        self.reader = Reader(open_tape, fmt, self.start_mm, self.acceleration_mm_s2, resume_at_s)
         self.end_mm: Array = self.start_mm.copy()
         self.end_error_mm: Array | None = None
         self.conditions = [SOUND] * len(fmt.axes)
         self.limit = following_limit(self.settings, fmt.mm_per_cycle, self.rate_hz * self._steps)
         self.supervise(fmt.axes, self.rate_hz)
+
+    @property
+    def bridged(self) -> dict[tuple[float, str], float]:
+        """Dropouts that were ridden over, the last time through: tape time in s and axis, and length in s."""
+        return self.reader.bridged
 
     @property
     def duration_s(self) -> float:
@@ -151,7 +150,7 @@ class Playback(Supervised):
         drives.conditions = self.conditions
         rest_mm = self.start_mm - self._zero_mm  # where the screws stood before that
         monitor, self.end_error_mm = self.supervise(fmt.axes, self.rate_hz), None
-        for phases, bearings, gap in self._phases():
+        for phases, bearings, gap in self.reader.read(lambda: self.end_mm.tolist()):
             found = bearings.first_fault(phases, fmt.motion_rate_hz, self.end_mm.tolist()) or gap
             sound = len(phases) if found is None else min(found[0], len(phases))
             cycles = phases.cycles[:sound] - bearings.zero_cycles + self._zero_mm * fmt.cycles_per_mm
@@ -169,71 +168,6 @@ class Playback(Supervised):
             if found is not None:
                 raise found[1]
         self._check_end()
-
-    def _phases(self) -> Iterator[tuple[Phases, Bearings, tuple[int, Fault] | None]]:
-        """The tape's phases in blocks, the bearings taken from the first, and the gap that ends it, if one does."""
-        fmt, rate_hz = self.format, self.format.motion_rate_hz
-        discriminator = Discriminator(fmt.sample_rate_hz, fmt.reference_hz, fmt.samples_per_motion, fmt.tracks)
-        first_row = round(self.resume_at_s * rate_hz)
-        with self._open_tape() as tape:
-            lead = min(first_row, discriminator.filter_frames // fmt.samples_per_motion)  # rows that the filter needs
-            blocks = iter(tape.stored_blocks(BLOCK_FRAMES, (first_row - lead) * fmt.samples_per_motion))
-            first = next(blocks, np.zeros((0, fmt.tracks), np.float32))
-            held = [first]
-
-            def noted() -> Iterator[Stored]:
-                for block in chain([held[0]], blocks):
-                    held[0] = block
-                    yield block
-
-            rows = (evened(rows.moved(first_row - lead), fmt) for rows in discriminate(noted(), discriminator))
-            start = next(rows, None)
-            if start is None:
-                raise self._too_short(discriminator.filter_frames)
-            first = full_scale(first)
-            if first_row:
-                start = start.cut(lead, len(start))
-                places = under_way(start, discriminator)
-                bearings = replace(take_bearings(first, start, fmt), zero_cycles=places)
-            else:
-                bearings = take_bearings(first, start, fmt)
-                demand_apart(first[: round(STANDSTILL_S * fmt.sample_rate_hz)], bearings.levels, fmt.axes)
-            gaps = self._gaps(discriminator, bearings)
-            watch = Watch(fmt, bearings)
-            for phases in chain([start], rows):
-                out, fault = gaps.feed(phases)
-                wrong = None if self.resume_at_s else watch.wrong_reference(held[0], self._time_s(phases))
-                if wrong is not None:
-                    raise wrong
-                yield out, bearings, watch.first_fault(out, self.end_mm.tolist()) or fault
-            out, fault = gaps.feed(phases.cut(len(phases), len(phases)), last=True)
-            yield out, bearings, fault
-            doubt = None if self.resume_at_s else watch.doubtful_reference(self._time_s(phases))
-            if doubt is not None:
-                raise doubt
-
-    def _time_s(self, phases: Phases) -> float:
-        """Tape time at the end of some rows, s."""
-        return (phases.first_row + len(phases)) / self.format.motion_rate_hz
-
-    def _gaps(self, discriminator: Discriminator, bearings: Bearings) -> Gaps:
-        """What bridges the dropouts of this tape."""
-        fmt, start_mm = self.format, self.start_mm
-
-        def place_mm(axis: int, cycles: float) -> float:
-            return float(start_mm[axis] + (cycles - bearings.zero_cycles[axis]) * fmt.mm_per_cycle)
-
-        most = self.acceleration_mm_s2 * fmt.cycles_per_mm / fmt.motion_rate_hz**2
-        gaps = Gaps(discriminator, bearings.levels, fmt.motion_rate_hz, most, place_mm, fmt.axes)
-        self.bridged = gaps.bridged
-        return gaps
-
-    def _too_short(self, filter_frames: int) -> TapeFault:
-        """The fault of a tape that ends before it has begun."""
-        return TapeFault(
-            f"the tape ends after {self.frames} frames; it must be longer than the discriminator's filter, "
-            f"{filter_frames} frames; record it again"
-        )
 
     def _motion(self, places_mm: Array, first_row: int) -> Motion:
         """A block of positions: X, Y, Z and what other axes the tape has; an axis without a track stands at 0."""
