@@ -248,9 +248,7 @@ def _started(fmt: TapeFormat, start_mm: Sequence[float] | None) -> TapeFormat:
     if start_mm is None:
         return fmt
     if len(start_mm) > len(fmt.axes):
-        raise TapeFault(
-            f"the start was given {len(start_mm)} places; the tape has {len(fmt.axes)} axes"
-        )
+        raise TapeFault(f"the start was given {len(start_mm)} places; the tape has {len(fmt.axes)} axes")
     start = tuple(float(mm) for mm in start_mm) + fmt.start_mm[len(start_mm) :]
     shifts = [new - old for new, old in zip(start, fmt.start_mm, strict=True)]
     end = None if fmt.end_mm is None else tuple(mm + by for mm, by in zip(fmt.end_mm, shifts, strict=True))
