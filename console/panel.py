@@ -67,6 +67,13 @@ def head_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         help="Widest gap in the line that the head goes across.",
     )
     @click.option(
+        "--recatch",
+        "recatch_mm",
+        type=LENGTH,
+        help="How far ahead the head looks for a line that it has lost or that has ended, such as 5mm, to go on there.  "
+        "[default: it stops]",
+    )
+    @click.option(
         "--reference",
         "reference_mm",
         type=PLACE,
@@ -133,6 +140,7 @@ def head_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         clearance_mm: float,
         line_width_mm: float | None,
         gap_mm: float,
+        recatch_mm: float | None,
         reference_mm: tuple[float, float] | None,
         origin: str,
         direction: Any,
@@ -149,7 +157,9 @@ def head_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         if lines is not None and start_mm is not None:
             raise click.UsageError("--start picks one line, --lines several; give one of them")
         head = Head(start_mm, speed_mm_s, depth_mm, clearance_mm, line_width_mm, gap_mm, lines, None, kind)
-        head = replace(head, changes=changes, marks=Marks(reference_mm, origin, direction, override, ask))
+        head = replace(
+            head, recatch_mm=recatch_mm, changes=changes, marks=Marks(reference_mm, origin, direction, override, ask)
+        )
         if settings_file is not None:
             head = head.by_file(_settings_in(settings_file), _given)
         if card_file is not None:

@@ -27,7 +27,12 @@ if TYPE_CHECKING:
     from tracer.program import Trace
     from tracer.settings import Settings
 
-SET_BY_OPTIONS = ("speed_mm_s", "gap_mm", "line_width_mm")  # settings of the head that have an option of their own
+SET_BY_OPTIONS = (
+    "speed_mm_s",
+    "gap_mm",
+    "recatch_mm",
+    "line_width_mm",
+)  # settings of the head that have an option of their own
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +59,7 @@ class Head:
     lines: str | tuple[int, ...] | None = None  # the one line at the start, or the longest
     card: Card | None = None
     kind: str = "precise"
+    recatch_mm: float | None = None
     filed: Mapping[str, float] = field(default_factory=dict)  # settings from a file
     changes: tuple[str, ...] = ()  # NAME=VALUE
     marks: Marks = field(default_factory=lambda: Marks())

@@ -33,7 +33,7 @@ from tracer.loop import loop_in
 from tracer.riding import Ride, ride_past, to_vertex
 from tracer.settings import Settings
 from tracer.stance import Stance
-from tracer.survey import Side, Way, goes_straight, straight_on, survey
+from tracer.survey import Side, Way, caught_again, goes_straight, straight_on, survey
 from tracer.view import Array, View
 
 SMOOTH = math.radians(14)  # a smaller change of heading is no corner
@@ -137,6 +137,8 @@ class Follower:
                 return self._pass(*way)
             choices = 0  # that leg is another line's
         outgoing = straight_on(self.view, incoming, max(self.settings.gap_mm, LEAST_GAP_PX * self.view.pitch_mm))
+        if outgoing is None and self.settings.recatch_mm > 0:
+            outgoing = caught_again(self.view, incoming, self.carriage.trail, self.settings.recatch_mm)
         if outgoing is None:
             return self._at_end(incoming, choices)
         return self._pass(*self._course(incoming, outgoing, None))

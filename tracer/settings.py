@@ -51,6 +51,7 @@ class Settings:
     steering_lag_s: float = _within(0.001, 0, 1, "lag of the steering servo (M, T)")
     swivel_rad_s: float = _within(20.0, 0.1, 1000, "turn rate of the swivel at a sharp corner")
     gap_mm: float = _within(0.5, 0, 20, "widest gap that the head goes across")
+    recatch_mm: float = _within(0.0, 0, 50, "how far ahead a line that is lost is looked for; 0: it stays lost")
     line_width_mm: float | None = _within(None, 0.01, 20, "width of the line")
     lead_mm: float | None = _within(None, 0.01, 20, "how far the cell is ahead of the steering axis")
     amplitude_mm: float | None = _within(None, 0.01, 20, "of the swing to either side")

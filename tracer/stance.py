@@ -29,6 +29,7 @@ from tracer.view import LEVEL, Array, View
 CATCH_MM = 3.0  # how far from a given place the line may be
 APERTURE = 0.3  # of the line's width, within bounds that a scan's noise and a corner set
 LEAST_APERTURE_MM, LARGEST_APERTURE_MM = 0.1, 0.24
+AT_END_MM = 1.5  # a start nearer to an open end is that end
 LEAD_MM = 8.0  # from a reference point to the lead line that comes from it
 LEADS_AWAY = math.radians(45)
 SPUR = 2.7  # a line that ends sooner, in widths, is a burr
@@ -59,8 +60,8 @@ def put_down(
     gap_mm: float = 0.5,
     reference_mm: tuple[float, float] | None = None,
 ) -> Iterator[tuple[Stance, float]]:
-    """Put the head down near a place, or on the longest line: where it comes from a reference point, else at an open end if it has one, then where it is
-    smooth; and the line's length, mm.
+    """Put the head down near a place, or on the longest line: where it comes from a reference point, else at an open end if it has one (there), then where
+    it is smooth; and the line's length, mm.
 
     A reference point that is not given is looked for. Raises LineFault if there is no line near the place, or no clean stretch on the line.
     """
@@ -68,7 +69,12 @@ def put_down(
     catch_mm = max(CATCH_MM, 12 * sheet.drawing.pitch_mm)
     stroke = sheet.longest() if start_mm is None else sheet.nearest(start_mm, catch_mm)
     view = _view(sheet, aperture_mm, line_width_mm or stroke.width_mm)
-    at_ends = _at_ends(view, sheet, stroke, gap_mm, reference_mm) if start_mm is None else []
+    if start_mm is None:
+        at_ends = _at_ends(view, sheet, stroke, gap_mm, reference_mm)
+    else:
+        ends = stroke.ends_mm()
+        near = ends[np.hypot(*(ends - np.asarray(start_mm)).T) < max(AT_END_MM, 3 * view.width_mm)]
+        at_ends = [stance for place in near if (stance := _at_end(view, place, gap_mm)) is not None]
     for stance in at_ends[:1]:
         yield stance, stroke.length_mm
     stances = _stances(view, _tried(stroke, start_mm, 2 * stroke.width_mm))

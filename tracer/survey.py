@@ -18,6 +18,7 @@ from typing import Literal
 
 import numpy as np
 
+from tracer import photocell
 from tracer.knot import legs_around
 from tracer.leg import Leg, Meeting, leg_of, meet, reach_of_ink, stroke_end, turn
 from tracer.marks import longest_mm
@@ -26,6 +27,7 @@ from tracer.view import Array, View
 
 STRAIGHT = math.radians(40)  # straight on is within this
 TURNS_OFF = math.radians(20)  # a leg turns off to a side by more than this
+AHEAD = math.radians(75)  # a lost line is looked for within this of its heading
 SQUARE = math.radians(20)  # two legs that turn off to both sides alike, within this, are a line that the head comes to
 PASSES = math.radians(12)  # two legs in line with each other within this are one line that passes
 FARTHEST_WIDTHS = 6.0  # how far the heading is held through a blot, in widths of the line
@@ -98,14 +100,28 @@ def _chosen(incoming: Leg, rank: int, side: Side | None, legs: list[Leg], every:
 
 
 def _without_marks(view: View, incoming: Leg, legs: list[Leg]) -> list[Leg]:
-    """The legs but for those that end soon and are not straight on, if others are left."""
-    kept = [leg for leg in legs if goes_straight(incoming, leg) or not _ends_soon(view, leg)]
+    """The legs but for those that are marks and not straight on, if others are left."""
+    reach = [math.inf if goes_straight(incoming, leg) else _reach_mm(view, incoming, leg) for leg in legs]
+    kept = [
+        leg for leg, mm in zip(legs, reach, strict=True) if mm > longest_mm(view, across=_is_across(leg, legs, reach))
+    ]
     return kept or legs
 
 
-def _ends_soon(view: View, leg: Leg) -> bool:
-    """Whether a leg is no longer than a mark."""
-    return stroke_end(view, leg, longest_mm(view) - 0.5 * view.width_mm) is not None
+def _is_across(leg: Leg, legs: list[Leg], reach_mm: list[float]) -> bool:
+    """Whether another stroke that ends soon lies in line with a leg, on the other side."""
+    return any(
+        math.isfinite(mm) and abs(turn(leg.heading_rad + math.pi, other.heading_rad)) < SQUARE
+        for other, mm in zip(legs, reach_mm, strict=True)
+    )
+
+
+def _reach_mm(view: View, incoming: Leg, leg: Leg) -> float:
+    """How far a leg reaches beyond the edge of the line that comes in, mm; infinite if it does not end within a mark's length."""
+    end = stroke_end(view, leg, longest_mm(view))
+    way = leg.end_mm - incoming.end_mm
+    aside = abs(way[1] * math.cos(incoming.heading_rad) - way[0] * math.sin(incoming.heading_rad))
+    return math.inf if end is None else end + aside - 0.5 * view.width_mm
 
 
 def _without_pairs(view: View, incoming: Leg, legs: list[Leg], every: list[Leg]) -> list[Leg]:
@@ -144,3 +160,33 @@ def straight_on(view: View, incoming: Leg, gap_mm: float) -> Leg | None:
         if goes_straight(incoming, leg):
             return leg
     return None
+
+
+def caught_again(view: View, incoming: Leg, trail: Trail, within_mm: float) -> Leg | None:
+    """The line that the head meets first in widening arcs ahead of where it lost it, no further than allowed; None if there is none.
+
+    Only lines that have not been followed, and that lead on ahead.
+    """
+    end = incoming.at(reach_of_ink(view, incoming, view.width_mm) or 0.0)
+    for radius in np.arange(view.width_mm, within_mm, 0.5 * view.width_mm):
+        legs = []
+        for arc in photocell.ring(view.cells, view.pitch_mm, end, radius, view.level):
+            if abs(turn(incoming.heading_rad, float(arc.mean()))) < AHEAD:
+                met = end + radius * np.array([math.cos(arc.mean()), math.sin(arc.mean())])
+                legs += [leg for leg in _from(view, met) if not trail.holds(leg, view.width_mm)]
+        legs = [leg for leg in legs if abs(turn(incoming.heading_rad, leg.heading_rad)) < AHEAD]
+        if legs:
+            return min(legs, key=lambda leg: abs(turn(incoming.heading_rad, leg.heading_rad)))
+    return None
+
+
+def _from(view: View, place: Array) -> list[Leg]:
+    """The clean legs that leave a place on ink."""
+    found = []
+    for arc in photocell.ring(view.cells, view.pitch_mm, place, 1.5 * view.width_mm, view.level):
+        heading = float(arc.mean())
+        start = place + 1.5 * view.width_mm * np.array([math.cos(heading), math.sin(heading)])
+        seen = view.feel(start, heading, view.leg_mm)
+        if len(seen) >= 8:
+            found.append(leg_of(seen, False, view.leg_mm))
+    return found

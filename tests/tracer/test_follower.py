@@ -13,8 +13,11 @@ import pytest
 from numpy.typing import NDArray
 
 from motion.contour import distance, length_mm, pointwise
+from motion.faults import LineFault
 from tests.tracer.inked import UM, arc, corner, inked, polyline
+from tracer.card import Card
 from tracer.drawing import Drawing
+from tracer.operator import Direction, Operator
 from tracer.program import Trace
 from tracer.sequence import trace
 from tracer.settings import Settings
@@ -152,3 +155,65 @@ def test_a_line_into_a_black_patch_is_lost_and_says_where(seed: int | None) -> N
     assert run.fault.heading_rad == pytest.approx(0, abs=0.02)
     assert "line lost at" in str(run.fault) and "heading" in str(run.fault) and "--gap" in str(run.fault)
     assert distance(run.xy_mm[::4], ACROSS).path_to_reference.max_mm < LINE_MM  # what was traced is kept
+
+
+# lead lines, directions, guide lines, and lines that are lost
+
+CIRCLE = arc((16, 14), 6)
+LEAD = polyline((4, 14), (10, 14))
+
+
+def enclosed_mm2(loop: Array) -> float:
+    """The area that a loop goes round, above zero if counter-clockwise."""
+    x, y = loop.T
+    return 0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
+
+
+@SEEDS
+def test_a_lead_line_and_the_loop_that_it_runs_into_are_one_path_once_round(seed: int | None) -> None:
+    """The end is where the loop began: at a vertex, within what a corner is right to."""
+    (line,) = trace(inked(LEAD, CIRCLE, seed=seed)).lines
+    assert line.ending == "joined" and line.loop_from is not None
+    assert line.length_mm == pytest.approx(length_mm(LEAD) + length_mm(CIRCLE), abs=4 * LINE_MM)
+    assert np.hypot(*(line.xy_mm[-1] - line.xy_mm[line.loop_from])) < LINE_MM
+    assert distance(line.xy_mm[::4], np.vstack([LEAD, arc((16, 14), 6, 180, 540)])).hausdorff_mm < 2 * LINE_MM
+
+
+@pytest.mark.parametrize(("direction", "sign"), [("cw", -1), ("ccw", 1), ("left", -1), ("right", 1)])
+def test_the_head_takes_a_loop_in_the_direction_that_is_asked_for(direction: Direction, sign: int) -> None:
+    (line,) = trace(inked(LEAD, CIRCLE), operator=Operator(direction=direction)).lines
+    assert math.copysign(1, enclosed_mm2(line.xy_mm[line.loop_from :])) == sign
+
+
+@pytest.mark.parametrize(("direction", "sign"), [("cw", -1), ("ccw", 1), ("left", -1), ("right", 1)])
+def test_so_it_does_on_a_line_without_a_lead_that_it_comes_to_from_below(direction: Direction, sign: int) -> None:
+    run = trace(inked(CIRCLE), (16.0, 6.5), operator=Operator(direction=direction))
+    assert run.ending == "closed" and math.copysign(1, enclosed_mm2(run.xy_mm)) == sign
+
+
+def test_an_open_line_has_no_direction_round() -> None:
+    with pytest.raises(LineFault, match="direction cw: the line is open"):
+        trace(inked(ACROSS), operator=Operator(direction="cw"))
+
+
+@SEEDS
+def test_a_guide_line_is_taken_where_the_card_says_so_and_come_back_from(seed: int | None) -> None:
+    """The loop is gone round all the same; the guide line has been left for and come back from at one place."""
+    guide = polyline((22, 14), (17.5, 14))
+    operator = Operator(card=Card.parse('turns = ["right", "left"]'))
+    (line,) = trace(inked(LEAD, CIRCLE, guide, seed=seed), (4.2, 14.0), operator=operator).lines
+    (taken,) = line.guides
+    assert line.ending == "joined"
+    assert np.hypot(*(line.xy_mm[taken.tip] - guide[1])) < END_MM
+    for at in (taken.leave, taken.back):
+        assert np.hypot(*(line.xy_mm[at] - guide[0])) < 2 * LINE_MM
+    assert line.length_mm == pytest.approx(6 + length_mm(CIRCLE) + 2 * length_mm(guide), abs=8 * LINE_MM)
+
+
+def test_a_lost_line_is_caught_again_within_the_limit_only() -> None:
+    broken = inked(polyline((4, 10), (14, 10)), polyline((16.5, 10.8), (28, 14)))
+    kept = trace(broken, (8.0, 10.0), Settings(recatch_mm=2.0))
+    caught = trace(broken, (8.0, 10.0), Settings(recatch_mm=4.0))
+    assert (kept.ending, caught.ending) == ("ended", "ended")
+    assert kept.length_mm == pytest.approx(10, abs=2 * END_MM)
+    assert caught.length_mm == pytest.approx(10 + math.hypot(2.5, 0.8) + math.hypot(11.5, 3.2), abs=0.1)
