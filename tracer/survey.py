@@ -49,6 +49,8 @@ def survey(view: View, incoming: Leg, trail: Trail, rank: int = 0, side: Side | 
     near = half + view.step_mm
     choose = partial(_chosen, incoming, rank, side)
     found = _look(view, incoming, trail, incoming.at(near if ink is None else max(0.0, min(near, ink - half))), choose)
+    if found[0] is not None and side is not None and _is_aside(incoming, found[0], side):
+        return found
     if ink is not None and ink - half > near and not goes_straight(incoming, found[0]):
         at_tip = _look(view, incoming, trail, incoming.at(ink - half), choose)
         found = at_tip if at_tip[0] is not None else found
@@ -83,7 +85,7 @@ def _chosen(incoming: Leg, rank: int, side: Side | None, legs: list[Leg], every:
     """The leg to take: by side, if one turns off there; else by how straight it goes on."""
     turns = {id(leg): turn(incoming.heading_rad, leg.heading_rad) for leg in legs}
     if side is not None:
-        aside = [leg for leg in legs if (turns[id(leg)] > 0) == (side == "left") and abs(turns[id(leg)]) > TURNS_OFF]
+        aside = [leg for leg in legs if _is_aside(incoming, leg, side)]
         if aside:
             return min(aside, key=lambda leg: abs(turns[id(leg)]))
     if rank == 0:
@@ -97,6 +99,12 @@ def _chosen(incoming: Leg, rank: int, side: Side | None, legs: list[Leg], every:
     ):
         return max(legs[:2], key=lambda leg: turns[id(leg)])
     return legs[min(rank, len(legs) - 1)]
+
+
+def _is_aside(incoming: Leg, leg: Leg, side: Side) -> bool:
+    """Whether a leg turns off to a side."""
+    angle = turn(incoming.heading_rad, leg.heading_rad)
+    return (angle > 0) == (side == "left") and abs(angle) > TURNS_OFF
 
 
 def _without_marks(view: View, incoming: Leg, legs: list[Leg]) -> list[Leg]:
