@@ -139,7 +139,8 @@ class Trace:
     def _first_pass(self, line: Line, actions: list[Action]) -> Iterator[Array]:
         """Along a line, with what is done on the way, (n, 3) mm."""
         z_mm = self.work.clearance_mm
-        pieces = stops.pieces(line.xy_mm, [action.halt.at for action in actions], BRAKE_MM_S2, self.rate_hz)
+        halts = [action.halt.at for action in actions] + [len(line.xy_mm) - 1.0] * line.goes_back
+        pieces = stops.pieces(line.xy_mm, halts, BRAKE_MM_S2, self.rate_hz)
         for piece, action in zip_longest(pieces, actions):
             for first in range(0, len(piece), BLOCK_SAMPLES):
                 yield _at(piece[first : first + BLOCK_SAMPLES], z_mm)
@@ -164,6 +165,7 @@ class Trace:
         """Back along a lead or guide line to where it began, and to the reference point, at clearance, (n, 3) mm."""
         if line.goes_back:
             back = line.xy_mm[: (line.loop_from or len(line.xy_mm) - 1) + 1][::-1]
+            yield self._rapid(line.xy_mm[-1], back[0])  # a loop does not end just where it began
             yield _at(stops.run(back, self.work.rapid_mm_s, BRAKE_MM_S2, self.rate_hz), self.work.clearance_mm)
         if line.begin_mm != line.start_mm:
             yield self._rapid(line.start_mm, line.begin_mm)
