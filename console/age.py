@@ -11,7 +11,7 @@ import click
 
 from console import medium
 from console.desk import Desk, desk_options
-from console.quantities import FREQUENCY, TIME, Quantity
+from console.quantities import FREQUENCY, TIME, TRACKS, Quantity
 
 SETS = ("studio-15ips", "instrumentation", "cassette")
 
@@ -41,15 +41,7 @@ def _decibels(text: str) -> float:
         raise ValueError(f"{text[:40]!r} is no level; give 46dB or a bare number of dB") from None
 
 
-def _tracks(text: str) -> tuple[int, ...]:
-    """Tracks of "2,1,3,4"."""
-    try:
-        return tuple(int(part) for part in text.split(","))
-    except ValueError:
-        raise ValueError(f"{text[:40]!r} names no tracks; give 2,1,3,4") from None
-
-
-SHARE, DECIBELS, TRACKS = Quantity("share", _share), Quantity("dB", _decibels), Quantity("tracks", _tracks)
+SHARE, DECIBELS = Quantity("share", _share), Quantity("dB", _decibels)
 
 PARTS: tuple[tuple[str, str, Any, str], ...] = (
     ("--speed", "speed", SHARE, "Speed error, such as 1.5% or -1.5%."),

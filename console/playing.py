@@ -8,14 +8,14 @@ from __future__ import annotations
 import functools
 import sys
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from console.desk import Desk
-from console.quantities import FREQUENCY, NUMBER, PLACES
+from console.quantities import FREQUENCY, NUMBER, PLACES, TRACKS
 from motion.faults import Fault
 
 if TYPE_CHECKING:
@@ -44,12 +44,18 @@ class Controls:
     reference_hz: float | None = None
     cycles_per_mm: float | None = None
     start_mm: tuple[float, ...] | None = None
+    order: tuple[int, ...] | None = None
+    closed: bool | None = None
+
+    def by_hand(self) -> dict[str, Any]:
+        """What was given."""
+        return {name: value for name, value in asdict(self).items() if value is not None}
 
     def open_tape(self, file: FilePath) -> Tape:
         """Open a tape for reading; a context manager."""
         from recorder.tape import Tape
 
-        return Tape.open(file, reference_hz=self.reference_hz, cycles_per_mm=self.cycles_per_mm, start_mm=self.start_mm)
+        return Tape.open(file, **{name: value for name, value in self.by_hand().items() if name != "closed"})
 
     def play(
         self, file: FilePath, desk: Desk, *, raw: bool = False, chart: Chart | None = None, **settings: Any
@@ -74,15 +80,17 @@ class Controls:
             return play(file, **self._by_hand(file), **settings)
         from player.machine import play_pipe
 
-        return play_pipe(sys.stdin.buffer, **{name: value for name, value in asdict(self).items() if value is not None})
+        return play_pipe(sys.stdin.buffer, **self.by_hand())
 
     def _by_hand(self, file: FilePath) -> dict[str, Any]:
         """What was given by hand, which only the control of a tape takes."""
         from player.controls import TAPE, control_of
 
-        given = {name: value for name, value in asdict(self).items() if value is not None}
+        given = self.by_hand()
         if given and control_of(file) != TAPE:
-            raise click.UsageError(f"--reference, --cycles-per-mm and --from are for tapes; {file} is none")
+            raise click.UsageError(
+                f"--reference, --cycles-per-mm, --from, --tracks and --closed are for tapes; {file} is none"
+            )
         return given
 
     def play_whole(self, file: FilePath, desk: Desk) -> Path:
@@ -94,7 +102,7 @@ class Controls:
 
 
 def tape_options(verb: Callable[..., Any]) -> Callable[..., Any]:
-    """Give a verb --reference, --cycles-per-mm and --from, and hand it the `controls`."""
+    """Give a verb the options of a tape that does not say everything itself, and hand it the `controls`."""
 
     @click.option(
         "--reference",
@@ -113,15 +121,22 @@ def tape_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         type=PLACES,
         help="Where the machine stands at the start, mm: X,Y or X,Y,Z …  [default: what the tape says, else 0,0]",
     )
+    @click.option(
+        "--tracks",
+        "order",
+        type=TRACKS,
+        help="On which tracks of the file reference, X, Y … are, such as 2,1,3,4.  [default: 1,2,3 …]",
+    )
+    @click.option(
+        "--closed",
+        is_flag=True,
+        default=None,
+        help="The program returns to its start; that is checked where the tape does not say where it ends.",
+    )
     @functools.wraps(verb)
-    def with_controls(
-        *args: Any,
-        reference_hz: float | None,
-        cycles_per_mm: float | None,
-        start_mm: tuple[float, ...] | None,
-        **options: Any,
-    ) -> Any:
-        return verb(*args, controls=Controls(reference_hz, cycles_per_mm, start_mm), **options)
+    def with_controls(*args: Any, **options: Any) -> Any:
+        given = {field.name: options.pop(field.name) for field in fields(Controls)}
+        return verb(*args, controls=Controls(**given), **options)
 
     return with_controls
 

@@ -71,6 +71,14 @@ def _parse_override(text: str) -> str | tuple[int, ...]:
         raise ValueError(f"{text!r} names no stops; give none, all, or numbers such as 1,3") from None
 
 
+def _tracks(text: str) -> tuple[int, ...]:
+    """Tracks of "2,1,3,4"."""
+    try:
+        return tuple(int(part) for part in text.split(","))
+    except ValueError:
+        raise ValueError(f"{text[:40]!r} names no tracks; give 2,1,3,4") from None
+
+
 LENGTH = Quantity("length", parse_length_mm, above_zero=True)
 SPEED = Quantity("speed", parse_speed_mm_s)
 FREQUENCY = Quantity("frequency", parse_frequency_hz)
@@ -82,3 +90,4 @@ PLACES = Quantity("x,y,z", _parse_places_mm)
 TIME = Quantity("time", parse_time_s)
 LINES = Quantity("lines", _parse_lines)
 OVERRIDE = Quantity("stops", _parse_override)
+TRACKS = Quantity("tracks", _tracks)

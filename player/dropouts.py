@@ -236,8 +236,8 @@ class Gaps:
         name, position_mm = self._names[axis], self._place_mm(axis, place)
         return LockFault(
             f"{name.upper()} was lost for {gap_s * 1e3:.1f} ms at {time_s:.3f} s, last certain position "
-            f"{position_mm:.3f} mm: how many cycles passed there is not certain; copy the tape again, or go on behind it "
-            f"from a position given by hand (--resume-at {time_s + gap_s + SIDE_S:.2f}s --from ...)",
+            f"{position_mm:.3f} mm: how many cycles passed there is not certain; copy the tape again, mend it "
+            f"(morfax mend), or go on behind it from a position given by hand (--resume-at {time_s + gap_s + SIDE_S:.2f}s --from ...)",
             axis=name,
             time_s=time_s,
             error_cycles=float("nan"),

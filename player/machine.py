@@ -48,6 +48,8 @@ def play(
     reference_hz: float | None = None,
     cycles_per_mm: float | None = None,
     start_mm: Sequence[float] | None = None,
+    order: Sequence[int] | None = None,
+    closed: bool = False,
     settings: PhaseLock | None = None,
     acceleration_mm_s2: float | None = None,
     resume_at_s: float = 0.0,
@@ -55,6 +57,8 @@ def play(
     override: float = 1.0,
 ) -> Playback:
     """Put a tape in the machine; what is given by hand goes before its text chunk. Raises TapeFault, FileFault.
+
+    `order`: on which tracks of the file reference, X, Y … are. `closed`: it returns to its start, if it does not say where it ends.
 
     `settings` are those of the drives (MOTORS). `zero_mm`: by how much the phase changers move each axis; `override`: how
     fast the tape runs against the speed at which it was recorded. Raises ValueError for what cannot be of these.
@@ -64,10 +68,10 @@ def play(
     """
 
     def open_tape() -> AbstractContextManager[Tape | Pipe]:
-        return Tape.open(file, reference_hz=reference_hz, cycles_per_mm=cycles_per_mm, start_mm=start_mm)
+        return Tape.open(file, reference_hz=reference_hz, cycles_per_mm=cycles_per_mm, start_mm=start_mm, order=order)
 
     with open_tape() as tape:
-        fmt, frames = tape.format, tape.frames
+        fmt, frames = _ending(tape.format, closed), tape.frames
     if resume_at_s and fmt.end_mm is not None:  # the place is not the tape's start, so the end does not go along
         with Tape.open(file, reference_hz=reference_hz, cycles_per_mm=cycles_per_mm) as tape:
             fmt = replace(fmt, end_mm=tape.format.end_mm)
@@ -82,12 +86,21 @@ def play_pipe(
     reference_hz: float | None = None,
     cycles_per_mm: float | None = None,
     start_mm: Sequence[float] | None = None,
+    order: Sequence[int] | None = None,
+    closed: bool = False,
     samples: Samples | None = None,
 ) -> Playback:
     """Put a tape that comes through a pipe in the machine, as it comes; it can be played once. Raises TapeFault."""
     start = None if start_mm is None else tuple(start_mm)
-    pipe = Pipe.open(stream, reference_hz=reference_hz, cycles_per_mm=cycles_per_mm, start_mm=start, samples=samples)
-    return Playback(lambda: pipe, pipe.format, 0, Setting())
+    pipe = Pipe.open(
+        stream, reference_hz=reference_hz, cycles_per_mm=cycles_per_mm, start_mm=start, order=order, samples=samples
+    )
+    return Playback(lambda: pipe, _ending(pipe.format, closed), 0, Setting())
+
+
+def _ending(fmt: TapeFormat, closed: bool) -> TapeFormat:
+    """The format with the end of a closed program, if it states none."""
+    return replace(fmt, end_mm=fmt.start_mm) if closed and fmt.end_mm is None else fmt
 
 
 def _check_resumption(resume_at_s: float, start_mm: Sequence[float] | None, duration_s: float) -> None:

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import io
 import struct
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path as FilePath
 from types import TracebackType
@@ -24,7 +24,7 @@ import numpy as np
 
 from motion.faults import TapeFault
 from recorder.carrier import Frames
-from recorder.tapeformat import TapeFormat, is_format_text
+from recorder.tapeformat import TapeFormat, columns_of, is_format_text
 
 PIPE_FRAMES = 65536
 LARGEST_CHUNK_BYTES = 1 << 20  # of a header: more is no tape
@@ -62,8 +62,11 @@ class Samples:
 class Pipe:
     """A tape in a pipe, with the same face as a Tape; can be read once."""
 
-    def __init__(self, stream: BinaryIO, samples: Samples, fmt: TapeFormat, begun: bytes) -> None:
+    def __init__(
+        self, stream: BinaryIO, samples: Samples, fmt: TapeFormat, begun: bytes, columns: list[int] | None = None
+    ) -> None:
         self.format, self._stream, self._samples, self._begun = fmt, stream, samples, begun
+        self._columns = columns
         self.file, self.frames = FilePath("-"), 0
 
     @classmethod
@@ -74,6 +77,7 @@ class Pipe:
         reference_hz: float | None = None,
         cycles_per_mm: float | None = None,
         start_mm: tuple[float, ...] | None = None,
+        order: Sequence[int] | None = None,
         samples: Samples | None = None,
     ) -> Pipe:
         """Read the header, if there is one; raises TapeFault for what is no tape, or one whose format is not known."""
@@ -88,7 +92,7 @@ class Pipe:
         fmt = _format(text, samples, reference_hz, cycles_per_mm)
         if start_mm is not None:
             fmt = replace(fmt, start_mm=tuple(start_mm) + fmt.start_mm[len(start_mm) :], end_mm=None)
-        return cls(stream, samples, fmt, begun)
+        return cls(stream, samples, fmt, begun, columns_of(order, fmt.tracks))
 
     def __enter__(self) -> Pipe:
         return self
@@ -110,7 +114,8 @@ class Pipe:
                 data, whole, skip = data[gone:], whole - gone, skip - gone
             if whole:
                 self.frames += whole // step
-                yield self._samples.frames(data[:whole])
+                block = self._samples.frames(data[:whole])
+                yield block if self._columns is None else block[:, self._columns]
 
     def stored_blocks(self, frames: int = PIPE_FRAMES, first: int = 0) -> Iterator[Frames]:
         """As `blocks`: what comes through a pipe is made full scale at once."""

@@ -28,7 +28,7 @@ from recorder.carrier import Frames
 from recorder.recording import Recording, record
 from recorder.riff import read_sizes
 from recorder.spool import sidecar
-from recorder.tapeformat import LARGEST_TEXT_BYTES, TapeFormat, is_format_text
+from recorder.tapeformat import LARGEST_TEXT_BYTES, TapeFormat, columns_of, is_format_text
 
 __all__ = ["Recording", "Tape", "TapeFormat", "record"]
 
@@ -44,8 +44,10 @@ _EXAMPLES = {"reference_hz": "--reference 6kHz", "cycles_per_mm": "--cycles-per-
 class Tape:
     """An open tape; a context manager."""
 
-    def __init__(self, file: FilePath, sound: soundfile.SoundFile, fmt: TapeFormat) -> None:
-        self.file, self.format, self._sound = file, fmt, sound
+    def __init__(
+        self, file: FilePath, sound: soundfile.SoundFile, fmt: TapeFormat, columns: list[int] | None = None
+    ) -> None:
+        self.file, self.format, self._sound, self._columns = file, fmt, sound, columns
 
     @classmethod
     def open(
@@ -55,8 +57,11 @@ class Tape:
         reference_hz: float | None = None,
         cycles_per_mm: float | None = None,
         start_mm: Sequence[float] | None = None,
+        order: Sequence[int] | None = None,
     ) -> Tape:
         """Open a tape; what is given by hand goes before what its text chunk says; a start X, Y leaves Z alone.
+
+        `order`: the tracks of the file, from 1, on which reference, X, Y … are, where it is not this order.
 
         Raises FileFault if the file cannot be read, TapeFault if it is no tape, cut short, empty or of unknown format.
         """
@@ -64,7 +69,7 @@ class Tape:
         try:
             _check_whole(FilePath(file), sound)
             fmt = _format(FilePath(file), sound, {"reference_hz": reference_hz, "cycles_per_mm": cycles_per_mm})
-            return cls(FilePath(file), sound, _started(fmt, start_mm))
+            return cls(FilePath(file), sound, _started(fmt, start_mm), columns_of(order, fmt.tracks))
         except BaseException:
             sound.close()
             raise
@@ -128,7 +133,7 @@ class Tape:
             raise _cut_short(self.file, done / self.format.sample_rate_hz, self.duration_s) from error
         if not len(block):
             raise _cut_short(self.file, done / self.format.sample_rate_hz, self.duration_s)
-        return block
+        return block if self._columns is None else block[:, self._columns]
 
 
 def full_scale(frames: Stored) -> Frames:

@@ -17,6 +17,7 @@ Questions: the patent gives no figures; the start position was set by hand on th
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, fields
 from typing import Any, TypeGuard
 
@@ -126,6 +127,15 @@ class TapeFormat:
             return cls(**as_tuples)
         except (TypeError, ValueError) as error:
             raise TapeFault(f"the tape's text chunk is wrong: {error}; {_AGAIN}") from None
+
+
+def columns_of(order: Sequence[int] | None, tracks: int) -> list[int] | None:
+    """Columns of a file whose tracks are given in this order; None: as they are. Raises TapeFault for what is no order."""
+    if order is None:
+        return None
+    if sorted(order) != list(range(1, tracks + 1)):
+        raise TapeFault(f"tracks {','.join(map(str, order))} are no order; name each of the tracks 1 to {tracks} once")
+    return [track - 1 for track in order]
 
 
 def is_format_text(text: str) -> bool:

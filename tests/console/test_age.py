@@ -58,3 +58,11 @@ def test_a_tape_through_a_pipe(here: Path, tape_file: Path) -> None:
         )
     assert answer.returncode == 0, answer.stderr
     assert '"end_place_mm"' in answer.stdout and (here / "piped.csv").exists()
+
+
+def test_a_tape_is_mended_or_told_why_not(morfax: Morfax, here: Path, tape_file: Path) -> None:
+    holes = ("--dropouts", 60, "--dropout-length", "12ms", "--dropout-depth", "60dB", "--seed", 5)
+    assert morfax("age", tape_file, "-o", "holes.wav", *holes).exit_code == 0
+    told = morfax("mend", "holes.wav", "-o", "mended.wav")
+    assert told.exit_code == 5 and "cannot be known" in told.fault and not (here / "mended.wav").exists()
+    assert morfax("age", tape_file, "-o", "one.wav", *holes[:-1], 1).exit_code == 0
