@@ -61,8 +61,26 @@ def test_a_tape_through_a_pipe(here: Path, tape_file: Path) -> None:
 
 
 def test_a_tape_is_mended_or_told_why_not(morfax: Morfax, here: Path, tape_file: Path) -> None:
-    holes = ("--dropouts", 60, "--dropout-length", "12ms", "--dropout-depth", "60dB", "--seed", 5)
-    assert morfax("age", tape_file, "-o", "holes.wav", *holes).exit_code == 0
-    told = morfax("mend", "holes.wav", "-o", "mended.wav")
-    assert told.exit_code == 5 and "cannot be known" in told.fault and not (here / "mended.wav").exists()
-    assert morfax("age", tape_file, "-o", "one.wav", *holes[:-1], 1).exit_code == 0
+    frames, rate_hz = soundfile.read(tape_file, dtype="int16")
+    for name, places_s in (("one.wav", (2.5,)), ("two.wav", (2.5, 3.5))):
+        for at_s in places_s:
+            frames[round(at_s * rate_hz) :][: round(0.04 * rate_hz), 1] = 0
+        with soundfile.SoundFile(here / name, "w", rate_hz, 4, "PCM_16") as worn:
+            worn.comment = soundfile.SoundFile(tape_file).comment
+            worn.write(frames)
+    answer = morfax("mend", "one.wav", "-o", "mended.wav", "--json")
+    assert answer.exit_code == 0 and answer.figures["dropouts"] == 1
+    assert answer.figures["mends"][0]["axis"] == "x"
+    assert answer.figures["mends"][0]["time_s"] == pytest.approx(2.5, abs=0.002)
+    assert morfax("play", "mended.wav", "-o", "mended.csv").exit_code == 0
+    told = morfax("mend", "two.wav", "-o", "other.wav")
+    assert told.exit_code == 5 and "cannot be known" in told.fault and not (here / "other.wav").exists()
+
+
+def test_tracks_in_another_order_are_put_right_by_hand(morfax: Morfax, here: Path, tape_file: Path) -> None:
+    assert morfax("age", tape_file, "-o", "mixed.wav", "--order", "2,1,4,3").exit_code == 0
+    answer = morfax("play", "mixed.wav", "--tracks", "2,1,4,3", "--json")
+    assert answer.exit_code == 0
+    assert answer.figures["end_place_mm"] == pytest.approx([40, 30, 2], abs=1e-3)
+    assert morfax("play", "mixed.wav", "--tracks", "2,1").exit_code == 5
+    assert morfax("play", "mixed.wav", "--tracks", "x").exit_code == 2
