@@ -75,7 +75,7 @@ def test_the_end_tells_how_many_cycles_were_lost(tmp_path: Path) -> None:
 
 def test_what_cannot_be_known_is_told_and_nothing_is_written(tape: Path, tmp_path: Path) -> None:
     with pytest.raises(
-        TapeFault, match="what one of the 2 dropouts at 1.599 s, 1.799 s lost another may have put back"
+        TapeFault, match=r"what one of the 2 dropouts at 1\.599 s, 1\.799 s lost another may have put back"
     ):
         mend(holed(tape, (1.6, 1.8), 40.0), tmp_path / "m.wav")
     off = TapeFormat(start_mm=(0.0, 0.0, 0.0), end_mm=(0.0, 0.1, 0.0))
