@@ -122,7 +122,8 @@ def test_the_machine_plays_back_what_was_recorded(name: str, tmp_path: Path) -> 
     # at a reversal the motors are at their limit, 0.03 mm behind, and there every pick-up is as good as another
     record(Motion(positions), tmp_path / "b.wav")
     as_sine = join(play(tmp_path / "b.wav")).positions_mm[RATE_HZ : RATE_HZ + len(positions)]
-    assert np.abs(played - as_sine).max() < 5e-4
+    # (0.5 um of it: the phase of a scale, of twice the pitch, is bent half as much, and rounded less by the low-pass)
+    assert np.abs(played - as_sine).max() < 6e-4
 
 
 def test_the_tape_says_its_pick_up(tmp_path: Path) -> None:
