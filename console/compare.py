@@ -6,12 +6,15 @@ from pathlib import Path as FilePath
 from typing import Any
 
 import click
+from click.core import ParameterSource
 
-from console import comparison, medium
+from console import comparison, medium, systems
 from console.desk import Desk, desk_options
+from console.panel import head_options
 from console.playing import Controls, tape_options
 from console.quantities import LENGTH
 from console.sheet import Sheet, sheet_options
+from console.tracing import Head
 from motion.motion import Path
 from motion.units import format_length_mm
 
@@ -22,34 +25,63 @@ Examples:
   morfax compare scan.png cam.csv
   morfax compare scan.png cam.wav --tolerance 50um -o cam-error.png
   morfax compare traced.csv played.csv --json
+  morfax compare scan.png --systems all -o five-machines.html
 """
+HEAD = {option.name for option in getattr(head_options(lambda: None), "__click_params__", [])}
 
 
 @click.command("compare", epilog=EXAMPLES)
 @click.argument("a", type=medium.FILE)
-@click.argument("b", type=medium.FILE)
+@click.argument("b", type=medium.FILE, required=False)
+@click.option(
+    "--systems",
+    "asked",
+    type=systems.Systems(),
+    help="Trace the drawing A once, record it in the medium of each system and play it on its control: all, or some of "
+    f"{','.join(systems.NAMES)}.",
+)
 @click.option("--tolerance", "tolerance_mm", type=LENGTH, help="End with exit code 1 if any place is further off.")
-@click.option("-o", "picture", type=medium.FILE, help="Draw the path with its error in colour (.png, .svg, .pdf).")
+@click.option(
+    "-o",
+    "picture",
+    type=medium.FILE,
+    help="Draw the path with its error in colour, or all contours of --systems (.png, .svg, .pdf); of --systems also a "
+    "report in one file (.html).",
+)
 @sheet_options
+@head_options
 @tape_options
 @desk_options
 @click.pass_context
 def command(
     ctx: click.Context,
     a: FilePath,
-    b: FilePath,
+    b: FilePath | None,
+    asked: tuple[str, ...] | None,
     tolerance_mm: float | None,
     picture: FilePath | None,
     sheet: Sheet,
+    head: Head,
     controls: Controls,
     desk: Desk,
 ) -> None:
-    """Say how far two contours are apart: paths, tapes, or one of them a drawing.
+    """Say how far two contours are apart: paths, tapes, or one of them a drawing; or set the systems side by side.
 
     A and B are path files (.csv), tapes (.wav; they are played first) or, one of them, a drawing. Only what is run with
     the tool in the work counts. Between two paths the distance is measured both ways. Against a drawing it is the
     distance to the ink's own centre, measured across the path in the image, and the ink that no path covers is counted.
+
+    With --systems, A is a drawing and there is no B: the table has a row for each system, and one that refuses or
+    faults says why in its row. The options of the head are for that alone.
     """
+    if asked is not None:
+        _refuse(b is not None, "--systems compares one drawing; leave B out")
+        beyond = systems.compare(systems.Wanted(a, asked, picture, tolerance_mm), sheet, head, desk)
+        ctx.exit(BEYOND_TOLERANCE if beyond else 0)
+    if b is None:
+        raise click.UsageError("there is nothing to compare with; give B, or --systems all")
+    given = sorted(name for name in HEAD if name and ctx.get_parameter_source(name) is ParameterSource.COMMANDLINE)
+    _refuse(bool(given), "options of the head are for --systems; without it nothing is traced")
     drawing_file, paths = _sorted(a, b)
     if picture is not None:
         medium.outgoing(medium.with_suffix_in(picture, (".png", ".svg", ".pdf")), a, b)
@@ -62,6 +94,12 @@ def command(
     desk.figures({**files, **_judged(found, tolerance_mm), **found.figures})
     if tolerance_mm is not None and found.largest_mm > tolerance_mm:
         ctx.exit(BEYOND_TOLERANCE)
+
+
+def _refuse(wrong: bool, why: str) -> None:
+    """Raise UsageError for options that do not go together."""
+    if wrong:
+        raise click.UsageError(why)
 
 
 def _sorted(a: FilePath, b: FilePath) -> tuple[FilePath | None, list[FilePath]]:

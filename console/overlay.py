@@ -65,7 +65,7 @@ def draw(picture: Picture, file: FilePath) -> None:
     from matplotlib.figure import Figure
 
     insets = _worst_places(picture)
-    view = _view(picture)
+    view = view_of(picture)
     figure = Figure(layout="compressed")
     FigureCanvasAgg(figure)
     main, beside = _axes(figure, len(insets), (view[3] - view[2]) / (view[1] - view[0]))
@@ -120,7 +120,7 @@ def _axes(figure: Figure, insets: int, height_to_width: float) -> tuple[Axes, li
 
 def _fill(figure: Figure, axes: Axes, picture: Picture, view: tuple[float, float, float, float]) -> None:
     """Draw the whole contour, with its marks and the scale of the colours."""
-    _ground(axes, picture, view)
+    ground(axes, picture, view)
     coloured = _contour(axes, picture, line_pt=1.8)
     _ends(axes, picture.path)
     _numbers(axes, picture)
@@ -131,7 +131,7 @@ def _fill(figure: Figure, axes: Axes, picture: Picture, view: tuple[float, float
         figure.colorbar(coloured, ax=axes, orientation="horizontal", shrink=0.7, aspect=40, label="error, µm")
 
 
-def _ground(axes: Axes, picture: Picture, view: tuple[float, float, float, float]) -> None:
+def ground(axes: Axes, picture: Picture, view: tuple[float, float, float, float]) -> None:
     """Draw what the path was compared with: the drawing in light grey, or the other path."""
     if picture.drawing is not None:
         darkness, extent = _cut_out(picture.drawing, view)
@@ -231,7 +231,7 @@ def _enlarge(axes: Axes, main: Axes, picture: Picture, place_mm: Array, number: 
     reach_mm = float(np.clip(20 * error_mm, 0.5, 4.0))
     x, y = place_mm
     view = (x - reach_mm, x + reach_mm, y - reach_mm, y + reach_mm)
-    _ground(axes, picture, view)
+    ground(axes, picture, view)
     _contour(axes, picture, line_pt=2.2)
     axes.set(xlim=view[:2], ylim=view[2:], aspect="equal")
     axes.tick_params(labelsize=7)
@@ -254,7 +254,7 @@ def _worst_places(picture: Picture) -> list[Array]:
     return places
 
 
-def _view(picture: Picture) -> tuple[float, float, float, float]:
+def view_of(picture: Picture) -> tuple[float, float, float, float]:
     """What part of the sheet to show, mm: all of it where there is no error to look at, else what was compared."""
     if picture.drawing is not None and picture.points_mm is None:
         return 0.0, picture.drawing.width_mm, 0.0, picture.drawing.height_mm

@@ -87,14 +87,22 @@ def _grid(rows: Mapping[str, Figures]) -> Any:
     """One row for each dictionary, one column for each figure that any of them has."""
     from rich.table import Table
 
-    keys = list(dict.fromkeys(key for row in rows.values() for key, value in row.items() if value is not None))
+    header, *lines = as_cells(rows)
     table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
-    table.add_column("")
-    for key in keys:
-        table.add_column(_told(key, None)[0], justify="right")
-    for name, row in rows.items():
-        table.add_row(name.replace("_", " "), *(_told(key, row.get(key))[1] for key in keys))
+    for number, label in enumerate(header):
+        table.add_column(label, justify="right" if number else "left")
+    for line in lines:
+        table.add_row(*line)
     return table
+
+
+def as_cells(rows: Mapping[str, Figures]) -> list[list[str]]:
+    """A head of labels, then a line for each dictionary: its name, and each figure that any of them has."""
+    keys = list(dict.fromkeys(key for row in rows.values() for key, value in row.items() if value is not None))
+    header = ["", *(_told(key, None)[0] for key in keys)]
+    return [header] + [
+        [name.replace("_", " "), *(_told(key, row.get(key))[1] for key in keys)] for name, row in rows.items()
+    ]
 
 
 def _told(key: str, value: Any) -> tuple[str, str]:

@@ -74,6 +74,11 @@ def pointwise(path: Contour, reference: Contour, sample_mm: float = SAMPLE_MM) -
     return ours.points_mm, _Finder(_sampled(reference)).distances_mm(ours.points_mm)
 
 
+def distances_mm(points_mm: Array, reference: Contour) -> Array:
+    """Distance of each point (n, 2) from a path, mm."""
+    return _Finder(_sampled(reference)).distances_mm(points_mm)
+
+
 def length_mm(path: Contour) -> float:
     """Length of the path in the work, mm."""
     return float(sum(_steps_mm(run).sum() for run in polylines(path)))

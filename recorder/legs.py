@@ -82,7 +82,7 @@ def legs(source: Source, limits: Limits) -> list[Leg]:
     if len(points_mm) < 2:
         return []
     along_mm = np.r_[0.0, np.cumsum(np.sqrt((np.diff(points_mm, axis=0) ** 2).sum(axis=1)))]
-    cuts = np.union1d(np.flatnonzero(rests_s > 0), _corners(points_mm, along_mm, limits))
+    cuts = np.union1d(np.flatnonzero(rests_s > 0), corners(points_mm, limits))
     cuts = np.union1d(cuts, [0, len(points_mm) - 1]).astype(np.int64)
     found = []
     for a, b in pairwise(cuts.tolist()):
@@ -125,8 +125,9 @@ def _moving(path: Path) -> tuple[Array, Array, Array]:
     return path.positions_mm[keep], speeds[moves], np.where(rests_s >= REST_S, rests_s, 0.0)
 
 
-def _corners(points_mm: Array, along_mm: Array, limits: Limits) -> NDArray[np.int64]:
-    """Points at which the path turns sharply: the sharpest of each neighbourhood."""
+def corners(points_mm: Array, limits: Limits) -> NDArray[np.int64]:
+    """Points at which a path of different points turns sharply: the sharpest of each neighbourhood."""
+    along_mm = np.r_[0.0, np.cumsum(np.sqrt((np.diff(points_mm, axis=0) ** 2).sum(axis=1)))]
     before = _at(points_mm, along_mm, along_mm - limits.window_mm)
     after = _at(points_mm, along_mm, along_mm + limits.window_mm)
     turn = _angle_rad(points_mm - before, after - points_mm)
