@@ -10,15 +10,15 @@ from click.core import ParameterSource
 
 from console import comparison, medium, systems
 from console.desk import Desk, desk_options
-from console.panel import head_options
 from console.playing import Controls, tape_options
-from console.quantities import LENGTH
+from console.quantities import LENGTH, LINES, PLACE, SPEED
 from console.sheet import Sheet, sheet_options
 from console.tracing import Head
 from motion.motion import Path
 from motion.units import format_length_mm
 
 BEYOND_TOLERANCE = 1
+DEPTH_MM, CLEARANCE_MM, GAP_MM = 5.0, 2.0, 0.5  # of the head that traces for --systems, as trace has them
 
 EXAMPLES = """\b
 Examples:
@@ -27,7 +27,7 @@ Examples:
   morfax compare traced.csv played.csv --json
   morfax compare scan.png --systems all -o five-machines.html
 """
-HEAD = {option.name for option in getattr(head_options(lambda: None), "__click_params__", [])}
+OF_SYSTEMS = ("head_mm", "lines", "speed_mm_s")
 
 
 @click.command("compare", epilog=EXAMPLES)
@@ -48,8 +48,12 @@ HEAD = {option.name for option in getattr(head_options(lambda: None), "__click_p
     help="Draw the path with its error in colour, or all contours of --systems (.png, .svg, .pdf); of --systems also a "
     "report in one file (.html).",
 )
+@click.option("--start", "head_mm", type=PLACE, help="Of --systems: where the head looks for the line, as in trace.")
+@click.option("--lines", type=LINES, help="Of --systems: several lines, all, outer or numbers, as in trace.")
+@click.option(
+    "--speed", "speed_mm_s", type=SPEED, default="10mm/s", show_default=True, help="Of --systems: tracing speed."
+)
 @sheet_options
-@head_options
 @tape_options
 @desk_options
 @click.pass_context
@@ -60,8 +64,10 @@ def command(
     asked: tuple[str, ...] | None,
     tolerance_mm: float | None,
     picture: FilePath | None,
+    head_mm: tuple[float, float] | None,
+    lines: str | tuple[int, ...] | None,
+    speed_mm_s: float,
     sheet: Sheet,
-    head: Head,
     controls: Controls,
     desk: Desk,
 ) -> None:
@@ -72,16 +78,18 @@ def command(
     distance to the ink's own centre, measured across the path in the image, and the ink that no path covers is counted.
 
     With --systems, A is a drawing and there is no B: the table has a row for each system, and one that refuses or
-    faults says why in its row. The options of the head are for that alone.
+    faults says why in its row.
     """
     if asked is not None:
         _refuse(b is not None, "--systems compares one drawing; leave B out")
+        _refuse(head_mm is not None and lines is not None, "--start picks one line, --lines several; give one of them")
+        head = Head(head_mm, speed_mm_s, DEPTH_MM, CLEARANCE_MM, None, GAP_MM, lines)
         beyond = systems.compare(systems.Wanted(a, asked, picture, tolerance_mm), sheet, head, desk)
         ctx.exit(BEYOND_TOLERANCE if beyond else 0)
     if b is None:
         raise click.UsageError("there is nothing to compare with; give B, or --systems all")
-    given = sorted(name for name in HEAD if name and ctx.get_parameter_source(name) is ParameterSource.COMMANDLINE)
-    _refuse(bool(given), "options of the head are for --systems; without it nothing is traced")
+    given = [name for name in OF_SYSTEMS if ctx.get_parameter_source(name) is ParameterSource.COMMANDLINE]
+    _refuse(bool(given), "--start, --lines and --speed are for --systems; without it nothing is traced")
     drawing_file, paths = _sorted(a, b)
     if picture is not None:
         medium.outgoing(medium.with_suffix_in(picture, (".png", ".svg", ".pdf")), a, b)

@@ -76,7 +76,7 @@ def test_a_system_that_refuses_says_why_and_the_others_go_on(
         (("cam.png", "cam.csv", "--systems", "all"), "leave B out"),
         (("cam.png",), "nothing to compare with"),
         (("cam.csv", "--systems", "all"), "no drawing"),
-        (("cam.csv", "cam.csv", "--speed", "5mm/s"), "options of the head are for --systems"),
+        (("cam.csv", "cam.csv", "--speed", "5mm/s"), "are for --systems; without it"),
         (("cam.png", "--systems", "all", "-o", "a.csv"), "must end in .html"),
     ],
 )
