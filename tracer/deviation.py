@@ -68,7 +68,10 @@ class Deviation:
 
 
 def deviation(drawing: Drawing, path: Path | Sequence[Array]) -> Deviation:
-    """Measure a path, or its runs as (n, 2) polylines in sheet mm, against the drawing; MotionFault if it nowhere follows the ink."""
+    """Measure a path, or its runs as (n, 2) polylines in sheet mm, against the drawing; MotionFault if it nowhere follows the ink.
+
+    Distances are those of the runs with the tool in the work; ink is missed if the path nowhere goes over it, be it with the tool up as on a lead line.
+    """
     runs = path.runs() if isinstance(path, Path) else list(path)
     places = [_places(run) for run in runs if len(run) > 1]
     places = [(points, headings) for points, headings in places if len(points)]
@@ -80,7 +83,7 @@ def deviation(drawing: Drawing, path: Path | Sequence[Array]) -> Deviation:
         raise MotionFault(
             "the path nowhere follows the drawing's ink, it only crosses it; check that both have the same scale and origin"
         )
-    missed, ink = _missed(drawing, runs, width_mm)
+    missed, ink = _missed(drawing, [path.xy_mm] if isinstance(path, Path) else runs, width_mm)
     return Deviation(np.vstack([p for p, _ in places]), np.concatenate(errors), width_mm, missed, ink)
 
 

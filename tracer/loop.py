@@ -17,12 +17,14 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tracer.view import Array
 
 STEP_MM = 0.03
 FRESH_MM = 3.0  # the newest stretch is no earlier one
 TOGETHER = 0.25  # of the line's width: two ways nearer than this, on about one heading, are one
+ON_IT = 0.05  # of the line's width: two ways nearer than this are the same line, as felt twice
 AT_ALL = 1.0  # of the line's width: further away the run has not come back to its own way
 ALIKE = math.cos(math.radians(30))
 
@@ -43,9 +45,13 @@ def loop_in(positions: Array, width_mm: float) -> tuple[int, int] | None:
     j = int(np.argmin(away))
     if away[j] > AT_ALL * width_mm:
         return None
-    back = _together(places[m::-1], places[j::-1], TOGETHER * width_mm)
+    apart, alike = _apart(places[m::-1], places[j::-1])
+    back = _first_not((apart < TOGETHER * width_mm) & alike)
     if back == 0:
         return int(index[j]), len(positions) - 1
+    back = int(
+        np.flatnonzero(apart[:back] < ON_IT * width_mm)[-1:].sum()
+    )  # where the corner onto the loop has been left
     return int(index[j - back]), int(index[m - back])
 
 
@@ -59,20 +65,24 @@ def comes_again(places: Array, step_mm: float, width_mm: float) -> bool:
     j = int(np.argmin(away))
     if away[j] > TOGETHER * width_mm:
         return False
-    return _together(newest[::-1], old[j::-1], TOGETHER * width_mm) == len(newest) - 1
+    apart, alike = _apart(newest[::-1], old[j::-1])
+    return _first_not((apart < TOGETHER * width_mm) & alike) == len(newest) - 1
 
 
-def _together(run: Array, old: Array, within_mm: float) -> int:
-    """For how many places two ways, both given from their newest place back, go together."""
+def _first_not(good: NDArray[np.bool_]) -> int:
+    """The last of the places that are good without a break, from the first on."""
+    return len(good) - 1 if good.all() else max(0, int(np.argmin(good)) - 1)
+
+
+def _apart(run: Array, old: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """Two ways, both given from their newest place back: how far they are apart, mm, and whether they have about one heading."""
     n = min(len(run), len(old))
     apart = np.full(n, math.inf)
     for shift in (-1, 0, 1):  # the places of one need not fall on the other's
         shifted = old[np.clip(np.arange(n) + shift, 0, len(old) - 1)]
         apart = np.minimum(apart, np.hypot(*(run[:n] - shifted).T))
     headings = [_headings(way[:n]) for way in (run, old)]
-    alike = np.sum(headings[0] * headings[1], axis=1) > ALIKE
-    one = (apart < within_mm) & alike
-    return n - 1 if one.all() else max(0, int(np.argmin(one)) - 1)
+    return apart, np.sum(headings[0] * headings[1], axis=1) > ALIKE
 
 
 def _headings(places: Array) -> Array:

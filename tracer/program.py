@@ -139,8 +139,8 @@ class Trace:
     def _first_pass(self, line: Line, actions: list[Action]) -> Iterator[Array]:
         """Along a line, with what is done on the way, (n, 3) mm."""
         z_mm = self.work.clearance_mm
-        halts = [action.halt.at for action in actions] + [len(line.xy_mm) - 1.0] * line.goes_back
-        pieces = stops.pieces(line.xy_mm, halts, BRAKE_MM_S2, self.rate_hz)
+        halts = [*(action.halt.at for action in actions), len(line.xy_mm) - 1]
+        pieces = stops.pieces(line.xy_mm, halts, BRAKE_MM_S2, self.rate_hz)[: len(halts)]
         for piece, action in zip_longest(pieces, actions):
             for first in range(0, len(piece), BLOCK_SAMPLES):
                 yield _at(piece[first : first + BLOCK_SAMPLES], z_mm)
@@ -151,6 +151,7 @@ class Trace:
     def _again(self, line: Line, z_mm: float, depth_mm: float) -> Iterator[Array]:
         """Along a line, or the loop that it leads to, once more at another depth, (n, 3) mm: straight on where it closes, else up and over."""
         xy_mm = line.xy_mm[line.loop_from if line.is_lead else 0 :]
+        _, xy_mm, _ = stops.pieces(xy_mm, [0, len(xy_mm) - 1], BRAKE_MM_S2, self.rate_hz)
         if line.ending == "closed" or line.is_lead:
             yield _at(ramp.positions_mm(xy_mm[-1], xy_mm[0], self.work.feed_mm_s, rate_hz=self.rate_hz), z_mm)
         else:

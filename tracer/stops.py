@@ -24,6 +24,7 @@ from tracer import course
 from tracer.view import Array
 
 _NOTHING_MM = 1e-9
+CORNER = np.radians(20)
 RUN_MM = 0.1  # nodes of a way that is run from memory
 SLOWEST_MM_S = 0.02  # where the head swivels it stands: its time there is kept
 
@@ -47,14 +48,30 @@ def pieces(xy_mm: Array, halts: Sequence[float], acceleration_mm_s2: float, rate
 
 def run(way_mm: Array, speed_mm_s: float, acceleration_mm_s2: float, rate_hz: float) -> Array:
     """Along a way (n, 2) mm from rest to rest, as fast as its bends allow and no faster than asked; at a uniform rate."""
-    lengths = np.r_[0.0, np.cumsum(np.hypot(*np.diff(way_mm, axis=0).T))]
-    some = np.r_[np.arange(0.0, lengths[-1], RUN_MM), lengths[-1]]
+    steps_mm = np.hypot(*np.diff(way_mm, axis=0).T)
+    lengths = np.r_[0.0, np.cumsum(steps_mm)]
+    stood = np.unique(lengths[1:][steps_mm < _NOTHING_MM])  # where the head swivelled
+    even = np.arange(0.0, lengths[-1], RUN_MM)
+    even = even[[not np.any(np.abs(stood - mm) < 0.5 * RUN_MM) for mm in even]] if len(stood) else even
+    some = np.unique(np.r_[0.0, even, stood, lengths[-1]])
     places = np.column_stack([np.interp(some, lengths, way_mm[:, k]) for k in (0, 1)])
-    speeds = course.speeds(places, speed_mm_s, acceleration_mm_s2, 0.0)
-    speeds = np.minimum(speeds, course.speeds(places[::-1], speed_mm_s, acceleration_mm_s2, 0.0)[::-1])
+    corners = [0, *_corners(places), len(places) - 1]
+    speeds = np.zeros(len(places))
+    for a, b in pairwise(corners):
+        there = course.speeds(places[a : b + 1], speed_mm_s, acceleration_mm_s2, 0.0)
+        back = course.speeds(places[b : (a - 1 if a else None) : -1], speed_mm_s, acceleration_mm_s2, 0.0)[::-1]
+        speeds[a : b + 1] = np.minimum(there, back)
     steps_mm = np.hypot(*np.diff(places, axis=0).T)
-    took_s = steps_mm / np.maximum(0.5 * (speeds[1:] + speeds[:-1]), SLOWEST_MM_S)
+    from_rest_mm_s = 0.5 * np.sqrt(acceleration_mm_s2 * steps_mm)  # mean of a step from rest to rest
+    took_s = steps_mm / np.maximum(0.5 * (speeds[1:] + speeds[:-1]), from_rest_mm_s + SLOWEST_MM_S)
     return _timed(places, took_s, steps_mm, speeds, rate_hz)
+
+
+def _corners(places: Array) -> list[int]:
+    """Places (n, 2) at which a way turns sharply, where the head stops to swivel."""
+    steps = np.diff(places, axis=0)
+    turned = np.diff(np.arctan2(steps[:, 1], steps[:, 0]))
+    return [int(i) + 1 for i in np.flatnonzero(np.abs(np.remainder(turned + np.pi, 2 * np.pi) - np.pi) > CORNER)]
 
 
 def _speeds(steps_mm: Array, steps_s: Array, cuts: Array, acceleration_mm_s2: float) -> Array:
