@@ -415,3 +415,13 @@ def test_claim_17_the_motor_turns_a_member_whose_signal_is_fed_back(tmp_path: Pa
     with pytest.raises((LockFault, FollowingFault)) as caught:
         join(stuck)
     assert caught.value.axis == "y"
+
+
+def test_every_claim_stands_in_the_table() -> None:
+    lines = (Path(__file__).parents[2] / "docs" / "claims-morfax.md").read_text(encoding="utf-8").splitlines()
+    rows = [line.split("|") for line in lines if line.startswith("| ") and line[2].isdigit()]
+    assert [int(row[1]) for row in rows] == list(range(1, 18))
+    for row in rows:
+        assert row[3].split("`")[1] in globals()
+        modules = [name for name in row[4].split("`") if name.endswith(".py")]
+        assert all((Path(__file__).parents[2] / module).is_file() for module in modules)
