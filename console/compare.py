@@ -11,7 +11,7 @@ from click.core import ParameterSource
 from console import comparison, medium, systems
 from console.desk import Desk, desk_options
 from console.playing import Controls, tape_options
-from console.quantities import LENGTH, LINES, PLACE, SPEED
+from console.quantities import LENGTH, LINES, ORIGIN, PLACE, SPEED
 from console.sheet import Sheet, sheet_options
 from console.tracing import Head
 from motion.motion import Path
@@ -53,6 +53,12 @@ OF_SYSTEMS = ("head_mm", "lines", "speed_mm_s")
 @click.option(
     "--speed", "speed_mm_s", type=SPEED, default="10mm/s", show_default=True, help="Of --systems: tracing speed."
 )
+@click.option(
+    "--origin",
+    type=ORIGIN,
+    help="Where the path's zero is on the drawing: X,Y in mm, or reference, the drawing's reference point.  [default: "
+    "the sheet's lower-left corner]",
+)
 @sheet_options
 @tape_options
 @desk_options
@@ -67,6 +73,7 @@ def command(
     head_mm: tuple[float, float] | None,
     lines: str | tuple[int, ...] | None,
     speed_mm_s: float,
+    origin: Any,
     sheet: Sheet,
     controls: Controls,
     desk: Desk,
@@ -95,6 +102,9 @@ def command(
         medium.outgoing(medium.with_suffix_in(picture, (".png", ".svg", ".pdf")), a, b)
     drawing = sheet.open(drawing_file) if drawing_file else None
     opened = [_path(file, controls, desk) for file in paths]
+    if origin is not None:
+        _refuse(drawing is None, "--origin is a place on a drawing; without one leave it out")
+        opened = [_from(origin, drawing, opened[0])]
     found = comparison.from_drawing(drawing, opened[0]) if drawing else comparison.from_path(opened[0], opened[1])
     if picture is not None:
         _draw(picture, f"{a.name} and {b.name}", found, opened, drawing)
@@ -125,6 +135,15 @@ def _path(file: FilePath, controls: Controls, desk: Desk) -> Path:
     from motion.pathfile import read_path
 
     return read_path(file)
+
+
+def _from(origin: Any, drawing: Any, path: Path) -> Path:
+    """A path whose zero is at a place of the drawing, in the sheet's own coordinates."""
+    from motion.placement import Placement
+    from tracer.stance import reference_on
+
+    x_mm, y_mm = reference_on(drawing) if origin == "reference" else origin
+    return Placement(origin_mm=(-x_mm, -y_mm)).path(path)
 
 
 def _draw(file: FilePath, names: str, found: comparison.Comparison, paths: list[Path], drawing: Any) -> None:

@@ -79,6 +79,11 @@ def _tracks(text: str) -> tuple[int, ...]:
         raise ValueError(f"{text[:40]!r} names no tracks; give 2,1,3,4") from None
 
 
+def _parse_origin(text: str) -> Any:
+    """Where a machine's zero is on the sheet: "reference", or a place."""
+    return "reference" if text.strip().lower() == "reference" else parse_place_mm(text)
+
+
 LENGTH = Quantity("length", parse_length_mm, above_zero=True)
 SPEED = Quantity("speed", parse_speed_mm_s)
 FREQUENCY = Quantity("frequency", parse_frequency_hz)
@@ -91,3 +96,4 @@ TIME = Quantity("time", parse_time_s)
 LINES = Quantity("lines", _parse_lines)
 OVERRIDE = Quantity("stops", _parse_override)
 TRACKS = Quantity("tracks", _tracks)
+ORIGIN = Quantity("x,y or reference", _parse_origin)

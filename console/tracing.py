@@ -97,7 +97,7 @@ class Head:
         """The reference point: the one given, that from which the program begins, or the only one on the sheet; raises LineFault without one."""
         from tracer.stance import reference_on
 
-        return self.marks.reference_mm or trace.reference_mm or reference_on(drawing, trace.line_width_mm)
+        return self.marks.reference_mm or trace.reference_mm or reference_on(drawing)
 
     def settings(self) -> Settings:
         """Settings of the head; raises UsageError for one that there is not, or that is out of bounds."""

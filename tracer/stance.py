@@ -89,15 +89,16 @@ def put_down(
         )
 
 
-def reference_on(drawing: Drawing, width_mm: float) -> tuple[float, float]:
-    """The place of the only reference point of a drawing whose line has a width, mm; raises LineFault if there is none, or several."""
+def reference_on(drawing: Drawing) -> tuple[float, float]:
+    """The place of the only reference point of a drawing, mm; raises LineFault if there is none, or several."""
     sheet = Sheet.of(drawing)
-    found = list(references(sheet, _view(sheet, None, width_mm), sheet.longest()))
+    line = sheet.longest()
+    found = list(references(sheet, _view(sheet, None, line.width_mm), line))
     if len(found) == 1:
         return found[0].place_mm
     places = "; ".join(f"{x:.1f},{y:.1f}" for x, y in (reference.place_mm for reference in found[:8]))
     what = f"{len(found)} crosses and rings, at {places}" if found else "no small cross or ring"
-    raise LineFault(f"no reference point is certain: there is {what}; give --reference X,Y")
+    raise LineFault(f"no reference point is certain: there is {what}; give its place, X,Y in mm, instead")
 
 
 def _view(sheet: Sheet, aperture_mm: float | None, width_mm: float) -> View:

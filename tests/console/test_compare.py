@@ -7,6 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from motion.pathfile import read_path, write_path
+from motion.placement import Placement
 from tests.console.conftest import SAMPLES, Morfax
 
 UM = 1e-3
@@ -70,3 +72,24 @@ def test_a_path_that_only_crosses_the_ink_is_no_path_of_that_drawing(morfax: Mor
     (here / "across.csv").write_text("x,y\n5,60\n85,61\n")
     answer = morfax("compare", SAMPLES / "cam.png", "across.csv", "--tolerance", "1mm")
     assert answer.exit_code == 7 and "scale" in answer.fault
+
+
+@pytest.mark.parametrize(("origin", "exit_code"), [("10mm,0", 0), ("10.5,0", 1)])
+def test_a_path_from_another_zero_is_compared_where_it_was_drawn(
+    morfax: Morfax, here: Path, origin: str, exit_code: int
+) -> None:
+    morfax("trace", SAMPLES / "cam.png", "-o", "cam.csv")
+    path = read_path(here / "cam.csv")
+    write_path(Placement(origin_mm=(10.0, 0.0)).path(path), here / "moved.csv")
+    answer = morfax("compare", SAMPLES / "cam.png", "moved.csv", "--origin", origin, "--tolerance", "50um", "--json")
+    assert answer.exit_code == exit_code
+
+
+def test_an_origin_without_a_drawing_is_refused(morfax: Morfax, path_file: Path) -> None:
+    answer = morfax("compare", path_file, path_file, "--origin", "reference")
+    assert answer.exit_code == 2 and "--origin is a place on a drawing" in answer.fault
+
+
+def test_a_reference_point_that_is_not_drawn_is_a_fault(morfax: Morfax, path_file: Path) -> None:
+    answer = morfax("compare", SAMPLES / "cam.png", path_file, "--origin", "reference")
+    assert answer.exit_code == 4 and "there is no small cross or ring; give its place" in answer.fault
