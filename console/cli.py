@@ -28,7 +28,7 @@ VERBS = {
     "run": "Go the whole way: trace a drawing, play the tape, compare all three.",
     "inspect": "Say what is on a tape: tracks, carriers, levels, travel, format.",
     "record": "Record a path file, or another program, in the medium that the name after -o says.",
-    "mend": "Record a tape anew whose end tells which dropout lost how many cycles.",
+    "mend": "Record a tape anew whose end tells which dropout lost how many whole cycles.",
     "age": "Wear a tape as a real recorder and the years do.",
 }
 
