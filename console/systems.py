@@ -157,12 +157,15 @@ def _draw(wanted: Wanted, drawing: Drawing, traced: Traced, results: list[Result
 
 def measure(drawing: Drawing, traced: Traced, speed_mm_s: float, asked: Sequence[str], desk: Desk) -> list[Result]:
     """Record, play and measure each system that is asked for."""
+    from player.controls import CONTROLS
+    from recorder.media import MEDIA
+
     desk.warn_of_compiling("recorders and controls", "motion", "recorder", "player")
     corners_mm = corner_places(traced.path)
     results = []
     with tempfile.TemporaryDirectory(prefix="morfax-") as folder, desk.bar("comparing", len(asked)) as advance:
         for done, suffix in enumerate(asked):
-            desk.note(f"{NAMES[suffix]}: recording and playing a .{suffix} program")
+            desk.note(f"{NAMES[suffix]}: {MEDIA[f'.{suffix}'].what}, played by {CONTROLS[f'.{suffix}'].what}")
             try:
                 results.append(_measured(drawing, traced, speed_mm_s, corners_mm, FilePath(folder) / f"part.{suffix}"))
             except Fault as fault:

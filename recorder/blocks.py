@@ -35,6 +35,7 @@ from motion.files import written_beside
 from motion.motion import IN_WORK_BELOW_MM, Path
 from recorder.arcs import Segment, fit
 from recorder.legs import Source, as_path
+from recorder.report import Written
 
 TOLERANCE_MM = 0.01
 WRITTEN_MM = 1e-4  # the last digit
@@ -47,19 +48,13 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
-class BlockReport:
+class BlockReport(Written):
     """What was recorded: file, lines and arcs (rapids are lines), running time, largest distance from the motion."""
 
-    file: FilePath
     lines: int
     arcs: int
     duration_s: float
     deviation_mm: float
-
-    @property
-    def bytes(self) -> int:
-        """Size of the file."""
-        return self.file.stat().st_size
 
     @property
     def figures(self) -> dict[str, Any]:

@@ -36,6 +36,7 @@ from motion.faults import MotionFault
 from motion.motion import Path
 from recorder.cubicfile import STEPS_PER_CONSTANT, CubicFormat, CubicProgram, write_program
 from recorder.legs import Leg, Limits, Source, as_path, legs
+from recorder.report import WrittenIntervals
 
 Array = NDArray[np.float64]
 Words = NDArray[np.int64]
@@ -51,24 +52,10 @@ CORNER_SHARES = (1.0, 0.5, 0.25)  # of that angle
 
 
 @dataclass(frozen=True, slots=True)
-class CubicReport:
-    """What was recorded: file, format, intervals, and the largest distance of the joined cubics from the motion."""
+class CubicReport(WrittenIntervals[CubicFormat]):
+    """What was recorded, and at how many places the machine stands; the joined cubics are what may lie off."""
 
-    file: FilePath
-    format: CubicFormat
-    intervals: int
     stops: int
-    deviation_mm: float
-
-    @property
-    def bytes(self) -> int:
-        """Size of the file."""
-        return self.file.stat().st_size
-
-    @property
-    def duration_s(self) -> float:
-        """How long the program runs, s."""
-        return self.intervals * self.format.interval_s
 
     @property
     def figures(self) -> dict[str, Any]:
@@ -115,7 +102,7 @@ def record_cubics(
     checks = {k: tuple(places[k].tolist()) for k in range(0, len(places), CHECK_EVERY)}
     checks[len(places) - 1] = tuple(places[-1].tolist())
     write_program(CubicProgram(fmt, words, checks), file)
-    return CubicReport(FilePath(file), fmt, len(words), fit.stops, fit.off_mm)
+    return CubicReport(FilePath(file), fmt, len(words), fit.off_mm, fit.stops)
 
 
 def differences(samples: Words, points: int, linear: int = 1) -> Words:

@@ -19,6 +19,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from itertools import chain
 from pathlib import Path as FilePath
+from typing import Any
 
 import numpy as np
 import soundfile
@@ -28,6 +29,7 @@ from motion.faults import MotionFault
 from motion.files import disk_full_fault, written_beside
 from motion.motion import AXES, Motion, Path
 from recorder.carrier import Carrier, Frames
+from recorder.report import Written
 from recorder.riff import make_plain, replace_text
 from recorder.spool import Spool, medium, sidecar
 from recorder.tapeformat import TapeFormat
@@ -41,10 +43,9 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
-class Recording:
-    """What was recorded: the file, its format with start and end, its length, and the largest speed of each axis."""
+class Recording(Written):
+    """What was recorded: its format with start and end, its length, and the largest speed of each axis."""
 
-    file: FilePath
     format: TapeFormat
     frames: int
     largest_speed_mm_s: tuple[float, ...]
@@ -55,19 +56,9 @@ class Recording:
         return self.frames / self.format.sample_rate_hz
 
     @property
-    def bytes(self) -> int:
-        """Size of the file."""
-        return self.file.stat().st_size
-
-    @property
-    def motion_s(self) -> float:
-        """Length of the motion alone, s."""
-        return self.duration_s - 2 * _dwell_samples(self.format) / self.format.motion_rate_hz
-
-    @property
-    def end_mm(self) -> tuple[float, ...]:
-        """Where the motion ends, mm."""
-        return self.format.end_mm or self.format.start_mm
+    def figures(self) -> dict[str, Any]:
+        """What else is worth telling."""
+        return {"largest_speed_mm_s": max(self.largest_speed_mm_s)}
 
 
 def record(

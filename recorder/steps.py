@@ -32,6 +32,7 @@ from motion.faults import MotionFault
 from motion.motion import IN_WORK_BELOW_MM
 from recorder.legs import Leg, Limits, Source, as_path, legs
 from recorder.lengths import cut
+from recorder.report import WrittenIntervals
 from recorder.rings import LARGEST, SAME, commands
 from recorder.stepfile import MOST_ROWS, STEP_MM, Program, StepFormat, write_program
 
@@ -44,26 +45,12 @@ Steps = NDArray[np.int64]
 
 
 @dataclass(frozen=True, slots=True)
-class StepReport:
-    """What was punched: file, format, rows and intervals, and how far the ends of the intervals lie off the motion."""
+class StepReport(WrittenIntervals[StepFormat]):
+    """What was punched: rows, how many intervals are vectors, and steps; the intervals' ends are what may lie off."""
 
-    file: FilePath
-    format: StepFormat
     rows: int
-    intervals: int
     vector_intervals: int
     steps: int
-    deviation_mm: float
-
-    @property
-    def bytes(self) -> int:
-        """Size of the file."""
-        return self.file.stat().st_size
-
-    @property
-    def duration_s(self) -> float:
-        """How long the program runs, s."""
-        return self.intervals * self.format.interval_s
 
     @property
     def figures(self) -> dict[str, Any]:
@@ -100,7 +87,7 @@ def record_steps(
     write_program(Program(fmt, rows), file)
     vectors = len(lengths) - int(np.count_nonzero(rows & AXIS_ROW))
     steps = int(np.abs(lengths).sum())
-    return StepReport(FilePath(file), fmt, len(rows), len(lengths), vectors, steps, off_mm)
+    return StepReport(FilePath(file), fmt, len(lengths), off_mm, len(rows), vectors, steps)
 
 
 def encode(lengths: Steps, down: NDArray[np.bool_], fmt: StepFormat) -> NDArray[np.uint8]:

@@ -55,7 +55,7 @@ def test_the_motion_comes_back_between_two_standstills(tmp_path: Path, name: str
     error = (cycles - 20 * (wanted - motion[0]))[1000:-1000]  # the transform rings at the tape's two ends
     assert np.abs(error).max() < QUANTISED_CYCLES
     assert recording.frames == 8 * len(cycles)
-    assert recording.duration_s == pytest.approx(recording.motion_s + 2.0)
+    assert recording.duration_s == pytest.approx(len(motion) / RATE_HZ + 2.0)
 
 
 @settings(max_examples=15, suppress_health_check=[HealthCheck.function_scoped_fixture])
@@ -93,7 +93,7 @@ def test_a_path_is_recorded_as_it_is(tmp_path: Path) -> None:
     path = ThinnedPath(np.array([0.0, 0.5]), np.array([[0.0, 0.0, 2.0], [5.0, 0.0, 2.0]]))
     done: list[tuple[float, float | None]] = []
     recording = record(path, tmp_path / "a.wav", progress=lambda done_s, total_s: done.append((done_s, total_s)))
-    assert recording.end_mm == (5.0, 0.0, 2.0)
+    assert recording.format.end_mm == (5.0, 0.0, 2.0)
     assert recording.largest_speed_mm_s == pytest.approx((10.0, 0.0, 0.0), abs=1e-9)
     assert done[-1] == (pytest.approx(0.5, abs=1e-3), 0.5)
 
