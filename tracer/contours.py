@@ -23,6 +23,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import cv2
 import numpy as np
@@ -43,6 +44,7 @@ COVERED = 0.8  # a stroke is a part of a followed line if as much of it lies on 
 FIRSTS = 16  # lines that are tried as the first of the order, and as the last
 SOME = 2000  # places in all the orders that are tried: of a hundred lines all FIRSTS are, of a thousand two
 MOVED = 3  # lines moved together
+TURNINGS = 6  # orders that are tried, each with the lines turned as is best for the one before
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,6 +113,44 @@ def in_order(starts_mm: Array, ends_mm: Array, before: NDArray[np.bool_]) -> lis
     ways = [_improved(way, idle_mm, before) for way in _from_firsts(idle_mm, before)]
     ways += [_improved(way[::-1].copy(), idle_mm, before) for way in _from_firsts(idle_mm.T.copy(), before.T.copy())]
     return [int(i) for i in min(ways, key=lambda way: idle_way_mm(way, idle_mm))]
+
+
+def in_order_and_turned(
+    starts_mm: Array, ends_mm: Array, before: NDArray[np.bool_], may_turn: NDArray[np.bool_]
+) -> tuple[list[int], NDArray[np.bool_]]:
+    """The order of lines, and which of those that may be begun at their other end are to be, that keep the idle way short."""
+    ends = np.stack([np.asarray(starts_mm, float), np.asarray(ends_mm, float)])
+    turned = np.zeros(len(may_turn), bool)
+    best: tuple[float, list[int], NDArray[np.bool_]] | None = None
+    for _ in range(TURNINGS):
+        begin, finish = (ends[np.where(turned, 1 - k, k), np.arange(len(turned))] for k in (0, 1))
+        order = in_order(begin, finish, before)
+        turned = turned ^ _to_turn(begin, finish, order, may_turn)
+        begin, finish = (ends[np.where(turned, 1 - k, k), np.arange(len(turned))] for k in (0, 1))
+        idle_mm = float(np.hypot(*(begin[order[1:]] - finish[order[:-1]]).T).sum())
+        if best is not None and idle_mm >= best[0] - 1e-9:
+            break
+        best = idle_mm, order, turned
+    assert best is not None
+    return best[1], best[2]
+
+
+def _to_turn(starts_mm: Array, ends_mm: Array, order: list[int], may_turn: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Which lines of an order are best turned round: the shortest way through it, each line as it is or turned."""
+    ends = np.stack([starts_mm, ends_mm])
+    idle_mm, came = np.where([True, bool(may_turn[order[0]])], 0.0, np.inf), []
+    for a, b in pairwise(order):
+        steps = np.hypot(*(ends[:, b][None] - ends[::-1, a][:, None]).transpose(2, 0, 1))  # from a (as is, turned) to b
+        total = idle_mm[:, None] + steps
+        total[:, 1] = total[:, 1] if may_turn[b] else np.inf
+        came.append(total.argmin(axis=0))
+        idle_mm = total.min(axis=0)
+    turned = np.zeros(len(may_turn), bool)
+    state = int(idle_mm.argmin())
+    for line, before in zip(order[::-1], [*came[::-1], None], strict=True):
+        turned[line] = bool(state)
+        state = int(before[state]) if before is not None else 0
+    return turned
 
 
 def idle_way_mm(way: Sequence[int] | NDArray[np.int64], idle_mm: Array) -> float:

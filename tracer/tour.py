@@ -28,6 +28,7 @@ from tracer.sequence import followed
 from tracer.settings import Settings
 from tracer.view import Array
 
+ALIKE = 0.02  # a line is as long from its other end, within this share
 THINNED = 30  # of the positions one in so many tells where a line is: every 50 um at 10 mm/s
 
 Told = Callable[[float, float], None]
@@ -58,9 +59,10 @@ def trace_lines(
             left_out += 1
         else:
             lines.append(line)
+    again = partial(_turned_round, sheet, settings=settings or Settings(), operator=operator)
     if not any(len(line.xy_mm) > 1 for line in lines):
         raise _none_begun(lines)
-    return Trace(tuple(_in_order(lines)), operator, left_out=left_out)
+    return Trace(tuple(_in_order(lines, again)), operator, left_out=left_out)
 
 
 def _follow(sheet: Sheet, contour: Contour, settings: Settings, operator: Operator, told: Told | None) -> Line | None:
@@ -94,11 +96,20 @@ def _is_inner(contour: Contour, lines: list[Line]) -> bool:
     return any(_goes_round(line) and contour.lies_in(_places(line)) for line in lines)
 
 
-def _in_order(lines: list[Line]) -> list[Line]:
-    """The lines in the order in which they are cut."""
+def _in_order(lines: list[Line], again: Callable[[Line], Line]) -> list[Line]:
+    """The lines in the order in which they are cut; open ones are followed once more from their other end where that is nearer."""
     inner = contours.nested([_places(line) for line in lines], [_goes_round(line) for line in lines])
     starts, ends = (np.array([getattr(line, end) for line in lines]) for end in ("begin_mm", "end_mm"))
-    return [lines[i] for i in contours.in_order(starts, ends, inner)]
+    may_turn = np.array([line.ending == "ended" and not line.goes_back for line in lines])
+    order, turned = contours.in_order_and_turned(starts, ends, inner, may_turn)
+    return [again(lines[i]) if turned[i] else lines[i] for i in order]
+
+
+def _turned_round(sheet: Sheet, line: Line, settings: Settings, operator: Operator) -> Line:
+    """An open line followed from its other end; as it was, if the head goes another way from there."""
+    other = followed(sheet, line.place(len(line.xy_mm) - 1), settings, operator, number=line.number)
+    there = np.hypot(*(other.xy_mm[-1] - line.xy_mm[0])) < line.width_mm
+    return other if there and abs(other.length_mm / line.length_mm - 1) < ALIKE else line
 
 
 def _goes_round(line: Line) -> bool:

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from itertools import pairwise, permutations
+from itertools import pairwise, permutations, product
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import settings as tried
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 
 from motion.contour import distance
 from motion.faults import LineFault
 from motion.motion import MOTION_RATE_HZ, join, thin
 from tests.tracer.inked import UM, Points, arc, inked, polyline
 from tracer import tour
-from tracer.contours import idle_way_mm, in_order, nested, plan
+from tracer.contours import idle_way_mm, in_order, in_order_and_turned, nested, plan
 from tracer.line import Line
 from tracer.lines import Sheet
 from tracer.program import Trace
@@ -80,6 +81,32 @@ def test_many_lines_are_ordered_as_well_as_a_square_of_holes_allows() -> None:
     shuffled = np.random.default_rng(3).permutation(at)
     order = in_order(shuffled, shuffled, np.zeros((144, 144), bool))
     assert np.hypot(*np.diff(shuffled[order], axis=0).T).sum() < 1.1 * 1430
+
+
+@tried(max_examples=40, deadline=None)
+@given(seed=st.integers(0, 1 << 30))
+def test_lines_are_turned_round_as_is_best_in_their_order(seed: int) -> None:
+    """Six lines, four of which may be turned: no choice of those makes the same order shorter, and turning them makes no way longer."""
+    rng = np.random.default_rng(seed)
+    ends, may_turn, none = rng.uniform(0, 100, (2, 6, 2)), np.arange(6) < 4, np.zeros((6, 6), bool)
+
+    def idle(order: list[int], turned: NDArray[np.bool_]) -> float:
+        starts, finish = np.where(turned[:, None], ends[::-1], ends)
+        return float(np.hypot(*(starts[order[1:]] - finish[order[:-1]]).T).sum())
+
+    order, turned = in_order_and_turned(*ends, none, may_turn)
+    every = [np.array([*some, False, False]) for some in product([False, True], repeat=4)]
+    assert not turned[4:].any()
+    assert idle(order, turned) == pytest.approx(min(idle(order, some) for some in every), abs=1 * UM)
+    assert idle(order, turned) <= idle(in_order(*ends, none), np.zeros(6, bool)) + 1 * UM
+
+
+def test_hatching_is_drawn_to_and_fro() -> None:
+    """Five strokes 3 mm apart, each begun where the one before has ended: 12 mm from line to line, and the pen's round at both ends."""
+    strokes = [polyline((4, y), (20, y)) for y in range(4, 19, 3)]
+    program = trace_lines(inked(*strokes))
+    assert program.idle_mm == pytest.approx(12, abs=0.2)
+    assert program.length_mm == pytest.approx(5 * 16, abs=10 * 30 * UM)
 
 
 def test_what_lies_inside_what() -> None:
