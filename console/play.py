@@ -146,6 +146,8 @@ def command(
     desk.figures({medium.called(tape): str(tape), **results, **figures(played)})
     if played.fault:
         raise played.fault
+    if not played.path.tool.any():
+        desk.note("the tool never comes into the work; a tape that runs backwards goes up where it should go down")
 
 
 def _refuse_foreign(tape: FilePath, given: dict[str, Any]) -> None:

@@ -67,6 +67,9 @@ class Controls:
         desk.warn_of_compiling("the controls", "motion", "player")
         playback = self._put_in(file, settings)
         playback.chart = chart
+        if order := getattr(playback, "found_order", None):
+            tracks = ",".join(map(str, order))
+            desk.note(f"{file.name} has its tracks in another order; by where it ends it is --tracks {tracks}")
         met: list[Fault] = []
         stream = desk.watched(_until_fault(playback, met), f"playing {file.name}", playback.duration_s)
         path = _path(stream, raw, met)

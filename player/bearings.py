@@ -35,6 +35,11 @@ STANDSTILL_S = 0.05
 STANDSTILL_CYCLES = 0.25  # phase that moves more than this within the 50 ms moves on purpose
 SILENT_LEVEL = 1e-3  # -60 dB of full scale
 CARRIER_SHARE = 0.9  # of a track's power; 20 dB of noise leave 0.99, clipping to a square 0.81, white noise has 0.2
+LEVEL_STEADY, LEVEL_LOST, FEWEST_STEADY_ROWS = (
+    0.8,
+    0.5,
+    48,
+)  # shares of the level; 8 ms at 6 kHz: a dropout, or no carrier
 LEAST_CREST = 1.24  # 1.31 and more of a sine with eight samples, 1.20 where two thirds of it are cut off
 UNSTEADY_CYCLES = 0.009  # RMS at standstill: five times as much is a twentieth of a cycle; 20 dB of noise make 0.0079
 REFERENCE_BAND = 0.1  # a tape's speed may be this much off
@@ -93,6 +98,7 @@ def take_bearings(frames: Float32s, phases: Phases, fmt: TapeFormat) -> Bearings
     for track in range(len(levels)):
         sensor = PICK_UPS[DEFAULT_PICK_UP] if track == 0 else fmt.sensor  # the reference comes from its source, a sine
         share = CARRIER_SHARE * sensor.fundamental_share(reference_hz, fmt.sample_rate_hz)
+        _demand_no_dropout(track, phases.levels[:rows, track], still[:, track], share, fmt)
         if not sensor.flat:
             _demand_round(track, still[:, track], names)
         _demand_carrier(track, float(levels[track]), float(power[track]), share, names)
@@ -183,8 +189,8 @@ def _demand_signal(track: int, mean_square: float, names: Sequence[str]) -> None
     if not level >= SILENT_LEVEL:
         raise TapeFault(
             f"track {track + 1} ({track_name(track, names)}) is silent: level {decibels(level)}, at least "
-            f"{decibels(SILENT_LEVEL)} of full scale is needed; record the tape again, or give the tracks in the order "
-            f"reference, {', '.join(name.upper() for name in names)}"
+            f"{decibels(SILENT_LEVEL)} of full scale is needed; {'without the reference no place can be known: ' * (not track)}"
+            f"give a copy that has it, or say which tracks are reference, {', '.join(name.upper() for name in names)} (--tracks)"
         )
 
 
@@ -197,6 +203,25 @@ def _demand_round(track: int, samples: Float32s, names: Sequence[str]) -> None:
             f"track {track + 1} ({track_name(track, names)}) is clipped: its peak is {crest:.2f} of its root mean square, at "
             f"least {LEAST_CREST:g} is needed; copy the tape again at a lower level"
         )
+
+
+def _demand_no_dropout(track: int, levels: Float32s, samples: Float32s, share: float, fmt: TapeFormat) -> None:
+    """Raise TapeFault for a track that has a carrier, but not through all of the 50 ms."""
+    steady = levels > LEVEL_STEADY * np.percentile(levels, 90)
+    edges = np.flatnonzero(np.diff(np.r_[False, steady, False]))
+    if not len(edges) or edges[1] - edges[0] == len(levels):
+        return
+    first, last = max(zip(edges[::2], edges[1::2], strict=True), key=lambda run: run[1] - run[0])
+    heard = samples[first * fmt.samples_per_motion : last * fmt.samples_per_motion]
+    level, power = float(levels[first:last].mean()), float(np.var(heard, dtype=np.float64))
+    weak = levels < LEVEL_LOST * level
+    if last - first < FEWEST_STEADY_ROWS or level**2 / 2 < share * power or not weak.any():
+        return
+    raise TapeFault(
+        f"track {track + 1} ({track_name(track, fmt.axes)}) has a dropout at {np.argmax(weak) / fmt.motion_rate_hz:.3f} s, within the "
+        f"first {STANDSTILL_S * 1e3:g} ms, from which its level and zero are told; copy the tape again, or go on behind it "
+        f"(--resume-at 0.1s --from X,Y,Z)"
+    )
 
 
 def _demand_carrier(track: int, level: float, mean_square: float, least: float, names: Sequence[str]) -> None:

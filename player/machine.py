@@ -31,6 +31,7 @@ from motion.drive import SOUND
 from motion.faults import LockFault
 from motion.motion import AXES, Motion
 from player.monitor import Supervised
+from player.order import found_order
 from player.phase_lock import Drives, PhaseLock, following_limit
 from player.reader import Reader
 from player.setting import Setting
@@ -67,17 +68,21 @@ def play(
     over as long as that makes the count certain. `resume_at_s` is a tape time at which the machine stands at `start_mm`.
     """
 
-    def open_tape() -> AbstractContextManager[Tape | Pipe]:
+    def open_tape() -> Tape:
         return Tape.open(file, reference_hz=reference_hz, cycles_per_mm=cycles_per_mm, start_mm=start_mm, order=order)
 
     with open_tape() as tape:
         fmt, frames = _ending(tape.format, closed), tape.frames
+        found = None if order or resume_at_s else found_order(tape)
+    order = order or found
     if resume_at_s and fmt.end_mm is not None:  # the place is not the tape's start, so the end does not go along
         with Tape.open(file, reference_hz=reference_hz, cycles_per_mm=cycles_per_mm) as tape:
             fmt = replace(fmt, end_mm=tape.format.end_mm)
     setting = Setting(settings or PhaseLock(), tuple(zero_mm), override)
     _check_resumption(resume_at_s, start_mm, frames / fmt.sample_rate_hz)
-    return Playback(open_tape, fmt, frames, setting, acceleration_mm_s2, resume_at_s)
+    playback = Playback(open_tape, fmt, frames, setting, acceleration_mm_s2, resume_at_s)
+    playback.found_order = found
+    return playback
 
 
 def play_pipe(
@@ -117,6 +122,7 @@ class Playback(Supervised):
     Known beforehand: `format`, `frames`, `duration_s`, `start_mm`. Figures of the last time through, one per axis of
     the tape: `following_error_mm` (the largest), `end_mm` (where the machine stands), `end_error_mm` (against the end
     that the tape states; None before the end, or if it states none). `conditions`: what is wrong with the drives.
+    `found_order`: on which tracks reference, X, Y … were found, if that was not as they should be.
     The rate and the times of the motion are the machine's, as are those of a drive's fault; a tape's fault has tape time.
     """
 
@@ -141,6 +147,7 @@ class Playback(Supervised):
         self.reader = Reader(open_tape, fmt, self.start_mm, self.acceleration_mm_s2, resume_at_s)
         self.end_mm: Array = self.start_mm.copy()
         self.end_error_mm: Array | None = None
+        self.found_order: tuple[int, ...] | None = None
         self.conditions = [SOUND] * len(fmt.axes)
         self.limit = following_limit(self.settings, fmt.mm_per_cycle, self.rate_hz * self._steps)
         self.supervise(fmt.axes, self.rate_hz)

@@ -57,7 +57,7 @@ class Watch:
         self._sums, self._apart, self._moments = np.zeros(fmt.tracks), np.zeros(fmt.tracks), 0
         self._noise: Array | None = None  # mean square of a frequency less that of track 1, at standstill
 
-    def wrong_reference(self, frames: Frames, time_s: float) -> Fault | None:
+    def wrong_reference(self, frames: Frames, time_s: float) -> TapeFault | None:
         """The fault of a track 1 that moves more than another; frames of one block."""
         found = self._frequencies(frames)
         self._sums += np.square(found - self._still_hz).sum(axis=0)
@@ -74,6 +74,17 @@ class Watch:
             return None
         return self._elsewhere(steadiest, mean, time_s)
 
+    @property
+    def steadiest(self) -> int:
+        """The track that moved least so far, from 0."""
+        return int(np.argmin(self._sums))
+
+    @property
+    def reference_is_steady(self) -> bool:
+        """Whether another track has moved, and far more than track 1."""
+        most = float(self._sums.max()) / max(self._moments, 1)
+        return most >= LEAST_MOTION_HZ**2 and most >= STEADIER * float(self._sums[0]) / max(self._moments, 1)
+
     def doubtful_reference(self, time_s: float) -> Fault | None:
         """The fault of a track that moved against track 1 and was the steadier one over the whole tape."""
         if self._moments < FEWEST_MOMENTS or self._noise is None:
@@ -89,8 +100,10 @@ class Watch:
         name = track_name(steadiest, self._format.axes)
         return TapeFault(
             f"track 1 moves by {np.sqrt(mean[0]):.0f} Hz and track {steadiest + 1} ({name}) stands at "
-            f"{np.sqrt(mean[steadiest]):.0f} Hz, so the reference is on track {steadiest + 1}, found at {time_s:.3f} s; "
-            f"put the tracks in order: reference, {', '.join(axis.upper() for axis in self._format.axes)}",
+            f"{np.sqrt(mean[steadiest]):.0f} Hz, so the reference is on track {steadiest + 1}, found at {time_s:.3f} s, or "
+            f"missing, and then no place can be known; "
+            f"say which tracks are reference, {', '.join(axis.upper() for axis in self._format.axes)} "
+            f"(--tracks {steadiest + 1},...)",
             time_s=time_s,
         )
 
