@@ -31,7 +31,7 @@ figures: $(VENV)/installed
 
 # the tests of trust at full length: every pair of wear, ten thousand dropouts, tapes of three and six hours; 12 GB, about an hour
 soak: $(VENV)/installed
-	MORFAX_SOAK=1 $(BIN)/pytest tests/player/test_worn.py tests/player/test_long.py -s
+	MORFAX_SOAK=1 $(BIN)/pytest tests/player/test_worn.py tests/player/test_long.py tests/console/test_killed.py -s
 
 # broken tapes until something breaks: RUNS=1000000
 RUNS ?= 1000000

@@ -1,6 +1,7 @@
 """Fuzz the tape reader, the pipe and the text chunk with atheris: `python -m fuzz.tapes -runs=1000000`.
 
-Every input must end as a fault of the domain or be taken; any other exception, 2 s of work or 1 GB of memory ends the run
+The first inputs are whole tapes of a moment, of every kind of file, and their text: what is broken from there gets past the
+first bytes. Every input must end as a fault of the domain or be taken; any other exception, 2 s of work or 1 GB of memory ends the run
 with the input kept in a file (`-timeout=2 -rss_limit_mb=1024` are set by `make fuzz`).
 """
 
@@ -13,14 +14,29 @@ from itertools import islice
 from pathlib import Path
 
 import atheris
+import numpy as np
 
 with atheris.instrument_imports(include=["recorder", "motion.faults"]):
     from motion.faults import Fault
+    from motion.motion import Motion
     from recorder.pipe import Pipe
-    from recorder.tape import Tape
+    from recorder.tape import Tape, record
     from recorder.tapeformat import TapeFormat
 
+TEXT, PIPE, TAPE = b"\0", b"\x60", b"\xff"  # first bytes
 FILE = Path(tempfile.mkdtemp(prefix="morfax-fuzz-")) / "fuzz.wav"
+
+
+def seeds(folder: Path) -> None:
+    """Write the first inputs into a folder."""
+    fmt, motion = TapeFormat(dwell_s=0.0), Motion(np.zeros((4, 3)))
+    (folder / "text").write_bytes(TEXT + fmt.to_json().encode())
+    for suffix in (".wav", ".rf64", ".w64", ".aiff", ".flac"):
+        for sample in ("16", "24"):
+            whole = folder.parent / f"seed{suffix}"
+            record(motion, whole, fmt, sample=sample)
+            for first, name in ((TAPE, "file"), (PIPE, "pipe")):
+                (folder / f"{name}-{sample}{suffix}").write_bytes(first + whole.read_bytes())
 
 
 def one(data: bytes) -> None:
@@ -41,5 +57,8 @@ def one(data: bytes) -> None:
 
 
 if __name__ == "__main__":
-    atheris.Setup(sys.argv, one)
+    corpus = FILE.parent / "corpus"
+    corpus.mkdir()
+    seeds(corpus)
+    atheris.Setup([*sys.argv, str(corpus)], one)
     atheris.Fuzz()
