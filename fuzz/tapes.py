@@ -8,6 +8,7 @@ with the input kept in a file (`-timeout=2 -rss_limit_mb=1024` are set by `make 
 from __future__ import annotations
 
 import io
+import os
 import sys
 import tempfile
 from itertools import islice
@@ -15,6 +16,8 @@ from pathlib import Path
 
 import atheris
 import numpy as np
+
+os.environ["NUMBA_DISABLE_JIT"] = "1"  # which cannot compile what atheris has instrumented
 
 with atheris.instrument_imports(include=["recorder", "motion.faults"]):
     from motion.faults import Fault
