@@ -15,11 +15,13 @@ import matplotlib.pyplot as plt
 import numpy as np
 from numpy.typing import NDArray
 
+from motion.drive import Condition
 from motion.motion import MOTION_RATE_HZ
 from motion.ramp import Ramp, positions_mm
+from player.chart import Chart
 from player.feed_control import feed_number
 from player.monitor import FollowingLimit, Monitor
-from player.position_servo import Condition, PositionServos
+from player.position_servo import PositionServos
 from player.residues import Feed, Interpolator
 
 Array = NDArray[np.float64]
@@ -65,14 +67,12 @@ def draw_following(file: Path) -> None:
     bad = broken.follow(demand[:half])
     broken.conditions = [Condition(gain_share=0.3)]
     bad = np.vstack([bad, broken.follow(demand[half:])])
-    limits, watch = (
-        np.empty_like(demand),
-        Monitor("x", MOTION_RATE_HZ, FollowingLimit.linear(settle_s=0.06), stop=False),
-    )
-    watch.watch(demand, bad, limits)
+    chart = Chart(every_s=0)
+    watch = Monitor("x", MOTION_RATE_HZ, FollowingLimit.linear(settle_s=0.06), stop=False, chart=chart)
+    watch.watch(demand, bad)
     t_s = np.arange(len(demand)) / MOTION_RATE_HZ
     figure, axes = plt.subplots(figsize=(8, 3.6), constrained_layout=True)
-    axes.plot(t_s, limits[:, 0], color=RED, label="limit: lag · speed + 0.1 mm")
+    axes.plot(t_s, chart.limit_mm[:, 0], color=RED, label="limit: lag · speed + 0.1 mm")
     axes.axhline(1.3, color=GREY, linestyle=":", label="one limit for 20 mm/s")
     axes.plot(t_s, np.abs(demand - good)[:, 0], color=GREEN, label="error, sound drive")
     axes.plot(t_s, np.abs(demand - bad)[:, 0], color=BLUE, label="error, gain lost at 1.5 s")

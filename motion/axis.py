@@ -13,6 +13,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+TRAVEL_MM = 2000.0  # of the simulated machine's axes, either way from zero: our own figure
+
 
 @dataclass(frozen=True, slots=True)
 class LeadScrew:

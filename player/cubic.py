@@ -31,6 +31,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from motion.axis import TRAVEL_MM
 from motion.drive import SOUND, Drive, as_rows, conditioned_step
 from motion.faults import LockFault, ProgramFault
 from motion.motion import AXES, Motion
@@ -39,7 +40,6 @@ from player.monitor import FollowingLimit, Supervised
 from player.scales import Scales, measured
 from recorder.cubicfile import STEPS_PER_CONSTANT, CubicProgram, read_program
 
-TRAVEL_MM = 2000.0  # of the machine's axes, either way from zero
 REGISTER_DIGITS = 12  # of register 34, sign apart
 _SETTLING = 15.0  # time constants of the servo: the lag falls to 3e-7 of itself
 _BLOCK_INTERVALS = 256

@@ -31,6 +31,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from motion.axis import TRAVEL_MM
 from motion.drive import SOUND
 from motion.faults import FollowingFault, ProgramFault
 from motion.motion import AXES, MOTION_RATE_HZ, Motion
@@ -183,14 +184,18 @@ class PulsePlayback(Supervised):
         return speed_mm_s, lambda interpolator: self._run(move, feed, interpolator)
 
     def _check_travel(self, move: Move) -> None:
-        """Raise ProgramFault if a move leaves the range of the registers."""
-        travel_mm = self.settings.servo.travel_mm
+        """Raise ProgramFault if a move leaves the machine's travel or the range of the registers."""
+        servo = self.settings.servo
+        travel_mm, what, remedy = TRAVEL_MM, "the machine has", "move the zero, or make it smaller"
+        if servo.travel_mm < TRAVEL_MM:
+            travel_mm, remedy = servo.travel_mm, "move the zero, or use longer ones"
+            what = f"the registers of {servo.register_bits} bits hold"
         for place in _reached(move):
             for axis, place_mm in zip(AXES, place, strict=False):
                 if not abs(place_mm) <= travel_mm:
                     raise ProgramFault(
-                        f"{self.name}, line {move.line}: {axis.upper()} goes to {place_mm:.3f} mm; the registers of "
-                        f"{self.settings.servo.register_bits} bits hold ±{travel_mm:.3f} mm: move the zero, or use longer ones",
+                        f"{self.name}, line {move.line}: {axis.upper()} goes to {place_mm:.3f} mm; {what} "
+                        f"±{travel_mm:.3f} mm: {remedy}",
                         line=move.line,
                     )
 

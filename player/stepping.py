@@ -31,6 +31,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from motion.axis import TRAVEL_MM
 from motion.faults import ProgramFault
 from motion.motion import AXES, Motion
 from player.monitor import FollowingLimit, Supervised
@@ -41,7 +42,6 @@ from recorder.stepfile import TICKS, Program, StepFormat, read_program
 STANDSTILL, LOWEST, HIGHEST = 8, 1, 15  # counts
 UP_X, DOWN_X, UP_Y, DOWN_Y = 1, 2, 4, 8  # outputs of the ring memory
 MEMORY_ENTRIES = 512  # four bits of each count, and the direction
-TRAVEL_MM = 2000.0  # of the machine's axes, either way from zero
 SAMPLES_PER_INTERVAL = 8
 _BLOCK_INTERVALS = 4096
 _PRINTED_TICKS = {1: (32,), 2: (16, 48), 3: (10, 31, 52)}

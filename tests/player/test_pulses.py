@@ -178,8 +178,10 @@ def test_it_plays_again_as_before() -> None:
 
 
 def test_what_cannot_be_run_is_refused_before_anything_moves() -> None:
-    with pytest.raises(ProgramFault, match=r"line 2: X goes to 90000.000 mm; the registers of 24 bits hold"):
-        playback("G1 X0 F600", "G1 X90000")
+    with pytest.raises(ProgramFault, match=r"line 2: X goes to 2000.100 mm; the machine has ±2000.000 mm"):
+        playback("G1 X0 F600", "G1 X2000.1")
+    with pytest.raises(ProgramFault, match=r"line 2: X goes to 900.000 mm; the registers of 16 bits hold ±832"):
+        playback("G1 X0 F600", "G1 X900", control=PulseControl(servo=HISTORIC))
     with pytest.raises(
         ProgramFault, match=r"line 1: F9000: a speed of 150000 pulses/s has no feed number; give 0.256 to"
     ):
