@@ -40,7 +40,7 @@ Exit codes:
   3  the drawing cannot be used (or is too large for the memory)
   4  no line at that place, or the line was lost (what was traced is kept)
   5  not a tape that can be played
-  6  a drive of the machine lost the tape
+  6  a drive of the machine lost the tape, or does not follow
   7  a motion that cannot be recorded
   8  a file that cannot be read or written
   9  a mistake in the operator's card, or in a file of settings
