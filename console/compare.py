@@ -54,6 +54,12 @@ OF_SYSTEMS = ("head_mm", "lines", "speed_mm_s")
     "--speed", "speed_mm_s", type=SPEED, default="10mm/s", show_default=True, help="Of --systems: tracing speed."
 )
 @click.option(
+    "--cutter",
+    "cutter_mm",
+    type=LENGTH,
+    help="Diameter of the cutter that the path is for: what its edge touches is compared with the drawing.",
+)
+@click.option(
     "--origin",
     type=ORIGIN,
     help="Where the path's zero is on the drawing: X,Y in mm, or reference, the drawing's reference point.  [default: "
@@ -73,6 +79,7 @@ def command(
     head_mm: tuple[float, float] | None,
     lines: str | tuple[int, ...] | None,
     speed_mm_s: float,
+    cutter_mm: float | None,
     origin: Any,
     sheet: Sheet,
     controls: Controls,
@@ -105,7 +112,12 @@ def command(
     if origin is not None:
         _refuse(drawing is None, "--origin is a place on a drawing; without one leave it out")
         opened = [_from(origin, drawing, opened[0])]
-    found = comparison.from_drawing(drawing, opened[0]) if drawing else comparison.from_path(opened[0], opened[1])
+    _refuse(cutter_mm is not None and drawing is None, "--cutter is for a path beside a drawing's line; leave it out")
+    found = (
+        comparison.from_drawing(drawing, opened[0], radius_mm=(cutter_mm or 0.0) / 2)
+        if drawing
+        else comparison.from_path(opened[0], opened[1])
+    )
     if picture is not None:
         _draw(picture, f"{a.name} and {b.name}", found, opened, drawing)
     files = {"a": str(a), "b": str(b), "picture": None if picture is None else str(picture)}

@@ -51,11 +51,11 @@ def from_path(path: Path, reference: Path, names: tuple[str, str] = ("a", "b")) 
     return Comparison(rows, found.hausdorff_mm, *pointwise(path, reference, SAMPLE_MM))
 
 
-def from_drawing(drawing: Drawing, path: Path, name: str = "path") -> Comparison:
-    """Compare a path with the ink of its drawing."""
-    from tracer.deviation import deviation
+def from_drawing(drawing: Drawing, path: Path, name: str = "path", radius_mm: float = 0.0) -> Comparison:
+    """Compare a path with the ink of its drawing; with a cutter's radius, what the cutter's edge touches."""
+    from tracer.deviation import deviation, touched
 
-    found = deviation(drawing, path)
+    found = deviation(drawing, touched(drawing, path, radius_mm) if radius_mm else path)
     row = {"rms_mm": found.rms_mm, "p95_mm": found.p95_mm, "max_mm": found.max_mm}
     row["measured_share"] = found.measured_share
     missed = {"missed_ink_mm": found.missed_mm, "missed_ink_share": found.missed_share}

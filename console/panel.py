@@ -17,6 +17,7 @@ from console.tracing import Head, Marks
 
 if TYPE_CHECKING:
     from tracer.card import Card
+    from tracer.cutter import Cutter, Side
 
 
 def head_options(verb: Callable[..., Any]) -> Callable[..., Any]:
@@ -51,6 +52,20 @@ def head_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         default="2mm",
         show_default=True,
         help="How far above the work the tool stands before and after.",
+    )
+    @click.option(
+        "--cutter",
+        "cutter_mm",
+        type=LENGTH,
+        help="Diameter of the cutter, such as 6mm: the tool runs beside the line, half of that away.  [default: the tool "
+        "runs on the line]",
+    )
+    @click.option(
+        "--side",
+        type=click.Choice(["outside", "inside", "left", "right"]),
+        default="outside",
+        show_default=True,
+        help="Of --cutter: outside or inside of the part (holes the other way round), or by the travel of the head.",
     )
     @click.option(
         "--line-width",
@@ -138,6 +153,8 @@ def head_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         speed_mm_s: float,
         depth_mm: float,
         clearance_mm: float,
+        cutter_mm: float | None,
+        side: Side,
         line_width_mm: float | None,
         gap_mm: float,
         recatch_mm: float | None,
@@ -160,6 +177,9 @@ def head_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         head = replace(
             head, recatch_mm=recatch_mm, changes=changes, marks=Marks(reference_mm, origin, direction, override, ask)
         )
+        if cutter_mm is None and _given("side"):
+            raise click.UsageError("--side is the side of the cutter; give its diameter with --cutter, such as 6mm")
+        head = replace(head, cutter=None if cutter_mm is None else _cutter(cutter_mm, side))
         if settings_file is not None:
             head = head.by_file(_settings_in(settings_file), _given)
         if card_file is not None:
@@ -169,6 +189,13 @@ def head_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         return verb(*args, head=head, **options)
 
     return with_head
+
+
+def _cutter(diameter_mm: float, side: Side) -> Cutter:
+    """The cutter."""
+    from tracer.cutter import Cutter
+
+    return Cutter(diameter_mm, side)
 
 
 def _opened(card_file: FilePath) -> Card:

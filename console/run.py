@@ -100,13 +100,14 @@ def _write(played: Played, traced: Traced, place: Folder) -> FilePath:
 def _compare(drawing: Drawing, traced: Traced, played: Played, place: Folder, desk: Desk) -> dict[str, Any]:
     """Compare all three, and draw the played path with its error from the ink; the figures."""
     desk.detail("comparing drawing, traced path and played path")
-    from_ink = comparison.from_drawing(drawing, played.path, "played")
+    radius_mm = traced.cutter.radius_mm if traced.cutter else 0.0
+    from_ink = comparison.from_drawing(drawing, played.path, "played", radius_mm)
     picture = traced.name(place.file(".png"))
     _draw(picture, f"{place.stem}, played", drawing, (traced, played), from_ink)
     return {
         "picture": str(picture),
         **traced.figures(),
-        **comparison.from_drawing(drawing, traced.path, "traced").figures,
+        **comparison.from_drawing(drawing, traced.path, "traced", radius_mm).figures,
         **from_ink.figures,
         **comparison.from_path(played.path, traced.path, ("played", "traced")).figures,
     }
@@ -121,6 +122,13 @@ def _draw(
     title = f"{name}: largest distance from the ink's centre {format_length_mm(from_ink.largest_mm)}"
     traced, played = paths
     shown = Picture(
-        title, played.path, drawing, None, from_ink.points_mm, from_ink.error_mm, numbers_mm=traced.places_mm
+        title,
+        played.path,
+        drawing,
+        None,
+        from_ink.points_mm,
+        from_ink.error_mm,
+        numbers_mm=traced.places_mm,
+        stops_mm=traced.marked_mm,
     )
     draw(shown, file)

@@ -117,7 +117,7 @@ def _write(traced: Traced, outputs: Outputs, drawing: Drawing, unit: Unit) -> di
 
         name = drawing.file.name if drawing.file else "drawing"
         picture = Picture(
-            f"{name}, traced", traced.path, drawing, numbers_mm=traced.places_mm, stops_mm=traced.stops_mm
+            f"{name}, traced", traced.path, drawing, numbers_mm=traced.places_mm, stops_mm=traced.marked_mm
         )
         draw(picture, traced.name(outputs.picture))
         written["picture"] = str(traced.name(outputs.picture))

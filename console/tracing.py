@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from console.unit import Unit
     from motion.motion import Path
     from tracer.card import Card, Override
+    from tracer.cutter import Cutter, Unreached
     from tracer.drawing import Drawing
     from tracer.operator import Direction, Operator
     from tracer.program import Trace
@@ -63,6 +64,7 @@ class Head:
     filed: Mapping[str, float] = field(default_factory=dict)  # settings from a file
     changes: tuple[str, ...] = ()  # NAME=VALUE
     marks: Marks = field(default_factory=lambda: Marks())
+    cutter: Cutter | None = None  # drawn in by the draughtsman
 
     def trace(self, drawing: Drawing, desk: Desk, picture: FilePath | None = None) -> Traced:
         """Follow the drawing's line, or all that are asked for, to the end or until it is lost.
@@ -91,7 +93,16 @@ class Head:
                 self._show_sheet(drawing, fault, medium.incomplete(picture), desk)
             raise
         origin_mm = (0.0, 0.0) if self.marks.origin == "sheet" else self._reference_mm(drawing, traced)
-        return Traced(traced, thin(traced), several=self.lines is not None, origin_mm=origin_mm)
+        beside, unreached = self._beside(traced, settings)
+        return Traced(beside, thin(beside), self.lines is not None, origin_mm, self.cutter, unreached)
+
+    def _beside(self, traced: Trace, settings: Settings) -> tuple[Trace, list[Unreached]]:
+        """The program of the cutter beside the lines, and what it cannot reach; without a cutter the lines themselves."""
+        if self.cutter is None:
+            return traced, []
+        from tracer.cutter import with_cutter
+
+        return with_cutter(traced, self.cutter, settings.speed_mm_s)
 
     def _reference_mm(self, drawing: Drawing, trace: Trace) -> tuple[float, float]:
         """The reference point: the one given, that from which the program begins, or the only one on the sheet; raises LineFault without one."""
@@ -176,6 +187,8 @@ class Traced:
     path: Path
     several: bool = False  # lines were asked for, not one line
     origin_mm: tuple[float, float] = (0.0, 0.0)  # the machine's zero on the sheet
+    cutter: Cutter | None = None
+    unreached: list[Unreached] = field(default_factory=list)  # by the cutter
 
     @property
     def places_mm(self) -> dict[str, tuple[float, float]]:
@@ -217,7 +230,23 @@ class Traced:
             **(self._of_lines() if self.several else {}),
             "stops": self._stops() or None,
             "junctions": self._junctions() or None,
+            **self._of_cutter(),
         }
+
+    def _of_cutter(self) -> dict[str, Any]:
+        """The cutter, and what it cannot reach."""
+        if self.cutter is None:
+            return {}
+        rows = [
+            {"unreached": k, "of_line": u.line, "place_mm": u.place_mm, "left_mm": u.left_mm, "stretch_mm": u.length_mm}
+            for k, u in enumerate(self.unreached, 1)
+        ]
+        return {"cutter_diameter_mm": self.cutter.diameter_mm, "side": self.cutter.side, "unreached": rows or None}
+
+    @property
+    def marked_mm(self) -> dict[str, tuple[float, float]]:
+        """Places to be marked in a picture: the stops, and what the cutter cannot reach, by name."""
+        return {**self.stops_mm, **{f"left {k}": u.place_mm for k, u in enumerate(self.unreached, 1)}}
 
     def _stops(self) -> list[dict[str, Any]]:
         """The stops, by number: what kind of mark, where, and where Z goes."""

@@ -27,6 +27,11 @@ from tracer.patches import Mask, Patches, runs_of, strips
 Array = NDArray[np.float64]
 
 EVERY_MM = 0.1
+TOUCH_MM = 0.02  # between the places of a cutter's way
+STANDS, LEAP = (
+    0.1,
+    10.0,
+)  # of these: round a corner, and from one leg of a corner to the other, the edge is not on the line
 WIDEST = 1.3  # of the usual width: beyond this the ink's middle means nothing
 AVERAGED_MM = 0.5  # the middle of the ink is averaged along the path over this, against the noise of the paper
 
@@ -87,13 +92,28 @@ def deviation(drawing: Drawing, path: Path | Sequence[Array]) -> Deviation:
     return Deviation(np.vstack([p for p, _ in places]), np.concatenate(errors), width_mm, missed, ink)
 
 
-def _places(run: Array) -> tuple[Array, Array]:
-    """Places every `EVERY_MM` along a polyline, and the heading there."""
+def touched(drawing: Drawing, path: Path, radius_mm: float) -> list[Array]:
+    """What the edge of a cutter touches whose middle runs along a path, as (n, 2) polylines: on the side of each run where there is more ink."""
+    polylines = []
+    for run in path.runs():
+        points, headings = _places(run, TOUCH_MM)
+        seen = _profile(drawing, points, headings, np.array([radius_mm, -radius_mm])).mean(axis=0)
+        arm_mm = radius_mm if seen[0] >= seen[1] else -radius_mm
+        edge = points + arm_mm * np.column_stack([-np.sin(headings), np.cos(headings)])
+        steps = np.hypot(*np.diff(edge, axis=0).T) / TOUCH_MM
+        on_line = (steps > STANDS) & (steps < LEAP)
+        ends = np.flatnonzero(np.diff(np.r_[False, on_line, False].astype(np.int8))).reshape(-1, 2)
+        polylines += [edge[a : b + 1] for a, b in ends]
+    return polylines
+
+
+def _places(run: Array, every_mm: float = EVERY_MM) -> tuple[Array, Array]:
+    """Places every so many mm along a polyline, and the heading there."""
     steps = np.hypot(*np.diff(run, axis=0).T)
     keep = np.r_[True, steps > 1e-9]
     run = run[keep]
     s = np.r_[0.0, np.cumsum(np.hypot(*np.diff(run, axis=0).T))]
-    at = np.arange(0.5 * EVERY_MM, s[-1], EVERY_MM)
+    at = np.arange(0.5 * every_mm, s[-1], every_mm)
     points = np.column_stack([np.interp(at, s, run[:, 0]), np.interp(at, s, run[:, 1])])
     half = 0.5 * EVERY_MM
     ends = [np.column_stack([np.interp(at + d, s, run[:, 0]), np.interp(at + d, s, run[:, 1])]) for d in (-half, half)]

@@ -1,0 +1,94 @@
+"""Feed: a way run at a speed, slower where bends and corners ask for it, from rest to rest; as positions at the motion rate.
+
+Signals: a polyline (n, 2) mm, a feed in mm/s and one acceleration in mm/s² in; positions (m, 2) mm at the motion rate out.
+
+    v <= feed      v² · bend <= a/3      v · dv/ds <= 0.7 a      v = 0 at a corner (`SHARP`)
+
+A way is made of straight pieces, so at each of its places the velocity would jump by v · turn. It is averaged over `SMOOTHED_S`, in which the jump is made good
+at a third of the acceleration, and which moves the way inward by no more than a · SMOOTHED_S² / 24: 0.1 um. Across and along together stay within a.
+
+Source: the two passes that are usual in controls (see `recorder.legs`, which has them for a machine's axes); our own.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from motion.motion import MOTION_RATE_HZ
+
+SHARP = math.radians(10)
+ALONG, ACROSS = (
+    0.7,
+    1 / 3,
+)  # shares of the acceleration: along the way; in its bend, and again in its turns from piece to piece
+SMOOTHED_S = 0.002
+BEND_WITHIN_MM = 0.1  # to either side of a place its bend is counted
+STANDS_S = 2 * SMOOTHED_S  # at either end, so that the average comes to rest
+
+Array = NDArray[np.float64]
+
+
+def run_along(way_mm: Array, feed_mm_s: float, acceleration_mm_s2: float, rate_hz: float = MOTION_RATE_HZ) -> Array:
+    """Positions (m, 2) mm along a way, from rest at its first place to rest at its last."""
+    way_mm = _with_halves(way_mm)
+    steps = np.hypot(*np.diff(way_mm, axis=0).T)
+    speeds = _slowed(_allowed(way_mm, steps, feed_mm_s, acceleration_mm_s2), steps, ALONG * acceleration_mm_s2)
+    t_s = np.r_[0.0, np.cumsum(2 * steps / (speeds[1:] + speeds[:-1]))]
+    s_mm = np.r_[0.0, np.cumsum(steps)]
+    at_s = np.arange(0.0, t_s[-1], 1 / rate_hz)
+    k = np.clip(np.searchsorted(t_s, at_s, side="right") - 1, 0, len(steps) - 1)
+    since, whole = at_s - t_s[k], t_s[k + 1] - t_s[k]
+    along = s_mm[k] + since * (speeds[k] + 0.5 * (speeds[k + 1] - speeds[k]) * since / whole)
+    stands = round(STANDS_S * rate_hz)
+    along = np.r_[np.zeros(stands), along, np.full(stands, s_mm[-1])]
+    return _averaged(np.column_stack([np.interp(along, s_mm, column) for column in way_mm.T]), rate_hz)
+
+
+def _with_halves(way_mm: Array) -> Array:
+    """The way without places that repeat, and with its first and last pieces halved: a piece between two stops has none."""
+    way_mm = way_mm[np.r_[True, np.hypot(*np.diff(way_mm, axis=0).T) > 1e-9]]
+    middles = 0.5 * (way_mm[1:] + way_mm[:-1])
+    both = np.empty((2 * len(way_mm) - 1, 2))
+    both[::2], both[1::2] = way_mm, middles
+    return both
+
+
+def _allowed(way_mm: Array, steps: Array, feed_mm_s: float, acceleration_mm_s2: float) -> Array:
+    """Highest speed at each place, mm/s, by the turn there and by the bend about it; 0 at both ends and at sharp corners."""
+    ways = np.diff(way_mm, axis=0)
+    turns = np.abs(
+        np.arctan2(ways[:-1, 0] * ways[1:, 1] - ways[:-1, 1] * ways[1:, 0], np.einsum("ij,ij->i", ways[:-1], ways[1:]))
+    )
+    turns = np.r_[math.pi, turns, math.pi]
+    s = np.r_[0.0, np.cumsum(steps)]
+    turned = np.r_[0.0, np.cumsum(np.where(turns > SHARP, 0.0, turns))]
+    low, high = np.searchsorted(s, s - BEND_WITHIN_MM), np.searchsorted(s, s + BEND_WITHIN_MM, side="right")
+    bend = np.maximum(turned[high] - turned[:-1], turned[1:] - turned[low]) / np.minimum(BEND_WITHIN_MM, s[-1])
+    by_bend = np.sqrt(ACROSS * acceleration_mm_s2 / np.maximum(bend, 1e-9))
+    by_turn = ACROSS * acceleration_mm_s2 * SMOOTHED_S / np.maximum(turns, 1e-9)
+    return np.where(turns > SHARP, 0.0, np.minimum(feed_mm_s, np.minimum(by_bend, by_turn)))
+
+
+@njit(cache=True)
+def _slowed(allowed, steps, acceleration_mm_s2):  # type: ignore[no-untyped-def]
+    """The speeds that one acceleration can reach from place to place, mm/s."""
+    speeds = allowed.copy()
+    for k in range(len(steps) - 1, -1, -1):
+        speeds[k] = min(speeds[k], math.sqrt(speeds[k + 1] ** 2 + 2 * acceleration_mm_s2 * steps[k]))
+    for k in range(len(steps)):
+        speeds[k + 1] = min(speeds[k + 1], math.sqrt(speeds[k] ** 2 + 2 * acceleration_mm_s2 * steps[k]))
+    return speeds
+
+
+def _averaged(positions_mm: Array, rate_hz: float) -> Array:
+    """Running mean over `SMOOTHED_S`; both ends stand for longer, and stay where they are."""
+    window = 2 * round(SMOOTHED_S * rate_hz / 2) + 1
+    padded = np.pad(positions_mm, ((window // 2, window // 2), (0, 0)), mode="edge")
+    total = np.cumsum(np.vstack([np.zeros((1, 2)), padded - positions_mm[0]]), axis=0)
+    smooth = positions_mm[0] + (total[window:] - total[:-window]) / window
+    smooth[0], smooth[-1] = positions_mm[0], positions_mm[-1]
+    return np.asarray(smooth)

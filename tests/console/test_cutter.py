@@ -1,0 +1,40 @@
+"""`--cutter` and `--side` by their behaviour."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.console.conftest import SAMPLES, Morfax
+
+
+def test_what_the_cutter_leaves_is_listed_and_the_edge_is_compared_with_the_drawing(morfax: Morfax, here: Path) -> None:
+    answer = morfax(
+        "trace", SAMPLES / "gear.png", "--cutter", "3mm", "-o", "gear.csv", "--picture", "gear.png", "--json"
+    )
+    assert answer.exit_code == 0 and (here / "gear.png").exists()
+    assert answer.figures["cutter_diameter_mm"] == 3 and answer.figures["side"] == "outside"
+    assert len(answer.figures["unreached"]) == 8  # one between each two teeth
+    assert 0.59 < answer.figures["unreached"][0]["left_mm"] < 0.61
+    compared = morfax("compare", SAMPLES / "gear.png", "gear.csv", "--cutter", "3mm", "--json")
+    assert compared.figures["path_to_ink"]["rms_mm"] < 0.006 and compared.figures["path_to_ink"]["measured_share"] > 0.9
+
+
+def test_run_takes_a_cutter(morfax: Morfax, here: Path) -> None:
+    figures = morfax("run", SAMPLES / "cam.png", "--cutter", "6mm", "-o", "cam", "--json").figures
+    assert figures["played_to_ink"]["rms_mm"] < 0.004 and figures["missed_ink_mm"] == 0
+
+
+@pytest.mark.parametrize(
+    ("options", "exit_code", "said"),
+    [
+        (("--side", "left"), 2, "--side is the side of the cutter; give its diameter with --cutter"),
+        (("--cutter", "300mm", "--side", "inside"), 7, "a cutter of 300 mm goes nowhere inside of the lines"),
+    ],
+)
+def test_what_cannot_be_is_one_line_and_nothing_is_written(
+    morfax: Morfax, here: Path, options: tuple[str, ...], exit_code: int, said: str
+) -> None:
+    answer = morfax("trace", SAMPLES / "cam.png", *options)
+    assert answer.exit_code == exit_code and said in answer.fault and not list(here.iterdir())

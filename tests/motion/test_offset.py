@@ -1,0 +1,147 @@
+"""Offsets against closed forms and against shapely's buffer; the way run at a feed within its acceleration."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from motion.contour import distance
+from motion.feed import run_along
+from motion.motion import MOTION_RATE_HZ
+from motion.offset import Guide, offset
+
+shapely = pytest.importorskip("shapely")
+
+Array = NDArray[np.float64]
+UM = 1e-3  # mm
+EXACT_MM = 0.5 * UM  # places known to 0.05 um, nearer by 0.2 um at most; asked: 1 um
+
+
+def circle(radius_mm: float, noise_mm: float = 0.0, seed: int = 0) -> Array:
+    """A circle as a head would run it: a place every 2 um, with waves of 0.5 to 3 mm as a scan's noise makes them."""
+    angle = np.linspace(0, math.tau, round(math.tau * radius_mm / 0.002) + 1)
+    rng, radius = np.random.default_rng(seed), np.full_like(angle, radius_mm)
+    for waves in range(20, 120, 10):
+        radius += noise_mm * rng.normal() * np.cos(waves * angle + rng.uniform(0, math.tau))
+    points = np.column_stack([radius * np.cos(angle), radius * np.sin(angle)])
+    points[-1] = points[0]
+    return points
+
+
+def polygon(*vertices: tuple[float, float]) -> Array:
+    """A closed line that begins in the middle of its first side."""
+    points = np.array(vertices, float)
+    return np.vstack([(points[0] + points[1]) / 2, points[1:], points[:1], (points[0] + points[1]) / 2])
+
+
+def star(seed: int) -> Array:
+    """A polygon about 0,0 with four to ten vertices, corners both ways."""
+    rng = np.random.default_rng(seed)
+    angles = np.sort(rng.uniform(0, math.tau, rng.integers(4, 11)))
+    radii = rng.uniform(4, 12, len(angles))
+    return polygon(*zip(radii * np.cos(angles), radii * np.sin(angles), strict=True))
+
+
+@pytest.mark.parametrize(("left", "radius_mm"), [(True, 7.0), (False, 13.0)])
+def test_a_circle_becomes_the_circle_that_is_smaller_or_larger_by_the_radius(left: bool, radius_mm: float) -> None:
+    (way,) = offset([Guide(circle(10), True, left)], 3)
+    assert way.closed and np.abs(np.hypot(*way.points_mm.T) - radius_mm).max() < 0.1 * UM
+    start = way.points_mm[0]
+    assert start == pytest.approx([radius_mm, 0], abs=0.1 * UM)  # beside where the head began
+
+
+def test_a_cutter_as_wide_as_a_hole_goes_nowhere() -> None:
+    assert offset([Guide(circle(10), True, True)], 10.01) == []
+
+
+SQUARE = polygon((0, 0), (20, 0), (20, 20), (0, 20))
+
+
+def test_round_a_square_the_corners_are_rolled_round_and_inside_they_stay_sharp() -> None:
+    (outside,) = offset([Guide(SQUARE, True, False)], 3)
+    length_mm = np.hypot(*np.diff(outside.points_mm, axis=0).T).sum()
+    assert length_mm == pytest.approx(80 + math.tau * 3, abs=2 * UM)
+    (inside,) = offset([Guide(SQUARE, True, True)], 3)
+    assert distance(inside.points_mm, polygon((3, 3), (17, 3), (17, 17), (3, 17))).hausdorff_mm < 0.1 * UM
+
+
+def test_two_rooms_joined_by_a_passage_too_narrow_are_two_ways() -> None:
+    rooms = polygon(
+        (0, 0), (10, 0), (10, 4), (20, 4), (20, 0), (30, 0), (30, 10), (20, 10), (20, 6), (10, 6), (10, 10), (0, 10)
+    )
+    assert [way.closed for way in offset([Guide(rooms, True, True)], 0.9)] == [True]
+    assert [way.closed for way in offset([Guide(rooms, True, True)], 1.1)] == [True, True]
+
+
+def test_an_island_near_the_wall_of_a_pocket_is_not_passed_between() -> None:
+    wall, island = circle(20), circle(5) + np.array([13, 0])  # 2 mm between them
+    guides = [Guide(wall, True, True), Guide(island, True, False)]
+    assert len(offset(guides, 0.9)) == 2
+    (way,) = offset(guides, 1.5)
+    edges = shapely.MultiLineString([wall, island])
+    assert shapely.distance(shapely.points(way.points_mm), edges).min() > 1.5 - EXACT_MM
+
+
+@settings(max_examples=40)
+@given(seed=st.integers(0, 10_000), radius_mm=st.floats(0.2, 4), left=st.booleans())
+def test_the_ways_are_the_edges_of_the_buffer(seed: int, radius_mm: float, left: bool) -> None:
+    line = star(seed)
+    part = shapely.Polygon(line)
+    assume(part.is_valid)
+    ways = offset([Guide(line, True, left)], radius_mm)
+    buffer = part.buffer(-radius_mm if left == part.exterior.is_ccw else radius_mm, quad_segs=500)
+    rings = [ring for each in getattr(buffer, "geoms", [buffer]) for ring in (each.exterior, *each.interiors)]
+    edges = [np.array(ring.coords) for ring in rings if ring.length > 0.2]
+    ours = [way.points_mm for way in ways if shapely.LineString(way.points_mm).length > 0.2]
+    assert len(ours) == len(edges) and all(way.closed for way in ways)
+    if ours:
+        assert distance(ours, edges).hausdorff_mm < 5 * UM  # shapely's own arcs are 4 mm * (1 - cos(90°/1000))
+        near = shapely.distance(shapely.points(np.vstack(ours)), shapely.LineString(line))
+        assert near.min() > radius_mm - EXACT_MM
+
+
+@settings(max_examples=15)
+@given(seed=st.integers(0, 10_000), radius_mm=st.floats(1, 9.9))
+def test_the_noise_of_a_scan_makes_no_gouge_and_no_gap(seed: int, radius_mm: float) -> None:
+    line = circle(10, noise_mm=0.5 * UM, seed=seed)
+    (way, *others) = offset([Guide(line, True, True)], radius_mm)
+    assert way.closed and not others
+    near = shapely.distance(shapely.points(way.points_mm), shapely.LineString(line))
+    assert near.min() > radius_mm - EXACT_MM and near.max() < radius_mm + EXACT_MM
+
+
+def test_the_line_may_be_run_either_way_and_the_cutter_goes_with_it() -> None:
+    there, back = offset([Guide(SQUARE, True, True)], 3)[0], offset([Guide(SQUARE[::-1], True, False)], 3)[0]
+    assert distance(there.points_mm, back.points_mm).hausdorff_mm < 0.1 * UM
+    areas = [
+        np.sum(w.points_mm[:-1, 0] * w.points_mm[1:, 1] - w.points_mm[1:, 0] * w.points_mm[:-1, 1])
+        for w in (there, back)
+    ]
+    assert areas[0] > 0 > areas[1]
+
+
+@pytest.mark.parametrize("feed_mm_s", [10.0, 90.0])
+@pytest.mark.parametrize(("left", "radius_mm"), [(False, 1.5), (True, 3.0)])
+def test_a_way_is_run_at_its_feed_and_within_its_acceleration(feed_mm_s: float, left: bool, radius_mm: float) -> None:
+    (way,) = offset([Guide(star(3), True, left)], radius_mm)
+    xy_mm = run_along(way.points_mm, feed_mm_s, 500)
+    velocity = np.diff(xy_mm, axis=0) * MOTION_RATE_HZ
+    speed = np.hypot(*velocity.T)
+    assert speed.max() < feed_mm_s * (1 + 1e-6)
+    assert speed.max() > (0.99 * feed_mm_s if feed_mm_s < 20 else 35)
+    assert np.hypot(*np.diff(velocity, axis=0).T).max() * MOTION_RATE_HZ < 1.05 * 500  # along and across together
+    assert xy_mm[0] == pytest.approx(way.points_mm[0]) and xy_mm[-1] == pytest.approx(way.points_mm[-1])
+    assert distance(xy_mm, way.points_mm).hausdorff_mm < 0.3 * UM
+
+
+def test_an_open_line_has_a_way_on_either_side() -> None:
+    line = np.array([[0.0, 0], [10, 0], [10, 10]])
+    (left,), (right,) = (offset([Guide(line, False, side)], 2) for side in (True, False))
+    assert not left.closed and distance(left.points_mm, np.array([[0.0, 2], [8, 2], [8, 10]])).hausdorff_mm < 0.1 * UM
+    length_mm = np.hypot(*np.diff(right.points_mm, axis=0).T).sum()
+    assert length_mm == pytest.approx(20 + math.pi, abs=2 * UM)
