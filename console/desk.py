@@ -46,7 +46,7 @@ class Desk:
 
     def warn_of_compiling(self, what: str, *packages: str) -> None:
         """Say that the first run takes longer, if it will."""
-        if kernels.are_cold(packages):
+        if kernels.are_cold(packages) and not kernels.told(packages):
             self.note(f"compiling {what} (first run only, some ten seconds) ...")
 
     @contextmanager

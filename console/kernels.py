@@ -29,6 +29,27 @@ def are_cold(packages: tuple[str, ...] = PACKAGES) -> bool:
     return any(_is_cold(package) for package in packages)
 
 
+def told(packages: tuple[str, ...] = PACKAGES) -> bool:
+    """Whether the operator was told already that kernels of the sources as they are have to be compiled; he is from now on.
+
+    A kernel that a verb never runs stays older than its source: without this the verb would tell of it at every run.
+    """
+    newest_s = max(file.stat().st_mtime for package in packages for file in _sources(package))
+    given = os.environ.get("NUMBA_CACHE_DIR")
+    notes = [(Path(given) if given else HOUSE / package / "__pycache__") / f"{package}.told" for package in packages]
+    before = all(note.exists() and note.stat().st_mtime >= newest_s for note in notes)
+    for note in notes:
+        if _writable(note.parent):
+            note.touch()
+    return before
+
+
+def _sources(package: str) -> list[Path]:
+    """The modules of a package that have kernels; all of them if none has."""
+    every = sorted((HOUSE / package).glob("*.py"))
+    return [file for file in every if "@njit(cache=True" in file.read_text("utf-8")] or every
+
+
 def _is_cold(package: str) -> bool:
     """Whether a package that has kernels has none compiled, or older ones than its sources."""
     sources = [file for file in (HOUSE / package).glob("*.py") if "@njit(cache=True" in file.read_text("utf-8")]

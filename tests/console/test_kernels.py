@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import time
 from pathlib import Path
 
 import pytest
@@ -41,6 +42,14 @@ def test_a_package_is_cold_until_its_kernels_are_compiled(house: Path) -> None:
 def test_a_package_is_cold_again_when_a_source_is_changed(house: Path) -> None:
     compiled(house / "player" / "__pycache__", (house / "player" / "loop.py").stat().st_mtime - 1)
     assert kernels.are_cold(("player",))
+
+
+def test_the_operator_is_told_once_of_the_sources_as_they_are(house: Path) -> None:
+    assert not kernels.told(("player",))
+    assert kernels.told(("player",))
+    changed_s = time.time() + 10
+    os.utime(house / "player" / "loop.py", (changed_s, changed_s))
+    assert not kernels.told(("player",))
 
 
 def test_a_house_that_can_be_written_keeps_its_kernels(house: Path) -> None:
