@@ -118,7 +118,10 @@ class Tape:
         if frames < 1:
             raise ValueError(f"a block of {frames} frames holds nothing; it must be at least 1")
         done = first
-        self._sound.seek(first)
+        try:
+            self._sound.seek(first)
+        except soundfile.SoundFileError as error:
+            raise TapeFault(f"{self.file} cannot be wound to frame {first}: {error}; copy the file again") from error
         while done < self.frames:
             block = self._read(frames, done)
             done += len(block)

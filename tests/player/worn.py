@@ -69,6 +69,7 @@ class Bench:
         self.tape, self._worn = folder / "bench.wav", folder / "worn.wav"
         record(Motion(positions_mm), self.tape)
         self.clean = join(play(self.tape)).positions_mm
+        self.dropouts_s: list[float] = []  # lengths, of the last trial
 
     def trial(self, seed: int, **parts: Any) -> tuple[float, Fault | None]:
         """The largest error in cycles of what was played, and the fault that ended it.
@@ -76,6 +77,7 @@ class Bench:
         A delay that all axes have alike (0.1 ms: that of a low-pass) changes nothing but the time.
         """
         aged = age(self.tape, self._worn, replace(Wear(), **parts), seed=seed)
+        self.dropouts_s = [hole.length_s for hole in aged.dropouts if hole.start_s < aged.duration_s]
         blocks, fault = [], None
         try:
             for block in play(self._worn):

@@ -108,3 +108,14 @@ def test_kill_9_leaves_no_half_file(tmp_path: Path, after_s: float) -> None:
                 assert tape.frames > 62 * 48000 * 0.98  # whole, whichever run it is from
     record(Motion(np.zeros((60, 3))), names[0], TapeFormat(dwell_s=0.01))  # the next run is not disturbed
     assert soundfile.info(names[0]).frames == (60 + 120) * 8
+
+
+def test_a_tape_that_cannot_be_wound_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Found by atheris: of a broken FLAC libsndfile opens the file, and then cannot seek to its first frame."""
+    short_tape(tmp_path, "a.flac")
+    with Tape.open(tmp_path / "a.flac") as tape:
+        monkeypatch.setattr(
+            soundfile.SoundFile, "seek", lambda *_: (_ for _ in ()).throw(soundfile.LibsndfileError(39))
+        )
+        with pytest.raises(TapeFault, match="cannot be wound to frame 0"):
+            list(tape.blocks())
