@@ -91,14 +91,14 @@ class Follower:
             if why == head.HOME:
                 self.carriage.run([self._way_home()])
                 return self._done("closed")
+            if self.carriage.trail.comes_again(self.view.width_mm):
+                return self._done("joined")  # before the next junction, whose other legs have been followed
             if why != head.MORE and self.settings.direct_rad_s_mm > 0:
                 return self._lost("the swinging cell sees no more ink, and this head has no guard cells to find on by")
             if why != head.MORE:
                 ending = self._through_knot()
                 if ending is not None:
                     return ending
-            if self.carriage.trail.comes_again(self.view.width_mm):
-                return self._done("joined")
         return self._lost("the head has gone round without coming back to its start")
 
     def _through_knot(self) -> Followed | None:

@@ -22,6 +22,8 @@ Meeting = tuple[float, float]  # how far two legs meet beyond the one's clean en
 
 FARTHEST_MM = 10.0  # legs that meet further away do not meet
 
+SPECK_WIDTHS = 0.4  # ink narrower than this is no stroke
+
 
 @dataclass(frozen=True, slots=True)
 class Leg:
@@ -195,9 +197,10 @@ def stroke_end(view: View, leg: Leg, farthest_mm: float) -> float | None:
 
 
 def is_tip(view: View, place: Array) -> bool:
-    """Whether a place half a width within the end of ink is the tip of a single stroke."""
+    """Whether a place half a width within the end of ink is the tip of a single stroke; a speck beside it is none."""
     radius = max(1.2 * view.width_mm, 5 * view.pitch_mm)
-    return len(photocell.ring(view.cells, view.pitch_mm, place, radius, view.level)) == 1
+    arcs = photocell.ring(view.cells, view.pitch_mm, place, radius, view.level)
+    return int(np.sum((arcs[:, 1] - arcs[:, 0]) * radius > SPECK_WIDTHS * view.width_mm)) == 1
 
 
 def end_of(view: View, incoming: Leg) -> float | None:

@@ -11,8 +11,8 @@ ends within `LONGEST_MM`, a crossing line goes on beyond it. The foot of the mar
 corner: the line goes straight on through the foot of one.
 
 Source: patent ES 361967, figure 1, stop marks: a line across the contour, or a mark beside it. Questions: the patent gives no sizes. Chosen: a mark reaches
-from 0.8 of the line's width to 5 mm beyond its edge on each side (ten widths, of wide lines), to 3.5 mm (seven) if it is on one side only, stands within 40
-degrees of square to it and not further from it than 1.5 mm, and is drawn with a pen like the line's.
+from 0.8 of the line's width to 5 mm beyond its edge on each side (ten widths, of wide lines), to 3.5 mm (seven) if it touches the line on one side only,
+stands within 40 degrees of square to it and not further from it than 1.5 mm, and is drawn with a pen like the line's.
 """
 
 from __future__ import annotations
@@ -30,7 +30,10 @@ from tracer.view import Array, View
 
 LEAST_WIDTHS = 0.8
 LONGEST_MM, LONGEST_WIDTHS = 5.0, 10.0  # of a mark across the line, beyond its edge on each side
-BESIDE_MM, BESIDE_WIDTHS = 3.5, 7.0  # of a mark on one side: what is longer is a line that begins there
+BESIDE_MM, BESIDE_WIDTHS = (
+    3.5,
+    7.0,
+)  # of a mark that touches the line on one side: what is longer is a line that begins there
 FARTHEST_MM = 1.5  # from the line's edge to a mark beside it
 SLANT = math.tan(math.radians(40))
 LIKE = (0.5, 1.6)  # a mark's width, of the line's
@@ -142,8 +145,8 @@ def _ticks(view: View, way: Way) -> list[float]:
         if _is_way(view, way, stroke):
             continue
         across = [o for o in opposite if o.ends and o.straight]
-        if not across and stroke.reach_mm > longest_mm(view, across=False):
-            continue
+        if not across and stroke.touches and stroke.reach_mm > longest_mm(view, across=False):
+            continue  # that is a line that begins here
         feet.append(float(np.mean([foot, *(o.foot_mm for o in across)])))
     return feet
 

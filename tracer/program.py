@@ -32,9 +32,6 @@ from tracer.view import Array
 from tracer.zunit import Move, z_moves
 
 ENDINGS = ("lost", "joined", "ended", "closed")  # the one that tells most first
-
-
-ENDINGS = ("lost", "joined", "ended", "closed")  # the one that tells most first
 BRAKE_MM_S2 = 500.0  # of X and Y, as the head's own
 
 
@@ -164,10 +161,11 @@ class Trace:
 
     def _home(self, line: Line) -> Iterator[Array]:
         """Back along a lead or guide line to where it began, and to the reference point, at clearance, (n, 3) mm."""
-        if line.goes_back:
-            back = line.xy_mm[: (line.loop_from or len(line.xy_mm) - 1) + 1][::-1]
-            yield self._rapid(line.xy_mm[-1], back[0])  # a loop does not end just where it began
-            yield _at(stops.run(back, self.work.rapid_mm_s, BRAKE_MM_S2, self.rate_hz), self.work.clearance_mm)
+        if not line.goes_back:
+            return
+        back = line.xy_mm[: (line.loop_from or len(line.xy_mm) - 1) + 1][::-1]
+        yield self._rapid(line.xy_mm[-1], back[0])  # a loop does not end just where it began
+        yield _at(stops.run(back, self.work.rapid_mm_s, BRAKE_MM_S2, self.rate_hz), self.work.clearance_mm)
         if line.begin_mm != line.start_mm:
             yield self._rapid(line.start_mm, line.begin_mm)
 

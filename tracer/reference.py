@@ -100,17 +100,12 @@ def _cross(view: View, place: Array) -> Reference | None:
     """The cross about a place: three or four arms that end, alike and square to each other."""
     if not view.dark(place):
         return None
-    arms = []
-    for radius in (1.0, 1.4):
-        arcs = photocell.ring(
-            view.cells, view.pitch_mm, place, max(radius * view.width_mm, 5 * view.pitch_mm), view.level
-        )
-        if len(arcs) in (4, 5):
-            legs = [leg for direction in arcs.mean(axis=1) if (leg := _arm(view, place, float(direction))) is not None]
-            arms = [leg for leg in legs if stroke_end(view, leg, LARGEST_MM / 2) is not None]
-            break
-    if len(arms) not in (3, 4) or any(
-        abs(math.sin(2 * (leg.heading_rad - arms[0].heading_rad))) > SQUARE for leg in arms
+    legs = _legs(view, place)
+    arms = [leg for leg in legs if stroke_end(view, leg, LARGEST_MM / 2) is not None]
+    if (
+        len(legs) < 4
+        or len(arms) not in (3, 4)
+        or any(abs(math.sin(2 * (leg.heading_rad - arms[0].heading_rad))) > SQUARE for leg in arms)
     ):
         return None
     centre = _meeting(arms)
@@ -118,11 +113,27 @@ def _cross(view: View, place: Array) -> Reference | None:
     usual = float(np.median(lengths))
     if np.ptp(lengths) > ALIKE * usual or not LEAST_MM < 2 * usual < LARGEST_MM:
         return None
-    leads = photocell.ring(view.cells, view.pitch_mm, centre, usual + 1.5 * view.width_mm, view.level)
-    if len(leads) + len(arms) < 4:
-        return None  # three arms and nothing more: a corner of three strokes
-    lead = _arm(view, centre, float(leads[0].mean()), (usual + view.width_mm) / view.width_mm) if len(leads) else None
-    return Reference((float(centre[0]), float(centre[1])), "cross", lead)
+    return Reference((float(centre[0]), float(centre[1])), "cross", _lead(view, centre, usual))
+
+
+def _legs(view: View, place: Array) -> list[Leg]:
+    """The four or five strokes that leave a place, where they have parted."""
+    for widths in (1.0, 1.4, 2.0, 2.8):  # a lead line between two arms runs together with them at first
+        radius = max(widths * view.width_mm, 5 * view.pitch_mm)
+        arcs = photocell.ring(view.cells, view.pitch_mm, place, radius, view.level)
+        if len(arcs) in (4, 5):
+            legs = [_arm(view, place, float(direction), max(1.0, widths - 0.4)) for direction in arcs.mean(axis=1)]
+            return [leg for leg in legs if leg is not None]
+    return []
+
+
+def _lead(view: View, centre: Array, reach_mm: float) -> Leg | None:
+    """The clean beginning of the line that leaves a cross or ring which reaches so far from its centre."""
+    for arc in photocell.ring(view.cells, view.pitch_mm, centre, reach_mm + 1.5 * view.width_mm, view.level):
+        leg = _arm(view, centre, float(arc.mean()), reach_mm / view.width_mm + 1.0)
+        if leg is not None:
+            return leg
+    return None
 
 
 def _arm(view: View, place: Array, direction: float, widths: float = 1.0) -> Leg | None:
@@ -161,10 +172,8 @@ def _ring(view: View, place: Array) -> Reference | None:
     centre, radius_mm, misfit_mm = circle_through(middles)
     if misfit_mm > 0.1 * radius_mm or not LEAST_MM < 2 * radius_mm < LARGEST_MM:
         return None
-    if good.all():
-        return Reference((float(centre[0]), float(centre[1])), "ring")
-    out = math.atan2(*WAYS[~good].sum(axis=0)[::-1])
-    return Reference((float(centre[0]), float(centre[1])), "ring", _arm(view, centre + radius_mm * _unit(out), out))
+    lead = None if good.all() else _lead(view, centre, radius_mm + 0.5 * view.width_mm)
+    return Reference((float(centre[0]), float(centre[1])), "ring", lead)
 
 
 def _unit(heading: float) -> Array:

@@ -64,18 +64,28 @@ def followed(
     number: int = 1,
 ) -> Line:
     """The head's best run along the line at a place, or along the longest."""
-    best: tuple[Followed, Stance] | None = None
+    best: Line | None = None
     stances = put_down(
         sheet, start_mm, settings.aperture_mm, settings.line_width_mm, settings.gap_mm, operator.reference_mm
     )
     for stance, length_mm in stances:
         told = None if progress is None else partial(_tell, progress, length_mm)
-        run = _run(stance, start_mm, operator, settings, _longest_mm(sheet.drawing, stance.view.width_mm), told)
-        best = (run, stance) if best is None or run.travel_mm > best[0].travel_mm else best
-        if run.ending == "closed" or run.travel_mm > 0.5 * length_mm:
+        try:
+            run = _run(stance, start_mm, operator, settings, _longest_mm(sheet.drawing, stance.view.width_mm), told)
+        except LineFault:
+            if best is None:
+                raise
+            continue
+        line = Line.of(run, number, stance.reference_mm)
+        if line.is_lead:
+            return line
+        if best is not None and stance.at_end:
+            continue  # another open end is of use only if a lead line begins there
+        best = line if best is None or line.length_mm > best.length_mm else best
+        if line.ending == "closed" or (line.length_mm > 0.5 * length_mm and line.ending != "joined"):
             break
     assert best is not None  # put_down gives a stance, or raises
-    return Line.of(best[0], number, best[1].reference_mm)
+    return best
 
 
 def _run(

@@ -30,10 +30,11 @@ CATCH_MM = 3.0  # how far from a given place the line may be
 APERTURE = 0.3  # of the line's width, within bounds that a scan's noise and a corner set
 LEAST_APERTURE_MM, LARGEST_APERTURE_MM = 0.1, 0.24
 AT_END_MM = 1.5  # a start nearer to an open end is that end
-LEAD_MM = 8.0  # from a reference point to the lead line that comes from it
+LEAD_MM = 11.0  # from the middle of a reference point to the lead line that comes from it
 LEADS_AWAY = math.radians(45)
 SPUR = 2.7  # a line that ends sooner, in widths, is a burr
 PLACES = 80  # tried along a line
+ENDS = 6  # open ends that are tried: a lead line may begin at any
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +61,7 @@ def put_down(
     gap_mm: float = 0.5,
     reference_mm: tuple[float, float] | None = None,
 ) -> Iterator[tuple[Stance, float]]:
-    """Put the head down near a place, or on the longest line: where it comes from a reference point, else at an open end if it has one (there), then where
+    """Put the head down near a place, or on the longest line: where it comes from a reference point, else at its open ends if it has any (there), then where
     it is smooth; and the line's length, mm.
 
     A reference point that is not given is looked for. Raises LineFault if there is no line near the place, or no clean stretch on the line.
@@ -75,7 +76,7 @@ def put_down(
         ends = stroke.ends_mm()
         near = ends[np.hypot(*(ends - np.asarray(start_mm)).T) < max(AT_END_MM, 3 * view.width_mm)]
         at_ends = [stance for place in near if (stance := _at_end(view, place, gap_mm)) is not None]
-    for stance in at_ends[:1]:
+    for stance in at_ends[:ENDS]:
         yield stance, stroke.length_mm
     stances = _stances(view, _tried(stroke, start_mm, 2 * stroke.width_mm))
     if not stances and start_mm is not None:

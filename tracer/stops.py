@@ -50,7 +50,7 @@ def run(way_mm: Array, speed_mm_s: float, acceleration_mm_s2: float, rate_hz: fl
     """Along a way (n, 2) mm from rest to rest, as fast as its bends allow and no faster than asked; at a uniform rate."""
     steps_mm = np.hypot(*np.diff(way_mm, axis=0).T)
     lengths = np.r_[0.0, np.cumsum(steps_mm)]
-    stood = np.unique(lengths[1:][steps_mm < _NOTHING_MM])  # where the head swivelled
+    stood = np.unique(np.round(lengths[1:][steps_mm < _NOTHING_MM], 6))  # where the head swivelled
     even = np.arange(0.0, lengths[-1], RUN_MM)
     even = even[[not np.any(np.abs(stood - mm) < 0.5 * RUN_MM) for mm in even]] if len(stood) else even
     some = np.unique(np.r_[0.0, even, stood, lengths[-1]])
@@ -94,8 +94,9 @@ def _timed(places: Array, took_s: Array, steps_mm: Array, speeds: Array, rate_hz
     i = np.clip(np.searchsorted(times, uniform, side="right") - 1, 0, len(took_s) - 1)
     tau = uniform - times[i]
     share = tau / np.maximum(took_s[i], 1e-12)
-    braked = (steps_mm[i] > _NOTHING_MM) & (np.abs(speeds[i + 1] - speeds[i]) > 1e-6)
-    even = speeds[i] * tau + 0.5 * (speeds[i + 1] - speeds[i]) / np.maximum(took_s[i], 1e-12) * tau**2
-    share = np.where(braked, np.clip(even / np.maximum(steps_mm[i], _NOTHING_MM), 0, 1), share)
+    mean = 0.5 * (speeds[i] + speeds[i + 1])
+    even = (speeds[i] * share + 0.5 * (speeds[i + 1] - speeds[i]) * share**2) / np.maximum(mean, 1e-12)
+    from_rest = np.where(share < 0.5, 2 * share**2, 1 - 2 * (1 - share) ** 2)
+    share = np.where(mean * took_s[i] > 0.5 * steps_mm[i], even, from_rest)
     between = places[i] + share[:, None] * (places[i + 1] - places[i])
     return np.vstack([places[:1], between, places[-1:]])

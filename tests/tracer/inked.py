@@ -81,3 +81,27 @@ def corner(deflection_deg: float, radius_mm: float = 0.0, leg_mm: float = 10.0) 
         return np.array([legs[0], vertex, legs[3]])
     bend = arc((legs[1][0], legs[1][1] + radius_mm), radius_mm, -90, -90 + deflection_deg)
     return np.vstack([legs[0], bend, legs[3]])
+
+
+def tick(
+    place: tuple[float, float],
+    line_deg: float = 0.0,
+    *,
+    before_mm: float = 1.5,
+    beyond_mm: float = 1.5,
+    slant_deg: float = 0.0,
+) -> Points:
+    """A stop mark through a place on a line of a heading: from `before_mm` on its right to `beyond_mm` on its left (one negative: beside the line)."""
+    a = math.radians(line_deg + 90 + slant_deg)
+    way = np.array([math.cos(a), math.sin(a)])
+    return np.asarray(place) + np.array([-before_mm * way, beyond_mm * way])
+
+
+def cross(place: tuple[float, float], size_mm: float = 3.0, turn_deg: float = 0.0) -> list[Points]:
+    """The two strokes of a reference point."""
+    return [tick(place, turn_deg + k, before_mm=size_mm / 2, beyond_mm=size_mm / 2) for k in (0, 90)]
+
+
+def dot(place: tuple[float, float], across_mm: float) -> Points:
+    """The outline of a filled round."""
+    return arc(place, across_mm / 2)

@@ -1,0 +1,85 @@
+"""Lead lines and their loops: found where the run comes back onto its own way."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from tests.tracer.inked import UM, arc, inked, polyline, tick
+from tracer.loop import comes_again, loop_in
+from tracer.sequence import trace
+
+STEP_MM = 0.01
+WIDTH_MM = 0.5
+
+
+def run_of(lead_mm: float, round_again_mm: float, radius_mm: float = 8.0) -> np.ndarray:
+    """A straight lead line onto a circle, round it once, and on along what was run before."""
+    turns = np.arange(0, 2 * np.pi + round_again_mm / radius_mm, STEP_MM / radius_mm)
+    loop = np.column_stack([-radius_mm * np.cos(turns), radius_mm * np.sin(turns)])
+    lead = np.column_stack([np.arange(-lead_mm - radius_mm, -radius_mm, STEP_MM), np.zeros(round(lead_mm / STEP_MM))])
+    return np.vstack([lead, loop])
+
+
+@pytest.mark.parametrize("round_again_mm", [0.5, 3.0, 9.0])
+def test_the_loop_is_found_however_far_it_was_run_again(round_again_mm: float) -> None:
+    way = run_of(10.0, round_again_mm)
+    found = loop_in(way, WIDTH_MM)
+    assert found is not None
+    first, last = found
+    assert (
+        math.dist(way[first], (-8, 0)) < 0.3 and math.dist(way[last], (-8, 0)) < 0.3
+    )  # half a width: one corner's blot
+    assert math.dist(way[first], way[last]) < 30 * UM
+
+
+def test_a_way_that_does_not_come_back_has_no_loop() -> None:
+    assert loop_in(run_of(10.0, 0.0)[:4000], WIDTH_MM) is None
+
+
+def test_coming_again_needs_a_stretch_in_the_same_sense() -> None:
+    once = run_of(10.0, 0.0)[::5]
+    again = run_of(10.0, 4.0)[::5]
+    back = np.vstack([once[:400], once[399::-1]])
+    assert comes_again(again, 5 * STEP_MM, WIDTH_MM)
+    assert not comes_again(once, 5 * STEP_MM, WIDTH_MM) and not comes_again(back, 5 * STEP_MM, WIDTH_MM)
+
+
+CIRCLE = arc((34, 16), 10)
+
+
+@pytest.mark.parametrize("angle_deg", [90.0, 50.0, 35.0])
+def test_a_lead_line_joins_its_loop_at_any_angle(angle_deg: float) -> None:
+    a = math.radians(90 - angle_deg)
+    start = (24 - 16 * math.cos(a), 16 - 12 * math.sin(a))
+    at = (24 - 5 * math.cos(a), 16 - 5 * math.sin(a) * 12 / 16)
+    line = trace(inked(CIRCLE, polyline(start, (24, 16)), tick(at, math.degrees(a)), seed=5)).lines[0]
+    assert line.is_lead and line.loop_from is not None
+    assert math.dist(line.place(line.loop_from), line.xy_mm[-1]) < 50 * UM  # it closes
+    loop_mm = np.hypot(*np.diff(line.xy_mm[line.loop_from :], axis=0).T).sum()
+    assert loop_mm == pytest.approx(20 * math.pi, abs=0.5)  # once round
+
+
+def test_a_guide_line_soon_after_the_join_does_not_lead_off_the_second_time() -> None:
+    a = math.radians(212)  # 5.6 mm beyond the join; on less than 3 mm the head cannot tell that it has been here
+    foot = (34 + 10 * math.cos(a), 16 - 10 * math.sin(a))
+    guide = polyline(foot, (34 + 3 * math.cos(a), 16 - 3 * math.sin(a)))
+    line = trace(inked(CIRCLE, polyline((8, 16), (24, 16)), tick((18, 16)), guide, seed=5)).lines[0]
+    assert line.is_lead and line.length_mm == pytest.approx(16 + 20 * math.pi, abs=1.0)
+
+
+@pytest.mark.parametrize("join", [(22.0, 6.0), (22.0, 26.0)])
+def test_a_lead_line_in_line_with_the_side_of_a_corner(join: tuple[float, float]) -> None:
+    square = polyline((22, 6), (42, 6), (42, 26), (22, 26), (22, 6))
+    line = trace(inked(square, polyline((6, join[1]), join), tick((14, join[1])), seed=5)).lines[0]
+    assert line.is_lead and line.length_mm == pytest.approx(16 + 80, abs=1.0)
+    loop = line.xy_mm[line.loop_from :]
+    assert min(np.hypot(*(loop - corner).T).min() for corner in ([42, 6], [42, 26])) < 50 * UM  # true corners
+
+
+def test_of_several_open_ends_the_lead_line_is_begun_at() -> None:
+    lines = [polyline((8, 16), (24, 16)), tick((18, 16)), polyline((44, 16), (36, 16)), polyline((34, 26), (34, 19))]
+    line = trace(inked(CIRCLE, *lines, seed=5)).lines[0]
+    assert line.is_lead and math.dist(line.start_mm, (8, 16)) < 50 * UM

@@ -1,0 +1,69 @@
+"""Reference points: crosses and rings, alone and with the lead line drawn from them, and what is none."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from tests.tracer.inked import UM, arc, cross, inked, polyline, tick
+from tracer.line import Line
+from tracer.sequence import trace
+
+WITHIN_MM = 50 * UM
+CIRCLE = arc((36, 14), 9)
+JOIN = (27.0, 14.0)
+AT = (7.0, 14.0)
+
+
+def lead_line(*lines: np.ndarray, width_mm: float = 0.5) -> Line:
+    """The line of a scanned drawing: a circle, and what leads to it."""
+    return trace(inked(CIRCLE, *lines, width_mm=width_mm, seed=3)).lines[0]
+
+
+def stands_at(line: Line, place_mm: tuple[float, float]) -> None:
+    """The reference point is there, and the line begins near it and leads to the loop."""
+    assert line.reference_mm is not None and math.dist(line.reference_mm, place_mm) < WITHIN_MM
+    assert line.is_lead and line.loop_from is not None
+    assert math.dist(line.place(line.loop_from), JOIN) < 0.5  # half a line's width from where the middle lines meet
+    assert line.begin_mm == line.end_mm == line.reference_mm
+
+
+@pytest.mark.parametrize("width_mm", [0.3, 0.5, 0.8])
+@pytest.mark.parametrize("size_mm", [2.8, 5.0, 8.0])
+@pytest.mark.parametrize("apart_mm", [0.8, 6.0])
+def test_a_cross_apart_from_its_lead_line(size_mm: float, apart_mm: float, width_mm: float) -> None:
+    start = (AT[0] + size_mm / 2 + apart_mm + width_mm / 2, AT[1])
+    stands_at(lead_line(polyline(start, JOIN), *cross(AT, size_mm), width_mm=width_mm), AT)
+
+
+@pytest.mark.parametrize("turn_deg", [0.0, 45.0, 52.0])
+def test_a_cross_with_the_lead_line_from_its_middle(turn_deg: float) -> None:
+    stands_at(lead_line(polyline(AT, JOIN), *cross(AT, 4.0, turn_deg)), AT)
+
+
+@pytest.mark.parametrize("size_mm", [3.0, 6.0])
+def test_a_ring_alone_and_with_its_lead_line(size_mm: float) -> None:
+    for start in (AT[0] + size_mm / 2, AT[0] + size_mm / 2 + 2.0):
+        stands_at(lead_line(polyline((start, AT[1]), JOIN), arc(AT, size_mm / 2)), AT)
+
+
+def test_specks_at_the_tips_of_a_cross_leave_it_a_cross() -> None:
+    tips = [(AT[0] + 2.6, 14.2), (AT[0] - 0.3, 16.6)]
+    specks = [np.array([[x - 0.04, y - 0.04], [x + 0.04, y - 0.04], [x, y + 0.04]]) for x, y in tips]
+    drawing = inked(CIRCLE, polyline((12, 14), JOIN), *cross(AT, 4.5), seed=3, specks=specks)
+    stands_at(trace(drawing).lines[0], AT)
+
+
+NONE = {
+    "a small square": polyline((5, 12), (9, 12), (9, 16), (5, 16), (5, 12)),
+    "a letter T": np.array([[5.0, 16], [9, 16], [7, 16], [7, 12]]),
+    "a stroke": polyline((5, 14), (8, 14)),
+}
+
+
+@pytest.mark.parametrize("other", NONE.values(), ids=NONE)
+def test_what_is_no_reference_point(other: np.ndarray) -> None:
+    line = lead_line(polyline((14, 14), JOIN), tick((22, 14)), other)
+    assert line.reference_mm is None and line.is_lead  # by its tick
