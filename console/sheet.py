@@ -22,6 +22,7 @@ class Sheet:
 
     dpi: float | None = None
     width_mm: float | None = None
+    ink: str | None = None
 
     def open(self, file: FilePath) -> Drawing:
         """Open a drawing; at most one of the two scales may be given."""
@@ -29,7 +30,7 @@ class Sheet:
 
         if self.dpi is not None and self.width_mm is not None:
             raise click.UsageError("--dpi and --width were both given; give one of them")
-        return Drawing.open(file, dpi=self.dpi, width_mm=self.width_mm)
+        return Drawing.open(file, dpi=self.dpi, width_mm=self.width_mm, ink=self.ink)
 
 
 def sheet_options(verb: Callable[..., Any]) -> Callable[..., Any]:
@@ -41,8 +42,27 @@ def sheet_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         help="Resolution of the drawing, dots per inch.  [default: what the file states]",
     )
     @click.option("--width", "width_mm", type=LENGTH, help="Width of the whole sheet, such as 120mm; instead of --dpi.")
+    @click.option(
+        "--ink",
+        callback=_colour,
+        metavar="COLOUR",
+        help="The line's colour, such as blue or '#0000c0': other colours, such as a printed grid's, are taken for paper.  "
+        "[default: whatever is dark]",
+    )
     @functools.wraps(verb)
-    def with_sheet(*args: Any, dpi: float | None, width_mm: float | None, **options: Any) -> Any:
-        return verb(*args, sheet=Sheet(dpi, width_mm), **options)
+    def with_sheet(*args: Any, dpi: float | None, width_mm: float | None, ink: str | None, **options: Any) -> Any:
+        return verb(*args, sheet=Sheet(dpi, width_mm, ink), **options)
 
     return with_sheet
+
+
+def _colour(ctx: click.Context, param: click.Parameter, value: str | None) -> str | None:
+    """A colour as it was given; wrong use if it is none."""
+    if value is not None:
+        from tracer.ink import parsed
+
+        try:
+            parsed(value)
+        except ValueError as error:
+            raise click.BadParameter(str(error)) from None
+    return value

@@ -28,6 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion.faults import DrawingFault, FileFault
+from tracer import ink as inks
 from tracer import room
 from tracer.patches import Patches, runs_of, strips
 
@@ -64,15 +65,17 @@ class Drawing:
         return self.darkness.shape[0] * self.pitch_mm
 
     @classmethod
-    def open(cls, file: str | Path, dpi: float | None = None, width_mm: float | None = None) -> Drawing:
-        """Read an image file; its scale from `dpi`, or from the sheet's `width_mm`, or from the file.
+    def open(
+        cls, file: str | Path, dpi: float | None = None, width_mm: float | None = None, ink: str | None = None
+    ) -> Drawing:
+        """Read an image file; its scale from `dpi`, or from the sheet's `width_mm`, or from the file. Of a coloured drawing only one `ink`, if given.
 
         Raises DrawingFault if it is no image, states no resolution, or holds no line; FileFault if it cannot be read.
         """
         file = Path(file)
         if dpi is not None and width_mm is not None:
             raise DrawingFault("both a resolution and a width were given; give one of --dpi and --width")
-        grey, stated = _read(file)
+        grey, stated = _read(file, ink)
         pitch = _pitches_mm(file, grey.shape[1], stated, dpi, width_mm)
         if abs(pitch[0] / pitch[1] - 1) > 1e-3:  # a fax has oblong pixels
             size = grey.shape[1], round(grey.shape[0] * pitch[1] / pitch[0])
@@ -95,10 +98,11 @@ def darkness_of(grey: Grey, pitch_mm: float) -> Darkness:
     return contrast
 
 
-def _read(file: Path) -> tuple[Grey, tuple[float, float] | None]:
+def _read(file: Path, ink: str | None) -> tuple[Grey, tuple[float, float] | None]:
     """Grey levels of the first page of an image file, upright, and the resolution that the file states."""
     from PIL import Image, ImageOps, UnidentifiedImageError
 
+    wanted = inks.parsed(ink) if ink is not None else (0, 0, 0)
     Image.MAX_IMAGE_PIXELS = None  # a large sheet is no attack; a lack of memory is said below
     try:
         with warnings.catch_warnings():
@@ -111,7 +115,7 @@ def _read(file: Path) -> tuple[Grey, tuple[float, float] | None]:
                 image.load()
                 stated = _stated_dpi(image)
                 ImageOps.exif_transpose(image, in_place=True)
-                return _grey(image), stated
+                return _grey(image) if ink is None else inks.covered(image, wanted), stated
     except UnidentifiedImageError:
         raise DrawingFault(f"{file} is not an image that can be read; give a PNG, JPEG or TIFF file") from None
     except FileNotFoundError:

@@ -1,0 +1,90 @@
+"""One ink of several: a blue line on a printed grid is followed as it is without the grid."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from PIL import Image
+
+from motion.contour import distance
+from motion.faults import DrawingFault
+from motion.motion import thin
+from tests.tracer.inked import UM, arc, inked, polyline
+from tracer.drawing import Drawing
+from tracer.ink import parsed
+from tracer.sequence import trace
+
+BLUE, ORANGE, GREY, PAPER = (0x20, 0x30, 0xC0), (0xF0, 0xA0, 0x50), (0xB0, 0xB0, 0xB0), (0xF6, 0xF4, 0xEC)
+CIRCLE = arc((16, 16), 10)
+NOISE = 6.0  # levels in each channel, 4 % of the line's contrast
+
+
+def drawn(file: Path, grid: tuple[int, int, int] | None, line: tuple[int, int, int] = BLUE, seed: int = 1) -> Path:
+    """A coloured circle on a sheet of 30 x 30 mm, on squared paper of 5 mm printed in another colour; a scan with noise."""
+    squares = [polyline((k, 0), (k, 30)) for k in range(3, 30, 5)] + [
+        polyline((0, k), (30, k)) for k in range(3, 30, 5)
+    ]
+    share = inked(CIRCLE, *squares).darkness.shape
+    picture = np.ones((*share, 3)) * PAPER
+    for colour, ink in (
+        (grid, _alike(inked(*squares, width_mm=0.25), share)),
+        (line, _alike(inked(CIRCLE), share)),
+    ):
+        if colour is not None:
+            picture += ink[..., None] * (np.array(colour) - picture)
+    picture += np.random.default_rng(seed).normal(0, NOISE, picture.shape)
+    Image.fromarray(np.clip(np.round(picture), 0, 255).astype(np.uint8)).save(file, dpi=(300, 300), quality=90)
+    return file
+
+
+def _alike(drawing: Drawing, shape: tuple[int, ...]) -> NDArray[np.float32]:
+    """The darkness on a sheet of another size, the lower-left corner the same."""
+    own = drawing.darkness[-shape[0] :, : shape[1]]
+    return np.asarray(
+        cv2.copyMakeBorder(own, shape[0] - own.shape[0], 0, 0, shape[1] - own.shape[1], cv2.BORDER_CONSTANT, value=0.0)
+    )
+
+
+def rms_mm(file: Path, ink: str | None) -> float:
+    """How far the path is from the true circle, mm RMS."""
+    return distance(thin(trace(Drawing.open(file, ink=ink), (26, 16))), CIRCLE).path_to_reference.rms_mm
+
+
+@pytest.mark.parametrize("grid", [ORANGE, GREY], ids=["orange", "grey"])
+@pytest.mark.parametrize("suffix", [".png", ".jpg"])
+def test_a_blue_line_on_a_grid_is_followed_as_without_the_grid(
+    tmp_path: Path, grid: tuple[int, int, int], suffix: str
+) -> None:
+    plain = rms_mm(drawn(tmp_path / f"plain{suffix}", None), "blue")
+    on_grid = rms_mm(drawn(tmp_path / f"grid{suffix}", grid), "#0000c0")
+    assert plain < 4 * UM and on_grid < 6 * UM, (plain, on_grid)
+
+
+def test_edges_stay_linear(tmp_path: Path) -> None:
+    darkness = Drawing.open(drawn(tmp_path / "grid.png", None), ink="blue").darkness
+    true = inked(CIRCLE).darkness
+    part = _alike(Drawing(true, 1.0), darkness.shape)
+    edge = (part > 0.2) & (part < 0.8)
+    assert np.polyfit(part[edge], darkness[edge], 1) == pytest.approx([1, 0], abs=0.05)  # a share of the contrast
+
+
+def test_a_colour_that_is_nowhere_is_refused_with_those_that_are(tmp_path: Path) -> None:
+    with pytest.raises(
+        DrawingFault,
+        match=r"no ink of the colour #00ff00 on paper of #f\w+; the colours found are #\w{6}, #\w{6}; give",
+    ):
+        Drawing.open(drawn(tmp_path / "grid.png", ORANGE), ink="lime")
+
+
+@pytest.mark.parametrize("text", ["blue", "#00f", "#0000ff", " BLUE "])
+def test_a_colour_is_a_name_or_a_number(text: str) -> None:
+    assert parsed(text) == (0, 0, 255)
+
+
+def test_what_is_no_colour_is_said(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="'blau' is no colour; give a name such as blue"):
+        parsed("blau")
