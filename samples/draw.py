@@ -82,7 +82,29 @@ def gear() -> list[Points]:
     return [closed(np.column_stack([radius_mm * np.cos(turn), radius_mm * np.sin(turn)]))]
 
 
-DRAWINGS: dict[str, Callable[[], list[Points]]] = {"cam": cam, "bracket": bracket, "curve": curve, "gear": gear}
+def program() -> list[Points]:
+    """A rounded plate of 44 x 32 mm, the lead line to it, its reference point, two stop marks, and a guide line to a drill point."""
+    plate = closed(
+        np.array([18.0, 12.0]),
+        arc((24, 6), 6, 180, 270),
+        arc((56, 6), 6, 270, 360),
+        arc((56, 26), 6, 0, 90),
+        arc((24, 26), 6, 90, 180),
+    )
+    lead, before_plate = np.array([[0.0, 16.0], [18.0, 16.0]]), np.array([[13.0, 14.5], [13.0, 17.5]])
+    on_plate = np.array([[62.0, 14.0], [65.0, 14.0]])
+    cross = [np.array([[-1.5, 16.0], [1.5, 16.0]]), np.array([[0.0, 14.5], [0.0, 17.5]])]
+    guide, dot = np.array([[40.0, 32.0], [40.0, 20.0]]), [arc((40, 20), radius_mm, 0, 360) for radius_mm in (0.2, 0.5)]
+    return [lead, plate, before_plate, on_plate, *cross, guide, *dot]
+
+
+DRAWINGS: dict[str, Callable[[], list[Points]]] = {
+    "cam": cam,
+    "bracket": bracket,
+    "curve": curve,
+    "gear": gear,
+    "program": program,
+}
 
 
 def placed(loops: list[Points]) -> tuple[list[Points], NDArray[np.int_]]:

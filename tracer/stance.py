@@ -31,6 +31,7 @@ APERTURE = 0.3  # of the line's width, within bounds that a scan's noise and a c
 LEAST_APERTURE_MM, LARGEST_APERTURE_MM = 0.1, 0.24
 AT_END_MM = 1.5  # a start nearer to an open end is that end
 LEAD_MM = 11.0  # from the middle of a reference point to the lead line that comes from it
+NAMED_MM = 5.0  # a cross or ring nearer to the reference point that is named is that point, drawn
 LEADS_AWAY = math.radians(45)
 SPUR = 2.7  # a line that ends sooner, in widths, is a burr
 PLACES = 80  # tried along a line
@@ -113,17 +114,17 @@ def _at_ends(
 ) -> list[Stance]:
     """Stances at the open ends of a line, that which comes from a reference point first."""
     ends = [stance for place in stroke.ends_mm() if (stance := _at_end(view, place, gap_mm)) is not None]
-    if reference_mm is not None:
-        return _from_reference(reference_mm, ends) or ends
+    named = [] if reference_mm is None else _from_reference(reference_mm, ends)
+    if named:
+        return named
     for reference in references(sheet, view, stroke):
-        if reference.lead is not None:
-            lead = reference.lead
-            return [
-                Stance(
-                    lead.end_mm, lead.heading_rad, view.like(lead.end_mm, lead.heading_rad), True, reference.place_mm
-                )
-            ]
-        from_it = _from_reference(reference.place_mm, ends)
+        if reference_mm is not None and math.dist(reference_mm, reference.place_mm) > NAMED_MM:
+            continue
+        place_mm, lead = reference_mm or reference.place_mm, reference.lead
+        if lead is not None:
+            local = view.like(lead.end_mm, lead.heading_rad)
+            return [Stance(lead.end_mm, lead.heading_rad, local, True, place_mm)]
+        from_it = _from_reference(place_mm, ends)
         if from_it:
             return from_it
     return ends

@@ -95,6 +95,24 @@ def test_a_sample_comes_off_the_machine_as_it_was_drawn(tmp_path: FilePath, case
     assert np.ptp(played.positions_mm[:, 2]) == pytest.approx(7.0, abs=1 * UM)  # 2 above to 5 below
 
 
+def test_a_drawn_program_comes_off_the_machine_in_order(tmp_path: FilePath) -> None:
+    """Lead-in, contour, tick: one ordered path, stopped within 50 um of the tick's centre (issue), as the tape is played."""
+    truth = np.loadtxt(SAMPLES / "program.csv", delimiter=",", skiprows=1)
+    lead, plate = (truth[truth[:, 0] == k, 1:] for k in (0, 1))
+    run = trace(Drawing.open(SAMPLES / "program.png"))
+    played = taped(run, tmp_path / "tape.wav")
+    hold(distance(played, thin(run)), PLAYED_RMS_MM, PLAYED_MAX_MM)
+    way = np.vstack([lead, plate, lead[::-1]])
+    assert length_mm(played.xy_mm) == pytest.approx(2 * length_mm(lead) + length_mm(plate), rel=0.005)  # once
+    hold(distance(played.xy_mm, way), 15 * UM, 60 * UM)  # largest at the join, in its ink
+    steps_mm, steps_s = np.hypot(*np.diff(played.xy_mm, axis=0).T), np.diff(played.t_s)
+    slow = steps_mm / steps_s < 0.05  # mm/s
+    for centre in ((21.5, 23.0), (70.5, 21.0)):
+        near = np.hypot(*(played.xy_mm[1:] - centre).T) < 50 * UM
+        assert steps_s[slow & near].sum() > 0.4  # half a second, or the time that Z takes
+    assert played.xy_mm[-1] == pytest.approx(lead[0], abs=50 * UM)
+
+
 # real parts, drawn and scanned
 
 

@@ -1,0 +1,99 @@
+"""The drawing as the program, by the command line's behaviour: reference point, turns, stops, overrides, the operator at a terminal."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from console import attended
+from motion.pathfile import read_path
+from tests.console.conftest import SAMPLES, Answer, Morfax
+
+PROGRAM = SAMPLES / "program.png"
+CARD = ("--card", SAMPLES / "program.toml")
+REFERENCE_MM = (8.5, 23.0)
+TICK_MM, HOLE_MM, BESIDE_MM = (21.5, 23.0), (48.5, 27.0), (70.5, 21.0)
+WITHIN_MM = 0.05  # the issue's
+THINNED_MM = 0.0005  # a path file holds 0.2 um
+
+
+def traced(morfax: Morfax, *options: object) -> Answer:
+    answer = morfax("trace", PROGRAM, "-o", "program.csv", "--force", "--json", "--quiet", *options)
+    assert answer.exit_code == 0, answer.err
+    return answer
+
+
+def places(answer: Answer) -> list[tuple[float, float]]:
+    return [tuple(stop["stop_place_mm"]) for stop in answer.figures.get("stops", [])]
+
+
+def test_the_sample_program_is_one_path_with_its_stops(morfax: Morfax, here: Path) -> None:
+    answer = traced(morfax, *CARD)
+    assert answer.figures["reference_place_mm"] == pytest.approx(REFERENCE_MM, abs=WITHIN_MM)
+    assert [stop["mark"] for stop in answer.figures["stops"]] == ["tick", "hole", "tick"]
+    for found, truth in zip(places(answer), (TICK_MM, HOLE_MM, BESIDE_MM), strict=True):
+        assert found == pytest.approx(truth, abs=WITHIN_MM)
+    path = read_path("program.csv")
+    assert path.xy_mm[0] == pytest.approx(REFERENCE_MM, abs=WITHIN_MM)
+    assert path.xy_mm[-1] == pytest.approx(path.xy_mm[0], abs=0.001)
+    assert path.positions_mm[:, 2].min() == pytest.approx(-8.0, abs=THINNED_MM)  # the hole
+    moving_z = np.diff(path.positions_mm[:, 2]) != 0
+    assert np.abs(np.diff(path.xy_mm, axis=0)[moving_z]).max() < THINNED_MM  # X and Y stand while Z moves
+
+
+def test_without_a_card_guide_lines_are_passed_by(morfax: Morfax, here: Path) -> None:
+    assert [stop["mark"] for stop in traced(morfax).figures["stops"]] == ["tick", "tick"]
+
+
+def test_override_passes_marks_by(morfax: Morfax, here: Path) -> None:
+    assert len(places(traced(morfax, "--override", "2"))) == 1
+    assert places(traced(morfax, "--override", "all")) == []
+
+
+def test_origin_reference_puts_the_zero_there(morfax: Morfax, here: Path) -> None:
+    traced(morfax, "--origin", "reference")
+    assert read_path("program.csv").xy_mm[0] == pytest.approx((0, 0), abs=0.001)
+
+
+def test_a_reference_point_may_be_named(morfax: Morfax, here: Path) -> None:
+    answer = traced(morfax, "--reference", "8,23.5")
+    assert answer.figures["reference_place_mm"] == pytest.approx((8.0, 23.5))
+
+
+@pytest.mark.parametrize(("direction", "positive"), [("cw", False), ("ccw", True), ("left", False), ("right", True)])
+def test_the_loop_is_taken_as_asked(morfax: Morfax, here: Path, direction: str, positive: bool) -> None:
+    traced(morfax, "--direction", direction)
+    path = read_path("program.csv")
+    x, y = path.xy_mm[path.tool].T
+    assert (np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y) > 0) == positive
+
+
+def test_ask_needs_a_terminal(morfax: Morfax, here: Path) -> None:
+    answer = morfax("trace", PROGRAM, "-o", "program.csv", "--ask")
+    assert answer.exit_code == 2 and "--ask needs a terminal" in answer.err and not list(here.iterdir())
+
+
+def test_at_a_terminal_every_stop_is_asked_for(morfax: Morfax, here: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    answers = iter(["down 3mm 2mm/s", "sideways 2mm", "dwell 1s", "", ""])
+    monkeypatch.setattr(attended, "at_terminal", lambda: True)
+    monkeypatch.setattr("click.prompt", lambda *words, **options: next(answers))
+    answer = morfax("trace", PROGRAM, "-o", "program.csv", "--ask")
+    assert (
+        answer.exit_code == 0 and "stop 1 (tick) at 21.5" in answer.err and "'sideways 2mm' cannot be set" in answer.err
+    )
+    path = read_path("program.csv")
+    assert path.positions_mm[:, 2].min() == pytest.approx(-1.0, abs=THINNED_MM)  # 3 mm down from 2 mm above
+    assert next(answers, None) is None  # and no more was asked
+
+
+def test_a_card_may_wait_for_the_button(morfax: Morfax, here: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    Path("part.toml").write_text('restart = "manual"\n')
+    refused = morfax("trace", PROGRAM, "-o", "program.csv", "--card", "part.toml")
+    assert refused.exit_code == 9 and "there is no terminal" in refused.fault
+    pressed: list[str] = []
+    monkeypatch.setattr(attended, "at_terminal", lambda: True)
+    monkeypatch.setattr("click.prompt", lambda text, **options: pressed.append(text) or "")
+    assert morfax("trace", PROGRAM, "-o", "program.csv", "--card", "part.toml").exit_code == 0
+    assert len(pressed) == 2 and all("press Enter" in text for text in pressed)
