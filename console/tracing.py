@@ -92,6 +92,7 @@ class Head:
             if picture is not None:
                 self._show_sheet(drawing, fault, medium.incomplete(picture), desk)
             raise
+        self._tell_of_stops(traced, desk)
         origin_mm = (0.0, 0.0) if self.marks.origin == "sheet" else self._reference_mm(drawing, traced)
         beside, unreached = self._beside(traced, settings)
         return Traced(beside, thin(beside), self.lines is not None, origin_mm, self.cutter, unreached)
@@ -103,6 +104,16 @@ class Head:
         from tracer.cutter import with_cutter
 
         return with_cutter(traced, self.cutter, settings.speed_mm_s)
+
+    @staticmethod
+    def _tell_of_stops(trace: Trace, desk: Desk) -> None:
+        """Tell of stops that the card or --override names and that are not on the drawing."""
+        missing, stops = trace.operator.not_there(trace.lines)
+        if missing:
+            numbers = ", ".join(map(str, missing))
+            desk.note(
+                f"there is no stop {numbers}: {stops} were found, see their places in the figures; the rest is followed"
+            )
 
     def _reference_mm(self, drawing: Drawing, trace: Trace) -> tuple[float, float]:
         """The reference point: the one given, that from which the program begins, or the only one on the sheet; raises LineFault without one."""

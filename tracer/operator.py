@@ -101,6 +101,13 @@ class Operator:
             made.append(self._along([halt for halt in halts if not self._overridden(halt)], line))
         return made
 
+    def not_there(self, lines: Sequence[Line]) -> tuple[list[int], int]:
+        """Numbers of stops that the card names and that the lines do not have, and how many stops they have."""
+        override = () if isinstance(self.card.override, str) else self.card.override
+        named = {*override, *(stop.number for stop in self.card.stops if stop.number is not None)}
+        stops = sum(1 for line in lines for halt in self._halts(line, 1) if halt.number is not None)
+        return sorted(number for number in named if number > stops), stops
+
     def _halts(self, line: Line, first: int) -> list[Halt]:
         """Every place of a line where something may be done, in order, its stops numbered from `first`."""
         stops = [Halt(mark.at, "tick" if mark.kind == "tick" else "dot", mark.place_mm) for mark in line.marks]

@@ -52,6 +52,11 @@ def test_override_passes_marks_by(morfax: Morfax, here: Path) -> None:
     assert places(traced(morfax, "--override", "all")) == []
 
 
+def test_a_stop_that_is_not_there_is_told_of(morfax: Morfax, here: Path) -> None:
+    answer = morfax("trace", PROGRAM, "-o", "program.csv", "--override", "2,7")
+    assert answer.exit_code == 0 and "there is no stop 7: 2 were found" in answer.err
+
+
 def test_origin_reference_puts_the_zero_there(morfax: Morfax, here: Path) -> None:
     traced(morfax, "--origin", "reference")
     assert read_path("program.csv").xy_mm[0] == pytest.approx((0, 0), abs=0.001)

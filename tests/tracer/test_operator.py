@@ -119,3 +119,9 @@ def test_the_button_takes_its_time_and_needs_somebody() -> None:
     assert made[0].moves[-1].dwell_s == 3.0
     with pytest.raises(CardFault, match="nobody is at the panel"):
         Operator(WORK, card).actions([line(tick(250))])
+
+
+def test_stops_that_the_card_names_and_the_drawing_lacks_are_known() -> None:
+    card = Card.parse("override = [1, 5]\n[[stop]]\nnumber = 3\ndwell = 1\n[[stop]]\nnumber = 2\ndwell = 1\n")
+    assert Operator(WORK, card).not_there([line(tick(250)), line(tick(600))]) == ([3, 5], 2)
+    assert PLAIN.not_there([line(tick(250))]) == ([], 1)
