@@ -209,8 +209,8 @@ def _demand_no_dropout(track: int, levels: Float32s, samples: Float32s, share: f
     """Raise TapeFault for a track that has a carrier, but not through all of the 50 ms."""
     steady = levels > LEVEL_STEADY * np.percentile(levels, 90)
     edges = np.flatnonzero(np.diff(np.r_[False, steady, False]))
-    if not len(edges) or edges[1] - edges[0] == len(levels):
-        return
+    if not len(edges) or float(levels.mean()) ** 2 / 2 >= share * float(np.var(samples, dtype=np.float64)):
+        return  # nothing to be heard, or enough of it
     first, last = max(zip(edges[::2], edges[1::2], strict=True), key=lambda run: run[1] - run[0])
     heard = samples[first * fmt.samples_per_motion : last * fmt.samples_per_motion]
     level, power = float(levels[first:last].mean()), float(np.var(heard, dtype=np.float64))
