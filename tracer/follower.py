@@ -34,6 +34,7 @@ from tracer.riding import Ride, ride_past, to_vertex
 from tracer.settings import Settings
 from tracer.stance import Stance
 from tracer.survey import Side, Way, caught_again, goes_straight, straight_on, survey
+from tracer.unravel import Planned, unravel
 from tracer.view import Array, View
 
 SMOOTH = math.radians(14)  # a smaller change of heading is no corner
@@ -121,27 +122,34 @@ class Follower:
         return self._through_legs(leg_of(seen, True, self.view.leg_mm))
 
     def _through_legs(self, incoming: Leg) -> Followed | None:
-        """Take the head from an incoming leg onto the straightest leg that leads on; what it did in all, if there is none."""
-        outgoing, legs_mm, choices = self._survey(incoming)
-        straight = goes_straight(incoming, outgoing)
-        dot = None if straight else dot_at_end(self.view, incoming)
+        """Take the head from an incoming leg out of the knot, by a leg that leads on; what it did in all, if there is none."""
+        way, asked = self._survey(incoming)
+        dot = None if goes_straight(incoming, way[0]) else dot_at_end(self.view, incoming)
         if dot is not None:
             return self._end(incoming, dot)
+        plan, choices = self._plan(incoming, way)
+        if not asked:
+            rank = int(self._junctions.next(self.carriage.travel_mm) in self._turns)
+            plan = unravel(self.view, incoming, self.carriage.trail, self.carriage.stands(), plan, rank)
+        return self._at_end(incoming, choices) if plan is None else self._pass(*plan)
+
+    def _plan(self, incoming: Leg, way: Way) -> tuple[Planned | None, int]:
+        """The way through a knot that the legs alone tell, and how many there were to choose from."""
+        outgoing, legs_mm, choices = way
+        straight = goes_straight(incoming, outgoing)
         if not straight or self._far(incoming, outgoing):
             ride = ride_past(self.view, incoming)
             if ride is not None and not (straight and ride.back is None):
-                return self._ride(incoming, ride)
+                return self._ride(incoming, ride), choices
         if outgoing is not None:
-            way = self._course(incoming, outgoing, legs_mm)
-            if course.on_ink(self.view, way[0]):
-                return self._pass(*way)
+            planned = self._course(incoming, outgoing, legs_mm)
+            if course.on_ink(self.view, planned.stretches):
+                return planned, choices
             choices = 0  # that leg is another line's
         outgoing = straight_on(self.view, incoming, max(self.settings.gap_mm, LEAST_GAP_PX * self.view.pitch_mm))
         if outgoing is None and self.settings.recatch_mm > 0:
             outgoing = caught_again(self.view, incoming, self.carriage.trail, self.settings.recatch_mm)
-        if outgoing is None:
-            return self._at_end(incoming, choices)
-        return self._pass(*self._course(incoming, outgoing, None))
+        return None if outgoing is None else self._course(incoming, outgoing, None), choices
 
     def _far(self, incoming: Leg, outgoing: Leg | None) -> bool:
         """Whether the ink runs beside the line for so long that it may be the line's own way back."""
@@ -169,11 +177,11 @@ class Follower:
         )
         return np.column_stack([places, np.full(len(places), self.view.width_mm)])
 
-    def _survey(self, incoming: Leg) -> Way:
-        """The way out of a knot, as the operator has it at a junction."""
+    def _survey(self, incoming: Leg) -> tuple[Way, bool]:
+        """The way out of a knot, as the operator has it at a junction, and whether it is the operator's."""
         trail, went = self.carriage.trail, self.carriage.count
         if self._junctions.is_back(incoming.end_mm, 2 * self.view.width_mm + BACK_MM, went):
-            return survey(self.view, incoming, trail)
+            return survey(self.view, incoming, trail), True
         number = self._junctions.next(self.carriage.travel_mm)
         side = self._sides[number] if number < len(self._sides) else None
         found = outgoing, legs_mm, choices = survey(self.view, incoming, trail, int(number in self._turns), side)
@@ -182,7 +190,7 @@ class Follower:
             self._junctions.come_to(place, self.carriage.travel_mm)
             if side is not None and not goes_straight(incoming, outgoing) and self._goes_on(incoming):
                 self._junctions.take(place, went)
-        return found
+        return found, side is not None
 
     def _goes_on(self, incoming: Leg) -> bool:
         """Whether a line goes straight on at a junction."""
@@ -199,18 +207,19 @@ class Follower:
             self._junctions.come_to(incoming.end_mm, self.carriage.travel_mm)
         return None
 
-    def _course(self, incoming: Leg, outgoing: Leg, legs_mm: Meeting | None) -> tuple[list[Array], Leg]:
+    def _course(self, incoming: Leg, outgoing: Leg, legs_mm: Meeting | None) -> Planned:
         """Stretches from where the head is to the outgoing leg's clean end, and that leg."""
         deflection = abs(turn(incoming.heading_rad, outgoing.heading_rad))
         if legs_mm is not None and deflection > SMOOTH and min(legs_mm) > -self.view.width_mm:
             arriving, leaving, met = to_vertex(self.view, incoming, outgoing, legs_mm)
             end_mm = max(0.05 - met[1], course.ahead_mm(leaving.end_mm, outgoing))
             stretches = course.through_corner(self.view, self.carriage.stands(), arriving, leaving, met, end_mm)
-            return stretches, leaving.shifted(end_mm, leaving.seen)
+            return Planned(stretches, leaving.shifted(end_mm, leaving.seen))
         limit = float(np.hypot(*(outgoing.end_mm - incoming.end_mm)))
         way, along = course.onto(*self.carriage.stands(), incoming, 0.5 * limit)
         start, heading = incoming.at(along), incoming.heading_at(along)
-        return [np.vstack([way, course.hermite(start, heading, outgoing.end_mm, outgoing.heading_rad)])], outgoing
+        through = course.hermite(start, heading, outgoing.end_mm, outgoing.heading_rad)
+        return Planned([np.vstack([way, through])], outgoing)
 
     def _sharp_corner(self, seen: Array, here: int) -> tuple[Leg, Leg, Meeting] | None:
         """The legs of a corner so obtuse that the line was felt clean round it, if its ink shows it to be sharp."""
@@ -226,16 +235,16 @@ class Follower:
             return None
         return incoming, outgoing, legs_mm
 
-    def _ride(self, incoming: Leg, ride: Ride) -> Followed | None:
-        """Run along a line that was felt on one edge; round the tip and back, if that is how it went."""
+    def _ride(self, incoming: Leg, ride: Ride) -> Planned:
+        """Stretches along a line that was felt on one edge; round the tip and back, if that is how it went."""
         there = np.vstack([incoming.seen, ride.seen])
         if ride.back is None:
             nodes, leg = self._nodes(there)
-            return self._pass([self._through(nodes)], leg, ride.seen)
+            return Planned([self._through(nodes)], leg, ride.seen)
         to_tip, _ = self._nodes(there, 0.0)
         tip = ride.back[0, :2]
         from_tip, leg = self._nodes(ride.back, 0.0, (tip, to_tip[-1][1] + math.pi))
-        return self._pass([self._through([*to_tip[:-1], (tip, to_tip[-1][1])]), self._through(from_tip)], leg)
+        return Planned([self._through([*to_tip[:-1], (tip, to_tip[-1][1])]), self._through(from_tip)], leg)
 
     @staticmethod
     def _through(nodes: list[tuple[Array, float]]) -> Array:

@@ -34,6 +34,8 @@ from tracer.survey import Side
 
 SHORTER = 0.95  # the other way round is the line itself if it is shorter than this: straight on has led elsewhere
 TURNS = 12  # junctions at which another turn is tried
+TRIED_MM = 6000.0  # travel in all that is spent on other turns
+OVERRUN_MM = 3.0  # a stub as short, straight on from a closed line, is where the pen set out, and not another's line
 SIDES: tuple[Side, Side] = ("left", "right")
 
 Told = Callable[[float], None]
@@ -127,31 +129,41 @@ class _Attempts:
     longest_mm: float
     told: Told | None
 
-    def run(self, stance: Stance, turns: tuple[int, ...] = (), *, aloud: bool = True) -> Followed:
+    def run(self, stance: Stance, turns: tuple[int, ...] = ()) -> Followed:
         """Follow from a stance."""
         follower = Follower(stance, self.settings, MOTION_RATE_HZ, turns, self.sides)
-        return follower.follow(self.longest_mm, self.told if aloud else None)
+        return follower.follow(self.longest_mm, self.told)
 
     def all_of_it(self, stance: Stance) -> Followed:
         """Follow a line from a stance: either way round, an open one from end to end, and one that does not come back with other turns."""
         run = self.run(stance)
         if stance.at_end or (run.ending == "closed" and not run.junctions_mm):
             return run
-        other = self.run(_about(stance), aloud=False)
+        other = self.run(_about(stance))
         if run.ending == "closed":
             return other if other.ending == "closed" and other.travel_mm < SHORTER * run.travel_mm else run
+        if run.ending == "ended":
+            back = self.run(turned_round(run.positions_mm[-1], run.heading_rad, run.view))
+            if other.ending == "closed" and not other.travel_mm < back.travel_mm < other.travel_mm + OVERRUN_MM:
+                return other
+            return max(run, back, key=lambda r: r.travel_mm)
         if other.ending == "closed":
             return other
-        if run.ending == "ended":
-            back = turned_round(run.positions_mm[-1], run.heading_rad, run.view)
-            return max(run, self.run(back), key=lambda r: r.travel_mm)
         return self._with_other_turns(stance, run) if run.ending == "joined" else run
 
     def _with_other_turns(self, stance: Stance, run: Followed) -> Followed:
-        """The shortest run that closes because it takes another turn at one junction, or else at two; else the run as it was."""
-        places = range(min(len(run.junctions_mm), TURNS))
+        """The shortest run that closes because it takes another turn at one junction, or else at two; else the run as it was.
+
+        No more are tried when the head has gone `TRIED_MM` with them.
+        """
+        places, gone_mm = range(min(len(run.junctions_mm), TURNS)), 0.0
         for turns in ([(k,) for k in places], list(combinations(places, 2))):
-            closed = [other for t in turns if (other := self.run(stance, t, aloud=False)).ending == "closed"]
+            closed = []
+            for some in turns:
+                if gone_mm < TRIED_MM:
+                    other = self.run(stance, some)
+                    gone_mm += other.travel_mm
+                    closed += [other] if other.ending == "closed" else []
             if closed:
                 return min(closed, key=lambda other: other.travel_mm)
         return run

@@ -1,0 +1,155 @@
+"""Unravelling a tangle: by which leg, and over which vertices, the head's own line leaves it.
+
+Signals: the view, the incoming leg, the trail, and what was planned by the legs alone in; stretches and the outgoing leg out.
+
+Source: our own (see `pairing`).
+"""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from tracer import pen
+from tracer.course import SPACING_MM, ahead_mm, along_leg, hermite, onto
+from tracer.leg import Leg, turn
+from tracer.marks import longest_mm
+from tracer.pairing import MOST_LEGS, VERTEX, Sketch, Way, ways
+from tracer.survey import goes_straight
+from tracer.tangle import Tangle, tangle_ahead
+from tracer.trail import Trail
+from tracer.view import Array, View
+
+CLEAR = 0.25  # misfit up to which a way explains the ink
+LEAST_CLEAR, BETTER = (
+    1.0,
+    0.25,
+)  # a long tangle is explained less well: up to this, if that is so much better than the plan
+DOUBTFUL = 0.08  # straight on stands unless the ink tells against it by more
+AS_GOOD = 0.05  # misfit of a plan that needs no other to be compared with
+SAME_RAD = math.radians(20)
+NEAR_MM = 3.0
+KINK_RAD = math.radians(14)  # a smaller change of heading is run through
+
+
+class Planned(NamedTuple):
+    """Stretches from where the head is, the leg that they lead to, and what of the line was felt clean on the way."""
+
+    stretches: list[Array]
+    leg: Leg
+    seen: Array | None = None
+
+
+def unravel(
+    view: View, incoming: Leg, trail: Trail, way_in: tuple[Array, float], plan: Planned | None, rank: int = 0
+) -> Planned | None:
+    """The way from where the head is (place, heading) out of the tangle ahead.
+
+    It is the plan if that explains the ink as well as any other way, or if the tangle does not end in legs, or in too many, or if no way explains its ink.
+    `rank` 1 takes the second best way out.
+    """
+    tangle = tangle_ahead(view, incoming)
+    odd = len(tangle.legs) % 2 == 1  # one line ends on another: that is a junction, which the legs tell better
+    if not tangle.whole or not 2 <= len(tangle.legs) <= MOST_LEGS or (odd and plan is not None):
+        return plan
+    sketch = Sketch.of(view, tangle)
+    drawn = [] if plan is None else _as_drawn(plan, tangle, view.width_mm)
+    planned = math.inf if plan is None else sketch.misfit_with(Way((), ()), drawn)
+    if plan is not None and len(tangle.legs) == 2 and planned < AS_GOOD:
+        return plan
+    every = ways(sketch)
+    if _partner(every[0]) is None:
+        return plan  # the line ends here, on another
+    clear = max(CLEAR, min(BETTER * planned, LEAST_CLEAR)) if len(tangle.legs) == 2 else CLEAR
+    best: dict[int, Way] = {}
+    for way in every:
+        leg = _partner(way)
+        if leg is not None and way.misfit < clear and not trail.holds(tangle.legs[leg], view.width_mm):
+            best.setdefault(leg, way)
+    if not best:
+        return plan
+    leg, way = list(best.items())[min(rank, len(best) - 1)]
+    if plan is not None and rank == 0 and goes_straight(incoming, plan.leg):
+        straight = [w.cost for k, w in best.items() if _same(plan.leg, tangle.legs[k], view.width_mm)]
+        if straight and straight[0] < way.cost + DOUBTFUL and len(tangle.legs) > 2:
+            return plan
+    if plan is not None and _same(plan.leg, tangle.legs[leg], view.width_mm):
+        planned = sketch.misfit_with(_without_own(way), drawn)
+        if goes_straight(incoming, plan.leg) and _aside_mm(_own(way), plan.stretches) < longest_mm(view):
+            return plan  # what is beside it is a mark, or a blot
+        if planned < way.misfit + VERTEX * (1 + len(_own(way))):
+            return plan
+    return Planned(_stretches(way_in, incoming, _own(way), tangle.legs[leg]), tangle.legs[leg])
+
+
+def _as_drawn(plan: Planned, tangle: Tangle, width_mm: float) -> list[Array]:
+    """What a plan draws: its stretches, what was felt of its leg, and on to that leg's clean end in the tangle."""
+    way = [*plan.stretches[:-1], np.vstack([plan.stretches[-1], plan.leg.seen[:, :2]])]
+    for leg in tangle.legs[1:]:
+        if _same(plan.leg, leg, width_mm):
+            way[-1] = np.vstack([way[-1], leg.end_mm])
+    return way
+
+
+def _same(leg: Leg, other: Leg, width_mm: float) -> bool:
+    """Whether two legs lie on the same line, near each other."""
+    along = ahead_mm(leg.end_mm, other) * math.cos(turn(leg.heading_rad, other.heading_rad))
+    gap = other.end_mm - leg.at(along)
+    turned = abs(turn(leg.heading_at(along), other.heading_rad))
+    return turned < SAME_RAD and float(np.hypot(*gap)) < 0.5 * width_mm and abs(along) < max(4 * width_mm, NEAR_MM)
+
+
+def _stretches(way_in: tuple[Array, float], incoming: Leg, vertices: Array, outgoing: Leg) -> list[Array]:
+    """Stretches from where the head is over the vertices to the outgoing leg's clean end, one ending at each vertex where the head swivels."""
+    way, along = onto(*way_in, incoming, 0.0)
+    start = np.vstack([way, along_leg(incoming, along, 0.0)])
+    if not len(vertices):
+        return [
+            np.vstack([start, hermite(incoming.end_mm, incoming.heading_rad, outgoing.end_mm, outgoing.heading_rad)])
+        ]
+    first = np.vstack([start, _bend(incoming.end_mm, incoming.heading_rad, vertices[0])])
+    last = _bend(outgoing.end_mm, outgoing.heading_rad + math.pi, vertices[-1])[::-1]
+    out = [first]
+    for part in [*(_straight(a, b) for a, b in pairwise(vertices)), last]:
+        before, after = out[-1][-1] - out[-1][-2], part[1] - part[0]
+        if abs(turn(math.atan2(before[1], before[0]), math.atan2(after[1], after[0]))) > KINK_RAD:
+            out.append(part)
+        else:
+            out[-1] = np.vstack([out[-1], part[1:]])
+    return out
+
+
+def _aside_mm(vertices: Array, stretches: list[Array]) -> float:
+    """How far vertices reach from some stretches, mm."""
+    places = np.vstack(stretches)
+    return max((float(np.min(np.hypot(*(places - vertex).T))) for vertex in vertices), default=0.0)
+
+
+def _without_own(way: Way) -> Way:
+    """The way without the strand of the incoming leg."""
+    others = [(pair, v) for pair, v in zip(way.pairs, way.vertices, strict=True) if pair[0] != 0]
+    return Way(tuple(pair for pair, _ in others), tuple(v for _, v in others), way.strokes)
+
+
+def _partner(way: Way) -> int | None:
+    """The leg with which the incoming one is joined."""
+    return next((b for a, b in way.pairs if a == 0), None)
+
+
+def _own(way: Way) -> Array:
+    """The vertices of the incoming leg's strand."""
+    return next(v for (a, _), v in zip(way.pairs, way.vertices, strict=True) if a == 0)
+
+
+def _bend(place: Array, heading: float, vertex: Array) -> Array:
+    """Places (n, 2) along the bend from a leg's end to a vertex."""
+    shares = np.linspace(0, 1, max(2, math.ceil(float(np.hypot(*(vertex - place))) / SPACING_MM) + 1))
+    return np.array([pen.bend(place[0], place[1], heading, vertex[0], vertex[1], t) for t in shares])
+
+
+def _straight(start: Array, end: Array) -> Array:
+    """Places (n, 2) along a straight line."""
+    return np.linspace(start, end, max(2, math.ceil(float(np.hypot(*(end - start))) / SPACING_MM) + 1))
