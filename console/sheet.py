@@ -23,6 +23,7 @@ class Sheet:
     dpi: float | None = None
     width_mm: float | None = None
     ink: str | None = None
+    edge: bool = False
 
     def open(self, file: FilePath) -> Drawing:
         """Open a drawing; at most one of the two scales may be given."""
@@ -30,7 +31,7 @@ class Sheet:
 
         if self.dpi is not None and self.width_mm is not None:
             raise click.UsageError("--dpi and --width were both given; give one of them")
-        return Drawing.open(file, dpi=self.dpi, width_mm=self.width_mm, ink=self.ink)
+        return Drawing.open(file, dpi=self.dpi, width_mm=self.width_mm, ink=self.ink, edge=self.edge)
 
 
 def sheet_options(verb: Callable[..., Any]) -> Callable[..., Any]:
@@ -49,9 +50,12 @@ def sheet_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         help="The line's colour, such as blue or '#0000c0': other colours, such as a printed grid's, are taken for paper.  "
         "[default: whatever is dark]",
     )
+    @click.option("--edge", is_flag=True, help="Filled shapes: the head rides on their edges.")
     @functools.wraps(verb)
-    def with_sheet(*args: Any, dpi: float | None, width_mm: float | None, ink: str | None, **options: Any) -> Any:
-        return verb(*args, sheet=Sheet(dpi, width_mm, ink), **options)
+    def with_sheet(
+        *args: Any, dpi: float | None, width_mm: float | None, ink: str | None, edge: bool, **options: Any
+    ) -> Any:
+        return verb(*args, sheet=Sheet(dpi, width_mm, ink, edge), **options)
 
     return with_sheet
 

@@ -31,6 +31,7 @@ from motion.faults import DrawingFault, FileFault
 from tracer import ink as inks
 from tracer import room
 from tracer.patches import Patches, runs_of, strips
+from tracer.silhouette import outlined
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -66,9 +67,15 @@ class Drawing:
 
     @classmethod
     def open(
-        cls, file: str | Path, dpi: float | None = None, width_mm: float | None = None, ink: str | None = None
+        cls,
+        file: str | Path,
+        dpi: float | None = None,
+        width_mm: float | None = None,
+        ink: str | None = None,
+        edge: bool = False,
     ) -> Drawing:
-        """Read an image file; its scale from `dpi`, or from the sheet's `width_mm`, or from the file. Of a coloured drawing only one `ink`, if given.
+        """Read an image file; its scale from `dpi`, or from the sheet's `width_mm`, or from the file. Of a coloured drawing only one `ink`, if given;
+        of filled shapes their edges, if `edge`.
 
         Raises DrawingFault if it is no image, states no resolution, or holds no line; FileFault if it cannot be read.
         """
@@ -80,7 +87,7 @@ class Drawing:
         if abs(pitch[0] / pitch[1] - 1) > 1e-3:  # a fax has oblong pixels
             size = grey.shape[1], round(grey.shape[0] * pitch[1] / pitch[0])
             grey = np.asarray(cv2.resize(grey.astype(np.float32), size, interpolation=cv2.INTER_LINEAR), np.float32)
-        return cls(darkness_of(grey, pitch[0]), pitch[0], file)
+        return cls(outlined(grey, pitch[0]) if edge else darkness_of(grey, pitch[0]), pitch[0], file)
 
 
 def darkness_of(grey: Grey, pitch_mm: float) -> Darkness:
