@@ -1,4 +1,4 @@
-"""Run all benchmarks, or those named: `python -m benchmarks [tape …]`."""
+"""Run all benchmarks, or those named: `python -m benchmarks [tape …]`; `folder DIR` is the table of a folder of drawings."""
 
 from __future__ import annotations
 
@@ -10,6 +10,9 @@ from pathlib import Path
 
 def main(names: list[str]) -> None:
     """Call `main()` of every module beside this one that has one."""
+    if names[:1] == ["folder"]:
+        importlib.import_module("benchmarks.folder").main(names[1:])
+        return
     here = [module.name for module in pkgutil.iter_modules([str(Path(__file__).parent)])]
     for name in names or [name for name in here if not name.startswith("_")]:
         run = getattr(importlib.import_module(f"benchmarks.{name}"), "main", None)
