@@ -172,7 +172,7 @@ def _ring(view: View, place: Array) -> Reference | None:
     centre, radius_mm, misfit_mm = circle_through(middles)
     if misfit_mm > 0.1 * radius_mm or not LEAST_MM < 2 * radius_mm < LARGEST_MM:
         return None
-    lead = None if good.all() else _lead(view, centre, radius_mm + 0.5 * view.width_mm)
+    lead = _lead(view, centre, radius_mm + 0.5 * view.width_mm)
     return Reference((float(centre[0]), float(centre[1])), "ring", lead)
 
 

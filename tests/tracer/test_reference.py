@@ -49,6 +49,13 @@ def test_a_ring_alone_and_with_its_lead_line(size_mm: float) -> None:
         stands_at(lead_line(polyline((start, AT[1]), JOIN), arc(AT, size_mm / 2)), AT)
 
 
+def test_a_thin_lead_line_from_a_large_ring_between_two_spokes() -> None:
+    a = 0.044  # half way between spokes, 5 degrees apart: of a line of 0.3 mm they see nothing at 4 mm
+    start = (AT[0] + 3.9 * np.cos(a), AT[1] + 3.9 * np.sin(a))
+    line = lead_line(polyline(start, JOIN), arc(AT, 3.9), width_mm=0.3)
+    stands_at(line, AT)
+
+
 def test_specks_at_the_tips_of_a_cross_leave_it_a_cross() -> None:
     tips = [(AT[0] + 2.6, 14.2), (AT[0] - 0.3, 16.6)]
     specks = [np.array([[x - 0.04, y - 0.04], [x + 0.04, y - 0.04], [x, y + 0.04]]) for x, y in tips]
