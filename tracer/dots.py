@@ -11,15 +11,18 @@ guide line, or a dot at least 1.7 times as wide as the line.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
 from tracer.leg import Leg, turn
+from tracer.lines import Sheet
 from tracer.rounds import ANGLES, WAYS, circle_through, spokes
 from tracer.view import Array, View
 
 LEAST_WIDTHS = 0.85  # radius of a dot
 LARGEST_WIDTHS = 6.0
+LEAST_FULL = 0.65  # area of a dot over that of its box; a disc has 0.785
 ROUND = 0.15  # spokes of a dot differ by less than this share
 ALONG = math.radians(50)  # the line leaves a dot within this of its heading
 
@@ -48,6 +51,20 @@ def dot_at_end(view: View, incoming: Leg) -> float | None:
         if all(abs(turn(heading + math.pi, angle)) < ALONG for angle in arms):
             return float((centre - incoming.end_mm) @ np.array([math.cos(heading), math.sin(heading)]))
     return None
+
+
+def alone(sheet: Sheet, view: View) -> Iterator[Array]:
+    """Centres of the dots that stand alone on the paper, mm: round patches of ink that no line leaves."""
+    pitch, patches = sheet.drawing.pitch_mm, sheet.patches
+    sides = patches.longer_sides * pitch
+    small = (sides > 2 * LEAST_WIDTHS * view.width_mm) & (sides < 2 * LARGEST_WIDTHS * view.width_mm)
+    full = patches.areas * pitch**2 > LEAST_FULL * sides**2
+    for patch in np.flatnonzero(small & full):
+        top, bottom, left, right = patches.box(np.arange(patches.count) == patch)
+        middle = np.array([0.5 * (left + right), sheet.drawing.darkness.shape[0] - 0.5 * (top + bottom)]) * pitch
+        found = _disc(view, middle)
+        if found is not None and not len(found[1]):
+            yield found[0]
 
 
 def _disc(view: View, place: Array) -> tuple[Array, Array] | None:

@@ -62,6 +62,14 @@ class Line:
             run.junctions_mm,
         )
 
+    @classmethod
+    def of_dot(cls, centre_mm: Array, width_mm: float, number: int) -> Line:
+        """A dot that stands alone, a drill point without a guide line."""
+        place_mm = (float(centre_mm[0]), float(centre_mm[1]))
+        return cls(
+            np.tile(centre_mm, (2, 1)), "ended", width_mm, 0.0, None, number, marks=(Mark("dot", place_mm, 0.0),)
+        )
+
     @property
     def start_mm(self) -> tuple[float, float]:
         """Where the line was begun, mm."""
@@ -78,13 +86,18 @@ class Line:
 
     @property
     def is_guide(self) -> bool:
-        """Whether it is a guide line from the reference point."""
-        return self.reference_mm is not None and self.ending == "ended"
+        """Whether it is a guide line from the reference point, or a dot alone."""
+        return self.is_dot or (self.reference_mm is not None and self.ending == "ended")
+
+    @property
+    def is_dot(self) -> bool:
+        """Whether it is a dot that stands alone, and no line."""
+        return self.ending == "ended" and len(self.xy_mm) == 2 and self.length_mm == 0
 
     @property
     def goes_back(self) -> bool:
         """Whether the tool goes back along it to where it began."""
-        return self.is_lead or self.is_guide
+        return self.is_lead or (self.is_guide and not self.is_dot)
 
     @property
     def begin_mm(self) -> tuple[float, float]:

@@ -42,6 +42,10 @@ class Stroke:
     filled: Array
     patch: int
 
+    def is_at(self, place_mm: Array) -> bool:
+        """Whether a place is on this line."""
+        return bool(np.hypot(*(self.middles_mm - place_mm).T).min() < self.width_mm)
+
     def ends_mm(self) -> Array:
         """Places that may be ends of the line, most likely first; (n, 2) mm, none closer together than two widths."""
         usual = np.median(self.filled)

@@ -12,7 +12,7 @@ Source: patent ES 361967, section on use: the operator brings the head over the 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import combinations
@@ -25,11 +25,11 @@ from tracer.drawing import Drawing
 from tracer.follower import Followed, Follower
 from tracer.leg import turn
 from tracer.line import Line
-from tracer.lines import INK, Sheet
+from tracer.lines import INK, Sheet, Stroke
 from tracer.operator import Direction, Operator
 from tracer.program import Trace
 from tracer.settings import Settings
-from tracer.stance import Stance, put_down, turned_round
+from tracer.stance import Stance, ends_of, put_down, turned_round
 from tracer.survey import Side
 
 SHORTER = 0.95  # the other way round is the line itself if it is shorter than this: straight on has led elsewhere
@@ -66,10 +66,41 @@ def followed(
     number: int = 1,
 ) -> Line:
     """The head's best run along the line at a place, or along the longest."""
-    best: Line | None = None
     stances = put_down(
         sheet, start_mm, settings.aperture_mm, settings.line_width_mm, settings.gap_mm, operator.reference_mm
     )
+    best = _best(sheet, stances, start_mm, settings, operator, progress, number)
+    assert best is not None  # put_down gives a stance, or raises
+    return best
+
+
+def followed_from_an_end(
+    sheet: Sheet,
+    stroke: Stroke,
+    settings: Settings,
+    operator: Operator,
+    progress: Callable[[float, float], None] | None = None,
+    number: int = 1,
+) -> Line | None:
+    """The head's best run from the open ends of a line, as of a lead line; None if it has none, or the line is lost from each."""
+    stances = ends_of(
+        sheet, stroke, settings.aperture_mm, settings.line_width_mm, settings.gap_mm, operator.reference_mm
+    )
+    best = _best(sheet, iter(stances), None, settings, operator, progress, number)
+    return best if best is not None and best.ending != "lost" else None
+
+
+def _best(
+    sheet: Sheet,
+    stances: Iterator[tuple[Stance, float]],
+    start_mm: tuple[float, float] | None,
+    settings: Settings,
+    operator: Operator,
+    progress: Callable[[float, float], None] | None,
+    number: int,
+) -> Line | None:
+    """The best run from one of some stances; None if there are none."""
+    best: Line | None = None
     for stance, length_mm in stances:
         told = None if progress is None else partial(_tell, progress, length_mm)
         try:
@@ -86,7 +117,6 @@ def followed(
         best = line if best is None or line.length_mm > best.length_mm else best
         if line.ending == "closed" or (line.length_mm > 0.5 * length_mm and line.ending != "joined"):
             break
-    assert best is not None  # put_down gives a stance, or raises
     return best
 
 

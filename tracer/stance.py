@@ -70,7 +70,7 @@ def put_down(
     sheet = drawing if isinstance(drawing, Sheet) else Sheet.of(drawing)
     catch_mm = max(CATCH_MM, 12 * sheet.drawing.pitch_mm)
     stroke = sheet.longest() if start_mm is None else sheet.nearest(start_mm, catch_mm)
-    view = _view(sheet, aperture_mm, line_width_mm or stroke.width_mm)
+    view = view_of(sheet, aperture_mm, line_width_mm or stroke.width_mm)
     if start_mm is None:
         at_ends = _at_ends(view, sheet, stroke, gap_mm, reference_mm)
     else:
@@ -91,11 +91,25 @@ def put_down(
         )
 
 
+def ends_of(
+    sheet: Sheet,
+    stroke: Stroke,
+    aperture_mm: float | None,
+    line_width_mm: float | None,
+    gap_mm: float,
+    reference_mm: tuple[float, float] | None,
+) -> list[tuple[Stance, float]]:
+    """Stances at the open ends of one of the lines, and its length, mm."""
+    view = view_of(sheet, aperture_mm, line_width_mm or stroke.width_mm)
+    at_ends = _at_ends(view, sheet, stroke, gap_mm, reference_mm)
+    return [(stance, stroke.length_mm) for stance in at_ends[:ENDS]]
+
+
 def reference_on(drawing: Drawing) -> tuple[float, float]:
     """The place of the only reference point of a drawing, mm; raises LineFault if there is none, or several."""
     sheet = Sheet.of(drawing)
     line = sheet.longest()
-    found = list(references(sheet, _view(sheet, None, line.width_mm), line))
+    found = list(references(sheet, view_of(sheet, None, line.width_mm), line))
     if len(found) == 1:
         return found[0].place_mm
     places = "; ".join(f"{x:.1f},{y:.1f}" for x, y in (reference.place_mm for reference in found[:8]))
@@ -103,7 +117,7 @@ def reference_on(drawing: Drawing) -> tuple[float, float]:
     raise LineFault(f"no reference point is certain: there is {what}; give its place, X,Y in mm, instead")
 
 
-def _view(sheet: Sheet, aperture_mm: float | None, width_mm: float) -> View:
+def view_of(sheet: Sheet, aperture_mm: float | None, width_mm: float) -> View:
     """The sheet through cells for a line of a width."""
     aperture_mm = aperture_mm or min(max(APERTURE * width_mm, LEAST_APERTURE_MM), LARGEST_APERTURE_MM)
     return View(photocell.behind_aperture(sheet.drawing, aperture_mm), sheet.drawing.pitch_mm, width_mm, LEVEL)
@@ -121,7 +135,7 @@ def _at_ends(
         if reference_mm is not None and math.dist(reference_mm, reference.place_mm) > NAMED_MM:
             continue
         place_mm, lead = reference_mm or reference.place_mm, reference.lead
-        if lead is not None:
+        if lead is not None and stroke.is_at(lead.end_mm):
             local = view.like(lead.end_mm, lead.heading_rad)
             return [Stance(lead.end_mm, lead.heading_rad, local, True, place_mm)]
         from_it = _from_reference(place_mm, ends)

@@ -17,15 +17,17 @@ from functools import partial
 import numpy as np
 
 from motion.faults import LineFault
-from tracer import contours
+from tracer import contours, dots
 from tracer.contours import Contour, Which
 from tracer.drawing import Drawing
 from tracer.line import Line
 from tracer.lines import Sheet
 from tracer.operator import Operator
 from tracer.program import Trace
-from tracer.sequence import followed
+from tracer.reference import LARGEST_MM
+from tracer.sequence import followed, followed_from_an_end
 from tracer.settings import Settings
+from tracer.stance import view_of
 from tracer.view import Array
 
 ALIKE = 0.02  # a line is as long from its other end, within this share
@@ -49,7 +51,11 @@ def trace_lines(
     asked, left_out = contours.plan(sheet, which)
     total_mm, lines = sum(contour.stroke.length_mm for contour in asked), list[Line]()
     for contour in asked:
-        if _is_done(contour, lines) or (which == "outer" and _is_inner(contour, lines)):
+        if (
+            _is_reference(contour, lines)
+            or _is_done(contour, lines)
+            or (which == "outer" and _is_inner(contour, lines))
+        ):
             continue
         told = (
             None if progress is None else partial(_tell_on, progress, sum(line.length_mm for line in lines), total_mm)
@@ -59,6 +65,9 @@ def trace_lines(
             left_out += 1
         else:
             lines.append(line)
+    if which == "all":
+        holes = _dots(sheet, asked, settings or Settings())
+        lines, left_out = lines + holes, left_out - len(holes)
     again = partial(_turned_round, sheet, settings=settings or Settings(), operator=operator)
     if not any(len(line.xy_mm) > 1 for line in lines):
         raise _none_begun(lines)
@@ -66,7 +75,10 @@ def trace_lines(
 
 
 def _follow(sheet: Sheet, contour: Contour, settings: Settings, operator: Operator, told: Told | None) -> Line | None:
-    """Follow a line from the plainest of its places where the head can be put down; None for a letter, where it cannot be."""
+    """Follow a line from an open end, or from the plainest of its places where the head can be put down; None for a letter, where it cannot be."""
+    from_end = followed_from_an_end(sheet, contour.stroke, settings, operator, told, contour.number)
+    if from_end is not None:
+        return from_end
     stroke, starts_mm = contour.stroke, contour.starts_mm()
     for start_mm in starts_mm:
         try:
@@ -76,6 +88,14 @@ def _follow(sheet: Sheet, contour: Contour, settings: Settings, operator: Operat
     if contour.reach_mm < contours.LETTER_MM:
         return None
     return Line(np.array(starts_mm[:1]), "lost", stroke.width_mm, 0.0, refused, contour.number)
+
+
+def _dots(sheet: Sheet, asked: list[Contour], settings: Settings) -> list[Line]:
+    """The dots that stand alone on the paper, numbered on from the lines."""
+    width_mm = settings.line_width_mm or float(np.median([contour.stroke.width_mm for contour in asked]))
+    last = max(contour.number for contour in asked)
+    centres = dots.alone(sheet, view_of(sheet, settings.aperture_mm, width_mm))
+    return [Line.of_dot(centre, width_mm, number) for number, centre in enumerate(centres, last + 1)]
 
 
 def _none_begun(lines: list[Line]) -> LineFault:
@@ -91,14 +111,22 @@ def _is_done(contour: Contour, lines: list[Line]) -> bool:
     return any(contour.lies_on(_places(line)) for line in lines)
 
 
+def _is_reference(contour: Contour, lines: list[Line]) -> bool:
+    """Whether this stroke is the reference point from which one of the lines begins."""
+    places_mm = [line.reference_mm for line in lines if line.reference_mm is not None]
+    return any(
+        np.hypot(*(contour.stroke.middles_mm - place_mm).T).max() < 0.5 * LARGEST_MM + 1 for place_mm in places_mm
+    )
+
+
 def _is_inner(contour: Contour, lines: list[Line]) -> bool:
     """Whether this stroke lies inside one of the lines."""
-    return any(_goes_round(line) and contour.lies_in(_places(line)) for line in lines)
+    return any(_goes_round(line) and contour.lies_in(_loop(line)) for line in lines)
 
 
 def _in_order(lines: list[Line], again: Callable[[Line], Line]) -> list[Line]:
     """The lines in the order in which they are cut; open ones are followed once more from their other end where that is nearer."""
-    inner = contours.nested([_places(line) for line in lines], [_goes_round(line) for line in lines])
+    inner = contours.nested([_loop(line) for line in lines], [_goes_round(line) for line in lines])
     starts, ends = (np.array([getattr(line, end) for line in lines]) for end in ("begin_mm", "end_mm"))
     may_turn = np.array([line.ending == "ended" and not line.goes_back for line in lines])
     order, turned = contours.in_order_and_turned(starts, ends, inner, may_turn)
@@ -120,6 +148,11 @@ def _goes_round(line: Line) -> bool:
 def _places(line: Line) -> Array:
     """Places along a line, (n, 2) mm."""
     return line.xy_mm[::THINNED]
+
+
+def _loop(line: Line) -> Array:
+    """Places along the loop of a line, without the lead line to it, (n, 2) mm."""
+    return line.xy_mm[line.loop_from or 0 :: THINNED]
 
 
 def _tell_on(progress: Told, before_mm: float, total_mm: float, come_mm: float, length_mm: float) -> None:

@@ -224,3 +224,35 @@ def test_a_large_line_that_cannot_be_begun_is_told_and_the_tool_stays_up(monkeyp
     assert [line.ending for line in sorted(run.lines, key=lambda line: line.number)] == ["lost", "closed"]
     assert "line 1 of 2 is incomplete" in str(run.fault) and len(thin(run).runs()) == 1
     assert join(run).duration_s == pytest.approx(run.duration_s, abs=1e-9)
+
+
+# lead lines, reference points and dots among several lines
+
+
+def test_a_lead_line_is_begun_at_its_reference_point_and_the_cross_is_no_line() -> None:
+    cross = [polyline((5, 14), (9, 14)), polyline((7, 12), (7, 16))]
+    circle, hole = arc((26, 14), 8), arc((26, 14), 3)
+    program = trace_lines(inked(polyline((10, 14), (18, 14)), circle, hole, *cross))
+    inner, outer = program.lines
+    assert (inner.ending, outer.ending, outer.is_lead) == ("closed", "joined", True)
+    assert outer.reference_mm == pytest.approx((7, 14), abs=25 * UM)
+    end_mm = join(program).positions_mm[-1, :2]
+    assert end_mm == pytest.approx(outer.reference_mm, abs=1 * UM)
+
+
+def test_a_dot_alone_is_drilled_on_the_way() -> None:
+    """The hole goes down at the dot's middle, to a tenth of a pixel, and is no patch left out."""
+    dots = [arc((34, 8), 0.8), arc((34, 20), 1.5)]
+    program = trace_lines(inked(arc((14, 14), 8), specks=dots))
+    places = sorted(
+        (action.halt.kind, action.halt.place_mm)
+        for actions in program.actions
+        for action in actions
+        if action.halt.number
+    )
+    assert [kind for kind, _ in places] == ["hole", "hole"]
+    for (_, place), middle in zip(places, [(34, 8), (34, 20)], strict=True):
+        assert place == pytest.approx(middle, abs=10 * UM)
+    assert program.left_out == 0
+    down = join(program).positions_mm
+    assert down[down[:, 2] == -program.work.depth_mm][:, 0].max() == pytest.approx(34, abs=10 * UM)
