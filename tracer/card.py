@@ -32,7 +32,7 @@ Turn = Literal["straight", "left", "right"]
 Override = Literal["none", "all"] | tuple[int, ...]
 FEED_MM_S = 5.0  # of a move that names none on a card that names none
 CLEAR_COUNTS = 50  # 0.5 mm
-_KEYS = ("start", "depth", "passes", "restart", "turns", "override", "speeds", "stop")
+_KEYS = ("start", "depth", "passes", "entry", "restart", "turns", "override", "speeds", "stop")
 _STOP_KEYS = ("number", "moves", "drill", "passes", "dwell", "restart")
 _MOVE_KEYS = ("down", "up", "feed", "dwell")
 _DRILL_KEYS = ("depth", "peck", "clear", "feed", "dwell")
@@ -87,6 +87,7 @@ class Card:
     trace_mm_s: float | None = None
     feed_mm_s: float | None = None
     rapid_mm_s: float | None = None
+    entry_mm: float | None = None  # of the line along which the tool goes down from the surface to its depth
     restart: Restart = "automatic"
     turns: tuple[Turn, ...] = ()  # at the junctions, in the order in which the head comes to them
     override: Override = "none"  # stop marks that do not stop the head
@@ -122,6 +123,7 @@ def _card(whole: Field) -> Card:
             fields, "start", lambda field: field.counts(least=6) / COUNTS_PER_MM, None
         ),  # see IN_WORK_BELOW_MM
         depths_mm=read(fields, "passes", _passes, depth),
+        entry_mm=read(fields, "entry", lambda field: field.counts() / COUNTS_PER_MM, None),
         trace_mm_s=read(speeds, "trace", Field.speed_mm_s, None),
         feed_mm_s=feed_mm_s,
         rapid_mm_s=read(speeds, "rapid", Field.speed_mm_s, None),

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import Literal, Protocol
+from typing import Literal, NamedTuple, Protocol
 
 from motion.faults import CardFault
 from tracer import zunit
@@ -59,12 +59,20 @@ class Halt:
     number: int | None = None
 
 
+class Entry(NamedTuple):
+    """Z superimposed on X and Y: from the surface down to a depth over a length of the line, both mm."""
+
+    depth_mm: float
+    length_mm: float
+
+
 @dataclass(frozen=True, slots=True)
 class Action:
-    """What is done where the axis stands: moves of Z one after the other, each with its dwell."""
+    """What is done where the axis stands: moves of Z one after the other, each with its dwell; and how deep Z goes on the way after it, over how many mm."""
 
     halt: Halt
     moves: tuple[Move, ...]
+    entry: Entry | None = None
 
 
 class Panel(Protocol):
@@ -169,9 +177,17 @@ class Operator:
             else:
                 moves = self._at_stop(halt, z_mm, is_down=halt is down)
             if moves:
-                actions.append(Action(halt, moves))
-                z_mm = moves[-1].to_mm
+                made = self._entered(Action(halt, moves)) if halt is down else Action(halt, moves)
+                actions.append(made)
+                z_mm = -made.entry.depth_mm if made.entry else moves[-1].to_mm
         return actions
+
+    def _entered(self, action: Action) -> Action:
+        """The action where the tool goes down, with the card's entry: to the surface standing, and the rest on the way."""
+        to_mm, length_mm = action.moves[-1].to_mm, self.card.entry_mm
+        if length_mm is None or to_mm >= 0 or len(action.moves) > 1:
+            return action
+        return Action(action.halt, (replace(action.moves[0], to_mm=0.0),), Entry(-to_mm, length_mm))
 
     def _to(self, z_mm: float) -> tuple[Move, ...]:
         return (Move(z_mm, self.work.feed_mm_s),)

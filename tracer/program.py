@@ -27,7 +27,7 @@ from motion.faults import LineFault
 from motion.motion import BLOCK_SAMPLES, MOTION_RATE_HZ, Motion
 from tracer import stops
 from tracer.line import Line
-from tracer.operator import Action, Operator, Work
+from tracer.operator import Action, Entry, Operator, Work
 from tracer.view import Array
 from tracer.zunit import Move, z_moves
 
@@ -121,36 +121,63 @@ class Trace:
         """From where a line's program begins to where it ends, at each depth, in blocks (n, 3) mm."""
         if line.begin_mm != line.start_mm:
             yield self._rapid(line.begin_mm, line.start_mm)
-        z_mm = self.work.clearance_mm
+        depths_mm, at = self.operator.depths_mm(line), np.array([*line.start_mm, self.work.clearance_mm])
         for block in self._first_pass(line, actions):
             yield block
-            z_mm = float(block[-1, 2])
-        for depth_mm in self.operator.depths_mm(line)[1:] if z_mm < 0 else ():
-            for block in self._again(line, z_mm, depth_mm):
+            at = block[-1]
+        if len(depths_mm) == 1 and at[2] < 0:
+            for block in self._where_it_entered(line, actions):
                 yield block
-                z_mm = float(block[-1, 2])
-        if z_mm != self.work.clearance_mm:
-            yield _standing(line.xy_mm[-1], self._z(z_mm, self.work.clearance_mm))
-        yield from self._home(line)
+                at = block[-1]
+        for depth_mm in depths_mm[1:] if at[2] < 0 else ():
+            for block in self._again(line, float(at[2]), depth_mm):
+                yield block
+                at = block[-1]
+        if at[2] != self.work.clearance_mm:
+            yield _standing(at[:2], self._z(float(at[2]), self.work.clearance_mm))
+        yield from self._home(line, at[:2])
 
     def _first_pass(self, line: Line, actions: list[Action]) -> Iterator[Array]:
         """Along a line, with what is done on the way, (n, 3) mm."""
-        z_mm = self.work.clearance_mm
+        z_mm, entry, come_mm = self.work.clearance_mm, None, 0.0
         halts = [*(action.halt.at for action in actions), len(line.xy_mm) - 1]
         pieces = stops.pieces(line.xy_mm, halts, BRAKE_MM_S2, self.rate_hz)[: len(halts)]
         for piece, action in zip_longest(pieces, actions):
             for first in range(0, len(piece), BLOCK_SAMPLES):
-                yield _at(piece[first : first + BLOCK_SAMPLES], z_mm)
+                block = piece[first : first + BLOCK_SAMPLES]
+                along_mm, come_mm = (
+                    (np.full(len(block), z_mm), 0.0) if entry is None else _entered(block, entry, come_mm)
+                )
+                z_mm = float(along_mm[-1])
+                yield _at(block, along_mm)
             if action is not None:
                 yield _standing(piece[-1], z_moves(z_mm, action.moves, self.work.acceleration_mm_s2, self.rate_hz))
-                z_mm = action.moves[-1].to_mm
+                z_mm, entry, come_mm = action.moves[-1].to_mm, action.entry, 0.0
+
+    def _where_it_entered(self, line: Line, actions: list[Action]) -> Iterator[Array]:
+        """Once more at depth along that piece of a closed line along which the tool went down, (n, 3) mm."""
+        down = next((action for action in actions if action.entry is not None), None)
+        if down is None or down.entry is None or not (line.ending == "closed" or line.is_lead):
+            return
+        first = line.loop_from if line.is_lead and line.loop_from is not None else 0
+        lengths = np.r_[0.0, np.cumsum(np.hypot(*np.diff(line.xy_mm, axis=0).T))]
+        last = int(
+            np.searchsorted(lengths, np.interp(down.halt.at, range(len(lengths)), lengths) + down.entry.length_mm)
+        )
+        if last <= first:
+            return
+        yield _at(self._feed(line.xy_mm[-1], line.xy_mm[first]), -down.entry.depth_mm)
+        _, xy_mm, _ = stops.pieces(
+            line.xy_mm[first:], [0, min(last, len(line.xy_mm) - 1) - first], BRAKE_MM_S2, self.rate_hz
+        )
+        yield _at(xy_mm, -down.entry.depth_mm)
 
     def _again(self, line: Line, z_mm: float, depth_mm: float) -> Iterator[Array]:
         """Along a line, or the loop that it leads to, once more at another depth, (n, 3) mm: straight on where it closes, else up and over."""
         xy_mm = line.xy_mm[line.loop_from if line.is_lead else 0 :]
         _, xy_mm, _ = stops.pieces(xy_mm, [0, len(xy_mm) - 1], BRAKE_MM_S2, self.rate_hz)
         if line.ending == "closed" or line.is_lead:
-            yield _at(ramp.positions_mm(xy_mm[-1], xy_mm[0], self.work.feed_mm_s, rate_hz=self.rate_hz), z_mm)
+            yield _at(self._feed(xy_mm[-1], xy_mm[0]), z_mm)
         else:
             yield _standing(xy_mm[-1], self._z(z_mm, self.work.clearance_mm))
             z_mm = self.work.clearance_mm
@@ -159,17 +186,23 @@ class Trace:
         for first in range(0, len(xy_mm), BLOCK_SAMPLES):
             yield _at(xy_mm[first : first + BLOCK_SAMPLES], -depth_mm)
 
-    def _home(self, line: Line) -> Iterator[Array]:
+    def _feed(self, start_mm: Array, end_mm: Array) -> Array:
+        """Straight from a place to another in the work, (n, 2) mm."""
+        return ramp.positions_mm(start_mm, end_mm, self.work.feed_mm_s, rate_hz=self.rate_hz)
+
+    def _home(self, line: Line, at_mm: Array) -> Iterator[Array]:
         """Back along a lead or guide line to where it began, and to the reference point, at clearance, (n, 3) mm."""
         if not line.goes_back:
+            if np.any(at_mm != line.xy_mm[-1]):
+                yield self._rapid(at_mm, line.xy_mm[-1])
             return
         back = line.xy_mm[: (line.loop_from or len(line.xy_mm) - 1) + 1][::-1]
-        yield self._rapid(line.xy_mm[-1], back[0])  # a loop does not end just where it began
+        yield self._rapid(at_mm, back[0])  # a loop does not end just where it began
         yield _at(stops.run(back, self.work.rapid_mm_s, BRAKE_MM_S2, self.rate_hz), self.work.clearance_mm)
         if line.begin_mm != line.start_mm:
             yield self._rapid(line.start_mm, line.begin_mm)
 
-    def _rapid(self, start_mm: tuple[float, float], end_mm: tuple[float, float]) -> Array:
+    def _rapid(self, start_mm: Array | tuple[float, float], end_mm: Array | tuple[float, float]) -> Array:
         """Straight from a place to another at clearance, (n, 3) mm."""
         way = ramp.positions_mm(start_mm, end_mm, self.work.rapid_mm_s, rate_hz=self.rate_hz)
         return _at(way, self.work.clearance_mm)
@@ -193,9 +226,16 @@ def _incomplete(lost: list[Line], lines: int) -> LineFault:
     )
 
 
-def _at(xy_mm: Array, z_mm: float) -> Array:
-    """X and Y move while Z stands, (n, 3) mm."""
-    return np.column_stack([xy_mm, np.full(len(xy_mm), z_mm)])
+def _at(xy_mm: Array, z_mm: float | Array) -> Array:
+    """X and Y move while Z stands, or moves with them, (n, 3) mm."""
+    return np.column_stack([xy_mm, np.broadcast_to(z_mm, len(xy_mm))])
+
+
+def _entered(xy_mm: Array, entry: Entry, come_mm: float) -> tuple[Array, float]:
+    """Z along a piece (n, 2) mm of the way on which the tool goes down, (n,) mm, and how far it has come then: smooth at both ends, 3s² - 2s³."""
+    lengths = come_mm + np.r_[0.0, np.cumsum(np.hypot(*np.diff(xy_mm, axis=0).T))]
+    share = np.minimum(lengths / entry.length_mm, 1.0)
+    return -entry.depth_mm * share**2 * (3 - 2 * share), float(lengths[-1])
 
 
 def _standing(xy_mm: Array, z_mm: Array) -> Array:

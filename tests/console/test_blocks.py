@@ -46,7 +46,7 @@ def test_what_is_for_another_control_is_refused(bracket: Path, morfax: Morfax) -
         ("G1 X5 F600\nG41 X6\nM2\n", "line 2: G41 is not played"),
         ("G1 X5 F0\nM2\n", "line 1: F0 moves nothing"),
         ("G0 X0 Y0\nG2 X5 Y0 I2 F60\nM2\n", "line 2: I2 J0 is no centre of both ends"),
-        ("G0 X0\nG1 X99999 F60\nM2\n", "line 2: X goes to 99999.000 mm; the registers"),
+        ("G0 X0\nG1 X99999 F60\nM2\n", "line 2: X goes to 99999.000 mm; the machine has ±2000.000 mm"),
     ],
 )
 def test_bad_programs_move_nothing_and_leave_nothing(text: str, says: str, here: Path, morfax: Morfax) -> None:

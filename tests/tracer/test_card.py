@@ -97,7 +97,7 @@ MISTAKES = [
     ("depth = 1\ndepth = 2", 2, "the card", '"depth = 2"', TOML),
     ("x = " + "[" * 9999, 1, "the card", "too many brackets in one another", "it may hold a few"),
     ("a = " + "9" * 5000, 1, "the card", '"a = ' + "9" * 35 + "…", TOML),
-    ("\n\ndeep = 5", 3, "deep", "5", "no such field; the card may hold start, depth, passes, restart"),
+    ("\n\ndeep = 5", 3, "deep", "5", "no such field; the card may hold start, depth, passes, entry, restart"),
     ("[speeds]\nfede = 5", 2, "speeds.fede", "5", "no such field; speeds may hold trace, feed, rapid"),
     ('depth = "5kg"', 1, "depth", '"5kg"', LENGTH),
     ('depth = "0.015mm"', 1, "depth", '"0.015mm"', LENGTH),
@@ -221,6 +221,7 @@ CARDS = st.builds(
     st.none() | SPEEDS,
     st.none() | SPEEDS,
     st.none() | SPEEDS,
+    st.none() | decades(1),
     RESTARTS,
     st.lists(st.sampled_from(["straight", "left", "right"]), max_size=3).map(tuple),
     st.sampled_from(["none", "all"]) | st.lists(st.integers(1, 9), min_size=1, max_size=3).map(tuple),
@@ -256,7 +257,7 @@ def stop_row(stop: Stop) -> dict[str, Any]:
 
 def written(card: Card) -> str:
     """The card as an operator would write it."""
-    rows = {"start": card.start_mm, "passes": card.depths_mm or None, "restart": card.restart}
+    rows = {"start": card.start_mm, "passes": card.depths_mm or None, "entry": card.entry_mm, "restart": card.restart}
     rows |= {"turns": card.turns or None, "override": card.override, "stop": [stop_row(s) for s in card.stops] or None}
     speeds = {"trace": card.trace_mm_s, "feed": card.feed_mm_s, "rapid": card.rapid_mm_s}
     rows |= {f"speeds.{name}": speed for name, speed in speeds.items()}

@@ -13,6 +13,7 @@ from motion.contour import distance
 from motion.faults import DrawingFault, LineFault
 from motion.motion import IN_WORK_BELOW_MM, MOTION_RATE_HZ, join, thin
 from tests.tracer.inked import UM, arc, inked, polyline
+from tracer.card import Card
 from tracer.line import Line
 from tracer.operator import Operator, Work
 from tracer.program import Trace
@@ -169,3 +170,18 @@ def test_progress_is_told_up_to_the_line_s_length() -> None:
     assert come == sorted(come) and len(come) > 3
     assert all(0 <= come_mm <= length_mm for come_mm, length_mm in told)
     assert told[-1][1] == pytest.approx(20 * np.pi, rel=0.1)  # a plan: area of ink over its width
+
+
+def test_a_ramped_entry_goes_down_along_the_line_and_leaves_none_of_it_above_depth(run: Trace) -> None:
+    """Z goes from the surface to depth over 6 mm of the line; what was run above depth is run again, and the tool comes back to the line's end."""
+    ramped = Trace(run.lines, Operator(card=Card.parse('entry = "6mm"')))
+    positions = join(ramped).positions_mm
+    moving = np.hypot(*np.diff(positions[:, :2], axis=0).T) > 1e-9
+    both = moving & (np.abs(np.diff(positions[:, 2])) > 1e-9)
+    assert np.hypot(*np.diff(positions[:-1, :2][both], axis=0).T).sum() == pytest.approx(6, abs=0.05)
+    z = positions[:-1, 2][both]
+    assert np.all(np.diff(z) <= 0) and z[0] == pytest.approx(0, abs=1 * UM) and z[-1] == pytest.approx(-5, abs=1 * UM)
+    at_depth = positions[positions[:, 2] == -ramped.work.depth_mm][:, :2]
+    assert distance(CIRCLE, at_depth[::4]).path_to_reference.max_mm < 25 * UM
+    assert positions[-1] == pytest.approx([*run.lines[0].xy_mm[-1], 2.0], abs=1 * UM)
+    assert np.abs(np.diff(positions[:, 2], 2)).max() * MOTION_RATE_HZ**2 <= 2.01 * ramped.work.acceleration_mm_s2
