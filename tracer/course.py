@@ -15,11 +15,12 @@ Source: our own, from first principles (the patent's head swivels on its axis; h
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 
 from tracer import photocell
-from tracer.leg import Leg, Meeting, turn
+from tracer.leg import Leg, Meeting, centre_at, turn
 from tracer.view import Array, View
 
 SPACING_MM = 0.02
@@ -71,6 +72,31 @@ def through_corner(
     arriving, leaving = along_leg(incoming, along, s), along_leg(outgoing, -u, end_mm)
     arriving[-1] = leaving[0] = vertex
     return [np.vstack([way, arriving]), leaving]
+
+
+def nodes_along(
+    view: View, start: tuple[Array, float], seen: Array, left: float = 0.55
+) -> tuple[list[tuple[Array, float]], Leg | None]:
+    """Places and headings along a line that was felt throughout (n, 3), from where the head stands; the last also as a leg, None if there is too little.
+
+    A share of a leg is `left` over: too little to tell a corner by.
+    """
+    half_mm, left_mm = 0.3 * view.leg_mm, left * view.leg_mm
+    nodes, leg = [start], None
+    here = int(np.argmin(np.hypot(*(seen[:, :2] - start[0]).T)))
+    for i in range(here, len(seen)):
+        if i < here + half_mm / view.step_mm or np.hypot(*(seen[i, :2] - nodes[-1][0])) < half_mm / 3:
+            continue
+        if np.hypot(*(seen[i, :2] - seen[-1, :2])) < left_mm:
+            break
+        leg = centre_at(seen, i, half_mm)
+        nodes.append((leg.end_mm, leg.heading_rad))
+    return nodes, leg
+
+
+def through_nodes(nodes: list[tuple[Array, float]]) -> Array:
+    """Cubics through places and headings, (n, 2) mm."""
+    return np.vstack([hermite(*a, *b) for a, b in pairwise(nodes)])
 
 
 def ahead_mm(place: Array, leg: Leg) -> float:

@@ -18,7 +18,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
 import numpy as np
 
@@ -28,7 +27,7 @@ from tracer.carriage import Carriage
 from tracer.dots import dot_at_end
 from tracer.junctions import Guide, Junctions
 from tracer.knot import corner_in, fork_in
-from tracer.leg import Leg, Meeting, centre_at, end_of, leg_of, meet, turn
+from tracer.leg import Leg, Meeting, end_of, leg_of, meet, turn
 from tracer.loop import loop_in
 from tracer.riding import Ride, ride_past, to_vertex
 from tracer.settings import Settings
@@ -117,8 +116,9 @@ class Follower:
             sharp = self._sharp_corner(seen, here)
             if sharp is not None:
                 return self._pass(*self._course(*sharp))
-            nodes, leg = self._nodes(seen)
-            return self._pass([self._through(nodes)], leg, seen)
+            nodes, leg = course.nodes_along(self.view, self.carriage.stands(), seen)
+            if leg is not None:
+                return self._pass([course.through_nodes(nodes)], leg, seen)
         return self._through_legs(leg_of(seen, True, self.view.leg_mm))
 
     def _through_legs(self, incoming: Leg) -> Followed | None:
@@ -140,7 +140,9 @@ class Follower:
         if not straight or self._far(incoming, outgoing):
             ride = ride_past(self.view, incoming)
             if ride is not None and not (straight and ride.back is None):
-                return self._ride(incoming, ride), choices
+                ridden = self._ride(incoming, ride)
+                if ridden is not None:
+                    return ridden, choices
         if outgoing is not None:
             planned = self._course(incoming, outgoing, legs_mm)
             if course.on_ink(self.view, planned.stretches):
@@ -235,43 +237,19 @@ class Follower:
             return None
         return incoming, outgoing, legs_mm
 
-    def _ride(self, incoming: Leg, ride: Ride) -> Planned:
-        """Stretches along a line that was felt on one edge; round the tip and back, if that is how it went."""
+    def _ride(self, incoming: Leg, ride: Ride) -> Planned | None:
+        """Stretches along a line that was felt on one edge; round the tip and back, if that is how it went; None if it is too short."""
         there = np.vstack([incoming.seen, ride.seen])
         if ride.back is None:
-            nodes, leg = self._nodes(there)
-            return Planned([self._through(nodes)], leg, ride.seen)
-        to_tip, _ = self._nodes(there, 0.0)
+            nodes, leg = course.nodes_along(self.view, self.carriage.stands(), there)
+            return None if leg is None else Planned([course.through_nodes(nodes)], leg, ride.seen)
+        to_tip, felt = course.nodes_along(self.view, self.carriage.stands(), there, 0.0)
         tip = ride.back[0, :2]
-        from_tip, leg = self._nodes(ride.back, 0.0, (tip, to_tip[-1][1] + math.pi))
-        return Planned([self._through([*to_tip[:-1], (tip, to_tip[-1][1])]), self._through(from_tip)], leg)
-
-    @staticmethod
-    def _through(nodes: list[tuple[Array, float]]) -> Array:
-        """Cubics through places and headings."""
-        return np.vstack([course.hermite(*a, *b) for a, b in pairwise(nodes)])
-
-    def _nodes(
-        self, seen: Array, left: float = 0.55, start: tuple[Array, float] | None = None
-    ) -> tuple[list[tuple[Array, float]], Leg]:
-        """Places and headings along a line that was felt throughout, from where the head stands; the last also as a leg.
-
-        A share of a leg is `left` over: too little to tell a corner by.
-        """
-        half_mm, left_mm = 0.3 * self.view.leg_mm, left * self.view.leg_mm
-        nodes = [start or self.carriage.stands()]
-        end = seen[-1, :2]
-        leg = None
-        here = int(np.argmin(np.hypot(*(seen[:, :2] - nodes[0][0]).T)))
-        for i in range(here, len(seen)):
-            if i < here + half_mm / self.view.step_mm or np.hypot(*(seen[i, :2] - nodes[-1][0])) < half_mm / 3:
-                continue
-            if np.hypot(*(seen[i, :2] - end)) < left_mm:
-                break
-            leg = centre_at(seen, i, half_mm)
-            nodes.append((leg.end_mm, leg.heading_rad))
-        assert leg is not None
-        return nodes, leg
+        from_tip, leg = course.nodes_along(self.view, (tip, to_tip[-1][1] + math.pi), ride.back, 0.0)
+        if leg is None or felt is None:
+            return None
+        onto_tip = [*to_tip[:-1], (tip, to_tip[-1][1])]
+        return Planned([course.through_nodes(onto_tip), course.through_nodes(from_tip)], leg)
 
     def _at_end(self, incoming: Leg, choices: int) -> Followed | None:
         """Run to the end of the line, or to where it meets what was followed before."""

@@ -67,7 +67,8 @@ def fronts_from(view: View, place: Array, heading: float, reach_mm: float) -> Fr
         children[a].append(int(b))
     table = table[order]
     places = np.column_stack([(table[:, 3] + left + 0.5) * pitch, (rows - table[:, 2] - top - 0.5) * pitch])
-    label = np.where(label >= 0, number[label], np.int32(-1))
+    if len(number):
+        label = np.where(label >= 0, number[label], np.int32(-1))
     at, breadth = table[:, 0].astype(np.int64), table[:, 1] * pitch / step_px
     return Fronts(step_px * pitch, at, places, breadth, parents, children, label, (top, left))
 

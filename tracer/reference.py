@@ -21,6 +21,7 @@ from typing import Literal
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from tracer import photocell
 from tracer.leg import Leg, leg_of, reach_of_ink, stroke_end
@@ -166,14 +167,20 @@ def _ring(view: View, place: Array) -> Reference | None:
     changes = spokes(view, place, LARGEST_MM / 2)
     widths = changes[:, 1] - changes[:, 0]
     good = np.abs(widths / view.width_mm - 1) < 0.6
-    if good.mean() < 0.75:
-        return None
+    if good.mean() < 0.75 or _runs(~good) > 1:
+        return None  # with several lines from it, it is a part of the drawing
     middles = place + changes[good].mean(axis=1)[:, None] * WAYS[good]
     centre, radius_mm, misfit_mm = circle_through(middles)
     if misfit_mm > 0.1 * radius_mm or not LEAST_MM < 2 * radius_mm < LARGEST_MM:
         return None
     lead = _lead(view, centre, radius_mm + 0.5 * view.width_mm)
     return Reference((float(centre[0]), float(centre[1])), "ring", lead)
+
+
+def _runs(flags: NDArray[np.bool_]) -> int:
+    """How many runs of two or more there are round a circle of flags."""
+    twice = flags & np.roll(flags, 1)
+    return int(np.sum(twice & ~np.roll(twice, 1)))
 
 
 def _unit(heading: float) -> Array:

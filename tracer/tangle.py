@@ -50,6 +50,8 @@ def tangle_ahead(view: View, incoming: Leg) -> Tangle:
     """The tangle that begins at the clean end of an incoming leg."""
     reach_mm = max(REACH_MM, REACH_WIDTHS * view.width_mm)
     fronts = fronts_from(view, incoming.end_mm, incoming.heading_rad, reach_mm)
+    if not len(fronts.at):  # no ink joins the leg
+        return Tangle([incoming], np.empty((0, 2)), np.empty(0), 0.0, whole=False)
     legs, ended = _legs(view, fronts, reach_mm)
     ink = _ink(view, fronts, ended)
     running = fronts.at * fronts.step_mm > reach_mm - 2 * fronts.step_mm

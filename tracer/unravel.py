@@ -30,6 +30,7 @@ LEAST_CLEAR, BETTER = (
 )  # a long tangle is explained less well: up to this, if that is so much better than the plan
 DOUBTFUL = 0.08  # straight on stands unless the ink tells against it by more
 AS_GOOD = 0.05  # misfit of a plan that needs no other to be compared with
+LEAST_SEEN = 4  # stations of the incoming leg, to know the pen by
 SAME_RAD = math.radians(20)
 NEAR_MM = 3.0
 KINK_RAD = math.radians(14)  # a smaller change of heading is run through
@@ -51,6 +52,8 @@ def unravel(
     It is the plan if that explains the ink as well as any other way, or if the tangle does not end in legs, or in too many, or if no way explains its ink.
     `rank` 1 takes the second best way out.
     """
+    if len(incoming.seen) < LEAST_SEEN:
+        return plan
     tangle = tangle_ahead(view, incoming)
     odd = len(tangle.legs) % 2 == 1  # one line ends on another: that is a junction, which the legs tell better
     if not tangle.whole or not 2 <= len(tangle.legs) <= MOST_LEGS or (odd and plan is not None):
