@@ -135,7 +135,10 @@ def _in_order(lines: list[Line], again: Callable[[Line], Line]) -> list[Line]:
 
 def _turned_round(sheet: Sheet, line: Line, settings: Settings, operator: Operator) -> Line:
     """An open line followed from its other end; as it was, if the head goes another way from there."""
-    other = followed(sheet, line.place(len(line.xy_mm) - 1), settings, operator, number=line.number)
+    try:
+        other = followed(sheet, line.place(len(line.xy_mm) - 1), settings, operator, number=line.number)
+    except LineFault:
+        return line
     there = np.hypot(*(other.xy_mm[-1] - line.xy_mm[0])) < line.width_mm
     return other if there and abs(other.length_mm / line.length_mm - 1) < ALIKE else line
 
