@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path as FilePath
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from console import following, medium
 from console.desk import Desk, desk_options
-from console.playing import PIPE, Controls, Played, tape_options
+from console.playing import PIPE, Controls, Passage, tape_options
 from console.quantities import NUMBER, PLACES, SHARE, TIME
 from motion.faults import Fault
 from motion.motion import Path
+
+if TYPE_CHECKING:
+    from player.controls import Playback
 
 SUFFIXES = (".csv", ".svg", ".png")
 MOTORS = ("electric", "hydraulic")  # player.phase_lock; the first is the default
@@ -133,20 +136,25 @@ def command(
     if resume_at_s is not None and controls.start_mm is None:
         raise click.UsageError("--resume-at wants to be told where the machine stands then; give --from X,Y,Z")
     try:
-        played = controls.play(tape, desk, raw=raw, chart=following.new_chart(raw) if followed else None, **given)
+        given |= {"raw": raw, "chart": following.new_chart(raw) if followed else None}
+        if all(file.suffix.lower() == ".csv" for file in outputs):
+            passage, playback, fault = controls.play_into(tape, desk, outputs, **given)
+        else:  # a picture wants the whole path
+            played = controls.play(tape, desk, **given)
+            passage, playback, fault = Passage.of(played.path), played.playback, played.fault
+            for file in outputs:
+                write(played.path, medium.incomplete(file) if fault else file, f"{tape.name}, played")
     except ValueError as refused:
         if isinstance(refused, Fault):
             raise
         raise click.UsageError(str(refused)) from None
-    written = [medium.incomplete(file) if played.fault else file for file in outputs]
-    for file in written:
-        write(played.path, file, f"{tape.name}, played")
-    charts = _write_following(played, followed, tape.name)
+    written = [medium.incomplete(file) if fault else file for file in outputs]
+    charts = _write_following(playback, fault, followed, tape.name)
     results = {"paths": [str(file) for file in written] or None, "following": charts or None}
-    desk.figures({medium.called(tape): str(tape), **results, **figures(played)})
-    if played.fault:
-        raise played.fault
-    if not played.path.tool.any():
+    desk.figures({medium.called(tape): str(tape), **results, **figures(passage, playback, fault)})
+    if fault:
+        raise fault
+    if not passage.worked:
         desk.note("the tool never comes into the work; a tape that runs backwards goes up where it should go down")
 
 
@@ -170,31 +178,28 @@ def _options(given: Iterable[str]) -> str:
     return ", ".join(sorted(OPTIONS[name] for name in given))
 
 
-def figures(played: Played) -> dict[str, Any]:
+def figures(passage: Passage, playback: Playback, fault: Fault | None) -> dict[str, Any]:
     """What a playing gave, as figures."""
-    playback, path = played.playback, played.path
     return {
-        "incomplete": True if played.fault else None,
-        "duration_s": float(path.t_s[-1] - path.t_s[0]),
-        "length_mm": _length_mm(path),
-        "start_place_mm": path.positions_mm[0],
-        "end_place_mm": path.positions_mm[-1],
+        "incomplete": True if fault else None,
+        "duration_s": passage.end_s - passage.start_s,
+        "length_mm": passage.length_mm,
+        "start_place_mm": passage.start_mm,
+        "end_place_mm": passage.end_mm,
         "largest_following_error_mm": float(max(playback.following_error_mm)),
         **following.figures(playback),
         "bridged_dropouts": len(getattr(playback, "bridged", ())) or None,
     }
 
 
-def _write_following(played: Played, files: tuple[FilePath, ...], name: str) -> list[str]:
+def _write_following(playback: Playback, fault: Fault | None, files: tuple[FilePath, ...], name: str) -> list[str]:
     """Write the following errors where they were asked for; the names under which they stand."""
-    written = [medium.incomplete(file) if played.fault else file for file in files]
+    written = [medium.incomplete(file) if fault else file for file in files]
     pictures = any(file.suffix.lower() != ".csv" for file in files)
     for file in written:
-        assert played.playback.chart is not None
+        assert playback.chart is not None
         title = f"{name}: following error against its limit"
-        following.write(
-            played.playback.chart, file, title, following.speeds_held(played.playback) if pictures else None
-        )
+        following.write(playback.chart, file, title, following.speeds_held(playback) if pictures else None)
     return [str(file) for file in written]
 
 
@@ -212,10 +217,3 @@ def write(path: Path, file: FilePath, title: str) -> None:
         from console.overlay import Picture, draw
 
         draw(Picture(title, path), file)
-
-
-def _length_mm(path: Path) -> float:
-    """Length in the work, mm; 0 where the tool never comes down."""
-    from motion.contour import length_mm
-
-    return length_mm(path) if path.tool.any() else 0.0

@@ -7,16 +7,22 @@ from __future__ import annotations
 
 import functools
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path as FilePath
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TextIO
 
 import click
+import numpy as np
+from numpy.typing import NDArray
 
+from console import medium
 from console.desk import Desk
 from console.quantities import FREQUENCY, NUMBER, PLACES, TRACKS
 from motion.faults import Fault
+from motion.files import written_beside
+from motion.pathfile import write_rows
 
 if TYPE_CHECKING:
     from motion.motion import Motion, Path
@@ -27,6 +33,8 @@ if TYPE_CHECKING:
 CYCLES_PER_MM = NUMBER
 PIPE = "-"
 
+Array = NDArray[np.float64]
+
 
 @dataclass(frozen=True, slots=True)
 class Played:
@@ -35,6 +43,42 @@ class Played:
     path: Path
     playback: Playback
     fault: Fault | None
+
+
+@dataclass(slots=True)
+class Passage:
+    """What a path was, taken down piece by piece: when and where it began and ended, and its length in the work."""
+
+    start_s: float = 0.0
+    end_s: float = 0.0
+    start_mm: Array | None = None
+    end_mm: Array | None = None
+    length_mm: float = 0.0
+    worked: bool = False  # the tool has been in the work
+    _last_in_work_mm: Array | None = None
+
+    @classmethod
+    def of(cls, path: Path) -> Passage:
+        """That of a whole path."""
+        passage = cls()
+        passage.add(path)
+        return passage
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether nothing has been taken down."""
+        return self.start_mm is None
+
+    def add(self, piece: Path) -> None:
+        """Take down the next piece."""
+        if self.start_mm is None:
+            self.start_s, self.start_mm = float(piece.t_s[0]), piece.positions_mm[0]
+        self.end_s, self.end_mm = float(piece.t_s[-1]), piece.positions_mm[-1]
+        joined = [] if self._last_in_work_mm is None or not piece.tool[0] else [self._last_in_work_mm, piece.xy_mm[0]]
+        for run in [*piece.runs(), *([np.array(joined)] if joined else [])]:
+            self.length_mm += float(np.hypot(*np.diff(run, axis=0).T).sum())
+        self.worked = self.worked or bool(piece.tool.any())
+        self._last_in_work_mm = piece.xy_mm[-1] if piece.tool[-1] else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +108,42 @@ class Controls:
 
         The chart takes down the following errors. Raises the fault if nothing was played before it.
         """
+        playback, stream, met = self._stream(file, desk, chart, settings)
+        path = _path(stream, raw, met)
+        return Played(path, playback, met[0] if met else None)
+
+    def play_into(
+        self,
+        file: FilePath,
+        desk: Desk,
+        outputs: Sequence[FilePath],
+        *,
+        raw: bool = False,
+        chart: Chart | None = None,
+        **settings: Any,
+    ) -> tuple[Passage, Playback, Fault | None]:
+        """Play a tape as `play` does, and write its path (.csv) as it comes, so that a tape of any length takes no more memory.
+
+        A path that a fault ended early is marked in its name. Gives what the path was; raises the fault if nothing was played before it.
+        """
+        from motion.motion import thinned
+
+        playback, stream, met = self._stream(file, desk, chart, settings)
+        pieces, passage = _whole(stream) if raw else thinned(stream), Passage()
+        with ExitStack() as files:
+            opened = [files.enter_context(_written(output, met)) for output in outputs]
+            for piece in pieces:
+                for out in opened:
+                    write_rows(piece, out, header=passage.is_empty)
+                passage.add(piece)
+            if passage.is_empty:
+                raise met[0] if met else ValueError("the tape holds no motion")
+        return passage, playback, met[0] if met else None
+
+    def _stream(
+        self, file: FilePath, desk: Desk, chart: Chart | None, settings: dict[str, Any]
+    ) -> tuple[Playback, Iterator[Motion], list[Fault]]:
+        """A file in its machine, the motion that this makes up to its end or its fault, and the fault once it is met."""
         desk.warn_of_compiling("the controls", "motion", "player")
         playback = self._put_in(file, settings)
         playback.chart = chart
@@ -72,8 +152,7 @@ class Controls:
             desk.note(f"{file.name} has its tracks in another order; by where it ends it is --tracks {tracks}")
         met: list[Fault] = []
         stream = desk.watched(_until_fault(playback, met), f"playing {file.name}", playback.duration_s)
-        path = _path(stream, raw, met)
-        return Played(path, playback, met[0] if met else None)
+        return playback, stream, met
 
     def _put_in(self, file: FilePath, settings: dict[str, Any]) -> Playback:
         """Put a file, or the pipe, in its machine."""
@@ -142,6 +221,25 @@ def tape_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         return verb(*args, controls=Controls(**given), **options)
 
     return with_controls
+
+
+@contextmanager
+def _written(file: FilePath, met: list[Fault]) -> Iterator[TextIO]:
+    """A path file to write to, under its name once it is whole: marked if a fault was met."""
+    with (
+        written_beside(file, lambda: medium.incomplete(file) if met else file) as beside,
+        beside.open("w", encoding="ascii", newline="") as out,
+    ):
+        yield out
+
+
+def _whole(stream: Iterable[Motion]) -> Iterator[Path]:
+    """Every sample of a stream, as pieces of a path."""
+    from motion.motion import Path
+
+    for block in stream:
+        if len(block.positions_mm):
+            yield Path(block.times_s, block.positions_mm, block.axes)
 
 
 def _until_fault(stream: Iterable[Motion], met: list[Fault]) -> Iterator[Motion]:

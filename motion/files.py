@@ -9,7 +9,7 @@ from __future__ import annotations
 import errno
 import os
 import secrets
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -23,8 +23,10 @@ _DISK_FULL = {
 
 
 @contextmanager
-def written_beside(file: str | os.PathLike[str]) -> Iterator[Path]:
+def written_beside(file: str | os.PathLike[str], named: Callable[[], Path] | None = None) -> Iterator[Path]:
     """Give a new, hidden file of the same suffix beside `file`; it is renamed to `file` on success, removed on failure.
+
+    `named` tells another name for it in the same folder, when it is whole.
 
     Raises FileFault if the folder is missing or not writable, if `file` is no regular file, or if the disk is full.
     """
@@ -33,6 +35,7 @@ def written_beside(file: str | os.PathLike[str]) -> Iterator[Path]:
     try:
         yield beside
         _flush_to_disk(beside)
+        final = named() if named is not None else final
         beside.replace(final.resolve())  # through a symbolic link, as writing in place would go
     except BaseException as error:
         beside.unlink(missing_ok=True)

@@ -94,25 +94,35 @@ def join(stream: Iterable[Motion]) -> Motion:
 
 def thin(stream: Iterable[Motion], tolerance_mm: float = THINNING_TOLERANCE_MM) -> Path:
     """Thin a stream to the samples that give all others back within `tolerance_mm` per axis; memory grows with the path only."""
-    kept: list[Array] = []
+    pieces = list(thinned(stream, tolerance_mm))
+    if not pieces:
+        raise ValueError("the stream of motion is empty; it must hold at least one block")
+    return Path(
+        np.concatenate([piece.t_s for piece in pieces]),
+        np.vstack([piece.positions_mm for piece in pieces]),
+        pieces[0].axes,
+    )
+
+
+def thinned(stream: Iterable[Motion], tolerance_mm: float = THINNING_TOLERANCE_MM) -> Iterator[Path]:
+    """The pieces of a thinned path as the blocks of a stream come, so that nothing has to hold all of it; none of an empty stream."""
     state: Array | None = None
     samples, start_s, rate_hz, axes = 0, 0.0, MOTION_RATE_HZ, AXES
     for block in stream:
         positions = np.ascontiguousarray(block.positions_mm)
         if not len(positions):
             continue
+        first = state is None
         if state is None:
             start_s, rate_hz, axes = block.start_s, block.rate_hz, block.axes
             state = _closed_door(positions[0])
-            kept.append(state[0:1, 1:].copy())
-        kept.append(_swing(positions, samples, state, tolerance_mm))
+        kept = _swing(positions, samples, state, tolerance_mm)
+        rows = np.vstack([np.r_[0.0, positions[0]], kept]) if first else kept
         samples += len(positions)
-    if state is None:
-        raise ValueError("the stream of motion is empty; it must hold at least one block")
-    rows = np.vstack([np.c_[0.0, kept[0]], *kept[1:]])
-    if samples > 1:
-        rows = np.vstack([rows, state[1]])
-    return Path(start_s + rows[:, 0] / rate_hz, np.ascontiguousarray(rows[:, 1:]), axes)
+        if len(rows):
+            yield Path(start_s + rows[:, 0] / rate_hz, np.ascontiguousarray(rows[:, 1:]), axes)
+    if state is not None and samples > 1:
+        yield Path(start_s + state[1:2, 0] / rate_hz, state[1:2, 1:].copy(), axes)
 
 
 def _closed_door(first_mm: Array) -> Array:

@@ -29,6 +29,7 @@ import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path as FilePath
+from typing import TextIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,16 +53,27 @@ Array = NDArray[np.float64]
 
 def write_path(path: Path, file: str | os.PathLike[str]) -> None:
     """Write a path as CSV: t_s, x_mm, y_mm, z_mm, tool, further axes."""
-    places_mm = np.round(path.positions_mm, 5)
-    columns = [np.round(path.t_s, 7), places_mm[:, :3], path.tool, places_mm[:, 3:]]
-    rows = np.column_stack(columns) + 0.0  # no minus zero
-    further = path.axes[3:]
-    line = "%.7f,%.5f,%.5f,%.5f,%d" + ",%.5f" * len(further) + "\n"
     with written_beside(file) as beside, beside.open("w", encoding="ascii", newline="") as out:
-        out.write(",".join(["t_s,x_mm,y_mm,z_mm,tool", *(f"{axis}_mm" for axis in further)]) + "\n")
-        for first in range(0, len(rows), _ROWS_AT_ONCE):
-            some = rows[first : first + _ROWS_AT_ONCE]
-            out.write(line * len(some) % tuple(some.ravel()))
+        write_rows(path, out, header=True)
+
+
+def write_rows(path: Path, out: TextIO, *, header: bool = False) -> None:
+    """Write the rows of a path, or of a piece of one, to a file that is open, after the line of names if that is asked for."""
+    if header:
+        out.write(_header(path))
+    places_mm = np.round(path.positions_mm, 5)
+    rows = (
+        np.column_stack([np.round(path.t_s, 7), places_mm[:, :3], path.tool, places_mm[:, 3:]]) + 0.0
+    )  # no minus zero
+    line = "%.7f,%.5f,%.5f,%.5f,%d" + ",%.5f" * len(path.axes[3:]) + "\n"
+    for first in range(0, len(rows), _ROWS_AT_ONCE):
+        some = rows[first : first + _ROWS_AT_ONCE]
+        out.write(line * len(some) % tuple(some.ravel()))
+
+
+def _header(path: Path) -> str:
+    """The line of names."""
+    return ",".join(["t_s,x_mm,y_mm,z_mm,tool", *(f"{axis}_mm" for axis in path.axes[3:])]) + "\n"
 
 
 def read_path(file: str | os.PathLike[str], feed_mm_s: float = FEED_MM_S) -> Path:

@@ -1,5 +1,6 @@
 """Motion and Path: thinning keeps its tolerance, and a path gives its motion back."""
 
+from collections.abc import Iterator
 from itertools import pairwise
 
 import numpy as np
@@ -7,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from motion.motion import MOTION_RATE_HZ, THINNING_TOLERANCE_MM, Motion, Path, join, thin
+from motion.motion import MOTION_RATE_HZ, THINNING_TOLERANCE_MM, Motion, Path, join, thin, thinned
 
 ROUNDING_MM = 1e-9  # of float64 slopes over some 10 000 samples and some 100 mm
 
@@ -41,6 +42,20 @@ def test_thinning_does_not_depend_on_the_blocks(seed: int, sizes: list[int]) -> 
     whole, cut = thin([Motion(positions)]), thin(in_blocks(positions, sizes))
     assert np.array_equal(whole.t_s, cut.t_s)
     assert np.array_equal(whole.positions_mm, cut.positions_mm)
+
+
+def test_thinning_holds_no_more_than_a_block() -> None:
+    """The pieces come with the blocks: each before the next but one is asked for."""
+    asked: list[int] = []
+
+    def stream() -> Iterator[Motion]:
+        for number, block in enumerate(in_blocks(wander(3, 4000), [1000, 1000, 1000])):
+            asked.append(number)
+            yield block
+
+    for piece in thinned(stream()):
+        assert piece.t_s[-1] * MOTION_RATE_HZ >= 1000 * (len(asked) - 1) - 1000
+    assert asked == [0, 1, 2, 3]
 
 
 def test_a_straight_motion_needs_two_points() -> None:
