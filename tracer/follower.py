@@ -128,21 +128,23 @@ class Follower:
         if dot is not None:
             return self._end(incoming, dot)
         plan, choices = self._plan(incoming, way)
+        explained = False
         if not asked:
             rank = int(self._junctions.next(self.carriage.travel_mm) in self._turns)
-            plan = unravel(self.view, incoming, self.carriage.trail, self.carriage.stands(), plan, rank)
+            plan, explained = unravel(self.view, incoming, self.carriage.trail, self.carriage.stands(), plan, rank)
+        if not explained:
+            plan = self._ridden(incoming, way[0]) or plan
         return self._at_end(incoming, choices) if plan is None else self._pass(*plan)
+
+    def _ridden(self, incoming: Leg, outgoing: Leg | None) -> Planned | None:
+        """The way past ink that runs beside the line, felt along an edge; None if the line goes on straight before, or if there is no such way."""
+        straight = goes_straight(incoming, outgoing)
+        ride = None if straight and not self._far(incoming, outgoing) else ride_past(self.view, incoming)
+        return None if ride is None or (straight and ride.back is None) else self._ride(incoming, ride)
 
     def _plan(self, incoming: Leg, way: Way) -> tuple[Planned | None, int]:
         """The way through a knot that the legs alone tell, and how many there were to choose from."""
         outgoing, legs_mm, choices = way
-        straight = goes_straight(incoming, outgoing)
-        if not straight or self._far(incoming, outgoing):
-            ride = ride_past(self.view, incoming)
-            if ride is not None and not (straight and ride.back is None):
-                ridden = self._ride(incoming, ride)
-                if ridden is not None:
-                    return ridden, choices
         if outgoing is not None:
             planned = self._course(incoming, outgoing, legs_mm)
             if course.on_ink(self.view, planned.stretches):

@@ -46,26 +46,26 @@ class Planned(NamedTuple):
 
 def unravel(
     view: View, incoming: Leg, trail: Trail, way_in: tuple[Array, float], plan: Planned | None, rank: int = 0
-) -> Planned | None:
-    """The way from where the head is (place, heading) out of the tangle ahead.
+) -> tuple[Planned | None, bool]:
+    """The way from where the head is (place, heading) out of the tangle ahead, and whether it explains the tangle's ink.
 
     It is the plan if that explains the ink as well as any other way, or if the tangle does not end in legs, or in too many, or if no way explains its ink.
     `rank` 1 takes the second best way out.
     """
     if len(incoming.seen) < LEAST_SEEN:
-        return plan
+        return plan, False
     tangle = tangle_ahead(view, incoming)
     odd = len(tangle.legs) % 2 == 1  # one line ends on another: that is a junction, which the legs tell better
     if not tangle.whole or not 2 <= len(tangle.legs) <= MOST_LEGS or (odd and plan is not None):
-        return plan
+        return plan, False
     sketch = Sketch.of(view, tangle)
     drawn = [] if plan is None else _as_drawn(plan, tangle, view.width_mm)
     planned = math.inf if plan is None else sketch.misfit_with(Way((), ()), drawn)
-    if plan is not None and len(tangle.legs) == 2 and planned < AS_GOOD:
-        return plan
+    if plan is not None and len(tangle.legs) == 2 and planned < AS_GOOD and _same(plan.leg, tangle.legs[1], view.width_mm):
+        return plan, True
     every = ways(sketch)
     if _partner(every[0]) is None:
-        return plan  # the line ends here, on another
+        return plan, False  # the line ends here, on another
     clear = max(CLEAR, min(BETTER * planned, LEAST_CLEAR)) if len(tangle.legs) == 2 else CLEAR
     best: dict[int, Way] = {}
     for way in every:
@@ -73,19 +73,19 @@ def unravel(
         if leg is not None and way.misfit < clear and not trail.holds(tangle.legs[leg], view.width_mm):
             best.setdefault(leg, way)
     if not best:
-        return plan
+        return plan, False
     leg, way = list(best.items())[min(rank, len(best) - 1)]
     if plan is not None and rank == 0 and goes_straight(incoming, plan.leg):
         straight = [w.cost for k, w in best.items() if _same(plan.leg, tangle.legs[k], view.width_mm)]
         if straight and straight[0] < way.cost + DOUBTFUL and len(tangle.legs) > 2:
-            return plan
+            return plan, True
     if plan is not None and _same(plan.leg, tangle.legs[leg], view.width_mm):
         planned = sketch.misfit_with(_without_own(way), drawn)
         if goes_straight(incoming, plan.leg) and _aside_mm(_own(way), plan.stretches) < longest_mm(view):
-            return plan  # what is beside it is a mark, or a blot
+            return plan, True  # what is beside it is a mark, or a blot
         if planned < way.misfit + VERTEX * (1 + len(_own(way))):
-            return plan
-    return Planned(_stretches(way_in, incoming, _own(way), tangle.legs[leg]), tangle.legs[leg])
+            return plan, True
+    return Planned(_stretches(way_in, incoming, _own(way), tangle.legs[leg]), tangle.legs[leg]), True
 
 
 def _as_drawn(plan: Planned, tangle: Tangle, width_mm: float) -> list[Array]:
