@@ -33,7 +33,7 @@ from tracer.riding import Ride, ride_past, to_vertex
 from tracer.settings import Settings
 from tracer.stance import Stance
 from tracer.survey import Side, Way, caught_again, goes_straight, straight_on, survey
-from tracer.unravel import Planned, unravel
+from tracer.unravel import Planned, Tangles
 from tracer.view import Array, View
 
 SMOOTH = math.radians(14)  # a smaller change of heading is no corner
@@ -78,6 +78,7 @@ class Follower:
         self.view, self.settings, self.stance = stance.view, settings, stance
         self._junctions, self._turns, self._sides = Junctions(), turns, sides
         self.carriage = Carriage(stance, settings, rate_hz)
+        self._tangles = Tangles()
         self._away_mm = max(4 * self.carriage.tuning.lead_mm, 3.0 * self.view.width_mm)
         self._aim(self._first_leg(stance))
 
@@ -131,7 +132,8 @@ class Follower:
         explained = False
         if not asked:
             rank = int(self._junctions.next(self.carriage.travel_mm) in self._turns)
-            plan, explained = unravel(self.view, incoming, self.carriage.trail, self.carriage.stands(), plan, rank)
+            way_in = self.carriage.stands()
+            plan, explained = self._tangles.way_out(self.view, incoming, self.carriage.trail, way_in, plan, rank)
         if not explained:
             plan = self._ridden(incoming, way[0]) or plan
         return self._at_end(incoming, choices) if plan is None else self._pass(*plan)

@@ -34,6 +34,7 @@ STROKE = 2.5  # vertices
 DOUBLED, DOUBLED_RAD = 4.0, math.radians(3)  # vertices; a tip as narrow as this is a tick
 MOST_ADDED = 6
 MOST_IMPROVED = 4
+MOST_SETTLED = 4
 LEFT_OVER = 0.4  # of the line's darkness: ink that is not drawn
 PLAN_EVERY = 4  # of the places of a stretch, 20 um apart
 NONE = np.empty((0, 2))
@@ -96,8 +97,8 @@ class Sketch:
         )
         parts = np.split(vertices, np.cumsum([*counts, *[2] * strokes]))
         moved = replace(way, vertices=tuple(parts[: len(counts)]), strokes=tuple(parts[len(counts) : -1]))
-        misfit = float(left) * self.unit
-        return replace(moved, misfit=misfit, cost=misfit + VERTEX * self._effort(moved) + self._on_paper(moved))
+        misfit = float(left) * self.unit + self._on_paper(moved)
+        return replace(moved, misfit=misfit, cost=misfit + VERTEX * self._effort(moved))
 
     def _on_paper(self, way: Way) -> float:
         """How much of a way lies on paper, in widths: beyond the places about the ink no misfit tells of it."""
@@ -114,12 +115,18 @@ class Sketch:
             effort += len(vertices) + DOUBLED * _doubled(np.vstack([self.poses[a, :2], vertices, self.poses[b, :2]]))
         return effort
 
-    def plainest(self, pairs: tuple[Pair, ...]) -> Way:
-        """The legs joined with no vertex, or with one where they meet."""
-        joints = [[NONE, self._meeting(a, b)] for a, b in pairs]
+    def plainest(self, pairs: tuple[Pair, ...], *, bare: bool = False) -> Way:
+        """The legs joined with no vertex, with one where they meet, or, unless `bare`, with those where the ink ahead of the one, the other or both ends."""
+        joints = [self._joints(a, b)[: 2 if bare else None] for a, b in pairs]
         spare = set(range(len(self.poses))) - {leg for pair in pairs for leg in pair}
         ends = tuple(self._end(leg) for leg in spare)
-        return min((self.settled(Way(pairs, v, ends), 4) for v in product(*joints)), key=lambda way: way.cost)
+        rough = sorted((self.settled(Way(pairs, v, ends), 0) for v in product(*joints)), key=lambda way: way.cost)
+        return min((self.settled(way, 4) for way in rough[:MOST_SETTLED]), key=lambda way: way.cost)
+
+    def _joints(self, a: int, b: int) -> list[Array]:
+        """Vertices (n, 2) by which two legs may be joined."""
+        one, other = self._end(a)[1:], self._end(b)[1:]
+        return [NONE, self._meeting(a, b), one, other, np.vstack([one, other])]
 
     def _end(self, leg: int) -> Array:
         """The stroke (2, 2) by which a leg goes on straight and ends half a width within the ink."""
@@ -171,14 +178,15 @@ class Sketch:
         foot = feet[piece]
         return place + (foot - place) * self.pen[0] / max(float(np.hypot(*(foot - place))), 1e-9), foot, piece
 
-    def improved(self, way: Way) -> Way:
-        """The way with vertices and strokes added while they explain more ink than they cost."""
+    def improved(self, way: Way, *, marks_only: bool = False) -> Way:
+        """The way with vertices and strokes added while they explain more ink than they cost; `marks_only`: strokes alone."""
         way = self.settled(way)
         for _ in range(MOST_ADDED):
             found = self._left_over(way) if way.misfit > VERTEX else None
             if found is None:
                 break
-            tries = [self.settled(t, 3) for t in _with_more(way, *found)]
+            more = _with_more(way, *found)
+            tries = [self.settled(t, 3) for t in (more[:1] if marks_only else more)]
             best = self.settled(min(tries, key=lambda t: t.cost))
             if best.cost >= way.cost:
                 break
@@ -207,7 +215,7 @@ def matchings(legs: int) -> list[tuple[Pair, ...]]:
 
 
 def _with_more(way: Way, tip: Array, foot: Array, piece: int) -> list[Way]:
-    """The way with a stroke from a foot to a tip, and with the tip as a vertex, or as that of a spike, of the strand on whose piece the foot is."""
+    """The way with a stroke from a foot to a tip, then with the tip as a vertex, or as that of a spike, of the strand on whose piece the foot is."""
     more = [replace(way, strokes=(*way.strokes, np.array([foot, tip])))]
     for k, v in enumerate(way.vertices):
         pieces = 2 * pen.PIECES + max(len(v) - 1, 0)

@@ -17,7 +17,7 @@ from tracer import pen
 from tracer.course import SPACING_MM, ahead_mm, along_leg, hermite, onto
 from tracer.leg import Leg, turn
 from tracer.marks import longest_mm
-from tracer.pairing import MOST_LEGS, VERTEX, Sketch, Way, ways
+from tracer.pairing import MOST_LEGS, NONE, VERTEX, Sketch, Way, ways
 from tracer.survey import goes_straight
 from tracer.tangle import Tangle, tangle_ahead
 from tracer.trail import Trail
@@ -28,11 +28,15 @@ LEAST_CLEAR, BETTER = (
     1.0,
     0.25,
 )  # a long tangle is explained less well: up to this, if that is so much better than the plan
+TWICE, LEAST_MISFIT = 2.0, 0.02
 DOUBTFUL = 0.08  # straight on stands unless the ink tells against it by more
+WELL = 0.06  # misfit of a way that explains all of the ink
 AS_GOOD = 0.05  # misfit of a plan that needs no other to be compared with
 LEAST_SEEN = 4  # stations of the incoming leg, to know the pen by
 SAME_RAD = math.radians(20)
 NEAR_MM = 3.0
+LEAST_AHEAD_MM = 0.1
+MARK_AS_GOOD = 0.04  # misfit more of a stroke, which may end in a ball
 KINK_RAD = math.radians(14)  # a smaller change of heading is run through
 
 
@@ -44,48 +48,105 @@ class Planned(NamedTuple):
     seen: Array | None = None
 
 
-def unravel(
-    view: View, incoming: Leg, trail: Trail, way_in: tuple[Array, float], plan: Planned | None, rank: int = 0
-) -> tuple[Planned | None, bool]:
-    """The way from where the head is (place, heading) out of the tangle ahead, and whether it explains the tangle's ink.
+class Tangles:
+    """The tangles that the head has come to, each with the way it was drawn: where a line leads into one again it takes the strand that is left."""
 
-    It is the plan if that explains the ink as well as any other way, or if the tangle does not end in legs, or in too many, or if no way explains its ink.
-    `rank` 1 takes the second best way out.
-    """
-    if len(incoming.seen) < LEAST_SEEN:
-        return plan, False
-    tangle = tangle_ahead(view, incoming)
-    odd = len(tangle.legs) % 2 == 1  # one line ends on another: that is a junction, which the legs tell better
-    if not tangle.whole or not 2 <= len(tangle.legs) <= MOST_LEGS or (odd and plan is not None):
-        return plan, False
-    sketch = Sketch.of(view, tangle)
+    def __init__(self) -> None:
+        self._known: list[tuple[Tangle, Way]] = []
+
+    def way_out(
+        self, view: View, incoming: Leg, trail: Trail, way_in: tuple[Array, float], plan: Planned | None, rank: int = 0
+    ) -> tuple[Planned | None, bool]:
+        """The way from where the head is (place, heading) out of the tangle ahead, and whether it explains the tangle's ink.
+
+        It is the plan if that explains the ink as well as any other way, or if the tangle does not end in legs, or in too many, or if no way explains its
+        ink. `rank` 1 takes the second best way out.
+        """
+        if len(incoming.seen) < LEAST_SEEN:
+            return plan, False
+        strand = self._strand_left(incoming, trail, way_in[0], view.width_mm)
+        if strand is not None and rank == 0:
+            first, vertices, last = strand
+            return Planned(_stretches(way_in, first, vertices, last), last), True
+        tangle = tangle_ahead(view, incoming)
+        odd = len(tangle.legs) % 2 == 1  # one line ends on another: that is a junction, which the legs tell better
+        if not tangle.whole or not 2 <= len(tangle.legs) <= MOST_LEGS or (odd and plan is not None):
+            return plan, False
+        found, way = _unravelled(Sketch.of(view, tangle), incoming, trail, way_in, plan, rank)
+        if way is not None:
+            self._known.append((tangle, way))
+        return found, way is not None
+
+    def _strand_left(
+        self, incoming: Leg, trail: Trail, place: Array, width_mm: float
+    ) -> tuple[Leg, Array, Leg] | None:
+        """The legs and the vertices between them of the strand that a line leads into; None if it leads into no tangle that is known."""
+        for tangle, way in self._known:
+            legs = [tangle.legs[0].turned_round(), *tangle.legs[1:]]
+            for pair, vertices in zip(way.pairs, way.vertices, strict=True):
+                for a, b, between in ((*pair, vertices), (*pair[::-1], vertices[::-1])):
+                    first = legs[a].turned_round()
+                    if _same(first, incoming, width_mm) and not trail.holds(legs[b], width_mm):
+                        return first if ahead_mm(place, first) > LEAST_AHEAD_MM else incoming, between, legs[b]
+        return None
+
+
+def _unravelled(
+    sketch: Sketch, incoming: Leg, trail: Trail, way_in: tuple[Array, float], plan: Planned | None, rank: int
+) -> tuple[Planned | None, Way | None]:
+    """The way out of a tangle, and the way in which its ink is drawn then; None if no way explains it."""
+    view, tangle = sketch.view, sketch.tangle
     drawn = [] if plan is None else _as_drawn(plan, tangle, view.width_mm)
     planned = math.inf if plan is None else sketch.misfit_with(Way((), ()), drawn)
-    if plan is not None and len(tangle.legs) == 2 and planned < AS_GOOD and _same(plan.leg, tangle.legs[1], view.width_mm):
-        return plan, True
+    two = len(tangle.legs) == 2
+    if plan is not None and two and planned < AS_GOOD and _same(plan.leg, tangle.legs[1], view.width_mm):
+        return plan, Way(((0, 1),), (NONE,))
     every = ways(sketch)
     if _partner(every[0]) is None:
-        return plan, False  # the line ends here, on another
-    clear = max(CLEAR, min(BETTER * planned, LEAST_CLEAR)) if len(tangle.legs) == 2 else CLEAR
+        return plan, None  # the line ends here, on another
+    clear = max(CLEAR, min(BETTER * planned, LEAST_CLEAR)) if two else CLEAR
     best: dict[int, Way] = {}
     for way in every:
         leg = _partner(way)
         if leg is not None and way.misfit < clear and not trail.holds(tangle.legs[leg], view.width_mm):
             best.setdefault(leg, way)
     if not best:
-        return plan, False
+        return plan, None
     leg, way = list(best.items())[min(rank, len(best) - 1)]
     if plan is not None and rank == 0 and goes_straight(incoming, plan.leg):
-        straight = [w.cost for k, w in best.items() if _same(plan.leg, tangle.legs[k], view.width_mm)]
-        if straight and straight[0] < way.cost + DOUBTFUL and len(tangle.legs) > 2:
-            return plan, True
+        straight = [w for k, w in best.items() if _same(plan.leg, tangle.legs[k], view.width_mm)]
+        if straight and not two and _as_good(straight[0], way):
+            if _aside_mm(_own(straight[0]), plan.stretches) < view.width_mm:
+                return plan, straight[0]
+            way = straight[0]
     if plan is not None and _same(plan.leg, tangle.legs[leg], view.width_mm):
         planned = sketch.misfit_with(_without_own(way), drawn)
-        if goes_straight(incoming, plan.leg) and _aside_mm(_own(way), plan.stretches) < longest_mm(view):
-            return plan, True  # what is beside it is a mark, or a blot
         if planned < way.misfit + VERTEX * (1 + len(_own(way))):
-            return plan, True
-    return Planned(_stretches(way_in, incoming, _own(way), tangle.legs[leg]), tangle.legs[leg]), True
+            return plan, way
+        if goes_straight(incoming, plan.leg) and _is_mark(sketch, way, plan):
+            return plan, way
+    return Planned(_stretches(way_in, incoming, _own(way), tangle.legs[leg]), tangle.legs[leg]), way
+
+
+def _as_good(way: Way, other: Way) -> bool:
+    """Whether a way explains the ink about as well as another."""
+    return way.cost < other.cost + DOUBTFUL and way.misfit < TWICE * other.misfit + LEAST_MISFIT
+
+
+def _is_mark(sketch: Sketch, way: Way, plan: Planned) -> bool:
+    """Whether what a way draws beside the straight one may be a mark or a blot: no longer than a mark, and no stroke of the line explains it better."""
+    aside_mm = _aside_mm(_own(way), plan.stretches)
+    if aside_mm >= longest_mm(sketch.view):
+        return False
+    if way.misfit > WELL:
+        return True
+    marked = sketch.improved(sketch.plainest(way.pairs, bare=True), marks_only=True)
+    headings = [math.atan2(*(tip - foot)[::-1]) for foot, tip in marked.strokes]
+    if len(headings) == 1 or (len(headings) == 2 and abs(turn(headings[0], headings[1] + math.pi)) < SAME_RAD):
+        return marked.misfit < way.misfit + MARK_AS_GOOD
+    if aside_mm < sketch.view.width_mm:
+        return marked.misfit < TWICE * way.misfit
+    return marked.misfit < way.misfit and marked.cost < way.cost
 
 
 def _as_drawn(plan: Planned, tangle: Tangle, width_mm: float) -> list[Array]:
