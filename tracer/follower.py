@@ -57,6 +57,7 @@ class Followed:
     fault: LineFault | None = None
     loop_from: int | None = None  # the position at which the loop of a joined line begins: before it is the lead line
     guides: tuple[Guide, ...] = ()
+    doubts: tuple[tuple[int, int], ...] = ()  # where another way would have done as well: the junction, and the way's rank
 
 
 Anchor = tuple[Array, float, float]  # a place from which on the line is clean, the heading there, and the travel
@@ -73,7 +74,7 @@ class Follower:
         turns: tuple[int, ...] = (),
         sides: tuple[Side | None, ...] = (),
     ) -> None:
-        """Put a head down at a stance. At the junctions numbered in `turns` it takes the second straightest leg; at the first, the second … it turns off
+        """Put a head down at a stance. At the junctions numbered in `turns` it takes the second straightest leg, the third where a number stands twice; at the first, the second … it turns off
         to its side in `sides`, where there is one, and comes back if the line that it takes ends."""
         self.view, self.settings, self.stance = stance.view, settings, stance
         self._junctions, self._turns, self._sides = Junctions(), turns, sides
@@ -131,9 +132,10 @@ class Follower:
         plan, choices = self._plan(incoming, way)
         explained = False
         if not asked:
-            rank = int(self._junctions.next(self.carriage.travel_mm) in self._turns)
-            way_in = self.carriage.stands()
-            plan, explained = self._tangles.way_out(self.view, incoming, self.carriage.trail, way_in, plan, rank)
+            number, way_in = self._junctions.next(self.carriage.travel_mm), self.carriage.stands()
+            plan, explained = self._tangles.way_out(
+                self.view, incoming, self.carriage.trail, way_in, plan, number, self._turns.count(number)
+            )
         if not explained:
             plan = self._ridden(incoming, way[0]) or plan
         return self._at_end(incoming, choices) if plan is None else self._pass(*plan)
@@ -190,7 +192,7 @@ class Follower:
             return survey(self.view, incoming, trail), True
         number = self._junctions.next(self.carriage.travel_mm)
         side = self._sides[number] if number < len(self._sides) else None
-        found = outgoing, legs_mm, choices = survey(self.view, incoming, trail, int(number in self._turns), side)
+        found = outgoing, legs_mm, choices = survey(self.view, incoming, trail, self._turns.count(number), side)
         if choices > 1:
             place = incoming.end_mm if legs_mm is None else incoming.at(legs_mm[0])
             self._junctions.come_to(place, self.carriage.travel_mm)
@@ -263,12 +265,13 @@ class Follower:
         return self._end(incoming, end, joined=choices > 0)
 
     def _end(self, incoming: Leg, end_mm: float, *, joined: bool = False) -> Followed | None:
-        """Run to an end of the line; on from there, if it is a guide line's."""
+        """Run to an end of the line; back from there, if it is a guide line's, or a tip in which two lines have run together."""
         way, along = course.onto(*self.carriage.stands(), incoming, end_mm)
         self.carriage.run([np.vstack([way, course.along_leg(incoming, along, end_mm)])])
-        if joined:
+        to_tip = self._tangles.goes_back(self.carriage.stands()[0], self.carriage.trail, self.view.width_mm)
+        if joined and not to_tip:
             return self._done("joined")
-        if not self._junctions.turn_round(self.carriage.count):
+        if not self._junctions.turn_round(self.carriage.count) and not to_tip:
             return self._done("ended")
         back = incoming.turned_round()
         self.carriage.swivel(incoming.heading_at(end_mm) + math.pi)
@@ -336,6 +339,7 @@ class Follower:
             tuple(self._junctions.places_mm),
             fault,
             guides=self._junctions.guides(positions),
+            doubts=self._tangles.doubts(self.carriage.trail, self.view.width_mm),
         )
         return done if ending != "joined" else _without_repeat(done)
 

@@ -33,6 +33,7 @@ from tracer.stance import Stance, ends_of, put_down, turned_round
 from tracer.survey import Side
 
 SHORTER = 0.95  # the other way round is the line itself if it is shorter than this: straight on has led elsewhere
+DOUBTS = 8  # looked into, of a run
 TURNS = 12  # junctions at which another turn is tried
 TRIED_MM = 6000.0  # travel in all that is spent on other turns
 OVERRUN_MM = 3.0  # a stub as short, straight on from a closed line, is where the pen set out, and not another's line
@@ -168,10 +169,12 @@ class _Attempts:
         """Follow a line from a stance: either way round, an open one from end to end, and one that does not come back with other turns."""
         run = self.run(stance)
         if stance.at_end or (run.ending == "closed" and not run.junctions_mm):
-            return run
+            return self._taken_in(stance, run)
         other = self.run(_about(stance))
         if run.ending == "closed":
-            return other if other.ending == "closed" and other.travel_mm < SHORTER * run.travel_mm else run
+            if other.ending == "closed" and other.travel_mm < SHORTER * run.travel_mm:
+                return self._taken_in(_about(stance), other)
+            return self._taken_in(stance, run)
         if run.ending == "ended":
             back = self.run(turned_round(run.positions_mm[-1], run.heading_rad, run.view))
             if other.ending == "closed" and not other.travel_mm < back.travel_mm < other.travel_mm + OVERRUN_MM:
@@ -180,6 +183,15 @@ class _Attempts:
         if other.ending == "closed":
             return other
         return self._with_other_turns(stance, run) if run.ending == "joined" else run
+
+    def _taken_in(self, stance: Stance, run: Followed) -> Followed:
+        """A run that closes, with the ink taken in that it left out where another way would have done as well."""
+        turns: tuple[int, ...] = ()
+        for number, rank in run.doubts[:DOUBTS] if run.ending == "closed" else ():
+            other = self.run(stance, (*turns, *(number,) * rank))
+            if number not in turns and other.ending == "closed" and other.travel_mm > run.travel_mm:
+                run, turns = other, (*turns, *(number,) * rank)
+        return run
 
     def _with_other_turns(self, stance: Stance, run: Followed) -> Followed:
         """The shortest run that closes because it takes another turn at one junction, or else at two; else the run as it was.

@@ -37,6 +37,8 @@ SAME_RAD = math.radians(20)
 NEAR_MM = 3.0
 LEAST_AHEAD_MM = 0.1
 MARK_AS_GOOD = 0.04  # misfit more of a stroke, which may end in a ball
+BACK_RAD, LONGEST_TIP_MM = math.radians(120), 10.0  # lines that run together to one tip
+CROSSES_RAD = math.radians(25)
 KINK_RAD = math.radians(14)  # a smaller change of heading is run through
 
 
@@ -53,14 +55,23 @@ class Tangles:
 
     def __init__(self) -> None:
         self._known: list[tuple[Tangle, Way]] = []
+        self._left: list[tuple[int, int, Leg]] = []
+        self._beside: list[Leg] = []
 
     def way_out(
-        self, view: View, incoming: Leg, trail: Trail, way_in: tuple[Array, float], plan: Planned | None, rank: int = 0
+        self,
+        view: View,
+        incoming: Leg,
+        trail: Trail,
+        way_in: tuple[Array, float],
+        plan: Planned | None,
+        number: int = 0,
+        rank: int = 0,
     ) -> tuple[Planned | None, bool]:
         """The way from where the head is (place, heading) out of the tangle ahead, and whether it explains the tangle's ink.
 
         It is the plan if that explains the ink as well as any other way, or if the tangle does not end in legs, or in too many, or if no way explains its
-        ink. `rank` 1 takes the second best way out.
+        ink. `rank` 1 takes the second best way out, 2 the third, and `number` is that of the tangle among the junctions.
         """
         if len(incoming.seen) < LEAST_SEEN:
             return plan, False
@@ -70,12 +81,26 @@ class Tangles:
             return Planned(_stretches(way_in, first, vertices, last), last), True
         tangle = tangle_ahead(view, incoming)
         odd = len(tangle.legs) % 2 == 1  # one line ends on another: that is a junction, which the legs tell better
+        if odd:
+            self._beside += [leg for leg in tangle.legs[1:] if abs(turn(incoming.heading_rad, leg.heading_rad)) > BACK_RAD]
         if not tangle.whole or not 2 <= len(tangle.legs) <= MOST_LEGS or (odd and plan is not None):
             return plan, False
-        found, way = _unravelled(Sketch.of(view, tangle), incoming, trail, way_in, plan, rank)
+        found, way, others = _unravelled(Sketch.of(view, tangle), incoming, trail, way_in, plan, rank)
         if way is not None:
             self._known.append((tangle, way))
+        if rank == 0:
+            self._left += [(number, k + 1, leg) for k, leg in enumerate(others)]
         return found, way is not None
+
+    def goes_back(self, tip: Array, trail: Trail, width_mm: float) -> bool:
+        """Whether the line that ends at a tip is two that ran together a little before, of which the one has not been followed."""
+        near = [leg for leg in self._beside if np.hypot(*(leg.end_mm - tip)) < LONGEST_TIP_MM]
+        self._beside = []
+        return any(not trail.holds(leg, width_mm) for leg in near)
+
+    def doubts(self, trail: Trail, width_mm: float) -> tuple[tuple[int, int], ...]:
+        """Numbers of the junctions where another way out would have done as well and leads to ink that has not been followed, and its rank."""
+        return tuple((number, rank) for number, rank, leg in self._left if not trail.holds(leg, width_mm))
 
     def _strand_left(
         self, incoming: Leg, trail: Trail, place: Array, width_mm: float
@@ -93,17 +118,17 @@ class Tangles:
 
 def _unravelled(
     sketch: Sketch, incoming: Leg, trail: Trail, way_in: tuple[Array, float], plan: Planned | None, rank: int
-) -> tuple[Planned | None, Way | None]:
-    """The way out of a tangle, and the way in which its ink is drawn then; None if no way explains it."""
+) -> tuple[Planned | None, Way | None, list[Leg]]:
+    """The way out of a tangle, the way in which its ink is drawn then, None if no way explains it, and the legs of others that would do as well."""
     view, tangle = sketch.view, sketch.tangle
     drawn = [] if plan is None else _as_drawn(plan, tangle, view.width_mm)
     planned = math.inf if plan is None else sketch.misfit_with(Way((), ()), drawn)
     two = len(tangle.legs) == 2
     if plan is not None and two and planned < AS_GOOD and _same(plan.leg, tangle.legs[1], view.width_mm):
-        return plan, Way(((0, 1),), (NONE,))
+        return plan, Way(((0, 1),), (NONE,)), []
     every = ways(sketch)
     if _partner(every[0]) is None:
-        return plan, None  # the line ends here, on another
+        return plan, None, []  # the line ends here, on another
     clear = max(CLEAR, min(BETTER * planned, LEAST_CLEAR)) if two else CLEAR
     best: dict[int, Way] = {}
     for way in every:
@@ -111,21 +136,35 @@ def _unravelled(
         if leg is not None and way.misfit < clear and not trail.holds(tangle.legs[leg], view.width_mm):
             best.setdefault(leg, way)
     if not best:
-        return plan, None
-    leg, way = list(best.items())[min(rank, len(best) - 1)]
-    if plan is not None and rank == 0 and goes_straight(incoming, plan.leg):
-        straight = [w for k, w in best.items() if _same(plan.leg, tangle.legs[k], view.width_mm)]
-        if straight and not two and _as_good(straight[0], way):
-            if _aside_mm(_own(straight[0]), plan.stretches) < view.width_mm:
-                return plan, straight[0]
-            way = straight[0]
-    if plan is not None and _same(plan.leg, tangle.legs[leg], view.width_mm):
-        planned = sketch.misfit_with(_without_own(way), drawn)
-        if planned < way.misfit + VERTEX * (1 + len(_own(way))):
-            return plan, way
-        if goes_straight(incoming, plan.leg) and _is_mark(sketch, way, plan):
-            return plan, way
-    return Planned(_stretches(way_in, incoming, _own(way), tangle.legs[leg]), tangle.legs[leg]), way
+        return plan, None, []
+    leg, straight = next(iter(best)), False
+    if plan is not None and goes_straight(incoming, plan.leg) and not two:
+        for k, way in best.items():
+            if _same(plan.leg, tangle.legs[k], view.width_mm) and _as_good(way, best[leg]):
+                leg, straight = k, _aside_mm(_own(way), plan.stretches) < view.width_mm
+                break
+    others = [k for k in best if k != leg]
+    if rank and others:
+        leg, straight = others[min(rank, len(others)) - 1], False
+    way = best[leg]
+    as_good = [tangle.legs[k] for k in others if _as_good(best[k], way)] if _bends(sketch, way) else []
+    if straight or (plan is not None and _same(plan.leg, tangle.legs[leg], view.width_mm) and _stands(sketch, way, plan, drawn)):
+        return plan, way, as_good
+    return Planned(_stretches(way_in, incoming, _own(way), tangle.legs[leg]), tangle.legs[leg]), way, as_good
+
+
+def _stands(sketch: Sketch, way: Way, plan: Planned, drawn: list[Array]) -> bool:
+    """Whether a plan that leads where the best way does explains the ink as well, but for a mark beside it."""
+    planned = sketch.misfit_with(_without_own(way), drawn)
+    if planned < way.misfit + VERTEX * (1 + len(_own(way))):
+        return True
+    return goes_straight(sketch.tangle.legs[0], plan.leg) and _is_mark(sketch, way, plan)
+
+
+def _bends(sketch: Sketch, way: Way) -> bool:
+    """Whether no strand of a way goes straight on: lines that do are lines that cross, or that another touches."""
+    headings = sketch.poses[:, 2]
+    return all(abs(turn(headings[a], headings[b] + math.pi)) > CROSSES_RAD for a, b in way.pairs)
 
 
 def _as_good(way: Way, other: Way) -> bool:
