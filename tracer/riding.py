@@ -17,6 +17,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numba import njit
@@ -31,6 +32,7 @@ WELL_WITHIN = 10  # stations from a leg's clean end: both edges are clean there
 TIP = math.radians(150)  # a corner that turns by more is a tip
 REGAINED_MM = 1.5  # this much of both edges, and the line is by itself again
 BESIDE = 4.0  # widths; ink that is beside the line for less is a corner or a crossing
+JUMP = 0.25  # of the width, from station to station: the far edge is no longer the same
 WIDE = 0.62  # of the width, from the middle to the far edge: ink beside the line
 
 
@@ -133,16 +135,23 @@ def _turned_back(stations: Array, seen: Array, first: int, last: int, side: floa
         return None
     at_tip = np.flatnonzero(excess[last:] <= 0)
     tip = last + int(at_tip[0]) if len(at_tip) else len(stations) - 1
-    measured = [i for i in range(first, tip + 1) if math.isfinite(excess[i])]
+    measured = _from_tip(excess, first, tip, JUMP * width_mm)
     if len(measured) < 6 or tip < 6:
         return None
     back = np.empty((len(measured), 3))
-    for k, i in enumerate(reversed(measured)):
+    for k, i in enumerate(measured):
         a, b = seen[max(0, i - 3), :2], seen[min(len(seen) - 1, i + 3), :2]
         t = (b - a) / np.hypot(*(b - a))
         back[k, :2] = seen[i, :2] - side * max(excess[i], 0.0) * np.array([-t[1], t[0]])
         back[k, 2] = width_mm
     return Ride(seen[: tip + 1], back)
+
+
+def _from_tip(excess: Array, first: int, tip: int, jump_mm: float) -> list[int]:
+    """The stations from a tip back to the first at which the far edge was met, up to where it jumps: there it is another line's."""
+    measured = [i for i in range(tip, first - 1, -1) if math.isfinite(excess[i])]
+    jumps = [k + 1 for k, (i, j) in enumerate(pairwise(measured)) if abs(excess[i] - excess[j]) > jump_mm]
+    return measured[: jumps[0]] if jumps else measured
 
 
 @njit(cache=True)

@@ -185,13 +185,19 @@ class _Attempts:
         return self._with_other_turns(stance, run) if run.ending == "joined" else run
 
     def _taken_in(self, stance: Stance, run: Followed) -> Followed:
-        """A run that closes, with the ink taken in that it left out where another way would have done as well."""
-        turns: tuple[int, ...] = ()
-        for number, rank in run.doubts[:DOUBTS] if run.ending == "closed" else ():
-            other = self.run(stance, (*turns, *(number,) * rank))
-            if number not in turns and other.ending == "closed" and other.travel_mm > run.travel_mm:
-                run, turns = other, (*turns, *(number,) * rank)
-        return run
+        """A run that closes, with the ink taken in that it left out where another way would have done as well: the longest of `DOUBTS` more runs."""
+        best, tried = run, 0
+        open_runs: list[tuple[Followed, tuple[int, ...]]] = [(run, ())]
+        while open_runs and best.doubts:
+            run, turns = open_runs.pop(int(np.argmax([some.travel_mm for some, _ in open_runs])))
+            for number, rank in run.doubts if run.ending == "closed" else ():
+                if number in turns or tried == DOUBTS:
+                    continue
+                more = (*turns, *(number,) * rank)
+                other, tried = self.run(stance, more), tried + 1
+                open_runs.append((other, more))
+                best = other if other.ending == "closed" and other.travel_mm > best.travel_mm else best
+        return best
 
     def _with_other_turns(self, stance: Stance, run: Followed) -> Followed:
         """The shortest run that closes because it takes another turn at one junction, or else at two; else the run as it was.

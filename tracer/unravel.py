@@ -30,6 +30,7 @@ LEAST_CLEAR, BETTER = (
 )  # a long tangle is explained less well: up to this, if that is so much better than the plan
 TWICE, LEAST_MISFIT = 2.0, 0.02
 DOUBTFUL = 0.08  # straight on stands unless the ink tells against it by more
+BLOT_WIDTHS = 4.0
 WELL = 0.06  # misfit of a way that explains all of the ink
 AS_GOOD = 0.05  # misfit of a plan that needs no other to be compared with
 LEAST_SEEN = 4  # stations of the incoming leg, to know the pen by
@@ -177,7 +178,7 @@ def _is_mark(sketch: Sketch, way: Way, plan: Planned) -> bool:
     aside_mm = _aside_mm(_own(way), plan.stretches)
     if aside_mm >= longest_mm(sketch.view):
         return False
-    if way.misfit > WELL:
+    if way.misfit > (WELL if aside_mm < BLOT_WIDTHS * sketch.view.width_mm else CLEAR):
         return True
     marked = sketch.improved(sketch.plainest(way.pairs, bare=True), marks_only=True)
     headings = [math.atan2(*(tip - foot)[::-1]) for foot, tip in marked.strokes]
