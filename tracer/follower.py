@@ -57,7 +57,9 @@ class Followed:
     fault: LineFault | None = None
     loop_from: int | None = None  # the position at which the loop of a joined line begins: before it is the lead line
     guides: tuple[Guide, ...] = ()
-    doubts: tuple[tuple[int, int], ...] = ()  # where another way would have done as well: the junction, and the way's rank
+    doubts: tuple[
+        tuple[int, int], ...
+    ] = ()  # where another way would have done as well: the junction, and the way's rank
 
 
 Anchor = tuple[Array, float, float]  # a place from which on the line is clean, the heading there, and the travel

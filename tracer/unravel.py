@@ -8,14 +8,15 @@ Source: our own (see `pairing`).
 from __future__ import annotations
 
 import math
-from itertools import pairwise
+from dataclasses import replace
+from itertools import combinations, pairwise
 from typing import NamedTuple
 
 import numpy as np
 
 from tracer import pen
 from tracer.course import SPACING_MM, ahead_mm, along_leg, hermite, onto
-from tracer.leg import Leg, turn
+from tracer.leg import Leg, stroke_end, turn
 from tracer.marks import longest_mm
 from tracer.pairing import MOST_LEGS, NONE, VERTEX, Sketch, Way, ways
 from tracer.survey import goes_straight
@@ -31,14 +32,14 @@ LEAST_CLEAR, BETTER = (
 TWICE, LEAST_MISFIT = 2.0, 0.02
 DOUBTFUL = 0.08  # straight on stands unless the ink tells against it by more
 BLOT_WIDTHS = 4.0
-WELL = 0.06  # misfit of a way that explains all of the ink
+WELL_MM2 = 0.015  # area of wrong ink in a way that explains all of it
 AS_GOOD = 0.05  # misfit of a plan that needs no other to be compared with
 LEAST_SEEN = 4  # stations of the incoming leg, to know the pen by
 SAME_RAD = math.radians(20)
 NEAR_MM = 3.0
 LEAST_AHEAD_MM = 0.1
-MARK_AS_GOOD = 0.04  # misfit more of a stroke, which may end in a ball
-BACK_RAD, LONGEST_TIP_MM = math.radians(120), 10.0  # lines that run together to one tip
+MARK_AS_GOOD = 1.3
+BACK_RAD, LONGEST_TIP_MM = math.radians(130), 5.5  # lines that run together to one tip
 CROSSES_RAD = math.radians(25)
 KINK_RAD = math.radians(14)  # a smaller change of heading is run through
 
@@ -83,7 +84,7 @@ class Tangles:
         tangle = tangle_ahead(view, incoming)
         odd = len(tangle.legs) % 2 == 1  # one line ends on another: that is a junction, which the legs tell better
         if odd:
-            self._beside += [leg for leg in tangle.legs[1:] if abs(turn(incoming.heading_rad, leg.heading_rad)) > BACK_RAD]
+            self._beside += [leg for leg in tangle.legs[1:] if _runs_back(view, incoming, leg)]
         if not tangle.whole or not 2 <= len(tangle.legs) <= MOST_LEGS or (odd and plan is not None):
             return plan, False
         found, way, others = _unravelled(Sketch.of(view, tangle), incoming, trail, way_in, plan, rank)
@@ -103,18 +104,24 @@ class Tangles:
         """Numbers of the junctions where another way out would have done as well and leads to ink that has not been followed, and its rank."""
         return tuple((number, rank) for number, rank, leg in self._left if not trail.holds(leg, width_mm))
 
-    def _strand_left(
-        self, incoming: Leg, trail: Trail, place: Array, width_mm: float
-    ) -> tuple[Leg, Array, Leg] | None:
+    def _strand_left(self, incoming: Leg, trail: Trail, place: Array, width_mm: float) -> tuple[Leg, Array, Leg] | None:
         """The legs and the vertices between them of the strand that a line leads into; None if it leads into no tangle that is known."""
         for tangle, way in self._known:
             legs = [tangle.legs[0].turned_round(), *tangle.legs[1:]]
             for pair, vertices in zip(way.pairs, way.vertices, strict=True):
+                if 0 in pair:
+                    continue  # the one that was taken
                 for a, b, between in ((*pair, vertices), (*pair[::-1], vertices[::-1])):
                     first = legs[a].turned_round()
                     if _same(first, incoming, width_mm) and not trail.holds(legs[b], width_mm):
                         return first if ahead_mm(place, first) > LEAST_AHEAD_MM else incoming, between, legs[b]
         return None
+
+
+def _runs_back(view: View, incoming: Leg, leg: Leg) -> bool:
+    """Whether a leg is that of a line, no mark, that runs together with the incoming one, ahead."""
+    back = abs(turn(incoming.heading_rad, leg.heading_rad)) > BACK_RAD
+    return back and stroke_end(view, leg, longest_mm(view)) is None
 
 
 def _unravelled(
@@ -149,7 +156,9 @@ def _unravelled(
         leg, straight = others[min(rank, len(others)) - 1], False
     way = best[leg]
     as_good = [tangle.legs[k] for k in others if _as_good(best[k], way)] if _bends(sketch, way) else []
-    if straight or (plan is not None and _same(plan.leg, tangle.legs[leg], view.width_mm) and _stands(sketch, way, plan, drawn)):
+    if straight or (
+        plan is not None and _same(plan.leg, tangle.legs[leg], view.width_mm) and _stands(sketch, way, plan, drawn)
+    ):
         return plan, way, as_good
     return Planned(_stretches(way_in, incoming, _own(way), tangle.legs[leg]), tangle.legs[leg]), way, as_good
 
@@ -175,16 +184,20 @@ def _as_good(way: Way, other: Way) -> bool:
 
 def _is_mark(sketch: Sketch, way: Way, plan: Planned) -> bool:
     """Whether what a way draws beside the straight one may be a mark or a blot: no longer than a mark, and no stroke of the line explains it better."""
+    width_mm = sketch.view.width_mm
     aside_mm = _aside_mm(_own(way), plan.stretches)
     if aside_mm >= longest_mm(sketch.view):
         return False
-    if way.misfit > (WELL if aside_mm < BLOT_WIDTHS * sketch.view.width_mm else CLEAR):
+    if way.misfit > (WELL_MM2 / width_mm**2 if aside_mm < BLOT_WIDTHS * width_mm else CLEAR):
         return True
-    marked = sketch.improved(sketch.plainest(way.pairs, bare=True), marks_only=True)
-    headings = [math.atan2(*(tip - foot)[::-1]) for foot, tip in marked.strokes]
-    if len(headings) == 1 or (len(headings) == 2 and abs(turn(headings[0], headings[1] + math.pi)) < SAME_RAD):
-        return marked.misfit < way.misfit + MARK_AS_GOOD
-    if aside_mm < sketch.view.width_mm:
+    bare = Way(way.pairs, tuple(NONE for _ in way.pairs))
+    marked = sketch.improved(bare, marks_only=True)
+    tips = [*_own(way), *(stroke[1] for stroke in marked.strokes)]
+    ticks = [np.array(two) for two in combinations(tips, 2)] + list(marked.strokes[:1])
+    ticked = min((sketch.settled(replace(bare, strokes=(tick,))).misfit for tick in ticks), default=math.inf)
+    if ticked < MARK_AS_GOOD * way.misfit + LEAST_MISFIT:
+        return True
+    if aside_mm < width_mm:
         return marked.misfit < TWICE * way.misfit
     return marked.misfit < way.misfit and marked.cost < way.cost
 
