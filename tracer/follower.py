@@ -57,6 +57,7 @@ class Followed:
     fault: LineFault | None = None
     loop_from: int | None = None  # the position at which the loop of a joined line begins: before it is the lead line
     guides: tuple[Guide, ...] = ()
+    at_tip: bool = False  # it ended where another line, that has not been followed, ends too
     doubts: tuple[
         tuple[int, int], ...
     ] = ()  # where another way would have done as well: the junction, and the way's rank
@@ -75,11 +76,16 @@ class Follower:
         rate_hz: float,
         turns: tuple[int, ...] = (),
         sides: tuple[Side | None, ...] = (),
+        tips: bool = False,
     ) -> None:
-        """Put a head down at a stance. At the junctions numbered in `turns` it takes the second straightest leg, the third where a number stands twice; at the first, the second … it turns off
-        to its side in `sides`, where there is one, and comes back if the line that it takes ends."""
+        """Put a head down at a stance.
+
+        At the junctions numbered in `turns` it takes the second straightest leg, the third where a number stands twice. At the first, the second … it turns
+        off to its side in `sides`, where there is one, and comes back if the line that it takes ends; with `tips` also from where two lines end together.
+        """
         self.view, self.settings, self.stance = stance.view, settings, stance
-        self._junctions, self._turns, self._sides = Junctions(), turns, sides
+        self._junctions, self._turns, self._sides, self._tips = Junctions(), turns, sides, tips
+        self._at_tip = False
         self.carriage = Carriage(stance, settings, rate_hz)
         self._tangles = Tangles()
         self._away_mm = max(4 * self.carriage.tuning.lead_mm, 3.0 * self.view.width_mm)
@@ -270,7 +276,8 @@ class Follower:
         """Run to an end of the line; back from there, if it is a guide line's, or a tip in which two lines have run together."""
         way, along = course.onto(*self.carriage.stands(), incoming, end_mm)
         self.carriage.run([np.vstack([way, course.along_leg(incoming, along, end_mm)])])
-        to_tip = self._tangles.goes_back(self.carriage.stands()[0], self.carriage.trail, self.view.width_mm)
+        self._at_tip = self._tangles.goes_back(self.carriage.stands()[0], self.carriage.trail, self.view.width_mm)
+        to_tip = self._at_tip and self._tips
         if joined and not to_tip:
             return self._done("joined")
         if not self._junctions.turn_round(self.carriage.count) and not to_tip:
@@ -341,6 +348,7 @@ class Follower:
             tuple(self._junctions.places_mm),
             fault,
             guides=self._junctions.guides(positions),
+            at_tip=self._at_tip,
             doubts=self._tangles.doubts(self.carriage.trail, self.view.width_mm),
         )
         return done if ending != "joined" else _without_repeat(done)

@@ -178,14 +178,21 @@ def meet(incoming: Leg, outgoing: Leg) -> Meeting | None:
 def reach_of_ink(view: View, incoming: Leg, farthest_mm: float) -> float | None:
     """How far the ink goes on from the incoming leg's end along its line, mm; None if farther than asked."""
     step = 0.35 * view.pitch_mm
+    places = incoming.at(np.arange(int(farthest_mm / step)) * step)
+    steps = _steps_of_ink(view.cells, view.pitch_mm, places, view.level)
+    return max(0.0, steps * step) if steps < len(places) else None
+
+
+@njit(cache=True)
+def _steps_of_ink(cells, pitch_mm, places, level):  # type: ignore[no-untyped-def]
+    """How many of some places (n, 2) are on ink, one after the other, and the share of a step to where it ends; n if all are."""
     before = 1.0
-    for k in range(int(farthest_mm / step)):
-        place = incoming.at(k * step)
-        now = photocell.darkness_at(view.cells, view.pitch_mm, place[0], place[1])
-        if now < view.level:
-            return max(0.0, (k - (view.level - now) / max(before - now, 1e-9)) * step)
+    for k in range(len(places)):
+        now = photocell.darkness_at(cells, pitch_mm, places[k, 0], places[k, 1])
+        if now < level:
+            return k - (level - now) / max(before - now, 1e-9)
         before = now
-    return None
+    return float(len(places))
 
 
 def stroke_end(view: View, leg: Leg, farthest_mm: float) -> float | None:

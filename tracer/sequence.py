@@ -159,10 +159,11 @@ class _Attempts:
     sides: tuple[Side | None, ...]
     longest_mm: float
     told: Told | None
+    tips: bool = False  # go back from a tip in which two lines end
 
     def run(self, stance: Stance, turns: tuple[int, ...] = ()) -> Followed:
         """Follow from a stance."""
-        follower = Follower(stance, self.settings, MOTION_RATE_HZ, turns, self.sides)
+        follower = Follower(stance, self.settings, MOTION_RATE_HZ, turns, self.sides, self.tips)
         return follower.follow(self.longest_mm, self.told)
 
     def all_of_it(self, stance: Stance) -> Followed:
@@ -170,6 +171,11 @@ class _Attempts:
         run = self.run(stance)
         if stance.at_end or (run.ending == "closed" and not run.junctions_mm):
             return self._taken_in(stance, run)
+        if run.at_tip:
+            both = replace(self, tips=True)
+            there_and_back = both.run(stance)
+            if there_and_back.ending == "closed":
+                return both._taken_in(stance, there_and_back)
         other = self.run(_about(stance))
         if run.ending == "closed":
             if other.ending == "closed" and other.travel_mm < SHORTER * run.travel_mm:

@@ -31,7 +31,10 @@ LEAST_CLEAR, BETTER = (
 )  # a long tangle is explained less well: up to this, if that is so much better than the plan
 TWICE, LEAST_MISFIT = 2.0, 0.02
 DOUBTFUL = 0.08  # straight on stands unless the ink tells against it by more
-BLOT_WIDTHS = 4.0
+BLOT_VERTICES, BLOT_WIDTHS = (
+    4.5,
+    4.0,
+)  # a way with more vertices that reaches no farther, and leaves ink, is a scribble over a blot
 WELL_MM2 = 0.015  # area of wrong ink in a way that explains all of it
 AS_GOOD = 0.05  # misfit of a plan that needs no other to be compared with
 LEAST_SEEN = 4  # stations of the incoming leg, to know the pen by
@@ -188,7 +191,8 @@ def _is_mark(sketch: Sketch, way: Way, plan: Planned) -> bool:
     aside_mm = _aside_mm(_own(way), plan.stretches)
     if aside_mm >= longest_mm(sketch.view):
         return False
-    if way.misfit > (WELL_MM2 / width_mm**2 if aside_mm < BLOT_WIDTHS * width_mm else CLEAR):
+    scribble = way.misfit > WELL_MM2 / width_mm**2 and way.cost - way.misfit > BLOT_VERTICES * VERTEX
+    if scribble and aside_mm < BLOT_WIDTHS * width_mm:
         return True
     bare = Way(way.pairs, tuple(NONE for _ in way.pairs))
     marked = sketch.improved(bare, marks_only=True)
