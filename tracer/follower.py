@@ -139,7 +139,7 @@ class Follower:
         straight = goes_straight(incoming, outgoing)
         if not straight or self._far(incoming, outgoing):
             ride = ride_past(self.view, incoming)
-            if ride is not None and not (straight and ride.back is None):
+            if ride is not None and not (straight and ride.back is None) and not (choices and self._goes_back(ride.seen)):
                 ridden = self._ride(incoming, ride)
                 if ridden is not None:
                     return ridden, choices
@@ -149,9 +149,17 @@ class Follower:
                 return planned, choices
             choices = 0  # that leg is another line's
         outgoing = straight_on(self.view, incoming, max(self.settings.gap_mm, LEAST_GAP_PX * self.view.pitch_mm))
+        if outgoing is not None and choices and self._goes_back(outgoing.seen):
+            return None, choices
         if outgoing is None and self.settings.recatch_mm > 0:
             outgoing = caught_again(self.view, incoming, self.carriage.trail, self.settings.recatch_mm)
         return None if outgoing is None else self._course(incoming, outgoing, None), choices
+
+    def _goes_back(self, seen: Array) -> bool:
+        """Whether what was felt from a knot on, from a width behind it, has been followed already, and the other way."""
+        beyond = seen[min(round(self.view.width_mm / self.view.step_mm), len(seen) - 4) :]
+        leg, trail = leg_of(beyond, False, self.view.leg_mm), self.carriage.trail
+        return trail.holds(leg, self.view.width_mm) and trail.comes_back(leg)
 
     def _far(self, incoming: Leg, outgoing: Leg | None) -> bool:
         """Whether the ink runs beside the line for so long that it may be the line's own way back."""
@@ -254,6 +262,8 @@ class Follower:
     def _at_end(self, incoming: Leg, choices: int) -> Followed | None:
         """Run to the end of the line, or to where it meets what was followed before."""
         end = end_of(self.view, incoming)
+        if end is None and choices:
+            end = 0.0  # all that leads on has been followed
         if end is None:
             return self._lost("no clean line leads on through the ink ahead")
         return self._end(incoming, end, joined=choices > 0)

@@ -197,10 +197,14 @@ def stroke_end(view: View, leg: Leg, farthest_mm: float) -> float | None:
 
 
 def is_tip(view: View, place: Array) -> bool:
-    """Whether a place half a width within the end of ink is the tip of a single stroke; a speck beside it is none."""
-    radius = max(1.2 * view.width_mm, 5 * view.pitch_mm)
-    arcs = photocell.ring(view.cells, view.pitch_mm, place, radius, view.level)
-    return int(np.sum((arcs[:, 1] - arcs[:, 0]) * radius > SPECK_WIDTHS * view.width_mm)) == 1
+    """Whether a place half a width within the end of ink is the tip of a single stroke."""
+    return lines_on(view, place, max(1.2 * view.width_mm, 5 * view.pitch_mm)) == 1
+
+
+def lines_on(view: View, centre: Array, radius_mm: float) -> int:
+    """How many strokes a ring of cells sees about a place; specks are none."""
+    arcs = photocell.ring(view.cells, view.pitch_mm, centre, radius_mm, view.level)
+    return int(np.sum((arcs[:, 1] - arcs[:, 0]) * radius_mm > SPECK_WIDTHS * view.width_mm))
 
 
 def end_of(view: View, incoming: Leg) -> float | None:
