@@ -51,11 +51,12 @@ class Mark:
 
 @dataclass(frozen=True, slots=True)
 class _Stroke:
-    """Ink beside the line, felt outward: its middles (n, 2) as mm along and away from the way, whether it touches the line, whether it ends, and how far
-    beyond the line's edge."""
+    """Ink beside the line, felt outward: its middles (n, 2) as mm along and away from the way, and on the sheet, whether it touches the line, whether it
+    ends, and how far beyond the line's edge."""
 
     side: int
     middles: Array
+    places: Array
     touches: bool
     ends: bool
     reach_mm: float
@@ -142,7 +143,7 @@ def _ticks(view: View, way: Way) -> list[float]:
             continue  # it is a line that crosses and goes on on the other side
         if not way.goes_straight(foot, max(1.2 * view.width_mm, 0.5), 0.25 * view.width_mm):
             continue  # that is a corner
-        if _is_way(view, way, stroke):
+        if _is_way(view, way, stroke) or (not stroke.touches and any(_is_same(view, stroke, o) for o in strokes)):
             continue
         across = [o for o in opposite if o.ends and o.straight]
         if not across and stroke.touches and stroke.reach_mm > longest_mm(view, across=False):
@@ -153,15 +154,19 @@ def _ticks(view: View, way: Way) -> list[float]:
 
 def _is_way(view: View, way: Way, stroke: _Stroke) -> bool:
     """Whether a stroke is a piece of the line itself, which comes by here again."""
-    i = int(np.clip(round(stroke.foot_mm / way.step_mm), 0, len(way.places) - 1))
-    t = way.along[i]
-    n = stroke.side * np.array([-t[1], t[0]])
-    away = stroke.middles - [stroke.foot_mm, 0.0]
-    places = way.places[i] + away[:, :1] * t + away[:, 1:] * n
     others = way.places[np.abs(way.at_mm - stroke.foot_mm) > 2 * view.width_mm]
-    if not len(others):
-        return False
-    near = [np.hypot(*(others - place).T).min() < 0.5 * view.width_mm for place in places[:: max(1, len(places) // 8)]]
+    return _mostly_on(view, stroke, others)
+
+
+def _is_same(view: View, stroke: _Stroke, other: _Stroke) -> bool:
+    """Whether a stroke beside the line is one that touches the line elsewhere."""
+    return other.touches and abs(other.foot_mm - stroke.foot_mm) > view.width_mm and _mostly_on(view, stroke, other.places)
+
+
+def _mostly_on(view: View, stroke: _Stroke, others: Array) -> bool:
+    """Whether a stroke lies on other places (n, 2) for the most part."""
+    places = stroke.places[:: max(1, len(stroke.places) // 8)]
+    near = [len(others) > 0 and np.hypot(*(others - place).T).min() < 0.5 * view.width_mm for place in places]
     return bool(np.mean(near) > 0.5)
 
 
@@ -209,23 +214,30 @@ def _felt(view: View, way: Way, side: int, i: int, away_mm: float) -> _Stroke | 
     n = side * np.array([-t[1], t[0]])
     u, v = seen[np.argmax(seen[:, 1]), :2]
     ends = reach < longest and is_tip(view, way.places[i] + u * t + (v - 0.5 * view.width_mm) * n)
-    return _Stroke(side, seen[inner, :2] + [way.at_mm[i], 0.0], touches, ends, reach)
+    places = way.places[i] + seen[inner, :1] * t + seen[inner, 1:2] * n
+    return _Stroke(side, seen[inner, :2] + [way.at_mm[i], 0.0], places, touches, ends, reach)
 
 
 @njit(cache=True)
 def _stroke_at(cells, pitch_mm, place, along, side, away_mm, farthest_mm, width_mm, level):  # type: ignore[no-untyped-def]
-    """Middles (along, away) and widths of a stroke, (n, 3) mm, felt inward and outward from a place beside the way until there is no ink."""
+    """Middles (along, away) and widths of a stroke, (n, 3) mm, felt inward and outward from a place beside the way until there is no ink, specks apart."""
     step = 0.5 * pitch_mm
+    speck_mm = max(0.16, 2.5 * pitch_mm)
     seen = np.empty((2 * int(farthest_mm / step) + 4, 3))
     count = 0
     for way in (-1, 1):
         u, v = 0.0, away_mm if way < 0 else away_mm + step
         if way > 0 and count:
             u = seen[0, 0]
+        last = v
         while 0.4 * width_mm < v <= farthest_mm:
             right, left = _across(cells, pitch_mm, place, along, side, u, v, 1.2 * width_mm, level)
             if math.isnan(left - right):
-                break
+                if abs(v - last) > speck_mm:
+                    break
+                v += way * step
+                continue
+            last = v
             u = 0.5 * (left + right)
             seen[count, 0], seen[count, 1], seen[count, 2] = u, v, left - right
             count += 1
