@@ -32,7 +32,7 @@ from tracer.loop import loop_in
 from tracer.riding import Ride, ride_past, to_vertex
 from tracer.settings import Settings
 from tracer.stance import Stance
-from tracer.survey import Side, Way, caught_again, goes_straight, straight_on, survey
+from tracer.survey import SIDES, Side, Way, caught_again, goes_straight, straight_on, survey
 from tracer.unravel import Planned, unravel
 from tracer.view import Array, View
 
@@ -126,7 +126,7 @@ class Follower:
         way, asked = self._survey(incoming)
         dot = None if goes_straight(incoming, way[0]) else dot_at_end(self.view, incoming)
         if dot is not None:
-            return self._end(incoming, dot)
+            return self._end(_aimed_at(incoming, dot), math.dist(incoming.end_mm, dot))
         plan, choices = self._plan(incoming, way)
         if not asked:
             rank = int(self._junctions.next(self.carriage.travel_mm) in self._turns)
@@ -190,13 +190,14 @@ class Follower:
     def _survey(self, incoming: Leg) -> tuple[Way, bool]:
         """The way out of a knot, as the operator has it at a junction, and whether it is the operator's."""
         trail, went = self.carriage.trail, self.carriage.count
-        if self._junctions.is_back(incoming.end_mm, 2 * self.view.width_mm + BACK_MM, went):
+        if self._comes_back(incoming):
+            self._junctions.is_back(went)
             return survey(self.view, incoming, trail), True
         number = self._junctions.next(self.carriage.travel_mm)
         side = self._sides[number] if number < len(self._sides) else None
         found = outgoing, legs_mm, choices = survey(self.view, incoming, trail, int(number in self._turns), side)
         if choices > 1:
-            place = incoming.end_mm if legs_mm is None else incoming.at(legs_mm[0])
+            place = self._place_of(incoming, found)
             self._junctions.come_to(place, self.carriage.travel_mm)
             if side is not None and not goes_straight(incoming, outgoing) and self._goes_on(incoming):
                 self._junctions.take(place, went)
@@ -209,13 +210,24 @@ class Follower:
     def _turn_off(self, seen: Array, here: int) -> int | None:
         """The station before ink beside a clean line, if the head is to leave the line there; None to go by."""
         station = here + round(self.carriage.tuning.guard_lead_mm / self.view.step_mm) - 3
-        number = self._junctions.next(self.carriage.travel_mm)
-        if number in self._turns or any(self._sides[number : number + 1]):
-            return station
         incoming = leg_of(seen[: station + 1], True, self.view.leg_mm)
-        if survey(self.view, incoming, self.carriage.trail)[2] > 1:
-            self._junctions.come_to(incoming.end_mm, self.carriage.travel_mm)
+        number = self._junctions.next(self.carriage.travel_mm)
+        if number in self._turns or any(self._sides[number : number + 1]) or self._comes_back(incoming):
+            return station
+        found = survey(self.view, incoming, self.carriage.trail)
+        if found[2] > 1:
+            self._junctions.come_to(self._place_of(incoming, found), self.carriage.travel_mm)
         return None
+
+    def _comes_back(self, incoming: Leg) -> bool:
+        """Whether the head is back at the junction at which it took a guide line."""
+        return self._junctions.comes_back(incoming.end_mm, 2 * self.view.width_mm + BACK_MM)
+
+    def _place_of(self, incoming: Leg, found: Way) -> Array:
+        """Where a junction is: where the way out, or else a line that turns off from it, meets the way in."""
+        ways = [found, *(survey(self.view, incoming, self.carriage.trail, side=side) for side in SIDES)]
+        met = [legs_mm for leg, legs_mm, _ in ways if legs_mm is not None and not goes_straight(incoming, leg)]
+        return incoming.at(met[0][0]) if met else incoming.end_mm
 
     def _course(self, incoming: Leg, outgoing: Leg, legs_mm: Meeting | None) -> Planned:
         """Stretches from where the head is to the outgoing leg's clean end, and that leg."""
@@ -357,6 +369,12 @@ class Follower:
             heading_rad=heading,
         )
         return self._done("lost", fault)
+
+
+def _aimed_at(incoming: Leg, dot: Array) -> Leg:
+    """The leg from its clean end straight to a dot."""
+    way = dot - incoming.end_mm
+    return replace(incoming, heading_rad=math.atan2(way[1], way[0]), bend_per_mm=0.0)
 
 
 def _without_repeat(run: Followed) -> Followed:

@@ -30,13 +30,12 @@ from tracer.operator import Direction, Operator
 from tracer.program import Trace
 from tracer.settings import Settings
 from tracer.stance import Stance, ends_of, put_down, turned_round
-from tracer.survey import Side
+from tracer.survey import SIDES, Side
 
 SHORTER = 0.95  # the other way round is the line itself if it is shorter than this: straight on has led elsewhere
 TURNS = 12  # junctions at which another turn is tried
 TRIED_MM = 6000.0  # travel in all that is spent on other turns
 OVERRUN_MM = 3.0  # a stub as short, straight on from a closed line, is where the pen set out, and not another's line
-SIDES: tuple[Side, Side] = ("left", "right")
 
 Told = Callable[[float], None]
 
