@@ -76,4 +76,4 @@ def _disc(view: View, place: Array) -> tuple[Array, Array] | None:
         if not LEAST_WIDTHS * view.width_mm < usual < math.inf or even.mean() < 0.6:
             return None
         place, _, _ = circle_through(place + reach[even, None] * WAYS[even])
-    return place, ANGLES[~even]
+    return place, ANGLES[~even & ~(reach < usual)]  # a shorter spoke ends at a speck
