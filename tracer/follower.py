@@ -139,7 +139,11 @@ class Follower:
         straight = goes_straight(incoming, outgoing)
         if not straight or self._far(incoming, outgoing):
             ride = ride_past(self.view, incoming)
-            if ride is not None and not (straight and ride.back is None) and not (choices and self._goes_back(ride.seen)):
+            if (
+                ride is not None
+                and not (straight and ride.back is None)
+                and not (choices and self._goes_back(ride.seen))
+            ):
                 ridden = self._ride(incoming, ride)
                 if ridden is not None:
                     return ridden, choices
