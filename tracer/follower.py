@@ -199,7 +199,7 @@ class Follower:
             return survey(self.view, incoming, trail), True
         number = self._junctions.next(self.carriage.travel_mm)
         side = self._sides[number] if number < len(self._sides) else None
-        found = outgoing, legs_mm, choices = survey(self.view, incoming, trail, int(number in self._turns), side)
+        found = outgoing, _, choices = survey(self.view, incoming, trail, int(number in self._turns), side)
         if choices > 1:
             place = self._place_of(incoming, found)
             self._junctions.come_to(place, self.carriage.travel_mm)

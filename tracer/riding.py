@@ -23,7 +23,7 @@ from numba import njit
 
 from tracer.course import rounding
 from tracer.leg import Leg, Meeting, end_of, leg_of, meet, turn
-from tracer.photocell import darkness_at, onward
+from tracer.photocell import darkness_at, edges, onward
 from tracer.view import Array, View
 
 FARTHEST_MM = 40.0
@@ -70,9 +70,13 @@ def to_vertex(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> tup
 
 
 def _passes(view: View, leg: Leg, vertex_mm: float, deflection: float) -> bool:
-    """Whether ink goes on along a leg's line beyond the vertex of a corner, to where the other leg's ink does not reach."""
+    """Whether a line goes on along a leg's line beyond the vertex of a corner, to where the other leg's ink does not reach."""
     clear_mm = view.width_mm * max(1.5, 1.2 / max(abs(math.sin(deflection)), 0.1))
-    return clear_mm < 4 * view.width_mm and all(view.dark(place) for place in leg.at(vertex_mm + clear_mm * PASSED))
+    if clear_mm > 4 * view.width_mm or not all(view.dark(place) for place in leg.at(vertex_mm + clear_mm * PASSED)):
+        return False
+    (x, y), heading = leg.at(vertex_mm + clear_mm), leg.heading_at(vertex_mm + clear_mm)
+    right, left = edges(view.cells, view.pitch_mm, x, y, heading, 2 * view.width_mm, view.level)
+    return abs(left - right - leg.width_mm) < 0.2 * leg.width_mm and abs(left + right) < 0.5 * leg.width_mm
 
 
 def _within_ink(view: View, arriving: Leg, leaving: Leg, met: Meeting) -> Meeting:
