@@ -159,7 +159,8 @@ def _lead(view: View, centre: Array, reach_mm: float) -> Leg | None:
                 continue
             leg = leg_of(seen, False, view.leg_mm)
             back = view.feel(leg.end_mm, leg.heading_rad + math.pi, reach_mm + view.width_mm)
-            return leg if len(back) < 4 else leg_of(np.vstack([back[:0:-1], seen]), False, view.leg_mm)
+            back = back[1 : max(1, len(back) - round(view.width_mm / view.step_mm))]  # well clear of the other arms
+            return leg_of(np.vstack([back[::-1], seen]), False, view.leg_mm)
     return None
 
 

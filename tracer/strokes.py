@@ -121,7 +121,7 @@ def _soiled(cells, pitch_mm, place, along, side, middles, from_mm, to_mm, level)
 
 @njit(cache=True)
 def _goes_on(cells, pitch_mm, place, along, side, middles, beyond_mm, width_mm, level):  # type: ignore[no-untyped-def]
-    """Whether a stroke goes on in its own line after a gap, for a width or more."""
+    """Whether a stroke goes on in its own line after a gap, for one and a half widths or more."""
     last = np.argmax(middles[:, 1])
     first = np.argmin(middles[:, 1])
     u, v = middles[last, 0], middles[last, 1]
@@ -130,9 +130,9 @@ def _goes_on(cells, pitch_mm, place, along, side, middles, beyond_mm, width_mm, 
     for k in range(1, int(beyond_mm / step)):
         there = u + slant * k * step
         right, left = _across(cells, pitch_mm, place, along, side, there, v + k * step, 1.2 * width_mm, level)
-        like = left - right < 1.6 * width_mm and abs(0.5 * (left + right) - there) < 0.3 * width_mm
+        like = left - right < 1.6 * width_mm and abs(0.5 * (left + right) - there) < 0.25 * width_mm
         run = run + step if like else 0.0
-        if run > width_mm:
+        if run > 1.5 * width_mm:
             return True
     return False
 
