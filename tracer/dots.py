@@ -1,6 +1,6 @@
 """Dots: rounds of ink on the line, wider than it, that mark a place to drill.
 
-Signals: places near the line's middle in; the dot's centre out, or how far ahead of a leg a dot ends the line (mm).
+Signals: places near the line's middle in; the dot's centre out, or that of the dot at which a line ends.
 
     ───●───      ───●         spokes from its middle end alike all round, but for those along the line
 
@@ -37,8 +37,8 @@ def disc(view: View, place: Array, along: Array) -> Array | None:
     return found[0] if not on_line or max(on_line) < ALONG else None
 
 
-def dot_at_end(view: View, incoming: Leg) -> float | None:
-    """How far beyond a leg's clean end the centre of a dot is at which the line ends, mm; None if there is none."""
+def dot_at_end(view: View, incoming: Leg) -> Array | None:
+    """The centre of a dot beyond a leg's clean end at which the line ends; None if there is none."""
     for along in np.arange(0.25, LARGEST_WIDTHS, 0.25) * view.width_mm:
         place = incoming.at(along)
         if not view.dark(place):
@@ -49,7 +49,7 @@ def dot_at_end(view: View, incoming: Leg) -> float | None:
         centre, arms = found
         heading = incoming.heading_at(float(along))
         if all(abs(turn(heading + math.pi, angle)) < ALONG for angle in arms):
-            return float((centre - incoming.end_mm) @ np.array([math.cos(heading), math.sin(heading)]))
+            return centre
     return None
 
 
@@ -76,4 +76,4 @@ def _disc(view: View, place: Array) -> tuple[Array, Array] | None:
         if not LEAST_WIDTHS * view.width_mm < usual < math.inf or even.mean() < 0.6:
             return None
         place, _, _ = circle_through(place + reach[even, None] * WAYS[even])
-    return place, ANGLES[~even]
+    return place, ANGLES[~even & ~(reach < usual)]  # a shorter spoke ends at a speck

@@ -32,7 +32,7 @@ from tracer.loop import loop_in
 from tracer.riding import Ride, ride_past, to_vertex
 from tracer.settings import Settings
 from tracer.stance import Stance
-from tracer.survey import Side, Way, caught_again, goes_straight, straight_on, survey
+from tracer.survey import SIDES, Side, Way, caught_again, goes_straight, straight_on, survey
 from tracer.unravel import Planned, Tangles
 from tracer.view import Array, View
 
@@ -136,7 +136,7 @@ class Follower:
         way, asked = self._survey(incoming)
         dot = None if goes_straight(incoming, way[0]) else dot_at_end(self.view, incoming)
         if dot is not None:
-            return self._end(incoming, dot)
+            return self._end(_aimed_at(incoming, dot), math.dist(incoming.end_mm, dot))
         plan, choices = self._plan(incoming, way)
         explained = False
         if not asked:
@@ -145,14 +145,17 @@ class Follower:
                 self.view, incoming, self.carriage.trail, way_in, plan, number, self._turns.count(number)
             )
         if not explained:
-            plan = self._ridden(incoming, way[0]) or plan
+            plan = self._ridden(incoming, way) or plan
         return self._at_end(incoming, choices) if plan is None else self._pass(*plan)
 
-    def _ridden(self, incoming: Leg, outgoing: Leg | None) -> Planned | None:
+    def _ridden(self, incoming: Leg, way: Way) -> Planned | None:
         """The way past ink that runs beside the line, felt along an edge; None if the line goes on straight before, or if there is no such way."""
+        outgoing, _, choices = way
         straight = goes_straight(incoming, outgoing)
         ride = None if straight and not self._far(incoming, outgoing) else ride_past(self.view, incoming)
-        return None if ride is None or (straight and ride.back is None) else self._ride(incoming, ride)
+        if ride is None or (straight and ride.back is None) or (choices and self._goes_back(ride.seen)):
+            return None
+        return self._ride(incoming, ride)
 
     def _plan(self, incoming: Leg, way: Way) -> tuple[Planned | None, int]:
         """The way through a knot that the legs alone tell, and how many there were to choose from."""
@@ -163,9 +166,17 @@ class Follower:
                 return planned, choices
             choices = 0  # that leg is another line's
         outgoing = straight_on(self.view, incoming, max(self.settings.gap_mm, LEAST_GAP_PX * self.view.pitch_mm))
+        if outgoing is not None and choices and self._goes_back(outgoing.seen):
+            return None, choices
         if outgoing is None and self.settings.recatch_mm > 0:
             outgoing = caught_again(self.view, incoming, self.carriage.trail, self.settings.recatch_mm)
         return None if outgoing is None else self._course(incoming, outgoing, None), choices
+
+    def _goes_back(self, seen: Array) -> bool:
+        """Whether what was felt from a knot on, from a width behind it, has been followed already, and the other way."""
+        beyond = seen[min(round(self.view.width_mm / self.view.step_mm), len(seen) - 4) :]
+        leg, trail = leg_of(beyond, False, self.view.leg_mm), self.carriage.trail
+        return trail.holds(leg, self.view.width_mm) and trail.comes_back(leg)
 
     def _far(self, incoming: Leg, outgoing: Leg | None) -> bool:
         """Whether the ink runs beside the line for so long that it may be the line's own way back."""
@@ -196,13 +207,14 @@ class Follower:
     def _survey(self, incoming: Leg) -> tuple[Way, bool]:
         """The way out of a knot, as the operator has it at a junction, and whether it is the operator's."""
         trail, went = self.carriage.trail, self.carriage.count
-        if self._junctions.is_back(incoming.end_mm, 2 * self.view.width_mm + BACK_MM, went):
+        if self._comes_back(incoming):
+            self._junctions.is_back(went)
             return survey(self.view, incoming, trail), True
         number = self._junctions.next(self.carriage.travel_mm)
         side = self._sides[number] if number < len(self._sides) else None
-        found = outgoing, legs_mm, choices = survey(self.view, incoming, trail, self._turns.count(number), side)
+        found = outgoing, _, choices = survey(self.view, incoming, trail, self._turns.count(number), side)
         if choices > 1:
-            place = incoming.end_mm if legs_mm is None else incoming.at(legs_mm[0])
+            place = self._place_of(incoming, found)
             self._junctions.come_to(place, self.carriage.travel_mm)
             if side is not None and not goes_straight(incoming, outgoing) and self._goes_on(incoming):
                 self._junctions.take(place, went)
@@ -215,13 +227,24 @@ class Follower:
     def _turn_off(self, seen: Array, here: int) -> int | None:
         """The station before ink beside a clean line, if the head is to leave the line there; None to go by."""
         station = here + round(self.carriage.tuning.guard_lead_mm / self.view.step_mm) - 3
-        number = self._junctions.next(self.carriage.travel_mm)
-        if number in self._turns or any(self._sides[number : number + 1]):
-            return station
         incoming = leg_of(seen[: station + 1], True, self.view.leg_mm)
-        if survey(self.view, incoming, self.carriage.trail)[2] > 1:
-            self._junctions.come_to(incoming.end_mm, self.carriage.travel_mm)
+        number = self._junctions.next(self.carriage.travel_mm)
+        if number in self._turns or any(self._sides[number : number + 1]) or self._comes_back(incoming):
+            return station
+        found = survey(self.view, incoming, self.carriage.trail)
+        if found[2] > 1:
+            self._junctions.come_to(self._place_of(incoming, found), self.carriage.travel_mm)
         return None
+
+    def _comes_back(self, incoming: Leg) -> bool:
+        """Whether the head is back at the junction at which it took a guide line."""
+        return self._junctions.comes_back(incoming.end_mm, 2 * self.view.width_mm + BACK_MM)
+
+    def _place_of(self, incoming: Leg, found: Way) -> Array:
+        """Where a junction is: where the way out, or else a line that turns off from it, meets the way in."""
+        ways = [found, *(survey(self.view, incoming, self.carriage.trail, side=side) for side in SIDES)]
+        met = [legs_mm for leg, legs_mm, _ in ways if legs_mm is not None and not goes_straight(incoming, leg)]
+        return incoming.at(met[0][0]) if met else incoming.end_mm
 
     def _course(self, incoming: Leg, outgoing: Leg, legs_mm: Meeting | None) -> Planned:
         """Stretches from where the head is to the outgoing leg's clean end, and that leg."""
@@ -268,6 +291,8 @@ class Follower:
     def _at_end(self, incoming: Leg, choices: int) -> Followed | None:
         """Run to the end of the line, or to where it meets what was followed before."""
         end = end_of(self.view, incoming)
+        if end is None and choices:
+            end = 0.0  # all that leads on has been followed
         if end is None:
             return self._lost("no clean line leads on through the ink ahead")
         return self._end(incoming, end, joined=choices > 0)
@@ -365,6 +390,12 @@ class Follower:
             heading_rad=heading,
         )
         return self._done("lost", fault)
+
+
+def _aimed_at(incoming: Leg, dot: Array) -> Leg:
+    """The leg from its clean end straight to a dot."""
+    way = dot - incoming.end_mm
+    return replace(incoming, heading_rad=math.atan2(way[1], way[0]), bend_per_mm=0.0)
 
 
 def _without_repeat(run: Followed) -> Followed:

@@ -69,13 +69,18 @@ class Junctions:
             out[-1].tip = positions - 1
         return bool(out)
 
-    def is_back(self, place_mm: Array, within_mm: float, positions: int) -> bool:
+    def comes_back(self, place_mm: Array, within_mm: float) -> bool:
         """Whether the head comes back on a guide line to where it took it."""
-        for guide in self._taken:
-            if guide.tip is not None and guide.back is None and np.hypot(*(guide.place_mm - place_mm)) < within_mm:
-                guide.back = positions
-                return True
-        return False
+        return any(np.hypot(*(guide.place_mm - place_mm)) < within_mm for guide in self._out_on())
+
+    def is_back(self, positions: int) -> None:
+        """The head is back from the guide line that it is on."""
+        for guide in self._out_on():
+            guide.back = positions
+
+    def _out_on(self) -> list[_Taken]:
+        """The guide line from whose end the head is on its way back, if it is."""
+        return [guide for guide in self._taken if guide.tip is not None and guide.back is None]
 
     def guides(self, positions: Array) -> tuple[Guide, ...]:
         """The guide lines that the head has come back from, by positions (n, 2) mm."""

@@ -22,6 +22,7 @@ Meeting = tuple[float, float]  # how far two legs meet beyond the one's clean en
 
 FARTHEST_MM = 10.0  # legs that meet further away do not meet
 
+SPOKE = np.linspace(0.2, 1.0, 17)
 SPECK_WIDTHS = 0.4  # ink narrower than this is no stroke
 
 
@@ -178,7 +179,7 @@ def meet(incoming: Leg, outgoing: Leg) -> Meeting | None:
 def reach_of_ink(view: View, incoming: Leg, farthest_mm: float) -> float | None:
     """How far the ink goes on from the incoming leg's end along its line, mm; None if farther than asked."""
     step = 0.35 * view.pitch_mm
-    places = incoming.at(np.arange(int(farthest_mm / step)) * step)
+    places = incoming.at(np.asarray(np.arange(int(farthest_mm / step)) * step, float))
     steps = _steps_of_ink(view.cells, view.pitch_mm, places, view.level)
     return max(0.0, steps * step) if steps < len(places) else None
 
@@ -204,10 +205,26 @@ def stroke_end(view: View, leg: Leg, farthest_mm: float) -> float | None:
 
 
 def is_tip(view: View, place: Array) -> bool:
-    """Whether a place half a width within the end of ink is the tip of a single stroke; a speck beside it is none."""
-    radius = max(1.2 * view.width_mm, 5 * view.pitch_mm)
-    arcs = photocell.ring(view.cells, view.pitch_mm, place, radius, view.level)
-    return int(np.sum((arcs[:, 1] - arcs[:, 0]) * radius > SPECK_WIDTHS * view.width_mm)) == 1
+    """Whether a place half a width within the end of ink is the tip of a single stroke; what it does not touch is no matter."""
+    return lines_from(view, place, max(1.2 * view.width_mm, 5 * view.pitch_mm)) == 1
+
+
+def lines_from(view: View, centre: Array, radius_mm: float) -> int:
+    """How many strokes leave a place by ink, of those that a ring of cells sees about it; specks are none."""
+    arcs = _strokes(view, centre, radius_mm)
+    ways = np.column_stack([np.cos(arcs.mean(axis=1)), np.sin(arcs.mean(axis=1))])
+    return sum(all(view.dark(centre + share * radius_mm * way) for share in SPOKE) for way in ways)
+
+
+def lines_on(view: View, centre: Array, radius_mm: float) -> int:
+    """How many strokes a ring of cells sees about a place; specks are none."""
+    return len(_strokes(view, centre, radius_mm))
+
+
+def _strokes(view: View, centre: Array, radius_mm: float) -> Array:
+    """The arcs that a ring sees which are no specks, (n, 2) rad."""
+    arcs = photocell.ring(view.cells, view.pitch_mm, centre, radius_mm, view.level)
+    return np.asarray(arcs[(arcs[:, 1] - arcs[:, 0]) * radius_mm > SPECK_WIDTHS * view.width_mm])
 
 
 def end_of(view: View, incoming: Leg) -> float | None:

@@ -30,6 +30,8 @@ LEAST_LENGTH_MM = 2.0
 LEAST_LENGTH_PX = 12
 DEEPEST_PX = 200  # a line of 6 mm at 1200 dpi is 142 deep; the middle of a darker patch is not that of a line
 TILE_PX = 2048
+LESS = 0.85  # ink about an end, of what is usual: half, and what the middle place lies within the end
+MOST_ENDS = 100
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,15 +50,12 @@ class Stroke:
 
     def ends_mm(self) -> Array:
         """Places that may be ends of the line, most likely first; (n, 2) mm, none closer together than two widths."""
-        usual = np.median(self.filled)
         order = np.argsort(self.filled)
-        order = order[self.filled[order] < 0.75 * usual]
+        places = self.middles_mm[order[self.filled[order] < LESS * np.median(self.filled)]]
         kept: list[Array] = []
-        for place in self.middles_mm[order]:
-            if all(np.hypot(*(place - k)) > 2 * self.width_mm for k in kept):
-                kept.append(place)
-            if len(kept) == 32:
-                break
+        while len(places) and len(kept) < MOST_ENDS:
+            kept.append(places[0])
+            places = places[np.hypot(*(places - places[0]).T) > 2 * self.width_mm]
         return np.array(kept).reshape(-1, 2)
 
 

@@ -194,14 +194,17 @@ class Sketch:
         return way
 
     def _pruned(self, way: Way) -> Way:
-        """The way without a vertex that explains less ink than it costs."""
-        fewer = [
-            replace(way, vertices=(*way.vertices[:k], np.delete(v, i, axis=0), *way.vertices[k + 1 :]))
-            for k, v in enumerate(way.vertices)
-            for i in range(len(v))
-        ]
-        best = min((self.settled(w, 3) for w in fewer), key=lambda w: w.cost, default=way)
-        return self.settled(best) if best.cost < way.cost else way
+        """The way without the vertices that explain less ink than they cost."""
+        while True:
+            fewer = [
+                replace(way, vertices=(*way.vertices[:k], np.delete(v, i, axis=0), *way.vertices[k + 1 :]))
+                for k, v in enumerate(way.vertices)
+                for i in range(len(v))
+            ]
+            best = min((self.settled(w, 3) for w in fewer), key=lambda w: w.cost, default=way)
+            if best.cost >= way.cost:
+                return way
+            way = self.settled(best)
 
 
 def ways(sketch: Sketch) -> list[Way]:

@@ -15,7 +15,7 @@ it is. Chosen: 1.5 to 10 mm across.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Literal
 
@@ -24,13 +24,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer import photocell
-from tracer.leg import Leg, leg_of, reach_of_ink, stroke_end
+from tracer.leg import SPECK_WIDTHS, Leg, is_tip, leg_of, lines_on
 from tracer.lines import Sheet, Stroke
 from tracer.rounds import WAYS, circle_through, spokes
 from tracer.view import Array, View
 
 LEAST_MM, LARGEST_MM = 1.5, 10.0  # across
-SQUARE = math.sin(math.radians(30))  # of twice the angle between arms: 15 degrees
+SQUARE = math.sin(math.radians(15))  # arms are this near to square
+INKED = 0.85  # of an arm's length
 ALIKE = 0.4  # arms differ by less than this share
 MOST_PX = 50_000_000  # of a patch that is looked through for rings
 
@@ -47,38 +48,42 @@ class Reference:
 def references(sheet: Sheet, view: View, stroke: Stroke | None = None) -> Iterator[Reference]:
     """The reference points that stand alone on the sheet, and those that touch a line."""
     found: list[Reference] = []
-    own = [] if stroke is None else [*_crossings(view, stroke.ends_mm()), *_holes(sheet, stroke.patch)]
-    for place in [*own, *_small_patches(sheet)]:
-        reference = _cross(view, place) or _ring(view, place)
-        if reference is not None and all(_apart(reference, other) > LEAST_MM for other in found):
+    for reference in _every(sheet, view, stroke):
+        if all(_apart(reference, other) > LEAST_MM for other in found):
             found.append(reference)
             yield reference
+
+
+def _every(sheet: Sheet, view: View, stroke: Stroke | None) -> Iterator[Reference]:
+    """The reference points, some of them more than once."""
+    if stroke is not None:
+        yield from _crosses(view, stroke.ends_mm())
+        yield from _rings(view, _holes(sheet, stroke.patch))
+    for patch, middle in _small_patches(sheet):
+        yield from _crosses(view, sheet.stroke(patch).ends_mm())
+        yield from _rings(view, [middle])
+
+
+def _rings(view: View, places: Iterable[Array]) -> Iterator[Reference]:
+    """The rings about some places."""
+    for place in places:
+        if (found := _ring(view, place)) is not None:
+            yield found
 
 
 def _apart(a: Reference, b: Reference) -> float:
     return math.dist(a.place_mm, b.place_mm)
 
 
-def _small_patches(sheet: Sheet) -> Iterator[Array]:
-    """Middles of the patches of a reference point's size, about as high as wide."""
+def _small_patches(sheet: Sheet) -> Iterator[tuple[int, Array]]:
+    """The patches of a reference point's size, about as high as wide, and their middles."""
     pitch, patches = sheet.drawing.pitch_mm, sheet.patches
     small = (patches.longer_sides * pitch >= LEAST_MM) & (patches.longer_sides * pitch <= LARGEST_MM)
     for patch in np.flatnonzero(small):
         top, bottom, left, right = patches.box(np.arange(patches.count) == patch)
         if min(bottom - top, right - left) > 0.7 * max(bottom - top, right - left):
-            yield np.array([0.5 * (left + right), sheet.drawing.darkness.shape[0] - 0.5 * (top + bottom)]) * pitch
-
-
-def _crossings(view: View, ends_mm: Array) -> Iterator[Array]:
-    """Where the arms that end at some places cross the line."""
-    radius = max(1.5 * view.width_mm, 6 * view.pitch_mm)
-    for end in ends_mm:
-        arcs = photocell.ring(view.cells, view.pitch_mm, end, radius, view.level)
-        if len(arcs) == 1:
-            heading = float(arcs.mean())
-            seen = view.feel(end + 0.5 * radius * _unit(heading), heading, LARGEST_MM)
-            if len(seen):
-                yield seen[-1, :2] + (0.5 * view.width_mm + view.step_mm) * _unit(heading)
+            middle = np.array([0.5 * (left + right), sheet.drawing.darkness.shape[0] - 0.5 * (top + bottom)])
+            yield int(patch), middle * pitch
 
 
 def _holes(sheet: Sheet, patch: int) -> Iterator[Array]:
@@ -97,67 +102,78 @@ def _holes(sheet: Sheet, patch: int) -> Iterator[Array]:
             yield np.array([left + x + 0.5 * wide, sheet.drawing.darkness.shape[0] - top - y - 0.5 * high]) * pitch
 
 
-def _cross(view: View, place: Array) -> Reference | None:
-    """The cross about a place: three or four arms that end, alike and square to each other."""
-    if not view.dark(place):
-        return None
-    legs = _legs(view, place)
-    arms = [leg for leg in legs if stroke_end(view, leg, LARGEST_MM / 2) is not None]
-    if (
-        len(legs) < 4
-        or len(arms) not in (3, 4)
-        or any(abs(math.sin(2 * (leg.heading_rad - arms[0].heading_rad))) > SQUARE for leg in arms)
-    ):
-        return None
-    centre = _meeting(arms)
-    lengths = np.array([_length(view, leg, centre) for leg in arms])
-    usual = float(np.median(lengths))
-    if np.ptp(lengths) > ALIKE * usual or not LEAST_MM < 2 * usual < LARGEST_MM:
-        return None
-    return Reference((float(centre[0]), float(centre[1])), "cross", _lead(view, centre, usual))
+def _crosses(view: View, tips_mm: Array) -> Iterator[Reference]:
+    """The crosses whose arms end at some places."""
+    tips = [tip for tip in tips_mm if is_tip(view, tip)]
+    for i, a in enumerate(tips):
+        near = [tip for tip in tips[i + 1 :] if LEAST_MM < math.dist(a, tip) + view.width_mm < LARGEST_MM]
+        for b in near:
+            for c in tips:
+                if c is not a and c is not b and (found := _cross(view, a, b, c)) is not None:
+                    yield found
 
 
-def _legs(view: View, place: Array) -> list[Leg]:
-    """The four or five strokes that leave a place, where they have parted."""
-    for widths in (1.0, 1.4, 2.0, 2.8):  # a lead line between two arms runs together with them at first
-        radius = max(widths * view.width_mm, 5 * view.pitch_mm)
-        arcs = photocell.ring(view.cells, view.pitch_mm, place, radius, view.level)
-        if len(arcs) in (4, 5):
-            legs = [_arm(view, place, float(direction), max(1.0, widths - 0.4)) for direction in arcs.mean(axis=1)]
-            return [leg for leg in legs if leg is not None]
-    return []
+def _cross(view: View, a: Array, b: Array, c: Array) -> Reference | None:
+    """The cross of which three tips are given, a and b of one stroke; the fourth arm may run on as the lead line, or another line begin anywhere on it."""
+    half = 0.5 * (b - a)
+    middle, reach = a + half, float(np.hypot(*half))
+    arm = c - middle
+    length = float(np.hypot(*arm))
+    if not abs(length - reach) < ALIKE * reach or abs(arm @ half) > SQUARE * length * reach:
+        return None
+    if not all(_inked(view, middle, middle + way) for way in (-half, half, arm, -arm * min(1.0, reach / length))):
+        return None
+    arms = [_felt_inward(view, tip, middle) for tip in (a, b, c)]
+    if min(len(arm) for arm in arms) < 4:
+        return None
+    centre = _crossing(np.vstack(arms[:2]), arms[2])
+    reaches = np.hypot(*(np.array([a, b, c]) - centre).T)
+    if np.ptp(reaches) > ALIKE * np.median(reaches):
+        return None
+    if lines_on(view, centre, float(reaches.max()) + 1.2 * view.width_mm) > 1:
+        return None  # lines pass or cross here
+    return Reference((float(centre[0]), float(centre[1])), "cross", _lead(view, centre, float(reaches.max())))
+
+
+def _inked(view: View, a: Array, b: Array) -> bool:
+    """Whether there is ink all along a straight stretch, but for a speck of paper."""
+    count = 2 + int(math.dist(a, b) / view.pitch_mm)
+    return bool(np.mean([view.dark(place) for place in np.linspace(a, b, count)]) > INKED)
+
+
+def _felt_inward(view: View, tip: Array, middle: Array) -> Array:
+    """The clean stations (n, 2) of an arm, felt from its tip towards the middle."""
+    way = middle - tip
+    length = float(np.hypot(*way))
+    start = tip + 0.3 * view.width_mm * way / length
+    return view.feel(start, math.atan2(way[1], way[0]), length - view.width_mm)[:, :2]
 
 
 def _lead(view: View, centre: Array, reach_mm: float) -> Leg | None:
-    """The clean beginning of the line that leaves a cross or ring which reaches so far from its centre."""
+    """The clean beginning of the line that leaves a cross or ring which reaches so far from its centre, felt back to it as far as it is clean."""
     for arc in photocell.ring(view.cells, view.pitch_mm, centre, reach_mm + 1.5 * view.width_mm, view.level):
-        leg = _arm(view, centre, float(arc.mean()), reach_mm / view.width_mm + 1.0)
-        if leg is not None:
-            return leg
+        for outside in (1.5, 1.9, 2.3):
+            way = _unit(float(arc.mean()))
+            seen = view.feel(centre + (reach_mm + outside * view.width_mm) * way, float(arc.mean()), view.leg_mm)
+            if len(seen) < 4:
+                continue
+            leg = leg_of(seen, False, view.leg_mm)
+            back = view.feel(leg.end_mm, leg.heading_rad + math.pi, reach_mm + view.width_mm)
+            back = back[1 : max(1, len(back) - round(view.width_mm / view.step_mm))]  # well clear of the other arms
+            return leg_of(np.vstack([back[::-1], seen]), False, view.leg_mm)
     return None
 
 
-def _arm(view: View, place: Array, direction: float, widths: float = 1.0) -> Leg | None:
-    """The clean stretch that leaves a place in a direction, so many widths away from it or a little more."""
-    for start in (0.0, 0.3, 0.6):
-        seen = view.feel(
-            place + max((widths + start) * view.width_mm, 4 * view.pitch_mm) * _unit(direction), direction, view.leg_mm
-        )
-        if len(seen) >= 4:
-            return leg_of(seen, False, view.leg_mm)
-    return None
+def _crossing(one: Array, other: Array) -> Array:
+    """Where the straight lines through two strokes' places (n, 2) cross."""
+    (a, t), (b, u) = _straight(one), _straight(other)
+    return a + t * (u[1] * (b - a)[0] - u[0] * (b - a)[1]) / (t[0] * u[1] - t[1] * u[0])
 
 
-def _length(view: View, arm: Leg, centre: Array) -> float:
-    """How far an arm that ends reaches from the centre, mm."""
-    return (reach_of_ink(view, arm, LARGEST_MM / 2) or 0.0) + float(np.hypot(*(arm.end_mm - centre)))
-
-
-def _meeting(legs: list[Leg]) -> Array:
-    """The place nearest to the middle lines of all arms, least squares."""
-    across = np.array([[-math.sin(leg.heading_rad), math.cos(leg.heading_rad)] for leg in legs])
-    away = np.array([n @ leg.end_mm for n, leg in zip(across, legs, strict=True)])
-    return np.asarray(np.linalg.lstsq(across, away, rcond=None)[0])
+def _straight(places: Array) -> tuple[Array, Array]:
+    """Middle and direction of the straight line through places (n, 2), least squares."""
+    middle = places.mean(axis=0)
+    return middle, np.linalg.svd(places - middle)[2][0]
 
 
 def _ring(view: View, place: Array) -> Reference | None:
@@ -167,7 +183,8 @@ def _ring(view: View, place: Array) -> Reference | None:
     changes = spokes(view, place, LARGEST_MM / 2)
     widths = changes[:, 1] - changes[:, 0]
     good = np.abs(widths / view.width_mm - 1) < 0.6
-    if good.mean() < 0.75 or _runs(~good) > 1:
+    specks = widths < SPECK_WIDTHS * view.width_mm
+    if good.mean() < 0.75 or _runs(~good & ~specks) > 1:
         return None  # with several lines from it, it is a part of the drawing
     middles = place + changes[good].mean(axis=1)[:, None] * WAYS[good]
     centre, radius_mm, misfit_mm = circle_through(middles)

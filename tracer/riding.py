@@ -24,7 +24,7 @@ from numba import njit
 
 from tracer.course import rounding
 from tracer.leg import Leg, Meeting, end_of, leg_of, meet, turn
-from tracer.photocell import darkness_at, onward
+from tracer.photocell import darkness_at, edges, onward
 from tracer.view import Array, View
 
 FARTHEST_MM = 40.0
@@ -33,6 +33,7 @@ TIP = math.radians(150)  # a corner that turns by more is a tip
 REGAINED_MM = 1.5  # this much of both edges, and the line is by itself again
 BESIDE = 4.0  # widths; ink that is beside the line for less is a corner or a crossing
 JUMP = 0.25  # of the width, from station to station: the far edge is no longer the same
+PASSED = np.array([0.4, 0.6, 0.8, 1.0])  # places beyond a vertex at which a line that passes is seen
 WIDE = 0.62  # of the width, from the middle to the far edge: ink beside the line
 
 
@@ -54,16 +55,30 @@ def ride_past(view: View, incoming: Leg) -> Ride | None:
 def to_vertex(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> tuple[Leg, Leg, Meeting]:
     """The legs of a corner felt on along their outer edges, which stay clean up to the vertex, and where they meet then.
 
-    A corner that is rounded is felt up to where its round begins.
+    A corner that is rounded is felt up to where its round begins; a leg that meets a line which passes here has no outer edge.
     """
-    side = -math.copysign(1.0, turn(incoming.heading_at(legs_mm[0]), outgoing.heading_at(-legs_mm[1])))
+    deflection = turn(incoming.heading_at(legs_mm[0]), outgoing.heading_at(-legs_mm[1]))
+    side = -math.copysign(1.0, deflection)
     round_mm = rounding(view, incoming, outgoing, legs_mm)[1]
-    arriving = _along_outside(view, incoming.seen[::-1], side, legs_mm[0] - round_mm, True) or incoming
-    leaving = _along_outside(view, outgoing.seen, -side, legs_mm[1] - round_mm, False) or outgoing
+    arriving, leaving = incoming, outgoing
+    if not _passes(view, outgoing.turned_round(), legs_mm[1], deflection):
+        arriving = _along_outside(view, incoming.seen[::-1], side, legs_mm[0] - round_mm, True) or incoming
+    if not _passes(view, incoming, legs_mm[0], deflection):
+        leaving = _along_outside(view, outgoing.seen, -side, legs_mm[1] - round_mm, False) or outgoing
     met = meet(arriving, leaving)
     if met is None or min(met) < -0.5 * view.width_mm or max(met) > max(legs_mm) + view.width_mm:
         arriving, leaving, met = incoming, outgoing, legs_mm
     return arriving, leaving, _within_ink(view, arriving, leaving, met)
+
+
+def _passes(view: View, leg: Leg, vertex_mm: float, deflection: float) -> bool:
+    """Whether a line goes on along a leg's line beyond the vertex of a corner, to where the other leg's ink does not reach."""
+    clear_mm = view.width_mm * max(1.5, 1.2 / max(abs(math.sin(deflection)), 0.1))
+    if clear_mm > 4 * view.width_mm or not all(view.dark(place) for place in leg.at(vertex_mm + clear_mm * PASSED)):
+        return False
+    (x, y), heading = leg.at(vertex_mm + clear_mm), leg.heading_at(vertex_mm + clear_mm)
+    right, left = edges(view.cells, view.pitch_mm, x, y, heading, 2 * view.width_mm, view.level)
+    return abs(left - right - leg.width_mm) < 0.2 * leg.width_mm and abs(left + right) < 0.5 * leg.width_mm
 
 
 def _within_ink(view: View, arriving: Leg, leaving: Leg, met: Meeting) -> Meeting:

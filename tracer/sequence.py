@@ -30,14 +30,13 @@ from tracer.operator import Direction, Operator
 from tracer.program import Trace
 from tracer.settings import Settings
 from tracer.stance import Stance, ends_of, put_down, turned_round
-from tracer.survey import Side
+from tracer.survey import SIDES, Side
 
 SHORTER = 0.95  # the other way round is the line itself if it is shorter than this: straight on has led elsewhere
 DOUBTS = 8  # looked into, of a run
 TURNS = 12  # junctions at which another turn is tried
 TRIED_MM = 6000.0  # travel in all that is spent on other turns
 OVERRUN_MM = 3.0  # a stub as short, straight on from a closed line, is where the pen set out, and not another's line
-SIDES: tuple[Side, Side] = ("left", "right")
 
 Told = Callable[[float], None]
 
@@ -70,8 +69,10 @@ def followed(
     stances = put_down(
         sheet, start_mm, settings.aperture_mm, settings.line_width_mm, settings.gap_mm, operator.reference_mm
     )
-    best = _best(sheet, stances, start_mm, settings, operator, progress, number)
+    best, others = _best(sheet, stances, start_mm, settings, operator, progress, number)
     assert best is not None  # put_down gives a stance, or raises
+    if others:
+        raise _several_lead([best, *others])
     return best
 
 
@@ -87,7 +88,7 @@ def followed_from_an_end(
     stances = ends_of(
         sheet, stroke, settings.aperture_mm, settings.line_width_mm, settings.gap_mm, operator.reference_mm
     )
-    best = _best(sheet, iter(stances), None, settings, operator, progress, number)
+    best, _ = _best(sheet, iter(stances), None, settings, operator, progress, number)
     return best if best is not None and best.ending != "lost" else None
 
 
@@ -99,10 +100,12 @@ def _best(
     operator: Operator,
     progress: Callable[[float, float], None] | None,
     number: int,
-) -> Line | None:
-    """The best run from one of some stances; None if there are none."""
-    best: Line | None = None
+) -> tuple[Line | None, list[Line]]:
+    """The best run from one of some stances, None if there are none; and other runs that are as good: lead lines all."""
+    best, leads = None, list[Line]()
     for stance, length_mm in stances:
+        if leads and not stance.at_end:
+            break
         told = None if progress is None else partial(_tell, progress, length_mm)
         try:
             run = _run(stance, start_mm, operator, settings, _longest_mm(sheet.drawing, stance.view.width_mm), told)
@@ -111,14 +114,26 @@ def _best(
                 raise
             continue
         line = Line.of(run, number, stance.reference_mm)
+        if line.is_lead and line.reference_mm is not None:
+            return line, []
         if line.is_lead:
-            return line
+            leads.append(line)
         if best is not None and stance.at_end:
             continue  # another open end is of use only if a lead line begins there
         best = line if best is None or line.length_mm > best.length_mm else best
-        if line.ending == "closed" or (line.length_mm > 0.5 * length_mm and line.ending != "joined"):
+        plain = not (stance.at_end and line.junctions_mm)  # at a junction a lead line may come in
+        if plain and (line.ending == "closed" or (line.length_mm > 0.5 * length_mm and line.ending != "joined")):
             break
-    return best
+    return (leads[0], leads[1:]) if leads else (best, [])
+
+
+def _several_lead(lines: list[Line]) -> LineFault:
+    """The fault of a drawing on which it is not certain which line is the lead line."""
+    places = "; ".join(f"{x:.1f},{y:.1f}" for x, y in (line.start_mm for line in lines))
+    return LineFault(
+        f"{len(lines)} lines with a tick lead to the contour, from {places}, and no reference point tells which is the lead line;"
+        " draw a cross or ring at its beginning, or give one of these places with --start X,Y or --reference X,Y"
+    )
 
 
 def _run(

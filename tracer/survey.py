@@ -35,6 +35,7 @@ FARTHEST_WIDTHS = 6.0  # how far the heading is held through a blot, in widths o
 
 Way = tuple[Leg | None, Meeting | None, int]
 Side = Literal["left", "right"]
+SIDES: tuple[Side, Side] = ("left", "right")
 
 
 def survey(view: View, incoming: Leg, trail: Trail, rank: int = 0, side: Side | None = None) -> Way:

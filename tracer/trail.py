@@ -54,6 +54,12 @@ class Trail:
         """Whether the axis runs along its own trail, in the same sense."""
         return loop.comes_again(self._places[: self._count], self.step_mm, width_mm)
 
+    def comes_back(self, leg: Leg) -> bool:
+        """Whether a leg that has been followed already was followed in the other sense."""
+        i = int(np.argmin(np.hypot(*(self._places[: self._count - 1] - leg.end_mm).T)))
+        way = self._places[i + 1] - self._places[i]
+        return bool(way @ [math.cos(leg.heading_rad), math.sin(leg.heading_rad)] < 0)
+
     def holds(self, leg: Leg, width_mm: float) -> bool:
         """Whether the beginning of a leg has been followed already, in either sense."""
         old = self._places[: max(0, self._count - round(FRESH_MM / self.step_mm))]

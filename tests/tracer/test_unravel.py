@@ -51,10 +51,10 @@ def test_a_ragged_coast_is_one_closed_path(seed: int) -> None:
 
 
 SPIKES = {
-    "beside a straight line": polyline((4, 10), (14, 10), (14.2, 7.8), (14.6, 10.1), (34, 10)),
-    "of 22 degrees": polyline((4, 10), (14, 10), (13.2, 11.8), (14.7, 10.2), (24, 10)),
-    "at a corner": polyline((4, 10), (14, 10), (11.5, 11.2), (14.4, 10.9), (14.4, 20)),
-    "one after the other": polyline((4, 10), (12, 10), (12.3, 7.6), (12.9, 10), (13.6, 12.4), (14.0, 10), (24, 10)),
+    "beside a straight line": polyline((4, 10), (14, 10), (14.2, 7.8), (14.6, 10.1), (44, 10)),
+    "of 22 degrees": polyline((4, 10), (14, 10), (13.2, 11.8), (14.7, 10.2), (44, 10)),
+    "at a corner": polyline((4, 10), (14, 10), (11.5, 11.2), (14.4, 10.9), (14.4, 40)),
+    "one after the other": polyline((4, 10), (12, 10), (12.3, 7.6), (12.9, 10), (13.6, 12.4), (14.0, 10), (44, 10)),
 }
 
 
@@ -71,7 +71,8 @@ def test_a_tick_is_no_spike(width_mm: float, slant_degrees: float, seed: int | N
     """The line goes straight on; 30 um for what the tick's ink does to it."""
     line, slant = polyline((4, 10), (24, 10)), math.radians(90 - slant_degrees)
     half = 1.5 * np.array([math.cos(slant), math.sin(slant)])
-    tick = polyline((14, 10) - half, (14, 10) + half)
+    middle = np.array([14.0, 10.0])
+    tick = polyline(middle - half, middle + half)
     run = trace(inked(line, tick, width_mm=width_mm, seed=seed)).lines[0]
     assert distance(run.xy_mm[::4], line).path_to_reference.max_mm < 30 * UM
     assert [mark.kind for mark in run.marks] == ["tick"]

@@ -1,0 +1,184 @@
+"""Strokes beside the line, felt outward by cells: what may be a stop mark.
+
+Signals: the way of the head at a station, a side of it and a distance in; the stroke there out: its middles in mm along and away from the way and on the
+sheet, how far it reaches, and what is about it.
+
+    away  │   ▮   │ <- paper to both sides for so many widths: else it is lettering, a blot, a line beside the line
+          │   ▮   │
+     ─────────┴──────── way ─▶            beyond its end nothing in line with it: else it is a dash of a line that crosses
+
+Source: our own (see `marks`).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+
+from tracer import photocell
+from tracer.leg import is_tip
+from tracer.view import LEVEL, Array, View
+
+LEAST_WIDTHS = 1.2  # of a stroke, beyond the line's edge
+FARTHEST_MM = 1.5  # from the line's edge to a stroke beside it
+SLANT = math.tan(math.radians(40))
+LIKE = (0.5, 1.6)  # a stroke's width, of the line's
+CLEAR_WIDTHS = 1.5  # of paper to both sides of a stroke that touches the line
+APART_WIDTHS = 3.0  # of one that does not: lettering stands beside lines
+SOILED, APART_SOILED = 0.15, 0.03  # of that may be ink
+INK = (0.65, 1.4)  # a stroke's darkness, of the line's: one pen draws both
+DASH_MM, DASH_WIDTHS = 2.0, 4.0  # dashes of one line are no further apart
+
+
+@dataclass(frozen=True, slots=True)
+class Stroke:
+    """Ink beside the line, felt outward: its middles (n, 2) as mm along and away from the way, and on the sheet, whether it touches the line, whether it
+    ends, how far beyond the line's edge, and whether there is paper about it."""
+
+    side: int
+    middles: Array
+    places: Array
+    touches: bool
+    ends: bool
+    reach_mm: float
+    is_clear: bool
+
+    @property
+    def foot_mm(self) -> float:
+        """Where its middle line meets the way, mm along it."""
+        return float(self._line()[1])
+
+    @property
+    def straight(self) -> bool:
+        """Whether it is straight, and near enough to square."""
+        slant, foot = self._line()
+        rest = self.middles[:, 0] - foot - slant * self.middles[:, 1]
+        return bool(abs(slant) < SLANT and np.sqrt(np.mean(rest**2)) < 0.1)
+
+    def _line(self) -> Array:
+        return np.polyfit(self.middles[:, 1], self.middles[:, 0], 1)
+
+
+def felt(
+    view: View, place: Array, along: Array, at_mm: float, side: int, away_mm: float, longest_mm: float
+) -> Stroke | None:
+    """The stroke that a cell is on beside a place of the way, which is `at_mm` along it; None if it is not like a line's."""
+    width = view.width_mm
+    seen = _stroke_at(view.cells, view.pitch_mm, place, along, side, away_mm, longest_mm + width, width, view.level)
+    inner = seen[:, 1] > 0.9 * width  # nearer, its ink and the line's run together
+    if inner.sum() < 3 or not LIKE[0] < np.median(seen[inner, 2]) / width < LIKE[1]:
+        return None
+    nearest, reach = float(seen[:, 1].min()), float(seen[:, 1].max()) - 0.5 * width
+    touches = nearest < 0.5 * width + 2 * view.pitch_mm
+    long_enough = reach - max(0.0, nearest - 0.5 * width) > LEAST_WIDTHS * width
+    if not long_enough or nearest - 0.5 * width > FARTHEST_MM:
+        return None
+    where = view.cells, view.pitch_mm, place, along, side
+    middles, others = seen[inner], max(DASH_MM, DASH_WIDTHS * width)
+    if not INK[0] < _darkness(*where, middles) * LEVEL / view.level < INK[1]:
+        return None
+    across = side * np.array([-along[1], along[0]])
+    tips = [seen[np.argmax(seen[:, 1]), :2] - [0, 0.5 * width], seen[np.argmin(seen[:, 1]), :2] + [0, 0.5 * width]]
+    at_tips = [is_tip(view, place + u * along + v * across) for u, v in tips[: 1 if touches else 2]]
+    ends = reach < longest_mm and all(at_tips) and not _goes_on(*where, middles, others, width, view.level)
+    widths, soiled = (CLEAR_WIDTHS, SOILED) if touches else (APART_WIDTHS, APART_SOILED)
+    is_clear = _soiled(*where, middles, 0.4 * width, widths * width, view.level) < soiled
+    places = place + middles[:, :1] * along + middles[:, 1:2] * across
+    return Stroke(side, middles[:, :2] + [at_mm, 0.0], places, touches, ends, reach, is_clear)
+
+
+@njit(cache=True)
+def _seen(cells, pitch_mm, place, along, side, u_mm, v_mm):  # type: ignore[no-untyped-def]
+    """Darkness at a place along and away from the way."""
+    x, y = place[0] - side * v_mm * along[1], place[1] + side * v_mm * along[0]
+    return photocell.darkness_at(cells, pitch_mm, x + u_mm * along[0], y + u_mm * along[1])
+
+
+@njit(cache=True)
+def _darkness(cells, pitch_mm, place, along, side, middles):  # type: ignore[no-untyped-def]
+    """The darkness of a stroke along its middle."""
+    seen = np.empty(len(middles))
+    for k in range(len(middles)):
+        seen[k] = _seen(cells, pitch_mm, place, along, side, middles[k, 0], middles[k, 1])
+    return np.median(seen)
+
+
+@njit(cache=True)
+def _soiled(cells, pitch_mm, place, along, side, middles, from_mm, to_mm, level):  # type: ignore[no-untyped-def]
+    """The share of ink to both sides of a stroke, between two distances from its edges."""
+    dark = count = 0
+    for k in range(len(middles)):
+        for out in np.arange(from_mm, to_mm, pitch_mm):
+            for to in (-1, 1):
+                u = middles[k, 0] + to * (0.5 * middles[k, 2] + out)
+                dark += _seen(cells, pitch_mm, place, along, side, u, middles[k, 1]) > level
+                count += 1
+    return dark / max(count, 1)
+
+
+@njit(cache=True)
+def _goes_on(cells, pitch_mm, place, along, side, middles, beyond_mm, width_mm, level):  # type: ignore[no-untyped-def]
+    """Whether a stroke goes on in its own line after a gap, for one and a half widths or more."""
+    last = np.argmax(middles[:, 1])
+    first = np.argmin(middles[:, 1])
+    u, v = middles[last, 0], middles[last, 1]
+    slant = (u - middles[first, 0]) / max(v - middles[first, 1], 0.5 * width_mm)
+    step, run = 0.5 * pitch_mm, 0.0
+    for k in range(1, int(beyond_mm / step)):
+        there = u + slant * k * step
+        right, left = _across(cells, pitch_mm, place, along, side, there, v + k * step, 1.2 * width_mm, level)
+        like = left - right < 1.6 * width_mm and abs(0.5 * (left + right) - there) < 0.25 * width_mm
+        run = run + step if like else 0.0
+        if run > 1.5 * width_mm:
+            return True
+    return False
+
+
+@njit(cache=True)
+def _stroke_at(cells, pitch_mm, place, along, side, away_mm, farthest_mm, width_mm, level):  # type: ignore[no-untyped-def]
+    """Middles (along, away) and widths of a stroke, (n, 3) mm, felt inward and outward from a place beside the way until there is no ink, specks apart."""
+    step = 0.5 * pitch_mm
+    speck_mm = min(max(0.16, 2.5 * pitch_mm), 0.6 * width_mm)
+    seen = np.empty((2 * int(farthest_mm / step) + 4, 3))
+    count = 0
+    for way in (-1, 1):
+        u, v = 0.0, away_mm if way < 0 else away_mm + step
+        if way > 0 and count:
+            u = seen[0, 0]
+        last = v
+        while 0.4 * width_mm < v <= farthest_mm:
+            right, left = _across(cells, pitch_mm, place, along, side, u, v, 1.2 * width_mm, level)
+            if math.isnan(left - right):
+                if abs(v - last) > speck_mm:
+                    break
+                v += way * step
+                continue
+            last = v
+            u = 0.5 * (left + right)
+            seen[count, 0], seen[count, 1], seen[count, 2] = u, v, left - right
+            count += 1
+            v += way * step
+    return seen[:count].copy()
+
+
+@njit(cache=True)
+def _across(cells, pitch_mm, place, along, side, u_mm, v_mm, reach_mm, level):  # type: ignore[no-untyped-def]
+    """Where ink about u ends, back and forth along the way, at a distance v from it; NaN without ink, or without an end in reach."""
+    step = 0.35 * pitch_mm
+    if _seen(cells, pitch_mm, place, along, side, u_mm, v_mm) < level:
+        return math.nan, math.nan
+    found = (math.nan, math.nan)
+    for way in (-1, 1):
+        before, u = 1.0, u_mm
+        while abs(u - u_mm) <= reach_mm:
+            now = _seen(cells, pitch_mm, place, along, side, u, v_mm)
+            if now < level:
+                edge = u - way * step * (level - now) / max(before - now, 1e-9)
+                found = (edge, found[1]) if way < 0 else (found[0], edge)
+                break
+            before = now
+            u += way * step
+    return found
