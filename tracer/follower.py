@@ -32,8 +32,9 @@ from tracer.loop import loop_in
 from tracer.riding import Ride, ride_past, to_vertex
 from tracer.settings import Settings
 from tracer.stance import Stance
+from tracer.strands import Planned
 from tracer.survey import SIDES, Side, Way, caught_again, goes_straight, straight_on, survey
-from tracer.unravel import Planned, Tangles
+from tracer.tangles import Tangles
 from tracer.view import Array, View
 
 SMOOTH = math.radians(14)  # a smaller change of heading is no corner
