@@ -26,21 +26,17 @@ from tracer import course, head
 from tracer.carriage import Carriage
 from tracer.dots import dot_at_end
 from tracer.junctions import Guide, Junctions
-from tracer.knot import corner_in, fork_in
-from tracer.leg import Leg, Meeting, end_of, leg_of, meet, turn
+from tracer.knot import fork_in
+from tracer.leg import Leg, end_of, leg_of
 from tracer.loop import loop_in
-from tracer.riding import Ride, ride_past, to_vertex
+from tracer.pilot import Pilot
 from tracer.settings import Settings
 from tracer.stance import Stance
-from tracer.strands import Planned
-from tracer.survey import SIDES, Side, Way, caught_again, goes_straight, straight_on, survey
+from tracer.survey import SIDES, Side, Way, goes_straight, survey
 from tracer.tangles import Tangles
 from tracer.view import Array, View
 
-SMOOTH = math.radians(14)  # a smaller change of heading is no corner
-LEAST_GAP_PX = 2.5  # a scan can lose this much of a line
 BACK_MM = 2.0  # a junction that the head comes back to is no further ahead
-FAR_WIDTHS = 4.0  # to where the line goes on clean
 
 
 @dataclass(slots=True)
@@ -124,9 +120,9 @@ class Follower:
                 fork = self._turn_off(seen, here)
             if fork is not None:
                 return self._through_legs(leg_of(seen[: fork + 1], True, self.view.leg_mm))
-            sharp = self._sharp_corner(seen, here)
+            sharp = self._pilot().round_corner(seen, here)
             if sharp is not None:
-                return self._pass(*self._course(*sharp))
+                return self._pass(*sharp)
             nodes, leg = course.nodes_along(self.view, self.carriage.stands(), seen)
             if leg is not None:
                 return self._pass([course.through_nodes(nodes)], leg, seen)
@@ -138,7 +134,7 @@ class Follower:
         dot = None if goes_straight(incoming, way[0]) else dot_at_end(self.view, incoming)
         if dot is not None:
             return self._end(_aimed_at(incoming, dot), math.dist(incoming.end_mm, dot))
-        plan, choices = self._plan(incoming, way)
+        plan, choices = self._pilot().along_legs(incoming, way)
         explained = False
         if not asked:
             number, way_in = self._junctions.next(self.carriage.travel_mm), self.carriage.stands()
@@ -146,42 +142,12 @@ class Follower:
                 self.view, incoming, self.carriage.trail, way_in, plan, number, self._turns.count(number)
             )
         if not explained:
-            plan = self._ridden(incoming, way) or plan
+            plan = self._pilot().past(incoming, way) or plan
         return self._at_end(incoming, choices) if plan is None else self._pass(*plan)
 
-    def _ridden(self, incoming: Leg, way: Way) -> Planned | None:
-        """The way past ink that runs beside the line, felt along an edge; None if the line goes on straight before, or if there is no such way."""
-        outgoing, _, choices = way
-        straight = goes_straight(incoming, outgoing)
-        ride = None if straight and not self._far(incoming, outgoing) else ride_past(self.view, incoming)
-        if ride is None or (straight and ride.back is None) or (choices and self._goes_back(ride.seen)):
-            return None
-        return self._ride(incoming, ride)
-
-    def _plan(self, incoming: Leg, way: Way) -> tuple[Planned | None, int]:
-        """The way through a knot that the legs alone tell, and how many there were to choose from."""
-        outgoing, legs_mm, choices = way
-        if outgoing is not None:
-            planned = self._course(incoming, outgoing, legs_mm)
-            if course.on_ink(self.view, planned.stretches):
-                return planned, choices
-            choices = 0  # that leg is another line's
-        outgoing = straight_on(self.view, incoming, max(self.settings.gap_mm, LEAST_GAP_PX * self.view.pitch_mm))
-        if outgoing is not None and choices and self._goes_back(outgoing.seen):
-            return None, choices
-        if outgoing is None and self.settings.recatch_mm > 0:
-            outgoing = caught_again(self.view, incoming, self.carriage.trail, self.settings.recatch_mm)
-        return None if outgoing is None else self._course(incoming, outgoing, None), choices
-
-    def _goes_back(self, seen: Array) -> bool:
-        """Whether what was felt from a knot on, from a width behind it, has been followed already, and the other way."""
-        beyond = seen[min(round(self.view.width_mm / self.view.step_mm), len(seen) - 4) :]
-        leg, trail = leg_of(beyond, False, self.view.leg_mm), self.carriage.trail
-        return trail.holds(leg, self.view.width_mm) and trail.comes_back(leg)
-
-    def _far(self, incoming: Leg, outgoing: Leg | None) -> bool:
-        """Whether the ink runs beside the line for so long that it may be the line's own way back."""
-        return outgoing is not None and course.ahead_mm(incoming.end_mm, outgoing) > FAR_WIDTHS * self.view.width_mm
+    def _pilot(self) -> Pilot:
+        """Who plans the way on from where the head is."""
+        return Pilot(self.view, self.carriage.stands(), self.carriage.trail, self.settings)
 
     def _feel_ahead(self) -> Array:
         """The line felt from behind the axis forward until it is no longer clean, (n, 3)."""
@@ -246,48 +212,6 @@ class Follower:
         ways = [found, *(survey(self.view, incoming, self.carriage.trail, side=side) for side in SIDES)]
         met = [legs_mm for leg, legs_mm, _ in ways if legs_mm is not None and not goes_straight(incoming, leg)]
         return incoming.at(met[0][0]) if met else incoming.end_mm
-
-    def _course(self, incoming: Leg, outgoing: Leg, legs_mm: Meeting | None) -> Planned:
-        """Stretches from where the head is to the outgoing leg's clean end, and that leg."""
-        deflection = abs(turn(incoming.heading_rad, outgoing.heading_rad))
-        if legs_mm is not None and deflection > SMOOTH and min(legs_mm) > -self.view.width_mm:
-            arriving, leaving, met = to_vertex(self.view, incoming, outgoing, legs_mm)
-            end_mm = max(0.05 - met[1], course.ahead_mm(leaving.end_mm, outgoing))
-            stretches = course.through_corner(self.view, self.carriage.stands(), arriving, leaving, met, end_mm)
-            return Planned(stretches, leaving.shifted(end_mm, leaving.seen))
-        limit = float(np.hypot(*(outgoing.end_mm - incoming.end_mm)))
-        way, along = course.onto(*self.carriage.stands(), incoming, 0.5 * limit)
-        start, heading = incoming.at(along), incoming.heading_at(along)
-        through = course.hermite(start, heading, outgoing.end_mm, outgoing.heading_rad)
-        return Planned([np.vstack([way, through])], outgoing)
-
-    def _sharp_corner(self, seen: Array, here: int) -> tuple[Leg, Leg, Meeting] | None:
-        """The legs of a corner so obtuse that the line was felt clean round it, if its ink shows it to be sharp."""
-        i = corner_in(seen, here + 4)
-        if i is None:
-            return None
-        incoming = leg_of(seen[: i - 2], True, self.view.leg_mm)
-        outgoing = leg_of(seen[i + 3 :], False, self.view.leg_mm)
-        legs_mm = meet(incoming, outgoing)
-        if legs_mm is None or min(legs_mm) < self.view.step_mm:  # the bend is not between the legs
-            return None
-        if not course.is_sharp(self.view, incoming, outgoing, legs_mm):
-            return None
-        return incoming, outgoing, legs_mm
-
-    def _ride(self, incoming: Leg, ride: Ride) -> Planned | None:
-        """Stretches along a line that was felt on one edge; round the tip and back, if that is how it went; None if it is too short."""
-        there = np.vstack([incoming.seen, ride.seen])
-        if ride.back is None:
-            nodes, leg = course.nodes_along(self.view, self.carriage.stands(), there)
-            return None if leg is None else Planned([course.through_nodes(nodes)], leg, ride.seen)
-        to_tip, felt = course.nodes_along(self.view, self.carriage.stands(), there, 0.0)
-        tip = ride.back[0, :2]
-        from_tip, leg = course.nodes_along(self.view, (tip, to_tip[-1][1] + math.pi), ride.back, 0.0)
-        if leg is None or felt is None:
-            return None
-        onto_tip = [*to_tip[:-1], (tip, to_tip[-1][1])]
-        return Planned([course.through_nodes(onto_tip), course.through_nodes(from_tip)], leg)
 
     def _at_end(self, incoming: Leg, choices: int) -> Followed | None:
         """Run to the end of the line, or to where it meets what was followed before."""

@@ -1,0 +1,113 @@
+"""The pilot: plans the way from where the head is through the knot ahead, as the legs and the edges tell it.
+
+Signals: the view, where the head stands, its trail, and the legs that the survey found in; stretches and the outgoing leg out.
+
+Source: our own (see `knot`, `course` and `riding`).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from tracer import course
+from tracer.knot import corner_in
+from tracer.leg import Leg, Meeting, leg_of, meet, turn
+from tracer.riding import Ride, ride_past, to_vertex
+from tracer.settings import Settings
+from tracer.strands import Planned
+from tracer.survey import Way, caught_again, goes_straight, straight_on
+from tracer.trail import Trail
+from tracer.view import Array, View
+
+SMOOTH = math.radians(14)  # a smaller change of heading is no corner
+LEAST_GAP_PX = 2.5  # a scan can lose this much of a line
+FAR_WIDTHS = 4.0  # to where the line goes on clean
+
+
+@dataclass(frozen=True, slots=True)
+class Pilot:
+    """What a way is planned by: the view, where the head stands (place, heading), where it has been, and its settings."""
+
+    view: View
+    stands: tuple[Array, float]
+    trail: Trail
+    settings: Settings
+
+    def along_legs(self, incoming: Leg, way: Way) -> tuple[Planned | None, int]:
+        """The way through a knot that the legs alone tell, and how many there were to choose from."""
+        outgoing, legs_mm, choices = way
+        if outgoing is not None:
+            planned = self._course(incoming, outgoing, legs_mm)
+            if course.on_ink(self.view, planned.stretches):
+                return planned, choices
+            choices = 0  # that leg is another line's
+        outgoing = straight_on(self.view, incoming, max(self.settings.gap_mm, LEAST_GAP_PX * self.view.pitch_mm))
+        if outgoing is not None and choices and self._goes_back(outgoing.seen):
+            return None, choices
+        if outgoing is None and self.settings.recatch_mm > 0:
+            outgoing = caught_again(self.view, incoming, self.trail, self.settings.recatch_mm)
+        return None if outgoing is None else self._course(incoming, outgoing, None), choices
+
+    def past(self, incoming: Leg, way: Way) -> Planned | None:
+        """The way past ink that runs beside the line, felt along an edge; None if the line goes on straight before, or if there is no such way."""
+        outgoing, _, choices = way
+        straight = goes_straight(incoming, outgoing)
+        ride = None if straight and not self._far(incoming, outgoing) else ride_past(self.view, incoming)
+        if ride is None or (straight and ride.back is None) or (choices and self._goes_back(ride.seen)):
+            return None
+        return self._ride(incoming, ride)
+
+    def _course(self, incoming: Leg, outgoing: Leg, legs_mm: Meeting | None) -> Planned:
+        """Stretches from where the head is to the outgoing leg's clean end, and that leg."""
+        deflection = abs(turn(incoming.heading_rad, outgoing.heading_rad))
+        if legs_mm is not None and deflection > SMOOTH and min(legs_mm) > -self.view.width_mm:
+            arriving, leaving, met = to_vertex(self.view, incoming, outgoing, legs_mm)
+            end_mm = max(0.05 - met[1], course.ahead_mm(leaving.end_mm, outgoing))
+            stretches = course.through_corner(self.view, self.stands, arriving, leaving, met, end_mm)
+            return Planned(stretches, leaving.shifted(end_mm, leaving.seen))
+        limit = float(np.hypot(*(outgoing.end_mm - incoming.end_mm)))
+        way, along = course.onto(*self.stands, incoming, 0.5 * limit)
+        start, heading = incoming.at(along), incoming.heading_at(along)
+        through = course.hermite(start, heading, outgoing.end_mm, outgoing.heading_rad)
+        return Planned([np.vstack([way, through])], outgoing)
+
+    def round_corner(self, seen: Array, here: int) -> Planned | None:
+        """The way round a corner so obtuse that the line was felt clean round it; None if there is none, or if its ink does not show it to be sharp."""
+        i = corner_in(seen, here + 4)
+        if i is None:
+            return None
+        incoming = leg_of(seen[: i - 2], True, self.view.leg_mm)
+        outgoing = leg_of(seen[i + 3 :], False, self.view.leg_mm)
+        legs_mm = meet(incoming, outgoing)
+        if legs_mm is None or min(legs_mm) < self.view.step_mm:  # the bend is not between the legs
+            return None
+        if not course.is_sharp(self.view, incoming, outgoing, legs_mm):
+            return None
+        return self._course(incoming, outgoing, legs_mm)
+
+    def _ride(self, incoming: Leg, ride: Ride) -> Planned | None:
+        """Stretches along a line that was felt on one edge; round the tip and back, if that is how it went; None if it is too short."""
+        there = np.vstack([incoming.seen, ride.seen])
+        if ride.back is None:
+            nodes, leg = course.nodes_along(self.view, self.stands, there)
+            return None if leg is None else Planned([course.through_nodes(nodes)], leg, ride.seen)
+        to_tip, felt = course.nodes_along(self.view, self.stands, there, 0.0)
+        tip = ride.back[0, :2]
+        from_tip, leg = course.nodes_along(self.view, (tip, to_tip[-1][1] + math.pi), ride.back, 0.0)
+        if leg is None or felt is None:
+            return None
+        onto_tip = [*to_tip[:-1], (tip, to_tip[-1][1])]
+        return Planned([course.through_nodes(onto_tip), course.through_nodes(from_tip)], leg)
+
+    def _goes_back(self, seen: Array) -> bool:
+        """Whether what was felt from a knot on, from a width behind it, has been followed already, and the other way."""
+        beyond = seen[min(round(self.view.width_mm / self.view.step_mm), len(seen) - 4) :]
+        leg, trail = leg_of(beyond, False, self.view.leg_mm), self.trail
+        return trail.holds(leg, self.view.width_mm) and trail.comes_back(leg)
+
+    def _far(self, incoming: Leg, outgoing: Leg | None) -> bool:
+        """Whether the ink runs beside the line for so long that it may be the line's own way back."""
+        return outgoing is not None and course.ahead_mm(incoming.end_mm, outgoing) > FAR_WIDTHS * self.view.width_mm
