@@ -30,6 +30,11 @@ TURNS_OFF = math.radians(20)  # a leg turns off to a side by more than this
 AHEAD = math.radians(75)  # a lost line is looked for within this of its heading
 SQUARE = math.radians(20)  # two legs that turn off to both sides alike, within this, are a line that the head comes to
 PASSES = math.radians(12)  # two legs in line with each other within this are one line that passes
+SIDEWAYS_WIDTHS = (
+    0.0,
+    1.0,
+    2.0,
+)  # ahead a line that turns back to a side is looked for: its ink runs along with the way in at first
 FARTHEST_WIDTHS = 6.0  # how far the heading is held through a blot, in widths of the line
 
 
@@ -50,8 +55,10 @@ def survey(view: View, incoming: Leg, trail: Trail, rank: int = 0, side: Side | 
     near = half + view.step_mm
     choose = partial(_chosen, incoming, rank, side)
     found = _look(view, incoming, trail, incoming.at(near if ink is None else max(0.0, min(near, ink - half))), choose)
-    if found[0] is not None and side is not None and _is_aside(incoming, found[0], side):
-        return found
+    for widths in SIDEWAYS_WIDTHS if side is not None else ():
+        aside = _look(view, incoming, trail, incoming.at(near + widths * view.width_mm), choose)
+        if aside[0] is not None and side is not None and _is_aside(incoming, aside[0], side):
+            return aside
     if ink is not None and ink - half > near and not goes_straight(incoming, found[0]):
         at_tip = _look(view, incoming, trail, incoming.at(ink - half), choose)
         found = at_tip if at_tip[0] is not None else found
