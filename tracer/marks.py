@@ -117,7 +117,7 @@ def _ticks(view: View, way: Way) -> list[float]:
         if _is_way(view, way, stroke) or (not stroke.touches and any(_is_same(view, stroke, o) for o in every)):
             continue
         across = [o for o in opposite if o.ends and o.straight]
-        if not across and stroke.touches and stroke.reach_mm > longest_mm(view, across=False):
+        if not across and stroke.touches and stroke.length_mm > longest_mm(view, across=False):
             continue  # that is a line that begins here
         feet.append(float(np.mean([foot, *(o.foot_mm for o in across)])))
     return feet
