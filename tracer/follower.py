@@ -208,7 +208,7 @@ class Follower:
         """The way out of a knot, as the operator has it at a junction, and whether it is the operator's."""
         trail, went = self.carriage.trail, self.carriage.count
         if self._comes_back(incoming):
-            self._junctions.is_back(went)
+            self._junctions.is_back(went, self.carriage.travel_mm)
             return survey(self.view, incoming, trail), True
         number = self._junctions.next(self.carriage.travel_mm)
         side = self._sides[number] if number < len(self._sides) else None

@@ -61,7 +61,7 @@ def survey(view: View, incoming: Leg, trail: Trail, rank: int = 0, side: Side | 
             return aside
     if ink is not None and ink - half > near and not goes_straight(incoming, found[0]):
         at_tip = _look(view, incoming, trail, incoming.at(ink - half), choose)
-        found = at_tip if at_tip[0] is not None else found
+        found = found if at_tip[0] is None else (*at_tip[:2], max(found[2], at_tip[2]))
     return found
 
 

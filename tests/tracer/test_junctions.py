@@ -35,7 +35,8 @@ def test_a_guide_line_is_left_for_ends_and_is_come_back_from() -> None:
     junctions.take(HERE, 95)
     assert not junctions.comes_back(HERE, 1.0)  # not before it has been to the end
     assert junctions.turn_round(152) and junctions.comes_back(HERE, 1.0) and not junctions.comes_back(THERE, 1.0)
-    junctions.is_back(200)
+    junctions.is_back(200, 30.0)
+    assert junctions.next(31.0) == -1 + len(junctions.places_mm) or not junctions.places_mm
     assert not junctions.comes_back(HERE, 1.0) and not junctions.turn_round(250)
     (guide,) = junctions.guides(way)
     assert isinstance(guide, Guide) and guide.tip == 151
