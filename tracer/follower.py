@@ -38,7 +38,7 @@ from tracer.view import Array, View
 
 SMOOTH = math.radians(14)  # a smaller change of heading is no corner
 LEAST_GAP_PX = 2.5  # a scan can lose this much of a line
-BACK_MM = 2.0  # a junction that the head comes back to is no further ahead
+BACK_MM = 4.0  # a junction that the head comes back to is no further ahead: a speck may end the clean line before it
 FAR_WIDTHS = 4.0  # to where the line goes on clean
 
 
