@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import partial
+from itertools import combinations
 from typing import Literal
 
 import numpy as np
@@ -75,6 +76,7 @@ def _look(
         every = legs_around(view, centre, way_in)
         every = _without_marks(view, incoming, every)
         legs = [leg for leg in every if not trail.holds(leg, view.width_mm)]
+        legs = _without_stubs(view, incoming, legs, every)
         choices = max(choices, len(legs) + (len(legs) < len(every)))
         if not legs:
             break
@@ -122,6 +124,18 @@ def _without_marks(view: View, incoming: Leg, legs: list[Leg]) -> list[Leg]:
         leg for leg, mm in zip(legs, reach, strict=True) if mm > longest_mm(view, across=_is_across(leg, legs, reach))
     ]
     return kept or legs
+
+
+def _without_stubs(view: View, incoming: Leg, legs: list[Leg], every: list[Leg]) -> list[Leg]:
+    """The legs but for marks on what has been followed already, however straight on: the head has come back to its lead line.
+
+    Where it crosses a line that it has followed, what lies beyond is its own, and may end soon.
+    """
+    held = [leg for leg in every if not any(leg is other for other in legs)]
+    passing = any(abs(turn(a.heading_rad + math.pi, b.heading_rad)) < SQUARE for a, b in combinations(held, 2))
+    if not held or passing:
+        return legs
+    return [leg for leg in legs if _reach_mm(view, incoming, leg) > longest_mm(view)]
 
 
 def _is_across(leg: Leg, legs: list[Leg], reach_mm: list[float]) -> bool:
