@@ -11,8 +11,8 @@ ends within `LONGEST_MM`, a crossing line goes on beyond it. The foot of the mar
 corner: the line goes straight on through the foot of one.
 
 Source: patent ES 361967, figure 1, stop marks: a line across the contour, or a mark beside it. Questions: the patent gives no sizes. Chosen: a mark reaches
-from 1.2 of the line's width (0.6 mm) to 5 mm beyond its edge on each side (ten widths, of wide lines), to 3.5 mm (seven) if it touches the line on one side only,
-stands within 40 degrees of square to it and not further from it than 1.5 mm, is drawn with a pen like the line's, and has paper to both sides (`strokes`).
+from 1.2 of the line's width (0.6 mm) to 5 mm beyond its edge on each side (ten widths, of wide lines), to 3.5 mm (seven) if it touches the line on one side
+only, stands within 40 degrees of square to it and not further from it than 1.5 mm, is drawn with a pen like the line's, and has paper to both sides.
 """
 
 from __future__ import annotations
