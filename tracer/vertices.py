@@ -9,7 +9,7 @@ and leaves the legs where they are from 3 s / sin(a) on. There they are felt, as
 that is a round one and stays as it is: the lens does not explain it.
 
 Source: the half-plane and the wedge seen through a normal distribution; our own.
-Questions: a round that moves the outline by less than noise does (`EXPLAINED`) is taken for a sharp corner: at a right angle one of 0.08 mm on a scan at 300 dpi.
+Questions: a round that moves the outline by less than noise does (`EXPLAINED`) is taken for a sharp corner: at a right angle one of 0.08 mm at 300 dpi.
 """
 
 from __future__ import annotations
