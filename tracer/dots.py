@@ -69,10 +69,10 @@ def alone(sheet: Sheet, view: View) -> Iterator[Array]:
 
 def _disc(view: View, place: Array) -> tuple[Array, Array] | None:
     """Centre of the round of ink about a place, and the directions in which ink leaves it, rad."""
-    for _ in range(3):
+    for share in (2.5 * ROUND, ROUND, ROUND):  # the place may be beside the middle at first
         reach = spokes(view, place, LARGEST_WIDTHS * view.width_mm)[:, 0]
         usual = float(np.nanmedian(reach)) if np.isfinite(reach).mean() > 0.6 else math.inf
-        even = np.abs(reach - usual) < ROUND * usual
+        even = np.abs(reach - usual) < share * usual
         if not LEAST_WIDTHS * view.width_mm < usual < math.inf or even.mean() < 0.6:
             return None
         place, _, _ = circle_through(place + reach[even, None] * WAYS[even])

@@ -36,7 +36,7 @@ from tracer.survey import SIDES, Side, Way, goes_straight, survey
 from tracer.tangles import Tangles
 from tracer.view import Array, View
 
-BACK_MM = 2.0  # a junction that the head comes back to is no further ahead
+BACK_MM = 4.0  # a junction that the head comes back to is no further ahead: a speck may end the clean line before it
 
 
 @dataclass(slots=True)
@@ -175,7 +175,7 @@ class Follower:
         """The way out of a knot, as the operator has it at a junction, and whether it is the operator's."""
         trail, went = self.carriage.trail, self.carriage.count
         if self._comes_back(incoming):
-            self._junctions.is_back(went)
+            self._junctions.is_back(went, self.carriage.travel_mm)
             return survey(self.view, incoming, trail), True
         number = self._junctions.next(self.carriage.travel_mm)
         side = self._sides[number] if number < len(self._sides) else None

@@ -73,10 +73,11 @@ class Junctions:
         """Whether the head comes back on a guide line to where it took it."""
         return any(np.hypot(*(guide.place_mm - place_mm)) < within_mm for guide in self._out_on())
 
-    def is_back(self, positions: int) -> None:
-        """The head is back from the guide line that it is on."""
+    def is_back(self, positions: int, travel_mm: float) -> None:
+        """The head is back from the guide line that it is on: at that junction still."""
         for guide in self._out_on():
             guide.back = positions
+        self._travel_mm = travel_mm
 
     def _out_on(self) -> list[_Taken]:
         """The guide line from whose end the head is on its way back, if it is."""

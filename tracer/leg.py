@@ -10,7 +10,7 @@ Source: our own (see `knot`).
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numba import njit
@@ -23,6 +23,7 @@ Meeting = tuple[float, float]  # how far two legs meet beyond the one's clean en
 FARTHEST_MM = 10.0  # legs that meet further away do not meet
 
 SPOKE = np.linspace(0.2, 1.0, 17)
+PAPER = 0.6  # of the level: lighter is paper for certain
 SPECK_WIDTHS = 0.4  # ink narrower than this is no stroke
 
 
@@ -210,10 +211,14 @@ def is_tip(view: View, place: Array) -> bool:
 
 
 def lines_from(view: View, centre: Array, radius_mm: float) -> int:
-    """How many strokes leave a place by ink, of those that a ring of cells sees about it; specks are none."""
+    """How many strokes leave a place by ink, of those that a ring of cells sees about it; specks are none.
+
+    Paper on the way to a stroke is lighter than where the way grazes an edge.
+    """
     arcs = _strokes(view, centre, radius_mm)
     ways = np.column_stack([np.cos(arcs.mean(axis=1)), np.sin(arcs.mean(axis=1))])
-    return sum(all(view.dark(centre + share * radius_mm * way) for share in SPOKE) for way in ways)
+    lighter = replace(view, level=PAPER * view.level)
+    return sum(all(lighter.dark(centre + share * radius_mm * way) for share in SPOKE) for way in ways)
 
 
 def lines_on(view: View, centre: Array, radius_mm: float) -> int:

@@ -11,8 +11,8 @@ ends within `LONGEST_MM`, a crossing line goes on beyond it. The foot of the mar
 corner: the line goes straight on through the foot of one.
 
 Source: patent ES 361967, figure 1, stop marks: a line across the contour, or a mark beside it. Questions: the patent gives no sizes. Chosen: a mark reaches
-from 0.8 of the line's width to 5 mm beyond its edge on each side (ten widths, of wide lines), to 3.5 mm (seven) if it touches the line on one side only,
-stands within 40 degrees of square to it and not further from it than 1.5 mm, and is drawn with a pen like the line's.
+from 1.2 of the line's width (0.6 mm) to 5 mm beyond its edge on each side (ten widths, of wide lines), to 3.5 mm (seven) if it touches the line on one side
+only, stands within 40 degrees of square to it and not further from it than 1.5 mm, is drawn with a pen like the line's, and has paper to both sides.
 """
 
 from __future__ import annotations
@@ -117,7 +117,7 @@ def _ticks(view: View, way: Way) -> list[float]:
         if _is_way(view, way, stroke) or (not stroke.touches and any(_is_same(view, stroke, o) for o in every)):
             continue
         across = [o for o in opposite if o.ends and o.straight]
-        if not across and stroke.touches and stroke.reach_mm > longest_mm(view, across=False):
+        if not across and stroke.touches and stroke.length_mm > longest_mm(view, across=False):
             continue  # that is a line that begins here
         feet.append(float(np.mean([foot, *(o.foot_mm for o in across)])))
     return feet

@@ -101,30 +101,57 @@ def _best(
     progress: Callable[[float, float], None] | None,
     number: int,
 ) -> tuple[Line | None, list[Line]]:
-    """The best run from one of some stances, None if there are none; and other runs that are as good: lead lines all."""
-    best, leads = None, list[Line]()
+    """The best run from one of some stances, None if there are none; and other runs that are as good: lead lines all.
+
+    Which of several open ends a lead line begins at is judged without the card's turns: those are counted from there.
+    """
+    follow = partial(_line, sheet, start_mm, settings, progress, number)
+    straight = replace(operator, card=replace(operator.card, turns=()))
+    best, leads = None, list[tuple[Line, Stance, float]]()
     for stance, length_mm in stances:
         if leads and not stance.at_end:
             break
-        told = None if progress is None else partial(_tell, progress, length_mm)
         try:
-            run = _run(stance, start_mm, operator, settings, _longest_mm(sheet.drawing, stance.view.width_mm), told)
+            line = follow(straight if _is_open(stance) else operator, stance, length_mm)
         except LineFault:
             if best is None:
                 raise
             continue
-        line = Line.of(run, number, stance.reference_mm)
-        if line.is_lead and line.reference_mm is not None:
+        if line.is_lead and not _is_open(stance):
             return line, []
         if line.is_lead:
-            leads.append(line)
-        if best is not None and stance.at_end:
-            continue  # another open end is of use only if a lead line begins there
-        best = line if best is None or line.length_mm > best.length_mm else best
+            leads.append((line, stance, length_mm))
+        best = (line, stance, length_mm) if best is None or line.length_mm > best[0].length_mm else best
         plain = not (stance.at_end and line.junctions_mm)  # at a junction a lead line may come in
         if plain and (line.ending == "closed" or (line.length_mm > 0.5 * length_mm and line.ending != "joined")):
             break
-    return (leads[0], leads[1:]) if leads else (best, [])
+    if best is None:
+        return None, []
+    line, stance, length_mm = leads[0] if leads else best
+    if operator.sides and _is_open(stance):
+        line = follow(operator, stance, length_mm)
+    return line, [lead for lead, _, _ in leads[1:]]
+
+
+def _is_open(stance: Stance) -> bool:
+    """Whether the head stands at an open end of a line that is no reference point's."""
+    return stance.at_end and stance.reference_mm is None
+
+
+def _line(
+    sheet: Sheet,
+    start_mm: tuple[float, float] | None,
+    settings: Settings,
+    progress: Callable[[float, float], None] | None,
+    number: int,
+    operator: Operator,
+    stance: Stance,
+    length_mm: float,
+) -> Line:
+    """The line as it is followed from a stance."""
+    told = None if progress is None else partial(_tell, progress, length_mm)
+    run = _run(stance, start_mm, operator, settings, _longest_mm(sheet.drawing, stance.view.width_mm), told)
+    return Line.of(run, number, stance.reference_mm)
 
 
 def _several_lead(lines: list[Line]) -> LineFault:

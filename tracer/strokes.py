@@ -22,12 +22,12 @@ from tracer import photocell
 from tracer.leg import is_tip
 from tracer.view import LEVEL, Array, View
 
-LEAST_WIDTHS = 1.2  # of a stroke, beyond the line's edge
+LEAST_MM, LEAST_WIDTHS = 0.6, 1.2  # of a stroke, beyond the line's edge
 FARTHEST_MM = 1.5  # from the line's edge to a stroke beside it
 SLANT = math.tan(math.radians(40))
 LIKE = (0.5, 1.6)  # a stroke's width, of the line's
 CLEAR_WIDTHS = 1.5  # of paper to both sides of a stroke that touches the line
-APART_WIDTHS = 3.0  # of one that does not: lettering stands beside lines
+APART_MM, APART_WIDTHS = 1.5, 3.0  # of one that does not: lettering stands beside lines
 SOILED, APART_SOILED = 0.15, 0.03  # of that may be ink
 INK = (0.65, 1.4)  # a stroke's darkness, of the line's: one pen draws both
 DASH_MM, DASH_WIDTHS = 2.0, 4.0  # dashes of one line are no further apart
@@ -52,6 +52,11 @@ class Stroke:
         return float(self._line()[1])
 
     @property
+    def length_mm(self) -> float:
+        """How far it reaches beyond the line's edge along itself."""
+        return self.reach_mm * math.hypot(1.0, float(self._line()[0]))
+
+    @property
     def straight(self) -> bool:
         """Whether it is straight, and near enough to square."""
         slant, foot = self._line()
@@ -73,7 +78,7 @@ def felt(
         return None
     nearest, reach = float(seen[:, 1].min()), float(seen[:, 1].max()) - 0.5 * width
     touches = nearest < 0.5 * width + 2 * view.pitch_mm
-    long_enough = reach - max(0.0, nearest - 0.5 * width) > LEAST_WIDTHS * width
+    long_enough = reach - max(0.0, nearest - 0.5 * width) > max(LEAST_MM, LEAST_WIDTHS * width)
     if not long_enough or nearest - 0.5 * width > FARTHEST_MM:
         return None
     where = view.cells, view.pitch_mm, place, along, side
@@ -84,8 +89,9 @@ def felt(
     tips = [seen[np.argmax(seen[:, 1]), :2] - [0, 0.5 * width], seen[np.argmin(seen[:, 1]), :2] + [0, 0.5 * width]]
     at_tips = [is_tip(view, place + u * along + v * across) for u, v in tips[: 1 if touches else 2]]
     ends = reach < longest_mm and all(at_tips) and not _goes_on(*where, middles, others, width, view.level)
-    widths, soiled = (CLEAR_WIDTHS, SOILED) if touches else (APART_WIDTHS, APART_SOILED)
-    is_clear = _soiled(*where, middles, 0.4 * width, widths * width, view.level) < soiled
+    clear_mm = CLEAR_WIDTHS * width if touches else max(APART_MM, APART_WIDTHS * width)
+    soiled = _soiled(*where, middles, 0.4 * width, clear_mm, view.level)
+    is_clear = soiled < (SOILED if touches else APART_SOILED)
     places = place + middles[:, :1] * along + middles[:, 1:2] * across
     return Stroke(side, middles[:, :2] + [at_mm, 0.0], places, touches, ends, reach, is_clear)
 

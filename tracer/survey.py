@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import partial
+from itertools import combinations
 from typing import Literal
 
 import numpy as np
@@ -30,6 +31,11 @@ TURNS_OFF = math.radians(20)  # a leg turns off to a side by more than this
 AHEAD = math.radians(75)  # a lost line is looked for within this of its heading
 SQUARE = math.radians(20)  # two legs that turn off to both sides alike, within this, are a line that the head comes to
 PASSES = math.radians(12)  # two legs in line with each other within this are one line that passes
+SIDEWAYS_WIDTHS = (
+    0.0,
+    1.0,
+    2.0,
+)  # ahead a line that turns back to a side is looked for: its ink runs along with the way in at first
 FARTHEST_WIDTHS = 6.0  # how far the heading is held through a blot, in widths of the line
 
 
@@ -50,11 +56,13 @@ def survey(view: View, incoming: Leg, trail: Trail, rank: int = 0, side: Side | 
     near = half + view.step_mm
     choose = partial(_chosen, incoming, rank, side)
     found = _look(view, incoming, trail, incoming.at(near if ink is None else max(0.0, min(near, ink - half))), choose)
-    if found[0] is not None and side is not None and _is_aside(incoming, found[0], side):
-        return found
+    for widths in SIDEWAYS_WIDTHS if side is not None else ():
+        aside = _look(view, incoming, trail, incoming.at(near + widths * view.width_mm), choose)
+        if aside[0] is not None and side is not None and _is_aside(incoming, aside[0], side):
+            return aside
     if ink is not None and ink - half > near and not goes_straight(incoming, found[0]):
         at_tip = _look(view, incoming, trail, incoming.at(ink - half), choose)
-        found = at_tip if at_tip[0] is not None else found
+        found = found if at_tip[0] is None else (*at_tip[:2], max(found[2], at_tip[2]))
     return found
 
 
@@ -68,6 +76,7 @@ def _look(
         every = legs_around(view, centre, way_in)
         every = _without_marks(view, incoming, every)
         legs = [leg for leg in every if not trail.holds(leg, view.width_mm)]
+        legs = _without_stubs(view, incoming, legs, every)
         choices = max(choices, len(legs) + (len(legs) < len(every)))
         if not legs:
             break
@@ -115,6 +124,18 @@ def _without_marks(view: View, incoming: Leg, legs: list[Leg]) -> list[Leg]:
         leg for leg, mm in zip(legs, reach, strict=True) if mm > longest_mm(view, across=_is_across(leg, legs, reach))
     ]
     return kept or legs
+
+
+def _without_stubs(view: View, incoming: Leg, legs: list[Leg], every: list[Leg]) -> list[Leg]:
+    """The legs but for marks on what has been followed already, however straight on: the head has come back to its lead line.
+
+    Where it crosses a line that it has followed, what lies beyond is its own, and may end soon.
+    """
+    held = [leg for leg in every if not any(leg is other for other in legs)]
+    passing = any(abs(turn(a.heading_rad + math.pi, b.heading_rad)) < SQUARE for a, b in combinations(held, 2))
+    if not held or passing:
+        return legs
+    return [leg for leg in legs if _reach_mm(view, incoming, leg) > longest_mm(view)]
 
 
 def _is_across(leg: Leg, legs: list[Leg], reach_mm: list[float]) -> bool:

@@ -73,3 +73,22 @@ def test_run_takes_a_card(morfax: Morfax, here: Path) -> None:
     answer = morfax("run", CAM, "--card", "part.toml", "-o", "cam", "--json")
     assert answer.exit_code == 0
     assert read_path(here / "cam" / "cam.traced.csv").positions_mm[:, 2].min() == -1.0
+
+
+def test_passes_at_a_stop_are_the_depths_of_the_line_that_begins_there(morfax: Morfax, here: Path) -> None:
+    """The lead line's tick is stop 1: the plate is run at 1 mm and then at 2.5 mm, whatever the card asks for elsewhere."""
+    Path("part.toml").write_text('depth = "4mm"\n[[stop]]\nnumber = 1\npasses = ["1mm", "2.5mm"]\n')
+    answer = morfax("trace", SAMPLES / "program.png", "--card", "part.toml", "-o", "part.csv", "--quiet")
+    assert answer.exit_code == 0, answer.err
+    path = read_path("part.csv")
+    assert [z_mm for z_mm in levels_mm(path.positions_mm[:, 2]) if z_mm < 0] == [-1.0, -2.5]
+    first, second = (path.xy_mm[np.abs(path.positions_mm[:, 2] + depth_mm) < 0.001] for depth_mm in (1.0, 2.5))
+    assert first[:, 0].min() == pytest.approx(21.5, abs=0.05)  # from the tick on
+    assert second[:, 0].min() > 25  # the plate alone
+    assert np.ptp(second[:, 1]) == pytest.approx(np.ptp(first[:, 1]), abs=0.01)
+
+
+def test_passes_at_a_stop_that_do_not_go_deeper_are_refused(morfax: Morfax, here: Path) -> None:
+    Path("part.toml").write_text('[[stop]]\nnumber = 1\npasses = ["2mm", "1mm"]\n')
+    answer = morfax("trace", SAMPLES / "program.png", "--card", "part.toml", "-o", "part.csv")
+    assert answer.exit_code == 9 and "passes[2]" in answer.fault and not Path("part.csv").exists()

@@ -7,8 +7,10 @@ import math
 import numpy as np
 import pytest
 
+from motion.faults import LineFault
 from tests.tracer.inked import UM, arc, inked, polyline, tick
 from tracer.loop import comes_again, loop_in
+from tracer.operator import Operator
 from tracer.sequence import trace
 
 STEP_MM = 0.01
@@ -83,3 +85,35 @@ def test_of_several_open_ends_the_lead_line_is_begun_at() -> None:
     lines = [polyline((8, 16), (24, 16)), tick((18, 16)), polyline((44, 16), (36, 16)), polyline((34, 26), (34, 19))]
     line = trace(inked(CIRCLE, *lines, seed=5)).lines[0]
     assert line.is_lead and math.dist(line.start_mm, (8, 16)) < 50 * UM
+
+
+def test_two_lead_lines_without_a_reference_point_are_asked_about() -> None:
+    """Each bears a tick: nothing on the drawing says which leads, but the operator may."""
+    lines = [polyline((8, 16), (24, 16)), tick((18, 16)), polyline((60, 16), (44, 16)), tick((50, 16))]
+    drawing = inked(CIRCLE, *lines, seed=5)
+    with pytest.raises(LineFault, match=r"2 lines with a tick lead to the contour, .* draw a cross or ring .* --start"):
+        trace(drawing)
+    for start in ((8, 16), (60, 16)):
+        assert math.dist(trace(drawing, start).lines[0].start_mm, start) < 50 * UM
+        named = trace(drawing, operator=Operator(reference_mm=start))
+        assert math.dist(named.lines[0].start_mm, start) < 50 * UM
+
+
+@pytest.mark.parametrize("width_mm", [0.3, 0.5, 0.8])
+@pytest.mark.parametrize("slant_deg", [-40, 0, 40])
+def test_a_lead_line_with_a_tick_near_its_join_goes_to_the_very_place_and_comes_back_there(
+    slant_deg: float, width_mm: float
+) -> None:
+    """A corner's vertex is right to 50 um, though between tick and contour only a millimetre of line is clean."""
+    a = math.radians(slant_deg)
+    way = np.array([math.cos(a), math.sin(a)])
+    join = np.array([24.0, 16.0])
+    near = tuple(join - (1.5 + width_mm) * way)
+    drawing = inked(
+        CIRCLE, polyline(tuple(join - 14 * way), tuple(join)), tick(near, slant_deg), width_mm=width_mm, seed=5
+    )
+    line = trace(drawing).lines[0]
+    assert line.is_lead and line.loop_from is not None and len(line.marks) == 1
+    assert math.dist(line.marks[0].place_mm, near) < 50 * UM
+    assert np.hypot(*(line.xy_mm - join).T).min() < 50 * UM
+    assert line.length_mm == pytest.approx(14 + 20 * math.pi, abs=1.0)

@@ -6,6 +6,7 @@ The issue asks for 50 um from the tick's centre; on scans of 300 dpi it is 3 um 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -85,6 +86,9 @@ NO_MARKS = {
     "a sharp tip": [polyline((5, 5), (30, 9), (5, 13), (5, 5))],
     "a line beside the line": [LINE, polyline((4, 13.5), (34, 13.5))],
     "a reference point": [polyline((10, 12), (34, 12)), *cross((8, 12))],
+    "a crossing line in dashes": [LINE, *(polyline((20, y), (20, y + 2.6)) for y in (2.5, 6.6, 10.7, 14.8, 18.9))],
+    "lettering": [LINE, *(polyline((x, 13.5), (x, 16.5)) for x in (17, 18.6, 20.2, 21.8))],
+    "a stub": [LINE, polyline((20, 12), (20, 12.5))],
 }
 
 
@@ -92,3 +96,28 @@ NO_MARKS = {
 @pytest.mark.parametrize("width_mm", [0.3, 0.5, 0.8])
 def test_what_is_no_mark(lines: list[np.ndarray], width_mm: float) -> None:
     assert marks(*lines, width_mm=width_mm).marks == ()
+
+
+def test_what_another_pen_drew_is_no_mark() -> None:
+    drawing = inked(LINE, tick((20, 12)), width_mm=0.5, seed=7)
+    x_mm, y_mm = ((np.arange(n) + 0.5) * drawing.pitch_mm for n in drawing.darkness.shape[::-1])
+    on_tick = (np.abs(x_mm - 20) < 0.5)[None, :] & (np.abs(y_mm[::-1] - 12) > 0.3)[:, None]
+    pencil = replace(drawing, darkness=np.where(on_tick, 1.0, 0.6).astype(np.float32) * drawing.darkness)
+    assert len(trace(drawing).lines[0].marks) == 1 and trace(pencil).lines[0].marks == ()
+
+
+def test_on_a_line_of_two_pixels_no_mark_is_read() -> None:
+    assert marks(LINE, tick((20, 12)), width_mm=0.3, dpi=150).marks == ()
+
+
+def test_a_tick_that_nearly_touches_another_line_ends_all_the_same() -> None:
+    for width_mm in (0.3, 0.5, 0.8):
+        other = polyline((4, 14.2 + width_mm), (34, 14.2 + width_mm))  # 0.2 mm of paper between
+        line = trace(inked(LINE, tick((20, 12), before_mm=2, beyond_mm=2), other, width_mm=width_mm, seed=7), (5, 12))
+        assert off_mm(line.lines[0], (20, 12))[0] < STANDS_WITHIN_MM
+
+
+def test_a_tick_near_a_corner_is_a_mark_of_its_own_side_only() -> None:
+    sides = polyline((4, 4), (14, 20), (24, 4))
+    stroke = tick((16.2, 16.5), math.degrees(math.atan2(-16, 10)))
+    assert off_mm(marks(sides, stroke, width_mm=0.8), (16.1875, 16.5))[0] < STANDS_WITHIN_MM

@@ -38,9 +38,20 @@ def test_a_cross_apart_from_its_lead_line(size_mm: float, apart_mm: float, width
     stands_at(lead_line(polyline(start, JOIN), *cross(AT, size_mm), width_mm=width_mm), AT)
 
 
-@pytest.mark.parametrize("turn_deg", [0.0, 45.0, 52.0])
-def test_a_cross_with_the_lead_line_from_its_middle(turn_deg: float) -> None:
-    stands_at(lead_line(polyline(AT, JOIN), *cross(AT, 4.0, turn_deg)), AT)
+@pytest.mark.parametrize("width_mm", [0.3, 0.5, 0.8])
+@pytest.mark.parametrize("turn_deg", [0.0, 4.0, 9.0, 15.0, 22.0, 30.0, 45.0, 52.0])
+def test_a_cross_with_the_lead_line_from_its_middle_at_any_angle_to_its_arms(turn_deg: float, width_mm: float) -> None:
+    stands_at(lead_line(polyline(AT, JOIN), *cross(AT, 4.0, turn_deg), width_mm=width_mm), AT)
+
+
+def test_a_speck_of_paper_on_an_arm_and_one_of_ink_in_a_ring_are_no_matter() -> None:
+    speck = np.array([[7.8, 13.8], [7.9, 13.8], [7.9, 13.9]])
+    drawing = inked(CIRCLE, polyline((9, 14), JOIN), arc(AT, 2), seed=3, specks=[speck])
+    stands_at(trace(drawing).lines[0], AT)
+    drawing = inked(CIRCLE, polyline((11, 14), JOIN), *cross(AT, 4.0), seed=3)
+    row, column = (int(k / drawing.pitch_mm) for k in (drawing.height_mm - 15.0, 7.0))
+    drawing.darkness[row : row + 2, column - 1 : column + 1] = 0.0
+    stands_at(trace(drawing).lines[0], AT)
 
 
 @pytest.mark.parametrize("size_mm", [3.0, 6.0])
@@ -67,6 +78,8 @@ NONE = {
     "a small square": polyline((5, 12), (9, 12), (9, 16), (5, 16), (5, 12)),
     "a letter T": np.array([[5.0, 16], [9, 16], [7, 16], [7, 12]]),
     "a stroke": polyline((5, 14), (8, 14)),
+    "a cross with unequal arms": np.array([[4.0, 14], [10, 14], [6, 14], [6, 15.2], [6, 12.8]]),
+    "an oblique cross": np.array([[5.0, 14], [9, 14], [7, 14], [8.7, 15], [5.3, 13]]),
 }
 
 

@@ -1,0 +1,45 @@
+"""`--edge` by its behaviour."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from motion.contour import distance
+from motion.pathfile import read_path
+from tests.console.conftest import SAMPLES, Morfax
+from tests.tracer.inked import UM, arc, polyline
+from tests.tracer.test_silhouette import CIRCLE, STEPPED, filled
+
+
+def test_the_edge_is_traced_and_compared(morfax: Morfax, here: Path) -> None:
+    sheet = filled(here / "plate.png", STEPPED)
+    assert morfax("trace", sheet, "--edge", "-o", "plate.csv", "--quiet").exit_code == 0
+    assert distance(read_path(here / "plate.csv"), STEPPED).hausdorff_mm < 30 * UM
+    compared = morfax("compare", sheet, "plate.csv", "--edge", "--json")
+    assert compared.figures["path_to_ink"]["rms_mm"] < 0.005
+
+
+def test_all_lines_takes_the_holes_before_the_outside(morfax: Morfax, here: Path) -> None:
+    holes = arc((12, 16), 2), arc((20, 16), 2)
+    sheet = filled(here / "plate.png", CIRCLE, holes=holes)
+    answer = morfax("trace", sheet, "--edge", "--lines", "all", "-o", "plate.csv", "--json")
+    assert answer.exit_code == 0
+    path = read_path(here / "plate.csv")
+    assert distance(path, [CIRCLE, *holes]).hausdorff_mm < 30 * UM
+    cut = path.xy_mm[path.tool > 0]
+    radii = np.hypot(*(cut - [16, 16]).T)
+    assert np.flatnonzero(radii < 7).max() < np.flatnonzero(radii > 9).min()
+
+
+def test_what_has_no_edge_is_refused_with_one_line(morfax: Morfax, here: Path) -> None:
+    cut = filled(here / "cut.png", polyline((20, 8), (40, 8), (40, 20), (20, 20), (20, 8)))
+    kept = set(here.iterdir())
+    for sheet, told in (
+        (cut, "a filled shape is cut by the border of the sheet at"),
+        (SAMPLES / "cam.png", "leave --edge out to follow lines"),
+    ):
+        answer = morfax("trace", sheet, "--edge", "-o", "none.csv")
+        assert answer.exit_code == 3 and told in answer.fault
+    assert set(here.iterdir()) == kept

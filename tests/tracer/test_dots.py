@@ -1,0 +1,76 @@
+"""Dots on drawings of known geometry: their middles, and what is none."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from tests.tracer.inked import UM, arc, dot, inked, polyline
+from tracer import dots
+from tracer.drawing import Drawing
+from tracer.leg import leg_of
+from tracer.lines import Sheet
+from tracer.stance import view_of
+from tracer.view import View
+
+WITHIN_MM = 20 * UM  # a quarter of a pixel at 300 dpi
+LINE = polyline((4, 12), (24, 12))
+AT = (24.0, 12.0)
+
+
+def seen(drawing: Drawing, width_mm: float = 0.5) -> View:
+    return view_of(Sheet.of(drawing), None, width_mm)
+
+
+def at_end(across_mm: float, width_mm: float = 0.5, centre: tuple[float, float] = AT) -> float | None:
+    """How far from a dot's middle it is found at the end of a line, mm; None if it is not."""
+    view = seen(inked(LINE, width_mm=width_mm, seed=5, specks=[dot(centre, across_mm)]), width_mm)
+    leg = leg_of(view.feel(np.array([20.0, 12.0]), 0.0, 5.0), True, view.leg_mm)
+    found = dots.dot_at_end(view, leg)
+    return None if found is None else math.dist(found, centre)
+
+
+@pytest.mark.parametrize("width_mm", [0.3, 0.5, 0.8])
+@pytest.mark.parametrize("widths", [2.0, 3.0, 8.0])
+def test_the_middle_of_a_dot_at_which_a_line_ends(widths: float, width_mm: float) -> None:
+    off_mm = at_end(widths * width_mm, width_mm)
+    assert off_mm is not None and off_mm < WITHIN_MM
+
+
+def test_a_dot_beside_the_line_s_own_end_is_drilled_in_its_middle_too() -> None:
+    off_mm = at_end(2.0, centre=(24.0, 12.2))
+    assert off_mm is not None and off_mm < WITHIN_MM
+
+
+@pytest.mark.parametrize("across_mm", [0.5, 0.7, 7.0])
+def test_the_pen_s_own_end_and_a_patch_are_no_dots(across_mm: float) -> None:
+    assert at_end(across_mm) is None
+
+
+def test_a_speck_of_paper_in_a_dot_is_no_line_that_leaves_it() -> None:
+    drawing = inked(LINE, seed=5, specks=[dot(AT, 1.8)])
+    row, column = int(drawing.darkness.shape[0] - 12.6 / drawing.pitch_mm), int(24.4 / drawing.pitch_mm)
+    drawing.darkness[row - 1 : row + 1, column - 1 : column + 1] = 0.0
+    view = seen(drawing)
+    leg = leg_of(view.feel(np.array([20.0, 12.0]), 0.0, 5.0), True, view.leg_mm)
+    found = dots.dot_at_end(view, leg)
+    assert found is not None and math.dist(found, AT) < WITHIN_MM
+
+
+def test_a_line_goes_on_from_a_dot_only_along_its_heading() -> None:
+    turned = inked(polyline((4, 12), AT, (24, 20)), seed=5, specks=[dot(AT, 1.8)])
+    through = inked(polyline((4, 12), (34, 12)), seed=5, specks=[dot(AT, 1.8)])
+    along = np.array([1.0, 0.0])
+    assert dots.disc(seen(turned), np.array(AT), along) is None
+    found = dots.disc(seen(through), np.array(AT), along)
+    assert found is not None and math.dist(found, AT) < WITHIN_MM
+
+
+def test_dots_alone_on_the_paper_are_found_and_rings_squares_and_blots_are_not() -> None:
+    square = np.array([[30.0, 5], [32, 5], [32, 7], [30, 7]])
+    drawing = inked(LINE, arc((10, 5), 1.2), seed=5, specks=[dot((16, 6), 1.6), dot((22, 5), 3.0), square])
+    found = sorted(tuple(centre) for centre in dots.alone(Sheet.of(drawing), seen(drawing)))
+    assert len(found) == 2
+    assert [math.dist(a, b) < WITHIN_MM for a, b in zip(found, [(16, 6), (22, 5)], strict=True)] == [True, True]

@@ -1,0 +1,91 @@
+"""Junctions counted once each, and guide lines from where they were left to where the line goes on; both by hand and on drawings."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from tests.tracer.inked import UM, arc, dot, inked, polyline
+from tracer.card import Card
+from tracer.junctions import AGAIN_MM, Guide, Junctions
+from tracer.line import Line
+from tracer.operator import Operator
+from tracer.sequence import trace
+
+HERE, THERE = np.array([10.0, 0.0]), np.array([20.0, 0.0])
+WITHIN_MM = 50 * UM  # as a corner's vertex
+PLATE = arc((30, 20), 12)
+LEAD = polyline((4, 20), (18, 20))
+
+
+def test_a_junction_counts_once_while_the_head_is_at_it() -> None:
+    junctions = Junctions()
+    for place, travel_mm in ((HERE, 10.0), (HERE, 10.0 + AGAIN_MM / 2), (THERE, 20.0)):
+        junctions.come_to(place, travel_mm)
+    assert junctions.places_mm == [(10.0, 0.0), (20.0, 0.0)]
+    assert junctions.next(20.0) == 1 and junctions.next(20.0 + 2 * AGAIN_MM) == 2
+
+
+def test_a_guide_line_is_left_for_ends_and_is_come_back_from() -> None:
+    junctions = Junctions()
+    out, back = np.linspace([10, 0], [10, 5], 51), np.linspace([10, 5], [10, 0], 51)
+    way = np.vstack([np.linspace([0, 0], [10, 0], 101), out, back, np.linspace([10, 0], [20, 0], 101)])
+    junctions.take(HERE, 95)
+    assert not junctions.comes_back(HERE, 1.0)  # not before it has been to the end
+    assert junctions.turn_round(152) and junctions.comes_back(HERE, 1.0) and not junctions.comes_back(THERE, 1.0)
+    junctions.is_back(200, 30.0)
+    assert junctions.next(31.0) == -1 + len(junctions.places_mm) or not junctions.places_mm
+    assert not junctions.comes_back(HERE, 1.0) and not junctions.turn_round(250)
+    (guide,) = junctions.guides(way)
+    assert isinstance(guide, Guide) and guide.tip == 151
+    assert way[guide.leave] == pytest.approx(HERE) and way[guide.back] == pytest.approx(HERE)
+
+
+def test_the_end_of_a_line_that_is_no_guide_is_the_end() -> None:
+    assert not Junctions().turn_round(100)
+
+
+# on drawings
+
+
+def traced(*lines: np.ndarray, turns: str = "[]", width_mm: float = 0.5, dots: tuple[np.ndarray, ...] = ()) -> Line:
+    operator = Operator(card=Card.parse(f"turns = {turns}\n"))
+    return trace(inked(LEAD, PLATE, *lines, width_mm=width_mm, seed=11, specks=dots), (4, 20), operator=operator).lines[
+        0
+    ]
+
+
+def guide(at_deg: float, slant_deg: float, length_mm: float = 8.0) -> np.ndarray:
+    """A guide line inward from the plate, so far from square to it."""
+    a = math.radians(at_deg)
+    foot = np.array([30 + 12 * math.cos(a), 20 + 12 * math.sin(a)])
+    way = math.radians(at_deg + 180 + slant_deg)
+    return np.array([foot, foot + length_mm * np.array([math.cos(way), math.sin(way)])])
+
+
+@pytest.mark.parametrize("width_mm", [0.3, 0.8])
+@pytest.mark.parametrize("slant_deg", [-45.0, 0.0, 45.0])
+def test_a_junction_is_where_its_lines_meet_whether_it_is_taken_or_passed(slant_deg: float, width_mm: float) -> None:
+    off = guide(60, slant_deg)
+    for turns, guides in (('["left"]', 0), ('["left", "right"]', 1)):
+        line = traced(off, turns=turns, width_mm=width_mm)  # clockwise: what lies inside is on the right
+        assert len(line.junctions_mm) == 2 and len(line.guides) == guides
+        assert math.dist(line.junctions_mm[0], LEAD[1]) < width_mm
+        assert math.dist(line.junctions_mm[1], off[0]) < 0.5 * width_mm
+
+
+def test_coming_back_from_a_guide_line_counts_no_junction_and_takes_no_turn() -> None:
+    first, second = guide(60, 40), guide(-60, 0)
+    line = traced(first, second, turns='["left", "right", "right"]')
+    assert line.is_lead is False and line.ending == "joined" and len(line.junctions_mm) == 3
+    tips = [line.xy_mm[taken.tip] for taken in line.guides]
+    assert [math.dist(a, b) < WITHIN_MM for a, b in zip(tips, (first[1], second[1]), strict=True)] == [True, True]
+
+
+def test_a_guide_line_ends_in_the_middle_of_its_dot_though_it_comes_askew() -> None:
+    off = guide(60, 20)
+    centre = (float(off[1, 0]) + 0.2, float(off[1, 1]))
+    line = traced(off, turns='["left", "right"]', dots=(dot(centre, 2.0),))
+    assert math.dist(line.xy_mm[line.guides[0].tip], centre) < WITHIN_MM

@@ -1,0 +1,124 @@
+"""Lines cut one after the other: where the tool is up and down, the way back along a lead line, and what the whole says of itself."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from motion.faults import LineFault
+from motion.motion import MOTION_RATE_HZ, join
+from tracer.card import Card
+from tracer.line import Line
+from tracer.marks import Mark
+from tracer.operator import Operator, Work
+from tracer.program import BRAKE_MM_S2, Trace
+from tracer.view import Array
+
+WORK = Work(depth_mm=4.0, clearance_mm=2.0)
+STEP_MM = 10.0 / MOTION_RATE_HZ  # of a head at 10 mm/s
+EXACT_MM = 1e-9  # double precision
+WITHIN_MM = 0.05  # of a way that is run from memory by places 0.1 mm apart, which cut a corner by half of that
+
+
+def run_through(*corners: tuple[float, float]) -> Array:
+    """Positions of a head that runs from corner to corner at 10 mm/s, (n, 2) mm."""
+    nodes = np.array(corners)
+    lengths = np.r_[0.0, np.cumsum(np.hypot(*np.diff(nodes, axis=0).T))]
+    at = np.arange(0.0, lengths[-1] + STEP_MM / 2, STEP_MM)
+    return np.column_stack([np.interp(at, lengths, nodes[:, k]) for k in (0, 1)])
+
+
+def at(way: Array, place: tuple[float, float]) -> int:
+    """The position of a way that is nearest to a place."""
+    return int(np.argmin(np.hypot(*(way - place).T)))
+
+
+LEAD = run_through((0, 0), (10, 0), (10, 8), (18, 8), (18, 0), (10.01, 0))
+TICK = Mark("tick", (6.0, 0.0), float(at(LEAD, (6, 0))))
+LINE = Line(
+    LEAD, "joined", 0.5, 42.0, loop_from=at(LEAD, (10, 0)), marks=(TICK,), reference_mm=(-3.0, 0.0)
+)  # a reference point 3 mm before the lead line, a tick on that, and a square
+OPEN = Line(run_through((30, 0), (40, 0)), "ended", 0.5, 10.0, number=2)
+
+
+def moved(*lines: Line, operator: Operator | None = None) -> Array:
+    return join(Trace(lines, operator or Operator(WORK))).positions_mm
+
+
+def in_work(positions: Array) -> Array:
+    """The places at which the tool is in the work, (n, 2) mm."""
+    return positions[positions[:, 2] < 0, :2]
+
+
+def test_a_lead_line_s_program_begins_and_ends_at_the_reference_point_with_the_tool_raised() -> None:
+    positions = moved(LINE)
+    for end in (positions[0], positions[-1]):
+        assert end == pytest.approx([-3.0, 0.0, WORK.clearance_mm], abs=EXACT_MM)
+
+
+def test_the_tool_is_in_the_work_from_the_tick_on_and_round_the_loop_only() -> None:
+    cut = in_work(moved(LINE))
+    assert cut[:, 0].min() == pytest.approx(6.0, abs=EXACT_MM)
+    assert cut[:, 0].max() == pytest.approx(18.0, abs=STEP_MM) and cut[:, 1].max() == pytest.approx(8.0, abs=STEP_MM)
+    assert cut[-1] == pytest.approx([10.0, 0.0], abs=0.02)
+
+
+def test_the_tool_goes_back_along_the_lead_line() -> None:
+    bent = run_through((0, 0), (5, 5), (10, 0), (10, 8), (18, 8), (18, 0), (10.01, 0))
+    line = Line(bent, "joined", 0.5, 46.0, loop_from=at(bent, (10, 0)), reference_mm=(0.0, 0.0))
+    positions = moved(line)
+    back = positions[np.flatnonzero(positions[:, 2] < 0)[-1] :, :2]
+    assert back[:, 1].max() == pytest.approx(5.0, abs=WITHIN_MM)  # round the bend, not straight to the end
+
+
+def test_x_and_y_never_move_with_z_nor_leap() -> None:
+    positions = moved(LINE, OPEN)
+    steps = np.diff(positions, axis=0)
+    assert not np.any((steps[:, 2] != 0) & np.any(steps[:, :2] != 0, axis=1))
+    assert np.abs(steps).max() * MOTION_RATE_HZ < WORK.rapid_mm_s * 1.01
+
+
+def test_x_and_y_come_to_rest_where_the_tool_goes_down() -> None:
+    positions = moved(LINE)
+    down = int(np.flatnonzero(np.diff(positions[:, 2]) < 0)[0])
+    speeds = np.hypot(*np.diff(positions[:down, :2], axis=0).T) * MOTION_RATE_HZ
+    assert speeds[speeds > 0][-1] < np.sqrt(2 * BRAKE_MM_S2 * STEP_MM)  # the last step is one of braking
+
+
+def test_from_line_to_line_the_tool_goes_straight_at_clearance() -> None:
+    positions = moved(LINE, OPEN)
+    over = positions[(positions[:, 0] > 18.1) & (positions[:, 0] < 29.9)]
+    assert len(over) and np.all(over[:, 2] == WORK.clearance_mm) and np.abs(over[:, 1]).max() < EXACT_MM
+    assert Trace((LINE, OPEN)).idle_mm == pytest.approx(33.0)
+
+
+def test_each_pass_of_a_loop_is_run_on_at_the_next_depth_and_the_tick_stops_the_first_only() -> None:
+    positions = moved(LINE, operator=Operator(replace(WORK, passes_mm=(1.0, 2.0))))
+    levels = positions[np.r_[True, np.diff(positions[:, 2]) != 0] & np.r_[np.diff(positions[:, 2]) == 0, True], 2]
+    assert levels.tolist() == [2.0, -1.0, -2.0, -4.0, 2.0]
+    assert in_work(positions)[:, 0].min() == pytest.approx(6.0, abs=EXACT_MM)
+    deepest = positions[positions[:, 2] == -4.0, :2]
+    assert deepest[:, 0].min() == pytest.approx(10.0, abs=0.02)  # the loop alone
+
+
+def test_passes_asked_for_at_the_stop_where_the_tool_goes_down_are_that_line_s() -> None:
+    operator = Operator(WORK, Card.parse('[[stop]]\nnumber = 1\npasses = ["1mm", "3mm"]\n'))
+    lows = np.unique(moved(LINE, operator=operator)[:, 2].round(6))
+    assert lows.min() == -3.0 and -1.0 in lows and -4.0 not in lows
+
+
+def test_a_line_that_was_lost_is_cut_as_far_as_it_goes_and_named() -> None:
+    fault = LineFault("line lost at 40.00,0.00 mm", x_mm=40.0, y_mm=0.0, heading_rad=0.0)
+    lost = Line(OPEN.xy_mm, "lost", 0.5, 10.0, fault, number=2)
+    both = Trace((LINE, lost), Operator(WORK))
+    assert both.ending == "lost" and str(both.fault).startswith("line 2 of 2 is incomplete")
+    assert Trace((lost,)).fault is fault
+    assert in_work(join(both).positions_mm)[:, 0].max() == pytest.approx(40.0, abs=STEP_MM)
+
+
+def test_duration_length_and_reference_are_those_of_the_lines() -> None:
+    program = Trace((LINE, OPEN), Operator(WORK))
+    assert program.duration_s == pytest.approx(len(join(program).positions_mm) / MOTION_RATE_HZ)
+    assert program.length_mm == 52.0 and program.reference_mm == (-3.0, 0.0) and program.start_mm == (0.0, 0.0)
