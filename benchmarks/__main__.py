@@ -14,7 +14,7 @@ def main(names: list[str]) -> None:
         importlib.import_module("benchmarks.folder").main(names[1:])
         return
     here = [module.name for module in pkgutil.iter_modules([str(Path(__file__).parent)])]
-    for name in names or [name for name in here if not name.startswith("_")]:
+    for name in names or [name for name in here if not name.startswith("_") and name != "folder"]:
         run = getattr(importlib.import_module(f"benchmarks.{name}"), "main", None)
         if run is not None:
             run()

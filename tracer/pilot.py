@@ -8,7 +8,7 @@ Source: our own (see `knot`, `course` and `riding`).
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -24,6 +24,7 @@ from tracer.view import Array, View
 
 SMOOTH = math.radians(14)  # a smaller change of heading is no corner
 LEAST_GAP_PX = 2.5  # a scan can lose this much of a line
+FAINTER = 0.5  # a line that becomes lighter at once goes on with so much of its darkness
 FAR_WIDTHS = 4.0  # to where the line goes on clean
 
 
@@ -44,7 +45,10 @@ class Pilot:
             if course.on_ink(self.view, planned.stretches):
                 return planned, choices
             choices = 0  # that leg is another line's
-        outgoing = straight_on(self.view, incoming, max(self.settings.gap_mm, LEAST_GAP_PX * self.view.pitch_mm))
+        gap_mm = max(self.settings.gap_mm, LEAST_GAP_PX * self.view.pitch_mm)
+        outgoing = straight_on(self.view, incoming, gap_mm)
+        if outgoing is None and not choices:
+            outgoing = straight_on(replace(self.view, level=FAINTER * self.view.level), incoming, gap_mm)
         if outgoing is not None and choices and self._goes_back(outgoing.seen):
             return None, choices
         if outgoing is None and self.settings.recatch_mm > 0:

@@ -65,7 +65,7 @@ def trace_lines(
             left_out += 1
         else:
             lines.append(line)
-    if which == "all":
+    if which == "all" and asked:
         holes = _dots(sheet, asked, settings or Settings())
         lines, left_out = lines + holes, left_out - len(holes)
     again = partial(_turned_round, sheet, settings=settings or Settings(), operator=operator)

@@ -23,6 +23,7 @@ from tracer.view import Array
 
 CLEAR = 0.25  # misfit up to which a way explains the ink
 LEAST_CLEAR, BETTER = 1.0, 0.25  # up to this for two legs far apart, if it is so much better than the plan
+FEW = 2.5  # vertices: no more for that, if the plan leads there too
 TWICE, LEAST_MISFIT = 2.0, 0.02  # one way explains the ink as well as another: so many times its misfit, and more
 DOUBTFUL = 0.08  # straight on stands unless the ink tells against it by more
 AS_GOOD = 0.05  # misfit of a plan that needs no other to be compared with
@@ -49,7 +50,10 @@ def unravelled(
     best: dict[int, Way] = {}
     for way in every:
         leg = _partner(way)
-        if leg is not None and way.misfit < clear and not trail.holds(tangle.legs[leg], view.width_mm):
+        if leg is None or trail.holds(tangle.legs[leg], view.width_mm):
+            continue
+        there = plan is not None and same_line(plan.leg, tangle.legs[leg], view.width_mm)
+        if way.misfit < (CLEAR if there and way.cost - way.misfit > FEW * VERTEX else clear):
             best.setdefault(leg, way)
     if not best:
         return plan, None, []
@@ -96,6 +100,8 @@ def _is_mark(sketch: Sketch, way: Way, plan: Planned) -> bool:
     beside_mm = aside_mm(_own(way), plan.stretches)
     if beside_mm >= longest_mm(sketch.view):
         return False
+    if way.misfit > CLEAR:
+        return True
     scribble = way.misfit > WELL_MM2 / width_mm**2 and way.cost - way.misfit > BLOT_VERTICES * VERTEX
     if scribble and beside_mm < BLOT_WIDTHS * width_mm:
         return True

@@ -12,6 +12,7 @@ from tracer import dots
 from tracer.drawing import Drawing
 from tracer.leg import leg_of
 from tracer.lines import Sheet
+from tracer.sequence import trace
 from tracer.stance import view_of
 from tracer.view import View
 
@@ -74,3 +75,12 @@ def test_dots_alone_on_the_paper_are_found_and_rings_squares_and_blots_are_not()
     found = sorted(tuple(centre) for centre in dots.alone(Sheet.of(drawing), seen(drawing)))
     assert len(found) == 2
     assert [math.dist(a, b) < WITHIN_MM for a, b in zip(found, [(16, 6), (22, 5)], strict=True)] == [True, True]
+
+
+def test_a_line_goes_on_through_a_dot_where_it_came_in() -> None:
+    """The dot is no spike to be gone round: the way through it is as straight as elsewhere."""
+    for width_mm in (0.3, 0.8):
+        drawing = inked(arc((16, 16), 10), width_mm=width_mm, seed=5, specks=[dot((26, 16), 2.4 * width_mm)])
+        line = trace(drawing).lines[0]
+        away_mm = np.abs(np.hypot(*(line.xy_mm - 16).T) - 10)
+        assert [mark.kind for mark in line.marks] == ["dot"] and away_mm.max() < 4 * WITHIN_MM

@@ -13,7 +13,7 @@ from PIL import Image
 from motion.contour import distance
 from motion.faults import DrawingFault
 from motion.motion import thin
-from tests.tracer.inked import UM, arc, inked, polyline
+from tests.tracer.inked import UM, Points, arc, inked, polyline
 from tracer.drawing import Drawing
 from tracer.ink import parsed
 from tracer.sequence import trace
@@ -52,6 +52,39 @@ def _alike(drawing: Drawing, shape: tuple[int, ...]) -> NDArray[np.float32]:
 def rms_mm(file: Path, ink: str | None) -> float:
     """How far the path is from the true circle, mm RMS."""
     return distance(thin(trace(Drawing.open(file, ink=ink), (26, 16))), CIRCLE).path_to_reference.rms_mm
+
+
+RED, BLACK = (0xD0, 0x20, 0x30), (30, 30, 30)
+CHORDS = [polyline((2, 10), (28, 19)), polyline((5, 28), (22, 3))]
+
+
+def among(file: Path, second: tuple[int, int, int], lines: list[Points], *, over: bool) -> Path:
+    """The blue circle on an orange grid, and lines of a second other ink printed over it, or under it."""
+    grid = [polyline((k, 0), (k, 30)) for k in range(3, 30, 5)] + [polyline((0, k), (30, k)) for k in range(3, 30, 5)]
+    share = inked(CIRCLE, *grid).darkness.shape
+    own, other = (BLUE, [CIRCLE], 0.5), (second, lines, 0.35)
+    picture = np.ones((*share, 3)) * PAPER
+    for colour, strokes, width_mm in ((ORANGE, grid, 0.25), *((own, other) if over else (other, own))):
+        ink = _alike(inked(*strokes, width_mm=width_mm), share)
+        picture += ink[..., None] * (np.array(colour) - picture)
+    picture += np.random.default_rng(1).normal(0, NOISE, picture.shape)
+    Image.fromarray(np.clip(np.round(picture), 0, 255).astype(np.uint8)).save(file, dpi=(300, 300), quality=90)
+    return file
+
+
+@pytest.mark.parametrize("suffix", [".png", ".jpg"])
+@pytest.mark.parametrize(
+    ("second", "lines", "over"), [(RED, [arc((20, 20), 8)], False), (BLACK, CHORDS, True), (BLACK, CHORDS, False)]
+)
+def test_two_other_inks_are_passed_over(
+    tmp_path: Path, second: tuple[int, int, int], lines: list[Points], over: bool, suffix: str
+) -> None:
+    run = trace(Drawing.open(among(tmp_path / f"sheet{suffix}", second, lines, over=over), ink="#0000c0"), (26, 16))
+    found = distance(thin(run), CIRCLE)
+    assert run.ending == "closed"
+    # JPEG keeps colours in squares of 16 pixels: where black covers the blue, what shows beside it is off by a tenth of the line
+    assert found.path_to_reference.rms_mm < (15 if suffix == ".jpg" else 6) * UM, found
+    assert found.hausdorff_mm < (80 if suffix == ".jpg" else 30) * UM, found
 
 
 @pytest.mark.parametrize("grid", [ORANGE, GREY], ids=["orange", "grey"])
