@@ -47,14 +47,7 @@ def unravelled(
     if _partner(every[0]) is None:
         return plan, None, []  # the line ends here, on another
     clear = max(CLEAR, min(BETTER * planned, LEAST_CLEAR)) if two else CLEAR
-    best: dict[int, Way] = {}
-    for way in every:
-        leg = _partner(way)
-        if leg is None or trail.holds(tangle.legs[leg], view.width_mm):
-            continue
-        there = plan is not None and same_line(plan.leg, tangle.legs[leg], view.width_mm)
-        if way.misfit < (CLEAR if there and way.cost - way.misfit > FEW * VERTEX else clear):
-            best.setdefault(leg, way)
+    best = _by_leg(sketch, every, trail, plan, clear)
     if not best:
         return plan, None, []
     leg, straight = next(iter(best)), False
@@ -73,6 +66,20 @@ def unravelled(
     ):
         return plan, way, as_good
     return Planned(stretches_over(way_in, incoming, _own(way), tangle.legs[leg]), tangle.legs[leg]), way, as_good
+
+
+def _by_leg(sketch: Sketch, every: list[Way], trail: Trail, plan: Planned | None, clear: float) -> dict[int, Way]:
+    """The best way to each leg that has not been followed, the best first, of those that explain the ink."""
+    view, legs = sketch.view, sketch.tangle.legs
+    best: dict[int, Way] = {}
+    for way in every:
+        leg = _partner(way)
+        if leg is None or trail.holds(legs[leg], view.width_mm):
+            continue
+        there = plan is not None and same_line(plan.leg, legs[leg], view.width_mm)
+        if way.misfit < (CLEAR if there and way.cost - way.misfit > FEW * VERTEX else clear):
+            best.setdefault(leg, way)
+    return best
 
 
 def _stands(sketch: Sketch, way: Way, plan: Planned, drawn: list[Array]) -> bool:
