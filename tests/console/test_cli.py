@@ -8,6 +8,7 @@ import re
 import signal
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 
 import click
@@ -103,8 +104,11 @@ def test_ctrl_c_or_being_asked_to_end_stops_the_work_and_leaves_no_half_file(
     """A pipe that nobody writes to holds the command at the reading of its path file."""
     os.mkfifo(tmp_path / "never.csv")
     command = [*MORFAX, "record", "never.csv", "-o", "half.wav"]
+    heeded = partial(signal.signal, number, signal.SIG_DFL)  # a shell has its background jobs ignore Ctrl-C
     with (
-        subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True, env=_with_house()) as process,
+        subprocess.Popen(
+            command, cwd=tmp_path, stderr=subprocess.PIPE, text=True, env=_with_house(), preexec_fn=heeded
+        ) as process,
         (tmp_path / "never.csv").open("w"),  # opens when the command does
     ):
         process.send_signal(number)
