@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from motion.motion import MOTION_RATE_HZ
 from samples import draw
-from tracer import follower, head, photocell
+from tracer import follower, head, photocell, pilot, tangles
 from tracer.drawing import Drawing, darkness_of
 from tracer.settings import Settings
 from tracer.stance import put_down
@@ -95,7 +95,7 @@ def sweep_figure() -> plt.Figure:
     """What the swinging cell sees at three offsets, and its fundamental over all of them."""
     drawing, by = inked(np.array([[0.0, 0.0], [20.0, 0.0]]))
     run = put_head(drawing, by + np.array([10, 0]))
-    cells, amplitude = run.view.cells, run.tuning.amplitude_mm
+    cells, amplitude = run.view.cells, run.carriage.tuning.amplitude_mm
     place, offsets = run.stance.place_mm, (0.0, 0.1, 0.25)
     figure, (across, *signals, slope) = plt.subplots(1, 5, figsize=(15, 3.4), width_ratios=(1.1, 1, 1, 1, 1.3))
     ground(across, drawing, about(place, 0.8, 0.8))
@@ -117,7 +117,7 @@ def sweep_figure() -> plt.Figure:
     both = np.array([photocell.sweep(cells, PITCH_MM, place, 0.0, -e, amplitude, 24) for e in every])
     slope.plot(every, both[:, 0], color=BLUE, label="fundamental")
     slope.plot(every, both[:, 1], color=ORANGE, label="mean")
-    slope.plot(every, run.tuning.slope_per_mm * every, ":", color="#555555", label="slope as calibrated")
+    slope.plot(every, run.carriage.tuning.slope_per_mm * every, ":", color="#555555", label="slope as calibrated")
     slope.set(ylim=(-1.1, 1.1), xlabel="line's distance to the left, mm", title="the detector's characteristic")
     slope.legend(fontsize=7)
     slope.grid(alpha=0.3)
@@ -128,10 +128,10 @@ def sweep_figure() -> plt.Figure:
 
 def seen_from_axis(run: follower.Follower) -> dict[str, Array]:
     """What the head remembers, concludes and looks at just now, each (n, 2) mm along its heading and to the left of it."""
-    s, t = run.state, run.tuning
+    s, t = run.carriage.state, run.carriage.tuning
     heading = s[head.HEADING]
     turn = np.array([[np.cos(heading), -np.sin(heading)], [np.sin(heading), np.cos(heading)]])
-    places = (run._drum[: min(int(s[head.PLACES]), head.DRUM)] - s[[head.X, head.Y]]) @ turn
+    places = (run.carriage._drum[: min(int(s[head.PLACES]), head.DRUM)] - s[[head.X, head.Y]]) @ turn
     x, y = places[np.abs(places[:, 0] - t.point_mm) < t.half_window_mm].T
     fitted = np.polyfit(x, y, 2, w=np.sqrt(1 - ((x - t.point_mm) / t.half_window_mm) ** 2))
     window = t.point_mm + np.linspace(-1, 1, 60) * t.half_window_mm
@@ -154,8 +154,10 @@ def drum_figure() -> plt.Figure:
     drawing, by = inked(draw.arc((0, 0), 6, 0, 340))
     run = put_head(drawing, by + np.array([0, 6]))
     home = (*run.stance.place_mm, run.stance.heading_rad, 1e9)
-    head.follow(run.view.cells, PITCH_MM, run.state, run._drum, run.tuning, home, np.empty((3000, 2)))
-    axis, heading = run.state[[head.X, head.Y]], run.state[head.HEADING]
+    head.follow(
+        run.view.cells, PITCH_MM, run.carriage.state, run.carriage._drum, run.carriage.tuning, home, np.empty((3000, 2))
+    )
+    axis, heading = run.carriage.state[[head.X, head.Y]], run.carriage.state[head.HEADING]
     to_sheet = np.array([[np.cos(heading), np.sin(heading)], [-np.sin(heading), np.cos(heading)]])
     figure, (sheet, close) = plt.subplots(1, 2, figsize=(13, 5.6))
     ground(sheet, drawing, about(axis + 0.6 * to_sheet[0], 1.6, 1.6))
@@ -190,7 +192,7 @@ def corner_figure() -> plt.Figure:
         with (
             listening(photocell, "ring") as rings,
             listening(follower, "survey") as surveys,
-            listening(run, "_drive") as drives,
+            listening(run.carriage, "run") as drives,
         ):
             done = run.follow(30.0)
         vertex = corner[1] + by
@@ -219,7 +221,7 @@ def ride_figure() -> plt.Figure:
     other = np.column_stack([x, 0.3 + 1.6 * np.clip(np.abs(x - 12) - 2.5, 0, None) ** 2 / 12])
     drawing, by = inked(own, other)
     run = put_head(drawing, by + np.array([1.5, 0]))
-    with listening(follower, "ride_past") as rides:
+    with listening(pilot, "ride_past") as rides:
         done = run.follow(40.0)
     incoming, ride = next((words[1], ride) for words, ride in rides if ride is not None)
     figure, axes = plt.subplots(figsize=(13, 4.2))
@@ -240,7 +242,46 @@ def ride_figure() -> plt.Figure:
     return figure
 
 
-FIGURES = {"sweep": sweep_figure, "drum": drum_figure, "corner": corner_figure, "ride": ride_figure}
+def tangle_figure() -> plt.Figure:
+    """A tangle: two spikes whose inks run together, and the vertices by which the pen leaves the same ink."""
+    own = np.array([(0, 0), (9, 0), (9.4, -2.4), (10.0, 0.1), (10.5, 2.3), (10.9, 0), (20, 0)], float)
+    drawing, by = inked(own)
+    run = put_head(drawing, by + np.array([1.5, 0]))
+    with listening(tangles, "unravelled") as unravelled:
+        done = run.follow(40.0)
+    sketch, way = next((words[0], answer[1]) for words, answer in unravelled if answer[1] is not None)
+    figure, axes = plt.subplots(figsize=(13, 7))
+    ground(axes, drawing, about(by + np.array([10, 0]), 4.5, 3.2))
+    axes.plot(
+        *sketch.tangle.places_mm.T,
+        ".",
+        color=BLUE,
+        markersize=2,
+        alpha=0.5,
+        label="places of the tangle's ink, and about it",
+    )
+    for k, leg in enumerate(sketch.tangle.legs):
+        axes.plot(*leg.end_mm, "s", color=GREEN, markersize=7, label=None if k else "clean ends of the legs")
+    axes.plot(
+        *way.vertices[0].T, "o", color=VIOLET, markersize=7, label="vertices, moved until the pen leaves this ink"
+    )
+    axes.plot(*done.positions_mm.T, color=RED, lw=1.2, label="motion of the axis")
+    axes.plot(*(own + by).T, ":", color="black", lw=0.9, label="the line as drawn")
+    axes.set_title(
+        f"a tangle redrawn: what is left unexplained is {way.misfit:.3f} of a stretch as long as the line is wide"
+    )
+    axes.legend(fontsize=7, loc="upper left")
+    figure.tight_layout()
+    return figure
+
+
+FIGURES = {
+    "sweep": sweep_figure,
+    "drum": drum_figure,
+    "corner": corner_figure,
+    "ride": ride_figure,
+    "tangle": tangle_figure,
+}
 
 
 def main(folder: Path) -> None:
