@@ -36,7 +36,11 @@ SHORTER = 0.95  # the other way round is the line itself if it is shorter than t
 DOUBTS = 8  # looked into, of a run
 TURNS = 12  # junctions at which another turn is tried
 TRIED_MM = 6000.0  # travel in all that is spent on other turns
+SHORT = 0.5  # of the ink that is joined to it: a run that ends so soon is another line's, which crosses this one
+ELSEWHERE = 5  # places at which the head is put down then
 OVERRUN_MM = 3.0  # a stub as short, straight on from a closed line, is where the pen set out, and not another's line
+
+THINNED = 30  # of the positions one in so many tells where a line is: every 50 um at 10 mm/s
 
 Told = Callable[[float], None]
 
@@ -107,10 +111,12 @@ def _best(
     """
     follow = partial(_line, sheet, start_mm, settings, progress, number)
     straight = replace(operator, card=replace(operator.card, turns=()))
-    best, leads = None, list[tuple[Line, Stance, float]]()
+    best, leads, smooth = None, list[tuple[Line, Stance, float]](), list[Line]()
     for stance, length_mm in stances:
-        if leads and not stance.at_end:
+        if (leads and not stance.at_end) or len(smooth) > ELSEWHERE:
             break
+        if smooth and any(_lies_on(stance, line) for line in smooth):
+            continue
         try:
             line = follow(straight if _is_open(stance) else operator, stance, length_mm)
         except LineFault:
@@ -123,14 +129,23 @@ def _best(
             leads.append((line, stance, length_mm))
         best = (line, stance, length_mm) if best is None or line.length_mm > best[0].length_mm else best
         plain = not (stance.at_end and line.junctions_mm)  # at a junction a lead line may come in
-        if plain and (line.ending == "closed" or (line.length_mm > 0.5 * length_mm and line.ending != "joined")):
+        if plain and (line.ending == "closed" or (line.length_mm > SHORT * length_mm and line.ending != "joined")):
             break
+        if not stance.at_end:
+            smooth.append(line)
+            if best[0].ending != "ended" or best[0].length_mm > SHORT * length_mm:
+                break
     if best is None:
         return None, []
     line, stance, length_mm = leads[0] if leads else best
     if operator.sides and _is_open(stance):
         line = follow(operator, stance, length_mm)
     return line, [lead for lead, _, _ in leads[1:]]
+
+
+def _lies_on(stance: Stance, line: Line) -> bool:
+    """Whether a stance is on a line that was followed."""
+    return bool(np.hypot(*(line.xy_mm[::THINNED] - stance.place_mm).T).min() < stance.view.width_mm)
 
 
 def _is_open(stance: Stance) -> bool:

@@ -63,7 +63,7 @@ def put_down(
     reference_mm: tuple[float, float] | None = None,
 ) -> Iterator[tuple[Stance, float]]:
     """Put the head down near a place, or on the longest line: where it comes from a reference point, else at its open ends if it has any (there), then where
-    it is smooth; and the line's length, mm.
+    it is smooth, the plainest place first; and the line's length, mm.
 
     A reference point that is not given is looked for. Raises LineFault if there is no line near the place, or no clean stretch on the line.
     """
@@ -82,9 +82,10 @@ def put_down(
     stances = _stances(view, _tried(stroke, start_mm, 2 * stroke.width_mm))
     if not stances and start_mm is not None:
         stances = _stances(view, _tried(stroke, start_mm, catch_mm))
-    if stances:
-        yield max(stances, key=lambda s: s[0])[1], stroke.length_mm
-    elif not at_ends:
+    stances.sort(key=lambda scored: scored[0], reverse=True)
+    for _, stance in stances if start_mm is None else stances[:1]:
+        yield stance, stroke.length_mm
+    if not stances and not at_ends:
         raise LineFault(
             f"no clean stretch of line to start on, {stroke.length_mm:.0f} mm of line {view.width_mm:.2f} mm wide;"
             " give --line-width, or --start X,Y at a plain stretch"

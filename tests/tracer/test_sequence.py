@@ -150,6 +150,13 @@ def test_the_longest_line_is_taken_or_the_one_asked_for() -> None:
     assert distance(trace(drawing, (8.5, 5.0)).xy_mm[::4], small).hausdorff_mm < 25 * UM
 
 
+def test_a_contour_is_taken_before_the_pieces_of_a_centre_line_that_cross_it() -> None:
+    pieces = [polyline((24, 16), (38, 16)), polyline((16, 24), (16, 38))]
+    run = trace(inked(arc((16, 16), 10), *pieces, seed=3))
+    assert run.ending == "closed"
+    assert run.length_mm == pytest.approx(20 * np.pi, abs=0.2)
+
+
 def test_a_start_far_from_any_line_says_how_far_the_nearest_is() -> None:
     with pytest.raises(LineFault, match=r"no line within 3 mm of 9,9 mm: the nearest is 4\.[78] mm away") as caught:
         trace(inked(CIRCLE), (9.0, 9.0))
