@@ -295,4 +295,9 @@ class Traced:
             }
             for line in self.trace.lines
         ]
-        return {"idle_mm": self.trace.idle_mm, "patches_left_out": self.trace.left_out, "lines": lines}
+        return {
+            "idle_mm": self.trace.idle_mm,
+            "patches_left_out": self.trace.left_out,
+            "ink_left_out_mm": self.trace.left_out_mm,
+            "lines": lines,
+        }

@@ -78,7 +78,7 @@ class Contour:
 
     def lies_in(self, line_mm: Array) -> bool:
         """Whether this stroke lies inside a followed line (n, 2) mm."""
-        return _inside(self.stroke.middles_mm, line_mm)
+        return lies_inside(self.stroke.middles_mm, line_mm)
 
 
 def plan(sheet: Sheet, which: Which) -> tuple[list[Contour], int]:
@@ -86,22 +86,30 @@ def plan(sheet: Sheet, which: Which) -> tuple[list[Contour], int]:
 
     "outer" is still all of them: what lies inside which is known when they have been followed. Raises LineFault for a number that no line has.
     """
-    reach_mm = sheet.patches.longer_sides * sheet.drawing.pitch_mm
-    long_enough = sheet.lengths_mm >= np.maximum(LEAST_MM, LEAST_WIDTHS * sheet.widths_mm)
-    long_enough |= reach_mm >= LETTER_MM
-    patches = np.flatnonzero(long_enough)
-    patches = patches[np.argsort(-sheet.lengths_mm[patches], kind="stable")]
+    reach_mm, patches = _reach_mm(sheet), lines_of(sheet)
     numbers = _numbers(which, len(patches))
     asked = [int(patches[number - 1]) for number in numbers]
     contours = [Contour(n, sheet.stroke(p), float(reach_mm[p])) for n, p in zip(numbers, asked, strict=True)]
     spread = [float(np.prod(np.ptp(c.stroke.middles_mm, axis=0) + c.stroke.width_mm)) for c in contours]
-    return [contours[i] for i in np.argsort(spread)[::-1]], int(np.sum(~long_enough))
+    return [contours[i] for i in np.argsort(spread)[::-1]], sheet.patches.count - len(patches)
+
+
+def lines_of(sheet: Sheet) -> NDArray[np.int64]:
+    """The patches that are lines, the longest first."""
+    long_enough = sheet.lengths_mm >= np.maximum(LEAST_MM, LEAST_WIDTHS * sheet.widths_mm)
+    patches = np.flatnonzero(long_enough | (_reach_mm(sheet) >= LETTER_MM))
+    return patches[np.argsort(-sheet.lengths_mm[patches], kind="stable")]
+
+
+def _reach_mm(sheet: Sheet) -> Array:
+    """How far each patch reaches in X or Y, mm."""
+    return np.asarray(sheet.patches.longer_sides * sheet.drawing.pitch_mm)
 
 
 def nested(lines_mm: Sequence[Array], round_about: Sequence[bool]) -> NDArray[np.bool_]:
     """Which line (n, 2) mm lies inside which: `nested[i, j]` if i lies inside j, and j goes round about something."""
     inner = [
-        [round_j and a is not b and _inside(a, b) for b, round_j in zip(lines_mm, round_about, strict=True)]
+        [round_j and a is not b and lies_inside(a, b) for b, round_j in zip(lines_mm, round_about, strict=True)]
         for a in lines_mm
     ]
     return np.array(inner, bool).reshape(len(lines_mm), len(lines_mm))
@@ -168,11 +176,16 @@ def _numbers(which: Which, lines: int) -> list[int]:
     numbers = sorted(set(which))
     for number in numbers:
         if not 1 <= number <= lines:
-            raise LineFault(
-                f"no line {number}: the drawing has {lines}, numbered from the longest, 1, to the shortest;"
-                " give --lines all and a --picture to see them"
-            )
+            raise no_line(number, lines)
     return numbers
+
+
+def no_line(number: int, lines: int) -> LineFault:
+    """The fault of a number that no line has."""
+    return LineFault(
+        f"no line {number}: the drawing has {lines}, numbered from the longest, 1, to the shortest;"
+        " give --lines all and a --picture to see them"
+    )
 
 
 def _from_firsts(idle_mm: Array, before: NDArray[np.bool_]) -> list[NDArray[np.int64]]:
@@ -182,7 +195,7 @@ def _from_firsts(idle_mm: Array, before: NDArray[np.bool_]) -> list[NDArray[np.i
     return [_on_to_nearest(int(first), idle_mm, before) for first in firsts[:: -(-len(firsts) // tried)]]
 
 
-def _inside(inner_mm: Array, outer_mm: Array) -> bool:
+def lies_inside(inner_mm: Array, outer_mm: Array) -> bool:
     """Whether a line begins inside another, whose end is joined to its start, and reaches less far than that one."""
     x, y = float(inner_mm[0, 0]), float(inner_mm[0, 1])
     if not (np.ptp(inner_mm, axis=0) < np.ptp(outer_mm, axis=0)).all():

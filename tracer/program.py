@@ -37,12 +37,16 @@ BRAKE_MM_S2 = 500.0  # of X and Y, as the head's own
 
 @dataclass(frozen=True)
 class Trace:
-    """What the head did: a stream of Motion over its lines, in the order in which they are cut; `left_out` patches of ink were too short to be lines."""
+    """What the head did: a stream of Motion over its lines, in the order in which they are cut.
+
+    `left_out` patches of ink were too short to be lines, and `left_out_mm` of ink is joined to the lines and is none.
+    """
 
     lines: tuple[Line, ...]
     operator: Operator = field(default_factory=Operator)
     rate_hz: float = MOTION_RATE_HZ
     left_out: int = 0
+    left_out_mm: float = 0.0
 
     @property
     def work(self) -> Work:

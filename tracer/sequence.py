@@ -40,7 +40,6 @@ SHORT = 0.5  # of the ink that is joined to it: a run that ends so soon is anoth
 ELSEWHERE = 5  # places at which the head is put down then
 OVERRUN_MM = 3.0  # a stub as short, straight on from a closed line, is where the pen set out, and not another's line
 
-THINNED = 30  # of the positions one in so many tells where a line is: every 50 um at 10 mm/s
 
 Told = Callable[[float], None]
 
@@ -96,6 +95,17 @@ def followed_from_an_end(
     return best if best is not None and best.ending != "lost" else None
 
 
+def followed_through(sheet: Sheet, stance: Stance, settings: Settings, operator: Operator) -> list[Line]:
+    """The head's runs straight on through a stance, the last one round about in the direction asked for, or from end to end; no other turns are tried."""
+    attempts = _Attempts(settings, (), _longest_mm(sheet.drawing, stance.view.width_mm), None)
+    runs = [attempts.run(stance)]
+    if runs[0].ending == "ended":
+        runs.append(attempts.run(turned_round(runs[0].positions_mm[-1], runs[0].heading_rad, runs[0].view)))
+    elif runs[0].ending != "closed" or (operator.direction in ("cw", "ccw") and not _goes(runs[0], operator.direction)):
+        runs.append(attempts.run(_about(stance)))
+    return [Line.of(run) for run in runs]
+
+
 def _best(
     sheet: Sheet,
     stances: Iterator[tuple[Stance, float]],
@@ -145,7 +155,7 @@ def _best(
 
 def _lies_on(stance: Stance, line: Line) -> bool:
     """Whether a stance is on a line that was followed."""
-    return bool(np.hypot(*(line.xy_mm[::THINNED] - stance.place_mm).T).min() < stance.view.width_mm)
+    return bool(np.hypot(*(line.places_mm - stance.place_mm).T).min() < stance.view.width_mm)
 
 
 def _is_open(stance: Stance) -> bool:

@@ -92,6 +92,12 @@ def put_down(
         )
 
 
+def stance_near(view: View, stroke: Stroke, place_mm: tuple[float, float]) -> Stance | None:
+    """The plainest stance within two widths of a place of a line; None if the line is clean nowhere there."""
+    stances = _stances(view, _tried(stroke, place_mm, 2 * stroke.width_mm))
+    return max(stances, key=lambda scored: scored[0])[1] if stances else None
+
+
 def ends_of(
     sheet: Sheet,
     stroke: Stroke,

@@ -3,7 +3,8 @@
 Signals: a Drawing and what is asked for in; out a Trace over all those lines, inner before outer, the idle way from one to the next short.
 
 The lines are followed one after the other, the widest spread first, and ordered when it is known where each begins and ends. One that is lost is cut as far as
-it was followed, and the others all the same. A stroke along which a line was followed before is a piece of that line, which has gaps.
+it was followed, and the others all the same. A stroke along which a line was followed before is a piece of that line, which has gaps. Lines that cross or
+touch one another are one patch of ink: the others of it are followed when one has been (see `joined`), and numbered on from the patches.
 
 Source: patent ES 361967 has one contour to a tape, and an operator who brings the head over it; the tour is that operator's, our own.
 Questions: a small stroke on which the head can nowhere be put down is taken for a letter, as is one too short (see `contours`); a larger one counts as lost.
@@ -12,6 +13,7 @@ Questions: a small stroke on which the head can nowhere be put down is taken for
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -20,7 +22,8 @@ from motion.faults import LineFault
 from tracer import contours, dots
 from tracer.contours import Contour, Which
 from tracer.drawing import Drawing
-from tracer.line import Line
+from tracer.joined import joined_to
+from tracer.line import THINNED, Line
 from tracer.lines import Sheet
 from tracer.operator import Operator
 from tracer.program import Trace
@@ -31,7 +34,6 @@ from tracer.stance import view_of
 from tracer.view import Array
 
 ALIKE = 0.02  # a line is as long from its other end, within this share
-THINNED = 30  # of the positions one in so many tells where a line is: every 50 um at 10 mm/s
 
 Told = Callable[[float, float], None]
 
@@ -47,9 +49,34 @@ def trace_lines(
 
     `progress` hears how far the head has come and the length of all the lines, mm. Raises LineFault if there is no line to start on, or none of a number.
     """
-    sheet, operator = Sheet.of(drawing), operator or Operator()
-    asked, left_out = contours.plan(sheet, which)
-    total_mm, lines = sum(contour.stroke.length_mm for contour in asked), list[Line]()
+    sheet, settings, operator = Sheet.of(drawing), settings or Settings(), operator or Operator()
+    patches = len(contours.lines_of(sheet))
+    beyond = not isinstance(which, str) and max(which) > patches  # a number that only a line joined to another may have
+    asked, left_out = contours.plan(sheet, "all" if beyond else which)
+    lines, refused = _follow_each(sheet, asked, which, settings, operator, progress)
+    left_out += refused
+    joined, left_mm = _joined(sheet, asked, lines, settings, operator)
+    if beyond or isinstance(which, str):
+        numbered = enumerate(sorted(joined, key=lambda line: -line.length_mm), patches + 1)
+        lines += [
+            replace(line, number=number) for number, line in numbered if which != "outer" or not _is_in(line, lines)
+        ]
+    if beyond or (which == "all" and asked):
+        holes = _dots(sheet, asked, settings, max(line.number for line in lines))
+        lines, left_out = lines + holes, left_out - len(holes)
+    if beyond:
+        lines = _numbered(lines, which)
+    again = partial(_turned_round, sheet, settings=settings, operator=operator)
+    if not any(len(line.xy_mm) > 1 for line in lines):
+        raise _none_begun(lines)
+    return Trace(tuple(_in_order(lines, again)), operator, left_out=left_out, left_out_mm=left_mm)
+
+
+def _follow_each(
+    sheet: Sheet, asked: list[Contour], which: Which, settings: Settings, operator: Operator, progress: Told | None
+) -> tuple[list[Line], int]:
+    """One line of each patch that is asked for, and how many patches are letters."""
+    total_mm, lines, refused = sum(contour.stroke.length_mm for contour in asked), list[Line](), 0
     for contour in asked:
         if (
             _is_reference(contour, lines)
@@ -57,21 +84,34 @@ def trace_lines(
             or (which == "outer" and _is_inner(contour, lines))
         ):
             continue
-        told = (
-            None if progress is None else partial(_tell_on, progress, sum(line.length_mm for line in lines), total_mm)
-        )
-        line = _follow(sheet, contour, settings or Settings(), operator, told)
-        if line is None:
-            left_out += 1
-        else:
-            lines.append(line)
-    if which == "all" and asked:
-        holes = _dots(sheet, asked, settings or Settings())
-        lines, left_out = lines + holes, left_out - len(holes)
-    again = partial(_turned_round, sheet, settings=settings or Settings(), operator=operator)
-    if not any(len(line.xy_mm) > 1 for line in lines):
-        raise _none_begun(lines)
-    return Trace(tuple(_in_order(lines, again)), operator, left_out=left_out)
+        come_mm = sum(line.length_mm for line in lines)
+        told = None if progress is None else partial(_tell_on, progress, come_mm, total_mm)
+        line = _follow(sheet, contour, settings, operator, told)
+        refused += line is None
+        lines += [] if line is None else [line]
+    return lines, refused
+
+
+def _joined(
+    sheet: Sheet, asked: list[Contour], lines: list[Line], settings: Settings, operator: Operator
+) -> tuple[list[Line], float]:
+    """Further lines of the patches of which one line was followed each, and the length of the ink that is left of them, mm."""
+    joined, left_mm, own = list[Line](), 0.0, {line.number: line for line in lines}
+    for contour in asked:
+        line = own.get(contour.number)
+        if line is not None and len(line.xy_mm) > 1:  # not one that was never begun
+            others, more_mm = joined_to(line, contour, sheet, settings, operator)
+            joined, left_mm = joined + others, left_mm + more_mm
+    return [line for line in joined if not _are_reference(line.places_mm, lines)], left_mm
+
+
+def _numbered(lines: list[Line], numbers: Which) -> list[Line]:
+    """The lines that have one of some numbers; raises LineFault for a number that none has."""
+    have = {line.number for line in lines}
+    for number in numbers:
+        if number not in have:
+            raise contours.no_line(int(number), len(lines))
+    return [line for line in lines if line.number in numbers]
 
 
 def _follow(sheet: Sheet, contour: Contour, settings: Settings, operator: Operator, told: Told | None) -> Line | None:
@@ -90,10 +130,9 @@ def _follow(sheet: Sheet, contour: Contour, settings: Settings, operator: Operat
     return Line(np.array(starts_mm[:1]), "lost", stroke.width_mm, 0.0, refused, contour.number)
 
 
-def _dots(sheet: Sheet, asked: list[Contour], settings: Settings) -> list[Line]:
+def _dots(sheet: Sheet, asked: list[Contour], settings: Settings, last: int) -> list[Line]:
     """The dots that stand alone on the paper, numbered on from the lines."""
     width_mm = settings.line_width_mm or float(np.median([contour.stroke.width_mm for contour in asked]))
-    last = max(contour.number for contour in asked)
     centres = dots.alone(sheet, view_of(sheet, settings.aperture_mm, width_mm))
     return [Line.of_dot(centre, width_mm, number) for number, centre in enumerate(centres, last + 1)]
 
@@ -108,20 +147,28 @@ def _none_begun(lines: list[Line]) -> LineFault:
 
 def _is_done(contour: Contour, lines: list[Line]) -> bool:
     """Whether one of the lines was followed along this stroke already."""
-    return any(contour.lies_on(_places(line)) for line in lines)
+    return any(contour.lies_on(line.places_mm) for line in lines)
 
 
 def _is_reference(contour: Contour, lines: list[Line]) -> bool:
     """Whether this stroke is the reference point from which one of the lines begins."""
-    places_mm = [line.reference_mm for line in lines if line.reference_mm is not None]
-    return any(
-        np.hypot(*(contour.stroke.middles_mm - place_mm).T).max() < 0.5 * LARGEST_MM + 1 for place_mm in places_mm
-    )
+    return _are_reference(contour.stroke.middles_mm, lines)
+
+
+def _are_reference(places: Array, lines: list[Line]) -> bool:
+    """Whether some places (n, 2) mm are those of the reference point from which one of the lines, or a lead line, begins."""
+    references_mm = [line.begin_mm for line in lines if line.is_lead or line.reference_mm is not None]
+    return any(np.hypot(*(places - reference_mm).T).max() < 0.5 * LARGEST_MM + 1 for reference_mm in references_mm)
 
 
 def _is_inner(contour: Contour, lines: list[Line]) -> bool:
     """Whether this stroke lies inside one of the lines."""
     return any(_goes_round(line) and contour.lies_in(_loop(line)) for line in lines)
+
+
+def _is_in(line: Line, lines: list[Line]) -> bool:
+    """Whether a line lies inside one of some others."""
+    return any(_goes_round(other) and contours.lies_inside(line.places_mm, _loop(other)) for other in lines)
 
 
 def _in_order(lines: list[Line], again: Callable[[Line], Line]) -> list[Line]:
@@ -146,11 +193,6 @@ def _turned_round(sheet: Sheet, line: Line, settings: Settings, operator: Operat
 def _goes_round(line: Line) -> bool:
     """Whether something can lie inside a line: not if it is known to be open."""
     return line.ending != "ended"
-
-
-def _places(line: Line) -> Array:
-    """Places along a line, (n, 2) mm."""
-    return line.xy_mm[::THINNED]
 
 
 def _loop(line: Line) -> Array:

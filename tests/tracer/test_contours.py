@@ -149,6 +149,29 @@ def test_a_line_with_gaps_is_one_line() -> None:
     assert run.length_mm == pytest.approx(24 * np.pi, rel=0.01)
 
 
+def test_lines_that_cross_or_touch_are_all_followed_though_they_are_one_patch_of_ink() -> None:
+    """Three rings, a line through them, and a chord from ring to ring: no line, but told of."""
+    rings = [arc((14, 14), 8), arc((24, 14), 8), arc((40, 14), 11)]
+    across, chord = polyline((4, 16), (54, 16)), polyline((40, 3), (40, 25))
+    drawing = inked(*rings, across, chord, seed=2)
+    run = trace_lines(drawing)
+    assert sorted(line.number for line in run.lines) == [1, 2, 3, 4]
+    assert sorted(line.ending for line in run.lines) == ["closed", "closed", "closed", "ended"]
+    for drawn in (*rings, across):
+        assert min(distance(line.places_mm, drawn).hausdorff_mm for line in run.lines) < 120 * UM
+    assert 15 < run.left_out_mm < 22
+    assert sorted(line.number for line in trace_lines(drawing, (1, 4)).lines) == [1, 4]
+    with pytest.raises(LineFault, match="no line 5: the drawing has 4"):
+        trace_lines(drawing, (5,))
+
+
+def test_marks_guide_lines_and_the_ring_of_the_reference_point_are_no_lines_joined_to_the_contour() -> None:
+    ring, lead = arc((7, 14), 2), polyline((7, 14), (18, 14))
+    ticks = [polyline((14, 12.5), (14, 15.5)), polyline((26, 4.5), (26, 7.5))]
+    program = trace_lines(inked(ring, lead, *ticks, arc((26, 14), 8), polyline((26, 22), (26, 30))))
+    assert [(line.number, line.is_lead) for line in program.lines] == [(1, True)]
+
+
 # one stream
 
 

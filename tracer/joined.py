@@ -1,0 +1,89 @@
+"""Lines that are joined to another: what is left of a patch of ink when one of its lines has been followed.
+
+Signals: a patch and the lines followed on it in; out further lines of the patch, each followed from end to end or round about.
+
+    ╭─────╮                  one patch of ink, three lines: from any place the head goes straight
+    │   ╭─┼───╮              on over the crossings, and comes round, or to the ends
+    ╰───┼─╯   │
+    ────┼─────┼────
+        ╰─────╯
+
+The head is put down on the plainest place that no run has come by, until there is none. A run counts if it closes, or ends at both ends, and most of its way
+is new; one that ends in another line (a guide line, an arrow, hatching) or is lost, does not.
+
+Source: our own; the patent has one contour to a tape. Questions: what of ink that no such run comes by? It is no line, and is told of.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from tracer.contours import LEAST_MM, LEAST_WIDTHS, LETTER_MM, Contour
+from tracer.line import Line
+from tracer.lines import Array, Sheet, Stroke
+from tracer.operator import Operator
+from tracer.sequence import followed_through
+from tracer.settings import Settings
+from tracer.stance import stance_near, view_of
+
+NEW = 0.6  # of a line's way: the rest may be another's too
+BESIDE = 1.5  # widths: ink nearer to a way than this is that way's
+RUNS = 60  # tried on a patch
+
+
+def joined_to(
+    line: Line, contour: Contour, sheet: Sheet, settings: Settings, operator: Operator
+) -> tuple[list[Line], float]:
+    """Further lines of the patch that a contour is, besides the line followed on it, and the length of the ink that is left, mm."""
+    stroke, found, tried = contour.stroke, list[Line](), [line.places_mm]
+    left = _left(stroke, tried)
+    if left.length_mm < _least_mm(stroke):
+        return [], 0.0
+    view = view_of(sheet, settings.aperture_mm, settings.line_width_mm or stroke.width_mm)
+    for _ in range(RUNS):
+        place_mm = replace(contour, stroke=left).starts_mm()[0]
+        tried.append(np.array([place_mm]))
+        stance = stance_near(view, left, place_mm)
+        if stance is not None:
+            *before, other = followed_through(sheet, stance, settings, operator)
+            tried += [run.places_mm for run in (*before, other)]
+            if _is_line(other, [line, *found]):
+                found.append(other)
+        left = _left(stroke, tried)
+        if left.length_mm < _least_mm(stroke):
+            break
+    return found, _left(stroke, [some.places_mm for some in (line, *found)]).length_mm
+
+
+def _is_line(line: Line, others: list[Line]) -> bool:
+    """Whether a run is a line of its own: from end to end or round about, no mark, and most of it new."""
+    least_mm = max(LEAST_MM, LEAST_WIDTHS * line.width_mm) if line.ending == "closed" else LETTER_MM
+    if line.ending not in ("closed", "ended") or line.length_mm < least_mm:
+        return False
+    near = [_nearest_mm(line.places_mm, other.places_mm) < 0.7 * line.width_mm for other in others]
+    return bool(np.mean(~np.any(near, axis=0)) > NEW)
+
+
+def _left(stroke: Stroke, ways: list[Array]) -> Stroke:
+    """The part of a stroke that none of some ways comes by."""
+    near = np.any([_nearest_mm(stroke.middles_mm, way) < BESIDE * stroke.width_mm for way in ways], axis=0)
+    return replace(
+        stroke,
+        middles_mm=stroke.middles_mm[~near],
+        filled=stroke.filled[~near],
+        length_mm=stroke.length_mm * float(np.mean(~near)),
+    )
+
+
+def _least_mm(stroke: Stroke) -> float:
+    """Ink that is left is no line if it is shorter than this, mm."""
+    return max(LEAST_MM, LEAST_WIDTHS * stroke.width_mm)
+
+
+def _nearest_mm(places_mm: Array, others_mm: Array) -> Array:
+    """Distance of each place from the nearest of others, mm."""
+    from scipy.spatial import cKDTree  # half a second that a drawing of plain lines need not wait for
+
+    return np.asarray(cKDTree(others_mm).query(places_mm)[0])
