@@ -115,7 +115,7 @@ def _told(key: str, value: Any) -> tuple[str, str]:
     if isinstance(value, bool):
         return label, "yes" if value else "no"
     if isinstance(value, list):
-        return label, ", ".join(map(str, value))
+        return label, ", ".join(_UNITS[suffix](one) if suffix else str(one) for one in value)
     return label, _UNITS[suffix](value) if suffix else str(value)
 
 

@@ -93,6 +93,7 @@ class Head:
                 self._show_sheet(drawing, fault, medium.incomplete(picture), desk)
             raise
         self._tell_of_stops(traced, desk)
+        self._tell_of_reference(traced, desk)
         origin_mm = (0.0, 0.0) if self.marks.origin == "sheet" else self._reference_mm(drawing, traced)
         beside, unreached = self._beside(traced, settings)
         return Traced(beside, thin(beside), self.lines is not None, origin_mm, self.cutter, unreached)
@@ -114,6 +115,18 @@ class Head:
             desk.note(
                 f"there is no stop {numbers}: {stops} were found, see their places in the figures; the rest is followed"
             )
+
+    def _tell_of_reference(self, trace: Trace, desk: Desk) -> None:
+        """Tell of a reference point that was named and from which no line begins."""
+        from tracer.stance import LEAD_MM
+
+        named = self.marks.reference_mm
+        if named is None or any(line.reference_mm == named for line in trace.lines):
+            return
+        use = (
+            "it is the machine's zero only" if self.marks.origin == "reference" else "the program does not begin there"
+        )
+        desk.note(f"no line begins within {LEAD_MM:g} mm of the reference point {named[0]:g},{named[1]:g} mm: {use}")
 
     def _reference_mm(self, drawing: Drawing, trace: Trace) -> tuple[float, float]:
         """The reference point: the one given, that from which the program begins, or the only one on the sheet; raises LineFault without one."""
@@ -266,7 +279,7 @@ class Traced:
                 "stop": action.halt.number,
                 "mark": action.halt.kind,
                 "stop_place_mm": action.halt.place_mm,
-                "z": ", ".join(f"{move.to_mm:+.2f} mm" for move in action.moves),
+                "z_mm": [move.to_mm for move in action.moves],
             }
             for actions in self.trace.actions
             for action in actions

@@ -22,7 +22,7 @@ from tracer.drawing import Drawing
 from tracer.leg import Leg, centre_at, end_of, is_tip, leg_of, reach_of_ink, turn
 from tracer.lines import Sheet, Stroke
 from tracer.marks import longest_mm
-from tracer.reference import references
+from tracer.reference import Reference, references
 from tracer.survey import straight_on
 from tracer.view import LEVEL, Array, View
 
@@ -30,7 +30,7 @@ CATCH_MM = 3.0  # how far from a given place the line may be
 APERTURE = 0.3  # of the line's width, within bounds that a scan's noise and a corner set
 LEAST_APERTURE_MM, LARGEST_APERTURE_MM = 0.1, 0.24
 AT_END_MM = 1.5  # a start nearer to an open end is that end
-LEAD_MM = 11.0  # from the middle of a reference point to the lead line that comes from it
+LEAD_MM = 11.0  # at most, from the middle of a reference point to the lead line that comes from it
 NAMED_MM = 5.0  # a cross or ring nearer to the reference point that is named is that point, drawn
 LEADS_AWAY = math.radians(45)
 SPUR = 2.7  # a line that ends sooner, in widths, is a burr
@@ -138,10 +138,7 @@ def _at_ends(
     named = [] if reference_mm is None else _from_reference(reference_mm, ends)
     if named:
         return named
-    for reference in references(sheet, view, stroke):
-        if reference_mm is not None and math.dist(reference_mm, reference.place_mm) > NAMED_MM:
-            continue
-        place_mm, lead = reference_mm or reference.place_mm, reference.lead
+    for place_mm, lead in _named_first(references(sheet, view, stroke), reference_mm):
         if lead is not None and stroke.is_at(lead.end_mm):
             local = view.like(lead.end_mm, lead.heading_rad)
             return [Stance(lead.end_mm, lead.heading_rad, local, True, place_mm)]
@@ -149,6 +146,15 @@ def _at_ends(
         if from_it:
             return from_it
     return ends
+
+
+def _named_first(
+    found: Iterator[Reference], named_mm: tuple[float, float] | None
+) -> Iterator[tuple[tuple[float, float], Leg | None]]:
+    """Places of reference points and the lead lines drawn from them; of those that the operator's is, his place, and before the others."""
+    for reference in found if named_mm is None else sorted(found, key=lambda r: math.dist(named_mm, r.place_mm)):
+        is_named = named_mm is not None and math.dist(named_mm, reference.place_mm) < NAMED_MM
+        yield named_mm if named_mm is not None and is_named else reference.place_mm, reference.lead
 
 
 def _from_reference(place_mm: tuple[float, float], ends: list[Stance]) -> list[Stance]:

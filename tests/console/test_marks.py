@@ -43,6 +43,14 @@ def test_the_sample_program_is_one_path_with_its_stops(morfax: Morfax, here: Pat
     assert np.abs(np.diff(path.xy_mm, axis=0)[moving_z]).max() < THINNED_MM  # X and Y stand while Z moves
 
 
+def test_where_z_goes_at_a_stop_is_told_in_numbers(morfax: Morfax, here: Path) -> None:
+    down, hole, stand = (stop["z_mm"] for stop in traced(morfax, *CARD).figures["stops"])
+    assert (down, stand) == ([-5.0], [-5.0])
+    assert min(hole) == -8.0 and hole[-1] > 0
+    answer = morfax("trace", PROGRAM, "-o", "program.csv", "--force", "--quiet")
+    assert "-5 mm" in answer.out
+
+
 def test_without_a_card_guide_lines_are_passed_by(morfax: Morfax, here: Path) -> None:
     assert [stop["mark"] for stop in traced(morfax).figures["stops"]] == ["tick", "tick"]
 
@@ -65,6 +73,13 @@ def test_origin_reference_puts_the_zero_there(morfax: Morfax, here: Path) -> Non
 def test_a_reference_point_may_be_named(morfax: Morfax, here: Path) -> None:
     answer = traced(morfax, "--reference", "8,23.5")
     assert answer.figures["reference_place_mm"] == pytest.approx((8.0, 23.5))
+
+
+def test_a_named_reference_point_that_no_line_begins_at_is_told_of(morfax: Morfax, here: Path) -> None:
+    """The drawn one is taken then, and never a guide line for the lead line."""
+    answer = morfax("trace", PROGRAM, "-o", "program.csv", "--json", "--reference", "5,55")
+    assert answer.figures["reference_place_mm"] == pytest.approx(REFERENCE_MM, abs=WITHIN_MM)
+    assert "no line begins within 11 mm of the reference point 5,55 mm: the program does not begin there" in answer.err
 
 
 @pytest.mark.parametrize(("direction", "positive"), [("cw", False), ("ccw", True), ("left", False), ("right", True)])
