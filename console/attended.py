@@ -1,25 +1,27 @@
 """The operator at the terminal: asked for the decades at every stop (--ask), and for the button where the card says so.
 
 Questions and answers go over stderr and stdin. An answer is a move (down 7mm 5mm/s), a dwell (dwell 2s) or a drill cycle (drill 8mm, or
-drill 8mm peck 2mm); an empty one ends the stop. A stop of no moves is left to what is usual there.
+drill 8mm peck 2mm); an empty one ends the stop. A stop of no moves is left to what is usual there, which the question says.
 """
 
 from __future__ import annotations
 
 import sys
 import time
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import click
 
 from motion.faults import CardFault
-from motion.units import format_length_mm
+from motion.units import format_length_mm, format_time_s
 
 if TYPE_CHECKING:
     from tracer.card import Card, Stop
     from tracer.operator import Halt
+    from tracer.zunit import Move
 
-ANSWERS = "down LENGTH [FEED], up LENGTH [FEED], dwell TIME, drill DEPTH [peck LENGTH], or nothing to go on"
+ANSWERS = "down LENGTH [FEED], up LENGTH [FEED], dwell TIME, drill DEPTH [peck LENGTH]"
 
 
 class Attended:
@@ -28,11 +30,11 @@ class Attended:
     def __init__(self, *, asking: bool) -> None:
         self._asking = asking
 
-    def ask(self, halt: Halt, z_mm: float) -> Stop | None:
+    def ask(self, halt: Halt, z_mm: float, usual: Sequence[Move]) -> Stop | None:
         """Ask for the moves at a stop; None without an answer."""
         if not self._asking:
             return None
-        click.echo(f"{_stop(halt)}, Z {format_length_mm(z_mm)}: {ANSWERS}", err=True)
+        click.echo(f"{_stop(halt)}, Z {format_length_mm(z_mm)}: {ANSWERS}; or nothing: {_told(z_mm, usual)}", err=True)
         entry = ""
         while True:
             answer = click.prompt("  Z", default="", show_default=False, err=True).strip()
@@ -42,7 +44,7 @@ class Attended:
                 _read(entry + _toml(answer))
                 entry += _toml(answer)
             except (CardFault, ValueError) as fault:
-                click.echo(f"  {answer!r} cannot be set: {fault}; give {ANSWERS}", err=True)
+                click.echo(f"  {answer!r} cannot be set: {fault}; give {ANSWERS}, or nothing to go on", err=True)
 
     def wait(self, halt: Halt) -> float:
         """Wait for the button, while the tape runs; for how long, s."""
@@ -64,6 +66,16 @@ def waits(card: Card) -> bool:
 def _stop(halt: Halt) -> str:
     x, y = halt.place_mm
     return f"stop {halt.number} ({halt.kind}) at {x:.2f}, {y:.2f} mm"
+
+
+def _told(z_mm: float, moves: Sequence[Move]) -> str:
+    """Moves from a position of Z, as the operator reads them."""
+    said = []
+    for move in moves:
+        said += [f"to Z {format_length_mm(move.to_mm)}"] if move.to_mm != z_mm else []
+        said += [f"dwell {format_time_s(move.dwell_s)}"] if move.dwell_s else []
+        z_mm = move.to_mm
+    return ", ".join(said) or "go on"
 
 
 def _toml(answer: str) -> str:

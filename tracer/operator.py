@@ -78,8 +78,8 @@ class Action:
 class Panel(Protocol):
     """An operator who is there during the run."""
 
-    def ask(self, halt: Halt, z_mm: float) -> Stop | None:
-        """What to do at a stop; None: nothing."""
+    def ask(self, halt: Halt, z_mm: float, usual: Sequence[Move]) -> Stop | None:
+        """What to do at a stop; None: the moves that are made there without an answer."""
 
     def wait(self, halt: Halt) -> float:
         """Wait until the button is pressed; the time that it took, s."""
@@ -196,16 +196,23 @@ class Operator:
         """What is done at a stop, or where the line begins: the card's entry, or what is usual without one."""
         if halt.number is None:
             return self._to(-self.work.depths_mm[0]) if is_down else ()
-        stop = self.panel.ask(halt, z_mm) if self.panel is not None else None
-        stop = stop or self.card.stop(halt.number)
-        moves = self._asked(halt, stop, z_mm)
-        if not moves and is_down:
-            moves = [Move(-self._depths(halt)[0], self.work.feed_mm_s, stop.dwell_s)]
-        elif not moves and halt.kind in ("dot", "hole") and z_mm > 0:
-            moves = [Move(-self.work.depth_mm, self.work.feed_mm_s, stop.dwell_s), Move(z_mm, self.work.feed_mm_s)]
-        elif not moves:
-            moves = [Move(z_mm, self.work.feed_mm_s, STAND_S)]
+        stop = self.card.stop(halt.number)
+        moves = self._moves(halt, stop, z_mm, is_down=is_down)
+        answer = self.panel.ask(halt, z_mm, moves) if self.panel is not None else None
+        if answer is not None:
+            stop, moves = answer, self._moves(halt, answer, z_mm, is_down=is_down)
         return tuple(self._restarted(halt, stop, moves))
+
+    def _moves(self, halt: Halt, stop: Stop, z_mm: float, *, is_down: bool) -> list[Move]:
+        """The moves that an entry asks for, or those that are usual there."""
+        moves = self._asked(halt, stop, z_mm)
+        if moves:
+            return moves
+        if is_down:
+            return [Move(-self._depths(halt)[0], self.work.feed_mm_s, stop.dwell_s)]
+        if halt.kind in ("dot", "hole") and z_mm > 0:
+            return [Move(-self.work.depth_mm, self.work.feed_mm_s, stop.dwell_s), Move(z_mm, self.work.feed_mm_s)]
+        return [Move(z_mm, self.work.feed_mm_s, STAND_S)]
 
     def _asked(self, halt: Halt, stop: Stop, z_mm: float) -> list[Move]:
         """The moves that a card's entry asks for."""

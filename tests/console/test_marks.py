@@ -103,6 +103,9 @@ def test_at_a_terminal_every_stop_is_asked_for(morfax: Morfax, here: Path, monke
     assert (
         answer.exit_code == 0 and "stop 1 (tick) at 21.5" in answer.err and "'sideways 2mm' cannot be set" in answer.err
     )
+    assert (
+        "or nothing: to Z -5 mm" in answer.err and "or nothing: dwell 500 ms" in answer.err
+    )  # at the lead line's tick
     path = read_path("program.csv")
     assert path.positions_mm[:, 2].min() == pytest.approx(-1.0, abs=THINNED_MM)  # 3 mm down from 2 mm above
     assert next(answers, None) is None  # and no more was asked

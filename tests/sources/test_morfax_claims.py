@@ -11,7 +11,7 @@ What is on the tape is heard here with nothing of the project's own: a counter o
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -40,7 +40,7 @@ from tracer.program import Trace
 from tracer.sequence import trace
 from tracer.settings import HISTORIC, Settings
 from tracer.stance import put_down
-from tracer.zunit import Counters, Preset, counts_of
+from tracer.zunit import Counters, Move, Preset, counts_of
 
 Array = NDArray[np.float64]
 
@@ -317,7 +317,7 @@ def test_claim_13_the_operator_sets_the_tool_s_movement_by_hand(sheet: Drawing, 
     asked: list[int | None] = []
 
     class AtThePanel:
-        def ask(self, halt: Halt, z_mm: float) -> Stop | None:
+        def ask(self, halt: Halt, z_mm: float, usual: Sequence[Move]) -> Stop | None:
             asked.append(halt.number)
             return Stop(moves=(Preset(counts_of(z_mm) + 325, "down", 4.0),)) if halt.number == 1 else None
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -13,6 +14,7 @@ from tracer.junctions import Guide
 from tracer.line import Line
 from tracer.marks import Mark
 from tracer.operator import STAND_S, Halt, Operator, Work
+from tracer.zunit import Move
 
 Z = list[tuple[float, ...]]
 WAY = np.column_stack([np.linspace(0, 100, 1001), np.zeros(1001)])  # position k is at k / 10 mm
@@ -99,7 +101,7 @@ class Present:
 
     asked: list[int | None] = field(default_factory=list)
 
-    def ask(self, halt: Halt, z_mm: float) -> Stop | None:
+    def ask(self, halt: Halt, z_mm: float, usual: Sequence[Move]) -> Stop | None:
         self.asked.append(halt.number)
         return Card.parse('[[stop]]\nmoves = [{ up = "1mm" }]\n').stop(1)
 
