@@ -6,6 +6,7 @@ beside.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path as FilePath
@@ -94,6 +95,7 @@ class Head:
             raise
         self._tell_of_stops(traced, desk)
         self._tell_of_reference(traced, desk)
+        self._tell_of_gaps(traced, desk)
         origin_mm = (0.0, 0.0) if self.marks.origin == "sheet" else self._reference_mm(drawing, traced)
         beside, unreached = self._beside(traced, settings)
         return Traced(beside, thin(beside), self.lines is not None, origin_mm, self.cutter, unreached)
@@ -115,6 +117,18 @@ class Head:
             desk.note(
                 f"there is no stop {numbers}: {stops} were found, see their places in the figures; the rest is followed"
             )
+
+    @staticmethod
+    def _tell_of_gaps(trace: Trace, desk: Desk) -> None:
+        """Tell of lines that end where they began, but for a gap that is wider than allowed."""
+        for line in trace.lines:
+            if line.gap_mm is not None:
+                which = f"line {line.number}" if len(trace.lines) > 1 else "the line"
+                (x, y), wide_mm = line.start_mm, math.ceil(10 * line.gap_mm) / 10
+                desk.note(
+                    f"{which} is open, but ends {line.gap_mm:.1f} mm from its beginning at {x:.1f},{y:.1f} mm: "
+                    f"if that is a gap in a closed line, --gap {wide_mm:g}mm takes the head across"
+                )
 
     def _tell_of_reference(self, trace: Trace, desk: Desk) -> None:
         """Tell of a reference point that was named and from which no line begins."""

@@ -27,12 +27,12 @@ from tracer.carriage import Carriage
 from tracer.dots import disc, dot_at_end
 from tracer.junctions import Guide, Junctions
 from tracer.knot import fork_in
-from tracer.leg import Leg, end_of, leg_of
+from tracer.leg import Leg, end_of, leg_of, turn
 from tracer.loop import loop_in
 from tracer.pilot import Pilot
 from tracer.settings import Settings
 from tracer.stance import Stance
-from tracer.survey import SIDES, Side, Way, goes_straight, survey
+from tracer.survey import AHEAD, SIDES, Side, Way, goes_straight, survey
 from tracer.tangles import Tangles
 from tracer.view import Array, View
 
@@ -227,7 +227,25 @@ class Follower:
             end = 0.0  # all that leads on has been followed
         if end is None:
             return self._lost("no clean line leads on through the ink ahead")
+        if self._catches_home(incoming, end):
+            return self._across_to_home(incoming, end)
         return self._end(incoming, end, joined=choices > 0)
+
+    def _catches_home(self, incoming: Leg, end_mm: float) -> bool:
+        """Whether the end at which the head began is ahead of the end of the line, no further than the line may be caught again."""
+        home, heading = self.stance.place_mm, self.stance.heading_rad
+        way = home - incoming.at(end_mm)
+        if not self.stance.at_end or np.hypot(*way) > self.settings.recatch_mm:
+            return False
+        on = incoming.heading_at(end_mm)
+        return all(abs(turn(on, ahead)) < AHEAD for ahead in (math.atan2(way[1], way[0]), heading))
+
+    def _across_to_home(self, incoming: Leg, end_mm: float) -> Followed:
+        """Run to the end of the line, and across the paper to the end at which the head began."""
+        way, along = course.onto(*self.carriage.stands(), incoming, end_mm)
+        self.carriage.run([np.vstack([way, course.along_leg(incoming, along, end_mm)])], self.settings.speed_mm_s)
+        self.carriage.run([self._way_home()])
+        return self._done("closed")
 
     def _end(self, incoming: Leg, end_mm: float, *, joined: bool = False) -> Followed | None:
         """Run to an end of the line; back from there, if it is a guide line's, or a tip in which two lines have run together."""

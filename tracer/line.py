@@ -22,6 +22,8 @@ from tracer.marks import Mark, marks_along
 from tracer.view import Array
 
 THINNED = 30  # of the positions one in so many tells where a line is: every 50 um at 10 mm/s
+HEADING = 300  # positions that tell the heading at an end: half a mm at 10 mm/s
+NEARLY_MM = 5.0  # a line that ends so near to its beginning may be a closed one
 REFERENCE_MM = 3.0  # a stroke nearer to a reference point is one of its own
 
 
@@ -80,6 +82,18 @@ class Line:
     def places_mm(self) -> Array:
         """Places along it, (n, 2) mm."""
         return self.xy_mm[::THINNED]
+
+    @property
+    def gap_mm(self) -> float | None:
+        """How far the end of an open line is from its beginning, if it leads there within `NEARLY_MM`: a gap in a closed line, perhaps; else None."""
+        across = self.xy_mm[0] - self.xy_mm[-1]
+        gap_mm = float(np.hypot(*across))
+        if self.ending != "ended" or not 0 < gap_mm < min(NEARLY_MM, 0.1 * self.length_mm):
+            return None
+        moving = self.xy_mm[np.r_[True, np.any(np.diff(self.xy_mm, axis=0) != 0, axis=1)]]
+        ends = (moving[min(HEADING, len(moving) - 1)] - moving[0], moving[-1] - moving[max(-HEADING, -len(moving))])
+        ahead = [float(way @ across) > 0.7 * gap_mm * float(np.hypot(*way)) for way in ends]
+        return gap_mm if all(ahead) else None
 
     @property
     def is_lead(self) -> bool:

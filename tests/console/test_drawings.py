@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import struct
 import zlib
 from pathlib import Path
@@ -51,6 +52,20 @@ def test_a_drawing_becomes_a_tape_and_the_tape_the_drawn_contour(morfax: Morfax,
     assert answer.exit_code == 0 and answer.figures["missed_ink_share"] < 0.01
     assert answer.figures["path_to_ink"]["rms_mm"] < 4 * UM
     assert (here / "error.png").exists()
+
+
+def test_a_gap_too_wide_to_cross_is_told_with_the_option_that_crosses_it(
+    morfax: Morfax, here: Path, small: np.ndarray
+) -> None:
+    grey = small.copy()
+    grey[:120, 150:164] = 240  # 1.2 mm
+    Image.fromarray(grey).save("ring.png", dpi=DPI)
+    answer = morfax("trace", "ring.png", "-o", "ring.csv", "--json")
+    assert answer.exit_code == 0 and answer.figures["ending"] == "ended"
+    said = re.search(r"the line is open, but ends .* --gap ([0-9.]+mm) takes the head across", answer.err)
+    assert said is not None
+    closed = morfax("trace", "ring.png", "-o", "ring.csv", "--json", "--gap", said[1])
+    assert closed.figures["ending"] == "closed" and "is open" not in closed.err
 
 
 def test_run_goes_the_whole_way_and_tells_all_three(morfax: Morfax, here: Path) -> None:

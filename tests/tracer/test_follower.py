@@ -210,6 +210,14 @@ def test_a_guide_line_is_taken_where_the_card_says_so_and_come_back_from(seed: i
     assert line.length_mm == pytest.approx(6 + length_mm(CIRCLE) + 2 * length_mm(guide), abs=8 * LINE_MM)
 
 
+def test_a_ring_with_a_gap_closes_by_catching_it_again_wherever_the_head_begins() -> None:
+    ring = inked(arc((14, 14), 9, 10, 350), seed=1)  # 3.1 mm apart, less the pen's width
+    for start_mm in (None, (5.0, 14.0)):
+        assert trace(ring, start_mm, Settings(recatch_mm=2.0)).ending == "ended"
+        run = trace(ring, start_mm, Settings(recatch_mm=5.0))
+        assert run.ending == "closed" and run.length_mm == pytest.approx(18 * math.pi, abs=0.1)
+
+
 def test_a_lost_line_is_caught_again_within_the_limit_only() -> None:
     broken = inked(polyline((4, 10), (14, 10)), polyline((16.5, 10.8), (28, 14)))
     kept = trace(broken, (8.0, 10.0), Settings(recatch_mm=2.0))
