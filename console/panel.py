@@ -12,7 +12,7 @@ import click
 from click.core import ParameterSource
 
 from console import medium
-from console.quantities import LENGTH, LINES, OVERRIDE, PLACE, SPEED
+from console.quantities import CLEARANCE, DEPTH, LENGTH, LINES, OVERRIDE, PLACE, SPEED
 from console.tracing import Head, Marks
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ def head_options(verb: Callable[..., Any]) -> Callable[..., Any]:
     @click.option(
         "--depth",
         "depth_mm",
-        type=LENGTH,
+        type=DEPTH,
         default="5mm",
         show_default=True,
         help="How deep the tool goes into the work along the line.",
@@ -48,7 +48,7 @@ def head_options(verb: Callable[..., Any]) -> Callable[..., Any]:
     @click.option(
         "--clearance",
         "clearance_mm",
-        type=LENGTH,
+        type=CLEARANCE,
         default="2mm",
         show_default=True,
         help="How far above the work the tool stands before and after.",

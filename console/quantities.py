@@ -84,7 +84,27 @@ def _parse_origin(text: str) -> Any:
     return "reference" if text.strip().lower() == "reference" else parse_place_mm(text)
 
 
+def _decades(least_counts: int) -> Callable[[str], float]:
+    """How to read a length of Z, which is set on five decades."""
+
+    def parse(text: str) -> float:
+        from tracer.zunit import COUNT_MM, COUNTS_PER_MM, LARGEST_COUNT, counts_of
+
+        length_mm, most_mm = parse_length_mm(text), LARGEST_COUNT * COUNT_MM
+        allowed = f"give {least_counts * COUNT_MM:.2f} to {most_mm:.2f} mm in steps of {COUNT_MM:g} mm, such as 2.5mm"
+        if not least_counts * COUNT_MM <= length_mm <= most_mm:
+            raise ValueError(f"{text!r} cannot be set here on the five decades of Z; {allowed}")
+        try:
+            return counts_of(length_mm) / COUNTS_PER_MM
+        except ValueError:
+            raise ValueError(f"{text!r} cannot be set on the five decades of Z; {allowed}") from None
+
+    return parse
+
+
 LENGTH = Quantity("length", parse_length_mm, above_zero=True)
+DEPTH = Quantity("length", _decades(1))
+CLEARANCE = Quantity("length", _decades(6))  # up to 0.05 mm above the work the tool counts as in it
 SPEED = Quantity("speed", parse_speed_mm_s)
 FREQUENCY = Quantity("frequency", parse_frequency_hz)
 ANGLE = Quantity("angle", parse_angle_rad)

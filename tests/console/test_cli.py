@@ -67,6 +67,9 @@ def test_help_is_quick_because_it_loads_none_of_the_machines() -> None:
         ["trace", "a.png", "--start", "4"],
         ["trace", "a.png", "--speed", "0"],
         ["trace", "a.png", "--depth=-3mm"],
+        ["trace", "a.png", "--depth", "1m"],  # six decades
+        ["trace", "a.png", "--depth", "2.505mm"],  # between two counts
+        ["trace", "a.png", "--clearance", "0.05mm"],  # in the work, as a path file has it
         ["trace", "a.png", "--dpi", "-300"],
         ["compare", "a.csv"],
         ["compare", "a.csv", "b.csv", "--tolerance", "soon"],
