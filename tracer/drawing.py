@@ -3,9 +3,7 @@
 Signals: an image file in (PNG, JPEG, TIFF, …; any depth, grey or colour, with or without alpha), darkness out: float32 (rows from the top, columns),
 0 = paper, 1 = the ink of the drawing's lines, on square pixels of `pitch_mm`.
 
-Uneven paper is levelled: the paper is what is left of the picture when dark strokes narrower than a few mm are closed (a grey closing), smoothed. Ink is
-how dark the longer strokes are at their darkest. Whether the line is dark on light or light on dark is read off the skew of the grey levels about their
-local mean: strokes are the smaller part, so they stand out further.
+Uneven paper is levelled (see `paper`), dark on light or light on dark. Ink is how dark the longer strokes are at their darkest.
 
 Sheet coordinates: mm from the lower-left corner, X right, Y up; pixel i covers [i, i+1) pitches, so the centre of pixel 0 is at half a pitch.
 
@@ -29,7 +27,7 @@ from numpy.typing import NDArray
 
 from motion.faults import DrawingFault, FileFault
 from tracer import ink as inks
-from tracer import room
+from tracer import paper, room
 from tracer.patches import Patches, runs_of, strips
 from tracer.silhouette import outlined
 
@@ -37,10 +35,8 @@ if TYPE_CHECKING:
     from PIL.Image import Image
 
 MM_PER_INCH = 25.4
-WIDEST_STROKE_MM = 6.0  # broader dark areas count as paper that is dark
 LEAST_CONTRAST = 10.0  # grey levels of 255 between paper and ink
 LEAST_STROKE_MM = 2.0  # shorter strokes are specks
-PAPER_PITCH_MM = 0.34  # the paper is estimated on a picture reduced to this, by 4 at least
 FEWEST_SAMPLES = 1 << 22  # that tell the noise of the paper, and the darkness of the ink
 
 Darkness = NDArray[np.float32]
@@ -79,11 +75,16 @@ class Drawing:
 
         Raises DrawingFault if it is no image, states no resolution, or holds no line; FileFault if it cannot be read.
         """
-        file = Path(file)
+        file, wanted = Path(file), None if ink is None else inks.parsed(ink)
         if dpi is not None and width_mm is not None:
             raise DrawingFault("both a resolution and a width were given; give one of --dpi and --width")
-        grey, stated = _read(file, ink)
-        pitch = _pitches_mm(file, grey.shape[1], stated, dpi, width_mm)
+        picture, stated = _read(file, coloured=ink is not None)
+        pitch = _pitches_mm(file, picture.shape[1], stated, dpi, width_mm)
+        grey = (
+            picture
+            if wanted is None
+            else inks.covered(np.asarray(picture, np.uint8), wanted, None if edge else pitch[0])
+        )
         if abs(pitch[0] / pitch[1] - 1) > 1e-3:  # a fax has oblong pixels
             size = grey.shape[1], round(grey.shape[0] * pitch[1] / pitch[0])
             grey = np.asarray(cv2.resize(grey.astype(np.float32), size, interpolation=cv2.INTER_LINEAR), np.float32)
@@ -95,21 +96,20 @@ def darkness_of(grey: Grey, pitch_mm: float) -> Darkness:
 
     Raises DrawingFault if nothing on it is long and dark enough to be a line.
     """
-    paper, dark, reduced_by = _paper(grey, pitch_mm)
+    level = paper.Paper.of(grey, pitch_mm)
     contrast = np.empty(grey.shape, np.float32)
     for top, bottom, _ in strips(grey.shape):
-        level = _enlarged(paper, reduced_by, top, bottom, grey.shape[1])
-        first, second = (level, grey[top:bottom]) if dark else (grey[top:bottom], level)
+        behind = level.rows(top, bottom)
+        first, second = (behind, grey[top:bottom]) if level.is_light else (grey[top:bottom], behind)
         np.subtract(first, second, out=contrast[top:bottom], dtype=np.float32)
     contrast /= np.float32(_ink_contrast(contrast, pitch_mm))
     return contrast
 
 
-def _read(file: Path, ink: str | None) -> tuple[Grey, tuple[float, float] | None]:
-    """Grey levels of the first page of an image file, upright, and the resolution that the file states."""
+def _read(file: Path, *, coloured: bool) -> tuple[Grey, tuple[float, float] | None]:
+    """Grey levels, or colours, of the first page of an image file, upright, and the resolution that the file states."""
     from PIL import Image, ImageOps, UnidentifiedImageError
 
-    wanted = inks.parsed(ink) if ink is not None else (0, 0, 0)
     Image.MAX_IMAGE_PIXELS = None  # a large sheet is no attack; a lack of memory is said below
     try:
         with warnings.catch_warnings():
@@ -122,7 +122,7 @@ def _read(file: Path, ink: str | None) -> tuple[Grey, tuple[float, float] | None
                 image.load()
                 stated = _stated_dpi(image)
                 ImageOps.exif_transpose(image, in_place=True)
-                return _grey(image) if ink is None else inks.covered(image, wanted), stated
+                return np.array(image.convert("RGB")) if coloured else _grey(image), stated
     except UnidentifiedImageError:
         raise DrawingFault(f"{file} is not an image that can be read; give a PNG, JPEG or TIFF file") from None
     except FileNotFoundError:
@@ -203,37 +203,6 @@ def _pitches_mm(
     if stated is None:
         raise DrawingFault(f"{file} states no resolution; give --dpi 300, or the sheet's width with --width 120mm")
     return MM_PER_INCH / stated[0], MM_PER_INCH / stated[1]
-
-
-def _paper(grey: Grey, pitch_mm: float) -> tuple[Darkness, bool, int]:
-    """Grey level of the paper on a reduced picture, whether the strokes are darker than it, and by how much the picture is reduced."""
-    reduced_by = max(4, round(PAPER_PITCH_MM / pitch_mm))
-    small = _reduced(grey, reduced_by)
-    across = 2 * (max(24, round(WIDEST_STROKE_MM / pitch_mm)) // (2 * reduced_by)) + 1
-    stroke = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (across, across))
-    relief = small - cv2.blur(small, (across, across))
-    dark = float((relief**3).sum()) <= 0  # strokes take less room than paper: the few stand out further
-    level = cv2.morphologyEx(small, cv2.MORPH_CLOSE if dark else cv2.MORPH_OPEN, stroke)
-    return np.asarray(cv2.GaussianBlur(level, (0, 0), across / 2), np.float32), dark, reduced_by
-
-
-def _reduced(grey: Grey, by: int) -> Darkness:
-    """The mean of each square of `by` pixels; the last squares go on over the edge with what is there."""
-    rows, columns = (-(-side // by) for side in grey.shape)
-    small = np.empty((rows, columns), np.float32)
-    for top, bottom, _ in strips((rows, columns * by * by)):
-        part = grey[top * by : bottom * by].astype(np.float32)
-        below, beside = (bottom - top) * by - part.shape[0], columns * by - part.shape[1]
-        whole = cv2.copyMakeBorder(part, 0, below, 0, beside, cv2.BORDER_REPLICATE)
-        small[top:bottom] = cv2.resize(whole, (columns, bottom - top), interpolation=cv2.INTER_AREA)
-    return small
-
-
-def _enlarged(small: Darkness, by: int, top: int, bottom: int, columns: int) -> Darkness:
-    """Rows of the picture that a reduced one stands for, between its values."""
-    first, last = max(0, top // by - 1), min(len(small), -(-bottom // by) + 1)
-    large = cv2.resize(small[first:last], None, fx=by, fy=by, interpolation=cv2.INTER_LINEAR)
-    return np.asarray(large[top - first * by : bottom - first * by, :columns], np.float32)
 
 
 def _ink_contrast(contrast: Darkness, pitch_mm: float) -> float:

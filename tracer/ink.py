@@ -16,19 +16,17 @@ Questions: an ink printed over another lets it shine through or not; both are mi
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from motion.faults import DrawingFault
+from tracer.paper import Paper
 from tracer.patches import strips
 
-if TYPE_CHECKING:
-    from PIL.Image import Image
-
 Array = NDArray[np.float64]
+Picture = NDArray[np.uint8]  # rows from the top, columns, channels
 Colour = tuple[int, int, int]
 
 SAMPLES = 1 << 20  # pixels that tell the inks
@@ -37,6 +35,11 @@ NEAR = math.radians(18)  # inks whose colours lie in directions as near as this 
 LIKE = math.radians(35)  # the ink asked for is the nearest within this
 LEAST_SHARE = 0.01  # of all the ink on the sheet
 FRINGE_PX = 8  # about a line JPEG makes other colours
+EVEN = 6.0  # levels: paper that differs by less is left as it is
+GREY, WHITE = (
+    200.0,
+    235.0,
+)  # levels: darker paper is too dark for inks to be told by their colours, and is made so light
 NOISE = 5.0  # levels: a scan's, and what JPEG makes of edges
 
 
@@ -50,10 +53,14 @@ def parsed(text: str) -> Colour:
         raise ValueError(f"{text!r} is no colour; give a name such as blue, or #rrggbb such as #0000c0") from None
 
 
-def covered(image: Image, wanted: Colour) -> NDArray[np.float32]:
-    """Grey levels of the ink that is nearest to a colour; raises DrawingFault if there is none like it."""
-    image = image.convert("RGB")
-    paper, inks = _found(image)
+def covered(picture: Picture, wanted: Colour, pitch_mm: float | None = None) -> NDArray[np.float32]:
+    """Grey levels of the ink that is nearest to a colour; raises DrawingFault if there is none like it.
+
+    With a pitch uneven paper is levelled first, in place: on a sheet with broad areas of ink it cannot be told from them.
+    """
+    if pitch_mm is not None:
+        _level(picture, pitch_mm)
+    paper, inks = _found(picture)
     way = paper - np.array(wanted, float)
     angles = [_angle(way, paper - ink) for ink in inks] if np.hypot.reduce(way) > LEAST else []
     if not angles or min(angles) > LIKE:
@@ -63,20 +70,32 @@ def covered(image: Image, wanted: Colour) -> NDArray[np.float32]:
         )
     own = int(np.argmin(angles))
     apart = [_angle(paper - ink, paper - inks[own]) for k, ink in enumerate(inks) if k != own]
-    weights = _weights(image, paper, inks[own] - paper, min([NEAR, *(angle / 2 for angle in apart)]))
-    grey = np.empty(image.size[::-1], np.float32)
+    weights = _weights(picture, paper, inks[own] - paper, min([NEAR, *(angle / 2 for angle in apart)]))
+    grey = np.empty(picture.shape[:2], np.float32)
     for top, bottom, _ in strips(grey.shape):
-        part = np.asarray(image.crop((0, top, image.size[0], bottom)), np.float32)
-        grey[top:bottom] = 255 - 255 * (part @ weights - paper @ weights)
+        grey[top:bottom] = 255 - 255 * (picture[top:bottom].astype(np.float32) @ weights - paper @ weights)
     return grey
 
 
-def _weights(image: Image, paper: Array, own: Array, near: float) -> Array:
+def _level(picture: Picture, pitch_mm: float) -> None:
+    """Make light paper as light all over as it is as a rule, and white if a photograph has it grey, each channel by itself."""
+    for channel in np.moveaxis(picture, 2, 0):
+        paper = Paper.of(channel, pitch_mm)
+        usual = float(np.median(paper.reduced))
+        is_even = np.abs(np.percentile(paper.reduced, [2, 98]) - usual).max() < EVEN
+        if not paper.is_light or (is_even and usual > GREY):
+            continue
+        for top, bottom, _ in strips(channel.shape):
+            level = channel[top:bottom] * (max(usual, WHITE) / np.maximum(paper.rows(top, bottom), 1.0))
+            channel[top:bottom] = np.clip(np.round(level), 0, 255)
+
+
+def _weights(picture: Picture, paper: Array, own: Array, near: float) -> Array:
     """The weights that give 1 for an ink's colour and as little as they can for others: those away from that ink, whose fringes have any colour."""
     spread, count = np.zeros((3, 3)), 1
     about = np.ones((2 * FRINGE_PX + 1,) * 2, np.uint8)
-    for top, bottom, rows in strips(image.size[::-1], halo=FRINGE_PX):
-        part = np.asarray(image.crop((0, rows.start, image.size[0], rows.stop)), np.float32) - paper.astype(np.float32)
+    for top, bottom, rows in strips(picture.shape[:2], halo=FRINGE_PX):
+        part = picture[rows].astype(np.float32) - paper.astype(np.float32)
         far = np.sqrt(np.einsum("ijk,ijk->ij", part, part))
         like = (far > LEAST) & (part @ own.astype(np.float32) > math.cos(near) * np.hypot.reduce(own) * far)
         other = (far > LEAST) & (cv2.dilate(like.view(np.uint8), about) == 0)
@@ -88,15 +107,15 @@ def _weights(image: Image, paper: Array, own: Array, near: float) -> Array:
     return np.asarray(weights / (own @ weights))
 
 
-def _sample(image: Image) -> Array:
+def _sample(picture: Picture) -> Array:
     """Some of the pixels, (n, 3)."""
-    pixels = np.asarray(image).reshape(-1, 3)
+    pixels = picture.reshape(-1, 3)
     return pixels[:: max(1, len(pixels) // SAMPLES)].astype(float)
 
 
-def _found(image: Image) -> tuple[Array, list[Array]]:
+def _found(picture: Picture) -> tuple[Array, list[Array]]:
     """The paper's colour, the most frequent one, and those of the inks, the one of which there is most first."""
-    pixels = _sample(image)
+    pixels = _sample(picture)
     bins = np.floor(pixels / 16).astype(int) @ [256, 16, 1]
     paper = np.median(pixels[bins == np.bincount(bins).argmax()], axis=0)
     ways = paper - pixels

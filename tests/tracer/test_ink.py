@@ -54,6 +54,18 @@ def rms_mm(file: Path, ink: str | None) -> float:
     return distance(thin(trace(Drawing.open(file, ink=ink), (26, 16))), CIRCLE).path_to_reference.rms_mm
 
 
+@pytest.mark.parametrize("darkest", [0.85, 0.5])
+def test_an_ink_is_told_on_a_photograph_lit_from_one_side_with_a_shadow_across(tmp_path: Path, darkest: float) -> None:
+    file = drawn(tmp_path / "scan.png", ORANGE)
+    picture = np.asarray(Image.open(file), float)
+    y, x = np.mgrid[0 : picture.shape[0], 0 : picture.shape[1]]
+    light = 1 - (1 - darkest) * x / x.max() - 0.1 / (1 + np.exp(-(y - 0.6 * x - 100) / 15))
+    lit = picture * light[..., None] * [1, 0.97, 0.9]
+    photo = tmp_path / "photo.jpg"
+    Image.fromarray(np.clip(np.round(lit), 0, 255).astype(np.uint8)).save(photo, dpi=(300, 300), quality=90)
+    assert rms_mm(photo, "blue") < 4 * UM  # 2.5 and 2.7; the same as a scan 1.0
+
+
 RED, BLACK = (0xD0, 0x20, 0x30), (30, 30, 30)
 CHORDS = [polyline((2, 10), (28, 19)), polyline((5, 28), (22, 3))]
 
