@@ -105,7 +105,7 @@ def _ticks(view: View, way: Way) -> list[float]:
     feet: list[float] = []
     for stroke in every:
         foot = stroke.foot_mm
-        if not (stroke.ends and stroke.straight and stroke.is_clear) or any(
+        if not (stroke.ends and stroke.straight and stroke.is_clear and stroke.is_like) or any(
             abs(foot - other) < view.width_mm for other in feet
         ):
             continue
@@ -116,7 +116,7 @@ def _ticks(view: View, way: Way) -> list[float]:
             continue  # that is a corner
         if _is_way(view, way, stroke) or (not stroke.touches and any(_is_same(view, stroke, o) for o in every)):
             continue
-        across = [o for o in opposite if o.ends and o.straight]
+        across = [o for o in opposite if o.ends and o.straight and o.is_like]
         if not across and stroke.touches and stroke.length_mm > longest_mm(view, across=False):
             continue  # that is a line that begins here
         feet.append(float(np.mean([foot, *(o.foot_mm for o in across)])))
@@ -151,7 +151,7 @@ def _strokes(view: View, way: Way, side: int) -> list[Stroke]:
         dark = _row(view.cells, view.pitch_mm, way.places, way.along, side * away) > view.level
         edges = np.flatnonzero(np.diff(np.r_[False, dark, False].astype(np.int8)))
         for begin, end in zip(edges[::2], edges[1::2], strict=True):
-            if not strokes.LIKE[0] * view.width_mm < (end - begin) * way.step_mm < 2 * strokes.LIKE[1] * view.width_mm:
+            if not strokes.SEEN[0] * view.width_mm < (end - begin) * way.step_mm < 2 * strokes.SEEN[1] * view.width_mm:
                 continue
             i = (begin + end) // 2
             stroke = strokes.felt(view, way.places[i], way.along[i], way.at_mm[i], side, away, longest_mm(view))

@@ -26,6 +26,10 @@ LEAST_MM, LEAST_WIDTHS = 0.6, 1.2  # of a stroke, beyond the line's edge
 FARTHEST_MM = 1.5  # from the line's edge to a stroke beside it
 SLANT = math.tan(math.radians(40))
 LIKE = (0.5, 1.6)  # a stroke's width, of the line's
+SEEN = (
+    0.3,
+    2.0,
+)  # the same, of a stroke that is none of the line's pen, but is seen: what crosses the line may be one half by half
 CLEAR_WIDTHS = 1.5  # of paper to both sides of a stroke that touches the line
 APART_MM, APART_WIDTHS = 1.5, 3.0  # of one that does not: lettering stands beside lines
 SOILED, APART_SOILED = 0.15, 0.03  # of that may be ink
@@ -36,7 +40,7 @@ DASH_MM, DASH_WIDTHS = 2.0, 4.0  # dashes of one line are no further apart
 @dataclass(frozen=True, slots=True)
 class Stroke:
     """Ink beside the line, felt outward: its middles (n, 2) as mm along and away from the way, and on the sheet, whether it touches the line, whether it
-    ends, how far beyond the line's edge, and whether there is paper about it."""
+    ends, how far beyond the line's edge, whether there is paper about it, and whether the line's pen drew it."""
 
     side: int
     middles: Array
@@ -45,6 +49,7 @@ class Stroke:
     ends: bool
     reach_mm: float
     is_clear: bool
+    is_like: bool  # as wide and as dark as the line
 
     @property
     def foot_mm(self) -> float:
@@ -70,11 +75,12 @@ class Stroke:
 def felt(
     view: View, place: Array, along: Array, at_mm: float, side: int, away_mm: float, longest_mm: float
 ) -> Stroke | None:
-    """The stroke that a cell is on beside a place of the way, which is `at_mm` along it; None if it is not like a line's."""
+    """The stroke that a cell is on beside a place of the way, which is `at_mm` along it; None if it is not nearly as wide as the line, or too short."""
     width = view.width_mm
     seen = _stroke_at(view.cells, view.pitch_mm, place, along, side, away_mm, longest_mm + width, width, view.level)
     inner = seen[:, 1] > 0.9 * width  # nearer, its ink and the line's run together
-    if inner.sum() < 3 or not LIKE[0] < np.median(seen[inner, 2]) / width < LIKE[1]:
+    wide = float(np.median(seen[inner, 2])) / width if inner.sum() > 2 else 0.0
+    if not SEEN[0] < wide < SEEN[1]:
         return None
     nearest, reach = float(seen[:, 1].min()), float(seen[:, 1].max()) - 0.5 * width
     touches = nearest < 0.5 * width + 2 * view.pitch_mm
@@ -83,8 +89,7 @@ def felt(
         return None
     where = view.cells, view.pitch_mm, place, along, side
     middles, others = seen[inner], max(DASH_MM, DASH_WIDTHS * width)
-    if not INK[0] < _darkness(*where, middles) * LEVEL / view.level < INK[1]:
-        return None
+    is_like = LIKE[0] < wide < LIKE[1] and INK[0] < _darkness(*where, middles) * LEVEL / view.level < INK[1]
     across = side * np.array([-along[1], along[0]])
     tips = [seen[np.argmax(seen[:, 1]), :2] - [0, 0.5 * width], seen[np.argmin(seen[:, 1]), :2] + [0, 0.5 * width]]
     at_tips = [is_tip(view, place + u * along + v * across) for u, v in tips[: 1 if touches else 2]]
@@ -93,7 +98,7 @@ def felt(
     soiled = _soiled(*where, middles, 0.4 * width, clear_mm, view.level)
     is_clear = soiled < (SOILED if touches else APART_SOILED)
     places = place + middles[:, :1] * along + middles[:, 1:2] * across
-    return Stroke(side, middles[:, :2] + [at_mm, 0.0], places, touches, ends, reach, is_clear)
+    return Stroke(side, middles[:, :2] + [at_mm, 0.0], places, touches, ends, reach, is_clear, is_like)
 
 
 @njit(cache=True)

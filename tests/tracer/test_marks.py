@@ -106,6 +106,14 @@ def test_what_another_pen_drew_is_no_mark() -> None:
     assert len(trace(drawing).lines[0].marks) == 1 and trace(pencil).lines[0].marks == ()
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_a_dash_half_as_wide_that_crosses_the_line_is_no_mark(seed: int) -> None:
+    """Noise may have the one end of it as wide as a mark, and the other, longer one not."""
+    for out_mm in (6.0, 8.0):
+        dash = np.array([(24, 15.875), (26 + out_mm, 15.875), (26 + out_mm, 16.125), (24, 16.125)])
+        assert not trace(inked(CIRCLE, specks=[dash], seed=seed), (16, 6)).lines[0].marks
+
+
 def test_on_a_line_of_two_pixels_no_mark_is_read() -> None:
     assert marks(LINE, tick((20, 12)), width_mm=0.3, dpi=150).marks == ()
 
