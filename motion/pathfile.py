@@ -9,6 +9,7 @@ and y, in mm) are required:
     no t_s     the points are run through at the feed, along the polyline
     no z_mm    the tool column gives Z: in the work 0, up +2 mm; without either the tool is always in the work
     u_mm …     (A, B, C, U, V or W) a further axis, in the order of the columns
+    else       a column of another name is passed over, but for one of an axis in a unit other than mm, which is refused
     loop       (truth files) where it changes a new contour starts, and the tool goes over to it at +2 mm
 
 Where Z follows from tool or loop, X and Y stand while Z moves at the feed:
@@ -43,6 +44,7 @@ FEED_MM_S = 10.0
 
 _NAMES = {"t": "t_s", "time_s": "t_s", "x": "x_mm", "y": "y_mm", "z": "z_mm"}  # short names of the columns
 _COLUMNS = ("t_s", "x_mm", "y_mm", "z_mm", "tool", "loop", *(f"{axis}_mm" for axis in FURTHER_AXES))
+_OTHER_UNITS = {"", "in", "inch", "cm", "m", "um", "deg", "rad", "ms", "us", "min"}
 _UP = {"0", "0.0", "false", "up"}
 _DOWN = {"1", "1.0", "true", "down"}
 _ROWS_AT_ONCE = 4096
@@ -161,6 +163,11 @@ def _find_columns(header: str, separator: str, place: str) -> dict[str, int]:
     for name in _COLUMNS:
         if names.count(name) > 1:
             raise MotionFault(f"{place}: column {name} stands there {names.count(name)} times; leave one")
+    for name in names:
+        axis, _, unit = name.partition("_")
+        if name not in _COLUMNS and unit in _OTHER_UNITS and axis in ("t", *AXES, *FURTHER_AXES):
+            wanted = "t_s, in seconds" if axis == "t" else f"{axis}_mm, in mm"
+            raise MotionFault(f"{place}: column {name} cannot be read; give {wanted}, or take the column out")
     return {name: names.index(name) for name in names if name in _COLUMNS}
 
 

@@ -115,6 +115,8 @@ def test_a_point_that_stands_twice_is_taken_once(tmp_path: FilePath) -> None:
         ("x,y\n1,2\n", "1 points in it"),
         ("1,2\n3,4\n5,6\n", "line 1: no column x_mm in '1,2'"),
         ("t_s,x_mm\n1,2\n3,4\n", "line 1: no column y_mm"),
+        ("x,y,a_deg\n1,2,3\n4,5,6\n", "line 1: column a_deg cannot be read; give a_mm, in mm, or take the column out"),
+        ("x,y,t_ms\n1,2,3\n4,5,6\n", "line 1: column t_ms cannot be read; give t_s, in seconds"),
         ("x,x_mm,y\n1,2,3\n4,5,6\n", "line 1: column x_mm stands there 2 times"),
         ("x,y\n1,2\n# remark\n3,four\n", "line 4: y_mm is 'four'; it must be a finite number"),
         ("x,y\n1,2\n3\n", "line 3: no value for y_mm in '3'"),
