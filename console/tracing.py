@@ -96,6 +96,7 @@ class Head:
         self._tell_of_stops(traced, desk)
         self._tell_of_reference(traced, desk)
         self._tell_of_gaps(traced, desk)
+        self._tell_of_stems(traced, desk)
         origin_mm = (0.0, 0.0) if self.marks.origin == "sheet" else self._reference_mm(drawing, traced)
         beside, unreached = self._beside(traced, settings)
         return Traced(beside, thin(beside), self.lines is not None, origin_mm, self.cutter, unreached)
@@ -128,6 +129,17 @@ class Head:
                 desk.note(
                     f"{which} is open, but ends {line.gap_mm:.1f} mm from its beginning at {x:.1f},{y:.1f} mm: "
                     f"if that is a gap in a closed line, --gap {wide_mm:g}mm takes the head across"
+                )
+
+    @staticmethod
+    def _tell_of_stems(trace: Trace, desk: Desk) -> None:
+        """Tell of lines that lead to a loop and are cut with it, because nothing says that they are lead lines."""
+        for line in trace.lines:
+            if line.loop_from is not None and not line.is_lead:
+                (x, y), (u, v) = line.start_mm, line.place(line.loop_from)
+                desk.note(
+                    f"the line from {x:.1f},{y:.1f} to the contour at {u:.1f},{v:.1f} mm is cut too: a lead line is known "
+                    "by a cross or ring at its beginning, by --reference X,Y there, or by a tick across it"
                 )
 
     def _tell_of_reference(self, trace: Trace, desk: Desk) -> None:

@@ -177,10 +177,11 @@ def meet(incoming: Leg, outgoing: Leg) -> Meeting | None:
     return s, u
 
 
-def reach_of_ink(view: View, incoming: Leg, farthest_mm: float) -> float | None:
-    """How far the ink goes on from the incoming leg's end along its line, mm; None if farther than asked."""
+def reach_of_ink(view: View, incoming: Leg, farthest_mm: float, aside_mm: float = 0.0) -> float | None:
+    """How far the ink goes on from the incoming leg's end along its line, or beside it (left positive), mm; None if farther than asked."""
     step = 0.35 * view.pitch_mm
-    places = incoming.at(np.asarray(np.arange(int(farthest_mm / step)) * step, float))
+    left = np.array([-math.sin(incoming.heading_rad), math.cos(incoming.heading_rad)])
+    places = incoming.at(np.asarray(np.arange(int(farthest_mm / step)) * step, float)) + aside_mm * left
     steps = _steps_of_ink(view.cells, view.pitch_mm, places, view.level)
     return max(0.0, steps * step) if steps < len(places) else None
 
@@ -198,11 +199,17 @@ def _steps_of_ink(cells, pitch_mm, places, level):  # type: ignore[no-untyped-de
 
 
 def stroke_end(view: View, leg: Leg, farthest_mm: float) -> float | None:
-    """How far the ink of a stroke goes on from a leg's end, mm, if the stroke ends there: no ink leaves its tip but the stroke's own; None if not."""
-    ink = reach_of_ink(view, leg, farthest_mm)
-    if ink is None:
+    """How far the ink of a stroke goes on from a leg's end, mm, if the stroke ends there: no ink leaves its tip but the stroke's own; None if not.
+
+    A speck of paper on the stroke is not its end: beside its middle the ink goes on.
+    """
+    middle, *beside = (reach_of_ink(view, leg, farthest_mm, share * view.width_mm) for share in (0.0, -0.25, 0.25))
+    if middle is None:
         return None
-    return ink if is_tip(view, leg.at(ink - 0.5 * view.width_mm)) else None
+    for ink in (middle, *(reach for reach in beside if reach is not None and reach > middle)):
+        if is_tip(view, leg.at(ink - 0.5 * view.width_mm)):
+            return ink
+    return None
 
 
 def is_tip(view: View, place: Array) -> bool:

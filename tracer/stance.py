@@ -138,6 +138,9 @@ def _at_ends(
     named = [] if reference_mm is None else _from_reference(reference_mm, ends)
     if named:
         return named
+    leading = None if reference_mm is None else _leading_away(view, stroke, reference_mm)
+    if leading is not None:
+        return [leading]
     for place_mm, lead in _named_first(references(sheet, view, stroke), reference_mm):
         if lead is not None and stroke.is_at(lead.end_mm):
             local = view.like(lead.end_mm, lead.heading_rad)
@@ -146,6 +149,23 @@ def _at_ends(
         if from_it:
             return from_it
     return ends
+
+
+def _leading_away(view: View, stroke: Stroke, reference_mm: tuple[float, float]) -> Stance | None:
+    """The stance on the only line that leads away from what is drawn about a reference point, whatever that is; None if there is no such line."""
+    place = np.asarray(reference_mm)
+    local = _local(view, stroke.middles_mm[np.argmin(np.hypot(*(stroke.middles_mm - place).T))])
+    for radius in np.arange(view.width_mm, LEAD_MM, 0.5 * view.width_mm):
+        arcs = photocell.ring(local.cells, local.pitch_mm, place, radius, local.level)
+        if len(arcs) != 1:
+            continue
+        heading = float(arcs.mean())
+        start = place + radius * np.array([math.cos(heading), math.sin(heading)])
+        seen = local.feel(start, heading, 2 * local.leg_mm)
+        if stroke.is_at(start) and (len(seen) - 1) * local.step_mm > 1.5 * local.leg_mm:
+            leg = leg_of(seen, False, local.leg_mm)
+            return Stance(leg.end_mm, leg.heading_rad, replace(local, width_mm=leg.width_mm), True, reference_mm)
+    return None
 
 
 def _named_first(

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
+from PIL import Image
 
 from console import attended
 from motion.pathfile import read_path
@@ -80,6 +83,17 @@ def test_a_named_reference_point_that_no_line_begins_at_is_told_of(morfax: Morfa
     answer = morfax("trace", PROGRAM, "-o", "program.csv", "--json", "--reference", "5,55")
     assert answer.figures["reference_place_mm"] == pytest.approx(REFERENCE_MM, abs=WITHIN_MM)
     assert "no line begins within 11 mm of the reference point 5,55 mm: the program does not begin there" in answer.err
+
+
+def test_a_stem_that_nothing_makes_a_lead_line_is_told_to_be_cut(morfax: Morfax, here: Path) -> None:
+    grey = np.full((300, 600), 240, np.uint8)
+    cv2.circle(grey, (430, 150), 100, 30, 6, cv2.LINE_AA)
+    cv2.line(grey, (60, 150), (330, 150), 30, 6, cv2.LINE_AA)
+    Image.fromarray(grey).save("stem.png", dpi=(300, 300))
+    answer = morfax("trace", "stem.png", "-o", "stem.csv", "--json")
+    assert re.search(r"the line from 5.1,12.7 to the contour at 2[78][.0-9]+,12.7 mm is cut too", answer.err)
+    told = morfax("trace", "stem.png", "-o", "stem.csv", "--json", "--reference", "3,12.7")
+    assert "is cut too" not in told.err and told.figures["reference_place_mm"] == [3.0, 12.7]
 
 
 @pytest.mark.parametrize(("direction", "positive"), [("cw", False), ("ccw", True), ("left", False), ("right", True)])

@@ -114,6 +114,15 @@ def test_a_dash_half_as_wide_that_crosses_the_line_is_no_mark(seed: int) -> None
         assert not trace(inked(CIRCLE, specks=[dash], seed=seed), (16, 6)).lines[0].marks
 
 
+@pytest.mark.parametrize("y_mm", [13.0, 13.1, 13.2])
+def test_a_tick_with_a_speck_of_paper_in_its_tip_is_no_junction(y_mm: float) -> None:
+    drawing = inked(polyline((4, 12), (18, 12)), arc((27, 12), 9), tick((12, 12)))
+    drawing.darkness[-1 - int(y_mm / drawing.pitch_mm), int(12 / drawing.pitch_mm)] = 0
+    (line,) = trace(drawing).lines
+    assert line.is_lead and [mark.kind for mark in line.marks] == ["tick"]
+    assert len(line.junctions_mm) == 1 and math.dist(line.junctions_mm[0], (18, 12)) < STANDS_WITHIN_MM
+
+
 def test_on_a_line_of_two_pixels_no_mark_is_read() -> None:
     assert marks(LINE, tick((20, 12)), width_mm=0.3, dpi=150).marks == ()
 

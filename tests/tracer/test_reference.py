@@ -9,6 +9,7 @@ import pytest
 
 from tests.tracer.inked import UM, arc, cross, inked, polyline, tick
 from tracer.line import Line
+from tracer.operator import Operator
 from tracer.sequence import trace
 
 WITHIN_MM = 50 * UM
@@ -72,6 +73,18 @@ def test_specks_at_the_tips_of_a_cross_leave_it_a_cross() -> None:
     specks = [np.array([[x - 0.04, y - 0.04], [x + 0.04, y - 0.04], [x, y + 0.04]]) for x, y in tips]
     drawing = inked(CIRCLE, polyline((12, 14), JOIN), *cross(AT, 4.5), seed=3, specks=specks)
     stands_at(trace(drawing).lines[0], AT)
+
+
+@pytest.mark.parametrize("named", [AT, (6.2, 14.6)])
+def test_from_a_named_reference_point_the_lead_line_is_found_whatever_is_drawn_there(
+    named: tuple[float, float],
+) -> None:
+    """Three strokes are no cross, and there is a guide line, at whose open end the head would begin otherwise."""
+    strokes = [tick(AT, a, before_mm=2.0, beyond_mm=2.0) for a in (0, 50, 110)]
+    guide = polyline((36, 5), (36, 12))
+    run = trace(inked(CIRCLE, polyline(AT, JOIN), guide, *strokes, seed=3), operator=Operator(reference_mm=named))
+    assert run.lines[0].is_lead and run.lines[0].begin_mm == named
+    assert run.lines[0].start_mm[0] < 12 and abs(run.lines[0].start_mm[1] - 14) < WITHIN_MM
 
 
 NONE = {
