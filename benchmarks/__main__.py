@@ -9,12 +9,16 @@ from pathlib import Path
 
 
 def main(names: list[str]) -> None:
-    """Call `main()` of every module beside this one that has one."""
+    """Call `main()` of every module beside this one that has one, or of those named."""
     if names[:1] == ["folder"]:
         importlib.import_module("benchmarks.folder").main(names[1:])
         return
-    here = [module.name for module in pkgutil.iter_modules([str(Path(__file__).parent)])]
-    for name in names or [name for name in here if not name.startswith("_") and name != "folder"]:
+    here = [module.name for module in pkgutil.iter_modules([str(Path(__file__).parent)]) if module.name[0] != "_"]
+    if unknown := [name for name in names if name not in here]:
+        sys.exit(
+            f"no benchmark {unknown[0]}; there are {', '.join(here)}; without a name all are run but folder, which wants a DIR"
+        )
+    for name in names or [name for name in here if name != "folder"]:
         run = getattr(importlib.import_module(f"benchmarks.{name}"), "main", None)
         if run is not None:
             run()

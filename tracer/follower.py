@@ -101,7 +101,8 @@ class Follower:
             if self.carriage.trail.comes_again(self.view.width_mm):
                 return self._done("joined")  # before the next junction, whose other legs have been followed
             if why != head.MORE and self.settings.direct_rad_s_mm > 0:
-                return self._lost("the swinging cell sees no more ink, and this head has no guard cells to find on by")
+                why_lost = "the swinging cell sees no more ink, and this head has no guard cells to find on by"
+                return self._lost(why_lost, "go slower there with --speed, or follow with --head precise")
             if why != head.MORE:
                 ending = self._through_knot()
                 if ending is not None:
@@ -328,13 +329,13 @@ class Follower:
         )
         return done if ending != "joined" else _without_repeat(done)
 
-    def _lost(self, why: str) -> Followed:
-        """The end of a line that was lost: the fault says where."""
+    def _lost(self, why: str, instead: str = "bridge a gap with --gap, or scan at a higher resolution") -> Followed:
+        """The end of a line that was lost: the fault says where, and what may be done instead."""
         (x, y), heading = self.carriage.stands()
         degrees = round(math.degrees(heading)) % 360
         fault = LineFault(
             f"line lost at {x:.2f},{y:.2f} mm, heading {degrees} degrees, after {self.carriage.travel_mm:.1f} mm: {why};"
-            " look at the drawing there, bridge a gap with --gap, or scan at a higher resolution",
+            f" look at the drawing there, {instead}",
             x_mm=float(x),
             y_mm=float(y),
             heading_rad=heading,

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
 from click.testing import CliRunner
 
+from benchmarks.__main__ import main
 from benchmarks.folder import table
 from tests.tracer.inked import Points, arc
 
@@ -39,3 +41,8 @@ def test_a_drawing_on_which_no_line_can_be_begun_is_told_in_its_row(tmp_path: Pa
     answer = CliRunner().invoke(table, [str(tmp_path), "--size", "1.8mm"])
     assert answer.exit_code == 0, (answer.output, answer.exception)
     assert any("can be begun" in line or "no line" in line for line in answer.stdout.splitlines())
+
+
+def test_a_benchmark_that_there_is_not_is_one_line_with_those_that_there_are() -> None:
+    with pytest.raises(SystemExit, match="no benchmark --help; there are .*folder.*tracing"):
+        main(["--help"])

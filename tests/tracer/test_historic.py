@@ -96,4 +96,5 @@ def test_the_historic_head_loses_the_line_where_it_cannot_turn() -> None:
     """A hairpin, or an end, is more than a head without guard cells can find round; it says where it lost the line."""
     run = trace(inked(polyline((4, 6), (30, 6), (6, 12)), width_mm=0.7), (10, 6), HISTORIC)
     assert run.ending == "lost" and run.fault is not None
+    assert str(run.fault).endswith("go slower there with --speed, or follow with --head precise")
     assert run.fault.x_mm is not None and min(abs(run.fault.x_mm - x) for x in (4, 30)) < 4  # two leads from the place
