@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from itertools import combinations
 from typing import Literal
@@ -174,7 +175,15 @@ def goes_straight(incoming: Leg, outgoing: Leg | None) -> bool:
 
 
 def straight_on(view: View, incoming: Leg, gap_mm: float) -> Leg | None:
-    """The clean line met by going straight on with the heading held, through a blot, or across a gap no wider than allowed."""
+    """The clean line met by going straight on, through a blot, or across a gap no wider than allowed: along the leg's bend, or else with the heading held.
+
+    The bend of a dash two or three millimetres long is uncertain.
+    """
+    return _met(view, incoming, gap_mm) or _met(view, replace(incoming, bend_per_mm=0.0), gap_mm)
+
+
+def _met(view: View, incoming: Leg, gap_mm: float) -> Leg | None:
+    """The clean line met by going on along a leg."""
     light_mm, step = 0.0, 0.35 * view.pitch_mm
     for along in np.arange(0.5 * view.width_mm, FARTHEST_WIDTHS * view.width_mm + gap_mm, step):
         place = incoming.at(along)

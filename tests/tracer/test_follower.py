@@ -218,6 +218,17 @@ def test_a_ring_with_a_gap_closes_by_catching_it_again_wherever_the_head_begins(
         assert run.ending == "closed" and run.length_mm == pytest.approx(18 * math.pi, abs=0.1)
 
 
+@pytest.mark.parametrize("radius_mm", [8.0, 20.0])
+@pytest.mark.parametrize("seed", range(3))
+def test_a_dashed_circle_is_followed_all_the_way_round(radius_mm: float, seed: int) -> None:
+    """Dashes of 2.5 mm, 1 mm apart: the bend of so short a piece is uncertain."""
+    dashes = round(2 * math.pi * radius_mm / 4)
+    step = 360 / dashes
+    pieces = [arc((24, 24), radius_mm, k * step, (k + 2.5 / 4) * step) for k in range(dashes)]
+    run = trace(inked(*pieces, seed=seed), settings=Settings(gap_mm=1.3))
+    assert run.ending == "closed" and run.length_mm == pytest.approx(2 * math.pi * radius_mm, rel=0.003)
+
+
 def test_a_lost_line_is_caught_again_within_the_limit_only() -> None:
     broken = inked(polyline((4, 10), (14, 10)), polyline((16.5, 10.8), (28, 14)))
     kept = trace(broken, (8.0, 10.0), Settings(recatch_mm=2.0))
