@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from tracer.program import Trace
     from tracer.settings import Settings
 
+FEW = 0.7  # of the ink that is joined to a line: what is left is worth a word
 SET_BY_OPTIONS = (
     "speed_mm_s",
     "gap_mm",
@@ -97,6 +98,7 @@ class Head:
         self._tell_of_reference(traced, desk)
         self._tell_of_gaps(traced, desk)
         self._tell_of_stems(traced, desk)
+        self._tell_of_rest(traced, desk)
         origin_mm = (0.0, 0.0) if self.marks.origin == "sheet" else self._reference_mm(drawing, traced)
         beside, unreached = self._beside(traced, settings)
         return Traced(beside, thin(beside), self.lines is not None, origin_mm, self.cutter, unreached)
@@ -141,6 +143,15 @@ class Head:
                     f"the line from {x:.1f},{y:.1f} to the contour at {u:.1f},{v:.1f} mm is cut too: a lead line is known "
                     "by a cross or ring at its beginning, by --reference X,Y there, or by a tick across it"
                 )
+
+    def _tell_of_rest(self, trace: Trace, desk: Desk) -> None:
+        """Tell of one line that it is the smaller part of the ink in which lines cross or touch."""
+        line = trace.lines[0]
+        if self.lines is None and trace.fault is None and line.length_mm < FEW * line.ink_mm:
+            desk.note(
+                f"about {line.ink_mm - line.length_mm:.0f} mm of ink that is joined to the line was not followed: "
+                "--lines all follows the lines that cross or touch it too, --start X,Y another one"
+            )
 
     def _tell_of_reference(self, trace: Trace, desk: Desk) -> None:
         """Tell of a reference point that was named and from which no line begins."""

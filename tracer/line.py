@@ -42,6 +42,7 @@ class Line:
     guides: tuple[Guide, ...] = ()
     reference_mm: tuple[float, float] | None = None  # the reference point from which it begins
     junctions_mm: tuple[tuple[float, float], ...] = ()  # in the order in which the head came to them
+    ink_mm: float = 0.0  # length of the ink that is joined to it, its own included, by its area
 
     @classmethod
     def of(cls, run: Followed, number: int = 1, reference_mm: tuple[float, float] | None = None) -> Line:

@@ -176,7 +176,7 @@ def _line(
     """The line as it is followed from a stance."""
     told = None if progress is None else partial(_tell, progress, length_mm)
     run = _run(stance, start_mm, operator, settings, _longest_mm(sheet.drawing, stance.view.width_mm), told)
-    return Line.of(run, number, stance.reference_mm)
+    return replace(Line.of(run, number, stance.reference_mm), ink_mm=length_mm)
 
 
 def _several_lead(lines: list[Line]) -> LineFault:

@@ -68,6 +68,18 @@ def test_a_gap_too_wide_to_cross_is_told_with_the_option_that_crosses_it(
     assert closed.figures["ending"] == "closed" and "is open" not in closed.err
 
 
+def test_one_line_of_several_that_cross_is_told_to_be_one_of_several(morfax: Morfax, here: Path) -> None:
+    grey = np.full((400, 700), 240, np.uint8)
+    for x in (200, 350, 500):
+        cv2.circle(grey, (x, 200), 120, 30, 6, cv2.LINE_AA)
+    Image.fromarray(grey).save("rings.png", dpi=DPI)
+    one = morfax("trace", "rings.png", "-o", "rings.csv")
+    said = re.search(r"about (\d+) mm of ink that is joined to the line was not followed: --lines all", one.err)
+    assert said is not None and int(said[1]) == pytest.approx(2 * 2 * np.pi * 10.2, rel=0.1)
+    every = morfax("trace", "rings.png", "-o", "rings.csv", "--lines", "all", "--json")
+    assert [line["ending"] for line in every.figures["lines"]] == ["closed"] * 3 and every.err == ""
+
+
 def test_run_goes_the_whole_way_and_tells_all_three(morfax: Morfax, here: Path) -> None:
     answer = morfax("run", SAMPLES / "gear.png", "-o", "results", "--json")
     assert answer.exit_code == 0
