@@ -30,7 +30,8 @@ from tracer.stance import stance_near, view_of
 
 NEW = 0.6  # of a line's way: the rest may be another's too
 BESIDE = 1.5  # widths: ink nearer to a way than this is that way's
-RUNS = 60  # tried on a patch
+RUNS = 60  # tried on a patch,
+TRIED_MM = 1500.0  # and travel, besides the length of its ink, in runs that are no lines
 
 
 def joined_to(
@@ -42,6 +43,7 @@ def joined_to(
     if left.length_mm < _least_mm(stroke):
         return [], 0.0
     view = view_of(sheet, settings.aperture_mm, settings.line_width_mm or stroke.width_mm)
+    spent_mm = -stroke.length_mm
     for _ in range(RUNS):
         place_mm = replace(contour, stroke=left).starts_mm()[0]
         tried.append(np.array([place_mm]))
@@ -51,8 +53,10 @@ def joined_to(
             tried += [run.places_mm for run in (*before, other)]
             if _is_line(other, [line, *found]):
                 found.append(other)
+            else:
+                spent_mm += sum(run.length_mm for run in (*before, other))
         left = _left(stroke, tried)
-        if left.length_mm < _least_mm(stroke):
+        if left.length_mm < _least_mm(stroke) or spent_mm > TRIED_MM:
             break
     return found, _left(stroke, [some.places_mm for some in (line, *found)]).length_mm
 
