@@ -107,8 +107,8 @@ def as_cells(rows: Mapping[str, Figures]) -> list[list[str]]:
 
 def _told(key: str, value: Any) -> tuple[str, str]:
     """Label and value of a figure, as people read it."""
-    suffix = next((suffix for suffix in _UNITS if key.endswith(suffix)), "")
-    name = key if suffix == "_share" else key.removesuffix(suffix)
+    suffix = next((suffix for suffix in _UNITS if f"_{key}".endswith(suffix)), "")
+    name = key if suffix == "_share" else key.removesuffix(suffix).removesuffix("_mm")
     label = _LABELS.get(name, name.replace("_", " "))
     if value is None:
         return label, "–"
