@@ -299,7 +299,13 @@ class Traced:
         if self.cutter is None:
             return {}
         rows = [
-            {"unreached": k, "of_line": u.line, "place_mm": u.place_mm, "left_mm": u.left_mm, "stretch_mm": u.length_mm}
+            {
+                "unreached": k,
+                "of_line": u.line,
+                "unreached_place_mm": u.place_mm,
+                "left_mm": u.left_mm,
+                "stretch_mm": u.length_mm,
+            }
             for k, u in enumerate(self.unreached, 1)
         ]
         return {"cutter_diameter_mm": self.cutter.diameter_mm, "side": self.cutter.side, "unreached": rows or None}

@@ -22,7 +22,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -32,6 +32,10 @@ from numpy.typing import NDArray
 UM = 1e-3  # mm
 PLAIN = 0.05 * UM  # a line is known by places between which it is straight within this
 NEARER = 0.2 * UM  # than the radius: taken out
+SET_BACK, LONG_MM = (
+    5 * UM,
+    1.0,
+)  # so much nearer in places does not make a piece as long as this a loop: a kink of the line does
 FREE, ALONE = -1, -2  # ends of a piece that lie at no crossing: of an open line, and of one round about
 APART_MM = 0.02  # between the places of a way
 DEEP_MM = 0.05  # nearer than the radius by this: no crossing there can count
@@ -94,6 +98,20 @@ class Nearest:
     def distances_mm(self, places_mm: Array) -> Array:
         """Distance of each place (n, 2) from the nearest line, mm."""
         return np.asarray(self._tree.query(places_mm)[0])
+
+    def set_back(self, places_mm: Array, distance_mm: float) -> Array:
+        """The places (n, 2), those that are nearer than a distance moved straight away from the nearest place of a line to it."""
+        away, index = self._tree.query(places_mm)
+        lines = np.asarray(self._tree.data)[index]
+        return np.asarray(lines + (places_mm - lines) * np.maximum(1.0, distance_mm / np.maximum(away, UM))[:, None])
+
+
+def crossings(one_mm: Array, other_mm: Array) -> Array:
+    """Where two polylines, no piece of them longer than `CELL_MM`, cross: (n, 2) places of each, as numbers of points with their share on, along the first."""
+    pieces = np.delete(np.arange(len(one_mm) + len(other_mm) - 1), len(one_mm) - 1)
+    found = _crossings(np.ascontiguousarray(np.vstack([one_mm, other_mm])), pieces)
+    found = found[(found[:, 0] < len(one_mm)) & (found[:, 1] >= len(one_mm))] - [0, len(one_mm)]
+    return np.asarray(found[np.argsort(found[:, 0])])
 
 
 def with_places(line_mm: Array, apart_mm: float) -> Array:
@@ -191,7 +209,18 @@ def _parted(swung: list[Array], closed: list[bool], near: Nearest, radius_mm: fl
         order = np.argsort(at[own])
         cuts = list(zip(at[own][order] - firsts[guide], number[own][order], strict=True))
         pieces += _between(way, cuts, closed[guide], guide)
-    return [piece for piece in pieces if near.distances_mm(_inner(piece.points_mm)).min() >= radius_mm - NEARER]
+    return [clear for piece in pieces if (clear := _cleared(piece, near, radius_mm)) is not None]
+
+
+def _cleared(piece: _Piece, near: Nearest, radius_mm: float) -> _Piece | None:
+    """A piece that is nowhere nearer than the radius to a line, a long one with its places set back by some um if need be; None if it is nearer."""
+    nearest_mm = near.distances_mm(_inner(piece.points_mm)).min()
+    if nearest_mm >= radius_mm - NEARER:
+        return piece
+    if nearest_mm < radius_mm - SET_BACK or piece.length_mm < LONG_MM:
+        return None
+    piece = replace(piece, points_mm=near.set_back(piece.points_mm, radius_mm))
+    return piece if near.distances_mm(_inner(piece.points_mm)).min() >= radius_mm - NEARER else None
 
 
 def _between(way: Array, cuts: list[tuple[float, int]], closed: bool, guide: int) -> list[_Piece]:
@@ -227,11 +256,18 @@ def _chains(pieces: list[_Piece]) -> list[list[_Piece]]:
     for first in sorted(pieces, key=lambda piece: (piece.start != FREE, -piece.length_mm)):
         if not any(first is piece for piece in leaving[first.start]):
             continue  # it is in a chain already
-        chain = [_taken(first, leaving)]
+        chain, passed = [_taken(first, leaving)], {first.start}
         while chain[-1].end >= 0 and chain[-1].end != first.start and leaving.get(chain[-1].end):
-            chain.append(_taken(max(leaving[chain[-1].end], key=lambda piece: _turn(chain[-1], piece)), leaving))
+            passed.add(chain[-1].end)
+            chain.append(_taken(_next(chain[-1], leaving[chain[-1].end], passed - {first.start}), leaving))
         chains.append(chain)
     return chains
+
+
+def _next(arriving: _Piece, leaving: list[_Piece], passed: set[int]) -> _Piece:
+    """The piece furthest to the left of those at a crossing, but for one that only curls back to a crossing passed already, within `NEARER`."""
+    on = [piece for piece in leaving if piece.end not in passed] or leaving
+    return max(on, key=lambda piece: _turn(arriving, piece))
 
 
 def _taken(piece: _Piece, leaving: dict[int, list[_Piece]]) -> _Piece:

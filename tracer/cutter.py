@@ -9,8 +9,11 @@ Side: `left` and `right` are those of the head's travel. `outside` is the outsid
 in it (a hole) its inside, of one in that its outside, and so on; `inside` (a pocket and its islands) is the other side of each. All lines that are
 followed count as the part's edge: where two are nearer to each other than the cutter is wide, it does not go between them.
 
+What is drawn besides contours is carried over to the ways (see `carried`). Neither lead nor guide lines count as edges, and no hole is moved.
+
 Source: patent ES 361967, section on use, has the draughtsman draw the contour larger by the cutter's radius; the arm is our own, as on steered copying heads.
-Questions: lead lines and marks are drawn with the cutter allowed for, so a drawing that has them is refused. A line that was lost has no sides, and is not cut.
+Questions: a line that was lost is open so far as it was traced: it is cut on the left or the right of its travel, and has no outside. A card may have the tool
+down where no line is cut; what would cut into a contour is refused.
 """
 
 from __future__ import annotations
@@ -21,18 +24,21 @@ from typing import Literal
 
 import numpy as np
 
-from motion.faults import MotionFault
-from motion.feed import run_along
+from motion.faults import LineFault, MotionFault
 from motion.offset import Guide, Nearest, Way, offset, with_places
 from tracer import contours
+from tracer.beside import Beside, Cut
+from tracer.carried import Feed, carried
 from tracer.line import Line
-from tracer.program import BRAKE_MM_S2, Trace
+from tracer.program import Trace
 from tracer.view import Array
 
 Side = Literal["outside", "inside", "left", "right"]
 
 LEFT_MM = 0.002  # less is no place that the cutter cannot reach
 EVERY_MM = 0.02  # between the places of a line that are looked at
+GOUGE_MM = 0.005  # nearer to a line than the radius
+GOUGES = 10  # of the positions one in so many is looked at
 THINNED = 30  # of the positions one in so many tells where a line is
 
 
@@ -62,43 +68,108 @@ class Unreached:
 def with_cutter(trace: Trace, cutter: Cutter, feed_mm_s: float) -> tuple[Trace, list[Unreached]]:
     """The program of a cutter beside the lines, run at a feed; and what it cannot reach, the most first.
 
-    Raises MotionFault if the cutter goes nowhere, if a line has no such side, or if the drawing has marks or lead lines.
+    Raises MotionFault if the cutter goes nowhere, if a line has no such side, or if the tool would be in the work nearer to a line than its radius;
+    LineFault if all lines were lost, and have no such side.
     """
-    _refuse_marks(trace)
-    lines = [line for line in trace.lines if line.ending != "lost" and len(line.xy_mm) > 1]
-    ways = offset(_guides(lines, cutter.side), cutter.radius_mm)
-    if lines and not ways:
+    planned = _planned(trace, cutter.side)
+    cuts = [cut for _, cut in planned if cut is not None]
+    guides = _guides(cuts, cutter.side)
+    ways = offset(guides, cutter.radius_mm)
+    if cuts and not ways:
         raise MotionFault(
             f"a cutter of {cutter.diameter_mm:g} mm goes nowhere {cutter.side} of the lines; give a smaller --cutter, or another --side"
         )
-    cut = [_cut(line, way, feed_mm_s, trace.rate_hz) for k, line in enumerate(lines) for way in ways if way.guide == k]
-    lost = [replace(line, xy_mm=line.xy_mm[:1]) for line in trace.lines if line.ending == "lost"]
-    return replace(trace, lines=(*cut, *lost)), _unreached(lines, ways, cutter.radius_mm)
+    near = Nearest([_closed_up(guide) for guide in guides] or [np.zeros((1, 2))], cutter.radius_mm)
+    feed, made = Feed(feed_mm_s, trace.rate_hz), list[Line]()
+    for line, cut in planned:
+        if cut is None:
+            made.append(line)
+            continue
+        k = next(k for k, other in enumerate(cuts) if other is cut)
+        own = [way for way in ways if way.guide == k]
+        if _has_ways(cut, own, cutter):
+            made += carried(Beside(cut, guides[k].left, cutter.radius_mm, own), near.distances_mm, feed)
+    beside = replace(trace, lines=tuple(made))
+    _refuse_gouges(beside, near, cutter)
+    return beside, _unreached(cuts, ways, cutter.radius_mm)
 
 
-def _refuse_marks(trace: Trace) -> None:
-    """Raise MotionFault if the program stops at marks, or goes along lead or guide lines."""
-    halts = any(action.halt.number is not None for actions in trace.actions for action in actions)
-    if halts or any(line.goes_back or line.guides for line in trace.lines):
+def _planned(trace: Trace, side: Side) -> list[tuple[Line, Cut | None]]:
+    """The lines with the numbers of their stops, each with what is cut of it; a line that was lost has no outside and no inside."""
+    planned, first = list[tuple[Line, Cut | None]](), 1
+    for line in trace.lines:
+        halts = trace.operator.stops(line, first)
+        line = replace(line, numbers=tuple(halt.number or 0 for halt in halts))
+        if line.ending == "lost" and side in ("outside", "inside"):
+            planned.append((_not_cut(line, side), None))
+        else:
+            planned.append((line, Cut.of(line, trace.operator, first)))
+        first += len(halts)
+    if planned and all(line.ending == "lost" and cut is None for line, cut in planned):
+        raise replace(trace, lines=tuple(line for line, _ in planned)).fault or LineFault("no line was followed")
+    return planned
+
+
+def _not_cut(line: Line, side: Side) -> Line:
+    """A line that was lost, with nothing of it to be run, and its fault that says so."""
+    fault = line.fault
+    told = LineFault(
+        f"{fault}; what was traced of it is open and has no {side}, so it is not cut: --side left or right would, by its travel",
+        x_mm=fault.x_mm if fault else None,
+        y_mm=fault.y_mm if fault else None,
+        heading_rad=fault.heading_rad if fault else None,
+    )
+    return replace(line, xy_mm=line.xy_mm[:1], loop_from=None, marks=(), guides=(), numbers=(), fault=told)
+
+
+def _has_ways(cut: Cut, ways: Sequence[Way], cutter: Cutter) -> bool:
+    """Whether the cutter runs along a line; raises MotionFault if it does not and something is to be done there, or if its lead line comes to no round."""
+    what = f"a cutter of {cutter.diameter_mm:g} mm {cutter.side} of line {cut.line.number}"
+    if not ways and (cut.stops or cut.first > 0):
         raise MotionFault(
-            "the drawing has stop marks, lead or guide lines, which are drawn with the cutter allowed for; leave --cutter out,"
-            " or take them off the drawing (--override all passes over stop marks)"
+            f"{what} goes nowhere, and the line has stops or a lead line; give a smaller --cutter, or another --side"
         )
+    if cut.first > 0 and cut.closed and not all(way.closed for way in ways):
+        raise MotionFault(
+            f"{what} runs on along an open line that is nearer than it is wide, and the line has a lead line; give a smaller --cutter, or the lines by --lines"
+        )
+    return bool(ways)
 
 
-def _guides(lines: Sequence[Line], side: Side) -> list[Guide]:
-    """The lines as guides, each with the side on which the cutter runs."""
+def _refuse_gouges(beside: Trace, near: Nearest, cutter: Cutter) -> None:
+    """Raise MotionFault if the tool moves in the work nearer to a line than its radius, as where a card has it go down on the way to a contour."""
+    for block in beside:
+        moves = np.flatnonzero(np.any(np.diff(block.positions_mm[:, :2], axis=0) != 0, axis=1))
+        cutting = block.positions_mm[moves][block.positions_mm[moves, 2] < 0, :2][::GOUGES]
+        away_mm = near.distances_mm(cutting) if len(cutting) else np.array([np.inf])
+        if away_mm.min() < cutter.radius_mm - GOUGE_MM:
+            x, y = cutting[int(np.argmin(away_mm))]
+            raise MotionFault(
+                f"a cutter of {cutter.diameter_mm:g} mm would cut into the part at {x:.1f},{y:.1f} mm, where a stop's moves leave it in the work;"
+                " have it up on the card there, or pass the stop by with --override"
+            )
+
+
+def _closed_up(guide: Guide) -> Array:
+    """The places of a guide, the first once more at the end of a closed one."""
+    return np.vstack([guide.points_mm, guide.points_mm[:1]]) if guide.closed else guide.points_mm
+
+
+def _guides(cuts: Sequence[Cut], side: Side) -> list[Guide]:
+    """What is cut as guides, each with the side on which the cutter runs."""
     if side in ("left", "right"):
-        return [Guide(line.xy_mm, line.ending == "closed", side == "left") for line in lines]
-    for line in lines:
-        if line.ending != "closed" or not _is_simple(line.xy_mm):
-            what = "crosses itself" if line.ending == "closed" else "is open"
-            raise MotionFault(f"line {line.number} {what}: it has no {side}; give --side left or right, by its travel")
-    thinned = [line.xy_mm[::THINNED] for line in lines]
-    depths = contours.nested(thinned, [True] * len(lines)).sum(axis=1)
+        return [Guide(cut.places_mm, cut.closed, side == "left") for cut in cuts]
+    for cut in cuts:
+        if not cut.closed or not _is_simple(cut.places_mm):
+            what = "crosses itself" if cut.closed else "is open"
+            raise MotionFault(
+                f"line {cut.line.number} {what}: it has no {side}; give --side left or right, by its travel"
+            )
+    thinned = [cut.places_mm[::THINNED] for cut in cuts]
+    depths = contours.nested(thinned, [True] * len(cuts)).sum(axis=1)
     return [
-        Guide(line.xy_mm, True, _is_left(places, inside=(side == "inside") == (depth % 2 == 0)))
-        for line, places, depth in zip(lines, thinned, depths, strict=True)
+        Guide(cut.places_mm, True, _is_left(places, inside=(side == "inside") == (depth % 2 == 0)))
+        for cut, places, depth in zip(cuts, thinned, depths, strict=True)
     ]
 
 
@@ -118,23 +189,16 @@ def _is_simple(xy_mm: Array) -> bool:
     return bool(round(abs(turned) / (2 * np.pi)) == 1)
 
 
-def _cut(line: Line, way: Way, feed_mm_s: float, rate_hz: float) -> Line:
-    """A way of the cutter as a line of the program."""
-    xy_mm = run_along(way.points_mm, feed_mm_s, BRAKE_MM_S2, rate_hz)
-    length_mm = float(np.hypot(*np.diff(way.points_mm, axis=0).T).sum())
-    return Line(xy_mm, "closed" if way.closed else "ended", line.width_mm, length_mm, number=line.number)
-
-
-def _unreached(lines: Sequence[Line], ways: Sequence[Way], radius_mm: float) -> list[Unreached]:
+def _unreached(cuts: Sequence[Cut], ways: Sequence[Way], radius_mm: float) -> list[Unreached]:
     """The stretches of the lines that are further from every way than the cutter reaches."""
     if not ways:
         return []
     near = Nearest([way.points_mm for way in ways], radius_mm)
     found = []
-    for line in lines:
-        places = with_places(line.xy_mm, EVERY_MM)
+    for cut in cuts:
+        places = with_places(cut.places_mm, EVERY_MM)
         left_mm = near.distances_mm(places) - radius_mm
-        if line.ending == "closed":
+        if cut.closed:
             first = int(np.argmin(left_mm))  # no stretch is parted where the line begins
             places, left_mm = np.roll(places, -first, axis=0), np.roll(left_mm, -first)
         edges = np.flatnonzero(np.diff(np.r_[False, left_mm > LEFT_MM, False].astype(np.int8))).reshape(-1, 2)
@@ -142,5 +206,5 @@ def _unreached(lines: Sequence[Line], ways: Sequence[Way], radius_mm: float) -> 
             at = a + int(np.argmax(left_mm[a:b]))
             length_mm = float(np.hypot(*np.diff(places[a:b], axis=0).T).sum())
             place_mm = float(places[at, 0]), float(places[at, 1])
-            found.append(Unreached(line.number, place_mm, float(left_mm[at]), length_mm))
+            found.append(Unreached(cut.line.number, place_mm, float(left_mm[at]), length_mm))
     return sorted(found, key=lambda stretch: -stretch.left_mm)

@@ -43,6 +43,7 @@ class Line:
     reference_mm: tuple[float, float] | None = None  # the reference point from which it begins
     junctions_mm: tuple[tuple[float, float], ...] = ()  # in the order in which the head came to them
     ink_mm: float = 0.0  # length of the ink that is joined to it, its own included, by its area
+    numbers: tuple[int, ...] | None = None  # of its stops; None: counted on from those of the line before
 
     @classmethod
     def of(cls, run: Followed, number: int = 1, reference_mm: tuple[float, float] | None = None) -> Line:
@@ -129,6 +130,15 @@ class Line:
     def end_mm(self) -> tuple[float, float]:
         """Where its program ends, mm."""
         return self.begin_mm if self.goes_back else self.place(len(self.xy_mm) - 1)
+
+    def without_guides(self, first: int, last: int) -> Array:
+        """Positions from one to another, without those of the guide lines that are left for in between, (n, 2) mm."""
+        keep = np.ones(last + 1, bool)
+        keep[:first] = False
+        for guide in self.guides:
+            if guide.leave > first:
+                keep[guide.leave : guide.back] = False
+        return self.xy_mm[: last + 1][keep]
 
     def place(self, at: float) -> tuple[float, float]:
         """Where the axis is at a position, fractions included, mm."""

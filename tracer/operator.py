@@ -116,8 +116,8 @@ class Operator:
         stops = sum(1 for line in lines for halt in self._halts(line, 1) if halt.number is not None)
         return sorted(number for number in named if number > stops), stops
 
-    def _halts(self, line: Line, first: int) -> list[Halt]:
-        """Every place of a line where something may be done, in order, its stops numbered from `first`."""
+    def stops(self, line: Line, first: int) -> list[Halt]:
+        """The stops of a line in order, with the numbers that it has for them, or numbered from `first`."""
         stops = [Halt(mark.at, "tick" if mark.kind == "tick" else "dot", mark.place_mm) for mark in line.marks]
         tips = [guide.tip for guide in line.guides] + ([len(line.xy_mm) - 1] if line.is_guide else [])
         for tip in tips:
@@ -126,7 +126,12 @@ class Operator:
             stops = [stop for stop in stops if stop not in dots]
             stops.append(replace(dots[0], kind="hole") if dots else Halt(tip, "hole", place))
         stops.sort(key=lambda halt: halt.at)
-        halts = [replace(stop, number=first + k) for k, stop in enumerate(stops)]
+        numbers = range(first, first + len(stops)) if line.numbers is None else line.numbers
+        return [replace(stop, number=number) for stop, number in zip(stops, numbers, strict=True)]
+
+    def _halts(self, line: Line, first: int) -> list[Halt]:
+        """Every place of a line where something may be done, in order, its stops numbered from `first`."""
+        halts = self.stops(line, first)
         for guide in line.guides:
             halts += [
                 Halt(guide.leave, "leave", line.place(guide.leave)),
@@ -147,6 +152,11 @@ class Operator:
         """Depths at which a line is run: the passes of the stop where it begins, or those of the work."""
         down = self._down(self._halts(line, 1), line)
         return self.work.depths_mm if down is None else self._depths(down)
+
+    def down_at(self, line: Line, first: int) -> float | None:
+        """Which position of a line, its stops numbered from `first`, has the tick at which the tool goes down; None if that is at no tick."""
+        down = self._down([halt for halt in self._halts(line, first) if not self._overridden(halt)], line)
+        return down.at if down is not None and down.kind == "tick" else None
 
     def _depths(self, halt: Halt) -> tuple[float, ...]:
         own = () if halt.number is None else self.card.stop(halt.number).passes_mm

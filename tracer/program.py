@@ -171,14 +171,13 @@ class Trace:
         if last <= first:
             return
         yield _at(self._feed(line.xy_mm[-1], line.xy_mm[first]), -down.entry.depth_mm)
-        _, xy_mm, _ = stops.pieces(
-            line.xy_mm[first:], [0, min(last, len(line.xy_mm) - 1) - first], BRAKE_MM_S2, self.rate_hz
-        )
+        xy_mm = line.without_guides(first, min(last, len(line.xy_mm) - 1))
+        _, xy_mm, _ = stops.pieces(xy_mm, [0, len(xy_mm) - 1], BRAKE_MM_S2, self.rate_hz)
         yield _at(xy_mm, -down.entry.depth_mm)
 
     def _again(self, line: Line, z_mm: float, depth_mm: float) -> Iterator[Array]:
         """Along a line, or the loop that it leads to, once more at another depth, (n, 3) mm: straight on where it closes, else up and over."""
-        xy_mm = line.xy_mm[line.loop_from if line.is_lead else 0 :]
+        xy_mm = line.without_guides((line.loop_from or 0) if line.is_lead else 0, len(line.xy_mm) - 1)
         _, xy_mm, _ = stops.pieces(xy_mm, [0, len(xy_mm) - 1], BRAKE_MM_S2, self.rate_hz)
         if line.ending == "closed" or line.is_lead:
             yield _at(self._feed(xy_mm[-1], xy_mm[0]), z_mm)
@@ -200,7 +199,7 @@ class Trace:
             if np.any(at_mm != line.xy_mm[-1]):
                 yield self._rapid(at_mm, line.xy_mm[-1])
             return
-        back = line.xy_mm[: (line.loop_from or len(line.xy_mm) - 1) + 1][::-1]
+        back = line.without_guides(0, line.loop_from or len(line.xy_mm) - 1)[::-1]
         yield self._rapid(at_mm, back[0])  # a loop does not end just where it began
         yield _at(stops.run(back, self.work.rapid_mm_s, BRAKE_MM_S2, self.rate_hz), self.work.clearance_mm)
         if line.begin_mm != line.start_mm:
