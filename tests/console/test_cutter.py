@@ -21,6 +21,29 @@ def test_what_the_cutter_leaves_is_listed_and_the_edge_is_compared_with_the_draw
     assert compared.figures["path_to_ink"]["rms_mm"] < 0.006 and compared.figures["path_to_ink"]["measured_share"] > 0.9
 
 
+def test_the_table_of_what_is_left_has_places(morfax: Morfax, here: Path) -> None:
+    answer = morfax("trace", SAMPLES / "gear.png", "--cutter", "3mm", "-o", "gear.csv")
+    assert answer.exit_code == 0
+    (row,) = (line for line in answer.out.splitlines() if line.startswith("unreached 8"))
+    assert len(row.split(" mm")) == 4  # place, what is left, stretch
+
+
+def test_a_drawn_program_is_traced_with_a_cutter_and_begins_and_ends_on_its_reference_point(
+    morfax: Morfax, here: Path
+) -> None:
+    options = ("--card", SAMPLES / "program.toml", "--cutter", "6mm", "--origin", "reference", "-o", "beside.wav")
+    answer = morfax("trace", SAMPLES / "program.png", *options, "--path", "beside.csv", "--json")
+    assert answer.exit_code == 0
+    places = [stop["stop_place_mm"] for stop in answer.figures["stops"]]
+    assert places == [pytest.approx(place, abs=0.05) for place in ((21.5, 23), (48.5, 27), (73.5, 21))]
+    played = morfax("play", "beside.wav", "-o", "played.csv", "--json")
+    compared = morfax("compare", "played.csv", "beside.csv", "--json").figures
+    assert played.exit_code == 0 and compared["a_to_b"]["max_mm"] < 0.003
+    rows = (here / "beside.csv").read_text().splitlines()
+    for row in (rows[-1], next(row for row in rows if row[:1].isdigit())):
+        assert [float(number) for number in row.split(",")[1:3]] == pytest.approx([0, 0], abs=1e-4)
+
+
 def test_run_takes_a_cutter(morfax: Morfax, here: Path) -> None:
     figures = morfax("run", SAMPLES / "cam.png", "--cutter", "6mm", "-o", "cam", "--json").figures
     assert figures["played_to_ink"]["rms_mm"] < 0.004 and figures["missed_ink_mm"] == 0

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from motion.contour import distance
 from motion.feed import run_along
 from motion.motion import MOTION_RATE_HZ
-from motion.offset import Guide, offset
+from motion.offset import Guide, Nearest, offset
 
 shapely = pytest.importorskip("shapely")
 
@@ -145,3 +145,26 @@ def test_an_open_line_has_a_way_on_either_side() -> None:
     assert not left.closed and distance(left.points_mm, np.array([[0.0, 2], [8, 2], [8, 10]])).hausdorff_mm < 0.1 * UM
     length_mm = np.hypot(*np.diff(right.points_mm, axis=0).T).sum()
     assert length_mm == pytest.approx(20 + math.pi, abs=2 * UM)
+
+
+# a head that comes to a contour and back to it: 2 mm with a kink of some um, in units of 0.1 um
+KINK = (
+    "0,0 588,-114 1322,-257 4357,-855 5058,-992 5744,-1124 5924,-1159 6151,-1208 6281,-1237 6395,-1264 "
+    "6508,-1291 6653,-1328 6894,-1393 7150,-1465 7421,-1546 7675,-1625 7976,-1722 8229,-1806 8544,-1913 "
+    "9707,-2317 10026,-2400 10377,-2493 10730,-2587 11068,-2679 11356,-2758 11693,-2852 12182,-2990 "
+    "12468,-3072 12723,-3146 12963,-3217 13249,-3304 13568,-3401 14299,-3627 15077,-3871 15679,-4063 "
+    "16186,-4227 16738,-4411 17290,-4598 17762,-4761 18217,-4922 18686,-5092 19233,-5294 "
+)
+
+
+def test_a_kink_of_some_um_does_not_part_the_way() -> None:
+    line = np.array([place.split(",") for place in KINK.split()], float) * 0.1 * UM
+    (way,) = offset([Guide(line, False, True)], 5.0)  # in two pieces, when a curl within the tolerance led back
+    assert distance(way.points_mm, np.array([way.points_mm[0], way.points_mm[-1]])).hausdorff_mm < 0.2
+    assert np.abs(Nearest([line], 5.0).distances_mm(way.points_mm) - 5.0).max() < 1 * UM
+
+
+def test_places_that_are_too_near_are_set_back_straight_and_no_others() -> None:
+    near = Nearest([np.array([[0.0, 0.0], [10.0, 0.0]])], 2.0)
+    back = near.set_back(np.array([[5.0, 1.99], [6.0, 2.5], [7.0, -1.999]]), 2.0)
+    assert back == pytest.approx(np.array([[5.0, 2.0], [6.0, 2.5], [7.0, -2.0]]), abs=0.1 * UM)

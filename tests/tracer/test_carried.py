@@ -195,16 +195,13 @@ def test_beside_a_drawn_circle_runs_the_circle_and_all_that_is_drawn_on_it(
     for side, out in (("outside", 1), ("inside", -1)):
         made, unreached = with_cutter(followed, Cutter(diameter_mm, side), FEED_MM_S)  # type: ignore[arg-type]
         positions = join(made).positions_mm
-        cutting, radius_mm = in_work(positions), 12 + out * diameter_mm / 2
-        away = np.hypot(*(cutting - (30, 20)).T)
-        on_lead = (cutting[:, 0] < 30 - radius_mm - FOLLOWED_MM) & (np.abs(cutting[:, 1] - 20) < 0.05)
-        on_way = (np.abs(away - radius_mm) < 1) & ~on_lead
-        assert np.abs(away[on_way] - radius_mm).max() < FOLLOWED_MM and not unreached
-        assert np.sqrt(np.mean((away[on_way] - radius_mm) ** 2)) < 6 * UM  # the head's own, with lead and guide line
-        beside_mm = Nearest([cut.places_mm], diameter_mm / 2).distances_mm(cutting[on_way])
-        assert np.abs(beside_mm - diameter_mm / 2).max() < 5 * UM  # where the head wavers about the lead line
-        off_way = cutting[~on_way]  # the lead line in the work, the hole
-        assert np.all((off_way[:, 0] < 18) | (np.hypot(*(off_way - hole.place_mm).T) < EXACT_MM))
+        (line,), radius_mm = made.lines, 12 + out * diameter_mm / 2
+        way = line.without_guides(line.loop_from or 0, len(line.xy_mm) - 1)
+        off_mm = np.hypot(*(way - (30, 20)).T) - radius_mm
+        assert np.abs(off_mm).max() < FOLLOWED_MM and not unreached
+        assert np.sqrt(np.mean(off_mm**2)) < 6 * UM  # the head's own, with lead and guide line
+        beside_mm = Nearest([cut.places_mm], diameter_mm / 2).distances_mm(way) - diameter_mm / 2
+        assert np.abs(beside_mm).max() < 5 * UM  # where the head wavers about the lead line
         assert least_mm(positions, cut.places_mm, diameter_mm / 2) > -NEARER_MM
         halts = {a.halt.number: a.halt for a in made.actions[0] if a.halt.number is not None}
         assert halts[hole.number].place_mm == pytest.approx(hole.place_mm, abs=EXACT_MM)

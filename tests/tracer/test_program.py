@@ -10,6 +10,7 @@ import pytest
 from motion.faults import LineFault
 from motion.motion import MOTION_RATE_HZ, join
 from tracer.card import Card
+from tracer.junctions import Guide
 from tracer.line import Line
 from tracer.marks import Mark
 from tracer.operator import Operator, Work
@@ -101,6 +102,17 @@ def test_each_pass_of_a_loop_is_run_on_at_the_next_depth_and_the_tick_stops_the_
     assert in_work(positions)[:, 0].min() == pytest.approx(6.0, abs=EXACT_MM)
     deepest = positions[positions[:, 2] == -4.0, :2]
     assert deepest[:, 0].min() == pytest.approx(10.0, abs=0.02)  # the loop alone
+
+
+def test_a_guide_line_is_left_for_on_the_first_pass_only_and_never_in_the_work() -> None:
+    way = run_through((0, 0), (10, 0), (10, 8), (14, 8), (14, 4), (14, 8), (18, 8), (18, 0), (10.01, 0))
+    tip = at(way, (14, 4))
+    guide = Guide(at(way[:tip], (14, 8)), tip, tip + at(way[tip:], (14, 8)))
+    line = Line(way, "joined", 0.5, 50.0, loop_from=at(way, (10, 0)), guides=(guide,), reference_mm=(-3.0, 0.0))
+    positions = moved(line, operator=Operator(replace(WORK, passes_mm=(2.0,))))
+    on_guide = positions[(positions[:, 1] > 4.1) & (positions[:, 1] < 7.9) & (np.abs(positions[:, 0] - 14) < EXACT_MM)]
+    assert len(on_guide) and np.all(on_guide[:, 2] == WORK.clearance_mm)
+    assert np.count_nonzero(np.diff(np.sign(on_guide[:, 1] - 6)) != 0) == 2  # out and back once
 
 
 def test_passes_asked_for_at_the_stop_where_the_tool_goes_down_are_that_line_s() -> None:
