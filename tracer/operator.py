@@ -68,11 +68,15 @@ class Entry(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Action:
-    """What is done where the axis stands: moves of Z one after the other, each with its dwell; and how deep Z goes on the way after it, over how many mm."""
+    """What is done where the axis stands: moves of Z one after the other, each with its dwell; and how deep Z goes on the way after it, over how many mm.
+
+    Where the tool goes down into the line: the depths at which that is run.
+    """
 
     halt: Halt
     moves: tuple[Move, ...]
     entry: Entry | None = None
+    depths_mm: tuple[float, ...] = ()
 
 
 class Panel(Protocol):
@@ -148,10 +152,9 @@ class Operator:
         override = self.card.override
         return halt.kind in ("tick", "dot") and (override == "all" or (override != "none" and halt.number in override))
 
-    def depths_mm(self, line: Line) -> tuple[float, ...]:
-        """Depths at which a line is run: the passes of the stop where it begins, or those of the work."""
-        down = self._down(self._halts(line, 1), line)
-        return self.work.depths_mm if down is None else self._depths(down)
+    def depths_mm(self, actions: Sequence[Action]) -> tuple[float, ...]:
+        """Depths at which a line is run: the passes of the stop where the tool goes down, or those of the work."""
+        return next((action.depths_mm for action in actions if action.depths_mm), self.work.depths_mm)
 
     def down_at(self, line: Line, first: int) -> float | None:
         """Which position of a line, its stops numbered from `first`, has the tick at which the tool goes down; None if that is at no tick."""
@@ -187,7 +190,11 @@ class Operator:
             else:
                 moves = self._at_stop(halt, z_mm, is_down=halt is down)
             if moves:
-                made = self._entered(Action(halt, moves)) if halt is down else Action(halt, moves)
+                made = (
+                    self._entered(Action(halt, moves, None, self._depths(halt)))
+                    if halt is down
+                    else Action(halt, moves)
+                )
                 actions.append(made)
                 z_mm = -made.entry.depth_mm if made.entry else moves[-1].to_mm
         return actions
@@ -197,7 +204,7 @@ class Operator:
         to_mm, length_mm = action.moves[-1].to_mm, self.card.entry_mm
         if length_mm is None or to_mm >= 0 or len(action.moves) > 1:
             return action
-        return Action(action.halt, (replace(action.moves[0], to_mm=0.0),), Entry(-to_mm, length_mm))
+        return replace(action, moves=(replace(action.moves[0], to_mm=0.0),), entry=Entry(-to_mm, length_mm))
 
     def _to(self, z_mm: float) -> tuple[Move, ...]:
         return (Move(z_mm, self.work.feed_mm_s),)

@@ -125,7 +125,7 @@ class Trace:
         """From where a line's program begins to where it ends, at each depth, in blocks (n, 3) mm."""
         if line.begin_mm != line.start_mm:
             yield self._rapid(line.begin_mm, line.start_mm)
-        depths_mm, at = self.operator.depths_mm(line), np.array([*line.start_mm, self.work.clearance_mm])
+        depths_mm, at = self.operator.depths_mm(actions), np.array([*line.start_mm, self.work.clearance_mm])
         for block in self._first_pass(line, actions):
             yield block
             at = block[-1]

@@ -86,7 +86,8 @@ def test_the_card_says_what_is_done_at_a_stop() -> None:
 def test_passes_of_the_stop_where_the_tool_goes_down_are_the_lines() -> None:
     operator = Operator(WORK, Card.parse('[[stop]]\nnumber = 1\npasses = ["1mm", "3mm"]\n'))
     assert done(operator, line(tick(250)))[0][0] == ("tick", [-1.0])
-    assert operator.depths_mm(line(tick(250))) == (1.0, 3.0)
+    first, second = operator.actions([line(tick(250)), line(tick(250))])
+    assert operator.depths_mm(first) == (1.0, 3.0) and operator.depths_mm(second) == (4.0,)  # which is stop 2
 
 
 def test_a_move_that_five_digits_cannot_show_names_its_stop() -> None:
