@@ -55,7 +55,9 @@ def from_drawing(drawing: Drawing, path: Path, name: str = "path", radius_mm: fl
     """Compare a path with the ink of its drawing; with a cutter's radius, what the cutter's edge touches."""
     from tracer.deviation import deviation, touched
 
-    found = deviation(drawing, touched(drawing, path, radius_mm) if radius_mm else path)
+    found = (
+        deviation(drawing, touched(drawing, path, radius_mm), [path.xy_mm]) if radius_mm else deviation(drawing, path)
+    )
     row = {"rms_mm": found.rms_mm, "p95_mm": found.p95_mm, "max_mm": found.max_mm}
     row["measured_share"] = found.measured_share
     missed = {"missed_ink_mm": found.missed_mm, "missed_ink_share": found.missed_share}

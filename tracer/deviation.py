@@ -72,10 +72,11 @@ class Deviation:
         return self.missed_mm / self.ink_mm if self.ink_mm else 0.0
 
 
-def deviation(drawing: Drawing, path: Path | Sequence[Array]) -> Deviation:
+def deviation(drawing: Drawing, path: Path | Sequence[Array], over: Sequence[Array] = ()) -> Deviation:
     """Measure a path, or its runs as (n, 2) polylines in sheet mm, against the drawing; MotionFault if it nowhere follows the ink.
 
-    Distances are those of the runs with the tool in the work; ink is missed if the path nowhere goes over it, be it with the tool up as on a lead line.
+    Distances are those of the runs with the tool in the work; ink is missed if the path nowhere goes over it, be it with the tool up as on a lead line,
+    nor anything in `over`.
     """
     runs = path.runs() if isinstance(path, Path) else list(path)
     places = [_places(run) for run in runs if len(run) > 1]
@@ -88,7 +89,7 @@ def deviation(drawing: Drawing, path: Path | Sequence[Array]) -> Deviation:
         raise MotionFault(
             "the path nowhere follows the drawing's ink, it only crosses it; check that both have the same scale and origin"
         )
-    missed, ink = _missed(drawing, [path.xy_mm] if isinstance(path, Path) else runs, width_mm)
+    missed, ink = _missed(drawing, [path.xy_mm] if isinstance(path, Path) else [*runs, *over], width_mm)
     return Deviation(np.vstack([p for p, _ in places]), np.concatenate(errors), width_mm, missed, ink)
 
 
@@ -97,6 +98,8 @@ def touched(drawing: Drawing, path: Path, radius_mm: float) -> list[Array]:
     polylines = []
     for run in path.runs():
         points, headings = _places(run, TOUCH_MM)
+        if not len(points):
+            continue  # a hole
         seen = _profile(drawing, points, headings, np.array([radius_mm, -radius_mm])).mean(axis=0)
         arm_mm = radius_mm if seen[0] >= seen[1] else -radius_mm
         edge = points + arm_mm * np.column_stack([-np.sin(headings), np.cos(headings)])

@@ -44,6 +44,15 @@ def test_a_drawn_program_is_traced_with_a_cutter_and_begins_and_ends_on_its_refe
         assert [float(number) for number in row.split(",")[1:3]] == pytest.approx([0, 0], abs=1e-4)
 
 
+def test_run_of_a_drawn_program_with_a_cutter_covers_its_lead_and_guide_lines(morfax: Morfax, here: Path) -> None:
+    options = ("--card", SAMPLES / "program.toml", "--cutter", "6mm", "--side", "inside")
+    figures = morfax("run", SAMPLES / "program.png", *options, "-o", "program", "--json").figures
+    assert figures["played_to_ink"]["rms_mm"] < 0.004
+    assert (
+        figures["missed_ink_mm"] < 14
+    )  # of 183 the arms of the cross, and the ticks: 10 without a cutter, a tick's more here
+
+
 def test_run_takes_a_cutter(morfax: Morfax, here: Path) -> None:
     figures = morfax("run", SAMPLES / "cam.png", "--cutter", "6mm", "-o", "cam", "--json").figures
     assert figures["played_to_ink"]["rms_mm"] < 0.004 and figures["missed_ink_mm"] == 0
