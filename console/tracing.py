@@ -302,7 +302,7 @@ class Traced:
             {
                 "unreached": k,
                 "of_line": u.line,
-                "unreached_place_mm": u.place_mm,
+                "place_mm": u.place_mm,
                 "left_mm": u.left_mm,
                 "stretch_mm": u.length_mm,
             }
