@@ -20,6 +20,9 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
+from scipy.spatial import cKDTree
+
+from motion.offset import with_places
 
 APART_PX = 0.25  # between the places of an outline
 CLEAR = 3.0  # standard deviations: a leg is where it is when the other is as far away as this
@@ -27,8 +30,12 @@ LEG = 20.0  # standard deviations: length of a leg that is felt, at most
 SHORTEST_LEG = 2.5
 LEAST_TURN = math.radians(15)
 NARROWEST = math.radians(12)  # between the legs
+CLEAR_OF_ROUND = 2.0  # standard deviations from where the round touches the leg
+ASIDE = 0.25  # standard deviations: beside the vertex the lens moves an outline by no more than at it, and noise by this
+TRIES = 5  # each with the legs felt where the angle and the round of the one before leave them clear
 BENT = 0.7  # of what is left by a straight leg: a parabola has to leave less than this share
-EXPLAINED = 0.35  # standard deviations, beside a tenth of the way: what noise does to the vertex of two legs
+FURTHER, NOISE = 0.18, 0.05  # of a sharp corner's way, and standard deviations: by noise the outline of 98 % of them on scans is further inside by that
+SHORT, LEGS = 0.1, 0.35  # and by the legs' bend less far
 
 Array = NDArray[np.float64]
 
@@ -37,11 +44,11 @@ def sharpened(outline: Array, softness_px: float) -> Array:
     """A closed outline (its last place its first) with its sharp corners put back, pixels."""
     places = _evenly(outline)
     corners = _corners(places, softness_px)
-    for first, last, vertex in reversed(
-        [found for k in range(len(corners)) if (found := _vertex(places, corners, k, softness_px))]
+    for first, last, corner in reversed(
+        [found for k in range(len(corners)) if (found := _corner(places, corners, k, softness_px))]
     ):
         if last > first:
-            places = np.vstack([places[: first + 1], vertex, places[last:]])
+            places = np.vstack([places[: first + 1], corner, places[last:]])
     return np.vstack([places, places[:1]])
 
 
@@ -75,30 +82,62 @@ def _corners(places: Array, softness_px: float) -> list[int]:
     return sorted(found)
 
 
-def _vertex(places: Array, corners: list[int], k: int, softness_px: float) -> tuple[int, int, Array] | None:
-    """The vertex of a corner and the places between which it stands; None if the corner is none, or no sharp one."""
-    at, clear = corners[k], CLEAR * softness_px / APART_PX
+def _corner(places: Array, corners: list[int], k: int, softness_px: float) -> tuple[int, int, Array] | None:
+    """What stands in the place of a corner, and the places between which; None if the corner is none, or the lens does not explain it."""
+    at, dense = corners[k], softness_px / APART_PX
     before = at - corners[k - 1] if k else at + len(places) - corners[-1]
     after = (corners[k + 1] if k + 1 < len(corners) else corners[0] + len(places)) - at
-    angle, found = math.pi / 2, None
-    for _ in range(3):
-        away = clear / max(math.sin(min(angle, math.pi / 2)), 0.2)
-        spans = [min(away + LEG * softness_px / APART_PX, gap - clear) for gap in (before, after)]
-        if min(spans) - away < SHORTEST_LEG * softness_px / APART_PX:
-            return found
+    angle, radius, taken_off, found = math.pi / 2, 0.0, 0.0, None
+    for _ in range(TRIES):
+        away = max(CLEAR / max(math.sin(min(angle, math.pi / 2)), 0.2), _touch(angle, radius) + CLEAR_OF_ROUND) * dense
+        spans = [min(away + LEG * dense, gap - CLEAR * dense) for gap in (before, after)]
+        if min(spans) - away < SHORTEST_LEG * dense:
+            break
         legs = [_felt(places, at, sign * away, sign * span) for sign, span in zip((-1, 1), spans, strict=True)]
         met = _met(*legs)
         if met is None:
             return None
-        vertex, angle = met
+        vertex, t, w = met
+        angle = _between(t, w)
         if not NARROWEST < angle < math.pi - LEAST_TURN:
             return None
-        found = max(0, round(at - away)), min(len(places) - 1, round(at + away)), vertex
-    assert found is not None
-    around = places[found[0] : found[1] + 1]
-    way = float(np.hypot(*(around - vertex).T).min())
-    expected = softness_px * _way(round(angle, 3))
-    return found if abs(way - expected) < EXPLAINED * softness_px + 0.1 * expected else None
+        first, last = max(0, round(at - away)), min(len(places) - 1, round(at + away))
+        way = float(np.hypot(*(places[first : last + 1] - vertex).T).min()) / softness_px
+        sharp = _way(round(angle, 3))
+        radius = _radius(round(angle, 3), round(way, 3)) if way > (1 + FURTHER) * sharp + NOISE else 0.0
+        found = first, last, _rounded(vertex, (t, w), radius * softness_px)
+        taken_off = way - radius * (1 / math.sin(angle / 2) - 1)
+    if found is None or _touch(angle, radius) * dense > away or way < (1 - SHORT) * sharp - LEGS:
+        return None
+    return found if _off(places, *found) < (taken_off + ASIDE) * softness_px else None
+
+
+def _off(places: Array, first: int, last: int, corner: Array) -> float:
+    """How far the outline that a corner stands for is from it at most, pixels."""
+    instead = with_places(np.vstack([places[first], corner, places[last]]), APART_PX)
+    return float(cKDTree(instead).query(places[first : last + 1])[0].max())
+
+
+def _touch(angle: float, radius: float) -> float:
+    """From the vertex to where a round touches the legs."""
+    return radius / math.tan(angle / 2)
+
+
+def _rounded(vertex: Array, towards: tuple[Array, Array], radius_px: float) -> Array:
+    """A corner with a round as places (n, 2), from the leg with the first direction towards it to the other; the vertex alone if there is none."""
+    if radius_px < APART_PX:
+        return vertex[None]
+    t, w = towards
+    angle, inward = _between(t, w), -(t + w) / np.hypot(*(t + w))
+    turns = math.copysign(math.pi - angle, t[1] * w[0] - t[0] * w[1])
+    outward = math.atan2(-inward[1], -inward[0]) + turns * np.linspace(-0.5, 0.5, 3 + math.ceil(abs(turns) * radius_px))
+    middle = vertex + inward * radius_px / math.sin(angle / 2)
+    return np.asarray(middle + radius_px * np.column_stack([np.cos(outward), np.sin(outward)]))
+
+
+def _between(t: Array, w: Array) -> float:
+    """The angle between two directions, rad."""
+    return math.acos(float(np.clip(t @ w, -1, 1)))
 
 
 def _felt(places: Array, at: int, near: float, far: float) -> tuple[Array, Array, Array]:
@@ -114,8 +153,8 @@ def _felt(places: Array, at: int, near: float, far: float) -> tuple[Array, Array
     return origin, along, bent if off[1] < BENT * off[0] else straight
 
 
-def _met(a: tuple[Array, Array, Array], b: tuple[Array, Array, Array]) -> tuple[Array, float] | None:
-    """Where two legs meet, and the angle between them there, rad."""
+def _met(a: tuple[Array, Array, Array], b: tuple[Array, Array, Array]) -> tuple[Array, Array, Array] | None:
+    """Where two legs meet, and their directions there, towards the corner."""
     place = 0.5 * (a[0] + b[0])
     for _ in range(6):
         (p, t), (q, w) = _at(a, place), _at(b, place)
@@ -131,7 +170,7 @@ def _met(a: tuple[Array, Array, Array], b: tuple[Array, Array, Array]) -> tuple[
         or (place - b[0]) @ b[1] < 0
     ):
         return None
-    return place, math.acos(float(np.clip(t @ w, -1, 1)))
+    return place, t, w
 
 
 def _at(leg: tuple[Array, Array, Array], place: Array) -> tuple[Array, Array]:
@@ -149,8 +188,27 @@ def _at(leg: tuple[Array, Array, Array], place: Array) -> tuple[Array, Array]:
 def _way(angle: float) -> float:
     """How far inside a sharp corner its outline is, in standard deviations of the lens."""
     from scipy.optimize import brentq
+
+    return float(brentq(lambda way: _seen(angle, 0.0, way) - 0.5, 0, 30))
+
+
+@lru_cache(maxsize=4096)
+def _radius(angle: float, way: float) -> float:
+    """Radius of the round with which the outline is so far inside the vertex, in standard deviations; 0 if a sharp corner's is."""
+    from scipy.optimize import brentq
+
+    if way <= _way(angle):
+        return 0.0
+    alone = way / (1 / math.sin(angle / 2) - 1)  # with a perfect lens
+    return float(brentq(lambda radius: _seen(angle, radius, way) - 0.5, 0, alone, xtol=1e-3))
+
+
+def _seen(angle: float, radius: float, way: float) -> float:
+    """Share of the shape that a lens sees so far inside the vertex of a rounded corner, in standard deviations."""
     from scipy.special import erf
 
-    x = np.linspace(0, 40, 8001)
-    seen = erf(x * math.tan(angle / 2) / math.sqrt(2)) / math.sqrt(2 * math.pi)
-    return float(brentq(lambda w: float(np.trapezoid(seen * np.exp(-0.5 * (x - w) ** 2), x)) - 0.5, 0, 30))
+    half = angle / 2
+    x = np.linspace(way - 5, way + 5, 1001)
+    arc = np.sqrt(np.maximum(radius**2 - (x - radius / math.sin(half)) ** 2, 0))
+    across = np.where(x < radius * math.cos(half) ** 2 / math.sin(half), np.where(x < radius / math.sin(half) - radius, 0, arc), np.maximum(x, 0) * math.tan(half))
+    return float(np.trapezoid(erf(across / math.sqrt(2)) * np.exp(-0.5 * (x - way) ** 2), x)) / math.sqrt(2 * math.pi)
