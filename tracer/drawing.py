@@ -88,7 +88,9 @@ class Drawing:
         if abs(pitch[0] / pitch[1] - 1) > 1e-3:  # a fax has oblong pixels
             size = grey.shape[1], round(grey.shape[0] * pitch[1] / pitch[0])
             grey = np.asarray(cv2.resize(grey.astype(np.float32), size, interpolation=cv2.INTER_LINEAR), np.float32)
-        return cls(outlined(grey, pitch[0]) if edge else darkness_of(grey, pitch[0]), pitch[0], file)
+        if edge:
+            return cls(*outlined(grey, pitch[0]), file)
+        return cls(darkness_of(grey, pitch[0]), pitch[0], file)
 
 
 def darkness_of(grey: Grey, pitch_mm: float) -> Darkness:

@@ -4,7 +4,8 @@ Signals: grey levels in; out darkness 0..1 of a line of `EDGE_MM` whose middle i
 
 The line is as a round pen would draw it along the edge: dark where the edge is within half the line's width. So corners look as inked corners do, and the head
 takes them as it takes those: it finds its way by its own cells, and the mask is not its path. What the scanner's lens has taken off the corners is put back
-(see `vertices`). Paper and shape may both be uneven: their levels are those round about (`ROUND_ABOUT_MM`).
+(see `vertices`). Where edges are near one another the line is finer, on finer pixels; edges nearer than the lens tells apart are refused.
+Paper and shape may both be uneven: their levels are those round about (`ROUND_ABOUT_MM`).
 
 Source: our own; the patent's follower has lines only. Questions: an edge is the same from both sides, so light shapes on dark paper need no word; which of the
 two is paper matters for what is too thin to be a shape only: paper is what most of the sheet's border is.
@@ -20,9 +21,15 @@ from numpy.typing import NDArray
 
 from motion.faults import DrawingFault
 from motion.offset import with_places
+from tracer import room
 from tracer.vertices import APART_PX, sharpened
 
 EDGE_MM = 0.4  # at 300 dpi less than five pixels; with 0.3 mm a gear of 24 teeth did not close
+APART_MM = 0.9  # edges nearer to one another than this have a line drawn so much
+FINER = 4  # times finer on pixels as much smaller
+LEAST_APART_MM = 0.25
+CLEAR = 3.0  # standard deviations of the lens: edges that are nearer move one another
+ROUND_ABOUT = 8  # times as far along the edge as straight across: not the two legs of a corner, of 15 degrees or more
 SOFT_PX = 0.7  # standard deviation: against the noise of the paper
 LEAST_MM = 4.0  # a shorter outline is a speck's
 LEAST_CONTRAST = 20.0  # levels
@@ -37,8 +44,11 @@ Array = NDArray[np.float64]
 Grey = NDArray[np.float32]
 
 
-def outlined(grey: NDArray[Any], pitch_mm: float) -> Grey:
-    """Darkness of the line along the edges of filled shapes; raises DrawingFault if there are none, or if one is cut by the border of the sheet."""
+def outlined(grey: NDArray[Any], pitch_mm: float) -> tuple[Grey, float]:
+    """Darkness of the line along the edges of filled shapes, and its pitch, mm, finer than the picture's where edges are near one another.
+
+    Raises DrawingFault if there are no shapes, if one is cut by the border of the sheet, and if edges are nearer than can be told apart.
+    """
     from skimage.measure import find_contours
 
     soft = cv2.GaussianBlur(grey.astype(np.float32), (0, 0), SOFT_PX)
@@ -50,7 +60,9 @@ def outlined(grey: NDArray[Any], pitch_mm: float) -> Grey:
     _refuse_cut(edges, share.shape, pitch_mm)
     softness_px = _softness_px(share, edges)
     edges = [sharpened(edge, softness_px) for edge in _refined(edges, share)]
-    return _inked(edges, share.shape, pitch_mm)
+    finer = _finer(edges, share.shape, pitch_mm, max(LEAST_APART_MM, CLEAR * softness_px * pitch_mm))
+    fine = [(edge + 0.5) * finer - 0.5 for edge in edges]
+    return _inked(fine, (share.shape[0] * finer, share.shape[1] * finer), EDGE_MM / pitch_mm), pitch_mm / finer
 
 
 def _none() -> DrawingFault:
@@ -139,11 +151,51 @@ def _refined(edges: list[Array], share: Grey) -> list[Array]:
     return refined
 
 
-def _inked(edges: list[Array], shape: tuple[int, ...], pitch_mm: float) -> Grey:
-    """What a round pen leaves along the edges."""
+def _finer(edges: list[Array], shape: tuple[int, ...], pitch_mm: float, least_mm: float) -> int:
+    """By how much finer the line has to be drawn for edges that are near one another; raises DrawingFault if they are nearer than told apart."""
+    apart_mm, (row, column) = _nearest_edges(edges, pitch_mm)
+    if apart_mm < least_mm:
+        raise DrawingFault(
+            f"two edges are {apart_mm:.2f} mm apart at {(column + 0.5) * pitch_mm:.1f},{(shape[0] - row - 0.5) * pitch_mm:.1f} mm, and are told apart"
+            f" from {least_mm:.2f} mm on; print the shape larger (--scale brings it back), or scan it finer"
+        )
+    if apart_mm >= APART_MM:
+        return 1
+    free, needed = room.free_bytes(), room.PER_PIXEL * FINER**2 * shape[0] * shape[1]
+    if free is not None and needed > free:
+        raise DrawingFault(
+            f"edges {apart_mm:.2f} mm apart have to be drawn {FINER} times finer, and that needs {needed / room.GB:.1f} GB of memory,"
+            f" {free / room.GB:.1f} GB are free; cut out the part to be traced, or close other programs"
+        )
+    return FINER
+
+
+def _nearest_edges(edges: list[Array], pitch_mm: float) -> tuple[float, Array]:
+    """How near edges come to one another, mm, at most `APART_MM`, and where, pixels: legs of one corner do not count."""
     from scipy.spatial import cKDTree
 
-    near, reach_px = np.zeros(shape, np.uint8), EDGE_MM / pitch_mm
+    lines = [with_places(edge, 1.0)[:-1] for edge in edges]
+    places = np.vstack(lines)
+    edge = np.repeat(np.arange(len(lines)), [len(line) for line in lines])
+    along = np.concatenate([np.r_[0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T))] for line in lines])
+    length = np.array([_length_mm(line, 1.0) for line in edges])[edge]
+    pairs = cKDTree(places).query_pairs(APART_MM / pitch_mm, output_type="ndarray")
+    a, b = pairs.T
+    apart = np.hypot(*(places[a] - places[b]).T)
+    between = np.abs(along[a] - along[b])
+    between = np.minimum(between, length[a] - between)
+    counts = (edge[a] != edge[b]) | (between > ROUND_ABOUT * apart)
+    if not counts.any():
+        return APART_MM, places[0]
+    nearest = int(np.argmin(np.where(counts, apart, np.inf)))
+    return float(apart[nearest]) * pitch_mm, 0.5 * (places[a[nearest]] + places[b[nearest]])
+
+
+def _inked(edges: list[Array], shape: tuple[int, ...], reach_px: float) -> Grey:
+    """What a round pen of this width leaves along the edges."""
+    from scipy.spatial import cKDTree
+
+    near = np.zeros(shape, np.uint8)
     for edge in edges:
         cv2.polylines(near, [np.round(edge[:, ::-1]).astype(np.int32)], False, 1, 2 * round(reach_px) + 3)
     rows, columns = np.nonzero(near)

@@ -101,11 +101,39 @@ def test_on_uneven_paper_and_light_on_dark(tmp_path: Path, shade: float, light: 
     assert found.hausdorff_mm < 50 * UM, found
 
 
-def test_edges_may_be_0_6_mm_apart(tmp_path: Path) -> None:
-    bars = [polyline((8, y), (28, y), (28, y + 8), (8, y + 8), (8, y)) for y in (8.0, 16.6)]
+def test_a_slight_round_is_no_corner(tmp_path: Path) -> None:
+    """Corners of an octagon with a round of 0.6 mm: 0.6 · (1/cos(22.5°) - 1) = 49 um inside where the legs meet."""
+    vertices = np.array([17, 17]) + 11 * np.array([[np.cos(a), np.sin(a)] for a in np.radians(10 + 45 * np.arange(8))])
+    outline = np.array(shapely.Polygon(vertices).buffer(-0.6).buffer(0.6, quad_segs=64).exterior.coords)
+    run = trace(Drawing.open(filled(tmp_path / "octagon.png", outline), edge=True))
+    found = distance(thin(run), outline)
+    assert run.ending == "closed" and found.hausdorff_mm < 25 * UM, found
+
+
+def test_edges_may_be_0_3_mm_apart(tmp_path: Path) -> None:
+    """Two bars, the slot between them 0.3 mm: to either side of it the corners are those of a line that is 0.1 mm wide."""
+    bars = [polyline((8, y), (28, y), (28, y + 8), (8, y + 8), (8, y)) for y in (8.0, 16.3)]
     run = trace_lines(Drawing.open(filled(tmp_path / "bars.png", *bars), edge=True))
     assert [line.ending for line in run.lines] == ["closed", "closed"]
-    assert distance(thin(run), bars).hausdorff_mm < 40 * UM
+    assert distance(thin(run), bars).hausdorff_mm < 60 * UM
+
+
+@pytest.mark.parametrize("apart_mm", [0.4, 0.7])
+def test_a_slot_in_an_edge_is_followed_to_its_end(tmp_path: Path, apart_mm: float) -> None:
+    """Its end has two corners nearer to one another than the lens lets legs be felt: they stay as round as the lens made them, 0.77 s = 66 um."""
+    low, high = 17 - apart_mm / 2, 17 + apart_mm / 2
+    outline = polyline((8, 8), (28, 8), (28, low), (14, low), (14, high), (28, high), (28, 26), (8, 26), (8, 8))
+    run = trace(Drawing.open(filled(tmp_path / "slot.png", outline), edge=True))
+    found = distance(thin(run), outline)
+    assert run.ending == "closed" and found.path_to_reference.rms_mm < 6 * UM, found
+    assert found.hausdorff_mm < 100 * UM, found  # it was 9.8 mm: the head went past the slot
+
+
+@pytest.mark.parametrize("apart_mm", [0.15, 0.2])
+def test_edges_that_run_together_are_refused(tmp_path: Path, apart_mm: float) -> None:
+    bars = [polyline((8, y), (28, y), (28, y + 8), (8, y + 8), (8, y)) for y in (8.0, 16 + apart_mm)]
+    with pytest.raises(DrawingFault, match=r"two edges are 0\.[012]\d mm apart at \d+\.\d,1[56]\.\d mm, .*--scale"):
+        Drawing.open(filled(tmp_path / "bars.png", *bars), edge=True)
 
 
 def test_a_shape_cut_by_the_border_is_refused(tmp_path: Path) -> None:
