@@ -10,7 +10,8 @@ that by more than noise does it is a round one: its radius is that with which th
 that does not fit its outline beside the vertex stays as it is: the lens does not explain it.
 
 Source: the half-plane and the wedge seen through a normal distribution; our own.
-Questions: a round that moves the outline by less than noise does (`FURTHER`, `NOISE`) is taken for a sharp corner: at a right angle one of 0.12 mm at 300 dpi, which is 0.05 mm out.
+Questions: a round that moves the outline by less than noise does (`FURTHER`, `NOISE`) is taken for a sharp corner: at a right angle one of
+0.12 mm at 300 dpi, which is 0.05 mm out.
 """
 
 from __future__ import annotations
