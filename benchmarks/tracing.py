@@ -21,12 +21,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
-from scipy.spatial import cKDTree
 from skimage.filters import threshold_otsu
 from skimage.measure import find_contours, label
 from skimage.morphology import skeletonize
 
 from benchmarks.rows import Row, best_s, tell
+from motion.contour import distances_mm
 from motion.motion import thin
 from motion.pathfile import read_path
 from player.machine import play
@@ -81,11 +81,6 @@ def skeleton(file: Path) -> Points:
     return on_sheet(rows, columns, len(grey))
 
 
-def distances_mm(points: Points, truth: Points) -> Points:
-    """Distance of each place from the true line, mm."""
-    return np.asarray(cKDTree(truth).query(points)[0])
-
-
 def rms_um(distances: Points) -> float:
     """Root mean square, um."""
     return float(np.sqrt(np.mean(distances**2))) * UM
@@ -100,7 +95,7 @@ def dense(line: Points) -> Points:
 
 def tracing_rows(file: Path, truth_file: Path) -> list[Row]:
     """Times from the file to places on the sheet, and how far those are from the truth."""
-    truth = dense(read_path(truth_file).xy_mm)
+    truth = read_path(truth_file).xy_mm
     tasks: dict[str, Callable[[], object]] = {
         "trace": lambda: traced(file),
         "contours": lambda: contours(file),
