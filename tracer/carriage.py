@@ -128,9 +128,17 @@ class Carriage:
         s[head.MIDDLE] = aside * (lead / along) ** 2 if along > 0.5 * lead else 0.5 * leg.bend_per_mm * lead * lead
         s[head.POINT_X], s[head.POINT_Y] = leg.at(self.tuning.point_mm)
         s[head.SWEEP] = s[head.FIRST] = s[head.MEAN] = s[head.LEFT] = s[head.RIGHT] = 0.0
-        s[head.AHEAD] = 1.0
+        s[head.AHEAD] = s[head.INK] = 1.0
         self._drum[: len(felt)] = felt
         s[head.PLACES] = len(felt)
+
+    def retune(self, view: View) -> None:
+        """Tune the moving head to the line as it is seen now."""
+        old = self.tuning.lead_mm
+        self.tuning = tune(Stance(*self.stands(), view), self.settings, self.rate_hz)
+        self.state[head.MIDDLE] *= (self.tuning.lead_mm / old) ** 2
+        self.state[head.INK] = 1.0
+        self.state[[head.SWEEP, head.FIRST, head.MEAN]] = 0.0
 
     def _keep(self, positions: Array) -> None:
         self._parts.append(positions.copy())

@@ -64,10 +64,19 @@ def through_corner(
         a, b = s - touch, -u + touch
         bend = _arc(incoming.at(a), incoming.heading_at(a), outgoing.at(b), outgoing.heading_at(b))
         return [np.vstack([way, along_leg(incoming, along, a), bend, along_leg(outgoing, b, end_mm)])]
-    way, along = onto(*stands, incoming, min(s, 0.0) if bent else s)
     if bent:
+        way, along = onto(*stands, incoming, min(s, 0.0))
         start, end = incoming.at(along), outgoing.at(end_mm)
         return [np.vstack([way, hermite(start, incoming.heading_at(along), end, outgoing.heading_at(end_mm))])]
+    return sharp_corner(stands, incoming, outgoing, legs_mm, end_mm)
+
+
+def sharp_corner(
+    stands: tuple[Array, float], incoming: Leg, outgoing: Leg, legs_mm: Meeting, end_mm: float
+) -> list[Array]:
+    """Stretches from where the head stands to the vertex, and from there to `end_mm` beyond the outgoing leg's first station."""
+    s, u = legs_mm
+    way, along = onto(*stands, incoming, s)
     vertex = 0.5 * (incoming.at(s) + outgoing.at(-u))
     arriving, leaving = along_leg(incoming, along, s), along_leg(outgoing, -u, end_mm)
     arriving[-1] = leaving[0] = vertex

@@ -29,6 +29,7 @@ from tracer.junctions import Guide, Junctions
 from tracer.knot import fork_in
 from tracer.leg import Leg, end_of, leg_of, turn
 from tracer.loop import loop_in
+from tracer.pens import Onward, another_pen, of_another_pen
 from tracer.pilot import Pilot
 from tracer.settings import Settings
 from tracer.stance import Stance
@@ -36,6 +37,7 @@ from tracer.survey import AHEAD, SIDES, Side, Way, goes_straight, survey
 from tracer.tangles import Tangles
 from tracer.view import Array, View
 
+SWELLS = 0.5  # of the change of a clean line's width is usual from then on
 BACK_MM = 4.0  # a junction that the head comes back to is no further ahead: a speck may end the clean line before it
 
 
@@ -100,6 +102,10 @@ class Follower:
                 return self._done("closed")
             if self.carriage.trail.comes_again(self.view.width_mm):
                 return self._done("joined")  # before the next junction, whose other legs have been followed
+            if why == head.CHANGED:
+                self.view = self.view.like(*self.carriage.stands(), follows=SWELLS)
+                self.carriage.retune(self.view)
+                continue
             if why != head.MORE and self.settings.direct_rad_s_mm > 0:
                 why_lost = "the swinging cell sees no more ink, and this head has no guard cells to find on by"
                 return self._lost(why_lost, "go slower there with --speed, or follow with --head precise")
@@ -135,6 +141,10 @@ class Follower:
         dot = None if goes_straight(incoming, way[0]) else dot_at_end(self.view, incoming)
         if dot is not None:
             return self._end(_aimed_at(incoming, dot), math.dist(incoming.end_mm, dot))
+        if way[0] is not None and another_pen(self.view, way[0]):
+            plan = self._pilot().onward(incoming, Onward(self.view, way[0], way[1]))
+            if plan is not None:
+                return self._pass(*plan)
         plan, choices = self._pilot().along_legs(incoming, way)
         explained = False
         if not asked and not self._is_dot(incoming, way[0]):
@@ -142,6 +152,12 @@ class Follower:
             plan, explained = self._tangles.way_out(
                 self.view, incoming, self.carriage.trail, way_in, plan, number, self._turns.count(number)
             )
+        if plan is None and not choices:
+            other = of_another_pen(self.view, incoming, self.carriage.trail)
+            plan = None if other is None else self._pilot().onward(incoming, other)
+            if other is not None and plan is not None:
+                self.view = other.view
+                return self._pass(*plan)
         if not explained:
             plan = self._pilot().past(incoming, way) or plan
         return self._at_end(incoming, choices) if plan is None else self._pass(*plan)

@@ -18,6 +18,7 @@ The speed is resolved by sine and cosine of the heading into demands on the two 
                        axis   point                         ||
     guard cells    beside the line's edges and on it, a little further ahead: when they see ink beside the line, or none on it, the head cannot trust the
                    swinging cell there; the kernel returns, and `knot` and `course` take the head through
+    mean           of a sweep against what it was when the head was tuned: when the line swells or fades, the kernel returns to be tuned anew
     look-ahead     cell 102, a mm ahead of the swinging cell: when the line is not where the sweep's curve leads, the relay slows the head and holds it slow
 
 A head without a drum, as in 1969, steers straight by what the cell sees aside, turn rate = k·e, and has neither guard cells nor a way through knots.
@@ -45,8 +46,9 @@ STATES = 24
 DRUM = 256  # places remembered
 LOST = 0.2  # of the ink, over a sweep: the line has gone from under a head without guard cells
 BESIDE = 0.4  # of the ink, averaged by the guard cells: there is ink beside the line
+ALTERED = 0.2  # of the ink over a sweep: the line has swollen or faded by so much since the head was tuned to it
 
-MORE, KNOT, TIGHT, HOME = range(4)  # why the kernel returned
+MORE, KNOT, TIGHT, HOME, CHANGED = range(5)  # why the kernel returned
 
 
 class Tuning(NamedTuple):
@@ -187,7 +189,9 @@ def _look(cells, pitch_mm, state, t):  # type: ignore[no-untyped-def]
         return KNOT if state[AHEAD] < LOST else MORE
     if max(state[LEFT], state[RIGHT]) > BESIDE or state[AHEAD] < 0.5:
         return KNOT
-    return TIGHT if max(abs(state[BEND]), 2 * abs(curve)) > t.tightest_per_mm else MORE
+    if max(abs(state[BEND]), 2 * abs(curve)) > t.tightest_per_mm:
+        return TIGHT
+    return CHANGED if abs(state[INK] - 1.0) > ALTERED else MORE
 
 
 @njit(cache=True)

@@ -15,6 +15,7 @@ import numpy as np
 from tracer import course
 from tracer.knot import corner_in
 from tracer.leg import Leg, Meeting, leg_of, meet, turn
+from tracer.pens import Onward
 from tracer.riding import Ride, ride_past, to_vertex
 from tracer.settings import Settings
 from tracer.strands import Planned
@@ -55,6 +56,16 @@ class Pilot:
             outgoing = caught_again(self.view, incoming, self.trail, self.settings.recatch_mm)
         return None if outgoing is None else self._course(incoming, outgoing, None), choices
 
+    def onward(self, incoming: Leg, other: Onward) -> Planned | None:
+        """The way onto a line of another width; None if there is no ink all along it."""
+        leg, legs_mm = other.leg, other.legs_mm
+        planned = self._course(incoming, leg, None)
+        if legs_mm is not None and self._is_corner(incoming, leg, legs_mm):
+            end_mm = max(0.05 - legs_mm[1], 0.0)
+            stretches = course.sharp_corner(self.stands, incoming, leg, legs_mm, end_mm)
+            planned = Planned(stretches, leg.shifted(end_mm, leg.seen))
+        return planned if course.on_ink(self.view, planned.stretches) else None
+
     def past(self, incoming: Leg, way: Way) -> Planned | None:
         """The way past ink that runs beside the line, felt along an edge; None if the line goes on straight before, or if there is no such way."""
         outgoing, _, choices = way
@@ -66,8 +77,7 @@ class Pilot:
 
     def _course(self, incoming: Leg, outgoing: Leg, legs_mm: Meeting | None) -> Planned:
         """Stretches from where the head is to the outgoing leg's clean end, and that leg."""
-        deflection = abs(turn(incoming.heading_rad, outgoing.heading_rad))
-        if legs_mm is not None and deflection > SMOOTH and min(legs_mm) > -self.view.width_mm:
+        if legs_mm is not None and self._is_corner(incoming, outgoing, legs_mm):
             arriving, leaving, met = to_vertex(self.view, incoming, outgoing, legs_mm)
             end_mm = max(0.05 - met[1], course.ahead_mm(leaving.end_mm, outgoing))
             stretches = course.through_corner(self.view, self.stands, arriving, leaving, met, end_mm)
@@ -77,6 +87,11 @@ class Pilot:
         start, heading = incoming.at(along), incoming.heading_at(along)
         through = course.hermite(start, heading, outgoing.end_mm, outgoing.heading_rad)
         return Planned([np.vstack([way, through])], outgoing)
+
+    def _is_corner(self, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> bool:
+        """Whether two legs that meet make a corner, and do not run into one another smoothly, or meet behind their clean ends."""
+        deflection = abs(turn(incoming.heading_rad, outgoing.heading_rad))
+        return deflection > SMOOTH and min(legs_mm) > -self.view.width_mm
 
     def round_corner(self, seen: Array, here: int) -> Planned | None:
         """The way round a corner so obtuse that the line was felt clean round it; None if there is none, or if its ink does not show it to be sharp."""

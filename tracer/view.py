@@ -49,8 +49,11 @@ class View:
             self.cells, self.pitch_mm, place, heading, self.step_mm, stations, self.width_mm, self.level
         )
 
-    def like(self, place: Array, heading: float) -> View:
-        """The view with the width and the darkness that the line has about a place, if they are like what they were: lines swell and fade."""
+    def like(self, place: Array, heading: float, follows: float = 0.1) -> View:
+        """The view with the width and the darkness that the line has about a place, if they are like what they were: lines swell and fade.
+
+        The usual width follows by a share of how far the width differs from it.
+        """
         way = np.array([math.cos(heading), math.sin(heading)])
         places = [place + 2 * k * self.step_mm * way for k in range(5)]  # more of them than a speck spoils
         ink = float(np.median([photocell.darkness_at(self.cells, self.pitch_mm, p[0], p[1]) for p in places]))
@@ -61,7 +64,7 @@ class View:
         usual = self.usual_mm or self.width_mm
         if not 0.5 < width / usual < 1.6:
             return self
-        return replace(self, width_mm=width, level=level, usual_mm=usual + 0.1 * (width - usual))
+        return replace(self, width_mm=width, level=level, usual_mm=usual + follows * (width - usual))
 
     def dark(self, place: Array) -> bool:
         """Whether there is ink at a place."""
