@@ -156,7 +156,7 @@ def scout(cells, pitch_mm, start, heading, step_mm, stations, width_mm, level): 
         if abs(width - width_mm) < slack and (count == 0 or abs(aside) < width_mm / 6 + 0.4 * pitch_mm):
             seen[count, 0], seen[count, 1] = x - aside * math.sin(heading), y + aside * math.cos(heading)
             seen[count, 2] = width
-            width_mm += 0.05 * (width - width_mm)
+            width_mm += 0.02 * (width - width_mm)
             count += 1
             since_speck += 1
             spoilt = 0
