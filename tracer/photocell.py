@@ -28,6 +28,7 @@ from numpy.typing import NDArray
 from tracer.drawing import Drawing
 
 TWO_PI = 2.0 * math.pi
+FOLLOWS_PER_MM = 0.2  # a line that is felt may swell: its width follows what was felt, by so much of the difference
 Cells = NDArray[np.float32]
 
 
@@ -156,7 +157,7 @@ def scout(cells, pitch_mm, start, heading, step_mm, stations, width_mm, level): 
         if abs(width - width_mm) < slack and (count == 0 or abs(aside) < width_mm / 6 + 0.4 * pitch_mm):
             seen[count, 0], seen[count, 1] = x - aside * math.sin(heading), y + aside * math.cos(heading)
             seen[count, 2] = width
-            width_mm += 0.02 * (width - width_mm)
+            width_mm += FOLLOWS_PER_MM * step_mm * (width - width_mm)
             count += 1
             since_speck += 1
             spoilt = 0
