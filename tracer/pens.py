@@ -25,7 +25,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tracer import photocell
-from tracer.leg import Leg, Meeting, leg_of, turn
+from tracer.leg import Leg, Meeting, leg_of, meet, turn
 from tracer.survey import survey
 from tracer.trail import Trail
 from tracer.view import Array, View
@@ -36,6 +36,7 @@ ALIKE = 0.1  # of the width: no other pen
 STEP = 0.2  # of the width: another pen, and no swelling of the line
 STEADY_WIDTHS, STEADY = 8.0, 0.06  # so long and so evenly
 AHEAD_WIDTHS = 4.0  # as far as the other line is looked for
+FAR_LEGS = 2.0  # the vertex lies further off than at a corner of one width
 ASIDE, LEAST_ASIDE_MM = 0.4, 0.015  # of what a line beside it would set it off; as well as the way ahead is known
 IN_LINE = math.radians(12)
 
@@ -57,7 +58,9 @@ def of_another_pen(view: View, incoming: Leg, trail: Trail) -> Onward | None:
         other = replace(view, width_mm=times * view.width_mm, usual_mm=None)
         leg, legs_mm, _ = survey(other, incoming, trail)
         if leg is not None and legs_mm is not None and abs(leg.width_mm / view.width_mm - 1) > STEP:
-            return Onward(replace(view, width_mm=leg.width_mm, usual_mm=None), leg, legs_mm)
+            found = replace(view, width_mm=leg.width_mm, usual_mm=None)
+            far = _felt(found, leg.end_mm, leg.heading_rad, FAR_LEGS) or leg
+            return Onward(found, far, meet(incoming, far))
     return None
 
 
@@ -89,10 +92,11 @@ def _straight_ahead(view: View, incoming: Leg) -> Iterator[tuple[Leg, View]]:
             yield leg, replace(other, width_mm=leg.width_mm)
 
 
-def _felt(view: View, place: Array, heading: float) -> Leg | None:
-    """The line felt from a place on, clean for a whole leg; None if it is not."""
-    seen = view.feel(place, heading, view.leg_mm)
-    return leg_of(seen, False, view.leg_mm) if len(seen) > view.leg_mm / view.step_mm else None
+def _felt(view: View, place: Array, heading: float, legs: float = 1.0) -> Leg | None:
+    """The line felt from a place on, clean for as long as so many legs; None if it is not."""
+    length_mm = legs * view.leg_mm
+    seen = view.feel(place, heading, length_mm)
+    return leg_of(seen, False, length_mm) if len(seen) > length_mm / view.step_mm else None
 
 
 def _in_line(incoming: Leg, leg: Leg) -> bool:

@@ -42,6 +42,17 @@ def inked(
     return Drawing(_seen(fine, pixels, dpi, seed), MM_PER_INCH / dpi)
 
 
+def together(*drawn: tuple[Points, float], seed: int | None = None) -> Drawing:
+    """The drawing of lines (n, 2) mm, each with the width of its pen, mm."""
+    high = np.vstack([line for line, _ in drawn]).max(axis=0) + MARGIN_MM
+    pixels = np.ceil(high * DPI / MM_PER_INCH).astype(int)
+    fine = np.zeros((pixels[1] * OVERSAMPLE, pixels[0] * OVERSAMPLE), np.uint8)
+    scale = DPI / MM_PER_INCH * OVERSAMPLE
+    for line, width_mm in drawn:
+        cv2.polylines(fine, [_fixed(line, len(fine), scale)], False, 255, round(width_mm * scale), cv2.LINE_AA, 8)
+    return Drawing(_seen(fine, pixels, DPI, seed), MM_PER_INCH / DPI)
+
+
 def _fixed(line: Points, rows: int, scale: float) -> NDArray[np.int32]:
     """Points in 1/256 of a fine pixel, Y down, 0 at the middle of the first fine pixel."""
     at = np.column_stack([line[:, 0] * scale, rows - line[:, 1] * scale]) - 0.5

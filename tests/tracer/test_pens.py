@@ -1,0 +1,72 @@
+"""Lines that swell, fade, or go on with another pen are followed whole, along their middle.
+
+Bounds: 2.2 um RMS and 10 um are what the smooth closed lines of one width are held to; a step in the width is an end of one line's ink and the beginning of
+the other's, 25 um; at a corner of two widths the vertex is where the middles meet, 50 um as for any right-angled corner.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from motion.contour import distance, length_mm
+from tests.tracer.inked import UM, arc, inked, polyline, together
+from tracer.drawing import Drawing
+from tracer.sequence import trace
+
+Array = NDArray[np.float64]
+SEEDS = pytest.mark.parametrize("seed", [1, 2, 3])
+CENTRE, RADIUS_MM = (26.0, 26.0), 20.0
+
+
+def held_to(drawing: Drawing, line: Array, rms_um: float, most_um: float) -> None:
+    """The drawing's line is followed as one closed path, on it and all of it."""
+    run = trace(drawing).lines[0]
+    apart = distance(run.xy_mm[::4], line)
+    assert run.ending == "closed"
+    assert apart.path_to_reference.rms_mm < rms_um * UM
+    assert apart.path_to_reference.max_mm < most_um * UM
+    assert apart.reference_to_path.max_mm < most_um * UM
+    assert run.length_mm == pytest.approx(length_mm(line), rel=2e-3)
+
+
+def parts(widths_mm: list[float]) -> list[tuple[Array, float]]:
+    """A circle in as many arcs, each with its width."""
+    ends = np.linspace(0, 360, len(widths_mm) + 1)
+    return [(arc(CENTRE, RADIUS_MM, a, b), w) for a, b, w in zip(ends, ends[1:], widths_mm, strict=False)]
+
+
+@SEEDS
+def test_a_line_that_swells_to_three_times_its_width_and_back(seed: int) -> None:
+    angle = np.linspace(0, math.tau, 721)[:-1]
+    drawing = together(*parts(list(0.6 + 0.3 * np.cos(2 * angle + seed))), seed=seed)
+    held_to(drawing, arc(CENTRE, RADIUS_MM), rms_um=2.5, most_um=12)
+
+
+@SEEDS
+@pytest.mark.parametrize("wider_mm", [0.55, 0.7, 1.0])
+def test_a_line_that_goes_on_with_a_wider_pen(wider_mm: float, seed: int) -> None:
+    drawing = together(*parts([0.4, 0.4, wider_mm, 0.4, 0.4]), seed=seed)
+    held_to(drawing, arc(CENTRE, RADIUS_MM), rms_um=4, most_um=25)
+
+
+@SEEDS
+@pytest.mark.parametrize("thin_mm", [0.3, 0.5])
+def test_shade_lines_meet_thin_ones_at_the_vertex(thin_mm: float, seed: int) -> None:
+    places = [(6.0, 6.0), (40.0, 9.0), (36.0, 30.0), (20.0, 38.0), (8.0, 28.0), (6.0, 6.0)]
+    sides = [polyline(a, b) for a, b in zip(places, places[1:], strict=False)]
+    widths_mm = [0.9, 0.9, thin_mm, thin_mm, thin_mm]
+    drawing = together(*zip(sides, widths_mm, strict=True), seed=seed)
+    held_to(drawing, polyline(*places), rms_um=8, most_um=50)
+
+
+@SEEDS
+def test_a_line_beside_it_is_no_wider_pen(seed: int) -> None:
+    """A second line runs along the first for 12 mm, half a width aside: the head stays on its own."""
+    own, beside = polyline((4, 10), (50, 10)), polyline((20, 10.3), (32, 10.3))
+    run = trace(inked(own, beside, seed=seed), start_mm=(4, 10)).lines[0]
+    assert run.ending == "ended"
+    assert distance(run.xy_mm[::4], own).path_to_reference.max_mm < 60 * UM
