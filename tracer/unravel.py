@@ -29,6 +29,7 @@ DOUBTFUL = 0.08  # straight on stands unless the ink tells against it by more
 AS_GOOD = 0.05  # misfit of a plan that needs no other to be compared with
 WELL_MM2 = 0.015  # area of wrong ink in a way that explains all of it
 BLOT_VERTICES, BLOT_WIDTHS = 4.5, 4.0  # a way with more vertices that reaches no farther, and leaves ink, is a scribble
+ROUGH_WIDTHS = 0.6  # to and fro within the line's own ink: that is rough
 MARK_AS_GOOD = 1.3  # times the misfit of a way: a tick in its place explains the ink as well
 CROSSES_RAD = math.radians(25)  # a line that bends less goes straight on
 
@@ -61,6 +62,9 @@ def unravelled(
         leg, straight = others[min(rank, len(others)) - 1], False
     way = best[leg]
     as_good = [tangle.legs[k] for k in others if _as_good(best[k], way)] if _bends(sketch, way) else []
+    direct = Planned(stretches_over(way_in, incoming, NONE, tangle.legs[leg]), tangle.legs[leg])
+    if any(_is_rough(way, line, view.width_mm) for line in (plan, direct)):
+        return plan or direct, way, as_good
     if straight or (
         plan is not None and same_line(plan.leg, tangle.legs[leg], view.width_mm) and _stands(sketch, way, plan, drawn)
     ):
@@ -88,6 +92,12 @@ def _stands(sketch: Sketch, way: Way, plan: Planned, drawn: list[Array]) -> bool
     if planned < way.misfit + VERTEX * (1 + len(_own(way))):
         return True
     return goes_straight(sketch.tangle.legs[0], plan.leg) and _is_mark(sketch, way, plan)
+
+
+def _is_rough(way: Way, line: Planned | None, width_mm: float) -> bool:
+    """Whether a way only goes to and fro within the ink of a line: its edges are rough."""
+    own = _own(way)
+    return line is not None and len(own) > 1 and aside_mm(own, line.stretches) < ROUGH_WIDTHS * width_mm
 
 
 def _bends(sketch: Sketch, way: Way) -> bool:
