@@ -14,7 +14,7 @@ import numpy as np
 
 from tracer import course
 from tracer.knot import corner_in
-from tracer.leg import Leg, Meeting, leg_of, meet, turn
+from tracer.leg import Leg, Meeting, coarse, leg_of, meet, turn
 from tracer.pens import Onward
 from tracer.riding import Ride, ride_past, to_vertex
 from tracer.settings import Settings
@@ -50,6 +50,10 @@ class Pilot:
         outgoing = straight_on(self.view, incoming, gap_mm)
         if outgoing is None and not choices:
             outgoing = straight_on(replace(self.view, level=FAINTER * self.view.level), incoming, gap_mm)
+        if outgoing is None and not choices:
+            outgoing = straight_on(coarse(self.view, incoming), incoming, gap_mm)
+            if outgoing is not None and self._blank_mm(incoming, outgoing) > gap_mm:
+                outgoing = None
         if outgoing is not None and choices and self._goes_back(outgoing.seen):
             return None, choices
         if outgoing is None and self.settings.recatch_mm > 0:
@@ -65,6 +69,19 @@ class Pilot:
             stretches = course.sharp_corner(self.stands, incoming, leg, legs_mm, end_mm)
             planned = Planned(stretches, leg.shifted(end_mm, leg.seen))
         return planned if course.on_ink(self.view, planned.stretches) else None
+
+    def _blank_mm(self, incoming: Leg, outgoing: Leg) -> float:
+        """The longest stretch without any ink across the line, on the way from one leg's clean end straight to another's."""
+        view, step = self.view, 0.35 * self.view.pitch_mm
+        along = np.arange(0.0, course.ahead_mm(incoming.end_mm, outgoing), step)
+        across = np.linspace(-0.5, 0.5, 7) * view.width_mm
+        aside = np.array([-math.sin(incoming.heading_rad), math.cos(incoming.heading_rad)])
+        lighter = replace(view, level=FAINTER * view.level)
+        blank = longest = 0.0
+        for place in incoming.at(along):
+            blank = 0.0 if any(lighter.dark(place + u * aside) for u in across) else blank + step
+            longest = max(longest, blank)
+        return longest
 
     def past(self, incoming: Leg, way: Way) -> Planned | None:
         """The way past ink that runs beside the line, felt along an edge; None if the line goes on straight before, or if there is no such way."""
