@@ -133,17 +133,18 @@ def _best(
             if best is None:
                 raise
             continue
-        if line.is_lead and not _is_open(stance):
+        far = line.length_mm > SHORT * length_mm
+        if line.is_lead and not _is_open(stance) and far:
             return line, []
-        if line.is_lead:
+        if line.is_lead and _is_open(stance):
             leads.append((line, stance, length_mm))
         best = (line, stance, length_mm) if best is None or line.length_mm > best[0].length_mm else best
         plain = not (stance.at_end and line.junctions_mm)  # at a junction a lead line may come in
-        if plain and (line.ending == "closed" or (line.length_mm > SHORT * length_mm and line.ending != "joined")):
+        if plain and (line.ending == "closed" or (far and line.ending != "joined")):
             break
         if not stance.at_end:
             smooth.append(line)
-            if best[0].ending != "ended" or best[0].length_mm > SHORT * length_mm:
+            if best[0].ending == "closed" or best[0].length_mm > SHORT * length_mm:
                 break
     if best is None:
         return None, []
