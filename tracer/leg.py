@@ -24,7 +24,10 @@ Meeting = tuple[float, float]  # how far two legs meet beyond the one's clean en
 FARTHEST_MM = 10.0  # legs that meet further away do not meet
 
 SPOKE = np.linspace(0.2, 1.0, 17)
-COARSE, COARSE_STATIONS = 0.4, 20  # of the width: standard deviation of a cell that averages a line's grain; stations of a leg seen through it
+COARSE, COARSE_STATIONS = (
+    0.4,
+    20,
+)  # of the width: standard deviation of a cell that averages a line's grain; stations of a leg seen through it
 FAINTER = 0.3  # of the line's darkness as a rule: an edge, through that cell
 PAPER = 0.6  # of the level: lighter is paper for certain
 SPECK_WIDTHS = 0.4  # ink narrower than this is no stroke

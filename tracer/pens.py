@@ -51,9 +51,9 @@ class Onward(NamedTuple):
 
 def of_another_pen(view: View, incoming: Leg, trail: Trail) -> Onward | None:
     """The line that goes on from a leg's clean end with another width; None if there is none that has not been followed."""
-    for leg, seen_so in _straight_ahead(view, incoming):
-        if not trail.holds(leg, view.width_mm):
-            return Onward(seen_so, leg, None)
+    for onward in _straight_ahead(view, incoming):
+        if not trail.holds(onward.leg, view.width_mm):
+            return onward
     for times in PENS:
         other = replace(view, width_mm=times * view.width_mm, usual_mm=None)
         leg, legs_mm, _ = survey(other, incoming, trail)
@@ -76,20 +76,20 @@ def another_pen(view: View, leg: Leg) -> bool:
     return abs(far - near) < STEADY * leg.width_mm and float(np.std(seen[:, 2])) < STEADY * leg.width_mm
 
 
-def _straight_ahead(view: View, incoming: Leg) -> Iterator[tuple[Leg, View]]:
+def _straight_ahead(view: View, incoming: Leg) -> Iterator[Onward]:
     """Lines of another width in line with a leg."""
     step = 0.5 * view.width_mm
     for along in np.arange(step, AHEAD_WIDTHS * view.width_mm, step):
         place, heading = incoming.at(along), incoming.heading_at(along)
         reach_mm = WIDEST * view.width_mm
-        right, left = photocell.edges(view.cells, view.pitch_mm, *place, heading, reach_mm, view.level)
+        right, left = photocell.edges(view.cells, view.pitch_mm, place[0], place[1], heading, reach_mm, view.level)
         times = (left - right) / view.width_mm
         if not NARROWEST < times < WIDEST or abs(times - 1) < ALIKE:
             continue
         other = replace(view, width_mm=left - right, usual_mm=None)
         leg = _felt(other, place, heading)
         if leg is not None and _in_line(incoming, leg):
-            yield leg, replace(other, width_mm=leg.width_mm)
+            yield Onward(replace(other, width_mm=leg.width_mm), leg, None)
 
 
 def _felt(view: View, place: Array, heading: float, legs: float = 1.0) -> Leg | None:

@@ -7,6 +7,7 @@ the other's, 25 um; at a corner of two widths the vertex is where the middles me
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -57,7 +58,7 @@ def test_a_line_that_goes_on_with_a_wider_pen(wider_mm: float, seed: int) -> Non
 @pytest.mark.parametrize("thin_mm", [0.3, 0.5])
 def test_shade_lines_meet_thin_ones_at_the_vertex(thin_mm: float, seed: int) -> None:
     places = [(6.0, 6.0), (40.0, 9.0), (36.0, 30.0), (20.0, 38.0), (8.0, 28.0), (6.0, 6.0)]
-    sides = [polyline(a, b) for a, b in zip(places, places[1:], strict=False)]
+    sides = [polyline(a, b) for a, b in pairwise(places)]
     widths_mm = [0.9, 0.9, thin_mm, thin_mm, thin_mm]
     drawing = together(*zip(sides, widths_mm, strict=True), seed=seed)
     held_to(drawing, polyline(*places), rms_um=8, most_um=50)
