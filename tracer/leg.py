@@ -12,7 +12,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-import cv2
 import numpy as np
 from numba import njit
 
@@ -181,18 +180,6 @@ def meet(incoming: Leg, outgoing: Leg) -> Meeting | None:
         if max(abs(s), abs(u)) > FARTHEST_MM:
             return None
     return s, u
-
-
-def coarse(view: View, incoming: Leg) -> View:
-    """The line through cells as large as it is wide, that average its grain; with the darkness and the width that an incoming leg has so, and fainter."""
-    sigma_px = COARSE * view.width_mm / view.pitch_mm
-    cells = np.asarray(cv2.GaussianBlur(view.cells, (0, 0), sigma_px), np.float32)
-    places = incoming.seen[-COARSE_STATIONS:, :2]
-    level = FAINTER * float(np.median([photocell.darkness_at(cells, view.pitch_mm, x, y) for x, y in places]))
-    reach_mm = 3 * view.width_mm
-    found = [photocell.edges(cells, view.pitch_mm, x, y, incoming.heading_rad, reach_mm, level) for x, y in places]
-    width = float(np.nanmedian([left - right for right, left in found]))
-    return replace(view, cells=cells, level=level, width_mm=width)
 
 
 def reach_of_ink(view: View, incoming: Leg, farthest_mm: float, aside_mm: float = 0.0) -> float | None:

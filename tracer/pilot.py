@@ -14,7 +14,7 @@ import numpy as np
 
 from tracer import course
 from tracer.knot import corner_in
-from tracer.leg import Leg, Meeting, coarse, leg_of, meet, turn
+from tracer.leg import Leg, Meeting, leg_of, meet, turn
 from tracer.pens import Onward
 from tracer.riding import Ride, ride_past, to_vertex
 from tracer.settings import Settings
@@ -51,7 +51,7 @@ class Pilot:
         if outgoing is None and not choices:
             outgoing = straight_on(replace(self.view, level=FAINTER * self.view.level), incoming, gap_mm)
         if outgoing is None and not choices:
-            outgoing = straight_on(coarse(self.view, incoming), incoming, gap_mm)
+            outgoing = straight_on(self.view.through_larger(incoming.seen, incoming.heading_rad), incoming, gap_mm)
             if outgoing is not None and self._blank_mm(incoming, outgoing) > gap_mm:
                 outgoing = None
         if outgoing is not None and choices and self._goes_back(outgoing.seen):

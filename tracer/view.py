@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -20,6 +21,9 @@ Array = NDArray[np.float64]
 
 LEVEL = 0.5  # an edge is at this share of the line's darkness
 LEG_MM = 1.2  # how much of a leg is felt for its direction, at a line of 0.5 mm
+GRAIN = 0.4  # of the line's width: standard deviation of a cell that averages its grain
+GRAIN_LEVEL = 0.3  # an edge is at this share of the darkness then
+GRAIN_STATIONS = 20
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +69,17 @@ class View:
         if not 0.5 < width / usual < 1.6:
             return self
         return replace(self, width_mm=width, level=level, usual_mm=usual + follows * (width - usual))
+
+    def through_larger(self, stations: Array, heading: float) -> View:
+        """The line through cells as large as it is wide, which average its grain; its width and its darkness as seen so at some stations (n, 3) of it."""
+        sigma_px = GRAIN * self.width_mm / self.pitch_mm
+        cells = np.asarray(cv2.GaussianBlur(self.cells, (0, 0), sigma_px), np.float32)
+        places = stations[-GRAIN_STATIONS:, :2]
+        level = GRAIN_LEVEL * float(np.median([photocell.darkness_at(cells, self.pitch_mm, x, y) for x, y in places]))
+        reach = 3 * self.width_mm
+        found = [photocell.edges(cells, self.pitch_mm, x, y, heading, reach, level) for x, y in places]
+        width = float(np.nanmedian([left - right for right, left in found]))
+        return replace(self, cells=cells, level=level, width_mm=width)
 
     def dark(self, place: Array) -> bool:
         """Whether there is ink at a place."""
