@@ -9,13 +9,14 @@ from __future__ import annotations
 import math
 from itertools import pairwise
 
+import cv2
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 from motion.contour import distance, length_mm
-from tests.tracer.inked import UM, arc, inked, polyline, together
-from tracer.drawing import Drawing
+from tests.tracer.inked import DPI, UM, arc, inked, polyline, together
+from tracer.drawing import MM_PER_INCH, Drawing
 from tracer.sequence import trace
 
 Array = NDArray[np.float64]
@@ -71,3 +72,25 @@ def test_a_line_beside_it_is_no_wider_pen(seed: int) -> None:
     run = trace(inked(own, beside, seed=seed), start_mm=(4, 10)).lines[0]
     assert run.ending == "ended"
     assert distance(run.xy_mm[::4], own).path_to_reference.max_mm < 60 * UM
+
+
+@SEEDS
+def test_the_grain_of_faint_pencil_is_no_end(seed: int) -> None:
+    """A third as dark as ink, so that noise is thrice as strong, with a grain of 35 % a quarter of a millimetre wide. The ink's own middle wanders with its grain: 30 um RMS."""
+    line = arc(CENTRE, RADIUS_MM)
+    inky = inked(line, width_mm=0.4).darkness
+    random = np.random.default_rng(seed)
+    grain = cv2.GaussianBlur(random.normal(size=inky.shape).astype(np.float32), (0, 0), 1.2)
+    faint = inky * np.clip(1 + 0.35 * grain / grain.std(), 0, 2) + random.normal(0, 0.04 / 0.35, inky.shape)
+    run = trace(Drawing(np.asarray(faint, np.float32), MM_PER_INCH / DPI)).lines[0]
+    apart = distance(run.xy_mm[::4], line)
+    assert run.ending == "closed"
+    assert apart.path_to_reference.rms_mm < 30 * UM
+    assert apart.reference_to_path.max_mm < 0.4
+
+
+def test_a_gap_wider_than_allowed_ends_a_line_for_the_larger_cell_too() -> None:
+    """0.7 mm of paper between two clean pieces, where 0.5 mm is crossed: the fine cell and the larger one agree."""
+    run = trace(inked(polyline((4, 10), (30, 10)), polyline((31.2, 10), (50, 10)), seed=1), start_mm=(6, 10)).lines[0]
+    assert run.ending == "ended"
+    assert run.xy_mm[:, 0].max() == pytest.approx(30, abs=0.05)
