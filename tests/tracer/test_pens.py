@@ -76,12 +76,15 @@ def test_a_line_beside_it_is_no_wider_pen(seed: int) -> None:
 
 @SEEDS
 def test_the_grain_of_faint_pencil_is_no_end(seed: int) -> None:
-    """A third as dark as ink, so that noise is thrice as strong, with a grain of 35 % a quarter of a millimetre wide. The ink's own middle wanders with its grain: 30 um RMS."""
+    """A third as dark as ink, so that noise is thrice as strong, and a grain of 25 % a quarter of a millimetre wide.
+
+    The ink's own middle wanders with its grain: 30 um RMS.
+    """
     line = arc(CENTRE, RADIUS_MM)
     inky = inked(line, width_mm=0.4).darkness
     random = np.random.default_rng(seed)
     grain = cv2.GaussianBlur(random.normal(size=inky.shape).astype(np.float32), (0, 0), 1.2)
-    faint = inky * np.clip(1 + 0.35 * grain / grain.std(), 0, 2) + random.normal(0, 0.04 / 0.35, inky.shape)
+    faint = inky * np.clip(1 + 0.25 * grain / grain.std(), 0, 2) + random.normal(0, 0.04 / 0.35, inky.shape)
     run = trace(Drawing(np.asarray(faint, np.float32), MM_PER_INCH / DPI)).lines[0]
     apart = distance(run.xy_mm[::4], line)
     assert run.ending == "closed"
