@@ -133,13 +133,14 @@ def missing_ink_mm(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -
     vertex, width_mm = incoming.at(legs_mm[0]), 0.5 * (incoming.width_mm + outgoing.width_mm)
     before, after = incoming.heading_at(legs_mm[0]), outgoing.heading_at(-legs_mm[1])
     out = np.array([math.cos(before) - math.cos(after), math.sin(before) - math.sin(after)])
-    across = math.atan2(out[1], out[0]) - math.pi / 2
+    outward = math.atan2(out[1], out[0])
     reach = 2.0 * width_mm + 3 * view.pitch_mm
-    aside = np.array([math.cos(across), math.sin(across)])
+    aside = np.array([math.sin(outward), -math.cos(outward)])
+    within = 0.5 * width_mm  # from where the rays go out: the vertex itself may lie beyond the ink of a round
     outside = []
     for off in np.linspace(-0.15, 0.15, 5) * width_mm:  # the pen's round leaves the tangent by off²/width
-        place = vertex + off * aside
-        _, edge = photocell.edges(view.cells, view.pitch_mm, place[0], place[1], across, reach, view.level)
+        x, y = vertex + off * aside - within * np.array([math.cos(outward), math.sin(outward)])
+        edge = photocell.edge_along(view.cells, view.pitch_mm, x, y, outward, reach, view.level) - within
         outside.append(edge + off * off / width_mm)
     found = float(np.median(outside))
     return max(0.0, 0.5 * width_mm - found) if math.isfinite(found) else 0.0

@@ -28,6 +28,7 @@ from numpy.typing import NDArray
 from tracer.drawing import Drawing
 
 TWO_PI = 2.0 * math.pi
+SPECK_PX = 2.2  # a speck of one pixel through the aperture
 FOLLOWS_PER_MM = 0.2  # a line that is felt may swell: its width follows what was felt, by so much of the difference
 Cells = NDArray[np.float32]
 
@@ -101,6 +102,25 @@ def edges(cells, pitch_mm, x_mm, y_mm, heading, reach_mm, level):  # type: ignor
                 break
             before = now
     return right, left
+
+
+@njit(cache=True)
+def edge_along(cells, pitch_mm, x_mm, y_mm, direction, reach_mm, level):  # type: ignore[no-untyped-def]
+    """How far the ink under (x, y) goes on in a direction, mm; NaN if there is none, or if it reaches farther. A light speck in it is passed over."""
+    c, s, step = math.cos(direction), math.sin(direction), 0.35 * pitch_mm
+    found, before = math.nan, darkness_at(cells, pitch_mm, x_mm, y_mm)
+    if before < level:
+        return found
+    for k in range(1, math.ceil(reach_mm / step) + 1):
+        now = darkness_at(cells, pitch_mm, x_mm + k * step * c, y_mm + k * step * s)
+        if now < level <= before:
+            found = (k - (level - now) / (before - now)) * step
+        elif now >= level > before:
+            found = math.nan
+        if k * step - found > SPECK_PX * pitch_mm:
+            return found
+        before = now
+    return math.nan
 
 
 @njit(cache=True)

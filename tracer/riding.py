@@ -23,8 +23,8 @@ import numpy as np
 from numba import njit
 
 from tracer.course import rounding
-from tracer.leg import Leg, Meeting, end_of, leg_of, meet, turn
-from tracer.photocell import darkness_at, edges, onward
+from tracer.leg import Leg, Meeting, leg_of, meet, turn
+from tracer.photocell import darkness_at, edge_along, edges, onward
 from tracer.view import Array, View
 
 FARTHEST_MM = 40.0
@@ -85,8 +85,9 @@ def _within_ink(view: View, arriving: Leg, leaving: Leg, met: Meeting) -> Meetin
     """Where the legs of a sharp tip meet, but not beyond where the pen turned: lines that are nearly parallel meet anywhere."""
     if abs(turn(arriving.heading_rad, leaving.heading_rad)) < TIP:
         return met
-    end = end_of(view, arriving)
-    beyond = 0.0 if end is None else max(0.0, met[0] - end)
+    (x, y), reach_mm = arriving.end_mm, max(0.0, met[0]) + 2 * view.width_mm
+    ink_mm = edge_along(view.cells, view.pitch_mm, x, y, arriving.heading_rad, reach_mm, view.level)
+    beyond = max(0.0, met[0] - (ink_mm - 0.5 * arriving.width_mm)) if math.isfinite(ink_mm) else 0.0
     return met[0] - beyond, met[1] - beyond
 
 

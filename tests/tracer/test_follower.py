@@ -42,6 +42,18 @@ def followed(
     return run
 
 
+@pytest.mark.parametrize("deflection_deg", [90, 150])
+@pytest.mark.parametrize("shift_mm", [(0.0, 0.0), (0.0, 0.03), (0.03, 0.03)])
+def test_a_white_speck_on_the_vertex_does_not_round_it(deflection_deg: float, shift_mm: tuple[float, float]) -> None:
+    """One pixel without ink, wherever the vertex lies in it."""
+    line = corner(deflection_deg) + shift_mm
+    drawing = inked(line, seed=1)
+    column, row = (line[1] / drawing.pitch_mm).astype(int)
+    drawing.darkness[len(drawing.darkness) - 1 - row, column] = 0
+    path = trace(drawing).lines[0].xy_mm
+    assert np.hypot(*(path - line[1]).T).min() < 60 * UM
+
+
 @SEEDS
 @pytest.mark.parametrize("deflection_deg", [30.0, 60.0, 90.0, 120.0])
 def test_a_sharp_corner(deflection_deg: float, seed: int | None) -> None:
