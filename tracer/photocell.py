@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 from tracer.drawing import Drawing
 
 TWO_PI = 2.0 * math.pi
-SPECK_PX = 2.2  # a speck of one pixel through the aperture
+SPECK_PX, SPECK_MM = 2.2, 0.25  # a speck of one pixel through the aperture
 FOLLOWS_PER_MM = 0.2  # a line that is felt may swell: its width follows what was felt, by so much of the difference
 Cells = NDArray[np.float32]
 
@@ -117,7 +117,7 @@ def edge_along(cells, pitch_mm, x_mm, y_mm, direction, reach_mm, level):  # type
             found = (k - (level - now) / (before - now)) * step
         elif now >= level > before:
             found = math.nan
-        if k * step - found > SPECK_PX * pitch_mm:
+        if k * step - found > min(SPECK_PX * pitch_mm, SPECK_MM):
             return found
         before = now
     return math.nan

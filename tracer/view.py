@@ -78,8 +78,8 @@ class View:
         level = GRAIN_LEVEL * float(np.median([photocell.darkness_at(cells, self.pitch_mm, x, y) for x, y in places]))
         reach = 3 * self.width_mm
         found = [photocell.edges(cells, self.pitch_mm, x, y, heading, reach, level) for x, y in places]
-        width = float(np.nanmedian([left - right for right, left in found]))
-        return replace(self, cells=cells, level=level, width_mm=width)
+        widths = [left - right for right, left in found if math.isfinite(left - right)]
+        return replace(self, cells=cells, level=level, width_mm=float(np.median(widths))) if widths else self
 
     def dark(self, place: Array) -> bool:
         """Whether there is ink at a place."""

@@ -18,6 +18,7 @@ from motion.contour import distance, length_mm
 from tests.tracer.inked import DPI, UM, arc, inked, polyline, together
 from tracer.drawing import MM_PER_INCH, Drawing
 from tracer.sequence import trace
+from tracer.view import View
 
 Array = NDArray[np.float64]
 SEEDS = pytest.mark.parametrize("seed", [1, 2, 3])
@@ -97,3 +98,11 @@ def test_a_gap_wider_than_allowed_ends_a_line_for_the_larger_cell_too() -> None:
     run = trace(inked(polyline((4, 10), (30, 10)), polyline((31.2, 10), (50, 10)), seed=1), start_mm=(6, 10)).lines[0]
     assert run.ending == "ended"
     assert run.xy_mm[:, 0].max() == pytest.approx(30, abs=0.05)
+
+
+def test_a_larger_cell_that_sees_no_edges_changes_nothing() -> None:
+    """On solid ink no station has an edge: the view is as it was."""
+    solid = inked(polyline((4, 10), (30, 10)), width_mm=8.0)
+    view = View(solid.darkness, solid.pitch_mm, 0.5, 0.5)
+    stations = np.column_stack([np.linspace(10, 12, 30), np.full(30, 10.0), np.full(30, 0.5)])
+    assert view.through_larger(stations, 0.0) is view
