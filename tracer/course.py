@@ -24,6 +24,7 @@ from tracer.leg import Leg, Meeting, centre_at, turn
 from tracer.view import Array, View
 
 SPACING_MM = 0.02
+WITHIN = (0.5, 1.0, 1.5)  # widths within a corner, to begin on its ink
 SHARP = 0.08  # of the line's width: a corner whose ink misses less than this on the outside is sharp
 
 
@@ -136,14 +137,24 @@ def missing_ink_mm(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -
     outward = math.atan2(out[1], out[0])
     reach = 2.0 * width_mm + 3 * view.pitch_mm
     aside = np.array([math.sin(outward), -math.cos(outward)])
-    within = 0.5 * width_mm  # from where the rays go out: the vertex itself may lie beyond the ink of a round
     outside = []
     for off in np.linspace(-0.15, 0.15, 5) * width_mm:  # the pen's round leaves the tangent by off²/width
-        x, y = vertex + off * aside - within * np.array([math.cos(outward), math.sin(outward)])
-        edge = photocell.edge_along(view.cells, view.pitch_mm, x, y, outward, reach, view.level) - within
+        edge = _edge_outward(view, vertex + off * aside, outward, width_mm, reach)
         outside.append(edge + off * off / width_mm)
     found = float(np.median(outside))
     return max(0.0, 0.5 * width_mm - found) if math.isfinite(found) else 0.0
+
+
+def _edge_outward(view: View, place: Array, outward: float, width_mm: float, reach_mm: float) -> float:
+    """Where the ink about a place ends outward, mm; NaN if there is none. The place itself lies beyond the ink if the corner is round."""
+    way = np.array([math.cos(outward), math.sin(outward)])
+    edge = math.nan
+    for within_mm in np.array(WITHIN) * width_mm:
+        x, y = place - within_mm * way
+        edge = photocell.edge_along(view.cells, view.pitch_mm, x, y, outward, reach_mm, view.level) - within_mm
+        if math.isfinite(edge):
+            break
+    return float(edge)
 
 
 def _arc(start: Array, heading: float, end: Array, end_heading: float) -> Array:
