@@ -95,9 +95,11 @@ def _stands(sketch: Sketch, way: Way, plan: Planned, drawn: list[Array]) -> bool
 
 
 def _is_rough(way: Way, line: Planned | None, width_mm: float) -> bool:
-    """Whether a way only goes to and fro within the ink of a line: its edges are rough."""
+    """Whether a way only goes to and fro within the ink of a line, and leaves some unexplained all the same: its edges are rough."""
     own = _own(way)
-    return line is not None and len(own) > 1 and aside_mm(own, line.stretches) < ROUGH_WIDTHS * width_mm
+    if line is None or len(own) < 2 or way.misfit < WELL_MM2 / width_mm**2:
+        return False
+    return aside_mm(own, line.stretches) < ROUGH_WIDTHS * width_mm
 
 
 def _bends(sketch: Sketch, way: Way) -> bool:
