@@ -24,7 +24,6 @@ from tracer.leg import Leg, Meeting, centre_at, turn
 from tracer.view import Array, View
 
 SPACING_MM = 0.02
-WITHIN = (0.5, 1.0, 1.5)  # widths within a corner, to begin on its ink
 SHARP = 0.08  # of the line's width: a corner whose ink misses less than this on the outside is sharp
 
 
@@ -146,15 +145,14 @@ def missing_ink_mm(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -
 
 
 def _edge_outward(view: View, place: Array, outward: float, width_mm: float, reach_mm: float) -> float:
-    """Where the ink about a place ends outward, mm; NaN if there is none. The place itself lies beyond the ink if the corner is round."""
-    way = np.array([math.cos(outward), math.sin(outward)])
-    edge = math.nan
-    for within_mm in np.array(WITHIN) * width_mm:
-        x, y = place - within_mm * way
-        edge = photocell.edge_along(view.cells, view.pitch_mm, x, y, outward, reach_mm, view.level) - within_mm
-        if math.isfinite(edge):
-            break
-    return float(edge)
+    """Where the ink about a place ends outward, mm; NaN if there is none. A light speck in the ink does not end it."""
+    _, edge = photocell.edges(
+        view.cells, view.pitch_mm, place[0], place[1], outward - math.pi / 2, reach_mm, view.level
+    )
+    within_mm = 0.5 * width_mm
+    x, y = place - within_mm * np.array([math.cos(outward), math.sin(outward)])
+    beyond = photocell.edge_along(view.cells, view.pitch_mm, x, y, outward, reach_mm, view.level) - within_mm
+    return float(np.fmax(edge, beyond))
 
 
 def _arc(start: Array, heading: float, end: Array, end_heading: float) -> Array:
