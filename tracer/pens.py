@@ -25,6 +25,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tracer import photocell
+from tracer.course import ahead_mm
 from tracer.leg import Leg, Meeting, leg_of, meet, turn
 from tracer.survey import survey
 from tracer.trail import Trail
@@ -101,7 +102,7 @@ def _felt(view: View, place: Array, heading: float, legs: float = 1.0) -> Leg | 
 
 def _in_line(incoming: Leg, leg: Leg) -> bool:
     """Whether a wider or narrower line has the same middle: one that has another beside it has not."""
-    along = float((leg.end_mm - incoming.end_mm) @ [math.cos(incoming.heading_rad), math.sin(incoming.heading_rad)])
+    along = -ahead_mm(leg.end_mm, incoming)
     aside = float(np.hypot(*(leg.end_mm - incoming.at(along))))
     allowed = max(ASIDE * 0.5 * abs(leg.width_mm - incoming.width_mm), LEAST_ASIDE_MM)
     return aside < allowed and abs(turn(incoming.heading_at(along), leg.heading_rad)) < IN_LINE

@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 from tracer.drawing import Drawing
 
 TWO_PI = 2.0 * math.pi
-SPECK_PX, SPECK_MM = 2.2, 0.25  # a speck of one pixel through the aperture
+SPECK_PX, SPECK_MM = 2.2, 0.25  # no wider is a speck: one pixel seen through the aperture
 FOLLOWS_PER_MM = 0.2  # a line that is felt may swell: its width follows what was felt, by so much of the difference
 Cells = NDArray[np.float32]
 
