@@ -61,8 +61,8 @@ def trace_lines(
         lines += [
             replace(line, number=number) for number, line in numbered if which != "outer" or not _is_in(line, lines)
         ]
-    if beyond or (which == "all" and asked):
-        holes = _dots(sheet, asked, settings, max(line.number for line in lines))
+    if beyond or which == "all":
+        holes = _dots(sheet, asked, settings, max((line.number for line in lines), default=patches))
         lines, left_out = lines + holes, left_out - len(holes)
     if beyond:
         lines = _numbered(lines, which)
@@ -131,17 +131,20 @@ def _follow(sheet: Sheet, contour: Contour, settings: Settings, operator: Operat
 
 
 def _dots(sheet: Sheet, asked: list[Contour], settings: Settings, last: int) -> list[Line]:
-    """The dots that stand alone on the paper, numbered on from the lines."""
+    """The dots that stand alone on the paper, numbered on from the lines; none if neither a line nor a setting says how wide the pen is."""
+    if settings.line_width_mm is None and not asked:
+        return []
     width_mm = settings.line_width_mm or float(np.median([contour.stroke.width_mm for contour in asked]))
     centres = dots.alone(sheet, view_of(sheet, settings.aperture_mm, width_mm))
     return [Line.of_dot(centre, width_mm, number) for number, centre in enumerate(centres, last + 1)]
 
 
 def _none_begun(lines: list[Line]) -> LineFault:
-    """The fault of a tour on which no line could be begun."""
+    """The fault of a tour on which no line could be begun, or of a sheet that has none."""
     fault = lines[0].fault if lines else None
     return fault or LineFault(
-        "none of the lines can be begun; look at the drawing, or give --start X,Y at a plain stretch"
+        "no line can be begun: what is on the sheet is too short, or is letters; give --start X,Y at a plain stretch, or, if dots"
+        " are to be drilled, the --line-width of their pen"
     )
 
 

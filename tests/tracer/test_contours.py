@@ -279,3 +279,15 @@ def test_a_dot_alone_is_drilled_on_the_way() -> None:
     assert program.left_out == 0
     down = join(program).positions_mm
     assert down[down[:, 2] == -program.work.depth_mm][:, 0].max() == pytest.approx(34, abs=10 * UM)
+
+
+def test_a_sheet_of_dots_is_drilled_if_the_pen_s_width_is_given_and_else_says_so() -> None:
+    middles = [(8.0, 8.0), (20.0, 14.0), (32.0, 8.0)]
+    drawing = inked(specks=[arc(middle, 0.9) for middle in middles])
+    program = trace_lines(drawing, settings=Settings(line_width_mm=0.5))
+    drilled = sorted(actions[0].halt.place_mm for actions in program.actions)
+    assert np.array(drilled) == pytest.approx(np.array(middles), abs=10 * UM)  # a tenth of a pixel
+    with pytest.raises(LineFault, match="no line can be begun.*--line-width"):
+        trace_lines(drawing)
+    with pytest.raises(LineFault, match="no line 1: the drawing has 0"):
+        trace_lines(drawing, (1,))
