@@ -97,6 +97,8 @@ def command(
     if asked is not None:
         _refuse(b is not None, "--systems compares one drawing; leave B out")
         _refuse(head_mm is not None and lines is not None, "--start picks one line, --lines several; give one of them")
+        of_path = cutter_mm is not None or origin is not None or bool(controls.by_hand())
+        _refuse(of_path, "--cutter, --origin and what a tape does not say are of B; with --systems leave them out")
         head = Head(head_mm, speed_mm_s, DEPTH_MM, CLEARANCE_MM, None, GAP_MM, lines)
         beyond = systems.compare(systems.Wanted(a, asked, picture, tolerance_mm), sheet, head, desk)
         ctx.exit(BEYOND_TOLERANCE if beyond else 0)
@@ -107,12 +109,12 @@ def command(
     drawing_file, paths = _sorted(a, b)
     if picture is not None:
         medium.outgoing(medium.with_suffix_in(picture, (".png", ".svg", ".pdf")), a, b)
+    _refuse(origin is not None and drawing_file is None, "--origin is a place on a drawing; without one leave it out")
+    _refuse(cutter_mm is not None and drawing_file is None, "--cutter is for a path beside a drawing's line; leave it out")
     drawing = sheet.open(drawing_file) if drawing_file else None
     opened = [_path(file, controls, desk) for file in paths]
     if origin is not None:
-        _refuse(drawing is None, "--origin is a place on a drawing; without one leave it out")
         opened = [_from(origin, drawing, opened[0])]
-    _refuse(cutter_mm is not None and drawing is None, "--cutter is for a path beside a drawing's line; leave it out")
     found = (
         comparison.from_drawing(drawing, opened[0], radius_mm=(cutter_mm or 0.0) / 2)
         if drawing

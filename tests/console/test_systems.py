@@ -77,6 +77,9 @@ def test_a_system_that_refuses_says_why_and_the_others_go_on(
         (("cam.png",), "nothing to compare with"),
         (("cam.csv", "--systems", "all"), "no drawing"),
         (("cam.csv", "cam.csv", "--speed", "5mm/s"), "are for --systems; without it"),
+        (("cam.png", "--systems", "all", "--cutter", "6mm"), "with --systems leave them out"),
+        (("cam.png", "--systems", "all", "--reference", "6kHz"), "with --systems leave them out"),
+        (("cam.csv", "cam.csv", "--cutter", "6mm"), "--cutter is for a path beside a drawing's line"),
         (("cam.png", "--systems", "all", "-o", "a.csv"), "must end in .html"),
     ],
 )
