@@ -110,7 +110,9 @@ def command(
     if picture is not None:
         medium.outgoing(medium.with_suffix_in(picture, (".png", ".svg", ".pdf")), a, b)
     _refuse(origin is not None and drawing_file is None, "--origin is a place on a drawing; without one leave it out")
-    _refuse(cutter_mm is not None and drawing_file is None, "--cutter is for a path beside a drawing's line; leave it out")
+    _refuse(
+        cutter_mm is not None and drawing_file is None, "--cutter is for a path beside a drawing's line; leave it out"
+    )
     drawing = sheet.open(drawing_file) if drawing_file else None
     opened = [_path(file, controls, desk) for file in paths]
     if origin is not None:

@@ -10,7 +10,7 @@ matplotlib takes most of a second to import: nothing here does it before a pictu
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
@@ -55,7 +55,7 @@ class Picture:
     reference: Path | None = None
     points_mm: Array | None = None  # (n, 2)
     error_mm: Array | None = None  # (n,); not a number where there is none that means anything
-    numbers_mm: Mapping[str, tuple[float, float]] = field(default_factory=dict)  # where each numbered line begins
+    numbers_mm: Sequence[tuple[str, tuple[float, float]]] = ()  # numbers of lines, and where each begins
     stops_mm: Mapping[str, tuple[float, float]] = field(default_factory=dict)  # where the head stops, by name
 
 
@@ -208,7 +208,7 @@ def _ends(axes: Axes, path: Path) -> None:
 def _numbers(axes: Axes, picture: Picture) -> None:
     """Number several lines, each beside its start, in a ring: the enlargements have plain numbers."""
     ring = {"boxstyle": "circle,pad=0.2", "facecolor": "white", "edgecolor": REFERENCE, "alpha": 0.85}
-    for number, place_mm in picture.numbers_mm.items():
+    for number, place_mm in picture.numbers_mm:
         axes.annotate(number, place_mm, (-11, -11), textcoords="offset points", fontsize=8, bbox=ring, zorder=6)
 
 

@@ -39,7 +39,7 @@ def write(
 ) -> None:
     """Write the report: what is told first, a table with a row for each system, faults in full, the pictures."""
     faults = [f"{name}: {row['fault']}" for name, row in rows.items() if row.get("fault")]
-    plain = {name: {key: value for key, value in row.items() if key != "fault"} for name, row in rows.items()}
+    plain = [(name, {key: value for key, value in row.items() if key != "fault"}) for name, row in rows.items()]
     body = [
         f"<h1>{escape(title)}</h1>",
         *(f"<p>{escape(line)}</p>" for line in told),

@@ -14,12 +14,13 @@ from __future__ import annotations
 import io
 import json
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from motion import units
 
 Figures = Mapping[str, Any]
+Row = tuple[str, Figures]  # of a table: its name, and its figures
 
 _LABELS = {"rms": "RMS", "p95": "95 %", "max": "largest"}
 _LENGTH_DECIMALS = 5  # of a mm; what is less is the rounding of the files
@@ -49,12 +50,12 @@ def as_text(figures: Figures) -> str:
     out = io.StringIO()
     console = Console(file=out, width=_WIDEST, highlight=False, emoji=False, markup=False)
     told = {key: value for key, value in figures.items() if value is not None}
-    rows = {key: value for key, value in told.items() if isinstance(value, Mapping)}
-    lists = {key: value for key, value in told.items() if _is_listing(value)}
-    alone = {key: value for key, value in told.items() if key not in rows and key not in lists}
+    rows = [(key, value) for key, value in told.items() if isinstance(value, Mapping)]
+    lists = [_named(value) for value in told.values() if _is_listing(value)]
+    alone = {key: value for key, value in told.items() if not (isinstance(value, Mapping) or _is_listing(value))}
     if alone:
         console.print(_lines(alone))
-    for listing in (*(_named(value) for value in lists.values()), rows):
+    for listing in (*lists, rows):
         if listing:
             console.print(_grid(listing))
     return "\n".join(line.rstrip() for line in out.getvalue().splitlines())
@@ -65,10 +66,10 @@ def _is_listing(value: Any) -> bool:
     return isinstance(value, list) and bool(value) and all(isinstance(row, Mapping) for row in value)
 
 
-def _named(listing: list[Figures]) -> dict[str, Figures]:
-    """The rows of a list of dictionaries, called by the first figure of each: "line 3"."""
+def _named(listing: list[Figures]) -> list[Row]:
+    """The rows of a list of dictionaries, called by the first figure of each: "line 3", twice if it was cut in two pieces."""
     first = next(iter(listing[0]))
-    return {f"{first} {row[first]}": {key: row[key] for key in row if key != first} for row in listing}
+    return [(f"{first} {row[first]}", {key: row[key] for key in row if key != first}) for row in listing]
 
 
 def _lines(figures: Figures) -> Any:
@@ -83,7 +84,7 @@ def _lines(figures: Figures) -> Any:
     return table
 
 
-def _grid(rows: Mapping[str, Figures]) -> Any:
+def _grid(rows: Sequence[Row]) -> Any:
     """One row for each dictionary, one column for each figure that any of them has."""
     from rich.table import Table
 
@@ -96,13 +97,11 @@ def _grid(rows: Mapping[str, Figures]) -> Any:
     return table
 
 
-def as_cells(rows: Mapping[str, Figures]) -> list[list[str]]:
-    """A head of labels, then a line for each dictionary: its name, and each figure that any of them has."""
-    keys = list(dict.fromkeys(key for row in rows.values() for key, value in row.items() if value is not None))
+def as_cells(rows: Sequence[Row]) -> list[list[str]]:
+    """A head of labels, then a line for each row: its name, and each figure that any of them has."""
+    keys = list(dict.fromkeys(key for _, row in rows for key, value in row.items() if value is not None))
     header = ["", *(_told(key, None)[0] for key in keys)]
-    return [header] + [
-        [name.replace("_", " "), *(_told(key, row.get(key))[1] for key in keys)] for name, row in rows.items()
-    ]
+    return [header] + [[name.replace("_", " "), *(_told(key, row.get(key))[1] for key in keys)] for name, row in rows]
 
 
 def _told(key: str, value: Any) -> tuple[str, str]:

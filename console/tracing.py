@@ -65,8 +65,8 @@ class Head:
     recatch_mm: float | None = None
     filed: Mapping[str, float] = field(default_factory=dict)  # settings from a file
     changes: tuple[str, ...] = ()  # NAME=VALUE
-    marks: Marks = field(default_factory=lambda: Marks())
-    cutter: Cutter | None = None  # drawn in by the draughtsman
+    marks: Marks = field(default_factory=Marks)
+    cutter: Cutter | None = None  # None: the draughtsman has allowed for it
 
     def trace(self, drawing: Drawing, desk: Desk, picture: FilePath | None = None) -> Traced:
         """Follow the drawing's line, or all that are asked for, to the end or until it is lost.
@@ -252,9 +252,9 @@ class Traced:
     unreached: list[Unreached] = field(default_factory=list)  # by the cutter
 
     @property
-    def places_mm(self) -> dict[str, tuple[float, float]]:
-        """Where each of several lines begins, by its number."""
-        return {str(line.number): line.start_mm for line in self.trace.lines} if self.several else {}
+    def places_mm(self) -> list[tuple[str, tuple[float, float]]]:
+        """Where each of several lines, or piece of one, begins, and its number."""
+        return [(str(line.number), line.start_mm) for line in self.trace.lines] if self.several else []
 
     @property
     def fault(self) -> Fault | None:

@@ -73,13 +73,15 @@ def with_cutter(trace: Trace, cutter: Cutter, feed_mm_s: float) -> tuple[Trace, 
     """
     planned = _planned(trace, cutter.side)
     cuts = [cut for _, cut in planned if cut is not None]
+    if not cuts:
+        return replace(trace, lines=tuple(line for line, _ in planned)), []
     guides = _guides(cuts, cutter.side)
     ways = offset(guides, cutter.radius_mm)
-    if cuts and not ways:
+    if not ways:
         raise MotionFault(
             f"a cutter of {cutter.diameter_mm:g} mm goes nowhere {cutter.side} of the lines; give a smaller --cutter, or another --side"
         )
-    near = Nearest([_closed_up(guide) for guide in guides] or [np.zeros((1, 2))], cutter.radius_mm)
+    near = Nearest([_closed_up(guide) for guide in guides], cutter.radius_mm)
     feed, made = Feed(feed_mm_s, trace.rate_hz), list[Line]()
     for line, cut in planned:
         if cut is None:
@@ -191,8 +193,6 @@ def _is_simple(xy_mm: Array) -> bool:
 
 def _unreached(cuts: Sequence[Cut], ways: Sequence[Way], radius_mm: float) -> list[Unreached]:
     """The stretches of the lines that are further from every way than the cutter reaches."""
-    if not ways:
-        return []
     near = Nearest([way.points_mm for way in ways], radius_mm)
     found = []
     for cut in cuts:

@@ -66,10 +66,9 @@ class Trace:
     @property
     def fault(self) -> LineFault | None:
         """The fault of the line that was lost; of several the first one's, with the numbers of all that are incomplete."""
-        if len(self.lines) == 1:
-            return self.lines[0].fault
         lost = [line for line in self.lines if line.fault is not None]
-        return _incomplete(lost, len(self.lines)) if lost else None
+        lines = len({line.number for line in self.lines})  # a cutter may run one in pieces
+        return _incomplete(lost, lines) if lost and lines > 1 else lost[0].fault if lost else None
 
     @property
     def start_mm(self) -> tuple[float, float]:
@@ -199,7 +198,7 @@ class Trace:
             if np.any(at_mm != line.xy_mm[-1]):
                 yield self._rapid(at_mm, line.xy_mm[-1])
             return
-        back = line.without_guides(0, line.loop_from or len(line.xy_mm) - 1)[::-1]
+        back = line.without_guides(0, len(line.xy_mm) - 1 if line.loop_from is None else line.loop_from)[::-1]
         yield self._rapid(at_mm, back[0])  # a loop does not end just where it began
         yield _at(stops.run(back, self.work.rapid_mm_s, BRAKE_MM_S2, self.rate_hz), self.work.clearance_mm)
         if line.begin_mm != line.start_mm:

@@ -154,6 +154,18 @@ def test_a_guide_line_from_the_reference_point_is_run_as_drawn_and_one_with_a_ti
     assert stops[2].place_mm == pytest.approx((20, 1), abs=2 * SAMPLE_MM)
 
 
+def test_where_no_line_is_cut_nothing_is_in_the_tool_s_way() -> None:
+    """A card that has the tool down from a dot to the end of a guide line that passes the sheet's corner."""
+    way = run_through((-10, 0), (10, 0))
+    dot_on_it = Mark("dot", (-5.0, 0.0), float(at(way, (-5, 0))))
+    guide = Line(way, "ended", 0.5, 20.0, reference_mm=(-13.0, 0.0), marks=(dot_on_it,))
+    card = Card.parse('[[stop]]\nnumber = 1\nmoves = [{ down = "5mm" }]\n')
+    made, unreached = with_cutter(Trace((guide,), Operator(WORK, card)), Cutter(6.0), FEED_MM_S)
+    assert unreached == [] and in_work(np.vstack([block.positions_mm for block in made]))[:, 0].max() == pytest.approx(
+        10
+    )
+
+
 def test_of_a_lost_line_what_was_traced_is_cut_on_a_side_of_its_travel() -> None:
     fault = LineFault("line lost at 10.00,0.00 mm", x_mm=10.0, y_mm=0.0, heading_rad=0.0)
     line = Line(run_through((0, 0), (10, 0)), "lost", 0.5, 10.0, fault)
@@ -169,6 +181,8 @@ def test_of_a_lost_line_what_was_traced_is_cut_on_a_side_of_its_travel() -> None
     both = Trace((marked(), replace(line, number=2)), Operator(WORK))
     made, _ = with_cutter(both, Cutter(2.0, "outside"), FEED_MM_S)
     assert str(made.fault).startswith("line 2 of 2 is incomplete") and "has no outside" in str(made.fault)
+    in_pieces = replace(made, lines=(replace(made.lines[0], number=2), made.lines[1]))
+    assert str(in_pieces.fault).startswith("line lost at")
 
 
 def program(angle_deg: float, radius_mm: float = 12.0) -> tuple[list[Array], list[Array]]:

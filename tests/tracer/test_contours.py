@@ -287,7 +287,7 @@ def test_a_sheet_of_dots_is_drilled_if_the_pen_s_width_is_given_and_else_says_so
     program = trace_lines(drawing, settings=Settings(line_width_mm=0.5))
     drilled = sorted(actions[0].halt.place_mm for actions in program.actions)
     assert np.array(drilled) == pytest.approx(np.array(middles), abs=10 * UM)  # a tenth of a pixel
-    with pytest.raises(LineFault, match="no line can be begun.*--line-width"):
+    with pytest.raises(LineFault, match=r"no line can be begun.*--line-width"):
         trace_lines(drawing)
     with pytest.raises(LineFault, match="no line 1: the drawing has 0"):
         trace_lines(drawing, (1,))
