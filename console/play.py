@@ -45,6 +45,7 @@ Examples:
 @click.option(
     "-o", "outputs", type=medium.FILE, multiple=True, help="Write the machine's path: .csv, .svg (true size) or .png."
 )
+@click.option("--path", "path_file", type=medium.FILE, help="Write the machine's path (.csv), as -o does.")
 @click.option(
     "--following",
     "followed",
@@ -99,6 +100,7 @@ Examples:
 def command(
     tape: FilePath,
     outputs: tuple[FilePath, ...],
+    path_file: FilePath | None,
     followed: tuple[FilePath, ...],
     raw: bool,
     resume_at_s: float | None,
@@ -115,10 +117,7 @@ def command(
     The path is that of the machine's own lead screws, phase-locked to the tape. Without -o only the figures are
     printed. TAPE - is a pipe: a WAV, or raw 16-bit samples of four tracks. If the machine faults, the path up to there is kept, with `.incomplete` in its name.
     """
-    for file in outputs:
-        medium.outgoing(medium.with_suffix_in(file, SUFFIXES), tape)
-    for file in followed:
-        medium.outgoing(medium.with_suffix_in(file, following.SUFFIXES, "--following"), tape)
+    outputs = _outputs(tape, outputs, path_file, followed)
     settings: dict[str, Any] = {
         "resume_at_s": resume_at_s,
         "acceleration_mm_s2": acceleration_mm_s2,
@@ -127,23 +126,10 @@ def command(
         "settings": motor,
         "zero_mm": zero_mm,
     }
-    given = {name: value for name, value in settings.items() if value is not None}
-    _refuse_foreign(tape, given)
-    if motor is not None:
-        from player.phase_lock import MOTORS as LOCKS
-
-        given["settings"] = LOCKS[motor]
-    if resume_at_s is not None and controls.start_mm is None:
-        raise click.UsageError("--resume-at wants to be told where the machine stands then; give --from X,Y,Z")
+    given = _given(tape, {name: value for name, value in settings.items() if value is not None}, controls)
+    given |= {"raw": raw, "chart": following.new_chart(raw) if followed else None}
     try:
-        given |= {"raw": raw, "chart": following.new_chart(raw) if followed else None}
-        if all(file.suffix.lower() == ".csv" for file in outputs):
-            passage, playback, fault = controls.play_into(tape, desk, outputs, **given)
-        else:  # a picture wants the whole path
-            played = controls.play(tape, desk, **given)
-            passage, playback, fault = Passage.of(played.path), played.playback, played.fault
-            for file in outputs:
-                write(played.path, medium.incomplete(file) if fault else file, f"{tape.name}, played")
+        passage, playback, fault = _played(tape, outputs, controls, desk, given)
     except ValueError as refused:
         if isinstance(refused, Fault):
             raise
@@ -156,6 +142,44 @@ def command(
         raise fault
     if not passage.worked:
         desk.note("the tool never comes into the work; a tape that runs backwards goes up where it should go down")
+
+
+def _outputs(
+    tape: FilePath, outputs: tuple[FilePath, ...], path_file: FilePath | None, followed: tuple[FilePath, ...]
+) -> tuple[FilePath, ...]:
+    """Names for the machine's path, each of which can be written, as those for its errors can; raises FileFault if not."""
+    named = (
+        *(("-o", file, SUFFIXES) for file in outputs),
+        *(("--path", file, (".csv",)) for file in (path_file,) if file is not None),
+        *(("--following", file, following.SUFFIXES) for file in followed),
+    )
+    for option, file, suffixes in named:
+        medium.outgoing(medium.with_suffix_in(file, suffixes, option), tape)
+    return outputs if path_file is None else (*outputs, path_file)
+
+
+def _given(tape: FilePath, given: dict[str, Any], controls: Controls) -> dict[str, Any]:
+    """The settings that were given, as the control takes them; raises UsageError for one that it does not take."""
+    _refuse_foreign(tape, given)
+    if "resume_at_s" in given and controls.start_mm is None:
+        raise click.UsageError("--resume-at wants to be told where the machine stands then; give --from X,Y,Z")
+    if "settings" not in given:
+        return given
+    from player.phase_lock import MOTORS as LOCKS
+
+    return {**given, "settings": LOCKS[given["settings"]]}
+
+
+def _played(
+    tape: FilePath, outputs: tuple[FilePath, ...], controls: Controls, desk: Desk, given: dict[str, Any]
+) -> tuple[Passage, Playback, Fault | None]:
+    """Play a tape and write the machine's path: as it comes if nothing else is asked for, as a picture wants the whole of it."""
+    if all(file.suffix.lower() == ".csv" for file in outputs):
+        return controls.play_into(tape, desk, outputs, **given)
+    played = controls.play(tape, desk, **given)
+    for file in outputs:
+        write(played.path, medium.incomplete(file) if played.fault else file, f"{tape.name}, played")
+    return Passage.of(played.path), played.playback, played.fault
 
 
 def _refuse_foreign(tape: FilePath, given: dict[str, Any]) -> None:

@@ -58,6 +58,14 @@ def test_play_writes_all_that_is_asked_for(morfax: Morfax, here: Path, tape_file
     assert sorted(file.name for file in here.iterdir()) == ["a.csv", "a.png", "a.svg"]
 
 
+def test_path_names_the_machine_s_path_as_trace_names_the_head_s(morfax: Morfax, here: Path, tape_file: Path) -> None:
+    answer = morfax("play", tape_file, "-o", "a.csv", "--path", "b.csv", "--json")
+    assert answer.exit_code == 0 and answer.figures["paths"] == ["a.csv", "b.csv"]
+    assert (here / "a.csv").read_bytes() == (here / "b.csv").read_bytes()
+    refused = morfax("play", tape_file, "--path", "b.svg")
+    assert refused.exit_code == 2 and "'--path': 'b.svg' must end in .csv" in refused.fault
+
+
 def test_raw_keeps_every_sample(morfax: Morfax, here: Path, tape_file: Path) -> None:
     assert morfax("play", tape_file, "-o", "raw.csv", "--raw").exit_code == 0
     seconds = soundfile.info(tape_file).duration
