@@ -12,7 +12,7 @@ import click
 from click.core import ParameterSource
 
 from console import medium
-from console.quantities import CLEARANCE, DEPTH, LENGTH, LINES, OVERRIDE, PLACE, SPEED
+from console.quantities import CLEARANCE, DEPTH, LENGTH, LINES, OVERRIDE, PLACE, REACH, SPEED
 from console.tracing import Head, Marks
 
 if TYPE_CHECKING:
@@ -76,15 +76,15 @@ def head_options(verb: Callable[..., Any]) -> Callable[..., Any]:
     @click.option(
         "--gap",
         "gap_mm",
-        type=LENGTH,
+        type=REACH,
         default="0.5mm",
         show_default=True,
-        help="Widest gap in the line that the head goes across.",
+        help="Widest gap in the line that the head goes across; 0: none but what a scan loses of a line, some 3 pixels.",
     )
     @click.option(
         "--recatch",
         "recatch_mm",
-        type=LENGTH,
+        type=REACH,
         help="How far ahead the head looks for a line that it has lost or that has ended, such as 5mm, to go on there.  "
         "[default: it stops]",
     )

@@ -103,6 +103,7 @@ def _decades(least_counts: int) -> Callable[[str], float]:
 
 
 LENGTH = Quantity("length", parse_length_mm, above_zero=True)
+REACH = Quantity("length", parse_length_mm)  # of the head, which may be none
 DEPTH = Quantity("length", _decades(1))
 CLEARANCE = Quantity("length", _decades(6))  # up to 0.05 mm above the work the tool counts as in it
 SPEED = Quantity("speed", parse_speed_mm_s)

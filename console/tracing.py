@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from tracer.program import Trace
     from tracer.settings import Settings
 
+UNEVEN = 1.25  # the widest gap of a dashed line over the one that was met
 FEW = 0.7  # of the ink that is joined to a line: what is left is worth a word
 SET_BY_OPTIONS = (
     "speed_mm_s",
@@ -97,6 +98,7 @@ class Head:
         self._tell_of_stops(traced, desk)
         self._tell_of_reference(traced, desk)
         self._tell_of_gaps(traced, desk)
+        self._tell_of_breaks(traced, desk, settings.gap_mm)
         self._tell_of_stems(traced, desk)
         self._tell_of_rest(traced, desk)
         origin_mm = (0.0, 0.0) if self.marks.origin == "sheet" else self._reference_mm(drawing, traced)
@@ -132,6 +134,21 @@ class Head:
                     f"{which} is open, but ends {line.gap_mm:.1f} mm from its beginning at {x:.1f},{y:.1f} mm: "
                     f"if that is a gap in a closed line, --gap {wide_mm:g}mm takes the head across"
                 )
+
+    def _tell_of_breaks(self, trace: Trace, desk: Desk, gap_mm: float) -> None:
+        """Tell of the first end from which ink goes on straight ahead, beyond the gap that is allowed, and of how many there are."""
+        lines = [line for line in trace.lines if line.gap_mm is None]
+        found = [(line, broken) for line in lines for broken in line.breaks if broken.gap_mm > gap_mm]
+        if not found:
+            return
+        (line, (place_mm, _)), more = found[0], len(found) - 1
+        which = f"line {line.number}" if len(trace.lines) > 1 else "the line"
+        wide_mm = math.ceil(10 * UNEVEN * max(broken.gap_mm for _, broken in found)) / 10
+        desk.note(
+            f"{which} ends at {place_mm[0]:.1f},{place_mm[1]:.1f} mm, and ink goes on straight ahead of it"
+            f"{f', as at {more} more' * bool(more)}: if that is one line, dashed or with gaps, --gap {wide_mm:g}mm takes the "
+            "head across"
+        )
 
     @staticmethod
     def _tell_of_stems(trace: Trace, desk: Desk) -> None:

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from motion.faults import LineFault
+from tracer.breaks import Break, breaks
 from tracer.follower import Followed
 from tracer.junctions import Guide
 from tracer.marks import Mark, marks_along
@@ -44,6 +45,7 @@ class Line:
     junctions_mm: tuple[tuple[float, float], ...] = ()  # in the order in which the head came to them
     ink_mm: float = 0.0  # length of the ink that is joined to it, its own included, by its area
     numbers: tuple[int, ...] | None = None  # of its stops; None: counted on from those of the line before
+    breaks: tuple[Break, ...] = ()  # where it ends, and ink goes on
 
     @classmethod
     def of(cls, run: Followed, number: int = 1, reference_mm: tuple[float, float] | None = None) -> Line:
@@ -65,6 +67,7 @@ class Line:
             run.guides,
             reference_mm,
             run.junctions_mm,
+            breaks=breaks(run.view, run.positions_mm, run.ending == "ended") if run.ending in ("ended", "lost") else (),
         )
 
     @classmethod

@@ -68,6 +68,30 @@ def test_a_gap_too_wide_to_cross_is_told_with_the_option_that_crosses_it(
     assert closed.figures["ending"] == "closed" and "is open" not in closed.err
 
 
+def test_the_first_dash_of_a_dashed_line_is_told_to_be_one_with_the_option_that_goes_on(
+    morfax: Morfax, here: Path
+) -> None:
+    grey = np.full((120, 700), 240, np.uint8)
+    for left in range(60, 640, 60):
+        grey[57:64, left : left + 44] = 30  # 3.7 mm, and 1.35 mm of paper
+    Image.fromarray(grey).save("dashes.png", dpi=DPI)
+    answer = morfax("trace", "dashes.png", "-o", "dashes.csv", "--json")
+    said = re.search(
+        r"the line ends at .* goes on straight ahead .* --gap ([0-9.]+mm) takes the head across", answer.err
+    )
+    assert answer.exit_code == 0 and said is not None and answer.figures["length_mm"] < 4
+    whole = morfax("trace", "dashes.png", "-o", "dashes.csv", "--json", "--gap", said[1])
+    assert whole.figures["length_mm"] == pytest.approx((584 - 7) * 25.4 / 300, abs=0.1) and whole.err == ""
+
+
+def test_no_gap_is_gone_across_if_none_is_allowed(morfax: Morfax, here: Path, small: np.ndarray) -> None:
+    grey = small.copy()
+    grey[:120, 150:157] = 240  # 0.6 mm
+    Image.fromarray(grey).save("ring.png", dpi=DPI)
+    for gap, ending in (("0.7mm", "closed"), ("0", "ended")):
+        assert morfax("trace", "ring.png", "-o", "ring.csv", "--json", "--gap", gap).figures["ending"] == ending
+
+
 def test_one_line_of_several_that_cross_is_told_to_be_one_of_several(morfax: Morfax, here: Path) -> None:
     grey = np.full((400, 700), 240, np.uint8)
     for x in (200, 350, 500):

@@ -1,0 +1,42 @@
+"""Where a line ends and ink goes on: dashes, whose gap is told so that the head can be let across it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tests.tracer.inked import UM, Points, arc, inked, polyline
+from tracer.sequence import trace
+from tracer.settings import Settings
+
+STEP_MM = 0.1  # in which gaps are tried
+
+
+def dashed(gap_mm: float, dash_mm: float = 4.0, width_mm: float = 0.5) -> list[Points]:
+    """A circle of 15 mm in dashes with round ends, gaps and dashes counted by their ink."""
+    count = round(2 * np.pi * 15 / (dash_mm + gap_mm))
+    turn_deg, on_deg = 360 / count, np.degrees((dash_mm - width_mm) / 15)
+    return [arc((20, 20), 15, k * turn_deg, k * turn_deg + on_deg) for k in range(count)]
+
+
+@pytest.mark.parametrize("gap_mm", [0.8, 1.5, 2.0])
+def test_the_gap_of_a_dashed_line_is_told_and_takes_the_head_round(gap_mm: float) -> None:
+    drawing = inked(*dashed(gap_mm), seed=3)
+    (line,) = trace(drawing).lines
+    assert line.ending == "ended" and line.length_mm < 4 and len(line.breaks) == 2
+    told_mm = max(broken.gap_mm for broken in line.breaks)
+    assert told_mm == pytest.approx(gap_mm, abs=2 * STEP_MM)
+    assert min(np.hypot(*(line.xy_mm[0] - broken.place_mm)) for broken in line.breaks) < 1 * UM
+    assert trace(drawing, settings=Settings(gap_mm=told_mm + STEP_MM)).ending == "closed"
+
+
+def test_ink_that_does_not_go_on_straight_ahead_is_no_break() -> None:
+    """A line that ends before another one across its way, or beside one, or far from one."""
+    line = polyline((4, 10), (20, 10))
+    for other in (polyline((21.5, 4), (21.5, 16)), polyline((21.5, 11.5), (30, 11.5)), polyline((25, 10), (35, 10))):
+        (traced,) = trace(inked(line, other, seed=1), (8, 10)).lines
+        assert traced.ending == "ended" and traced.breaks == ()
+
+
+def test_a_closed_line_has_no_break() -> None:
+    assert trace(inked(arc((12, 12), 8))).lines[0].breaks == ()
