@@ -76,6 +76,7 @@ def legs_around(view: View, centre: Array, trail: Array) -> list[Leg]:
     """The clean legs that leave a knot, other than the one that the `trail` (n, 2), newest last, came in by."""
     farthest = max(FARTHEST_MM, 10 * view.width_mm)
     rings = np.arange(0.3 * view.width_mm, farthest, view.step_mm)
+    trail = _up_to(trail, centre)
     trail_mm = np.hypot(*(trail - centre).T)
     joined: list[_Arc] = []
     found: list[Leg] = []
@@ -117,6 +118,13 @@ class _Arc:
 
     def overlaps(self, begin: float, end: float) -> bool:
         return abs(turn(self.middle, 0.5 * (begin + end))) < 0.5 * (self.end - self.begin + end - begin)
+
+
+def _up_to(trail: Array, centre: Array) -> Array:
+    """The trail without its newest places beyond a centre that lies on it: there it came in from behind, and not from where it ends."""
+    back_mm = np.r_[0.0, np.cumsum(np.hypot(*np.diff(trail[::-1], axis=0).T))]
+    newest = trail[::-1][back_mm <= 2 * math.dist(trail[-1], centre)]
+    return trail[: len(trail) - int(np.argmin(np.hypot(*(newest - centre).T)))]
 
 
 def _crossing(trail: Array, trail_mm: Array, centre: Array, radius: float) -> float | None:

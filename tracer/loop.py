@@ -7,7 +7,7 @@ Signals: positions of the head (n, 2) mm in; out the positions between which the
                      ╰──────╯
 
 The end of a run that has come onto its own way again may lie some way beyond that place, on what was followed already: the way is then gone back, on the run
-and on what it repeats together, for as long as they are one.
+and on what it repeats together, for as long as they are one. A run that ends square to it, and a little beyond, is cut off where it crosses it.
 
 Source: patent ES 361967, section on use: a lead line from the reference point to the contour, and round that to where it was joined.
 """
@@ -19,6 +19,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from motion.offset import crossings
 from tracer.view import Array
 
 STEP_MM = 0.03
@@ -48,11 +49,21 @@ def loop_in(positions: Array, width_mm: float) -> tuple[int, int] | None:
     apart, alike = _apart(places[m::-1], places[j::-1])
     back = _first_not((apart < TOGETHER * width_mm) & alike)
     if back == 0:
-        return int(index[j]), len(positions) - 1
+        return _crossed(places, index, j, round(2 * AT_ALL * width_mm / STEP_MM)) or (int(index[j]), len(positions) - 1)
     back = int(
         np.flatnonzero(apart[:back] < ON_IT * width_mm)[-1:].sum()
     )  # where the corner onto the loop has been left
     return int(index[j - back]), int(index[m - back])
+
+
+def _crossed(places: Array, index: NDArray[np.int64], j: int, reach: int) -> tuple[int, int] | None:
+    """The positions at which the end of a run crosses the earlier way about place j, so many places about either; None if it does not come so far."""
+    first, last = max(0, j - reach), max(0, len(places) - 1 - reach)
+    met = crossings(places[last:], places[first : min(j + reach, last)])
+    if not len(met):
+        return None
+    there, here = np.interp(met[0] + [last, first], np.arange(len(index)), index)
+    return round(float(here)), round(float(there))
 
 
 def comes_again(places: Array, step_mm: float, width_mm: float) -> bool:

@@ -119,7 +119,10 @@ def _ticks(view: View, way: Way) -> list[float]:
         across = [o for o in opposite if o.ends and o.straight and o.is_like]
         if not across and stroke.touches and stroke.length_mm > longest_mm(view, across=False):
             continue  # that is a line that begins here
-        feet.append(float(np.mean([foot, *(o.foot_mm for o in across)])))
+        station = int(np.clip(round(foot / way.step_mm), 0, len(way.places) - 1))
+        feet.append(
+            way.at_mm[station] + strokes.crossing_mm(view, way.places[station], way.along[station], [stroke, *across])
+        )
     return feet
 
 

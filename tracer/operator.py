@@ -229,13 +229,11 @@ class Operator:
             return [Move(-self._depths(halt)[0], self.work.feed_mm_s, stop.dwell_s)]
         if halt.kind in ("dot", "hole") and z_mm > 0:
             return [Move(-self.work.depth_mm, self.work.feed_mm_s, stop.dwell_s), Move(z_mm, self.work.feed_mm_s)]
-        return [Move(z_mm, self.work.feed_mm_s, STAND_S)]
+        return [Move(z_mm, self.work.feed_mm_s, stop.dwell_s or STAND_S)]
 
     def _asked(self, halt: Halt, stop: Stop, z_mm: float) -> list[Move]:
         """The moves that a card's entry asks for."""
-        if not stop.moves and stop.drill is None and not stop.dwell_s:
-            return []
-        if not stop.moves and stop.drill is None and halt.kind != "tick":
+        if not stop.moves and stop.drill is None:
             return []  # a dwell alone belongs to what is usual there
         try:
             at = Counters(zunit.counts_of(z_mm))

@@ -34,6 +34,7 @@ LEAD_MM = 11.0  # at most, from the middle of a reference point to the lead line
 NAMED_MM = 5.0  # a cross or ring nearer to the reference point that is named is that point, drawn
 LEADS_AWAY = math.radians(45)
 SPUR = 2.7  # a line that ends sooner, in widths, is a burr
+GROWS, GROWS_PX = 0.08, 0.4  # widths or pixels: so much ink widens, along half of what is felt of it, that is the tip of two lines
 PLACES = 80  # tried along a line
 ENDS = 6  # open ends that are tried: a lead line may begin at any
 
@@ -280,7 +281,7 @@ def _is_end(view: View, inward: Array, heading: float, radius: float) -> bool:
     if len(seen) * view.step_mm < SPUR * view.width_mm - radius:
         return False
     middle = seen[len(seen) // 4 : -len(seen) // 4, 2]
-    if np.median(middle[-4:]) > 1.08 * np.median(middle[:4]):
+    if np.median(middle[-4:]) - np.median(middle[:4]) > max(GROWS * view.width_mm, GROWS_PX * view.pitch_mm):
         return False
     return not _is_mark(view, inward, heading, radius)
 

@@ -13,6 +13,7 @@ Source: our own (see `marks`).
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,6 +31,8 @@ SEEN = (
     0.3,
     2.0,
 )  # the same, of a stroke that is none of the line's pen, but is seen: what crosses the line may be one half by half
+CLEAR_OF_LINE = 0.9  # widths from the line's middle: nearer, a stroke's ink and the line's run together
+TURNS = 3  # the cells are turned so often until they look square to a stroke
 CLEAR_WIDTHS = 1.5  # of paper to both sides of a stroke that touches the line
 APART_MM, APART_WIDTHS = 1.5, 3.0  # of one that does not: lettering stands beside lines
 SOILED, APART_SOILED = 0.15, 0.03  # of that may be ink
@@ -59,7 +62,12 @@ class Stroke:
     @property
     def length_mm(self) -> float:
         """How far it reaches beyond the line's edge along itself."""
-        return self.reach_mm * math.hypot(1.0, float(self._line()[0]))
+        return self.reach_mm * math.hypot(1.0, self.slant)
+
+    @property
+    def slant(self) -> float:
+        """How far it goes along the way for each mm away from it."""
+        return float(self._line()[0])
 
     @property
     def straight(self) -> bool:
@@ -78,7 +86,7 @@ def felt(
     """The stroke that a cell is on beside a place of the way, which is `at_mm` along it; None if it is not nearly as wide as the line, or too short."""
     width = view.width_mm
     seen = _stroke_at(view.cells, view.pitch_mm, place, along, side, away_mm, longest_mm + width, width, view.level)
-    inner = seen[:, 1] > 0.9 * width  # nearer, its ink and the line's run together
+    inner = seen[:, 1] > CLEAR_OF_LINE * width
     wide = float(np.median(seen[inner, 2])) / width if inner.sum() > 2 else 0.0
     if not SEEN[0] < wide < SEEN[1]:
         return None
@@ -99,6 +107,49 @@ def felt(
     is_clear = soiled < (SOILED if touches else APART_SOILED)
     places = place + middles[:, :1] * along + middles[:, 1:2] * across
     return Stroke(side, middles[:, :2] + [at_mm, 0.0], places, touches, ends, reach, is_clear, is_like)
+
+
+def crossing_mm(view: View, place: Array, along: Array, mark: Sequence[Stroke]) -> float:
+    """Where the middle line of a mark, which is one stroke or one on either side, meets the way, mm along it from a place of it near by.
+
+    Felt square to the mark: along the way, its round tips and the corners at its foot would draw the middle of a slanted one aside.
+    """
+    left = np.array([-along[1], along[0]])
+    slant, foot_mm = mark[0].side * mark[0].slant, 0.0
+    for _ in range(TURNS):
+        square = (along - slant * left) / math.hypot(1.0, slant)
+        found = np.vstack([_square_to(view, place, square, slant, stroke) for stroke in mark]) - place
+        slant, foot_mm = _robust_line(found @ left, found @ along)
+    return foot_mm
+
+
+def _square_to(view: View, place: Array, square: Array, slant: float, stroke: Stroke) -> Array:
+    """Middles (n, 2) of a stroke on the sheet, felt along a direction square to it from clear of the line on; as they were, if there are too few."""
+    width, lean, away = view.width_mm, math.hypot(1.0, slant), stroke.middles[:, 1]
+    seen = _stroke_at(
+        view.cells,
+        view.pitch_mm,
+        place,
+        square,
+        stroke.side,
+        float(np.median(away)) * lean,
+        float(away.max()) * lean + width,
+        width,
+        view.level,
+    )
+    seen = seen[seen[:, 1] > CLEAR_OF_LINE * width * lean + 0.5 * width * abs(slant)]
+    out = stroke.side * np.array([-square[1], square[0]])
+    return place + seen[:, :1] * square + seen[:, 1:2] * out if len(seen) > 3 else stroke.places
+
+
+def _robust_line(x: Array, y: Array) -> tuple[float, float]:
+    """Slope and offset of the straight line y(x), places that a speck has drawn aside left out."""
+    for _ in range(2):
+        rest = np.abs(y - np.polyval(np.polyfit(x, y, 1), x))
+        good = rest <= 3 * max(1.4826 * float(np.median(rest)), 0.001)
+        x, y = x[good], y[good]
+    slope, offset = np.polyfit(x, y, 1)
+    return float(slope), float(offset)
 
 
 @njit(cache=True)

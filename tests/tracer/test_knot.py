@@ -152,6 +152,15 @@ def test_ink_beyond_reach_has_no_end() -> None:
     assert reach_of_ink(view(inked(polyline((4, 5), (30, 5)))), straight((9, 5), 0), 5.0) is None
 
 
+def test_a_centre_on_the_way_in_has_the_legs_ahead_of_it_only() -> None:
+    """Straight on and almost straight on meet anywhere: the head looks about a place behind it then, and must not turn round there."""
+    drawing = inked(polyline((4, 10), (24, 10)), polyline((16, 10), (16, 20)))
+    trail = np.column_stack([np.arange(4, 15.6, 0.05), np.full(232, 10.0)])
+    for behind_mm in (0.2, 0.5, 1.0):
+        headings = [leg.heading_rad for leg in legs_around(view(drawing), trail[-1] - [behind_mm, 0], trail)]
+        assert headings and max(abs(heading) for heading in headings) < math.radians(95)
+
+
 def legs_seen(drawing: Drawing, centre: tuple[float, float], trail: Array) -> list[float]:
     """Headings of the legs that leave a knot, degrees -1..359, in order; each leg must lie on its line."""
     legs = legs_around(view(drawing), np.array(centre), trail)

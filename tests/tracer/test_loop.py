@@ -41,6 +41,16 @@ def test_a_way_that_does_not_come_back_has_no_loop() -> None:
     assert loop_in(run_of(10.0, 0.0)[:4000], WIDTH_MM) is None
 
 
+@pytest.mark.parametrize("beyond_mm", [0.06, 0.4])
+def test_a_run_that_ends_beyond_its_own_lead_line_is_cut_off_there(beyond_mm: float) -> None:
+    steps = [polyline((0, 0), (30, 0)), polyline((30, 0), (30, 20)), polyline((30, 20), (10, -beyond_mm))]
+    way = np.vstack([a + np.linspace(0, 1, 3001)[:, None] * (b - a) for a, b in steps])
+    found = loop_in(way, WIDTH_MM)
+    assert found is not None
+    true = (10 + 20 * beyond_mm / (20 + beyond_mm), 0.0)
+    assert max(math.dist(way[at], true) for at in found) < 15 * UM  # positions are 10 um apart here
+
+
 def test_coming_again_needs_a_stretch_in_the_same_sense() -> None:
     once = run_of(10.0, 0.0)[::5]
     again = run_of(10.0, 4.0)[::5]

@@ -53,6 +53,12 @@ def test_a_tick_beside_the_line_stops_it_too(from_mm: float, side: int) -> None:
     assert off_mm(marks(LINE, stroke), (20, 12))[0] < STANDS_WITHIN_MM
 
 
+@pytest.mark.parametrize("slant_deg", [-20, -12, 12, 20])
+def test_a_short_slanting_tick_of_a_wide_pen_is_felt_square_to_itself(slant_deg: float) -> None:
+    stroke = tick((20, 12), before_mm=0.0, beyond_mm=1.5, slant_deg=slant_deg)
+    assert off_mm(marks(LINE, stroke, width_mm=0.8), (20, 12))[0] < 25 * UM  # 85 um by slices along the line
+
+
 def test_a_long_tick_apart_from_the_line_is_no_line_that_begins_there() -> None:
     assert off_mm(marks(LINE, polyline((20, 13.2), (20, 16.4))), (20, 12))[0] < STANDS_WITHIN_MM
 

@@ -46,6 +46,13 @@ def test_the_tool_goes_down_at_the_last_tick_of_the_lead_line() -> None:
     assert [action.moves[-1].dwell_s for action in dwell] == [STAND_S, 0.0, STAND_S]
 
 
+def test_a_dwell_alone_is_added_to_what_is_usual_at_a_stop() -> None:
+    card = Card.parse("[[stop]]\ndwell = 2\n")
+    made = Operator(WORK, card).actions([line(tick(100), tick(250), tick(600))])[0]
+    assert [[move.to_mm for move in action.moves] for action in made] == [[2.0], [-4.0], [-4.0]]
+    assert [action.moves[-1].dwell_s for action in made] == [2.0, 2.0, 2.0]
+
+
 def test_without_a_tick_it_goes_down_where_the_loop_begins() -> None:
     assert done(PLAIN, line()) == [[("loop", [-4.0])]]
 
