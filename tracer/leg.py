@@ -227,7 +227,7 @@ def lines_from(view: View, centre: Array, radius_mm: float) -> int:
 
     Paper on the way to a stroke is lighter than where the way grazes an edge.
     """
-    arcs = _strokes(view, centre, radius_mm)
+    arcs = strokes_on(view, centre, radius_mm)
     ways = np.column_stack([np.cos(arcs.mean(axis=1)), np.sin(arcs.mean(axis=1))])
     lighter = replace(view, level=PAPER * view.level)
     return sum(all(lighter.dark(centre + share * radius_mm * way) for share in SPOKE) for way in ways)
@@ -235,10 +235,10 @@ def lines_from(view: View, centre: Array, radius_mm: float) -> int:
 
 def lines_on(view: View, centre: Array, radius_mm: float) -> int:
     """How many strokes a ring of cells sees about a place; specks are none."""
-    return len(_strokes(view, centre, radius_mm))
+    return len(strokes_on(view, centre, radius_mm))
 
 
-def _strokes(view: View, centre: Array, radius_mm: float) -> Array:
+def strokes_on(view: View, centre: Array, radius_mm: float) -> Array:
     """The arcs that a ring sees which are no specks, (n, 2) rad."""
     arcs = photocell.ring(view.cells, view.pitch_mm, centre, radius_mm, view.level)
     return np.asarray(arcs[(arcs[:, 1] - arcs[:, 0]) * radius_mm > SPECK_WIDTHS * view.width_mm])

@@ -19,7 +19,7 @@ import numpy as np
 from motion.faults import LineFault
 from tracer import photocell
 from tracer.drawing import Drawing
-from tracer.leg import Leg, centre_at, end_of, is_tip, leg_of, reach_of_ink, turn
+from tracer.leg import Leg, centre_at, end_of, is_tip, leg_of, reach_of_ink, strokes_on, turn
 from tracer.lines import Sheet, Stroke
 from tracer.marks import longest_mm
 from tracer.reference import Reference, references
@@ -34,7 +34,7 @@ LEAD_MM = 11.0  # at most, from the middle of a reference point to the lead line
 NAMED_MM = 5.0  # a cross or ring nearer to the reference point that is named is that point, drawn
 LEADS_AWAY = math.radians(45)
 SPUR = 2.7  # a line that ends sooner, in widths, is a burr
-GROWS, GROWS_PX = 0.08, 0.4  # widths or pixels: so much ink widens, along half of what is felt of it, that is the tip of two lines
+GROWS, GROWS_PX = 0.08, 0.4  # widths, or pixels: along half of what is felt of it the tip of two lines widens so much
 PLACES = 80  # tried along a line
 ENDS = 6  # open ends that are tried: a lead line may begin at any
 
@@ -254,7 +254,7 @@ def _at_end(view: View, place: Array, gap_mm: float) -> Stance | None:
     """A stance at an open end of the line, heading inward; None if there is none at this place."""
     local = _local(view, place)
     radius = max(1.5 * view.width_mm, 6 * view.pitch_mm)
-    arcs = photocell.ring(local.cells, local.pitch_mm, place, radius, local.level)
+    arcs = strokes_on(local, place, radius)
     if len(arcs) != 1 or arcs[0, 1] - arcs[0, 0] > math.pi / 2:
         return None
     heading = float(arcs.mean())

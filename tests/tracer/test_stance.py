@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from motion.faults import DrawingFault, LineFault
-from tests.tracer.inked import UM, WIDTH_MM, arc, corner, inked, polyline
+from tests.tracer.inked import UM, WIDTH_MM, arc, corner, dot, inked, polyline
 from tracer.drawing import Drawing
 from tracer.leg import Leg
 from tracer.lines import Sheet
@@ -94,6 +94,26 @@ def test_an_open_line_is_begun_at_an_end_heading_inward(seed: int | None) -> Non
     assert apart.min() < 40 * UM  # half a width within the pen's round, seen by an aperture
     inward = line[1] - end
     assert math.cos(stance.heading_rad - math.atan2(inward[1], inward[0])) > 0.999
+
+
+def test_a_speck_beside_an_end_does_not_hide_it() -> None:
+    for k in range(8):
+        a = math.radians(80 + 30 * k)  # about the end, but for the line itself
+        speck = dot((6 + 0.5 * math.cos(a), 8 + 0.5 * math.sin(a)), 0.15)  # where the ring of cells runs
+        drawing = inked(polyline((6, 8), (26, 10)), width_mm=0.3, specks=(speck,))
+        stance, _ = next(put_down(drawing, (6, 8), None, None))
+        assert stance.at_end and math.dist(stance.place_mm, (6, 8)) < 50 * UM
+
+
+@pytest.mark.parametrize("seed", [1, 67, 187, 196])
+def test_a_wavering_line_of_three_pixels_has_ends_and_no_tips(seed: int) -> None:
+    """Its width is seen to waver by a quarter of a pixel; on the last three of two hundred as much as that of a tip grows."""
+    rng, x_mm = np.random.default_rng(seed), np.linspace(-10, 10, 400)
+    wave = np.column_stack([x_mm, 0.1 * np.sin(rng.uniform(0.5, 1.2) * x_mm + rng.uniform(0, 6))])
+    a = rng.uniform(0, math.tau)
+    line = wave @ np.array([[math.cos(a), math.sin(a)], [-math.sin(a), math.cos(a)]]) + [16, 16]
+    stance, _ = next(put_down(inked(line, dpi=150.0, seed=seed), (line[0, 0], line[0, 1]), None, None))
+    assert stance.at_end and math.dist(stance.place_mm, line[0]) < 100 * UM  # 0.6 of a pixel
 
 
 def test_a_line_as_wide_as_told_is_looked_for() -> None:
