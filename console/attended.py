@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from tracer.operator import Halt
     from tracer.zunit import Move
 
+ANY_MM_S = 50.0  # of the drill above its hole: whether the counters can show a move does not depend on it
 ANSWERS = "down LENGTH [FEED], up LENGTH [FEED], dwell TIME, drill DEPTH [peck LENGTH]"
 
 
@@ -41,8 +42,9 @@ class Attended:
             if not answer:
                 return _read(entry) if entry else None
             try:
-                _read(entry + _toml(answer))
-                entry += _toml(answer)
+                more = entry + _toml(answer)
+                _read(more).motor_moves(z_mm, ANY_MM_S, _stop(halt))
+                entry = more
             except (CardFault, ValueError) as fault:
                 click.echo(f"  {answer!r} cannot be set: {fault}; give {ANSWERS}, or nothing to go on", err=True)
 

@@ -20,12 +20,13 @@ again to one clear distance above the bottom of the hole.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path as FilePath
 from typing import Literal, cast
 
+from motion.faults import CardFault
 from tracer.cardfields import Field, opened, parsed, read
-from tracer.zunit import COUNTS_PER_MM, Counters, Preset
+from tracer.zunit import COUNTS_PER_MM, Counters, Move, Preset, counts_of, moves
 
 Restart = Literal["automatic", "manual"]
 Turn = Literal["straight", "left", "right"]
@@ -71,11 +72,26 @@ class Stop:
     passes_mm: tuple[float, ...] = ()
     dwell_s: float = 0.0
     restart: Restart | None = None
+    written: Field | None = field(default=None, compare=False, repr=False)  # where a card has the moves, or the hole
 
     def presets(self, at: Counters, rapid_mm_s: float) -> tuple[Preset, ...]:
         """Settings of the panel from a place, the dwell last; passes are no move of this stop, but of the line."""
         made = self.moves if self.drill is None else self.drill.presets(at, rapid_mm_s)
         return (*made, Preset(0, dwell_s=self.dwell_s)) if self.dwell_s > 0 else made
+
+    def motor_moves(self, z_mm: float, rapid_mm_s: float, where: str) -> list[Move]:
+        """What the motor does from a height; raises CardFault, with the field, for a move that the counters cannot show."""
+        made = list[Move]()
+        try:
+            at = Counters(counts_of(z_mm))
+            for preset in self.presets(at, rapid_mm_s):
+                made += moves(at, [preset])
+                at = at.after(preset)
+        except ValueError as error:
+            if self.written is None:
+                raise CardFault(f"{where}: {error}") from None
+            (self.written.elements("moves")[len(made)] if self.moves else self.written).refuse(f"{where}: {error}")
+        return made
 
 
 @dataclass(frozen=True, slots=True)
@@ -174,19 +190,20 @@ def _stops(field: Field, feed_mm_s: float) -> tuple[Stop, ...]:
     return tuple(stops)
 
 
-def _stop(field: Field, feed_mm_s: float) -> Stop:
+def _stop(entry: Field, feed_mm_s: float) -> Stop:
     """One entry for a stop, or for all others."""
-    fields = field.table(*_STOP_KEYS)
+    fields = entry.table(*_STOP_KEYS)
     both = [key for key in ("moves", "drill", "passes") if key in fields]
     if len(both) > 1:
         fields[both[1]].refuse(f"beside {both[0]} there may be no {both[1]}")
     return Stop(
         number=read(fields, "number", Field.number, None),
-        moves=read(fields, "moves", lambda moves: _moves(moves, feed_mm_s), ()),
+        moves=read(fields, "moves", lambda field: _moves(field, feed_mm_s), ()),
         drill=read(fields, "drill", lambda drill: _drill(drill, feed_mm_s), None),
         passes_mm=read(fields, "passes", _passes, ()),
         dwell_s=read(fields, "dwell", Field.time_s, 0.0),
         restart=read(fields, "restart", _restart, None),
+        written=next((fields[key] for key in both if key != "passes"), None),
     )
 
 

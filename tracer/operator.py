@@ -25,7 +25,7 @@ from tracer import zunit
 from tracer.card import Card, Stop
 from tracer.line import Line
 from tracer.survey import Side
-from tracer.zunit import Counters, Move
+from tracer.zunit import Move
 
 Direction = Literal["cw", "ccw", "left", "right"]
 STAND_S = 0.5
@@ -235,13 +235,8 @@ class Operator:
         """The moves that a card's entry asks for."""
         if not stop.moves and stop.drill is None:
             return []  # a dwell alone belongs to what is usual there
-        try:
-            at = Counters(zunit.counts_of(z_mm))
-            return zunit.moves(at, stop.presets(at, self.work.rapid_mm_s))
-        except ValueError as error:
-            raise CardFault(
-                f"stop {halt.number} at {halt.place_mm[0]:.2f},{halt.place_mm[1]:.2f} mm: {error}"
-            ) from None
+        x, y = halt.place_mm
+        return stop.motor_moves(z_mm, self.work.rapid_mm_s, f"at stop {halt.number}, {x:.2f},{y:.2f} mm")
 
     def _restarted(self, halt: Halt, stop: Stop, moves: list[Move]) -> list[Move]:
         """The moves, the last with the time that the operator takes to press the button."""

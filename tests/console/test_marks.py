@@ -125,6 +125,17 @@ def test_at_a_terminal_every_stop_is_asked_for(morfax: Morfax, here: Path, monke
     assert next(answers, None) is None  # and no more was asked
 
 
+def test_an_answer_that_the_counters_cannot_show_is_asked_for_again(
+    morfax: Morfax, here: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    answers = iter(["up 999.99mm", "up 1mm", "", ""])
+    monkeypatch.setattr(attended, "at_terminal", lambda: True)
+    monkeypatch.setattr("click.prompt", lambda *words, **options: next(answers))
+    answer = morfax("trace", PROGRAM, "-o", "program.csv", "--ask")
+    assert answer.exit_code == 0 and next(answers, None) is None
+    assert "'up 999.99mm' cannot be set" in answer.err and "the counters cannot show 1001.99 mm" in answer.err
+
+
 def test_a_card_may_wait_for_the_button(morfax: Morfax, here: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     Path("part.toml").write_text('restart = "manual"\n')
     refused = morfax("trace", PROGRAM, "-o", "program.csv", "--card", "part.toml")

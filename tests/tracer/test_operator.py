@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -97,10 +98,21 @@ def test_passes_of_the_stop_where_the_tool_goes_down_are_the_lines() -> None:
     assert operator.depths_mm(first) == (1.0, 3.0) and operator.depths_mm(second) == (4.0,)  # which is stop 2
 
 
-def test_a_move_that_five_digits_cannot_show_names_its_stop() -> None:
-    card = Card.parse('[[stop]]\nmoves = [{ up = "999.99mm" }]\n')
-    with pytest.raises(CardFault, match=r"stop 1 at 25.00,0.00 mm"):
+@pytest.mark.parametrize(
+    ("entry", "number", "said"),
+    [
+        ('moves = [{ up = "1mm" },\n{ up = "999.99mm" }]', 3, 'stop[1].moves[2] holds {"up": "999.99mm"}'),
+        ('drill = { depth = "999.99mm", peck = "1mm" }\ndwell = 1', 2, 'stop[1].drill holds {"depth": "999.99mm"'),
+    ],
+)
+def test_a_move_that_five_digits_cannot_show_names_its_line_its_field_and_its_stop(
+    entry: str, number: int, said: str
+) -> None:
+    card = Card.parse(f"[[stop]]\n{entry}\n", "part.toml")
+    with pytest.raises(CardFault) as caught:
         Operator(WORK, card).actions([line(tick(250))])
+    assert str(caught.value).startswith(f"part.toml, line {number}: {said}") and caught.value.line == number
+    assert re.search(r"; at stop 1, 25\.00,0\.00 mm: .* (cannot show|cannot be set on) ", str(caught.value))
 
 
 @dataclass
