@@ -12,7 +12,7 @@ from console import medium
 from console.desk import Desk, desk_options
 from console.playing import CYCLES_PER_MM, Controls
 from console.quantities import FREQUENCY, LENGTH, SPEED
-from console.unit import Unit, unit_options
+from console.unit import Unit, rehearsed, unit_options
 
 if TYPE_CHECKING:
     from motion.motion import Path
@@ -83,6 +83,8 @@ def command(
     unit.warn(desk)
     desk.warn_of_compiling("the recorder", "motion", "recorder")
     stream = desk.watched(read.motion(), f"recording {program.name}", float(read.t_s[-1] - read.t_s[0]))
+    if "fmt" in settings:
+        stream = rehearsed(stream, settings["fmt"], desk)
     recording = record(stream, program, **settings)
     length = length_mm(read) if read.tool.any() else 0.0
     is_tape = program.suffix.lower() in medium.TAPES

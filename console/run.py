@@ -61,7 +61,7 @@ def command(drawing: FilePath, folder: FilePath | None, sheet: Sheet, head: Head
     place = _make(folder or FilePath(drawing.stem), drawing)
     traced = head.trace(opened, desk, place.file(".png"))
     unit = unit.at(traced.origin_mm)
-    tape = traced.record(place.file(".wav"), unit)
+    tape = traced.record(place.file(".wav"), unit, desk)
     written = {"tape": str(tape), "traced_path": str(traced.write(place.file(".traced.csv"), unit))}
     played = Controls().play(tape, desk)
     written["played_path"] = str(_write(played, traced, place))

@@ -77,7 +77,7 @@ def command(
     desk.detail(f"{drawing}: sheet of {opened.width_mm:.2f} x {opened.height_mm:.2f} mm")
     traced = head.trace(opened, desk, outputs.picture)
     unit = unit.at(traced.origin_mm)
-    written = _write(traced, outputs, opened, unit)
+    written = _write(traced, outputs, opened, unit, desk)
     unit.warn(desk)
     desk.figures({"drawing": str(drawing), **written, **traced.figures(), **unit.figures()})
     if traced.fault is not None:
@@ -105,11 +105,11 @@ def _outputs(
     return Outputs(output, path_file, picture)
 
 
-def _write(traced: Traced, outputs: Outputs, drawing: Drawing, unit: Unit) -> dict[str, str]:
+def _write(traced: Traced, outputs: Outputs, drawing: Drawing, unit: Unit, desk: Desk) -> dict[str, str]:
     """Write what was asked for; the names under which it stands."""
     written = {}
     if outputs.tape is not None:
-        written[medium.called(outputs.tape)] = str(traced.record(outputs.tape, unit))
+        written[medium.called(outputs.tape)] = str(traced.record(outputs.tape, unit, desk))
     if outputs.path is not None:
         written["path"] = str(traced.write(outputs.path, unit))
     if outputs.picture is not None:

@@ -282,9 +282,9 @@ class Traced:
         """The name for a result: marked if the line was lost."""
         return medium.incomplete(file) if self.fault else file
 
-    def record(self, file: FilePath, unit: Unit) -> FilePath:
+    def record(self, file: FilePath, unit: Unit, desk: Desk) -> FilePath:
         """Record the motion on a tape, or in the medium that the name says; the program's name."""
-        unit.record(self.trace, self.name(file))
+        unit.record(self.trace, self.name(file), desk)
         return self.name(file)
 
     def write(self, file: FilePath, unit: Unit) -> FilePath:

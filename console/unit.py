@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
@@ -51,12 +51,15 @@ class Unit:
                 f"{scale:g} times as thick; X and Y run {scale:g} times as fast; Z is not scaled"
             )
 
-    def record(self, stream: Iterable[Motion], file: FilePath) -> Report:
-        """Record a motion, placed, in the medium that the name says."""
+    def record(self, stream: Iterable[Motion], file: FilePath, desk: Desk) -> Report:
+        """Record a motion, placed, in the medium that the name says; what a tape's player would refuse is refused."""
         from recorder.media import record
 
-        fmt = {} if self.pickup is None else {"fmt": self.tape_format()}
-        return record(self.placement.stream(stream), file, **fmt)
+        placed = self.placement.stream(stream)
+        if file.suffix.lower() not in medium.TAPES:
+            return record(placed, file)
+        fmt = self.tape_format()
+        return record(rehearsed(placed, fmt, desk), file, fmt=fmt)
 
     def tape_format(self, cycles_per_mm: float | None = None, **entries: Any) -> TapeFormat:
         """The format of a tape with this pick-up; raises ValueError if there is none such."""
@@ -76,6 +79,21 @@ class Unit:
             "scale": None if placement.scale == 1 else placement.scale,
             "turned_deg": round(math.degrees(placement.turn_rad), 9) or None,
         }
+
+
+def rehearsed(stream: Iterable[Motion], fmt: TapeFormat, desk: Desk) -> Iterator[Motion]:
+    """Pass a motion on to its tape; raises MotionFault where no player could read that, and notes where a drive could not follow."""
+    from player.rehearsal import Rehearsal
+
+    rehearsal = Rehearsal(fmt)
+    yield from rehearsal.of(stream)
+    lost = rehearsal.unfollowed
+    if lost is not None:
+        place = ",".join(f"{mm:.2f}" for mm in lost.place_mm[:2])
+        desk.note(
+            f"the drive of {lost.axis.upper()} would lose its lock at {place} mm, {lost.time_s:.3f} s into the motion: play the "
+            "tape slower (--feed-override 50%), or run the path slower"
+        )
 
 
 def unit_options(verb: Callable[..., Any]) -> Callable[..., Any]:

@@ -5,7 +5,7 @@ reference, at the sample rate. Signals out, one row per `decimation` frames, row
 cycles (axes), levels (tracks, amplitude), surprise (axes, cycles: how far a phase lay from the predicted one).
 
     y(t) = sum over n of  h(n) · exp(-j w n) · x(t + n)          translating filter: h low-pass, w the nominal reference
-    cycles = arg( y_axis · conj(y_reference) ) / 2 pi            counted on from the predictor's guess, nearest turn
+    cycles = arg( y_axis · conj(y_reference) ) / 2 pi            counted on from the predictor's guess, nearest turn (predictor.py)
 
 Both tracks are translated by the same w, so its phase and any error of the tape's speed cancel in the product, and
 only the difference is left. It is a phase all the way: nothing is integrated, so nothing drifts. The filter stands
@@ -16,15 +16,7 @@ The low-pass is 0.6 dB down at 2 kHz from the carrier, 6 dB at 3 kHz and 80 dB f
 decimation would fold upon the carrier: its own mirror (12 kHz away), a DC offset and the second harmonic (6 kHz
 away). With a lower reference it is as much narrower and longer.
 
-The predictor (position, velocity, acceleration; three equal poles) only chooses the turn; the phase itself is not
-smoothed by it.
-
-        position        += (1 - theta³) surprise                      theta = exp(-2 pi f dt)
-        velocity · dt   += 1.5 (1 - theta²)(1 - theta) surprise
-        acc. · dt² / 2  += 0.5 (1 - theta)³ surprise
-
-Source: patent ES 361967, figure 5 (amplifiers 151, triggers 152, the tape's side of comparator 153). Predictor: E.
-Brookner, Tracking and Kalman Filtering Made Easy, 1998, section 1.3 (fading-memory filter).
+Source: patent ES 361967, figure 5 (amplifiers 151, triggers 152, the tape's side of comparator 153).
 Questions: the patent compares edges, at best one per cycle of the carrier; here the whole wave is used, which is what
 beats the tape's noise. A square-wave trigger would be a hundred times coarser.
 """
@@ -39,7 +31,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-PREDICTOR_HZ = 120.0
+from player.predictor import count_turns, predictor_gains
+
 STOP_BAND_BETA = 8.0  # Kaiser: stop band 80 dB down
 SMALLEST_TAP = 1e-12  # below it products are denormal numbers, which cost a factor of twelve
 SMALLEST_PRODUCT = 1e-300  # of two tracks; keeps a silent one from dividing by zero
@@ -117,12 +110,6 @@ def branches(sample_rate_hz: float, reference_hz: float, decimation: int) -> tup
     return rows, turned.real.astype(np.float32), turned.imag.astype(np.float32)
 
 
-def predictor_gains(rate_hz: float, natural_hz: float = PREDICTOR_HZ) -> Float64s:
-    """Shares of the surprise that go to position, velocity per row and half acceleration per row²."""
-    theta = math.exp(-2 * math.pi * natural_hz / rate_hz)
-    return np.array([1 - theta**3, 1.5 * (1 - theta**2) * (1 - theta), 0.5 * (1 - theta) ** 3])
-
-
 class Discriminator:
     """Tracks in, phases out, block by block of any length."""
 
@@ -172,7 +159,7 @@ class Discriminator:
         cycles, surprise = np.empty((count, tracks - 1)), np.empty((count, tracks - 1), np.float32)
         scale = np.float32(1 / 32768 if rows.dtype == np.int16 else 1)
         _wrap(rows, scale, *self._filter, phase, levels)
-        _count(phase, self.gains, self.state, cycles, surprise)
+        count_turns(phase, self.gains, self.state, cycles, surprise)
         lead = ((row - self._row, 0), (0, 0))
         if row > self._row:
             cycles = np.pad(cycles, lead, mode="edge")
@@ -199,15 +186,6 @@ def discriminate(blocks: Iterable[Frames], discriminator: Discriminator) -> Iter
     rest = discriminator.finish()
     if len(rest):
         yield rest
-
-
-def recount(phase: Float64s, gains: Float64s, state: Float64s, surprise: Float32s) -> Float64s:
-    """Count the phases of an axis anew from a state (place, speed, bend); they and the surprise are written over."""
-    turns, states = np.ascontiguousarray(phase)[None], state[None].copy()
-    counted, told = np.empty((len(phase), 1)), np.empty((len(phase), 1), np.float32)
-    _count(turns, gains, states, counted, told)
-    phase[:], surprise[:] = counted[:, 0], told[:, 0]
-    return np.asarray(states[0])
 
 
 @njit(cache=True, nogil=True)
@@ -290,24 +268,3 @@ def _turn(re, im, ref_re, ref_im, phase):  # type: ignore[no-untyped-def]
         angle = math.pi / 2 - angle if abs(across) > abs(along) else angle
         angle = math.pi - angle if along < 0 else angle
         phase[k] = (-angle if across < 0 else angle) / (2 * math.pi)
-
-
-@njit(cache=True, nogil=True)
-def _count(phase, gains, state, cycles, surprise):  # type: ignore[no-untyped-def]
-    """Count the phases (axes, n) on by the predictor; `state` (axes: cycles, cycles/row, half of cycles/row²) is carried.
-
-    All axes row by row: each waits for its own last row, and they can wait together.
-    """
-    for k in range(phase.shape[1]):
-        for axis in range(len(state)):
-            place, speed, bend = state[axis]
-            if math.isnan(place):  # the first row of the tape
-                place, speed, bend = phase[axis, k], 0.0, 0.0
-            place, speed = place + speed + bend, speed + 2 * bend
-            error = phase[axis, k] - place
-            error -= np.rint(error)
-            cycles[k, axis] = place + error
-            surprise[k, axis] = error
-            state[axis, 0] = place + gains[0] * error
-            state[axis, 1] = speed + gains[1] * error
-            state[axis, 2] = bend + gains[2] * error

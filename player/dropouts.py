@@ -34,7 +34,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from motion.faults import Fault, LockFault, TapeFault
-from player.discriminator import Discriminator, Phases, recount
+from player.discriminator import Discriminator, Phases
+from player.predictor import recount
 
 LEVEL_STEADY = 0.8  # of the level 20 ms ago: 0.2 of another signal turns the phase by 0.03 cycle
 LEVEL_KEPT = 0.2  # of the level at standstill

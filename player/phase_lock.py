@@ -31,8 +31,9 @@ comparator (feed-forward is not in the patent); natural frequency 250 Hz, dampin
 Without the lead in amplifier 161 a loop beyond about 70 Hz round a motor of 1 ms cannot be damped. While the motor's
 current is at its limit the integrator goes back to what that gives, else it would run on and the screw far past; in
 half a millisecond and not at once, else noise that meets the limit on one side only would push the screw off the tape.
-The decoder's range is 4 cycles (0.2 mm): a start or stop from 40 mm/s at once is still followed, more is a fault. That
-range is one limit for all speeds; below it `following_limit` allows what a sound drive needs at the tape's speed.
+The decoder's range is 4 cycles (0.2 mm): a start or stop from 40 mm/s at once is still followed, more is a fault (off a
+tape 34 mm/s at once can be counted, see `rehearsal`). That range is one limit for all speeds; below it `following_limit`
+allows what a sound drive needs at the tape's speed.
 """
 
 from __future__ import annotations

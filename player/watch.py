@@ -153,7 +153,7 @@ class Watch:
 
     def unsteady(self, phases: Phases, positions_mm: Sequence[float]) -> tuple[int, Fault] | None:
         """The first row of a window in which the phase of an axis shakes, and the fault."""
-        window = max(round(SHAKE_S * self._format.motion_rate_hz / SHAKE_STRIDE), 1) * SHAKE_STRIDE
+        window = shake_rows(self._format.motion_rate_hz)
         whole = len(phases) // window * window
         if not whole:
             return None
@@ -172,6 +172,11 @@ class Watch:
             error_cycles=float(shakes[at, axis]),
             position_mm=positions_mm[axis],
         )
+
+
+def shake_rows(rate_hz: float) -> int:
+    """Rows of the window in which the phase of an axis may not shake."""
+    return max(round(SHAKE_S * rate_hz / SHAKE_STRIDE), 1) * SHAKE_STRIDE
 
 
 def demand_apart(frames: Float32s, levels: Array, names: Sequence[str]) -> None:

@@ -80,6 +80,18 @@ def path_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return file
 
 
+@pytest.fixture
+def hasty_file(here: Path) -> Path:
+    """A path file: X from rest to 90 mm/s at 10 m/s², on, and to rest; twice what the motors of the machine can."""
+    t_s = np.arange(0, 0.06, 1e-3)
+    x_mm = np.where(t_s < 9e-3, 5e3 * t_s**2, 0.405 + 90 * (t_s - 9e-3))
+    there = np.r_[x_mm, 2 * x_mm[-1] - x_mm[-2::-1]]
+    rows = np.column_stack([1e-3 * np.arange(len(there)), there, 0 * there])
+    file = here / "hasty.csv"
+    np.savetxt(file, rows, delimiter=",", header="t_s,x_mm,y_mm", comments="", fmt="%.6f")
+    return file
+
+
 @pytest.fixture(scope="session")
 def tape_file(path_file: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The tape of that path."""

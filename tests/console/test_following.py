@@ -58,15 +58,14 @@ def test_a_name_that_cannot_be_written_is_refused_before_anything_moves(
     assert answer.exit_code in (2, 8) and name in answer.fault
 
 
-def test_a_fault_leaves_the_errors_up_to_it_under_a_name_that_says_so(morfax: Morfax, here: Path) -> None:
-    # From rest to 60 mm/s at once, which no motor can do.
-    rows = [(0.0, 0.0), (0.5, 30.0), (0.9, 6.0)]
-    (here / "fast.csv").write_text("t_s,x_mm,y_mm,z_mm\n" + "".join(f"{t},{x},0,-1\n" for t, x in rows))
-    assert morfax("record", "fast.csv", "-o", "fast.wav").exit_code == 0
-    answer = morfax("play", "fast.wav", "--following", "fast.csv.png", "--following", "errors.csv")
+def test_a_fault_leaves_the_errors_up_to_it_under_a_name_that_says_so(
+    morfax: Morfax, here: Path, hasty_file: Path
+) -> None:
+    assert morfax("record", hasty_file, "-o", "hasty.wav").exit_code == 0
+    answer = morfax("play", "hasty.wav", "--following", "errors.csv.png", "--following", "errors.csv")
     assert answer.exit_code == 6
     assert sorted(file.name for file in here.glob("*.incomplete*")) == [
+        "errors.csv.incomplete.png",
         "errors.incomplete.csv",
-        "fast.csv.incomplete.png",
     ]
     assert not (here / "errors.csv").exists()

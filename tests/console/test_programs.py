@@ -46,6 +46,12 @@ def test_any_program_becomes_any_other(morfax: Morfax, here: Path, path_file: Pa
     assert morfax("compare", "c.wav", path_file, "--tolerance", "50um").exit_code == 0
 
 
+def test_the_stairs_of_stepping_motors_are_no_tape(morfax: Morfax, here: Path, path_file: Path) -> None:
+    assert morfax("record", path_file, "-o", "a.steps").exit_code == 0
+    answer = morfax("record", "a.steps", "-o", "a.wav")
+    assert answer.exit_code == 7 and "the stairs of stepping motors" in answer.fault and not (here / "a.wav").exists()
+
+
 @pytest.mark.parametrize("suffix", WITHIN_MM)
 def test_a_drawing_is_traced_into_any_medium(morfax: Morfax, here: Path, suffix: str) -> None:
     traced = morfax("trace", SAMPLES / "curve.png", "-o", f"part{suffix}", "--path", "part.csv", "--json")

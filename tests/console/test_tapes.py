@@ -154,6 +154,20 @@ def test_a_motion_too_fast_for_the_tape_is_refused(morfax: Morfax, here: Path) -
     assert [file.name for file in here.iterdir()] == ["fast.csv"]
 
 
+def test_a_jump_that_no_tape_is_read_across_is_refused_with_its_place(morfax: Morfax, here: Path) -> None:
+    (here / "jump.csv").write_text("t_s,x_mm,y_mm\n0,0,0\n1,10,0\n1.1,20,0\n2.1,30,0\n")
+    answer = morfax("record", "jump.csv", "-o", "jump.wav")
+    assert answer.exit_code == 7 and "X, at 10.0" in answer.fault and "100 mm/s at once" in answer.fault
+    assert "up to 33.9 mm/s" in answer.fault and [file.name for file in here.iterdir()] == ["jump.csv"]
+
+
+def test_a_start_that_the_drives_do_not_follow_is_recorded_and_told(morfax: Morfax, hasty_file: Path) -> None:
+    answer = morfax("record", hasty_file, "-o", "hasty.wav")
+    assert answer.exit_code == 0 and "the drive of X would lose its lock at" in answer.err
+    assert morfax("play", "hasty.wav").exit_code == 6
+    assert morfax("play", "hasty.wav", "--feed-override", "50%").exit_code == 0
+
+
 def test_record_takes_a_path_without_times_at_the_feed(morfax: Morfax, here: Path) -> None:
     (here / "line.csv").write_text("x,y\n0,0\n30,40\n")
     answer = morfax("record", "line.csv", "--feed", "25mm/s", "--json")

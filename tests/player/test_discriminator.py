@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from player import discriminator as organ
-from player.discriminator import Discriminator, Phases, discriminate, predictor_gains, translating_taps
+from player.discriminator import Discriminator, Phases, discriminate, translating_taps
 from tests.player.carriers import CYCLES_PER_MM, MOTION_RATE_HZ, RATE_HZ, REFERENCE_HZ, Transport, swing, tracks
 
 SECONDS = 1.5
@@ -134,14 +134,6 @@ def test_a_jump_is_a_surprise_of_its_size() -> None:
     assert surprise[:, 1:].max() < 0.01
 
 
-def test_predictor_has_three_equal_poles() -> None:
-    g, h, k = predictor_gains(MOTION_RATE_HZ)
-    step = np.array([[1, 1, 1], [0, 1, 2], [0, 0, 1.0]])
-    after = (np.eye(3) - np.outer([g, h, k], [1, 0, 0])) @ step
-    theta = np.exp(-2 * np.pi * organ.PREDICTOR_HZ / MOTION_RATE_HZ)
-    assert np.poly(after) == pytest.approx(np.poly([theta] * 3), abs=1e-12)  # float64 rounding
-
-
 def test_taps_have_no_denormals_and_pass_the_reference_whole() -> None:
     re, im = translating_taps(RATE_HZ, REFERENCE_HZ, 8)
     taps = np.r_[re, im]
@@ -154,7 +146,7 @@ def test_taps_have_no_denormals_and_pass_the_reference_whole() -> None:
 def test_stages_agree_with_themselves_as_plain_python(monkeypatch: pytest.MonkeyPatch) -> None:
     frames = tracks(swing, 0.3)[-600:]
     fast = Discriminator(RATE_HZ, REFERENCE_HZ, 8, 4).feed(frames)
-    for name in ("_wrap", "_unlace", "_translate", "_group", "_amplitude", "_turn", "_count"):
+    for name in ("_wrap", "_unlace", "_translate", "_group", "_amplitude", "_turn", "count_turns"):
         monkeypatch.setattr(organ, name, getattr(organ, name).py_func)
     slow = Discriminator(RATE_HZ, REFERENCE_HZ, 8, 4).feed(frames)
     assert np.abs(fast.cycles - slow.cycles).max() < 1e-6
