@@ -134,14 +134,11 @@ class Line:
         """Where its program ends, mm."""
         return self.begin_mm if self.goes_back else self.place(len(self.xy_mm) - 1)
 
-    def without_guides(self, first: int, last: int) -> Array:
-        """Positions from one to another, without those of the guide lines that are left for in between, (n, 2) mm."""
-        keep = np.ones(last + 1, bool)
-        keep[:first] = False
-        for guide in self.guides:
-            if guide.leave > first:
-                keep[guide.leave : guide.back] = False
-        return self.xy_mm[: last + 1][keep]
+    def without_guides(self, first: int, last: int) -> list[Array]:
+        """Stretches (n, 2) mm from one position to another, between the guide lines that are left for on the way."""
+        left_for = [guide for guide in self.guides if first < guide.leave <= last]
+        begins, ends = [first, *(guide.back for guide in left_for)], [*(guide.leave for guide in left_for), last + 1]
+        return [self.xy_mm[begin:end] for begin, end in zip(begins, ends, strict=True) if begin < end]
 
     def place(self, at: float) -> tuple[float, float]:
         """Where the axis is at a position, fractions included, mm."""

@@ -170,14 +170,11 @@ class Trace:
         if last <= first:
             return
         yield _at(self._feed(line.xy_mm[-1], line.xy_mm[first]), -down.entry.depth_mm)
-        xy_mm = line.without_guides(first, min(last, len(line.xy_mm) - 1))
-        _, xy_mm, _ = stops.pieces(xy_mm, [0, len(xy_mm) - 1], BRAKE_MM_S2, self.rate_hz)
-        yield _at(xy_mm, -down.entry.depth_mm)
+        yield _at(self._from_rest(line, first, min(last, len(line.xy_mm) - 1)), -down.entry.depth_mm)
 
     def _again(self, line: Line, z_mm: float, depth_mm: float) -> Iterator[Array]:
         """Along a line, or the loop that it leads to, once more at another depth, (n, 3) mm: straight on where it closes, else up and over."""
-        xy_mm = line.without_guides((line.loop_from or 0) if line.is_lead else 0, len(line.xy_mm) - 1)
-        _, xy_mm, _ = stops.pieces(xy_mm, [0, len(xy_mm) - 1], BRAKE_MM_S2, self.rate_hz)
+        xy_mm = self._from_rest(line, (line.loop_from or 0) if line.is_lead else 0, len(line.xy_mm) - 1)
         if line.ending == "closed" or line.is_lead:
             yield _at(self._feed(xy_mm[-1], xy_mm[0]), z_mm)
         else:
@@ -187,6 +184,15 @@ class Trace:
         yield _standing(xy_mm[0], self._z(z_mm, -depth_mm))
         for first in range(0, len(xy_mm), BLOCK_SAMPLES):
             yield _at(xy_mm[first : first + BLOCK_SAMPLES], -depth_mm)
+
+    def _from_rest(self, line: Line, first: int, last: int) -> Array:
+        """Along a line without its guide lines, from rest to rest, (n, 2) mm: where it left for one it came back some um aside."""
+        stretches = [
+            stops.pieces(way, [0, len(way) - 1], BRAKE_MM_S2, self.rate_hz)[1]
+            for way in line.without_guides(first, last)
+        ]
+        between = [self._feed(a[-1], b[0]) for a, b in pairwise(stretches)]
+        return np.vstack([part for pair in zip_longest(stretches, between) for part in pair if part is not None])
 
     def _feed(self, start_mm: Array, end_mm: Array) -> Array:
         """Straight from a place to another in the work, (n, 2) mm."""
@@ -198,7 +204,8 @@ class Trace:
             if np.any(at_mm != line.xy_mm[-1]):
                 yield self._rapid(at_mm, line.xy_mm[-1])
             return
-        back = line.without_guides(0, len(line.xy_mm) - 1 if line.loop_from is None else line.loop_from)[::-1]
+        last = len(line.xy_mm) - 1 if line.loop_from is None else line.loop_from
+        back = np.vstack(line.without_guides(0, last))[::-1]
         yield self._rapid(at_mm, back[0])  # a loop does not end just where it began
         yield _at(stops.run(back, self.work.rapid_mm_s, BRAKE_MM_S2, self.rate_hz), self.work.clearance_mm)
         if line.begin_mm != line.start_mm:

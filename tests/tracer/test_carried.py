@@ -210,7 +210,7 @@ def test_beside_a_drawn_circle_runs_the_circle_and_all_that_is_drawn_on_it(
         made, unreached = with_cutter(followed, Cutter(diameter_mm, side), FEED_MM_S)  # type: ignore[arg-type]
         positions = join(made).positions_mm
         (line,), radius_mm = made.lines, 12 + out * diameter_mm / 2
-        way = line.without_guides(line.loop_from or 0, len(line.xy_mm) - 1)
+        way = np.vstack(line.without_guides(line.loop_from or 0, len(line.xy_mm) - 1))
         off_mm = np.hypot(*(way - (30, 20)).T) - radius_mm
         assert np.abs(off_mm).max() < FOLLOWED_MM and not unreached
         assert np.sqrt(np.mean(off_mm**2)) < 6 * UM  # the head's own, with lead and guide line

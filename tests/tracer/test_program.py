@@ -115,6 +115,16 @@ def test_a_guide_line_is_left_for_on_the_first_pass_only_and_never_in_the_work()
     assert np.count_nonzero(np.diff(np.sign(on_guide[:, 1] - 6)) != 0) == 2  # out and back once
 
 
+def test_where_the_head_came_back_aside_from_a_guide_line_no_pass_leaps() -> None:
+    way = run_through((0, 0), (10, 0), (10, 8), (18, 8), (18, 12), (18.004, 8.003), (18, 0), (10.01, 0))
+    leave, tip = at(way, (18, 8)), at(way, (18, 12))
+    guide = Guide(leave, tip, tip + at(way[tip:], (18.004, 8.003)))
+    line = replace(LINE, xy_mm=way, loop_from=at(way, (10, 0)), guides=(guide,))
+    cut = join(Trace((line,), Operator(replace(WORK, passes_mm=(2.0,))))).positions_mm
+    speeds = np.hypot(*np.diff(cut[:, :2], axis=0).T)[cut[1:, 2] < 0] * MOTION_RATE_HZ
+    assert speeds.max() < 10.0 * (1 + 1e-6)  # a step of 5 um at the motion rate would be 30 mm/s
+
+
 def test_passes_asked_for_at_the_stop_where_the_tool_goes_down_are_that_line_s() -> None:
     operator = Operator(WORK, Card.parse('[[stop]]\nnumber = 1\npasses = ["1mm", "3mm"]\n'))
     lows = np.unique(moved(LINE, operator=operator)[:, 2].round(6))
