@@ -206,14 +206,22 @@ def _steps_of_ink(cells, pitch_mm, places, level):  # type: ignore[no-untyped-de
 def stroke_end(view: View, leg: Leg, farthest_mm: float) -> float | None:
     """How far the ink of a stroke goes on from a leg's end, mm, if the stroke ends there: no ink leaves its tip but the stroke's own; None if not.
 
-    A speck of paper on the stroke is not its end: beside its middle the ink goes on.
+    It is felt as far as it is clean, round its bends, and only from there on looked for ahead. A speck of paper on the stroke is not its end: beside
+    its middle the ink goes on.
     """
-    middle, *beside = (reach_of_ink(view, leg, farthest_mm, share * view.width_mm) for share in (0.0, -0.25, 0.25))
+    seen, come_mm = view.feel(leg.end_mm, leg.heading_rad, farthest_mm), 0.0
+    if len(seen) > len(leg.seen):
+        come_mm = (len(seen) - 1) * view.step_mm
+        if come_mm >= farthest_mm - view.step_mm:
+            return None
+        leg = leg_of(seen, True, view.leg_mm)
+    left_mm = farthest_mm - come_mm
+    middle, *beside = (reach_of_ink(view, leg, left_mm, share * view.width_mm) for share in (0.0, -0.25, 0.25))
     if middle is None:
         return None
     for ink in (middle, *(reach for reach in beside if reach is not None and reach > middle)):
         if is_tip(view, leg.at(ink - 0.5 * view.width_mm)):
-            return ink
+            return come_mm + ink
     return None
 
 

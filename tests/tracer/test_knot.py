@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ from tests.tracer.inked import UM, WIDTH_MM, arc, inked, polyline
 from tracer import photocell
 from tracer.drawing import Drawing
 from tracer.knot import corner_in, legs_around
-from tracer.leg import Leg, centre_at, end_of, leg_of, meet, reach_of_ink, turn
+from tracer.leg import Leg, centre_at, end_of, leg_of, meet, reach_of_ink, stroke_end, turn
 from tracer.view import LEVEL, View
 
 Array = NDArray[np.float64]
@@ -159,6 +160,20 @@ def test_a_centre_on_the_way_in_has_the_legs_ahead_of_it_only() -> None:
     for behind_mm in (0.2, 0.5, 1.0):
         headings = [leg.heading_rad for leg in legs_around(view(drawing), trail[-1] - [behind_mm, 0], trail)]
         assert headings and max(abs(heading) for heading in headings) < math.radians(95)
+
+
+@pytest.mark.parametrize("pixels", [1, 2])
+def test_a_speck_of_paper_on_a_thin_line_is_not_its_end(pixels: int) -> None:
+    """Half a width before the speck a ray of cells through it sees no line beyond; but the line is felt on past it."""
+    drawing = inked(polyline((4, 4), (24, 14)), width_mm=0.3)
+    for along_mm in np.arange(1.5, 3.5, 0.03):
+        x, y = np.array([10, 7]) + along_mm * np.array([2, 1]) / math.sqrt(5)
+        darkness = drawing.darkness.copy()
+        row, column = len(darkness) - 1 - int(y / drawing.pitch_mm), int(x / drawing.pitch_mm)
+        darkness[row, column : column + pixels] = 0.0
+        eyes = replace(view(Drawing(darkness, drawing.pitch_mm)), width_mm=0.325)
+        leg = leg_of(eyes.feel(np.array([10.0, 7.0]), math.atan2(1, 2), 1.2), False, eyes.leg_mm)
+        assert stroke_end(eyes, leg, 5.0) is None
 
 
 def legs_seen(drawing: Drawing, centre: tuple[float, float], trail: Array) -> list[float]:
