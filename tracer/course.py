@@ -24,6 +24,8 @@ from tracer.leg import Leg, Meeting, centre_at, turn
 from tracer.view import Array, View
 
 SPACING_MM = 0.02
+SLIGHT = math.radians(40)  # a turn up to this goes straight on at a junction
+HIDES = 0.7  # of the width: a pen that turned on the vertex inks half of it on the outside
 SHARP = 0.08  # of the line's width: a corner whose ink misses less than this on the outside is sharp
 
 
@@ -58,7 +60,7 @@ def through_corner(
     """Stretches from where the head stands (place, heading) through a corner to `end_mm` beyond the outgoing leg's first station."""
     s, u = legs_mm
     missing, touch = rounding(view, incoming, outgoing, legs_mm)
-    bent = touch > 0 and missing > 0.3 * view.width_mm
+    bent = touch > 0 and (missing > 0.3 * view.width_mm or _deflection(incoming, outgoing, legs_mm) < SLIGHT)
     if touch > 0 and touch < u + end_mm and touch < s + ahead_mm(stands[0], incoming):
         way, along = onto(*stands, incoming, s - touch)
         a, b = s - touch, -u + touch
@@ -118,30 +120,52 @@ def rounding(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> tupl
     missing = missing_ink_mm(view, incoming, outgoing, legs_mm)
     if missing <= SHARP * view.width_mm:
         return missing, 0.0
-    deflection = abs(turn(incoming.heading_at(legs_mm[0]), outgoing.heading_at(-legs_mm[1])))
+    deflection = _deflection(incoming, outgoing, legs_mm)
     return missing, missing * math.tan(deflection / 2) / (1 / math.cos(deflection / 2) - 1)
 
 
 def is_sharp(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> bool:
     """Whether the ink of an obtuse corner is that of a sharp one: it misses less than a third of what an arc over eight stations would."""
-    deflection = abs(turn(incoming.heading_at(legs_mm[0]), outgoing.heading_at(-legs_mm[1])))
+    deflection = _deflection(incoming, outgoing, legs_mm)
     return missing_ink_mm(view, incoming, outgoing, legs_mm) <= 8 * view.step_mm * math.tan(deflection / 4) / 3
 
 
 def missing_ink_mm(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> float:
-    """By how much the ink falls short of a sharp corner's on the outside of the bisector, mm (0 if it does not)."""
+    """By how much the ink falls short of a sharp corner's on the outside of the bisector, mm (0 if it does not).
+
+    Where another line leaves on the outside of a slight turn, it is by how much the ink is more than a sharp corner's on the inside.
+    """
+    found, width_mm = _edge_mm(view, incoming, outgoing, legs_mm, 1), 0.5 * (incoming.width_mm + outgoing.width_mm)
+    if not hides_outside(view, incoming, outgoing, legs_mm):
+        return max(0.0, 0.5 * width_mm - found) if math.isfinite(found) else 0.0
+    within, half = _edge_mm(view, incoming, outgoing, legs_mm, -1), 0.5 * _deflection(incoming, outgoing, legs_mm)
+    return max(0.0, within - 0.5 * width_mm / math.cos(half)) if math.isfinite(within) else 0.0
+
+
+def hides_outside(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> bool:
+    """Whether another line leaves on the outside of a slight turn: there is more ink than a corner's, and its edges tell nothing of it."""
+    found = _edge_mm(view, incoming, outgoing, legs_mm, 1)
+    return _deflection(incoming, outgoing, legs_mm) < SLIGHT and not found < HIDES * incoming.width_mm
+
+
+def _deflection(incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> float:
+    """By how much the way turns where two legs meet, rad."""
+    return abs(turn(incoming.heading_at(legs_mm[0]), outgoing.heading_at(-legs_mm[1])))
+
+
+def _edge_mm(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting, side: int) -> float:
+    """How far the ink of a corner reaches from the vertex along the bisector, to the outside (1) or the inside (-1), mm; NaN if it has no edge there."""
     vertex, width_mm = incoming.at(legs_mm[0]), 0.5 * (incoming.width_mm + outgoing.width_mm)
     before, after = incoming.heading_at(legs_mm[0]), outgoing.heading_at(-legs_mm[1])
-    out = np.array([math.cos(before) - math.cos(after), math.sin(before) - math.sin(after)])
+    out = side * np.array([math.cos(before) - math.cos(after), math.sin(before) - math.sin(after)])
     outward = math.atan2(out[1], out[0])
     reach = 2.0 * width_mm + 3 * view.pitch_mm
     aside = np.array([math.sin(outward), -math.cos(outward)])
-    outside = []
+    edges_mm = []
     for off in np.linspace(-0.15, 0.15, 5) * width_mm:  # the pen's round leaves the tangent by off²/width
         edge = _edge_outward(view, vertex + off * aside, outward, width_mm, reach)
-        outside.append(edge + off * off / width_mm)
-    found = float(np.median(outside))
-    return max(0.0, 0.5 * width_mm - found) if math.isfinite(found) else 0.0
+        edges_mm.append(edge + (off * off / width_mm if side > 0 else 0.0))
+    return float(np.median(edges_mm))
 
 
 def _edge_outward(view: View, place: Array, outward: float, width_mm: float, reach_mm: float) -> float:

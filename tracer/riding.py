@@ -22,7 +22,7 @@ from itertools import pairwise
 import numpy as np
 from numba import njit
 
-from tracer.course import rounding
+from tracer.course import hides_outside, rounding
 from tracer.leg import Leg, Meeting, leg_of, meet, turn
 from tracer.photocell import darkness_at, edge_along, edges, onward
 from tracer.view import Array, View
@@ -55,8 +55,11 @@ def ride_past(view: View, incoming: Leg) -> Ride | None:
 def to_vertex(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> tuple[Leg, Leg, Meeting]:
     """The legs of a corner felt on along their outer edges, which stay clean up to the vertex, and where they meet then.
 
-    A corner that is rounded is felt up to where its round begins; a leg that meets a line which passes here has no outer edge.
+    A corner that is rounded is felt up to where its round begins; a leg that meets a line which passes here has no outer edge, nor
+    has a turn on whose outside another line leaves.
     """
+    if hides_outside(view, incoming, outgoing, legs_mm):
+        return incoming, outgoing, legs_mm
     deflection = turn(incoming.heading_at(legs_mm[0]), outgoing.heading_at(-legs_mm[1]))
     side = -math.copysign(1.0, deflection)
     round_mm = rounding(view, incoming, outgoing, legs_mm)[1]
