@@ -29,6 +29,7 @@ from benchmarks.rows import Row, best_s, tell
 from motion.contour import distances_mm
 from motion.motion import thin
 from motion.pathfile import read_path
+from motion.polyline import lengths_mm
 from player.machine import play
 from recorder.tape import TapeFormat, record
 from tracer.drawing import MM_PER_INCH, Drawing
@@ -88,7 +89,7 @@ def rms_um(distances: Points) -> float:
 
 def dense(line: Points) -> Points:
     """The line with a place every `STEP_MM`."""
-    along = np.r_[0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T))]
+    along = lengths_mm(line)
     every = np.arange(0.0, along[-1], STEP_MM)
     return np.column_stack([np.interp(every, along, line[:, i]) for i in (0, 1)])
 

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from console.overlay import DPI, REFERENCE, UM_PER_MM, Picture, ground, view_of
+from motion.polyline import lengths_mm
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -59,7 +60,7 @@ def errors(results: Sequence[Result]) -> Figure:
     for axes, result in zip(panels, ran, strict=False):
         assert result.from_ink is not None
         points, error_um = result.from_ink.points_mm, result.from_ink.error_mm * UM_PER_MM
-        way_mm = np.r_[0.0, np.cumsum(np.hypot(*np.diff(points, axis=0).T))]
+        way_mm = lengths_mm(points)
         axes.axhline(0, color=REFERENCE, linewidth=0.6)
         axes.plot(way_mm, error_um, color=COLOURS[result.suffix], linewidth=0.8)
         axes.set_ylabel("µm")

@@ -26,10 +26,9 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-from numba import njit
-from numpy.typing import NDArray
 
-UM = 1e-3  # mm
+from motion.polyline import APART_MM, UM, Array, Nearest, crossings_of, plain, with_places
+
 PLAIN = 0.05 * UM  # a line is known by places between which it is straight within this
 NEARER = 0.2 * UM  # than the radius: taken out
 SET_BACK, LONG_MM = (
@@ -37,17 +36,12 @@ SET_BACK, LONG_MM = (
     1.0,
 )  # so much nearer in places does not make a piece as long as this a loop: a kink of the line does
 FREE, ALONE = -1, -2  # ends of a piece that lie at no crossing: of an open line, and of one round about
-APART_MM = 0.02  # between the places of a way
 DEEP_MM = 0.05  # nearer than the radius by this: no crossing there can count
-CELL_MM = 0.05  # of the grid in which crossings are sought: more than any piece is long
 SAME_MM = 0.01 * UM  # places as near as this are one
 SHAKEN_MM = 1e-4 * SAME_MM
 LEAST_MM = 0.05  # a shorter way is none
 SLIGHT = math.radians(10)  # turns towards the tool by less go straight to where the two ways beside the vertex meet
 BACK = math.radians(179)  # a line that turns by more comes back along itself: the tool goes round its tip
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,49 +80,10 @@ def offset(guides: Sequence[Guide], radius_mm: float) -> list[Way]:
     return ways
 
 
-class Nearest:
-    """Finds how far places are from lines, to within a small part of `NEARER` at the radius."""
-
-    def __init__(self, lines_mm: Sequence[Array], radius_mm: float) -> None:
-        from scipy.spatial import cKDTree
-
-        apart_mm = min(APART_MM, math.sqrt(8 * radius_mm * 0.25 * NEARER))
-        self._tree = cKDTree(np.vstack([with_places(line, apart_mm) for line in lines_mm]))
-
-    def distances_mm(self, places_mm: Array) -> Array:
-        """Distance of each place (n, 2) from the nearest line, mm."""
-        return np.asarray(self._tree.query(places_mm)[0])
-
-    def set_back(self, places_mm: Array, distance_mm: float) -> Array:
-        """The places (n, 2), those that are nearer than a distance moved straight away from the nearest place of a line to it."""
-        away, index = self._tree.query(places_mm)
-        lines = np.asarray(self._tree.data)[index]
-        return np.asarray(lines + (places_mm - lines) * np.maximum(1.0, distance_mm / np.maximum(away, UM))[:, None])
-
-
-def crossings(one_mm: Array, other_mm: Array) -> Array:
-    """Where two polylines, no piece of them longer than `CELL_MM`, cross: (n, 2) places of each, as numbers of points with their share on, along the first."""
-    pieces = np.delete(np.arange(len(one_mm) + len(other_mm) - 1), len(one_mm) - 1)
-    found = _crossings(np.ascontiguousarray(np.vstack([one_mm, other_mm])), pieces)
-    found = found[(found[:, 0] < len(one_mm)) & (found[:, 1] >= len(one_mm))] - [0, len(one_mm)]
-    return np.asarray(found[np.argsort(found[:, 0])])
-
-
-def with_places(line_mm: Array, apart_mm: float) -> Array:
-    """A polyline with more places on it, none further apart than this."""
-    s = np.r_[0.0, np.cumsum(np.hypot(*np.diff(line_mm, axis=0).T))]
-    keep = np.r_[True, np.diff(s) > 0]
-    s, line_mm = s[keep], line_mm[keep]
-    counts = np.maximum(1, np.ceil(np.diff(s) / apart_mm)).astype(int)
-    firsts = np.r_[0, np.cumsum(counts)]
-    at = np.interp(np.arange(firsts[-1] + 1), firsts, s)
-    return np.column_stack([np.interp(at, s, column) for column in line_mm.T])
-
-
 def _guided(guide: Guide) -> Array:
     """The places of a guide that count, the tool on its left; of a closed one the last is not the first again."""
     points = np.ascontiguousarray(guide.points_mm if guide.left else guide.points_mm[::-1], float)
-    points = points[_kept(points, PLAIN)]
+    points = plain(points, PLAIN)
     points = points[np.r_[True, np.hypot(*np.diff(points, axis=0).T) > PLAIN]]
     if guide.closed and len(points) > 1 and np.hypot(*(points[-1] - points[0])) <= APART_MM:
         points = points[:-1]
@@ -200,7 +155,7 @@ def _parted(swung: list[Array], closed: list[bool], near: Nearest, radius_mm: fl
     close = near.distances_mm(every) > radius_mm - DEEP_MM
     leads_on = np.ones(len(every), bool)
     leads_on[firsts[1:] - 1] = False
-    pairs = _crossings(every, np.flatnonzero(leads_on[:-1] & (close[:-1] | close[1:])))
+    pairs = crossings_of(every, np.flatnonzero(leads_on[:-1] & (close[:-1] | close[1:])))
     at = np.concatenate([pairs[:, 0], pairs[:, 1]])
     number = np.tile(np.arange(len(pairs)), 2)
     pieces = list[_Piece]()
@@ -301,74 +256,3 @@ def _begun(points: Array, start_mm: Array) -> Array:
         gaps = np.diff(np.r_[sharp, sharp[:1] + len(points)])
         first = int(sharp[np.argmax(gaps)] + gaps.max() // 2) % len(points) if len(sharp) else 0
     return _closed_up(np.roll(points, -first, axis=0), True)
-
-
-def _crossings(points: Array, pieces: Ints) -> Array:
-    """Where straight pieces (numbers of their first points) cross each other: (n, 2) places as numbers of points with their share on."""
-    if not len(pieces):
-        return np.empty((0, 2))
-    cells = np.floor(points[pieces] / CELL_MM).astype(np.int64)
-    cells -= cells.min(axis=0) - 1
-    wide = int(cells[:, 1].max()) + 2
-    keys = cells[:, 0] * wide + cells[:, 1]
-    order = np.argsort(keys, kind="stable")
-    return _crossings_in(points, pieces[order], keys[order], wide)
-
-
-@njit(cache=True)
-def _crossings_in(points, pieces, keys, wide):  # type: ignore[no-untyped-def]
-    """The crossings of pieces that are sorted by the cells of a grid; a piece is shorter than a cell."""
-    found = np.empty((16, 2))
-    count = 0
-    for m in range(len(pieces)):
-        i = pieces[m]
-        ax, ay = points[i, 0], points[i, 1]
-        px, py = points[i + 1, 0] - ax, points[i + 1, 1] - ay
-        for column in range(-1, 2):
-            first = keys[m] + column * wide - 1
-            for n in range(np.searchsorted(keys, first), len(pieces)):
-                if keys[n] > first + 2:
-                    break
-                j = pieces[n]
-                if j <= i + 1:
-                    continue
-                qx, qy = points[j + 1, 0] - points[j, 0], points[j + 1, 1] - points[j, 1]
-                cross = px * qy - py * qx
-                if cross == 0.0:
-                    continue
-                wx, wy = points[j, 0] - ax, points[j, 1] - ay
-                u, v = (wx * qy - wy * qx) / cross, (wx * py - wy * px) / cross
-                if 0.0 <= u < 1.0 and 0.0 <= v < 1.0:
-                    if count == len(found):
-                        found = np.concatenate((found, np.empty_like(found)))
-                    found[count, 0], found[count, 1] = i + u, j + v
-                    count += 1
-    return found[:count].copy()
-
-
-@njit(cache=True)
-def _kept(points, tolerance):  # type: ignore[no-untyped-def]
-    """Which points of a polyline to keep so that none is further than this from the straight pieces (Douglas and Peucker)."""
-    kept = np.zeros(len(points), np.bool_)
-    kept[0] = kept[-1] = True
-    stack = np.empty((len(points) + 1, 2), np.int64)
-    stack[0, 0], stack[0, 1] = 0, len(points) - 1
-    count = 1
-    while count > 0:
-        count -= 1
-        first, last = stack[count, 0], stack[count, 1]
-        wx, wy = points[last, 0] - points[first, 0], points[last, 1] - points[first, 1]
-        length2 = wx * wx + wy * wy
-        worst, at = 0.0, -1
-        for k in range(first + 1, last):
-            dx, dy = points[k, 0] - points[first, 0], points[k, 1] - points[first, 1]
-            share = min(max((dx * wx + dy * wy) / length2, 0.0), 1.0) if length2 > 0 else 0.0
-            off = (dx - share * wx) ** 2 + (dy - share * wy) ** 2
-            if off > worst:
-                worst, at = off, k
-        if worst > tolerance * tolerance:
-            kept[at] = True
-            stack[count, 0], stack[count, 1] = first, at
-            stack[count + 1, 0], stack[count + 1, 1] = at, last
-            count += 2
-    return kept

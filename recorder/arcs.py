@@ -26,6 +26,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from motion.polyline import lengths_mm
 from recorder.pieces import (
     SAME_MM,
     SPACING_MM,
@@ -33,7 +34,6 @@ from recorder.pieces import (
     corners,
     curvature_per_mm,
     heading_rad,
-    lengths_mm,
     longest_pieces,
     resample,
 )

@@ -19,6 +19,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from motion.polyline import lengths_mm
+
 SPACING_MM = 0.05
 WINDOW_MM = 0.2
 CORNER_RAD = 0.2
@@ -31,14 +33,9 @@ Piece = tuple[int, int, bool]  # first place, last place, whether it is straight
 
 def resample(points_mm: Array, spacing_mm: float = SPACING_MM) -> Array:
     """Points at about equal distances along a polyline; its first and last are kept."""
-    s = np.r_[0.0, np.cumsum(np.hypot(*np.diff(points_mm, axis=0).T))]
+    s = lengths_mm(points_mm)
     at = np.linspace(0.0, s[-1], max(2, round(s[-1] / spacing_mm) + 1))
     return np.column_stack([np.interp(at, s, points_mm[:, 0]), np.interp(at, s, points_mm[:, 1])])
-
-
-def lengths_mm(points: Array) -> Array:
-    """Length of a polyline up to each of its points, mm."""
-    return np.r_[0.0, np.cumsum(np.hypot(*np.diff(points, axis=0).T))]
 
 
 def corners(points_mm: Array) -> NDArray[np.int64]:

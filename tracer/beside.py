@@ -23,7 +23,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import polynomial
 
-from motion.offset import APART_MM, Way, crossings, with_places
+from motion.offset import Way
+from motion.polyline import APART_MM, crossings, lengths_mm, with_places
 from tracer.course import hermite
 from tracer.leg import turn
 from tracer.line import Line
@@ -78,7 +79,7 @@ def _places(line: Line, first: int) -> Array:
     whole = np.empty((0, 2))
     for k, (a, b) in enumerate(zip(begins, ends, strict=True)):
         part = line.xy_mm[a : b + 1]
-        lengths = np.r_[0.0, np.cumsum(np.hypot(*np.diff(part, axis=0).T))]
+        lengths = lengths_mm(part)
         low = LEFT_OUT_MM if k > 0 else 0.0
         high = lengths[-1] - (LEFT_OUT_MM if k < len(guides) else 0.0)
         part = part[(lengths >= low) & (lengths <= high)]
@@ -97,7 +98,7 @@ def _bridge(before: Array, after: Array) -> Array:
 
 def _closed(places_mm: Array) -> Array:
     """Places of a closed contour (n, 2) mm, brought together where it begins and ends: the head came there twice, some um apart."""
-    lengths = np.r_[0.0, np.cumsum(np.hypot(*np.diff(places_mm, axis=0).T))]
+    lengths = lengths_mm(places_mm)
     gap_mm = 0.5 * (places_mm[-1] - places_mm[0])
     after, before = (np.clip(1 - mm / MET_MM, 0.0, 1.0) for mm in (lengths, lengths[-1] - lengths))
     return np.asarray(places_mm + (after - before)[:, None] * gap_mm)
@@ -166,7 +167,7 @@ class Beside:
 
 def _evenly(line_mm: Array) -> Array:
     """Places of a polyline, `APART_MM` from each to the next."""
-    lengths = np.r_[0.0, np.cumsum(np.hypot(*np.diff(line_mm, axis=0).T))]
+    lengths = lengths_mm(line_mm)
     at_mm = np.arange(0.0, lengths[-1], APART_MM)
     return np.column_stack([np.interp(at_mm, lengths, column) for column in line_mm.T])
 

@@ -28,6 +28,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from motion.feed import run_along
+from motion.polyline import lengths_mm
 from tracer import stops
 from tracer.beside import Beside, Place
 from tracer.junctions import Guide
@@ -60,7 +61,7 @@ class Feed:
         pieces = stops.pieces(rows_mm, at, BRAKE_MM_S2, self.rate_hz)[: len(at)]
         rested = np.vstack([pieces[0], *(piece[1:] for piece in pieces[1:])])
         rests = [len(pieces[0]) - 1, *(len(piece) - 1 for piece in pieces[1:])]
-        was, now = _lengths(rows_mm), _lengths(rested)
+        was, now = lengths_mm(rows_mm), lengths_mm(rested)
         knots = [np.r_[0.0, np.interp(at, np.arange(len(was)), was)], np.r_[0.0, now[np.cumsum(rests)]]]
         return rested, lambda old: _position(rested, float(np.interp(np.interp(old, np.arange(len(was)), was), *knots)))
 
@@ -91,14 +92,14 @@ class _Run:
         k = int(begin)
         place = way_mm[k] + (begin - k) * (way_mm[min(k + 1, len(way_mm) - 1)] - way_mm[k])
         points = np.vstack([place, way_mm[k + 1 :], way_mm[1 : k + 1], place]) if begin > 0 else way_mm
-        return cls(feed.run(points), way_mm, float(np.interp(begin, np.arange(len(way_mm)), _lengths(way_mm))))
+        return cls(feed.run(points), way_mm, float(np.interp(begin, np.arange(len(way_mm)), lengths_mm(way_mm))))
 
     def position(self, place: Place) -> float:
         """Which position is at a place of the way, fractions included, before any guide line is put in."""
-        along = _lengths(self.way_mm)
+        along = lengths_mm(self.way_mm)
         mm = float(np.interp(place.at, np.arange(len(along)), along)) - self.begin_mm
         mm = mm if mm >= 0 else mm + along[-1]
-        return _position(self.xy_mm, mm / along[-1] * _lengths(self.xy_mm)[-1])
+        return _position(self.xy_mm, mm / along[-1] * lengths_mm(self.xy_mm)[-1])
 
     def put_in(self, detours: list[_Detour]) -> None:
         """Leave the way for guide lines, and come back to it."""
@@ -195,7 +196,7 @@ def _detour(beside: Beside, guide: Guide, runs: list[_Run], feed: Feed) -> tuple
     at = {mark.at: mark.at for mark in line.marks if guide.leave < mark.at < guide.back} | {guide.tip: guide.tip}
     drilled = [mark.at for mark in line.marks if mark.at in at and mark.kind == "dot"]
     out = xy_mm[guide.leave : round(min([*drilled, guide.tip])) + 1]
-    crossed = [(at, place) for at, place in beside.met(out) if _lengths(out)[int(at)] < OBLIQUE * beside.radius_mm]
+    crossed = [(at, place) for at, place in beside.met(out) if lengths_mm(out)[int(at)] < OBLIQUE * beside.radius_mm]
     place = crossed[0][1] if crossed else beside.foot(xy_mm[guide.leave])
     row = round(runs[place.way].position(place))
     begin, end = guide.leave, guide.back
@@ -231,7 +232,7 @@ def _lines(beside: Beside, runs: list[_Run], lead: _Lead | None) -> list[Line]:
         made = replace(plain, xy_mm=run.xy_mm, guides=(*plain.guides, *run.guides))
         made = replace(made, marks=tuple(replace(mark, place_mm=made.place(mark.at)) for mark in marks))
         ours = sorted((run.at[stop.at], stop.number or 0) for stop in cut.stops if stop.at in run.at)
-        lines.append(replace(made, length_mm=float(_lengths(run.xy_mm)[-1]), numbers=tuple(n for _, n in ours)))
+        lines.append(replace(made, length_mm=float(lengths_mm(run.xy_mm)[-1]), numbers=tuple(n for _, n in ours)))
     return lines
 
 
@@ -246,10 +247,6 @@ def _shifted(guide: Guide, positions: int) -> Guide:
 
 def _position(xy_mm: Array, mm: float) -> float:
     """Which position of a run has come so far, fractions included."""
-    lengths = _lengths(xy_mm)
+    lengths = lengths_mm(xy_mm)
     moving = np.flatnonzero(np.r_[True, np.diff(lengths) > 0])
     return float(np.interp(mm, lengths[moving], moving))
-
-
-def _lengths(line_mm: Array) -> Array:
-    return np.r_[0.0, np.cumsum(np.hypot(*np.diff(line_mm, axis=0).T))]

@@ -25,7 +25,8 @@ from typing import Literal
 import numpy as np
 
 from motion.faults import LineFault, MotionFault
-from motion.offset import Guide, Nearest, Way, offset, with_places
+from motion.offset import Guide, Way, offset
+from motion.polyline import Nearest, with_places
 from tracer import contours
 from tracer.beside import Beside, Cut
 from tracer.carried import Feed, carried

@@ -21,6 +21,7 @@ from scipy.ndimage import map_coordinates
 
 from motion.faults import MotionFault
 from motion.motion import Path
+from motion.polyline import lengths_mm
 from tracer.drawing import Drawing
 from tracer.patches import Mask, Patches, runs_of, strips
 
@@ -115,7 +116,7 @@ def _places(run: Array, every_mm: float = EVERY_MM) -> tuple[Array, Array]:
     steps = np.hypot(*np.diff(run, axis=0).T)
     keep = np.r_[True, steps > 1e-9]
     run = run[keep]
-    s = np.r_[0.0, np.cumsum(np.hypot(*np.diff(run, axis=0).T))]
+    s = lengths_mm(run)
     at = np.arange(0.5 * every_mm, s[-1], every_mm)
     points = np.column_stack([np.interp(at, s, run[:, 0]), np.interp(at, s, run[:, 1])])
     half = 0.5 * EVERY_MM

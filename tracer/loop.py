@@ -19,7 +19,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from motion.offset import crossings
+from motion.polyline import crossings
 from tracer.view import Array
 
 STEP_MM = 0.03

@@ -25,6 +25,7 @@ import numpy as np
 from motion import ramp
 from motion.faults import LineFault
 from motion.motion import BLOCK_SAMPLES, MOTION_RATE_HZ, Motion
+from motion.polyline import lengths_mm
 from tracer import stops
 from tracer.line import Line
 from tracer.operator import Action, Entry, Operator, Work
@@ -163,7 +164,7 @@ class Trace:
         if down is None or down.entry is None or not (line.ending == "closed" or line.is_lead):
             return
         first = line.loop_from if line.is_lead and line.loop_from is not None else 0
-        lengths = np.r_[0.0, np.cumsum(np.hypot(*np.diff(line.xy_mm, axis=0).T))]
+        lengths = lengths_mm(line.xy_mm)
         last = int(
             np.searchsorted(lengths, np.interp(down.halt.at, range(len(lengths)), lengths) + down.entry.length_mm)
         )
@@ -242,7 +243,7 @@ def _at(xy_mm: Array, z_mm: float | Array) -> Array:
 
 def _entered(xy_mm: Array, entry: Entry, come_mm: float) -> tuple[Array, float]:
     """Z along a piece (n, 2) mm of the way on which the tool goes down, (n,) mm, and how far it has come then: smooth at both ends, 3s² - 2s³."""
-    lengths = come_mm + np.r_[0.0, np.cumsum(np.hypot(*np.diff(xy_mm, axis=0).T))]
+    lengths = come_mm + lengths_mm(xy_mm)
     share = np.minimum(lengths / entry.length_mm, 1.0)
     return -entry.depth_mm * share**2 * (3 - 2 * share), float(lengths[-1])
 

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion.faults import DrawingFault
-from motion.offset import with_places
+from motion.polyline import with_places
 from tracer import room
 from tracer.vertices import APART_PX, sharpened
 

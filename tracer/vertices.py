@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 from scipy.spatial import cKDTree
 
-from motion.offset import with_places
+from motion.polyline import with_places
 
 APART_PX = 0.25  # between the places of an outline
 CLEAR = 3.0  # standard deviations: a leg is where it is when the other is as far away as this

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from motion.contour import distance
 from motion.feed import run_along
 from motion.motion import MOTION_RATE_HZ
-from motion.offset import Guide, Nearest, offset
+from motion.offset import Guide, offset
+from motion.polyline import Nearest
 
 shapely = pytest.importorskip("shapely")
 
@@ -162,9 +163,3 @@ def test_a_kink_of_some_um_does_not_part_the_way() -> None:
     (way,) = offset([Guide(line, False, True)], 5.0)  # in two pieces, when a curl within the tolerance led back
     assert distance(way.points_mm, np.array([way.points_mm[0], way.points_mm[-1]])).hausdorff_mm < 0.2
     assert np.abs(Nearest([line], 5.0).distances_mm(way.points_mm) - 5.0).max() < 1 * UM
-
-
-def test_places_that_are_too_near_are_set_back_straight_and_no_others() -> None:
-    near = Nearest([np.array([[0.0, 0.0], [10.0, 0.0]])], 2.0)
-    back = near.set_back(np.array([[5.0, 1.99], [6.0, 2.5], [7.0, -1.999]]), 2.0)
-    assert back == pytest.approx(np.array([[5.0, 2.0], [6.0, 2.5], [7.0, -2.0]]), abs=0.1 * UM)

@@ -10,7 +10,7 @@ import pytest
 
 from motion.faults import LineFault, MotionFault
 from motion.motion import join
-from motion.offset import Nearest
+from motion.polyline import Nearest
 from tests.tracer.inked import UM, arc, cross, dot, inked, polyline, tick
 from tests.tracer.test_program import EXACT_MM, WORK, at, in_work, run_through
 from tracer.beside import Cut

@@ -1,0 +1,143 @@
+"""Polylines: how long they are, where they cross, how far places are from them, and with fewer or more places on them.
+
+Signals: polylines (n, 2) mm in; lengths, distances and polylines in mm out, crossings as numbers of places with their share on.
+
+Source: our own; fewer places as by Douglas and Peucker, The Canadian Cartographer 10 (1973).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+UM = 1e-3  # mm
+APART_MM = 0.02  # between places that stand for a line
+WITHIN_MM = 0.05 * UM  # distances from a line are true to this
+CELL_MM = 0.05  # of the grid in which crossings are sought: more than any piece is long
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+def lengths_mm(line_mm: Array) -> Array:
+    """Length of a polyline up to each of its places, mm."""
+    return np.r_[0.0, np.cumsum(np.hypot(*np.diff(line_mm, axis=0).T))]
+
+
+def plain(line_mm: Array, within_mm: float) -> Array:
+    """A polyline with only so many of its places that none left out is further than this from it."""
+    return line_mm[_kept(np.ascontiguousarray(line_mm, float), within_mm)]
+
+
+def with_places(line_mm: Array, apart_mm: float) -> Array:
+    """A polyline with more places on it, none further apart than this."""
+    s = lengths_mm(line_mm)
+    keep = np.r_[True, np.diff(s) > 0]
+    s, line_mm = s[keep], line_mm[keep]
+    counts = np.maximum(1, np.ceil(np.diff(s) / apart_mm)).astype(int)
+    firsts = np.r_[0, np.cumsum(counts)]
+    at = np.interp(np.arange(firsts[-1] + 1), firsts, s)
+    return np.column_stack([np.interp(at, s, column) for column in line_mm.T])
+
+
+class Nearest:
+    """Finds how far places are from lines, true to `WITHIN_MM` for places that are a radius away."""
+
+    def __init__(self, lines_mm: Sequence[Array], radius_mm: float) -> None:
+        from scipy.spatial import cKDTree
+
+        apart_mm = min(APART_MM, math.sqrt(8 * radius_mm * WITHIN_MM))
+        self._tree = cKDTree(np.vstack([with_places(line, apart_mm) for line in lines_mm]))
+
+    def distances_mm(self, places_mm: Array) -> Array:
+        """Distance of each place (n, 2) from the nearest line, mm."""
+        return np.asarray(self._tree.query(places_mm)[0])
+
+    def set_back(self, places_mm: Array, distance_mm: float) -> Array:
+        """The places (n, 2), those that are nearer than a distance moved straight away from the nearest place of a line to it."""
+        away, index = self._tree.query(places_mm)
+        lines = np.asarray(self._tree.data)[index]
+        return np.asarray(lines + (places_mm - lines) * np.maximum(1.0, distance_mm / np.maximum(away, UM))[:, None])
+
+
+def crossings(one_mm: Array, other_mm: Array) -> Array:
+    """Where two polylines, no piece of them longer than `CELL_MM`, cross: (n, 2) places of each, as numbers of points with their share on, along the first."""
+    pieces = np.delete(np.arange(len(one_mm) + len(other_mm) - 1), len(one_mm) - 1)
+    found = crossings_of(np.ascontiguousarray(np.vstack([one_mm, other_mm])), pieces)
+    found = found[(found[:, 0] < len(one_mm)) & (found[:, 1] >= len(one_mm))] - [0, len(one_mm)]
+    return np.asarray(found[np.argsort(found[:, 0])])
+
+
+def crossings_of(points: Array, pieces: Ints) -> Array:
+    """Where straight pieces (numbers of their first points) cross each other: (n, 2) places as numbers of points with their share on."""
+    if not len(pieces):
+        return np.empty((0, 2))
+    cells = np.floor(points[pieces] / CELL_MM).astype(np.int64)
+    cells -= cells.min(axis=0) - 1
+    wide = int(cells[:, 1].max()) + 2
+    keys = cells[:, 0] * wide + cells[:, 1]
+    order = np.argsort(keys, kind="stable")
+    return _crossings_in(points, pieces[order], keys[order], wide)
+
+
+@njit(cache=True)
+def _crossings_in(points, pieces, keys, wide):  # type: ignore[no-untyped-def]
+    """The crossings of pieces that are sorted by the cells of a grid; a piece is shorter than a cell."""
+    found = np.empty((16, 2))
+    count = 0
+    for m in range(len(pieces)):
+        i = pieces[m]
+        ax, ay = points[i, 0], points[i, 1]
+        px, py = points[i + 1, 0] - ax, points[i + 1, 1] - ay
+        for column in range(-1, 2):
+            first = keys[m] + column * wide - 1
+            for n in range(np.searchsorted(keys, first), len(pieces)):
+                if keys[n] > first + 2:
+                    break
+                j = pieces[n]
+                if j <= i + 1:
+                    continue
+                qx, qy = points[j + 1, 0] - points[j, 0], points[j + 1, 1] - points[j, 1]
+                cross = px * qy - py * qx
+                if cross == 0.0:
+                    continue
+                wx, wy = points[j, 0] - ax, points[j, 1] - ay
+                u, v = (wx * qy - wy * qx) / cross, (wx * py - wy * px) / cross
+                if 0.0 <= u < 1.0 and 0.0 <= v < 1.0:
+                    if count == len(found):
+                        found = np.concatenate((found, np.empty_like(found)))
+                    found[count, 0], found[count, 1] = i + u, j + v
+                    count += 1
+    return found[:count].copy()
+
+
+@njit(cache=True)
+def _kept(points, tolerance):  # type: ignore[no-untyped-def]
+    """Which points of a polyline to keep so that none is further than this from the straight pieces (Douglas and Peucker)."""
+    kept = np.zeros(len(points), np.bool_)
+    kept[0] = kept[-1] = True
+    stack = np.empty((len(points) + 1, 2), np.int64)
+    stack[0, 0], stack[0, 1] = 0, len(points) - 1
+    count = 1
+    while count > 0:
+        count -= 1
+        first, last = stack[count, 0], stack[count, 1]
+        wx, wy = points[last, 0] - points[first, 0], points[last, 1] - points[first, 1]
+        length2 = wx * wx + wy * wy
+        worst, at = 0.0, -1
+        for k in range(first + 1, last):
+            dx, dy = points[k, 0] - points[first, 0], points[k, 1] - points[first, 1]
+            share = min(max((dx * wx + dy * wy) / length2, 0.0), 1.0) if length2 > 0 else 0.0
+            off = (dx - share * wx) ** 2 + (dy - share * wy) ** 2
+            if off > worst:
+                worst, at = off, k
+        if worst > tolerance * tolerance:
+            kept[at] = True
+            stack[count, 0], stack[count, 1] = first, at
+            stack[count + 1, 0], stack[count + 1, 1] = at, last
+            count += 2
+    return kept

@@ -1,0 +1,73 @@
+"""Polylines against geometry that is known, and against all pairs of their pieces."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from motion.polyline import APART_MM, CELL_MM, WITHIN_MM, Nearest, crossings, lengths_mm, plain, with_places
+
+ROUNDING_MM = 1e-12
+
+
+def wave(seed: int, mm: float = 4.0) -> np.ndarray:
+    """A line that wanders at random, with places close enough for its crossings."""
+    turns = np.cumsum(np.random.default_rng(seed).normal(0, 0.7, 12))
+    nodes = np.vstack([np.zeros(2), np.cumsum(mm / 12 * np.column_stack([np.cos(turns), np.sin(turns)]), axis=0)])
+    return with_places(nodes, 0.9 * CELL_MM)
+
+
+def test_lengths_add_up_along_the_line() -> None:
+    line = np.array([[0, 0], [3, 4], [3, 4], [3, 5.0]])
+    assert lengths_mm(line).tolist() == [0, 5, 5, 6]
+
+
+@given(seed=st.integers(0, 10_000), apart_mm=st.floats(0.003, 3))
+@settings(max_examples=30, deadline=None)
+def test_more_places_leave_the_line_where_it_is(seed: int, apart_mm: float) -> None:
+    line = plain(wave(seed), ROUNDING_MM)
+    more = with_places(line, apart_mm)
+    assert np.hypot(*np.diff(more, axis=0).T).max() <= apart_mm + ROUNDING_MM
+    assert lengths_mm(more)[-1] == pytest.approx(lengths_mm(line)[-1], abs=ROUNDING_MM)
+    assert all(np.hypot(*(more - place).T).min() < ROUNDING_MM for place in line)
+
+
+def test_fewer_places_are_within_what_is_allowed() -> None:
+    angle = np.linspace(0, math.tau, 5001)
+    circle = np.column_stack([10 * np.cos(angle), 10 * np.sin(angle)])
+    kept = plain(circle, 0.01)
+    assert 70 <= len(kept) < 2 * 70  # chords with a rise of 0.01 mm are 0.9 mm long; they are halved as a whole
+    assert np.abs(np.hypot(*with_places(kept, 0.05).T) - 10).max() <= 0.01 + ROUNDING_MM
+
+
+@given(one=st.integers(0, 10_000), other=st.integers(0, 10_000), turn=st.floats(0.5, 2.5))
+@settings(max_examples=30, deadline=None)
+def test_crossings_are_those_of_all_pairs_of_pieces(one: int, other: int, turn: float) -> None:
+    a = wave(one)
+    c, s = math.cos(turn), math.sin(turn)
+    b = wave(other) @ np.array([[c, s], [-s, c]]) + [0.3, -0.2]
+    found = crossings(a, b)
+    p, q = np.diff(a, axis=0)[:, None], np.diff(b, axis=0)[None]
+    w = b[None, :-1] - a[:-1, None]
+    cross = p[..., 0] * q[..., 1] - p[..., 1] * q[..., 0]
+    u, v = ((w[..., 0] * d[..., 1] - w[..., 1] * d[..., 0]) / cross for d in (q, p))
+    i, j = np.nonzero((u >= 0) & (u < 1) & (v >= 0) & (v < 1))
+    wanted = np.column_stack([i + u[i, j], j + v[i, j]])
+    assert found == pytest.approx(wanted[np.argsort(wanted[:, 0])], abs=1e-6)  # of a piece: where it is met at a slant
+
+
+def test_distances_are_true_a_radius_away() -> None:
+    near = Nearest([np.array([[0, 0], [10, 0.0]]), np.array([[0, 8], [10, 8.0]])], 3.0)
+    places = np.array([[5, 3], [5.0123, -3], [2, 7.5], [-3, 0.0]])
+    assert near.distances_mm(places)[[0, 1, 3]] == pytest.approx([3, 3, 3], abs=WITHIN_MM)
+    assert near.distances_mm(places)[2] == pytest.approx(0.5, abs=APART_MM**2)
+
+
+def test_places_that_are_too_near_are_set_back_straight_and_no_others() -> None:
+    near = Nearest([np.array([[0.0, 0.0], [10.0, 0.0]])], 2.0)
+    back = near.set_back(np.array([[5.0, 1.99], [6.0, 2.5], [7.0, -1.999]]), 2.0)
+    assert back == pytest.approx(np.array([[5.0, 2.0], [6.0, 2.5], [7.0, -2.0]]), abs=0.1 * 1e-3)
