@@ -6,7 +6,6 @@ beside.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path as FilePath
@@ -16,6 +15,7 @@ import click
 
 from console import medium
 from console.desk import Desk
+from console.remarks import remarks
 from motion.faults import CardFault, Fault, LineFault
 
 if TYPE_CHECKING:
@@ -29,8 +29,6 @@ if TYPE_CHECKING:
     from tracer.program import Trace
     from tracer.settings import Settings
 
-UNEVEN = 1.25  # the widest gap of a dashed line over the one that was met
-FEW = 0.7  # of the ink that is joined to a line: what is left is worth a word
 SET_BY_OPTIONS = (
     "speed_mm_s",
     "gap_mm",
@@ -95,12 +93,8 @@ class Head:
             if picture is not None:
                 self._show_sheet(drawing, fault, medium.incomplete(picture), desk)
             raise
-        self._tell_of_stops(traced, desk)
-        self._tell_of_reference(traced, desk)
-        self._tell_of_gaps(traced, desk)
-        self._tell_of_breaks(traced, desk, settings.gap_mm)
-        self._tell_of_stems(traced, desk)
-        self._tell_of_rest(traced, desk)
+        for text in remarks(traced, self, settings.gap_mm):
+            desk.note(text)
         origin_mm = (0.0, 0.0) if self.marks.origin == "sheet" else self._reference_mm(drawing, traced)
         beside, unreached = self._beside(traced, settings)
         return Traced(beside, thin(beside), self.lines is not None, origin_mm, self.cutter, unreached)
@@ -112,75 +106,6 @@ class Head:
         from tracer.cutter import with_cutter
 
         return with_cutter(traced, self.cutter, settings.speed_mm_s)
-
-    @staticmethod
-    def _tell_of_stops(trace: Trace, desk: Desk) -> None:
-        """Tell of stops that the card or --override names and that are not on the drawing."""
-        missing, stops = trace.operator.not_there(trace.lines)
-        if missing:
-            numbers = ", ".join(map(str, missing))
-            desk.note(
-                f"there is no stop {numbers}: {stops} were found, see their places in the figures; the rest is followed"
-            )
-
-    @staticmethod
-    def _tell_of_gaps(trace: Trace, desk: Desk) -> None:
-        """Tell of lines that end where they began, but for a gap that is wider than allowed."""
-        for line in trace.lines:
-            if line.gap_mm is not None:
-                which = f"line {line.number}" if len(trace.lines) > 1 else "the line"
-                (x, y), wide_mm = line.start_mm, math.ceil(10 * line.gap_mm) / 10
-                desk.note(
-                    f"{which} is open, but ends {line.gap_mm:.1f} mm from its beginning at {x:.1f},{y:.1f} mm: "
-                    f"if that is a gap in a closed line, --gap {wide_mm:g}mm takes the head across"
-                )
-
-    def _tell_of_breaks(self, trace: Trace, desk: Desk, gap_mm: float) -> None:
-        """Tell of the first end from which ink goes on straight ahead, beyond the gap that is allowed, and of how many there are."""
-        lines = [line for line in trace.lines if line.gap_mm is None]
-        found = [(line, broken) for line in lines for broken in line.breaks if broken.gap_mm > gap_mm]
-        if not found:
-            return
-        (line, (place_mm, _)), more = found[0], len(found) - 1
-        which = f"line {line.number}" if len(trace.lines) > 1 else "the line"
-        wide_mm = math.ceil(10 * UNEVEN * max(broken.gap_mm for _, broken in found)) / 10
-        desk.note(
-            f"{which} ends at {place_mm[0]:.1f},{place_mm[1]:.1f} mm, and ink goes on straight ahead of it"
-            f"{f', as at {more} more' * bool(more)}: if that is one line, dashed or with gaps, --gap {wide_mm:g}mm takes the "
-            "head across"
-        )
-
-    @staticmethod
-    def _tell_of_stems(trace: Trace, desk: Desk) -> None:
-        """Tell of lines that lead to a loop and are cut with it, because nothing says that they are lead lines."""
-        for line in trace.lines:
-            if line.loop_from is not None and not line.is_lead:
-                (x, y), (u, v) = line.start_mm, line.place(line.loop_from)
-                desk.note(
-                    f"the line from {x:.1f},{y:.1f} to the contour at {u:.1f},{v:.1f} mm is cut too: a lead line is known "
-                    "by a cross or ring at its beginning, by --reference X,Y there, or by a tick across it"
-                )
-
-    def _tell_of_rest(self, trace: Trace, desk: Desk) -> None:
-        """Tell of one line that it is the smaller part of the ink in which lines cross or touch."""
-        line = trace.lines[0]
-        if self.lines is None and trace.fault is None and line.length_mm < FEW * line.ink_mm:
-            desk.note(
-                f"about {line.ink_mm - line.length_mm:.0f} mm of ink that is joined to the line was not followed: "
-                "--lines all follows the lines that cross or touch it too, --start X,Y another one"
-            )
-
-    def _tell_of_reference(self, trace: Trace, desk: Desk) -> None:
-        """Tell of a reference point that was named and from which no line begins."""
-        from tracer.stance import LEAD_MM
-
-        named = self.marks.reference_mm
-        if named is None or any(line.reference_mm == named for line in trace.lines):
-            return
-        use = (
-            "it is the machine's zero only" if self.marks.origin == "reference" else "the program does not begin there"
-        )
-        desk.note(f"no line begins within {LEAD_MM:g} mm of the reference point {named[0]:g},{named[1]:g} mm: {use}")
 
     def _reference_mm(self, drawing: Drawing, trace: Trace) -> tuple[float, float]:
         """The reference point: the one given, that from which the program begins, or the only one on the sheet; raises LineFault without one."""

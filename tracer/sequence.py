@@ -2,46 +2,31 @@
 
 Signals: a Drawing in; out a Trace, which is a stream of Motion (X, Y, Z in sheet mm at the motion rate) and says how the run ended. Several lines: see `tour`.
 
-A line that turns out to be open is followed from end to end: the head that was put down on its middle runs to one end first, with nothing recorded, and
-begins there. A line that does not come back one way round is tried the other way; one that runs into what has been followed already is tried with
-other turns at its junctions, as an operator would.
+From each of the places where the head may be put down the line is followed in several attempts (see `attempts`), until one of them is the line.
 
 Source: patent ES 361967, section on use: the operator brings the head over the drawing and lets it run.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
-from itertools import combinations
 
 import numpy as np
 
 from motion.faults import LineFault
-from motion.motion import MOTION_RATE_HZ
+from tracer.attempts import Attempts, asked_for, goes, longest_mm, turned_about
 from tracer.drawing import Drawing
-from tracer.follower import Followed, Follower
-from tracer.leg import turn
 from tracer.line import Line
-from tracer.lines import INK, Sheet, Stroke
-from tracer.operator import Direction, Operator
+from tracer.lines import Sheet, Stroke
+from tracer.operator import Operator
 from tracer.program import Trace
 from tracer.settings import Settings
 from tracer.stance import Stance, ends_of, put_down, turned_round
-from tracer.survey import SIDES, Side
 
-SHORTER = 0.95  # the other way round is the line itself if it is shorter than this: straight on has led elsewhere
-DOUBTS = 8  # looked into, of a run
-TURNS = 12  # junctions at which another turn is tried
-TRIED_MM = 6000.0  # travel in all that is spent on other turns
 SHORT = 0.5  # of the ink that is joined to it: a run that ends so soon is another line's, which crosses this one
 ELSEWHERE = 5  # places at which the head is put down then
-OVERRUN_MM = 3.0  # a stub as short, straight on from a closed line, is where the pen set out, and not another's line
-
-
-Told = Callable[[float], None]
 
 
 def trace(
@@ -97,12 +82,12 @@ def followed_from_an_end(
 
 def followed_through(sheet: Sheet, stance: Stance, settings: Settings, operator: Operator) -> list[Line]:
     """The head's runs straight on through a stance, the last one round about in the direction asked for, or from end to end; no other turns are tried."""
-    attempts = _Attempts(settings, (), _longest_mm(sheet.drawing, stance.view.width_mm), None)
+    attempts = Attempts(settings, (), longest_mm(sheet.drawing, stance.view.width_mm), None)
     runs = [attempts.run(stance)]
     if runs[0].ending == "ended":
         runs.append(attempts.run(turned_round(runs[0].positions_mm[-1], runs[0].heading_rad, runs[0].view)))
-    elif runs[0].ending != "closed" or (operator.direction in ("cw", "ccw") and not _goes(runs[0], operator.direction)):
-        runs.append(attempts.run(_about(stance)))
+    elif runs[0].ending != "closed" or (operator.direction in ("cw", "ccw") and not goes(runs[0], operator.direction)):
+        runs.append(attempts.run(turned_about(stance)))
     return [Line.of(run) for run in runs]
 
 
@@ -176,7 +161,7 @@ def _line(
 ) -> Line:
     """The line as it is followed from a stance."""
     told = None if progress is None else partial(_tell, progress, length_mm)
-    run = _run(stance, start_mm, operator, settings, _longest_mm(sheet.drawing, stance.view.width_mm), told)
+    run = asked_for(stance, start_mm, operator, settings, longest_mm(sheet.drawing, stance.view.width_mm), told)
     return replace(Line.of(run, number, stance.reference_mm), ink_mm=length_mm)
 
 
@@ -189,141 +174,5 @@ def _several_lead(lines: list[Line]) -> LineFault:
     )
 
 
-def _run(
-    stance: Stance,
-    start_mm: tuple[float, float] | None,
-    operator: Operator,
-    settings: Settings,
-    longest_mm: float,
-    told: Told | None,
-) -> Followed:
-    """The run from a stance, in the direction and with the turns that the operator asks for."""
-    direction, sides = operator.direction, operator.sides
-    if direction in ("left", "right"):
-        if stance.at_end:
-            sides = sides or (direction,)
-        else:
-            stance = _turned_to(stance, start_mm, direction)
-    attempts = _Attempts(settings, sides, longest_mm, told)
-    if direction is None:
-        return attempts.all_of_it(stance)
-    return attempts.round_about(stance, direction)
-
-
-def _longest_mm(drawing: Drawing, width_mm: float) -> float:
-    """How far a run may go before it is going round in circles: four times all the ink."""
-    return 4 * float(np.count_nonzero(drawing.darkness > INK)) * drawing.pitch_mm**2 / width_mm + 20
-
-
 def _tell(progress: Callable[[float, float], None], length_mm: float, come_mm: float) -> None:
     progress(min(come_mm, length_mm), length_mm)
-
-
-@dataclass(frozen=True, slots=True)
-class _Attempts:
-    """How a line may be followed: the head's settings, the turns that the operator asks for, and how long a run may be."""
-
-    settings: Settings
-    sides: tuple[Side | None, ...]
-    longest_mm: float
-    told: Told | None
-    tips: bool = False  # go back from a tip in which two lines end
-
-    def run(self, stance: Stance, turns: tuple[int, ...] = ()) -> Followed:
-        """Follow from a stance."""
-        follower = Follower(stance, self.settings, MOTION_RATE_HZ, turns, self.sides, self.tips)
-        return follower.follow(self.longest_mm, self.told)
-
-    def all_of_it(self, stance: Stance) -> Followed:
-        """Follow a line from a stance: either way round, an open one from end to end, and one that does not come back with other turns."""
-        run = self.run(stance)
-        if stance.at_end or (run.ending == "closed" and not run.junctions_mm):
-            return self._taken_in(stance, run)
-        if run.at_tip:
-            both = replace(self, tips=True)
-            there_and_back = both.run(stance)
-            if there_and_back.ending == "closed":
-                return both._taken_in(stance, there_and_back)
-        other = self.run(_about(stance))
-        if run.ending == "closed":
-            if other.ending == "closed" and other.travel_mm < SHORTER * run.travel_mm:
-                return self._taken_in(_about(stance), other)
-            return self._taken_in(stance, run)
-        if run.ending == "ended":
-            back = self.run(turned_round(run.positions_mm[-1], run.heading_rad, run.view))
-            if other.ending == "closed" and not other.travel_mm < back.travel_mm < other.travel_mm + OVERRUN_MM:
-                return other
-            return max(run, back, key=lambda r: r.travel_mm)
-        if other.ending == "closed":
-            return other
-        return self._with_other_turns(stance, run) if run.ending == "joined" else run
-
-    def _taken_in(self, stance: Stance, run: Followed) -> Followed:
-        """A run that closes, with the ink taken in that it left out where another way would have done as well: the longest of `DOUBTS` more runs."""
-        best, tried = run, 0
-        open_runs: list[tuple[Followed, tuple[int, ...]]] = [(run, ())]
-        while open_runs and best.doubts:
-            run, turns = open_runs.pop(int(np.argmax([some.travel_mm for some, _ in open_runs])))
-            for number, rank in run.doubts if run.ending == "closed" else ():
-                if number in turns or tried == DOUBTS:
-                    continue
-                more = (*turns, *(number,) * rank)
-                other, tried = self.run(stance, more), tried + 1
-                open_runs.append((other, more))
-                best = other if other.ending == "closed" and other.travel_mm > best.travel_mm else best
-        return best
-
-    def _with_other_turns(self, stance: Stance, run: Followed) -> Followed:
-        """The shortest run that closes because it takes another turn at one junction, or else at two; else the run as it was.
-
-        No more are tried when the head has gone `TRIED_MM` with them.
-        """
-        places, gone_mm = range(min(len(run.junctions_mm), TURNS)), 0.0
-        for turns in ([(k,) for k in places], list(combinations(places, 2))):
-            closed = []
-            for some in turns:
-                if gone_mm < TRIED_MM:
-                    other = self.run(stance, some)
-                    gone_mm += other.travel_mm
-                    closed += [other] if other.ending == "closed" else []
-            if closed:
-                return min(closed, key=lambda other: other.travel_mm)
-        return run
-
-    def round_about(self, stance: Stance, direction: Direction) -> Followed:
-        """Follow a line in the direction that the operator asks for; raises LineFault if it has none, or does not come back in it."""
-        run = self.all_of_it(stance)
-        if direction in ("left", "right") or _goes(run, direction):
-            return run
-        sided = [replace(self, sides=(side,)) for side in SIDES]
-        tries = [other.run(stance) for other in sided] if stance.at_end else [self.run(_about(stance))]
-        for other in tries:
-            if other.ending == run.ending and _goes(other, direction):
-                return other
-        what = "the line is open" if run.ending == "ended" else "the line does not come back that way round"
-        raise LineFault(f"direction {direction}: {what}; leave --direction out, or look at the drawing")
-
-
-def _goes(run: Followed, direction: Direction) -> bool:
-    """Whether a run goes round in a direction."""
-    if run.ending not in ("closed", "joined") or (run.ending == "joined" and run.loop_from is None):
-        return False
-    x, y = run.positions_mm[run.loop_from or 0 :].T
-    area = float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
-    return (area > 0) == (direction == "ccw")
-
-
-def _about(stance: Stance) -> Stance:
-    """The same place, the other way."""
-    return replace(stance, heading_rad=math.remainder(stance.heading_rad + math.pi, math.tau))
-
-
-def _turned_to(stance: Stance, start_mm: tuple[float, float] | None, side: Side) -> Stance:
-    """The stance as the head comes to it from the place where it was put down, turning to a side; raises LineFault if that is on the line."""
-    way = stance.place_mm - np.asarray(stance.place_mm if start_mm is None else start_mm)
-    if np.hypot(*way) < 0.5 * stance.view.width_mm:
-        raise LineFault(
-            f"direction {side}: the head comes to the line from nowhere; give --start X,Y beside the line, or --direction cw or ccw"
-        )
-    ahead = turn(math.atan2(way[1], way[0]), stance.heading_rad)
-    return stance if (ahead > 0) == (side == "left") else _about(stance)

@@ -1,0 +1,98 @@
+"""Remarks: what the operator is told of a traced drawing beside its figures: what was not found, not followed, or is cut though it may not be meant.
+
+Signals: the traced lines, and what was asked of the head, in; texts out.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from console.tracing import Head, Marks
+    from tracer.line import Line
+    from tracer.program import Trace
+
+UNEVEN = 1.25  # the widest gap of a dashed line over the one that was met
+FEW = 0.7  # of the ink that is joined to a line: what is left is worth a word
+
+
+def remarks(trace: Trace, head: Head, gap_mm: float) -> Iterator[str]:
+    """All that is worth a word of a trace, the head having gone across gaps up to this."""
+    yield from _of_stops(trace)
+    yield from _of_reference(trace, head.marks)
+    yield from _of_gaps(trace)
+    yield from _of_breaks(trace, gap_mm)
+    yield from _of_stems(trace)
+    if head.lines is None and trace.fault is None:
+        yield from _of_rest(trace.lines[0])
+
+
+def _of_stops(trace: Trace) -> Iterator[str]:
+    """Of stops that the card or --override names and that are not on the drawing."""
+    missing, stops = trace.operator.not_there(trace.lines)
+    if missing:
+        numbers = ", ".join(map(str, missing))
+        yield f"there is no stop {numbers}: {stops} were found, see their places in the figures; the rest is followed"
+
+
+def _of_reference(trace: Trace, marks: Marks) -> Iterator[str]:
+    """Of a reference point that was named and from which no line begins."""
+    from tracer.stance import LEAD_MM
+
+    named = marks.reference_mm
+    if named is None or any(line.reference_mm == named for line in trace.lines):
+        return
+    use = "it is the machine's zero only" if marks.origin == "reference" else "the program does not begin there"
+    yield f"no line begins within {LEAD_MM:g} mm of the reference point {named[0]:g},{named[1]:g} mm: {use}"
+
+
+def _of_gaps(trace: Trace) -> Iterator[str]:
+    """Of lines that end where they began, but for a gap that is wider than allowed."""
+    for line in trace.lines:
+        if line.gap_mm is not None:
+            (x, y), wide_mm = line.start_mm, math.ceil(10 * line.gap_mm) / 10
+            yield (
+                f"{_named(line, trace)} is open, but ends {line.gap_mm:.1f} mm from its beginning at {x:.1f},{y:.1f} mm: "
+                f"if that is a gap in a closed line, --gap {wide_mm:g}mm takes the head across"
+            )
+
+
+def _of_breaks(trace: Trace, gap_mm: float) -> Iterator[str]:
+    """Of the first end from which ink goes on straight ahead, beyond the gap that is allowed, and of how many there are."""
+    lines = [line for line in trace.lines if line.gap_mm is None]
+    found = [(line, broken) for line in lines for broken in line.breaks if broken.gap_mm > gap_mm]
+    if not found:
+        return
+    (line, ((x, y), _)), more = found[0], f", as at {len(found) - 1} more" if len(found) > 1 else ""
+    wide_mm = math.ceil(10 * UNEVEN * max(broken.gap_mm for _, broken in found)) / 10
+    yield (
+        f"{_named(line, trace)} ends at {x:.1f},{y:.1f} mm, and ink goes on straight ahead of it{more}: if that is one line, "
+        f"dashed or with gaps, --gap {wide_mm:g}mm takes the head across"
+    )
+
+
+def _of_stems(trace: Trace) -> Iterator[str]:
+    """Of lines that lead to a loop and are cut with it, because nothing says that they are lead lines."""
+    for line in trace.lines:
+        if line.loop_from is not None and not line.is_lead:
+            (x, y), (u, v) = line.start_mm, line.place(line.loop_from)
+            yield (
+                f"the line from {x:.1f},{y:.1f} to the contour at {u:.1f},{v:.1f} mm is cut too: a lead line is known "
+                "by a cross or ring at its beginning, by --reference X,Y there, or by a tick across it"
+            )
+
+
+def _of_rest(line: Line) -> Iterator[str]:
+    """Of one line that is the smaller part of the ink in which lines cross or touch."""
+    if line.length_mm < FEW * line.ink_mm:
+        yield (
+            f"about {line.ink_mm - line.length_mm:.0f} mm of ink that is joined to the line was not followed: "
+            "--lines all follows the lines that cross or touch it too, --start X,Y another one"
+        )
+
+
+def _named(line: Line, trace: Trace) -> str:
+    """A line as the operator knows it."""
+    return f"line {line.number}" if len(trace.lines) > 1 else "the line"
