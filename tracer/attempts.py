@@ -21,7 +21,9 @@ import numpy as np
 from motion.faults import LineFault
 from motion.motion import MOTION_RATE_HZ
 from tracer.drawing import Drawing
+from tracer.enlarger import enlarged, reduced
 from tracer.follower import Followed, Follower
+from tracer.kept import kept_to
 from tracer.leg import turn
 from tracer.lines import INK
 from tracer.operator import Direction, Operator
@@ -39,11 +41,11 @@ Told = Callable[[float], None]
 
 
 def asked_for(
+    drawing: Drawing,
     stance: Stance,
     start_mm: tuple[float, float] | None,
     operator: Operator,
     settings: Settings,
-    longest_mm: float,
     told: Told | None,
 ) -> Followed:
     """The run from a stance, in the direction and with the turns that the operator asks for."""
@@ -53,7 +55,7 @@ def asked_for(
             sides = sides or (direction,)
         else:
             stance = _turned_to(stance, start_mm, direction)
-    attempts = Attempts(settings, sides, longest_mm, told)
+    attempts = Attempts(drawing, settings, sides, longest_mm(drawing, stance.view.width_mm), told)
     if direction is None:
         return attempts.all_of_it(stance)
     return attempts.round_about(stance, direction)
@@ -66,8 +68,9 @@ def longest_mm(drawing: Drawing, width_mm: float) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Attempts:
-    """How a line may be followed: the head's settings, the turns that the operator asks for, and how long a run may be."""
+    """How a line of a drawing may be followed: the head's settings, the turns that the operator asks for, and how long a run may be."""
 
+    drawing: Drawing
     settings: Settings
     sides: tuple[Side | None, ...]
     longest_mm: float
@@ -76,8 +79,11 @@ class Attempts:
 
     def run(self, stance: Stance, turns: tuple[int, ...] = ()) -> Followed:
         """Follow from a stance."""
-        follower = Follower(stance, self.settings, MOTION_RATE_HZ, turns, self.sides, self.tips)
-        return follower.follow(self.longest_mm, self.told)
+        times, told = self.drawing.enlarged, self.told
+        follower = Follower(enlarged(stance, times), self.settings, MOTION_RATE_HZ, turns, self.sides, self.tips)
+        reduced_told = None if told is None else lambda come_mm: told(come_mm / times)
+        run = reduced(follower.follow(times * self.longest_mm, reduced_told))
+        return kept_to(self.drawing.edges_mm, run)
 
     def all_of_it(self, stance: Stance) -> Followed:
         """Follow a line from a stance: either way round, an open one from end to end, and one that does not come back with other turns."""

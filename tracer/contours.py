@@ -95,8 +95,9 @@ def plan(sheet: Sheet, which: Which) -> tuple[list[Contour], int]:
 
 
 def lines_of(sheet: Sheet) -> NDArray[np.int64]:
-    """The patches that are lines, the longest first."""
-    long_enough = sheet.lengths_mm >= np.maximum(LEAST_MM, LEAST_WIDTHS * sheet.widths_mm)
+    """The patches that are lines, the longest first: of those along edges all."""
+    least_mm = 0.0 if sheet.drawing.edges_mm else np.maximum(LEAST_MM, LEAST_WIDTHS * sheet.widths_mm)
+    long_enough = sheet.lengths_mm >= least_mm
     patches = np.flatnonzero(long_enough | (_reach_mm(sheet) >= LETTER_MM))
     return patches[np.argsort(-sheet.lengths_mm[patches], kind="stable")]
 

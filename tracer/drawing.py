@@ -45,11 +45,16 @@ Grey = NDArray[np.uint8] | NDArray[np.float32]  # levels 0..255
 
 @dataclass(frozen=True, slots=True)
 class Drawing:
-    """A drawing as the cells see it: `darkness` (rows from the top, columns) on pixels of `pitch_mm`."""
+    """A drawing as the cells see it: `darkness` (rows from the top, columns) on pixels of `pitch_mm`.
+
+    Of filled shapes the `edges_mm`, closed polylines (n, 2), that a run has to keep to, and how many times `enlarged` the head sees the line along them.
+    """
 
     darkness: Darkness
     pitch_mm: float
     file: Path | None = None
+    enlarged: int = 1
+    edges_mm: tuple[NDArray[np.float64], ...] = ()
 
     @property
     def width_mm(self) -> float:
@@ -89,7 +94,8 @@ class Drawing:
             size = grey.shape[1], round(grey.shape[0] * pitch[1] / pitch[0])
             grey = np.asarray(cv2.resize(grey.astype(np.float32), size, interpolation=cv2.INTER_LINEAR), np.float32)
         if edge:
-            return cls(*outlined(grey, pitch[0]), file)
+            line = outlined(grey, pitch[0])
+            return cls(line.darkness, pitch[0] / line.finer, file, line.finer, line.edges_mm)
         return cls(darkness_of(grey, pitch[0]), pitch[0], file)
 
 

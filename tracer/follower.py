@@ -347,10 +347,12 @@ class Follower:
 
     def _lost(self, why: str, instead: str = "bridge a gap with --gap, or scan at a higher resolution") -> Followed:
         """The end of a line that was lost: the fault says where, and what may be done instead."""
-        (x, y), heading = self.carriage.stands()
+        place_mm, heading = self.carriage.stands()
+        x, y = place_mm / self.view.enlarged
+        travel_mm = self.carriage.travel_mm / self.view.enlarged
         degrees = round(math.degrees(heading)) % 360
         fault = LineFault(
-            f"line lost at {x:.2f},{y:.2f} mm, heading {degrees} degrees, after {self.carriage.travel_mm:.1f} mm: {why};"
+            f"line lost at {x:.2f},{y:.2f} mm, heading {degrees} degrees, after {travel_mm:.1f} mm: {why};"
             f" look at the drawing there, {instead}",
             x_mm=float(x),
             y_mm=float(y),

@@ -82,7 +82,7 @@ def followed_from_an_end(
 
 def followed_through(sheet: Sheet, stance: Stance, settings: Settings, operator: Operator) -> list[Line]:
     """The head's runs straight on through a stance, the last one round about in the direction asked for, or from end to end; no other turns are tried."""
-    attempts = Attempts(settings, (), longest_mm(sheet.drawing, stance.view.width_mm), None)
+    attempts = Attempts(sheet.drawing, settings, (), longest_mm(sheet.drawing, stance.view.width_mm), None)
     runs = [attempts.run(stance)]
     if runs[0].ending == "ended":
         runs.append(attempts.run(turned_round(runs[0].positions_mm[-1], runs[0].heading_rad, runs[0].view)))
@@ -161,7 +161,7 @@ def _line(
 ) -> Line:
     """The line as it is followed from a stance."""
     told = None if progress is None else partial(_tell, progress, length_mm)
-    run = asked_for(stance, start_mm, operator, settings, longest_mm(sheet.drawing, stance.view.width_mm), told)
+    run = asked_for(sheet.drawing, stance, start_mm, operator, settings, told)
     return replace(Line.of(run, number, stance.reference_mm), ink_mm=length_mm)
 
 

@@ -1,6 +1,7 @@
 """Silhouettes: the edge of a filled shape as the cells see it behind a mask that passes light on the edge only, so that the head rides on it as on a line.
 
-Signals: grey levels in; out darkness 0..1 of a line of `EDGE_MM` whose middle is where the picture is half way between paper and shape.
+Signals: grey levels in; out darkness 0..1 of a line of `EDGE_MM` whose middle is where the picture is half way between paper and shape, and that middle as
+outlines: not for the head, but to see afterwards that it kept to them (see `kept`).
 
 The line is as a round pen would draw it along the edge: dark where the edge is within half the line's width. So corners look as inked corners do, and the head
 takes them as it takes those: it finds its way by its own cells, and the mask is not its path. What the scanner's lens has taken off the corners is put back
@@ -13,6 +14,7 @@ two is paper matters for what is too thin to be a shape only: paper is what most
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import cv2
@@ -21,17 +23,12 @@ from numpy.typing import NDArray
 
 from motion.faults import DrawingFault
 from motion.polyline import with_places
-from tracer import room
+from tracer.apart import finer
 from tracer.vertices import APART_PX, sharpened
 
 EDGE_MM = 0.4  # at 300 dpi less than five pixels; with 0.3 mm a gear of 24 teeth did not close
-APART_MM = 0.9  # edges nearer to one another than this have a line drawn so much
-FINER = 4  # times finer on pixels as much smaller
-LEAST_APART_MM = 0.25
-CLEAR = 3.0  # standard deviations of the lens: edges that are nearer move one another
-ROUND_ABOUT = 8  # times as far along the edge as straight across: not the two legs of a corner, of 15 degrees or more
 SOFT_PX = 0.7  # standard deviation: against the noise of the paper
-LEAST_MM = 4.0  # a shorter outline is a speck's
+LEAST_MM = 2.0  # a shorter outline is a speck's
 LEAST_CONTRAST = 20.0  # levels
 LEAST_SHAPE_MM = 1.0  # across at its widest; what is thinner everywhere is lines
 ROUND_ABOUT_MM = 6.0  # standard deviation: over which paper and shape are averaged
@@ -44,8 +41,17 @@ Array = NDArray[np.float64]
 Grey = NDArray[np.float32]
 
 
-def outlined(grey: NDArray[Any], pitch_mm: float) -> tuple[Grey, float]:
-    """Darkness of the line along the edges of filled shapes, and its pitch, mm, finer than the picture's where edges are near one another.
+@dataclass(frozen=True, slots=True)
+class Outlined:
+    """A line along the edges of filled shapes: its darkness on pixels so many times `finer` than the picture's, and the edges (n, 2) in sheet mm."""
+
+    darkness: Grey
+    finer: int
+    edges_mm: tuple[Array, ...]
+
+
+def outlined(grey: NDArray[Any], pitch_mm: float) -> Outlined:
+    """The line along the edges of filled shapes, finer where they are near one another.
 
     Raises DrawingFault if there are no shapes, if one is cut by the border of the sheet, and if edges are nearer than can be told apart.
     """
@@ -59,10 +65,16 @@ def outlined(grey: NDArray[Any], pitch_mm: float) -> tuple[Grey, float]:
     _refuse_lines(share, pitch_mm)
     _refuse_cut(edges, share.shape, pitch_mm)
     softness_px = _softness_px(share, edges)
-    edges = [sharpened(edge, softness_px) for edge in _refined(edges, share)]
-    finer = _finer(edges, share.shape, pitch_mm, max(LEAST_APART_MM, CLEAR * softness_px * pitch_mm))
-    fine = [(edge + 0.5) * finer - 0.5 for edge in edges]
-    return _inked(fine, (share.shape[0] * finer, share.shape[1] * finer), EDGE_MM / pitch_mm), pitch_mm / finer
+    sharp = [sharpened(edge, softness_px) for edge in _refined(edges, share)]
+    times = finer(sharp, share.shape, pitch_mm, softness_px)
+    fine = [(edge.outline + 0.5) * times - 0.5 for edge in sharp]
+    darkness = _inked(fine, (share.shape[0] * times, share.shape[1] * times), EDGE_MM / pitch_mm)
+    return Outlined(darkness, times, tuple(_mm(edge.outline, share.shape, pitch_mm) for edge in sharp))
+
+
+def _mm(outline: Array, shape: tuple[int, ...], pitch_mm: float) -> Array:
+    """Rows and columns as X and Y, sheet mm."""
+    return np.column_stack([outline[:, 1] + 0.5, shape[0] - outline[:, 0] - 0.5]) * pitch_mm
 
 
 def _none() -> DrawingFault:
@@ -149,46 +161,6 @@ def _refined(edges: list[Array], share: Grey) -> list[Array]:
             places = places - np.clip(step, -0.5, 0.5)[:, None] * slope
         refined.append(np.vstack([places[:-1], places[:1]]))
     return refined
-
-
-def _finer(edges: list[Array], shape: tuple[int, ...], pitch_mm: float, least_mm: float) -> int:
-    """By how much finer the line has to be drawn for edges that are near one another; raises DrawingFault if they are nearer than told apart."""
-    apart_mm, (row, column) = _nearest_edges(edges, pitch_mm)
-    if apart_mm < least_mm:
-        raise DrawingFault(
-            f"two edges are {apart_mm:.2f} mm apart at {(column + 0.5) * pitch_mm:.1f},{(shape[0] - row - 0.5) * pitch_mm:.1f} mm, and are told apart"
-            f" from {least_mm:.2f} mm on; print the shape larger (--scale brings it back), or scan it finer"
-        )
-    if apart_mm >= APART_MM:
-        return 1
-    free, needed = room.free_bytes(), room.PER_PIXEL * FINER**2 * shape[0] * shape[1]
-    if free is not None and needed > free:
-        raise DrawingFault(
-            f"edges {apart_mm:.2f} mm apart have to be drawn {FINER} times finer, and that needs {needed / room.GB:.1f} GB of memory,"
-            f" {free / room.GB:.1f} GB are free; cut out the part to be traced, or close other programs"
-        )
-    return FINER
-
-
-def _nearest_edges(edges: list[Array], pitch_mm: float) -> tuple[float, Array]:
-    """How near edges come to one another, mm, at most `APART_MM`, and where, pixels: legs of one corner do not count."""
-    from scipy.spatial import cKDTree
-
-    lines = [with_places(edge, 1.0)[:-1] for edge in edges]
-    places = np.vstack(lines)
-    edge = np.repeat(np.arange(len(lines)), [len(line) for line in lines])
-    along = np.concatenate([np.r_[0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T))] for line in lines])
-    length = np.array([_length_mm(line, 1.0) for line in edges])[edge]
-    pairs = cKDTree(places).query_pairs(APART_MM / pitch_mm, output_type="ndarray")
-    a, b = pairs.T
-    apart = np.hypot(*(places[a] - places[b]).T)
-    between = np.abs(along[a] - along[b])
-    between = np.minimum(between, length[a] - between)
-    counts = (edge[a] != edge[b]) | (between > ROUND_ABOUT * apart)
-    if not counts.any():
-        return APART_MM, places[0]
-    nearest = int(np.argmin(np.where(counts, apart, np.inf)))
-    return float(apart[nearest]) * pitch_mm, 0.5 * (places[a[nearest]] + places[b[nearest]])
 
 
 def _inked(edges: list[Array], shape: tuple[int, ...], reach_px: float) -> Grey:

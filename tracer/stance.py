@@ -127,7 +127,8 @@ def reference_on(drawing: Drawing) -> tuple[float, float]:
 
 def view_of(sheet: Sheet, aperture_mm: float | None, width_mm: float) -> View:
     """The sheet through cells for a line of a width."""
-    aperture_mm = aperture_mm or min(max(APERTURE * width_mm, LEAST_APERTURE_MM), LARGEST_APERTURE_MM)
+    least_mm = LEAST_APERTURE_MM / sheet.drawing.enlarged
+    aperture_mm = aperture_mm or min(max(APERTURE * width_mm, least_mm), LARGEST_APERTURE_MM)
     return View(photocell.behind_aperture(sheet.drawing, aperture_mm), sheet.drawing.pitch_mm, width_mm, LEVEL)
 
 

@@ -17,6 +17,7 @@ Questions: a round that moves the outline by less than noise does (`FURTHER`, `N
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -45,16 +46,25 @@ SHORT, LEGS = 0.1, 0.35  # and by the legs' bend less far
 Array = NDArray[np.float64]
 
 
-def sharpened(outline: Array, softness_px: float) -> Array:
+@dataclass(frozen=True, slots=True)
+class Edge:
+    """A closed outline (n, 2), its last place its first, and which of its places are the middles of corners that were put back."""
+
+    outline: Array
+    corners: NDArray[np.int64]
+
+
+def sharpened(outline: Array, softness_px: float) -> Edge:
     """A closed outline (its last place its first) with its sharp corners put back, pixels."""
     places = _evenly(outline)
-    corners = _corners(places, softness_px)
-    for first, last, corner in reversed(
-        [found for k in range(len(corners)) if (found := _corner(places, corners, k, softness_px))]
-    ):
-        if last > first:
-            places = np.vstack([places[: first + 1], corner, places[last:]])
-    return np.vstack([places, places[:1]])
+    turns = _corners(places, softness_px)
+    parts, middles, come = list[Array](), list[int](), 0
+    for first, last, corner in [found for k in range(len(turns)) if (found := _corner(places, turns, k, softness_px))]:
+        if last > first >= come:
+            parts += [places[come : first + 1], corner]
+            middles.append(sum(map(len, parts)) - len(corner) + len(corner) // 2)
+            come = last
+    return Edge(np.vstack([*parts, places[come:], places[:1]]), np.array(middles, int))
 
 
 def _evenly(outline: Array) -> Array:
@@ -95,7 +105,7 @@ def _corner(places: Array, corners: list[int], k: int, softness_px: float) -> tu
     angle, radius, taken_off, found = math.pi / 2, 0.0, 0.0, None
     for _ in range(TRIES):
         away = max(CLEAR / max(math.sin(min(angle, math.pi / 2)), 0.2), _touch(angle, radius) + CLEAR_OF_ROUND) * dense
-        spans = [min(away + LEG * dense, gap - CLEAR * dense) for gap in (before, after)]
+        spans = [min(away + LEG * dense, gap - CLEAR * dense, len(places) / 2) for gap in (before, after)]
         if min(spans) - away < SHORTEST_LEG * dense:
             break
         legs = [_felt(places, at, sign * away, sign * span) for sign, span in zip((-1, 1), spans, strict=True)]
@@ -114,6 +124,9 @@ def _corner(places: Array, corners: list[int], k: int, softness_px: float) -> tu
         taken_off = way - radius * (1 / math.sin(angle / 2) - 1)
     if found is None or _touch(angle, radius) * dense > away or way < (1 - SHORT) * sharp - LEGS:
         return None
+    first, last, corner = found
+    if (corner[0] - places[first]) @ t < 0 or (corner[-1] - places[last]) @ w < 0:
+        return None  # it would lie behind the ends of its legs
     return found if _off(places, *found) < (taken_off + ASIDE) * softness_px else None
 
 

@@ -35,6 +35,7 @@ class View:
     width_mm: float
     level: float
     usual_mm: float | None = None  # the line's width as a rule, where the width here differs
+    enlarged: float = 1.0  # times: what the head sees is so many times as large as on the drawing
 
     @property
     def step_mm(self) -> float:

@@ -129,6 +129,42 @@ def test_a_slot_in_an_edge_is_followed_to_its_end(tmp_path: Path, apart_mm: floa
     assert found.hausdorff_mm < 100 * UM, found  # it was 9.8 mm: the head went past the slot
 
 
+def teeth(top_mm: float, number: int = 9) -> Points:
+    """A rack: teeth of 1.8 mm whose flanks are 15 degrees from upright, on a bar."""
+    pitch_mm, aside_mm = 2.0, 1.8 * np.tan(np.radians(15))
+    row: list[tuple[float, float]] = []
+    for k in range(number):
+        left = 9 + k * pitch_mm
+        row += [
+            (left, 16),
+            (left + aside_mm, 17.8),
+            (left + aside_mm + top_mm, 17.8),
+            (left + 2 * aside_mm + top_mm, 16),
+        ]
+    turn, middle = np.radians(8), np.array([18, 14])
+    bar = polyline((8, 10), *row, (28, 16), (28, 10), (8, 10)) - middle
+    return np.asarray(middle + bar @ [[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
+
+
+@pytest.mark.parametrize("top_mm", [0.4, 0.7])
+def test_narrow_teeth_are_all_followed(tmp_path: Path, top_mm: float) -> None:
+    """Tops too short for the lens to show their corners stay round: 100 um. With the line at 0.4 mm the head cut across, 0.9 mm off, and said nothing."""
+    rack = teeth(top_mm)
+    run = trace(Drawing.open(filled(tmp_path / "rack.png", rack), edge=True))
+    found = distance(thin(run), rack)
+    assert run.ending == "closed" and found.path_to_reference.rms_mm < 10 * UM, found
+    assert found.hausdorff_mm < 120 * UM, found
+
+
+@pytest.mark.parametrize("radius_mm", [0.4, 0.6])
+def test_small_holes_are_round(tmp_path: Path, radius_mm: float) -> None:
+    hole = arc((15, 16), radius_mm)
+    run = trace_lines(Drawing.open(filled(tmp_path / "hole.png", CIRCLE, holes=(hole,)), edge=True))
+    assert [line.ending for line in run.lines] == ["closed", "closed"]
+    found = distance(thin(run), [CIRCLE, hole])
+    assert found.hausdorff_mm < 45 * UM, found  # the hole is five to seven softnesses of the lens in radius
+
+
 @pytest.mark.parametrize("apart_mm", [0.15, 0.2])
 def test_edges_that_run_together_are_refused(tmp_path: Path, apart_mm: float) -> None:
     bars = [polyline((8, y), (28, y), (28, y + 8), (8, y + 8), (8, y)) for y in (8.0, 16 + apart_mm)]
