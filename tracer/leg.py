@@ -23,12 +23,14 @@ Meeting = tuple[float, float]  # how far two legs meet beyond the one's clean en
 FARTHEST_MM = 10.0  # legs that meet further away do not meet
 
 SPOKE = np.linspace(0.2, 1.0, 17)
+BESIDE = np.array([0.0, -0.25, 0.25])  # widths
 COARSE, COARSE_STATIONS = (
     0.4,
     20,
 )  # of the width: standard deviation of a cell that averages a line's grain; stations of a leg seen through it
 FAINTER = 0.3  # of the line's darkness as a rule: an edge, through that cell
 PAPER = 0.6  # of the level: lighter is paper for certain
+SPECK_PX = 4.0  # a speck of two pixels of paper, seen through an aperture
 SPECK_WIDTHS = 0.4  # ink narrower than this is no stroke
 
 
@@ -215,14 +217,23 @@ def stroke_end(view: View, leg: Leg, farthest_mm: float) -> float | None:
         if come_mm >= farthest_mm - view.step_mm:
             return None
         leg = leg_of(seen, True, view.leg_mm)
-    left_mm = farthest_mm - come_mm
-    middle, *beside = (reach_of_ink(view, leg, left_mm, share * view.width_mm) for share in (0.0, -0.25, 0.25))
-    if middle is None:
-        return None
-    for ink in (middle, *(reach for reach in beside if reach is not None and reach > middle)):
+    for ink in _inks(view, leg, farthest_mm - come_mm):
         if is_tip(view, leg.at(ink - 0.5 * view.width_mm)):
             return come_mm + ink
     return None
+
+
+def _inks(view: View, leg: Leg, farthest_mm: float) -> list[float]:
+    """How far the ink of a stroke may go on from a leg's end, mm: along its middle, beside that, and past a speck of paper; none if farther."""
+    middle, *beside = (reach_of_ink(view, leg, farthest_mm, share * view.width_mm) for share in (0.0, -0.25, 0.25))
+    if middle is None:
+        return []
+    inks = [middle, *(reach for reach in beside if reach is not None and reach > middle)]
+    for past_mm in middle + np.arange(0.5, SPECK_PX, 0.5) * view.pitch_mm:
+        if view.dark(leg.at(past_mm)):
+            on = reach_of_ink(view, leg.shifted(past_mm, leg.seen), farthest_mm - past_mm)
+            return inks if on is None else [*inks, past_mm + on]
+    return inks
 
 
 def is_tip(view: View, place: Array) -> bool:
@@ -233,12 +244,15 @@ def is_tip(view: View, place: Array) -> bool:
 def lines_from(view: View, centre: Array, radius_mm: float) -> int:
     """How many strokes leave a place by ink, of those that a ring of cells sees about it; specks are none.
 
-    Paper on the way to a stroke is lighter than where the way grazes an edge.
+    Paper on the way to a stroke is lighter than where the way grazes an edge; a speck of it is not on all of the ways side by side.
     """
-    arcs = strokes_on(view, centre, radius_mm)
-    ways = np.column_stack([np.cos(arcs.mean(axis=1)), np.sin(arcs.mean(axis=1))])
     lighter = replace(view, level=PAPER * view.level)
-    return sum(all(lighter.dark(centre + share * radius_mm * way) for share in SPOKE) for way in ways)
+    joined = 0
+    for heading in strokes_on(view, centre, radius_mm).mean(axis=1):
+        way = np.array([math.cos(heading), math.sin(heading)])
+        beside = np.outer(BESIDE * view.width_mm, [-way[1], way[0]])
+        joined += any(all(lighter.dark(centre + off + share * radius_mm * way) for share in SPOKE) for off in beside)
+    return joined
 
 
 def lines_on(view: View, centre: Array, radius_mm: float) -> int:

@@ -24,6 +24,7 @@ from tracer.photocell import darkness_at
 PIECES = 6  # straight pieces that a bend is drawn with
 NUDGE_MM = 0.01
 FARTHEST_MM = 0.3  # a vertex is moved at a time
+SPECK_PX = 1.5  # from the middle of a speck to the ink beside it
 MOST_DAMPED = 6  # times that a step is tried again, shorter
 
 
@@ -101,15 +102,20 @@ def away(places, lines, count, out):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def on_paper_mm(cells, pitch_mm, level, lines, count):  # type: ignore[no-untyped-def]
-    """Length of the first pieces of some lines (4, k) that lies on paper, mm."""
+    """Length of the first pieces of some lines (4, k) that lies on paper, mm; a speck of it with ink on both sides is none."""
     total = 0.0
     for i in range(count):
         vx, vy = lines[2, i] - lines[0, i], lines[3, i] - lines[1, i]
         length = math.hypot(vx, vy)
         steps = max(1, math.ceil(length / pitch_mm))
+        aside = SPECK_PX * pitch_mm / max(length, 1e-9)
         for k in range(steps):
             t = (k + 0.5) / steps
-            if darkness_at(cells, pitch_mm, lines[0, i] + t * vx, lines[1, i] + t * vy) < level:
+            x, y = lines[0, i] + t * vx, lines[1, i] + t * vy
+            if darkness_at(cells, pitch_mm, x, y) < level and (
+                darkness_at(cells, pitch_mm, x - aside * vy, y + aside * vx) < level
+                or darkness_at(cells, pitch_mm, x + aside * vy, y - aside * vx) < level
+            ):
                 total += length / steps
     return total
 

@@ -19,7 +19,7 @@ import numpy as np
 from motion.faults import LineFault
 from tracer import photocell
 from tracer.drawing import Drawing
-from tracer.leg import Leg, centre_at, end_of, is_tip, leg_of, reach_of_ink, strokes_on, turn
+from tracer.leg import Leg, centre_at, end_of, leg_of, reach_of_ink, stroke_end, strokes_on, turn
 from tracer.lines import Sheet, Stroke
 from tracer.marks import longest_mm
 from tracer.reference import Reference, references
@@ -300,4 +300,7 @@ def _is_mark(view: View, inward: Array, heading: float, radius: float) -> bool:
         return False
     if ink < 2 * view.width_mm:
         return reach < longest_mm(view, across=False)
-    return is_tip(view, on.at(ink - 0.5 * view.width_mm))
+    beyond = (
+        straight_on(view, on, 0.0) or on
+    )  # the other half, as it is felt, leads to its tip more surely than the first
+    return stroke_end(view, beyond, longest + 2 * view.width_mm) is not None
