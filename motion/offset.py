@@ -40,7 +40,8 @@ DEEP_MM = 0.05  # nearer than the radius by this: no crossing there can count
 SAME_MM = 0.01 * UM  # places as near as this are one
 SHAKEN_MM = 1e-4 * SAME_MM
 LEAST_MM = 0.05  # a shorter way is none
-SLIGHT = math.radians(10)  # turns towards the tool by less go straight to where the two ways beside the vertex meet
+SLIGHT = math.radians(10)  # turns towards the tool by less go straight to where the two ways beside the vertex meet,
+KINK_MM = 1 * UM  # if that is no nearer to the line than this: it is, where the line beside the vertex is short
 BACK = math.radians(179)  # a line that turns by more comes back along itself: the tool goes round its tip
 
 
@@ -99,7 +100,8 @@ def _swung(line: Array, closed: bool, radius_mm: float) -> Array:
     """The end of the arm to the left of a line, (n, 2) mm; of a closed line the last place is not the first again."""
     whole = _closed_up(line, closed)
     ways = np.diff(whole, axis=0)
-    ways /= np.hypot(*ways.T)[:, None]
+    lengths = np.hypot(*ways.T)
+    ways /= lengths[:, None]
     arms = radius_mm * np.column_stack([-ways[:, 1], ways[:, 0]])
     before = np.roll(ways, 1, axis=0) if closed else ways[:-1]
     after = ways if closed else ways[1:]
@@ -107,16 +109,18 @@ def _swung(line: Array, closed: bool, radius_mm: float) -> Array:
     turns[np.abs(turns) > BACK] = -math.pi
     at_vertices = line if closed else line[1:-1]
     arms_before = np.roll(arms, 1, axis=0) if closed else arms[:-1]
-    parts = [_swing(*each, radius_mm) for each in zip(at_vertices, arms_before, turns, strict=True)]
+    beside = np.minimum(np.roll(lengths, 1), lengths) if closed else np.minimum(lengths[:-1], lengths[1:])
+    parts = [_swing(*each, radius_mm) for each in zip(at_vertices, arms_before, turns, beside, strict=True)]
     if closed:
         way = np.vstack(parts)
         return with_places(_closed_up(way, True), APART_MM)[:-1]
     return with_places(np.vstack([line[:1] + arms[0], *parts, line[-1:] + arms[-1]]), APART_MM)
 
 
-def _swing(vertex: Array, arm: Array, turn: float, radius_mm: float) -> Array:
-    """Places of the arm's end while it turns at a vertex."""
-    if 0 <= turn < SLIGHT or -math.sqrt(8 * PLAIN / radius_mm) < turn < 0:
+def _swing(vertex: Array, arm: Array, turn: float, beside_mm: float, radius_mm: float) -> Array:
+    """Places of the arm's end while it turns at a vertex, to either side of which the line is straight for so many mm at least."""
+    back_mm = max(0.0, radius_mm * math.tan(max(turn, 0.0) / 2) - beside_mm)  # beyond where the two ways beside it meet
+    if (0 <= turn < SLIGHT and back_mm * turn < KINK_MM) or -math.sqrt(8 * PLAIN / radius_mm) < turn < 0:
         return np.asarray(vertex + _turned(arm, np.array([turn / 2])) / math.cos(turn / 2))
     if turn > 0:
         return np.vstack([vertex + arm, vertex, vertex + _turned(arm, np.array([turn]))[0]])

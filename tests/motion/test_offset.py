@@ -163,3 +163,16 @@ def test_a_kink_of_some_um_does_not_part_the_way() -> None:
     (way,) = offset([Guide(line, False, True)], 5.0)  # in two pieces, when a curl within the tolerance led back
     assert distance(way.points_mm, np.array([way.points_mm[0], way.points_mm[-1]])).hausdorff_mm < 0.2
     assert np.abs(Nearest([line], 5.0).distances_mm(way.points_mm) - 5.0).max() < 1 * UM
+
+
+@pytest.mark.parametrize("radius_mm", [0.5, 2.0, 3.0, 8.0])
+def test_a_kink_among_short_steps_is_no_end_of_the_way(radius_mm: float) -> None:
+    """Six degrees towards the tool, and 0.03 mm of line beside them: the ways beside the vertex do not meet where it would have them."""
+    half = np.r_[np.full(620, 186.3 / 620), -6.3]  # degrees that each step turns; twice that closes
+    heading = np.radians(np.cumsum(np.r_[half, half]))
+    line = np.cumsum(0.03 * np.column_stack([np.cos(heading), np.sin(heading)]), axis=0)
+    ways = offset([Guide(np.vstack([line, line[:1]]), True, False)], radius_mm)
+    assert [way.closed for way in ways] == [True]
+    true = shapely.Polygon(line).buffer(radius_mm, quad_segs=512).exterior
+    assert max(true.distance(shapely.Point(point)) for point in ways[0].points_mm) < 2 * UM
+    assert np.hypot(*np.diff(ways[0].points_mm, axis=0).T).sum() == pytest.approx(true.length, rel=1e-3)
