@@ -1,0 +1,33 @@
+"""Make the pictures of `marks.md` by the commands that it shows.
+
+make figures        (python -m docs.command_figures [FOLDER])
+"""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from pathlib import Path
+
+from console.cli import main as morfax
+
+SAMPLES = Path(__file__).parents[1] / "samples"
+PROGRAM = ("trace", str(SAMPLES / "program.png"), "--card", str(SAMPLES / "program.toml"))
+PICTURES = {
+    "marks.png": PROGRAM,
+    "marks-cutter.png": (*PROGRAM, "--cutter", "6mm", "--side", "outside"),
+}
+
+
+def main(folder: Path) -> None:
+    """Make all pictures in a folder."""
+    with tempfile.TemporaryDirectory() as aside:
+        for name, words in PICTURES.items():
+            tape = str(Path(aside) / "program.wav")
+            code = morfax([*words, "-o", tape, "--picture", str(folder / name), "--quiet"])
+            if code:
+                raise SystemExit(code)
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).parent)
