@@ -11,7 +11,7 @@ from click.core import ParameterSource
 from console import comparison, medium, systems
 from console.desk import Desk, desk_options
 from console.playing import Controls, tape_options
-from console.quantities import LENGTH, LINES, ORIGIN, PLACE, SPEED
+from console.quantities import CUTTER, LENGTH, LINES, ORIGIN, PLACE, SPEED
 from console.sheet import Sheet, sheet_options
 from console.tracing import Head
 from motion.motion import Path
@@ -56,7 +56,7 @@ OF_SYSTEMS = ("head_mm", "lines", "speed_mm_s")
 @click.option(
     "--cutter",
     "cutter_mm",
-    type=LENGTH,
+    type=CUTTER,
     help="Diameter of the cutter that the path is for: what its edge touches is compared with the drawing.",
 )
 @click.option(

@@ -12,7 +12,7 @@ import click
 from click.core import ParameterSource
 
 from console import medium
-from console.quantities import CLEARANCE, DEPTH, LENGTH, LINES, OVERRIDE, PLACE, REACH, SPEED
+from console.quantities import CLEARANCE, CUTTER, DEPTH, LENGTH, LINES, OVERRIDE, PLACE, REACH, SPEED
 from console.tracing import Head, Marks
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ _TOOL = (
     click.option(
         "--cutter",
         "cutter_mm",
-        type=LENGTH,
+        type=CUTTER,
         help="Diameter of the cutter, such as 6mm: the tool runs beside the line, half of that away.  [default: the tool "
         "runs on the line]",
     ),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -21,8 +22,11 @@ from motion.units import (
 class Quantity(click.ParamType):
     """A parameter with a unit; what cannot be read is wrong use of the command line."""
 
-    def __init__(self, name: str, parse: Callable[[str], Any], *, above_zero: bool = False) -> None:
+    def __init__(
+        self, name: str, parse: Callable[[str], Any], *, above_zero: bool = False, within: str | None = None
+    ) -> None:
         self.name, self._parse, self._above_zero = name, parse, above_zero
+        self._within = within  # such as "0.05mm to 500mm"
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """Read the text; a value that is a number already stays as it is."""
@@ -32,15 +36,22 @@ class Quantity(click.ParamType):
             self.fail(str(refused), param, ctx)
         if self._above_zero and not quantity > 0:
             self.fail(f"{value!r} is no {self.name} here; it must be above zero", param, ctx)
+        if self._within is not None:
+            least, most = (self._parse(end) for end in self._within.split(" to "))
+            if not least <= quantity <= most:
+                self.fail(f"{value!r} is no {self.name} here; it may be {self._within}", param, ctx)
         return quantity
 
 
 def _number(text: str) -> float:
     """Read a bare number."""
     try:
-        return float(text)
+        number = float(text)
     except ValueError:
-        raise ValueError(f"{text!r} is no number; give one such as 20") from None
+        number = math.nan
+    if not math.isfinite(number):
+        raise ValueError(f"{text!r} is no number; give one such as 20")
+    return number
 
 
 def _parse_places_mm(text: str) -> tuple[float, ...]:
@@ -106,7 +117,9 @@ LENGTH = Quantity("length", parse_length_mm, above_zero=True)
 REACH = Quantity("length", parse_length_mm)  # of the head, which may be none
 DEPTH = Quantity("length", _decades(1))
 CLEARANCE = Quantity("length", _decades(6))  # up to 0.05 mm above the work the tool counts as in it
+CUTTER = Quantity("length", parse_length_mm, within="0.05mm to 500mm")
 SPEED = Quantity("speed", parse_speed_mm_s)
+FEED = Quantity("speed", parse_speed_mm_s, within="0.01mm/s to 1000mm/s")
 FREQUENCY = Quantity("frequency", parse_frequency_hz)
 ANGLE = Quantity("angle", parse_angle_rad)
 SHARE = Quantity("share", parse_share)

@@ -11,7 +11,7 @@ import click
 from console import medium
 from console.desk import Desk, desk_options
 from console.playing import CYCLES_PER_MM, Controls
-from console.quantities import FREQUENCY, LENGTH, SPEED
+from console.quantities import FEED, FREQUENCY, LENGTH
 from console.unit import Unit, rehearsed, unit_options
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ Examples:
     help="The program (.wav, .steps, .cubic, .ngc).  [default: the source's name with .wav, here]",
 )
 @click.option(
-    "--feed", "feed_mm_s", type=SPEED, default="10mm/s", show_default=True, help="Speed of a path without times."
+    "--feed", "feed_mm_s", type=FEED, default="10mm/s", show_default=True, help="Speed of a path without times."
 )
 @click.option(
     "--reference", "reference_hz", type=FREQUENCY, default="6kHz", show_default=True, help="Reference frequency."

@@ -13,6 +13,7 @@ from __future__ import annotations
 import math
 import re
 
+LONGEST_MM = 1e6
 MM_PER_INCH = 25.4  # exact since the international yard and pound agreement, 1959
 
 _LENGTH_MM = {"mm": 1.0, "um": 1e-3, "cm": 10.0, "m": 1000.0, "in": MM_PER_INCH, '"': MM_PER_INCH}
@@ -33,8 +34,12 @@ _NUMBER_AND_UNIT = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)\s*([a-z
 
 
 def parse_length_mm(text: str) -> float:
-    """Length in mm of "10mm", "50um", "0.4in" or a bare number of mm; it may be negative."""
-    return _parse(text, "length", _LENGTH_MM, "10mm, 50um, 1cm, 0.4in or a bare number of mm")
+    """Length in mm of "10mm", "50um", "0.4in" or a bare number of mm, up to a kilometre; it may be negative."""
+    allowed = "10mm, 50um, 1cm, 0.4in or a bare number of mm, up to 1000m"
+    length_mm = _parse(text, "length", _LENGTH_MM, allowed)
+    if abs(length_mm) > LONGEST_MM:
+        raise ValueError(_refusal(text, "length", allowed))
+    return length_mm
 
 
 def parse_speed_mm_s(text: str) -> float:

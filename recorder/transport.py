@@ -295,6 +295,8 @@ def _check(wear: Wear, tracks: int) -> None:
         raise ValueError(f"order is {wear.order}; it must name each of the tracks 1 to {tracks} once")
     if any(not 1 <= track <= tracks for track in wear.inverted):
         raise ValueError(f"inverted is {wear.inverted}; the tracks are 1 to {tracks}")
+    if wear.stamped_hz is not None and not 0 < wear.stamped_hz < 2**31:
+        raise ValueError(f"stamped_hz is {wear.stamped_hz}; a header holds 1 to {2**31 - 1} Hz")
     for name in ("wow", "flutter", "scrape", "weave_s", "uneven_db", "dropouts_per_min", "cut_start_s", "cut_end_s"):
         if getattr(wear, name) < 0:
             raise ValueError(f"{name} is {getattr(wear, name):g}; it must be zero or more")

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from PIL.Image import Image
 
 MM_PER_INCH = 25.4
+LEAST_PITCH_MM, LARGEST_PITCH_MM = 0.001, 10.0
 LEAST_CONTRAST = 10.0  # grey levels of 255 between paper and ink
 LEAST_STROKE_MM = 2.0  # shorter strokes are specks
 FEWEST_SAMPLES = 1 << 22  # that tell the noise of the paper, and the darkness of the ink
@@ -201,9 +202,15 @@ def _pitches_mm(
     file: Path, columns: int, stated: tuple[float, float] | None, dpi: float | None, width_mm: float | None
 ) -> tuple[float, float]:
     """Pixel pitch in X and Y, mm."""
-    for name, value in (("--dpi", dpi), ("--width", width_mm)):
-        if value is not None and not (np.isfinite(value) and value > 0):
-            raise DrawingFault(f"{name} is {value:g}; it must be more than 0")
+    for name, value, pitch_mm in (
+        ("--dpi", dpi, dpi and MM_PER_INCH / dpi),
+        ("--width", width_mm, width_mm and width_mm / columns),
+    ):
+        if value is not None and not LEAST_PITCH_MM <= (pitch_mm or 0.0) <= LARGEST_PITCH_MM:
+            allowed = f"{MM_PER_INCH / LARGEST_PITCH_MM:.3g} to {MM_PER_INCH / LEAST_PITCH_MM:.3g} dpi"
+            raise DrawingFault(
+                f"{name} is {value:g}; it must give pixels of {LEAST_PITCH_MM:g} to {LARGEST_PITCH_MM:g} mm, {allowed}"
+            )
     if width_mm is not None:
         return (width_mm / columns,) * 2
     if dpi is not None:

@@ -28,6 +28,7 @@ def test_a_worn_tape_is_written_and_the_same_seed_gives_the_same(morfax: Morfax,
         (["--order", "1,2"], "each of the tracks"),
         (["--order", "x"], "names no tracks"),
         (["--as", "gramophone"], "gramophone"),
+        (["--stamped", "1e12"], "a header holds 1 to"),
     ],
 )
 def test_wrong_use_is_one_line(morfax: Morfax, here: Path, tape_file: Path, words: list[str], said: str) -> None:

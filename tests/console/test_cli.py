@@ -71,6 +71,10 @@ def test_help_is_quick_because_it_loads_none_of_the_machines() -> None:
         ["trace", "a.png", "--depth", "2.505mm"],  # between two counts
         ["trace", "a.png", "--clearance", "0.05mm"],  # in the work, as a path file has it
         ["trace", "a.png", "--dpi", "-300"],
+        ["trace", "a.png", "--start", "1e300,1"],
+        ["trace", "a.png", "--cutter", "40m"],  # whose corners would be arcs of billions of places
+        ["record", "a.csv", "--scale", "inf"],
+        ["record", "a.csv", "--feed", "1e-9mm/s"],  # for which no disk is large enough
         ["compare", "a.csv"],
         ["compare", "a.csv", "b.csv", "--tolerance", "soon"],
     ],

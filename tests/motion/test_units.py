@@ -74,7 +74,23 @@ def test_places() -> None:
 
 
 @pytest.mark.parametrize(
-    "text", ["", "mm", "ten mm", "10 furlongs", "1,5", "nan", "inf", "1e999", "10mm/s", "0x10", "1 0mm"]
+    "text",
+    [
+        "",
+        "mm",
+        "ten mm",
+        "10 furlongs",
+        "1,5",
+        "nan",
+        "inf",
+        "1e999",
+        "1.1km",
+        "1001m",
+        "1e300",
+        "10mm/s",
+        "0x10",
+        "1 0mm",
+    ],
 )
 def test_a_length_that_is_none_says_what_is_allowed(text: str) -> None:
     with pytest.raises(ValueError, match=r"no length; give 10mm, 50um") as caught:

@@ -125,10 +125,14 @@ def test_both_resolution_and_width_are_refused(tmp_path: Path, grey: Grey) -> No
         Drawing.open(tmp_path / "a.png", dpi=300, width_mm=100)
 
 
-@pytest.mark.parametrize("scale", [{"dpi": v} for v in (0.0, -300.0, np.nan, np.inf)] + [{"width_mm": 0.0}])
+@pytest.mark.parametrize(
+    "scale", [{"dpi": v} for v in (0.0, -300.0, np.nan, np.inf, 1e-300)] + [{"width_mm": v} for v in (0.0, 1e-3, 1e6)]
+)
 def test_a_nonsense_scale_is_told(tmp_path: Path, grey: Grey, scale: dict[str, float]) -> None:
     Image.fromarray(grey).save(tmp_path / "a.png", dpi=DPI)
-    with pytest.raises(DrawingFault, match=r"--(dpi|width) is .*; it must be more than 0"):
+    with pytest.raises(
+        DrawingFault, match=r"--(dpi|width) is .*; it must give pixels of 0.001 to 10 mm, 2.54 to 2.54e\+04 dpi"
+    ):
         Drawing.open(tmp_path / "a.png", **scale)
 
 
