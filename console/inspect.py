@@ -73,6 +73,7 @@ def command(tape: FilePath, picture: FilePath | None, controls: Controls, desk: 
     (.steps, .cubic, .ngc) its format and what it does are told.
     """
     if medium.kind_of(tape) == "program":
+        controls.of_tape(tape)
         desk.figures(programs.inspect(tape, picture, desk))
         return
     if picture is not None:

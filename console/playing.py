@@ -159,13 +159,13 @@ class Controls:
         from player.controls import play
 
         if str(file) != PIPE:
-            return play(file, **self._by_hand(file), **settings)
+            return play(file, **self.of_tape(file), **settings)
         from player.machine import play_pipe
 
         return play_pipe(sys.stdin.buffer, **self.by_hand())
 
-    def _by_hand(self, file: FilePath) -> dict[str, Any]:
-        """What was given by hand, which only the control of a tape takes."""
+    def of_tape(self, file: FilePath) -> dict[str, Any]:
+        """What was given by hand; raises UsageError for a file that is no tape."""
         from player.controls import TAPE, control_of
 
         given = self.by_hand()

@@ -63,6 +63,7 @@ def test_what_is_for_tapes_only_is_wrong_use(morfax: Morfax, here: Path, path_fi
     assert morfax("record", path_file, "-o", "a.steps").exit_code == 0
     for words in (
         ["play", "a.steps", "--reference", "6kHz"],
+        ["inspect", "a.steps", "--reference", "6kHz"],
         ["record", path_file, "-o", "a.wav", "--tolerance", "1um"],
         ["inspect", tape_file, "-o", "tape.png"],
         ["record", path_file, "-o", "a.tape"],
