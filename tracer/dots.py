@@ -53,6 +53,17 @@ def dot_at_end(view: View, incoming: Leg) -> Array | None:
     return None
 
 
+def dot_ahead(view: View, leg: Leg) -> bool:
+    """Whether a leg leads to a dot, at which the line may end or not."""
+    for along in np.arange(0.25, LARGEST_WIDTHS, 0.25) * view.width_mm:
+        place, heading = leg.at(along), leg.heading_at(float(along))
+        if not view.dark(place):
+            return False
+        if disc(view, place, np.array([math.cos(heading), math.sin(heading)])) is not None:
+            return True
+    return False
+
+
 def alone(sheet: Sheet, view: View) -> Iterator[Array]:
     """Centres of the dots that stand alone on the paper, mm: round patches of ink that no line leaves."""
     pitch, patches = sheet.drawing.pitch_mm, sheet.patches

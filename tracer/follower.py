@@ -24,7 +24,7 @@ import numpy as np
 from motion.faults import LineFault
 from tracer import course, head
 from tracer.carriage import Carriage
-from tracer.dots import disc, dot_at_end
+from tracer.dots import disc, dot_ahead, dot_at_end
 from tracer.junctions import Guide, Junctions
 from tracer.knot import fork_in
 from tracer.leg import Leg, end_of, leg_of, turn
@@ -146,8 +146,8 @@ class Follower:
             if plan is not None:
                 return self._pass(*plan)
         plan, choices = self._pilot().along_legs(incoming, way)
-        explained = False
-        if not asked and not self._is_dot(incoming, way[0]):
+        explained = self._is_dot(incoming, way[0])
+        if not asked and not explained:
             number, way_in = self._junctions.next(self.carriage.travel_mm), self.carriage.stands()
             plan, explained = self._tangles.way_out(
                 self.view, incoming, self.carriage.trail, way_in, plan, number, self._turns.count(number)
@@ -163,8 +163,10 @@ class Follower:
         return self._at_end(incoming, choices) if plan is None else self._pass(*plan)
 
     def _is_dot(self, incoming: Leg, outgoing: Leg | None) -> bool:
-        """Whether the knot between two legs that go straight on is a dot on the line."""
-        if outgoing is None or not goes_straight(incoming, outgoing):
+        """Whether the knot between two legs that go straight on is a dot on the line, or the leg out of it leads to one: no pen drew that by its width."""
+        if outgoing is None or dot_ahead(self.view, outgoing):
+            return outgoing is not None
+        if not goes_straight(incoming, outgoing):
             return False
         way = outgoing.end_mm - incoming.end_mm
         return disc(self.view, incoming.end_mm + 0.5 * way, way) is not None

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from motion.contour import distance
 from tests.tracer.inked import UM, arc, dot, inked, polyline
 from tracer import dots
 from tracer.drawing import Drawing
@@ -84,3 +85,19 @@ def test_a_line_goes_on_through_a_dot_where_it_came_in() -> None:
         line = trace(drawing).lines[0]
         away_mm = np.abs(np.hypot(*(line.xy_mm - 16).T) - 10)
         assert [mark.kind for mark in line.marks] == ["dot"] and away_mm.max() < 4 * WITHIN_MM
+
+
+@pytest.mark.parametrize("seed", [1, 44])
+def test_a_dot_soon_after_a_corner_is_no_tangle_with_it(seed: int) -> None:
+    """The pen's width does not explain a dot: drawn with strokes the way went 0.8 mm to and fro in the first, past its edge in the second."""
+    rng = np.random.default_rng(seed)
+    width_mm, turn = rng.choice([0.5, 0.8]), math.radians(rng.uniform(60, 140))
+    gap_mm, radius_mm = rng.uniform(2.9, 5.4) * width_mm, rng.uniform(0.95, 2.0) * width_mm
+    way, vertex = np.array([math.cos(turn), math.sin(turn)]), np.array([20.0, 12.0])
+    centre = vertex + (radius_mm + gap_mm) * way
+    corner = np.array([[4.0, 12.0], vertex, vertex + 16 * way])
+    drawing = inked(corner, width_mm=float(width_mm), seed=seed, specks=[dot((centre[0], centre[1]), 2 * radius_mm)])
+    line = trace(drawing).lines[0]
+    assert distance(line.xy_mm[::4], corner).path_to_reference.max_mm < 100 * UM
+    assert [mark.kind for mark in line.marks] == ["dot"]
+    assert math.dist(line.marks[0].place_mm, centre) < 50 * UM
