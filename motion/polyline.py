@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 UM = 1e-3  # mm
 APART_MM = 0.02  # between places that stand for a line
 WITHIN_MM = 0.05 * UM  # distances from a line are true to this
-CELL_MM = 0.05  # of the grid in which crossings are sought: more than any piece is long
+CELL_MM = 0.05  # at least, of the grid in which crossings are sought
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -65,7 +65,7 @@ class Nearest:
 
 
 def crossings(one_mm: Array, other_mm: Array) -> Array:
-    """Where two polylines, no piece of them longer than `CELL_MM`, cross: (n, 2) places of each, as numbers of points with their share on, along the first."""
+    """Where two polylines cross: (n, 2) places of each, as numbers of points with their share on, along the first; quick if all their pieces are short."""
     pieces = np.delete(np.arange(len(one_mm) + len(other_mm) - 1), len(one_mm) - 1)
     found = crossings_of(np.ascontiguousarray(np.vstack([one_mm, other_mm])), pieces)
     found = found[(found[:, 0] < len(one_mm)) & (found[:, 1] >= len(one_mm))] - [0, len(one_mm)]
@@ -76,7 +76,10 @@ def crossings_of(points: Array, pieces: Ints) -> Array:
     """Where straight pieces (numbers of their first points) cross each other: (n, 2) places as numbers of points with their share on."""
     if not len(pieces):
         return np.empty((0, 2))
-    cells = np.floor(points[pieces] / CELL_MM).astype(np.int64)
+    longest_mm = float(np.hypot(*(points[pieces + 1] - points[pieces]).T).max())
+    cells = np.floor(points[pieces] / max(CELL_MM, 2 * longest_mm)).astype(
+        np.int64
+    )  # two that cross begin within a cell
     cells -= cells.min(axis=0) - 1
     wide = int(cells[:, 1].max()) + 2
     keys = cells[:, 0] * wide + cells[:, 1]
@@ -86,7 +89,7 @@ def crossings_of(points: Array, pieces: Ints) -> Array:
 
 @njit(cache=True)
 def _crossings_in(points, pieces, keys, wide):  # type: ignore[no-untyped-def]
-    """The crossings of pieces that are sorted by the cells of a grid; a piece is shorter than a cell."""
+    """The crossings of pieces that are sorted by the cells of a grid; a piece is shorter than half a cell."""
     found = np.empty((16, 2))
     count = 0
     for m in range(len(pieces)):

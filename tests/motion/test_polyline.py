@@ -9,16 +9,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from motion.polyline import APART_MM, CELL_MM, WITHIN_MM, Nearest, crossings, lengths_mm, plain, with_places
+from motion.polyline import APART_MM, WITHIN_MM, Nearest, crossings, lengths_mm, plain, with_places
 
 ROUNDING_MM = 1e-12
 
 
-def wave(seed: int, mm: float = 4.0) -> np.ndarray:
-    """A line that wanders at random, with places close enough for its crossings."""
+def wave(seed: int, mm: float = 4.0, apart_mm: float = 0.03) -> np.ndarray:
+    """A line that wanders at random."""
     turns = np.cumsum(np.random.default_rng(seed).normal(0, 0.7, 12))
     nodes = np.vstack([np.zeros(2), np.cumsum(mm / 12 * np.column_stack([np.cos(turns), np.sin(turns)]), axis=0)])
-    return with_places(nodes, 0.9 * CELL_MM)
+    return with_places(nodes, apart_mm)
 
 
 def test_lengths_add_up_along_the_line() -> None:
@@ -44,12 +44,14 @@ def test_fewer_places_are_within_what_is_allowed() -> None:
     assert np.abs(np.hypot(*with_places(kept, 0.05).T) - 10).max() <= 0.01 + ROUNDING_MM
 
 
-@given(one=st.integers(0, 10_000), other=st.integers(0, 10_000), turn=st.floats(0.5, 2.5))
-@settings(max_examples=30, deadline=None)
-def test_crossings_are_those_of_all_pairs_of_pieces(one: int, other: int, turn: float) -> None:
-    a = wave(one)
+@given(
+    one=st.integers(0, 10_000), other=st.integers(0, 10_000), turn=st.floats(0.5, 2.5), apart_mm=st.floats(0.02, 0.4)
+)
+@settings(max_examples=100, deadline=None)
+def test_crossings_are_those_of_all_pairs_of_pieces(one: int, other: int, turn: float, apart_mm: float) -> None:
+    a = wave(one, apart_mm=apart_mm)
     c, s = math.cos(turn), math.sin(turn)
-    b = wave(other) @ np.array([[c, s], [-s, c]]) + [0.3, -0.2]
+    b = wave(other, apart_mm=apart_mm) @ np.array([[c, s], [-s, c]]) + [0.3, -0.2]
     found = crossings(a, b)
     p, q = np.diff(a, axis=0)[:, None], np.diff(b, axis=0)[None]
     w = b[None, :-1] - a[:-1, None]
