@@ -33,7 +33,7 @@ from tracer.pens import Onward, another_pen, of_another_pen
 from tracer.pilot import Pilot
 from tracer.settings import Settings
 from tracer.stance import Stance
-from tracer.survey import AHEAD, SIDES, Side, Way, goes_straight, survey
+from tracer.survey import AHEAD, SIDES, Side, Way, goes_straight, survey, turns_off
 from tracer.tangles import Tangles
 from tracer.view import Array, View
 
@@ -236,7 +236,9 @@ class Follower:
     def _place_of(self, incoming: Leg, found: Way) -> Array:
         """Where a junction is: where the way out, or else a line that turns off from it, meets the way in."""
         ways = [found, *(survey(self.view, incoming, self.carriage.trail, side=side) for side in SIDES)]
-        met = [legs_mm for leg, legs_mm, _ in ways if legs_mm is not None and not goes_straight(incoming, leg)]
+        met = [
+            legs_mm for leg, legs_mm, _ in ways if legs_mm is not None and leg is not None and turns_off(incoming, leg)
+        ]
         return incoming.at(met[0][0]) if met else incoming.end_mm
 
     def _at_end(self, incoming: Leg, choices: int) -> Followed | None:

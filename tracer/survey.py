@@ -114,8 +114,12 @@ def _chosen(incoming: Leg, rank: int, side: Side | None, legs: list[Leg], every:
 
 def _is_aside(incoming: Leg, leg: Leg, side: Side) -> bool:
     """Whether a leg turns off to a side."""
-    angle = turn(incoming.heading_rad, leg.heading_rad)
-    return (angle > 0) == (side == "left") and abs(angle) > TURNS_OFF
+    return (turn(incoming.heading_rad, leg.heading_rad) > 0) == (side == "left") and turns_off(incoming, leg)
+
+
+def turns_off(incoming: Leg, leg: Leg) -> bool:
+    """Whether a leg turns off from another so far that it is certain where they meet."""
+    return abs(turn(incoming.heading_rad, leg.heading_rad)) > TURNS_OFF
 
 
 def _without_marks(view: View, incoming: Leg, legs: list[Leg]) -> list[Leg]:

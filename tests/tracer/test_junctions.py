@@ -91,6 +91,16 @@ def test_a_guide_line_ends_in_the_middle_of_its_dot_though_it_comes_askew() -> N
     assert math.dist(line.xy_mm[line.guides[0].tip], centre) < WITHIN_MM
 
 
+@pytest.mark.parametrize("width_mm", [0.3, 0.5, 0.8])
+@pytest.mark.parametrize("slant_deg", [54, -54])
+def test_where_a_lead_line_joins_aslant_is_where_it_meets_the_contour(slant_deg: float, width_mm: float) -> None:
+    """36 degrees to the contour are straight on at a junction, and yet the legs meet where they do: the clean end was 1.7 mm before that."""
+    a = math.radians(slant_deg)
+    lead = polyline((18 - 14 * math.cos(a), 28 - 14 * math.sin(a)), (18, 28))
+    line = trace(inked(arc((30, 28), 12), lead, width_mm=width_mm, seed=5), (lead[0, 0], lead[0, 1])).lines[0]
+    assert len(line.junctions_mm) == 1 and math.dist(line.junctions_mm[0], (18, 28)) < 0.3
+
+
 @pytest.mark.parametrize("seed", [7, 94, 101])
 def test_a_guide_line_on_the_outside_of_a_bend_makes_no_corner_of_it(seed: int) -> None:
     """On its inside the bend is seen to be round; by the outside alone the head went 0.2 mm up the guide line on the second of these."""
