@@ -11,7 +11,9 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.spatial import cKDTree
 
+from motion.polyline import with_places
 from tracer import course
 from tracer.knot import corner_in
 from tracer.leg import Leg, Meeting, leg_of, meet, turn
@@ -26,6 +28,7 @@ from tracer.view import Array, View
 SMOOTH = math.radians(14)  # a smaller change of heading is no corner
 LEAST_GAP_PX = 2.5  # a scan can lose this much of a line
 FAINTER = 0.5  # a line that becomes lighter at once goes on with so much of its darkness
+AS_FELT = 0.65  # pixels that single stations are off
 FAR_WIDTHS = 4.0  # to where the line goes on clean
 
 
@@ -122,7 +125,17 @@ class Pilot:
             return None
         if not course.is_sharp(self.view, incoming, outgoing, legs_mm):
             return None
-        return self._course(incoming, outgoing, legs_mm)
+        planned = self._course(incoming, outgoing, legs_mm)
+        return planned if self._as_felt(planned, seen, abs(turn(incoming.heading_rad, outgoing.heading_rad))) else None
+
+    def _as_felt(self, planned: Planned, seen: Array, deflection: float) -> bool:
+        """Whether a way round a corner is where the line was felt, but for the vertex: there the middle of the ink is inside of it.
+
+        A pen of width w that turns by d about a vertex leaves the inner edge of its ink w/2/cos(d/2) from it, and the outer one w/2 before the lens rounds it.
+        """
+        inside_mm = 0.5 * self.view.width_mm * (1 / max(math.cos(deflection / 2), 0.5) - 1)
+        away_mm = cKDTree(with_places(seen[:, :2], course.SPACING_MM)).query(np.vstack(planned.stretches))[0]
+        return bool(away_mm.max() < inside_mm + AS_FELT * self.view.pitch_mm)
 
     def _ride(self, incoming: Leg, ride: Ride) -> Planned | None:
         """Stretches along a line that was felt on one edge; round the tip and back, if that is how it went; None if it is too short."""

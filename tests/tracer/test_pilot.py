@@ -1,0 +1,57 @@
+"""The pilot: a way round a corner that the line was felt round is where it was felt."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from tests.tracer.inked import arc, inked, polyline
+from tracer import course, photocell
+from tracer.leg import leg_of, turn
+from tracer.pilot import Pilot
+from tracer.settings import Settings
+from tracer.strands import Planned
+from tracer.trail import Trail
+from tracer.view import Array, View
+
+WIDTH_MM = 0.3
+DEFLECTION = math.radians(60)
+
+
+def line(radius_mm: float) -> Array:
+    """A line along X that turns left at x = 8 mm, sharply or along a round."""
+    touch_mm = radius_mm * math.tan(DEFLECTION / 2)
+    vertex, way = np.array([8.0, 5.0]), np.array([math.cos(DEFLECTION), math.sin(DEFLECTION)])
+    if radius_mm == 0:
+        return polyline((3, 5), (8, 5), (*(vertex + 5 * way),))
+    bend = arc((8 - touch_mm, 5 + radius_mm), radius_mm, -90, -90 + math.degrees(DEFLECTION))
+    return np.vstack([[3.0, 5.0], bend, vertex + 5 * way])
+
+
+def felt(radius_mm: float) -> tuple[View, Array]:
+    """The view of that line, and its stations from 1.5 mm before the vertex on."""
+    drawing = inked(line(radius_mm), width_mm=WIDTH_MM, seed=1)
+    view = View(photocell.behind_aperture(drawing, 0.1), drawing.pitch_mm, WIDTH_MM, 0.5)
+    seen = view.feel(np.array([6.5, 5.0]), 0.0, 3.0)
+    assert len(seen) > 55  # clean all the way round
+    return view, seen
+
+
+@pytest.mark.parametrize(("radius_mm", "is_felt"), [(0.0, True), (0.3, True), (0.9, False), (1.3, False)])
+def test_a_way_by_the_vertex_is_taken_only_where_the_line_was_felt_there(radius_mm: float, is_felt: bool) -> None:
+    """The vertex is r·(1/cos 30° - 1) off a round: 46 um at 0.3 mm, 139 um at 0.9 mm. Of a sharp corner's it may be 78 um off: 23 um that the middle of its
+
+    ink may be inside, and 55 um of single stations.
+    """
+    view, seen = felt(radius_mm)
+    pilot = Pilot(view, (seen[0, :2], 0.0), Trail(seen[0, :2], view.step_mm), Settings())
+    legs = leg_of(seen[:16], True, view.leg_mm), leg_of(seen[-16:], False, view.leg_mm)
+    way = polyline((6.5, 5), (8, 5), (8 + 0.7 * math.cos(DEFLECTION), 5 + 0.7 * math.sin(DEFLECTION)))
+    stretches = [np.linspace(a, b, 40) for a, b in pairwise(way)]
+    deflection = abs(turn(legs[0].heading_rad, legs[1].heading_rad))
+    assert deflection == pytest.approx(DEFLECTION, abs=math.radians(2))
+    assert pilot._as_felt(Planned(stretches, legs[1]), seen, deflection) is is_felt
+    assert pilot._as_felt(Planned([course.distinct(seen[:, :2])], legs[1]), seen, deflection)
