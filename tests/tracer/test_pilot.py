@@ -42,9 +42,9 @@ def felt(radius_mm: float) -> tuple[View, Array]:
 
 @pytest.mark.parametrize(("radius_mm", "is_felt"), [(0.0, True), (0.3, True), (0.9, False), (1.3, False)])
 def test_a_way_by_the_vertex_is_taken_only_where_the_line_was_felt_there(radius_mm: float, is_felt: bool) -> None:
-    """The vertex is r·(1/cos 30° - 1) off a round: 46 um at 0.3 mm, 139 um at 0.9 mm. Of a sharp corner's it may be 78 um off: 23 um that the middle of its
+    """The vertex is 46 um off a round of 0.3 mm, and 139 um off one of 0.9 mm: r·(1/cos 30° - 1).
 
-    ink may be inside, and 55 um of single stations.
+    Of a sharp corner it may be 78 um off: 23 um that the middle of its ink may be inside, and 55 um of single stations.
     """
     view, seen = felt(radius_mm)
     pilot = Pilot(view, (seen[0, :2], 0.0), Trail(seen[0, :2], view.step_mm), Settings())
