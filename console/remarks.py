@@ -18,8 +18,10 @@ UNEVEN = 1.25  # the widest gap of a dashed line over the one that was met
 FEW = 0.7  # of the ink that is joined to a line: what is left is worth a word
 
 
-def remarks(trace: Trace, head: Head, gap_mm: float) -> Iterator[str]:
-    """All that is worth a word of a trace, the head having gone across gaps up to this."""
+def remarks(trace: Trace, head: Head, gap_mm: float, enlarged: int) -> Iterator[str]:
+    """All that is worth a word of a trace, the head having gone across gaps up to this, on a drawing enlarged so many times."""
+    if enlarged > 1:
+        yield f"edges are near one another: followed {enlarged} times enlarged, so the machine goes {enlarged} times slower than the head"
     yield from _of_stops(trace)
     yield from _of_reference(trace, head.marks)
     yield from _of_gaps(trace)

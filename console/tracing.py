@@ -93,7 +93,7 @@ class Head:
             if picture is not None:
                 self._show_sheet(drawing, fault, medium.incomplete(picture), desk)
             raise
-        for text in remarks(traced, self, settings.gap_mm):
+        for text in remarks(traced, self, settings.gap_mm, drawing.enlarged):
             desk.note(text)
         origin_mm = (0.0, 0.0) if self.marks.origin == "sheet" else self._reference_mm(drawing, traced)
         beside, unreached = self._beside(traced, settings)

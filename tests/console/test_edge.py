@@ -33,6 +33,17 @@ def test_all_lines_takes_the_holes_before_the_outside(morfax: Morfax, here: Path
     assert np.flatnonzero(radii < 7).max() < np.flatnonzero(radii > 9).min()
 
 
+def test_fine_details_are_followed_enlarged_and_told_of(morfax: Morfax, here: Path) -> None:
+    hole = arc((15, 16), 0.5)
+    sheet = filled(here / "plate.png", CIRCLE, holes=(hole,))
+    answer = morfax("trace", sheet, "--edge", "--lines", "all", "-o", "plate.csv", "--json")
+    assert answer.exit_code == 0 and "followed 2 times enlarged" in answer.err
+    path = read_path(here / "plate.csv")
+    assert distance(path, [CIRCLE, hole]).hausdorff_mm < 45 * UM  # as in test_silhouette
+    again = morfax("trace", filled(here / "disc.png", CIRCLE), "--edge", "-o", "disc.csv")
+    assert again.exit_code == 0 and "enlarged" not in again.err
+
+
 def test_what_has_no_edge_is_refused_with_one_line(morfax: Morfax, here: Path) -> None:
     cut = filled(here / "cut.png", polyline((20, 8), (40, 8), (40, 20), (20, 20), (20, 8)))
     kept = set(here.iterdir())
