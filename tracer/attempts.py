@@ -90,12 +90,11 @@ class Attempts:
         run = self.run(stance)
         if stance.at_end or (run.ending == "closed" and not run.junctions_mm):
             return self._taken_in(stance, run)
-        if run.at_tip:
-            both = replace(self, tips=True)
-            there_and_back = both.run(stance)
-            if there_and_back.ending == "closed":
-                return both._taken_in(stance, there_and_back)
+        if (there_and_back := self._through_tips(stance, run)) is not None:
+            return there_and_back
         other = self.run(turned_about(stance))
+        if run.ending != "closed" and (there_and_back := self._through_tips(turned_about(stance), other)) is not None:
+            return there_and_back
         if run.ending == "closed":
             if other.ending == "closed" and other.travel_mm < SHORTER * run.travel_mm:
                 return self._taken_in(turned_about(stance), other)
@@ -108,6 +107,14 @@ class Attempts:
         if other.ending == "closed":
             return other
         return self._with_other_turns(stance, run) if run.ending == "joined" else run
+
+    def _through_tips(self, stance: Stance, run: Followed) -> Followed | None:
+        """The run from a stance that goes back from tips in which two lines end, if the one that does not ended in such a tip, and this one closes."""
+        if not run.at_tip:
+            return None
+        both = replace(self, tips=True)
+        there_and_back = both.run(stance)
+        return both._taken_in(stance, there_and_back) if there_and_back.ending == "closed" else None
 
     def _taken_in(self, stance: Stance, run: Followed) -> Followed:
         """A run that closes, with the ink taken in that it left out where another way would have done as well: the longest of `DOUBTS` more runs."""

@@ -1,0 +1,65 @@
+"""Attempts: which of the head's runs is the line."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from tests.tracer.inked import inked, polyline
+from tracer.attempts import Attempts
+from tracer.follower import Followed
+from tracer.settings import Settings
+from tracer.stance import Stance
+from tracer.view import View
+
+DRAWING = inked(polyline((4, 4), (14, 4)))
+VIEW = View(DRAWING.darkness, DRAWING.pitch_mm, 0.5, 0.5)
+STANCE = Stance(np.array([9.0, 4.0]), 0.0, VIEW)
+Runs = dict[
+    tuple[bool, bool], Followed
+]  # by whether the head sets out as it stands, and whether it goes back from tips
+
+
+def run(ending: str, length_mm: float, *, at_tip: bool = False) -> Followed:
+    """A run along X, as it might have ended."""
+    positions = np.column_stack([9 + np.linspace(0, length_mm, 100), np.full(100, 4.0)])
+    return Followed(positions, ending, 0.0, length_mm, VIEW, ((9.5, 4.0),), at_tip=at_tip)
+
+
+def chosen(monkeypatch: pytest.MonkeyPatch, runs: Runs) -> Followed:
+    """The run that is kept, of runs that are known beforehand."""
+
+    def known(self: Attempts, stance: Stance, turns: tuple[int, ...] = ()) -> Followed:
+        return runs[math.cos(stance.heading_rad) > 0, self.tips]
+
+    monkeypatch.setattr(Attempts, "run", known)
+    return Attempts(DRAWING, Settings(), (), 100.0, None).all_of_it(STANCE)
+
+
+def test_a_line_that_closes_only_back_from_a_tip_is_tried_so_either_way_round(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A coast of 2.2 m ended in a bay one way round, and at a spike of two lines the other way: half of it was left."""
+    runs: Runs = {
+        (True, False): run("ended", 40),
+        (False, False): run("joined", 65, at_tip=True),
+        (False, True): run("closed", 217),
+        (True, True): run("lost", 41),
+    }
+    assert chosen(monkeypatch, runs) is runs[False, True]
+    runs[True, False], runs[True, True] = run("joined", 40, at_tip=True), run("closed", 220)
+    assert chosen(monkeypatch, runs) is runs[True, True]
+
+
+def test_a_line_that_closes_has_no_need_of_tips(monkeypatch: pytest.MonkeyPatch) -> None:
+    runs: Runs = {(True, False): run("closed", 100), (False, False): run("joined", 65, at_tip=True)}
+    assert chosen(monkeypatch, runs) is runs[True, False]
+
+
+def test_a_tip_that_leads_nowhere_leaves_the_longest_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    runs: Runs = {
+        (True, False): run("ended", 40),
+        (False, False): run("joined", 65, at_tip=True),
+        (False, True): run("lost", 70),
+    }
+    assert chosen(monkeypatch, runs) is runs[False, False]
