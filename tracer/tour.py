@@ -28,7 +28,7 @@ from tracer.lines import Sheet
 from tracer.operator import Operator
 from tracer.program import Trace
 from tracer.reference import LARGEST_MM
-from tracer.sequence import followed, followed_from_an_end
+from tracer.sequence import SHORT, followed, followed_from_an_end
 from tracer.settings import Settings
 from tracer.stance import view_of
 from tracer.view import Array
@@ -115,16 +115,24 @@ def _numbered(lines: list[Line], numbers: Which) -> list[Line]:
 
 
 def _follow(sheet: Sheet, contour: Contour, settings: Settings, operator: Operator, told: Told | None) -> Line | None:
-    """Follow a line from an open end, or from the plainest of its places where the head can be put down; None for a letter, where it cannot be."""
+    """Follow a line from an open end, or from the plainest of its places where the head can be put down; None for a letter, where it cannot be.
+
+    From an end that leads round less than half of the ink, the line has to be longer than round about from such a place.
+    """
     from_end = followed_from_an_end(sheet, contour.stroke, settings, operator, told, contour.number)
-    if from_end is not None:
+    if from_end is not None and (from_end.ending != "joined" or from_end.length_mm > SHORT * from_end.ink_mm):
         return from_end
     stroke, starts_mm = contour.stroke, contour.starts_mm()
     for start_mm in starts_mm:
         try:
-            return followed(sheet, start_mm, settings, operator, told, contour.number)
+            line = followed(sheet, start_mm, settings, operator, told, contour.number)
         except LineFault as fault:
             refused = fault
+            continue
+        closes = from_end is None or (line.ending == "closed" and line.length_mm > from_end.length_mm)
+        return line if closes else from_end
+    if from_end is not None:
+        return from_end
     if contour.reach_mm < contours.LETTER_MM:
         return None
     return Line(np.array(starts_mm[:1]), "lost", stroke.width_mm, 0.0, refused, contour.number)
