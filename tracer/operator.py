@@ -197,7 +197,20 @@ class Operator:
                 )
                 actions.append(made)
                 z_mm = -made.entry.depth_mm if made.entry else moves[-1].to_mm
+        if z_mm >= 0 and not line.is_guide:
+            self._refuse_passes_above(actions)
         return actions
+
+    def _refuse_passes_above(self, actions: Sequence[Action]) -> None:
+        """Raise CardFault if a line that ends with the tool up was to be run at further depths: only the first pass has stops."""
+        depths_mm = self.depths_mm(actions)
+        if any(action.depths_mm for action in actions) and len(depths_mm) > 1:
+            last = next(action for action in reversed(actions) if action.moves[-1].to_mm >= 0)
+            (x, y), which = last.halt.place_mm, ", ".join(f"{depth:g}" for depth in depths_mm[1:])
+            raise CardFault(
+                f"at stop {last.halt.number}, {x:.2f},{y:.2f} mm, the tool goes up for the rest of the line, and further passes, at {which} mm, have no stops:"
+                " give one depth instead of passes, or lower the tool again before the line ends"
+            )
 
     def _entered(self, action: Action) -> Action:
         """The action where the tool goes down, with the card's entry: to the surface standing, and the rest on the way."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pytest
@@ -96,6 +96,18 @@ def test_passes_of_the_stop_where_the_tool_goes_down_are_the_lines() -> None:
     assert done(operator, line(tick(250)))[0][0] == ("tick", [-1.0])
     first, second = operator.actions([line(tick(250)), line(tick(250))])
     assert operator.depths_mm(first) == (1.0, 3.0) and operator.depths_mm(second) == (4.0,)  # which is stop 2
+
+
+def test_passes_below_a_tool_that_has_gone_up_are_refused() -> None:
+    """The further passes have no stops: they were left out, and nothing was said."""
+    up = '[[stop]]\nnumber = 2\nmoves = [{ up = "9mm" }]\n'
+    card = 'passes = ["1mm", "3mm"]\n' + up
+    operator = Operator(replace(WORK, passes_mm=(1.0,), depth_mm=3.0), Card.parse(card))
+    with pytest.raises(CardFault, match=r"at stop 2, .* the tool goes up .* further passes, at 3 mm, have no stops"):
+        operator.actions([line(tick(250), tick(600))])
+    again = Card.parse(card + '[[stop]]\nnumber = 3\nmoves = [{ down = "9mm" }]\n')
+    assert len(replace(operator, card=again).actions([line(tick(250), tick(600), tick(700))])[0]) == 3
+    assert len(Operator(WORK, Card.parse(up)).actions([line(tick(250), tick(600))])[0]) == 2  # one depth
 
 
 @pytest.mark.parametrize(
