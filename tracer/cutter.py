@@ -77,7 +77,7 @@ def with_cutter(trace: Trace, cutter: Cutter, feed_mm_s: float) -> tuple[Trace, 
     if not cuts:
         return replace(trace, lines=tuple(line for line, _ in planned)), []
     guides = _guides(cuts, cutter.side)
-    ways = offset(guides, cutter.radius_mm)
+    ways = [] if all(_is_too_small(guide, cutter.diameter_mm) for guide in guides) else offset(guides, cutter.radius_mm)
     if not ways:
         raise MotionFault(
             f"a cutter of {cutter.diameter_mm:g} mm goes nowhere {cutter.side} of the lines; give a smaller --cutter, or another --side"
@@ -95,6 +95,13 @@ def with_cutter(trace: Trace, cutter: Cutter, feed_mm_s: float) -> tuple[Trace, 
     beside = replace(trace, lines=tuple(made))
     _refuse_gouges(beside, near, cutter)
     return beside, _unreached(cuts, ways, cutter.radius_mm)
+
+
+def _is_too_small(guide: Guide, diameter_mm: float) -> bool:
+    """Whether the tool is inside a closed line that is narrower than it, in X or Y: seen at once, where swinging the arm takes minutes."""
+    x, y = guide.points_mm.T
+    ccw = float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)) > 0
+    return guide.closed and ccw == guide.left and float(np.ptp(guide.points_mm, axis=0).min()) < diameter_mm
 
 
 def _planned(trace: Trace, side: Side) -> list[tuple[Line, Cut | None]]:
