@@ -3,7 +3,7 @@
 Signals: polylines in mm, each with the side on which the tool runs, in; out the ways of the tool's middle, closed where the line is.
 
     swung     the end of an arm as long as the radius, across the heading. Where the line turns away, the arm swings round the vertex: an arc. Where
-              it turns towards the tool, the arm swings back through the vertex.
+              it turns towards the tool, the arm is drawn in, swings back, and is put out again: that is within the radius of the vertex.
     trimmed   what of that is nearer than the radius to any line is taken out. What is left ends where two of the swung ways cross, and there one
               goes on into the other.
 
@@ -26,6 +26,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
+from numba import njit
 
 from motion.polyline import APART_MM, UM, Array, Nearest, crossings_of, plain, with_places
 
@@ -39,9 +40,10 @@ FREE, ALONE = -1, -2  # ends of a piece that lie at no crossing: of an open line
 DEEP_MM = 0.05  # nearer than the radius by this: no crossing there can count
 SAME_MM = 0.01 * UM  # places as near as this are one
 SHAKEN_MM = 1e-4 * SAME_MM
-LEAST_MM = 0.05  # a shorter way is none
+LEAST_MM = 0.05  # a shorter way is none,
+BROKEN = 0.1  # nor is one from crossing to crossing, shorter than this share of the radius
 SLIGHT = math.radians(10)  # turns towards the tool by less go straight to where the two ways beside the vertex meet,
-KINK_MM = 1 * UM  # if that is no nearer to the line than this: it is, where the line beside the vertex is short
+KINK_MM = 0.1 * UM  # if that is no nearer to the line than this: it is, where the line beside the vertex is short
 BACK = math.radians(179)  # a line that turns by more comes back along itself: the tool goes round its tip
 
 
@@ -65,7 +67,7 @@ class Way:
 
 def offset(guides: Sequence[Guide], radius_mm: float) -> list[Way]:
     """Ways of a tool of this radius along guides, each as the guide goes; none where the tool does not fit."""
-    lines = [_guided(guide) for guide in guides]
+    lines = [_guided(guide, radius_mm) for guide in guides]
     near = Nearest([_closed_up(line, guide.closed) for line, guide in zip(lines, guides, strict=True)], radius_mm)
     swung = [_swung(line, guide.closed, radius_mm) for line, guide in zip(lines, guides, strict=True)]
     pieces = _parted(swung, [guide.closed for guide in guides], near, radius_mm)
@@ -75,20 +77,37 @@ def offset(guides: Sequence[Guide], radius_mm: float) -> list[Way]:
         points = np.vstack([piece.points_mm for piece in chain])
         points = points[np.r_[True, np.hypot(*np.diff(points, axis=0).T) > SAME_MM]]
         guide = max(chain, key=lambda piece: piece.length_mm).guide
-        if not _is_scrap(points, closed, radius_mm):
+        broken = not closed and FREE not in (chain[0].start, chain[-1].end)
+        if not _is_scrap(points, closed, radius_mm, BROKEN * radius_mm if broken else LEAST_MM):
             points = _begun(points, swung[guide][0]) if closed else points
             ways.append(Way(points if guides[guide].left else points[::-1], closed, guide))
     return ways
 
 
-def _guided(guide: Guide) -> Array:
-    """The places of a guide that count, the tool on its left; of a closed one the last is not the first again."""
+def _guided(guide: Guide, radius_mm: float) -> Array:
+    """The places of a guide that count for a tool, the tool on its left; of a closed one the last is not the first again."""
     points = np.ascontiguousarray(guide.points_mm if guide.left else guide.points_mm[::-1], float)
     points = plain(points, PLAIN)
     points = points[np.r_[True, np.hypot(*np.diff(points, axis=0).T) > PLAIN]]
     if guide.closed and len(points) > 1 and np.hypot(*(points[-1] - points[0])) <= APART_MM:
         points = points[:-1]
-    return points
+    return points[_within_reach(points, math.sqrt(8 * PLAIN * radius_mm))]
+
+
+@njit(cache=True)
+def _within_reach(points, wide_mm):  # type: ignore[no-untyped-def]
+    """Which places of a line the tool on its left may touch: not one that is set back between two so near that the tool does not sink in between."""
+    kept, count = np.empty(len(points), np.int64), 0
+    for k in range(len(points)):
+        while count > 1:
+            a, b = points[kept[count - 2]], points[kept[count - 1]]
+            ux, uy, wx, wy = b[0] - a[0], b[1] - a[1], points[k, 0] - a[0], points[k, 1] - a[1]
+            if ux * wy - uy * wx <= 0 or wx * wx + wy * wy > wide_mm * wide_mm:
+                break
+            count -= 1
+        kept[count] = k
+        count += 1
+    return kept[:count].copy()
 
 
 def _closed_up(points: Array, closed: bool) -> Array:
@@ -123,7 +142,8 @@ def _swing(vertex: Array, arm: Array, turn: float, beside_mm: float, radius_mm: 
     if (0 <= turn < SLIGHT and back_mm * turn < KINK_MM) or -math.sqrt(8 * PLAIN / radius_mm) < turn < 0:
         return np.asarray(vertex + _turned(arm, np.array([turn / 2])) / math.cos(turn / 2))
     if turn > 0:
-        return np.vstack([vertex + arm, vertex, vertex + _turned(arm, np.array([turn]))[0]])
+        arms, drawn_in = np.vstack([arm, _turned(arm, np.array([turn]))]), max(0.0, 1 - 2 * DEEP_MM / radius_mm)
+        return np.asarray(vertex + np.vstack([arms[0], drawn_in * arms, arms[1]]))
     steps = math.ceil(-turn / math.sqrt(8 * PLAIN / radius_mm))
     return np.asarray(vertex + _turned(arm, np.linspace(0, turn, steps + 1)))
 
@@ -241,11 +261,12 @@ def _turn(arriving: _Piece, leaving: _Piece) -> float:
     return math.atan2(a[0] * b[1] - a[1] * b[0], a @ b)
 
 
-def _is_scrap(points: Array, closed: bool, radius_mm: float) -> bool:
+def _is_scrap(points: Array, closed: bool, radius_mm: float, least_mm: float) -> bool:
     """Whether a way is none: too short, or round nothing, though to the right it must go round a line."""
     length_mm = float(np.hypot(*np.diff(points, axis=0).T).sum())
     area_mm2 = 0.5 * float(np.sum(points[:-1, 0] * points[1:, 1] - points[1:, 0] * points[:-1, 1]))
-    return length_mm < LEAST_MM or (closed and area_mm2 < 0 and length_mm < 6 * radius_mm)
+    round_a_line = area_mm2 < 0 and length_mm > 6 * radius_mm
+    return length_mm < least_mm or (closed and not round_a_line and 2 * area_mm2 < NEARER * length_mm)
 
 
 def _begun(points: Array, start_mm: Array) -> Array:

@@ -50,8 +50,11 @@ class Nearest:
     def __init__(self, lines_mm: Sequence[Array], radius_mm: float) -> None:
         from scipy.spatial import cKDTree
 
-        apart_mm = min(APART_MM, math.sqrt(8 * radius_mm * WITHIN_MM))
-        self._tree = cKDTree(np.vstack([with_places(line, apart_mm) for line in lines_mm]))
+        share_mm = (
+            0.5 * WITHIN_MM
+        )  # of the places that are left out; as much is the sagitta between those that stand for the line
+        apart_mm = math.sqrt(8 * radius_mm * share_mm)
+        self._tree = cKDTree(np.vstack([with_places(plain(line, share_mm), apart_mm) for line in lines_mm]))
 
     def distances_mm(self, places_mm: Array) -> Array:
         """Distance of each place (n, 2) from the nearest line, mm."""

@@ -26,7 +26,7 @@ import numpy as np
 
 from motion.faults import LineFault, MotionFault
 from motion.offset import Guide, Way, offset
-from motion.polyline import Nearest, with_places
+from motion.polyline import WITHIN_MM, Nearest, plain, with_places
 from tracer import contours
 from tracer.beside import Beside, Cut
 from tracer.carried import Feed, carried
@@ -36,7 +36,8 @@ from tracer.view import Array
 
 Side = Literal["outside", "inside", "left", "right"]
 
-LEFT_MM = 0.002  # less is no place that the cutter cannot reach
+LEFT_MM = 0.002  # less is reached,
+LISTED_MM = 0.01  # and where nowhere more is left, nothing is listed: so much the head wavers
 EVERY_MM = 0.02  # between the places of a line that are looked at
 GOUGE_MM = 0.005  # nearer to a line than the radius
 GOUGES = 10  # of the positions one in so many is looked at
@@ -98,7 +99,7 @@ def with_cutter(trace: Trace, cutter: Cutter, feed_mm_s: float) -> tuple[Trace, 
 
 
 def _is_too_small(guide: Guide, diameter_mm: float) -> bool:
-    """Whether the tool is inside a closed line that is narrower than it, in X or Y: seen at once, where swinging the arm takes minutes."""
+    """Whether the tool is inside a closed line that is narrower than it, in X or Y: seen at once."""
     x, y = guide.points_mm.T
     ccw = float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)) > 0
     return guide.closed and ccw == guide.left and float(np.ptp(guide.points_mm, axis=0).min()) < diameter_mm
@@ -204,7 +205,7 @@ def _unreached(cuts: Sequence[Cut], ways: Sequence[Way], radius_mm: float) -> li
     near = Nearest([way.points_mm for way in ways], radius_mm)
     found = []
     for cut in cuts:
-        places = with_places(cut.places_mm, EVERY_MM)
+        places = with_places(plain(cut.places_mm, WITHIN_MM), EVERY_MM)
         left_mm = near.distances_mm(places) - radius_mm
         if cut.closed:
             first = int(np.argmin(left_mm))  # no stretch is parted where the line begins
@@ -212,6 +213,8 @@ def _unreached(cuts: Sequence[Cut], ways: Sequence[Way], radius_mm: float) -> li
         edges = np.flatnonzero(np.diff(np.r_[False, left_mm > LEFT_MM, False].astype(np.int8))).reshape(-1, 2)
         for a, b in edges:
             at = a + int(np.argmax(left_mm[a:b]))
+            if left_mm[at] < LISTED_MM:
+                continue
             length_mm = float(np.hypot(*np.diff(places[a:b], axis=0).T).sum())
             place_mm = float(places[at, 0]), float(places[at, 1])
             found.append(Unreached(cut.line.number, place_mm, float(left_mm[at]), length_mm))

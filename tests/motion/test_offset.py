@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from motion.contour import distance
 from motion.feed import run_along
 from motion.motion import MOTION_RATE_HZ
-from motion.offset import Guide, offset
+from motion.offset import Guide, _guided, _swung, offset
 from motion.polyline import Nearest
 
 shapely = pytest.importorskip("shapely")
@@ -176,3 +176,35 @@ def test_a_kink_among_short_steps_is_no_end_of_the_way(radius_mm: float) -> None
     true = shapely.Polygon(line).buffer(radius_mm, quad_segs=512).exterior
     assert max(true.distance(shapely.Point(point)) for point in ways[0].points_mm) < 2 * UM
     assert np.hypot(*np.diff(ways[0].points_mm, axis=0).T).sum() == pytest.approx(true.length, rel=1e-3)
+
+
+def scanned(line: Array, seed: int) -> Array:
+    """A closed line as a head would run it, with waves of 0.3 to 3 mm as a scan's noise makes them."""
+    rng, along = np.random.default_rng(seed), np.r_[0, np.cumsum(np.hypot(*np.diff(line, axis=0).T))]
+    at = np.linspace(0, along[-1], round(along[-1] / 0.005), endpoint=False)
+    points = np.column_stack([np.interp(at, along, column) for column in line.T])
+    for column in points.T:
+        for waves in rng.integers(along[-1] / 3, along[-1] / 0.3, 12):
+            column += 0.3 * UM * rng.normal() * np.cos(math.tau * waves * at / along[-1] + rng.uniform(0, math.tau))
+    return np.vstack([points, points[:1]])
+
+
+@pytest.mark.parametrize(("seed", "radius_mm"), [(1, 20.0), (2, 50.0), (3, 150.0), (5, 80.0)])
+def test_round_a_part_much_smaller_than_the_tool_goes_one_way(seed: int, radius_mm: float) -> None:
+    line = scanned(star(seed), seed)
+    ways = offset([Guide(line, True, not shapely.Polygon(line).exterior.is_ccw)], radius_mm)
+    assert [way.closed for way in ways] == [
+        True
+    ]  # of noise alone up to 27 pieces, when arms swung back through each vertex
+    off_mm = shapely.distance(shapely.points(ways[0].points_mm), shapely.LineString(line)) - radius_mm
+    assert np.abs(off_mm).max() < EXACT_MM
+    true = shapely.Polygon(line).buffer(radius_mm, quad_segs=8000).exterior
+    assert np.hypot(*np.diff(ways[0].points_mm, axis=0).T).sum() == pytest.approx(true.length, rel=1e-3)
+
+
+def test_in_a_hole_much_narrower_than_the_tool_the_arm_swings_no_further_than_round() -> None:
+    """It took minutes: 300 m, back through a thousand vertices."""
+    guide, radius_mm = Guide(circle(5, 0.5 * UM), True, True), 150.0
+    swung = _swung(_guided(guide, radius_mm), True, radius_mm)
+    assert np.hypot(*np.diff(swung, axis=0).T).sum() < 2 * math.tau * radius_mm
+    assert offset([guide], radius_mm) == []
