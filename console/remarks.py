@@ -6,15 +6,19 @@ Signals: the traced lines, and what was asked of the head, in; texts out.
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterator
+from itertools import groupby
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from console.tracing import Head, Marks
+    from tracer.cutter import Cutter, Left, LeftOut
     from tracer.line import Line
     from tracer.program import Trace
 
 UNEVEN = 1.25  # the widest gap of a dashed line over the one that was met
+UNCUT = 0.2  # of a line: corners are less
 FEW = 0.7  # of the ink that is joined to a line: what is left is worth a word
 
 
@@ -29,6 +33,37 @@ def remarks(trace: Trace, head: Head, gap_mm: float, enlarged: int) -> Iterator[
     yield from _of_stems(trace)
     if head.lines is None and trace.fault is None:
         yield from _of_rest(trace.lines[0])
+
+
+def of_cutter(beside: Trace, left: Left, cutter: Cutter) -> Iterator[str]:
+    """All that is worth a word of a program beside the lines: what the cutter leaves out, leaves much of, or runs in pieces."""
+    if left.lines:
+        yield _of_left_out(left.lines, cutter)
+    for number, stretches in groupby(sorted(left.stretches, key=lambda u: u.line), key=lambda u: u.line):
+        uncut = list(stretches)
+        uncut_mm, of_mm = sum(u.length_mm for u in uncut), uncut[0].of_mm
+        if uncut_mm > UNCUT * of_mm:
+            yield f"{uncut_mm:.0f} of {of_mm:.0f} mm of line {number} are not cut: the cutter does not reach them, see the places in the figures"
+    for number, count in Counter(line.number for line in beside.lines).items():
+        if count > 1:
+            yield f"line {number} is cut in {count} pieces, between which the cutter has no room"
+
+
+def _of_left_out(lines: list[LeftOut], cutter: Cutter) -> str:
+    """Of lines that the cutter leaves out, with their stops, and which cutter would not."""
+    numbers, stops = [out.line for out in lines], [stop for out in lines for stop in out.stops]
+    passes_mm = min((out.room.passes_mm for out in lines if out.room is not None), default=0.0)
+    one = len(lines) == 1
+    return (
+        f"{_numbered('line', numbers)} left out: a cutter of {cutter.diameter_mm:g} mm has no room beside {'it' if one else 'them'}"
+        + (f", one of up to {passes_mm:g} mm has{'' if one else ' beside all'}" if passes_mm > 0 else "")
+        + (f"; {_numbered('stop', stops)} left out with {'it' if one else 'them'}" if stops else "")
+    )
+
+
+def _numbered(what: str, numbers: list[int]) -> str:
+    """Some things by their numbers, with their verb."""
+    return f"{what} {numbers[0]} is" if len(numbers) == 1 else f"{what}s {', '.join(map(str, numbers))} are"
 
 
 def _of_stops(trace: Trace) -> Iterator[str]:

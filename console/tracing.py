@@ -15,7 +15,7 @@ import click
 
 from console import medium
 from console.desk import Desk
-from console.remarks import remarks
+from console.remarks import of_cutter, remarks
 from motion.faults import CardFault, Fault, LineFault
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from console.unit import Unit
     from motion.motion import Path
     from tracer.card import Card, Override
-    from tracer.cutter import Cutter, Unreached
+    from tracer.cutter import Cutter, Left
     from tracer.drawing import Drawing
     from tracer.operator import Direction, Operator
     from tracer.program import Trace
@@ -96,16 +96,19 @@ class Head:
         for text in remarks(traced, self, settings.gap_mm, drawing.enlarged):
             desk.note(text)
         origin_mm = (0.0, 0.0) if self.marks.origin == "sheet" else self._reference_mm(drawing, traced)
-        beside, unreached = self._beside(traced, settings)
-        return Traced(beside, thin(beside), self.lines is not None, origin_mm, self.cutter, unreached)
+        beside, left = self._beside(traced, settings, desk)
+        return Traced(beside, thin(beside), self.lines is not None, origin_mm, self.cutter, left)
 
-    def _beside(self, traced: Trace, settings: Settings) -> tuple[Trace, list[Unreached]]:
+    def _beside(self, traced: Trace, settings: Settings, desk: Desk) -> tuple[Trace, Left | None]:
         """The program of the cutter beside the lines, and what it cannot reach; without a cutter the lines themselves."""
         if self.cutter is None:
-            return traced, []
+            return traced, None
         from tracer.cutter import with_cutter
 
-        return with_cutter(traced, self.cutter, settings.speed_mm_s)
+        beside, left = with_cutter(traced, self.cutter, settings.speed_mm_s)
+        for text in of_cutter(beside, left, self.cutter):
+            desk.note(text)
+        return beside, left
 
     def _reference_mm(self, drawing: Drawing, trace: Trace) -> tuple[float, float]:
         """The reference point: the one given, that from which the program begins, or the only one on the sheet; raises LineFault without one."""
@@ -191,7 +194,7 @@ class Traced:
     several: bool = False  # lines were asked for, not one line
     origin_mm: tuple[float, float] = (0.0, 0.0)  # the machine's zero on the sheet
     cutter: Cutter | None = None
-    unreached: list[Unreached] = field(default_factory=list)  # by the cutter
+    left: Left | None = None  # by the cutter
 
     @property
     def places_mm(self) -> list[tuple[str, tuple[float, float]]]:
@@ -238,24 +241,33 @@ class Traced:
 
     def _of_cutter(self) -> dict[str, Any]:
         """The cutter, and what it cannot reach."""
-        if self.cutter is None:
+        if self.cutter is None or self.left is None:
             return {}
-        rows = [
+        lines = [
             {
-                "unreached": k,
-                "of_line": u.line,
-                "place_mm": u.place_mm,
-                "left_mm": u.left_mm,
-                "stretch_mm": u.length_mm,
+                "line_left_out": out.line,
+                "length_mm": out.length_mm,
+                "middle_place_mm": out.room.place_mm if out.room else None,
+                "room_mm": out.room.wide_mm if out.room else None,
+                "cutter_up_to_mm": out.room.passes_mm if out.room else None,
+                "stops_left_out": list(out.stops) or None,
             }
-            for k, u in enumerate(self.unreached, 1)
+            for out in self.left.lines
         ]
-        return {"cutter_diameter_mm": self.cutter.diameter_mm, "side": self.cutter.side, "unreached": rows or None}
+        rows = [
+            {"unreached": k, "of_line": u.line, "place_mm": u.place_mm, "left_mm": u.left_mm, "stretch_mm": u.length_mm}
+            for k, u in enumerate(self.left.stretches, 1)
+        ]
+        told = {"cutter_diameter_mm": self.cutter.diameter_mm, "side": self.cutter.side}
+        return {**told, "lines_left_out": lines or None, "unreached": rows or None}
 
     @property
     def marked_mm(self) -> dict[str, tuple[float, float]]:
         """Places to be marked in a picture: the stops, and what the cutter cannot reach, by name."""
-        return {**self.stops_mm, **{f"left {k}": u.place_mm for k, u in enumerate(self.unreached, 1)}}
+        if self.left is None:
+            return self.stops_mm
+        out = {f"line {out.line} left out": out.room.place_mm for out in self.left.lines if out.room is not None}
+        return {**self.stops_mm, **out, **{f"left {k}": u.place_mm for k, u in enumerate(self.left.stretches, 1)}}
 
     def _stops(self) -> list[dict[str, Any]]:
         """The stops, by number: what kind of mark, where, and where Z goes."""

@@ -58,6 +58,11 @@ class Cut:
     stops: tuple[Halt, ...]
     down_at: float | None  # the position of the tick at which the tool goes down
 
+    @property
+    def length_mm(self) -> float:
+        """How long the contour is, mm."""
+        return float(lengths_mm(self.places_mm)[-1])
+
     @classmethod
     def of(cls, line: Line, operator: Operator, number: int) -> Cut | None:
         """What an operator cuts of a line, its stops numbered from one on; None if nothing, as of a guide line without a tick."""

@@ -7,7 +7,8 @@ Signals: a Trace along the lines' middles and a cutter in; out a Trace along the
 
 Side: `left` and `right` are those of the head's travel. `outside` is the outside of the part: of a line that lies in none of the others its outside, of one
 in it (a hole) its inside, of one in that its outside, and so on; `inside` (a pocket and its islands) is the other side of each. All lines that are
-followed count as the part's edge: where two are nearer to each other than the cutter is wide, it does not go between them.
+followed count as the part's edge: where two are nearer to each other than the cutter is wide, it does not go between them. A line of which it can touch
+nothing, such as a hole that is too small, is left out and listed.
 
 What is drawn besides contours is carried over to the ways (see `carried`). Neither lead nor guide lines count as edges, and no hole is moved.
 
@@ -18,8 +19,8 @@ down where no line is cut; what would cut into a contour is refused.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -27,7 +28,7 @@ import numpy as np
 from motion.faults import LineFault, MotionFault
 from motion.offset import Guide, Way, offset
 from motion.polyline import WITHIN_MM, Nearest, plain, with_places
-from tracer import contours
+from tracer import edges
 from tracer.beside import Beside, Cut
 from tracer.carried import Feed, carried
 from tracer.line import Line
@@ -41,7 +42,6 @@ LISTED_MM = 0.01  # and where nowhere more is left, nothing is listed: so much t
 EVERY_MM = 0.02  # between the places of a line that are looked at
 GOUGE_MM = 0.005  # nearer to a line than the radius
 GOUGES = 10  # of the positions one in so many is looked at
-THINNED = 30  # of the positions one in so many tells where a line is
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,16 +59,35 @@ class Cutter:
 
 @dataclass(frozen=True, slots=True)
 class Unreached:
-    """A stretch of a line that the cutter does not touch: where it leaves most, how much that is, and how long the stretch is (mm)."""
+    """A stretch of a line that the cutter does not touch: where it leaves most, how much that is, how long the stretch is, and the line (mm)."""
 
     line: int
     place_mm: tuple[float, float]
     left_mm: float
     length_mm: float
+    of_mm: float
 
 
-def with_cutter(trace: Trace, cutter: Cutter, feed_mm_s: float) -> tuple[Trace, list[Unreached]]:
-    """The program of a cutter beside the lines, run at a feed; and what it cannot reach, the most first.
+@dataclass(frozen=True, slots=True)
+class LeftOut:
+    """A line of which the cutter touches nothing: how long it is (mm), its stops, and how much room there is beside it, if it is shut in."""
+
+    line: int
+    length_mm: float
+    stops: tuple[int, ...]
+    room: edges.Room | None
+
+
+@dataclass(frozen=True, slots=True)
+class Left:
+    """What the cutter leaves: stretches of lines, that of which most is left first, and whole lines, by number."""
+
+    stretches: list[Unreached] = field(default_factory=list)
+    lines: list[LeftOut] = field(default_factory=list)
+
+
+def with_cutter(trace: Trace, cutter: Cutter, feed_mm_s: float) -> tuple[Trace, Left]:
+    """The program of a cutter beside the lines, run at a feed; and what it cannot reach.
 
     Raises MotionFault if the cutter goes nowhere, if a line has no such side, or if the tool would be in the work nearer to a line than its radius;
     LineFault if all lines were lost, and have no such side.
@@ -76,14 +95,13 @@ def with_cutter(trace: Trace, cutter: Cutter, feed_mm_s: float) -> tuple[Trace, 
     planned = _planned(trace, cutter.side)
     cuts = [cut for _, cut in planned if cut is not None]
     if not cuts:
-        return replace(trace, lines=tuple(line for line, _ in planned)), []
+        return replace(trace, lines=tuple(line for line, _ in planned)), Left()
     guides = _guides(cuts, cutter.side)
-    ways = [] if all(_is_too_small(guide, cutter.diameter_mm) for guide in guides) else offset(guides, cutter.radius_mm)
+    ways = offset(guides, cutter.radius_mm)
     if not ways:
-        raise MotionFault(
-            f"a cutter of {cutter.diameter_mm:g} mm goes nowhere {cutter.side} of the lines; give a smaller --cutter, or another --side"
-        )
-    near = Nearest([_closed_up(guide) for guide in guides], cutter.radius_mm)
+        raise _goes_nowhere(guides, cutter)
+    left = _left(cuts, guides, ways, cutter.radius_mm)
+    near = Nearest([edges.closed_up(guide) for guide in guides], cutter.radius_mm)
     feed, made = Feed(feed_mm_s, trace.rate_hz), list[Line]()
     for line, cut in planned:
         if cut is None:
@@ -91,18 +109,21 @@ def with_cutter(trace: Trace, cutter: Cutter, feed_mm_s: float) -> tuple[Trace, 
             continue
         k = next(k for k, other in enumerate(cuts) if other is cut)
         own = [way for way in ways if way.guide == k]
-        if _has_ways(cut, own, cutter):
+        if all(line.number != out.line for out in left.lines) and _has_ways(cut, own, cutter):
             made += carried(Beside(cut, guides[k].left, cutter.radius_mm, own), near.distances_mm, feed)
     beside = replace(trace, lines=tuple(made))
     _refuse_gouges(beside, near, cutter)
-    return beside, _unreached(cuts, ways, cutter.radius_mm)
+    return beside, left
 
 
-def _is_too_small(guide: Guide, diameter_mm: float) -> bool:
-    """Whether the tool is inside a closed line that is narrower than it, in X or Y: seen at once."""
-    x, y = guide.points_mm.T
-    ccw = float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)) > 0
-    return guide.closed and ccw == guide.left and float(np.ptp(guide.points_mm, axis=0).min()) < diameter_mm
+def _goes_nowhere(guides: Sequence[Guide], cutter: Cutter) -> MotionFault:
+    """The fault of a cutter that has room beside no line, with the widest that has."""
+    rooms = [room for room in (edges.room(guides, k) for k in range(len(guides))) if room is not None]
+    most_mm = max((room.passes_mm for room in rooms), default=0.0)
+    smaller = f"a smaller --cutter, up to {most_mm:g} mm," if most_mm > 0 else "a smaller --cutter,"
+    return MotionFault(
+        f"a cutter of {cutter.diameter_mm:g} mm goes nowhere {cutter.side} of the lines; give {smaller} or another --side"
+    )
 
 
 def _planned(trace: Trace, side: Side) -> list[tuple[Line, Cut | None]]:
@@ -134,11 +155,11 @@ def _not_cut(line: Line, side: Side) -> Line:
 
 
 def _has_ways(cut: Cut, ways: Sequence[Way], cutter: Cutter) -> bool:
-    """Whether the cutter runs along a line; raises MotionFault if it does not and something is to be done there, or if its lead line comes to no round."""
+    """Whether the cutter runs along a line; raises MotionFault if it only comes by, and something is to be done there, or if a lead line comes to no round."""
     what = f"a cutter of {cutter.diameter_mm:g} mm {cutter.side} of line {cut.line.number}"
     if not ways and (cut.stops or cut.first > 0):
         raise MotionFault(
-            f"{what} goes nowhere, and the line has stops or a lead line; give a smaller --cutter, or another --side"
+            f"{what} only comes by it on its way along another, and the line has stops or a lead line; give a smaller --cutter, or another --side"
         )
     if cut.first > 0 and cut.closed and not all(way.closed for way in ways):
         raise MotionFault(
@@ -161,61 +182,51 @@ def _refuse_gouges(beside: Trace, near: Nearest, cutter: Cutter) -> None:
             )
 
 
-def _closed_up(guide: Guide) -> Array:
-    """The places of a guide, the first once more at the end of a closed one."""
-    return np.vstack([guide.points_mm, guide.points_mm[:1]]) if guide.closed else guide.points_mm
-
-
 def _guides(cuts: Sequence[Cut], side: Side) -> list[Guide]:
     """What is cut as guides, each with the side on which the cutter runs."""
     if side in ("left", "right"):
         return [Guide(cut.places_mm, cut.closed, side == "left") for cut in cuts]
     for cut in cuts:
-        if not cut.closed or not _is_simple(cut.places_mm):
-            what = "crosses itself" if cut.closed else "is open"
+        if not cut.closed:
             raise MotionFault(
-                f"line {cut.line.number} {what}: it has no {side}; give --side left or right, by its travel"
+                f"line {cut.line.number} is open: it has no {side}; give --side left or right, by its travel"
             )
-    thinned = [cut.places_mm[::THINNED] for cut in cuts]
-    depths = contours.nested(thinned, [True] * len(cuts)).sum(axis=1)
+    places = [edges.thinned(cut.places_mm) for cut in cuts]
+    crossed = edges.crossing(places)
+    if crossed.diagonal().any():
+        number = cuts[int(crossed.diagonal().argmax())].line.number
+        raise MotionFault(f"line {number} crosses itself: it has no {side}; give --side left or right, by its travel")
     return [
-        Guide(cut.places_mm, True, _is_left(places, inside=(side == "inside") == (depth % 2 == 0)))
-        for cut, places, depth in zip(cuts, thinned, depths, strict=True)
+        Guide(cut.places_mm, True, edges.is_counterclockwise(line) == ((side == "inside") == (depth % 2 == 0)))
+        for cut, line, depth in zip(cuts, places, edges.depths(places, crossed), strict=True)
     ]
 
 
-def _is_left(places: Array, inside: bool) -> bool:
-    """Whether the inside, or the outside, of a closed line lies to its left."""
-    x, y = (places - places[0]).T
-    counterclockwise = bool(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y) > 0)
-    return counterclockwise == inside
-
-
-def _is_simple(xy_mm: Array) -> bool:
-    """Whether a closed line turns once round in all, as one that does not cross itself."""
-    places = with_places(xy_mm, 1.0)[::THINNED] if len(xy_mm) < 4 * THINNED else xy_mm[::THINNED]
-    ways = np.diff(np.vstack([places, places[:1]]), axis=0)
-    headings = np.arctan2(*ways[np.hypot(*ways.T) > EVERY_MM / 10].T[::-1])
-    turned = np.angle(np.exp(1j * np.diff(np.r_[headings, headings[:1]]))).sum()
-    return bool(round(abs(turned) / (2 * np.pi)) == 1)
-
-
-def _unreached(cuts: Sequence[Cut], ways: Sequence[Way], radius_mm: float) -> list[Unreached]:
-    """The stretches of the lines that are further from every way than the cutter reaches."""
-    near = Nearest([way.points_mm for way in ways], radius_mm)
-    found = []
-    for cut in cuts:
+def _left(cuts: Sequence[Cut], guides: Sequence[Guide], ways: Sequence[Way], radius_mm: float) -> Left:
+    """The stretches of the lines that are further from every way than the cutter reaches, and the lines that are so all along."""
+    near, left = Nearest([way.points_mm for way in ways], radius_mm), Left()
+    for k, cut in enumerate(cuts):
         places = with_places(plain(cut.places_mm, WITHIN_MM), EVERY_MM)
         left_mm = near.distances_mm(places) - radius_mm
-        if cut.closed:
-            first = int(np.argmin(left_mm))  # no stretch is parted where the line begins
-            places, left_mm = np.roll(places, -first, axis=0), np.roll(left_mm, -first)
-        edges = np.flatnonzero(np.diff(np.r_[False, left_mm > LEFT_MM, False].astype(np.int8))).reshape(-1, 2)
-        for a, b in edges:
-            at = a + int(np.argmax(left_mm[a:b]))
-            if left_mm[at] < LISTED_MM:
-                continue
+        if left_mm.min() > LEFT_MM:
+            stops = tuple(stop.number or 0 for stop in cut.stops)
+            left.lines.append(LeftOut(cut.line.number, cut.length_mm, stops, edges.room(guides, k)))
+        else:
+            left.stretches.extend(_stretches(cut, places, left_mm))
+    left.stretches.sort(key=lambda stretch: -stretch.left_mm)
+    left.lines.sort(key=lambda out: out.line)
+    return left
+
+
+def _stretches(cut: Cut, places: Array, left_mm: Array) -> Iterator[Unreached]:
+    """The stretches of a line of whose places (n, 2) mm more than nothing is left."""
+    if cut.closed:
+        first = int(np.argmin(left_mm))  # no stretch is parted where the line begins
+        places, left_mm = np.roll(places, -first, axis=0), np.roll(left_mm, -first)
+    ends = np.flatnonzero(np.diff(np.r_[False, left_mm > LEFT_MM, False].astype(np.int8))).reshape(-1, 2)
+    for a, b in ends:
+        at = a + int(np.argmax(left_mm[a:b]))
+        if left_mm[at] > LISTED_MM:
             length_mm = float(np.hypot(*np.diff(places[a:b], axis=0).T).sum())
             place_mm = float(places[at, 0]), float(places[at, 1])
-            found.append(Unreached(cut.line.number, place_mm, float(left_mm[at]), length_mm))
-    return sorted(found, key=lambda stretch: -stretch.left_mm)
+            yield Unreached(cut.line.number, place_mm, float(left_mm[at]), length_mm, cut.length_mm)

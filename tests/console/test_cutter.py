@@ -28,6 +28,19 @@ def test_the_table_of_what_is_left_has_places(morfax: Morfax, here: Path) -> Non
     assert len(row.split(" mm")) == 4  # place, what is left, stretch
 
 
+def test_a_line_too_small_for_the_cutter_is_told_of_and_listed(morfax: Morfax, here: Path) -> None:
+    options = (SAMPLES / "bracket.png", "--lines", "all", "-o", "bracket.csv", "--json", "--cutter")
+    answer = morfax("trace", *options, "12mm", "--picture", "bracket.png")
+    assert answer.exit_code == 0 and (here / "bracket.png").exists()
+    assert "line 2 is left out: a cutter of 12 mm has no room beside it, one of up to 7.95 mm has" in answer.err
+    assert [line["line"] for line in answer.figures["lines"]] == [1]
+    (out,) = answer.figures["lines_left_out"]
+    assert out["line_left_out"] == 2 and out["cutter_up_to_mm"] == 7.95 and out["room_mm"] == pytest.approx(8, abs=0.02)
+    smaller = morfax("trace", *options, "7.95mm")
+    assert smaller.exit_code == 0 and [line["line"] for line in smaller.figures["lines"]] == [2, 1]
+    assert "lines_left_out" not in smaller.figures and "left out" not in smaller.err
+
+
 def test_a_drawn_program_is_traced_with_a_cutter_and_begins_and_ends_on_its_reference_point(
     morfax: Morfax, here: Path
 ) -> None:
@@ -62,7 +75,11 @@ def test_run_takes_a_cutter(morfax: Morfax, here: Path) -> None:
     ("options", "exit_code", "said"),
     [
         (("--side", "left"), 2, "--side is the side of the cutter; give its diameter with --cutter"),
-        (("--cutter", "300mm", "--side", "inside"), 7, "a cutter of 300 mm goes nowhere inside of the lines"),
+        (
+            ("--cutter", "300mm", "--side", "inside"),
+            7,
+            "a cutter of 300 mm goes nowhere inside of the lines; give a smaller --cutter, up to 70.8 mm,",
+        ),
     ],
 )
 def test_what_cannot_be_is_one_line_and_nothing_is_written(

@@ -15,7 +15,7 @@ from tests.tracer.inked import UM, arc, cross, dot, inked, polyline, tick
 from tests.tracer.test_program import EXACT_MM, WORK, at, in_work, run_through
 from tracer.beside import Cut
 from tracer.card import Card
-from tracer.cutter import Cutter, Side, with_cutter
+from tracer.cutter import Cutter, Left, Side, with_cutter
 from tracer.junctions import Guide
 from tracer.line import Line
 from tracer.marks import Mark
@@ -160,8 +160,8 @@ def test_where_no_line_is_cut_nothing_is_in_the_tool_s_way() -> None:
     dot_on_it = Mark("dot", (-5.0, 0.0), float(at(way, (-5, 0))))
     guide = Line(way, "ended", 0.5, 20.0, reference_mm=(-13.0, 0.0), marks=(dot_on_it,))
     card = Card.parse('[[stop]]\nnumber = 1\nmoves = [{ down = "5mm" }]\n')
-    made, unreached = with_cutter(Trace((guide,), Operator(WORK, card)), Cutter(6.0), FEED_MM_S)
-    assert unreached == [] and in_work(np.vstack([block.positions_mm for block in made]))[:, 0].max() == pytest.approx(
+    made, left = with_cutter(Trace((guide,), Operator(WORK, card)), Cutter(6.0), FEED_MM_S)
+    assert left == Left() and in_work(np.vstack([block.positions_mm for block in made]))[:, 0].max() == pytest.approx(
         10
     )
 
@@ -207,12 +207,12 @@ def test_beside_a_drawn_circle_runs_the_circle_and_all_that_is_drawn_on_it(
     assert cut is not None and len(cut.stops) == 3
     hole = next(stop for stop in cut.stops if stop.kind == "hole")
     for side, out in (("outside", 1), ("inside", -1)):
-        made, unreached = with_cutter(followed, Cutter(diameter_mm, side), FEED_MM_S)  # type: ignore[arg-type]
+        made, left = with_cutter(followed, Cutter(diameter_mm, side), FEED_MM_S)  # type: ignore[arg-type]
         positions = join(made).positions_mm
         (line,), radius_mm = made.lines, 12 + out * diameter_mm / 2
         way = np.vstack(line.without_guides(line.loop_from or 0, len(line.xy_mm) - 1))
         off_mm = np.hypot(*(way - (30, 20)).T) - radius_mm
-        assert np.abs(off_mm).max() < FOLLOWED_MM and not unreached
+        assert np.abs(off_mm).max() < FOLLOWED_MM and left == Left()
         assert np.sqrt(np.mean(off_mm**2)) < 6 * UM  # the head's own, with lead and guide line
         beside_mm = Nearest([cut.places_mm], diameter_mm / 2).distances_mm(way) - diameter_mm / 2
         assert np.abs(beside_mm).max() < 5 * UM  # where the head wavers about the lead line
@@ -234,11 +234,11 @@ def test_beside_a_part_with_inner_corners_the_tool_gouges_nothing_and_lists_what
     cut = Cut.of(followed.lines[0], followed.operator, 1)
     assert cut is not None
     for side, corners in (("outside", [(28, 26)]), ("inside", [(16, 36), (28, 36), (40, 26), (40, 8), (16, 8)])):
-        made, unreached = with_cutter(followed, Cutter(6.0, side), FEED_MM_S)  # type: ignore[arg-type]
+        made, left = with_cutter(followed, Cutter(6.0, side), FEED_MM_S)  # type: ignore[arg-type]
         assert least_mm(join(made).positions_mm, cut.places_mm, 3.0) > -NEARER_MM
-        assert len(unreached) == len(corners)
+        assert len(left.stretches) == len(corners)
         for corner_mm in corners:
-            (left,) = (u for u in unreached if math.dist(u.place_mm, corner_mm) < 2 * FOLLOWED_MM)
-            assert left.left_mm == pytest.approx(3 * (math.sqrt(2) - 1), abs=2 * FOLLOWED_MM)
+            (there,) = (u for u in left.stretches if math.dist(u.place_mm, corner_mm) < 2 * FOLLOWED_MM)
+            assert there.left_mm == pytest.approx(3 * (math.sqrt(2) - 1), abs=2 * FOLLOWED_MM)
         places = [a.halt.place_mm for a in made.actions[0] if a.halt.number is not None]
         assert math.dist(places[1], (34, 29 if side == "outside" else 23)) < STANDS_WITHIN_MM
