@@ -4,7 +4,8 @@ Signals: a stance in; the run that is kept out: positions and how it ended.
 
 A line that turns out to be open is followed from end to end: the head that was put down on its middle runs to one end first, with nothing recorded, and
 begins there. A line that does not come back one way round is tried the other way; one that runs into what has been followed already is tried with
-other turns at its junctions, as an operator would.
+other turns at its junctions, as an operator would: but not before the head has been put down elsewhere (see `sequence`). It may stand on a chord, and the
+line is what that leads to.
 
 Source: patent ES 361967, section on use: the operator brings the head over the drawing and lets it run.
 """
@@ -17,14 +18,17 @@ from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from motion.faults import LineFault
 from motion.motion import MOTION_RATE_HZ
+from motion.polyline import lengths_mm
 from tracer.drawing import Drawing
 from tracer.enlarger import enlarged, reduced
 from tracer.follower import Followed, Follower
 from tracer.kept import kept_to
 from tracer.leg import turn
+from tracer.line import THINNED
 from tracer.lines import INK
 from tracer.operator import Direction, Operator
 from tracer.settings import Settings
@@ -35,6 +39,9 @@ SHORTER = 0.95  # the other way round is the line itself if it is shorter than t
 DOUBTS = 8  # looked into, of a run
 TURNS = 12  # junctions at which another turn is tried
 TRIED_MM = 6000.0  # travel in all that is spent on other turns
+TWICE = 0.1  # of a run: legs that end in one tip run together for less, as crossing lines do
+ALONG = 0.1  # widths from place to place of it, and twice that from a place on its way back along the same line
+AGAIN = 4  # widths on from a place, the run may come by it again
 OVERRUN_MM = 3.0  # a stub as short, straight on from a closed line, is where the pen set out, and not another's line
 
 Told = Callable[[float], None]
@@ -47,15 +54,18 @@ def asked_for(
     operator: Operator,
     settings: Settings,
     told: Told | None,
+    other_turns: bool = True,
 ) -> Followed:
-    """The run from a stance, in the direction and with the turns that the operator asks for."""
+    """The run from a stance, in the direction and with the turns that the operator asks for; with other turns than those, or straight on only."""
     direction, sides = operator.direction, operator.sides
     if direction in ("left", "right"):
         if stance.at_end:
             sides = sides or (direction,)
         else:
             stance = _turned_to(stance, start_mm, direction)
-    attempts = Attempts(drawing, settings, sides, longest_mm(drawing, stance.view.width_mm), told)
+    attempts = Attempts(
+        drawing, settings, sides, longest_mm(drawing, stance.view.width_mm), told, other_turns=other_turns
+    )
     if direction is None:
         return attempts.all_of_it(stance)
     return attempts.round_about(stance, direction)
@@ -76,6 +86,7 @@ class Attempts:
     longest_mm: float
     told: Told | None
     tips: bool = False  # go back from a tip in which two lines end
+    other_turns: bool = True  # where straight on does not come back
 
     def run(self, stance: Stance, turns: tuple[int, ...] = ()) -> Followed:
         """Follow from a stance."""
@@ -106,15 +117,19 @@ class Attempts:
             return max(run, back, key=lambda r: r.travel_mm)
         if other.ending == "closed":
             return other
-        return self._with_other_turns(stance, run) if run.ending == "joined" else run
+        return self._with_other_turns(stance, run) if run.ending == "joined" and self.other_turns else run
 
     def _through_tips(self, stance: Stance, run: Followed) -> Followed | None:
-        """The run from a stance that goes back from tips in which two lines end, if the one that does not ended in such a tip, and this one closes."""
+        """The run from a stance that goes back from tips in which two lines end, if the one that does not ended in such a tip, and this one closes.
+
+        It does not if it goes back from there along the line that it came by.
+        """
         if not run.at_tip:
             return None
         both = replace(self, tips=True)
         there_and_back = both.run(stance)
-        return both._taken_in(stance, there_and_back) if there_and_back.ending == "closed" else None
+        closes = there_and_back.ending == "closed" and not _goes_twice(there_and_back)
+        return both._taken_in(stance, there_and_back) if closes else None
 
     def _taken_in(self, stance: Stance, run: Followed) -> Followed:
         """A run that closes, with the ink taken in that it left out where another way would have done as well: the longest of `DOUBTS` more runs."""
@@ -169,6 +184,17 @@ def goes(run: Followed, direction: Direction) -> bool:
     x, y = run.positions_mm[run.loop_from or 0 :].T
     area = float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
     return (area > 0) == (direction == "ccw")
+
+
+def _goes_twice(run: Followed) -> bool:
+    """Whether more than `TWICE` of a run goes along what it has followed before."""
+    way_mm, step_mm = run.positions_mm[::THINNED], ALONG * run.view.width_mm
+    travel_mm = lengths_mm(way_mm)
+    at_mm = np.arange(0.0, travel_mm[-1], step_mm)
+    places = np.column_stack([np.interp(at_mm, travel_mm, column) for column in way_mm.T])
+    near = cKDTree(places).query_pairs(2 * step_mm, output_type="ndarray")
+    again = near[np.ptp(near, axis=1) * ALONG > AGAIN] if len(near) else near
+    return len(np.unique(again[:, 1])) > TWICE * len(places) + AGAIN / ALONG
 
 
 def turned_about(stance: Stance) -> Stance:

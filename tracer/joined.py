@@ -8,8 +8,9 @@ Signals: a patch and the lines followed on it in; out further lines of the patch
     ────┼─────┼────
         ╰─────╯
 
-The head is put down on the plainest place that no run has come by, until there is none. A run counts if it closes, or ends at both ends, and most of its way
-is new; one that ends in another line (a guide line, an arrow, hatching) or is lost, does not.
+The head is put down on the plainest place that has not been tried, until there is none. A run counts if it closes, or ends at both ends, and most of its way
+is new; one that ends in another line (a guide line, an arrow, hatching) or is lost, does not. Of such a run no more has been tried than the way to its first
+junction: beyond that it may have gone along a whole line, which it would follow from there.
 
 Source: our own; the patent has one contour to a tape. Questions: what of ink that no such run comes by? It is no line, and is told of.
 """
@@ -19,6 +20,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from tracer.contours import LEAST_MM, LEAST_WIDTHS, LETTER_MM, Contour
 from tracer.line import Line
@@ -49,12 +51,13 @@ def joined_to(
         tried.append(np.array([place_mm]))
         stance = stance_near(view, left, place_mm)
         if stance is not None:
-            *before, other = followed_through(sheet, stance, settings, operator)
-            tried += [run.places_mm for run in (*before, other)]
-            if _is_line(other, [line, *found]):
-                found.append(other)
+            runs = followed_through(sheet, stance, settings, operator)
+            if _is_line(runs[-1], [line, *found]):
+                found.append(runs[-1])
+                tried.append(runs[-1].places_mm)
             else:
-                spent_mm += sum(run.length_mm for run in (*before, other))
+                spent_mm += sum(run.length_mm for run in runs)
+                tried += [run.own_mm for run in runs]
         left = _left(stroke, tried)
         if left.length_mm < _least_mm(stroke) or spent_mm > TRIED_MM:
             break
@@ -77,8 +80,14 @@ def _left(stroke: Stroke, ways: list[Array]) -> Stroke:
         stroke,
         middles_mm=stroke.middles_mm[~near],
         filled=stroke.filled[~near],
-        length_mm=stroke.length_mm * float(np.mean(~near)),
+        length_mm=stroke.length_mm * float(np.average(~near, weights=1 / _crowded(stroke))),
     )
+
+
+def _crowded(stroke: Stroke) -> Array:
+    """How many middle places of a stroke are within its width of each: a line along the rows has two abreast, and a sloping one has one."""
+    tree = cKDTree(stroke.middles_mm)
+    return np.asarray(tree.query_ball_point(stroke.middles_mm, stroke.width_mm, return_length=True), float)
 
 
 def _least_mm(stroke: Stroke) -> float:
@@ -88,6 +97,4 @@ def _least_mm(stroke: Stroke) -> float:
 
 def _nearest_mm(places_mm: Array, others_mm: Array) -> Array:
     """Distance of each place from the nearest of others, mm."""
-    from scipy.spatial import cKDTree  # half a second that a drawing of plain lines need not wait for
-
     return np.asarray(cKDTree(others_mm).query(places_mm)[0])

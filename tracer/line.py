@@ -25,6 +25,7 @@ from tracer.view import Array
 THINNED = 30  # of the positions one in so many tells where a line is: every 50 um at 10 mm/s
 HEADING = 300  # positions that tell the heading at an end: half a mm at 10 mm/s
 NEARLY_MM = 5.0  # a line that ends so near to its beginning may be a closed one
+AT_JUNCTION = 1.5  # widths: as near to a junction a line is come to it
 REFERENCE_MM = 3.0  # a stroke nearer to a reference point is one of its own
 
 
@@ -87,6 +88,15 @@ class Line:
     def places_mm(self) -> Array:
         """Places along it, (n, 2) mm."""
         return self.xy_mm[::THINNED]
+
+    @property
+    def own_mm(self) -> Array:
+        """Places that are its own, (n, 2) mm: all of them, or up to the first junction if it did not come back; beyond that it may have been another's."""
+        places = self.places_mm
+        if self.ending in ("closed", "ended") or not self.junctions_mm:
+            return places
+        there = np.hypot(*(places - self.junctions_mm[0]).T) < AT_JUNCTION * self.width_mm
+        return places[: int(np.argmax(there)) + 1] if there.any() else places
 
     @property
     def gap_mm(self) -> float | None:

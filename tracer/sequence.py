@@ -2,7 +2,9 @@
 
 Signals: a Drawing in; out a Trace, which is a stream of Motion (X, Y, Z in sheet mm at the motion rate) and says how the run ended. Several lines: see `tour`.
 
-From each of the places where the head may be put down the line is followed in several attempts (see `attempts`), until one of them is the line.
+From each of the places where the head may be put down the line is followed in several attempts (see `attempts`), until one of them is the line. Other
+turns than straight on are tried when the head has been put down elsewhere in vain: from a chord it does not come back straight on, and with other turns it
+comes back round half of the contour.
 
 Source: patent ES 361967, section on use: the operator brings the head over the drawing and lets it run.
 """
@@ -28,6 +30,8 @@ from tracer.stance import Stance, ends_of, put_down, turned_round
 SHORT = 0.5  # of the ink that is joined to it: a run that ends so soon is another line's, which crosses this one
 ELSEWHERE = 5  # places at which the head is put down then
 
+Run = tuple[Line, Stance, float]  # a line, where the head was put down for it, and the length of the ink that is joined to it, mm
+
 
 def trace(
     drawing: Drawing,
@@ -52,12 +56,13 @@ def followed(
     operator: Operator,
     progress: Callable[[float, float], None] | None = None,
     number: int = 1,
+    other_turns: bool = True,
 ) -> Line:
-    """The head's best run along the line at a place, or along the longest."""
+    """The head's best run along the line at a place, or along the longest; with other turns than straight on if that does not come back, unless left out."""
     stances = put_down(
         sheet, start_mm, settings.aperture_mm, settings.line_width_mm, settings.gap_mm, operator.reference_mm
     )
-    best, others = _best(sheet, stances, start_mm, settings, operator, progress, number)
+    best, others = _best(sheet, stances, start_mm, settings, operator, progress, number, other_turns)
     assert best is not None  # put_down gives a stance, or raises
     if others:
         raise _several_lead([best, *others])
@@ -99,6 +104,7 @@ def _best(
     operator: Operator,
     progress: Callable[[float, float], None] | None,
     number: int,
+    other_turns: bool = True,
 ) -> tuple[Line | None, list[Line]]:
     """The best run from one of some stances, None if there are none; and other runs that are as good: lead lines all.
 
@@ -106,11 +112,11 @@ def _best(
     """
     follow = partial(_line, sheet, start_mm, settings, progress, number)
     straight = replace(operator, card=replace(operator.card, turns=()))
-    best, leads, smooth = None, list[tuple[Line, Stance, float]](), list[Line]()
+    best, leads, smooth = None, list[Run](), list[Run]()
     for stance, length_mm in stances:
         if (leads and not stance.at_end) or len(smooth) > ELSEWHERE:
             break
-        if smooth and any(_lies_on(stance, line) for line in smooth):
+        if any(_lies_on(stance, line) for line, _, _ in smooth):
             continue
         try:
             line = follow(straight if _is_open(stance) else operator, stance, length_mm)
@@ -118,30 +124,59 @@ def _best(
             if best is None:
                 raise
             continue
-        far = line.length_mm > SHORT * length_mm
+        run, far = (line, stance, length_mm), line.length_mm > SHORT * length_mm
         if line.is_lead and not _is_open(stance) and far:
             return line, []
         if line.is_lead and _is_open(stance):
-            leads.append((line, stance, length_mm))
-        best = (line, stance, length_mm) if best is None or line.length_mm > best[0].length_mm else best
+            leads.append(run)
+        best = run if best is None or _goes_before(run, best) else best
         plain = not (stance.at_end and line.junctions_mm)  # at a junction a lead line may come in
         if plain and (line.ending == "closed" or (far and line.ending != "joined")):
             break
         if not stance.at_end:
-            smooth.append(line)
-            if best[0].ending == "closed" or best[0].length_mm > SHORT * length_mm:
+            smooth.append(run)
+            if not _ran_in(best) and (best[0].ending == "closed" or best[0].length_mm > SHORT * length_mm):
                 break
     if best is None:
         return None, []
+    if other_turns:
+        best = _with_other_turns(best, smooth, partial(follow, operator))
     line, stance, length_mm = leads[0] if leads else best
     if operator.sides and _is_open(stance):
         line = follow(operator, stance, length_mm)
     return line, [lead for lead, _, _ in leads[1:]]
 
 
+def _goes_before(run: Run, best: Run) -> bool:
+    """Whether a run is better than the best so far: the longer one, but one that closes before one that ran into what it had followed."""
+    if "closed" in (run[0].ending, best[0].ending) and _ran_in(run) != _ran_in(best):
+        return _ran_in(best)
+    return run[0].length_mm > best[0].length_mm
+
+
+def _ran_in(run: Run) -> bool:
+    """Whether a run from the middle of a line, and not from an end of it, ended in what it had followed: perhaps it began on a chord."""
+    line, stance, _ = run
+    began_there = float(np.hypot(*(line.start_mm - stance.place_mm))) < stance.view.width_mm
+    return line.ending == "joined" and not stance.at_end and began_there
+
+
+def _with_other_turns(best: Run, smooth: list[Run], follow: Callable[..., Line]) -> Run:
+    """The first run that closes with other turns than straight on, in place of the best if that ran into itself, or is shorter and a small part of the ink."""
+    if not _ran_in(best) and not (best[0].ending == "closed" and best[0].length_mm < SHORT * best[2]):
+        return best
+    for _, stance, length_mm in filter(_ran_in, smooth):
+        line = follow(stance, length_mm, other_turns=True)
+        if line.ending == "closed" and (_ran_in(best) or line.length_mm > best[0].length_mm):
+            return line, stance, length_mm
+        if line.length_mm > SHORT * length_mm:
+            break
+    return best
+
+
 def _lies_on(stance: Stance, line: Line) -> bool:
     """Whether a stance is on a line that was followed."""
-    return bool(np.hypot(*(line.places_mm - stance.place_mm).T).min() < stance.view.width_mm)
+    return bool(np.hypot(*(line.own_mm - stance.place_mm).T).min() < stance.view.width_mm)
 
 
 def _is_open(stance: Stance) -> bool:
@@ -158,10 +193,16 @@ def _line(
     operator: Operator,
     stance: Stance,
     length_mm: float,
+    other_turns: bool = False,
 ) -> Line:
-    """The line as it is followed from a stance."""
+    """The line as it is followed from a stance; with other turns also where straight on does not go round in the direction asked for."""
     told = None if progress is None else partial(_tell, progress, length_mm)
-    run = asked_for(sheet.drawing, stance, start_mm, operator, settings, told)
+    try:
+        run = asked_for(sheet.drawing, stance, start_mm, operator, settings, told, other_turns)
+    except LineFault:
+        if other_turns:
+            raise
+        run = asked_for(sheet.drawing, stance, start_mm, operator, settings, told)
     return replace(Line.of(run, number, stance.reference_mm), ink_mm=length_mm)
 
 

@@ -122,20 +122,38 @@ def _follow(sheet: Sheet, contour: Contour, settings: Settings, operator: Operat
     from_end = followed_from_an_end(sheet, contour.stroke, settings, operator, told, contour.number)
     if from_end is not None and (from_end.ending != "joined" or from_end.length_mm > SHORT * from_end.ink_mm):
         return from_end
-    stroke, starts_mm = contour.stroke, contour.starts_mm()
-    for start_mm in starts_mm:
-        try:
-            line = followed(sheet, start_mm, settings, operator, told, contour.number)
-        except LineFault as fault:
-            refused = fault
-            continue
-        closes = from_end is None or (line.ending == "closed" and line.length_mm > from_end.length_mm)
-        return line if closes else from_end
+    about = _follow_from_plain_places(sheet, contour, settings, operator, told)
+    if isinstance(about, Line):
+        closes = from_end is None or (about.ending == "closed" and about.length_mm > from_end.length_mm)
+        return about if closes else from_end
     if from_end is not None:
         return from_end
     if contour.reach_mm < contours.LETTER_MM:
         return None
-    return Line(np.array(starts_mm[:1]), "lost", stroke.width_mm, 0.0, refused, contour.number)
+    place_mm = np.array(contour.starts_mm()[:1])
+    return Line(place_mm, "lost", contour.stroke.width_mm, 0.0, about, contour.number)
+
+
+def _follow_from_plain_places(
+    sheet: Sheet, contour: Contour, settings: Settings, operator: Operator, told: Told | None
+) -> Line | LineFault:
+    """Follow a line from the plainest of its places where the head can be put down; the fault if it can be nowhere.
+
+    From a place that does not lead round, as on a chord, no other turns are tried before straight on is from some others.
+    """
+    in_vain, tried, fault = list[tuple[float, float]](), list[Array](), LineFault("no place to put the head down")
+    for start_mm in contour.starts_mm():
+        if any(np.hypot(*(places_mm - start_mm).T).min() < contour.stroke.width_mm for places_mm in tried):
+            continue
+        try:
+            line = followed(sheet, start_mm, settings, operator, told, contour.number, other_turns=False)
+        except LineFault as refused:
+            fault = refused
+            continue
+        if line.ending != "joined" and (not in_vain or line.length_mm > SHORT * line.ink_mm):
+            return line
+        in_vain, tried = [*in_vain, start_mm], [*tried, line.own_mm]
+    return followed(sheet, in_vain[0], settings, operator, told, contour.number) if in_vain else fault
 
 
 def _dots(sheet: Sheet, asked: list[Contour], settings: Settings, last: int) -> list[Line]:

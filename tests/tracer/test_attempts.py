@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -53,6 +54,19 @@ def test_a_line_that_closes_only_back_from_a_tip_is_tried_so_either_way_round(mo
 
 def test_a_line_that_closes_has_no_need_of_tips(monkeypatch: pytest.MonkeyPatch) -> None:
     runs: Runs = {(True, False): run("closed", 100), (False, False): run("joined", 65, at_tip=True)}
+    assert chosen(monkeypatch, runs) is runs[True, False]
+
+
+def test_a_run_that_goes_back_along_the_line_that_it_came_by_has_not_gone_back_from_a_tip(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """An envelope's flap: 50 mm of its top were cut twice."""
+    there = np.column_stack([9 + np.linspace(0, 200, 6000), np.full(6000, 4.0)])
+    runs: Runs = {
+        (True, False): run("joined", 90),
+        (False, False): run("joined", 65, at_tip=True),
+        (False, True): replace(run("closed", 250), positions_mm=np.vstack([there, there[:-1500:-1]])),
+    }
     assert chosen(monkeypatch, runs) is runs[True, False]
 
 

@@ -17,9 +17,12 @@ from motion.motion import MOTION_RATE_HZ, join, thin
 from tests.tracer.inked import UM, Points, arc, inked, polyline
 from tracer import tour
 from tracer.contours import idle_way_mm, in_order, in_order_and_turned, nested, plan
+from tracer.joined import joined_to
 from tracer.line import Line
 from tracer.lines import Sheet
+from tracer.operator import Operator
 from tracer.program import Trace
+from tracer.sequence import trace
 from tracer.settings import Settings
 from tracer.tour import trace_lines
 
@@ -165,6 +168,29 @@ def test_lines_that_cross_or_touch_are_all_followed_though_they_are_one_patch_of
         trace_lines(drawing, (5,))
 
 
+OUTLINE = polyline((8, 37), (20, 39), (32, 37), (32, 26), (29, 14), (20, 6), (11, 14), (8, 26), (8, 37))
+UPRIGHT, BAR = polyline((20, 6), (20, 39)), polyline((8, 28), (32, 28))
+
+
+def test_a_head_put_down_on_a_chord_is_put_down_elsewhere_before_it_tries_other_turns() -> None:
+    """A shield with an upright between two of its corners and a bar: with other turns half of the shield closes, along the upright."""
+    drawing = inked(OUTLINE, UPRIGHT, BAR, width_mm=0.3, seed=2)
+    for run in (trace(drawing), trace_lines(drawing)):
+        (line,) = run.lines
+        assert line.ending == "closed" and distance(line.places_mm, OUTLINE).hausdorff_mm < 40 * UM
+    assert run.left_out_mm == pytest.approx(33 + 24, rel=0.1)  # the upright and the bar, up to the outline
+
+
+def test_a_run_from_a_chord_does_not_hide_the_contour_that_it_went_along() -> None:
+    """The bar has been followed; from the upright the head runs into the outline and most of the way round it."""
+    sheet = Sheet.of(inked(OUTLINE, UPRIGHT, BAR, width_mm=0.3, seed=2))
+    (contour,), _ = plan(sheet, "all")
+    bar = Line(np.linspace(*BAR, 6000), "ended", 0.3, 24.0)
+    (outline,), left_mm = joined_to(bar, contour, sheet, Settings(), Operator())
+    assert distance(outline.places_mm, OUTLINE).hausdorff_mm < 40 * UM
+    assert left_mm == pytest.approx(33, rel=0.1)
+
+
 def test_marks_guide_lines_and_the_ring_of_the_reference_point_are_no_lines_joined_to_the_contour() -> None:
     ring, lead = arc((7, 14), 2), polyline((7, 14), (18, 14))
     ticks = [polyline((14, 12.5), (14, 15.5)), polyline((26, 4.5), (26, 7.5))]
@@ -237,10 +263,10 @@ def test_a_lost_line_is_cut_as_far_as_it_was_followed_and_the_others_all_the_sam
 def test_a_large_line_that_cannot_be_begun_is_told_and_the_tool_stays_up(monkeypatch: pytest.MonkeyPatch) -> None:
     followed = tour.followed
 
-    def not_the_hole(drawing: object, start_mm: tuple[float, float], *others: object) -> object:
+    def not_the_hole(drawing: object, start_mm: tuple[float, float], *others: object, **more: object) -> object:
         if start_mm[0] > 20:
             raise LineFault("no clean stretch of line to start on")
-        return followed(drawing, start_mm, *others)  # type: ignore[arg-type]
+        return followed(drawing, start_mm, *others, **more)  # type: ignore[arg-type]
 
     monkeypatch.setattr(tour, "followed", not_the_hole)
     run = trace_lines(inked(ISLAND, arc((28, 14), 6.5)))

@@ -33,7 +33,7 @@ def test_a_line_from_an_end_that_leads_round_little_of_the_ink_gives_way(
     monkeypatch: pytest.MonkeyPatch, from_end: Line | None, round_about: Line, taken: str
 ) -> None:
     monkeypatch.setattr(tour, "followed_from_an_end", lambda *_: from_end)
-    monkeypatch.setattr(tour, "followed", lambda *_: round_about)
+    monkeypatch.setattr(tour, "followed", lambda *_, **__: round_about)
     monkeypatch.setattr(tour, "_joined", lambda *_: ([], 0.0))
     found = tour.trace_lines(DRAWING, (1,), Settings(), Operator()).lines
     assert [each.length_mm for each in found] == [(from_end if taken == "end" else round_about).length_mm]  # type: ignore[union-attr]
