@@ -76,10 +76,10 @@ def _parse_override(text: str) -> str | tuple[int, ...]:
     word = text.strip().lower()
     if word in ("none", "all"):
         return word
-    try:
-        return tuple(int(number) for number in word.split(","))
-    except ValueError:
-        raise ValueError(f"{text!r} names no stops; give none, all, or numbers such as 1,3") from None
+    parts = [part.strip() for part in word.split(",")]
+    if not all(part.isdecimal() and int(part) > 0 for part in parts):
+        raise ValueError(f"{text!r} names no stops; give none, all, or numbers from 1 on, such as 1,3")
+    return tuple(map(int, parts))
 
 
 def _tracks(text: str) -> tuple[int, ...]:

@@ -27,6 +27,7 @@ def remarks(trace: Trace, head: Head, gap_mm: float, enlarged: int) -> Iterator[
     if enlarged > 1:
         yield f"edges are near one another: followed {enlarged} times enlarged, so the machine goes {enlarged} times slower than the head"
     yield from _of_stops(trace)
+    yield from _of_turns(trace)
     yield from _of_reference(trace, head.marks)
     yield from _of_gaps(trace)
     yield from _of_breaks(trace, gap_mm)
@@ -72,6 +73,14 @@ def _of_stops(trace: Trace) -> Iterator[str]:
     if missing:
         numbers = ", ".join(map(str, missing))
         yield f"there is no stop {numbers}: {stops} were found, see their places in the figures; the rest is followed"
+
+
+def _of_turns(trace: Trace) -> Iterator[str]:
+    """Of turns that the card has for junctions to which the head did not come."""
+    turns, most = trace.operator.sides, max((len(line.junctions_mm) for line in trace.lines), default=0)
+    beyond = [f"{k} ({side})" for k, side in enumerate(turns, 1) if side is not None and k > most]
+    if beyond:
+        yield f"there is no junction {', '.join(beyond)} to turn at: the head came to {most}, see their places in the figures; the rest is followed"
 
 
 def _of_reference(trace: Trace, marks: Marks) -> Iterator[str]:

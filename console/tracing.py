@@ -284,9 +284,12 @@ class Traced:
         ]
 
     def _junctions(self) -> list[dict[str, Any]]:
-        """The junctions that the head came to, in order, as the card's `turns` count them."""
-        places_mm = [place_mm for line in self.trace.lines for place_mm in line.junctions_mm]
-        return [{"junction": k, "junction_place_mm": place_mm} for k, place_mm in enumerate(places_mm, 1)]
+        """The junctions that the head came to on each line, in order, as the card's `turns` count them."""
+        return [
+            {"junction": k, **({"of_line": line.number} if self.several else {}), "junction_place_mm": place_mm}
+            for line in self.trace.lines
+            for k, place_mm in enumerate(line.junctions_mm, 1)
+        ]
 
     @property
     def stops_mm(self) -> dict[str, tuple[float, float]]:

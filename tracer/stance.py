@@ -88,8 +88,8 @@ def put_down(
         yield stance, stroke.length_mm
     if not stances and not at_ends:
         raise LineFault(
-            f"no clean stretch of line to start on, {stroke.length_mm:.0f} mm of line {view.width_mm:.2f} mm wide;"
-            " give --line-width, or --start X,Y at a plain stretch"
+            f"no clean stretch of line {view.width_mm:.2f} mm wide to start on;"
+            f" {'give' if line_width_mm is None else 'give another'} --line-width, or --start X,Y at a plain stretch"
         )
 
 

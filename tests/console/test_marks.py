@@ -13,6 +13,8 @@ from PIL import Image
 from console import attended
 from motion.pathfile import read_path
 from tests.console.conftest import SAMPLES, Answer, Morfax
+from tracer.line import Line
+from tracer.program import Trace
 
 PROGRAM = SAMPLES / "program.png"
 CARD = ("--card", SAMPLES / "program.toml")
@@ -66,6 +68,31 @@ def test_override_passes_marks_by(morfax: Morfax, here: Path) -> None:
 def test_a_stop_that_is_not_there_is_told_of(morfax: Morfax, here: Path) -> None:
     answer = morfax("trace", PROGRAM, "-o", "program.csv", "--override", "2,7")
     assert answer.exit_code == 0 and "there is no stop 7: 2 were found" in answer.err
+
+
+def test_a_turn_at_a_junction_that_is_not_there_is_told_of(morfax: Morfax, here: Path) -> None:
+    Path("card.toml").write_text('turns = ["left", "right", "straight", "left", "straight", "right"]\n')
+    answer = morfax("trace", PROGRAM, "-o", "program.csv", "--card", "card.toml")
+    junctions = answer.out.count("junction ")
+    assert answer.exit_code == 0 and junctions < 4
+    assert f"there is no junction 4 (left), 6 (right) to turn at: the head came to {junctions}" in answer.err
+
+
+@pytest.mark.parametrize("stops", ["0", "-1", "two", "1,", "1.5"])
+def test_stops_are_numbered_from_1(morfax: Morfax, here: Path, stops: str) -> None:
+    answer = morfax("trace", PROGRAM, "-o", "program.csv", f"--override={stops}")
+    assert answer.exit_code == 2 and f"{stops!r} names no stops" in answer.err
+
+
+def test_junctions_of_several_lines_are_counted_on_each_as_the_card_turns(
+    morfax: Morfax, here: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The head takes the card's turns on each line from the first on."""
+    xy_mm, places_mm = np.zeros((6000, 2)), ((1.0, 2.0), (3.0, 4.0))
+    lines = tuple(Line(xy_mm, "closed", 0.5, 9.0, number=n, junctions_mm=places_mm) for n in (2, 1))
+    monkeypatch.setattr("tracer.tour.trace_lines", lambda *_, **__: Trace(lines))
+    rows = morfax("trace", PROGRAM, "-o", "program.csv", "--lines", "all", "--json").figures["junctions"]
+    assert [(row["of_line"], row["junction"]) for row in rows] == [(2, 1), (2, 2), (1, 1), (1, 2)]
 
 
 def test_origin_reference_puts_the_zero_there(morfax: Morfax, here: Path) -> None:
