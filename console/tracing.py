@@ -29,12 +29,8 @@ if TYPE_CHECKING:
     from tracer.program import Trace
     from tracer.settings import Settings
 
-SET_BY_OPTIONS = (
-    "speed_mm_s",
-    "gap_mm",
-    "recatch_mm",
-    "line_width_mm",
-)  # settings of the head that have an option of their own
+# settings of the head that have an option of their own
+SET_BY_OPTIONS = ("speed_mm_s", "gap_mm", "recatch_mm", "line_width_mm")
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,7 +183,7 @@ class Head:
 
 @dataclass(frozen=True, slots=True)
 class Traced:
-    """The head's motion, the same thinned to a path, and where both were written."""
+    """The program that the head made, its motion thinned to a path, and what the cutter cannot reach."""
 
     trace: Trace
     path: Path

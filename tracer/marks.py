@@ -41,7 +41,7 @@ SPACING = 0.5  # of a pixel: how closely the cells look
 class Mark:
     """A mark: the place on which the axis stands, mm, and which position of the way that is, fractions included."""
 
-    kind: Literal["tick", "dot", "end"]
+    kind: Literal["tick", "dot"]
     place_mm: tuple[float, float]
     at: float
 
@@ -89,12 +89,12 @@ def marks_along(view: View, positions: Array) -> list[Mark]:
     if len(way.at_mm) < 3 or view.width_mm < LEAST_PX * view.pitch_mm:
         return []
     found = _dots(view, way)
-    dots = [
+    dots_mm = [
         way.at_mm[np.searchsorted(way.position, dot.at)] if dot.at < way.position[-1] else way.at_mm[-1]
         for dot in found
     ]
     for foot_mm in _ticks(view, way):
-        if all(abs(foot_mm - dot) > 3 * view.width_mm for dot in dots):
+        if all(abs(foot_mm - dot_mm) > 3 * view.width_mm for dot_mm in dots_mm):
             found.append(Mark("tick", way.place(foot_mm), way.position_at(foot_mm)))
     return sorted(found, key=lambda mark: mark.at)
 
