@@ -30,7 +30,8 @@ from tracer.stance import Stance, ends_of, put_down, turned_round
 SHORT = 0.5  # of the ink that is joined to it: a run that ends so soon is another line's, which crosses this one
 ELSEWHERE = 5  # places at which the head is put down then
 
-Run = tuple[Line, Stance, float]  # a line, where the head was put down for it, and the length of the ink that is joined to it, mm
+# a line, where the head was put down for it, and the length of the ink that is joined to it, mm
+Run = tuple[Line, Stance, float]
 
 
 def trace(
