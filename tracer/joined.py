@@ -8,9 +8,9 @@ Signals: a patch and the lines followed on it in; out further lines of the patch
     ────┼─────┼────
         ╰─────╯
 
-The head is put down on the plainest place that has not been tried, until there is none. A run counts if it closes, or ends at both ends, and most of its way
-is new; one that ends in another line (a guide line, an arrow, hatching) or is lost, does not. Of such a run no more has been tried than the way to its first
-junction: beyond that it may have gone along a whole line, which it would follow from there.
+The head is put down on the plainest place that no run has come by, and then on those that have not been tried, until there is none. A run counts if it
+closes, or ends at both ends, and most of its way is new; one that ends in another line (a guide line, an arrow, hatching) or is lost, does not. Of such a run
+no more has been tried than the way to its first junction: beyond that it may have gone along a whole line, which it would follow from there.
 
 Source: our own; the patent has one contour to a tape. Questions: what of ink that no such run comes by? It is no line, and is told of.
 """
@@ -40,7 +40,7 @@ def joined_to(
     line: Line, contour: Contour, sheet: Sheet, settings: Settings, operator: Operator
 ) -> tuple[list[Line], float]:
     """Further lines of the patch that a contour is, besides the line followed on it, and the length of the ink that is left, mm."""
-    stroke, found, tried = contour.stroke, list[Line](), [line.places_mm]
+    stroke, found, tried, in_vain = contour.stroke, list[Line](), [line.places_mm], list[Array]()
     left = _left(stroke, tried)
     if left.length_mm < _least_mm(stroke):
         return [], 0.0
@@ -58,7 +58,10 @@ def joined_to(
             else:
                 spent_mm += sum(run.length_mm for run in runs)
                 tried += [run.own_mm for run in runs]
-        left = _left(stroke, tried)
+                in_vain += [run.places_mm for run in runs]
+        left = _left(stroke, [*tried, *in_vain])
+        if left.length_mm < _least_mm(stroke):
+            left = _left(stroke, tried)
         if left.length_mm < _least_mm(stroke) or spent_mm > TRIED_MM:
             break
     return found, _left(stroke, [some.places_mm for some in (line, *found)]).length_mm

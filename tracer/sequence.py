@@ -170,7 +170,7 @@ def _with_other_turns(best: Run, smooth: list[Run], follow: Callable[..., Line])
         line = follow(stance, length_mm, other_turns=True)
         if line.ending == "closed" and (_ran_in(best) or line.length_mm > best[0].length_mm):
             return line, stance, length_mm
-        if line.length_mm > SHORT * length_mm:
+        if best[0].ending == "closed" or line.length_mm > SHORT * length_mm:
             break
     return best
 
