@@ -32,6 +32,7 @@ def remarks(trace: Trace, head: Head, gap_mm: float, enlarged: int) -> Iterator[
     yield from _of_gaps(trace)
     yield from _of_breaks(trace, gap_mm)
     yield from _of_stems(trace)
+    yield from _of_crossing_guides(trace)
     if head.lines is None and trace.fault is None:
         yield from _of_rest(trace.lines[0])
 
@@ -127,6 +128,17 @@ def _of_stems(trace: Trace) -> Iterator[str]:
             yield (
                 f"the line from {x:.1f},{y:.1f} to the contour at {u:.1f},{v:.1f} mm is cut too: a lead line is known "
                 "by a cross or ring at its beginning, by --reference X,Y there, or by a tick across it"
+            )
+
+
+def _of_crossing_guides(trace: Trace) -> Iterator[str]:
+    """Of lines from a reference point that cross others and end beyond them: they lead to a hole, and may be meant to lead to a contour."""
+    for line in trace.lines:
+        if line.is_guide and line.junctions_mm:
+            (x, y), (u, v) = line.begin_mm, line.place(len(line.xy_mm) - 1)
+            yield (
+                f"the line from the reference point {x:.1f},{y:.1f} crosses another and ends at {u:.1f},{v:.1f} mm: it is taken for a guide line to a "
+                "hole there; a lead line ends on the contour"
             )
 
 

@@ -123,6 +123,19 @@ def test_a_stem_that_nothing_makes_a_lead_line_is_told_to_be_cut(morfax: Morfax,
     assert "is cut too" not in told.err and told.figures["reference_place_mm"] == [3.0, 12.7]
 
 
+def test_a_lead_line_that_goes_on_beyond_the_contour_is_told_to_be_a_guide_line(morfax: Morfax, here: Path) -> None:
+    grey = np.full((300, 600), 240, np.uint8)
+    cv2.circle(grey, (430, 150), 100, 30, 6, cv2.LINE_AA)
+    for end in ((360, 150), (80, 150)):
+        cv2.line(grey, (40, 150), end, 30, 6, cv2.LINE_AA)
+    cv2.line(grey, (60, 125), (60, 175), 30, 6, cv2.LINE_AA)
+    Image.fromarray(grey).save("beyond.png", dpi=(300, 300))
+    answer = morfax("trace", "beyond.png", "-o", "beyond.csv", "--lines", "all")
+    assert re.search(
+        r"reference point 5.1,12.7 crosses another and ends at 30.\d,12.7 mm: it is taken for a guide", answer.err
+    )
+
+
 @pytest.mark.parametrize(("direction", "positive"), [("cw", False), ("ccw", True), ("left", False), ("right", True)])
 def test_the_loop_is_taken_as_asked(morfax: Morfax, here: Path, direction: str, positive: bool) -> None:
     traced(morfax, "--direction", direction)
