@@ -23,7 +23,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import groupby, pairwise
 
 import cv2
 import numpy as np
@@ -177,16 +177,23 @@ def _numbers(which: Which, lines: int) -> list[int]:
     numbers = sorted(set(which))
     for number in numbers:
         if not 1 <= number <= lines:
-            raise no_line(number, lines)
+            raise no_line(number, range(1, lines + 1))
     return numbers
 
 
-def no_line(number: int, lines: int) -> LineFault:
-    """The fault of a number that no line has."""
+def no_line(number: int, have: Sequence[int]) -> LineFault:
+    """The fault of a number that no line has, with those that there are."""
+    lines = f"{'line' if len(have) == 1 else 'lines'} {_told(have)}" if have else "none"
     return LineFault(
-        f"no line {number}: the drawing has {lines}, numbered from the longest, 1, to the shortest;"
+        f"no line {number}: the drawing has {lines}, numbered from the longest on (no specks, letters, pieces of a line with gaps);"
         " give --lines all and a --picture to see them"
     )
+
+
+def _told(numbers: Sequence[int]) -> str:
+    """Numbers as people read them, "1 to 3, 5"."""
+    runs = [[n for _, n in run] for _, run in groupby(enumerate(sorted(numbers)), key=lambda at: at[1] - at[0])]
+    return ", ".join(f"{run[0]} to {run[-1]}" if len(run) > 2 else ", ".join(map(str, run)) for run in runs)
 
 
 def _from_firsts(idle_mm: Array, before: NDArray[np.bool_]) -> list[NDArray[np.int64]]:

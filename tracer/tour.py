@@ -87,6 +87,8 @@ def _follow_each(
         come_mm = sum(line.length_mm for line in lines)
         told = None if progress is None else partial(_tell_on, progress, come_mm, total_mm)
         line = _follow(sheet, contour, settings, operator, told)
+        if line is None and not isinstance(which, str) and contour.number in which:
+            raise _a_letter(contour)
         refused += line is None
         lines += [] if line is None else [line]
     return lines, refused
@@ -110,7 +112,7 @@ def _numbered(lines: list[Line], numbers: Which) -> list[Line]:
     have = {line.number for line in lines}
     for number in numbers:
         if number not in have:
-            raise contours.no_line(int(number), len(lines))
+            raise contours.no_line(int(number), sorted(have))
     return [line for line in lines if line.number in numbers]
 
 
@@ -171,6 +173,17 @@ def _none_begun(lines: list[Line]) -> LineFault:
     return fault or LineFault(
         "no line can be begun: what is on the sheet is too short, or is letters; give --start X,Y at a plain stretch, or, if dots"
         " are to be drilled, the --line-width of their pen"
+    )
+
+
+def _a_letter(contour: Contour) -> LineFault:
+    """The fault of a line that was asked for by its number, and on which the head can nowhere be put down."""
+    x, y = contour.stroke.middles_mm.mean(axis=0)
+    return LineFault(
+        f"line {contour.number}, about {x:.1f},{y:.1f} mm, is taken for a letter: the head can nowhere be put down on it; give the other numbers,"
+        " or --start X,Y at a plain stretch of it",
+        x_mm=float(x),
+        y_mm=float(y),
     )
 
 

@@ -139,10 +139,21 @@ def test_the_lines_asked_for_are_followed_and_no_others(all_lines: Trace) -> Non
     drawing = inked(*LINES)
     assert [line.number for line in trace_lines(drawing, "outer").lines] == [1]
     assert sorted(line.number for line in trace_lines(drawing, (4, 2, 4)).lines) == [2, 4]
-    with pytest.raises(LineFault, match="no line 5: the drawing has 4, numbered from the longest"):
+    with pytest.raises(LineFault, match="no line 5: the drawing has lines 1 to 4, numbered from the longest"):
         trace_lines(drawing, (2, 5))
     with pytest.raises(ValueError, match="'inner' names no lines"):
         trace_lines(drawing, "inner")
+
+
+def test_a_letter_that_is_asked_for_by_its_number_is_refused_by_it() -> None:
+    scribble = polyline(
+        (21.35, 16.07), (19.06, 14.04), (19.49, 15.6), (18.0, 14.01), (22.2, 16.67), (18.83, 15.71), (22.09, 17.75)
+    )
+    drawing = inked(polyline((6, 6), (50, 6), (50, 30), (6, 30), (6, 6)), scribble, seed=1)
+    assert [line.number for line in trace_lines(drawing).lines] == [1]
+    for asked in ((1, 2), (2,)):
+        with pytest.raises(LineFault, match=r"line 2, about \d+\.\d,\d+\.\d mm, is taken for a letter"):
+            trace_lines(drawing, asked)
 
 
 def test_a_line_with_gaps_is_one_line() -> None:
@@ -150,6 +161,8 @@ def test_a_line_with_gaps_is_one_line() -> None:
     run = trace_lines(inked(*gapped, arc((14, 14), 3), width_mm=0.3))
     assert [line.ending for line in run.lines] == ["closed", "closed"]
     assert run.length_mm == pytest.approx(24 * np.pi, rel=0.01)
+    with pytest.raises(LineFault, match="no line 5: the drawing has lines 1, 4, numbered"):
+        trace_lines(inked(*gapped, arc((14, 14), 2), width_mm=0.3), (5,))
 
 
 def test_lines_that_cross_or_touch_are_all_followed_though_they_are_one_patch_of_ink() -> None:
@@ -164,7 +177,7 @@ def test_lines_that_cross_or_touch_are_all_followed_though_they_are_one_patch_of
         assert min(distance(line.places_mm, drawn).hausdorff_mm for line in run.lines) < 120 * UM
     assert 15 < run.left_out_mm < 22
     assert sorted(line.number for line in trace_lines(drawing, (1, 4)).lines) == [1, 4]
-    with pytest.raises(LineFault, match="no line 5: the drawing has 4"):
+    with pytest.raises(LineFault, match="no line 5: the drawing has lines 1 to 4,"):
         trace_lines(drawing, (5,))
 
 
@@ -315,5 +328,5 @@ def test_a_sheet_of_dots_is_drilled_if_the_pen_s_width_is_given_and_else_says_so
     assert np.array(drilled) == pytest.approx(np.array(middles), abs=10 * UM)  # a tenth of a pixel
     with pytest.raises(LineFault, match=r"no line can be begun.*--line-width"):
         trace_lines(drawing)
-    with pytest.raises(LineFault, match="no line 1: the drawing has 0"):
+    with pytest.raises(LineFault, match="no line 1: the drawing has none"):
         trace_lines(drawing, (1,))
