@@ -147,7 +147,7 @@ def test_run_plays_all_lines_off_one_tape(morfax: Morfax, here: Path) -> None:
 def test_lines_that_there_are_not_are_refused(morfax: Morfax, here: Path) -> None:
     bracket = SAMPLES / "bracket.png"
     answer = morfax("trace", bracket, "--lines", "1,3")
-    assert answer.exit_code == 4 and "no line 3: the drawing has 2" in answer.fault
+    assert answer.exit_code == 4 and "no line 3: the drawing has lines 1, 2" in answer.fault
     answer = morfax("trace", bracket, "--lines", "inner")
     assert answer.exit_code == 2 and "give all, outer, or numbers such as 1,3" in answer.fault
     answer = morfax("trace", bracket, "--lines", "all", "--start", "1,1")
