@@ -24,11 +24,6 @@ FARTHEST_MM = 10.0  # legs that meet further away do not meet
 
 SPOKE = np.linspace(0.2, 1.0, 17)
 BESIDE = np.array([0.0, -0.25, 0.25])  # widths
-COARSE, COARSE_STATIONS = (
-    0.4,
-    20,
-)  # of the width: standard deviation of a cell that averages a line's grain; stations of a leg seen through it
-FAINTER = 0.3  # of the line's darkness as a rule: an edge, through that cell
 PAPER = 0.6  # of the level: lighter is paper for certain
 SPECK_PX = 4.0  # a speck of two pixels of paper, seen through an aperture
 SPECK_WIDTHS = 0.4  # ink narrower than this is no stroke
