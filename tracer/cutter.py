@@ -186,20 +186,28 @@ def _guides(cuts: Sequence[Cut], side: Side) -> list[Guide]:
     """What is cut as guides, each with the side on which the cutter runs."""
     if side in ("left", "right"):
         return [Guide(cut.places_mm, cut.closed, side == "left") for cut in cuts]
-    for cut in cuts:
-        if not cut.closed:
-            raise MotionFault(
-                f"line {cut.line.number} is open: it has no {side}; give --side left or right, by its travel"
-            )
     places = [edges.thinned(cut.places_mm) for cut in cuts]
     crossed = edges.crossing(places)
-    if crossed.diagonal().any():
-        number = cuts[int(crossed.diagonal().argmax())].line.number
-        raise MotionFault(f"line {number} crosses itself: it has no {side}; give --side left or right, by its travel")
+    wrong = {
+        cut.line.number: "is open" if not cut.closed else "crosses itself"
+        for cut, own in zip(cuts, crossed.diagonal(), strict=True)
+        if own or not cut.closed
+    }
+    if wrong:
+        raise _without_side(wrong, [cut.line.number for cut in cuts if cut.line.number not in wrong], side)
     return [
         Guide(cut.places_mm, True, edges.is_counterclockwise(line) == ((side == "inside") == (depth % 2 == 0)))
         for cut, line, depth in zip(cuts, places, edges.depths(places, crossed), strict=True)
     ]
+
+
+def _without_side(wrong: dict[int, str], others: Sequence[int], side: Side) -> MotionFault:
+    """The fault of lines that have no outside and no inside, with the numbers of those that have."""
+    number = min(wrong)
+    alone = f", or {side} of the others alone by --lines {','.join(map(str, sorted(others)))}" if others else ""
+    return MotionFault(
+        f"line {number} {wrong[number]}: it has no {side}; give --side left or right, by its travel{alone}"
+    )
 
 
 def _left(cuts: Sequence[Cut], guides: Sequence[Guide], ways: Sequence[Way], radius_mm: float) -> Left:

@@ -60,7 +60,7 @@ def thinned(line_mm: Array) -> Array:
 
 
 def crossing(lines_mm: Sequence[Array]) -> NDArray[np.bool_]:
-    """Which closed lines (n, 2) mm cross which: `crossing[i, j]`; `[i, i]` if line i crosses itself."""
+    """Which lines (n, 2) mm, taken for closed, cross which: `crossing[i, j]`; `[i, i]` if line i crosses itself."""
     closed = [np.vstack([line, line[:1]]) for line in lines_mm]
     owner = np.concatenate([np.full(len(line), k) for k, line in enumerate(closed)])
     last = np.flatnonzero(np.r_[np.diff(owner) != 0, True])

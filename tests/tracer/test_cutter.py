@@ -77,6 +77,10 @@ def test_an_open_line_has_a_left_and_a_right_and_no_outside() -> None:
     line = trace(inked(polyline((4, 6), (24, 9)), seed=1))
     with pytest.raises(MotionFault, match="line 1 is open: it has no outside; give --side left or right"):
         with_cutter(line, Cutter(4), FEED_MM_S)
+    plate = closed(run_through((0, 0), (20, 0), (20, 20), (0, 20), (0, 0)))
+    both = Trace((replace(plate, number=4), replace(line.lines[0], number=7)))
+    with pytest.raises(MotionFault, match=r"line 7 is open.*, or outside of the others alone by --lines 4$"):
+        with_cutter(both, Cutter(4), FEED_MM_S)
     ways = {side: thin(with_cutter(line, Cutter(4, side), FEED_MM_S)[0]) for side in ("left", "right")}  # type: ignore[arg-type]
     middle = 0.5 * (ways["left"].runs()[0].mean(axis=0) + ways["right"].runs()[0].mean(axis=0))
     assert middle == pytest.approx([14, 7.5], abs=0.3)
