@@ -91,15 +91,20 @@ def room(guides: Sequence[Guide], number: int) -> Room | None:
     inside = is_counterclockwise(own.points_mm) == own.left
     around = own.points_mm if inside else np.vstack([guide.points_mm for guide in guides])
     low, size = around.min(axis=0), np.ptp(around, axis=0)
+    near_by = [
+        closed_up(guide)
+        for guide in guides
+        if ((guide.points_mm >= low) & (guide.points_mm <= low + size)).all(axis=1).any()
+    ]
     cell_mm = float(size.max()) / CELLS
-    free, here = _free(guides, own, inside, low, size, cell_mm)
+    free, here = _free(near_by, own, inside, low, size, cell_mm)
     if not here.any() or here[0].any():  # the outermost cells are outside of all lines
         return None
     away = np.where(here, cv2.distanceTransform(free, cv2.DIST_L2, cv2.DIST_MASK_PRECISE), 0)
     row, column = np.unravel_index(int(away.argmax()), away.shape)
     place, near = (
         low + (np.array([column, row]) - 2) * cell_mm,
-        Nearest([closed_up(guide) for guide in guides], cell_mm),
+        Nearest(near_by, float(away.max()) * cell_mm),
     )
     while cell_mm > WITHIN_MM:
         steps = np.arange(-FINER, FINER + 1) * 2 * cell_mm / FINER
@@ -110,13 +115,12 @@ def room(guides: Sequence[Guide], number: int) -> Room | None:
 
 
 def _free(
-    guides: Sequence[Guide], own: Guide, inside: bool, low: Array, size: Array, cell_mm: float
+    lines_mm: Sequence[Array], own: Guide, inside: bool, low: Array, size: Array, cell_mm: float
 ) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
     """A grid that is 0 where a line runs, else 1; and which of its cells can be come to from a line's own side without crossing any."""
     columns, rows = (np.ceil(size / cell_mm).astype(int) + 5).tolist()
     free, filled, beside = np.ones((rows, columns), np.uint8), *np.zeros((2, rows, columns), np.uint8)
-    outlines = [np.round((guide.points_mm - low) / cell_mm + 2).astype(np.int32) for guide in guides]
-    cv2.polylines(free, outlines, True, 0)
+    cv2.polylines(free, [np.round((line - low) / cell_mm + 2).astype(np.int32) for line in lines_mm], False, 0)
     line = np.round((own.points_mm - low) / cell_mm + 2).astype(np.int32)
     cv2.fillPoly(filled, [line], 1)
     cv2.polylines(beside, [line], True, 1, 5)
