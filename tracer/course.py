@@ -24,6 +24,7 @@ from tracer.leg import Leg, Meeting, centre_at, turn
 from tracer.view import Array, View
 
 SPACING_MM = 0.02
+FELT_LEGS = 0.3  # of a leg's length, to both sides: what a place on a felt line is averaged over
 SLIGHT = math.radians(40)  # a turn up to this goes straight on at a junction
 HIDES = 0.7  # of the width: a pen that turned on the vertex inks half of it on the outside
 SHARP = 0.08  # of the line's width: a corner whose ink misses less than this on the outside is sharp
@@ -60,17 +61,25 @@ def through_corner(
     """Stretches from where the head stands (place, heading) through a corner to `end_mm` beyond the outgoing leg's first station."""
     s, u = legs_mm
     missing, touch = rounding(view, incoming, outgoing, legs_mm)
-    bent = touch > 0 and (missing > 0.3 * view.width_mm or _deflection(incoming, outgoing, legs_mm) < SLIGHT)
+    bent = touch > 0 and (missing > 0.3 * view.width_mm or deflection(incoming, outgoing, legs_mm) < SLIGHT)
     if touch > 0 and touch < u + end_mm and touch < s + ahead_mm(stands[0], incoming):
-        way, along = onto(*stands, incoming, s - touch)
-        a, b = s - touch, -u + touch
-        bend = _arc(incoming.at(a), incoming.heading_at(a), outgoing.at(b), outgoing.heading_at(b))
-        return [np.vstack([way, along_leg(incoming, along, a), bend, along_leg(outgoing, b, end_mm)])]
+        return [rounded_corner(stands, incoming, outgoing, legs_mm, touch, end_mm)]
     if bent:
         way, along = onto(*stands, incoming, min(s, 0.0))
         start, end = incoming.at(along), outgoing.at(end_mm)
         return [np.vstack([way, hermite(start, incoming.heading_at(along), end, outgoing.heading_at(end_mm))])]
     return sharp_corner(stands, incoming, outgoing, legs_mm, end_mm)
+
+
+def rounded_corner(
+    stands: tuple[Array, float], incoming: Leg, outgoing: Leg, legs_mm: Meeting, touch_mm: float, end_mm: float
+) -> Array:
+    """The way (n, 2) from where the head stands by the arc that touches both legs so far from their vertex, to beyond the outgoing leg's first station."""
+    s, u = legs_mm
+    way, along = onto(*stands, incoming, s - touch_mm)
+    a, b = s - touch_mm, -u + touch_mm
+    bend = _arc(incoming.at(a), incoming.heading_at(a), outgoing.at(b), outgoing.heading_at(b))
+    return np.vstack([way, along_leg(incoming, along, a), bend, along_leg(outgoing, b, end_mm)])
 
 
 def sharp_corner(
@@ -92,7 +101,7 @@ def nodes_along(
 
     A share of a leg is `left` over: too little to tell a corner by.
     """
-    half_mm, left_mm = 0.3 * view.leg_mm, left * view.leg_mm
+    half_mm, left_mm = FELT_LEGS * view.leg_mm, left * view.leg_mm
     nodes, leg = [start], None
     here = int(np.argmin(np.hypot(*(seen[:, :2] - start[0]).T)))
     for i in range(here, len(seen)):
@@ -120,14 +129,14 @@ def rounding(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> tupl
     missing = missing_ink_mm(view, incoming, outgoing, legs_mm)
     if missing <= SHARP * view.width_mm:
         return missing, 0.0
-    deflection = _deflection(incoming, outgoing, legs_mm)
-    return missing, missing * math.tan(deflection / 2) / (1 / math.cos(deflection / 2) - 1)
+    turned = deflection(incoming, outgoing, legs_mm)
+    return missing, missing * math.tan(turned / 2) / (1 / math.cos(turned / 2) - 1)
 
 
 def is_sharp(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> bool:
     """Whether the ink of an obtuse corner is that of a sharp one: it misses less than a third of what an arc over eight stations would."""
-    deflection = _deflection(incoming, outgoing, legs_mm)
-    return missing_ink_mm(view, incoming, outgoing, legs_mm) <= 8 * view.step_mm * math.tan(deflection / 4) / 3
+    turned = deflection(incoming, outgoing, legs_mm)
+    return missing_ink_mm(view, incoming, outgoing, legs_mm) <= 8 * view.step_mm * math.tan(turned / 4) / 3
 
 
 def missing_ink_mm(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> float:
@@ -138,17 +147,17 @@ def missing_ink_mm(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -
     found, width_mm = _edge_mm(view, incoming, outgoing, legs_mm, 1), 0.5 * (incoming.width_mm + outgoing.width_mm)
     if not hides_outside(view, incoming, outgoing, legs_mm):
         return max(0.0, 0.5 * width_mm - found) if math.isfinite(found) else 0.0
-    within, half = _edge_mm(view, incoming, outgoing, legs_mm, -1), 0.5 * _deflection(incoming, outgoing, legs_mm)
+    within, half = _edge_mm(view, incoming, outgoing, legs_mm, -1), 0.5 * deflection(incoming, outgoing, legs_mm)
     return max(0.0, within - 0.5 * width_mm / math.cos(half)) if math.isfinite(within) else 0.0
 
 
 def hides_outside(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> bool:
     """Whether another line leaves on the outside of a slight turn: there is more ink than a corner's, and its edges tell nothing of it."""
     found = _edge_mm(view, incoming, outgoing, legs_mm, 1)
-    return _deflection(incoming, outgoing, legs_mm) < SLIGHT and not found < HIDES * incoming.width_mm
+    return deflection(incoming, outgoing, legs_mm) < SLIGHT and not found < HIDES * incoming.width_mm
 
 
-def _deflection(incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> float:
+def deflection(incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> float:
     """By how much the way turns where two legs meet, rad."""
     return abs(turn(incoming.heading_at(legs_mm[0]), outgoing.heading_at(-legs_mm[1])))
 
@@ -199,15 +208,21 @@ def on_ink(view: View, stretches: list[Array]) -> bool:
     return float(np.mean(np.array(seen) > 0.5 * view.level)) > 0.8
 
 
-def speeds(points: Array, speed_mm_s: float, acceleration_mm_s2: float, end_mm_s: float) -> Array:
-    """Highest speed at each place of a stretch: what bends and braking allow, `end_mm_s` at its end; mm/s."""
+def bends_per_mm(points: Array) -> Array:
+    """How much a polyline (n, 2) mm bends at each place between its first and last, 1/mm."""
     steps = np.diff(points, axis=0)
     lengths = np.maximum(np.hypot(*steps.T), 1e-9)
     headings = np.unwrap(np.arctan2(steps[:, 1], steps[:, 0]))
+    return np.asarray(np.abs(np.diff(headings)) / (0.5 * (lengths[1:] + lengths[:-1])))
+
+
+def speeds(points: Array, speed_mm_s: float, acceleration_mm_s2: float, end_mm_s: float) -> Array:
+    """Highest speed at each place of a stretch: what bends and braking allow, `end_mm_s` at its end; mm/s."""
+    lengths = np.maximum(np.hypot(*np.diff(points, axis=0).T), 1e-9)
     allowed = np.full(len(points), speed_mm_s)
     if len(points) > 2:
-        bends = np.abs(np.diff(headings)) / (0.5 * (lengths[1:] + lengths[:-1]))
-        allowed[1:-1] = np.minimum(speed_mm_s, np.sqrt(acceleration_mm_s2 / np.maximum(bends, 1e-6)))
+        bends = np.maximum(bends_per_mm(points), 1e-6)
+        allowed[1:-1] = np.minimum(speed_mm_s, np.sqrt(acceleration_mm_s2 / bends))
     allowed[-1] = min(allowed[-1], end_mm_s)
     for i in range(len(points) - 2, -1, -1):
         allowed[i] = min(allowed[i], math.sqrt(allowed[i + 1] ** 2 + 2 * acceleration_mm_s2 * lengths[i]))

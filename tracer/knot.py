@@ -21,6 +21,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.ndimage import maximum_filter1d
 
 from tracer import photocell
 from tracer.leg import Leg, leg_of, turn
@@ -34,22 +35,20 @@ FARTHEST_MM = 5.0  # rings do not grow beyond this, or ten widths
 def corner_in(seen: Array, first: int) -> int | None:
     """The station, from `first` on, at which a line that was felt clean turns sharply; None if it does not.
 
-    Chords of ten stations before and after, three stations away from it, differ most there, by more than `CORNER`.
+    Chords of seven stations before and after, three stations away from it, differ more there than anywhere within seven stations, by more than `CORNER`.
+    The line's last stations lean towards what ended it.
     """
-    n, skip = 10, 3
+    n, skip, lean = 7, 3, 3
     places = seen[:, :2]
-    middle = np.arange(max(first, n + skip), len(seen) - n - skip)
+    middle = np.arange(max(first, n + skip), len(seen) - n - skip - lean)
     if not len(middle):
         return None
     before = places[middle - skip] - places[middle - skip - n]
     after = places[middle + skip + n] - places[middle + skip]
     cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
     turned = np.abs(np.arctan2(cross, np.sum(before * after, axis=1)))
-    sharp = np.flatnonzero(turned > CORNER)
-    if not len(sharp):
-        return None
-    run = sharp[: int(np.argmax(np.diff(np.r_[sharp, 10**9]) > 1)) + 1]
-    return int(middle[run[np.argmax(turned[run])]])
+    sharp = np.flatnonzero((turned > CORNER) & (turned == maximum_filter1d(turned, 2 * n + 1)))
+    return int(middle[sharp[0]]) if len(sharp) else None
 
 
 def fork_in(view: View, seen: Array, first: int) -> int | None:

@@ -147,7 +147,10 @@ def centre_at(seen: Array, i: int, half_mm: float) -> Leg:
     t = np.array([math.cos(heading), math.sin(heading)])
     n = np.array([-t[1], t[0]])
     x, y = d[near] @ t, d[near] @ n
-    offset, slope, bend = _parabola(x, y, np.maximum(1 - (x / half_mm) ** 2, 0.05), 2)[0]
+    off = seen[near, 2] - np.median(seen[near, 2])
+    spread = max(3 * 1.4826 * float(np.median(np.abs(off))), 1e-3)
+    weights = np.maximum(1 - (x / half_mm) ** 2, 0.05) / (1 + (off / spread) ** 4)
+    offset, slope, bend = _parabola(x, y, weights, 2)[0]
     return Leg(
         seen[i, :2] + offset * n,
         heading + math.atan(slope),

@@ -29,6 +29,10 @@ SMOOTH = math.radians(14)  # a smaller change of heading is no corner
 LEAST_GAP_PX = 2.5  # a scan can lose this much of a line
 FAINTER = 0.5  # a line that becomes lighter at once goes on with so much of its darkness
 AS_FELT = 0.65  # pixels that single stations are off
+HIDDEN = 8  # stations at a corner between those that its legs are felt by
+SPECK_PX = 4.5  # between stations of a line that is clean but for a speck
+TIGHT_LEGS = 0.75  # of a leg's length: a round of a smaller radius is averaged away by feeling
+LEG_STATIONS = 12  # make a leg beside a round
 FAR_WIDTHS = 4.0  # to where the line goes on clean
 
 
@@ -47,7 +51,8 @@ class Pilot:
         if outgoing is not None:
             planned = self._course(incoming, outgoing, legs_mm)
             if course.on_ink(self.view, planned.stretches):
-                return planned, choices
+                is_sharp = len(planned.stretches) > 1 and not self._is_round(incoming, outgoing, legs_mm)
+                return planned if is_sharp else self._past_speck(planned, incoming, outgoing) or planned, choices
             choices = 0  # that leg is another line's
         gap_mm = max(self.settings.gap_mm, LEAST_GAP_PX * self.view.pitch_mm)
         outgoing = straight_on(self.view, incoming, gap_mm)
@@ -113,20 +118,93 @@ class Pilot:
         deflection = abs(turn(incoming.heading_rad, outgoing.heading_rad))
         return deflection > SMOOTH and min(legs_mm) > -self.view.width_mm
 
-    def round_corner(self, seen: Array, here: int) -> Planned | None:
-        """The way round a corner so obtuse that the line was felt clean round it; None if there is none, or if its ink does not show it to be sharp."""
-        i = corner_in(seen, here + 4)
-        if i is None:
+    def _past_speck(self, planned: Planned, incoming: Leg, outgoing: Leg) -> Planned | None:
+        """A way without a corner once more, felt along it: None if the line is not clean there but for a speck."""
+        way = course.distinct(np.vstack(planned.stretches))
+        beyond = [course.ahead_mm(place, outgoing) > 0 and course.ahead_mm(place, incoming) < 0 for place in way]
+        seen = self.view.feel_along(way[beyond])
+        there = np.vstack([incoming.seen, seen, outgoing.seen])
+        if np.hypot(*np.diff(there[:, :2], axis=0).T).max() > SPECK_PX * self.view.pitch_mm:
             return None
+        nodes, leg = course.nodes_along(self.view, self.stands, there)
+        if leg is None:
+            return None
+        felt = course.distinct(course.through_nodes(nodes))
+        averaged = course.bends_per_mm(felt).max() * course.FELT_LEGS * self.view.leg_mm > 1
+        return None if averaged else Planned([felt], leg, there)
+
+    def _is_round(self, incoming: Leg, outgoing: Leg, legs_mm: Meeting | None) -> bool:
+        """Whether the legs, or the ink where they meet, show a round and no corner."""
+        if legs_mm is None or self._bend_on(incoming, outgoing, legs_mm):
+            return legs_mm is not None
+        return course.rounding(self.view, incoming, outgoing, legs_mm)[1] > 0
+
+    def _bend_on(self, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> bool:
+        """Whether two legs meet at no greater angle than one of them makes by bending on over the stations between them."""
+        bends = max(abs(incoming.bend_per_mm), abs(outgoing.bend_per_mm))
+        return course.deflection(incoming, outgoing, legs_mm) < SMOOTH + bends * HIDDEN * self.view.step_mm
+
+    def round_corner(self, seen: Array, here: int) -> Planned | None:
+        """The way round a corner that the line was felt clean round, as it is obtuse or a tight round; None if there is none, or if its ink shows neither."""
+        longer = self._felt_on(seen)
+        i = corner_in(longer, here + 4)
+        return None if i is None or i > len(seen) - LEG_STATIONS else self._obtuse(longer, i) or self._tight(longer, i)
+
+    def _felt_on(self, seen: Array) -> Array:
+        """What was felt of a line, (n, 3), with a leg's length more of it where that is clean: the corner in it may be near the end."""
+        way = seen[3, :2] - seen[0, :2]
+        length_mm = len(seen) * self.view.step_mm + self.view.leg_mm
+        more = self.view.feel(seen[0, :2], math.atan2(way[1], way[0]), length_mm)
+        return more if len(more) > len(seen) else seen
+
+    def _obtuse(self, seen: Array, i: int) -> Planned | None:
+        """The way by the vertex of a corner at a station, if its ink shows it to be sharp."""
         incoming = leg_of(seen[: i - 2], True, self.view.leg_mm)
         outgoing = leg_of(seen[i + 3 :], False, self.view.leg_mm)
         legs_mm = meet(incoming, outgoing)
         if legs_mm is None or min(legs_mm) < self.view.step_mm:  # the bend is not between the legs
             return None
+        if self._bend_on(incoming, outgoing, legs_mm):
+            return None
         if not course.is_sharp(self.view, incoming, outgoing, legs_mm):
             return None
         planned = self._course(incoming, outgoing, legs_mm)
         return planned if self._as_felt(planned, seen, abs(turn(incoming.heading_rad, outgoing.heading_rad))) else None
+
+    def _tight(self, seen: Array, i: int) -> Planned | None:
+        """The way by an arc between two straight legs about a station, each felt up to where its ink shows that the round begins; None if there is none.
+
+        What is felt of a round is averaged over more of the line than the round is long.
+        """
+        last, first = i - 3, i + 3
+        while last + 1 >= LEG_STATIONS and first <= len(seen) - LEG_STATIONS:
+            incoming = leg_of(seen[: last + 1], True, self.view.leg_mm)
+            outgoing = leg_of(seen[first:], False, self.view.leg_mm)
+            legs_mm = meet(incoming, outgoing)
+            if legs_mm is None:
+                return None
+            touch_mm = course.rounding(self.view, incoming, outgoing, legs_mm)[1]
+            back, on = (
+                2 if leg.bend_per_mm else max(0, math.ceil((touch_mm - mm) / self.view.step_mm))
+                for leg, mm in zip((incoming, outgoing), legs_mm, strict=True)
+            )
+            if not back and not on:
+                planned = self._by_arc(incoming, outgoing, legs_mm, touch_mm)
+                turned = course.deflection(incoming, outgoing, legs_mm)
+                return planned if planned is not None and self._as_felt(planned, seen, turned) else None
+            last, first = last - back, first + on
+        return None
+
+    def _by_arc(self, incoming: Leg, outgoing: Leg, legs_mm: Meeting, touch_mm: float) -> Planned | None:
+        """The way by the arc that touches two straight legs so far from their vertex; None if it is sharp, slight or wide, or if the head is in it."""
+        deflection = course.deflection(incoming, outgoing, legs_mm)
+        widest_mm = TIGHT_LEGS * self.view.leg_mm * math.tan(deflection / 2)
+        before_mm = legs_mm[0] + course.ahead_mm(self.stands[0], incoming)
+        if deflection < course.SLIGHT or not 0 < touch_mm < min(widest_mm, before_mm):
+            return None
+        end_mm = max(0.05 - legs_mm[1], 0.0)
+        way = course.rounded_corner(self.stands, incoming, outgoing, legs_mm, touch_mm, end_mm)
+        return Planned([way], outgoing.shifted(end_mm, outgoing.seen))
 
     def _as_felt(self, planned: Planned, seen: Array, deflection: float) -> bool:
         """Whether a way round a corner is where the line was felt, but for the vertex: there the middle of the ink is inside of it.

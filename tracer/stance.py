@@ -37,6 +37,7 @@ SPUR = 2.7  # a line that ends sooner, in widths, is a burr
 GROWS, GROWS_PX = 0.08, 0.4  # widths, or pixels: along half of what is felt of it the tip of two lines widens so much
 PLACES = 80  # tried along a line
 ENDS = 6  # open ends that are tried: a lead line may begin at any
+BENT = 0.8  # times a leg's length: a line that bends by more is no parabola over so much of it
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,9 +88,10 @@ def put_down(
     for _, stance in stances if start_mm is None else stances[:1]:
         yield stance, stroke.length_mm
     if not stances and not at_ends:
+        solid = "follow the edges of a filled shape with --edge, " if sheet.are_solid[stroke.patch] else ""
         raise LineFault(
             f"no clean stretch of line {view.width_mm:.2f} mm wide to start on;"
-            f" {'give' if line_width_mm is None else 'give another'} --line-width, or --start X,Y at a plain stretch"
+            f" {solid}{'give' if line_width_mm is None else 'give another'} --line-width, or --start X,Y at a plain stretch"
         )
 
 
@@ -248,6 +250,8 @@ def _both_ways(view: View, place: Array, heading: float) -> tuple[Leg, float] | 
         return None
     both = np.vstack([behind[shorter - 1 : 0 : -1], ahead[:shorter]])
     middle = centre_at(both, shorter - 1, 0.6 * view.leg_mm)
+    if abs(middle.bend_per_mm) * view.leg_mm > BENT:
+        middle = centre_at(both, shorter - 1, 0.3 * view.leg_mm)
     return middle, round((shorter - 1) * view.step_mm, 1)
 
 

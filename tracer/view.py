@@ -54,6 +54,20 @@ class View:
             self.cells, self.pitch_mm, place, heading, self.step_mm, stations, self.width_mm, self.level
         )
 
+    def feel_along(self, way: Array) -> Array:
+        """Centres and widths (n, 3) of the line across a way (n, 2) mm, a station's distance apart, wherever it is clean."""
+        lengths_mm = np.r_[0.0, np.cumsum(np.hypot(*np.diff(way, axis=0).T))]
+        every = way[np.searchsorted(lengths_mm, np.arange(0.0, lengths_mm[-1], self.step_mm))]
+        seen = []
+        for place, before, after in zip(every[1:-1], every[:-2], every[2:], strict=True):
+            heading = math.atan2(*(after - before)[::-1])
+            reach = 0.8 * self.width_mm + 3.0 * self.pitch_mm
+            right, left = photocell.edges(self.cells, self.pitch_mm, place[0], place[1], heading, reach, self.level)
+            aside = 0.5 * (left + right)
+            if abs(left - right - self.width_mm) < 0.2 * self.width_mm:
+                seen.append((place[0] - aside * math.sin(heading), place[1] + aside * math.cos(heading), left - right))
+        return np.array(seen).reshape(-1, 3)
+
     def like(self, place: Array, heading: float, follows: float = 0.1) -> View:
         """The view with the width and the darkness that the line has about a place, if they are like what they were: lines swell and fade.
 

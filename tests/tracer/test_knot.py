@@ -128,6 +128,13 @@ def test_a_sharp_corner_is_found_where_it_is(deflection_deg: float) -> None:
     assert found is not None and abs(found - 30) <= 3  # chords leave out three stations
 
 
+def test_of_two_corners_close_together_the_first_is_found() -> None:
+    """As on the top of a tooth of 0.9 mm, 18 stations."""
+    headings = np.radians(np.repeat([0.0, 60.0, 120.0], [30, 18, 30]))
+    found = corner_in(stations(np.cumsum(0.05 * _unit(headings), axis=0)), 0)
+    assert found is not None and abs(found - 29) <= 3
+
+
 def test_a_smooth_bend_is_no_corner() -> None:
     for radius_mm in (3.0, 10.0):
         assert corner_in(stations(radius_mm * _unit(np.arange(60) * 0.05 / radius_mm)), 0) is None
