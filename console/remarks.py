@@ -26,6 +26,7 @@ def remarks(trace: Trace, head: Head, gap_mm: float, enlarged: int) -> Iterator[
     """All that is worth a word of a trace, the head having gone across gaps up to this, on a drawing enlarged so many times."""
     if enlarged > 1:
         yield f"edges are near one another: followed {enlarged} times enlarged, so the machine goes {enlarged} times slower than the head"
+    yield from _of_solids(trace)
     yield from _of_stops(trace)
     yield from _of_turns(trace)
     yield from _of_reference(trace, head.marks)
@@ -66,6 +67,14 @@ def _of_left_out(lines: list[LeftOut], cutter: Cutter) -> str:
 def _numbered(what: str, numbers: list[int]) -> str:
     """Some things by their numbers, with their verb."""
     return f"{what} {numbers[0]} is" if len(numbers) == 1 else f"{what}s {', '.join(map(str, numbers))} are"
+
+
+def _of_solids(trace: Trace) -> Iterator[str]:
+    """Of lines in the rims of filled shapes."""
+    solid = [line for line in trace.lines if line.is_solid]
+    if solid:
+        x, y = solid[0].start_mm
+        yield f"the ink at {x:.1f},{y:.1f} mm is the rim of a dark area broader than a line: if that is a filled shape, --edge follows its outline"
 
 
 def _of_stops(trace: Trace) -> Iterator[str]:

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from motion.motion import MOTION_RATE_HZ
 from samples import draw
 from tracer import follower, head, photocell, pilot, tangles
-from tracer.drawing import Drawing, darkness_of
+from tracer.drawing import Drawing, levelled
 from tracer.settings import Settings
 from tracer.stance import put_down
 
@@ -50,7 +50,7 @@ def inked(*lines: Array) -> tuple[Drawing, Array]:
     """The lines drawn and scanned as a sample is; the drawing, and by how much the lines were moved onto the sheet, mm."""
     moved, sheet_px = draw.placed(list(lines))
     grey = draw.scanned(draw.coverage(moved, sheet_px), seed=5)
-    return Drawing(darkness_of(grey, PITCH_MM), PITCH_MM), moved[0][0] - lines[0][0]
+    return Drawing(levelled(grey, PITCH_MM)[0], PITCH_MM), moved[0][0] - lines[0][0]
 
 
 def put_head(drawing: Drawing, start_mm: Array) -> follower.Follower:

@@ -41,6 +41,7 @@ LEAST_STROKE_MM = 2.0  # shorter strokes are specks
 FEWEST_SAMPLES = 1 << 22  # that tell the noise of the paper, and the darkness of the ink
 
 Darkness = NDArray[np.float32]
+Shapes = NDArray[np.bool_]
 Grey = NDArray[np.uint8] | NDArray[np.float32]  # levels 0..255
 
 
@@ -48,7 +49,8 @@ Grey = NDArray[np.uint8] | NDArray[np.float32]  # levels 0..255
 class Drawing:
     """A drawing as the cells see it: `darkness` (rows from the top, columns) on pixels of `pitch_mm`.
 
-    Of filled shapes the `edges_mm`, closed polylines (n, 2), that a run has to keep to, and how many times `enlarged` the head sees the line along them.
+    Of filled shapes the `edges_mm`, closed polylines (n, 2), that a run has to keep to, and how many times `enlarged` the head sees the line along them; if
+    they are not asked for, where there are `shapes`, on the picture reduced by a whole number.
     """
 
     darkness: Darkness
@@ -56,6 +58,7 @@ class Drawing:
     file: Path | None = None
     enlarged: int = 1
     edges_mm: tuple[NDArray[np.float64], ...] = ()
+    shapes: Shapes | None = None
 
     @property
     def width_mm(self) -> float:
@@ -97,11 +100,12 @@ class Drawing:
         if edge:
             line = outlined(grey, pitch[0])
             return cls(line.darkness, pitch[0] / line.finer, file, line.finer, line.edges_mm)
-        return cls(darkness_of(grey, pitch[0]), pitch[0], file)
+        darkness, shapes = levelled(grey, pitch[0])
+        return cls(darkness, pitch[0], file, shapes=shapes)
 
 
-def darkness_of(grey: Grey, pitch_mm: float) -> Darkness:
-    """Darkness 0..1 of a grey picture (0..255): paper levelled, contrast of the strokes 1.
+def levelled(grey: Grey, pitch_mm: float) -> tuple[Darkness, Shapes]:
+    """Darkness 0..1 of a grey picture (0..255): paper levelled, contrast of the strokes 1; and where filled shapes are, on a picture reduced by a whole number.
 
     Raises DrawingFault if nothing on it is long and dark enough to be a line.
     """
@@ -111,8 +115,9 @@ def darkness_of(grey: Grey, pitch_mm: float) -> Darkness:
         behind = level.rows(top, bottom)
         first, second = (behind, grey[top:bottom]) if level.is_light else (grey[top:bottom], behind)
         np.subtract(first, second, out=contrast[top:bottom], dtype=np.float32)
-    contrast /= np.float32(_ink_contrast(contrast, pitch_mm))
-    return contrast
+    ink = _ink_contrast(contrast, pitch_mm)
+    contrast /= np.float32(ink)
+    return contrast, level.shapes(ink)
 
 
 def _read(file: Path, *, coloured: bool) -> tuple[Grey, tuple[float, float] | None]:

@@ -45,6 +45,7 @@ class Line:
     reference_mm: tuple[float, float] | None = None  # the reference point from which it begins
     junctions_mm: tuple[tuple[float, float], ...] = ()  # in the order in which the head came to them
     ink_mm: float = 0.0  # length of the ink that is joined to it, its own included, by its area
+    is_solid: bool = False  # that ink is the rim of a filled shape
     numbers: tuple[int, ...] | None = None  # of its stops; None: counted on from those of the line before
     breaks: tuple[Break, ...] = ()  # where it ends, and ink goes on
 

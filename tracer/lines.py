@@ -10,6 +10,7 @@ Source: patent ES 361967 leaves the choice of the line to the operator, who brin
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -30,6 +31,7 @@ LEAST_LENGTH_MM = 2.0
 LEAST_LENGTH_PX = 12
 DEEPEST_PX = 200  # a line of 6 mm at 1200 dpi is 142 deep; the middle of a darker patch is not that of a line
 TILE_PX = 2048
+SOLID = 0.5  # of a patch's ink is beside filled shapes: it is theirs
 LESS = 0.85  # ink about an end, of what is usual: half, and what the middle place lies within the end
 MOST_ENDS = 100
 
@@ -61,12 +63,13 @@ class Stroke:
 
 @dataclass(frozen=True, slots=True)
 class Sheet:
-    """The patches of ink on a drawing, with the length and the width that each has as a line."""
+    """The patches of ink on a drawing, with the length and the width that each has as a line, and which of them are filled shapes."""
 
     drawing: Drawing
     patches: Patches
     lengths_mm: Array
     widths_mm: Array
+    are_solid: NDArray[np.bool_]
 
     @classmethod
     def of(cls, drawing: Drawing) -> Sheet:
@@ -81,7 +84,9 @@ class Sheet:
         areas = patches.areas
         deep = np.bincount(patches.patch, np.concatenate(depths), patches.count) / areas
         widths = np.maximum(4 * deep - 2, 1.0)  # a line of w pixels has depths 1, 2 … w/2 … 2, 1
-        sheet = cls(drawing, patches, areas / widths * drawing.pitch_mm, widths * drawing.pitch_mm)
+        sheet = cls(
+            drawing, patches, areas / widths * drawing.pitch_mm, widths * drawing.pitch_mm, _are_solid(drawing, patches)
+        )
         if not sheet._long_enough().any():
             raise DrawingFault("no line on the drawing: nothing on it is long enough; check the file and its scale")
         return sheet
@@ -102,6 +107,10 @@ class Sheet:
                 nearest_mm=(float(x), float(y)),
             )
         return self.stroke(patch)
+
+    def is_solid_at(self, place_mm: Array) -> bool:
+        """Whether the ink nearest to a place is the rim of a filled shape."""
+        return bool(self.are_solid[self._nearest_ink((float(place_mm[0]), float(place_mm[1])))[2]])
 
     def _long_enough(self) -> NDArray[np.bool_]:
         """Which patches are long enough to be lines."""
@@ -158,6 +167,18 @@ class Sheet:
         i, j = np.nonzero(middle[inner])
         disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * disc_px + 1,) * 2)
         return i + rows[0], j + columns[0], _ink_about(ink, i + inner[0].start, j + inner[1].start, disc)
+
+
+def _are_solid(drawing: Drawing, patches: Patches) -> NDArray[np.bool_]:
+    """Which patches of ink are the rims of filled shapes."""
+    if drawing.shapes is None:
+        return np.zeros(patches.count, bool)
+    down, across = (
+        math.ceil(whole / part) for whole, part in zip(drawing.darkness.shape, drawing.shapes.shape, strict=True)
+    )
+    beside = drawing.shapes[patches.row // down, (patches.begin + patches.end) // 2 // across]
+    inked = np.bincount(patches.patch, beside * (patches.end - patches.begin), patches.count)
+    return np.asarray(inked > SOLID * patches.areas)
 
 
 @njit(cache=True)

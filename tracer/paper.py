@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from tracer.patches import strips
 
 WIDEST_STROKE_MM = 6.0  # broader dark areas count as paper that is dark
+SHAPE = 0.6  # of the ink's contrast: paper that is darker by so much is no shadow
 REDUCED_PITCH_MM = 0.34  # the paper is estimated on a picture reduced to this, by 4 at least
 
 Levels = NDArray[np.float32]
@@ -27,12 +28,13 @@ Grey = NDArray[np.uint8] | NDArray[np.float32]
 
 @dataclass(frozen=True, slots=True)
 class Paper:
-    """The level of the paper on a picture reduced by a whole number, how wide the picture is, and whether the strokes are darker than it."""
+    """The level of the paper on a picture reduced by a whole number to a pitch, how wide the picture is, and whether the strokes are darker than it."""
 
     reduced: Levels
     by: int
     columns: int
     is_light: bool
+    pitch_mm: float
 
     @classmethod
     def of(cls, grey: Grey, pitch_mm: float) -> Paper:
@@ -45,13 +47,25 @@ class Paper:
         is_light = float((relief**3).sum()) <= 0  # strokes take less room than paper: the few stand out further
         level = cv2.morphologyEx(small, cv2.MORPH_CLOSE if is_light else cv2.MORPH_OPEN, stroke)
         smooth = np.asarray(cv2.GaussianBlur(level, (0, 0), across / 2), np.float32)
-        return cls(smooth, by, grey.shape[1], is_light)
+        return cls(smooth, by, grey.shape[1], is_light, by * pitch_mm)
 
     def rows(self, top: int, bottom: int) -> Levels:
         """The paper of some rows of the picture."""
         first, last = max(0, top // self.by - 1), min(len(self.reduced), -(-bottom // self.by) + 1)
         large = cv2.resize(self.reduced[first:last], None, fx=self.by, fy=self.by, interpolation=cv2.INTER_LINEAR)
         return np.asarray(large[top - first * self.by : bottom - first * self.by, : self.columns], np.float32)
+
+    def shapes(self, contrast: float) -> NDArray[np.bool_]:
+        """Where the paper is as dark as ink of a contrast, or nearly, on the reduced picture: filled shapes that are broader than a stroke, and about them."""
+        away = self.reduced.max() - self.reduced if self.is_light else self.reduced - self.reduced.min()
+        grown = cv2.dilate((away > SHAPE * contrast).view(np.uint8), _disc(WIDEST_STROKE_MM / 2 / self.pitch_mm))
+        return np.asarray(grown, bool)
+
+
+def _disc(radius: float) -> NDArray[np.uint8]:
+    """A disc of a radius, pixels."""
+    across = 2 * round(radius) + 1
+    return np.asarray(cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (across, across)), np.uint8)
 
 
 def _reduced(grey: Grey, by: int) -> Levels:

@@ -204,7 +204,8 @@ def _line(
         if other_turns:
             raise
         run = asked_for(sheet.drawing, stance, start_mm, operator, settings, told)
-    return replace(Line.of(run, number, stance.reference_mm), ink_mm=length_mm)
+    line = Line.of(run, number, stance.reference_mm)
+    return replace(line, ink_mm=length_mm, is_solid=sheet.is_solid_at(stance.place_mm))
 
 
 def _several_lead(lines: list[Line]) -> LineFault:

@@ -54,3 +54,15 @@ def test_what_has_no_edge_is_refused_with_one_line(morfax: Morfax, here: Path) -
         answer = morfax("trace", sheet, "--edge", "-o", "none.csv")
         assert answer.exit_code == 3 and told in answer.fault
     assert set(here.iterdir()) == kept
+
+
+def test_a_filled_shape_without_edge_is_told(morfax: Morfax, here: Path) -> None:
+    radii = np.where(np.arange(10) % 2, 6.0, 14.0)
+    angles = np.arange(10) * np.pi / 5
+    star = filled(here / "star.png", 16.5 + radii[:, None] * np.column_stack([np.cos(angles), np.sin(angles)]))
+    followed = morfax("trace", star, "-o", "rim.csv")
+    assert followed.exit_code == 0 and "--edge follows its outline" in followed.err
+    assert "--edge" not in morfax("trace", star, "--edge", "-o", "edge.csv").err
+    assert "--edge" not in morfax("trace", SAMPLES / "bracket.png", "-o", "bracket.csv").err
+    refused = morfax("trace", filled(here / "disc.png", CIRCLE), "-o", "disc.csv")
+    assert refused.exit_code == 4 and "--edge" in refused.err

@@ -17,6 +17,7 @@ from motion.faults import DrawingFault
 from motion.motion import thin
 from tests.tracer.inked import DPI, SOFTNESS_MM, UM, Points, arc, polyline
 from tracer.drawing import MM_PER_INCH, Drawing
+from tracer.lines import Sheet
 from tracer.sequence import trace
 from tracer.tour import trace_lines
 
@@ -198,3 +199,13 @@ def test_a_blank_sheet_has_no_edge(tmp_path: Path) -> None:
     Image.fromarray(np.full((300, 300), 240, np.uint8)).save(file, dpi=(300, 300))
     with pytest.raises(DrawingFault, match="no filled shape on the drawing"):
         Drawing.open(file, edge=True)
+
+
+@pytest.mark.parametrize("light", [False, True])
+def test_without_edge_the_rim_of_a_filled_shape_is_known(tmp_path: Path, light: bool) -> None:
+    """A disc of 20 mm is broader than a stroke; paper that is half as dark as ink on one side is a shadow."""
+    disc = Sheet.of(Drawing.open(filled(tmp_path / "disc.png", CIRCLE, light=light)))
+    assert disc.are_solid[np.argmax(disc.lengths_mm)]
+    assert disc.is_solid_at(CIRCLE[0])
+    ring = filled(tmp_path / "ring.png", arc((16, 16), 12), holes=(arc((16, 16), 10),), shade=80, light=light)
+    assert not Sheet.of(Drawing.open(ring)).are_solid.any()
