@@ -205,7 +205,8 @@ class Follower:
             return survey(self.view, incoming, trail), True
         number = self._junctions.next(self.carriage.travel_mm)
         side = self._sides[number] if number < len(self._sides) else None
-        found = outgoing, _, choices = survey(self.view, incoming, trail, self._turns.count(number), side)
+        leads = number == 0 and self.stance.reference_mm is not None
+        found = outgoing, _, choices = survey(self.view, incoming, trail, self._turns.count(number), side, leads=leads)
         if choices > 1:
             place = self._place_of(incoming, found)
             self._junctions.come_to(place, self.carriage.travel_mm)

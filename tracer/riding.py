@@ -55,19 +55,20 @@ def ride_past(view: View, incoming: Leg) -> Ride | None:
 def to_vertex(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> tuple[Leg, Leg, Meeting]:
     """The legs of a corner felt on along their outer edges, which stay clean up to the vertex, and where they meet then.
 
-    A corner that is rounded is felt up to where its round begins; a leg that meets a line which passes here has no outer edge, nor
-    has a turn on whose outside another line leaves.
+    A corner that is rounded is felt up to where its round begins. A leg that meets a line which passes here has no outer edge, and that line's may be
+    spoiled by an end of the other's drawn beyond it; nor has a turn on whose outside another line leaves.
     """
     if hides_outside(view, incoming, outgoing, legs_mm):
         return incoming, outgoing, legs_mm
     deflection = turn(incoming.heading_at(legs_mm[0]), outgoing.heading_at(-legs_mm[1]))
     side = -math.copysign(1.0, deflection)
+    if _passes(view, outgoing.turned_round(), legs_mm[1], deflection) or _passes(
+        view, incoming, legs_mm[0], deflection
+    ):
+        return incoming, outgoing, legs_mm
     round_mm = rounding(view, incoming, outgoing, legs_mm)[1]
-    arriving, leaving = incoming, outgoing
-    if not _passes(view, outgoing.turned_round(), legs_mm[1], deflection):
-        arriving = _along_outside(view, incoming.seen[::-1], side, legs_mm[0] - round_mm, True) or incoming
-    if not _passes(view, incoming, legs_mm[0], deflection):
-        leaving = _along_outside(view, outgoing.seen, -side, legs_mm[1] - round_mm, False) or outgoing
+    arriving = _along_outside(view, incoming.seen[::-1], side, legs_mm[0] - round_mm, True) or incoming
+    leaving = _along_outside(view, outgoing.seen, -side, legs_mm[1] - round_mm, False) or outgoing
     met = meet(arriving, leaving)
     if met is None or min(met) < -0.5 * view.width_mm or max(met) > max(legs_mm) + view.width_mm:
         arriving, leaving, met = incoming, outgoing, legs_mm
@@ -81,7 +82,7 @@ def _passes(view: View, leg: Leg, vertex_mm: float, deflection: float) -> bool:
         return False
     (x, y), heading = leg.at(vertex_mm + clear_mm), leg.heading_at(vertex_mm + clear_mm)
     right, left = edges(view.cells, view.pitch_mm, x, y, heading, 2 * view.width_mm, view.level)
-    return abs(left - right - leg.width_mm) < 0.2 * leg.width_mm and abs(left + right) < 0.5 * leg.width_mm
+    return abs(left - right - leg.width_mm) < 0.2 * leg.width_mm and abs(left + right) < 0.8 * leg.width_mm
 
 
 def _within_ink(view: View, arriving: Leg, leaving: Leg, met: Meeting) -> Meeting:

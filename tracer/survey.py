@@ -37,6 +37,7 @@ SIDEWAYS_WIDTHS = (
     1.0,
     2.0,
 )  # ahead a line that turns back to a side is looked for: its ink runs along with the way in at first
+OVERRUN_MM, OVERRUN_WIDTHS = 1.5, 2.0  # a lead line may be drawn so far beyond the contour's edge
 FARTHEST_WIDTHS = 6.0  # how far the heading is held through a blot, in widths of the line
 
 
@@ -45,36 +46,45 @@ Side = Literal["left", "right"]
 SIDES: tuple[Side, Side] = ("left", "right")
 
 
-def survey(view: View, incoming: Leg, trail: Trail, rank: int = 0, side: Side | None = None) -> Way:
+def survey(
+    view: View, incoming: Leg, trail: Trail, rank: int = 0, side: Side | None = None, *, leads: bool = False
+) -> Way:
     """The outgoing leg (None if there is none), the distances (mm) beyond the incoming and before the outgoing clean end where they meet, and how many
     legs there were, counting 1 more where one was left out because it has been followed already.
 
     Looked for where the line stops being clean, and, unless it goes straight on from there, where the ink ahead ends: at the tip of a sharp corner.
-    `rank` 1 takes the second straightest leg, `side` the straightest that turns off to that side, if there is one.
+    `rank` 1 takes the second straightest leg, `side` the straightest that turns off to that side, if there is one. A line that `leads` ends at the line that
+    it comes to, though the pen ran on a little beyond that.
     """
     ink = reach_of_ink(view, incoming, 6 * view.width_mm + 2.0)
     half = 0.5 * view.width_mm
     near = half + view.step_mm
-    choose = partial(_chosen, incoming, rank, side)
-    found = _look(view, incoming, trail, incoming.at(near if ink is None else max(0.0, min(near, ink - half))), choose)
+    choose, look = partial(_chosen, incoming, rank, side), partial(_look, view, incoming, trail, leads)
+    found = look(incoming.at(near if ink is None else max(0.0, min(near, ink - half))), choose)
     for widths in SIDEWAYS_WIDTHS if side is not None else ():
-        aside = _look(view, incoming, trail, incoming.at(near + widths * view.width_mm), choose)
+        aside = look(incoming.at(near + widths * view.width_mm), choose)
         if aside[0] is not None and side is not None and _is_aside(incoming, aside[0], side):
             return aside
     if ink is not None and ink - half > near and not goes_straight(incoming, found[0]):
-        at_tip = _look(view, incoming, trail, incoming.at(ink - half), choose)
+        at_tip = look(incoming.at(ink - half), choose)
         found = found if at_tip[0] is None else (*at_tip[:2], max(found[2], at_tip[2]))
     return found
 
 
 def _look(
-    view: View, incoming: Leg, trail: Trail, centre: Array, choose: Callable[[list[Leg], list[Leg], View], Leg]
+    view: View,
+    incoming: Leg,
+    trail: Trail,
+    leads: bool,
+    centre: Array,
+    choose: Callable[[list[Leg], list[Leg], View], Leg],
 ) -> Way:
     """Look for legs about a centre, and again about the place where incoming and outgoing meet, until that is known."""
     way_in = np.vstack([trail.recent(), incoming.seen[:, :2]])
     outgoing, legs_mm, choices = None, None, 0
     for _ in range(3):
         every = legs_around(view, centre, way_in)
+        every = _without_overrun(view, incoming, every) if leads else every
         every = _without_marks(view, incoming, every)
         legs = [leg for leg in every if not trail.holds(leg, view.width_mm)]
         legs = _without_stubs(view, incoming, legs, every)
@@ -129,6 +139,15 @@ def _without_marks(view: View, incoming: Leg, legs: list[Leg]) -> list[Leg]:
         leg for leg, mm in zip(legs, reach, strict=True) if mm > longest_mm(view, across=_is_across(leg, legs, reach))
     ]
     return kept or legs
+
+
+def _without_overrun(view: View, incoming: Leg, legs: list[Leg]) -> list[Leg]:
+    """The legs but for one straight on that ends soon, if the others are a line that passes: the end of a lead line drawn beyond the contour."""
+    passing = [leg for leg in legs if not goes_straight(incoming, leg)]
+    if not any(abs(turn(a.heading_rad + math.pi, b.heading_rad)) < SQUARE for a, b in combinations(passing, 2)):
+        return legs
+    overrun_mm = max(OVERRUN_MM, OVERRUN_WIDTHS * view.width_mm)
+    return [leg for leg in legs if any(leg is u for u in passing) or _reach_mm(view, incoming, leg) > overrun_mm]
 
 
 def _without_stubs(view: View, incoming: Leg, legs: list[Leg], every: list[Leg]) -> list[Leg]:
