@@ -45,6 +45,23 @@ def test_a_cross_with_the_lead_line_from_its_middle_at_any_angle_to_its_arms(tur
     stands_at(lead_line(polyline(AT, JOIN), *cross(AT, 4.0, turn_deg), width_mm=width_mm), AT)
 
 
+@pytest.mark.parametrize("width_mm", [0.3, 0.5, 0.8])
+@pytest.mark.parametrize("slant_deg", [-12.0, 0.0, 12.0])
+@pytest.mark.parametrize("beyond_mm", [0.4, 0.8, 1.2])
+def test_a_lead_line_drawn_a_little_beyond_the_contour_ends_at_it(
+    beyond_mm: float, slant_deg: float, width_mm: float
+) -> None:
+    """The axis goes no further into the part than the contour; the tick on the lead line stays the only mark."""
+    a = math.radians(slant_deg)
+    way, join = np.array([math.cos(a), math.sin(a)]), np.array(JOIN)
+    lead = np.array([join - 18 * way, join + beyond_mm * way])
+    place = (float(lead[0][0]), float(lead[0][1]))
+    mark = join - 8 * way
+    line = lead_line(lead, *cross(place, 4.0), tick((float(mark[0]), float(mark[1])), slant_deg), width_mm=width_mm)
+    assert line.is_lead and line.loop_from is not None and len(line.marks) == 1
+    assert np.hypot(*(line.xy_mm - (36, 14)).T).min() > 9 - WITHIN_MM
+
+
 def test_a_speck_of_paper_on_an_arm_and_one_of_ink_in_a_ring_are_no_matter() -> None:
     speck = np.array([[7.8, 13.8], [7.9, 13.8], [7.9, 13.9]])
     drawing = inked(CIRCLE, polyline((9, 14), JOIN), arc(AT, 2), seed=3, specks=[speck])
