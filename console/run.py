@@ -13,7 +13,8 @@ from console.desk import Desk, desk_options
 from console.panel import head_options
 from console.playing import Controls, Played
 from console.sheet import Sheet, sheet_options
-from console.tracing import Head, Traced
+from console.traced import Traced
+from console.tracing import Head
 from console.unit import Unit, unit_options
 from motion.faults import FileFault
 from motion.files import written_beside

@@ -30,7 +30,8 @@ from motion.motion import IN_WORK_BELOW_MM, Path
 
 if TYPE_CHECKING:
     from console.sheet import Sheet
-    from console.tracing import Head, Traced
+    from console.traced import Traced
+    from console.tracing import Head
     from player.chart import Chart
     from tracer.drawing import Drawing
 

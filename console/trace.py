@@ -12,7 +12,8 @@ from console import medium
 from console.desk import Desk, desk_options
 from console.panel import head_options
 from console.sheet import Sheet, sheet_options
-from console.tracing import Head, Traced
+from console.traced import Traced
+from console.tracing import Head
 from console.unit import Unit, unit_options
 
 if TYPE_CHECKING:
