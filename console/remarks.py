@@ -91,6 +91,10 @@ def _of_turns(trace: Trace) -> Iterator[str]:
     beyond = [f"{k} ({side})" for k, side in enumerate(turns, 1) if side is not None and k > most]
     if beyond:
         yield f"there is no junction {', '.join(beyond)} to turn at: the head came to {most}, see their places in the figures; the rest is followed"
+    for line in trace.lines:
+        for k, (side, (x, y)) in enumerate(zip(turns, line.junctions_mm, strict=False), 1):
+            if side is not None and not line.turns_at((x, y), side):
+                yield f"no line leads off to the {side} at junction {k} of {_named(line, trace)}, {x:.1f},{y:.1f} mm: the head went on"
 
 
 def _of_reference(trace: Trace, marks: Marks) -> Iterator[str]:

@@ -11,21 +11,26 @@ Source: patent ES 361967, section on use: reference point, lead line, guide line
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from motion.faults import LineFault
+from motion.polyline import lengths_mm
 from tracer.breaks import Break, breaks
 from tracer.follower import Followed
 from tracer.junctions import Guide
+from tracer.leg import turn
 from tracer.marks import Mark, marks_along
+from tracer.survey import TURNS_OFF, Side
 from tracer.view import Array
 
 THINNED = 30  # of the positions one in so many tells where a line is: every 50 um at 10 mm/s
 HEADING = 300  # positions that tell the heading at an end: half a mm at 10 mm/s
 NEARLY_MM = 5.0  # a line that ends so near to its beginning may be a closed one
 AT_JUNCTION = 1.5  # widths: as near to a junction a line is come to it
+TURN_MM = 1.5  # to both sides of a junction, that tell whether the way turns there
 REFERENCE_MM = 3.0  # a stroke nearer to a reference point is one of its own
 
 
@@ -144,6 +149,20 @@ class Line:
     def end_mm(self) -> tuple[float, float]:
         """Where its program ends, mm."""
         return self.begin_mm if self.goes_back else self.place(len(self.xy_mm) - 1)
+
+    def turns_at(self, place_mm: tuple[float, float], side: Side) -> bool:
+        """Whether the way turns to a side at a junction, to go on there or along a guide line and back."""
+        away = np.hypot(*(self.xy_mm - place_mm).T)
+        near = np.flatnonzero(away < AT_JUNCTION * self.width_mm)
+        come_mm = lengths_mm(self.xy_mm)
+        for visit in np.split(near, np.flatnonzero(np.diff(near) > 1) + 1) if len(near) else ():
+            i = visit[np.argmin(away[visit])]
+            before, after = np.searchsorted(come_mm, come_mm[i] + np.array([-TURN_MM, TURN_MM]))
+            there, on = self.xy_mm[i] - self.xy_mm[before], self.xy_mm[min(after, len(come_mm) - 1)] - self.xy_mm[i]
+            turned = turn(math.atan2(there[1], there[0]), math.atan2(on[1], on[0]))
+            if abs(turned) > TURNS_OFF and (turned > 0) == (side == "left"):
+                return True
+        return False
 
     def without_guides(self, first: int, last: int) -> list[Array]:
         """Stretches (n, 2) mm from one position to another, between the guide lines that are left for on the way."""

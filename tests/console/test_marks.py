@@ -78,6 +78,17 @@ def test_a_turn_at_a_junction_that_is_not_there_is_told_of(morfax: Morfax, here:
     assert f"there is no junction 4 (left), 6 (right) to turn at: the head came to {junctions}" in answer.err
 
 
+@pytest.mark.parametrize("round_about", ["left", "right"])
+def test_a_turn_to_a_side_to_which_no_line_leads_is_told_of(morfax: Morfax, here: Path, round_about: str) -> None:
+    """The guide line leads off inward: to the right of the way round clockwise, for which the head turns left from the lead line."""
+    inward = "left" if round_about == "right" else "right"
+    Path("in.toml").write_text(f'turns = ["{round_about}", "{inward}"]\n')
+    assert "no line leads off" not in morfax("trace", PROGRAM, "-o", "in.csv", "--card", "in.toml").err
+    Path("out.toml").write_text(f'turns = ["{round_about}", "{round_about}"]\n')
+    answer = morfax("trace", PROGRAM, "-o", "out.csv", "--card", "out.toml")
+    assert answer.exit_code == 0 and f"no line leads off to the {round_about} at junction 2 of the line" in answer.err
+
+
 @pytest.mark.parametrize("stops", ["0", "-1", "two", "1,", "1.5"])
 def test_stops_are_numbered_from_1(morfax: Morfax, here: Path, stops: str) -> None:
     answer = morfax("trace", PROGRAM, "-o", "program.csv", f"--override={stops}")
