@@ -33,6 +33,10 @@ SAMPLES = 1 << 20  # pixels that tell the inks
 LEAST = 40.0  # levels from the paper's colour: less is paper
 NEAR = math.radians(18)  # inks whose colours lie in directions as near as this are one
 LIKE = math.radians(35)  # the ink asked for is the nearest within this
+HUE, NO_HUE = (
+    math.radians(10),
+    math.radians(4),
+)  # from grey's direction: further a colour has a hue, nearer it is black or pencil
 LEAST_SHARE = 0.01  # of all the ink on the sheet
 FRINGE_PX = 8  # about a line JPEG makes other colours
 EVEN = 6.0  # levels: paper that differs by less is left as it is
@@ -62,7 +66,7 @@ def covered(picture: Picture, wanted: Colour, pitch_mm: float | None = None) -> 
         _level(picture, pitch_mm)
     paper, inks = _found(picture)
     way = paper - np.array(wanted, float)
-    angles = [_angle(way, paper - ink) for ink in inks] if np.hypot.reduce(way) > LEAST else []
+    angles = [_unlike(way, paper - ink) for ink in inks] if np.hypot.reduce(way) > LEAST else []
     if not angles or min(angles) > LIKE:
         found = ", ".join(_named(ink) for ink in inks) or "none"
         raise DrawingFault(
@@ -144,6 +148,13 @@ def _densest(units: Array, weights: Array) -> Array:
 def _angle(a: Array, b: Array) -> float:
     """Angle between two directions, rad."""
     return math.acos(min(1.0, float(a @ b) / float(np.hypot.reduce(a) * np.hypot.reduce(b))))
+
+
+def _unlike(wanted: Array, found: Array) -> float:
+    """Angle between the directions of a colour that is asked for and of an ink, rad; a right angle if the one has a hue and the other is black or pencil."""
+    grey = np.ones(3)
+    has_hue, is_grey = _angle(wanted, grey) > HUE, _angle(found, grey) < NO_HUE
+    return math.pi / 2 if has_hue and is_grey else _angle(wanted, found)
 
 
 def _named(colour: Array) -> str:

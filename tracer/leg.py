@@ -26,6 +26,7 @@ SPOKE = np.linspace(0.2, 1.0, 17)
 BESIDE = np.array([0.0, -0.25, 0.25])  # widths
 PAPER = 0.6  # of the level: lighter is paper for certain
 SPECK_PX = 4.0  # a speck of two pixels of paper, seen through an aperture
+BITTEN = 0.06  # of the width: more than a scan's noise
 SPECK_WIDTHS = 0.4  # ink narrower than this is no stroke
 
 
@@ -139,7 +140,10 @@ def _parabola(x, y, weights, degree):  # type: ignore[no-untyped-def]
 
 
 def centre_at(seen: Array, i: int, half_mm: float) -> Leg:
-    """The line about station i of what was felt: the parabola through the stations within `half_mm`, weighted towards the middle."""
+    """The line about station i of what was felt: the parabola through the stations within `half_mm`, weighted towards the middle.
+
+    A station whose width differs is spoiled by a speck on one edge: it counts the less.
+    """
     d = seen[:, :2] - seen[i, :2]
     near = np.flatnonzero(np.hypot(*d.T) < half_mm)
     chord = d[near[-1]] - d[near[0]]
@@ -147,9 +151,9 @@ def centre_at(seen: Array, i: int, half_mm: float) -> Leg:
     t = np.array([math.cos(heading), math.sin(heading)])
     n = np.array([-t[1], t[0]])
     x, y = d[near] @ t, d[near] @ n
-    off = seen[near, 2] - np.median(seen[near, 2])
-    spread = max(3 * 1.4826 * float(np.median(np.abs(off))), 1e-3)
-    weights = np.maximum(1 - (x / half_mm) ** 2, 0.05) / (1 + (off / spread) ** 4)
+    off = np.abs(seen[near, 2] / np.median(seen[near, 2]) - 1)
+    usual = max(3 * 1.4826 * float(np.median(off)), BITTEN)
+    weights = np.maximum(1 - (x / half_mm) ** 2, 0.05) / (1 + (off / usual) ** 4)
     offset, slope, bend = _parabola(x, y, weights, 2)[0]
     return Leg(
         seen[i, :2] + offset * n,

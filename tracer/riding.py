@@ -65,7 +65,7 @@ def to_vertex(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> tup
     if _passes(view, outgoing.turned_round(), legs_mm[1], deflection) or _passes(
         view, incoming, legs_mm[0], deflection
     ):
-        return incoming, outgoing, legs_mm
+        return incoming, outgoing, _within_ink(view, incoming, outgoing, legs_mm)
     round_mm = rounding(view, incoming, outgoing, legs_mm)[1]
     arriving = _along_outside(view, incoming.seen[::-1], side, legs_mm[0] - round_mm, True) or incoming
     leaving = _along_outside(view, outgoing.seen, -side, legs_mm[1] - round_mm, False) or outgoing

@@ -125,6 +125,15 @@ def test_a_colour_that_is_nowhere_is_refused_with_those_that_are(tmp_path: Path)
         Drawing.open(drawn(tmp_path / "grid.png", ORANGE), ink="lime")
 
 
+@pytest.mark.parametrize("asked", ["green", "navy", "#0000c0"])
+@pytest.mark.parametrize("ink", [(0, 0, 0), (0x50, 0x50, 0x54), (0x90, 0x8C, 0x8C)])
+def test_black_and_pencil_are_no_ink_of_a_dark_colour(tmp_path: Path, asked: str, ink: tuple[int, int, int]) -> None:
+    """Dark green is 16 degrees from black in the direction from the paper."""
+    with pytest.raises(DrawingFault, match="there is no ink of the colour"):
+        Drawing.open(drawn(tmp_path / "grid.png", ORANGE, ink), ink=asked)
+    assert rms_mm(drawn(tmp_path / "dark.png", ORANGE, (0x10, 0x40, 0x18)), "green") < 0.005
+
+
 @pytest.mark.parametrize("text", ["blue", "#00f", "#0000ff", " BLUE "])
 def test_a_colour_is_a_name_or_a_number(text: str) -> None:
     assert parsed(text) == (0, 0, 255)
