@@ -50,9 +50,8 @@ class Nearest:
     def __init__(self, lines_mm: Sequence[Array], radius_mm: float) -> None:
         from scipy.spatial import cKDTree
 
-        share_mm = (
-            0.5 * WITHIN_MM
-        )  # of the places that are left out; as much is the sagitta between those that stand for the line
+        # half is for the places that are left out, and half for the sagitta between those that stand for the line
+        share_mm = 0.5 * WITHIN_MM
         apart_mm = math.sqrt(8 * radius_mm * share_mm)
         self._tree = cKDTree(np.vstack([with_places(plain(line, share_mm), apart_mm) for line in lines_mm]))
 
@@ -80,9 +79,8 @@ def crossings_of(points: Array, pieces: Ints) -> Array:
     if not len(pieces):
         return np.empty((0, 2))
     longest_mm = float(np.hypot(*(points[pieces + 1] - points[pieces]).T).max())
-    cells = np.floor(points[pieces] / max(CELL_MM, 2 * longest_mm)).astype(
-        np.int64
-    )  # two that cross begin within a cell
+    cell_mm = max(CELL_MM, 2 * longest_mm)  # two that cross begin within a cell of each other
+    cells = np.floor(points[pieces] / cell_mm).astype(np.int64)
     cells -= cells.min(axis=0) - 1
     wide = int(cells[:, 1].max()) + 2
     keys = cells[:, 0] * wide + cells[:, 1]

@@ -25,6 +25,7 @@ from tracer.view import Array, View
 
 SPACING_MM = 0.02
 FELT_LEGS = 0.3  # of a leg's length, to both sides: what a place on a felt line is averaged over
+HIDDEN = 8  # stations at a corner between those that its legs are felt by
 SLIGHT = math.radians(40)  # a turn up to this goes straight on at a junction
 HIDES = 0.7  # of the width: a pen that turned on the vertex inks half of it on the outside
 SHARP = 0.08  # of the line's width: a corner whose ink misses less than this on the outside is sharp
@@ -134,9 +135,9 @@ def rounding(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> tupl
 
 
 def is_sharp(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> bool:
-    """Whether the ink of an obtuse corner is that of a sharp one: it misses less than a third of what an arc over eight stations would."""
+    """Whether the ink of an obtuse corner is that of a sharp one: it misses less than a third of what an arc over the hidden stations would."""
     turned = deflection(incoming, outgoing, legs_mm)
-    return missing_ink_mm(view, incoming, outgoing, legs_mm) <= 8 * view.step_mm * math.tan(turned / 4) / 3
+    return missing_ink_mm(view, incoming, outgoing, legs_mm) <= HIDDEN * view.step_mm * math.tan(turned / 4) / 3
 
 
 def missing_ink_mm(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> float:

@@ -217,7 +217,7 @@ def _left(cuts: Sequence[Cut], guides: Sequence[Guide], ways: Sequence[Way], rad
         places = with_places(plain(cut.places_mm, WITHIN_MM), EVERY_MM)
         left_mm = near.distances_mm(places) - radius_mm
         if left_mm.min() > LEFT_MM:
-            stops = tuple(stop.number or 0 for stop in cut.stops)
+            stops = tuple(stop.number for stop in cut.stops if stop.number is not None)
             left.lines.append(LeftOut(cut.line.number, cut.length_mm, stops, edges.room(guides, k)))
         else:
             left.stretches.extend(_stretches(cut, places, left_mm))

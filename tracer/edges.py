@@ -20,9 +20,9 @@ from numpy.typing import NDArray
 from motion.offset import Guide
 from motion.polyline import Nearest, crossings_of, lengths_mm, with_places
 from tracer import contours
+from tracer.line import THINNED
 from tracer.view import Array
 
-THINNED = 30  # of the positions one in so many tells where a line is
 LOOP_MM = 1.0  # a shorter loop is the head's swivel, and not drawn
 CELLS = 500  # of the grid, along the longer side of what is looked at
 FINER = 10  # times, again and again about the best cell

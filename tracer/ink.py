@@ -33,10 +33,8 @@ SAMPLES = 1 << 20  # pixels that tell the inks
 LEAST = 40.0  # levels from the paper's colour: less is paper
 NEAR = math.radians(18)  # inks whose colours lie in directions as near as this are one
 LIKE = math.radians(35)  # the ink asked for is the nearest within this
-HUE, NO_HUE = (
-    math.radians(10),
-    math.radians(4),
-)  # from grey's direction: further a colour has a hue, nearer it is black or pencil
+# from grey's direction: further a colour has a hue, nearer it is black or pencil
+HUE, NO_HUE = math.radians(10), math.radians(4)
 LEAST_SHARE = 0.01  # of all the ink on the sheet
 FRINGE_PX = 8  # about a line JPEG makes other colours
 EVEN = 6.0  # levels: paper that differs by less is left as it is

@@ -42,7 +42,7 @@ class Paper:
         by = max(4, round(REDUCED_PITCH_MM / pitch_mm))
         small = _reduced(grey, by)
         across = 2 * (max(24, round(WIDEST_STROKE_MM / pitch_mm)) // (2 * by)) + 1
-        stroke = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (across, across))
+        stroke = _disc(across // 2)
         relief = small - cv2.blur(small, (across, across))
         is_light = float((relief**3).sum()) <= 0  # strokes take less room than paper: the few stand out further
         level = cv2.morphologyEx(small, cv2.MORPH_CLOSE if is_light else cv2.MORPH_OPEN, stroke)
@@ -58,13 +58,13 @@ class Paper:
     def shapes(self, contrast: float) -> NDArray[np.bool_]:
         """Where the paper is as dark as ink of a contrast, or nearly, on the reduced picture: filled shapes that are broader than a stroke, and about them."""
         away = self.reduced.max() - self.reduced if self.is_light else self.reduced - self.reduced.min()
-        grown = cv2.dilate((away > SHAPE * contrast).view(np.uint8), _disc(WIDEST_STROKE_MM / 2 / self.pitch_mm))
+        grown = cv2.dilate((away > SHAPE * contrast).view(np.uint8), _disc(round(WIDEST_STROKE_MM / 2 / self.pitch_mm)))
         return np.asarray(grown, bool)
 
 
-def _disc(radius: float) -> NDArray[np.uint8]:
-    """A disc of a radius, pixels."""
-    across = 2 * round(radius) + 1
+def _disc(radius_px: int) -> NDArray[np.uint8]:
+    """A disc of a radius."""
+    across = 2 * radius_px + 1
     return np.asarray(cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (across, across)), np.uint8)
 
 

@@ -29,6 +29,8 @@ from tracer.drawing import Drawing
 
 TWO_PI = 2.0 * math.pi
 SPECK_PX, SPECK_MM = 2.2, 0.25  # no wider is a speck: one pixel seen through the aperture
+REACH, REACH_PX = 0.8, 3.0  # widths and pixels from where a line is expected, within which its edges are
+CLEAN = 0.2  # of the width, by which a clean line's may differ
 FOLLOWS_PER_MM = 0.2  # a line that is felt may swell: its width follows what was felt, by so much of the difference
 Cells = NDArray[np.float32]
 
@@ -165,7 +167,7 @@ def scout(cells, pitch_mm, start, heading, step_mm, stations, width_mm, level): 
     over if the line is clean for longer behind them; else the clean line ends before them.
     """
     seen = np.empty((stations, 3))
-    reach = 0.8 * width_mm + 3.0 * pitch_mm
+    reach = REACH * width_mm + REACH_PX * pitch_mm
     passed_over = int(max(0.16, 2.5 * pitch_mm) / step_mm)
     x, y = start[0], start[1]
     count = spoilt = 0
@@ -173,7 +175,7 @@ def scout(cells, pitch_mm, start, heading, step_mm, stations, width_mm, level): 
     for _ in range(stations):
         right, left = edges(cells, pitch_mm, x, y, heading, reach, level)
         width, aside = left - right, 0.5 * (left + right)
-        slack = 0.2 * width_mm + 0.5 * pitch_mm
+        slack = CLEAN * width_mm + 0.5 * pitch_mm
         if abs(width - width_mm) < slack and (count == 0 or abs(aside) < width_mm / 6 + 0.4 * pitch_mm):
             seen[count, 0], seen[count, 1] = x - aside * math.sin(heading), y + aside * math.cos(heading)
             seen[count, 2] = width

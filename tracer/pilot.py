@@ -29,7 +29,6 @@ SMOOTH = math.radians(14)  # a smaller change of heading is no corner
 LEAST_GAP_PX = 2.5  # a scan can lose this much of a line
 FAINTER = 0.5  # a line that becomes lighter at once goes on with so much of its darkness
 AS_FELT = 0.65  # pixels that single stations are off
-HIDDEN = 8  # stations at a corner between those that its legs are felt by
 SPECK_PX = 4.5  # between stations of a line that is clean but for a speck
 TIGHT_LEGS = 0.75  # of a leg's length: a round of a smaller radius is averaged away by feeling
 LEG_STATIONS = 12  # make a leg beside a round
@@ -135,14 +134,15 @@ class Pilot:
 
     def _is_round(self, incoming: Leg, outgoing: Leg, legs_mm: Meeting | None) -> bool:
         """Whether the legs, or the ink where they meet, show a round and no corner."""
-        if legs_mm is None or self._bend_on(incoming, outgoing, legs_mm):
-            return legs_mm is not None
-        return course.rounding(self.view, incoming, outgoing, legs_mm)[1] > 0
+        if legs_mm is None:
+            return False
+        touch_mm = course.rounding(self.view, incoming, outgoing, legs_mm)[1]
+        return touch_mm > 0 or self._bend_on(incoming, outgoing, legs_mm)
 
     def _bend_on(self, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> bool:
         """Whether two legs meet at no greater angle than one of them makes by bending on over the stations between them."""
         bends = max(abs(incoming.bend_per_mm), abs(outgoing.bend_per_mm))
-        return course.deflection(incoming, outgoing, legs_mm) < SMOOTH + bends * HIDDEN * self.view.step_mm
+        return course.deflection(incoming, outgoing, legs_mm) < SMOOTH + bends * course.HIDDEN * self.view.step_mm
 
     def round_corner(self, seen: Array, here: int) -> Planned | None:
         """The way round a corner that the line was felt clean round, as it is obtuse or a tight round; None if there is none, or if its ink shows neither."""

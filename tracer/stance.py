@@ -18,6 +18,7 @@ import numpy as np
 
 from motion.faults import LineFault
 from tracer import photocell
+from tracer.course import FELT_LEGS
 from tracer.drawing import Drawing
 from tracer.leg import Leg, centre_at, end_of, leg_of, reach_of_ink, stroke_end, strokes_on, turn
 from tracer.lines import Sheet, Stroke
@@ -251,7 +252,7 @@ def _both_ways(view: View, place: Array, heading: float) -> tuple[Leg, float] | 
     both = np.vstack([behind[shorter - 1 : 0 : -1], ahead[:shorter]])
     middle = centre_at(both, shorter - 1, 0.6 * view.leg_mm)
     if abs(middle.bend_per_mm) * view.leg_mm > BENT:
-        middle = centre_at(both, shorter - 1, 0.3 * view.leg_mm)
+        middle = centre_at(both, shorter - 1, FELT_LEGS * view.leg_mm)
     return middle, round((shorter - 1) * view.step_mm, 1)
 
 

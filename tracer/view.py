@@ -14,6 +14,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from motion.polyline import lengths_mm
 from tracer import photocell
 from tracer.photocell import Cells
 
@@ -56,15 +57,16 @@ class View:
 
     def feel_along(self, way: Array) -> Array:
         """Centres and widths (n, 3) of the line across a way (n, 2) mm, a station's distance apart, wherever it is clean."""
-        lengths_mm = np.r_[0.0, np.cumsum(np.hypot(*np.diff(way, axis=0).T))]
-        every = way[np.searchsorted(lengths_mm, np.arange(0.0, lengths_mm[-1], self.step_mm))]
-        seen = []
+        if len(way) < 3:
+            return np.empty((0, 3))
+        come_mm = lengths_mm(way)
+        every = way[np.searchsorted(come_mm, np.arange(0.0, come_mm[-1], self.step_mm))]
+        reach, seen = photocell.REACH * self.width_mm + photocell.REACH_PX * self.pitch_mm, list[tuple[float, ...]]()
         for place, before, after in zip(every[1:-1], every[:-2], every[2:], strict=True):
             heading = math.atan2(*(after - before)[::-1])
-            reach = 0.8 * self.width_mm + 3.0 * self.pitch_mm
             right, left = photocell.edges(self.cells, self.pitch_mm, place[0], place[1], heading, reach, self.level)
             aside = 0.5 * (left + right)
-            if abs(left - right - self.width_mm) < 0.2 * self.width_mm:
+            if abs(left - right - self.width_mm) < photocell.CLEAN * self.width_mm:
                 seen.append((place[0] - aside * math.sin(heading), place[1] + aside * math.cos(heading), left - right))
         return np.array(seen).reshape(-1, 3)
 
