@@ -11,10 +11,10 @@ from collections.abc import Callable
 
 import numpy as np
 
-from player.interpolator import Interpolator
-from player.motor import Motors
-from player.stepping import decode, pulses_of, tick_table
-from recorder.stepfile import Program, StepFormat
+from morfax.player.cubics.interpolator import Interpolator
+from morfax.player.steps.motor import Motors
+from morfax.player.steps.stepping import decode, pulses_of, tick_table
+from morfax.recorder.steps.file import Program, StepFormat
 
 ROUNDS = 5
 STEP_ROWS = 160 * 600  # ten minutes

@@ -18,13 +18,13 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from motion.contour import distance, distances_mm, pointwise
-from motion.faults import Fault
-from motion.units import parse_length_mm
-from tracer.drawing import MM_PER_INCH, Drawing
-from tracer.line import Line
-from tracer.program import ENDINGS
-from tracer.tour import trace_lines
+from morfax.motion.contour import distance, distances_mm, pointwise
+from morfax.motion.faults import Fault
+from morfax.motion.units import parse_length_mm
+from morfax.tracer.drawing.drawing import MM_PER_INCH, Drawing
+from morfax.tracer.following.line import Line
+from morfax.tracer.program.program import ENDINGS
+from morfax.tracer.program.trace_lines import trace_lines
 
 Points = NDArray[np.float64]
 

@@ -14,14 +14,14 @@ import time
 import numpy as np
 
 from benchmarks.rows import Row, best_s, tell
-from motion.motion import MOTION_RATE_HZ
-from motion.ramp import positions_mm
-from player.feed_control import feed_number
-from player.monitor import FollowingLimit, Monitor
-from player.position_servo import PositionServos
-from player.pulse_servo import PulseServos
-from player.residues import COUNTER_CLOCKWISE, Feed, Interpolator
-from player.rs274 import parse_rs274
+from morfax.motion.motion import MOTION_RATE_HZ
+from morfax.motion.ramp import positions_mm
+from morfax.player.gcode.feed_control import feed_number
+from morfax.player.monitor.monitor import FollowingLimit, Monitor
+from morfax.player.monitor.position_servo import PositionServos
+from morfax.player.gcode.pulse_servo import PulseServos
+from morfax.player.gcode.residues import COUNTER_CLOCKWISE, Feed, Interpolator
+from morfax.player.gcode.rs274 import parse_rs274
 
 RECIRCULATIONS_HZ = 8 * MOTION_RATE_HZ
 PROGRAM_LINES = 100_000

@@ -17,10 +17,10 @@ import soundfile
 from numpy.typing import NDArray
 
 from benchmarks.rows import Row, best_s, tell
-from motion.motion import MOTION_RATE_HZ, Motion
-from player.discriminator import Discriminator, discriminate
-from player.machine import play
-from recorder.tape import Tape, TapeFormat, record
+from morfax.motion.motion import MOTION_RATE_HZ, Motion
+from morfax.player.tape.discriminator import Discriminator, discriminate
+from morfax.player.tape.playback import play
+from morfax.recorder.tape.tape import Tape, TapeFormat, record
 
 MINUTE_S = 60.0
 BLOCK_FRAMES = 65536

@@ -26,15 +26,15 @@ from skimage.measure import find_contours, label
 from skimage.morphology import skeletonize
 
 from benchmarks.rows import Row, best_s, tell
-from motion.contour import distances_mm
-from motion.motion import thin
-from motion.pathfile import read_path
-from motion.polyline import lengths_mm
-from player.machine import play
-from recorder.tape import TapeFormat, record
-from tracer.drawing import MM_PER_INCH, Drawing
-from tracer.program import Trace
-from tracer.sequence import trace
+from morfax.motion.contour import distances_mm
+from morfax.motion.motion import thin
+from morfax.motion.pathfile import read_path
+from morfax.motion.polyline import lengths_mm
+from morfax.player.tape.playback import play
+from morfax.recorder.tape.tape import TapeFormat, record
+from morfax.tracer.drawing.drawing import MM_PER_INCH, Drawing
+from morfax.tracer.program.program import Trace
+from morfax.tracer.program.trace import trace
 
 Points = NDArray[np.float64]
 

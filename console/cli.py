@@ -18,8 +18,8 @@ from contextlib import contextmanager
 
 import click
 
-from console import kernels
-from motion.faults import DrawingFault, Fault, FileFault
+from morfax.console.terminal import kernels
+from morfax.motion.faults import DrawingFault, Fault, FileFault
 
 VERBS = {
     "trace": "Follow the line of a drawing and record the head's motion on a tape.",
@@ -70,7 +70,7 @@ class Verbs(click.Group):
         """Import a verb; None if there is no such verb."""
         if cmd_name not in VERBS:
             return None
-        command = importlib.import_module(f"console.{cmd_name}").command
+        command = importlib.import_module(f"morfax.console.{cmd_name}").command
         assert isinstance(command, click.Command)
         return command
 

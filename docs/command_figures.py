@@ -9,7 +9,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from console.cli import main as morfax
+from morfax.console.cli import main as morfax
 
 SAMPLES = Path(__file__).parents[1] / "samples"
 PROGRAM = ("trace", str(SAMPLES / "program.png"), "--card", str(SAMPLES / "program.toml"))

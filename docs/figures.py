@@ -22,12 +22,16 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from motion.motion import MOTION_RATE_HZ
+from morfax.motion.motion import MOTION_RATE_HZ
 from samples import draw
-from tracer import follower, head, photocell, pilot, tangles
-from tracer.drawing import Drawing, levelled
-from tracer.settings import Settings
-from tracer.stance import put_down
+from morfax.tracer.following import follower
+from morfax.tracer.head import kernel as head
+from morfax.tracer.sensing import photocell
+from morfax.tracer.junctions import planner as pilot
+from morfax.tracer.tangles import memory as tangles
+from morfax.tracer.drawing.drawing import Drawing, levelled
+from morfax.tracer.head.settings import Settings
+from morfax.tracer.following.start import put_down
 
 Array = NDArray[np.float64]
 

@@ -15,14 +15,14 @@ import matplotlib.pyplot as plt
 import numpy as np
 from numpy.typing import NDArray
 
-from motion.drive import Condition
-from motion.motion import MOTION_RATE_HZ
-from motion.ramp import Ramp, positions_mm
-from player.chart import Chart
-from player.feed_control import feed_number
-from player.monitor import FollowingLimit, Monitor
-from player.position_servo import PositionServos
-from player.residues import Feed, Interpolator
+from morfax.motion.drive import Condition
+from morfax.motion.motion import MOTION_RATE_HZ
+from morfax.motion.ramp import Ramp, positions_mm
+from morfax.player.monitor.chart import Chart
+from morfax.player.gcode.feed_control import feed_number
+from morfax.player.monitor.monitor import FollowingLimit, Monitor
+from morfax.player.monitor.position_servo import PositionServos
+from morfax.player.gcode.residues import Feed, Interpolator
 
 Array = NDArray[np.float64]
 

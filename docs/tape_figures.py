@@ -15,9 +15,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 from numpy.typing import NDArray
 
-from motion.motion import MOTION_RATE_HZ
-from recorder.carrier import Carrier, PickUp
-from recorder.pickups import PICK_UPS, Sensor
+from morfax.motion.motion import MOTION_RATE_HZ
+from morfax.recorder.tape.carrier import Carrier, PickUp
+from morfax.recorder.tape.pickups import PICK_UPS, Sensor
 
 Array = NDArray[np.float64]
 

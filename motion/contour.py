@@ -20,8 +20,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from motion.faults import MotionFault
-from motion.motion import IN_WORK_BELOW_MM, Motion, Path
+from morfax.motion.faults import MotionFault
+from morfax.motion.motion import IN_WORK_BELOW_MM, Motion, Path
 
 SAMPLE_MM = 0.01
 LARGEST_SAMPLES = 1_000_000  # beyond 10 m of path the samples stand further apart: memory stays below 200 MB

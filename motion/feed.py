@@ -18,7 +18,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from motion.motion import MOTION_RATE_HZ
+from morfax.motion.motion import MOTION_RATE_HZ
 
 SHARP = math.radians(10)
 ALONG, ACROSS = (

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from motion.faults import FileFault
+from morfax.motion.faults import FileFault
 
 _DISK_FULL = {
     errno.ENOSPC: "the disk is full",

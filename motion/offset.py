@@ -28,7 +28,7 @@ from itertools import pairwise
 import numpy as np
 from numba import njit
 
-from motion.polyline import APART_MM, UM, Array, Nearest, crossings_of, plain, with_places
+from morfax.motion.polyline import APART_MM, UM, Array, Nearest, crossings_of, plain, with_places
 
 PLAIN = 0.05 * UM  # a line is known by places between which it is straight within this
 NEARER = 0.2 * UM  # than the radius: taken out

@@ -35,9 +35,9 @@ from typing import TextIO
 import numpy as np
 from numpy.typing import NDArray
 
-from motion.faults import FileFault, MotionFault
-from motion.files import written_beside
-from motion.motion import AXES, FURTHER_AXES, IN_WORK_BELOW_MM, Path
+from morfax.motion.faults import FileFault, MotionFault
+from morfax.motion.files import written_beside
+from morfax.motion.motion import AXES, FURTHER_AXES, IN_WORK_BELOW_MM, Path
 
 CLEARANCE_MM = 2.0  # where the tool stands when it is up, docs/design.md
 FEED_MM_S = 10.0

@@ -22,7 +22,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from motion.motion import Motion, Path
+from morfax.motion.motion import Motion, Path
 
 Array = NDArray[np.float64]
 _MIRRORS = {"": (1.0, 1.0), "x": (-1.0, 1.0), "y": (1.0, -1.0)}

@@ -20,9 +20,9 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from motion.motion import Motion
-from player.chart import Chart
-from player.monitor import FollowingLimit, Monitor
+from morfax.motion.motion import Motion
+from morfax.player.monitor.chart import Chart
+from morfax.player.monitor.monitor import FollowingLimit, Monitor
 
 Array = NDArray[np.float64]
 
@@ -67,15 +67,15 @@ class Control:
         return player
 
 
-TAPE = Control("phase-locked drives", "player.machine", "play")
+TAPE = Control("phase-locked drives", "morfax.player.tape.playback", "play")
 
 CONTROLS: dict[str, Control] = {
     ".wav": TAPE,
     ".rf64": TAPE,
     ".flac": TAPE,
-    ".steps": Control("stepping motors at selected pulse rates", "player.stepping", "play_steps"),
-    ".cubic": Control("difference interpolator and servo", "player.cubic", "play_cubic"),
-    ".ngc": Control("pulse interpolator and pulse servos", "player.pulses", "play_pulses"),
+    ".steps": Control("stepping motors at selected pulse rates", "morfax.player.steps.stepping", "play_steps"),
+    ".cubic": Control("difference interpolator and servo", "morfax.player.cubics.cubic", "play_cubic"),
+    ".ngc": Control("pulse interpolator and pulse servos", "morfax.player.gcode.pulses", "play_pulses"),
 }
 
 

@@ -18,8 +18,8 @@ from dataclasses import dataclass
 from pathlib import Path as FilePath
 from typing import Any, Protocol
 
-from motion.faults import FileFault
-from motion.motion import Motion, Path
+from morfax.motion.faults import FileFault
+from morfax.motion.motion import Motion, Path
 
 Source = Iterable[Motion] | Motion | Path
 
@@ -48,15 +48,15 @@ class Medium:
         return recorder
 
 
-_TAPE = Medium("magnetic tape", "recorder.tape", "record")
+_TAPE = Medium("magnetic tape", "morfax.recorder.tape.tape", "record")
 
 MEDIA: dict[str, Medium] = {
     ".wav": _TAPE,
     ".rf64": _TAPE,
     ".flac": _TAPE,
-    ".steps": Medium("punched tape of step vectors", "recorder.steps", "record_steps"),
-    ".cubic": Medium("differences of cubics", "recorder.cubics", "record_cubics"),
-    ".ngc": Medium("lines and arcs in RS-274", "recorder.blocks", "record_blocks"),
+    ".steps": Medium("punched tape of step vectors", "morfax.recorder.steps.steps", "record_steps"),
+    ".cubic": Medium("differences of cubics", "morfax.recorder.cubics.cubics", "record_cubics"),
+    ".ngc": Medium("lines and arcs in RS-274", "morfax.recorder.gcode.blocks", "record_blocks"),
 }
 
 

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 import soundfile
 
-from motion.faults import MotionFault, TapeFault
-from motion.motion import Motion, Path, join, thin
-from motion.pathfile import read_path, write_path
-from player.machine import play
-from recorder.media import record as record_any
-from recorder.tape import Tape, record
+from morfax.motion.faults import MotionFault, TapeFault
+from morfax.motion.motion import Motion, Path, join, thin
+from morfax.motion.pathfile import read_path, write_path
+from morfax.player.tape.playback import play
+from morfax.recorder.media import record as record_any
+from morfax.recorder.tape.tape import Tape, record
 from tests.console.conftest import Morfax, here, morfax
 
 __all__ = ["here", "morfax"]  # fixtures
@@ -102,7 +102,7 @@ def test_the_command_line_records_and_plays_them(morfax: Morfax, here: FilePath)
 
 
 def test_a_motion_of_other_axes_than_the_format_is_refused(tmp_path: FilePath) -> None:
-    from recorder.tape import TapeFormat
+    from morfax.recorder.tape.tape import TapeFormat
 
     with pytest.raises(MotionFault, match="the motion has 5 axes; this tape takes 3: x, y, z"):
         record(Motion(np.zeros((10, 5))), tmp_path / "a.wav", TapeFormat())

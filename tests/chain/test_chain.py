@@ -17,16 +17,16 @@ import soundfile
 from numpy.typing import NDArray
 from PIL import Image
 
-from motion.contour import Distances, closure_mm, distance, length_mm
-from motion.motion import Path, join, thin
-from player.machine import play
-from recorder.tape import TapeFormat, record
+from morfax.motion.contour import Distances, closure_mm, distance, length_mm
+from morfax.motion.motion import Path, join, thin
+from morfax.player.tape.playback import play
+from morfax.recorder.tape.tape import TapeFormat, record
 from tests.tracer.inked import UM, inked, polyline
-from tracer.deviation import deviation
-from tracer.drawing import Drawing
-from tracer.program import Trace
-from tracer.sequence import trace
-from tracer.tour import trace_lines
+from morfax.tracer.drawing.deviation import deviation
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.program.program import Trace
+from morfax.tracer.program.trace import trace
+from morfax.tracer.program.trace_lines import trace_lines
 
 Array = NDArray[np.float64]
 SAMPLES = FilePath(__file__).parents[2] / "samples"

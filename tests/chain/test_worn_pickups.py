@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from motion.contour import distance
-from motion.motion import Motion, join, thin
-from motion.ramp import Ramp, positions_mm
-from player.machine import play
-from recorder.pickups import PICK_UPS
-from recorder.tape import TapeFormat, record
-from recorder.transport import Wear, age
+from morfax.motion.contour import distance
+from morfax.motion.motion import Motion, join, thin
+from morfax.motion.ramp import Ramp, positions_mm
+from morfax.player.tape.playback import play
+from morfax.recorder.tape.pickups import PICK_UPS
+from morfax.recorder.tape.tape import TapeFormat, record
+from morfax.recorder.wear.transport import Wear, age
 
 UM = 1e-3
 RADIUS_MM = 15.0

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from console.cli import main
+from morfax.console.cli import main
 
 SAMPLES = Path(__file__).parents[2] / "samples"
 

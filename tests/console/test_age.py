@@ -53,7 +53,7 @@ def test_a_fault_is_gone_on_from_by_hand(morfax: Morfax, here: Path, tape_file: 
 def test_a_tape_through_a_pipe(here: Path, tape_file: Path) -> None:
     with tape_file.open("rb") as tape:
         words = ["play", "-", "-o", "piped.csv", "--json"]
-        code = "import sys; from console.cli import main; sys.exit(main(sys.argv[1:]))"
+        code = "import sys; from morfax.console.cli import main; sys.exit(main(sys.argv[1:]))"
         answer = subprocess.run(
             [sys.executable, "-c", code, *words], stdin=tape, capture_output=True, text=True, check=False
         )

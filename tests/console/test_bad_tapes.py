@@ -166,9 +166,9 @@ def test_a_dropout_before_anything_is_known_says_so(morfax: Morfax, here: Path, 
 )
 @pytest.mark.parametrize("sample", ["16", "24", "32", "float"])
 def test_every_rate_and_kind_of_sample_is_played(here: Path, rate_hz: int, reference_hz: float, sample: str) -> None:
-    from motion.motion import Motion, join
-    from player.machine import play
-    from recorder.tape import TapeFormat, record
+    from morfax.motion.motion import Motion, join
+    from morfax.player.tape.playback import play
+    from morfax.recorder.tape.tape import TapeFormat, record
     from tests.player.carriers import circle
 
     fmt = TapeFormat(sample_rate_hz=rate_hz, reference_hz=reference_hz, samples_per_motion=max(8, rate_hz // 6000))

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from motion.pathfile import read_path
+from morfax.motion.pathfile import read_path
 from tests.console.conftest import SAMPLES, Morfax
 
 CAM = SAMPLES / "cam.png"

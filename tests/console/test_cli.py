@@ -14,11 +14,11 @@ from pathlib import Path
 import click
 import pytest
 
-from console import cli
-from motion import faults
+from morfax.console import cli
+from morfax.motion import faults
 from tests.console.conftest import Morfax
 
-MORFAX = [sys.executable, "-c", "import sys; from console.cli import main; sys.exit(main())"]
+MORFAX = [sys.executable, "-c", "import sys; from morfax.console.cli import main; sys.exit(main())"]
 
 
 @pytest.mark.parametrize("verb", cli.VERBS)
@@ -33,7 +33,7 @@ def test_every_verb_has_help_with_real_examples(morfax: Morfax, verb: str) -> No
 @pytest.mark.parametrize("verb", cli.VERBS)
 def test_the_examples_in_the_help_are_commands_that_parse(verb: str) -> None:
     """Each example is parsed by the verb itself; nothing is run."""
-    command = importlib.import_module(f"console.{verb}").command
+    command = importlib.import_module(f"morfax.console.{verb}").command
     for line in command.epilog.splitlines():
         if line.strip().startswith("morfax"):
             words = line.split()[2:]
@@ -50,7 +50,7 @@ def test_help_lists_the_verbs_and_every_exit_code(morfax: Morfax) -> None:
 
 
 def test_help_is_quick_because_it_loads_none_of_the_machines() -> None:
-    check = "import sys; from console.cli import main; main(['--help']); print([m for m in sys.modules if m in %r])"
+    check = "import sys; from morfax.console.cli import main; main(['--help']); print([m for m in sys.modules if m in %r])"
     heavy = ["numpy", "numba", "scipy", "cv2", "soundfile", "matplotlib", "rich", "PIL"]
     done = subprocess.run([sys.executable, "-c", check % heavy], capture_output=True, text=True, check=True)
     assert done.stdout.splitlines()[-1] == "[]"

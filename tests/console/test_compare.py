@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from motion.pathfile import read_path, write_path
-from motion.placement import Placement
+from morfax.motion.pathfile import read_path, write_path
+from morfax.motion.placement import Placement
 from tests.console.conftest import SAMPLES, Morfax
 
 UM = 1e-3

@@ -12,17 +12,18 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from console.trace import command
-from console.tracing import Head
-from motion.contour import closure_mm, distance
-from motion.pathfile import read_path
+from morfax.console.verbs.trace import command
+from morfax.jobs.tracing import Head
+from morfax.motion.contour import closure_mm, distance
+from morfax.motion.pathfile import read_path
 from tests.console.conftest import SAMPLES, Morfax
-from tracer import patches, room
-from tracer.drawing import Drawing
-from tracer.lines import Sheet
-from tracer.operator import Work
-from tracer.patches import Patches, runs_of
-from tracer.settings import Settings
+from morfax.tracer.drawing import components as patches
+from morfax.tracer.drawing import memory as room
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.strokes import Sheet
+from morfax.tracer.operator.operator import Work
+from morfax.tracer.drawing.components import Patches, runs_of
+from morfax.tracer.head.settings import Settings
 
 UM = 1e-3
 CAM = SAMPLES / "cam.png"

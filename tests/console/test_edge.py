@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from motion.contour import distance
-from motion.pathfile import read_path
+from morfax.motion.contour import distance
+from morfax.motion.pathfile import read_path
 from tests.console.conftest import SAMPLES, Morfax
 from tests.tracer.inked import UM, arc, polyline
 from tests.tracer.test_silhouette import CIRCLE, STEPPED, filled

@@ -15,7 +15,7 @@ SUFFIXES = (".wav", ".steps", ".cubic", ".ngc")
 @pytest.fixture(scope="module", params=SUFFIXES)
 def program(request: pytest.FixtureRequest, path_file: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The circle as a program in each medium."""
-    from console.cli import main
+    from morfax.console.cli import main
 
     file = tmp_path_factory.mktemp("programs") / f"circle{request.param}"
     assert main(["record", str(path_file), "-o", str(file), "--quiet"]) == 0

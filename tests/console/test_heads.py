@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from console.cli import cli
+from morfax.console.cli import cli
 from tests.console.conftest import Morfax
 
 CAM = Path(__file__).parents[2] / "samples" / "cam.png"

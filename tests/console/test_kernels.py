@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from console import kernels
+from morfax.console.terminal import kernels
 
 
 @pytest.fixture

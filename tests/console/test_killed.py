@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-RUN = "import sys; from console.cli import main; sys.exit(main(sys.argv[1:]))"
+RUN = "import sys; from morfax.console.cli import main; sys.exit(main(sys.argv[1:]))"
 CAM = Path(__file__).parents[2] / "samples" / "cam.png"
 MOMENTS = 20 if os.environ.get("MORFAX_SOAK") else 2
 

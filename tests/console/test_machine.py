@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from console import play
-from motion.contour import distance
-from motion.pathfile import read_path
-from player.phase_lock import MOTORS
+from morfax.console.verbs import play
+from morfax.motion.contour import distance
+from morfax.motion.pathfile import read_path
+from morfax.player.tape.phase_lock import MOTORS
 from tests.console.conftest import Morfax
 
 UM = 1e-3

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from console import attended
-from motion.pathfile import read_path
+from morfax.console.terminal import attended
+from morfax.motion.pathfile import read_path
 from tests.console.conftest import SAMPLES, Answer, Morfax
-from tracer.line import Line
-from tracer.program import Trace
+from morfax.tracer.following.line import Line
+from morfax.tracer.program.program import Trace
 
 PROGRAM = SAMPLES / "program.png"
 CARD = ("--card", SAMPLES / "program.toml")
@@ -101,7 +101,7 @@ def test_junctions_of_several_lines_are_counted_on_each_as_the_card_turns(
     """The head takes the card's turns on each line from the first on."""
     xy_mm, places_mm = np.zeros((6000, 2)), ((1.0, 2.0), (3.0, 4.0))
     lines = tuple(Line(xy_mm, "closed", 0.5, 9.0, number=n, junctions_mm=places_mm) for n in (2, 1))
-    monkeypatch.setattr("tracer.tour.trace_lines", lambda *_, **__: Trace(lines))
+    monkeypatch.setattr("morfax.tracer.program.trace_lines.trace_lines", lambda *_, **__: Trace(lines))
     rows = morfax("trace", PROGRAM, "-o", "program.csv", "--lines", "all", "--json").figures["junctions"]
     assert [(row["of_line"], row["junction"]) for row in rows] == [(2, 1), (2, 2), (1, 1), (1, 2)]
 

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from console import punched
-from motion.contour import distance
-from motion.faults import FileFault
-from motion.pathfile import read_path
-from player.controls import CONTROLS
-from recorder.media import MEDIA, record
-from recorder.stepfile import Program, StepFormat, read_program
+from morfax.reports import punched
+from morfax.motion.contour import distance
+from morfax.motion.faults import FileFault
+from morfax.motion.pathfile import read_path
+from morfax.player.controls import CONTROLS
+from morfax.recorder.media import MEDIA, record
+from morfax.recorder.steps.file import Program, StepFormat, read_program
 from tests.console.conftest import SAMPLES, Morfax
 
 UM = 1e-3

@@ -8,8 +8,8 @@ from pathlib import Path as FilePath
 import numpy as np
 import pytest
 
-from console.svg import write_svg
-from motion.motion import Path
+from morfax.reports.svg import write_svg
+from morfax.motion.motion import Path
 
 TENTH_UM = 1e-4  # mm; what the file is written to
 

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from console import systems
-from motion.faults import MotionFault
-from motion.motion import Path as MotionPath
-from recorder import media
+from morfax.jobs import systems
+from morfax.motion.faults import MotionFault
+from morfax.motion.motion import Path as MotionPath
+from morfax.recorder import media
 from tests.console.conftest import SAMPLES, Morfax
 
 UM = 1e-3

@@ -6,7 +6,7 @@ import json
 
 import numpy as np
 
-from console.table import as_json, as_text
+from morfax.reports.table import as_json, as_text
 
 FIGURES = {
     "tape": "cam.wav",

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 import soundfile
 
-from motion.contour import distance
-from motion.pathfile import read_path
+from morfax.motion.contour import distance
+from morfax.motion.pathfile import read_path
 from tests.console.conftest import Morfax
 
 UM = 1e-3

@@ -5,11 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from console import unit
-from motion.motion import Path as MotionPath
-from motion.pathfile import read_path, write_path
-from recorder.pickups import DEFAULT_PICK_UP, PICK_UPS
-from recorder.tape import Tape
+from morfax.jobs import recording as unit
+from morfax.motion.motion import Path as MotionPath
+from morfax.motion.pathfile import read_path, write_path
+from morfax.recorder.tape.pickups import DEFAULT_PICK_UP, PICK_UPS
+from morfax.recorder.tape.tape import Tape
 from tests.console.conftest import SAMPLES, Morfax
 
 

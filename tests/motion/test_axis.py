@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from motion.axis import LeadScrew
+from morfax.motion.axis import LeadScrew
 
 
 def test_the_tape_s_own_screw_has_20_cycles_per_mm() -> None:

@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from motion.contour import closure_mm, distance, length_mm, pointwise
-from motion.faults import MotionFault
-from motion.motion import Motion, Path
+from morfax.motion.contour import closure_mm, distance, length_mm, pointwise
+from morfax.motion.faults import MotionFault
+from morfax.motion.motion import Motion, Path
 
 MM = 1.0
 SAMPLE_MM = 0.01  # of both polylines
@@ -125,7 +125,7 @@ def test_a_distance_does_not_depend_on_where_the_sheet_lies(x_mm: float, y_mm: f
 
 
 def test_a_very_long_path_is_sampled_further_apart(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("motion.contour.LARGEST_SAMPLES", 1000)
+    monkeypatch.setattr("morfax.motion.contour.LARGEST_SAMPLES", 1000)
     line = np.array([[0.0, 0.0], [1e6, 0.0]])
     points, error_mm = pointwise(line + np.array([0, 0.5]), line)
     assert len(points) <= 1002

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from motion.drive import Drive, drive_step
+from morfax.motion.drive import Drive, drive_step
 
 DT_S = 1 / 6000
 ROUNDING = 1e-12  # of float64 over a few thousand steps

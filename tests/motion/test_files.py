@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from motion.faults import FileFault
-from motion.files import written_beside
+from morfax.motion.faults import FileFault
+from morfax.motion.files import written_beside
 
 
 def names_in(folder: Path) -> list[str]:

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from motion.motion import MOTION_RATE_HZ, THINNING_TOLERANCE_MM, Motion, Path, join, thin, thinned
+from morfax.motion.motion import MOTION_RATE_HZ, THINNING_TOLERANCE_MM, Motion, Path, join, thin, thinned
 
 ROUNDING_MM = 1e-9  # of float64 slopes over some 10 000 samples and some 100 mm
 

@@ -10,11 +10,11 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from motion.contour import distance
-from motion.feed import run_along
-from motion.motion import MOTION_RATE_HZ
-from motion.offset import Guide, _guided, _swung, offset
-from motion.polyline import Nearest
+from morfax.motion.contour import distance
+from morfax.motion.feed import run_along
+from morfax.motion.motion import MOTION_RATE_HZ
+from morfax.motion.offset import Guide, _guided, _swung, offset
+from morfax.motion.polyline import Nearest
 
 shapely = pytest.importorskip("shapely")
 

@@ -8,10 +8,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from motion.contour import length_mm
-from motion.faults import FileFault, MotionFault
-from motion.motion import Path, join
-from motion.pathfile import CLEARANCE_MM, FEED_MM_S, read_path, write_path
+from morfax.motion.contour import length_mm
+from morfax.motion.faults import FileFault, MotionFault
+from morfax.motion.motion import Path, join
+from morfax.motion.pathfile import CLEARANCE_MM, FEED_MM_S, read_path, write_path
 
 WRITTEN_MM = 0.51e-5  # half of the last of five decimals
 WRITTEN_S = 0.51e-7  # half of the last of seven decimals

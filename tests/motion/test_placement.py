@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from motion.motion import Motion, Path, join
-from motion.placement import Placement
+from morfax.motion.motion import Motion, Path, join
+from morfax.motion.placement import Placement
 
 L_SHAPE = np.array([[10.0, 5, 2, 7], [14, 5, -3, 8], [14, 7, -3, 9]])  # X, Y, Z and a further axis, mm
 WHOLE = st.floats(-1e3, 1e3, allow_nan=False)

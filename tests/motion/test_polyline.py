@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from motion.polyline import APART_MM, WITHIN_MM, Nearest, crossings, lengths_mm, plain, with_places
+from morfax.motion.polyline import APART_MM, WITHIN_MM, Nearest, crossings, lengths_mm, plain, with_places
 
 ROUNDING_MM = 1e-12
 

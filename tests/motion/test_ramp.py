@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from motion.motion import MOTION_RATE_HZ
-from motion.ramp import CONSTANT, DOWN, UP, Profile, Ramp, _count, count_ramp, positions_mm
+from morfax.motion.motion import MOTION_RATE_HZ
+from morfax.motion.ramp import CONSTANT, DOWN, UP, Profile, Ramp, _count, count_ramp, positions_mm
 
 MOVES = 100_000  # the figure asked for
 ROUNDING = 1e-6  # of second differences of mm at 6 kHz, in mm/s²: 1e-14 mm · (6 kHz)² · 3

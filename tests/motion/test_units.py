@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from motion import units
+from morfax.motion import units
 
 
 @pytest.mark.parametrize(

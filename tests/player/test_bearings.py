@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from motion.faults import LockFault, TapeFault
-from player.bearings import Bearings, decibels, strongest_hz, take_bearings
-from player.discriminator import Discriminator, Phases
-from recorder.tapeformat import TapeFormat
+from morfax.motion.faults import LockFault, TapeFault
+from morfax.player.tape.standstill import Bearings, decibels, strongest_hz, take_bearings
+from morfax.player.tape.discriminator import Discriminator, Phases
+from morfax.recorder.tape.format import TapeFormat
 from tests.player.carriers import MOTION_RATE_HZ, RATE_HZ, REFERENCE_HZ, Transport, swing, tracks
 
 FORMAT = TapeFormat()

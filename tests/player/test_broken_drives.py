@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from motion.drive import Condition
-from motion.faults import FollowingFault, LockFault
-from motion.motion import MOTION_RATE_HZ, Motion
-from motion.ramp import Ramp, positions_mm
-from player.controls import play
-from player.monitor import FollowingLimit
-from player.motor import MotorCondition
-from recorder.media import record
+from morfax.motion.drive import Condition
+from morfax.motion.faults import FollowingFault, LockFault
+from morfax.motion.motion import MOTION_RATE_HZ, Motion
+from morfax.motion.ramp import Ramp, positions_mm
+from morfax.player.controls import play
+from morfax.player.monitor.monitor import FollowingLimit
+from morfax.player.steps.motor import MotorCondition
+from morfax.recorder.media import record
 
 SPEED_MM_S, LENGTH_MM, REST_S = 1.0, 0.15, 0.3
 

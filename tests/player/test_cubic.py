@@ -9,15 +9,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from motion.contour import distance
-from motion.faults import LockFault, ProgramFault
-from motion.motion import join, thin
-from player import cubic, interpolator, scales
-from player.cubic import Servo, play_cubic
-from player.interpolator import Interpolator, TimeBase, table, truncated_end
-from player.scales import Scales, joined, read_scales
-from recorder.cubicfile import CubicFormat
-from recorder.cubics import record_cubics
+from morfax.motion.contour import distance
+from morfax.motion.faults import LockFault, ProgramFault
+from morfax.motion.motion import join, thin
+from morfax.player.cubics import cubic
+from morfax.player.cubics import interpolator
+from morfax.player.cubics import scales
+from morfax.player.cubics.cubic import Servo, play_cubic
+from morfax.player.cubics.interpolator import Interpolator, TimeBase, table, truncated_end
+from morfax.player.cubics.scales import Scales, joined, read_scales
+from morfax.recorder.cubics.file import CubicFormat
+from morfax.recorder.cubics.cubics import record_cubics
 from tests.recorder.test_steps import SQUARE, circle
 
 UM = 1e-3

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from player import discriminator as organ
-from player.discriminator import Discriminator, Phases, discriminate, translating_taps
+from morfax.player.tape import discriminator as organ
+from morfax.player.tape.discriminator import Discriminator, Phases, discriminate, translating_taps
 from tests.player.carriers import CYCLES_PER_MM, MOTION_RATE_HZ, RATE_HZ, REFERENCE_HZ, Transport, swing, tracks
 
 SECONDS = 1.5

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 import soundfile
 
-from motion.faults import LockFault
-from motion.motion import Motion, join
-from player.dropouts import Bridge, bridge, filled, longest_s, side
-from player.machine import play
-from recorder.tape import record
+from morfax.motion.faults import LockFault
+from morfax.motion.motion import Motion, join
+from morfax.player.tape.dropouts import Bridge, bridge, filled, longest_s, side
+from morfax.player.tape.playback import play
+from morfax.recorder.tape.tape import record
 from tests.player.worn import program
 
 RATE_HZ = 48000

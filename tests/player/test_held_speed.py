@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from player.held_speed import held_speed
-from player.pulses import PulsePlayback, play_pulses
+from morfax.player.gcode.held_speed import held_speed
+from morfax.player.gcode.pulses import PulsePlayback, play_pulses
 
 
 def line(folder: Path, x_mm: float, y_mm: float, override: float | None = None) -> PulsePlayback:

@@ -16,8 +16,8 @@ MOST_MB = 300.0
 RUN = """
 import resource, sys, time
 from benchmarks.tape import circles
-from player.machine import play
-from recorder.tape import record
+from morfax.player.tape.playback import play
+from morfax.recorder.tape.tape import record
 
 begun = time.perf_counter()
 file, hours = sys.argv[1], float(sys.argv[2])

@@ -12,11 +12,11 @@ import soundfile
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from motion.contour import distance
-from motion.faults import LockFault, TapeFault
-from motion.motion import Motion, join
-from player.machine import Playback, play
-from recorder.tape import TapeFormat, record
+from morfax.motion.contour import distance
+from morfax.motion.faults import LockFault, TapeFault
+from morfax.motion.motion import Motion, join
+from morfax.player.tape.playback import Playback, play
+from morfax.recorder.tape.tape import TapeFormat, record
 from tests.player.carriers import (
     CYCLES_PER_MM,
     MOTION_RATE_HZ,

@@ -11,11 +11,11 @@ import soundfile
 from hypothesis import given
 from hypothesis import strategies as st
 
-from motion.faults import LockFault, TapeFault
-from motion.motion import Motion, join
-from player.machine import play
-from player.mend import _sets, mend
-from recorder.tape import TapeFormat, record
+from morfax.motion.faults import LockFault, TapeFault
+from morfax.motion.motion import Motion, join
+from morfax.player.tape.playback import play
+from morfax.player.tape.mend import _sets, mend
+from morfax.recorder.tape.tape import TapeFormat, record
 from tests.player.worn import program
 
 RATE_HZ = 48000

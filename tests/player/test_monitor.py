@@ -10,13 +10,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from motion.drive import Condition
-from motion.motion import MOTION_RATE_HZ
-from motion.ramp import Ramp, positions_mm
-from player import monitor, position_servo
-from player.chart import Chart
-from player.monitor import FollowingLimit, Monitor, allowed_mm, learn_table
-from player.position_servo import PositionServo, PositionServos
+from morfax.motion.drive import Condition
+from morfax.motion.motion import MOTION_RATE_HZ
+from morfax.motion.ramp import Ramp, positions_mm
+from morfax.player.monitor import monitor
+from morfax.player.monitor import position_servo
+from morfax.player.monitor.chart import Chart
+from morfax.player.monitor.monitor import FollowingLimit, Monitor, allowed_mm, learn_table
+from morfax.player.monitor.position_servo import PositionServo, PositionServos
 
 INCREMENT_MM = PositionServo().increment_mm
 WIDE_MM = 6.1  # the single limit that a rapid of 100 mm/s wants

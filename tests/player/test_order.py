@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from motion.faults import TapeFault
-from motion.motion import Motion, join
-from player.machine import play
-from recorder.tape import record
-from recorder.transport import Wear, age
+from morfax.motion.faults import TapeFault
+from morfax.motion.motion import Motion, join
+from morfax.player.tape.playback import play
+from morfax.recorder.tape.tape import record
+from morfax.recorder.wear.transport import Wear, age
 from tests.player.worn import program
 
 ORDERS = [(2, 1, 3, 4), (3, 2, 1, 4), (4, 2, 3, 1), (2, 3, 4, 1), (4, 3, 2, 1)]

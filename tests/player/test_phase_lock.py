@@ -8,11 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.signal import dlsim, dlti
 
-from motion.contour import distance
-from motion.drive import Drive
-from player import phase_lock as organ
-from player.monitor import Monitor
-from player.phase_lock import Drives, PhaseLock, following_limit, place
+from morfax.motion.contour import distance
+from morfax.motion.drive import Drive
+from morfax.player.tape import phase_lock as organ
+from morfax.player.monitor.monitor import Monitor
+from morfax.player.tape.phase_lock import Drives, PhaseLock, following_limit, place
 from tests.player.carriers import CYCLES_PER_MM, MOTION_RATE_HZ, UM, Course, along, circle, square
 
 DT_S = 1 / MOTION_RATE_HZ

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from player import predictor as organ
-from player.predictor import predictor_gains, recount
+from morfax.player.tape import predictor as organ
+from morfax.player.tape.predictor import predictor_gains, recount
 from tests.player.carriers import MOTION_RATE_HZ
 
 

@@ -10,14 +10,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from motion.faults import FollowingFault, ProgramFault
-from motion.motion import MOTION_RATE_HZ, join
-from player import feed_control, pulse_servo, residues
-from player.feed_control import CLOCKS, FEED_BITS, OVERRIDE_BITS, count_feed, feed_number, override_number
-from player.pulse_servo import HISTORIC, PulseServo, PulseServos, lag, unit_circuit
-from player.pulses import PulseControl, PulsePlayback, play_pulses
-from player.residues import Feed, Interpolator
-from player.rs274 import parse_rs274
+from morfax.motion.faults import FollowingFault, ProgramFault
+from morfax.motion.motion import MOTION_RATE_HZ, join
+from morfax.player.gcode import feed_control
+from morfax.player.gcode import pulse_servo
+from morfax.player.gcode import residues
+from morfax.player.gcode.feed_control import CLOCKS, FEED_BITS, OVERRIDE_BITS, count_feed, feed_number, override_number
+from morfax.player.gcode.pulse_servo import HISTORIC, PulseServo, PulseServos, lag, unit_circuit
+from morfax.player.gcode.pulses import PulseControl, PulsePlayback, play_pulses
+from morfax.player.gcode.residues import Feed, Interpolator
+from morfax.player.gcode.rs274 import parse_rs274
 
 RECIRCULATIONS_HZ = 8 * MOTION_RATE_HZ
 PULSE_MM = PulseServo().pulse_mm

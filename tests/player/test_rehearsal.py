@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from motion.faults import Fault, MotionFault
-from motion.motion import MOTION_RATE_HZ, Motion, join
-from player.machine import play
-from player.rehearsal import Rehearsal
-from recorder.tape import TapeFormat, record
+from morfax.motion.faults import Fault, MotionFault
+from morfax.motion.motion import MOTION_RATE_HZ, Motion, join
+from morfax.player.tape.playback import play
+from morfax.player.tape.rehearsal import Rehearsal
+from morfax.recorder.tape.tape import TapeFormat, record
 
 T_S = np.arange(0, 0.6, 1 / MOTION_RATE_HZ)
 

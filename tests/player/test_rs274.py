@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from motion.faults import FileFault, ProgramFault
-from player.rs274 import CLOCKWISE, COUNTER_CLOCKWISE, DWELL, LINE, RAPID, Move, parse_rs274, read_rs274
+from morfax.motion.faults import FileFault, ProgramFault
+from morfax.player.gcode.rs274 import CLOCKWISE, COUNTER_CLOCKWISE, DWELL, LINE, RAPID, Move, parse_rs274, read_rs274
 
 WRITTEN_MM = 1e-4  # what four decimals of a program leave
 

@@ -8,15 +8,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from motion.contour import distance
-from motion.faults import FollowingFault, LockFault
-from motion.motion import MOTION_RATE_HZ, Motion, join, thin
-from motion.ramp import Ramp
-from motion.ramp import positions_mm as ramped_mm
-from player.machine import play
-from player.phase_lock import MOTORS, Drives, place
-from player.setting import LARGEST_ZERO_MM, OVERRIDES, Setting
-from recorder.tape import record
+from morfax.motion.contour import distance
+from morfax.motion.faults import FollowingFault, LockFault
+from morfax.motion.motion import MOTION_RATE_HZ, Motion, join, thin
+from morfax.motion.ramp import Ramp
+from morfax.motion.ramp import positions_mm as ramped_mm
+from morfax.player.tape.playback import play
+from morfax.player.tape.phase_lock import MOTORS, Drives, place
+from morfax.player.tape.setting import LARGEST_ZERO_MM, OVERRIDES, Setting
+from morfax.recorder.tape.tape import record
 
 REST_MM = 2e-6  # 16-bit noise on the phase, after the loop
 UM = 1e-3

@@ -9,13 +9,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from motion.motion import join
-from player import motor as motor_module
-from player import stepping
-from player.motor import Motor, Motors
-from player.stepping import MEMORY_ENTRIES, decode, play_steps, pulse_ticks, pulses_of, ring_memory, tick_table
-from recorder.rings import RINGS
-from recorder.stepfile import TICKS, Program, StepFormat, write_program
+from morfax.motion.motion import join
+from morfax.player.steps import motor as motor_module
+from morfax.player.steps import stepping
+from morfax.player.steps.motor import Motor, Motors
+from morfax.player.steps.stepping import MEMORY_ENTRIES, decode, play_steps, pulse_ticks, pulses_of, ring_memory, tick_table
+from morfax.recorder.steps.rings import RINGS
+from morfax.recorder.steps.file import TICKS, Program, StepFormat, write_program
 
 INTERVAL_S = 1 / 160
 FORMATS = st.builds(StepFormat, vectors=st.sampled_from([1, 2]), channels=st.sampled_from([5, 8]))

@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from motion.faults import Fault, LockFault, TapeFault
-from motion.motion import Motion, join
-from player.machine import play
-from recorder.tape import record
-from recorder.transport import Wear, age
+from morfax.motion.faults import Fault, LockFault, TapeFault
+from morfax.motion.motion import Motion, join
+from morfax.player.tape.playback import play
+from morfax.recorder.tape.tape import record
+from morfax.recorder.wear.transport import Wear, age
 from tests.player.carriers import MOTION_RATE_HZ, circle, square
 
 RIGHT_CYCLES = 0.05

@@ -13,16 +13,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from motion.contour import distance
-from motion.faults import MotionFault
-from motion.motion import Motion
-from motion.motion import Path as MotionPath
-from motion.pathfile import read_path
-from player.rs274 import Move, Program, read_rs274
-from recorder.arcs import BREAK_RAD, Segment, fit
-from recorder.blocks import TOLERANCE_MM, WRITTEN_MM, record_blocks
-from recorder.media import record
-from recorder.pieces import corners, longest_pieces, off_circle_mm, off_line_mm, resample
+from morfax.motion.contour import distance
+from morfax.motion.faults import MotionFault
+from morfax.motion.motion import Motion
+from morfax.motion.motion import Path as MotionPath
+from morfax.motion.pathfile import read_path
+from morfax.player.gcode.rs274 import Move, Program, read_rs274
+from morfax.recorder.gcode.arcs import BREAK_RAD, Segment, fit
+from morfax.recorder.gcode.blocks import TOLERANCE_MM, WRITTEN_MM, record_blocks
+from morfax.recorder.media import record
+from morfax.recorder.gcode.pieces import corners, longest_pieces, off_circle_mm, off_line_mm, resample
 
 SAMPLES = Path(__file__).parents[2] / "samples"
 FEWEST = {"gear": 16, "bracket": 9 + 4, "cam": 15, "curve": 25}  # drawn; cam and curve: circles that need not meet

@@ -17,11 +17,11 @@ import soundfile
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from motion.faults import Fault, TapeFault
-from motion.motion import Motion
-from recorder.pipe import Pipe
-from recorder.tape import Tape, record
-from recorder.tapeformat import TapeFormat
+from morfax.motion.faults import Fault, TapeFault
+from morfax.motion.motion import Motion
+from morfax.recorder.tape.pipe import Pipe
+from morfax.recorder.tape.tape import Tape, record
+from morfax.recorder.tape.format import TapeFormat
 
 BY_HAND = {"reference_hz": 6000.0, "cycles_per_mm": 20.0}
 SLOW = settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture])
@@ -83,9 +83,9 @@ def test_texts_that_are_none(tmp_path: Path, text: str, said: str) -> None:
 
 KILLED = """
 import sys, numpy as np
-from motion.motion import Motion
-from recorder.tape import record
-from recorder.transport import SETS, age
+from morfax.motion.motion import Motion
+from morfax.recorder.tape.tape import record
+from morfax.recorder.wear.transport import SETS, age
 print("go", flush=True)
 while True:
     record((Motion(np.zeros((6000, 3))) for _ in range(60)), sys.argv[1])

@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from motion.axis import LeadScrew
-from recorder import carrier
-from recorder.carrier import Carrier, PickUp
+from morfax.motion.axis import LeadScrew
+from morfax.recorder.tape import carrier
+from morfax.recorder.tape.carrier import Carrier, PickUp
 
 FULL = PickUp(level=1.0)
 SINE = 1.1e-7 + 6e-8  # of full scale: the polynomial's error, and half a step of float32 near 1

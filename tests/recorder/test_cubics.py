@@ -9,14 +9,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from motion.contour import distance
-from motion.faults import MotionFault, ProgramFault
-from motion.motion import Path, thin
-from player.cubic import play_cubic
-from player.interpolator import Interpolator
-from recorder.cubicfile import CubicFormat, CubicProgram, read_program, write_program
-from recorder.cubics import differences, hermite, record_cubics
-from recorder.legs import Limits
+from morfax.motion.contour import distance
+from morfax.motion.faults import MotionFault, ProgramFault
+from morfax.motion.motion import Path, thin
+from morfax.player.cubics.cubic import play_cubic
+from morfax.player.cubics.interpolator import Interpolator
+from morfax.recorder.cubics.file import CubicFormat, CubicProgram, read_program, write_program
+from morfax.recorder.cubics.cubics import differences, hermite, record_cubics
+from morfax.motion.segments import Limits
 from tests.recorder.test_steps import SQUARE, STAR, TOOL, circle
 
 UM = 1e-3
@@ -66,7 +66,7 @@ def test_the_tool_goes_down_and_up(tmp_path: FilePath) -> None:
 @given(SAMPLES, st.sampled_from([(16, 1), (32, 1), (64, 4), (16, 4), (256, 2)]))
 def test_ends_and_slopes_meet_to_the_digit(rows: list, steps: tuple[int, int]) -> None:  # type: ignore[type-arg]
     """Path continuous in slope across intervals, whatever the samples; and each sample met exactly."""
-    from player.interpolator import ends, slopes
+    from morfax.player.cubics.interpolator import ends, slopes
 
     samples, (points, linear) = np.array(rows, np.int64), steps
     words = differences(samples, points, linear)

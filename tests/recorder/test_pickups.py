@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from motion.motion import Motion, join
-from player.machine import play
-from recorder import carrier
-from recorder.carrier import Carrier, PickUp
-from recorder.pickups import DECAY, DEFAULT_PICK_UP, PICK_UPS
-from recorder.tape import Tape, TapeFormat, record
+from morfax.motion.motion import Motion, join
+from morfax.player.tape.playback import play
+from morfax.recorder.tape import carrier
+from morfax.recorder.tape.carrier import Carrier, PickUp
+from morfax.recorder.tape.pickups import DECAY, DEFAULT_PICK_UP, PICK_UPS
+from morfax.recorder.tape.tape import Tape, TapeFormat, record
 
 RATE_HZ = 6000
 OTHERS = [name for name in PICK_UPS if name != DEFAULT_PICK_UP]

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 import soundfile
 
-from motion.faults import TapeFault
-from motion.motion import Motion, join
-from player.machine import play, play_pipe
-from recorder.pipe import Pipe, Samples
-from recorder.tape import record
+from morfax.motion.faults import TapeFault
+from morfax.motion.motion import Motion, join
+from morfax.player.tape.playback import play, play_pipe
+from morfax.recorder.tape.pipe import Pipe, Samples
+from morfax.recorder.tape.tape import record
 from tests.player.worn import program
 
 BY_HAND = {"reference_hz": 6000.0, "cycles_per_mm": 20.0}

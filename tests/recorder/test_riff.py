@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import soundfile
 
-from recorder import riff
+from morfax.recorder.tape import riff
 
 FRAMES = (np.arange(4000).reshape(1000, 4) / 8000).astype(np.float32)
 

@@ -9,16 +9,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from motion.contour import distance
-from motion.faults import FileFault, MotionFault, ProgramFault
-from motion.motion import Path, thin
-from player.stepping import play_steps
-from recorder import legs as legs_module
-from recorder import lengths as lengths_module
-from recorder.legs import Limits, legs
-from recorder.rings import RINGS, command, commands
-from recorder.stepfile import Program, StepFormat, holes, read_program, write_program
-from recorder.steps import encode, record_steps
+from morfax.motion.contour import distance
+from morfax.motion.faults import FileFault, MotionFault, ProgramFault
+from morfax.motion.motion import Path, thin
+from morfax.player.steps.stepping import play_steps
+from morfax.motion import segments as legs_module
+from morfax.recorder.steps import lengths as lengths_module
+from morfax.motion.segments import Limits, legs
+from morfax.recorder.steps.rings import RINGS, command, commands
+from morfax.recorder.steps.file import Program, StepFormat, holes, read_program, write_program
+from morfax.recorder.steps.steps import encode, record_steps
 
 STEP_MM = 0.01
 STAIR = 1.25  # steps: within an interval the axes step one after the other, half a step each way
@@ -91,7 +91,7 @@ def test_two_vectors_in_a_row_take_fewer_rows_for_the_same_path(tmp_path: FilePa
 
 @given(st.lists(st.tuples(*[st.integers(-1, 1)] * 3), max_size=40), st.sampled_from([1, 2]))
 def test_what_is_encoded_is_decoded(changes: list[tuple[int, int, int]], vectors: int) -> None:
-    from player.stepping import decode, pulses_of
+    from morfax.player.steps.stepping import decode, pulses_of
 
     lengths = np.clip(np.cumsum(np.array(changes, np.int64).reshape(-1, 3), axis=0), -7, 7)
     lengths = lengths[np.r_[True, np.abs(np.diff(lengths, axis=0)).max(axis=1) <= 1]] if len(lengths) else lengths

@@ -10,11 +10,11 @@ import soundfile
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from motion.faults import FileFault, MotionFault, TapeFault
-from motion.motion import Motion
-from motion.motion import Path as ThinnedPath
-from recorder import riff
-from recorder.tape import Tape, TapeFormat, record
+from morfax.motion.faults import FileFault, MotionFault, TapeFault
+from morfax.motion.motion import Motion
+from morfax.motion.motion import Path as ThinnedPath
+from morfax.recorder.tape import riff
+from morfax.recorder.tape.tape import Tape, TapeFormat, record
 
 RATE_HZ = 6000
 # a step of 16 bit at half level is 1/16384 of the carrier; half of it turns a track by 5e-6 cycle, two tracks by 1e-5,

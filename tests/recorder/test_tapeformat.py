@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from motion.faults import TapeFault
-from recorder.tapeformat import LARGEST_TEXT_BYTES, TapeFormat, is_format_text
+from morfax.motion.faults import TapeFault
+from morfax.recorder.tape.format import LARGEST_TEXT_BYTES, TapeFormat, is_format_text
 
 GOOD = json.loads(TapeFormat(end_mm=(1.0, 2.0, 3.0)).to_json())
 

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 import soundfile
 
-from motion.faults import FileFault, TapeFault
-from recorder import transport
-from recorder.transport import SETS, Deck, Wear, age
+from morfax.motion.faults import FileFault, TapeFault
+from morfax.recorder.wear import transport
+from morfax.recorder.wear.transport import SETS, Deck, Wear, age
 
 RATE_HZ = 48000
 SECONDS = 4

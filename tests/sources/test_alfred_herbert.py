@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from motion.motion import MOTION_RATE_HZ
-from motion.ramp import CONSTANT, DOWN, UP, Ramp, count_ramp, positions_mm
-from player.monitor import FollowingLimit, Monitor
-from player.position_servo import PositionServo, PositionServos
+from morfax.motion.motion import MOTION_RATE_HZ
+from morfax.motion.ramp import CONSTANT, DOWN, UP, Ramp, count_ramp, positions_mm
+from morfax.player.monitor.monitor import FollowingLimit, Monitor
+from morfax.player.monitor.position_servo import PositionServo, PositionServos
 
 Vectors = Callable[[str], Any]
 INCREMENT_MM = Ramp().increment_mm

@@ -20,27 +20,27 @@ import pytest
 import soundfile
 from numpy.typing import NDArray
 
-from motion.axis import LeadScrew
-from motion.contour import distance
-from motion.drive import Condition, Drive
-from motion.faults import FollowingFault, LockFault
-from motion.motion import MOTION_RATE_HZ, Motion, join, thin
-from motion.ramp import positions_mm
-from player.machine import play
-from recorder.pickups import PICK_UPS
-from recorder.tape import Tape, TapeFormat, record
+from morfax.motion.axis import LeadScrew
+from morfax.motion.contour import distance
+from morfax.motion.drive import Condition, Drive
+from morfax.motion.faults import FollowingFault, LockFault
+from morfax.motion.motion import MOTION_RATE_HZ, Motion, join, thin
+from morfax.motion.ramp import positions_mm
+from morfax.player.tape.playback import play
+from morfax.recorder.tape.pickups import PICK_UPS
+from morfax.recorder.tape.tape import Tape, TapeFormat, record
 from tests.tracer.inked import arc, inked, polyline
-from tracer.card import Card, Stop
-from tracer.carriage import Carriage
-from tracer.deviation import deviation
-from tracer.drawing import Drawing
-from tracer.operator import Halt, Operator, Work
-from tracer.photocell import behind_aperture, sweep
-from tracer.program import Trace
-from tracer.sequence import trace
-from tracer.settings import HISTORIC, Settings
-from tracer.stance import put_down
-from tracer.zunit import Counters, Move, Preset, counts_of
+from morfax.tracer.operator.card import Card, Stop
+from morfax.tracer.head.carriage import Carriage
+from morfax.tracer.drawing.deviation import deviation
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.operator.operator import Halt, Operator, Work
+from morfax.tracer.sensing.photocell import behind_aperture, sweep
+from morfax.tracer.program.program import Trace
+from morfax.tracer.program.trace import trace
+from morfax.tracer.head.settings import HISTORIC, Settings
+from morfax.tracer.following.start import put_down
+from morfax.tracer.operator.zunit import Counters, Move, Preset, counts_of
 
 Array = NDArray[np.float64]
 

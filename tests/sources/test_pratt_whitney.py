@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from motion.motion import MOTION_RATE_HZ, join
-from player.feed_control import (
+from morfax.motion.motion import MOTION_RATE_HZ, join
+from morfax.player.gcode.feed_control import (
     BLOCKED,
     EIGHTH,
     EVERY,
@@ -29,10 +29,10 @@ from player.feed_control import (
     override_number,
     resultant_weights,
 )
-from player.pulse_servo import PulseServo, PulseServos, lag, unit_circuit
-from player.pulses import PulseControl, PulsePlayback
-from player.residues import CLOCKWISE, COUNTER_CLOCKWISE, LINE, Feed, Interpolator
-from player.rs274 import parse_rs274
+from morfax.player.gcode.pulse_servo import PulseServo, PulseServos, lag, unit_circuit
+from morfax.player.gcode.pulses import PulseControl, PulsePlayback
+from morfax.player.gcode.residues import CLOCKWISE, COUNTER_CLOCKWISE, LINE, Feed, Interpolator
+from morfax.player.gcode.rs274 import parse_rs274
 
 Vectors = Callable[[str], Any]
 RECIRCULATIONS_HZ = 8 * MOTION_RATE_HZ

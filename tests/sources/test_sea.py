@@ -15,15 +15,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from motion.contour import distance
-from motion.faults import LockFault
-from motion.motion import join, thin
-from player.cubic import Servo, play_cubic
-from player.interpolator import Interpolator, TimeBase, ends, table, truncated_end
-from player.scales import Scales, gated_pulses, joined, read_scales
-from player.stores import Store, Stores
-from recorder.cubicfile import CubicFormat, read_program
-from recorder.cubics import differences, record_cubics
+from morfax.motion.contour import distance
+from morfax.motion.faults import LockFault
+from morfax.motion.motion import join, thin
+from morfax.player.cubics.cubic import Servo, play_cubic
+from morfax.player.cubics.interpolator import Interpolator, TimeBase, ends, table, truncated_end
+from morfax.player.cubics.scales import Scales, gated_pulses, joined, read_scales
+from morfax.player.cubics.stores import Store, Stores
+from morfax.recorder.cubics.file import CubicFormat, read_program
+from morfax.recorder.cubics.cubics import differences, record_cubics
 from tests.recorder.test_steps import circle
 
 Vectors = Callable[[str], Any]

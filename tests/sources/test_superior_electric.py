@@ -13,11 +13,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from motion.motion import join
-from player.stepping import decode, play_steps, pulse_ticks, pulses_of, ring_memory, tick_table
-from recorder.rings import RINGS
-from recorder.stepfile import Program, StepFormat, write_program
-from recorder.steps import encode
+from morfax.motion.motion import join
+from morfax.player.steps.stepping import decode, play_steps, pulse_ticks, pulses_of, ring_memory, tick_table
+from morfax.recorder.steps.rings import RINGS
+from morfax.recorder.steps.file import Program, StepFormat, write_program
+from morfax.recorder.steps.steps import encode
 
 Vectors = Callable[[str], Any]
 

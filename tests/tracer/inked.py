@@ -13,7 +13,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.drawing import MM_PER_INCH, Drawing
+from morfax.tracer.drawing.drawing import MM_PER_INCH, Drawing
 
 UM = 1e-3  # mm
 WIDTH_MM = 0.5

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from tests.tracer.inked import inked, polyline
-from tracer.attempts import Attempts
-from tracer.follower import Followed
-from tracer.settings import Settings
-from tracer.stance import Stance
-from tracer.view import View
+from morfax.tracer.following.attempts import Attempts
+from morfax.tracer.following.follower import Followed
+from morfax.tracer.head.settings import Settings
+from morfax.tracer.following.start import Stance
+from morfax.tracer.sensing.view import View
 
 DRAWING = inked(polyline((4, 4), (14, 4)))
 VIEW = View(DRAWING.darkness, DRAWING.pitch_mm, 0.5, 0.5)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from tests.tracer.inked import UM, Points, arc, inked, polyline
-from tracer.sequence import trace
-from tracer.settings import Settings
+from morfax.tracer.program.trace import trace
+from morfax.tracer.head.settings import Settings
 
 STEP_MM = 0.1  # in which gaps are tried
 

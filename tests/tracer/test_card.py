@@ -11,10 +11,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from motion.faults import CardFault, FileFault
-from tracer.card import Card, Drill, Stop
-from tracer.cardlines import lines_of
-from tracer.zunit import Counters, Preset, moves, z_moves
+from morfax.motion.faults import CardFault, FileFault
+from morfax.tracer.operator.card import Card, Drill, Stop
+from morfax.tracer.operator.toml_lines import lines_of
+from morfax.tracer.operator.zunit import Counters, Preset, moves, z_moves
 
 WHOLE = """\
 # a plate with two holes

@@ -8,21 +8,21 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from motion.faults import LineFault, MotionFault
-from motion.motion import join
-from motion.polyline import Nearest
+from morfax.motion.faults import LineFault, MotionFault
+from morfax.motion.motion import join
+from morfax.motion.polyline import Nearest
 from tests.tracer.inked import UM, arc, cross, dot, inked, polyline, tick
 from tests.tracer.test_program import EXACT_MM, WORK, at, in_work, run_through
-from tracer.beside import Cut
-from tracer.card import Card
-from tracer.cutter import Cutter, Left, Side, with_cutter
-from tracer.junctions import Guide
-from tracer.line import Line
-from tracer.marks import Mark
-from tracer.operator import Halt, Operator
-from tracer.program import Trace
-from tracer.sequence import trace
-from tracer.view import Array
+from morfax.tracer.cutter.contour import Cut
+from morfax.tracer.operator.card import Card
+from morfax.tracer.cutter.cutter import Cutter, Left, Side, with_cutter
+from morfax.tracer.junctions.guides import Guide
+from morfax.tracer.following.line import Line
+from morfax.tracer.marks.marks import Mark
+from morfax.tracer.operator.operator import Halt, Operator
+from morfax.tracer.program.program import Trace
+from morfax.tracer.program.trace import trace
+from morfax.tracer.sensing.view import Array
 
 FEED_MM_S = 10.0
 NEARER_MM = 1.0 * UM  # than the radius to a contour; asked of the cutter's ways: 1 um

@@ -11,20 +11,20 @@ from hypothesis import settings as tried
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from motion.contour import distance
-from motion.faults import LineFault
-from motion.motion import MOTION_RATE_HZ, join, thin
+from morfax.motion.contour import distance
+from morfax.motion.faults import LineFault
+from morfax.motion.motion import MOTION_RATE_HZ, join, thin
 from tests.tracer.inked import UM, Points, arc, inked, polyline
-from tracer import tour
-from tracer.contours import idle_way_mm, in_order, in_order_and_turned, nested, plan
-from tracer.joined import joined_to
-from tracer.line import Line
-from tracer.lines import Sheet
-from tracer.operator import Operator
-from tracer.program import Trace
-from tracer.sequence import trace
-from tracer.settings import Settings
-from tracer.tour import trace_lines
+from morfax.tracer.program import trace_lines as tour
+from morfax.tracer.program.selection import idle_way_mm, in_order, in_order_and_turned, nested, plan
+from morfax.tracer.program.joined_lines import joined_to
+from morfax.tracer.following.line import Line
+from morfax.tracer.drawing.strokes import Sheet
+from morfax.tracer.operator.operator import Operator
+from morfax.tracer.program.program import Trace
+from morfax.tracer.program.trace import trace
+from morfax.tracer.head.settings import Settings
+from morfax.tracer.program.trace_lines import trace_lines
 
 FRAME = polyline((4, 4), (34, 4), (34, 24), (4, 24), (4, 4))
 ISLAND, HOLE, EYE = arc((12, 14), 6), arc((26, 14), 3), arc((12, 14), 1.5)

@@ -11,9 +11,10 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from tests.tracer.inked import UM, WIDTH_MM, corner, inked
-from tracer import course, photocell
-from tracer.leg import Leg, meet
-from tracer.view import LEVEL, View
+from morfax.tracer.head import course
+from morfax.tracer.sensing import photocell
+from morfax.tracer.sensing.leg import Leg, meet
+from morfax.tracer.sensing.view import LEVEL, View
 
 Array = NDArray[np.float64]
 NO_STATIONS = np.empty((0, 3))

@@ -8,20 +8,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from motion.contour import distance
-from motion.faults import MotionFault
-from motion.motion import thin
+from morfax.motion.contour import distance
+from morfax.motion.faults import MotionFault
+from morfax.motion.motion import thin
 from tests.tracer.inked import UM, arc, inked, polyline
 from tests.tracer.test_program import WORK, run_through
-from tracer.cutter import Cutter, Left, Side, with_cutter
-from tracer.deviation import deviation, touched
-from tracer.line import Line
-from tracer.marks import Mark
-from tracer.operator import Operator
-from tracer.program import Trace
-from tracer.sequence import trace
-from tracer.tour import trace_lines
-from tracer.view import Array
+from morfax.tracer.cutter.cutter import Cutter, Left, Side, with_cutter
+from morfax.tracer.drawing.deviation import deviation, touched
+from morfax.tracer.following.line import Line
+from morfax.tracer.marks.marks import Mark
+from morfax.tracer.operator.operator import Operator
+from morfax.tracer.program.program import Trace
+from morfax.tracer.program.trace import trace
+from morfax.tracer.program.trace_lines import trace_lines
+from morfax.tracer.sensing.view import Array
 
 shapely = pytest.importorskip("shapely")
 

@@ -8,11 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from motion.faults import MotionFault
-from motion.motion import Path
+from morfax.motion.faults import MotionFault
+from morfax.motion.motion import Path
 from tests.tracer.inked import UM, WIDTH_MM, arc, inked, polyline
-from tracer.deviation import AVERAGED_MM, deviation
-from tracer.sequence import trace
+from morfax.tracer.drawing.deviation import AVERAGED_MM, deviation
+from morfax.tracer.program.trace import trace
 
 Array = NDArray[np.float64]
 MIDDLE = 14.0

@@ -7,15 +7,15 @@ import math
 import numpy as np
 import pytest
 
-from motion.contour import distance
+from morfax.motion.contour import distance
 from tests.tracer.inked import UM, arc, dot, inked, polyline
-from tracer import dots
-from tracer.drawing import Drawing
-from tracer.leg import leg_of
-from tracer.lines import Sheet
-from tracer.sequence import trace
-from tracer.stance import view_of
-from tracer.view import View
+from morfax.tracer.marks import dots
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.sensing.leg import leg_of
+from morfax.tracer.drawing.strokes import Sheet
+from morfax.tracer.program.trace import trace
+from morfax.tracer.following.start import view_of
+from morfax.tracer.sensing.view import View
 
 WITHIN_MM = 20 * UM  # a quarter of a pixel at 300 dpi
 LINE = polyline((4, 12), (24, 12))

@@ -10,9 +10,9 @@ import pytest
 from numpy.typing import NDArray
 from PIL import Image
 
-from motion.faults import DrawingFault, FileFault
+from morfax.motion.faults import DrawingFault, FileFault
 from tests.tracer.inked import UM, arc, inked, polyline
-from tracer.drawing import MM_PER_INCH, Drawing
+from morfax.tracer.drawing.drawing import MM_PER_INCH, Drawing
 
 DPI = (300.0, 300.0)
 PEN_MM = 1 * UM  # to which the pen draws: a tenth of its fine pixels of 10.6 um

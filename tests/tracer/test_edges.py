@@ -7,9 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from motion.offset import Guide, offset
+from morfax.motion.offset import Guide, offset
 from tests.tracer.inked import UM, arc, polyline
-from tracer import edges
+from morfax.tracer.cutter import sides as edges
 
 STAR = [(12 + r * math.cos(k * math.pi / 5), 12 + r * math.sin(k * math.pi / 5)) for k, r in enumerate([10, 4] * 5)]
 GUIDES = {

@@ -7,14 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from motion.motion import MOTION_RATE_HZ
+from morfax.motion.motion import MOTION_RATE_HZ
 from tests.tracer.inked import arc, inked, polyline
-from tracer.drawing import Drawing
-from tracer.enlarger import enlarged, reduced
-from tracer.follower import Followed, Follower
-from tracer.lines import Sheet
-from tracer.settings import Settings
-from tracer.stance import Stance, put_down
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.following.enlarger import enlarged, reduced
+from morfax.tracer.following.follower import Followed, Follower
+from morfax.tracer.drawing.strokes import Sheet
+from morfax.tracer.head.settings import Settings
+from morfax.tracer.following.start import Stance, put_down
 
 TIMES = 4
 

@@ -12,15 +12,15 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from motion.contour import distance, length_mm, pointwise
-from motion.faults import LineFault
+from morfax.motion.contour import distance, length_mm, pointwise
+from morfax.motion.faults import LineFault
 from tests.tracer.inked import UM, arc, corner, inked, polyline
-from tracer.card import Card
-from tracer.drawing import Drawing
-from tracer.operator import Direction, Operator
-from tracer.program import Trace
-from tracer.sequence import trace
-from tracer.settings import Settings
+from morfax.tracer.operator.card import Card
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.operator.operator import Direction, Operator
+from morfax.tracer.program.program import Trace
+from morfax.tracer.program.trace import trace
+from morfax.tracer.head.settings import Settings
 
 Array = NDArray[np.float64]
 LINE_MM, END_MM = 25 * UM, 30 * UM

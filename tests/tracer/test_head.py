@@ -14,16 +14,16 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from motion.contour import distance
-from motion.drive import Drive
-from motion.motion import MOTION_RATE_HZ
+from morfax.motion.contour import distance
+from morfax.motion.drive import Drive
+from morfax.motion.motion import MOTION_RATE_HZ
 from tests.tracer.inked import UM, arc, inked, polyline
-from tracer import head
-from tracer.drawing import Drawing
-from tracer.follower import Followed, Follower
-from tracer.sequence import Trace, trace
-from tracer.settings import Settings
-from tracer.stance import put_down
+from morfax.tracer.head import kernel as head
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.following.follower import Followed, Follower
+from morfax.tracer.program.trace import Trace, trace
+from morfax.tracer.head.settings import Settings
+from morfax.tracer.following.start import put_down
 
 SPEED_MM_S = Settings().speed_mm_s
 ALONG_PIXELS_MM = 6 * UM

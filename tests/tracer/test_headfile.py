@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from motion.faults import CardFault, FileFault
-from tracer.headfile import as_toml, parse_changes, read_changes
-from tracer.settings import BOUNDS, HEADS, choose
+from morfax.motion.faults import CardFault, FileFault
+from morfax.tracer.operator.settings_file import as_toml, parse_changes, read_changes
+from morfax.tracer.head.settings import BOUNDS, HEADS, choose
 
 
 @pytest.mark.parametrize("head", list(HEADS))

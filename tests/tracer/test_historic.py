@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from motion.drive import Drive
+from morfax.motion.drive import Drive
 from tests.tracer.inked import inked, polyline
-from tracer import head
-from tracer.carriage import Carriage
-from tracer.sequence import trace
-from tracer.settings import HISTORIC, Settings
-from tracer.stance import Stance, put_down
+from morfax.tracer.head import kernel as head
+from morfax.tracer.head.carriage import Carriage
+from morfax.tracer.program.trace import trace
+from morfax.tracer.head.settings import HISTORIC, Settings
+from morfax.tracer.following.start import Stance, put_down
 
 RATE_HZ = 6000.0
 QUICK = Drive(1e-5, 1e9)  # the theory has no lag in the drives

@@ -10,13 +10,13 @@ import pytest
 from numpy.typing import NDArray
 from PIL import Image
 
-from motion.contour import distance
-from motion.faults import DrawingFault
-from motion.motion import thin
+from morfax.motion.contour import distance
+from morfax.motion.faults import DrawingFault
+from morfax.motion.motion import thin
 from tests.tracer.inked import UM, Points, arc, inked, polyline
-from tracer.drawing import Drawing
-from tracer.ink import parsed
-from tracer.sequence import trace
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.inks import parsed
+from morfax.tracer.program.trace import trace
 
 BLUE, ORANGE, GREY, PAPER = (0x20, 0x30, 0xC0), (0xF0, 0xA0, 0x50), (0xB0, 0xB0, 0xB0), (0xF6, 0xF4, 0xEC)
 CIRCLE = arc((16, 16), 10)

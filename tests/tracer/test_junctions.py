@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from tests.tracer.inked import UM, arc, dot, inked, polyline
-from tracer.card import Card
-from tracer.junctions import AGAIN_MM, Guide, Junctions
-from tracer.line import Line
-from tracer.operator import Operator
-from tracer.sequence import trace
+from morfax.tracer.operator.card import Card
+from morfax.tracer.junctions.guides import AGAIN_MM, Guide, Junctions
+from morfax.tracer.following.line import Line
+from morfax.tracer.operator.operator import Operator
+from morfax.tracer.program.trace import trace
 
 HERE, THERE = np.array([10.0, 0.0]), np.array([20.0, 0.0])
 WITHIN_MM = 50 * UM  # as a corner's vertex

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from tests.tracer.inked import Points, arc, polyline
-from tracer.follower import Followed
-from tracer.kept import OFF_MM, kept_to
-from tracer.view import View
+from morfax.tracer.following.follower import Followed
+from morfax.tracer.following.edge_check import OFF_MM, kept_to
+from morfax.tracer.sensing.view import View
 
 SQUARE = polyline((10, 10), (30, 10), (30, 30), (10, 30), (10, 10))
 HOLE = arc((20, 20), 4)

@@ -12,11 +12,11 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from tests.tracer.inked import UM, WIDTH_MM, arc, inked, polyline
-from tracer import photocell
-from tracer.drawing import Drawing
-from tracer.knot import corner_in, legs_around
-from tracer.leg import Leg, centre_at, end_of, leg_of, meet, reach_of_ink, stroke_end, turn
-from tracer.view import LEVEL, View
+from morfax.tracer.sensing import photocell
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.junctions.rings import corner_in, legs_around
+from morfax.tracer.sensing.leg import Leg, centre_at, end_of, leg_of, meet, reach_of_ink, stroke_end, turn
+from morfax.tracer.sensing.view import LEVEL, View
 
 Array = NDArray[np.float64]
 ALONG_PIXELS_MM = 6 * UM  # a line along pixels of 85 um is seen 5 um off its middle

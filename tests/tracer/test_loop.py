@@ -7,11 +7,11 @@ import math
 import numpy as np
 import pytest
 
-from motion.faults import LineFault
+from morfax.motion.faults import LineFault
 from tests.tracer.inked import UM, arc, inked, polyline, tick
-from tracer.loop import comes_again, loop_in
-from tracer.operator import Operator
-from tracer.sequence import trace
+from morfax.tracer.head.loop import comes_again, loop_in
+from morfax.tracer.operator.operator import Operator
+from morfax.tracer.program.trace import trace
 
 STEP_MM = 0.01
 WIDTH_MM = 0.5

@@ -9,13 +9,13 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import pytest
 
-from motion.faults import CardFault
-from tracer.card import Card, Stop
-from tracer.junctions import Guide
-from tracer.line import Line
-from tracer.marks import Mark
-from tracer.operator import STAND_S, Halt, Operator, Work
-from tracer.zunit import Move
+from morfax.motion.faults import CardFault
+from morfax.tracer.operator.card import Card, Stop
+from morfax.tracer.junctions.guides import Guide
+from morfax.tracer.following.line import Line
+from morfax.tracer.marks.marks import Mark
+from morfax.tracer.operator.operator import STAND_S, Halt, Operator, Work
+from morfax.tracer.operator.zunit import Move
 
 Z = list[tuple[float, ...]]
 WAY = np.column_stack([np.linspace(0, 100, 1001), np.zeros(1001)])  # position k is at k / 10 mm

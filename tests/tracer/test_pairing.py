@@ -12,16 +12,16 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from motion.contour import distance, length_mm
+from morfax.motion.contour import distance, length_mm
 from tests.tracer.inked import UM, inked, polyline
-from tracer import pen
-from tracer.drawing import Drawing
-from tracer.leg import leg_of
-from tracer.pairing import Sketch, Way, matchings, ways
-from tracer.photocell import behind_aperture
-from tracer.sequence import trace
-from tracer.tangle import Tangle, tangle_ahead
-from tracer.view import LEVEL, View
+from morfax.tracer.tangles import pen
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.sensing.leg import leg_of
+from morfax.tracer.tangles.redrawing import Sketch, Way, matchings, ways
+from morfax.tracer.sensing.photocell import behind_aperture
+from morfax.tracer.program.trace import trace
+from morfax.tracer.tangles.tangle import Tangle, tangle_ahead
+from morfax.tracer.sensing.view import LEVEL, View
 
 Array = NDArray[np.float64]
 WIDTH_MM = 0.5

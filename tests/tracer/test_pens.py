@@ -14,11 +14,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from motion.contour import distance, length_mm
+from morfax.motion.contour import distance, length_mm
 from tests.tracer.inked import DPI, UM, arc, inked, polyline, together
-from tracer.drawing import MM_PER_INCH, Drawing
-from tracer.sequence import trace
-from tracer.view import View
+from morfax.tracer.drawing.drawing import MM_PER_INCH, Drawing
+from morfax.tracer.program.trace import trace
+from morfax.tracer.sensing.view import View
 
 Array = NDArray[np.float64]
 SEEDS = pytest.mark.parametrize("seed", [1, 2, 3])

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from tests.tracer.inked import UM, WIDTH_MM, arc, inked, polyline
-from tracer import photocell
-from tracer.drawing import Drawing
+from morfax.tracer.sensing import photocell
+from morfax.tracer.drawing.drawing import Drawing
 
 WIDE_MM, AMPLITUDE_MM, APERTURE_MM = 0.7, 1.0, 0.3  # the line, sweep and cell of the vectors
 FINE_MM = 0.005

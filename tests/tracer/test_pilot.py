@@ -9,13 +9,14 @@ import numpy as np
 import pytest
 
 from tests.tracer.inked import arc, inked, polyline
-from tracer import course, photocell
-from tracer.leg import leg_of, turn
-from tracer.pilot import Pilot
-from tracer.settings import Settings
-from tracer.strands import Planned
-from tracer.trail import Trail
-from tracer.view import Array, View
+from morfax.tracer.head import course
+from morfax.tracer.sensing import photocell
+from morfax.tracer.sensing.leg import leg_of, turn
+from morfax.tracer.junctions.planner import Pilot
+from morfax.tracer.head.settings import Settings
+from morfax.tracer.tangles.strands import Planned
+from morfax.tracer.head.trail import Trail
+from morfax.tracer.sensing.view import Array, View
 
 WIDTH_MM = 0.3
 DEFLECTION = math.radians(60)

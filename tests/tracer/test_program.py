@@ -7,15 +7,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from motion.faults import LineFault
-from motion.motion import MOTION_RATE_HZ, join
-from tracer.card import Card
-from tracer.junctions import Guide
-from tracer.line import Line
-from tracer.marks import Mark
-from tracer.operator import Operator, Work
-from tracer.program import BRAKE_MM_S2, Trace
-from tracer.view import Array
+from morfax.motion.faults import LineFault
+from morfax.motion.motion import MOTION_RATE_HZ, join
+from morfax.tracer.operator.card import Card
+from morfax.tracer.junctions.guides import Guide
+from morfax.tracer.following.line import Line
+from morfax.tracer.marks.marks import Mark
+from morfax.tracer.operator.operator import Operator, Work
+from morfax.tracer.program.program import BRAKE_MM_S2, Trace
+from morfax.tracer.sensing.view import Array
 
 WORK = Work(depth_mm=4.0, clearance_mm=2.0)
 STEP_MM = 10.0 / MOTION_RATE_HZ  # of a head at 10 mm/s

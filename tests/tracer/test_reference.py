@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from tests.tracer.inked import UM, arc, cross, inked, polyline, tick
-from tracer.line import Line
-from tracer.operator import Operator
-from tracer.sequence import trace
+from morfax.tracer.following.line import Line
+from morfax.tracer.operator.operator import Operator
+from morfax.tracer.program.trace import trace
 
 WITHIN_MM = 50 * UM
 CIRCLE = arc((36, 14), 9)

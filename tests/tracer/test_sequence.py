@@ -9,15 +9,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from motion.contour import distance
-from motion.faults import DrawingFault, LineFault
-from motion.motion import IN_WORK_BELOW_MM, MOTION_RATE_HZ, join, thin
+from morfax.motion.contour import distance
+from morfax.motion.faults import DrawingFault, LineFault
+from morfax.motion.motion import IN_WORK_BELOW_MM, MOTION_RATE_HZ, join, thin
 from tests.tracer.inked import UM, arc, inked, polyline
-from tracer.card import Card
-from tracer.line import Line
-from tracer.operator import Operator, Work
-from tracer.program import Trace
-from tracer.sequence import trace
+from morfax.tracer.operator.card import Card
+from morfax.tracer.following.line import Line
+from morfax.tracer.operator.operator import Operator, Work
+from morfax.tracer.program.program import Trace
+from morfax.tracer.program.trace import trace
 
 CIRCLE = arc((9, 9), 5)
 OPEN = polyline((4, 6), (24, 9))

@@ -6,8 +6,8 @@ from dataclasses import fields
 
 import pytest
 
-from motion.drive import Drive
-from tracer.settings import BOUNDS, HEADS, Settings, choose, value_of
+from morfax.motion.drive import Drive
+from morfax.tracer.head.settings import BOUNDS, HEADS, Settings, choose, value_of
 
 
 def test_the_precise_set_is_the_default() -> None:

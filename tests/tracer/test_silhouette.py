@@ -12,14 +12,14 @@ from PIL import Image
 from scipy.spatial import cKDTree
 from skimage.draw import polygon
 
-from motion.contour import distance
-from motion.faults import DrawingFault
-from motion.motion import thin
+from morfax.motion.contour import distance
+from morfax.motion.faults import DrawingFault
+from morfax.motion.motion import thin
 from tests.tracer.inked import DPI, SOFTNESS_MM, UM, Points, arc, polyline
-from tracer.drawing import MM_PER_INCH, Drawing
-from tracer.lines import Sheet
-from tracer.sequence import trace
-from tracer.tour import trace_lines
+from morfax.tracer.drawing.drawing import MM_PER_INCH, Drawing
+from morfax.tracer.drawing.strokes import Sheet
+from morfax.tracer.program.trace import trace
+from morfax.tracer.program.trace_lines import trace_lines
 
 CIRCLE = arc((16, 16), 10)
 STEPPED = polyline((8, 8), (28, 8), (28, 18), (18, 18), (18, 26), (8, 26), (8, 8))  # five corners outward, one inward

@@ -9,13 +9,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from motion.faults import DrawingFault, LineFault
+from morfax.motion.faults import DrawingFault, LineFault
 from tests.tracer.inked import UM, WIDTH_MM, arc, corner, dot, inked, polyline
-from tracer.drawing import Drawing
-from tracer.leg import Leg
-from tracer.lines import Sheet
-from tracer.stance import Stance, put_down
-from tracer.trail import Trail
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.sensing.leg import Leg
+from morfax.tracer.drawing.strokes import Sheet
+from morfax.tracer.following.start import Stance, put_down
+from morfax.tracer.head.trail import Trail
 
 ON_IT_MM = 8 * UM  # on clean ink, as a parabola through what was felt has it; 5 um on a line along the pixels
 

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from motion.contour import distance
+from morfax.motion.contour import distance
 from tests.tracer.inked import UM, arc, polyline
-from tracer import stops
+from morfax.tracer.program import braking as stops
 
 RATE_HZ = 6000.0
 BRAKE_MM_S2 = 500.0

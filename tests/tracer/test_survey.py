@@ -9,13 +9,13 @@ import pytest
 from numpy.typing import NDArray
 
 from tests.tracer.inked import UM, WIDTH_MM, inked, polyline
-from tracer import photocell
-from tracer.drawing import Drawing
-from tracer.leg import Leg, leg_of
-from tracer.riding import ride_past
-from tracer.survey import goes_straight, straight_on, survey
-from tracer.trail import Trail
-from tracer.view import LEVEL, View
+from morfax.tracer.sensing import photocell
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.sensing.leg import Leg, leg_of
+from morfax.tracer.junctions.edge_following import ride_past
+from morfax.tracer.junctions.choice import goes_straight, straight_on, survey
+from morfax.tracer.head.trail import Trail
+from morfax.tracer.sensing.view import LEVEL, View
 
 Array = NDArray[np.float64]
 VERTEX_MM = 10 * UM  # to which straight legs, 5 um aside on clean ink, meet at 45 degrees and more

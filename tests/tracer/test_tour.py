@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from tests.tracer.inked import arc, inked
-from tracer import tour
-from tracer.line import Line
-from tracer.operator import Operator
-from tracer.settings import Settings
+from morfax.tracer.program import trace_lines as tour
+from morfax.tracer.following.line import Line
+from morfax.tracer.operator.operator import Operator
+from morfax.tracer.head.settings import Settings
 
 DRAWING = inked(arc((16, 16), 10))
 

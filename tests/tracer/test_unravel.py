@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from motion.contour import distance, length_mm
+from morfax.motion.contour import distance, length_mm
 from tests.tracer.inked import UM, WIDTH_MM, inked, polyline
-from tracer.line import Line
-from tracer.sequence import trace
+from morfax.tracer.following.line import Line
+from morfax.tracer.program.trace import trace
 
 Array = NDArray[np.float64]
 SEEDS = pytest.mark.parametrize("seed", [None, 1, 2])

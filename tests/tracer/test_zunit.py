@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from motion.motion import MOTION_RATE_HZ
-from tracer.zunit import (
+from morfax.motion.motion import MOTION_RATE_HZ
+from morfax.tracer.operator.zunit import (
     COUNT_MM,
     LARGEST_COUNT,
     Counters,

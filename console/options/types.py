@@ -1,0 +1,133 @@
+"""Lengths, speeds, frequencies, places and lines as the command line takes them: text with a unit becomes mm, mm/s, Hz."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import click
+
+from morfax.motion.units import (
+    parse_angle_rad,
+    parse_frequency_hz,
+    parse_length_mm,
+    parse_place_mm,
+    parse_share,
+    parse_speed_mm_s,
+    parse_time_s,
+)
+
+
+class Quantity(click.ParamType):
+    """A parameter with a unit; what cannot be read is wrong use of the command line."""
+
+    def __init__(
+        self, name: str, parse: Callable[[str], Any], *, above_zero: bool = False, within: str | None = None
+    ) -> None:
+        self.name, self._parse, self._above_zero = name, parse, above_zero
+        self._within = within  # such as "0.05mm to 500mm"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Read the text; a value that is a number already stays as it is."""
+        try:
+            quantity = self._parse(value) if isinstance(value, str) else value
+        except ValueError as refused:
+            self.fail(str(refused), param, ctx)
+        if self._above_zero and not quantity > 0:
+            self.fail(f"{value!r} is no {self.name} here; it must be above zero", param, ctx)
+        if self._within is not None:
+            least, most = (self._parse(end) for end in self._within.split(" to "))
+            if not least <= quantity <= most:
+                self.fail(f"{value!r} is no {self.name} here; it may be {self._within}", param, ctx)
+        return quantity
+
+
+def _number(text: str) -> float:
+    """Read a bare number."""
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    if not math.isfinite(number):
+        raise ValueError(f"{text!r} is no number; give one such as 20")
+    return number
+
+
+def _parse_places_mm(text: str) -> tuple[float, ...]:
+    """Place in mm of "X,Y", "X,Y,Z" or more axes, each a length."""
+    parts = text.split(",")
+    return (*parse_place_mm(",".join(parts[:2])), *(parse_length_mm(part) for part in parts[2:]))
+
+
+def _parse_lines(text: str) -> str | tuple[int, ...]:
+    """Which lines of a drawing: "all", "outer", or their numbers."""
+    word = text.strip().lower()
+    if word in ("all", "outer"):
+        return word
+    try:
+        return tuple(int(number) for number in word.split(","))
+    except ValueError:
+        raise ValueError(f"{text!r} names no lines; give all, outer, or numbers such as 1,3") from None
+
+
+def _parse_override(text: str) -> str | tuple[int, ...]:
+    """Which stop marks do not stop the head: "none", "all", or their numbers."""
+    word = text.strip().lower()
+    if word in ("none", "all"):
+        return word
+    parts = [part.strip() for part in word.split(",")]
+    if not all(part.isdecimal() and int(part) > 0 for part in parts):
+        raise ValueError(f"{text!r} names no stops; give none, all, or numbers from 1 on, such as 1,3")
+    return tuple(map(int, parts))
+
+
+def _tracks(text: str) -> tuple[int, ...]:
+    """Tracks of "2,1,3,4"."""
+    try:
+        return tuple(int(part) for part in text.split(","))
+    except ValueError:
+        raise ValueError(f"{text[:40]!r} names no tracks; give 2,1,3,4") from None
+
+
+def _parse_origin(text: str) -> Any:
+    """Where a machine's zero is on the sheet: "reference", or a place."""
+    return "reference" if text.strip().lower() == "reference" else parse_place_mm(text)
+
+
+def _decades(least_counts: int) -> Callable[[str], float]:
+    """How to read a length of Z, which is set on five decades."""
+
+    def parse(text: str) -> float:
+        from morfax.tracer.operator.zunit import COUNT_MM, COUNTS_PER_MM, LARGEST_COUNT, counts_of
+
+        length_mm, most_mm = parse_length_mm(text), LARGEST_COUNT * COUNT_MM
+        allowed = f"give {least_counts * COUNT_MM:.2f} to {most_mm:.2f} mm in steps of {COUNT_MM:g} mm, such as 2.5mm"
+        if not least_counts * COUNT_MM <= length_mm <= most_mm:
+            raise ValueError(f"{text!r} cannot be set here on the five decades of Z; {allowed}")
+        try:
+            return counts_of(length_mm) / COUNTS_PER_MM
+        except ValueError:
+            raise ValueError(f"{text!r} cannot be set on the five decades of Z; {allowed}") from None
+
+    return parse
+
+
+LENGTH = Quantity("length", parse_length_mm, above_zero=True)
+REACH = Quantity("length", parse_length_mm)  # of the head, which may be none
+DEPTH = Quantity("length", _decades(1))
+CLEARANCE = Quantity("length", _decades(6))  # up to 0.05 mm above the work the tool counts as in it
+CUTTER = Quantity("length", parse_length_mm, within="0.05mm to 500mm")
+SPEED = Quantity("speed", parse_speed_mm_s)
+FEED = Quantity("speed", parse_speed_mm_s, within="0.01mm/s to 1000mm/s")
+FREQUENCY = Quantity("frequency", parse_frequency_hz)
+ANGLE = Quantity("angle", parse_angle_rad)
+SHARE = Quantity("share", parse_share)
+NUMBER = Quantity("number", _number, above_zero=True)
+PLACE = Quantity("x,y", parse_place_mm)
+PLACES = Quantity("x,y,z", _parse_places_mm)
+TIME = Quantity("time", parse_time_s)
+LINES = Quantity("lines", _parse_lines)
+OVERRIDE = Quantity("stops", _parse_override)
+TRACKS = Quantity("tracks", _tracks)
+ORIGIN = Quantity("x,y or reference", _parse_origin)

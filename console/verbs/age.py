@@ -1,0 +1,111 @@
+"""The verb `age`: what a real recorder and the years do to a tape."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path as FilePath
+from typing import Any
+
+import click
+
+from morfax.jobs import files as medium
+from morfax.console.terminal.desk import Desk, desk_options
+from morfax.console.options.types import FREQUENCY, TIME, TRACKS, Quantity
+
+SETS = ("studio-15ips", "instrumentation", "cassette")
+
+EXAMPLES = """\b
+Examples:
+  morfax age cam.wav -o worn.wav --as cassette --seed 7
+  morfax age cam.wav -o fast.wav --speed 1.5% --flutter 0.2%
+  morfax age cam.wav -o holes.wav --dropouts 60 --dropout-length 5ms --dropout-depth 40dB
+  morfax age cam.wav -o mixed.wav --order 2,1,3,4 --inverted 3
+"""
+
+
+def _share(text: str) -> float:
+    """A share of "1.5%" or a bare number."""
+    try:
+        return float(text[:-1]) / 100 if text.endswith("%") else float(text)
+    except ValueError:
+        raise ValueError(f"{text[:40]!r} is no share; give 1.5%, or a bare number such as 0.015") from None
+
+
+def _decibels(text: str) -> float:
+    """Decibels of "46dB" or a bare number."""
+    found = re.fullmatch(r"([+-]?[\d.]+)\s*(?:dB)?", text.strip(), re.IGNORECASE)
+    try:
+        return float(found[1]) if found else float("x")
+    except ValueError:
+        raise ValueError(f"{text[:40]!r} is no level; give 46dB or a bare number of dB") from None
+
+
+SHARE, DECIBELS = Quantity("share", _share), Quantity("dB", _decibels)
+
+PARTS: tuple[tuple[str, str, Any, str], ...] = (
+    ("--speed", "speed", SHARE, "Speed error, such as 1.5% or -1.5%."),
+    ("--wow", "wow", SHARE, "Unevenness of speed from 0.5 to 4 Hz, RMS."),
+    ("--flutter", "flutter", SHARE, "Unevenness of speed from 4 to 100 Hz, RMS."),
+    ("--scrape", "scrape", SHARE, "Unevenness of speed from 100 to 2000 Hz, RMS."),
+    ("--skew", "skew_s", TIME, "Each track later than the one before, such as 12us."),
+    ("--weave", "weave_s", TIME, "The skew wandering, RMS from track to track."),
+    ("--noise", "noise_db", DECIBELS, "Noise, dB below the carrier."),
+    ("--level", "level_db", DECIBELS, "Level, dB against what it was."),
+    ("--uneven", "uneven_db", DECIBELS, "Level rising and falling slowly, dB RMS."),
+    ("--crosstalk", "crosstalk_db", DECIBELS, "Crosstalk from the neighbouring tracks, dB below."),
+    ("--print-through", "print_db", DECIBELS, "Echo of the layers above and below, dB below."),
+    ("--dropouts", "dropouts_per_min", click.FloatRange(min=0), "Dropouts in a minute."),
+    ("--dropout-length", "dropout_s", TIME, "Their length, in the middle."),
+    ("--dropout-depth", "dropout_db", DECIBELS, "Their depth, dB."),
+    ("--hum", "hum_db", DECIBELS, "Hum, dB below the carrier."),
+    ("--hum-frequency", "hum_hz", FREQUENCY, "Frequency of the hum."),
+    ("--dc", "dc", SHARE, "Direct current, share of full scale."),
+    ("--distortion", "third", SHARE, "Third harmonic, share of the carrier."),
+    ("--bandwidth", "bandwidth_hz", FREQUENCY, "Where the tape is 3 dB down, such as 12.5kHz."),
+    ("--clip", "clip", SHARE, "Clipped at this share of full scale."),
+    ("--stamped", "stamped_hz", FREQUENCY, "A wrong sample rate in the header."),
+    ("--order", "order", TRACKS, "The tracks in another order, such as 2,1,3,4."),
+    ("--inverted", "inverted", TRACKS, "Tracks with the wrong polarity, such as 1,3."),
+    ("--cut-start", "cut_start_s", TIME, "A start that is missing."),
+    ("--cut-end", "cut_end_s", TIME, "An end that is missing."),
+)
+
+
+def part_options(verb: Any) -> Any:
+    """Give a verb an option for each part of the wear."""
+    for name, part, kind, said in reversed(PARTS):
+        verb = click.option(name, part, type=kind, default=None, help=said)(verb)
+    return verb
+
+
+@click.command("age", epilog=EXAMPLES)
+@click.argument("tape", type=medium.FILE)
+@click.option("-o", "output", type=medium.FILE, required=True, help="The worn tape (.wav, .rf64, .w64, .flac, .aiff).")
+@click.option("--as", "machine", type=click.Choice(SETS), help="All that a kind of machine does; parts go before it.")
+@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Another seed, another tape.")
+@click.option("--all-tracks", "dropout_all", is_flag=True, default=None, help="Dropouts on all tracks at once.")
+@part_options
+@desk_options
+def command(tape: FilePath, output: FilePath, machine: str | None, seed: int, desk: Desk, **parts: Any) -> None:
+    """Wear a tape as a real recorder and the years do.
+
+    Each part stands by itself; without any the tape is only copied. docs/transport.md has the figures of the sets.
+    """
+    from morfax.recorder.wear.transport import SETS as WEAR
+    from morfax.recorder.wear.transport import Wear, age
+
+    medium.outgoing(output, tape)
+    given = {name: value for name, value in parts.items() if value is not None}
+    if "stamped_hz" in given:
+        given["stamped_hz"] = round(given["stamped_hz"])
+    desk.warn_of_compiling("the transport", "recorder")
+    try:
+        with desk.bar(f"wearing {tape.name}", 1.0) as advance:
+            wear = replace(WEAR[machine] if machine else Wear(), **given)
+            aged = age(tape, output, wear, seed, progress=lambda done_s, total_s: advance(done_s / (total_s or 1)))
+    except ValueError as refused:
+        if type(refused) is not ValueError:
+            raise
+        raise click.UsageError(str(refused)) from None
+    desk.figures({"tape": str(output), "duration_s": aged.duration_s, "dropouts": len(aged.dropouts), "seed": seed})

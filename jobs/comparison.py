@@ -1,0 +1,69 @@
+"""How far a path is from another path, or from the ink of a drawing: figures, and the error along the contour.
+
+A path from a path: the distance of each sample of the first from the nearest place of the second, and back. A path from
+a drawing: the distance of each point from the ink's own centre, measured across the path in the image, not a number
+where the ink has no centre that means anything (crossings, corners); and the ink that no path covers.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.reports.table import Figures
+from morfax.motion.motion import Path
+
+if TYPE_CHECKING:
+    from morfax.motion.contour import Summary
+    from morfax.tracer.drawing.drawing import Drawing
+
+SAMPLE_MM = 0.05  # between the points that a picture shows
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """Rows of figures by name, the largest distance, and the error at points along the path (mm)."""
+
+    rows: dict[str, Figures]
+    largest_mm: float
+    points_mm: NDArray[np.float64]
+    error_mm: NDArray[np.float64]
+    missed: dict[str, Any] | None = None
+
+    @property
+    def figures(self) -> dict[str, Any]:
+        """All figures, for a table or for JSON."""
+        return {**(self.missed or {}), **self.rows}
+
+
+def from_path(path: Path, reference: Path, names: tuple[str, str] = ("a", "b")) -> Comparison:
+    """Compare a path with another one; the names are those of the two in the figures."""
+    from morfax.motion.contour import distance, pointwise
+
+    found = distance(path, reference)
+    rows = {
+        f"{names[0]}_to_{names[1]}": _row(found.path_to_reference),
+        f"{names[1]}_to_{names[0]}": _row(found.reference_to_path),
+    }
+    return Comparison(rows, found.hausdorff_mm, *pointwise(path, reference, SAMPLE_MM))
+
+
+def from_drawing(drawing: Drawing, path: Path, name: str = "path", radius_mm: float = 0.0) -> Comparison:
+    """Compare a path with the ink of its drawing; with a cutter's radius, what the cutter's edge touches."""
+    from morfax.tracer.drawing.deviation import deviation, touched
+
+    found = (
+        deviation(drawing, touched(drawing, path, radius_mm), [path.xy_mm]) if radius_mm else deviation(drawing, path)
+    )
+    row = {"rms_mm": found.rms_mm, "p95_mm": found.p95_mm, "max_mm": found.max_mm}
+    row["measured_share"] = found.measured_share
+    missed = {"missed_ink_mm": found.missed_mm, "missed_ink_share": found.missed_share}
+    return Comparison({f"{name}_to_ink": row}, found.max_mm, found.points_mm, found.error_mm, missed)
+
+
+def _row(summary: Summary) -> Figures:
+    """One way of a comparison as figures."""
+    return {"rms_mm": summary.rms_mm, "p95_mm": summary.p95_mm, "max_mm": summary.max_mm}

@@ -1,0 +1,236 @@
+"""The cubic control: interpolator, two-scale measurement, and a servo whose speed modulus is in the program.
+
+Signals: a `.cubic` file in; the machine's own motion out, one sample for each interpolated point.
+
+    tape ─► interpolator 32 ─► predicted ─┐
+                                          ├─► difference 29 ─► register 34 ─► decoder 35 ─► servo 36 ─► motor 9
+    scales ─► counters 18, 19 ─► present ─┘        counts  │   limited           × modulus    mm/s
+                                                           └─► monitor
+
+    speed demand = modulus · (predicted place of the next point - present place)
+
+The difference carries the speed and the correction both: at a constant speed v the machine lags by v / modulus, on all
+axes alike, so that straight lines stay straight and a circle of radius r shrinks by about v² / (2 r modulus²). A larger
+modulus makes a faster machine of the same program (rough), a smaller one a smoother (fine). Dropping the lowest digits of
+the difference makes a rough pass. The monitor allows the lag that the speed explains, and no more.
+
+Source: patent US 3062995, figures 1 and 3, claims 1 to 10.
+Questions: the patent gives no modulus; 200 mm/s for each mm here. Register 34 has 12 digits and a sign: 4095 counts, 2
+mm at 2000 counts per mm; beyond, the drive is lost, and the patent's register would have been full. At the end the last
+place is held until the lag is run off, 15 / modulus. A start at speed and a corner are refused when the program is read.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from morfax.motion.axis import TRAVEL_MM
+from morfax.motion.drive import SOUND, Drive, as_rows, conditioned_step
+from morfax.motion.faults import LockFault, ProgramFault
+from morfax.motion.motion import AXES, Motion
+from morfax.player.cubics.interpolator import Interpolator, ends, slopes
+from morfax.player.monitor.monitor import FollowingLimit, Supervised
+from morfax.player.cubics.scales import Scales, measured
+from morfax.recorder.cubics.file import STEPS_PER_CONSTANT, CubicProgram, read_program
+
+REGISTER_DIGITS = 12  # of register 34, sign apart
+_SETTLING = 15.0  # time constants of the servo: the lag falls to 3e-7 of itself
+_BLOCK_INTERVALS = 256
+_LARGEST_WORD = 2**62  # of register I with its digits
+_TOLERANCE_MM = 0.005  # of following: a tenth of the lag at 10 mm/s
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Servo:
+    """Settings of the servo: modulus in mm/s per mm (None: the program's), lowest digits dropped, scales, motor."""
+
+    modulus_per_s: float | None = None
+    dropped_digits: int = 0
+    register_digits: int = REGISTER_DIGITS
+    scales: Scales = field(default_factory=Scales)
+    drive: Drive = field(default_factory=Drive)
+    seed: int = 0
+
+    def limit(self, modulus_per_s: float, counts_per_mm: float, point_rate_hz: float) -> FollowingLimit:
+        """The following error that is allowed.
+
+        It is the lag of modulus, motor and one point, as the next one is predicted, and what scales and dropped digits add.
+        """
+        lag_s, settle_s = 1 / modulus_per_s + self.drive.lag_s + 1 / point_rate_hz, 1 / modulus_per_s
+        added = 2**self.dropped_digits + 2 * self.scales.fine_noise_counts
+        return FollowingLimit.linear(lag_s, _TOLERANCE_MM + added / counts_per_mm, settle_s)
+
+
+def play_cubic(
+    file: str | os.PathLike[str], *, servo: Servo | None = None, travel_mm: float = TRAVEL_MM
+) -> CubicPlayback:
+    """Put a cubic program in the machine; raises ProgramFault and FileFault before anything moves."""
+    return CubicPlayback(read_program(file), servo or Servo(), travel_mm, str(file))
+
+
+class CubicPlayback(Supervised):
+    """A cubic program in the machine: iterate for the machine's motion, as often as wanted.
+
+    Known beforehand: `format`, `duration_s`, `start_mm`. Figures of the last time through, one per axis:
+    `following_error_mm` (the largest difference), `end_mm`, `end_error_mm`. `conditions`: what is wrong with the drives.
+    """
+
+    def __init__(self, program: CubicProgram, servo: Servo, travel_mm: float, name: str) -> None:
+        self.program, self.servo, self._name, self.format = program, servo, name, program.format
+        self._modulus_per_s = servo.modulus_per_s or program.format.modulus_per_s
+        self.start_mm: Array = np.array(program.checks[0]) / self.format.counts_per_mm
+        self.end_mm: Array = self.start_mm.copy()
+        self.end_error_mm: Array | None = None
+        self.conditions = [SOUND] * len(AXES)
+        if self._modulus_per_s * STEPS_PER_CONSTANT > self.format.point_rate_hz:
+            raise ProgramFault(
+                f"{name}: a speed modulus of {self._modulus_per_s:g} per s is too much for {self.format.point_rate_hz:g} "
+                f"points per s; give at most {self.format.point_rate_hz / STEPS_PER_CONSTANT:g}, or record more points"
+            )
+        self._check(travel_mm)
+        self.limit = servo.limit(self._modulus_per_s, self.format.counts_per_mm, self.format.point_rate_hz)
+        self.supervise(AXES, self.format.point_rate_hz)
+
+    @property
+    def duration_s(self) -> float:
+        """How long the machine runs, s: the program, and its lag run off."""
+        return len(self.program.words) * self.format.interval_s + self._settling_points / self.format.point_rate_hz
+
+    @property
+    def _settling_points(self) -> int:
+        return math.ceil(_SETTLING / self._modulus_per_s * self.format.point_rate_hz)
+
+    def __iter__(self) -> Iterator[Motion]:
+        """Play: the machine's motion in blocks; raises LockFault or FollowingFault after the last sample that was right."""
+        fmt, start = self.format, np.array(self.program.checks[0], np.int64)
+        state = np.zeros((len(AXES), 2))
+        state[:, 0] = self.start_mm
+        monitor, self.end_error_mm = self.supervise(AXES, fmt.point_rate_hz), None
+        noise = np.random.default_rng(self.servo.seed)
+        yield Motion(self.start_mm[None], fmt.point_rate_hz, 0.0)
+        done = 0
+        for predicted in self._predicted(start):
+            moved, present = self._follow(predicted, state, noise)
+            rows = monitor.watch(predicted[: len(moved)] / fmt.counts_per_mm, present / fmt.counts_per_mm)
+            if rows:
+                self.end_mm = moved[rows - 1].copy()
+                yield Motion(moved[:rows], fmt.point_rate_hz, (done + 1) / fmt.point_rate_hz)
+            done += rows
+            if rows < len(moved):
+                raise monitor.warnings[-1]
+            if rows < len(predicted):
+                raise self._out_of_range(predicted[rows], done)
+        self.end_error_mm = self.end_mm - np.array(self.program.checks[len(self.program.words)]) / fmt.counts_per_mm
+
+    def _predicted(self, start: NDArray[np.int64]) -> Iterator[NDArray[np.int64]]:
+        """The interpolated places in counts, in blocks, and the last one held."""
+        fmt = self.format
+        interpolator = Interpolator(start, fmt.points, fmt.linear)
+        for first in range(0, len(self.program.words), _BLOCK_INTERVALS):
+            yield interpolator.counts(interpolator.run(self.program.words[first : first + _BLOCK_INTERVALS]))
+        yield np.repeat(interpolator.at[None], self._settling_points, axis=0)
+
+    def _follow(self, predicted: NDArray[np.int64], state: Array, noise: np.random.Generator) -> tuple[Array, Array]:
+        """Places of the machine in mm after each point, and as its scales had them before, in counts.
+
+        Fewer rows where a difference was too large for its register.
+        """
+        servo, fmt = self.servo, self.format
+        dt_s = 1 / fmt.point_rate_hz
+        moved, present = np.empty(predicted.shape), np.empty(predicted.shape)
+        jitter = noise.uniform(-1, 1, (*predicted.shape, 2)) if self._noisy else np.zeros((1, len(AXES), 2))
+        register = np.array([fmt.counts_per_mm, 2.0**servo.register_digits, 2.0**servo.dropped_digits])
+        drive = np.array([self._modulus_per_s, servo.drive.gain(dt_s), servo.drive.acceleration_mm_s2 * dt_s, dt_s])
+        wrong = as_rows(self.conditions)
+        rows = _servo(predicted, jitter, servo.scales.table(), register, drive, wrong, state, present, moved)
+        return moved[:rows], present[:rows]
+
+    @property
+    def _noisy(self) -> bool:
+        return self.servo.scales.fine_noise_counts > 0 or self.servo.scales.coarse_noise_digits > 0
+
+    def _out_of_range(self, predicted: NDArray[np.int64], row: int) -> LockFault:
+        """The fault of a difference that register 34 cannot hold."""
+        error_mm = predicted / self.format.counts_per_mm - self.end_mm
+        axis = int(np.argmax(np.abs(error_mm)))
+        allowed_mm = 2**self.servo.register_digits / self.format.counts_per_mm
+        time_s, position_mm = row / self.format.point_rate_hz, float(self.end_mm[axis])
+        return LockFault(
+            f"the drive of {AXES[axis].upper()} lags {error_mm[axis]:+.3f} mm at {time_s:.3f} s, position "
+            f"{position_mm:.3f} mm; allowed ±{allowed_mm:g} mm: take a larger speed modulus, or record it slower",
+            axis=AXES[axis],
+            time_s=time_s,
+            error_cycles=float(error_mm[axis]) * self.format.counts_per_mm,
+            position_mm=position_mm,
+        )
+
+    def _check(self, travel_mm: float) -> None:
+        """Raise ProgramFault for words that lead out of the travel, past a checked place, or round a corner."""
+        fmt, words = self.format, self.program.words
+        digits = fmt.digits
+        reach = np.abs(words.astype(np.float64)) @ float(fmt.points) ** np.arange(1, 4)
+        if reach.sum(axis=0).max(initial=0) > _LARGEST_WORD:
+            raise self._fault(int(np.argmax(reach.max(axis=1))), "its words are too large for the registers")
+        start = np.array(self.program.checks[0], np.int64) << digits
+        places = np.vstack([start[None], start + np.cumsum(ends(words, fmt.points, fmt.linear), axis=0)])
+        self._check_travel(places, travel_mm)
+        for k, place in self.program.checks.items():
+            if (places[k] != np.array(place) << digits).any():
+                got = [f"{count / 2**digits:g}" for count in places[k].tolist()]
+                stated = " ".join(map(str, place))
+                raise self._fault(k - 1, f"the interpolator comes to {', '.join(got)}; the program states {stated}")
+        self._check_slopes(*slopes(words, fmt.points, fmt.linear))
+
+    def _check_travel(self, places: NDArray[np.int64], travel_mm: float) -> None:
+        """Raise ProgramFault where a sample lies out of the travel."""
+        places_mm = np.abs(places / 2.0**self.format.digits / self.format.counts_per_mm)
+        out = np.flatnonzero((places_mm > travel_mm).any(axis=1))
+        if len(out):
+            axis = int(np.argmax(places_mm[out[0]]))
+            gone = f"{AXES[axis].upper()} goes to {places_mm[out[0], axis]:.2f} mm either way"
+            raise self._fault(int(out[0]) - 1, f"{gone}; the machine has ±{travel_mm:g} mm")
+
+    def _check_slopes(self, start: NDArray[np.int64], end: NDArray[np.int64]) -> None:
+        """Raise ProgramFault where the slope jumps: between intervals, at the start, or at the end."""
+        stop = np.zeros((1, start.shape[1]), np.int64)
+        bad = np.flatnonzero((np.vstack([stop, end]) != np.vstack([start, stop])).any(axis=1))
+        if len(bad):
+            raise self._fault(int(bad[0]), "the curve has a corner there; a corner must be a stop, with speed zero")
+
+    def _fault(self, interval: int, what: str) -> ProgramFault:
+        """A fault at an interval, with its line where there is a file."""
+        lines = self.program.lines
+        line = lines[min(max(interval, 0), len(lines) - 1)] if lines else None
+        place = "" if line is None else f", line {line}"
+        return ProgramFault(f"{self._name}{place}: {what}; copy it again or record it again", line=line)
+
+
+@njit(cache=True)
+def _servo(predicted, noise, scales, register, drive, conditions, state, seen, moved_mm):  # type: ignore[no-untyped-def]
+    """Run the servos of all axes through a block; the number of rows done before a difference was too large."""
+    counts_per_mm, largest, dropped = register
+    modulus, gain, change, dt_s = drive
+    for row in range(len(predicted)):
+        for axis in range(len(state)):
+            jitter = noise[min(row, len(noise) - 1), axis]
+            present = measured(state[axis, 0] * counts_per_mm + 0.5, jitter[0], jitter[1], scales)
+            difference = predicted[row, axis] - present  # adder 29
+            if abs(difference) >= largest:  # register 34 is full
+                return row
+            seen[row, axis] = present
+            kept = np.trunc(difference / dropped) * dropped
+            demand = modulus * kept / counts_per_mm  # decoder 35 at its reference voltage
+            speed = conditioned_step(state[axis, 1], demand, gain, change, conditions[axis])
+            state[axis, 0] += (state[axis, 1] + speed) / 2 * dt_s
+            state[axis, 1] = speed
+            moved_mm[row, axis] = state[axis, 0]
+    return len(predicted)

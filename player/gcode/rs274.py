@@ -1,0 +1,278 @@
+"""Reader of RS-274 programs: G-code in, lines and arcs in mm out.
+
+Signals in: the text of a program. Signals out: moves in mm, mm/s and s, in the order of the program.
+
+    G0 G1 G2 G3     rapid, line, arc clockwise, arc counter-clockwise; arcs by I and J or by R
+    G4 P            dwell, s
+    G17             plane X Y                    G20 G21     inches, millimetres
+    G54             the one coordinate system    G90 G91     places, distances
+    G94 F           feed per minute              S T         speed and tool, read and left to the machine
+    M0 M3 M5        stop for the operator, spindle on, off   M2 M30      end of the program; nothing after it is read
+    N               line number                  ( ) ;       comments        %   begin and end
+
+Anything else is refused with its line and word: a word that is passed over may be the one that keeps the tool out of
+the clamp. A program without an end is taken for cut short.
+
+Source: RS-274-D; NIST RS274/NGC interpreter, version 3 (Kramer, Proctor, Messina, 2000), sections 2 and 3.
+Questions: before G20 or G21 a number is in mm. Where the machine stands is not in a program: each axis stands where the
+program first sends it, unless a start is given. The ends of an arc may lie on circles that differ by 5 um, or by 0.1 %
+of the radius if that is more but at most 0.5 mm (Grbl's rule); its centre is then moved to be as far from both.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path as FilePath
+from typing import NamedTuple
+
+from morfax.motion.faults import FileFault, ProgramFault
+
+RAPID, LINE, CLOCKWISE, COUNTER_CLOCKWISE, DWELL = "G0", "G1", "G2", "G3", "G4"
+INCH_MM = 25.4
+LONGEST_DWELL_S = 86400.0
+TURN = 2 * math.pi
+
+_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)"
+_WORD = re.compile(f"([A-Z])({_NUMBER})")
+_COMMENT = re.compile(r"\([^()]*\)|;.*")
+_MOTION, _UNITS, _DISTANCE = "motion", "units", "distance mode"
+_GROUPS = {
+    _MOTION: ("G0", "G1", "G2", "G3"),
+    _UNITS: ("G20", "G21"),
+    _DISTANCE: ("G90", "G91"),
+    "dwell": ("G4",),
+    "plane": ("G17",),
+    "coordinate system": ("G54",),
+    "feed mode": ("G94",),
+    "stop": ("M0", "M2", "M30"),
+    "spindle": ("M3", "M5"),
+}
+_CODES = {(code[0], float(code[1:])): group for group, codes in _GROUPS.items() for code in codes}
+_KINDS = {0.0: RAPID, 1.0: LINE, 2.0: CLOCKWISE, 3.0: COUNTER_CLOCKWISE}
+_PLAIN, _MOVING, _ARC_WORDS = frozenset("GXYZIJRFPSTN"), frozenset("XYZIJR"), frozenset("IJR")
+_READ = "G0 G1 G2 G3 G4 G17 G20 G21 G54 G90 G91 G94, X Y Z I J R F P S T N, M0 M2 M3 M5 M30"
+
+Place = tuple[float, float, float]
+
+
+class Move(NamedTuple):
+    """One move: where it ends; of an arc the centre and the angle turned, rad; feed in mm/s; of a dwell the time, s."""
+
+    line: int
+    kind: str
+    end_mm: Place
+    feed_mm_s: float = 0.0
+    centre_mm: tuple[float, float] = (0.0, 0.0)
+    turned_rad: float = 0.0
+    dwell_s: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Program:
+    """A program as read: where the machine stands at the start, and the moves."""
+
+    start_mm: Place
+    moves: list[Move]
+
+
+def read_rs274(file: str | os.PathLike[str], start_mm: Sequence[float] | None = None) -> Program:
+    """Read a program; raises ProgramFault with line and word for what is refused, FileFault if it cannot be read."""
+    try:
+        text = FilePath(file).read_bytes().decode("ascii")
+    except UnicodeDecodeError as error:
+        line = FilePath(file).read_bytes()[: error.start].count(b"\n") + 1
+        raise ProgramFault(f"{file}, line {line}: this is no text; a program is lines such as G1 X10 Y5 F600") from None
+    except OSError as error:
+        raise FileFault(f"cannot read {file}: {error.strerror}; check the name") from error
+    return parse_rs274(text.split("\n"), str(file), start_mm)
+
+
+def parse_rs274(lines: Iterable[str], name: str = "program", start_mm: Sequence[float] | None = None) -> Program:
+    """The program of some lines of text; raises ProgramFault."""
+    reader = _Reader(name, start_mm)
+    for number, text in enumerate(lines, 1):
+        reader.number = number
+        reader.read(text)
+        if reader.ended:
+            break
+    if not reader.ended:
+        what = "holds no line" if not reader.number or reader.number == 1 else f"breaks off after line {reader.number}"
+        raise ProgramFault(f"{name} {what}; a program ends with M2, M30 or %: get the whole of it", line=reader.number)
+    start = tuple(0.0 if place is None else place for place in reader.start)
+    return Program((start[0], start[1], start[2]), reader.moves)
+
+
+class _Reader:
+    """The modal state of a program, and the moves so far."""
+
+    def __init__(self, name: str, start_mm: Sequence[float] | None) -> None:
+        self.name, self.number, self.ended = name, 0, False
+        self.moves: list[Move] = []
+        self.start: list[float | None] = [None, None, None] if start_mm is None else list(start_mm)
+        self.place = [0.0, 0.0, 0.0] if start_mm is None else list(start_mm)
+        self.kind, self.scale, self.relative, self.feed_mm_s = "", 1.0, False, 0.0
+        self.begun = False  # whether there was a % or a word
+
+    def read(self, text: str) -> None:
+        """Read a line."""
+        if "(" in text or ";" in text:
+            text = _COMMENT.sub("", text)
+        parts = _WORD.split("".join(text.split()))  # what stands between words, a letter, a number, and so on
+        if any(parts[::3]):
+            parts = self._second_look("".join(parts))
+        if len(parts) > 1:
+            self.begun = True
+            self._obey(parts[1::3], parts[2::3])
+
+    def _second_look(self, text: str) -> list[str]:
+        """A line that is not all words: a %, small letters, or refused."""
+        if text == "%":  # the first begins the program, the next ends it
+            self.ended, self.begun = self.begun, True
+            return []
+        parts = _WORD.split(text.upper())
+        for between in parts[::3]:
+            if between:
+                what = "is no word; words are a letter and a number such as X5 or Y-0.25"
+                raise self._fault(repr(between[:20]), what)
+        return parts
+
+    def _obey(self, letters: list[str], numbers: list[str]) -> None:
+        """Do what the words of a line say, in the order of the standard."""
+        values = dict(zip(letters, map(float, numbers), strict=True))
+        dwell, stop = False, -1
+        if len(values) != len(letters) or not values.keys() <= _PLAIN or values.get("G", 0.0) not in _KINDS:
+            groups = self._codes(letters, numbers)
+            self._set_modes(groups)
+            dwell, stop = "dwell" in groups, groups.get("stop", -1)
+        elif "G" in values:  # nearly all lines come here
+            self.kind = _KINDS[values["G"]]
+        self._move(values, dwell)
+        self.ended = stop in (2, 30)
+
+    def _codes(self, letters: list[str], numbers: list[str]) -> dict[str, int]:
+        """The G and M words of a line by their groups; raises ProgramFault for a word that is not played or doubled."""
+        groups: dict[str, int] = {}
+        for at, (letter, text) in enumerate(zip(letters, numbers, strict=True)):
+            group = _CODES.get((letter, float(text))) if letter in "GM" else letter
+            if group is None or (group == letter and letter not in _PLAIN):
+                raise self._fault(letter + text, f"is not played; this control reads {_READ}")
+            if group in groups or (group == letter and letter in letters[:at]):
+                raise self._fault(letter + text, f"is the second word for {group} in the line; give one")
+            if group != letter:
+                groups[group] = int(float(text))
+        return groups
+
+    def _set_modes(self, groups: dict[str, int]) -> None:
+        """Units, distance mode and motion of this line and those after it."""
+        if _UNITS in groups:
+            self.scale = INCH_MM if groups[_UNITS] == 20 else 1.0
+        if _DISTANCE in groups:
+            self.relative = groups[_DISTANCE] == 91
+        if _MOTION in groups:
+            if "dwell" in groups:
+                raise self._fault("G4", "stands with another motion in one line; give it a line of its own")
+            self.kind = _KINDS[groups[_MOTION]]
+
+    def _move(self, values: dict[str, float], dwell: bool) -> None:
+        """Feed, dwell, and then the motion that the axis words ask for."""
+        if "F" in values:
+            if values["F"] <= 0:
+                raise self._fault(f"F{values['F']:g}", "moves nothing; give a feed above zero, in units per minute")
+            self.feed_mm_s = values["F"] * self.scale / 60
+        if dwell:
+            self._dwell(values)
+        elif "P" in values:
+            raise self._fault(f"P{values['P']:g}", "belongs to a dwell; give G4 with it")
+        elif not _MOVING.isdisjoint(values):
+            self._go(values)
+
+    def _dwell(self, values: dict[str, float]) -> None:
+        """G4: stand still."""
+        if not 0 <= values.get("P", -1.0) <= LONGEST_DWELL_S or not values.keys().isdisjoint("XYZIJR"):
+            raise self._fault("G4", "wants a time in seconds, a day at most, and no place; give G4 P0.5")
+        self.moves.append(
+            Move(self.number, DWELL, (self.place[0], self.place[1], self.place[2]), 0.0, (0, 0), 0.0, values["P"])
+        )
+
+    def _go(self, values: dict[str, float]) -> None:
+        """G0 to G3: to the place that the axis words give."""
+        kind, place, scale = self.kind, self.place, self.scale
+        if not kind:
+            word = next(f"{letter}{values[letter]:g}" for letter in "XYZIJR" if letter in values)
+            raise self._fault(word, "asks for a move, but none of G0 G1 G2 G3 was given; give one first")
+        begin = place[0], place[1], place[2]
+        for axis, letter in enumerate("XYZ"):
+            if letter in values:
+                place[axis] = values[letter] * scale + (place[axis] if self.relative else 0.0)
+                if self.start[axis] is None:
+                    self.start[axis] = begin[axis] if self.relative or kind not in (RAPID, LINE) else place[axis]
+        end = place[0], place[1], place[2]
+        if kind != RAPID and self.feed_mm_s == 0:
+            raise self._fault(kind, "has no feed; give F, in units per minute, before it or with it")
+        if kind in (CLOCKWISE, COUNTER_CLOCKWISE):
+            self.moves.append(self._arc(values, begin, end))
+            return
+        if not _ARC_WORDS.isdisjoint(values):
+            letter = next(letter for letter in "IJR" if letter in values)
+            raise self._fault(f"{letter}{values[letter]:g}", f"belongs to an arc, and {kind} is none; leave it out")
+        self.moves.append(Move(self.number, kind, end, 0.0 if kind == RAPID else self.feed_mm_s))
+
+    def _arc(self, values: dict[str, float], begin: Place, end: Place) -> Move:
+        """G2 and G3: the arc between two places."""
+        if end[2] != begin[2]:
+            raise self._fault(f"Z{values['Z']:g}", "makes the arc a helix; this control turns arcs in X and Y: keep Z")
+        if "R" in values and ("I" in values or "J" in values):
+            raise self._fault(f"R{values['R']:g}", "stands with a centre, I or J; give one of the two")
+        sense = 1 if self.kind == COUNTER_CLOCKWISE else -1
+        given = "R" in values
+        centre = self._by_radius(begin, end, values["R"], sense) if given else self._by_offset(begin, end, values)
+        first = math.atan2(begin[1] - centre[1], begin[0] - centre[0])
+        turned = sense * (math.atan2(end[1] - centre[1], end[0] - centre[0]) - first) % TURN
+        whole = begin == end or (turned < 1e-12 and "R" not in values)
+        return Move(self.number, self.kind, end, self.feed_mm_s, centre, sense * (TURN if whole else turned))
+
+    def _by_radius(self, begin: Place, end: Place, given: float, sense: int) -> tuple[float, float]:
+        """The centre that leaves less than half a turn, or with a negative radius more."""
+        across, up, radius = end[0] - begin[0], end[1] - begin[1], given * self.scale
+        chord = math.hypot(across, up)
+        if chord == 0 or chord / 2 > abs(radius) + _slack(abs(radius)) / 2:
+            raise self._fault(
+                f"R{given:g}",
+                f"does not reach: the ends of the arc are {chord:.4f} mm apart; give "
+                + ("I and J for a whole turn" if chord == 0 else f"{chord / 2:.4f} mm or more, or other ends"),
+            )
+        off = math.sqrt(max(radius**2 - chord**2 / 4, 0.0)) * math.copysign(sense, sense * radius) / chord
+        return (begin[0] + end[0]) / 2 - off * up, (begin[1] + end[1]) / 2 + off * across
+
+    def _by_offset(self, begin: Place, end: Place, values: dict[str, float]) -> tuple[float, float]:
+        """The centre from I and J, moved to be as far from both ends."""
+        i, j = values.get("I", 0.0) * self.scale, values.get("J", 0.0) * self.scale
+        centre = begin[0] + i, begin[1] + j
+        radius, other = math.hypot(i, j), math.dist(end[:2], centre)
+        if radius == 0:
+            raise self._fault(self.kind, "has no centre; give I and J, or R")
+        if abs(other - radius) > _slack(radius):
+            raise self._fault(
+                f"I{values.get('I', 0.0):g} J{values.get('J', 0.0):g}",
+                f"is no centre of both ends: {radius:.4f} mm from the start, {other:.4f} mm from the end; "
+                f"they may differ by {_slack(radius):.4f} mm",
+            )
+        across, up = end[0] - begin[0], end[1] - begin[1]
+        chord_squared = across**2 + up**2
+        if chord_squared == 0:
+            return centre
+        along = (i * across + j * up) / chord_squared - 0.5
+        return centre[0] - along * across, centre[1] - along * up
+
+    def _fault(self, word: str, what: str) -> ProgramFault:
+        """A fault at this line."""
+        return ProgramFault(f"{self.name}, line {self.number}: {word} {what}", line=self.number)
+
+
+def _slack(radius_mm: float) -> float:
+    """How much the distances of an arc's ends from its centre may differ, mm."""
+    return min(max(0.005, 0.001 * radius_mm), 0.5)

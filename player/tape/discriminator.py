@@ -1,0 +1,270 @@
+"""Discriminator: the phases of the X, Y and Z tracks against the reference track, in cycles, at the motion rate.
+
+Signals in: frames of the tape (n, tracks), float32 of full scale 1 or 16-bit samples as they are stored, track 1 the
+reference, at the sample rate. Signals out, one row per `decimation` frames, row i standing at frame i·decimation:
+cycles (axes), levels (tracks, amplitude), surprise (axes, cycles: how far a phase lay from the predicted one).
+
+    y(t) = sum over n of  h(n) · exp(-j w n) · x(t + n)          translating filter: h low-pass, w the nominal reference
+    cycles = arg( y_axis · conj(y_reference) ) / 2 pi            counted on from the predictor's guess, nearest turn (predictor.py)
+
+Both tracks are translated by the same w, so its phase and any error of the tape's speed cancel in the product, and
+only the difference is left. It is a phase all the way: nothing is integrated, so nothing drifts. The filter stands
+symmetrically about its frame, so the time axis is the tape's own. The rows at the two ends, whose filter would reach
+past the tape, hold the nearest full one (the tape stands still there).
+
+The low-pass is 0.6 dB down at 2 kHz from the carrier, 6 dB at 3 kHz and 80 dB from 5 kHz on, which keeps out what the
+decimation would fold upon the carrier: its own mirror (12 kHz away), a DC offset and the second harmonic (6 kHz
+away). With a lower reference it is as much narrower and longer.
+
+Source: patent ES 361967, figure 5 (amplifiers 151, triggers 152, the tape's side of comparator 153).
+Questions: the patent compares edges, at best one per cycle of the carrier; here the whole wave is used, which is what
+beats the tape's noise. A square-wave trigger would be a hundred times coarser.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from morfax.player.tape.predictor import count_turns, predictor_gains
+
+STOP_BAND_BETA = 8.0  # Kaiser: stop band 80 dB down
+SMALLEST_TAP = 1e-12  # below it products are denormal numbers, which cost a factor of twelve
+SMALLEST_PRODUCT = 1e-300  # of two tracks; keeps a silent one from dividing by zero
+CHUNK_ROWS = 1024  # what the kernel has in the processor's cache at a time
+GROUP = 8  # taps that the kernel has in its registers at a time
+
+Frames = NDArray[np.float32 | np.int16]
+Float32s = NDArray[np.float32]
+Float64s = NDArray[np.float64]
+Complexes = NDArray[np.complex128]
+
+
+@dataclass(frozen=True, slots=True)
+class Phases:
+    """A block of rows at the motion rate; row 0 is row `first_row` of the tape."""
+
+    first_row: int
+    cycles: Float64s
+    surprise: Float32s
+    levels: Float32s
+
+    def __len__(self) -> int:
+        return len(self.cycles)
+
+    def joined(self, after: Phases) -> Phases:
+        """These rows and those after them."""
+        names = ("cycles", "surprise", "levels")
+        return Phases(self.first_row, *(np.concatenate([getattr(self, n), getattr(after, n)]) for n in names))
+
+    def moved(self, rows: int) -> Phases:
+        """The same rows, so many later on the tape."""
+        return Phases(self.first_row + rows, self.cycles, self.surprise, self.levels)
+
+    def cut(self, first: int, last: int) -> Phases:
+        """Rows `first` to before `last` of these."""
+        rows = slice(max(first, 0), max(last, first, 0))
+        return Phases(self.first_row + rows.start, self.cycles[rows], self.surprise[rows], self.levels[rows])
+
+
+def translating_taps(sample_rate_hz: float, reference_hz: float, decimation: int) -> tuple[Float32s, Float32s]:
+    """Real and imaginary taps of the filter that moves the reference to 0 Hz and keeps what lies near it."""
+    low_pass, turns = _low_pass(sample_rate_hz, reference_hz, decimation)
+    return _taps((low_pass * turns).real), _taps((low_pass * turns).imag)
+
+
+def _low_pass(sample_rate_hz: float, reference_hz: float, decimation: int) -> tuple[Float64s, Complexes]:
+    """Taps h of the low-pass, and how far each is turned, exp(-j w n)."""
+    cut_hz = min(sample_rate_hz / decimation, reference_hz) / 2
+    half = round(2 * sample_rate_hz / cut_hz)
+    n = np.arange(-half, half + 1)
+    low_pass = np.sinc(2 * cut_hz / sample_rate_hz * n) * np.kaiser(2 * half + 1, STOP_BAND_BETA)
+    return low_pass / low_pass.sum(), np.exp(-2j * np.pi * reference_hz / sample_rate_hz * n)
+
+
+def _taps(values: Float64s) -> Float32s:
+    """Taps without those that are nothing."""
+    return np.where(np.abs(values) < SMALLEST_TAP, 0.0, values).astype(np.float32)
+
+
+def branches(sample_rate_hz: float, reference_hz: float, decimation: int) -> tuple[Float32s, Float32s, Float32s]:
+    """The filter as real sums down the columns of a row, each sum turned once: taps (branches, columns, rows), turns.
+
+    With a whole number of reference cycles to a row, as most tapes have, all taps of a column turn alike and one real
+    branch is enough; else there is one for the real and one for the imaginary taps.
+    """
+    low_pass, turns = _low_pass(sample_rate_hz, reference_hz, decimation)
+    if (reference_hz * decimation / sample_rate_hz).is_integer():
+        taps, turned = [low_pass], turns[None, :decimation]
+    else:
+        taps = [(low_pass * turns).real, (low_pass * turns).imag]
+        turned = np.repeat([[1], [1j]], decimation, axis=1)
+    rows = np.stack([np.pad(one, (0, -len(one) % decimation)).reshape(-1, decimation).T for one in map(_taps, taps)])
+    rows = rows[:, :, : int(np.flatnonzero(rows.any(axis=(0, 1)))[-1]) + 1]  # the window is nothing at its ends
+    rows = np.pad(rows, ((0, 0), (0, 0), (0, -rows.shape[2] % GROUP)))
+    return rows, turned.real.astype(np.float32), turned.imag.astype(np.float32)
+
+
+class Discriminator:
+    """Tracks in, phases out, block by block of any length."""
+
+    def __init__(self, sample_rate_hz: float, reference_hz: float, decimation: int, tracks: int) -> None:
+        if not 0 < reference_hz < sample_rate_hz / 2:
+            raise ValueError(
+                f"reference of {reference_hz:g} Hz cannot be on a tape of {sample_rate_hz:g} samples/s; "
+                f"give one between 0 and {sample_rate_hz / 2:g} Hz"
+            )
+        if tracks < 2:
+            raise ValueError(f"{tracks} track(s) hold no displacement; give the reference track and at least one axis")
+        self.decimation = decimation
+        self.filter_frames = len(translating_taps(sample_rate_hz, reference_hz, decimation)[0])
+        self._filter = branches(sample_rate_hz, reference_hz, decimation)
+        self._half = self.filter_frames // 2
+        self._reach = 2 * self._half // decimation  # rows that the filter reaches beyond its first
+        self.gains = predictor_gains(sample_rate_hz / decimation)
+        self.state = np.full((tracks - 1, 3), np.nan)
+        self._tail: Frames = np.zeros((0, tracks), np.float32)
+        self._tail_frame = 0  # the tape's frame at which the tail begins
+        self._row = 0  # the next row to come out
+        self._last: Phases | None = None
+
+    def feed(self, frames: Frames) -> Phases:
+        """Take the next frames (n, tracks) of the tape; the rows that are complete by now, perhaps none."""
+        frames = np.concatenate([self._tail, frames]) if len(self._tail) else np.ascontiguousarray(frames)
+        row = max(self._row, -(-self._half // self.decimation))
+        skipped = row * self.decimation - self._half - self._tail_frame
+        count = max((len(frames) - skipped) // self.decimation - self._reach, 0)
+        keep = skipped + count * self.decimation if count else 0
+        self._tail, self._tail_frame = frames[keep:].copy(), self._tail_frame + keep
+        if not count:
+            return self._held(0)
+        whole = frames[skipped : skipped + (count + self._reach) * self.decimation]
+        phases = self._demodulated(whole.reshape(count + self._reach, -1), row)
+        self._row, self._last = row + count, phases
+        return phases
+
+    def finish(self) -> Phases:
+        """The rows at the end of the tape that the filter could not fill: the last one held."""
+        return self._held(-(-(self._tail_frame + len(self._tail)) // self.decimation) - self._row)
+
+    def _demodulated(self, rows: Frames, row: int) -> Phases:
+        """Run the kernels; before the tape's first full row that row is held."""
+        count, tracks = len(rows) - self._reach, rows.shape[1] // self.decimation
+        phase, levels = np.empty((tracks - 1, count)), np.empty((count, tracks), np.float32)
+        cycles, surprise = np.empty((count, tracks - 1)), np.empty((count, tracks - 1), np.float32)
+        scale = np.float32(1 / 32768 if rows.dtype == np.int16 else 1)
+        _wrap(rows, scale, *self._filter, phase, levels)
+        count_turns(phase, self.gains, self.state, cycles, surprise)
+        lead = ((row - self._row, 0), (0, 0))
+        if row > self._row:
+            cycles = np.pad(cycles, lead, mode="edge")
+            surprise, levels = np.pad(surprise, lead, mode="edge"), np.pad(levels, lead, mode="edge")
+        return Phases(self._row, cycles, surprise, levels)
+
+    def _held(self, count: int) -> Phases:
+        """The last row, `count` times over."""
+        tracks = self._tail.shape[1]
+        if self._last is None:
+            empty = np.zeros((0, tracks - 1))
+            return Phases(0, empty, empty.astype(np.float32), np.zeros((0, tracks), np.float32))
+        cycles = np.repeat(self._last.cycles[-1:], count, axis=0)
+        surprise = np.repeat(self._last.surprise[-1:], count, axis=0)
+        return Phases(self._row, cycles, surprise, np.repeat(self._last.levels[-1:], count, axis=0))
+
+
+def discriminate(blocks: Iterable[Frames], discriminator: Discriminator) -> Iterator[Phases]:
+    """Phases of a whole tape, from its blocks of frames; blocks without a row are left out."""
+    for frames in blocks:
+        phases = discriminator.feed(frames)
+        if len(phases):
+            yield phases
+    rest = discriminator.finish()
+    if len(rest):
+        yield rest
+
+
+@njit(cache=True, nogil=True)
+def _wrap(rows, scale, taps, turns_re, turns_im, phase, levels):  # type: ignore[no-untyped-def]
+    """Fill `phase` (axes, n), each from -0.5 to 0.5 cycle, and `levels`, by chunks that fit the processor's cache.
+
+    `rows` of the tape (n, frame within the row · tracks + track), `scale` of a sample; the filter as `branches` has it.
+    """
+    tracks = levels.shape[1]
+    reach = len(rows) - len(levels)  # rows that a filter reaches beyond its first
+    columns = np.zeros((rows.shape[1], CHUNK_ROWS + max(reach, taps.shape[2])), np.float32)
+    re, im = np.empty((tracks, CHUNK_ROWS), np.float32), np.empty((tracks, CHUNK_ROWS), np.float32)
+    level = np.empty(CHUNK_ROWS, np.float32)
+    for first in range(0, len(levels), CHUNK_ROWS):
+        last = min(first + CHUNK_ROWS, len(levels))
+        _unlace(rows[first : last + reach], scale, columns)
+        for track in range(tracks):
+            track_re, track_im = re[track, : last - first], im[track, : last - first]
+            _translate(columns, track, taps, turns_re, turns_im, track_re, track_im)
+            _amplitude(track_re, track_im, level)
+            levels[first:last, track] = level[: last - first]
+        for axis in range(tracks - 1):
+            _turn(re[axis + 1], im[axis + 1], re[0], im[0], phase[axis, first:last])
+
+
+@njit(cache=True, nogil=True)
+def _unlace(rows, scale, columns):  # type: ignore[no-untyped-def]
+    """Turn rows into columns, so that a tap meets its samples side by side."""
+    for row in range(len(rows)):
+        for column in range(len(columns)):
+            columns[column, row] = rows[row, column] * scale
+
+
+# The order of the sum is free (reassoc, contract), so that it runs in vectors; nan and inf keep their meaning.
+# Eight taps at a time: with one, most of the time went into taking the sums out of memory and putting them back.
+@njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "nsz"})
+def _translate(columns, track, taps, turns_re, turns_im, re, im):  # type: ignore[no-untyped-def]
+    """Filter one track's columns, one output per row."""
+    re[:] = 0
+    im[:] = 0
+    tracks = len(columns) // taps.shape[1]
+    for branch in range(len(taps)):
+        for column in range(taps.shape[1]):
+            turn_re, turn_im = turns_re[branch, column], turns_im[branch, column]
+            for row in range(0, taps.shape[2], GROUP):
+                h0, h1, h2, h3, h4, h5, h6, h7 = _group(taps[branch, column], row)
+                x = columns[column * tracks + track, row:]
+                for k in range(len(re)):
+                    total = h0 * x[k] + h1 * x[k + 1] + h2 * x[k + 2] + h3 * x[k + 3]
+                    total += h4 * x[k + 4] + h5 * x[k + 5] + h6 * x[k + 6] + h7 * x[k + 7]
+                    re[k] += turn_re * total
+                    im[k] += turn_im * total
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _group(taps, i):  # type: ignore[no-untyped-def]
+    """Eight taps as numbers."""
+    return taps[i], taps[i + 1], taps[i + 2], taps[i + 3], taps[i + 4], taps[i + 5], taps[i + 6], taps[i + 7]
+
+
+@njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "nsz"})
+def _amplitude(re, im, level):  # type: ignore[no-untyped-def]
+    """Peak of a carrier: what the filter leaves of it is half."""
+    for k in range(len(re)):
+        level[k] = np.float32(2) * np.sqrt(re[k] * re[k] + im[k] * im[k])
+
+
+@njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "nsz"}, error_model="numpy")
+def _turn(re, im, ref_re, ref_im, phase):  # type: ignore[no-untyped-def]
+    """Phase of a track against the reference, cycles -0.5 to 0.5: an arc tangent that runs in vectors, 1e-8 cycle."""
+    for k in range(len(phase)):
+        along = float(re[k]) * float(ref_re[k]) + float(im[k]) * float(ref_im[k])
+        across = float(im[k]) * float(ref_re[k]) - float(re[k]) * float(ref_im[k])
+        small, large = min(abs(along), abs(across)), max(abs(along), abs(across))
+        oblique = small > 0.41421356237309503 * large  # tangent of an eighth of half a turn
+        t = (small - large if oblique else small) / max(small + large if oblique else large, SMALLEST_PRODUCT)
+        z = t * t  # polynomial: S. Moshier, Cephes, atanf
+        angle = (((8.05374449538e-2 * z - 1.38776856032e-1) * z + 1.99777106478e-1) * z - 3.33329491539e-1) * z * t + t
+        angle = angle + math.pi / 4 if oblique else angle
+        angle = math.pi / 2 - angle if abs(across) > abs(along) else angle
+        angle = math.pi - angle if along < 0 else angle
+        phase[k] = (-angle if across < 0 else angle) / (2 * math.pi)

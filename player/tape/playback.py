@@ -1,0 +1,235 @@
+"""The machine: a tape in, the motion of the machine's own lead screws out.
+
+Signals in: the tape's frames in blocks. Signals out: Motion in blocks at the motion rate, sample 0 at the start of
+the tape, standstill included; a fault of the tape or a drive comes after the last sample that was still right. One
+block of tape is held at a time.
+
+The reference track turns the sector wheels through the synchronous motor 116, so the machine's clock is the tape: a
+tape that runs fast or flutters makes the machine run fast or flutter along the same path, and the times here are the
+tape's own (at an override, the machine's: see setting.py). The zero of each axis is the phase at standstill; the tape
+holds displacements, and where they start from is in its text chunk or given by hand.
+
+Source: patent ES 361967, figure 5 and claims 15 to 17.
+Questions: which motion is "played" is not in doubt: that of the machine's screws, never of the tape; they differ by
+the following error. The end position, where the tape states one, is checked to a quarter of a cycle, as a whole cycle
+lost on the way shows nowhere else.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager
+from dataclasses import replace
+from os import PathLike
+from typing import BinaryIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.motion.drive import SOUND
+from morfax.motion.faults import LockFault
+from morfax.motion.motion import AXES, Motion
+from morfax.player.monitor.monitor import Supervised
+from morfax.player.tape.track_order import found_order
+from morfax.player.tape.phase_lock import Drives, PhaseLock, following_limit
+from morfax.player.tape.reader import Reader
+from morfax.player.tape.setting import Setting
+from morfax.recorder.tape.pipe import Pipe, Samples
+from morfax.recorder.tape.tape import Tape, TapeFormat
+
+END_CYCLES = 0.25  # a cycle lost is four times as much, and a drive at rest stands a hundred times nearer
+
+Array = NDArray[np.float64]
+
+
+def play(
+    file: str | PathLike[str],
+    *,
+    reference_hz: float | None = None,
+    cycles_per_mm: float | None = None,
+    start_mm: Sequence[float] | None = None,
+    order: Sequence[int] | None = None,
+    closed: bool = False,
+    settings: PhaseLock | None = None,
+    acceleration_mm_s2: float | None = None,
+    resume_at_s: float = 0.0,
+    zero_mm: Sequence[float] = (),
+    override: float = 1.0,
+) -> Playback:
+    """Put a tape in the machine; what is given by hand goes before its text chunk. Raises TapeFault, FileFault.
+
+    `order`: on which tracks of the file reference, X, Y … are. `closed`: it returns to its start, if it does not say where it ends.
+
+    `settings` are those of the drives (MOTORS). `zero_mm`: by how much the phase changers move each axis; `override`: how
+    fast the tape runs against the speed at which it was recorded. Raises ValueError for what cannot be of these.
+
+    `acceleration_mm_s2` is the most that the program asks of an axis (else what the motors can do); a dropout is ridden
+    over as long as that makes the count certain. `resume_at_s` is a tape time at which the machine stands at `start_mm`.
+    """
+
+    def open_tape() -> Tape:
+        return Tape.open(file, reference_hz=reference_hz, cycles_per_mm=cycles_per_mm, start_mm=start_mm, order=order)
+
+    with open_tape() as tape:
+        fmt, frames = _ending(tape.format, closed), tape.frames
+        found = None if order or resume_at_s else found_order(tape)
+    order = order or found
+    if resume_at_s and fmt.end_mm is not None:  # the place is not the tape's start, so the end does not go along
+        with Tape.open(file, reference_hz=reference_hz, cycles_per_mm=cycles_per_mm) as tape:
+            fmt = replace(fmt, end_mm=tape.format.end_mm)
+    setting = Setting(settings or PhaseLock(), tuple(zero_mm), override)
+    _check_resumption(resume_at_s, start_mm, frames / fmt.sample_rate_hz)
+    playback = Playback(open_tape, fmt, frames, setting, acceleration_mm_s2, resume_at_s)
+    playback.found_order = found
+    return playback
+
+
+def play_pipe(
+    stream: BinaryIO,
+    *,
+    reference_hz: float | None = None,
+    cycles_per_mm: float | None = None,
+    start_mm: Sequence[float] | None = None,
+    order: Sequence[int] | None = None,
+    closed: bool = False,
+    samples: Samples | None = None,
+) -> Playback:
+    """Put a tape that comes through a pipe in the machine, as it comes; it can be played once. Raises TapeFault."""
+    start = None if start_mm is None else tuple(start_mm)
+    pipe = Pipe.open(
+        stream, reference_hz=reference_hz, cycles_per_mm=cycles_per_mm, start_mm=start, order=order, samples=samples
+    )
+    return Playback(lambda: pipe, _ending(pipe.format, closed), 0, Setting())
+
+
+def _ending(fmt: TapeFormat, closed: bool) -> TapeFormat:
+    """The format with the end of a closed program, if it states none."""
+    return replace(fmt, end_mm=fmt.start_mm) if closed and fmt.end_mm is None else fmt
+
+
+def _check_resumption(resume_at_s: float, start_mm: Sequence[float] | None, duration_s: float) -> None:
+    """Raise ValueError for a tape time from which a tape cannot be gone on with."""
+    if not 0 <= resume_at_s < duration_s:
+        raise ValueError(f"the tape cannot be resumed at {resume_at_s:g} s; it lasts from 0 to {duration_s:.3f} s")
+    if resume_at_s and start_mm is None:
+        raise ValueError(f"where the machine stands at {resume_at_s:g} s must be said; give the place (--from X,Y,Z)")
+
+
+class Playback(Supervised):
+    """A tape in the machine: iterate for the machine's motion, as often as wanted.
+
+    Known beforehand: `format`, `frames`, `duration_s`, `start_mm`. Figures of the last time through, one per axis of
+    the tape: `following_error_mm` (the largest), `end_mm` (where the machine stands), `end_error_mm` (against the end
+    that the tape states; None before the end, or if it states none). `conditions`: what is wrong with the drives.
+    `found_order`: on which tracks reference, X, Y … were found, if that was not as they should be.
+    The rate and the times of the motion are the machine's, as are those of a drive's fault; a tape's fault has tape time.
+    """
+
+    def __init__(
+        self,
+        open_tape: Callable[[], AbstractContextManager[Tape | Pipe]],
+        fmt: TapeFormat,
+        frames: int,
+        setting: Setting,
+        acceleration_mm_s2: float | None = None,
+        resume_at_s: float = 0.0,
+    ) -> None:
+        self.format, self.frames, self.setting = fmt, frames, setting
+        self.rate_hz = fmt.motion_rate_hz * setting.override
+        self.settings = setting.lock.suited_to(fmt.motion_rate_hz)
+        self._steps = math.ceil(1 / setting.override)  # of the loop to a row: it is no slower where the tape is
+        motors_mm_s2 = self.settings.drive.acceleration_mm_s2 / setting.override**2  # as it would be on the tape
+        self.acceleration_mm_s2 = motors_mm_s2 if acceleration_mm_s2 is None else acceleration_mm_s2
+        self._zero_mm = setting.zeros_mm(fmt.axes)
+        self._rows = 0
+        self.start_mm: Array = np.array(fmt.start_mm, dtype=np.float64) + self._zero_mm
+        self.reader = Reader(open_tape, fmt, self.start_mm, self.acceleration_mm_s2, resume_at_s)
+        self.end_mm: Array = self.start_mm.copy()
+        self.end_error_mm: Array | None = None
+        self.found_order: tuple[int, ...] | None = None
+        self.conditions = [SOUND] * len(fmt.axes)
+        self.limit = following_limit(self.settings, fmt.mm_per_cycle, self.rate_hz * self._steps)
+        self.supervise(fmt.axes, self.rate_hz)
+
+    @property
+    def bridged(self) -> dict[tuple[float, str], float]:
+        """Dropouts that were ridden over, the last time through: tape time in s and axis, and length in s."""
+        return self.reader.bridged
+
+    @property
+    def duration_s(self) -> float:
+        """How long the tape runs, s."""
+        return self.frames / self.format.sample_rate_hz / self.setting.override
+
+    def __iter__(self) -> Iterator[Motion]:
+        """Play: the motion in blocks; raises TapeFault, LockFault or FollowingFault after the last sample that was right."""
+        fmt = self.format
+        drives = Drives(len(fmt.axes), fmt.mm_per_cycle, self.rate_hz, self.settings, steps=self._steps)
+        drives.adjust(self._zero_mm)
+        drives.conditions = self.conditions
+        rest_mm = self.start_mm - self._zero_mm  # where the screws stood before that
+        monitor, self.end_error_mm = self.supervise(fmt.axes, self.rate_hz), None
+        for phases, bearings, gap in self.reader.read(lambda: self.end_mm.tolist()):
+            found = bearings.first_fault(phases, fmt.motion_rate_hz, self.end_mm.tolist()) or gap
+            sound = len(phases) if found is None else min(found[0], len(phases))
+            cycles = phases.cycles[:sound] - bearings.zero_cycles + self._zero_mm * fmt.cycles_per_mm
+            places_mm = drives.follow(cycles) + rest_mm
+            demand_mm = cycles[: len(places_mm)] * fmt.mm_per_cycle + rest_mm
+            monitor.rows_seen = phases.first_row
+            rows = monitor.watch(demand_mm, places_mm)
+            if rows:
+                self._rows, self.end_mm = phases.first_row + rows, places_mm[rows - 1]
+                yield self._motion(places_mm[:rows], phases.first_row)
+            if rows < len(places_mm):
+                raise monitor.warnings[-1]
+            if rows < sound:
+                raise self._out_of_range(drives, phases.first_row + rows)
+            if found is not None:
+                raise found[1]
+        self._check_end()
+
+    def _motion(self, places_mm: Array, first_row: int) -> Motion:
+        """A block of positions: X, Y, Z and what other axes the tape has; an axis without a track stands at 0."""
+        rate_hz, names = self.rate_hz, self.format.axes
+        if tuple(names[: len(AXES)]) == AXES:
+            return Motion(places_mm, rate_hz, first_row / rate_hz, names)
+        columns = [*AXES, *(name for name in names if name not in AXES)]
+        positions_mm = np.zeros((len(places_mm), len(columns)))
+        positions_mm[:, [columns.index(name) for name in names]] = places_mm
+        return Motion(positions_mm, rate_hz, first_row / rate_hz, tuple(columns))
+
+    def _out_of_range(self, drives: Drives, row: int) -> LockFault:
+        """The fault of fault circuit 162: a drive that could not follow."""
+        error_mm, drive = drives.error_mm, self.settings.drive
+        axis = int(np.argmax(np.where(np.isnan(error_mm), np.inf, np.abs(error_mm))))
+        name, time_s = self.format.axes[axis], row / self.rate_hz
+        error_cycles, position_mm = float(error_mm[axis]) * self.format.cycles_per_mm, float(self.end_mm[axis])
+        return LockFault(
+            f"the drive of {name.upper()} lost its lock at {time_s:.3f} s, position {position_mm:.3f} mm: error "
+            f"{error_cycles:+.2f} cycles, allowed ±{self.settings.range_cycles:g}; the tape asks for more than "
+            f"{drive.acceleration_mm_s2:g} mm/s² or {drive.top_speed_mm_s:g} mm/s: play it slower, or record it smoother",
+            axis=name,
+            time_s=time_s,
+            error_cycles=error_cycles,
+            position_mm=position_mm,
+        )
+
+    def _check_end(self) -> None:
+        """Compare where the machine stands with what the tape says; raises LockFault beyond a quarter of a cycle."""
+        fmt = self.format
+        if fmt.end_mm is None:
+            return
+        self.end_error_mm = self.end_mm - np.array(fmt.end_mm) - self._zero_mm
+        axis = int(np.argmax(np.abs(self.end_error_mm)))
+        error_mm, position_mm = float(self.end_error_mm[axis]), float(self.end_mm[axis])
+        if abs(error_mm) * fmt.cycles_per_mm <= END_CYCLES:
+            return
+        raise LockFault(
+            f"{fmt.axes[axis].upper()} ends at {position_mm:.3f} mm, {error_mm:+.3f} mm from the end that the tape "
+            f"states; allowed ±{END_CYCLES * fmt.mm_per_cycle:g} mm; cycles were lost, or it is cut short: get another",
+            axis=fmt.axes[axis],
+            time_s=self._rows / fmt.motion_rate_hz,
+            error_cycles=error_mm * fmt.cycles_per_mm,
+            position_mm=position_mm,
+        )

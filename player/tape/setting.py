@@ -1,0 +1,48 @@
+"""What is set at the machine before a tape is played: its motors, the zero of each axis, the speed of the tape.
+
+Signals: none; machine.py plays by it.
+
+    zero        a phase added in front of the comparator of an axis: its screw stands zero mm from where the tape has it
+    override    the tape runs so many times as fast, and with it the sector wheels and the screws, along the same path;
+                the drives stay what they are, so what is too fast for them is a fault
+
+Source: patent ES 361967, figure 5 (phase changer 155 "for the adjustment of the zero", motor 163 electric or hydraulic).
+Questions: how far a phase changer turns is not said; here a metre at most, at 10 mm/s, before the tape starts. A speed
+of the tape other than its own is not in the patent, but follows from it: the reference on the tape turns the wheels.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.player.tape.phase_lock import MOTORS, PhaseLock
+
+OVERRIDES = 0.1, 2.0  # what a transport of variable speed does
+LARGEST_ZERO_MM = 1000.0
+
+
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """Drives, zeros in mm in the order of the axes (what is not given is 0), and the override."""
+
+    lock: PhaseLock = MOTORS["electric"]
+    zero_mm: tuple[float, ...] = ()
+    override: float = 1.0
+
+    def __post_init__(self) -> None:
+        slowest, fastest = OVERRIDES
+        if not slowest <= self.override <= fastest:
+            raise ValueError(f"an override of {self.override:.0%} is none; give {slowest:.0%} to {fastest:.0%}")
+        far = [shift for shift in self.zero_mm if not abs(shift) <= LARGEST_ZERO_MM]
+        if far:
+            raise ValueError(f"a zero of {far[0]:g} mm is too far; the phase changer turns ±{LARGEST_ZERO_MM:g} mm")
+
+    def zeros_mm(self, axes: Sequence[str]) -> NDArray[np.float64]:
+        """The zero of every axis, mm; raises ValueError for more of them than there are axes."""
+        if len(self.zero_mm) > len(axes):
+            raise ValueError(f"a zero of {len(self.zero_mm)} places does not fit; the tape has {len(axes)} axes")
+        return np.array([*self.zero_mm, *[0.0] * (len(axes) - len(self.zero_mm))])

@@ -1,0 +1,234 @@
+"""Bearings: what the standstill at the start of a tape tells the machine, and the watch kept over its tracks.
+
+Signals in: the first frames of the tape (n, tracks) and the first rows of the discriminator; later all its rows. Out:
+level of each track (amplitude, full scale 1), frequency of the reference (Hz), zero of each axis (cycles); later the
+first row that cannot be trusted, with its fault.
+
+    zero of an axis = mean of its phase over the first 50 ms   (phase changer 155, turned until the drive stands)
+
+A track that starts at another phase, by another head or by skew that stands still, has thereby only another zero. A
+tape is refused when a track is silent or has no carrier, or when the strongest tone of track 1 is not the reference.
+A row cannot be trusted when a phase lies a quarter of a cycle or more from where its motion was taking it (beyond half
+a cycle it would be counted as another turn). What a lost level means is in dropouts.py.
+
+Source: patent ES 361967, figure 5 (phase changer 155, triggers 152 and 154, fault circuit 162).
+Questions: the patent sets the zero by hand and says nothing of levels. A tape that moves from its very first row has
+no standstill: its first row is then the zero. A splice that is a whole number of cycles out has no mark upon it here;
+the end position tells it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.motion.faults import Fault, LockFault, TapeFault
+from morfax.player.tape.discriminator import Phases
+from morfax.recorder.tape.pickups import DEFAULT_PICK_UP, PICK_UPS
+from morfax.recorder.tape.format import TapeFormat
+
+STANDSTILL_S = 0.05
+STANDSTILL_CYCLES = 0.25  # phase that moves more than this within the 50 ms moves on purpose
+SILENT_LEVEL = 1e-3  # -60 dB of full scale
+CARRIER_SHARE = 0.9  # of a track's power; 20 dB of noise leave 0.99, clipping to a square 0.81, white noise has 0.2
+LEVEL_STEADY, LEVEL_LOST, FEWEST_STEADY_ROWS = (
+    0.8,
+    0.5,
+    48,
+)  # shares of the level; 8 ms at 6 kHz: a dropout, or no carrier
+LEAST_CREST = 1.24  # 1.31 and more of a sine with eight samples, 1.20 where two thirds of it are cut off
+UNSTEADY_CYCLES = 0.009  # RMS at standstill: five times as much is a twentieth of a cycle; 20 dB of noise make 0.0079
+REFERENCE_BAND = 0.1  # a tape's speed may be this much off
+SURPRISE_CYCLES = 0.25
+SPECTRUM_FRAMES = 16384
+
+Float32s = NDArray[np.float32]
+Float64s = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Bearings:
+    """What the tracks are like at standstill; `names` are those of the axes."""
+
+    levels: Float64s
+    zero_cycles: Float64s
+    reference_hz: float
+    names: Sequence[str]
+
+    def first_fault(self, phases: Phases, rate_hz: float, positions_mm: Sequence[float]) -> tuple[int, Fault] | None:
+        """The first row of a block that no motion explains, and why; the screws stood at `positions_mm` before it."""
+        jumped = ~(np.abs(phases.surprise) < SURPRISE_CYCLES)
+        if not jumped.any():
+            return None
+        row = int(np.argmax(jumped.any(axis=1)))
+        time_s, axis = (phases.first_row + row) / rate_hz, int(np.argmax(jumped[row]))
+        return row, self._jump(axis, float(phases.surprise[row, axis]), time_s, positions_mm[axis])
+
+    def _jump(self, axis: int, surprise: float, time_s: float, position_mm: float) -> LockFault:
+        """The fault of a phase that no motion explains."""
+        return LockFault(
+            f"the phase of {self.names[axis].upper()} jumps by {surprise:+.2f} cycle at {time_s:.3f} s, position "
+            f"{position_mm:.3f} mm; {SURPRISE_CYCLES:g} is allowed; look for a splice, dropout or sudden stop there",
+            axis=self.names[axis],
+            time_s=time_s,
+            error_cycles=surprise,
+            position_mm=position_mm,
+        )
+
+
+def take_bearings(frames: Float32s, phases: Phases, fmt: TapeFormat) -> Bearings:
+    """Bearings from the first frames and rows of a tape; raises TapeFault where a track or the reference is missing."""
+    names, reference_hz = fmt.axes, fmt.reference_hz
+    still = frames[: round(STANDSTILL_S * fmt.sample_rate_hz)]
+    power = np.var(still, axis=0, dtype=np.float64)  # without a DC offset
+    for track, mean_square in enumerate(power):
+        _demand_signal(track, float(mean_square), names)
+    found_hz = strongest_hz(frames[:, 0], fmt.sample_rate_hz)
+    if not abs(found_hz / reference_hz - 1) <= REFERENCE_BAND:
+        raise TapeFault(
+            f"track 1 carries {found_hz:.0f} Hz where the reference of {reference_hz:g} Hz should be, within "
+            f"{REFERENCE_BAND:.0%}; give the tape's own (--reference {found_hz:.0f}Hz), or its tracks in order"
+        )
+    rows = max(round(STANDSTILL_S * fmt.motion_rate_hz), 1)
+    levels = phases.levels[:rows].astype(np.float64).mean(axis=0)
+    for track in range(len(levels)):
+        sensor = PICK_UPS[DEFAULT_PICK_UP] if track == 0 else fmt.sensor  # the reference comes from its source, a sine
+        share = CARRIER_SHARE * sensor.fundamental_share(reference_hz, fmt.sample_rate_hz)
+        _demand_no_dropout(track, phases.levels[:rows, track], still[:, track], share, fmt)
+        if not sensor.flat:
+            _demand_round(track, still[:, track], names)
+        _demand_carrier(track, float(levels[track]), float(power[track]), share, names)
+    zero = _zero(phases.cycles[:rows])
+    if fmt.dwell_s >= STANDSTILL_S and not phases.first_row:
+        _demand_standstill(phases.cycles[:rows], names)
+    standing = phases.cycles[: _standing(phases.cycles, zero, fmt, rows)]
+    if len(standing) > rows:
+        off = standing - zero - np.round(standing - zero)  # a dropout may have cost whole cycles by now
+        _demand_steady(off, names)
+        zero = zero + np.median(off, axis=0)
+    return Bearings(levels, zero, found_hz, names)
+
+
+def _standing(cycles: Float64s, zero: Float64s, fmt: TapeFormat, least: int) -> int:
+    """Rows of the standstill at the start, as far as it is stated and all axes stay near their zero."""
+    stated = cycles[: round(0.9 * fmt.dwell_s * fmt.motion_rate_hz)]
+    if len(stated) < least:
+        return 0
+    moved = (np.abs(stated - zero) > STANDSTILL_CYCLES).mean(axis=1)
+    steps = np.flatnonzero(np.convolve(moved > 0, np.ones(least), "valid") == least)  # longer than a dropout
+    return max(int(steps[0]) - least, 0) if len(steps) else len(stated)  # an axis may have crept before it was seen
+
+
+def _demand_standstill(cycles: Float64s, names: Sequence[str]) -> None:
+    """Raise TapeFault where a tape that states a standstill starts under way: where it starts from is not known."""
+    moved = np.ptp(cycles, axis=0)
+    axis = int(np.argmax(moved))
+    if moved[axis] >= STANDSTILL_CYCLES:
+        raise TapeFault(
+            f"the tape starts while {names[axis].upper()} moves, and states a standstill: its start is missing, so where "
+            f"it starts from is not known; get the whole tape, or go on from a place (--resume-at 0.1s --from X,Y,Z)"
+        )
+
+
+def _demand_steady(standing: Float64s, names: Sequence[str]) -> None:
+    """Raise TapeFault where the phases of a standing machine swing so far that no position is certain."""
+    swing = np.diff(np.percentile(standing, [2.3, 97.7], axis=0), axis=0)[0] / 4  # dropouts left out
+    axis = int(np.argmax(swing))
+    if not swing[axis] <= UNSTEADY_CYCLES:
+        raise TapeFault(
+            f"the phase of {names[axis].upper()} swings by {swing[axis]:.3f} cycle (RMS) at standstill, at most "
+            f"{UNSTEADY_CYCLES:g} is allowed: noise, crosstalk or tape that weaves; copy the tape on a better machine"
+        )
+
+
+def evened(phases: Phases, fmt: TapeFormat) -> Phases:
+    """The rows with levels as they would be at standstill: those of a coil grow with the frequency of their track."""
+    if not fmt.sensor.by_speed or len(phases) < 2:
+        return phases
+    speed = np.gradient(phases.cycles, axis=0) * fmt.motion_rate_hz
+    most = fmt.largest_deviation_hz  # what the phase does in a dropout is no speed
+    levels = phases.levels.copy()
+    levels[:, 1:] /= 1 + np.clip(speed, -most, most) / fmt.reference_hz
+    return replace(phases, levels=levels)
+
+
+def strongest_hz(samples: Float32s, sample_rate_hz: float) -> float:
+    """Frequency of the strongest tone in the first samples of a track, to a tenth of a line of the spectrum, Hz."""
+    samples = samples[:SPECTRUM_FRAMES]
+    spectrum = np.abs(np.fft.rfft((samples - samples.mean()) * np.hanning(len(samples))))
+    peak = min(max(int(np.argmax(spectrum)), 1), len(spectrum) - 2)
+    left, middle, right = np.log(spectrum[peak - 1 : peak + 2] + 1e-30)
+    bend = left - 2 * middle + right
+    shift = 0.5 * (left - right) / bend if bend < 0 else 0.0
+    return float((peak + shift) * sample_rate_hz / len(samples))
+
+
+def track_name(track: int, names: Sequence[str]) -> str:
+    """What a track carries."""
+    return "reference" if track == 0 else names[track - 1].upper()
+
+
+def decibels(level: float) -> str:
+    """An amplitude against full scale, as text."""
+    return f"{20 * math.log10(level):.0f} dB" if level > 0 else "none"
+
+
+def _zero(cycles: Float64s) -> Float64s:
+    """Phase at standstill, cycles; where an axis moves already, that of its first row."""
+    stands = np.ptp(cycles, axis=0) < STANDSTILL_CYCLES
+    return np.where(stands, cycles.mean(axis=0), cycles[0])
+
+
+def _demand_signal(track: int, mean_square: float, names: Sequence[str]) -> None:
+    """Raise TapeFault for a silent track."""
+    level = math.sqrt(2 * mean_square)
+    if not level >= SILENT_LEVEL:
+        raise TapeFault(
+            f"track {track + 1} ({track_name(track, names)}) is silent: level {decibels(level)}, at least "
+            f"{decibels(SILENT_LEVEL)} of full scale is needed; {'without the reference no place can be known: ' * (not track)}"
+            f"give a copy that has it, or say which tracks are reference, {', '.join(name.upper() for name in names)} (--tracks)"
+        )
+
+
+def _demand_round(track: int, samples: Float32s, names: Sequence[str]) -> None:
+    """Raise TapeFault for a track that is clipped so far that its harmonics fold back upon the carrier."""
+    swing = samples - np.median(samples)
+    crest = float(np.percentile(np.abs(swing), 98) / np.std(swing))
+    if not crest >= LEAST_CREST:
+        raise TapeFault(
+            f"track {track + 1} ({track_name(track, names)}) is clipped: its peak is {crest:.2f} of its root mean square, at "
+            f"least {LEAST_CREST:g} is needed; copy the tape again at a lower level"
+        )
+
+
+def _demand_no_dropout(track: int, levels: Float32s, samples: Float32s, share: float, fmt: TapeFormat) -> None:
+    """Raise TapeFault for a track that has a carrier, but not through all of the 50 ms."""
+    steady = levels > LEVEL_STEADY * np.percentile(levels, 90)
+    edges = np.flatnonzero(np.diff(np.r_[False, steady, False]))
+    if not len(edges) or float(levels.mean()) ** 2 / 2 >= share * float(np.var(samples, dtype=np.float64)):
+        return  # nothing to be heard, or enough of it
+    first, last = max(zip(edges[::2], edges[1::2], strict=True), key=lambda run: run[1] - run[0])
+    heard = samples[first * fmt.samples_per_motion : last * fmt.samples_per_motion]
+    level, power = float(levels[first:last].mean()), float(np.var(heard, dtype=np.float64))
+    weak = levels < LEVEL_LOST * level
+    if last - first < FEWEST_STEADY_ROWS or level**2 / 2 < share * power or not weak.any():
+        return
+    raise TapeFault(
+        f"track {track + 1} ({track_name(track, fmt.axes)}) has a dropout at {np.argmax(weak) / fmt.motion_rate_hz:.3f} s, within the "
+        f"first {STANDSTILL_S * 1e3:g} ms, from which its level and zero are told; copy the tape again, or go on behind it "
+        f"(--resume-at 0.1s --from X,Y,Z)"
+    )
+
+
+def _demand_carrier(track: int, level: float, mean_square: float, least: float, names: Sequence[str]) -> None:
+    """Raise TapeFault for a track with a signal but no carrier in it."""
+    share = level**2 / 2 / mean_square
+    if not share >= least:
+        raise TapeFault(
+            f"track {track + 1} ({track_name(track, names)}) has no carrier: {share:.1%} of its power lies round the "
+            f"reference, at least {least:.0%} is needed; this is no tape for it, or its reference is another"
+        )

@@ -1,0 +1,86 @@
+"""The order of the tracks: whether the reference is on another track, before anything moves.
+
+Signals in: the tape's first seconds, until something moves; where the reference then turns out to be on another track, its
+phases to the end. Out: the order of the tracks, where it is certain; a fault, where the reference is elsewhere and the
+rest is not certain; nothing, where track 1 may be the reference.
+
+The reference is the track that stands when the others move (watch.py). Which of the others is X, Y or Z is not to be
+seen on them: only if the tape states an end that differs from its start on some axes, and just one order of the tracks
+ends there on all, is it known.
+
+Source: patent ES 361967, figure 5; the patent's tracks lie in the order in which the tape is wired.
+Questions: X and Y in each other's places make a mirror image, so an order that is only likely is not taken.
+"""
+
+from __future__ import annotations
+
+from itertools import permutations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.motion.faults import TapeFault
+from morfax.player.tape.standstill import Bearings, strongest_hz, take_bearings
+from morfax.player.tape.discriminator import Discriminator, discriminate
+from morfax.player.tape.watch import Watch
+from morfax.recorder.tape.tape import Tape, full_scale
+
+SEARCHED_S = 20.0  # of a tape that stands for so long nothing is known beforehand; the watch goes on
+END_CYCLES = 0.25
+MOST_AXES = 6  # whose orders are gone through
+
+Array = NDArray[np.float64]
+
+
+def found_order(tape: Tape) -> tuple[int, ...] | None:
+    """The tracks of the file on which reference, X, Y … are, if that is not their order; raises TapeFault if it is not known."""
+    fmt = tape.format
+    watch: Watch | None = None
+    time_s = 0.0
+    for block in tape.stored_blocks():
+        if watch is None:
+            levels, zero = np.zeros(fmt.tracks), np.zeros(fmt.tracks - 1)
+            still_hz = strongest_hz(full_scale(block[:, 0]), fmt.sample_rate_hz)
+            watch = Watch(fmt, Bearings(levels, zero, still_hz, fmt.axes))
+        time_s += len(block) / fmt.sample_rate_hz
+        fault = watch.wrong_reference(block, time_s)
+        if fault is not None:
+            _demand_tape(tape)
+            return _by_the_end(tape, watch.steadiest, fault)
+        if watch.reference_is_steady or time_s > SEARCHED_S:
+            return None
+    return None
+
+
+def _demand_tape(tape: Tape) -> None:
+    """Raise TapeFault unless every track carries what a tape does: of music too one track is the steadiest."""
+    fmt = tape.format
+    frames = full_scale(next(tape.stored_blocks()))
+    rows = Discriminator(fmt.sample_rate_hz, fmt.reference_hz, fmt.samples_per_motion, fmt.tracks).feed(frames)
+    take_bearings(frames, rows, fmt)
+
+
+def _by_the_end(tape: Tape, reference: int, fault: TapeFault) -> tuple[int, ...]:
+    """The one order of the other tracks that ends where the tape states; else the fault is raised."""
+    fmt = tape.format
+    others = [track for track in range(fmt.tracks) if track != reference]
+    if fmt.end_mm is None or len(others) > MOST_AXES:
+        raise fault
+    ended = _travelled(tape, reference, others)
+    wanted = (np.array(fmt.end_mm) - np.array(fmt.start_mm)) * fmt.cycles_per_mm
+    fitting = [
+        order for order in permutations(range(len(others))) if (np.abs(ended[list(order)] - wanted) < END_CYCLES).all()
+    ]
+    if len(fitting) != 1:
+        raise fault
+    return reference + 1, *(others[place] + 1 for place in fitting[0])
+
+
+def _travelled(tape: Tape, reference: int, others: list[int]) -> Array:
+    """How far each of the other tracks goes against the reference from the start to the end of the tape, cycles."""
+    fmt = tape.format
+    organ = Discriminator(fmt.sample_rate_hz, fmt.reference_hz, fmt.samples_per_motion, fmt.tracks)
+    first = last = np.zeros(len(others))
+    for phases in discriminate((block[:, [reference, *others]] for block in tape.stored_blocks()), organ):
+        first, last = (phases.cycles[0] if not phases.first_row else first), phases.cycles[-1]
+    return np.asarray(last - first)

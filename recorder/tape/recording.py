@@ -1,0 +1,231 @@
+"""The recording: a stream of Motion becomes a sound file with a carrier per track.
+
+Signals: Motion in, at the format's motion rate; a sound file out (see spool.py). One block is held at a time, however long the
+tape. The tape starts and ends with standstill, the reference frequency on all tracks:
+
+    speed            ___________
+           _________/           \\_________
+           | dwell |  the motion |  dwell |
+
+Source: patent ES 361967, figure 2 and the sequence at the end (a section at the reference frequency is standstill).
+Questions: the patent's tape says nothing of its start; here the text chunk does. It is written before the frames, as a
+FLAC takes it nowhere else, with room for the end position, which is put in when it is known.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
+from itertools import chain
+from pathlib import Path as FilePath
+from typing import Any
+
+import numpy as np
+import soundfile
+from numpy.typing import NDArray
+
+from morfax.motion.faults import MotionFault
+from morfax.motion.files import disk_full_fault, written_beside
+from morfax.motion.motion import AXES, Motion, Path
+from morfax.recorder.tape.carrier import Carrier, Frames
+from morfax.recorder.report import Written
+from morfax.recorder.tape.riff import make_plain, replace_text
+from morfax.recorder.tape.spool import Spool, medium, sidecar
+from morfax.recorder.tape.format import TapeFormat
+
+_BLOCK_SAMPLES = 8192  # a megabyte of frames, which stays in the processor's cache
+_PLACE_DECIMALS = 6  # of the start and end in the text chunk: a nanometre
+_PLACE_CHARACTERS = 24  # room for one coordinate of the end
+
+Progress = Callable[[float, float | None], None]
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Recording(Written):
+    """What was recorded: its format with start and end, its length, and the largest speed of each axis."""
+
+    format: TapeFormat
+    frames: int
+    largest_speed_mm_s: tuple[float, ...]
+
+    @property
+    def duration_s(self) -> float:
+        """Length of the tape with the standstill at both ends, s."""
+        return self.frames / self.format.sample_rate_hz
+
+    @property
+    def figures(self) -> dict[str, Any]:
+        """What else is worth telling."""
+        return {"largest_speed_mm_s": max(self.largest_speed_mm_s)}
+
+
+def record(
+    stream: Iterable[Motion] | Motion | Path,
+    file: str | os.PathLike[str],
+    fmt: TapeFormat | None = None,
+    progress: Progress | None = None,
+    sample: str = "16",
+) -> Recording:
+    """Record a motion as a tape: .wav (RF64 inside from 4 GiB on), .rf64, .w64, .flac or .aiff, samples as in SUBTYPES.
+
+    Start and end in `fmt` are those of the motion, whatever is given; without `fmt` it is the usual one for its axes.
+    `progress(done_s, total_s)` is called after each block; the total is None where a stream does not tell. Raises
+    MotionFault for a motion that is empty, of another rate, not finite or too fast, and FileFault; nothing is left under
+    the name then.
+    """
+    if fmt is None:
+        stream, axes = _axes_of(stream)
+        fmt = TapeFormat(axes=axes)
+    kind = medium(FilePath(file), sample)
+    blocks = _blocks(stream, fmt)
+    first = next(blocks, None)
+    if first is None:
+        raise MotionFault("the motion is empty; a tape needs at least one position")
+    fmt = replace(fmt, start_mm=_place(first[0]), end_mm=None)
+    tape = _Take(fmt, first[0], progress, _total_s(stream))
+    with written_beside(file) as beside:
+        try:
+            spool = Spool(beside, fmt.sample_rate_hz, fmt.tracks, kind, _placeholder(fmt), name=FilePath(file))
+            with spool as out:
+                for frames in tape.frames(chain([first], blocks)):
+                    out.put(frames)
+        except soundfile.SoundFileError as error:
+            raise disk_full_fault(file) from error
+        fmt = replace(fmt, end_mm=_place(tape.last_mm))
+        _finish(beside, fmt, FilePath(file))
+    return Recording(FilePath(file), fmt, tape.count, tuple(tape.largest_speed_mm_s.tolist()))
+
+
+class _Take:
+    """One run of the tape: the carriers, the speed gauge and the count of frames."""
+
+    def __init__(self, fmt: TapeFormat, first_mm: Array, progress: Progress | None, total_s: float | None) -> None:
+        self._format, self._progress, self._total_s = fmt, progress, total_s
+        self._carrier = Carrier(fmt.carrier, first_mm)
+        self._samples = 0
+        self.count = 0
+        self.last_mm = first_mm
+        self.largest_speed_mm_s = np.zeros(len(first_mm))
+
+    def frames(self, blocks: Iterable[Array]) -> Iterator[Frames]:
+        """All frames of the tape, standstill included."""
+        yield from self._standstill()
+        for positions in blocks:
+            self._gauge(positions)
+            yield self._counted(self._carrier.frames(positions))
+            self._tell()
+        yield from self._standstill()
+        yield self._counted(self._carrier.rest())
+
+    def _standstill(self) -> Iterator[Frames]:
+        """The frames of a standstill where the screws are."""
+        samples = _dwell_samples(self._format)
+        for first in range(0, samples, _BLOCK_SAMPLES):
+            still = np.tile(self.last_mm, (min(_BLOCK_SAMPLES, samples - first), 1))
+            yield self._counted(self._carrier.frames(still))
+
+    def _counted(self, frames: Frames) -> Frames:
+        """The frames, counted."""
+        self.count += len(frames)
+        return frames
+
+    def _gauge(self, positions: Array) -> None:
+        """Note the largest speeds; raise MotionFault where an axis leaves the deviation."""
+        fmt = self._format
+        speed = np.diff(positions, axis=0, prepend=self.last_mm[None]) * fmt.motion_rate_hz
+        fast = np.abs(speed) > fmt.largest_speed_mm_s * (1 + 1e-9)  # a motion at the very limit is let through
+        if fast.any():
+            at, axis = np.argwhere(fast)[0].tolist()
+            raise _too_fast(fmt, axis, (self._samples + at) / fmt.motion_rate_hz, float(speed[at, axis]))
+        self.largest_speed_mm_s = np.maximum(self.largest_speed_mm_s, np.abs(speed).max(axis=0))
+        self._samples += len(positions)
+        self.last_mm = positions[-1]
+
+    def _tell(self) -> None:
+        """Report the progress in s of the motion."""
+        if self._progress is not None:
+            self._progress(self._samples / self._format.motion_rate_hz, self._total_s)
+
+
+def _axes_of(stream: Iterable[Motion] | Motion | Path) -> tuple[Iterable[Motion] | Motion | Path, tuple[str, ...]]:
+    """The axes of a motion, and the motion with nothing taken off it."""
+    if isinstance(stream, Motion | Path):
+        return stream, stream.axes
+    blocks = iter(stream)
+    first = next(blocks, None)
+    return (blocks, AXES) if first is None else (chain([first], blocks), first.axes)
+
+
+def _blocks(stream: Iterable[Motion] | Motion | Path, fmt: TapeFormat) -> Iterator[Array]:
+    """Positions (n, axes) in blocks of moderate length, checked."""
+    if isinstance(stream, Path):
+        stream = stream.motion(fmt.motion_rate_hz)
+    done = 0
+    for block in [stream] if isinstance(stream, Motion) else stream:
+        positions = np.asarray(block.positions_mm, np.float64)
+        _check(positions, block.rate_hz, done, fmt)
+        done += len(positions)
+        for first in range(0, len(positions), _BLOCK_SAMPLES):
+            yield positions[first : first + _BLOCK_SAMPLES]
+
+
+def _check(positions: Array, rate_hz: float, done: int, fmt: TapeFormat) -> None:
+    """Raise MotionFault for a block that this tape cannot take."""
+    if abs(rate_hz - fmt.motion_rate_hz) > 1e-6 * fmt.motion_rate_hz:
+        raise MotionFault(
+            f"the motion runs at {rate_hz:g} Hz; a tape of {fmt.sample_rate_hz} Hz takes {fmt.motion_rate_hz:g} Hz: "
+            "give it at that rate, as Path.motion(rate_hz) does"
+        )
+    if positions.ndim != 2 or positions.shape[1] != len(fmt.axes):
+        got = positions.shape[-1] if positions.ndim else 0
+        raise MotionFault(f"the motion has {got} axes; this tape takes {len(fmt.axes)}: {', '.join(fmt.axes)}")
+    if not np.isfinite(positions).all():
+        at, axis = np.argwhere(~np.isfinite(positions))[0].tolist()
+        time_s, name = (done + at) / rate_hz, fmt.axes[axis]
+        message = f"axis {name} is at {positions[at, axis]} mm at {time_s:.4f} s; positions must be finite"
+        raise MotionFault(message, axis=name, time_s=time_s)
+
+
+def _too_fast(fmt: TapeFormat, axis: int, time_s: float, speed_mm_s: float) -> MotionFault:
+    """The fault of a speed for which the track would leave its band."""
+    message = (
+        f"axis {fmt.axes[axis]} moves at {abs(speed_mm_s):.4g} mm/s at {time_s:.4f} s; this tape takes at most "
+        f"{fmt.largest_speed_mm_s:.4g} mm/s ({fmt.largest_deviation_hz:.4g} Hz of deviation): move slower there"
+    )
+    return MotionFault(message, axis=fmt.axes[axis], time_s=time_s, speed_mm_s=speed_mm_s)
+
+
+def _finish(beside: FilePath, fmt: TapeFormat, file: FilePath) -> None:
+    """Put the end position in, and make an RF64 that is small enough and not asked for a plain WAV."""
+    if file.suffix.lower() == ".w64":
+        with written_beside(sidecar(file)) as text:
+            text.write_text(fmt.to_json() + "\n", encoding="utf-8")
+        return
+    replace_text(beside, _placeholder(fmt), fmt.to_json())
+    if file.suffix.lower() == ".wav":
+        make_plain(beside)
+
+
+def _placeholder(fmt: TapeFormat) -> str:
+    """The text chunk before the end is known, with room for it."""
+    text = replace(fmt, end_mm=None).to_json()
+    return text.ljust(len(text) + _PLACE_CHARACTERS * len(fmt.axes))
+
+
+def _place(position: Array) -> tuple[float, ...]:
+    """A position for the text chunk, mm."""
+    return tuple((np.round(position, _PLACE_DECIMALS) + 0.0).tolist())
+
+
+def _dwell_samples(fmt: TapeFormat) -> int:
+    """Samples of standstill at each end."""
+    return round(fmt.dwell_s * fmt.motion_rate_hz)
+
+
+def _total_s(stream: Iterable[Motion] | Motion | Path) -> float | None:
+    """Length of a motion that is there as a whole, s."""
+    if isinstance(stream, Path):
+        return float(stream.t_s[-1] - stream.t_s[0])
+    return stream.duration_s if isinstance(stream, Motion) else None

@@ -1,0 +1,113 @@
+"""The spool: a sound file being written, of whatever kind its name asks for, that cannot end as half a tape.
+
+Signals: frames float32 (n, tracks), full scale 1, in blocks in; a WAV (RF64 inside while it grows), RF64, W64, FLAC or
+AIFF out. The text goes into the header before the first frame, as a FLAC takes it nowhere else. A W64 has no place for
+a text: it goes into a file beside it, `cam.w64.json` (see `sidecar`).
+
+Source: EBU Tech 3306 (RF64); Apple, Audio Interchange File Format 1.3; Sonic Foundry, Wave64 file format 2.
+Questions: a plain WAV and an AIFF count their bytes with 32 bits. The first is written as an RF64 until it is known to
+be small enough; the second has no larger kind and is refused beyond its size.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path as FilePath
+from types import TracebackType
+
+import numpy as np
+import soundfile
+from numba import njit
+from numpy.typing import NDArray
+
+from morfax.motion.faults import FileFault, TapeFault
+
+CONTAINERS = {".wav": "RF64", ".rf64": "RF64", ".flac": "FLAC", ".w64": "W64", ".aiff": "AIFF", ".aif": "AIFF"}
+SUBTYPES = {"16": "PCM_16", "24": "PCM_24", "32": "PCM_32", "float": "FLOAT"}
+MOST_FLAC_TRACKS = 8  # FLAC, format specification: channels 1 to 8
+LARGEST_AIFF_BYTES = 2**31 - 2**16  # sizes in an AIFF are signed
+_SAMPLE_BYTES = {"PCM_16": 2, "PCM_24": 3, "PCM_32": 4, "FLOAT": 4}
+
+Frames = NDArray[np.float32]
+
+
+def medium(file: FilePath, sample: str) -> tuple[str, str]:
+    """Container and kind of sample for libsndfile, by the file's name; raises FileFault, TapeFault, ValueError."""
+    if sample not in SUBTYPES:
+        raise ValueError(f"sample is {sample!r}; it must be one of {', '.join(SUBTYPES)}")
+    suffix = file.suffix.lower()
+    if suffix not in CONTAINERS:
+        raise FileFault(f"cannot write {file}: a tape's name ends in {', '.join(CONTAINERS)}; give it one of these")
+    if suffix == ".flac" and sample not in ("16", "24"):
+        raise TapeFault(f"a FLAC has no samples of {sample}; it takes 16 or 24 bit: write a .wav for more")
+    return CONTAINERS[suffix], SUBTYPES[sample]
+
+
+def sidecar(file: FilePath) -> FilePath:
+    """The file beside a W64 that holds its text."""
+    return file.with_name(file.name + ".json")
+
+
+class Spool:
+    """A sound file that is being written; a context manager. Raises SoundFileError where the disk takes no more."""
+
+    def __init__(
+        self,
+        file: FilePath,
+        rate_hz: int,
+        tracks: int,
+        kind: tuple[str, str],
+        text: str,
+        *,
+        name: FilePath | None = None,
+    ) -> None:
+        container, subtype = kind
+        if container == "FLAC" and tracks > MOST_FLAC_TRACKS:
+            raise TapeFault(
+                f"a FLAC holds at most {MOST_FLAC_TRACKS} tracks, these are {tracks}; write a .wav, .rf64 or .w64"
+            )
+        self._file, self._name, self._container = file, name or file, container
+        self._subtype = subtype
+        self._frame_bytes = tracks * _SAMPLE_BYTES[subtype]
+        self._sound = soundfile.SoundFile(file, "w", rate_hz, tracks, subtype, format=container)
+        self.frames = 0
+        if text and container != "W64":
+            self._sound.comment = text
+
+    def __enter__(self) -> Spool:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+        self._sound.close()
+        if error is None:
+            self._check_whole()
+
+    def put(self, frames: Frames) -> None:
+        """Write frames; raises SoundFileRuntimeError when the disk takes only a part, TapeFault beyond an AIFF's size."""
+        self.frames += len(frames)
+        if self._container == "AIFF" and self.frames * self._frame_bytes > LARGEST_AIFF_BYTES:
+            raise TapeFault(f"cannot write {self._name}: an AIFF ends at 2 GiB; write a .wav, .rf64, .w64 or .flac")
+        try:
+            self._sound.write(_to_16_bit(frames) if self._subtype == "PCM_16" else frames)
+        except AssertionError:  # soundfile asserts that libsndfile wrote all of it
+            raise soundfile.SoundFileRuntimeError("not all frames were written") from None
+
+    def _check_whole(self) -> None:
+        """Raise SoundFileError unless the last frame is there: a FLAC meets the full disk only when it is closed."""
+        if not self.frames:
+            return
+        with soundfile.SoundFile(self._file) as written:
+            written.seek(self.frames - 1)
+            if written.frames != self.frames or len(written.read(1)) != 1:
+                raise soundfile.SoundFileRuntimeError("the last frame is missing")
+
+
+@njit(cache=True)
+def _to_16_bit(frames):  # type: ignore[no-untyped-def]
+    """Frames (n, tracks) of full scale 1 as 16-bit samples, clipped; libsndfile takes six times as long over it."""
+    out = np.empty(frames.shape, np.int16)
+    for i in range(frames.shape[0]):
+        for j in range(frames.shape[1]):
+            out[i, j] = np.int16(
+                np.rint(min(max(frames[i, j] * np.float32(32767), np.float32(-32768)), np.float32(32767)))
+            )
+    return out

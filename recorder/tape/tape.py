@@ -1,0 +1,263 @@
+"""The tape as it is read: tracks in blocks, with the format that its text chunk states.
+
+Signals: a WAV, RF64 or FLAC in; float32 frames (n, tracks) out, full scale 1, columns reference, X, Y, Z. One block is
+held at a time, however long the tape.
+
+A tape that another program wrote or stripped has no format in it; reference and cycles per mm are then given by hand,
+and what they do not say is taken for granted: the axes are X, Y, Z … in the order of the tracks, and start at zero.
+
+Source: patent ES 361967, figure 5 (the tracks that the machine is given).
+Questions: a file resampled by a sound program keeps its text; its own sample rate counts, not the one stated.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path as FilePath
+from types import TracebackType
+from typing import Any
+
+import numpy as np
+import soundfile
+from numpy.typing import NDArray
+
+from morfax.motion.faults import FileFault, TapeFault
+from morfax.recorder.tape.carrier import Frames
+from morfax.recorder.tape.recording import Recording, record
+from morfax.recorder.tape.riff import read_sizes
+from morfax.recorder.tape.spool import sidecar
+from morfax.recorder.tape.format import LARGEST_TEXT_BYTES, TapeFormat, columns_of, is_format_text
+
+__all__ = ["Recording", "Tape", "TapeFormat", "record"]
+
+BLOCK_FRAMES = 65536
+_UNNAMED_AXES = ("x", "y", "z", "a", "b", "c", "u", "v", "w")
+_MOTION_RATE_HZ = 6000.0  # of a tape without a format, as nearly as a whole number of frames allows
+_FEWEST_TRACKS = 3
+_INT16_STEP = np.float32(1 / 32768)  # full scale 1
+Stored = NDArray[np.float32 | np.int16]
+_EXAMPLES = {"reference_hz": "--reference 6kHz", "cycles_per_mm": "--cycles-per-mm 20"}
+
+
+class Tape:
+    """An open tape; a context manager."""
+
+    def __init__(
+        self, file: FilePath, sound: soundfile.SoundFile, fmt: TapeFormat, columns: list[int] | None = None
+    ) -> None:
+        self.file, self.format, self._sound, self._columns = file, fmt, sound, columns
+
+    @classmethod
+    def open(
+        cls,
+        file: str | os.PathLike[str],
+        *,
+        reference_hz: float | None = None,
+        cycles_per_mm: float | None = None,
+        start_mm: Sequence[float] | None = None,
+        order: Sequence[int] | None = None,
+    ) -> Tape:
+        """Open a tape; what is given by hand goes before what its text chunk says; a start X, Y leaves Z alone.
+
+        `order`: the tracks of the file, from 1, on which reference, X, Y … are, where it is not this order.
+
+        Raises FileFault if the file cannot be read, TapeFault if it is no tape, cut short, empty or of unknown format.
+        """
+        sound = _open_sound(FilePath(file))
+        try:
+            _check_whole(FilePath(file), sound)
+            fmt = _format(FilePath(file), sound, {"reference_hz": reference_hz, "cycles_per_mm": cycles_per_mm})
+            return cls(FilePath(file), sound, _started(fmt, start_mm), columns_of(order, fmt.tracks))
+        except BaseException:
+            sound.close()
+            raise
+
+    def __enter__(self) -> Tape:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close the file."""
+        self._sound.close()
+
+    @property
+    def frames(self) -> int:
+        """Frames on the tape."""
+        return int(self._sound.frames)
+
+    @property
+    def duration_s(self) -> float:
+        """Length of the tape, s."""
+        return self.frames / self.format.sample_rate_hz
+
+    @property
+    def container(self) -> str:
+        """Kind of file: WAV, WAVEX, RF64 or FLAC."""
+        return str(self._sound.format)
+
+    @property
+    def sample(self) -> str:
+        """Kind of sample: PCM_16, PCM_24, PCM_32 or FLOAT."""
+        return str(self._sound.subtype)
+
+    @property
+    def text(self) -> str:
+        """The text chunk as it stands in the file; empty if there is none."""
+        return _text(self.file, self._sound).strip()
+
+    def blocks(self, frames: int = BLOCK_FRAMES, first: int = 0) -> Iterator[Frames]:
+        """The tape from frame `first` on in blocks (n, tracks) of so many frames, the last one shorter."""
+        return map(full_scale, self.stored_blocks(frames, first))
+
+    def stored_blocks(self, frames: int = BLOCK_FRAMES, first: int = 0) -> Iterator[Stored]:
+        """The same with samples of 16 bit as they are stored, for who can take them so."""
+        if frames < 1:
+            raise ValueError(f"a block of {frames} frames holds nothing; it must be at least 1")
+        done = first
+        try:
+            self._sound.seek(first)
+        except soundfile.SoundFileError as error:
+            raise TapeFault(f"{self.file} cannot be wound to frame {first}: {error}; copy the file again") from error
+        while done < self.frames:
+            block = self._read(frames, done)
+            done += len(block)
+            yield block
+
+    def _read(self, frames: int, done: int) -> Stored:
+        """The next block; raises TapeFault where the file ends early or cannot be decoded."""
+        kind = "int16" if self._sound.subtype == "PCM_16" else "float32"  # libsndfile is slow to make one of the other
+        try:
+            block: Stored = self._sound.read(frames, dtype=kind, always_2d=True)
+        except soundfile.SoundFileError as error:
+            raise _cut_short(self.file, done / self.format.sample_rate_hz, self.duration_s) from error
+        if not len(block):
+            raise _cut_short(self.file, done / self.format.sample_rate_hz, self.duration_s)
+        return block if self._columns is None else block[:, self._columns]
+
+
+def full_scale(frames: Stored) -> Frames:
+    """Samples of full scale 1, whichever way they are stored."""
+    return np.asarray(frames * _INT16_STEP if frames.dtype == np.int16 else frames, np.float32)
+
+
+def _open_sound(file: FilePath) -> soundfile.SoundFile:
+    """The sound file; raises FileFault if it cannot be read, TapeFault if it is none."""
+    try:
+        with file.open("rb") as opened:
+            empty = not opened.read(1)
+    except OSError as error:
+        raise FileFault(f"cannot read {file}: {error.strerror}; check the name") from error
+    if empty:
+        raise TapeFault(f"{file} is empty; a tape is a WAV, RF64 or FLAC file")
+    try:
+        return soundfile.SoundFile(file)
+    except (soundfile.SoundFileError, TypeError) as error:  # TypeError: of a .raw it wants to be told everything
+        raise TapeFault(
+            f"{file} is no tape: it is not a sound file that can be read; give a WAV, RF64 or FLAC"
+        ) from error
+
+
+def _check_whole(file: FilePath, sound: soundfile.SoundFile) -> None:
+    """Raise TapeFault for a file that is empty, cut short or has too few tracks."""
+    if sound.channels < _FEWEST_TRACKS:
+        tracks = "one track" if sound.channels == 1 else f"{sound.channels} tracks"
+        raise TapeFault(f"{file} has {tracks}; a tape has at least {_FEWEST_TRACKS}: reference, X, Y")
+    sizes = read_sizes(file)
+    if sizes is not None and sizes.stated is not None and sizes.cut_short:
+        frame_s = 1 / sound.samplerate
+        stated_s = sizes.stated / max(sizes.held, 1) * sound.frames * frame_s
+        raise _cut_short(file, sound.frames * frame_s, stated_s)
+    if not sound.frames:
+        raise TapeFault(f"{file} holds no frames; record the tape again")
+    if sizes is None:
+        _check_last_frame(file, sound)
+
+
+def _check_last_frame(file: FilePath, sound: soundfile.SoundFile) -> None:
+    """Raise TapeFault unless the last frame can be read, where no header tells how long the file must be."""
+    try:
+        sound.seek(sound.frames - 1)
+        there = len(sound.read(1)) == 1
+    except soundfile.SoundFileError:
+        there = False
+    if not there:
+        raise TapeFault(f"{file} is cut short: its last frame is missing; copy the file again or record it again")
+
+
+def _cut_short(file: FilePath, held_s: float, stated_s: float) -> TapeFault:
+    """The fault of a file that ends before its header says."""
+    message = (
+        f"{file} is cut short: {held_s:.3f} s of {stated_s:.3f} s are there; copy the file again or record it again"
+    )
+    return TapeFault(message, time_s=held_s)
+
+
+def _format(file: FilePath, sound: soundfile.SoundFile, by_hand: dict[str, float | None]) -> TapeFormat:
+    """The tape's format, from its text chunk or by hand; raises TapeFault."""
+    given: dict[str, Any] = {name: value for name, value in by_hand.items() if value is not None}
+    stated = _stated(file, sound)
+    if stated is None and len(given) < len(by_hand):
+        lacks = " ".join(example for name, example in _EXAMPLES.items() if name not in given)
+        raise TapeFault(f"{file} does not say its format (no text chunk); give {lacks}, or whatever the tape has")
+    try:
+        if stated is None:
+            return _unnamed(sound, given)
+        if given.get("cycles_per_mm", stated.cycles_per_mm) != stated.cycles_per_mm:
+            stated = replace(stated, end_mm=None)  # another travel for the same phase ends elsewhere
+        return replace(stated, sample_rate_hz=sound.samplerate, **given)
+    except ValueError as error:
+        raise TapeFault(f"{file} cannot be played so: {error}") from None
+
+
+def _stated(file: FilePath, sound: soundfile.SoundFile) -> TapeFormat | None:
+    """The format in the text chunk; None if there is none."""
+    text = _text(file, sound)
+    if not is_format_text(text):
+        return None
+    try:
+        fmt = TapeFormat.from_json(text)
+    except TapeFault as fault:
+        raise TapeFault(f"{file}: {fault}") from None
+    if fmt.tracks != sound.channels:
+        raise TapeFault(
+            f"{file} has {sound.channels} tracks, but its text chunk speaks of {fmt.tracks}: reference, "
+            f"{', '.join(fmt.axes)}; take the file as it was recorded"
+        )
+    return fmt
+
+
+def _text(file: FilePath, sound: soundfile.SoundFile) -> str:
+    """The text chunk, or what a file beside the tape says in its place (a W64 has none)."""
+    text = str(sound.comment)
+    if text.strip():
+        return text
+    try:
+        with sidecar(file).open("rb") as beside:
+            return beside.read(LARGEST_TEXT_BYTES + 1).decode("utf-8", "replace")
+    except OSError:
+        return ""
+
+
+def _unnamed(sound: soundfile.SoundFile, given: dict[str, Any]) -> TapeFormat:
+    """The format of a tape that does not state it."""
+    rate = sound.samplerate
+    axes = _UNNAMED_AXES[: sound.channels - 1]
+    return TapeFormat(
+        sample_rate_hz=rate, axes=axes, dwell_s=0.0, samples_per_motion=max(2, round(rate / _MOTION_RATE_HZ)), **given
+    )
+
+
+def _started(fmt: TapeFormat, start_mm: Sequence[float] | None) -> TapeFormat:
+    """The format with the start that was given by hand, for the axes that were given; the end goes along."""
+    if start_mm is None:
+        return fmt
+    if len(start_mm) > len(fmt.axes):
+        raise TapeFault(f"the start was given {len(start_mm)} places; the tape has {len(fmt.axes)} axes")
+    start = tuple(float(mm) for mm in start_mm) + fmt.start_mm[len(start_mm) :]
+    shifts = [new - old for new, old in zip(start, fmt.start_mm, strict=True)]
+    end = None if fmt.end_mm is None else tuple(mm + by for mm, by in zip(fmt.end_mm, shifts, strict=True))
+    return replace(fmt, start_mm=start, end_mm=end)

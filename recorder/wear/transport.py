@@ -1,0 +1,306 @@
+"""The transport: what a real recorder, its tape and the years do to a tape.
+
+Signals: a sound file in, the worn sound file out, in blocks of constant size; the text chunk goes along. Each part
+stands by itself and does nothing at its default; what a maker states of a kind of machine is a named set.
+
+    programme ─► distortion ─► crosstalk ─► print-through ─► dropouts ─► head (speed, flutter, skew)
+              ─► level, unevenness ─► bandwidth ─► hum, DC, noise ─► order, polarity ─► clipping ─► worn tape
+
+The worn tape starts at `cut_start_s` of the programme and ends `cut_end_s` before its end. All chance comes from one
+seed, part by part, so that a part is the same whatever the others are, and however long the blocks.
+
+Source: patent ES 361967 (the tape goes from one machine to another); figures and their sources: docs/transport.md.
+Questions: wow and flutter are given unweighted, root mean square. A head's azimuth makes skew that grows evenly from
+track to track; weave is the tape wandering in its guides, in the same proportion.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, fields
+from pathlib import Path as FilePath
+
+import numpy as np
+import soundfile
+from numpy.typing import NDArray
+
+from morfax.motion.faults import FileFault, TapeFault
+from morfax.motion.files import disk_full_fault, written_beside
+from morfax.recorder.tape.riff import make_plain
+from morfax.recorder.tape.spool import Spool, medium, sidecar
+from morfax.recorder.tape.format import LARGEST_TEXT_BYTES
+from morfax.recorder.wear.timebase import FLUTTER_HZ, SCRAPE_HZ, WEAVE_HZ, WOW_HZ, Head, Timebase, Tones
+from morfax.recorder.wear.signal import Bandwidth, Dropout, Dropouts, PrintThrough, Unevenness, crosstalk, distorted, gain, hum
+
+BLOCK_FRAMES = 32768
+END_FRAMES = 1e-3  # rounding of a place at the very end
+
+Frames = NDArray[np.float32]
+Progress = Callable[[float, float | None], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Wear:
+    """What is done to a tape; shares are of the speed, dB of the carrier's peak unless said otherwise."""
+
+    speed: float = 0.0
+    wow: float = 0.0
+    flutter: float = 0.0
+    scrape: float = 0.0
+    skew_s: float = 0.0
+    weave_s: float = 0.0
+    noise_db: float | None = None
+    level_db: float = 0.0
+    uneven_db: float = 0.0
+    crosstalk_db: float | None = None
+    print_db: float | None = None
+    print_s: float = 1.5
+    dropouts_per_min: float = 0.0
+    dropout_s: float = 0.003
+    dropout_db: float = 30.0
+    dropout_all: bool = False
+    hum_db: float | None = None
+    hum_hz: float = 50.0
+    dc: float = 0.0
+    third: float = 0.0
+    bandwidth_hz: float | None = None
+    clip: float | None = None
+    stamped_hz: int | None = None
+    order: tuple[int, ...] = ()
+    inverted: tuple[int, ...] = ()
+    cut_start_s: float = 0.0
+    cut_end_s: float = 0.0
+
+
+SETS = {
+    "studio-15ips": Wear(
+        speed=0.002, wow=3e-4, flutter=4e-4, scrape=3e-4, skew_s=1.5e-6, weave_s=2e-7, noise_db=60, crosstalk_db=50,
+        print_db=56, print_s=0.8, third=0.01, uneven_db=0.2, bandwidth_hz=20_000, dropouts_per_min=0.2,
+        dropout_s=0.0005, dropout_db=6,
+    ),
+    "instrumentation": Wear(
+        speed=0.001, wow=5e-4, flutter=1e-3, scrape=1e-3, skew_s=5e-7, weave_s=2e-7, noise_db=46, crosstalk_db=40,
+        print_db=60, print_s=0.5, third=0.01, uneven_db=0.3, dropouts_per_min=1, dropout_s=0.0003, dropout_db=12,
+    ),
+    "cassette": Wear(
+        speed=0.015, wow=1.2e-3, flutter=1.2e-3, scrape=6e-4, skew_s=1.2e-5, weave_s=1e-6, noise_db=46, crosstalk_db=40,
+        print_db=50, print_s=1.2, third=0.03, uneven_db=0.7, bandwidth_hz=12_500, dropouts_per_min=4,
+        dropout_s=0.001, dropout_db=20, hum_db=55,
+    ),
+}  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Aged:
+    """What was made: the file, its length in frames, the time base it was read by, and the dropouts in it."""
+
+    file: FilePath
+    frames: int
+    sample_rate_hz: int
+    timebase: Timebase
+    dropouts: tuple[Dropout, ...]
+
+    @property
+    def duration_s(self) -> float:
+        """Length of the worn tape, s."""
+        return self.frames / self.sample_rate_hz
+
+
+def age(
+    file: str | os.PathLike[str],
+    worn: str | os.PathLike[str],
+    wear: Wear,
+    seed: int = 0,
+    sample: str = "16",
+    progress: Progress | None = None,
+) -> Aged:
+    """Wear a tape; raises FileFault and TapeFault where it cannot be read or written, ValueError for a bad setting."""
+    source, target = FilePath(file), FilePath(worn)
+    try:
+        with soundfile.SoundFile(source) as sound:
+            return _aged(sound, source, target, wear, seed, sample, progress)
+    except FileNotFoundError:
+        raise FileFault(f"cannot read {source}: there is no such file; check the name") from None
+    except soundfile.SoundFileError as error:
+        if not source.is_file():
+            raise FileFault(f"cannot read {source}: it is no file that is there; check the name") from error
+        raise TapeFault(f"{source} is no tape: it is not a sound file that can be read; give a WAV or FLAC") from error
+
+
+def _aged(
+    sound: soundfile.SoundFile,
+    source: FilePath,
+    target: FilePath,
+    wear: Wear,
+    seed: int,
+    sample: str,
+    progress: Progress | None,
+) -> Aged:
+    """Run an open tape through the transport into a file."""
+    kind, deck = medium(target, sample), Deck(wear, sound.samplerate, sound.channels, seed)
+    rate_hz, total_s = wear.stamped_hz or sound.samplerate, sound.frames / sound.samplerate
+    text = str(sound.comment) or _sidecar_text(source)
+    with written_beside(target) as beside:
+        with _written(target), Spool(beside, rate_hz, sound.channels, kind, text, name=target) as out:
+            for frames in deck.frames(_cut(sound, wear)):
+                out.put(frames)
+                if progress is not None:
+                    progress(min(out.frames / sound.samplerate, total_s), total_s)
+        if target.suffix.lower() == ".wav":
+            make_plain(beside)
+        if target.suffix.lower() == ".w64" and text.strip():
+            with written_beside(sidecar(target)) as words:
+                words.write_text(text, encoding="utf-8")
+    return Aged(target, out.frames, rate_hz, deck.timebase, tuple(deck.dropouts))
+
+
+class Deck:
+    """A worn tape machine; frames of the programme in, frames as they are played out."""
+
+    def __init__(self, wear: Wear, rate_hz: float, tracks: int, seed: int) -> None:
+        _check(wear, tracks)
+        self._wear, self._rate_hz, self._tracks = wear, rate_hz, tracks
+        bands = ((wear.wow, WOW_HZ), (wear.flutter, FLUTTER_HZ), (wear.scrape, SCRAPE_HZ))
+        tones = [Tones.drawn(rms, band, np.random.default_rng((seed, i))) for i, (rms, band) in enumerate(bands)]
+        weave = Tones.drawn(wear.weave_s, WEAVE_HZ, np.random.default_rng((seed, 3)))
+        self.timebase = Timebase(wear.speed, tuple(tones), wear.skew_s, weave)
+        self._noise, self._uneven = np.random.default_rng((seed, 4)), Unevenness(wear.uneven_db, tracks, (seed, 5))
+        holes = wear.dropouts_per_min, wear.dropout_s, gain(-wear.dropout_db), wear.dropout_all, (seed, 6)
+        self._dropouts = Dropouts(*holes) if wear.dropouts_per_min > 0 else None
+        turn = max(round(wear.print_s * rate_hz), 1)
+        self._print = PrintThrough(gain(-wear.print_db), turn, tracks) if wear.print_db is not None else None
+        self._band = Bandwidth(wear.bandwidth_hz, rate_hz, tracks) if wear.bandwidth_hz else None
+        self._head, self._came, self._went, self._peak = Head(tracks), 0, 0, 0.0
+
+    @property
+    def dropouts(self) -> list[Dropout]:
+        """The dropouts that were met so far."""
+        return self._dropouts.met if self._dropouts else []
+
+    def frames(self, blocks: Iterator[Frames]) -> Iterator[Frames]:
+        """The worn tape."""
+        for block in blocks:
+            self._peak = self._peak or float(np.abs(block).max()) or 0.0
+            yield self._played(self._recorded(block))
+        if self._print is not None:
+            yield self._played(self._laid(self._print.rest()))
+        self._head.take(np.zeros((64, self._tracks), np.float32))  # blank tape: the last frames' filter reaches there
+        yield self._played(np.zeros((0, self._tracks), np.float32), last=True)
+
+    def _recorded(self, frames: Frames) -> Frames:
+        """What the record head lays on the tape."""
+        wear = self._wear
+        if wear.third and self._peak:
+            frames = distorted(frames, wear.third, self._peak)
+        if wear.crosstalk_db is not None:
+            frames = frames @ crosstalk(gain(-wear.crosstalk_db), self._tracks)
+        return self._laid(self._print.feed(frames) if self._print is not None else frames)
+
+    def _laid(self, frames: Frames) -> Frames:
+        """The tape with its dropouts."""
+        first_s = self._came / self._rate_hz
+        self._came += len(frames)
+        if self._dropouts is None or not len(frames):
+            return frames
+        gains = self._dropouts.gains(first_s, len(frames), self._rate_hz, self._tracks)
+        return frames if gains is None else (frames * gains).astype(np.float32)
+
+    def _played(self, frames: Frames, last: bool = False) -> Frames:
+        """What the play head makes of all tape that has come by now."""
+        self._head.take(frames)
+        reach, slow = (self._came, 0.99) if last else (self._head.reach, 1.01)  # flutter may be 1 % either way
+        gone = self.timebase.programme_s(np.array([self._went / self._rate_hz]))[0] * self._rate_hz
+        count = max(int((reach - gone) / (slow + self._wear.speed)), 0)
+        if last:
+            places = self.timebase.places(self._went, count + 2, self._rate_hz, self._tracks)
+            places = places[places[:, 0] < self._came - END_FRAMES]
+        else:  # flutter and skew move a place less than 10 ms
+            count = max(count - round(0.01 * self._rate_hz), 0)
+            places = self.timebase.places(self._went, count, self._rate_hz, self._tracks)
+        if not len(places):
+            return np.zeros((0, self._tracks), np.float32)
+        read = self._amplified(self._head.read(places))
+        self._went += len(read)
+        return read
+
+    def _amplified(self, frames: Frames) -> Frames:
+        """What the play amplifier gives of the head's signal."""
+        wear, first, count = self._wear, self._went, len(frames)
+        frames = frames * np.float32(gain(wear.level_db))
+        if wear.uneven_db:
+            frames = (frames * self._uneven.gains(first, count, self._rate_hz)).astype(np.float32)
+        if self._band is not None:
+            frames = self._band.feed(frames)
+        if wear.hum_db is not None:
+            buzz = hum(first, count, self._rate_hz, wear.hum_hz, self._peak * gain(-wear.hum_db))
+            frames = frames + buzz[:, None].astype(np.float32)
+        if wear.noise_db is not None:
+            sigma = self._peak / np.sqrt(2) * gain(-wear.noise_db)
+            frames = frames + np.float32(sigma) * self._noise.standard_normal(frames.shape, np.float32)
+        return self._wired(frames + np.float32(wear.dc))
+
+    def _wired(self, frames: Frames) -> Frames:
+        """The cables and the sound card: order, polarity, clipping."""
+        wear = self._wear
+        if wear.order:
+            frames = frames[:, [track - 1 for track in wear.order]]
+        for track in wear.inverted:
+            frames[:, track - 1] *= -1
+        most = 1.0 if wear.clip is None else wear.clip
+        return np.clip(frames, -most, most)
+
+
+def _cut(sound: soundfile.SoundFile, wear: Wear) -> Iterator[Frames]:
+    """The blocks of the programme between the two cuts."""
+    first = round(wear.cut_start_s * sound.samplerate)
+    left = sound.frames - first - round(wear.cut_end_s * sound.samplerate)
+    if left <= 0:
+        raise ValueError(f"cuts of {wear.cut_start_s:g} s and {wear.cut_end_s:g} s leave nothing of the tape; cut less")
+    sound.seek(first)
+    while left > 0:
+        block = sound.read(min(BLOCK_FRAMES, left), dtype="float32", always_2d=True)
+        if not len(block):
+            raise TapeFault(f"the tape ends {left / sound.samplerate:.3f} s before its header says; copy it again")
+        left -= len(block)
+        yield block
+
+
+@contextmanager
+def _written(target: FilePath) -> Iterator[None]:
+    """Make a fault of what libsndfile says when the disk is full."""
+    try:
+        yield
+    except soundfile.SoundFileError as error:
+        raise disk_full_fault(target) from error
+
+
+def _sidecar_text(source: FilePath) -> str:
+    """The text beside a tape that has none in it."""
+    try:
+        return sidecar(source).read_text("utf-8")[:LARGEST_TEXT_BYTES]
+    except (OSError, ValueError):
+        return ""
+
+
+def _check(wear: Wear, tracks: int) -> None:
+    """Raise ValueError for what no transport does."""
+    numbers = (getattr(wear, field.name) for field in fields(wear))
+    if not all(np.isfinite(n) for n in numbers if isinstance(n, int | float)):
+        raise ValueError("a part of the wear is no finite number; give finite numbers")
+    if not -0.9 < wear.speed < 9:
+        raise ValueError(f"speed error is {wear.speed:g}; it must lie between -0.9 and 9")
+    if wear.order and sorted(wear.order) != list(range(1, tracks + 1)):
+        raise ValueError(f"order is {wear.order}; it must name each of the tracks 1 to {tracks} once")
+    if any(not 1 <= track <= tracks for track in wear.inverted):
+        raise ValueError(f"inverted is {wear.inverted}; the tracks are 1 to {tracks}")
+    if wear.stamped_hz is not None and not 0 < wear.stamped_hz < 2**31:
+        raise ValueError(f"stamped_hz is {wear.stamped_hz}; a header holds 1 to {2**31 - 1} Hz")
+    for name in ("wow", "flutter", "scrape", "weave_s", "uneven_db", "dropouts_per_min", "cut_start_s", "cut_end_s"):
+        if getattr(wear, name) < 0:
+            raise ValueError(f"{name} is {getattr(wear, name):g}; it must be zero or more")
+    if wear.wow + wear.flutter + wear.scrape > 0.05:
+        raise ValueError("wow, flutter and scrape are more than 0.05 together; give less")
+    if not 0 < wear.print_s <= 10 or not wear.dropout_s > 0:
+        raise ValueError("print_s must lie between 0 and 10 s, and dropout_s above zero")

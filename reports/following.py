@@ -1,0 +1,121 @@
+"""Following errors of a run: as a picture, error against limit for each axis, and as CSV.
+
+Signals in: the chart of a playing, mm; of a program of lines and arcs the speeds that it holds, mm/s. Out: a picture, or
+rows `t_s, x_demand_mm, x_actual_mm, x_error_mm, x_limit_mm, …`, each of 10 ms (with --raw of every sample): that in
+which the axis came nearest to its limit.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path as FilePath
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.reports.overlay import DPI, UM_PER_MM, save
+from morfax.motion.files import written_beside
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from morfax.player.monitor.chart import Chart
+    from morfax.player.controls import Playback
+    from morfax.player.gcode.held_speed import HeldSpeed
+
+SUFFIXES = (".png", ".svg", ".pdf", ".csv")
+ERROR, LIMIT, TRUE, PROGRAMMED = "#1f5fa8", "#c1121f", "#2a7f3f", "#555555"
+SMALLEST_UM = 0.01  # at the foot of the picture
+PANEL_IN = 1.9  # height
+_HEADINGS = ("demand", "actual", "error", "limit")
+
+Speeds = dict[str, "HeldSpeed"]
+
+
+def new_chart(raw: bool) -> Chart:
+    """What takes the following errors down: every sample, or the worst of each 10 ms."""
+    from morfax.player.monitor.chart import Chart
+
+    return Chart(0.0) if raw else Chart()
+
+
+def speeds_held(playback: Playback) -> Speeds | None:
+    """The speed that a program of lines and arcs holds, either way."""
+    from morfax.player.gcode.held_speed import held_speed
+    from morfax.player.gcode.pulses import PulsePlayback
+
+    if not isinstance(playback, PulsePlayback):
+        return None
+    return {"weights": held_speed(playback, False), "--norm true": held_speed(playback, True)}
+
+
+def figures(playback: Playback) -> dict[str, Any]:
+    """The largest following error of each axis, and the share of its limit."""
+    watch = playback.monitor
+    each = zip(watch.axes, watch.largest_error_mm.tolist(), watch.largest_share.tolist(), strict=True)
+    return {f"{axis}_axis": {"following_error_mm": error_mm, "limit_share": share} for axis, error_mm, share in each}
+
+
+def write(chart: Chart, file: FilePath, title: str, speeds: Speeds | None = None) -> None:
+    """Write a chart as what the suffix says."""
+    if file.suffix.lower() == ".csv":
+        _write_csv(chart, file)
+    else:
+        save(picture(chart, title, speeds), file)
+
+
+def picture(chart: Chart, title: str, speeds: Speeds | None = None) -> Figure:
+    """One panel for each axis, and one for the speed held if there is one."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    panels = len(chart.axes) + (speeds is not None)
+    figure = Figure(figsize=(8.5, 0.8 + PANEL_IN * panels), layout="constrained", dpi=DPI)
+    FigureCanvasAgg(figure)
+    axes = figure.subplots(panels, 1, squeeze=False)[:, 0]
+    for number, name in enumerate(chart.axes):
+        _panel(axes[number], chart, number, name)
+        axes[number].sharex(axes[0])
+    axes[0].set_title(title, fontsize=10, loc="left")
+    axes[0].legend(fontsize=8, ncols=3, loc="lower right", bbox_to_anchor=(1, 1), frameon=False)
+    axes[len(chart.axes) - 1].set_xlabel("time, s")
+    if speeds is not None:
+        _speeds(axes[-1], speeds)
+    return figure
+
+
+def _panel(axes: Axes, chart: Chart, number: int, name: str) -> None:
+    """Error and limit of one axis over the run, on a scale of decades; where it left its limit there is a cross."""
+    error_um = np.maximum(np.abs(chart.error_mm[:, number]) * UM_PER_MM, SMALLEST_UM)
+    limit_um = chart.limit_mm[:, number] * UM_PER_MM
+    axes.semilogy(chart.t_s, limit_um, color=LIMIT, linewidth=1.0, label="limit")
+    axes.semilogy(chart.t_s, error_um, color=ERROR, linewidth=0.8, label="following error")
+    over = error_um > limit_um
+    if over.any():
+        axes.semilogy(chart.t_s[over], error_um[over], "x", color=LIMIT, markersize=9, label="fault")
+    axes.set_ylabel(f"{name.upper()}, µm")
+    axes.set_ylim(bottom=SMALLEST_UM)
+    axes.grid(alpha=0.3)
+
+
+def _speeds(axes: Axes, speeds: Speeds) -> None:
+    """Programmed and held speed along the way."""
+    programmed = next(iter(speeds.values()))
+    axes.plot(programmed.way_mm, programmed.programmed_mm_s, color=PROGRAMMED, linewidth=1.0, label="programmed")
+    for (name, held), colour in zip(speeds.items(), (ERROR, TRUE), strict=False):
+        axes.plot(held.way_mm, held.held_mm_s, color=colour, linewidth=0.8, label=f"held, {name}")
+    axes.set(xlabel="way along the program, mm", ylabel="speed, mm/s", ylim=(0, None))
+    axes.legend(fontsize=8, ncols=3, loc="lower right", bbox_to_anchor=(1, 1), frameon=False)
+    axes.grid(alpha=0.3)
+
+
+def _write_csv(chart: Chart, file: FilePath) -> None:
+    """Write the rows."""
+    columns: list[NDArray[np.float64]] = [chart.t_s]
+    for number in range(len(chart.axes)):
+        of_axis: tuple[Any, ...] = (chart.demand_mm, chart.actual_mm, chart.error_mm, chart.limit_mm)
+        columns += [column[:, number] for column in of_axis]
+    header = ",".join(["t_s", *(f"{name}_{what}_mm" for name in chart.axes for what in _HEADINGS)])
+    with written_beside(file) as beside:
+        np.savetxt(beside, np.column_stack(columns), fmt="%.7f", delimiter=",", header=header, comments="")

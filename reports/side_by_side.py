@@ -1,0 +1,125 @@
+"""Pictures of the systems side by side: all contours with the places where they differ enlarged, and errors along the way.
+
+Signals in: the results of `console.systems`, the traced path and the drawing, mm. Out: figures of matplotlib. Errors are
+micrometres, so the contours lie on each other on the sheet; the enlargements have axes in um from their place.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.reports.overlay import DPI, REFERENCE, UM_PER_MM, Picture, ground, view_of
+from morfax.motion.polyline import lengths_mm
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from morfax.jobs.systems import Result
+    from morfax.motion.motion import Path
+    from morfax.tracer.drawing.drawing import Drawing
+
+COLOURS = {"wav": "#c1121f", "steps": "#1f5fa8", "cubic": "#2a7f3f", "ngc": "#e07b00"}
+INSETS = 6
+APART_MM = 2.0
+LEAST_REACH_UM = 5.0
+
+Array = NDArray[np.float64]
+
+
+def contours(title: str, results: Sequence[Result], traced: Path, drawing: Drawing, corners_mm: Array) -> Figure:
+    """All contours over the drawing, and where each is furthest from the traced path, and at corners, enlarged."""
+    ran = [result for result in results if result.path is not None]
+    figure = _figure(11, 11)
+    grid = figure.add_gridspec(3, 3, height_ratios=(2.1, 1, 1))
+    main = figure.add_subplot(grid[0, :])
+    picture = Picture(title, traced, drawing)
+    view = view_of(Picture(title, traced, reference=traced))
+    ground(main, picture, view)
+    _lines(main, ran, traced, np.zeros(2), 1.0)
+    main.set(xlim=view[:2], ylim=view[2:], xlabel="X, mm", ylabel="Y, mm", aspect="equal")
+    main.set_title(title, fontsize=10)
+    main.legend(fontsize=8, loc="center left", bbox_to_anchor=(1, 0.5))
+    for number, (place_mm, what) in enumerate(_places(ran, corners_mm), 1):
+        axes = figure.add_subplot(grid[1 + (number - 1) // 3, (number - 1) % 3])
+        _enlarge(axes, ran, traced, place_mm, f"{number}: {what} at {place_mm[0]:.1f}, {place_mm[1]:.1f}")
+        main.annotate(str(number), tuple(place_mm), (7, 7), textcoords="offset points", fontsize=9)
+        main.plot(*place_mm, "+", color="black", markersize=8)
+    return figure
+
+
+def errors(results: Sequence[Result]) -> Figure:
+    """The signed distance of each contour from the ink's centre along the way; all on one scale."""
+    ran = [result for result in results if result.from_ink is not None]
+    figure = _figure(11, 0.9 + 1.5 * max(1, len(ran)))
+    panels = figure.subplots(max(1, len(ran)), 1, squeeze=False, sharex=True, sharey=True)[:, 0]
+    for axes, result in zip(panels, ran, strict=False):
+        assert result.from_ink is not None
+        points, error_um = result.from_ink.points_mm, result.from_ink.error_mm * UM_PER_MM
+        way_mm = lengths_mm(points)
+        axes.axhline(0, color=REFERENCE, linewidth=0.6)
+        axes.plot(way_mm, error_um, color=COLOURS[result.suffix], linewidth=0.8)
+        axes.set_ylabel("µm")
+        axes.set_title(result.name, fontsize=9, loc="left")
+        axes.grid(alpha=0.3)
+    panels[-1].set_xlabel("way along the contour, mm")
+    return figure
+
+
+def _figure(width_in: float, height_in: float) -> Figure:
+    """An empty figure."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(width_in, height_in), layout="constrained", dpi=DPI)
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def _lines(axes: Axes, ran: Sequence[Result], traced: Path, origin_mm: Array, scale: float) -> None:
+    """The traced path and those of the machines, from an origin, in mm or in um."""
+    style: dict[str, Any] = {"color": "black", "linewidth": 1.0, "linestyle": (0, (4, 3)), "zorder": 5}
+    for number, run in enumerate(traced.runs()):
+        axes.plot(*((run - origin_mm) * scale).T, label=None if number else "traced", **style)
+    for result in ran:
+        assert result.path is not None
+        for number, run in enumerate(result.path.runs()):
+            label = None if number else result.name
+            axes.plot(
+                *((run - origin_mm) * scale).T, color=COLOURS[result.suffix], linewidth=1.0, label=label, zorder=3
+            )
+
+
+def _places(ran: Sequence[Result], corners_mm: Array) -> list[tuple[Array, str]]:
+    """Where each system is furthest from the traced path, then corners, apart from each other; and what it is."""
+    wanted: list[tuple[Array, str]] = []
+    for result in ran:
+        assert result.from_traced is not None
+        worst = int(result.from_traced.error_mm.argmax())
+        off_um = result.from_traced.error_mm[worst] * UM_PER_MM
+        wanted.append((result.from_traced.points_mm[worst], f".{result.suffix} {off_um:.3g} µm off"))
+    wanted += [(corner_mm, "corner") for corner_mm in corners_mm]
+    chosen: list[tuple[Array, str]] = []
+    for place_mm, what in wanted:
+        if all(np.hypot(*(place_mm - other)) > APART_MM for other, _ in chosen):
+            chosen.append((place_mm, what))
+    return chosen[:INSETS]
+
+
+def _enlarge(axes: Axes, ran: Sequence[Result], traced: Path, place_mm: Array, title: str) -> None:
+    """One place, so large that the contours part."""
+    reach_um = LEAST_REACH_UM
+    for result in ran:
+        assert result.from_traced is not None
+        near = np.hypot(*(result.from_traced.points_mm - place_mm).T) < 0.2
+        reach_um = max(reach_um, 3 * UM_PER_MM * float(result.from_traced.error_mm[near].max(initial=0.0)))
+    _lines(axes, ran, traced, place_mm, UM_PER_MM)
+    axes.set(xlim=(-reach_um, reach_um), ylim=(-reach_um, reach_um), aspect="equal")
+    axes.set_title(title, fontsize=8)
+    axes.tick_params(labelsize=7)
+    axes.set_xlabel("µm", fontsize=7)
+    axes.grid(alpha=0.3)

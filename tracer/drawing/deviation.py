@@ -1,0 +1,223 @@
+"""How far a path is from the ink's own centre, and which ink no path covers: the measure of `compare DRAWING PATH`, independent of the head.
+
+Signals: a Drawing and a path's polylines (sheet mm) in; the signed distance of the path from the middle of the ink at places along it, mm (positive: the
+path lies to the left of the ink's middle), and the length of ink that lies beside the path.
+
+Across the path, the ink's two edges are where the darkness falls through half of what it is between them; the middle is halfway. Where the ink is much
+wider than the line usually is (a crossing, a corner) the middle means nothing, and the place is not measured.
+
+Source: our own; the darkness is the drawing's, interpolated by scipy, and not the head's cells.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import map_coordinates
+
+from morfax.motion.faults import MotionFault
+from morfax.motion.motion import Path
+from morfax.motion.polyline import lengths_mm
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.components import Mask, Patches, runs_of, strips
+
+Array = NDArray[np.float64]
+
+EVERY_MM = 0.1
+TOUCH_MM = 0.02  # between the places of a cutter's way
+STANDS, LEAP = (
+    0.1,
+    10.0,
+)  # of these: round a corner, and from one leg of a corner to the other, the edge is not on the line
+WIDEST = 1.3  # of the usual width: beyond this the ink's middle means nothing
+AVERAGED_MM = 0.5  # the middle of the ink is averaged along the path over this, against the noise of the paper
+
+
+@dataclass(frozen=True, slots=True)
+class Deviation:
+    """Distances of a path from the ink's middle (mm, NaN where there is none to measure) at places (n, 2) along it, and ink missed."""
+
+    points_mm: Array
+    error_mm: Array
+    line_width_mm: float
+    missed_mm: float
+    ink_mm: float
+
+    @property
+    def measured_share(self) -> float:
+        """Share of the places where the ink's middle could be measured."""
+        return float(np.mean(np.isfinite(self.error_mm)))
+
+    @property
+    def rms_mm(self) -> float:
+        """Root mean square distance, mm."""
+        return float(np.sqrt(np.nanmean(self.error_mm**2)))
+
+    @property
+    def p95_mm(self) -> float:
+        """Distance that 95 % of the places stay within, mm."""
+        return float(np.nanpercentile(np.abs(self.error_mm), 95))
+
+    @property
+    def max_mm(self) -> float:
+        """Largest distance, mm."""
+        return float(np.nanmax(np.abs(self.error_mm)))
+
+    @property
+    def missed_share(self) -> float:
+        """Share of the ink that no path covers."""
+        return self.missed_mm / self.ink_mm if self.ink_mm else 0.0
+
+
+def deviation(drawing: Drawing, path: Path | Sequence[Array], over: Sequence[Array] = ()) -> Deviation:
+    """Measure a path, or its runs as (n, 2) polylines in sheet mm, against the drawing; MotionFault if it nowhere follows the ink.
+
+    Distances are those of the runs with the tool in the work; ink is missed if the path nowhere goes over it, be it with the tool up as on a lead line,
+    nor anything in `over`.
+    """
+    runs = path.runs() if isinstance(path, Path) else list(path)
+    places = [_places(run) for run in runs if len(run) > 1]
+    places = [(points, headings) for points, headings in places if len(points)]
+    if not places:
+        raise MotionFault("the path has no run with the tool in the work; nothing to compare with the drawing")
+    width_mm = _line_width(drawing, places)
+    errors = [_averaged(_across(drawing, points, headings, width_mm)) for points, headings in places]
+    if not any(np.isfinite(error).any() for error in errors):
+        raise MotionFault(
+            "the path nowhere follows the drawing's ink, it only crosses it; check that both have the same scale and origin"
+        )
+    missed, ink = _missed(drawing, [path.xy_mm] if isinstance(path, Path) else [*runs, *over], width_mm)
+    return Deviation(np.vstack([p for p, _ in places]), np.concatenate(errors), width_mm, missed, ink)
+
+
+def touched(drawing: Drawing, path: Path, radius_mm: float) -> list[Array]:
+    """What the edge of a cutter touches whose middle runs along a path, as (n, 2) polylines: on the side of each run where there is more ink."""
+    polylines = []
+    for run in path.runs():
+        points, headings = _places(run, TOUCH_MM)
+        if not len(points):
+            continue  # a hole
+        seen = _profile(drawing, points, headings, np.array([radius_mm, -radius_mm])).mean(axis=0)
+        arm_mm = radius_mm if seen[0] >= seen[1] else -radius_mm
+        edge = points + arm_mm * np.column_stack([-np.sin(headings), np.cos(headings)])
+        steps = np.hypot(*np.diff(edge, axis=0).T) / TOUCH_MM
+        on_line = (steps > STANDS) & (steps < LEAP)
+        ends = np.flatnonzero(np.diff(np.r_[False, on_line, False].astype(np.int8))).reshape(-1, 2)
+        polylines += [edge[a : b + 1] for a, b in ends]
+    return polylines
+
+
+def _places(run: Array, every_mm: float = EVERY_MM) -> tuple[Array, Array]:
+    """Places every so many mm along a polyline, and the heading there."""
+    steps = np.hypot(*np.diff(run, axis=0).T)
+    keep = np.r_[True, steps > 1e-9]
+    run = run[keep]
+    s = lengths_mm(run)
+    at = np.arange(0.5 * every_mm, s[-1], every_mm)
+    points = np.column_stack([np.interp(at, s, run[:, 0]), np.interp(at, s, run[:, 1])])
+    half = 0.5 * EVERY_MM
+    ends = [np.column_stack([np.interp(at + d, s, run[:, 0]), np.interp(at + d, s, run[:, 1])]) for d in (-half, half)]
+    way = ends[1] - ends[0]
+    return points, np.arctan2(way[:, 1], way[:, 0])
+
+
+def _profile(drawing: Drawing, points: Array, headings: Array, across: Array) -> Array:
+    """Darkness (places, across) at distances to the left of a path."""
+    x = points[:, :1] - np.sin(headings)[:, None] * across
+    y = points[:, 1:] + np.cos(headings)[:, None] * across
+    columns = x / drawing.pitch_mm - 0.5
+    rows = drawing.darkness.shape[0] - y / drawing.pitch_mm - 0.5
+    seen = np.empty(columns.shape)
+    map_coordinates(drawing.darkness, [rows, columns], seen, order=1, mode="constant")
+    return seen
+
+
+def _line_width(drawing: Drawing, places: list[tuple[Array, Array]]) -> float:
+    """Usual width of the ink under a path, mm."""
+    points, headings = (np.concatenate(part) for part in zip(*places, strict=True))
+    some = slice(None, None, max(1, len(points) // 2000))
+    reach = 1.0
+    while True:
+        right, left = _edges(drawing, points[some], headings[some], reach)
+        widths = left - right
+        found = widths[np.isfinite(widths)]
+        if len(found) > 0.3 * len(widths) or reach > 16:
+            break
+        reach *= 2
+    if not len(found):
+        raise MotionFault("the path lies nowhere on the drawing's ink; check that both have the same scale and origin")
+    return float(np.median(found))
+
+
+def _edges(drawing: Drawing, points: Array, headings: Array, reach_mm: float) -> tuple[Array, Array]:
+    """Edges of the ink nearest to a path, mm to its left; NaN where there is no ink under it or no edge within reach."""
+    step = 0.25 * drawing.pitch_mm
+    count = int(np.ceil(reach_mm / step))
+    across = np.arange(-count, count + 1, dtype=float) * step
+    seen = _profile(drawing, points, headings, across)
+    near = np.abs(across) <= 0.5 * reach_mm
+    peak_at = np.argmax(np.where(near, seen - 1e-3 * np.abs(across), -1.0), axis=1)
+    level = 0.5 * np.take_along_axis(seen, peak_at[:, None], 1)
+    light = seen < level
+    index = np.arange(len(across))
+    rows = np.arange(len(points))
+    right = np.where(light & (index < peak_at[:, None]), index, -1).max(axis=1)
+    left = np.where(light & (index > peak_at[:, None]), index, len(across)).min(axis=1)
+    ok = (right >= 0) & (left < len(across)) & (level[:, 0] > 0.2)
+    right, left = np.where(ok, right, 0), np.where(ok, left, len(across) - 1)
+
+    def crossing(outside: NDArray[np.intp], inside: NDArray[np.intp]) -> Array:
+        a, b = seen[rows, outside], seen[rows, inside]
+        share = (level[:, 0] - a) / np.where(np.abs(b - a) > 1e-9, b - a, 1.0)
+        found = across[outside] + share * (across[inside] - across[outside])
+        return np.asarray(np.where(ok, found, np.nan), float)
+
+    return crossing(right, np.minimum(right + 1, len(across) - 1)), crossing(left, np.maximum(left - 1, 0))
+
+
+def _across(drawing: Drawing, points: Array, headings: Array, width_mm: float) -> Array:
+    """Signed distance of each place from the ink's middle, mm; NaN where the ink has no single middle."""
+    right, left = _edges(drawing, points, headings, 1.2 * width_mm + 4 * drawing.pitch_mm)
+    odd = ~(np.abs((left - right) / width_mm - 1) < WIDEST - 1)
+    return np.asarray(np.where(odd, np.nan, -0.5 * (left + right)), float)
+
+
+def _averaged(errors: Array) -> Array:
+    """Running mean along the path, over what could be measured."""
+    span = np.ones(max(1, round(AVERAGED_MM / EVERY_MM)))
+    good = np.isfinite(errors)
+    first = len(span) // 2
+    total = np.convolve(np.where(good, errors, 0.0), span)[first : first + len(errors)]
+    count = np.convolve(good.astype(float), span)[first : first + len(errors)]
+    return np.asarray(np.where(good, total / np.maximum(count, 1), np.nan), float)
+
+
+def _missed(drawing: Drawing, runs: Sequence[Array], width_mm: float) -> tuple[float, float]:
+    """Length of ink that no path covers, and of all ink, mm: area over the line's width; specks do not count."""
+    patches = Patches.of(
+        runs_of((cv2.GaussianBlur(drawing.darkness[rows], (0, 0), 0.7) > 0.5)[top - rows.start :][: bottom - top], top)
+        for top, bottom, rows in strips(drawing.darkness.shape, halo=8)
+    )
+    counts = patches.areas * drawing.pitch_mm**2 >= width_mm**2
+    covered, columns = _covered(drawing, runs, width_mm), drawing.darkness.shape[1]
+    missed = sum(
+        np.count_nonzero(patches.painted(counts, top, bottom, 0, columns) > covered[top:bottom])
+        for top, bottom, _ in strips(covered.shape)
+    )
+    area_mm = drawing.pitch_mm**2 / width_mm
+    return float(missed * area_mm), float(patches.areas[counts].sum() * area_mm)
+
+
+def _covered(drawing: Drawing, runs: Sequence[Array], width_mm: float) -> Mask:
+    """Mask of the sheet where a pen a little wider than the line, run along the paths, would have inked it."""
+    rows, columns = drawing.darkness.shape
+    covered = np.zeros((rows, columns), np.uint8)
+    thickness = max(1, round((1.6 * width_mm) / drawing.pitch_mm))
+    for run in runs:
+        pixels = np.column_stack([run[:, 0] / drawing.pitch_mm - 0.5, rows - run[:, 1] / drawing.pitch_mm - 0.5])
+        cv2.polylines(covered, [np.round(pixels * 16).astype(np.int32)], False, 1, thickness, cv2.LINE_8, 4)
+    return covered

@@ -1,0 +1,65 @@
+"""Room for the sheet: how much memory a drawing takes, and whether this computer has it, asked before the picture is unpacked.
+
+    pixels · (darkness 4 bytes + the same behind the aperture 4 bytes + what the picture itself takes) + strips
+
+Source: our own. Questions: a system that does not say how much memory is free is taken to have enough; the fault then comes from the system.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from morfax.motion.faults import DrawingFault
+
+GB = 1e9
+PER_PIXEL = 9.0  # bytes: darkness, cells behind the aperture, ink and paper on the way; measured on a sheet of 900 Mpx
+FIXED_BYTES = 0.3 * GB  # strips in work, libraries
+SMALL_PX = 16e6  # a sheet below this is tried in any case
+
+
+def make_sure(file: Path, columns: int, rows: int) -> None:
+    """Raise DrawingFault if a sheet of so many pixels does not fit into the memory that is free."""
+    pixels, free = columns * rows, free_bytes()
+    needed = PER_PIXEL * pixels + FIXED_BYTES
+    if free is None or pixels < SMALL_PX or needed <= free:
+        return
+    raise DrawingFault(
+        f"{file} has {columns} x {rows} pixels ({pixels / 1e6:.0f} million) and needs {needed / GB:.1f} GB of memory, {free / GB:.1f} GB are"
+        " free; scan it at a lower resolution, cut out the part to be traced, or close other programs"
+    )
+
+
+def free_bytes() -> int | None:
+    """Memory that can be had without swapping, within the limit of a container; None if the system does not say."""
+    known = [free for free in (_of_the_system(), _of_the_container()) if free is not None]
+    return min(known, default=None)
+
+
+def _of_the_system() -> int | None:
+    """What Linux calls available; elsewhere all the memory that there is, where that is known."""
+    available = _figures(Path("/proc/meminfo")).get("MemAvailable:")
+    if available is not None:
+        return available * 1024
+    try:
+        return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    except (AttributeError, OSError, ValueError):  # no sysconf, or not these
+        return None
+
+
+def _of_the_container(folder: Path = Path("/sys/fs/cgroup")) -> int | None:
+    """What the limit of a container (cgroup, version 2) leaves; files in its cache can be dropped and do not count."""
+    try:
+        limit = int((folder / "memory.max").read_text())
+    except (OSError, ValueError):  # none, or "max"
+        return None
+    return max(0, limit - _figures(folder / "memory.stat").get("anon", 0))
+
+
+def _figures(file: Path) -> dict[str, int]:
+    """Names and whole numbers, one pair to a line; none if there is no such file."""
+    try:
+        words = [line.split() for line in file.read_text().splitlines()]
+    except OSError:
+        return {}
+    return {word[0]: int(word[1]) for word in words if len(word) > 1 and word[1].isdigit()}

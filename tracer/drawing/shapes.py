@@ -1,0 +1,182 @@
+"""Silhouettes: the edge of a filled shape as the cells see it behind a mask that passes light on the edge only, so that the head rides on it as on a line.
+
+Signals: grey levels in; out darkness 0..1 of a line of `EDGE_MM` whose middle is where the picture is half way between paper and shape, and that middle as
+outlines: not for the head, but to see afterwards that it kept to them (see `kept`).
+
+The line is as a round pen would draw it along the edge: dark where the edge is within half the line's width. So corners look as inked corners do, and the head
+takes them as it takes those: it finds its way by its own cells, and the mask is not its path. What the scanner's lens has taken off the corners is put back
+(see `vertices`). Where edges are near one another the line is finer, on finer pixels; edges nearer than the lens tells apart are refused.
+Paper and shape may both be uneven: their levels are those round about (`ROUND_ABOUT_MM`).
+
+Source: our own; the patent's follower has lines only. Questions: an edge is the same from both sides, so light shapes on dark paper need no word; which of the
+two is paper matters for what is too thin to be a shape only: paper is what most of the sheet's border is.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.motion.faults import DrawingFault
+from morfax.motion.polyline import with_places
+from morfax.tracer.drawing.spacing import finer
+from morfax.tracer.drawing.sharpening import APART_PX, sharpened
+
+EDGE_MM = 0.4  # at 300 dpi less than five pixels; with 0.3 mm a gear of 24 teeth did not close
+SOFT_PX = 0.7  # standard deviation: against the noise of the paper
+LEAST_MM = 2.0  # a shorter outline is a speck's
+LEAST_CONTRAST = 20.0  # levels
+LEAST_SHAPE_MM = 1.0  # across at its widest; what is thinner everywhere is lines
+ROUND_ABOUT_MM = 6.0  # standard deviation: over which paper and shape are averaged
+FADES_PX = 4  # from an edge no level is taken
+SLOPE_PX = 0.3  # to both sides, to measure a slope
+LEAST_SLOPE = 0.1  # per pixel
+REDUCED = 4  # levels are estimated on a picture reduced by this
+
+Array = NDArray[np.float64]
+Grey = NDArray[np.float32]
+
+
+@dataclass(frozen=True, slots=True)
+class Outlined:
+    """A line along the edges of filled shapes: its darkness on pixels so many times `finer` than the picture's, and the edges (n, 2) in sheet mm."""
+
+    darkness: Grey
+    finer: int
+    edges_mm: tuple[Array, ...]
+
+
+def outlined(grey: NDArray[Any], pitch_mm: float) -> Outlined:
+    """The line along the edges of filled shapes, finer where they are near one another.
+
+    Raises DrawingFault if there are no shapes, if one is cut by the border of the sheet, and if edges are nearer than can be told apart.
+    """
+    from skimage.measure import find_contours
+
+    soft = cv2.GaussianBlur(grey.astype(np.float32), (0, 0), SOFT_PX)
+    share = _share(np.asarray(soft, np.float32), pitch_mm)
+    edges = [edge for edge in find_contours(share, 0.5) if _length_mm(edge, pitch_mm) > LEAST_MM]
+    if not edges:
+        raise _none()
+    _refuse_lines(share, pitch_mm)
+    _refuse_cut(edges, share.shape, pitch_mm)
+    softness_px = _softness_px(share, edges)
+    sharp = [sharpened(edge, softness_px) for edge in _refined(edges, share)]
+    times = finer(sharp, share.shape, pitch_mm, softness_px)
+    fine = [(edge.outline + 0.5) * times - 0.5 for edge in sharp]
+    darkness = _inked(fine, (share.shape[0] * times, share.shape[1] * times), EDGE_MM / pitch_mm)
+    return Outlined(darkness, times, tuple(_mm(edge.outline, share.shape, pitch_mm) for edge in sharp))
+
+
+def _mm(outline: Array, shape: tuple[int, ...], pitch_mm: float) -> Array:
+    """Rows and columns as X and Y, sheet mm."""
+    return np.column_stack([outline[:, 1] + 0.5, shape[0] - outline[:, 0] - 0.5]) * pitch_mm
+
+
+def _none() -> DrawingFault:
+    return DrawingFault("no filled shape on the drawing: nothing on it has an edge; leave --edge out for lines")
+
+
+def _share(soft: Grey, pitch_mm: float) -> Grey:
+    """How much of each pixel is the darker of paper and shape, 0..1."""
+    level = np.full_like(soft, cv2.threshold(np.clip(soft, 0, 255).astype(np.uint8), 0, 255, cv2.THRESH_OTSU)[0])
+    for _ in range(2):  # the second time by levels that are those of the place
+        dark = (soft <= level).view(np.uint8)
+        if not 0 < int(dark.sum()) < dark.size:
+            raise _none()
+        low, high = _level(soft, dark, pitch_mm), _level(soft, 1 - dark, pitch_mm)
+        level = 0.5 * (low + high)
+    if float(np.median(high - low)) < LEAST_CONTRAST:
+        raise _none()
+    return np.asarray((high - soft) / np.maximum(high - low, LEAST_CONTRAST), np.float32)
+
+
+def _level(soft: Grey, part: NDArray[np.uint8], pitch_mm: float) -> Grey:
+    """The level of one part of the picture round about each pixel; far from it that of the part on the whole."""
+    inner = cv2.erode(part, np.ones((2 * FADES_PX + 1,) * 2, np.uint8))
+    inner = (inner if inner.any() else part).astype(np.float32)
+    size, small = (soft.shape[1], soft.shape[0]), (max(1, soft.shape[1] // REDUCED), max(1, soft.shape[0] // REDUCED))
+    whole = float(np.median(soft[inner > 0]))
+    about_px = ROUND_ABOUT_MM / pitch_mm / REDUCED
+    total, count = (
+        cv2.GaussianBlur(
+            cv2.resize(each, small, interpolation=cv2.INTER_AREA), (0, 0), about_px, borderType=cv2.BORDER_REFLECT
+        )
+        for each in ((soft - whole) * inner, inner)
+    )
+    return np.asarray(whole + cv2.resize(total / (count + 1e-3), size, interpolation=cv2.INTER_LINEAR), np.float32)
+
+
+def _refuse_lines(share: Grey, pitch_mm: float) -> None:
+    """Raise DrawingFault if nothing on the sheet is as broad as a shape."""
+    border = np.concatenate([share[0], share[-1], share[:, 0], share[:, -1]])
+    shapes = (share < 0.5) if float(np.median(border)) > 0.5 else (share > 0.5)
+    broadest_mm = 2 * pitch_mm * float(cv2.distanceTransform(shapes.view(np.uint8), cv2.DIST_L2, 5).max())
+    if broadest_mm < LEAST_SHAPE_MM:
+        raise DrawingFault(
+            f"no filled shape on the drawing: what is on it is {broadest_mm:.2g} mm broad at most, and a shape is {LEAST_SHAPE_MM:g} mm or more;"
+            " leave --edge out to follow lines"
+        )
+
+
+def _refuse_cut(edges: list[Array], shape: tuple[int, ...], pitch_mm: float) -> None:
+    """Raise DrawingFault if an edge runs off the sheet."""
+    for edge in edges:
+        if np.any(edge[0] != edge[-1]):
+            row, column = edge[0]
+            raise DrawingFault(
+                f"a filled shape is cut by the border of the sheet at {(column + 0.5) * pitch_mm:.1f},{(shape[0] - row - 0.5) * pitch_mm:.1f} mm;"
+                " scan it whole, with paper all round it (or cut a dark border off the scan)"
+            )
+
+
+def _softness_px(share: Grey, edges: list[Array]) -> float:
+    """Standard deviation of the lens, pixels, by how steep the edges are: 1/(√(2π) · steepness)."""
+    rows, columns = np.round(np.vstack(edges)).astype(int).T
+    steep = np.hypot(cv2.Sobel(share, cv2.CV_32F, 1, 0, scale=1 / 8), cv2.Sobel(share, cv2.CV_32F, 0, 1, scale=1 / 8))
+    steepness = float(np.percentile(steep[rows, columns], 60))
+    # the Sobel cells are themselves as soft as (1, 2, 1)/4 along and across, and the pixel as a twelfth
+    return float(np.sqrt(max(1 / (2 * np.pi * steepness**2) - 0.4, SOFT_PX**2)))
+
+
+def _refined(edges: list[Array], share: Grey) -> list[Array]:
+    """The edges where a smooth surface through the pixels is half way: straight pieces from pixel to pixel cut corners by a tenth of a pixel."""
+    from scipy.ndimage import map_coordinates, spline_filter
+
+    surface = spline_filter(share, 3, output=np.float32)
+
+    def height(places: Array) -> Array:
+        return np.asarray(map_coordinates(surface, places.T, order=3, prefilter=False, mode="nearest"), np.float64)
+
+    refined, nearby = list[Array](), SLOPE_PX * np.eye(2)
+    for edge in edges:
+        places = with_places(edge, APART_PX)
+        for _ in range(2):  # steps of Newton's
+            slope = np.column_stack([height(places + way) - height(places - way) for way in nearby]) / (2 * SLOPE_PX)
+            step = (height(places) - 0.5) / np.maximum((slope**2).sum(axis=1), LEAST_SLOPE**2)
+            places = places - np.clip(step, -0.5, 0.5)[:, None] * slope
+        refined.append(np.vstack([places[:-1], places[:1]]))
+    return refined
+
+
+def _inked(edges: list[Array], shape: tuple[int, ...], reach_px: float) -> Grey:
+    """What a round pen of this width leaves along the edges."""
+    from scipy.spatial import cKDTree
+
+    near = np.zeros(shape, np.uint8)
+    for edge in edges:
+        cv2.polylines(near, [np.round(edge[:, ::-1]).astype(np.int32)], False, 1, 2 * round(reach_px) + 3)
+    rows, columns = np.nonzero(near)
+    tree = cKDTree(np.vstack([with_places(edge, 0.1) for edge in edges]))
+    away_px = tree.query(np.column_stack([rows, columns]))[0]
+    darkness = np.zeros(shape, np.float32)
+    darkness[rows, columns] = np.clip(0.5 * reach_px - away_px + 0.5, 0, 1)
+    return darkness
+
+
+def _length_mm(edge: Array, pitch_mm: float) -> float:
+    return float(np.hypot(*np.diff(edge, axis=0).T).sum()) * pitch_mm

@@ -1,0 +1,131 @@
+"""How far apart edges are: how fine the line along them has to be drawn, so that it does not run into itself.
+
+Signals: edges in pixels and the lens's softness in; out by how much finer than the picture the line is drawn.
+
+    ____      ____        A rib, a slot, the top of a tooth: the edge comes back beside itself. So do the two legs of a corner,
+        \\____/            which are a corner's all the same: a corner put back (see `vertices`) is known, and does not count.
+
+Source: our own. Questions: edges nearer than the lens tells apart (`CLEAR`) move one another, and are refused.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from morfax.motion.faults import DrawingFault
+from morfax.motion.polyline import lengths_mm as lengths_px
+from morfax.motion.polyline import with_places
+from morfax.tracer.drawing import memory as room
+from morfax.tracer.drawing.sharpening import Edge
+
+APART_MM = 1.2  # three widths of the line along the edges: it is drawn as much finer as they are nearer
+FINEST = 4
+LEAST_APART_MM = 0.25
+CLEAR = 3.0  # standard deviations of the lens: edges that are nearer move one another
+BACK = 1.5  # times as far along the edge as straight across: it comes back, as round a hole (1.57)
+LEG = 0.95  # of the way along the edge is straight to a corner and straight on from it: legs of one corner
+ROUND_ABOUT = 8  # times as far along, and it is another edge, and no corner that the lens has blurred
+
+Array = NDArray[np.float64]
+
+
+def finer(edges: list[Edge], shape: tuple[int, ...], pitch_mm: float, softness_px: float) -> int:
+    """By how much finer the line has to be drawn for edges that are near one another; raises DrawingFault if they are nearer than told apart."""
+    pairs = _Pairs.of(edges, APART_MM / pitch_mm)
+    least_mm = max(LEAST_APART_MM, CLEAR * softness_px * pitch_mm)
+    beside = pairs.some(pairs.back > ROUND_ABOUT)
+    if beside.nearest_px * pitch_mm < least_mm:
+        row, column = beside.where
+        raise DrawingFault(
+            f"two edges are {beside.nearest_px * pitch_mm:.2f} mm apart at {(column + 0.5) * pitch_mm:.1f},{(shape[0] - row - 0.5) * pitch_mm:.1f} mm,"
+            f" and are told apart from {least_mm:.2f} mm on; print the shape larger (--scale brings it back), or scan it finer"
+        )
+    comes_back = pairs.some(pairs.back > BACK)
+    apart_mm = comes_back.some(~_legs_of_corners(edges, comes_back)).nearest_px * pitch_mm
+    times = min(FINEST, max(1, math.ceil(APART_MM / apart_mm)))
+    _make_room(apart_mm, times, shape)
+    return times
+
+
+def _make_room(apart_mm: float, times: int, shape: tuple[int, ...]) -> None:
+    """Raise DrawingFault if there is not the memory for a line that is so many times finer."""
+    free, needed = room.free_bytes(), room.PER_PIXEL * times**2 * shape[0] * shape[1]
+    if times > 1 and free is not None and needed > free:
+        raise DrawingFault(
+            f"edges {apart_mm:.2f} mm apart have to be drawn {times} times finer, and that needs {needed / room.GB:.1f} GB of memory,"
+            f" {free / room.GB:.1f} GB are free; cut out the part to be traced, or close other programs"
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class _Pairs:
+    """Places of edges that are near each other: places (n, 2, 2), edges (n, 2), ways along them (n, 2), and how many times as far along as across (n,), all in
+    pixels; infinitely many from one edge to another."""
+
+    places: Array
+    edge: NDArray[np.int64]
+    along: Array
+    back: Array
+
+    @classmethod
+    def of(cls, edges: list[Edge], within_px: float) -> _Pairs:
+        lines = [with_places(edge.outline, 1.0)[:-1] for edge in edges]
+        places, edge = np.vstack(lines), np.repeat(np.arange(len(lines)), [len(line) for line in lines])
+        along = np.concatenate([lengths_px(line) for line in lines])
+        pairs = cKDTree(places).query_pairs(within_px, output_type="ndarray")
+        between = _between(along[pairs], _lengths(edges)[edge[pairs[:, 0]]])
+        between[edge[pairs[:, 0]] != edge[pairs[:, 1]]] = np.inf
+        across = np.hypot(*(places[pairs[:, 0]] - places[pairs[:, 1]]).T)
+        return cls(places[pairs], edge[pairs], along[pairs], between / across)
+
+    def some(self, which: NDArray[np.bool_]) -> _Pairs:
+        """Some of the pairs."""
+        return _Pairs(self.places[which], self.edge[which], self.along[which], self.back[which])
+
+    @property
+    def across(self) -> Array:
+        """How far apart the places of each pair are, (n,)."""
+        return np.asarray(np.hypot(*(self.places[:, 0] - self.places[:, 1]).T))
+
+    @property
+    def nearest_px(self) -> float:
+        """How near the places of a pair are; infinite if there is none."""
+        return float(self.across.min(initial=np.inf))
+
+    @property
+    def where(self) -> Array:
+        """Between the places of the nearest pair: row and column."""
+        return np.asarray(self.places[int(np.argmin(self.across))].mean(axis=0))
+
+
+def _legs_of_corners(edges: list[Edge], pairs: _Pairs) -> NDArray[np.bool_]:
+    """Which pairs are on the two legs of one corner."""
+    legs, lengths = np.zeros(len(pairs.back), bool), _lengths(edges)
+    for number, edge in enumerate(edges):
+        own = np.flatnonzero((pairs.edge == number).all(axis=1))
+        if not len(own) or not len(edge.corners):
+            continue
+        along = np.sort(pairs.along[own], axis=1)
+        forward = along[:, 1] - along[:, 0] <= 0.5 * lengths[number]
+        middle = (along.mean(axis=1) + np.where(forward, 0.0, 0.5 * lengths[number])) % lengths[number]
+        corners = lengths_px(edge.outline)[edge.corners]
+        apart = np.abs(middle[:, None] - corners)
+        corner = edge.outline[edge.corners[np.minimum(apart, lengths[number] - apart).argmin(axis=1)]]
+        straight = np.hypot(*(pairs.places[own] - corner[:, None]).transpose(2, 0, 1)).sum(axis=1)
+        legs[own] = straight > LEG * _between(pairs.along[own], np.full(len(own), lengths[number]))
+    return legs
+
+
+def _lengths(edges: list[Edge]) -> Array:
+    return np.array([lengths_px(edge.outline)[-1] for edge in edges])
+
+
+def _between(along: Array, length: Array) -> Array:
+    """How far apart two places (n, 2) are along closed edges of some lengths (n,), the shorter way round."""
+    apart = np.abs(along[:, 0] - along[:, 1])
+    return np.asarray(np.minimum(apart, length - apart))

@@ -1,0 +1,206 @@
+"""Which lines there are on a drawing, and where the head may be put down: plans only, never the path.
+
+Signals: a Drawing in; strokes out, each a connected patch of ink with its length, width and places near its middle (sheet mm).
+
+Ink is what is darker than half. A patch's width follows from the mean distance of its pixels to the paper, its length from its area over its width, so
+that a patch needs no skeleton. An end is where a disc about a middle place holds much less ink than elsewhere on the line.
+
+Source: patent ES 361967 leaves the choice of the line to the operator, who brings the head over it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import cv2
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from morfax.motion.faults import DrawingFault, LineFault
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.components import Mask, Patches, runs_of, strips
+
+Array = NDArray[np.float64]
+Pixels = NDArray[Any]
+
+INK = 0.5
+LEAST_LENGTH_MM = 2.0
+LEAST_LENGTH_PX = 12
+DEEPEST_PX = 200  # a line of 6 mm at 1200 dpi is 142 deep; the middle of a darker patch is not that of a line
+TILE_PX = 2048
+SOLID = 0.5  # of a patch's ink is beside filled shapes: it is theirs
+LESS = 0.85  # ink about an end, of what is usual: half, and what the middle place lies within the end
+MOST_ENDS = 100
+
+
+@dataclass(frozen=True, slots=True)
+class Stroke:
+    """A connected patch of ink: places near the middle of its line (n, 2) mm, and how much ink there is about each."""
+
+    length_mm: float
+    width_mm: float
+    middles_mm: Array
+    filled: Array
+    patch: int
+
+    def is_at(self, place_mm: Array) -> bool:
+        """Whether a place is on this line."""
+        return bool(np.hypot(*(self.middles_mm - place_mm).T).min() < self.width_mm)
+
+    def ends_mm(self) -> Array:
+        """Places that may be ends of the line, most likely first; (n, 2) mm, none closer together than two widths."""
+        order = np.argsort(self.filled)
+        places = self.middles_mm[order[self.filled[order] < LESS * np.median(self.filled)]]
+        kept: list[Array] = []
+        while len(places) and len(kept) < MOST_ENDS:
+            kept.append(places[0])
+            places = places[np.hypot(*(places - places[0]).T) > 2 * self.width_mm]
+        return np.array(kept).reshape(-1, 2)
+
+
+@dataclass(frozen=True, slots=True)
+class Sheet:
+    """The patches of ink on a drawing, with the length and the width that each has as a line, and which of them are filled shapes."""
+
+    drawing: Drawing
+    patches: Patches
+    lengths_mm: Array
+    widths_mm: Array
+    are_solid: NDArray[np.bool_]
+
+    @classmethod
+    def of(cls, drawing: Drawing) -> Sheet:
+        """Find the patches; raises DrawingFault if none is long enough to be a line."""
+        runs, depths = [], []
+        for top, bottom, rows in strips(drawing.darkness.shape, DEEPEST_PX):
+            ink = (cv2.GaussianBlur(drawing.darkness[rows], (0, 0), 0.7) > INK).view(np.uint8)
+            inner = slice(top - rows.start, bottom - rows.start)
+            runs.append(runs_of(ink[inner], top))
+            depths.append(_run_sums(_depth(ink)[inner], ink[inner], runs[-1]))
+        patches = Patches.of(runs)
+        areas = patches.areas
+        deep = np.bincount(patches.patch, np.concatenate(depths), patches.count) / areas
+        widths = np.maximum(4 * deep - 2, 1.0)  # a line of w pixels has depths 1, 2 … w/2 … 2, 1
+        sheet = cls(
+            drawing, patches, areas / widths * drawing.pitch_mm, widths * drawing.pitch_mm, _are_solid(drawing, patches)
+        )
+        if not sheet._long_enough().any():
+            raise DrawingFault("no line on the drawing: nothing on it is long enough; check the file and its scale")
+        return sheet
+
+    def longest(self) -> Stroke:
+        """The longest line."""
+        return self.stroke(int(np.argmax(self.lengths_mm)))
+
+    def nearest(self, place_mm: tuple[float, float], within_mm: float) -> Stroke:
+        """The line nearest to a place; raises LineFault if none is within reach, and says how far the nearest is."""
+        distance_mm, (x, y), patch = self._nearest_ink(place_mm)
+        if distance_mm > within_mm:
+            raise LineFault(
+                f"no line within {within_mm:g} mm of {place_mm[0]:g},{place_mm[1]:g} mm: the nearest is {distance_mm:.1f} mm away,"
+                f" at {x:.1f},{y:.1f}; start there, or leave --start out for the longest line",
+                x_mm=place_mm[0],
+                y_mm=place_mm[1],
+                nearest_mm=(float(x), float(y)),
+            )
+        return self.stroke(patch)
+
+    def is_solid_at(self, place_mm: Array) -> bool:
+        """Whether the ink nearest to a place is the rim of a filled shape."""
+        return bool(self.are_solid[self._nearest_ink((float(place_mm[0]), float(place_mm[1])))[2]])
+
+    def _long_enough(self) -> NDArray[np.bool_]:
+        """Which patches are long enough to be lines."""
+        return self.lengths_mm >= max(LEAST_LENGTH_MM, LEAST_LENGTH_PX * self.drawing.pitch_mm)
+
+    def _nearest_ink(self, place_mm: tuple[float, float]) -> tuple[float, Array, int]:
+        """Distance of the ink of a line nearest to a place, mm, where it is, and the patch that it belongs to."""
+        runs = self.patches
+        column = np.clip(round(place_mm[0] / self.drawing.pitch_mm - 0.5), runs.begin, runs.end - 1)
+        places = self._mm(runs.row, column)
+        distances = np.hypot(*(places - np.asarray(place_mm)).T)
+        distances[~self._long_enough()[runs.patch]] = np.inf
+        best = int(np.argmin(distances))
+        return float(distances[best]), places[best], int(runs.patch[best])
+
+    def _mm(self, rows: Pixels, columns: Pixels) -> Array:
+        pitch = self.drawing.pitch_mm
+        return np.column_stack([(columns + 0.5) * pitch, (self.drawing.darkness.shape[0] - rows - 0.5) * pitch])
+
+    def stroke(self, patch: int) -> Stroke:
+        """A patch as a line, with its middle places."""
+        chosen = np.arange(self.patches.count) == patch
+        disc_px = max(4, round(1.5 * self.widths_mm[patch] / self.drawing.pitch_mm))
+        top, bottom, left, right = self.patches.box(chosen)
+        tiles = [
+            self._middles(chosen, disc_px, (row, min(row + TILE_PX, bottom)), (column, min(column + TILE_PX, right)))
+            for row in range(top, bottom, TILE_PX)
+            for column in range(left, right, TILE_PX)
+        ]
+        rows, columns, filled = (np.concatenate(part) for part in zip(*tiles, strict=True))
+        return Stroke(
+            float(self.lengths_mm[patch]),
+            float(self.widths_mm[patch]),
+            self._mm(rows, columns),
+            filled.astype(float),
+            patch,
+        )
+
+    def _middles(
+        self, chosen: NDArray[np.bool_], disc_px: int, rows: tuple[int, int], columns: tuple[int, int]
+    ) -> tuple[Pixels, Pixels, Array]:
+        """Row, column and ink about it of the pixels in a tile no neighbour of which is deeper in the patch's ink."""
+        halo = max(disc_px, DEEPEST_PX) + 1
+        part = [
+            edge for (a, b), size in zip((rows, columns), self.drawing.darkness.shape, strict=True)
+            for edge in (max(0, a - halo), min(size, b + halo))
+        ]  # fmt: skip
+        ink = self.patches.painted(chosen, *part)
+        inner = slice(rows[0] - part[0], rows[1] - part[0]), slice(columns[0] - part[2], columns[1] - part[2])
+        if not ink[inner].any():
+            return np.empty(0, int), np.empty(0, int), np.empty(0)
+        depth = _depth(ink)
+        middle = (depth > 0) & (depth >= cv2.dilate(depth, np.ones((3, 3), np.uint8)) - 0.3)
+        i, j = np.nonzero(middle[inner])
+        disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * disc_px + 1,) * 2)
+        return i + rows[0], j + columns[0], _ink_about(ink, i + inner[0].start, j + inner[1].start, disc)
+
+
+def _are_solid(drawing: Drawing, patches: Patches) -> NDArray[np.bool_]:
+    """Which patches of ink are the rims of filled shapes."""
+    if drawing.shapes is None:
+        return np.zeros(patches.count, bool)
+    down, across = (
+        math.ceil(whole / part) for whole, part in zip(drawing.darkness.shape, drawing.shapes.shape, strict=True)
+    )
+    beside = drawing.shapes[patches.row // down, (patches.begin + patches.end) // 2 // across]
+    inked = np.bincount(patches.patch, beside * (patches.end - patches.begin), patches.count)
+    return np.asarray(inked > SOLID * patches.areas)
+
+
+@njit(cache=True)
+def _ink_about(ink, rows, columns, disc):  # type: ignore[no-untyped-def]
+    """Pixels of ink under a disc centred on each of some pixels."""
+    half = len(disc) // 2
+    filled = np.zeros(len(rows))
+    for k in range(len(rows)):
+        for i in range(max(0, half - rows[k]), min(len(disc), ink.shape[0] + half - rows[k])):
+            for j in range(max(0, half - columns[k]), min(len(disc), ink.shape[1] + half - columns[k])):
+                filled[k] += ink[rows[k] - half + i, columns[k] - half + j] * disc[i, j]
+    return filled
+
+
+def _depth(ink: Mask) -> NDArray[np.float32]:
+    """How far each pixel of ink is from the paper, pixels."""
+    return np.asarray(cv2.distanceTransform(ink, cv2.DIST_L2, cv2.DIST_MASK_PRECISE), np.float32)
+
+
+def _run_sums(values: NDArray[np.float32], ink: Mask, runs: tuple[Pixels, Pixels, Pixels]) -> Array:
+    """Sum of the values over each run of a strip."""
+    _, begin, end = runs
+    if not len(begin):
+        return np.empty(0)
+    return np.asarray(np.add.reduceat(values[ink.view(bool)].astype(float), np.r_[0, np.cumsum(end - begin)[:-1]]))

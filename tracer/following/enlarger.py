@@ -1,0 +1,45 @@
+"""The enlarger: a drawing too fine for the head is followed enlarged, and the path reduced again, as by a pantograph between the head and the screws.
+
+Signals: a stance on the drawing in, the same on the enlarged one out; what the head did there in, the same on the drawing out.
+
+The head works in mm: so much of a leg it feels, so far ahead it looks. What is finer than that stays so in a finer picture, but not in a larger one. The head
+goes as fast on the enlarged drawing, and so the machine as many times slower.
+
+Source: our own; photographic enlargement and pantographs were what a drawing office had for this.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from morfax.tracer.following.follower import Followed
+from morfax.tracer.following.start import Stance
+from morfax.tracer.sensing.view import View
+
+
+def enlarged(stance: Stance, times: float) -> Stance:
+    """The same stance on the drawing enlarged."""
+    return replace(stance, place_mm=stance.place_mm * times, view=_scaled(stance.view, times))
+
+
+def reduced(run: Followed) -> Followed:
+    """What the head did on an enlarged drawing, in the measure of the drawing itself."""
+    by = run.view.enlarged
+    return replace(
+        run,
+        positions_mm=run.positions_mm / by,
+        travel_mm=run.travel_mm / by,
+        view=_scaled(run.view, 1 / by),
+        junctions_mm=tuple((x / by, y / by) for x, y in run.junctions_mm),
+    )
+
+
+def _scaled(view: View, times: float) -> View:
+    usual_mm = None if view.usual_mm is None else view.usual_mm * times
+    return replace(
+        view,
+        pitch_mm=view.pitch_mm * times,
+        width_mm=view.width_mm * times,
+        usual_mm=usual_mm,
+        enlarged=view.enlarged * times,
+    )

@@ -1,0 +1,104 @@
+"""Where a run comes back onto its own way: a lead line, and the loop that it leads to.
+
+Signals: positions of the head (n, 2) mm in; out the positions between which the run is a loop.
+
+                     ╭──────╮         first    where the loop begins: the head came here from the lead line,
+    start ───────────┤ loop │         last     and came back here at the end
+                     ╰──────╯
+
+The end of a run that has come onto its own way again may lie some way beyond that place, on what was followed already: the way is then gone back, on the run
+and on what it repeats together, for as long as they are one. A run that ends square to it, and a little beyond, is cut off where it crosses it.
+
+Source: patent ES 361967, section on use: a lead line from the reference point to the contour, and round that to where it was joined.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.motion.polyline import crossings
+from morfax.tracer.sensing.view import Array
+
+STEP_MM = 0.03
+FRESH_MM = 3.0  # the newest stretch is no earlier one
+TOGETHER = 0.25  # of the line's width: two ways nearer than this, on about one heading, are one
+ON_IT = 0.05  # of the line's width: two ways nearer than this are the same line, as felt twice
+AT_ALL = 1.0  # of the line's width: further away the run has not come back to its own way
+ALIKE = math.cos(math.radians(30))
+
+
+def loop_in(positions: Array, width_mm: float) -> tuple[int, int] | None:
+    """The first and the last position of the loop with which a run ends; None if its end does not lie on its own way."""
+    lengths = np.r_[0.0, np.cumsum(np.hypot(*np.diff(positions, axis=0).T))]
+    at_mm = np.arange(0.0, lengths[-1], STEP_MM)
+    if not len(at_mm):
+        return None
+    index = np.searchsorted(lengths, at_mm)
+    places = positions[index]
+    m = len(places) - 1
+    old = places[: max(0, m - round(FRESH_MM / STEP_MM))]
+    if not len(old):
+        return None
+    away = np.hypot(*(old - positions[-1]).T)
+    j = int(np.argmin(away))
+    if away[j] > AT_ALL * width_mm:
+        return None
+    apart, alike = _apart(places[m::-1], places[j::-1])
+    back = _first_not((apart < TOGETHER * width_mm) & alike)
+    if back == 0:
+        return _crossed(places, index, j, round(2 * AT_ALL * width_mm / STEP_MM)) or (int(index[j]), len(positions) - 1)
+    back = int(
+        np.flatnonzero(apart[:back] < ON_IT * width_mm)[-1:].sum()
+    )  # where the corner onto the loop has been left
+    return int(index[j - back]), int(index[m - back])
+
+
+def _crossed(places: Array, index: NDArray[np.int64], j: int, reach: int) -> tuple[int, int] | None:
+    """The positions at which the end of a run crosses the earlier way about place j, so many places about either; None if it does not come so far."""
+    first, last = max(0, j - reach), max(0, len(places) - 1 - reach)
+    met = crossings(places[last:], places[first : min(j + reach, last)])
+    if not len(met):
+        return None
+    there, here = np.interp(met[0] + [last, first], np.arange(len(index)), index)
+    return round(float(here)), round(float(there))
+
+
+def comes_again(places: Array, step_mm: float, width_mm: float) -> bool:
+    """Whether the newest stretch of a trail (n, 2), a place every `step_mm`, runs along an earlier one in the same sense."""
+    fresh = round(FRESH_MM / step_mm)
+    old, newest = places[: -2 * fresh], places[-fresh:]
+    if len(old) < fresh:
+        return False
+    away = np.hypot(*(old - newest[-1]).T)
+    j = int(np.argmin(away))
+    if away[j] > TOGETHER * width_mm:
+        return False
+    apart, alike = _apart(newest[::-1], old[j::-1])
+    return _first_not((apart < TOGETHER * width_mm) & alike) == len(newest) - 1
+
+
+def _first_not(good: NDArray[np.bool_]) -> int:
+    """The last of the places that are good without a break, from the first on."""
+    return len(good) - 1 if good.all() else max(0, int(np.argmin(good)) - 1)
+
+
+def _apart(run: Array, old: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """Two ways, both given from their newest place back: how far they are apart, mm, and whether they have about one heading."""
+    n = min(len(run), len(old))
+    apart = np.full(n, math.inf)
+    for shift in (-1, 0, 1):  # the places of one need not fall on the other's
+        shifted = old[np.clip(np.arange(n) + shift, 0, len(old) - 1)]
+        apart = np.minimum(apart, np.hypot(*(run[:n] - shifted).T))
+    headings = [_headings(way[:n]) for way in (run, old)]
+    return apart, np.sum(headings[0] * headings[1], axis=1) > ALIKE
+
+
+def _headings(places: Array) -> Array:
+    """Unit vectors along a way, from the places about each."""
+    if len(places) < 2:
+        return np.zeros((len(places), 2))
+    steps = np.gradient(places, axis=0)
+    return np.asarray(steps / np.maximum(np.hypot(*steps.T), 1e-12)[:, None])

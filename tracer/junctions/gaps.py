@@ -1,0 +1,55 @@
+"""Breaks: where a line ends, or was lost, and ink goes on in line with it behind more paper than the head may go across.
+
+Signals: the view of a line and the way of the head along it in; the ends of that way from which ink goes on straight ahead, and how wide a gap would have to
+be allowed to get there (mm) out.
+
+    ━━━━━━━━━●   1.2 mm   ━━━━━━━━        as of a dashed line: the operator is told of `--gap`
+
+Source: our own. What the head would make of a wider gap is what it makes of one that is allowed (see `survey.straight_on`).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from morfax.tracer.sensing.leg import leg_of
+from morfax.tracer.junctions.choice import straight_on
+from morfax.tracer.sensing.view import Array, View
+
+FARTHEST_WIDTHS = 6.0  # ink further ahead is another line's
+EVERY_MM = 0.1  # gaps are tried in these steps
+FEWEST = 8  # stations of a leg
+
+
+class Break(NamedTuple):
+    """An end of a line from which ink goes on straight ahead: where it is, and how wide a gap takes the head across, mm."""
+
+    place_mm: tuple[float, float]
+    gap_mm: float
+
+
+def breaks(view: View, way_mm: Array, at_start: bool) -> tuple[Break, ...]:
+    """The breaks at the end of a way (n, 2) mm, and at its start if that is an end too."""
+    ends = [way_mm, way_mm[::-1]] if at_start else [way_mm]
+    found = [(end[-1], _gap_mm(view, end)) for end in ends]
+    return tuple(Break((float(x), float(y)), gap_mm) for (x, y), gap_mm in found if gap_mm is not None)
+
+
+def _gap_mm(view: View, way_mm: Array) -> float | None:
+    """The gap that would have to be allowed to go on straight from the end of a way; None if no ink goes on there."""
+    before = np.hypot(*(way_mm - way_mm[-1]).T) > 1.5 * view.leg_mm
+    if not before.any():
+        return None
+    place = way_mm[np.flatnonzero(before)[-1]]
+    along = way_mm[-1] - place
+    seen = view.feel(place, math.atan2(along[1], along[0]), 1.5 * view.leg_mm)
+    if len(seen) < FEWEST:
+        return None
+    leg, most_mm = leg_of(seen, True, view.leg_mm), FARTHEST_WIDTHS * view.width_mm
+    if straight_on(view, leg, most_mm) is None:
+        return None
+    gaps = np.arange(EVERY_MM, most_mm, EVERY_MM)
+    return next((round(float(gap), 1) for gap in gaps if straight_on(view, leg, gap) is not None), None)

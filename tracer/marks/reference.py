@@ -1,0 +1,204 @@
+"""The reference point: a small cross or ring that the draughtsman drew, where the operator brings the head before the run.
+
+Signals: the patches of ink of a drawing and the cells' picture in; places (sheet mm) out, each with the lead line that leaves it if it touches one.
+
+    ─┼─   ○       alone on the paper           ─┼────  ○────       with the lead line drawn from it
+
+A cross: a ring of cells sees arms square to each other that end alike, four of them, or three and the lead line. Its place is where the
+middle lines of the arms meet. A ring: spokes from its middle meet paper, then ink as wide as a line, then paper again; its place is the middle of the
+circle through them.
+
+Source: patent ES 361967, section on use: a reference point, normally outside the contour. Questions: the patent says neither how it is drawn nor how large
+it is. Chosen: 1.5 to 10 mm across.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.tracer.sensing import photocell
+from morfax.tracer.sensing.leg import SPECK_WIDTHS, Leg, is_tip, leg_of, lines_on
+from morfax.tracer.drawing.strokes import Sheet, Stroke
+from morfax.tracer.sensing.circles import WAYS, circle_through, spokes
+from morfax.tracer.sensing.view import Array, View
+
+LEAST_MM, LARGEST_MM = 1.5, 10.0  # across
+SQUARE = math.sin(math.radians(15))  # arms are this near to square
+INKED = 0.85  # of an arm's length
+ALIKE = 0.4  # arms differ by less than this share
+MOST_PX = 50_000_000  # of a patch that is looked through for rings
+
+
+@dataclass(frozen=True, slots=True)
+class Reference:
+    """A reference point: its place, mm, and the clean beginning of the lead line that touches it."""
+
+    place_mm: tuple[float, float]
+    kind: Literal["cross", "ring"]
+    lead: Leg | None = None
+
+
+def references(sheet: Sheet, view: View, stroke: Stroke | None = None) -> Iterator[Reference]:
+    """The reference points that stand alone on the sheet, and those that touch a line."""
+    found: list[Reference] = []
+    for reference in _every(sheet, view, stroke):
+        if all(_apart(reference, other) > LEAST_MM for other in found):
+            found.append(reference)
+            yield reference
+
+
+def _every(sheet: Sheet, view: View, stroke: Stroke | None) -> Iterator[Reference]:
+    """The reference points, some of them more than once."""
+    if stroke is not None:
+        yield from _crosses(view, stroke.ends_mm())
+        yield from _rings(view, _holes(sheet, stroke.patch))
+    for patch, middle in _small_patches(sheet):
+        yield from _crosses(view, sheet.stroke(patch).ends_mm())
+        yield from _rings(view, [middle])
+
+
+def _rings(view: View, places: Iterable[Array]) -> Iterator[Reference]:
+    """The rings about some places."""
+    for place in places:
+        if (found := _ring(view, place)) is not None:
+            yield found
+
+
+def _apart(a: Reference, b: Reference) -> float:
+    return math.dist(a.place_mm, b.place_mm)
+
+
+def _small_patches(sheet: Sheet) -> Iterator[tuple[int, Array]]:
+    """The patches of a reference point's size, about as high as wide, and their middles."""
+    pitch, patches = sheet.drawing.pitch_mm, sheet.patches
+    small = (patches.longer_sides * pitch >= LEAST_MM) & (patches.longer_sides * pitch <= LARGEST_MM)
+    for patch in np.flatnonzero(small):
+        top, bottom, left, right = patches.box(np.arange(patches.count) == patch)
+        if min(bottom - top, right - left) > 0.7 * max(bottom - top, right - left):
+            middle = np.array([0.5 * (left + right), sheet.drawing.darkness.shape[0] - 0.5 * (top + bottom)])
+            yield int(patch), middle * pitch
+
+
+def _holes(sheet: Sheet, patch: int) -> Iterator[Array]:
+    """Middles of the small round holes in a patch of ink."""
+    chosen = np.arange(sheet.patches.count) == patch
+    top, bottom, left, right = sheet.patches.box(chosen)
+    if (bottom - top) * (right - left) > MOST_PX:
+        return
+    pitch = sheet.drawing.pitch_mm
+    contours, _ = cv2.findContours(
+        sheet.patches.painted(chosen, top, bottom, left, right), cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE
+    )
+    for contour in contours:
+        x, y, wide, high = cv2.boundingRect(contour)
+        if LEAST_MM <= max(wide, high) * pitch <= LARGEST_MM and min(wide, high) > 0.7 * max(wide, high):
+            yield np.array([left + x + 0.5 * wide, sheet.drawing.darkness.shape[0] - top - y - 0.5 * high]) * pitch
+
+
+def _crosses(view: View, tips_mm: Array) -> Iterator[Reference]:
+    """The crosses whose arms end at some places."""
+    tips = [tip for tip in tips_mm if is_tip(view, tip)]
+    for i, a in enumerate(tips):
+        near = [tip for tip in tips[i + 1 :] if LEAST_MM < math.dist(a, tip) + view.width_mm < LARGEST_MM]
+        for b in near:
+            for c in tips:
+                if c is not a and c is not b and (found := _cross(view, a, b, c)) is not None:
+                    yield found
+
+
+def _cross(view: View, a: Array, b: Array, c: Array) -> Reference | None:
+    """The cross of which three tips are given, a and b of one stroke; the fourth arm may run on as the lead line, or another line begin anywhere on it."""
+    half = 0.5 * (b - a)
+    middle, reach = a + half, float(np.hypot(*half))
+    arm = c - middle
+    length = float(np.hypot(*arm))
+    if not abs(length - reach) < ALIKE * reach or abs(arm @ half) > SQUARE * length * reach:
+        return None
+    if not all(_inked(view, middle, middle + way) for way in (-half, half, arm, -arm * min(1.0, reach / length))):
+        return None
+    arms = [_felt_inward(view, tip, middle) for tip in (a, b, c)]
+    if min(len(arm) for arm in arms) < 4:
+        return None
+    centre = _crossing(np.vstack(arms[:2]), arms[2])
+    reaches = np.hypot(*(np.array([a, b, c]) - centre).T)
+    if np.ptp(reaches) > ALIKE * np.median(reaches):
+        return None
+    if lines_on(view, centre, float(reaches.max()) + 1.2 * view.width_mm) > 1:
+        return None  # lines pass or cross here
+    return Reference((float(centre[0]), float(centre[1])), "cross", _lead(view, centre, float(reaches.max())))
+
+
+def _inked(view: View, a: Array, b: Array) -> bool:
+    """Whether there is ink all along a straight stretch, but for a speck of paper."""
+    count = 2 + int(math.dist(a, b) / view.pitch_mm)
+    return bool(np.mean([view.dark(place) for place in np.linspace(a, b, count)]) > INKED)
+
+
+def _felt_inward(view: View, tip: Array, middle: Array) -> Array:
+    """The clean stations (n, 2) of an arm, felt from its tip towards the middle."""
+    way = middle - tip
+    length = float(np.hypot(*way))
+    start = tip + 0.3 * view.width_mm * way / length
+    return view.feel(start, math.atan2(way[1], way[0]), length - view.width_mm)[:, :2]
+
+
+def _lead(view: View, centre: Array, reach_mm: float) -> Leg | None:
+    """The clean beginning of the line that leaves a cross or ring which reaches so far from its centre, felt back to it as far as it is clean."""
+    for arc in photocell.ring(view.cells, view.pitch_mm, centre, reach_mm + 1.5 * view.width_mm, view.level):
+        for outside in (1.5, 1.9, 2.3):
+            way = _unit(float(arc.mean()))
+            seen = view.feel(centre + (reach_mm + outside * view.width_mm) * way, float(arc.mean()), view.leg_mm)
+            if len(seen) < 4:
+                continue
+            leg = leg_of(seen, False, view.leg_mm)
+            back = view.feel(leg.end_mm, leg.heading_rad + math.pi, reach_mm + view.width_mm)
+            back = back[1 : max(1, len(back) - round(view.width_mm / view.step_mm))]  # well clear of the other arms
+            return leg_of(np.vstack([back[::-1], seen]), False, view.leg_mm)
+    return None
+
+
+def _crossing(one: Array, other: Array) -> Array:
+    """Where the straight lines through two strokes' places (n, 2) cross."""
+    (a, t), (b, u) = _straight(one), _straight(other)
+    return a + t * (u[1] * (b - a)[0] - u[0] * (b - a)[1]) / (t[0] * u[1] - t[1] * u[0])
+
+
+def _straight(places: Array) -> tuple[Array, Array]:
+    """Middle and direction of the straight line through places (n, 2), least squares."""
+    middle = places.mean(axis=0)
+    return middle, np.linalg.svd(places - middle)[2][0]
+
+
+def _ring(view: View, place: Array) -> Reference | None:
+    """The ring about a place."""
+    if view.dark(place):
+        return None
+    changes = spokes(view, place, LARGEST_MM / 2)
+    widths = changes[:, 1] - changes[:, 0]
+    good = np.abs(widths / view.width_mm - 1) < 0.6
+    specks = widths < SPECK_WIDTHS * view.width_mm
+    if good.mean() < 0.75 or _runs(~good & ~specks) > 1:
+        return None  # with several lines from it, it is a part of the drawing
+    middles = place + changes[good].mean(axis=1)[:, None] * WAYS[good]
+    centre, radius_mm, misfit_mm = circle_through(middles)
+    if misfit_mm > 0.1 * radius_mm or not LEAST_MM < 2 * radius_mm < LARGEST_MM:
+        return None
+    lead = _lead(view, centre, radius_mm + 0.5 * view.width_mm)
+    return Reference((float(centre[0]), float(centre[1])), "ring", lead)
+
+
+def _runs(flags: NDArray[np.bool_]) -> int:
+    """How many runs of two or more there are round a circle of flags."""
+    twice = flags & np.roll(flags, 1)
+    return int(np.sum(twice & ~np.roll(twice, 1)))
+
+
+def _unit(heading: float) -> Array:
+    return np.array([math.cos(heading), math.sin(heading)])

@@ -1,0 +1,177 @@
+"""A field of a card: what it holds, what it may hold, and the fault that says so with its line.
+
+Signals in: the text of a card (TOML). Signals out: quantities in counts of 0.01 mm, mm/s and s, choices, whole numbers; or a CardFault:
+
+    part.toml, line 7: speeds.feed holds "5kg"; it may hold a speed of 0.01 to 100 mm/s, such as "5mm/s"
+
+Fields are named as in the card, elements of arrays by their number from 1: `stop[2].moves[1].down`.
+
+Questions: the feeds end at 100 mm/s, what a tape of 6 kHz and 20 cycles per mm carries (see `motion.axis`).
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import tomllib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path as FilePath
+from typing import Any, NoReturn, TypeVar
+
+from morfax.motion.faults import CardFault, FileFault
+from morfax.motion.units import parse_length_mm, parse_speed_mm_s, parse_time_s
+from morfax.tracer.operator.toml_lines import Path, lines_of
+from morfax.tracer.operator.zunit import COUNT_MM, COUNTS_PER_MM, LARGEST_COUNT, counts_of
+
+SLOWEST_MM_S, FASTEST_MM_S = 0.01, 100.0
+LONGEST_DWELL_S = 600.0
+_LONGEST_SHOWN = 40  # characters: a fault is one line
+_AT = re.compile(r"\(at line (\d+), column (\d+)\)")
+
+T = TypeVar("T")
+D = TypeVar("D")
+
+
+@dataclass(frozen=True, slots=True)
+class Page:
+    """The paper: the name of the card, the line of each field, and what the whole is called in a fault."""
+
+    name: str
+    lines: Mapping[Path, int]
+    called: str = "the card"
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """What stands in one field of a card."""
+
+    value: Any
+    path: Path
+    page: Page
+
+    @property
+    def name(self) -> str:
+        """The field as one would name it: stop[2].moves[1].down."""
+        return "".join(f"[{key + 1}]" if isinstance(key, int) else f".{key}" for key in self.path).lstrip(".")
+
+    def refuse(self, allowed: str, held: str | None = None) -> NoReturn:
+        """Raise the CardFault of this field."""
+        line, holds = self.page.lines.get(self.path, 1), held or _shown(self.value)
+        where = self.name or self.page.called
+        raise CardFault(
+            f"{self.page.name}, line {line}: {where} holds {holds}; {allowed}", line=line, field=where, holds=holds
+        )
+
+    def counts(self, least: int = 1) -> int:
+        """Counts of a length that can be set on five decades."""
+        allowed = (
+            f"it may hold {least * COUNT_MM:.2f} to {LARGEST_COUNT * COUNT_MM:.2f} mm in steps of {COUNT_MM:g} mm, "
+            'such as "2.5mm"'
+        )
+        try:
+            length_mm = parse_length_mm(self._quantity(allowed))
+            counts = counts_of(length_mm) if abs(length_mm) * COUNTS_PER_MM <= LARGEST_COUNT + 1 else -1
+        except ValueError:
+            self.refuse(allowed)
+        if not least <= counts <= LARGEST_COUNT:
+            self.refuse(allowed)
+        return counts
+
+    def speed_mm_s(self) -> float:
+        """A speed, mm/s."""
+        allowed = f'it may hold a speed of {SLOWEST_MM_S:g} to {FASTEST_MM_S:g} mm/s, such as "5mm/s" or "300mm/min"'
+        return self._within(parse_speed_mm_s, SLOWEST_MM_S, FASTEST_MM_S, allowed)
+
+    def time_s(self) -> float:
+        """A time, s."""
+        allowed = f'it may hold a time of 0 to {LONGEST_DWELL_S:g} s, such as "500ms" or "2s"'
+        return self._within(parse_time_s, 0.0, LONGEST_DWELL_S, allowed)
+
+    def number(self) -> int:
+        """A number that counts something, from 1."""
+        if isinstance(self.value, bool) or not isinstance(self.value, int) or self.value < 1:
+            self.refuse("it may hold a whole number from 1")
+        return self.value
+
+    def choice(self, *choices: str) -> str:
+        """One of some words."""
+        if self.value not in choices or not isinstance(self.value, str):
+            self.refuse("it may hold " + " or ".join(f'"{choice}"' for choice in choices))
+        return self.value
+
+    def elements(self, allowed: str) -> list[Field]:
+        """The elements of an array of one or more."""
+        if not isinstance(self.value, list) or not self.value:
+            self.refuse(f"it may hold {allowed}")
+        return [Field(value, (*self.path, k), self.page) for k, value in enumerate(self.value)]
+
+    def table(self, *keys: str) -> dict[str, Field]:
+        """The fields of a table; a key that is none of these is refused."""
+        if not isinstance(self.value, dict):
+            self.refuse(f"it may hold a table with {', '.join(keys)}")
+        fields = {key: Field(value, (*self.path, key), self.page) for key, value in self.value.items()}
+        for key, field in fields.items():
+            if key not in keys:
+                field.refuse(f"there is no such field; {self.name or self.page.called} may hold {', '.join(keys)}")
+        return fields
+
+    def _quantity(self, allowed: str) -> str:
+        """A quantity as text: a string, or a bare number."""
+        if isinstance(self.value, bool) or not isinstance(self.value, str | int | float):
+            self.refuse(allowed)
+        return str(self.value)
+
+    def _within(self, parse: Callable[[str], float], least: float, most: float, allowed: str) -> float:
+        """A quantity that lies between two."""
+        try:
+            value = parse(self._quantity(allowed))
+        except ValueError:
+            self.refuse(allowed)
+        if not least <= value <= most:
+            self.refuse(allowed)
+        return value
+
+
+def opened(file: FilePath, called: str = "the card", option: str = "--card") -> Field:
+    """The whole card in a file; raises FileFault if it cannot be read, CardFault if it is no TOML."""
+    try:
+        raw = file.read_bytes()
+    except OSError as error:
+        raise FileFault(f"cannot read {called} {file}: {error.strerror}; give another one with {option}") from error
+    try:
+        return parsed(raw.decode("utf-8-sig"), file.name, called)
+    except UnicodeDecodeError as error:
+        line = raw.count(b"\n", 0, error.start) + 1
+        allowed = "it may hold text in UTF-8"
+        return Field(None, (), Page(file.name, {(): line}, called)).refuse(allowed, "bytes that are no UTF-8")
+
+
+def parsed(text: str, name: str = "card", called: str = "the card") -> Field:
+    """The whole card in a text; raises CardFault if it is no TOML."""
+    try:
+        return Field(tomllib.loads(text), (), Page(name, lines_of(text), called))
+    except RecursionError:
+        return Field(None, (), Page(name, {}, called)).refuse("it may hold a few", "too many brackets in one another")
+    except ValueError as error:
+        refused = str(error)
+    at = _AT.search(refused)
+    line = int(at[1]) if at else text.count("\n") + 1
+    held = (text.splitlines() or [""])[min(line, len(text.splitlines())) - 1].strip()
+    why = " ".join(_AT.sub("", refused).split())
+    allowed = f'a line may hold key = "value", a quantity with its unit in quotes ({why})'
+    return Field(held, (), Page(name, {(): line}, called)).refuse(allowed)
+
+
+def read(fields: Mapping[str, Field], key: str, how: Callable[[Field], T], otherwise: D) -> T | D:
+    """What a field holds, or something else where there is no such field."""
+    return how(fields[key]) if key in fields else otherwise
+
+
+def _shown(value: object) -> str:
+    """What a field holds, as text of one line cut short."""
+    try:
+        shown = json.dumps(value, ensure_ascii=False, default=str)
+    except ValueError:  # a number of thousands of digits
+        shown = "a number too long"
+    return shown if len(shown) <= _LONGEST_SHOWN else f"{shown[:_LONGEST_SHOWN]}…"

@@ -1,0 +1,161 @@
+"""Z unit: the operator sets a move on decade switches, the motor runs, and stops where the counters agree with the switches.
+
+Signals in: presets of the switches (whole counts of 0.01 mm, sense, feed in mm/s, dwell in s) and the start position in mm above the work. Signal out: Z
+in mm at the motion rate, up positive, 0 the surface of the work.
+
+    switches 126 ──▶ coincidence 133 ──▶ stop        one move:  feed  ____
+                        ▲                                            /    \\
+    disc 128 ──▶ counters 127 (up and down)                    _____/      \\_____   dwell
+       └──── motor 125 ◀── amplifier 135, tacho 136
+
+One pulse of the disc is one count. Each move is run by the ramp counter with the count as its increment: it speeds up, holds the feed, and comes to rest
+on the last pulse, so that coincidence and rest fall together:
+
+    count at rest = count before ± switches,     Z = 0.01 mm · count                (both exact, as counts are whole)
+
+Source: patent ES 361967, figure 3 (switches 126, counters 127, disc 128, counting unit 124, coincidence 133, motor 125, amplifier 135, tacho 136), claims 3,
+13 and 14; the ramp from patent ES 414458, figures 3 and 4 (see `motion.ramp`).
+Questions: the patent gives no figures. Chosen: five digits of 0.01 mm, the first preset being the start position above the work, and counters that show
+the sign and five digits too. The patent's motor is switched off at coincidence and would run on; the ramp counter brakes before it. Without a card the depth
+and clearance need not be whole counts: the move is then divided into increments as near to a count as make a whole number.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.motion import ramp
+from morfax.motion.motion import MOTION_RATE_HZ
+
+COUNT_MM = 0.01  # one pulse of disc 128
+COUNTS_PER_MM = 100
+LARGEST_COUNT = 99_999  # five decades
+ACCELERATION_MM_S2 = 200.0
+_OFF_COUNT = 1e-6  # of a count: what arithmetic with inches leaves
+_PULSE = 1e-9  # of a count: what rounding takes off a pulse that has passed, 1e5 counts in 53 bits
+
+Array = NDArray[np.float64]
+Sense = Literal["up", "down"]
+
+
+@dataclass(frozen=True, slots=True)
+class Preset:
+    """One setting of the panel: so many counts up or down at a feed, then a dwell; of no counts it is the dwell alone."""
+
+    counts: int
+    sense: Sense = "down"
+    feed_mm_s: float = 5.0
+    dwell_s: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.counts <= LARGEST_COUNT:
+            raise ValueError(f"{self.counts} counts cannot be set on five decades; give 0 to {LARGEST_COUNT}")
+        if self.sense not in ("up", "down"):
+            raise ValueError(f"the sense switch has no {self.sense!r}; give up or down")
+        if not 0 < self.feed_mm_s < math.inf or not 0 <= self.dwell_s < math.inf:
+            raise ValueError(
+                f"a feed of {self.feed_mm_s:g} mm/s with a dwell of {self.dwell_s:g} s never ends; "
+                "give a feed above zero and a dwell of zero or more, both finite"
+            )
+
+    @property
+    def digits(self) -> str:
+        """What the five switches 126 show."""
+        return f"{self.counts:05d}"
+
+    @property
+    def signed(self) -> int:
+        """Counts of the move, up positive."""
+        return self.counts if self.sense == "up" else -self.counts
+
+
+@dataclass(frozen=True, slots=True)
+class Counters:
+    """The bidirectional decade counters 127: counts above the work, below zero in it."""
+
+    count: int = 0
+
+    def __post_init__(self) -> None:
+        if abs(self.count) > LARGEST_COUNT:
+            raise ValueError(
+                f"the counters cannot show {self.count * COUNT_MM:.2f} mm; they go from "
+                f"{-LARGEST_COUNT * COUNT_MM:.2f} to {LARGEST_COUNT * COUNT_MM:.2f} mm"
+            )
+
+    @property
+    def digits(self) -> str:
+        """What the counters show: sign and five digits."""
+        return f"{self.count:+06d}"
+
+    @property
+    def z_mm(self) -> float:
+        """Where Z is, mm."""
+        return self.count / COUNTS_PER_MM
+
+    def after(self, preset: Preset) -> Counters:
+        """The counters when a move has come to coincidence; raises ValueError beyond five digits."""
+        return Counters(self.count + preset.signed)
+
+
+@dataclass(frozen=True, slots=True)
+class Move:
+    """What the motor 125 does: to a place in mm at a feed, then stand."""
+
+    to_mm: float
+    feed_mm_s: float
+    dwell_s: float = 0.0
+
+
+def counts_of(length_mm: float) -> int:
+    """Whole counts of a length; raises ValueError if it has parts of a count."""
+    counts = round(length_mm * COUNTS_PER_MM)
+    if abs(length_mm * COUNTS_PER_MM - counts) > _OFF_COUNT:
+        raise ValueError(f"{length_mm:g} mm is no whole number of counts; give steps of {COUNT_MM:g} mm")
+    return counts
+
+
+def moves(start: Counters, presets: Iterable[Preset]) -> list[Move]:
+    """What the motor does for presets run one after the other; raises ValueError beyond five digits."""
+    made, counters = [], start
+    for preset in presets:
+        counters = counters.after(preset)
+        made.append(Move(counters.z_mm, preset.feed_mm_s, preset.dwell_s))
+    return made
+
+
+def z_moves(
+    start_mm: float,
+    moves: Sequence[Move],
+    acceleration_mm_s2: float = ACCELERATION_MM_S2,
+    rate_hz: float = MOTION_RATE_HZ,
+) -> Array:
+    """Z of moves made one after the other from a place, (n,) mm at the motion rate; each ends exactly where it was sent."""
+    parts, at_mm = [np.empty(0)], start_mm
+    for move in moves:
+        parts.append(_one(at_mm, move, acceleration_mm_s2, rate_hz))
+        at_mm = move.to_mm
+    return np.concatenate(parts)
+
+
+def counted(z_mm: Array) -> NDArray[np.int64]:
+    """What the counters show at each place of a move: the pulses of disc 128 that have passed, from the surface."""
+    return np.trunc(z_mm * COUNTS_PER_MM + np.copysign(_PULSE, z_mm)).astype(np.int64)
+
+
+def coincidence(z_mm: Array, start: Counters, preset: Preset) -> int | None:
+    """At which sample of a move the counters agree with the switches (133); None if they never do."""
+    there = np.flatnonzero(np.abs(counted(z_mm - start.z_mm)) >= preset.counts)
+    return int(there[0]) if len(there) else None
+
+
+def _one(start_mm: float, move: Move, acceleration_mm_s2: float, rate_hz: float) -> Array:
+    """Z of one move and of the dwell after it, mm."""
+    how = ramp.Ramp(acceleration_mm_s2, COUNT_MM)
+    way = ramp.positions_mm([start_mm], [move.to_mm], move.feed_mm_s, how, rate_hz=rate_hz)[:, 0]
+    return np.concatenate([way, np.full(round(move.dwell_s * rate_hz), move.to_mm)])

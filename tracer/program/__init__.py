@@ -1,0 +1,1 @@
+"""TODO: what lives in this room, and its door."""

@@ -1,0 +1,274 @@
+"""Legs: clean stretches of line, as parabolas through what was felt of them.
+
+Signals: stations of the line (n, 3: centre x, y and width, mm) in; place, heading (rad) and bend (1/mm) of the line out, and where two legs meet.
+
+    place(s) = end + s·t + bend/2·s²·n          t, n: along and across the heading at the leg's clean end
+
+Source: our own (see `knot`).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numba import njit
+
+from morfax.tracer.sensing import photocell
+from morfax.tracer.sensing.view import Array, View
+
+Meeting = tuple[float, float]  # how far two legs meet beyond the one's clean end and before the other's, mm
+
+FARTHEST_MM = 10.0  # legs that meet further away do not meet
+
+SPOKE = np.linspace(0.2, 1.0, 17)
+BESIDE = np.array([0.0, -0.25, 0.25])  # widths
+PAPER = 0.6  # of the level: lighter is paper for certain
+SPECK_PX = 4.0  # a speck of two pixels of paper, seen through an aperture
+BITTEN = 0.06  # of the width: more than a scan's noise
+SPECK_WIDTHS = 0.4  # ink narrower than this is no stroke
+
+
+@dataclass(frozen=True, slots=True)
+class Leg:
+    """A clean stretch of line at a knot: `end_mm` is its clean end, the heading there and the bend are along the travel."""
+
+    end_mm: Array
+    heading_rad: float
+    bend_per_mm: float
+    width_mm: float
+    seen: Array
+
+    def at(self, along_mm: float | Array) -> Array:
+        """Places (…, 2) at distances from the clean end along the travel (negative: before it)."""
+        s = np.asarray(along_mm, float)[..., None]
+        t = np.array([math.cos(self.heading_rad), math.sin(self.heading_rad)])
+        return self.end_mm + s * t + 0.5 * self.bend_per_mm * s * s * np.array([-t[1], t[0]])
+
+    def shifted(self, along_mm: float, seen: Array) -> Leg:
+        """The same line from a place further along it, with what was felt from there."""
+        return Leg(self.at(along_mm), self.heading_at(along_mm), self.bend_per_mm, self.width_mm, seen)
+
+    def turned_round(self) -> Leg:
+        """The same leg, to go back along it."""
+        heading = math.remainder(self.heading_rad + math.pi, math.tau)
+        return Leg(self.end_mm, heading, -self.bend_per_mm, self.width_mm, self.seen[::-1])
+
+    def heading_at(self, along_mm: float) -> float:
+        """Heading at a distance from the clean end, rad."""
+        return self.heading_rad + math.atan(self.bend_per_mm * along_mm)
+
+
+def leg_of(seen: Array, last: bool, length_mm: float) -> Leg:
+    """Fit a leg to what was felt, (n, 3) in the order of travel; its clean end is towards the `last` station, or else the first.
+
+    As long a stretch is taken as one parabola fits about as well as the nearest part of it.
+    """
+    seen = _without_blot(seen, last)
+    end = seen[-1] if last else seen[0]
+    away = np.hypot(*(seen[:, :2] - end[:2]).T)
+    best, limit = _leg(seen[away <= 0.5 * length_mm], end, seen)
+    for share in (0.75, 1.0):
+        leg, misfit = _leg(seen[away <= share * length_mm], end, seen)
+        if misfit > 1.3 * limit + 0.001:
+            break
+        best, limit = leg, misfit
+    return best
+
+
+def _without_blot(seen: Array, last: bool) -> Array:
+    """The stations without those next to the knot whose width shows a little of its ink already: a third of them at most."""
+    widths = seen[::-1, 2] if last else seen[:, 2]
+    usual = float(np.median(widths))
+    spread = 1.4826 * float(np.median(np.abs(widths - usual)))
+    most = len(seen) // 3
+    clean = np.abs(widths[: most + 1] - usual) < max(3 * spread, 0.03 * usual)
+    first = int(np.argmax(clean)) if clean.any() else most
+    first = min(first + 1, most)
+    return seen[: len(seen) - first] if last else seen[first:]
+
+
+def _leg(near: Array, end: Array, seen: Array) -> tuple[Leg, float]:
+    """The leg through some stations, and their root mean square distance from it, mm."""
+    chord = near[-1, :2] - near[0, :2]
+    heading = math.atan2(chord[1], chord[0])
+    t = np.array([math.cos(heading), math.sin(heading)])
+    n = np.array([-t[1], t[0]])
+    d = near[:, :2] - end[:2]
+    (slope, offset, bend), misfit = _fit(d @ t, d @ n)
+    place, width = end[:2] + offset * n, float(np.median(near[:, 2]))
+    return Leg(place, heading + math.atan(slope), bend / (1 + slope * slope) ** 1.5, width, seen), misfit
+
+
+@njit(cache=True)
+def _fit(x, y):  # type: ignore[no-untyped-def]
+    """(slope, offset, bend) at x = 0 of y(x), and the misfit; stations off by more than three times the usual are left out.
+
+    Straight, unless a bend stands out fivefold of the uncertainty that independent stations would have: neighbours share their ink.
+    """
+    degree = 2 if len(x) >= 8 else min(1, len(x) - 1)
+    found, unsure = _parabola(x, y, np.ones(len(x)), degree)
+    for _ in range(2):
+        away = np.abs(y - found[0] - found[1] * x - found[2] * x * x)
+        good = away <= 3 * max(1.4826 * np.median(away), 0.001)
+        if good.all() or good.sum() < 8:
+            break
+        x, y = x[good], y[good]
+        found, unsure = _parabola(x, y, np.ones(len(x)), degree)
+    rest = y - found[0] - found[1] * x - found[2] * x * x
+    if degree == 2 and abs(found[2]) < 5 * unsure * math.sqrt(max(np.sum(rest * rest) / (len(x) - 3), 1e-7)):
+        found, _ = _parabola(x, y, np.ones(len(x)), 1)
+        rest = y - found[0] - found[1] * x
+    return (found[1], found[0], 2 * found[2]), math.sqrt(np.mean(rest * rest))
+
+
+@njit(cache=True)
+def _parabola(x, y, weights, degree):  # type: ignore[no-untyped-def]
+    """Coefficients of 1, x, x² of the weighted parabola (or straight line, or mean), and the last one's uncertainty per unit of noise in y."""
+    n = degree + 1
+    sums, right = np.zeros((n, n)), np.zeros(n)
+    for k in range(len(x)):
+        for i in range(n):
+            right[i] += weights[k] * y[k] * x[k] ** i
+            for j in range(n):
+                sums[i, j] += weights[k] * x[k] ** (i + j)
+    inverse = np.linalg.inv(sums + 1e-12 * np.eye(n))
+    found = np.zeros(3)
+    found[:n] = inverse @ right
+    return found, math.sqrt(abs(inverse[n - 1, n - 1]))
+
+
+def centre_at(seen: Array, i: int, half_mm: float) -> Leg:
+    """The line about station i of what was felt: the parabola through the stations within `half_mm`, weighted towards the middle.
+
+    A station whose width differs is spoiled by a speck on one edge: it counts the less.
+    """
+    d = seen[:, :2] - seen[i, :2]
+    near = np.flatnonzero(np.hypot(*d.T) < half_mm)
+    chord = d[near[-1]] - d[near[0]]
+    heading = math.atan2(chord[1], chord[0])
+    t = np.array([math.cos(heading), math.sin(heading)])
+    n = np.array([-t[1], t[0]])
+    x, y = d[near] @ t, d[near] @ n
+    off = np.abs(seen[near, 2] / np.median(seen[near, 2]) - 1)
+    usual = max(3 * 1.4826 * float(np.median(off)), BITTEN)
+    weights = np.maximum(1 - (x / half_mm) ** 2, 0.05) / (1 + (off / usual) ** 4)
+    offset, slope, bend = _parabola(x, y, weights, 2)[0]
+    return Leg(
+        seen[i, :2] + offset * n,
+        heading + math.atan(slope),
+        2 * bend / (1 + slope * slope) ** 1.5,
+        float(np.median(seen[near, 2])),
+        seen[i:],
+    )
+
+
+def turn(a: float, b: float) -> float:
+    """Angle from heading a to heading b, -pi..pi."""
+    return math.remainder(b - a, math.tau)
+
+
+def meet(incoming: Leg, outgoing: Leg) -> Meeting | None:
+    """Distances (beyond the incoming leg's end, before the outgoing leg's end) where their lines cross, mm; None if they do not."""
+    s = u = 0.0
+    for _ in range(6):
+        a, b = incoming.heading_at(s), outgoing.heading_at(-u)
+        cross = math.sin(turn(a, b))
+        if abs(cross) < 0.02:
+            return None
+        gap = outgoing.at(-u) - incoming.at(s)
+        ds = (gap[0] * math.sin(b) - gap[1] * math.cos(b)) / cross
+        du = (gap[0] * math.sin(a) - gap[1] * math.cos(a)) / cross
+        s, u = s + ds, u - du
+        if max(abs(s), abs(u)) > FARTHEST_MM:
+            return None
+    return s, u
+
+
+def reach_of_ink(view: View, incoming: Leg, farthest_mm: float, aside_mm: float = 0.0) -> float | None:
+    """How far the ink goes on from the incoming leg's end along its line, or beside it (left positive), mm; None if farther than asked."""
+    step = 0.35 * view.pitch_mm
+    left = np.array([-math.sin(incoming.heading_rad), math.cos(incoming.heading_rad)])
+    places = incoming.at(np.asarray(np.arange(int(farthest_mm / step)) * step, float)) + aside_mm * left
+    steps = _steps_of_ink(view.cells, view.pitch_mm, places, view.level)
+    return max(0.0, steps * step) if steps < len(places) else None
+
+
+@njit(cache=True)
+def _steps_of_ink(cells, pitch_mm, places, level):  # type: ignore[no-untyped-def]
+    """How many of some places (n, 2) are on ink, one after the other, and the share of a step to where it ends; n if all are."""
+    before = 1.0
+    for k in range(len(places)):
+        now = photocell.darkness_at(cells, pitch_mm, places[k, 0], places[k, 1])
+        if now < level:
+            return k - (level - now) / max(before - now, 1e-9)
+        before = now
+    return float(len(places))
+
+
+def stroke_end(view: View, leg: Leg, farthest_mm: float) -> float | None:
+    """How far the ink of a stroke goes on from a leg's end, mm, if the stroke ends there: no ink leaves its tip but the stroke's own; None if not.
+
+    It is felt as far as it is clean, round its bends, and only from there on looked for ahead. A speck of paper on the stroke is not its end: beside
+    its middle the ink goes on.
+    """
+    seen, come_mm = view.feel(leg.end_mm, leg.heading_rad, farthest_mm), 0.0
+    if len(seen) > len(leg.seen):
+        come_mm = (len(seen) - 1) * view.step_mm
+        if come_mm >= farthest_mm - view.step_mm:
+            return None
+        leg = leg_of(seen, True, view.leg_mm)
+    for ink in _inks(view, leg, farthest_mm - come_mm):
+        if is_tip(view, leg.at(ink - 0.5 * view.width_mm)):
+            return come_mm + ink
+    return None
+
+
+def _inks(view: View, leg: Leg, farthest_mm: float) -> list[float]:
+    """How far the ink of a stroke may go on from a leg's end, mm: along its middle, beside that, and past a speck of paper; none if farther."""
+    middle, *beside = (reach_of_ink(view, leg, farthest_mm, share * view.width_mm) for share in (0.0, -0.25, 0.25))
+    if middle is None:
+        return []
+    inks = [middle, *(reach for reach in beside if reach is not None and reach > middle)]
+    for past_mm in middle + np.arange(0.5, SPECK_PX, 0.5) * view.pitch_mm:
+        if view.dark(leg.at(past_mm)):
+            on = reach_of_ink(view, leg.shifted(past_mm, leg.seen), farthest_mm - past_mm)
+            return inks if on is None else [*inks, past_mm + on]
+    return inks
+
+
+def is_tip(view: View, place: Array) -> bool:
+    """Whether a place half a width within the end of ink is the tip of a single stroke; what it does not touch is no matter."""
+    return lines_from(view, place, max(1.2 * view.width_mm, 5 * view.pitch_mm)) == 1
+
+
+def lines_from(view: View, centre: Array, radius_mm: float) -> int:
+    """How many strokes leave a place by ink, of those that a ring of cells sees about it; specks are none.
+
+    Paper on the way to a stroke is lighter than where the way grazes an edge; a speck of it is not on all of the ways side by side.
+    """
+    lighter = replace(view, level=PAPER * view.level)
+    joined = 0
+    for heading in strokes_on(view, centre, radius_mm).mean(axis=1):
+        way = np.array([math.cos(heading), math.sin(heading)])
+        beside = np.outer(BESIDE * view.width_mm, [-way[1], way[0]])
+        joined += any(all(lighter.dark(centre + off + share * radius_mm * way) for share in SPOKE) for off in beside)
+    return joined
+
+
+def lines_on(view: View, centre: Array, radius_mm: float) -> int:
+    """How many strokes a ring of cells sees about a place; specks are none."""
+    return len(strokes_on(view, centre, radius_mm))
+
+
+def strokes_on(view: View, centre: Array, radius_mm: float) -> Array:
+    """The arcs that a ring sees which are no specks, (n, 2) rad."""
+    arcs = photocell.ring(view.cells, view.pitch_mm, centre, radius_mm, view.level)
+    return np.asarray(arcs[(arcs[:, 1] - arcs[:, 0]) * radius_mm > SPECK_WIDTHS * view.width_mm])
+
+
+def end_of(view: View, incoming: Leg) -> float | None:
+    """How far beyond a leg's clean end the pen was lifted, mm: half a width within the end of the ink; None if the ink goes on."""
+    ink = reach_of_ink(view, incoming, 6 * view.width_mm + 2.0)
+    return None if ink is None else ink - 0.5 * incoming.width_mm

@@ -1,0 +1,139 @@
+"""Tangles: all the ink about a knot, as far as the clean legs that lead out of it.
+
+Where inks of several lines run together for longer than a corner, no one leg tells the way on. So the head sends a wave through the ink from its clean
+incoming leg (see `fronts`): a branch of it that stays as broad as the line is, and is felt clean, is a leg, and the wave ends there; one that ends is a
+tip. What is left between the legs is the tangle's own ink, which `pairing` explains.
+
+Signals: the incoming leg in; the legs (the way in first, its heading into the tangle; the others' out of it) and the ink out, places in sheet mm.
+
+Source: our own (see `knot`).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.tracer.tangles.wavefront import Fronts, fronts_from
+from morfax.tracer.sensing.leg import Leg, leg_of
+from morfax.tracer.sensing.photocell import Cells
+from morfax.tracer.sensing.view import Array, View
+
+Flags = NDArray[np.bool_]
+
+REACH_MM, REACH_WIDTHS = 5.0, 10.0  # the wave runs no farther
+LEAST_WIDTHS = 0.8  # of clean line make a leg
+STUB_WIDTHS, STUB_MM = 3.0, 1.5  # ink that ends sooner than either is a tip
+LEAST_LIKE, MOST_LIKE = 0.75, 1.25  # of the line's width: a leg of it
+TAPERED = 0.94
+CLEAN_FRONTS = 4  # as broad as the line, one after the other
+MOST_PLACES = 700  # enough to place a vertex within 10 um
+ABOUT_MM = 0.25  # of paper about the ink belongs to the tangle
+
+
+@dataclass(frozen=True, slots=True)
+class Tangle:
+    """The legs about a knot, the way in first, and the darkness (n,) of the places (n, 2) in and about the ink between them, 1 on the line."""
+
+    legs: list[Leg]
+    places_mm: Array
+    darkness: Array
+    area_mm2: float
+    whole: bool  # the wave ended in legs and tips
+
+
+def tangle_ahead(view: View, incoming: Leg) -> Tangle:
+    """The tangle that begins at the clean end of an incoming leg."""
+    reach_mm = max(REACH_MM, REACH_WIDTHS * view.width_mm)
+    fronts = fronts_from(view, incoming.end_mm, incoming.heading_rad, reach_mm)
+    if not len(fronts.at):  # no ink joins the leg
+        return Tangle([incoming], np.empty((0, 2)), np.empty(0), 0.0, whole=False)
+    legs, ended = _legs(view, fronts, reach_mm)
+    ink = _ink(view, fronts, ended)
+    running = fronts.at * fronts.step_mm > reach_mm - 2 * fronts.step_mm
+    return Tangle([incoming, *legs], *ink, not np.any(running & ~ended))
+
+
+def _inside(view: View, fronts: Fronts, ended: Flags) -> tuple[Flags, Cells]:
+    """Which pixels of the fronts' window are the tangle's ink, and the darkness there."""
+    inside = (fronts.label >= 0) & ~ended[np.maximum(fronts.label, 0)]
+    top, left = fronts.corner
+    return inside, view.cells[top : top + inside.shape[0], left : left + inside.shape[1]]
+
+
+def _legs(view: View, fronts: Fronts, reach_mm: float) -> tuple[list[Leg], Flags]:
+    """The legs in which the wave ends, and which fronts lie in one."""
+    legs: list[Leg] = []
+    beyond = fronts.beyond_mm()
+    clean, ended = np.zeros(len(fronts.at), int), np.zeros(len(fronts.at), bool)
+    for k, before in enumerate(fronts.parents):
+        if before and all(ended[p] for p in before):
+            ended[k] = True
+            continue
+        alone = len(before) == 1 and len(fronts.children[before[0]]) == 1
+        like_line = 0.6 < float(np.mean(_latest(fronts, k, 3))) / view.width_mm < 1.4
+        clean[k] = clean[before[0]] + 1 if alone and like_line else 0
+        come_mm = fronts.at[k] * fronts.step_mm
+        tip = (
+            beyond[k] < min(STUB_WIDTHS * view.width_mm, STUB_MM)
+            and come_mm + beyond[k] < reach_mm - 2 * fronts.step_mm
+        )
+        if clean[k] < CLEAN_FRONTS or tip or come_mm < 0.6 * view.width_mm:
+            continue
+        leg = _leg_at(view, fronts, k)
+        if leg is not None:
+            legs.append(leg)
+            ended[k] = True
+    return legs, ended
+
+
+def _latest(fronts: Fronts, k: int, count: int) -> list[float]:
+    """Breadths of a front and of those that it came from: of one alone it tells only roughly, by its few pixels."""
+    out = [float(fronts.breadth_mm[k])]
+    while len(out) < count and len(fronts.parents[k]) == 1:
+        k = fronts.parents[k][0]
+        out.append(float(fronts.breadth_mm[k]))
+    return out
+
+
+def _leg_at(view: View, fronts: Fronts, k: int) -> Leg | None:
+    """The leg felt outward from the fronts that come before a front; None if it is not clean there."""
+    first = k
+    for _ in range(CLEAN_FRONTS - 1):
+        first = fronts.parents[first][0]
+    way = fronts.places_mm[k] - fronts.places_mm[first]
+    heading = math.atan2(way[1], way[0])
+    local = view.like(fronts.places_mm[k], heading)
+    if not LEAST_LIKE < local.width_mm / view.width_mm < MOST_LIKE:
+        return None
+    least = max(4, math.ceil(LEAST_WIDTHS * view.width_mm / view.step_mm))
+    for place in (fronts.places_mm[first], fronts.places_mm[k]):
+        seen = local.feel(place, heading, local.leg_mm)
+        if len(seen) >= least:
+            return None if _tapers(seen) else leg_of(seen, False, local.leg_mm)
+    return None
+
+
+def _tapers(seen: Array) -> bool:
+    """Whether what was felt grows narrower all along: two lines that run to a tip."""
+    near, far = (float(np.median(part)) for part in np.array_split(seen[:, 2], 2))
+    return len(seen) >= 12 and far < TAPERED * near
+
+
+def _ink(view: View, fronts: Fronts, ended: Flags) -> tuple[Array, Array, float]:
+    """Places and darkness, and the area, of the tangle's ink and the paper about it, without what is near ink that is not the tangle's."""
+    (inside, cells), (top, left) = _inside(view, fronts, ended), fronts.corner
+    square = np.ones((3, 3), np.uint8)
+    about = cv2.dilate(inside.view(np.uint8), square, iterations=max(2, round(ABOUT_MM / view.pitch_mm)))
+    others = cv2.dilate(((cells > view.level) & ~inside).view(np.uint8), square, iterations=2)
+    i, j = np.nonzero(inside | ((about > 0) & (others == 0)))
+    x, y = (j + left + 0.5) * view.pitch_mm, (view.cells.shape[0] - i - top - 0.5) * view.pitch_mm
+    places, darkness = np.column_stack([x, y]), np.minimum(cells[i, j] / (2 * view.level), 1.05).astype(float)
+    if len(places) > MOST_PLACES:
+        some = np.random.default_rng(0).permutation(len(places))[:MOST_PLACES]
+        places, darkness = places[some], darkness[some]
+    return places, darkness, float(len(i)) * view.pitch_mm**2
