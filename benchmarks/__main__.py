@@ -13,7 +13,9 @@ def main(names: list[str]) -> None:
     if names[:1] == ["folder"]:
         importlib.import_module("benchmarks.folder").main(names[1:])
         return
-    here = [module.name for module in pkgutil.iter_modules([str(Path(__file__).parent)]) if module.name[0] != "_"]
+    here = [
+        module.name for module in pkgutil.iter_modules([str(Path(__file__).parent)]) if module.name[0] != "_"
+    ]
     if unknown := [name for name in names if name not in here]:
         sys.exit(
             f"no benchmark {unknown[0]}; there are {', '.join(here)}; without a name all are run but folder, which wants a DIR"

@@ -76,9 +76,13 @@ def points_per_second_in_numpy(axes: int) -> float:
 def main() -> None:
     """Print the figures as a table."""
     print("controls")
-    print(f"  step decoder, pulses and motors   {steps_per_second(step_program()) / 1e6:8.1f} million steps/s")
+    print(
+        f"  step decoder, pulses and motors   {steps_per_second(step_program()) / 1e6:8.1f} million steps/s"
+    )
     ours, numpys = points_per_second(3), points_per_second_in_numpy(3)
-    print(f"  cubic interpolator, three axes    {ours / 1e6:8.1f} million points/s/axis{ours / numpys:8.2f} x numpy")
+    print(
+        f"  cubic interpolator, three axes    {ours / 1e6:8.1f} million points/s/axis{ours / numpys:8.2f} x numpy"
+    )
 
 
 if __name__ == "__main__":

@@ -60,7 +60,9 @@ def drawn(loops: list[Points], line_mm: float, size_mm: float | None = None) -> 
     fine = np.zeros((rows * FINE, columns * FINE), np.uint8)
     for loop in loops:
         at = np.column_stack([loop[:, 0] * scale, len(fine) - loop[:, 1] * scale]) - 0.5
-        cv2.polylines(fine, [np.round(at * 256).astype(np.int32)], False, 255, round(line_mm * scale), cv2.LINE_AA, 8)
+        cv2.polylines(
+            fine, [np.round(at * 256).astype(np.int32)], False, 255, round(line_mm * scale), cv2.LINE_AA, 8
+        )
     ink = cv2.resize(fine, (int(columns), int(rows)), interpolation=cv2.INTER_AREA).astype(np.float32) / 255
     soft = cv2.GaussianBlur(ink, (0, 0), SOFTNESS_MM * DPI / MM_PER_INCH)
     seen = soft + np.random.default_rng(1).normal(0, NOISE, soft.shape)
@@ -69,7 +71,9 @@ def drawn(loops: list[Points], line_mm: float, size_mm: float | None = None) -> 
 
 def rows(file: Path, loops: list[Points], line_mm: float, size_mm: float | None = None) -> list[str]:
     """One drawing traced and measured, as lines of the table: one for each loop."""
-    image = next((file.with_suffix(s) for s in (".png", ".jpg", ".tif") if file.with_suffix(s).exists()), None)
+    image = next(
+        (file.with_suffix(s) for s in (".png", ".jpg", ".tif") if file.with_suffix(s).exists()), None
+    )
     begun = time.perf_counter()
     width = f"{line_mm:9g}" if image is None else f"{'scan':>9s}"
     try:
@@ -129,7 +133,10 @@ def lengths_mm(
     help="Line width of pictures drawn here; may be given again.",
 )
 @click.option(
-    "--size", "size_mm", callback=lengths_mm, help="Longest side of drawings drawn here.  [default: as the truth is]"
+    "--size",
+    "size_mm",
+    callback=lengths_mm,
+    help="Longest side of drawings drawn here.  [default: as the truth is]",
 )
 def table(folder: Path, widths_mm: tuple[float, ...], size_mm: float | None) -> None:
     """Print the table of a folder of drawings."""

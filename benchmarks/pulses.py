@@ -17,11 +17,11 @@ from benchmarks.rows import Row, best_s, tell
 from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.motion.ramp import positions_mm
 from morfax.player.gcode.feed_control import feed_number
-from morfax.player.monitor.monitor import FollowingLimit, Monitor
-from morfax.player.monitor.position_servo import PositionServos
 from morfax.player.gcode.pulse_servo import PulseServos
 from morfax.player.gcode.residues import COUNTER_CLOCKWISE, Feed, Interpolator
 from morfax.player.gcode.rs274 import parse_rs274
+from morfax.player.monitor.monitor import FollowingLimit, Monitor
+from morfax.player.monitor.position_servo import PositionServos
 
 RECIRCULATIONS_HZ = 8 * MOTION_RATE_HZ
 PROGRAM_LINES = 100_000
@@ -84,10 +84,18 @@ def rows() -> list[Row]:
     return [
         Row("lines, three axes", len(pulses) / took["line"] / 1e6, "million recirculations/s"),
         Row("arcs", len(turn) / took["quarter"] / 1e6, "million recirculations/s"),
-        Row("pulse servo, lag and unit circuit", AXES * len(pulses) / took["servo"] / 1e6, "million periods/s/axis"),
+        Row(
+            "pulse servo, lag and unit circuit",
+            AXES * len(pulses) / took["servo"] / 1e6,
+            "million periods/s/axis",
+        ),
         Row("monitored servo", AXES * len(demand) / took["watched"] / 1e6, "million periods/s/axis"),
         Row(
-            "G-code", len(lines) / took["read"] / 1e3, "thousand lines/s", took["read"] / took["numbers"], "its numbers"
+            "G-code",
+            len(lines) / took["read"] / 1e3,
+            "thousand lines/s",
+            took["read"] / took["numbers"],
+            "its numbers",
         ),
     ]
 

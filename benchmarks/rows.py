@@ -20,7 +20,9 @@ class Row:
     to_what: str = ""
 
 
-def best_s(tasks: dict[str, Callable[[], object]], clock: Callable[[], float] = time.perf_counter) -> dict[str, float]:
+def best_s(
+    tasks: dict[str, Callable[[], object]], clock: Callable[[], float] = time.perf_counter
+) -> dict[str, float]:
     """Shortest time of each task, s; they take turns, so that what else the machine does falls on all alike."""
     times: dict[str, list[float]] = {name: [] for name in tasks}
     for _ in range(ROUNDS):

@@ -31,7 +31,10 @@ def circles(seconds: float) -> Iterator[Motion]:
     rate = int(MOTION_RATE_HZ)
     for second in range(round(seconds)):
         t_s = second + np.arange(rate) / rate
-        way_mm = np.where(t_s < 2, 12.5 * t_s**2, 50 * (t_s - 1)) - 12.5 * np.clip(t_s - (seconds - 2), 0, None) ** 2
+        way_mm = (
+            np.where(t_s < 2, 12.5 * t_s**2, 50 * (t_s - 1))
+            - 12.5 * np.clip(t_s - (seconds - 2), 0, None) ** 2
+        )
         angle = way_mm / 20
         columns = [20 * np.sin(angle), 20 * (1 - np.cos(angle)), 0 * angle]
         yield Motion(np.column_stack(columns), MOTION_RATE_HZ, float(second))
@@ -106,13 +109,29 @@ def speed_rows(folder: Path) -> list[Row]:
     both = took["record"] + took["play"]
     return [
         Row("reading as float32", mega["read"], "million frames/s"),
-        Row("decoding, file to phases", mega["decode"], "million frames/s", mega["decode"] / mega["read"], "reading"),
+        Row(
+            "decoding, file to phases",
+            mega["decode"],
+            "million frames/s",
+            mega["decode"] / mega["read"],
+            "reading",
+        ),
         Row("scipy.signal.hilbert, blocks", mega["hilbert"], "million frames/s"),
         Row("decoding", mega["decode"], "million frames/s", mega["decode"] / mega["hilbert"], "hilbert"),
         Row("writing float32 as 16 bit", mega["write"], "million frames/s"),
-        Row("recording, motion to file", mega["record"], "million frames/s", mega["record"] / mega["write"], "writing"),
         Row(
-            "playing, drives and all", seconds / took["play"], "x real time", took["play"] / took["decode"], "decoding"
+            "recording, motion to file",
+            mega["record"],
+            "million frames/s",
+            mega["record"] / mega["write"],
+            "writing",
+        ),
+        Row(
+            "playing, drives and all",
+            seconds / took["play"],
+            "x real time",
+            took["play"] / took["decode"],
+            "decoding",
         ),
         Row("recording and playing", seconds / both, "x real time"),
     ]

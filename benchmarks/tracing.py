@@ -52,7 +52,17 @@ def drawing_and_truth(folder: Path) -> tuple[Path, Path]:
     if not STAR.exists():
         return HOUSE / "samples" / "cam.png", HOUSE / "samples" / "cam.csv"
     drawn = folder / "star.png"
-    command = [sys.executable, PARTS / "render.py", STAR, drawn, "--dpi", f"{DPI:g}", "--line", f"{LINE_MM}", "--scan"]
+    command = [
+        sys.executable,
+        PARTS / "render.py",
+        STAR,
+        drawn,
+        "--dpi",
+        f"{DPI:g}",
+        "--line",
+        f"{LINE_MM}",
+        "--scan",
+    ]
     subprocess.run([str(word) for word in command], check=True, stdout=subprocess.DEVNULL)
     return drawn, drawn.with_suffix(".csv")
 
@@ -116,9 +126,24 @@ def tracing_rows(file: Path, truth_file: Path) -> list[Row]:
     }
     return [
         Row("trace, file to motion", took["trace"] * 1e3, "ms"),
-        Row("find_contours, file to edges", took["contours"] * 1e3, "ms", took["contours"] / took["trace"], "trace"),
-        Row("skeletonize, file to pixels", took["skeleton"] * 1e3, "ms", took["skeleton"] / took["trace"], "trace"),
-        *(Row(f"off the truth: {name}", um, "um RMS", um / head_um, "trace") for name, um in accuracy.items()),
+        Row(
+            "find_contours, file to edges",
+            took["contours"] * 1e3,
+            "ms",
+            took["contours"] / took["trace"],
+            "trace",
+        ),
+        Row(
+            "skeletonize, file to pixels",
+            took["skeleton"] * 1e3,
+            "ms",
+            took["skeleton"] / took["trace"],
+            "trace",
+        ),
+        *(
+            Row(f"off the truth: {name}", um, "um RMS", um / head_um, "trace")
+            for name, um in accuracy.items()
+        ),
     ]
 
 

@@ -100,7 +100,9 @@ def main(words: Sequence[str] | None = None) -> int:
 def _ended(words: Sequence[str] | None) -> int:
     """Run the verb, and tell how it ended."""
     try:
-        outcome = cli.main(args=None if words is None else list(words), prog_name="morfax", standalone_mode=False)
+        outcome = cli.main(
+            args=None if words is None else list(words), prog_name="morfax", standalone_mode=False
+        )
         sys.stdout.flush()
         return outcome if isinstance(outcome, int) else 0
     except click.exceptions.NoArgsIsHelpError as nothing_asked:
@@ -122,7 +124,9 @@ def _ended(words: Sequence[str] | None) -> int:
         if os.environ.get("MORFAX_TRACEBACK"):
             traceback.print_exc()
         told = " ".join(str(error).split())
-        return _say(f"a mistake in morfax: {type(error).__name__}: {told} (MORFAX_TRACEBACK=1 shows where)", MISTAKE)
+        return _say(
+            f"a mistake in morfax: {type(error).__name__}: {told} (MORFAX_TRACEBACK=1 shows where)", MISTAKE
+        )
 
 
 @contextmanager

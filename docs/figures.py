@@ -23,15 +23,15 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from morfax.motion.motion import MOTION_RATE_HZ
-from samples import draw
-from morfax.tracer.following import follower
-from morfax.tracer.head import kernel as head
-from morfax.tracer.sensing import photocell
-from morfax.tracer.junctions import planner as pilot
-from morfax.tracer.tangles import memory as tangles
 from morfax.tracer.drawing.drawing import Drawing, levelled
-from morfax.tracer.head.settings import Settings
+from morfax.tracer.following import follower
 from morfax.tracer.following.start import put_down
+from morfax.tracer.head import kernel as head
+from morfax.tracer.head.settings import Settings
+from morfax.tracer.junctions import planner as pilot
+from morfax.tracer.sensing import photocell
+from morfax.tracer.tangles import memory as tangles
+from samples import draw
 
 Array = NDArray[np.float64]
 
@@ -101,7 +101,9 @@ def sweep_figure() -> plt.Figure:
     run = put_head(drawing, by + np.array([10, 0]))
     cells, amplitude = run.view.cells, run.carriage.tuning.amplitude_mm
     place, offsets = run.stance.place_mm, (0.0, 0.1, 0.25)
-    figure, (across, *signals, slope) = plt.subplots(1, 5, figsize=(15, 3.4), width_ratios=(1.1, 1, 1, 1, 1.3))
+    figure, (across, *signals, slope) = plt.subplots(
+        1, 5, figsize=(15, 3.4), width_ratios=(1.1, 1, 1, 1, 1.3)
+    )
     ground(across, drawing, about(place, 0.8, 0.8))
     phase = np.linspace(0, 2 * np.pi, 300)
     for offset, axes, colour in zip(offsets, signals, (GREEN, BLUE, RED), strict=True):
@@ -112,17 +114,25 @@ def sweep_figure() -> plt.Figure:
         seen = [photocell.darkness_at(cells, PITCH_MM, place[0], place[1] + y) for y in u]
         first, mean = photocell.sweep(cells, PITCH_MM, place, 0.0, -offset, amplitude, 24)
         axes.plot(phase / 2 / np.pi, seen, color=colour, label="darkness seen")
-        axes.plot(phase / 2 / np.pi, mean + first * np.sin(phase), "--", color="#555555", label="mean + fundamental")
+        axes.plot(
+            phase / 2 / np.pi, mean + first * np.sin(phase), "--", color="#555555", label="mean + fundamental"
+        )
         axes.set(
-            ylim=(-0.3, 1.35), xlabel="sweep, cycles", title=f"{offset:g} mm to the right\nfundamental {first:+.2f}"
+            ylim=(-0.3, 1.35),
+            xlabel="sweep, cycles",
+            title=f"{offset:g} mm to the right\nfundamental {first:+.2f}",
         )
         axes.legend(fontsize=7, loc="lower center")
     every = np.linspace(-1.0, 1.0, 201)
     both = np.array([photocell.sweep(cells, PITCH_MM, place, 0.0, -e, amplitude, 24) for e in every])
     slope.plot(every, both[:, 0], color=BLUE, label="fundamental")
     slope.plot(every, both[:, 1], color=ORANGE, label="mean")
-    slope.plot(every, run.carriage.tuning.slope_per_mm * every, ":", color="#555555", label="slope as calibrated")
-    slope.set(ylim=(-1.1, 1.1), xlabel="line's distance to the left, mm", title="the detector's characteristic")
+    slope.plot(
+        every, run.carriage.tuning.slope_per_mm * every, ":", color="#555555", label="slope as calibrated"
+    )
+    slope.set(
+        ylim=(-1.1, 1.1), xlabel="line's distance to the left, mm", title="the detector's characteristic"
+    )
     slope.legend(fontsize=7)
     slope.grid(alpha=0.3)
     across.set_title("three sweeps across the line")
@@ -159,7 +169,13 @@ def drum_figure() -> plt.Figure:
     run = put_head(drawing, by + np.array([0, 6]))
     home = (*run.stance.place_mm, run.stance.heading_rad, 1e9)
     head.follow(
-        run.view.cells, PITCH_MM, run.carriage.state, run.carriage._drum, run.carriage.tuning, home, np.empty((3000, 2))
+        run.view.cells,
+        PITCH_MM,
+        run.carriage.state,
+        run.carriage._drum,
+        run.carriage.tuning,
+        home,
+        np.empty((3000, 2)),
     )
     axis, heading = run.carriage.state[[head.X, head.Y]], run.carriage.state[head.HEADING]
     to_sheet = np.array([[np.cos(heading), np.sin(heading)], [-np.sin(heading), np.cos(heading)]])
@@ -171,7 +187,9 @@ def drum_figure() -> plt.Figure:
             close.plot(*points.T, **style)
     sheet.legend(fontsize=7, loc="lower left")
     sheet.set_title("on the sheet")
-    close.set(xlim=(-0.8, 1.2), ylim=(-0.07, 0.01), xlabel="along the heading, mm", ylabel="to the left of it, mm")
+    close.set(
+        xlim=(-0.8, 1.2), ylim=(-0.07, 0.01), xlabel="along the heading, mm", ylabel="to the left of it, mm"
+    )
     close.set_title("seen from the axis, sideways enlarged")
     close.grid(alpha=0.3)
     figure.tight_layout()
@@ -232,10 +250,14 @@ def ride_figure() -> plt.Figure:
     ground(axes, drawing, about(by + np.array([12, 0.5]), 9, 2.2))
     seen = ride.seen[:, :2]
     step = np.gradient(seen, axis=0)
-    right = np.column_stack([step[:, 1], -step[:, 0]]) / np.hypot(*step.T)[:, None]  # the other line is on the left
+    right = (
+        np.column_stack([step[:, 1], -step[:, 0]]) / np.hypot(*step.T)[:, None]
+    )  # the other line is on the left
     edge = seen + 0.5 * incoming.width_mm * right
     axes.plot(*edge.T, color=VIOLET, lw=1.2, label="outer edge, felt")
-    axes.plot(*incoming.seen[:, :2].T, ".", color=BLUE, markersize=4, label="incoming leg, felt on both edges")
+    axes.plot(
+        *incoming.seen[:, :2].T, ".", color=BLUE, markersize=4, label="incoming leg, felt on both edges"
+    )
     axes.plot(*seen.T, ".", color=GREEN, markersize=3, label="the line, half a width within")
     axes.plot(*done.positions_mm.T, color=RED, lw=0.9, label="motion of the axis")
     axes.plot(*(own + by).T, ":", color="black", lw=0.8, label="the line as drawn")
@@ -267,7 +289,11 @@ def tangle_figure() -> plt.Figure:
     for k, leg in enumerate(sketch.tangle.legs):
         axes.plot(*leg.end_mm, "s", color=GREEN, markersize=7, label=None if k else "clean ends of the legs")
     axes.plot(
-        *way.vertices[0].T, "o", color=VIOLET, markersize=7, label="vertices, moved until the pen leaves this ink"
+        *way.vertices[0].T,
+        "o",
+        color=VIOLET,
+        markersize=7,
+        label="vertices, moved until the pen leaves this ink",
     )
     axes.plot(*done.positions_mm.T, color=RED, lw=1.2, label="motion of the axis")
     axes.plot(*(own + by).T, ":", color="black", lw=0.9, label="the line as drawn")

@@ -18,11 +18,11 @@ from numpy.typing import NDArray
 from morfax.motion.drive import Condition
 from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.motion.ramp import Ramp, positions_mm
-from morfax.player.monitor.chart import Chart
 from morfax.player.gcode.feed_control import feed_number
+from morfax.player.gcode.residues import Feed, Interpolator
+from morfax.player.monitor.chart import Chart
 from morfax.player.monitor.monitor import FollowingLimit, Monitor
 from morfax.player.monitor.position_servo import PositionServos
-from morfax.player.gcode.residues import Feed, Interpolator
 
 Array = NDArray[np.float64]
 

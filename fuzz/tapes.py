@@ -22,9 +22,9 @@ os.environ["NUMBA_DISABLE_JIT"] = "1"  # which cannot compile what atheris has i
 with atheris.instrument_imports(include=["recorder", "morfax.motion.faults"]):
     from morfax.motion.faults import Fault
     from morfax.motion.motion import Motion
+    from morfax.recorder.tape.format import TapeFormat
     from morfax.recorder.tape.pipe import Pipe
     from morfax.recorder.tape.tape import Tape, record
-    from morfax.recorder.tape.format import TapeFormat
 
 TEXT, PIPE, TAPE = b"\0", b"\x60", b"\xff"  # first bytes
 FILE = Path(tempfile.mkdtemp(prefix="morfax-fuzz-")) / "fuzz.wav"

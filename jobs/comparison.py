@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.reports.table import Figures
 from morfax.motion.motion import Path
+from morfax.reports.table import Figures
 
 if TYPE_CHECKING:
     from morfax.motion.contour import Summary
@@ -56,7 +56,9 @@ def from_drawing(drawing: Drawing, path: Path, name: str = "path", radius_mm: fl
     from morfax.tracer.drawing.deviation import deviation, touched
 
     found = (
-        deviation(drawing, touched(drawing, path, radius_mm), [path.xy_mm]) if radius_mm else deviation(drawing, path)
+        deviation(drawing, touched(drawing, path, radius_mm), [path.xy_mm])
+        if radius_mm
+        else deviation(drawing, path)
     )
     row = {"rms_mm": found.rms_mm, "p95_mm": found.p95_mm, "max_mm": found.max_mm}
     row["measured_share"] = found.measured_share

@@ -42,7 +42,9 @@ def sheet_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         type=click.FloatRange(min=0, min_open=True),
         help="Resolution of the drawing, dots per inch.  [default: what the file states]",
     )
-    @click.option("--width", "width_mm", type=LENGTH, help="Width of the whole sheet, such as 120mm; instead of --dpi.")
+    @click.option(
+        "--width", "width_mm", type=LENGTH, help="Width of the whole sheet, such as 120mm; instead of --dpi."
+    )
     @click.option(
         "--ink",
         callback=_colour,

@@ -19,8 +19,8 @@ from typing import TYPE_CHECKING, Literal
 
 import click
 
-from morfax.reports.table import Figures
 from morfax.motion.faults import FileFault
+from morfax.reports.table import Figures
 
 if TYPE_CHECKING:
     from morfax.recorder.media import Report
@@ -64,7 +64,9 @@ def kind_of(file: FilePath) -> Kind:
     by_bytes = next((kind for magic, kind in _FIRST_BYTES.items() if first.startswith(magic)), None)
     kind = by_bytes or _SUFFIXES.get(file.suffix.lower())
     if kind is None and b"\0" in first:
-        raise FileFault(f"{file} is no path file, no tape and no image that is known; give a .csv, a .wav or a .png")
+        raise FileFault(
+            f"{file} is no path file, no tape and no image that is known; give a .csv, a .wav or a .png"
+        )
     return kind or "path"
 
 
@@ -72,13 +74,17 @@ def outgoing(file: FilePath, *made_from: FilePath) -> FilePath:
     """Make sure, before the work starts, that a result can go under this name; raises FileFault if not."""
     folder = file.parent
     if not folder.is_dir():
-        raise FileFault(f"cannot write {file}: there is no folder {folder}; make it first, or give another name")
+        raise FileFault(
+            f"cannot write {file}: there is no folder {folder}; make it first, or give another name"
+        )
     if file.is_dir():
         raise FileFault(f"cannot write {file}: it is a folder; give the name of a file")
     if not os.access(folder, os.W_OK):
         raise FileFault(f"cannot write {file}: the folder {folder} may not be written to; give another name")
     if any(file.exists() and source.exists() and file.samefile(source) for source in made_from):
-        raise FileFault(f"cannot write {file}: the result would go over the file it is made from; give another name")
+        raise FileFault(
+            f"cannot write {file}: the result would go over the file it is made from; give another name"
+        )
     return file
 
 

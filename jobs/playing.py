@@ -17,17 +17,17 @@ import click
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.jobs import files as medium
-from morfax.console.terminal.desk import Desk
 from morfax.console.options.types import FREQUENCY, NUMBER, PLACES, TRACKS
+from morfax.console.terminal.desk import Desk
+from morfax.jobs import files as medium
 from morfax.motion.faults import Fault
 from morfax.motion.files import written_beside
 from morfax.motion.pathfile import write_rows
 
 if TYPE_CHECKING:
     from morfax.motion.motion import Motion, Path
-    from morfax.player.monitor.chart import Chart
     from morfax.player.controls import Playback
+    from morfax.player.monitor.chart import Chart
     from morfax.recorder.tape.tape import Tape
 
 CYCLES_PER_MM = NUMBER
@@ -74,7 +74,11 @@ class Passage:
         if self.start_mm is None:
             self.start_s, self.start_mm = float(piece.t_s[0]), piece.positions_mm[0]
         self.end_s, self.end_mm = float(piece.t_s[-1]), piece.positions_mm[-1]
-        joined = [] if self._last_in_work_mm is None or not piece.tool[0] else [self._last_in_work_mm, piece.xy_mm[0]]
+        joined = (
+            []
+            if self._last_in_work_mm is None or not piece.tool[0]
+            else [self._last_in_work_mm, piece.xy_mm[0]]
+        )
         for run in [*piece.runs(), *([np.array(joined)] if joined else [])]:
             self.length_mm += float(np.hypot(*np.diff(run, axis=0).T).sum())
         self.worked = self.worked or bool(piece.tool.any())
@@ -149,7 +153,9 @@ class Controls:
         playback.chart = chart
         if order := getattr(playback, "found_order", None):
             tracks = ",".join(map(str, order))
-            desk.note(f"{file.name} has its tracks in another order; by where it ends it is --tracks {tracks}")
+            desk.note(
+                f"{file.name} has its tracks in another order; by where it ends it is --tracks {tracks}"
+            )
         met: list[Fault] = []
         stream = desk.watched(_until_fault(playback, met), f"playing {file.name}", playback.duration_s)
         return playback, stream, met

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from morfax.jobs import files as medium
-from morfax.console.terminal.desk import Desk
 from morfax.console.options.types import ANGLE, NUMBER, PLACE
+from morfax.console.terminal.desk import Desk
+from morfax.jobs import files as medium
 
 if TYPE_CHECKING:
     from morfax.motion.motion import Motion
@@ -68,7 +68,9 @@ class Unit:
 
         pickup = self.pickup or pickups.DEFAULT_PICK_UP
         own = pickups.PICK_UPS[pickup].cycles_per_mm
-        return TapeFormat(pickup=pickup, cycles_per_mm=own if cycles_per_mm is None else cycles_per_mm, **entries)
+        return TapeFormat(
+            pickup=pickup, cycles_per_mm=own if cycles_per_mm is None else cycles_per_mm, **entries
+        )
 
     def figures(self) -> dict[str, Any]:
         """What was set, where it was."""
@@ -105,7 +107,9 @@ def unit_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         help=f"What makes the tracks of a tape: its wave and its travel per cycle, see docs/tape-format.md.  "
         f"[default: {PICK_UPS[0]}]",
     )
-    @click.option("--mirror", type=click.Choice(["x", "y"]), default=None, help="Have X, or Y, run the other way.")
+    @click.option(
+        "--mirror", type=click.Choice(["x", "y"]), default=None, help="Have X, or Y, run the other way."
+    )
     @click.option(
         "--scale",
         type=NUMBER,

@@ -104,7 +104,9 @@ def _of_reference(trace: Trace, marks: Marks) -> Iterator[str]:
     named = marks.reference_mm
     if named is None or any(line.reference_mm == named for line in trace.lines):
         return
-    use = "it is the machine's zero only" if marks.origin == "reference" else "the program does not begin there"
+    use = (
+        "it is the machine's zero only" if marks.origin == "reference" else "the program does not begin there"
+    )
     yield f"no line begins within {LEAD_MM:g} mm of the reference point {named[0]:g},{named[1]:g} mm: {use}"
 
 

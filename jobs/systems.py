@@ -21,14 +21,14 @@ import click
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.jobs import comparison
-from morfax.reports import following
-from morfax.jobs import files as medium
 from morfax.console.terminal.desk import Desk
+from morfax.jobs import comparison
+from morfax.jobs import files as medium
 from morfax.jobs.playing import Controls
-from morfax.reports.table import Figures
 from morfax.motion.faults import Fault
 from morfax.motion.motion import IN_WORK_BELOW_MM, Path
+from morfax.reports import following
+from morfax.reports.table import Figures
 
 if TYPE_CHECKING:
     from morfax.jobs.drawing import Sheet
@@ -61,11 +61,15 @@ class Systems(click.ParamType):
         if not isinstance(value, str):
             return value
         asked = (
-            list(NAMES) if value.strip().lower() == "all" else [word.strip(" .").lower() for word in value.split(",")]
+            list(NAMES)
+            if value.strip().lower() == "all"
+            else [word.strip(" .").lower() for word in value.split(",")]
         )
         unknown = [word for word in asked if word not in NAMES]
         if unknown:
-            self.fail(f"there is no system {unknown[0]!r}; give all, or some of {','.join(NAMES)}", param, ctx)
+            self.fail(
+                f"there is no system {unknown[0]!r}; give all, or some of {','.join(NAMES)}", param, ctx
+            )
         return tuple(dict.fromkeys(asked))
 
 
@@ -103,7 +107,9 @@ def compare(wanted: Wanted, sheet: Sheet, head: Head, desk: Desk) -> bool:
     if wanted.output is not None:
         medium.outgoing(medium.with_suffix_in(wanted.output, OUTPUTS), wanted.drawing)
     if medium.kind_of(wanted.drawing) != "drawing":
-        raise click.UsageError(f"{wanted.drawing} is no drawing; --systems traces one and plays it on each system")
+        raise click.UsageError(
+            f"{wanted.drawing} is no drawing; --systems traces one and plays it on each system"
+        )
     drawing = sheet.open(wanted.drawing)
     traced = head.trace(drawing, desk)
     results = measure(drawing, traced, head.speed_mm_s, wanted.asked, desk)
@@ -130,10 +136,11 @@ def compare(wanted: Wanted, sheet: Sheet, head: Head, desk: Desk) -> bool:
     return beyond
 
 
-def _draw(wanted: Wanted, drawing: Drawing, traced: Traced, results: list[Result], rows: dict[str, Figures]) -> None:
+def _draw(
+    wanted: Wanted, drawing: Drawing, traced: Traced, results: list[Result], rows: dict[str, Figures]
+) -> None:
     """Write the report, or the picture of all contours alone."""
-    from morfax.reports import report
-    from morfax.reports import side_by_side
+    from morfax.reports import report, side_by_side
     from morfax.reports.overlay import save
 
     assert wanted.output is not None
@@ -159,7 +166,9 @@ def _draw(wanted: Wanted, drawing: Drawing, traced: Traced, results: list[Result
     report.write(wanted.output, title, told, rows, pictures)
 
 
-def measure(drawing: Drawing, traced: Traced, speed_mm_s: float, asked: Sequence[str], desk: Desk) -> list[Result]:
+def measure(
+    drawing: Drawing, traced: Traced, speed_mm_s: float, asked: Sequence[str], desk: Desk
+) -> list[Result]:
     """Record, play and measure each system that is asked for."""
     from morfax.player.controls import CONTROLS
     from morfax.recorder.media import MEDIA
@@ -167,11 +176,16 @@ def measure(drawing: Drawing, traced: Traced, speed_mm_s: float, asked: Sequence
     desk.warn_of_compiling("recorders and controls", "motion", "recorder", "player")
     corners_mm = corner_places(traced.path)
     results = []
-    with tempfile.TemporaryDirectory(prefix="morfax-") as folder, desk.bar("comparing", len(asked)) as advance:
+    with (
+        tempfile.TemporaryDirectory(prefix="morfax-") as folder,
+        desk.bar("comparing", len(asked)) as advance,
+    ):
         for done, suffix in enumerate(asked):
             desk.note(f"{NAMES[suffix]}: {MEDIA[f'.{suffix}'].what}, played by {CONTROLS[f'.{suffix}'].what}")
             try:
-                results.append(_measured(drawing, traced, speed_mm_s, corners_mm, FilePath(folder) / f"part.{suffix}"))
+                results.append(
+                    _measured(drawing, traced, speed_mm_s, corners_mm, FilePath(folder) / f"part.{suffix}")
+                )
             except Fault as fault:
                 results.append(Result(suffix, {"fault": " ".join(str(fault).split())}, fault=fault))
             advance(done + 1)
@@ -206,10 +220,15 @@ def held(path: Path, speed_mm_s: float) -> Figures:
     way_mm = way_mm[works[1:] & works[:-1]]
     holds = np.abs(way_mm / (HELD_OVER_S * speed_mm_s) - 1) <= HELD_SHARE
     share = float(way_mm[holds].sum() / max(way_mm.sum(), 1e-12))
-    return {"mean_speed_mm_s": float(way_mm.mean() / HELD_OVER_S) if len(way_mm) else None, "speed_held_share": share}
+    return {
+        "mean_speed_mm_s": float(way_mm.mean() / HELD_OVER_S) if len(way_mm) else None,
+        "speed_held_share": share,
+    }
 
 
-def _measured(drawing: Drawing, traced: Traced, speed_mm_s: float, corners_mm: Array, file: FilePath) -> Result:
+def _measured(
+    drawing: Drawing, traced: Traced, speed_mm_s: float, corners_mm: Array, file: FilePath
+) -> Result:
     """One system; raises what its recorder or its control raises."""
     from morfax.recorder.media import record
 

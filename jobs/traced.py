@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
-from morfax.jobs import files as medium
 from morfax.console.terminal.desk import Desk
+from morfax.jobs import files as medium
 from morfax.motion.faults import Fault
 
 if TYPE_CHECKING:
@@ -91,7 +91,13 @@ class Traced:
             for out in self.left.lines
         ]
         rows = [
-            {"unreached": k, "of_line": u.line, "place_mm": u.place_mm, "left_mm": u.left_mm, "stretch_mm": u.length_mm}
+            {
+                "unreached": k,
+                "of_line": u.line,
+                "place_mm": u.place_mm,
+                "left_mm": u.left_mm,
+                "stretch_mm": u.length_mm,
+            }
             for k, u in enumerate(self.left.stretches, 1)
         ]
         told = {"cutter_diameter_mm": self.cutter.diameter_mm, "side": self.cutter.side}
@@ -102,8 +108,14 @@ class Traced:
         """Places to be marked in a picture: the stops, and what the cutter cannot reach, by name."""
         if self.left is None:
             return self.stops_mm
-        out = {f"line {out.line} left out": out.room.place_mm for out in self.left.lines if out.room is not None}
-        return {**self.stops_mm, **out, **{f"left {k}": u.place_mm for k, u in enumerate(self.left.stretches, 1)}}
+        out = {
+            f"line {out.line} left out": out.room.place_mm for out in self.left.lines if out.room is not None
+        }
+        return {
+            **self.stops_mm,
+            **out,
+            **{f"left {k}": u.place_mm for k, u in enumerate(self.left.stretches, 1)},
+        }
 
     def _stops(self) -> list[dict[str, Any]]:
         """The stops, by number: what kind of mark, where, and where Z goes."""
@@ -122,7 +134,11 @@ class Traced:
     def _junctions(self) -> list[dict[str, Any]]:
         """The junctions that the head came to on each line, in order, as the card's `turns` count them."""
         return [
-            {"junction": k, **({"of_line": line.number} if self.several else {}), "junction_place_mm": place_mm}
+            {
+                "junction": k,
+                **({"of_line": line.number} if self.several else {}),
+                "junction_place_mm": place_mm,
+            }
             for line in self.trace.lines
             for k, place_mm in enumerate(line.junctions_mm, 1)
         ]

@@ -9,20 +9,20 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from morfax.jobs import files as medium
 from morfax.console.terminal.desk import Desk
+from morfax.jobs import files as medium
 from morfax.jobs.remarks import of_cutter, remarks
 from morfax.jobs.traced import Traced
 from morfax.motion.faults import CardFault, LineFault
 
 if TYPE_CHECKING:
     from morfax.console.terminal.attended import Attended
-    from morfax.tracer.operator.card import Card, Override
     from morfax.tracer.cutter.cutter import Cutter, Left
     from morfax.tracer.drawing.drawing import Drawing
+    from morfax.tracer.head.settings import Settings
+    from morfax.tracer.operator.card import Card, Override
     from morfax.tracer.operator.operator import Direction, Operator
     from morfax.tracer.program.program import Trace
-    from morfax.tracer.head.settings import Settings
 
 # settings of the head that have an option of their own
 SET_BY_OPTIONS = ("speed_mm_s", "gap_mm", "recatch_mm", "line_width_mm")
@@ -74,7 +74,11 @@ class Head:
             with desk.bar("following the line", total=1.0) as advance:
                 if self.lines is None:
                     traced = trace(
-                        drawing, self.start_mm, settings, operator, lambda come, length: advance(come / length)
+                        drawing,
+                        self.start_mm,
+                        settings,
+                        operator,
+                        lambda come, length: advance(come / length),
                     )
                 else:
                     traced = trace_lines(
@@ -112,7 +116,10 @@ class Head:
         from morfax.tracer.head.settings import choose
 
         options = {name: getattr(self, name) for name in SET_BY_OPTIONS}
-        changes: dict[str, object] = {**self.filed, **{name: v for name, v in options.items() if v is not None}}
+        changes: dict[str, object] = {
+            **self.filed,
+            **{name: v for name, v in options.items() if v is not None},
+        }
         for change in self.changes:
             name, _, value = change.partition("=")
             changes[name.strip()] = value.strip()
@@ -123,14 +130,18 @@ class Head:
 
     def by_file(self, filed: Mapping[str, float], given: Callable[[str], bool]) -> Head:
         """The same with the settings of a file, but for the options that were given on the command line."""
-        own: dict[str, Any] = {name: v for name, v in filed.items() if name in SET_BY_OPTIONS and not given(name)}
+        own: dict[str, Any] = {
+            name: v for name, v in filed.items() if name in SET_BY_OPTIONS and not given(name)
+        }
         return replace(self, filed=filed, **own)
 
     def by_card(self, card: Card, given: Callable[[str], bool]) -> Head:
         """The same with what the card says, but for the options that were given on the command line."""
         depth_mm = card.depths_mm[-1] if card.depths_mm else None
         says = {"speed_mm_s": card.trace_mm_s, "depth_mm": depth_mm, "clearance_mm": card.start_mm}
-        set_by_card: dict[str, Any] = {name: v for name, v in says.items() if v is not None and not given(name)}
+        set_by_card: dict[str, Any] = {
+            name: v for name, v in says.items() if v is not None and not given(name)
+        }
         return replace(self, card=card, **set_by_card)
 
     def _operator(self) -> Operator:

@@ -103,7 +103,9 @@ def polylines(path: Contour) -> list[Array]:
     runs = [path] if isinstance(path, np.ndarray) else [np.asarray(run) for run in path]
     for run in runs:
         if run.ndim != 2 or run.shape[1] != 2 or not len(run) or not np.isfinite(run).all():
-            raise ValueError(f"an array of shape {run.shape} is no polyline; it must be (n, 2), n > 0, of finite mm")
+            raise ValueError(
+                f"an array of shape {run.shape} is no polyline; it must be (n, 2), n > 0, of finite mm"
+            )
     if not runs:
         raise ValueError("the list of polylines is empty; it must hold at least one")
     return runs
@@ -159,7 +161,9 @@ class _Finder:
 
     def distances_mm(self, points: Array) -> Array:
         """Distance of each point (n, 2) from the nearest straight piece, mm."""
-        parts = [self._some(points[i : i + _SAMPLES_AT_ONCE]) for i in range(0, len(points), _SAMPLES_AT_ONCE)]
+        parts = [
+            self._some(points[i : i + _SAMPLES_AT_ONCE]) for i in range(0, len(points), _SAMPLES_AT_ONCE)
+        ]
         return np.concatenate(parts)
 
     def _some(self, points: Array) -> Array:

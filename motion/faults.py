@@ -70,7 +70,9 @@ class LockFault(Fault):
 
     exit_code = 6
 
-    def __init__(self, message: str, *, axis: str, time_s: float, error_cycles: float, position_mm: float) -> None:
+    def __init__(
+        self, message: str, *, axis: str, time_s: float, error_cycles: float, position_mm: float
+    ) -> None:
         super().__init__(message)
         self.axis, self.time_s, self.error_cycles, self.position_mm = axis, time_s, error_cycles, position_mm
 
@@ -94,7 +96,12 @@ class MotionFault(Fault, ValueError):
     exit_code = 7
 
     def __init__(
-        self, message: str, *, axis: str | None = None, time_s: float | None = None, speed_mm_s: float | None = None
+        self,
+        message: str,
+        *,
+        axis: str | None = None,
+        time_s: float | None = None,
+        speed_mm_s: float | None = None,
     ) -> None:
         super().__init__(message)
         self.axis, self.time_s, self.speed_mm_s = axis, time_s, speed_mm_s

@@ -32,11 +32,15 @@ STANDS_S = 2 * SMOOTHED_S  # at either end, so that the average comes to rest
 Array = NDArray[np.float64]
 
 
-def run_along(way_mm: Array, feed_mm_s: float, acceleration_mm_s2: float, rate_hz: float = MOTION_RATE_HZ) -> Array:
+def run_along(
+    way_mm: Array, feed_mm_s: float, acceleration_mm_s2: float, rate_hz: float = MOTION_RATE_HZ
+) -> Array:
     """Positions (m, 2) mm along a way, from rest at its first place to rest at its last."""
     way_mm = _with_halves(way_mm)
     steps = np.hypot(*np.diff(way_mm, axis=0).T)
-    speeds = _slowed(_allowed(way_mm, steps, feed_mm_s, acceleration_mm_s2), steps, ALONG * acceleration_mm_s2)
+    speeds = _slowed(
+        _allowed(way_mm, steps, feed_mm_s, acceleration_mm_s2), steps, ALONG * acceleration_mm_s2
+    )
     t_s = np.r_[0.0, np.cumsum(2 * steps / (speeds[1:] + speeds[:-1]))]
     s_mm = np.r_[0.0, np.cumsum(steps)]
     at_s = np.arange(0.0, t_s[-1], 1 / rate_hz)
@@ -61,13 +65,18 @@ def _allowed(way_mm: Array, steps: Array, feed_mm_s: float, acceleration_mm_s2: 
     """Highest speed at each place, mm/s, by the turn there and by the bend about it; 0 at both ends and at sharp corners."""
     ways = np.diff(way_mm, axis=0)
     turns = np.abs(
-        np.arctan2(ways[:-1, 0] * ways[1:, 1] - ways[:-1, 1] * ways[1:, 0], np.einsum("ij,ij->i", ways[:-1], ways[1:]))
+        np.arctan2(
+            ways[:-1, 0] * ways[1:, 1] - ways[:-1, 1] * ways[1:, 0],
+            np.einsum("ij,ij->i", ways[:-1], ways[1:]),
+        )
     )
     turns = np.r_[math.pi, turns, math.pi]
     s = np.r_[0.0, np.cumsum(steps)]
     turned = np.r_[0.0, np.cumsum(np.where(turns > SHARP, 0.0, turns))]
     low, high = np.searchsorted(s, s - BEND_WITHIN_MM), np.searchsorted(s, s + BEND_WITHIN_MM, side="right")
-    bend = np.maximum(turned[high] - turned[:-1], turned[1:] - turned[low]) / np.minimum(BEND_WITHIN_MM, s[-1])
+    bend = np.maximum(turned[high] - turned[:-1], turned[1:] - turned[low]) / np.minimum(
+        BEND_WITHIN_MM, s[-1]
+    )
     by_bend = np.sqrt(ACROSS * acceleration_mm_s2 / np.maximum(bend, 1e-9))
     by_turn = ACROSS * acceleration_mm_s2 * SMOOTHED_S / np.maximum(turns, 1e-9)
     return np.where(turns > SHARP, 0.0, np.minimum(feed_mm_s, np.minimum(by_bend, by_turn)))

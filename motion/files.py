@@ -69,10 +69,14 @@ def _folder_fault(final: Path, folder: Path, error: OSError) -> FileFault:
     if error.errno in _DISK_FULL:
         return disk_full_fault(final, error.errno)
     if not folder.exists():
-        return FileFault(f"cannot write {final}: the folder {folder} does not exist; make it first or write elsewhere")
+        return FileFault(
+            f"cannot write {final}: the folder {folder} does not exist; make it first or write elsewhere"
+        )
     if not folder.is_dir():
         return FileFault(f"cannot write {final}: {folder} is not a folder; write elsewhere")
-    return FileFault(f"cannot write {final}: the folder {folder} takes no new file ({error.strerror}); write elsewhere")
+    return FileFault(
+        f"cannot write {final}: the folder {folder} takes no new file ({error.strerror}); write elsewhere"
+    )
 
 
 def _flush_to_disk(file: Path) -> None:

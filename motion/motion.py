@@ -25,7 +25,9 @@ FURTHER_AXES = (
     "w",
 )  # what a fourth and later axis may be called; all in mm of their own screws
 MOTION_RATE_HZ = 6000.0  # 48 kHz / 8
-IN_WORK_BELOW_MM = 0.05  # the tool is in the work at and below the surface; the margin is for a servo's rest error
+IN_WORK_BELOW_MM = (
+    0.05  # the tool is in the work at and below the surface; the margin is for a servo's rest error
+)
 THINNING_TOLERANCE_MM = 2e-4
 BLOCK_SAMPLES = 65536
 
@@ -89,7 +91,9 @@ def join(stream: Iterable[Motion]) -> Motion:
     blocks = list(stream)
     if not blocks:
         raise ValueError("the stream of motion is empty; it must hold at least one block")
-    return Motion(np.vstack([b.positions_mm for b in blocks]), blocks[0].rate_hz, blocks[0].start_s, blocks[0].axes)
+    return Motion(
+        np.vstack([b.positions_mm for b in blocks]), blocks[0].rate_hz, blocks[0].start_s, blocks[0].axes
+    )
 
 
 def thin(stream: Iterable[Motion], tolerance_mm: float = THINNING_TOLERANCE_MM) -> Path:

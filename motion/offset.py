@@ -42,8 +42,12 @@ SAME_MM = 0.01 * UM  # places as near as this are one
 SHAKEN_MM = 1e-4 * SAME_MM
 LEAST_MM = 0.05  # a shorter way is none,
 BROKEN = 0.1  # nor is one from crossing to crossing, shorter than this share of the radius
-SLIGHT = math.radians(10)  # turns towards the tool by less go straight to where the two ways beside the vertex meet,
-KINK_MM = 0.1 * UM  # if that is no nearer to the line than this: it is, where the line beside the vertex is short
+SLIGHT = math.radians(
+    10
+)  # turns towards the tool by less go straight to where the two ways beside the vertex meet,
+KINK_MM = (
+    0.1 * UM
+)  # if that is no nearer to the line than this: it is, where the line beside the vertex is short
 BACK = math.radians(179)  # a line that turns by more comes back along itself: the tool goes round its tip
 
 
@@ -68,7 +72,9 @@ class Way:
 def offset(guides: Sequence[Guide], radius_mm: float) -> list[Way]:
     """Ways of a tool of this radius along guides, each as the guide goes; none where the tool does not fit."""
     lines = [_guided(guide, radius_mm) for guide in guides]
-    near = Nearest([_closed_up(line, guide.closed) for line, guide in zip(lines, guides, strict=True)], radius_mm)
+    near = Nearest(
+        [_closed_up(line, guide.closed) for line, guide in zip(lines, guides, strict=True)], radius_mm
+    )
     swung = [_swung(line, guide.closed, radius_mm) for line, guide in zip(lines, guides, strict=True)]
     pieces = _parted(swung, [guide.closed for guide in guides], near, radius_mm)
     ways = list[Way]()
@@ -124,7 +130,9 @@ def _swung(line: Array, closed: bool, radius_mm: float) -> Array:
     arms = radius_mm * np.column_stack([-ways[:, 1], ways[:, 0]])
     before = np.roll(ways, 1, axis=0) if closed else ways[:-1]
     after = ways if closed else ways[1:]
-    turns = np.arctan2(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0], np.einsum("ij,ij->i", before, after))
+    turns = np.arctan2(
+        before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0], np.einsum("ij,ij->i", before, after)
+    )
     turns[np.abs(turns) > BACK] = -math.pi
     at_vertices = line if closed else line[1:-1]
     arms_before = np.roll(arms, 1, axis=0) if closed else arms[:-1]
@@ -138,11 +146,16 @@ def _swung(line: Array, closed: bool, radius_mm: float) -> Array:
 
 def _swing(vertex: Array, arm: Array, turn: float, beside_mm: float, radius_mm: float) -> Array:
     """Places of the arm's end while it turns at a vertex, to either side of which the line is straight for so many mm at least."""
-    back_mm = max(0.0, radius_mm * math.tan(max(turn, 0.0) / 2) - beside_mm)  # beyond where the two ways beside it meet
+    back_mm = max(
+        0.0, radius_mm * math.tan(max(turn, 0.0) / 2) - beside_mm
+    )  # beyond where the two ways beside it meet
     if (0 <= turn < SLIGHT and back_mm * turn < KINK_MM) or -math.sqrt(8 * PLAIN / radius_mm) < turn < 0:
         return np.asarray(vertex + _turned(arm, np.array([turn / 2])) / math.cos(turn / 2))
     if turn > 0:
-        arms, drawn_in = np.vstack([arm, _turned(arm, np.array([turn]))]), max(0.0, 1 - 2 * DEEP_MM / radius_mm)
+        arms, drawn_in = (
+            np.vstack([arm, _turned(arm, np.array([turn]))]),
+            max(0.0, 1 - 2 * DEEP_MM / radius_mm),
+        )
         return np.asarray(vertex + np.vstack([arms[0], drawn_in * arms, arms[1]]))
     steps = math.ceil(-turn / math.sqrt(8 * PLAIN / radius_mm))
     return np.asarray(vertex + _turned(arm, np.linspace(0, turn, steps + 1)))
@@ -171,7 +184,9 @@ class _Piece:
 
 def _parted(swung: list[Array], closed: list[bool], near: Nearest, radius_mm: float) -> list[_Piece]:
     """The pieces between the crossings of swung ways that are nowhere nearer than the radius to a line."""
-    shake = np.random.default_rng(0)  # no way lies exactly on another, and none crosses exactly in one of its places
+    shake = np.random.default_rng(
+        0
+    )  # no way lies exactly on another, and none crosses exactly in one of its places
     swung = [way + shake.uniform(-SHAKEN_MM, SHAKEN_MM, way.shape) for way in swung]
     ways = [_closed_up(way, round_about) for way, round_about in zip(swung, closed, strict=True)]
     firsts = np.r_[0, np.cumsum([len(way) for way in ways])]

@@ -88,7 +88,9 @@ def read_path(file: str | os.PathLike[str], feed_mm_s: float = FEED_MM_S) -> Pat
     t_s = rows.times_s(feed_mm_s)
     keep = np.r_[True, np.diff(t_s) > 0]  # points that take no time are doubled points
     if np.count_nonzero(keep) < 2:
-        raise MotionFault(f"{file}: the path stands still at one place; a path needs at least two different points")
+        raise MotionFault(
+            f"{file}: the path stands still at one place; a path needs at least two different points"
+        )
     return Path(t_s[keep], np.ascontiguousarray(rows.positions_mm[keep]), (*AXES, *table.further))
 
 
@@ -106,12 +108,16 @@ class _Table:
     @property
     def further(self) -> tuple[str, ...]:
         """The axes beyond X, Y and Z, in the order of their columns."""
-        return tuple(axis for axis in (name.removesuffix("_mm") for name in self.columns) if axis in FURTHER_AXES)
+        return tuple(
+            axis for axis in (name.removesuffix("_mm") for name in self.columns) if axis in FURTHER_AXES
+        )
 
     @property
     def further_mm(self) -> Array:
         """Their places, (n, axes beyond Z)."""
-        return np.column_stack([np.empty((len(self.lines), 0)), *(self.columns[f"{axis}_mm"] for axis in self.further)])
+        return np.column_stack(
+            [np.empty((len(self.lines), 0)), *(self.columns[f"{axis}_mm"] for axis in self.further)]
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,7 +139,9 @@ def _read_table(file: str | os.PathLike[str]) -> _Table:
     written = enumerate(_read_text(file).splitlines(), 1)
     lines = [(number, line) for number, line in written if line.strip() and not line.lstrip().startswith("#")]
     if len(lines) < 3:
-        raise MotionFault(f"{file}: {max(0, len(lines) - 1)} points in it; a path needs {_EXPECTED}, then two or more")
+        raise MotionFault(
+            f"{file}: {max(0, len(lines) - 1)} points in it; a path needs {_EXPECTED}, then two or more"
+        )
     separator = max(",;\t", key=lines[0][1].count)
     where = _find_columns(lines[0][1], separator, f"{file}, line {lines[0][0]}")
     values = _convert([line for _, line in lines[1:]], where, separator)
@@ -148,7 +156,9 @@ def _read_text(file: str | os.PathLike[str]) -> str:
     try:
         return FilePath(file).read_bytes().decode("utf-8-sig")
     except UnicodeDecodeError:
-        raise MotionFault(f"{file}: this is not a text file; a path file is CSV and starts with {_EXPECTED}") from None
+        raise MotionFault(
+            f"{file}: this is not a text file; a path file is CSV and starts with {_EXPECTED}"
+        ) from None
     except OSError as error:
         raise FileFault(f"cannot read {file}: {error.strerror}; check the name") from error
 
@@ -176,7 +186,9 @@ def _convert(lines: list[str], where: dict[str, int], separator: str) -> Array |
     tool: dict[int | str, Callable[[str], float]] = {where["tool"]: _tool} if "tool" in where else {}
     wanted = tuple(where.values())
     try:
-        values = np.loadtxt(lines, delimiter=separator, usecols=wanted, converters=tool, quotechar='"', ndmin=2)
+        values = np.loadtxt(
+            lines, delimiter=separator, usecols=wanted, converters=tool, quotechar='"', ndmin=2
+        )
     except ValueError:
         return None
     return values if np.isfinite(values).all() else None

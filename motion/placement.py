@@ -57,7 +57,11 @@ class Placement:
 
     def about(self, start_mm: Array) -> Placement:
         """The same with its point: the one given, or where the motion starts."""
-        return self if self.about_mm is not None else replace(self, about_mm=(float(start_mm[0]), float(start_mm[1])))
+        return (
+            self
+            if self.about_mm is not None
+            else replace(self, about_mm=(float(start_mm[0]), float(start_mm[1])))
+        )
 
     def stream(self, stream: Iterable[Motion]) -> Iterable[Motion]:
         """A stream, placed; the stream itself where nothing changes."""
@@ -65,7 +69,9 @@ class Placement:
 
     def path(self, path: Path) -> Path:
         """A path, placed."""
-        return replace(path, positions_mm=self.about(path.positions_mm[0])._moved(path.positions_mm, self.matrix))
+        return replace(
+            path, positions_mm=self.about(path.positions_mm[0])._moved(path.positions_mm, self.matrix)
+        )
 
     def back(self, path: Path) -> Path:
         """A path that was placed about a known point, as it was before."""

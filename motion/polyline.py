@@ -63,7 +63,9 @@ class Nearest:
         """The places (n, 2), those that are nearer than a distance moved straight away from the nearest place of a line to it."""
         away, index = self._tree.query(places_mm)
         lines = np.asarray(self._tree.data)[index]
-        return np.asarray(lines + (places_mm - lines) * np.maximum(1.0, distance_mm / np.maximum(away, UM))[:, None])
+        return np.asarray(
+            lines + (places_mm - lines) * np.maximum(1.0, distance_mm / np.maximum(away, UM))[:, None]
+        )
 
 
 def crossings(one_mm: Array, other_mm: Array) -> Array:

@@ -54,7 +54,9 @@ class Ramp:
     def __post_init__(self) -> None:
         for name, value in (("acceleration", self.acceleration_mm_s2), ("increment", self.increment_mm)):
             if not 0 < value < math.inf:
-                raise ValueError(f"a ramp's {name} of {value:g} moves nothing; give one above zero and finite")
+                raise ValueError(
+                    f"a ramp's {name} of {value:g} moves nothing; give one above zero and finite"
+                )
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +75,9 @@ class Profile:
         return int(halves.sum()), 2 * self.moving + int((modes * halves).sum())
 
 
-def count_ramp(increments: int, speeds: Sequence[int], changes_at: Sequence[int] = (), *, moving: int = 0) -> Profile:
+def count_ramp(
+    increments: int, speeds: Sequence[int], changes_at: Sequence[int] = (), *, moving: int = 0
+) -> Profile:
     """Run the counter over a move of so many increments, of all axes together.
 
     Speeds are given as the increments that a ramp from rest needs to reach them; `speeds[i + 1]` is asked for after
@@ -85,7 +89,9 @@ def count_ramp(increments: int, speeds: Sequence[int], changes_at: Sequence[int]
             f"give {moving} to {_LARGEST_COUNT}, or stop first and come back"
         )
     if len(speeds) != len(changes_at) + 1 or min(speeds) < 1:
-        raise ValueError(f"{len(changes_at)} changes need one speed more, each 1 increment or more; got {list(speeds)}")
+        raise ValueError(
+            f"{len(changes_at)} changes need one speed more, each 1 increment or more; got {list(speeds)}"
+        )
     pieces = np.empty((4 * len(speeds) + 4, 2), np.int64)
     rows, down_from, count = _count(
         increments, moving, np.array(changes_at, np.int64), np.array(speeds, np.int64), pieces
@@ -151,7 +157,9 @@ def _sample(profile: Profile, acceleration_s2: float, rate_hz: float) -> Array:
     modes, halves = profile.pieces.T
     squares = 2 * profile.moving + np.r_[0, np.cumsum(modes * halves)]  # of the speed, in half increments
     speed = np.sqrt(acceleration_s2 * squares)  # increments/s
-    took_s = halves / (speed[:-1] + speed[1:])  # a piece's mean speed is the mean of its ends', both are exact
+    took_s = halves / (
+        speed[:-1] + speed[1:]
+    )  # a piece's mean speed is the mean of its ends', both are exact
     begins_s = np.r_[0.0, np.cumsum(took_s)]
     t_s = np.arange(math.ceil(begins_s[-1] * rate_hz - 1e-9) + 1) / rate_hz
     piece = np.clip(np.searchsorted(begins_s, t_s, "right") - 1, 0, len(modes) - 1)
@@ -171,7 +179,9 @@ def _count(increments, square, changes_at, speeds, pieces):  # type: ignore[no-u
     while counter < 0:
         while change < len(changes_at) and travelled >= changes_at[change]:
             change += 1
-        if square < speeds[change] and counter == -1:  # the odd increment: half up, half down, and the speed is kept
+        if (
+            square < speeds[change] and counter == -1
+        ):  # the odd increment: half up, half down, and the speed is kept
             rows = _add(pieces, rows, 1, 1)
             rows = _add(pieces, rows, -1, 1)
             counter += 2

@@ -94,18 +94,26 @@ def legs(source: Source, limits: Limits) -> list[Leg]:
 def as_path(source: Source) -> Path:
     """A motion as a path of X, Y, Z; raises MotionFault if there is nothing in it, or a place that is no number."""
     try:
-        path = source if isinstance(source, Path) else thin([source] if isinstance(source, Motion) else source)
+        path = (
+            source if isinstance(source, Path) else thin([source] if isinstance(source, Motion) else source)
+        )
     except ValueError:
         raise MotionFault("the motion is empty; a program needs at least one position") from None
     bad = np.flatnonzero(~np.isfinite(path.positions_mm).all(axis=1))
     if len(bad):
         time_s = float(path.t_s[bad[0]])
-        raise MotionFault(f"the position at {time_s:.3f} s is not a finite number; trace again", time_s=time_s)
+        raise MotionFault(
+            f"the position at {time_s:.3f} s is not a finite number; trace again", time_s=time_s
+        )
     moving = [
-        axis.upper() for axis, mm in zip(path.axes[3:], np.ptp(path.positions_mm[:, 3:], axis=0), strict=False) if mm
+        axis.upper()
+        for axis, mm in zip(path.axes[3:], np.ptp(path.positions_mm[:, 3:], axis=0), strict=False)
+        if mm
     ]
     if moving:
-        raise MotionFault(f"the motion has {', '.join(moving)} beside X, Y, Z, which only a tape takes; give a .wav")
+        raise MotionFault(
+            f"the motion has {', '.join(moving)} beside X, Y, Z, which only a tape takes; give a .wav"
+        )
     positions_mm = np.zeros((len(path.t_s), 3))
     columns = min(3, path.positions_mm.shape[1])
     positions_mm[:, :columns] = path.positions_mm[:, :columns]

@@ -73,7 +73,9 @@ CONTROLS: dict[str, Control] = {
     ".wav": TAPE,
     ".rf64": TAPE,
     ".flac": TAPE,
-    ".steps": Control("stepping motors at selected pulse rates", "morfax.player.steps.stepping", "play_steps"),
+    ".steps": Control(
+        "stepping motors at selected pulse rates", "morfax.player.steps.stepping", "play_steps"
+    ),
     ".cubic": Control("difference interpolator and servo", "morfax.player.cubics.cubic", "play_cubic"),
     ".ngc": Control("pulse interpolator and pulse servos", "morfax.player.gcode.pulses", "play_pulses"),
 }

@@ -13,16 +13,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.reports.overlay import DPI, UM_PER_MM, save
 from morfax.motion.files import written_beside
+from morfax.reports.overlay import DPI, UM_PER_MM, save
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from morfax.player.monitor.chart import Chart
     from morfax.player.controls import Playback
     from morfax.player.gcode.held_speed import HeldSpeed
+    from morfax.player.monitor.chart import Chart
 
 SUFFIXES = (".png", ".svg", ".pdf", ".csv")
 ERROR, LIMIT, TRUE, PROGRAMMED = "#1f5fa8", "#c1121f", "#2a7f3f", "#555555"
@@ -54,7 +54,10 @@ def figures(playback: Playback) -> dict[str, Any]:
     """The largest following error of each axis, and the share of its limit."""
     watch = playback.monitor
     each = zip(watch.axes, watch.largest_error_mm.tolist(), watch.largest_share.tolist(), strict=True)
-    return {f"{axis}_axis": {"following_error_mm": error_mm, "limit_share": share} for axis, error_mm, share in each}
+    return {
+        f"{axis}_axis": {"following_error_mm": error_mm, "limit_share": share}
+        for axis, error_mm, share in each
+    }
 
 
 def write(chart: Chart, file: FilePath, title: str, speeds: Speeds | None = None) -> None:
@@ -102,7 +105,9 @@ def _panel(axes: Axes, chart: Chart, number: int, name: str) -> None:
 def _speeds(axes: Axes, speeds: Speeds) -> None:
     """Programmed and held speed along the way."""
     programmed = next(iter(speeds.values()))
-    axes.plot(programmed.way_mm, programmed.programmed_mm_s, color=PROGRAMMED, linewidth=1.0, label="programmed")
+    axes.plot(
+        programmed.way_mm, programmed.programmed_mm_s, color=PROGRAMMED, linewidth=1.0, label="programmed"
+    )
     for (name, held), colour in zip(speeds.items(), (ERROR, TRUE), strict=False):
         axes.plot(held.way_mm, held.held_mm_s, color=colour, linewidth=0.8, label=f"held, {name}")
     axes.set(xlabel="way along the program, mm", ylabel="speed, mm/s", ylim=(0, None))

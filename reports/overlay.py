@@ -89,7 +89,9 @@ def draw_sheet(drawing: Drawing, places_mm: dict[str, tuple[float, float]], file
     axes.grid(color=REFERENCE, linewidth=0.4, alpha=0.4)
     for (name, (x, y)), (marker, colour) in zip(places_mm.items(), PLACE_MARKS, strict=False):
         if extent[0] <= x <= extent[1] and extent[2] <= y <= extent[3]:
-            axes.plot(x, y, marker, color=colour, markersize=12, label=f"{name} {x:.1f},{y:.1f}", linestyle="none")
+            axes.plot(
+                x, y, marker, color=colour, markersize=12, label=f"{name} {x:.1f},{y:.1f}", linestyle="none"
+            )
     if axes.get_legend_handles_labels()[0]:
         axes.legend(loc="upper right", fontsize=8, framealpha=0.8)
     save(figure, file)
@@ -135,7 +137,9 @@ def ground(axes: Axes, picture: Picture, view: tuple[float, float, float, float]
     """Draw what the path was compared with: the drawing in light grey, or the other path."""
     if picture.drawing is not None:
         darkness, extent = _cut_out(picture.drawing, view)
-        axes.imshow(darkness, extent=extent, cmap="Greys", vmin=0, vmax=3.2, interpolation="nearest", zorder=0)
+        axes.imshow(
+            darkness, extent=extent, cmap="Greys", vmin=0, vmax=3.2, interpolation="nearest", zorder=0
+        )
     if picture.reference is not None:
         for run in picture.reference.runs():
             axes.plot(*run.T, color=REFERENCE, linewidth=0.8, linestyle=(0, (4, 2)), zorder=1)
@@ -160,7 +164,9 @@ def _cut_out(
 
 def _contour(axes: Axes, picture: Picture, line_pt: float) -> Any:
     """Draw the path: in the colours of its error where there is one (gives what a colour bar needs), else in one."""
-    measured = picture.points_mm is not None and picture.error_mm is not None and np.isfinite(picture.error_mm).any()
+    measured = (
+        picture.points_mm is not None and picture.error_mm is not None and np.isfinite(picture.error_mm).any()
+    )
     for run in picture.path.runs():
         axes.plot(*run.T, color=UNMEASURED if measured else PLAIN, linewidth=line_pt * 0.6, zorder=2)
     return _coloured(axes, picture, line_pt) if measured else None
@@ -209,7 +215,9 @@ def _numbers(axes: Axes, picture: Picture) -> None:
     """Number several lines, each beside its start, in a ring: the enlargements have plain numbers."""
     ring = {"boxstyle": "circle,pad=0.2", "facecolor": "white", "edgecolor": REFERENCE, "alpha": 0.85}
     for number, place_mm in picture.numbers_mm:
-        axes.annotate(number, place_mm, (-11, -11), textcoords="offset points", fontsize=8, bbox=ring, zorder=6)
+        axes.annotate(
+            number, place_mm, (-11, -11), textcoords="offset points", fontsize=8, bbox=ring, zorder=6
+        )
 
 
 def _stops(axes: Axes, picture: Picture) -> None:

@@ -78,7 +78,9 @@ def holes(program: Program) -> Iterator[Hole]:
     """All holes that are shown, feed holes too."""
     channels, codes = program.format.channels, program.rows[:MOST_ROWS].tolist()
     for strip in strips(program):
-        right_mm = strip.x_mm + (strip.width_mm + channels * PITCH_MM) / 2  # channels and the feed track: centred
+        right_mm = (
+            strip.x_mm + (strip.width_mm + channels * PITCH_MM) / 2
+        )  # channels and the feed track: centred
         for row, code in enumerate(codes[strip.first_row : strip.first_row + ROWS_PER_STRIP], 1):
             y_mm = HEAD_MM + row * PITCH_MM
             yield Hole(right_mm - 3 * PITCH_MM, y_mm, FEED_HOLE_MM)
@@ -103,7 +105,8 @@ def _write_svg(program: Program, file: FilePath) -> None:
         for s in parts
     )
     punched = "".join(
-        f'   <circle cx="{h.x_mm:.2f}" cy="{h.y_mm:.2f}" r="{h.diameter_mm / 2:.3f}"/>\n' for h in holes(program)
+        f'   <circle cx="{h.x_mm:.2f}" cy="{h.y_mm:.2f}" r="{h.diameter_mm / 2:.3f}"/>\n'
+        for h in holes(program)
     )
     with written_beside(file) as beside:
         beside.write_text(

@@ -13,8 +13,8 @@ from html import escape
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING
 
-from morfax.reports.table import Figures, as_cells
 from morfax.motion.files import written_beside
+from morfax.reports.table import Figures, as_cells
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -39,7 +39,9 @@ def write(
 ) -> None:
     """Write the report: what is told first, a table with a row for each system, faults in full, the pictures."""
     faults = [f"{name}: {row['fault']}" for name, row in rows.items() if row.get("fault")]
-    plain = [(name, {key: value for key, value in row.items() if key != "fault"}) for name, row in rows.items()]
+    plain = [
+        (name, {key: value for key, value in row.items() if key != "fault"}) for name, row in rows.items()
+    ]
     body = [
         f"<h1>{escape(title)}</h1>",
         *(f"<p>{escape(line)}</p>" for line in told),
@@ -49,7 +51,11 @@ def write(
           for said, figure in pictures),
     ]  # fmt: skip
     head = f'<meta charset="utf-8"><title>{escape(title)}</title><style>{STYLE}</style>'
-    html = f'<!DOCTYPE html>\n<html lang="en"><head>{head}</head>\n<body>\n' + "\n".join(body) + "\n</body></html>\n"
+    html = (
+        f'<!DOCTYPE html>\n<html lang="en"><head>{head}</head>\n<body>\n'
+        + "\n".join(body)
+        + "\n</body></html>\n"
+    )
     with written_beside(file) as beside:
         beside.write_text(html, encoding="utf-8")
 

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.reports.overlay import DPI, REFERENCE, UM_PER_MM, Picture, ground, view_of
 from morfax.motion.polyline import lengths_mm
+from morfax.reports.overlay import DPI, REFERENCE, UM_PER_MM, Picture, ground, view_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -31,7 +31,9 @@ LEAST_REACH_UM = 5.0
 Array = NDArray[np.float64]
 
 
-def contours(title: str, results: Sequence[Result], traced: Path, drawing: Drawing, corners_mm: Array) -> Figure:
+def contours(
+    title: str, results: Sequence[Result], traced: Path, drawing: Drawing, corners_mm: Array
+) -> Figure:
     """All contours over the drawing, and where each is furthest from the traced path, and at corners, enlarged."""
     ran = [result for result in results if result.path is not None]
     figure = _figure(11, 11)
@@ -90,7 +92,11 @@ def _lines(axes: Axes, ran: Sequence[Result], traced: Path, origin_mm: Array, sc
         for number, run in enumerate(result.path.runs()):
             label = None if number else result.name
             axes.plot(
-                *((run - origin_mm) * scale).T, color=COLOURS[result.suffix], linewidth=1.0, label=label, zorder=3
+                *((run - origin_mm) * scale).T,
+                color=COLOURS[result.suffix],
+                linewidth=1.0,
+                label=label,
+                zorder=3,
             )
 
 

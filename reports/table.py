@@ -52,7 +52,9 @@ def as_text(figures: Figures) -> str:
     told = {key: value for key, value in figures.items() if value is not None}
     rows = [(key, value) for key, value in told.items() if isinstance(value, Mapping)]
     lists = [_named(value) for value in told.values() if _is_listing(value)]
-    alone = {key: value for key, value in told.items() if not (isinstance(value, Mapping) or _is_listing(value))}
+    alone = {
+        key: value for key, value in told.items() if not (isinstance(value, Mapping) or _is_listing(value))
+    }
     if alone:
         console.print(_lines(alone))
     for listing in (*lists, rows):
@@ -101,7 +103,9 @@ def as_cells(rows: Sequence[Row]) -> list[list[str]]:
     """A head of labels, then a line for each row: its name, and each figure that any of them has."""
     keys = list(dict.fromkeys(key for _, row in rows for key, value in row.items() if value is not None))
     header = ["", *(_told(key, None)[0] for key in keys)]
-    return [header] + [[name.replace("_", " "), *(_told(key, row.get(key))[1] for key in keys)] for name, row in rows]
+    return [header] + [
+        [name.replace("_", " "), *(_told(key, row.get(key))[1] for key in keys)] for name, row in rows
+    ]
 
 
 def _told(key: str, value: Any) -> tuple[str, str]:

@@ -11,16 +11,28 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import click
 from click.core import ParameterSource
 
+from morfax.console.options.types import (
+    CLEARANCE,
+    CUTTER,
+    DEPTH,
+    LENGTH,
+    LINES,
+    OVERRIDE,
+    PLACE,
+    REACH,
+    SPEED,
+)
 from morfax.jobs import files as medium
-from morfax.console.options.types import CLEARANCE, CUTTER, DEPTH, LENGTH, LINES, OVERRIDE, PLACE, REACH, SPEED
 from morfax.jobs.tracing import Head, Marks
 
 if TYPE_CHECKING:
-    from morfax.tracer.operator.card import Card
     from morfax.tracer.cutter.cutter import Cutter, Side
+    from morfax.tracer.operator.card import Card
 
 _OF_MARKS = tuple(field.name for field in fields(Marks))
-_OF_HEAD = tuple(field.name for field in fields(Head) if field.name not in ("card", "filed", "marks", "cutter"))
+_OF_HEAD = tuple(
+    field.name for field in fields(Head) if field.name not in ("card", "filed", "marks", "cutter")
+)
 
 # what is asked of the head and the tool, in the order of --help
 _LINE = (
@@ -37,7 +49,9 @@ _LINE = (
         help="Several lines as one program, inner before outer: all, outer (what lies in no other), or numbers such as "
         "1,3; 1 is the longest.  [default: one line, the longest or that at --start]",
     ),
-    click.option("--speed", "speed_mm_s", type=SPEED, default="10mm/s", show_default=True, help="Tracing speed."),
+    click.option(
+        "--speed", "speed_mm_s", type=SPEED, default="10mm/s", show_default=True, help="Tracing speed."
+    ),
 )
 _TOOL = (
     click.option(
@@ -180,7 +194,9 @@ def _head(options: dict[str, Any]) -> Head:
     if taken["lines"] is not None and taken["start_mm"] is not None:
         raise click.UsageError("--start picks one line, --lines several; give one of them")
     if taken["cutter_mm"] is None and _given("side"):
-        raise click.UsageError("--side is the side of the cutter; give its diameter with --cutter, such as 6mm")
+        raise click.UsageError(
+            "--side is the side of the cutter; give its diameter with --cutter, such as 6mm"
+        )
     marks = Marks(**{name: taken[name] for name in _OF_MARKS})
     cutter = None if taken["cutter_mm"] is None else _cutter(taken["cutter_mm"], taken["side"])
     return Head(**{name: taken[name] for name in _OF_HEAD}, marks=marks, cutter=cutter)

@@ -35,7 +35,10 @@ class Attended:
         """Ask for the moves at a stop; None without an answer."""
         if not self._asking:
             return None
-        click.echo(f"{_stop(halt)}, Z {format_length_mm(z_mm)}: {ANSWERS}; or nothing: {_told(z_mm, usual)}", err=True)
+        click.echo(
+            f"{_stop(halt)}, Z {format_length_mm(z_mm)}: {ANSWERS}; or nothing: {_told(z_mm, usual)}",
+            err=True,
+        )
         entry = ""
         while True:
             answer = click.prompt("  Z", default="", show_default=False, err=True).strip()
@@ -46,12 +49,16 @@ class Attended:
                 _read(more).motor_moves(z_mm, ANY_MM_S, _stop(halt))
                 entry = more
             except (CardFault, ValueError) as fault:
-                click.echo(f"  {answer!r} cannot be set: {fault}; give {ANSWERS}, or nothing to go on", err=True)
+                click.echo(
+                    f"  {answer!r} cannot be set: {fault}; give {ANSWERS}, or nothing to go on", err=True
+                )
 
     def wait(self, halt: Halt) -> float:
         """Wait for the button, while the tape runs; for how long, s."""
         began = time.perf_counter()
-        click.prompt(f"{_stop(halt)}: press Enter to go on", default="", show_default=False, prompt_suffix="", err=True)
+        click.prompt(
+            f"{_stop(halt)}: press Enter to go on", default="", show_default=False, prompt_suffix="", err=True
+        )
         return time.perf_counter() - began
 
 
@@ -101,6 +108,8 @@ def _read(entry: str) -> Stop:
     moves = [line.removeprefix("move ") for line in entry.splitlines() if line.startswith("move")]
     drills = [line.removeprefix("drill ") for line in entry.splitlines() if line.startswith("drill")]
     text = (
-        "[[stop]]\n" + (f"moves = [{', '.join(moves)}]\n" if moves else "") + "".join(f"drill = {d}\n" for d in drills)
+        "[[stop]]\n"
+        + (f"moves = [{', '.join(moves)}]\n" if moves else "")
+        + "".join(f"drill = {d}\n" for d in drills)
     )
     return Card.parse(text, "answer").stop(1)

@@ -60,7 +60,9 @@ class Desk:
         from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
         columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.percentage:3.0f} %"))
-        with Progress(*columns, TimeElapsedColumn(), console=Console(stderr=True), transient=True) as progress:
+        with Progress(
+            *columns, TimeElapsedColumn(), console=Console(stderr=True), transient=True
+        ) as progress:
             task = progress.add_task(what, total=total)
             yield lambda done: progress.update(task, completed=done)
 
@@ -79,7 +81,9 @@ def desk_options(verb: Callable[..., Any]) -> Callable[..., Any]:
 
     @click.option("-q", "--quiet", is_flag=True, help="No notes and no progress bar; faults are still told.")
     @click.option("-v", "--verbose", is_flag=True, help="Tell more on stderr.")
-    @click.option("--json", is_flag=True, help="Print the figures on stdout as one JSON object, units in the keys.")
+    @click.option(
+        "--json", is_flag=True, help="Print the figures on stdout as one JSON object, units in the keys."
+    )
     @functools.wraps(verb)
     def with_desk(*args: Any, quiet: bool, verbose: bool, json: bool, **options: Any) -> Any:
         return verb(*args, desk=Desk(quiet, verbose, json), **options)

@@ -17,7 +17,9 @@ PACKAGES = ("motion", "tracer", "recorder", "player")
 
 def choose_cache() -> None:
     """Send the kernels to a folder that can be written; only takes effect before numba is imported."""
-    if "NUMBA_CACHE_DIR" in os.environ or all(_writable(HOUSE / package / "__pycache__") for package in PACKAGES):
+    if "NUMBA_CACHE_DIR" in os.environ or all(
+        _writable(HOUSE / package / "__pycache__") for package in PACKAGES
+    ):
         return
     user = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "morfax"
     temporary = Path(tempfile.gettempdir()) / f"morfax-{os.getuid() if hasattr(os, 'getuid') else 'user'}"
@@ -36,7 +38,10 @@ def told(packages: tuple[str, ...] = PACKAGES) -> bool:
     """
     newest_s = max(file.stat().st_mtime for package in packages for file in _sources(package))
     given = os.environ.get("NUMBA_CACHE_DIR")
-    notes = [(Path(given) if given else HOUSE / package / "__pycache__") / f"{package}.told" for package in packages]
+    notes = [
+        (Path(given) if given else HOUSE / package / "__pycache__") / f"{package}.told"
+        for package in packages
+    ]
     before = all(note.exists() and note.stat().st_mtime >= newest_s for note in notes)
     for note in notes:
         if _writable(note.parent):
@@ -52,7 +57,9 @@ def _sources(package: str) -> list[Path]:
 
 def _is_cold(package: str) -> bool:
     """Whether a package that has kernels has none compiled, or older ones than its sources."""
-    sources = [file for file in (HOUSE / package).glob("*.py") if "@njit(cache=True" in file.read_text("utf-8")]
+    sources = [
+        file for file in (HOUSE / package).glob("*.py") if "@njit(cache=True" in file.read_text("utf-8")
+    ]
     compiled = {file: _compiled_s(package, file.stem) for file in sources}
     newest = max(compiled.values(), default=None)
     if newest is None:

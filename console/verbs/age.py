@@ -9,9 +9,9 @@ from typing import Any
 
 import click
 
-from morfax.jobs import files as medium
-from morfax.console.terminal.desk import Desk, desk_options
 from morfax.console.options.types import FREQUENCY, TIME, TRACKS, Quantity
+from morfax.console.terminal.desk import Desk, desk_options
+from morfax.jobs import files as medium
 
 SETS = ("studio-15ips", "instrumentation", "cassette")
 
@@ -81,13 +81,23 @@ def part_options(verb: Any) -> Any:
 
 @click.command("age", epilog=EXAMPLES)
 @click.argument("tape", type=medium.FILE)
-@click.option("-o", "output", type=medium.FILE, required=True, help="The worn tape (.wav, .rf64, .w64, .flac, .aiff).")
-@click.option("--as", "machine", type=click.Choice(SETS), help="All that a kind of machine does; parts go before it.")
-@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Another seed, another tape.")
-@click.option("--all-tracks", "dropout_all", is_flag=True, default=None, help="Dropouts on all tracks at once.")
+@click.option(
+    "-o", "output", type=medium.FILE, required=True, help="The worn tape (.wav, .rf64, .w64, .flac, .aiff)."
+)
+@click.option(
+    "--as", "machine", type=click.Choice(SETS), help="All that a kind of machine does; parts go before it."
+)
+@click.option(
+    "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Another seed, another tape."
+)
+@click.option(
+    "--all-tracks", "dropout_all", is_flag=True, default=None, help="Dropouts on all tracks at once."
+)
 @part_options
 @desk_options
-def command(tape: FilePath, output: FilePath, machine: str | None, seed: int, desk: Desk, **parts: Any) -> None:
+def command(
+    tape: FilePath, output: FilePath, machine: str | None, seed: int, desk: Desk, **parts: Any
+) -> None:
     """Wear a tape as a real recorder and the years do.
 
     Each part stands by itself; without any the tape is only copied. docs/transport.md has the figures of the sets.
@@ -103,9 +113,13 @@ def command(tape: FilePath, output: FilePath, machine: str | None, seed: int, de
     try:
         with desk.bar(f"wearing {tape.name}", 1.0) as advance:
             wear = replace(WEAR[machine] if machine else Wear(), **given)
-            aged = age(tape, output, wear, seed, progress=lambda done_s, total_s: advance(done_s / (total_s or 1)))
+            aged = age(
+                tape, output, wear, seed, progress=lambda done_s, total_s: advance(done_s / (total_s or 1))
+            )
     except ValueError as refused:
         if type(refused) is not ValueError:
             raise
         raise click.UsageError(str(refused)) from None
-    desk.figures({"tape": str(output), "duration_s": aged.duration_s, "dropouts": len(aged.dropouts), "seed": seed})
+    desk.figures(
+        {"tape": str(output), "duration_s": aged.duration_s, "dropouts": len(aged.dropouts), "seed": seed}
+    )

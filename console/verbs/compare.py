@@ -8,13 +8,12 @@ from typing import Any
 import click
 from click.core import ParameterSource
 
-from morfax.jobs import comparison
-from morfax.jobs import files as medium
-from morfax.jobs import systems
-from morfax.console.terminal.desk import Desk, desk_options
-from morfax.jobs.playing import Controls, tape_options
 from morfax.console.options.types import CUTTER, LENGTH, LINES, ORIGIN, PLACE, SPEED
+from morfax.console.terminal.desk import Desk, desk_options
+from morfax.jobs import comparison, systems
+from morfax.jobs import files as medium
 from morfax.jobs.drawing import Sheet, sheet_options
+from morfax.jobs.playing import Controls, tape_options
 from morfax.jobs.tracing import Head
 from morfax.motion.motion import Path
 from morfax.motion.units import format_length_mm
@@ -42,7 +41,9 @@ OF_SYSTEMS = ("head_mm", "lines", "speed_mm_s")
     help="Trace the drawing A once, record it in the medium of each system and play it on its control: all, or some of "
     f"{','.join(systems.NAMES)}.",
 )
-@click.option("--tolerance", "tolerance_mm", type=LENGTH, help="End with exit code 1 if any place is further off.")
+@click.option(
+    "--tolerance", "tolerance_mm", type=LENGTH, help="End with exit code 1 if any place is further off."
+)
 @click.option(
     "-o",
     "picture",
@@ -50,10 +51,17 @@ OF_SYSTEMS = ("head_mm", "lines", "speed_mm_s")
     help="Draw the path with its error in colour, or all contours of --systems (.png, .svg, .pdf); of --systems also a "
     "report in one file (.html).",
 )
-@click.option("--start", "head_mm", type=PLACE, help="Of --systems: where the head looks for the line, as in trace.")
+@click.option(
+    "--start", "head_mm", type=PLACE, help="Of --systems: where the head looks for the line, as in trace."
+)
 @click.option("--lines", type=LINES, help="Of --systems: several lines, all, outer or numbers, as in trace.")
 @click.option(
-    "--speed", "speed_mm_s", type=SPEED, default="10mm/s", show_default=True, help="Of --systems: tracing speed."
+    "--speed",
+    "speed_mm_s",
+    type=SPEED,
+    default="10mm/s",
+    show_default=True,
+    help="Of --systems: tracing speed.",
 )
 @click.option(
     "--cutter",
@@ -98,9 +106,14 @@ def command(
     """
     if asked is not None:
         _refuse(b is not None, "--systems compares one drawing; leave B out")
-        _refuse(head_mm is not None and lines is not None, "--start picks one line, --lines several; give one of them")
+        _refuse(
+            head_mm is not None and lines is not None,
+            "--start picks one line, --lines several; give one of them",
+        )
         of_path = cutter_mm is not None or origin is not None or bool(controls.by_hand())
-        _refuse(of_path, "--cutter, --origin and what a tape does not say are of B; with --systems leave them out")
+        _refuse(
+            of_path, "--cutter, --origin and what a tape does not say are of B; with --systems leave them out"
+        )
         head = Head(head_mm, speed_mm_s, DEPTH_MM, CLEARANCE_MM, None, GAP_MM, lines)
         beyond = systems.compare(systems.Wanted(a, asked, picture, tolerance_mm), sheet, head, desk)
         ctx.exit(BEYOND_TOLERANCE if beyond else 0)
@@ -111,9 +124,13 @@ def command(
     drawing_file, paths = _sorted(a, b)
     if picture is not None:
         medium.outgoing(medium.with_suffix_in(picture, (".png", ".svg", ".pdf")), a, b)
-    _refuse(origin is not None and drawing_file is None, "--origin is a place on a drawing; without one leave it out")
     _refuse(
-        cutter_mm is not None and drawing_file is None, "--cutter is for a path beside a drawing's line; leave it out"
+        origin is not None and drawing_file is None,
+        "--origin is a place on a drawing; without one leave it out",
+    )
+    _refuse(
+        cutter_mm is not None and drawing_file is None,
+        "--cutter is for a path beside a drawing's line; leave it out",
     )
     drawing = sheet.open(drawing_file) if drawing_file else None
     opened = [_path(file, controls, desk) for file in paths]
@@ -142,7 +159,9 @@ def _sorted(a: FilePath, b: FilePath) -> tuple[FilePath | None, list[FilePath]]:
     """The drawing, if one of the two is one, and the paths and tapes in the order given."""
     drawings = [file for file in (a, b) if medium.kind_of(file) == "drawing"]
     if len(drawings) == 2:
-        raise click.UsageError(f"{a} and {b} are both drawings; trace one of them first, or give a path or a tape")
+        raise click.UsageError(
+            f"{a} and {b} are both drawings; trace one of them first, or give a path or a tape"
+        )
     return (drawings[0] if drawings else None), [file for file in (a, b) if file not in drawings]
 
 

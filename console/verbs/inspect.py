@@ -19,12 +19,12 @@ import click
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.jobs import files as medium
-from morfax.console.verbs import inspect_programs as programs
 from morfax.console.terminal.desk import Desk, desk_options
+from morfax.console.verbs import inspect_programs as programs
+from morfax.jobs import files as medium
 from morfax.jobs.playing import Controls, tape_options
-from morfax.reports.table import Figures
 from morfax.motion.faults import TapeFault
+from morfax.reports.table import Figures
 
 if TYPE_CHECKING:
     from morfax.recorder.tape.tape import Tape
@@ -64,7 +64,9 @@ class Carrier:
 
 @click.command("inspect", epilog=EXAMPLES)
 @click.argument("tape", type=medium.FILE)
-@click.option("-o", "picture", type=medium.FILE, help="Draw the punched tape of a .steps program (.png, .svg).")
+@click.option(
+    "-o", "picture", type=medium.FILE, help="Draw the punched tape of a .steps program (.png, .svg)."
+)
 @tape_options
 @desk_options
 def command(tape: FilePath, picture: FilePath | None, controls: Controls, desk: Desk) -> None:
@@ -144,7 +146,9 @@ def _listen(file: FilePath, fault: TapeFault | None) -> tuple[dict[str, Any], li
             duration_s = sound.frames / sound.samplerate
             return {**kind, "sample_rate_hz": sound.samplerate, "duration_s": duration_s}, carriers
     except soundfile.SoundFileError as error:
-        raise (fault or TapeFault(f"{file} cannot be read as a sound file: {error}; record it again")) from None
+        raise (
+            fault or TapeFault(f"{file} cannot be read as a sound file: {error}; record it again")
+        ) from None
 
 
 def _carriers(blocks: Iterable[NDArray[np.float32]], rate_hz: float, tracks: int) -> list[Carrier]:
@@ -164,7 +168,9 @@ def _peak_hz(windows: NDArray[np.float32], rate_hz: float) -> Array:
     """Frequency of the highest peak of each window (windows, frames, tracks), Hz."""
     spectrum = np.abs(np.fft.rfft(windows * np.hanning(WINDOW_FRAMES)[:, None], axis=1)) + 1e-30
     peak = spectrum[:, 1:-1].argmax(axis=1)[:, None] + 1
-    left, middle, right = (np.log(np.take_along_axis(spectrum, peak + step, axis=1))[:, 0] for step in (-1, 0, 1))
+    left, middle, right = (
+        np.log(np.take_along_axis(spectrum, peak + step, axis=1))[:, 0] for step in (-1, 0, 1)
+    )
     curve = left - 2 * middle + right
     shift = np.where(curve < 0, (left - right) / (2 * np.where(curve < 0, curve, 1)), 0)
     return np.asarray((peak[:, 0] + shift) * rate_hz / WINDOW_FRAMES)

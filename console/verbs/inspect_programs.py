@@ -8,9 +8,9 @@ from typing import Any
 import click
 import numpy as np
 
+from morfax.console.terminal.desk import Desk
 from morfax.jobs import files as medium
 from morfax.reports import punched
-from morfax.console.terminal.desk import Desk
 
 
 def inspect(file: FilePath, picture: FilePath | None, desk: Desk) -> dict[str, Any]:

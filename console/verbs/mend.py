@@ -6,10 +6,10 @@ from pathlib import Path as FilePath
 
 import click
 
-from morfax.jobs import files as medium
-from morfax.console.terminal.desk import Desk, desk_options
-from morfax.jobs.playing import Controls, tape_options
 from morfax.console.options.types import NUMBER
+from morfax.console.terminal.desk import Desk, desk_options
+from morfax.jobs import files as medium
+from morfax.jobs.playing import Controls, tape_options
 
 EXAMPLES = """\b
 Examples:
@@ -32,7 +32,9 @@ Examples:
 )
 @tape_options
 @desk_options
-def command(tape: FilePath, output: FilePath, acceleration_mm_s2: float | None, controls: Controls, desk: Desk) -> None:
+def command(
+    tape: FilePath, output: FilePath, acceleration_mm_s2: float | None, controls: Controls, desk: Desk
+) -> None:
     """Record a tape anew whose end tells which dropout lost how many whole cycles.
 
     The end is that which the tape states, or with --closed its start. Where cycles could have been lost in more than one
@@ -51,8 +53,16 @@ def command(tape: FilePath, output: FilePath, acceleration_mm_s2: float | None, 
             progress=lambda done_s, total_s: advance(done_s / (total_s or 1)),
         )
     rows = [
-        {"dropout": number, "axis": one.axis, "time_s": one.time_s, "cycles": one.cycles, "unknown_mm": one.unknown_mm}
+        {
+            "dropout": number,
+            "axis": one.axis,
+            "time_s": one.time_s,
+            "cycles": one.cycles,
+            "unknown_mm": one.unknown_mm,
+        }
         for number, one in enumerate(mended.mends, 1)
     ]
     told = {"tape": str(output), "duration_s": mended.recording.duration_s, "dropouts": mended.dropouts}
-    desk.figures({**told, "cycles_put_back": sum(abs(one.cycles) for one in mended.mends), "mends": rows or None})
+    desk.figures(
+        {**told, "cycles_put_back": sum(abs(one.cycles) for one in mended.mends), "mends": rows or None}
+    )

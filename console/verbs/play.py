@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from morfax.reports import following
-from morfax.jobs import files as medium
-from morfax.console.terminal.desk import Desk, desk_options
-from morfax.jobs.playing import PIPE, Controls, Passage, tape_options
 from morfax.console.options.types import NUMBER, PLACES, SHARE, TIME
+from morfax.console.terminal.desk import Desk, desk_options
+from morfax.jobs import files as medium
+from morfax.jobs.playing import PIPE, Controls, Passage, tape_options
 from morfax.motion.faults import Fault
 from morfax.motion.motion import Path
+from morfax.reports import following
 
 if TYPE_CHECKING:
     from morfax.player.controls import Playback
@@ -44,7 +44,11 @@ Examples:
 @click.command("play", epilog=EXAMPLES)
 @click.argument("tape", type=medium.FILE)
 @click.option(
-    "-o", "outputs", type=medium.FILE, multiple=True, help="Write the machine's path: .csv, .svg (true size) or .png."
+    "-o",
+    "outputs",
+    type=medium.FILE,
+    multiple=True,
+    help="Write the machine's path: .csv, .svg (true size) or .png.",
 )
 @click.option("--path", "path_file", type=medium.FILE, help="Write the machine's path (.csv), as -o does.")
 @click.option(
@@ -142,7 +146,9 @@ def command(
     if fault:
         raise fault
     if not passage.worked:
-        desk.note("the tool never comes into the work; a tape that runs backwards goes up where it should go down")
+        desk.note(
+            "the tool never comes into the work; a tape that runs backwards goes up where it should go down"
+        )
 
 
 def _outputs(
@@ -163,7 +169,9 @@ def _given(tape: FilePath, given: dict[str, Any], controls: Controls) -> dict[st
     """The settings that were given, as the control takes them; raises UsageError for one that it does not take."""
     _refuse_foreign(tape, given)
     if "resume_at_s" in given and controls.start_mm is None:
-        raise click.UsageError("--resume-at wants to be told where the machine stands then; give --from X,Y,Z")
+        raise click.UsageError(
+            "--resume-at wants to be told where the machine stands then; give --from X,Y,Z"
+        )
     if "settings" not in given:
         return given
     from morfax.player.tape.phase_lock import MOTORS as LOCKS
@@ -195,7 +203,9 @@ def _refuse_foreign(tape: FilePath, given: dict[str, Any]) -> None:
     if control != CONTROLS[".ngc"] and "true_norm" in given:
         raise click.UsageError(f"--norm is for programs of lines and arcs, .ngc; {tape} is none")
     if control not in (TAPE, CONTROLS[".ngc"]) and "override" in given:
-        raise click.UsageError(f"--feed-override is for tapes and for programs of lines and arcs, .ngc; {tape} is none")
+        raise click.UsageError(
+            f"--feed-override is for tapes and for programs of lines and arcs, .ngc; {tape} is none"
+        )
 
 
 def _options(given: Iterable[str]) -> str:
@@ -217,7 +227,9 @@ def figures(passage: Passage, playback: Playback, fault: Fault | None) -> dict[s
     }
 
 
-def _write_following(playback: Playback, fault: Fault | None, files: tuple[FilePath, ...], name: str) -> list[str]:
+def _write_following(
+    playback: Playback, fault: Fault | None, files: tuple[FilePath, ...], name: str
+) -> list[str]:
     """Write the following errors where they were asked for; the names under which they stand."""
     written = [medium.incomplete(file) if fault else file for file in files]
     pictures = any(file.suffix.lower() != ".csv" for file in files)

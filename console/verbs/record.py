@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from morfax.jobs import files as medium
-from morfax.console.terminal.desk import Desk, desk_options
-from morfax.jobs.playing import CYCLES_PER_MM, Controls
 from morfax.console.options.types import FEED, FREQUENCY, LENGTH
+from morfax.console.terminal.desk import Desk, desk_options
+from morfax.jobs import files as medium
+from morfax.jobs.playing import CYCLES_PER_MM, Controls
 from morfax.jobs.recording import Unit, rehearsed, unit_options
 
 if TYPE_CHECKING:
@@ -35,10 +35,20 @@ Examples:
     help="The program (.wav, .steps, .cubic, .ngc).  [default: the source's name with .wav, here]",
 )
 @click.option(
-    "--feed", "feed_mm_s", type=FEED, default="10mm/s", show_default=True, help="Speed of a path without times."
+    "--feed",
+    "feed_mm_s",
+    type=FEED,
+    default="10mm/s",
+    show_default=True,
+    help="Speed of a path without times.",
 )
 @click.option(
-    "--reference", "reference_hz", type=FREQUENCY, default="6kHz", show_default=True, help="Reference frequency."
+    "--reference",
+    "reference_hz",
+    type=FREQUENCY,
+    default="6kHz",
+    show_default=True,
+    help="Reference frequency.",
 )
 @click.option(
     "--cycles-per-mm",
@@ -51,7 +61,9 @@ Examples:
     type=LENGTH,
     help="How far the program's path may be off; not for tapes.  [default: the medium's own]",
 )
-@click.option("--force", is_flag=True, help="Write over a tape that is there already under a name not given with -o.")
+@click.option(
+    "--force", is_flag=True, help="Write over a tape that is there already under a name not given with -o."
+)
 @unit_options
 @desk_options
 def command(
@@ -96,7 +108,9 @@ def command(
             "start_place_mm": read.positions_mm[0],
             "end_place_mm": read.positions_mm[-1],
             "bits_per_mm": 8 * recording.bytes / length if length else None,
-            "as_tape_bits_per_mm": _tape_bits(recording.duration_s) / length if length and not is_tape else None,
+            "as_tape_bits_per_mm": _tape_bits(recording.duration_s) / length
+            if length and not is_tape
+            else None,
             **medium.told(recording),
             **unit.figures(),
         }
@@ -121,7 +135,11 @@ def _program(output: FilePath | None, source: FilePath, force: bool) -> FilePath
 
 
 def _settings(
-    program: FilePath, unit: Unit, reference_hz: float, cycles_per_mm: float | None, tolerance_mm: float | None
+    program: FilePath,
+    unit: Unit,
+    reference_hz: float,
+    cycles_per_mm: float | None,
+    tolerance_mm: float | None,
 ) -> dict[str, Any]:
     """What the recorder of this medium is told."""
     if program.suffix.lower() not in medium.TAPES:

@@ -8,19 +8,19 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from morfax.console.options.head import head_options
+from morfax.console.terminal.desk import Desk, desk_options
 from morfax.jobs import comparison
 from morfax.jobs import files as medium
-from morfax.reports import table
-from morfax.console.terminal.desk import Desk, desk_options
-from morfax.console.options.head import head_options
-from morfax.jobs.playing import Controls, Played
 from morfax.jobs.drawing import Sheet, sheet_options
+from morfax.jobs.playing import Controls, Played
+from morfax.jobs.recording import Unit, unit_options
 from morfax.jobs.traced import Traced
 from morfax.jobs.tracing import Head
-from morfax.jobs.recording import Unit, unit_options
 from morfax.motion.faults import FileFault
 from morfax.motion.files import written_beside
 from morfax.motion.units import format_length_mm
+from morfax.reports import table
 
 if TYPE_CHECKING:
     from morfax.tracer.drawing.drawing import Drawing
@@ -47,13 +47,18 @@ class Folder:
 @click.command("run", epilog=EXAMPLES)
 @click.argument("drawing", type=medium.FILE)
 @click.option(
-    "-o", "folder", type=medium.FILE, help="Folder for the results; it is made.  [default: the drawing's name, here]"
+    "-o",
+    "folder",
+    type=medium.FILE,
+    help="Folder for the results; it is made.  [default: the drawing's name, here]",
 )
 @sheet_options
 @head_options
 @unit_options
 @desk_options
-def command(drawing: FilePath, folder: FilePath | None, sheet: Sheet, head: Head, unit: Unit, desk: Desk) -> None:
+def command(
+    drawing: FilePath, folder: FilePath | None, sheet: Sheet, head: Head, unit: Unit, desk: Desk
+) -> None:
     """Go the whole way: trace a drawing, play the tape, compare all three.
 
     The folder then holds the tape (.wav), the traced and the played path (.csv), the picture of the played path with
@@ -70,7 +75,12 @@ def command(drawing: FilePath, folder: FilePath | None, sheet: Sheet, head: Head
     written["played_path"] = str(_write(played, traced, place))
     unit.warn(desk)
     played = replace(played, path=unit.placement.about(traced.path.positions_mm[0]).back(played.path))
-    figures = {"drawing": str(drawing), **written, **_compare(opened, traced, played, place, desk), **unit.figures()}
+    figures = {
+        "drawing": str(drawing),
+        **written,
+        **_compare(opened, traced, played, place, desk),
+        **unit.figures(),
+    }
     with written_beside(traced.name(place.file(".json"))) as beside:
         beside.write_text(table.as_json(figures) + "\n", encoding="utf-8")
     desk.figures(figures)
@@ -84,7 +94,9 @@ def _make(folder: FilePath, drawing: FilePath) -> Folder:
     try:
         folder.mkdir(exist_ok=True)
     except OSError as error:
-        raise FileFault(f"cannot make the folder {folder}: {error.strerror}; give another one with -o") from error
+        raise FileFault(
+            f"cannot make the folder {folder}: {error.strerror}; give another one with -o"
+        ) from error
     place = Folder(folder, drawing.stem)
     medium.outgoing(place.file(".png"), drawing)
     return place

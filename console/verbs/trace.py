@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 import click
 
-from morfax.jobs import files as medium
-from morfax.console.terminal.desk import Desk, desk_options
 from morfax.console.options.head import head_options
+from morfax.console.terminal.desk import Desk, desk_options
+from morfax.jobs import files as medium
 from morfax.jobs.drawing import Sheet, sheet_options
+from morfax.jobs.recording import Unit, unit_options
 from morfax.jobs.traced import Traced
 from morfax.jobs.tracing import Head
-from morfax.jobs.recording import Unit, unit_options
 
 if TYPE_CHECKING:
     from morfax.tracer.drawing.drawing import Drawing
@@ -48,7 +48,9 @@ class Outputs:
 )
 @click.option("--path", "path_file", type=medium.FILE, help="Write the head's path as well (.csv).")
 @click.option("--picture", type=medium.FILE, help="Draw the path over the drawing (.png, .svg, .pdf).")
-@click.option("--force", is_flag=True, help="Write over a tape that is there already under a name not given with -o.")
+@click.option(
+    "--force", is_flag=True, help="Write over a tape that is there already under a name not given with -o."
+)
 @sheet_options
 @head_options
 @unit_options
@@ -86,7 +88,11 @@ def command(
 
 
 def _outputs(
-    drawing: FilePath, output: FilePath | None, path_file: FilePath | None, picture: FilePath | None, force: bool
+    drawing: FilePath,
+    output: FilePath | None,
+    path_file: FilePath | None,
+    picture: FilePath | None,
+    force: bool,
 ) -> Outputs:
     """Names for the results, each of which can be written; raises FileFault if not."""
     from morfax.recorder.media import MEDIA

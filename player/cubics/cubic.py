@@ -36,8 +36,8 @@ from morfax.motion.drive import SOUND, Drive, as_rows, conditioned_step
 from morfax.motion.faults import LockFault, ProgramFault
 from morfax.motion.motion import AXES, Motion
 from morfax.player.cubics.interpolator import Interpolator, ends, slopes
-from morfax.player.monitor.monitor import FollowingLimit, Supervised
 from morfax.player.cubics.scales import Scales, measured
+from morfax.player.monitor.monitor import FollowingLimit, Supervised
 from morfax.recorder.cubics.file import STEPS_PER_CONSTANT, CubicProgram, read_program
 
 REGISTER_DIGITS = 12  # of register 34, sign apart
@@ -103,7 +103,10 @@ class CubicPlayback(Supervised):
     @property
     def duration_s(self) -> float:
         """How long the machine runs, s: the program, and its lag run off."""
-        return len(self.program.words) * self.format.interval_s + self._settling_points / self.format.point_rate_hz
+        return (
+            len(self.program.words) * self.format.interval_s
+            + self._settling_points / self.format.point_rate_hz
+        )
 
     @property
     def _settling_points(self) -> int:
@@ -129,7 +132,9 @@ class CubicPlayback(Supervised):
                 raise monitor.warnings[-1]
             if rows < len(predicted):
                 raise self._out_of_range(predicted[rows], done)
-        self.end_error_mm = self.end_mm - np.array(self.program.checks[len(self.program.words)]) / fmt.counts_per_mm
+        self.end_error_mm = (
+            self.end_mm - np.array(self.program.checks[len(self.program.words)]) / fmt.counts_per_mm
+        )
 
     def _predicted(self, start: NDArray[np.int64]) -> Iterator[NDArray[np.int64]]:
         """The interpolated places in counts, in blocks, and the last one held."""
@@ -139,7 +144,9 @@ class CubicPlayback(Supervised):
             yield interpolator.counts(interpolator.run(self.program.words[first : first + _BLOCK_INTERVALS]))
         yield np.repeat(interpolator.at[None], self._settling_points, axis=0)
 
-    def _follow(self, predicted: NDArray[np.int64], state: Array, noise: np.random.Generator) -> tuple[Array, Array]:
+    def _follow(
+        self, predicted: NDArray[np.int64], state: Array, noise: np.random.Generator
+    ) -> tuple[Array, Array]:
         """Places of the machine in mm after each point, and as its scales had them before, in counts.
 
         Fewer rows where a difference was too large for its register.
@@ -149,7 +156,9 @@ class CubicPlayback(Supervised):
         moved, present = np.empty(predicted.shape), np.empty(predicted.shape)
         jitter = noise.uniform(-1, 1, (*predicted.shape, 2)) if self._noisy else np.zeros((1, len(AXES), 2))
         register = np.array([fmt.counts_per_mm, 2.0**servo.register_digits, 2.0**servo.dropped_digits])
-        drive = np.array([self._modulus_per_s, servo.drive.gain(dt_s), servo.drive.acceleration_mm_s2 * dt_s, dt_s])
+        drive = np.array(
+            [self._modulus_per_s, servo.drive.gain(dt_s), servo.drive.acceleration_mm_s2 * dt_s, dt_s]
+        )
         wrong = as_rows(self.conditions)
         rows = _servo(predicted, jitter, servo.scales.table(), register, drive, wrong, state, present, moved)
         return moved[:rows], present[:rows]
@@ -187,7 +196,9 @@ class CubicPlayback(Supervised):
             if (places[k] != np.array(place) << digits).any():
                 got = [f"{count / 2**digits:g}" for count in places[k].tolist()]
                 stated = " ".join(map(str, place))
-                raise self._fault(k - 1, f"the interpolator comes to {', '.join(got)}; the program states {stated}")
+                raise self._fault(
+                    k - 1, f"the interpolator comes to {', '.join(got)}; the program states {stated}"
+                )
         self._check_slopes(*slopes(words, fmt.points, fmt.linear))
 
     def _check_travel(self, places: NDArray[np.int64], travel_mm: float) -> None:
@@ -204,7 +215,9 @@ class CubicPlayback(Supervised):
         stop = np.zeros((1, start.shape[1]), np.int64)
         bad = np.flatnonzero((np.vstack([stop, end]) != np.vstack([start, stop])).any(axis=1))
         if len(bad):
-            raise self._fault(int(bad[0]), "the curve has a corner there; a corner must be a stop, with speed zero")
+            raise self._fault(
+                int(bad[0]), "the curve has a corner there; a corner must be a stop, with speed zero"
+            )
 
     def _fault(self, interval: int, what: str) -> ProgramFault:
         """A fault at an interval, with its line where there is a file."""

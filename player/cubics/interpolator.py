@@ -94,7 +94,9 @@ class Interpolator:
     def run(self, words: Words) -> Words:
         """Register I after each step (k · p, axes) of the words (k, axes, 3), all digits."""
         if words.ndim != 3 or words.shape[1:] != (len(self._first), 3):
-            raise ValueError(f"words of shape {words.shape} do not fit; they must be (k, {len(self._first)}, 3)")
+            raise ValueError(
+                f"words of shape {words.shape} do not fit; they must be (k, {len(self._first)}, 3)"
+            )
         out = np.empty((len(words) * self._points, len(self._first)), np.int64)
         _interpolate(np.ascontiguousarray(words), self._points, self._linear, self._first, out)
         return out
@@ -119,13 +121,18 @@ def table(start: int, words: tuple[int, int, int], steps: int) -> list[tuple[int
     return rows
 
 
-def truncated_end(start: int, words: tuple[int, int, int], steps: int, digits: tuple[int, int, int, int]) -> float:
+def truncated_end(
+    start: int, words: tuple[int, int, int], steps: int, digits: tuple[int, int, int, int]
+) -> float:
     """Where an interval ends, in counts, if the registers have so many digits and what is below is dropped on the way.
 
     The words are given with 3 log2(steps) digits, as ever.
     """
     full = Interpolator.digits_for(steps)
-    held = [start << digits[0], *(_moved(word, full, own) for word, own in zip(words, digits[1:], strict=True))]
+    held = [
+        start << digits[0],
+        *(_moved(word, full, own) for word, own in zip(words, digits[1:], strict=True)),
+    ]
     for _ in range(steps):
         for i in range(3):
             held[i] += _moved(held[i + 1], digits[i + 1], digits[i])

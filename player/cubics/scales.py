@@ -43,7 +43,9 @@ class Scales:
 
     def __post_init__(self) -> None:
         if self.pitch_counts < 2 or self.pitch_counts & (self.pitch_counts - 1):
-            raise ValueError(f"a pitch of {self.pitch_counts} counts has no highest digit; give a power of two")
+            raise ValueError(
+                f"a pitch of {self.pitch_counts} counts has no highest digit; give a power of two"
+            )
 
     @property
     def late_digits(self) -> float:
@@ -52,14 +54,18 @@ class Scales:
 
     def table(self) -> NDArray[np.float64]:
         """What the kernel needs."""
-        return np.array([self.pitch_counts, self.late_digits, self.fine_noise_counts, self.coarse_noise_digits])
+        return np.array(
+            [self.pitch_counts, self.late_digits, self.fine_noise_counts, self.coarse_noise_digits]
+        )
 
 
 def read_scales(position_counts: NDArray[np.float64], scales: Scales, seed: int = 0) -> tuple[Codes, Codes]:
     """Fine and coarse counts at positions; the noise is the same for the same seed."""
     noise = np.random.default_rng(seed).uniform(-1, 1, (2, len(position_counts)))
     half = scales.pitch_counts / 2
-    fine = np.floor(position_counts + noise[0] * scales.fine_noise_counts).astype(np.int64) % scales.pitch_counts
+    fine = (
+        np.floor(position_counts + noise[0] * scales.fine_noise_counts).astype(np.int64) % scales.pitch_counts
+    )
     coarse = np.floor(position_counts / half - scales.late_digits + noise[1] * scales.coarse_noise_digits)
     return fine, coarse.astype(np.int64)
 

@@ -29,7 +29,9 @@ class Store:
     def of(cls, word: int, width: int) -> Store:
         """Clear the store and write a word of so many digits."""
         if not -(1 << width - 1) <= word < 1 << width - 1:
-            raise ValueError(f"{word} does not fit in {width} digits; it must be below 2^{width - 1} either way")
+            raise ValueError(
+                f"{word} does not fit in {width} digits; it must be below 2^{width - 1} either way"
+            )
         return cls([word >> place & 1 for place in range(width)])
 
     @property

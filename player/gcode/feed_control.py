@@ -39,7 +39,11 @@ OVERRIDE_BITS = 10
 FEED_EIGHTHS = 7
 GREATEST, MIDDLE, SMALLEST = 20, 8, 6  # eighths
 EIGHTH = 1024  # units of the counter
-BLOCKED, EVERY, FOURTH = 240 * EIGHTH, 64 * EIGHTH, 32 * EIGHTH  # from here on stages 5 to 8 are set; 7 or 8; 6
+BLOCKED, EVERY, FOURTH = (
+    240 * EIGHTH,
+    64 * EIGHTH,
+    32 * EIGHTH,
+)  # from here on stages 5 to 8 are set; 7 or 8; 6
 
 Array = NDArray[np.float64]
 
@@ -69,7 +73,9 @@ def resultant_weights(errors: NDArray[np.int64], *, true_norm: bool) -> NDArray[
     if true_norm:
         return np.rint(GREATEST * EIGHTH * size / max(math.sqrt(float(size @ size)), 1.0)).astype(np.int64)
     weights = np.empty(len(errors), np.int64)
-    weights[np.argsort(-size, kind="stable")] = [GREATEST * EIGHTH, MIDDLE * EIGHTH, SMALLEST * EIGHTH][: len(errors)]
+    weights[np.argsort(-size, kind="stable")] = [GREATEST * EIGHTH, MIDDLE * EIGHTH, SMALLEST * EIGHTH][
+        : len(errors)
+    ]
     return weights
 
 

@@ -77,7 +77,9 @@ HISTORIC = PulseServo(pulse_mm=0.0127, register_bits=16, icr_bits=5, lag_stages=
 class PulseServos:
     """The servos of a machine; registers and tables are carried from block to block. They start at rest, in pulses."""
 
-    def __init__(self, start: Counts, recirculations_hz: float, settings: PulseServo | None = None, sampled: int = 8):
+    def __init__(
+        self, start: Counts, recirculations_hz: float, settings: PulseServo | None = None, sampled: int = 8
+    ):
         self.settings, self.sampled = settings or PulseServo(), sampled
         self._dt_s, self._phase = 1 / recirculations_hz, 0
         self._registers = np.zeros((len(start), 7), np.int64)

@@ -36,10 +36,10 @@ from morfax.motion.drive import SOUND
 from morfax.motion.faults import FollowingFault, ProgramFault
 from morfax.motion.motion import AXES, MOTION_RATE_HZ, Motion
 from morfax.player.gcode.feed_control import feed_number, override_number
-from morfax.player.monitor.monitor import FollowingLimit, Supervised
 from morfax.player.gcode.pulse_servo import PulseServo, PulseServos
 from morfax.player.gcode.residues import LINE, Feed, Interpolator
 from morfax.player.gcode.rs274 import DWELL, RAPID, Move, Program, read_rs274
+from morfax.player.monitor.monitor import FollowingLimit, Supervised
 
 LARGEST_ARC = math.radians(170)
 STANDSTILL_S = 0.25
@@ -68,7 +68,9 @@ class PulseControl:
         That is its lag, and at speed what the motor's current takes to bring it there.
         """
         lag_s, most_mm_s2 = 1 / self.servo.gain_per_s, self.servo.drive.acceleration_mm_s2
-        speeds = np.linspace(0, self.recirculations_hz * self.servo.pulse_mm, 17)  # a pulse in each recirculation
+        speeds = np.linspace(
+            0, self.recirculations_hz * self.servo.pulse_mm, 17
+        )  # a pulse in each recirculation
         errors_mm = lag_s * speeds + speeds**2 / (2 * most_mm_s2)
         points = list(zip(speeds.tolist(), errors_mm.tolist(), strict=True))
         return FollowingLimit.table(points, 0.05 + 4 * self.servo.pulse_mm, settle_s=2 * lag_s)
@@ -87,7 +89,9 @@ def play_pulses(
     Raises ProgramFault with the line, FileFault, or ValueError for an override that is none, before anything moves.
     """
     asked: dict[str, Any] = {"true_norm": true_norm, "override": override}
-    control = replace(settings or PulseControl(), **{name: value for name, value in asked.items() if value is not None})
+    control = replace(
+        settings or PulseControl(), **{name: value for name, value in asked.items() if value is not None}
+    )
     return PulsePlayback(read_rs274(file, start_mm), control, str(file))
 
 

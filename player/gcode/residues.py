@@ -50,7 +50,15 @@ from morfax.player.gcode.feed_control import (
 
 AXES = 3
 LINE, CLOCKWISE, COUNTER_CLOCKWISE = 0, -1, 1
-_POSITION, _RESIDUE, _RATIO, _COUNTER, _RECIRCULATION, _FED, _SIZE = 0, 3, 6, 7, 8, 9, 10  # the state's registers
+_POSITION, _RESIDUE, _RATIO, _COUNTER, _RECIRCULATION, _FED, _SIZE = (
+    0,
+    3,
+    6,
+    7,
+    8,
+    9,
+    10,
+)  # the state's registers
 AT_ONCE = 65536  # recirculations
 
 Counts = NDArray[np.int64]
@@ -71,7 +79,11 @@ class Interpolator:
     """The three residue loops with the feed counter; all registers carry over from block to block of a program."""
 
     def __init__(
-        self, start: tuple[int, int, int] | Counts = (0, 0, 0), servo_constant: int = 16, *, guard: bool = True
+        self,
+        start: tuple[int, int, int] | Counts = (0, 0, 0),
+        servo_constant: int = 16,
+        *,
+        guard: bool = True,
     ):
         if not servo_constant > 0:
             raise ValueError(
@@ -107,7 +119,9 @@ class Interpolator:
         if sense not in (CLOCKWISE, COUNTER_CLOCKWISE):
             raise ValueError(f"an arc turns counter-clockwise, +1, or clockwise, -1; not {sense}")
         if end[2] != self._state[_POSITION + 2]:
-            raise ValueError(f"an arc from Z {self._state[2]} to {end[2]} is a helix; its plane is X and Y: keep Z")
+            raise ValueError(
+                f"an arc from Z {self._state[2]} to {end[2]} is a helix; its plane is X and Y: keep Z"
+            )
         return np.concatenate(list(self.recirculate(end, centre, sense, feed)))
 
     def recirculate(
@@ -126,7 +140,9 @@ class Interpolator:
         self._state[_RESIDUE : _RESIDUE + AXES] = residue
         self._state[_RATIO] = 0
         weights = resultant_weights(error, true_norm=feed.true_norm)
-        settings = np.array([self.servo_constant, sense, self.guard, feed.number, feed.override, feed.gate_period])
+        settings = np.array(
+            [self.servo_constant, sense, self.guard, feed.number, feed.override, feed.gate_period]
+        )
         rows = AT_ONCE
         while rows == AT_ONCE:
             pulses = np.zeros((AT_ONCE, AXES), np.int8)

@@ -85,13 +85,17 @@ def read_rs274(file: str | os.PathLike[str], start_mm: Sequence[float] | None = 
         text = FilePath(file).read_bytes().decode("ascii")
     except UnicodeDecodeError as error:
         line = FilePath(file).read_bytes()[: error.start].count(b"\n") + 1
-        raise ProgramFault(f"{file}, line {line}: this is no text; a program is lines such as G1 X10 Y5 F600") from None
+        raise ProgramFault(
+            f"{file}, line {line}: this is no text; a program is lines such as G1 X10 Y5 F600"
+        ) from None
     except OSError as error:
         raise FileFault(f"cannot read {file}: {error.strerror}; check the name") from error
     return parse_rs274(text.split("\n"), str(file), start_mm)
 
 
-def parse_rs274(lines: Iterable[str], name: str = "program", start_mm: Sequence[float] | None = None) -> Program:
+def parse_rs274(
+    lines: Iterable[str], name: str = "program", start_mm: Sequence[float] | None = None
+) -> Program:
     """The program of some lines of text; raises ProgramFault."""
     reader = _Reader(name, start_mm)
     for number, text in enumerate(lines, 1):
@@ -100,8 +104,14 @@ def parse_rs274(lines: Iterable[str], name: str = "program", start_mm: Sequence[
         if reader.ended:
             break
     if not reader.ended:
-        what = "holds no line" if not reader.number or reader.number == 1 else f"breaks off after line {reader.number}"
-        raise ProgramFault(f"{name} {what}; a program ends with M2, M30 or %: get the whole of it", line=reader.number)
+        what = (
+            "holds no line"
+            if not reader.number or reader.number == 1
+            else f"breaks off after line {reader.number}"
+        )
+        raise ProgramFault(
+            f"{name} {what}; a program ends with M2, M30 or %: get the whole of it", line=reader.number
+        )
     start = tuple(0.0 if place is None else place for place in reader.start)
     return Program((start[0], start[1], start[2]), reader.moves)
 
@@ -181,7 +191,9 @@ class _Reader:
         """Feed, dwell, and then the motion that the axis words ask for."""
         if "F" in values:
             if values["F"] <= 0:
-                raise self._fault(f"F{values['F']:g}", "moves nothing; give a feed above zero, in units per minute")
+                raise self._fault(
+                    f"F{values['F']:g}", "moves nothing; give a feed above zero, in units per minute"
+                )
             self.feed_mm_s = values["F"] * self.scale / 60
         if dwell:
             self._dwell(values)
@@ -195,7 +207,15 @@ class _Reader:
         if not 0 <= values.get("P", -1.0) <= LONGEST_DWELL_S or not values.keys().isdisjoint("XYZIJR"):
             raise self._fault("G4", "wants a time in seconds, a day at most, and no place; give G4 P0.5")
         self.moves.append(
-            Move(self.number, DWELL, (self.place[0], self.place[1], self.place[2]), 0.0, (0, 0), 0.0, values["P"])
+            Move(
+                self.number,
+                DWELL,
+                (self.place[0], self.place[1], self.place[2]),
+                0.0,
+                (0, 0),
+                0.0,
+                values["P"],
+            )
         )
 
     def _go(self, values: dict[str, float]) -> None:
@@ -209,7 +229,9 @@ class _Reader:
             if letter in values:
                 place[axis] = values[letter] * scale + (place[axis] if self.relative else 0.0)
                 if self.start[axis] is None:
-                    self.start[axis] = begin[axis] if self.relative or kind not in (RAPID, LINE) else place[axis]
+                    self.start[axis] = (
+                        begin[axis] if self.relative or kind not in (RAPID, LINE) else place[axis]
+                    )
         end = place[0], place[1], place[2]
         if kind != RAPID and self.feed_mm_s == 0:
             raise self._fault(kind, "has no feed; give F, in units per minute, before it or with it")
@@ -218,18 +240,24 @@ class _Reader:
             return
         if not _ARC_WORDS.isdisjoint(values):
             letter = next(letter for letter in "IJR" if letter in values)
-            raise self._fault(f"{letter}{values[letter]:g}", f"belongs to an arc, and {kind} is none; leave it out")
+            raise self._fault(
+                f"{letter}{values[letter]:g}", f"belongs to an arc, and {kind} is none; leave it out"
+            )
         self.moves.append(Move(self.number, kind, end, 0.0 if kind == RAPID else self.feed_mm_s))
 
     def _arc(self, values: dict[str, float], begin: Place, end: Place) -> Move:
         """G2 and G3: the arc between two places."""
         if end[2] != begin[2]:
-            raise self._fault(f"Z{values['Z']:g}", "makes the arc a helix; this control turns arcs in X and Y: keep Z")
+            raise self._fault(
+                f"Z{values['Z']:g}", "makes the arc a helix; this control turns arcs in X and Y: keep Z"
+            )
         if "R" in values and ("I" in values or "J" in values):
             raise self._fault(f"R{values['R']:g}", "stands with a centre, I or J; give one of the two")
         sense = 1 if self.kind == COUNTER_CLOCKWISE else -1
         given = "R" in values
-        centre = self._by_radius(begin, end, values["R"], sense) if given else self._by_offset(begin, end, values)
+        centre = (
+            self._by_radius(begin, end, values["R"], sense) if given else self._by_offset(begin, end, values)
+        )
         first = math.atan2(begin[1] - centre[1], begin[0] - centre[0])
         turned = sense * (math.atan2(end[1] - centre[1], end[0] - centre[0]) - first) % TURN
         whole = begin == end or (turned < 1e-12 and "R" not in values)
@@ -243,7 +271,9 @@ class _Reader:
             raise self._fault(
                 f"R{given:g}",
                 f"does not reach: the ends of the arc are {chord:.4f} mm apart; give "
-                + ("I and J for a whole turn" if chord == 0 else f"{chord / 2:.4f} mm or more, or other ends"),
+                + (
+                    "I and J for a whole turn" if chord == 0 else f"{chord / 2:.4f} mm or more, or other ends"
+                ),
             )
         off = math.sqrt(max(radius**2 - chord**2 / 4, 0.0)) * math.copysign(sense, sense * radius) / chord
         return (begin[0] + end[0]) / 2 - off * up, (begin[1] + end[1]) / 2 + off * across

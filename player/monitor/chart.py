@@ -36,7 +36,9 @@ class Chart:
         """A new sheet, for these axes."""
         self.axes, self._times_s, self._rows = tuple(axes), [], []
 
-    def note(self, first_row: int, rate_hz: float, demand_mm: Array, actual_mm: Array, limit_mm: Array) -> None:
+    def note(
+        self, first_row: int, rate_hz: float, demand_mm: Array, actual_mm: Array, limit_mm: Array
+    ) -> None:
         """Take a block (n, axes) that begins with a row of the run."""
         step = max(1, round(self.every_s * rate_hz))
         starts = np.arange(0, len(demand_mm), step)

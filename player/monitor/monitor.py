@@ -49,11 +49,20 @@ class FollowingLimit:
 
     def __post_init__(self) -> None:
         speeds, errors_mm = np.array(self.points, np.float64).reshape(-1, 2).T
-        if not len(speeds) or speeds[0] != 0 or not (np.diff(speeds) > 0).all() or not np.isfinite(speeds).all():
-            raise ValueError(f"speeds {speeds.tolist()} are no table; give finite ones that start at 0 mm/s and grow")
+        if (
+            not len(speeds)
+            or speeds[0] != 0
+            or not (np.diff(speeds) > 0).all()
+            or not np.isfinite(speeds).all()
+        ):
+            raise ValueError(
+                f"speeds {speeds.tolist()} are no table; give finite ones that start at 0 mm/s and grow"
+            )
         settings = [*errors_mm, self.beyond_s, self.tolerance_mm, self.settle_s, self.hold_s]
         if not all(0 <= value < math.inf for value in settings):
-            raise ValueError(f"a limit made of {settings} is none; errors, slope, tolerance and times are 0 or more")
+            raise ValueError(
+                f"a limit made of {settings} is none; errors, slope, tolerance and times are 0 or more"
+            )
 
     @classmethod
     def linear(cls, lag_s: float = 0.06, tolerance_mm: float = 0.1, settle_s: float = 0.0) -> FollowingLimit:
@@ -62,10 +71,20 @@ class FollowingLimit:
 
     @classmethod
     def table(
-        cls, points: Sequence[tuple[float, float]], tolerance_mm: float, settle_s: float = 0.0, hold_s: float = 0.0
+        cls,
+        points: Sequence[tuple[float, float]],
+        tolerance_mm: float,
+        settle_s: float = 0.0,
+        hold_s: float = 0.0,
     ) -> FollowingLimit:
         """The limit of empirical points (mm/s, mm); the last one holds for all speeds beyond."""
-        return cls(tuple((float(speed), float(error)) for speed, error in points), 0.0, tolerance_mm, settle_s, hold_s)
+        return cls(
+            tuple((float(speed), float(error)) for speed, error in points),
+            0.0,
+            tolerance_mm,
+            settle_s,
+            hold_s,
+        )
 
     def limit_mm(self, speed_mm_s: float) -> float:
         """The limit at a speed of the demand, mm."""
@@ -84,7 +103,9 @@ def learn_table(
     speed = np.abs(np.diff(demand_mm, axis=0, prepend=demand_mm[:1])) * rate_hz
     error = np.abs(demand_mm - actual_mm)
     upto = [*speeds_mm_s[1:], np.inf]
-    return tuple((float(v), float(error[speed <= u].max(initial=0.0))) for v, u in zip(speeds_mm_s, upto, strict=True))
+    return tuple(
+        (float(v), float(error[speed <= u].max(initial=0.0))) for v, u in zip(speeds_mm_s, upto, strict=True)
+    )
 
 
 class Monitor:
@@ -130,9 +151,14 @@ class Monitor:
 
     def watch(self, demand_mm: Array, actual_mm: Array) -> int:
         """Watch a block (n, axes); the rows before a stop."""
-        demand, actual = np.ascontiguousarray(demand_mm, np.float64), np.ascontiguousarray(actual_mm, np.float64)
+        demand, actual = (
+            np.ascontiguousarray(demand_mm, np.float64),
+            np.ascontiguousarray(actual_mm, np.float64),
+        )
         if demand.shape != actual.shape or demand.ndim != 2 or demand.shape[1] != len(self.axes):
-            raise ValueError(f"demand {demand.shape} and actual {actual.shape}: both must be (n, {len(self.axes)})")
+            raise ValueError(
+                f"demand {demand.shape} and actual {actual.shape}: both must be (n, {len(self.axes)})"
+            )
         limits = np.zeros((0 if self._chart is None else len(demand), len(self.axes)))
         row = 0
         while row < len(demand):
@@ -140,7 +166,9 @@ class Monitor:
             if axis < 0:
                 break
             limit_mm = float(allowed_mm(self._state[axis, COUNTED], self.limit.rows, *self._settings[3:]))
-            self._warn(axis, self.rows_seen + row, float(demand[row, axis]), float(actual[row, axis]), limit_mm)
+            self._warn(
+                axis, self.rows_seen + row, float(demand[row, axis]), float(actual[row, axis]), limit_mm
+            )
             if self.stop:
                 break
             row += 1

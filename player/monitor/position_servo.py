@@ -48,7 +48,9 @@ class PositionServo:
 class PositionServos:
     """The servos of a machine; state is carried from block to block, so a drive may break between two of them."""
 
-    def __init__(self, start_mm: Array, rate_hz: float = MOTION_RATE_HZ, settings: PositionServo | None = None) -> None:
+    def __init__(
+        self, start_mm: Array, rate_hz: float = MOTION_RATE_HZ, settings: PositionServo | None = None
+    ) -> None:
         self.settings, self.rate_hz = settings or PositionServo(), rate_hz
         self._state = np.zeros((len(start_mm), 2))
         self._state[:, POSITION] = start_mm
@@ -58,7 +60,9 @@ class PositionServos:
         """Positions (n, axes) of the load in mm, each as the transducer has it when its demand comes."""
         demand = np.ascontiguousarray(demand_mm, np.float64)
         if demand.ndim != 2 or demand.shape[1] != len(self._state):
-            raise ValueError(f"demands of shape {demand.shape} are not for this machine; give (n, {len(self._state)})")
+            raise ValueError(
+                f"demands of shape {demand.shape} are not for this machine; give (n, {len(self._state)})"
+            )
         drive, dt_s = self.settings.drive, 1 / self.rate_hz
         common = np.array(
             [drive.gain(dt_s), drive.acceleration_mm_s2 * dt_s, self.settings.increment_mm, dt_s], np.float64

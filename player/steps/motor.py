@@ -65,7 +65,9 @@ class Motors:
 
     def __init__(self, axes: int, interval_s: float, motor: Motor | None = None) -> None:
         self._most, self._interval_s = (motor or Motor()).most(interval_s), interval_s
-        self._state = np.zeros((axes, 3))  # steps of the last interval, all steps (with what broken ones leave), pulses
+        self._state = np.zeros(
+            (axes, 3)
+        )  # steps of the last interval, all steps (with what broken ones leave), pulses
         self.conditions: Sequence[MotorCondition] = [SOUND] * axes
 
     def run(
@@ -76,10 +78,14 @@ class Motors:
         `ticks` is the table of the pulses that have come by each tick.
         """
         if pulses.ndim != 2 or pulses.shape[1] != len(self._state):
-            raise ValueError(f"pulses of shape {pulses.shape} do not fit; they must be (k, {len(self._state)})")
+            raise ValueError(
+                f"pulses of shape {pulses.shape} do not fit; they must be (k, {len(self._state)})"
+            )
         told = np.empty((len(pulses) * samples, len(self._state)), np.int64)
         made = np.empty_like(told)
-        wrong = np.array([condition.row(self._most, self._interval_s) for condition in self.conditions], np.float64)
+        wrong = np.array(
+            [condition.row(self._most, self._interval_s) for condition in self.conditions], np.float64
+        )
         _run(pulses, ticks, samples, wrong, self._state, told, made)
         return told, made
 

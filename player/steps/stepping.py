@@ -36,8 +36,8 @@ from morfax.motion.faults import ProgramFault
 from morfax.motion.motion import AXES, Motion
 from morfax.player.monitor.monitor import FollowingLimit, Supervised
 from morfax.player.steps.motor import SOUND, Motor, Motors
-from morfax.recorder.steps.rings import RINGS
 from morfax.recorder.steps.file import TICKS, Program, StepFormat, read_program
+from morfax.recorder.steps.rings import RINGS
 
 STANDSTILL, LOWEST, HIGHEST = 8, 1, 15  # counts
 UP_X, DOWN_X, UP_Y, DOWN_Y = 1, 2, 4, 8  # outputs of the ring memory
@@ -116,7 +116,9 @@ class StepPlayback(Supervised):
         self.end_mm: Array = self.start_mm.copy()
         self.end_error_mm: Array | None = None
         self.conditions = [SOUND] * len(AXES)
-        self.limit = FollowingLimit.table([(0.0, 0.0)], self.format.step_mm / 2, settle_s=self.format.interval_s)
+        self.limit = FollowingLimit.table(
+            [(0.0, 0.0)], self.format.step_mm / 2, settle_s=self.format.interval_s
+        )
         self._check(travel_mm)
         self.supervise(AXES, SAMPLES_PER_INTERVAL * self.format.rate_hz)
 
@@ -141,7 +143,9 @@ class StepPlayback(Supervised):
         monitor, self.end_error_mm = self.supervise(AXES, rate_hz), None
         yield Motion(self.start_mm[None], rate_hz, 0.0)
         for first in range(0, len(self.pulses), _BLOCK_INTERVALS):
-            told, made = motors.run(self.pulses[first : first + _BLOCK_INTERVALS], tick_table(), SAMPLES_PER_INTERVAL)
+            told, made = motors.run(
+                self.pulses[first : first + _BLOCK_INTERVALS], tick_table(), SAMPLES_PER_INTERVAL
+            )
             places_mm = self.start_mm + made * fmt.step_mm
             monitor.rows_seen = first * SAMPLES_PER_INTERVAL + 1
             rows = monitor.watch(self.start_mm + told * fmt.step_mm, places_mm)

@@ -72,7 +72,9 @@ class Phases:
         return Phases(self.first_row + rows.start, self.cycles[rows], self.surprise[rows], self.levels[rows])
 
 
-def translating_taps(sample_rate_hz: float, reference_hz: float, decimation: int) -> tuple[Float32s, Float32s]:
+def translating_taps(
+    sample_rate_hz: float, reference_hz: float, decimation: int
+) -> tuple[Float32s, Float32s]:
     """Real and imaginary taps of the filter that moves the reference to 0 Hz and keeps what lies near it."""
     low_pass, turns = _low_pass(sample_rate_hz, reference_hz, decimation)
     return _taps((low_pass * turns).real), _taps((low_pass * turns).imag)
@@ -92,7 +94,9 @@ def _taps(values: Float64s) -> Float32s:
     return np.where(np.abs(values) < SMALLEST_TAP, 0.0, values).astype(np.float32)
 
 
-def branches(sample_rate_hz: float, reference_hz: float, decimation: int) -> tuple[Float32s, Float32s, Float32s]:
+def branches(
+    sample_rate_hz: float, reference_hz: float, decimation: int
+) -> tuple[Float32s, Float32s, Float32s]:
     """The filter as real sums down the columns of a row, each sum turned once: taps (branches, columns, rows), turns.
 
     With a whole number of reference cycles to a row, as most tapes have, all taps of a column turn alike and one real
@@ -104,8 +108,12 @@ def branches(sample_rate_hz: float, reference_hz: float, decimation: int) -> tup
     else:
         taps = [(low_pass * turns).real, (low_pass * turns).imag]
         turned = np.repeat([[1], [1j]], decimation, axis=1)
-    rows = np.stack([np.pad(one, (0, -len(one) % decimation)).reshape(-1, decimation).T for one in map(_taps, taps)])
-    rows = rows[:, :, : int(np.flatnonzero(rows.any(axis=(0, 1)))[-1]) + 1]  # the window is nothing at its ends
+    rows = np.stack(
+        [np.pad(one, (0, -len(one) % decimation)).reshape(-1, decimation).T for one in map(_taps, taps)]
+    )
+    rows = rows[
+        :, :, : int(np.flatnonzero(rows.any(axis=(0, 1)))[-1]) + 1
+    ]  # the window is nothing at its ends
     rows = np.pad(rows, ((0, 0), (0, 0), (0, -rows.shape[2] % GROUP)))
     return rows, turned.real.astype(np.float32), turned.imag.astype(np.float32)
 
@@ -120,7 +128,9 @@ class Discriminator:
                 f"give one between 0 and {sample_rate_hz / 2:g} Hz"
             )
         if tracks < 2:
-            raise ValueError(f"{tracks} track(s) hold no displacement; give the reference track and at least one axis")
+            raise ValueError(
+                f"{tracks} track(s) hold no displacement; give the reference track and at least one axis"
+            )
         self.decimation = decimation
         self.filter_frames = len(translating_taps(sample_rate_hz, reference_hz, decimation)[0])
         self._filter = branches(sample_rate_hz, reference_hz, decimation)
@@ -263,7 +273,9 @@ def _turn(re, im, ref_re, ref_im, phase):  # type: ignore[no-untyped-def]
         oblique = small > 0.41421356237309503 * large  # tangent of an eighth of half a turn
         t = (small - large if oblique else small) / max(small + large if oblique else large, SMALLEST_PRODUCT)
         z = t * t  # polynomial: S. Moshier, Cephes, atanf
-        angle = (((8.05374449538e-2 * z - 1.38776856032e-1) * z + 1.99777106478e-1) * z - 3.33329491539e-1) * z * t + t
+        angle = (
+            ((8.05374449538e-2 * z - 1.38776856032e-1) * z + 1.99777106478e-1) * z - 3.33329491539e-1
+        ) * z * t + t
         angle = angle + math.pi / 4 if oblique else angle
         angle = math.pi / 2 - angle if abs(across) > abs(along) else angle
         angle = math.pi - angle if along < 0 else angle

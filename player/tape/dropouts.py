@@ -117,7 +117,9 @@ def under_way(rows: Phases, discriminator: Discriminator) -> Array:
     return places
 
 
-def _count_on(discriminator: Discriminator, axis: int, at: Side, cycles: Array, surprise: NDArray[np.float32]) -> None:
+def _count_on(
+    discriminator: Discriminator, axis: int, at: Side, cycles: Array, surprise: NDArray[np.float32]
+) -> None:
     """Count an axis anew from a place on to the last row that the discriminator has given."""
     state = np.array([at.place - at.speed + at.bend, at.speed - 2 * at.bend, at.bend])
     discriminator.state[axis] = recount(cycles, discriminator.gains, state, surprise)
@@ -138,7 +140,12 @@ class Gaps:
     ) -> None:
         self._told = told  # whole cycles to add at a gap (row, axis); None: what is not certain is a fault
         self.doubtful: dict[tuple[int, int], Bridge] = {}
-        self._discriminator, self._rate_hz, self._place_mm, self._names = discriminator, rate_hz, place_mm, names
+        self._discriminator, self._rate_hz, self._place_mm, self._names = (
+            discriminator,
+            rate_hz,
+            place_mm,
+            names,
+        )
         self._levels, self._tracked = levels, levels.copy()
         self._acceleration = acceleration  # cycles/row²
         self._side = max(round(SIDE_S * rate_hz), 6)
@@ -175,7 +182,11 @@ class Gaps:
             for a, b in self._gaps_of(axis):
                 if rows.first_row + b <= (self._given or 0):
                     continue
-                if b + self._side + self._spread > len(rows) and not last and b - a <= LONGEST_S * self._rate_hz:
+                if (
+                    b + self._side + self._spread > len(rows)
+                    and not last
+                    and b - a <= LONGEST_S * self._rate_hz
+                ):
                     ready = min(ready, a)  # what comes after it is not yet there
                     break
                 fault = self._bridge(rows, axis, a, b)
@@ -196,7 +207,10 @@ class Gaps:
         apart = self._side + 2 * self._spread
         cuts = np.flatnonzero(np.diff(lost) > apart)
         firsts, lasts = lost[np.r_[0, cuts + 1]], lost[np.r_[cuts, len(lost) - 1]]
-        return [(max(int(a) - self._spread, 0), int(b) + 1 + self._spread) for a, b in zip(firsts, lasts, strict=True)]
+        return [
+            (max(int(a) - self._spread, 0), int(b) + 1 + self._spread)
+            for a, b in zip(firsts, lasts, strict=True)
+        ]
 
     def _bridge(self, rows: Phases, axis: int, a: int, b: int) -> Fault | None:
         """Fill a gap and count on behind it; the fault if it is too long to be certain."""

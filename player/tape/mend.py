@@ -29,8 +29,8 @@ from morfax.motion.faults import LockFault, TapeFault
 from morfax.motion.motion import Motion
 from morfax.player.tape.dropouts import COUNT_MARGIN, Bridge
 from morfax.player.tape.playback import END_CYCLES, Playback, play
-from morfax.recorder.tape.recording import Progress, Recording, record
 from morfax.recorder.tape.format import TapeFormat
+from morfax.recorder.tape.recording import Progress, Recording, record
 
 END_S = 0.05  # of the standstill at the end, over which the place is averaged
 KEPT_DWELL = 0.1  # of the standstills: the tape may have run this much fast, and gets new ones
@@ -72,7 +72,12 @@ def mend(
     progress: Progress | None = None,
 ) -> Mended:
     """Mend a tape; raises TapeFault where it cannot be known what was lost, and what playing and recording raise."""
-    by_hand = {"reference_hz": reference_hz, "cycles_per_mm": cycles_per_mm, "start_mm": start_mm, "order": order}
+    by_hand = {
+        "reference_hz": reference_hz,
+        "cycles_per_mm": cycles_per_mm,
+        "start_mm": start_mm,
+        "order": order,
+    }
     playback = play(file, **by_hand, closed=closed, acceleration_mm_s2=acceleration_mm_s2)  # type: ignore[arg-type]
     fmt, reader = playback.format, playback.reader
     if fmt.end_mm is None:
@@ -86,7 +91,10 @@ def mend(
     reader.told = _lost(doubtful, missing, fmt)
     total_s = playback.duration_s
     recording = record(
-        _motion(playback), mended, fmt, None if progress is None else lambda done_s, _: progress(done_s, total_s)
+        _motion(playback),
+        mended,
+        fmt,
+        None if progress is None else lambda done_s, _: progress(done_s, total_s),
     )
     mends = tuple(_mend(gap, doubtful[gap], reader.told[gap], fmt) for gap in sorted(doubtful))
     return Mended(recording, mends, len(reader.bridged))

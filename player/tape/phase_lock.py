@@ -123,14 +123,22 @@ class Drives:
     """The axis drives of a machine; state is carried from block to block. `steps`: of the loop from row to row."""
 
     def __init__(
-        self, axes: int, mm_per_cycle: float, rate_hz: float, settings: PhaseLock | None = None, *, steps: int = 1
+        self,
+        axes: int,
+        mm_per_cycle: float,
+        rate_hz: float,
+        settings: PhaseLock | None = None,
+        *,
+        steps: int = 1,
     ) -> None:
         self.settings = settings or PhaseLock()
         self._mm_per_cycle, self._dt_s, self._steps = mm_per_cycle, 1 / (rate_hz * steps), steps
         network = place(self.settings, self._dt_s)
         self._network = np.array([network.gain, network.zero, network.lead_zero, network.lead_pole])
         drive = self.settings.drive
-        self._drive = np.array([drive.gain(self._dt_s), drive.acceleration_mm_s2 * self._dt_s, drive.top_speed_mm_s])
+        self._drive = np.array(
+            [drive.gain(self._dt_s), drive.acceleration_mm_s2 * self._dt_s, drive.top_speed_mm_s]
+        )
         self._state = np.zeros((axes, 5))
         self._last = np.zeros((1, axes))  # row of phases
         self.conditions = [SOUND] * axes
@@ -142,7 +150,9 @@ class Drives:
         range_mm = self.settings.range_cycles * self._mm_per_cycle
         back = -math.expm1(-self._dt_s / BACK_S)
         scale = np.array([self._mm_per_cycle, range_mm, self._dt_s, back])
-        rows = _follow(cycles, scale, self._network, self._drive, as_rows(self.conditions), self._state, moved)
+        rows = _follow(
+            cycles, scale, self._network, self._drive, as_rows(self.conditions), self._state, moved
+        )
         return moved[self._steps - 1 : rows : self._steps]
 
     def _between(self, cycles: Array) -> Array:
@@ -179,7 +189,9 @@ def following_limit(settings: PhaseLock, mm_per_cycle: float, rate_hz: float) ->
     sound = Drives(TRIED_SPEEDS, 1.0, rate_hz, replace(settings, range_cycles=math.inf)).follow(turn)
     learnt = learn_table(turn, sound, rate_hz, [0.0, *(speeds[:-1] * (1 + 1e-6))])
     hold_s = 2 * math.sqrt(2 * range_mm / most_mm_s2)
-    points = [(speed, min(error_mm, range_mm)) for speed, error_mm in learnt] + [(float(speeds[-1]), range_mm)]
+    points = [(speed, min(error_mm, range_mm)) for speed, error_mm in learnt] + [
+        (float(speeds[-1]), range_mm)
+    ]
     return FollowingLimit.table(points, TOLERANCE_CYCLES * mm_per_cycle, hold_s=hold_s)
 
 
@@ -203,7 +215,9 @@ def _follow(cycles, scale, network, drive, conditions, state, moved_mm):  # type
             given = min(max(demand, speed - reach), speed + reach)  # what the motor's current can answer,
             given = min(max(given, -top), top)  # and its speed
             demand += back * (given - demand)
-            speed_now = conditioned_step(speed, given, drive[0], drive[1], conditions[axis])  # motor 163, tacho
+            speed_now = conditioned_step(
+                speed, given, drive[0], drive[1], conditions[axis]
+            )  # motor 163, tacho
             speed_now = min(max(speed_now, -top), top)
             state[axis, POSITION] = position + (speed + speed_now) / 2 * dt_s
             state[axis, SPEED], state[axis, DEMAND], state[axis, LEAD] = speed_now, demand, lead_now

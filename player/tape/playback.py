@@ -31,10 +31,10 @@ from morfax.motion.drive import SOUND
 from morfax.motion.faults import LockFault
 from morfax.motion.motion import AXES, Motion
 from morfax.player.monitor.monitor import Supervised
-from morfax.player.tape.track_order import found_order
 from morfax.player.tape.phase_lock import Drives, PhaseLock, following_limit
 from morfax.player.tape.reader import Reader
 from morfax.player.tape.setting import Setting
+from morfax.player.tape.track_order import found_order
 from morfax.recorder.tape.pipe import Pipe, Samples
 from morfax.recorder.tape.tape import Tape, TapeFormat
 
@@ -69,13 +69,17 @@ def play(
     """
 
     def open_tape() -> Tape:
-        return Tape.open(file, reference_hz=reference_hz, cycles_per_mm=cycles_per_mm, start_mm=start_mm, order=order)
+        return Tape.open(
+            file, reference_hz=reference_hz, cycles_per_mm=cycles_per_mm, start_mm=start_mm, order=order
+        )
 
     with open_tape() as tape:
         fmt, frames = _ending(tape.format, closed), tape.frames
         found = None if order or resume_at_s else found_order(tape)
     order = order or found
-    if resume_at_s and fmt.end_mm is not None:  # the place is not the tape's start, so the end does not go along
+    if (
+        resume_at_s and fmt.end_mm is not None
+    ):  # the place is not the tape's start, so the end does not go along
         with Tape.open(file, reference_hz=reference_hz, cycles_per_mm=cycles_per_mm) as tape:
             fmt = replace(fmt, end_mm=tape.format.end_mm)
     setting = Setting(settings or PhaseLock(), tuple(zero_mm), override)
@@ -98,7 +102,12 @@ def play_pipe(
     """Put a tape that comes through a pipe in the machine, as it comes; it can be played once. Raises TapeFault."""
     start = None if start_mm is None else tuple(start_mm)
     pipe = Pipe.open(
-        stream, reference_hz=reference_hz, cycles_per_mm=cycles_per_mm, start_mm=start, order=order, samples=samples
+        stream,
+        reference_hz=reference_hz,
+        cycles_per_mm=cycles_per_mm,
+        start_mm=start,
+        order=order,
+        samples=samples,
     )
     return Playback(lambda: pipe, _ending(pipe.format, closed), 0, Setting())
 
@@ -111,9 +120,13 @@ def _ending(fmt: TapeFormat, closed: bool) -> TapeFormat:
 def _check_resumption(resume_at_s: float, start_mm: Sequence[float] | None, duration_s: float) -> None:
     """Raise ValueError for a tape time from which a tape cannot be gone on with."""
     if not 0 <= resume_at_s < duration_s:
-        raise ValueError(f"the tape cannot be resumed at {resume_at_s:g} s; it lasts from 0 to {duration_s:.3f} s")
+        raise ValueError(
+            f"the tape cannot be resumed at {resume_at_s:g} s; it lasts from 0 to {duration_s:.3f} s"
+        )
     if resume_at_s and start_mm is None:
-        raise ValueError(f"where the machine stands at {resume_at_s:g} s must be said; give the place (--from X,Y,Z)")
+        raise ValueError(
+            f"where the machine stands at {resume_at_s:g} s must be said; give the place (--from X,Y,Z)"
+        )
 
 
 class Playback(Supervised):
@@ -138,8 +151,12 @@ class Playback(Supervised):
         self.format, self.frames, self.setting = fmt, frames, setting
         self.rate_hz = fmt.motion_rate_hz * setting.override
         self.settings = setting.lock.suited_to(fmt.motion_rate_hz)
-        self._steps = math.ceil(1 / setting.override)  # of the loop to a row: it is no slower where the tape is
-        motors_mm_s2 = self.settings.drive.acceleration_mm_s2 / setting.override**2  # as it would be on the tape
+        self._steps = math.ceil(
+            1 / setting.override
+        )  # of the loop to a row: it is no slower where the tape is
+        motors_mm_s2 = (
+            self.settings.drive.acceleration_mm_s2 / setting.override**2
+        )  # as it would be on the tape
         self.acceleration_mm_s2 = motors_mm_s2 if acceleration_mm_s2 is None else acceleration_mm_s2
         self._zero_mm = setting.zeros_mm(fmt.axes)
         self._rows = 0
@@ -204,7 +221,10 @@ class Playback(Supervised):
         error_mm, drive = drives.error_mm, self.settings.drive
         axis = int(np.argmax(np.where(np.isnan(error_mm), np.inf, np.abs(error_mm))))
         name, time_s = self.format.axes[axis], row / self.rate_hz
-        error_cycles, position_mm = float(error_mm[axis]) * self.format.cycles_per_mm, float(self.end_mm[axis])
+        error_cycles, position_mm = (
+            float(error_mm[axis]) * self.format.cycles_per_mm,
+            float(self.end_mm[axis]),
+        )
         return LockFault(
             f"the drive of {name.upper()} lost its lock at {time_s:.3f} s, position {position_mm:.3f} mm: error "
             f"{error_cycles:+.2f} cycles, allowed ±{self.settings.range_cycles:g}; the tape asks for more than "

@@ -21,9 +21,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.faults import Fault, TapeFault
-from morfax.player.tape.standstill import STANDSTILL_S, Bearings, evened, take_bearings
 from morfax.player.tape.discriminator import Discriminator, Phases, discriminate
 from morfax.player.tape.dropouts import Bridge, Gaps, under_way
+from morfax.player.tape.standstill import STANDSTILL_S, Bearings, evened, take_bearings
 from morfax.player.tape.watch import Watch, demand_apart
 from morfax.recorder.tape.pipe import Pipe
 from morfax.recorder.tape.tape import Stored, Tape, TapeFormat, full_scale
@@ -62,10 +62,14 @@ class Reader:
         Raises TapeFault where the tape is none, or its reference is on another track.
         """
         fmt, rate_hz = self._format, self._format.motion_rate_hz
-        discriminator = Discriminator(fmt.sample_rate_hz, fmt.reference_hz, fmt.samples_per_motion, fmt.tracks)
+        discriminator = Discriminator(
+            fmt.sample_rate_hz, fmt.reference_hz, fmt.samples_per_motion, fmt.tracks
+        )
         first_row = round(self._resume_at_s * rate_hz)
         with self._open_tape() as tape:
-            lead = min(first_row, discriminator.filter_frames // fmt.samples_per_motion)  # rows that the filter needs
+            lead = min(
+                first_row, discriminator.filter_frames // fmt.samples_per_motion
+            )  # rows that the filter needs
             blocks = iter(tape.stored_blocks(BLOCK_FRAMES, (first_row - lead) * fmt.samples_per_motion))
             first = next(blocks, np.zeros((0, fmt.tracks), np.float32))
             held = [first]
@@ -75,7 +79,9 @@ class Reader:
                     held[0] = block
                     yield block
 
-            rows = (evened(rows.moved(first_row - lead), fmt) for rows in discriminate(noted(), discriminator))
+            rows = (
+                evened(rows.moved(first_row - lead), fmt) for rows in discriminate(noted(), discriminator)
+            )
             start = next(rows, None)
             if start is None:
                 raise _too_short(tape.frames, discriminator.filter_frames)

@@ -20,9 +20,9 @@ from numpy.typing import NDArray
 
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import Motion
-from morfax.player.tape.standstill import SURPRISE_CYCLES
 from morfax.player.tape.phase_lock import Drives, PhaseLock
 from morfax.player.tape.predictor import count_turns, predictor_gains
+from morfax.player.tape.standstill import SURPRISE_CYCLES
 from morfax.player.tape.watch import SHAKE_CYCLES, SHAKE_STRIDE, shake_rows
 from morfax.recorder.tape.format import TapeFormat
 
@@ -141,5 +141,8 @@ class Rehearsal:
         name, time_s = self._format.axes[axis], (self._rows + row) / self._format.motion_rate_hz
         place = ",".join(f"{mm:.2f}" for mm in positions_mm[row, :2])
         return MotionFault(
-            f"{name.upper()}, at {place} mm and {time_s:.3f} s, {what}", axis=name, time_s=time_s, speed_mm_s=speed_mm_s
+            f"{name.upper()}, at {place} mm and {time_s:.3f} s, {what}",
+            axis=name,
+            time_s=time_s,
+            speed_mm_s=speed_mm_s,
         )

@@ -36,13 +36,19 @@ class Setting:
     def __post_init__(self) -> None:
         slowest, fastest = OVERRIDES
         if not slowest <= self.override <= fastest:
-            raise ValueError(f"an override of {self.override:.0%} is none; give {slowest:.0%} to {fastest:.0%}")
+            raise ValueError(
+                f"an override of {self.override:.0%} is none; give {slowest:.0%} to {fastest:.0%}"
+            )
         far = [shift for shift in self.zero_mm if not abs(shift) <= LARGEST_ZERO_MM]
         if far:
-            raise ValueError(f"a zero of {far[0]:g} mm is too far; the phase changer turns ±{LARGEST_ZERO_MM:g} mm")
+            raise ValueError(
+                f"a zero of {far[0]:g} mm is too far; the phase changer turns ±{LARGEST_ZERO_MM:g} mm"
+            )
 
     def zeros_mm(self, axes: Sequence[str]) -> NDArray[np.float64]:
         """The zero of every axis, mm; raises ValueError for more of them than there are axes."""
         if len(self.zero_mm) > len(axes):
-            raise ValueError(f"a zero of {len(self.zero_mm)} places does not fit; the tape has {len(axes)} axes")
+            raise ValueError(
+                f"a zero of {len(self.zero_mm)} places does not fit; the tape has {len(axes)} axes"
+            )
         return np.array([*self.zero_mm, *[0.0] * (len(axes) - len(self.zero_mm))])

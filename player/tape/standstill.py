@@ -28,20 +28,24 @@ from numpy.typing import NDArray
 
 from morfax.motion.faults import Fault, LockFault, TapeFault
 from morfax.player.tape.discriminator import Phases
-from morfax.recorder.tape.pickups import DEFAULT_PICK_UP, PICK_UPS
 from morfax.recorder.tape.format import TapeFormat
+from morfax.recorder.tape.pickups import DEFAULT_PICK_UP, PICK_UPS
 
 STANDSTILL_S = 0.05
 STANDSTILL_CYCLES = 0.25  # phase that moves more than this within the 50 ms moves on purpose
 SILENT_LEVEL = 1e-3  # -60 dB of full scale
-CARRIER_SHARE = 0.9  # of a track's power; 20 dB of noise leave 0.99, clipping to a square 0.81, white noise has 0.2
+CARRIER_SHARE = (
+    0.9  # of a track's power; 20 dB of noise leave 0.99, clipping to a square 0.81, white noise has 0.2
+)
 LEVEL_STEADY, LEVEL_LOST, FEWEST_STEADY_ROWS = (
     0.8,
     0.5,
     48,
 )  # shares of the level; 8 ms at 6 kHz: a dropout, or no carrier
 LEAST_CREST = 1.24  # 1.31 and more of a sine with eight samples, 1.20 where two thirds of it are cut off
-UNSTEADY_CYCLES = 0.009  # RMS at standstill: five times as much is a twentieth of a cycle; 20 dB of noise make 0.0079
+UNSTEADY_CYCLES = (
+    0.009  # RMS at standstill: five times as much is a twentieth of a cycle; 20 dB of noise make 0.0079
+)
 REFERENCE_BAND = 0.1  # a tape's speed may be this much off
 SURPRISE_CYCLES = 0.25
 SPECTRUM_FRAMES = 16384
@@ -59,7 +63,9 @@ class Bearings:
     reference_hz: float
     names: Sequence[str]
 
-    def first_fault(self, phases: Phases, rate_hz: float, positions_mm: Sequence[float]) -> tuple[int, Fault] | None:
+    def first_fault(
+        self, phases: Phases, rate_hz: float, positions_mm: Sequence[float]
+    ) -> tuple[int, Fault] | None:
         """The first row of a block that no motion explains, and why; the screws stood at `positions_mm` before it."""
         jumped = ~(np.abs(phases.surprise) < SURPRISE_CYCLES)
         if not jumped.any():
@@ -96,7 +102,9 @@ def take_bearings(frames: Float32s, phases: Phases, fmt: TapeFormat) -> Bearings
     rows = max(round(STANDSTILL_S * fmt.motion_rate_hz), 1)
     levels = phases.levels[:rows].astype(np.float64).mean(axis=0)
     for track in range(len(levels)):
-        sensor = PICK_UPS[DEFAULT_PICK_UP] if track == 0 else fmt.sensor  # the reference comes from its source, a sine
+        sensor = (
+            PICK_UPS[DEFAULT_PICK_UP] if track == 0 else fmt.sensor
+        )  # the reference comes from its source, a sine
         share = CARRIER_SHARE * sensor.fundamental_share(reference_hz, fmt.sample_rate_hz)
         _demand_no_dropout(track, phases.levels[:rows, track], still[:, track], share, fmt)
         if not sensor.flat:
@@ -120,7 +128,9 @@ def _standing(cycles: Float64s, zero: Float64s, fmt: TapeFormat, least: int) -> 
         return 0
     moved = (np.abs(stated - zero) > STANDSTILL_CYCLES).mean(axis=1)
     steps = np.flatnonzero(np.convolve(moved > 0, np.ones(least), "valid") == least)  # longer than a dropout
-    return max(int(steps[0]) - least, 0) if len(steps) else len(stated)  # an axis may have crept before it was seen
+    return (
+        max(int(steps[0]) - least, 0) if len(steps) else len(stated)
+    )  # an axis may have crept before it was seen
 
 
 def _demand_standstill(cycles: Float64s, names: Sequence[str]) -> None:
@@ -205,7 +215,9 @@ def _demand_round(track: int, samples: Float32s, names: Sequence[str]) -> None:
         )
 
 
-def _demand_no_dropout(track: int, levels: Float32s, samples: Float32s, share: float, fmt: TapeFormat) -> None:
+def _demand_no_dropout(
+    track: int, levels: Float32s, samples: Float32s, share: float, fmt: TapeFormat
+) -> None:
     """Raise TapeFault for a track that has a carrier, but not through all of the 50 ms."""
     steady = levels > LEVEL_STEADY * np.percentile(levels, 90)
     edges = np.flatnonzero(np.diff(np.r_[False, steady, False]))

@@ -20,8 +20,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.faults import TapeFault
-from morfax.player.tape.standstill import Bearings, strongest_hz, take_bearings
 from morfax.player.tape.discriminator import Discriminator, discriminate
+from morfax.player.tape.standstill import Bearings, strongest_hz, take_bearings
 from morfax.player.tape.watch import Watch
 from morfax.recorder.tape.tape import Tape, full_scale
 
@@ -56,7 +56,9 @@ def _demand_tape(tape: Tape) -> None:
     """Raise TapeFault unless every track carries what a tape does: of music too one track is the steadiest."""
     fmt = tape.format
     frames = full_scale(next(tape.stored_blocks()))
-    rows = Discriminator(fmt.sample_rate_hz, fmt.reference_hz, fmt.samples_per_motion, fmt.tracks).feed(frames)
+    rows = Discriminator(fmt.sample_rate_hz, fmt.reference_hz, fmt.samples_per_motion, fmt.tracks).feed(
+        frames
+    )
     take_bearings(frames, rows, fmt)
 
 
@@ -69,7 +71,9 @@ def _by_the_end(tape: Tape, reference: int, fault: TapeFault) -> tuple[int, ...]
     ended = _travelled(tape, reference, others)
     wanted = (np.array(fmt.end_mm) - np.array(fmt.start_mm)) * fmt.cycles_per_mm
     fitting = [
-        order for order in permutations(range(len(others))) if (np.abs(ended[list(order)] - wanted) < END_CYCLES).all()
+        order
+        for order in permutations(range(len(others)))
+        if (np.abs(ended[list(order)] - wanted) < END_CYCLES).all()
     ]
     if len(fitting) != 1:
         raise fault

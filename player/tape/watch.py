@@ -24,8 +24,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.faults import Fault, LockFault, TapeFault
-from morfax.player.tape.standstill import Bearings, track_name
 from morfax.player.tape.discriminator import Frames, Phases, translating_taps
+from morfax.player.tape.standstill import Bearings, track_name
 from morfax.recorder.tape.format import TapeFormat
 
 MOMENTS = 64  # in a block
@@ -37,9 +37,7 @@ LEAST_APART_HZ = 1.0
 SKEW_CYCLES = 0.05
 SHAKE_S = 0.096  # 576 rows at 6 kHz
 SHAKE_STRIDE = 4
-SHAKE_CYCLES = (
-    0.0047  # 26 dB of noise shake by 0.0033, and seldom by 0.0045; a corner shakes less than half of the window
-)
+SHAKE_CYCLES = 0.0047  # 26 dB of noise shake by 0.0033, and seldom by 0.0045; a corner shakes less than half of the window
 STUCK_NOISE = 1e-4  # of full scale and of the carrier: below it noise may be the rounding of the samples
 
 Float32s = NDArray[np.float32]
@@ -92,7 +90,9 @@ class Watch:
         mean, apart = self._sums / self._moments, self._apart / self._moments
         steadier = (mean < mean[0]) & (apart > MOVED * self._noise + LEAST_APART_HZ**2)
         return (
-            self._elsewhere(int(np.argmin(np.where(steadier, mean, np.inf))), mean, time_s) if steadier.any() else None
+            self._elsewhere(int(np.argmin(np.where(steadier, mean, np.inf))), mean, time_s)
+            if steadier.any()
+            else None
         )
 
     def _elsewhere(self, steadiest: int, mean: Array, time_s: float) -> TapeFault:
@@ -124,7 +124,11 @@ class Watch:
 
     def first_fault(self, phases: Phases, positions_mm: Sequence[float]) -> tuple[int, Fault] | None:
         """The first row of a block that skew or shaking make uncertain, with its fault."""
-        found = [f for f in (self.skewed(phases, positions_mm), self.unsteady(phases, positions_mm)) if f is not None]
+        found = [
+            f
+            for f in (self.skewed(phases, positions_mm), self.unsteady(phases, positions_mm))
+            if f is not None
+        ]
         return min(found, key=lambda one: one[0], default=None)
 
     def skewed(self, phases: Phases, positions_mm: Sequence[float]) -> tuple[int, Fault] | None:
@@ -157,7 +161,9 @@ class Watch:
         whole = len(phases) // window * window
         if not whole:
             return None
-        parts = np.abs(phases.surprise[:whole:SHAKE_STRIDE]).reshape(whole // window, -1, phases.surprise.shape[1])
+        parts = np.abs(phases.surprise[:whole:SHAKE_STRIDE]).reshape(
+            whole // window, -1, phases.surprise.shape[1]
+        )
         shakes = np.median(parts, axis=1)
         if not (shakes > SHAKE_CYCLES).any():
             return None

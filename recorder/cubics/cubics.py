@@ -34,8 +34,8 @@ from numpy.typing import NDArray
 
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import Path
-from morfax.recorder.cubics.file import STEPS_PER_CONSTANT, CubicFormat, CubicProgram, write_program
 from morfax.motion.segments import Leg, Limits, Source, as_path, legs
+from morfax.recorder.cubics.file import STEPS_PER_CONSTANT, CubicFormat, CubicProgram, write_program
 from morfax.recorder.report import WrittenIntervals
 
 Array = NDArray[np.float64]
@@ -112,7 +112,9 @@ def differences(samples: Words, points: int, linear: int = 1) -> Words:
     interpolator of which only every `linear`-th step is cubic they are those of so many fewer steps, over `linear`.
     """
     if points < 2 or points & (points - 1) or points % linear:
-        raise ValueError(f"{points} points, {linear} to a cubic step, have no whole digits; give powers of two")
+        raise ValueError(
+            f"{points} points, {linear} to a cubic step, have no whole digits; give powers of two"
+        )
     x1, m1, x2, m2 = samples[:-1, :, 0], samples[:-1, :, 1], samples[1:, :, 0], samples[1:, :, 1]
     a, b = 2 * (x1 - x2) + m1 + m2, 3 * (x2 - x1) - 2 * m1 - m2
     n = points // linear
@@ -166,7 +168,9 @@ def _fitted(parts: list[Leg], start_mm: Array, counts_per_mm: float, tolerance_m
         interval_s /= 2
 
 
-def _samples(parts: list[Leg], start_mm: Array, interval_s: float, counts_per_mm: float) -> tuple[Words, float]:
+def _samples(
+    parts: list[Leg], start_mm: Array, interval_s: float, counts_per_mm: float
+) -> tuple[Words, float]:
     """Samples (k + 1, axes, 2) of all legs in whole counts, and the largest distance from them, mm."""
     found = [np.stack([_counts(start_mm, counts_per_mm), np.zeros(3, np.int64)], axis=-1)[None]]
     off_mm = 0.0
@@ -200,7 +204,9 @@ def _spline(at: Array, places: Array, intervals: int) -> tuple[Array, Array]:
         inner = basis[:, 2:-2]
         wanted = inner.T @ (places - basis[:, rest] @ coefficients[rest])
         normal = (inner.T @ inner).tocsc()
-        normal.setdiag(normal.diagonal() + 1e-9 * max(1.0, normal.diagonal().max()))  # an interval may hold no place
+        normal.setdiag(
+            normal.diagonal() + 1e-9 * max(1.0, normal.diagonal().max())
+        )  # an interval may hold no place
         coefficients[2:-2] = spsolve(normal, wanted).reshape(-1, places.shape[1])
     spline = BSpline(knots, coefficients, 3)
     ends = np.arange(intervals + 1.0)

@@ -96,8 +96,12 @@ def write_program(program: CubicProgram, file: str | os.PathLike[str]) -> None:
     """Write a program."""
     fmt = program.format
     with written_beside(file) as beside, beside.open("w", encoding="ascii", newline="\n") as out:
-        out.write(f"{HEADER} {VERSION}\ninterval_s {fmt.interval_s:.12g}\npoints {fmt.points}\nlinear {fmt.linear}\n")
-        out.write(f"counts_per_mm {fmt.counts_per_mm:.12g}\nmodulus_per_s {fmt.modulus_per_s:.12g}\n{AXES_LINE}\n")
+        out.write(
+            f"{HEADER} {VERSION}\ninterval_s {fmt.interval_s:.12g}\npoints {fmt.points}\nlinear {fmt.linear}\n"
+        )
+        out.write(
+            f"counts_per_mm {fmt.counts_per_mm:.12g}\nmodulus_per_s {fmt.modulus_per_s:.12g}\n{AXES_LINE}\n"
+        )
         out.write(f"intervals {len(program.words)}\n\n")
         for k in range(len(program.words) + 1):
             if k in program.checks:
@@ -112,7 +116,9 @@ def read_program(file: str | os.PathLike[str]) -> CubicProgram:
     lines = _numbered(FilePath(file))
     _, version = next(lines, (1, ""))
     if version.split()[:2] != HEADER.split():
-        raise ProgramFault(f"{file} is no cubic program: it must begin with '{HEADER} {VERSION}'; give another", line=1)
+        raise ProgramFault(
+            f"{file} is no cubic program: it must begin with '{HEADER} {VERSION}'; give another", line=1
+        )
     if version != f"{HEADER} {VERSION}":
         found = version.split()[-1][:20]
         raise ProgramFault(
@@ -127,7 +133,9 @@ def _numbered(file: FilePath) -> Iterator[tuple[int, str]]:
     try:
         text = file.read_bytes().decode("ascii")
     except UnicodeDecodeError as error:
-        raise ProgramFault(f"{file} is no cubic program: byte {error.start} is no ASCII text; give another") from None
+        raise ProgramFault(
+            f"{file} is no cubic program: byte {error.start} is no ASCII text; give another"
+        ) from None
     except OSError as error:
         raise FileFault(f"cannot read {file}: {error.strerror}; check the name") from error
     for number, line in enumerate(text.splitlines(), 1):
@@ -144,7 +152,9 @@ def _read_header(file: str | os.PathLike[str], lines: Iterator[tuple[int, str]])
         words = line.split()
         if len(words) < 2 or words[0] != name or (name == "axes" and line != AXES_LINE):
             wanted = AXES_LINE if name == "axes" else name
-            raise ProgramFault(f"{file}, line {number}: {line[:40]!r} instead of {wanted}; {_AGAIN}", line=number)
+            raise ProgramFault(
+                f"{file}, line {number}: {line[:40]!r} instead of {wanted}; {_AGAIN}", line=number
+            )
         if name != "axes":
             values[name] = _number(file, number, words)
     try:
@@ -163,7 +173,9 @@ def _number(file: str | os.PathLike[str], number: int, words: list[str]) -> floa
         (value,) = (float(word) for word in words[1:])
     except ValueError:
         got = " ".join(words)[:40]
-        raise ProgramFault(f"{file}, line {number}: {got!r} is not one number; {_AGAIN}", line=number) from None
+        raise ProgramFault(
+            f"{file}, line {number}: {got!r} is not one number; {_AGAIN}", line=number
+        ) from None
     return value
 
 
@@ -183,12 +195,20 @@ def _read_words(
             words.append(_whole(file, number, line, 9))
             places.append(number)
         if len(words) > intervals or 0 not in checks:
-            what = f"more than the {intervals} intervals stated" if checks else "no 'at' with a start before the words"
+            what = (
+                f"more than the {intervals} intervals stated"
+                if checks
+                else "no 'at' with a start before the words"
+            )
             raise ProgramFault(f"{file}, line {number}: {what}; {_AGAIN}", line=number)
     else:
-        raise ProgramFault(f"{file} is cut short: {len(words)} of {intervals} intervals and no end; copy it again")
+        raise ProgramFault(
+            f"{file} is cut short: {len(words)} of {intervals} intervals and no end; copy it again"
+        )
     if len(words) != intervals or intervals not in checks:
-        raise ProgramFault(f"{file}: {len(words)} intervals where {intervals} and 'at' must stand; copy it again")
+        raise ProgramFault(
+            f"{file}: {len(words)} intervals where {intervals} and 'at' must stand; copy it again"
+        )
     return CubicProgram(fmt, np.array(words, np.int64).reshape(-1, 3, 3), checks, places)
 
 

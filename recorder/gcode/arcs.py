@@ -38,7 +38,17 @@ from morfax.recorder.gcode.pieces import (
     resample,
 )
 
-SHARES = (1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2)  # of the tolerance, for the pieces that a chain is laid from
+SHARES = (
+    1.0,
+    0.9,
+    0.8,
+    0.7,
+    0.6,
+    0.5,
+    0.4,
+    0.3,
+    0.2,
+)  # of the tolerance, for the pieces that a chain is laid from
 ROUNDS = 20
 BREAK_RAD = 1e-4
 _STEP = 1e-7  # mm and rad, of the slopes by differences
@@ -133,7 +143,9 @@ class _Spline:
             -1, 2
         )  # of the joints; -1 is fixed
         of_halves = np.where(curved, 2 * n - 3 + np.cumsum(curved), -1)
-        self.columns = np.column_stack([columns[:-1], columns[1:], of_halves])  # of each segment's five numbers
+        self.columns = np.column_stack(
+            [columns[:-1], columns[1:], of_halves]
+        )  # of each segment's five numbers
 
     def laid(self, tolerance_mm: float) -> Chain | None:
         """The chain by least squares, and where that leaves the tolerance with more weight on the worst; or none."""
@@ -211,7 +223,9 @@ class _Spline:
             values.append(slope * weights / tolerance_mm)
         chords = np.diff(self.joints, axis=0)
         turn = np.column_stack([-chords[:, 1], chords[:, 0]]) / (chords**2).sum(axis=1)[:, None]
-        slopes = np.column_stack([-turn, turn, np.ones(len(turn))])  # of a chord's direction, and of half an angle
+        slopes = np.column_stack(
+            [-turn, turn, np.ones(len(turn))]
+        )  # of a chord's direction, and of half an angle
         for j in range(len(residuals) - n):
             after = (j + 1) % len(turn)
             for segment, sign in ((j, -1.0), (after, 1.0)):
@@ -264,7 +278,9 @@ def _chords(places: Array, tolerance_mm: float) -> Chain:
     kept, worst_mm, first = [0], 0.0, 0
     while first < len(places) - 1:
         last, off_mm = first + 1, 0.0
-        while last + 1 < len(places) and (further_mm := _off_chord_mm(places[first : last + 2])) <= tolerance_mm:
+        while (
+            last + 1 < len(places) and (further_mm := _off_chord_mm(places[first : last + 2])) <= tolerance_mm
+        ):
             last, off_mm = last + 1, further_mm
         kept.append(last)
         first, worst_mm = last, max(worst_mm, off_mm)

@@ -33,8 +33,8 @@ from numpy.typing import NDArray
 from morfax.motion.faults import MotionFault
 from morfax.motion.files import written_beside
 from morfax.motion.motion import IN_WORK_BELOW_MM, Path
-from morfax.recorder.gcode.arcs import Segment, fit
 from morfax.motion.segments import Source, as_path
+from morfax.recorder.gcode.arcs import Segment, fit
 from morfax.recorder.report import Written
 
 TOLERANCE_MM = 0.01
@@ -77,14 +77,20 @@ class _Stretch:
         return bool(z.min() > IN_WORK_BELOW_MM or (across <= _NOISE_MM and z[-1] > z[0]))
 
 
-def record_blocks(stream: Source, file: str | os.PathLike[str], *, tolerance_mm: float = TOLERANCE_MM) -> BlockReport:
+def record_blocks(
+    stream: Source, file: str | os.PathLike[str], *, tolerance_mm: float = TOLERANCE_MM
+) -> BlockReport:
     """Record a motion as a program of lines and arcs that stay within the tolerance of it; raises MotionFault, FileFault."""
     if not 2 * WRITTEN_MM <= tolerance_mm < math.inf:
-        raise ValueError(f"a tolerance of {tolerance_mm} mm cannot be written; give {2 * WRITTEN_MM} mm or more")
+        raise ValueError(
+            f"a tolerance of {tolerance_mm} mm cannot be written; give {2 * WRITTEN_MM} mm or more"
+        )
     path = as_path(stream)
     stretches = list(_stretches(path, tolerance_mm))
     if not stretches:
-        raise MotionFault("the motion stands still at one place; a program needs at least two different places")
+        raise MotionFault(
+            "the motion stands still at one place; a program needs at least two different places"
+        )
     writer = _Writer(path.positions_mm[0])
     for stretch in stretches:
         writer.stretch(stretch, tolerance_mm - WRITTEN_MM)
@@ -108,7 +114,9 @@ def _stretches(path: Path, tolerance_mm: float) -> Iterator[_Stretch]:
         points = path.positions_mm[np.r_[steps, steps[-1] + 1]]
         lengths, seconds = np.sqrt((step[steps] ** 2).sum(axis=1)), took_s[steps]
         if kind[group[0]] == 2 and np.ptp(points[:, :2], axis=0).max() <= tolerance_mm / 4:
-            points[:, :2] = points[0, :2]  # a sample that was taken in the corner where the tool turns upwards
+            points[:, :2] = points[
+                0, :2
+            ]  # a sample that was taken in the corner where the tool turns upwards
         level = kind[group[0]] == 1 and float(np.ptp(points[:, 2])) <= tolerance_mm / 2
         yield _Stretch(points, level, _speed_mm_s(lengths, seconds))
 
@@ -133,7 +141,9 @@ class _Writer:
     def stretch(self, stretch: _Stretch, tolerance_mm: float) -> None:
         """Write a stretch."""
         points = np.vstack([self.place, stretch.points_mm[1:]])
-        self.duration_s += float(np.sqrt((np.diff(points, axis=0) ** 2).sum(axis=1)).sum()) / stretch.speed_mm_s
+        self.duration_s += (
+            float(np.sqrt((np.diff(points, axis=0) ** 2).sum(axis=1)).sum()) / stretch.speed_mm_s
+        )
         if stretch.rapid or not stretch.level:
             kept, off_mm = _straightest(points, tolerance_mm)
             self.deviation_mm = max(self.deviation_mm, off_mm)

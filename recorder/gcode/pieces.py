@@ -51,7 +51,9 @@ def corners(points_mm: Array) -> NDArray[np.int64]:
 
 def _turn_rad(points: Array, s: Array, reach_mm: float) -> Array:
     """How much the direction turns within a reach to either side of each point; 0 near the ends."""
-    before, after = (np.column_stack([np.interp(s + r, s, c) for c in points.T]) for r in (-reach_mm, reach_mm))
+    before, after = (
+        np.column_stack([np.interp(s + r, s, c) for c in points.T]) for r in (-reach_mm, reach_mm)
+    )
     (ax, ay), (bx, by) = (points - before).T, (after - points).T
     turn = np.arctan2(ax * by - ay * bx, ax * bx + ay * by)
     turn[(s < reach_mm / 2) | (s > s[-1] - reach_mm / 2)] = 0.0

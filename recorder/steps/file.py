@@ -73,7 +73,12 @@ class StepFormat:
         _demand(self.channels in (5, 8), "channels", self.channels, "5 or 8")
         for name in ("start_mm", "end_mm"):
             place = getattr(self, name)
-            _demand(len(place) == 3 and all(abs(mm) < _MOST_MM for mm in place), name, place, "three numbers of mm")
+            _demand(
+                len(place) == 3 and all(abs(mm) < _MOST_MM for mm in place),
+                name,
+                place,
+                "three numbers of mm",
+            )
 
     @property
     def interval_s(self) -> float:
@@ -116,7 +121,9 @@ def read_program(file: str | os.PathLike[str]) -> Program:
     lines = _numbered(FilePath(file))
     version_line, version = next(lines, (1, ""))
     if version.split()[:2] != HEADER.split():
-        raise ProgramFault(f"{file} is no step program: it must begin with '{HEADER} {VERSION}'; give another", line=1)
+        raise ProgramFault(
+            f"{file} is no step program: it must begin with '{HEADER} {VERSION}'; give another", line=1
+        )
     if version != f"{HEADER} {VERSION}":
         raise ProgramFault(
             f"{file}, line {version_line}: the format is version {version.split()[-1][:20]}; this program reads "
@@ -149,7 +156,9 @@ def _numbered(file: FilePath) -> Iterator[tuple[int, str]]:
     try:
         text = file.read_bytes().decode("ascii")
     except UnicodeDecodeError as error:
-        raise ProgramFault(f"{file} is no step program: byte {error.start} is no ASCII text; give another") from None
+        raise ProgramFault(
+            f"{file} is no step program: byte {error.start} is no ASCII text; give another"
+        ) from None
     except OSError as error:
         raise FileFault(f"cannot read {file}: {error.strerror}; check the name") from error
     for number, line in enumerate(text.splitlines(), 1):
@@ -165,11 +174,15 @@ def _read_header(file: str | os.PathLike[str], lines: Iterator[tuple[int, str]])
         number, line = next(lines, (number, ""))
         words = line.split()
         if not words or words[0] != name:
-            raise ProgramFault(f"{file}, line {number}: {line[:40]!r} instead of {name}; {_AGAIN}", line=number)
+            raise ProgramFault(
+                f"{file}, line {number}: {line[:40]!r} instead of {name}; {_AGAIN}", line=number
+            )
         try:
             values[name] = tuple(float(word) for word in words[1:])
         except ValueError:
-            raise ProgramFault(f"{file}, line {number}: {line[:40]!r} is no number; {_AGAIN}", line=number) from None
+            raise ProgramFault(
+                f"{file}, line {number}: {line[:40]!r} is no number; {_AGAIN}", line=number
+            ) from None
     try:
         return _format(values), int(_single(values, "rows", 0, MOST_ROWS))
     except ValueError as error:
@@ -187,11 +200,18 @@ def _format(values: dict[str, tuple[float, ...]]) -> StepFormat:
 def _single(values: dict[str, tuple[float, ...]], name: str, least: float, most: float) -> float:
     """The one number of an entry; raises ValueError."""
     got = values[name]
-    _demand(len(got) == 1 and least <= got[0] <= most, name, " ".join(map(str, got)), f"from {least:g} to {most:g}")
+    _demand(
+        len(got) == 1 and least <= got[0] <= most,
+        name,
+        " ".join(map(str, got)),
+        f"from {least:g} to {most:g}",
+    )
     return got[0]
 
 
-def _read_rows(file: str | os.PathLike[str], lines: Iterator[tuple[int, str]], fmt: StepFormat, count: int) -> Program:
+def _read_rows(
+    file: str | os.PathLike[str], lines: Iterator[tuple[int, str]], fmt: StepFormat, count: int
+) -> Program:
     """The rows up to `end`, as many as the header says."""
     codes: list[int] = []
     times: list[int] = []
@@ -203,18 +223,26 @@ def _read_rows(file: str | os.PathLike[str], lines: Iterator[tuple[int, str]], f
         found = _ROW.fullmatch(line)
         if found is None or len(found[1]) != fmt.channels:
             allowed = f"{fmt.channels} of o and ., or end"
-            raise ProgramFault(f"{file}, line {number}: {line[:40]!r} is no row; it must be {allowed}", line=number)
+            raise ProgramFault(
+                f"{file}, line {number}: {line[:40]!r} is no row; it must be {allowed}", line=number
+            )
         codes.append(int(found[1].replace("o", "1").replace(".", "0"), 2))
         times.append(int(found[2] or 1))
         places.append(number)
         total += times[-1]
         if total > count:
-            raise ProgramFault(f"{file}, line {number}: more than the {count} rows stated; {_AGAIN}", line=number)
+            raise ProgramFault(
+                f"{file}, line {number}: more than the {count} rows stated; {_AGAIN}", line=number
+            )
     else:
-        raise ProgramFault(f"{file} is cut short: {total} of {count} rows and no end; copy it again or {_AGAIN}")
+        raise ProgramFault(
+            f"{file} is cut short: {total} of {count} rows and no end; copy it again or {_AGAIN}"
+        )
     if total != count:
         raise ProgramFault(f"{file} has {total} rows, but states {count}; copy it again or {_AGAIN}")
-    return Program(fmt, np.repeat(np.array(codes, np.uint8), times), np.repeat(np.array(places, np.int64), times))
+    return Program(
+        fmt, np.repeat(np.array(codes, np.uint8), times), np.repeat(np.array(places, np.int64), times)
+    )
 
 
 def _demand(good: bool, name: str, value: object, allowed: str) -> None:

@@ -164,7 +164,9 @@ def _search(places, speeds, left, settings, start, end, moves, table, parents, t
             parents[level, b] = origin[b]
             taken[level, b] = new[b, 3:6]
             p = places[new[b, 6]]
-            off[level, b] = np.sqrt((p[0] - new[b, 0]) ** 2 + (p[1] - new[b, 1]) ** 2 + (p[2] - new[b, 2]) ** 2)
+            off[level, b] = np.sqrt(
+                (p[0] - new[b, 0]) ** 2 + (p[1] - new[b, 1]) ** 2 + (p[2] - new[b, 2]) ** 2
+            )
         count = new_count
         for b in range(count):
             arrived = beam[b, 0] == end[0] and beam[b, 1] == end[1] and beam[b, 2] == end[2]

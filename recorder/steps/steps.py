@@ -31,10 +31,10 @@ from numpy.typing import NDArray
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import IN_WORK_BELOW_MM
 from morfax.motion.segments import Leg, Limits, Source, as_path, legs
-from morfax.recorder.steps.lengths import cut
 from morfax.recorder.report import WrittenIntervals
-from morfax.recorder.steps.rings import LARGEST, SAME, commands
 from morfax.recorder.steps.file import MOST_ROWS, STEP_MM, Program, StepFormat, write_program
+from morfax.recorder.steps.lengths import cut
+from morfax.recorder.steps.rings import LARGEST, SAME, commands
 
 AXIS_ROW, TOOL_DOWN = 0b0001_0000, 0b1000_0000
 _UP_DOWN_SAME = {0: 0b00, 1: 0b01, -1: 0b10}
@@ -57,7 +57,12 @@ class StepReport(WrittenIntervals[StepFormat]):
         """What else is worth telling."""
         share = self.vector_intervals / max(1, self.intervals)
         punched = self.rows * self.format.channels
-        return {"rows": self.rows, "punched_bits": punched, "vector_share": share, "deviation_mm": self.deviation_mm}
+        return {
+            "rows": self.rows,
+            "punched_bits": punched,
+            "vector_share": share,
+            "deviation_mm": self.deviation_mm,
+        }
 
 
 def record_steps(
@@ -83,7 +88,9 @@ def record_steps(
     fmt = replace(fmt, start_mm=start_mm, end_mm=end_mm)
     rows = encode(lengths, down, fmt)
     if len(rows) > MOST_ROWS:
-        raise MotionFault(f"the program has {len(rows)} rows; at most {MOST_ROWS} are allowed: record it in parts")
+        raise MotionFault(
+            f"the program has {len(rows)} rows; at most {MOST_ROWS} are allowed: record it in parts"
+        )
     write_program(Program(fmt, rows), file)
     vectors = len(lengths) - int(np.count_nonzero(rows & AXIS_ROW))
     steps = int(np.abs(lengths).sum())
@@ -115,7 +122,12 @@ def _rows(lengths: Steps, changes: Steps, down: NDArray[np.bool_], fmt: StepForm
             yield axis[at] | AXIS_ROW | tool[at]
         elif fmt.vectors == 1:
             yield vectors[at] | axis[at] & 0b0110_0000 | tool[at]
-        elif second < len(vectors) and vectors[second] >= 0 and not z_moves[second] and tool[at] == tool[second]:
+        elif (
+            second < len(vectors)
+            and vectors[second] >= 0
+            and not z_moves[second]
+            and tool[at] == tool[second]
+        ):
             yield vectors[at] | vectors[second] << 2 | axis[at] & 0b0110_0000 | tool[at]
             at += 1
         else:

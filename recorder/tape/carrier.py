@@ -67,14 +67,18 @@ class Carrier:
         self._start_mm = np.atleast_1d(np.asarray(start_mm, np.float64))
         self._held = np.empty((0, len(self._start_mm)))  # displacement in cycles
         self._periods = 0
-        lowest = 0.5 * pick_up.reference_hz / pick_up.sample_rate_hz  # a track stays above two thirds of the reference
+        lowest = (
+            0.5 * pick_up.reference_hz / pick_up.sample_rate_hz
+        )  # a track stays above two thirds of the reference
         self._harmonics = int((FADE_TO / lowest + 1) / 2)
 
     def frames(self, positions_mm: ArrayLike) -> Frames:
         """Frames (n, 1 + axes) of what a block of positions (n, axes) in mm completes; two samples stay behind."""
         positions = np.asarray(positions_mm, np.float64)
         if positions.ndim != 2 or positions.shape[1] != len(self._start_mm):
-            raise ValueError(f"positions of shape {positions.shape} do not fit; give (n, {len(self._start_mm)}) mm")
+            raise ValueError(
+                f"positions of shape {positions.shape} do not fit; give (n, {len(self._start_mm)}) mm"
+            )
         cycles = (positions - self._start_mm) * self._pick_up.cycles_per_mm
         if not len(self._held):
             cycles = np.vstack([cycles[:1], cycles])  # the screws stood at the first position before
@@ -151,7 +155,9 @@ def _wave(cycles, frequency, amplitudes):  # type: ignore[no-untyped-def]
     """Sum of the odd harmonics of a phase; the frequency over the sample rate tells which of them there are."""
     fundamental = _sine(cycles)
     before, now = -fundamental, fundamental
-    twice_cosine = 2.0 - 4.0 * fundamental * fundamental  # of the doubled phase; sin((n + 2) x) = 2 cos 2x sin nx - ...
+    twice_cosine = (
+        2.0 - 4.0 * fundamental * fundamental
+    )  # of the doubled phase; sin((n + 2) x) = 2 cos 2x sin nx - ...
     wave = 0.0
     for k in range(len(amplitudes)):
         fade = ((2 * k + 1) * frequency - FADE_FROM) / (FADE_TO - FADE_FROM)

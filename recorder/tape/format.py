@@ -59,7 +59,10 @@ class TapeFormat:
         _demand(self.pickup in PICK_UPS, "pickup", self.pickup, f"one of {', '.join(PICK_UPS)}")
         most = 1 / self.sensor.largest
         _demand(
-            self.level <= most, "level", self.level, f"at most {most:.3g}, where a {self.pickup} reaches full scale"
+            self.level <= most,
+            "level",
+            self.level,
+            f"at most {most:.3g}, where a {self.pickup} reaches full scale",
         )
         object.__setattr__(self, "version", 1 if self.pickup == DEFAULT_PICK_UP else 2)
         object.__setattr__(self, "start_mm", self.start_mm or (0.0,) * len(self.axes))
@@ -112,7 +115,9 @@ class TapeFormat:
     def to_json(self) -> str:
         """The format as one line of JSON."""
         entries = _entries(self.version)
-        return json.dumps({name: value for name, value in asdict(self).items() if name in entries}, allow_nan=False)
+        return json.dumps(
+            {name: value for name, value in asdict(self).items() if name in entries}, allow_nan=False
+        )
 
     @classmethod
     def from_json(cls, text: str) -> TapeFormat:
@@ -120,9 +125,13 @@ class TapeFormat:
         values = _object(text)
         version = values.get("version")
         if _is_number(version) and version > VERSION:
-            raise TapeFault(f"the tape's format is version {version:g}; this program reads {VERSION}: use a later one")
+            raise TapeFault(
+                f"the tape's format is version {version:g}; this program reads {VERSION}: use a later one"
+            )
         _check_entries(values)
-        as_tuples: dict[str, Any] = {name: tuple(v) if isinstance(v, list) else v for name, v in values.items()}
+        as_tuples: dict[str, Any] = {
+            name: tuple(v) if isinstance(v, list) else v for name, v in values.items()
+        }
         try:
             return cls(**as_tuples)
         except (TypeError, ValueError) as error:
@@ -134,7 +143,9 @@ def columns_of(order: Sequence[int] | None, tracks: int) -> list[int] | None:
     if order is None:
         return None
     if sorted(order) != list(range(1, tracks + 1)):
-        raise TapeFault(f"tracks {','.join(map(str, order))} are no order; name each of the tracks 1 to {tracks} once")
+        raise TapeFault(
+            f"tracks {','.join(map(str, order))} are no order; name each of the tracks 1 to {tracks} once"
+        )
     return [track - 1 for track in order]
 
 
@@ -146,7 +157,9 @@ def is_format_text(text: str) -> bool:
 def _object(text: str) -> dict[str, Any]:
     """The JSON object in a text; raises TapeFault."""
     if len(text) > LARGEST_TEXT_BYTES:
-        raise TapeFault(f"the tape's text chunk has {len(text)} characters; at most {LARGEST_TEXT_BYTES} are allowed")
+        raise TapeFault(
+            f"the tape's text chunk has {len(text)} characters; at most {LARGEST_TEXT_BYTES} are allowed"
+        )
     try:
         values = json.loads(text)
     except (ValueError, RecursionError):
@@ -176,12 +189,17 @@ def _check_numbers(fmt: TapeFormat) -> None:
     _demand(_is_number(fmt.version) and fmt.version in (1, 2), "version", fmt.version, "1 or 2")
     for name, most in (("sample_rate_hz", 2**31), ("samples_per_motion", 10_000)):
         value = getattr(fmt, name)
-        _demand(isinstance(value, int) and 2 <= value <= most, name, value, f"a whole number from 2 to {most}")
+        _demand(
+            isinstance(value, int) and 2 <= value <= most, name, value, f"a whole number from 2 to {most}"
+        )
     for name in ("reference_hz", "cycles_per_mm", "level"):
         value = getattr(fmt, name)
         _demand(_is_number(value) and value > 0, name, value, "a number above zero")
     _demand(
-        _is_number(fmt.dwell_s) and 0 <= fmt.dwell_s <= 3600, "dwell_s", fmt.dwell_s, "a number of s from 0 to 3600"
+        _is_number(fmt.dwell_s) and 0 <= fmt.dwell_s <= 3600,
+        "dwell_s",
+        fmt.dwell_s,
+        "a number of s from 0 to 3600",
     )
 
 

@@ -63,7 +63,12 @@ class Pipe:
     """A tape in a pipe, with the same face as a Tape; can be read once."""
 
     def __init__(
-        self, stream: BinaryIO, samples: Samples, fmt: TapeFormat, begun: bytes, columns: list[int] | None = None
+        self,
+        stream: BinaryIO,
+        samples: Samples,
+        fmt: TapeFormat,
+        begun: bytes,
+        columns: list[int] | None = None,
     ) -> None:
         self.format, self._stream, self._samples, self._begun = fmt, stream, samples, begun
         self._columns = columns
@@ -97,7 +102,9 @@ class Pipe:
     def __enter__(self) -> Pipe:
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None
+    ) -> None:
         return None
 
     def blocks(self, frames: int = PIPE_FRAMES, first: int = 0) -> Iterator[Frames]:
@@ -141,7 +148,9 @@ def _header(stream: BinaryIO) -> tuple[Samples, str]:
         name, size = struct.unpack("<4sI", head)
         if name == b"data":
             if samples is None:
-                raise TapeFault("the WAV in the pipe has no format before its data; give raw samples, or another WAV")
+                raise TapeFault(
+                    "the WAV in the pipe has no format before its data; give raw samples, or another WAV"
+                )
             return samples, text
         if size > LARGEST_CHUNK_BYTES:
             raise TapeFault(
@@ -182,7 +191,9 @@ def _comment(body: bytes) -> str:
     return ""
 
 
-def _format(text: str, samples: Samples, reference_hz: float | None, cycles_per_mm: float | None) -> TapeFormat:
+def _format(
+    text: str, samples: Samples, reference_hz: float | None, cycles_per_mm: float | None
+) -> TapeFormat:
     """The format, from the text or by hand."""
     given = {"reference_hz": reference_hz, "cycles_per_mm": cycles_per_mm}
     by_hand: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
@@ -200,7 +211,9 @@ def _format(text: str, samples: Samples, reference_hz: float | None, cycles_per_
                 "the pipe does not say its format; give --reference 6kHz --cycles-per-mm 20, or what it has"
             )
         axes, per_motion = _AXES[: samples.tracks - 1], max(2, round(rate_hz / 6000))
-        return TapeFormat(sample_rate_hz=rate_hz, axes=axes, dwell_s=0.0, samples_per_motion=per_motion, **by_hand)
+        return TapeFormat(
+            sample_rate_hz=rate_hz, axes=axes, dwell_s=0.0, samples_per_motion=per_motion, **by_hand
+        )
     except TapeFault:
         raise
     except ValueError as error:

@@ -28,11 +28,11 @@ from numpy.typing import NDArray
 from morfax.motion.faults import MotionFault
 from morfax.motion.files import disk_full_fault, written_beside
 from morfax.motion.motion import AXES, Motion, Path
-from morfax.recorder.tape.carrier import Carrier, Frames
 from morfax.recorder.report import Written
+from morfax.recorder.tape.carrier import Carrier, Frames
+from morfax.recorder.tape.format import TapeFormat
 from morfax.recorder.tape.riff import make_plain, replace_text
 from morfax.recorder.tape.spool import Spool, medium, sidecar
-from morfax.recorder.tape.format import TapeFormat
 
 _BLOCK_SAMPLES = 8192  # a megabyte of frames, which stays in the processor's cache
 _PLACE_DECIMALS = 6  # of the start and end in the text chunk: a nanometre
@@ -87,7 +87,9 @@ def record(
     tape = _Take(fmt, first[0], progress, _total_s(stream))
     with written_beside(file) as beside:
         try:
-            spool = Spool(beside, fmt.sample_rate_hz, fmt.tracks, kind, _placeholder(fmt), name=FilePath(file))
+            spool = Spool(
+                beside, fmt.sample_rate_hz, fmt.tracks, kind, _placeholder(fmt), name=FilePath(file)
+            )
             with spool as out:
                 for frames in tape.frames(chain([first], blocks)):
                     out.put(frames)
@@ -101,7 +103,9 @@ def record(
 class _Take:
     """One run of the tape: the carriers, the speed gauge and the count of frames."""
 
-    def __init__(self, fmt: TapeFormat, first_mm: Array, progress: Progress | None, total_s: float | None) -> None:
+    def __init__(
+        self, fmt: TapeFormat, first_mm: Array, progress: Progress | None, total_s: float | None
+    ) -> None:
         self._format, self._progress, self._total_s = fmt, progress, total_s
         self._carrier = Carrier(fmt.carrier, first_mm)
         self._samples = 0
@@ -135,7 +139,9 @@ class _Take:
         """Note the largest speeds; raise MotionFault where an axis leaves the deviation."""
         fmt = self._format
         speed = np.diff(positions, axis=0, prepend=self.last_mm[None]) * fmt.motion_rate_hz
-        fast = np.abs(speed) > fmt.largest_speed_mm_s * (1 + 1e-9)  # a motion at the very limit is let through
+        fast = np.abs(speed) > fmt.largest_speed_mm_s * (
+            1 + 1e-9
+        )  # a motion at the very limit is let through
         if fast.any():
             at, axis = np.argwhere(fast)[0].tolist()
             raise _too_fast(fmt, axis, (self._samples + at) / fmt.motion_rate_hz, float(speed[at, axis]))
@@ -149,7 +155,9 @@ class _Take:
             self._progress(self._samples / self._format.motion_rate_hz, self._total_s)
 
 
-def _axes_of(stream: Iterable[Motion] | Motion | Path) -> tuple[Iterable[Motion] | Motion | Path, tuple[str, ...]]:
+def _axes_of(
+    stream: Iterable[Motion] | Motion | Path,
+) -> tuple[Iterable[Motion] | Motion | Path, tuple[str, ...]]:
     """The axes of a motion, and the motion with nothing taken off it."""
     if isinstance(stream, Motion | Path):
         return stream, stream.axes
@@ -180,7 +188,9 @@ def _check(positions: Array, rate_hz: float, done: int, fmt: TapeFormat) -> None
         )
     if positions.ndim != 2 or positions.shape[1] != len(fmt.axes):
         got = positions.shape[-1] if positions.ndim else 0
-        raise MotionFault(f"the motion has {got} axes; this tape takes {len(fmt.axes)}: {', '.join(fmt.axes)}")
+        raise MotionFault(
+            f"the motion has {got} axes; this tape takes {len(fmt.axes)}: {', '.join(fmt.axes)}"
+        )
     if not np.isfinite(positions).all():
         at, axis = np.argwhere(~np.isfinite(positions))[0].tolist()
         time_s, name = (done + at) / rate_hz, fmt.axes[axis]

@@ -80,7 +80,9 @@ def replace_text(file: str | os.PathLike[str], old: str, new: str) -> None:
     with Path(file).open("r+b") as opened:
         at = opened.read(_SEARCHED_BYTES).find(before)
         if at < 0 or len(after) != len(before):
-            raise ValueError(f"a text of {len(new)} characters has no place in the header; it must be there already")
+            raise ValueError(
+                f"a text of {len(new)} characters has no place in the header; it must be there already"
+            )
         opened.seek(at)
         opened.write(after)
 
@@ -96,7 +98,9 @@ def _name_samples_plainly(opened: BinaryIO, format_at: int) -> None:
 
 def _whole_file(head: bytes, held: int) -> Sizes:
     """Sizes of an AIFF or a W64, whose outermost chunk says how long the whole file is."""
-    stated = struct.unpack(">I", head[4:8])[0] + 8 if head[:4] == b"FORM" else struct.unpack("<Q", head[16:24])[0]
+    stated = (
+        struct.unpack(">I", head[4:8])[0] + 8 if head[:4] == b"FORM" else struct.unpack("<Q", head[16:24])[0]
+    )
     return Sizes(head[:4], 0, 0, stated, held)
 
 

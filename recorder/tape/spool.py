@@ -21,7 +21,14 @@ from numpy.typing import NDArray
 
 from morfax.motion.faults import FileFault, TapeFault
 
-CONTAINERS = {".wav": "RF64", ".rf64": "RF64", ".flac": "FLAC", ".w64": "W64", ".aiff": "AIFF", ".aif": "AIFF"}
+CONTAINERS = {
+    ".wav": "RF64",
+    ".rf64": "RF64",
+    ".flac": "FLAC",
+    ".w64": "W64",
+    ".aiff": "AIFF",
+    ".aif": "AIFF",
+}
 SUBTYPES = {"16": "PCM_16", "24": "PCM_24", "32": "PCM_32", "float": "FLOAT"}
 MOST_FLAC_TRACKS = 8  # FLAC, format specification: channels 1 to 8
 LARGEST_AIFF_BYTES = 2**31 - 2**16  # sizes in an AIFF are signed
@@ -36,7 +43,9 @@ def medium(file: FilePath, sample: str) -> tuple[str, str]:
         raise ValueError(f"sample is {sample!r}; it must be one of {', '.join(SUBTYPES)}")
     suffix = file.suffix.lower()
     if suffix not in CONTAINERS:
-        raise FileFault(f"cannot write {file}: a tape's name ends in {', '.join(CONTAINERS)}; give it one of these")
+        raise FileFault(
+            f"cannot write {file}: a tape's name ends in {', '.join(CONTAINERS)}; give it one of these"
+        )
     if suffix == ".flac" and sample not in ("16", "24"):
         raise TapeFault(f"a FLAC has no samples of {sample}; it takes 16 or 24 bit: write a .wav for more")
     return CONTAINERS[suffix], SUBTYPES[sample]
@@ -76,7 +85,9 @@ class Spool:
     def __enter__(self) -> Spool:
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None
+    ) -> None:
         self._sound.close()
         if error is None:
             self._check_whole()
@@ -85,7 +96,9 @@ class Spool:
         """Write frames; raises SoundFileRuntimeError when the disk takes only a part, TapeFault beyond an AIFF's size."""
         self.frames += len(frames)
         if self._container == "AIFF" and self.frames * self._frame_bytes > LARGEST_AIFF_BYTES:
-            raise TapeFault(f"cannot write {self._name}: an AIFF ends at 2 GiB; write a .wav, .rf64, .w64 or .flac")
+            raise TapeFault(
+                f"cannot write {self._name}: an AIFF ends at 2 GiB; write a .wav, .rf64, .w64 or .flac"
+            )
         try:
             self._sound.write(_to_16_bit(frames) if self._subtype == "PCM_16" else frames)
         except AssertionError:  # soundfile asserts that libsndfile wrote all of it

@@ -25,10 +25,10 @@ from numpy.typing import NDArray
 
 from morfax.motion.faults import FileFault, TapeFault
 from morfax.recorder.tape.carrier import Frames
+from morfax.recorder.tape.format import LARGEST_TEXT_BYTES, TapeFormat, columns_of, is_format_text
 from morfax.recorder.tape.recording import Recording, record
 from morfax.recorder.tape.riff import read_sizes
 from morfax.recorder.tape.spool import sidecar
-from morfax.recorder.tape.format import LARGEST_TEXT_BYTES, TapeFormat, columns_of, is_format_text
 
 __all__ = ["Recording", "Tape", "TapeFormat", "record"]
 
@@ -68,7 +68,9 @@ class Tape:
         sound = _open_sound(FilePath(file))
         try:
             _check_whole(FilePath(file), sound)
-            fmt = _format(FilePath(file), sound, {"reference_hz": reference_hz, "cycles_per_mm": cycles_per_mm})
+            fmt = _format(
+                FilePath(file), sound, {"reference_hz": reference_hz, "cycles_per_mm": cycles_per_mm}
+            )
             return cls(FilePath(file), sound, _started(fmt, start_mm), columns_of(order, fmt.tracks))
         except BaseException:
             sound.close()
@@ -77,7 +79,9 @@ class Tape:
     def __enter__(self) -> Tape:
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None
+    ) -> None:
         self.close()
 
     def close(self) -> None:
@@ -121,7 +125,9 @@ class Tape:
         try:
             self._sound.seek(first)
         except soundfile.SoundFileError as error:
-            raise TapeFault(f"{self.file} cannot be wound to frame {first}: {error}; copy the file again") from error
+            raise TapeFault(
+                f"{self.file} cannot be wound to frame {first}: {error}; copy the file again"
+            ) from error
         while done < self.frames:
             block = self._read(frames, done)
             done += len(block)
@@ -129,7 +135,9 @@ class Tape:
 
     def _read(self, frames: int, done: int) -> Stored:
         """The next block; raises TapeFault where the file ends early or cannot be decoded."""
-        kind = "int16" if self._sound.subtype == "PCM_16" else "float32"  # libsndfile is slow to make one of the other
+        kind = (
+            "int16" if self._sound.subtype == "PCM_16" else "float32"
+        )  # libsndfile is slow to make one of the other
         try:
             block: Stored = self._sound.read(frames, dtype=kind, always_2d=True)
         except soundfile.SoundFileError as error:
@@ -155,7 +163,10 @@ def _open_sound(file: FilePath) -> soundfile.SoundFile:
         raise TapeFault(f"{file} is empty; a tape is a WAV, RF64 or FLAC file")
     try:
         return soundfile.SoundFile(file)
-    except (soundfile.SoundFileError, TypeError) as error:  # TypeError: of a .raw it wants to be told everything
+    except (
+        soundfile.SoundFileError,
+        TypeError,
+    ) as error:  # TypeError: of a .raw it wants to be told everything
         raise TapeFault(
             f"{file} is no tape: it is not a sound file that can be read; give a WAV, RF64 or FLAC"
         ) from error
@@ -185,14 +196,14 @@ def _check_last_frame(file: FilePath, sound: soundfile.SoundFile) -> None:
     except soundfile.SoundFileError:
         there = False
     if not there:
-        raise TapeFault(f"{file} is cut short: its last frame is missing; copy the file again or record it again")
+        raise TapeFault(
+            f"{file} is cut short: its last frame is missing; copy the file again or record it again"
+        )
 
 
 def _cut_short(file: FilePath, held_s: float, stated_s: float) -> TapeFault:
     """The fault of a file that ends before its header says."""
-    message = (
-        f"{file} is cut short: {held_s:.3f} s of {stated_s:.3f} s are there; copy the file again or record it again"
-    )
+    message = f"{file} is cut short: {held_s:.3f} s of {stated_s:.3f} s are there; copy the file again or record it again"
     return TapeFault(message, time_s=held_s)
 
 
@@ -202,7 +213,9 @@ def _format(file: FilePath, sound: soundfile.SoundFile, by_hand: dict[str, float
     stated = _stated(file, sound)
     if stated is None and len(given) < len(by_hand):
         lacks = " ".join(example for name, example in _EXAMPLES.items() if name not in given)
-        raise TapeFault(f"{file} does not say its format (no text chunk); give {lacks}, or whatever the tape has")
+        raise TapeFault(
+            f"{file} does not say its format (no text chunk); give {lacks}, or whatever the tape has"
+        )
     try:
         if stated is None:
             return _unnamed(sound, given)
@@ -247,7 +260,11 @@ def _unnamed(sound: soundfile.SoundFile, given: dict[str, Any]) -> TapeFormat:
     rate = sound.samplerate
     axes = _UNNAMED_AXES[: sound.channels - 1]
     return TapeFormat(
-        sample_rate_hz=rate, axes=axes, dwell_s=0.0, samples_per_motion=max(2, round(rate / _MOTION_RATE_HZ)), **given
+        sample_rate_hz=rate,
+        axes=axes,
+        dwell_s=0.0,
+        samples_per_motion=max(2, round(rate / _MOTION_RATE_HZ)),
+        **given,
     )
 
 

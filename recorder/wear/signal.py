@@ -127,7 +127,10 @@ class Unevenness:
         t_s = np.arange(first, first + count) / rate_hz
         knots = np.arange(first // 64, (first + count) // 64 + 2) * (64 / rate_hz)
         return np.column_stack(
-            [10 ** (np.interp(t_s, knots, tones.value(knots.astype(np.float64))) / 20) for tones in self._tones]
+            [
+                10 ** (np.interp(t_s, knots, tones.value(knots.astype(np.float64))) / 20)
+                for tones in self._tones
+            ]
         )
 
 

@@ -75,7 +75,11 @@ class Timebase:
 
     def programme_s(self, t_s: Array) -> Array:
         """Programme time under the head of the first track, s."""
-        return self.start_s + (1 + self.speed) * t_s + sum((tones.integral_s(t_s) for tones in self.flutter), 0.0 * t_s)
+        return (
+            self.start_s
+            + (1 + self.speed) * t_s
+            + sum((tones.integral_s(t_s) for tones in self.flutter), 0.0 * t_s)
+        )
 
     def lag_s(self, t_s: Array) -> Array:
         """How much later each next track is, s."""

@@ -28,11 +28,21 @@ from numpy.typing import NDArray
 
 from morfax.motion.faults import FileFault, TapeFault
 from morfax.motion.files import disk_full_fault, written_beside
+from morfax.recorder.tape.format import LARGEST_TEXT_BYTES
 from morfax.recorder.tape.riff import make_plain
 from morfax.recorder.tape.spool import Spool, medium, sidecar
-from morfax.recorder.tape.format import LARGEST_TEXT_BYTES
+from morfax.recorder.wear.signal import (
+    Bandwidth,
+    Dropout,
+    Dropouts,
+    PrintThrough,
+    Unevenness,
+    crosstalk,
+    distorted,
+    gain,
+    hum,
+)
 from morfax.recorder.wear.timebase import FLUTTER_HZ, SCRAPE_HZ, WEAVE_HZ, WOW_HZ, Head, Timebase, Tones
-from morfax.recorder.wear.signal import Bandwidth, Dropout, Dropouts, PrintThrough, Unevenness, crosstalk, distorted, gain, hum
 
 BLOCK_FRAMES = 32768
 END_FRAMES = 1e-3  # rounding of a place at the very end
@@ -126,7 +136,9 @@ def age(
     except soundfile.SoundFileError as error:
         if not source.is_file():
             raise FileFault(f"cannot read {source}: it is no file that is there; check the name") from error
-        raise TapeFault(f"{source} is no tape: it is not a sound file that can be read; give a WAV or FLAC") from error
+        raise TapeFault(
+            f"{source} is no tape: it is not a sound file that can be read; give a WAV or FLAC"
+        ) from error
 
 
 def _aged(
@@ -163,10 +175,15 @@ class Deck:
         _check(wear, tracks)
         self._wear, self._rate_hz, self._tracks = wear, rate_hz, tracks
         bands = ((wear.wow, WOW_HZ), (wear.flutter, FLUTTER_HZ), (wear.scrape, SCRAPE_HZ))
-        tones = [Tones.drawn(rms, band, np.random.default_rng((seed, i))) for i, (rms, band) in enumerate(bands)]
+        tones = [
+            Tones.drawn(rms, band, np.random.default_rng((seed, i))) for i, (rms, band) in enumerate(bands)
+        ]
         weave = Tones.drawn(wear.weave_s, WEAVE_HZ, np.random.default_rng((seed, 3)))
         self.timebase = Timebase(wear.speed, tuple(tones), wear.skew_s, weave)
-        self._noise, self._uneven = np.random.default_rng((seed, 4)), Unevenness(wear.uneven_db, tracks, (seed, 5))
+        self._noise, self._uneven = (
+            np.random.default_rng((seed, 4)),
+            Unevenness(wear.uneven_db, tracks, (seed, 5)),
+        )
         holes = wear.dropouts_per_min, wear.dropout_s, gain(-wear.dropout_db), wear.dropout_all, (seed, 6)
         self._dropouts = Dropouts(*holes) if wear.dropouts_per_min > 0 else None
         turn = max(round(wear.print_s * rate_hz), 1)
@@ -186,7 +203,9 @@ class Deck:
             yield self._played(self._recorded(block))
         if self._print is not None:
             yield self._played(self._laid(self._print.rest()))
-        self._head.take(np.zeros((64, self._tracks), np.float32))  # blank tape: the last frames' filter reaches there
+        self._head.take(
+            np.zeros((64, self._tracks), np.float32)
+        )  # blank tape: the last frames' filter reaches there
         yield self._played(np.zeros((0, self._tracks), np.float32), last=True)
 
     def _recorded(self, frames: Frames) -> Frames:
@@ -210,7 +229,9 @@ class Deck:
     def _played(self, frames: Frames, last: bool = False) -> Frames:
         """What the play head makes of all tape that has come by now."""
         self._head.take(frames)
-        reach, slow = (self._came, 0.99) if last else (self._head.reach, 1.01)  # flutter may be 1 % either way
+        reach, slow = (
+            (self._came, 0.99) if last else (self._head.reach, 1.01)
+        )  # flutter may be 1 % either way
         gone = self.timebase.programme_s(np.array([self._went / self._rate_hz]))[0] * self._rate_hz
         count = max(int((reach - gone) / (slow + self._wear.speed)), 0)
         if last:
@@ -257,12 +278,16 @@ def _cut(sound: soundfile.SoundFile, wear: Wear) -> Iterator[Frames]:
     first = round(wear.cut_start_s * sound.samplerate)
     left = sound.frames - first - round(wear.cut_end_s * sound.samplerate)
     if left <= 0:
-        raise ValueError(f"cuts of {wear.cut_start_s:g} s and {wear.cut_end_s:g} s leave nothing of the tape; cut less")
+        raise ValueError(
+            f"cuts of {wear.cut_start_s:g} s and {wear.cut_end_s:g} s leave nothing of the tape; cut less"
+        )
     sound.seek(first)
     while left > 0:
         block = sound.read(min(BLOCK_FRAMES, left), dtype="float32", always_2d=True)
         if not len(block):
-            raise TapeFault(f"the tape ends {left / sound.samplerate:.3f} s before its header says; copy it again")
+            raise TapeFault(
+                f"the tape ends {left / sound.samplerate:.3f} s before its header says; copy it again"
+            )
         left -= len(block)
         yield block
 
@@ -297,7 +322,16 @@ def _check(wear: Wear, tracks: int) -> None:
         raise ValueError(f"inverted is {wear.inverted}; the tracks are 1 to {tracks}")
     if wear.stamped_hz is not None and not 0 < wear.stamped_hz < 2**31:
         raise ValueError(f"stamped_hz is {wear.stamped_hz}; a header holds 1 to {2**31 - 1} Hz")
-    for name in ("wow", "flutter", "scrape", "weave_s", "uneven_db", "dropouts_per_min", "cut_start_s", "cut_end_s"):
+    for name in (
+        "wow",
+        "flutter",
+        "scrape",
+        "weave_s",
+        "uneven_db",
+        "dropouts_per_min",
+        "cut_start_s",
+        "cut_end_s",
+    ):
         if getattr(wear, name) < 0:
             raise ValueError(f"{name} is {getattr(wear, name):g}; it must be zero or more")
     if wear.wow + wear.flutter + wear.scrape > 0.05:

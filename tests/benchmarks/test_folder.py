@@ -19,11 +19,15 @@ def truth(file: Path, *loops: Points) -> None:
 
 def test_every_loop_and_width_has_its_row(tmp_path: Path) -> None:
     truth(tmp_path / "ring.csv", arc((0, 0), 5), arc((0, 0), 2.5))
-    answer = CliRunner().invoke(table, [str(tmp_path), "--line", "0.3mm", "--line", "0.5mm", "--size", "24mm"])
+    answer = CliRunner().invoke(
+        table, [str(tmp_path), "--line", "0.3mm", "--line", "0.5mm", "--size", "24mm"]
+    )
     assert answer.exit_code == 0, answer.output
     head, *rows = [line.split() for line in answer.stdout.splitlines()]
     assert head[0] == "drawing" and len(rows) == 4
-    assert [row[:5] for row in rows] == [["ring", w, k, "closed", "1"] for w in ("0.3", "0.5") for k in ("0", "1")]
+    assert [row[:5] for row in rows] == [
+        ["ring", w, k, "closed", "1"] for w in ("0.3", "0.5") for k in ("0", "1")
+    ]
     for row in rows:
         rms_um, p95_um, max_um, hausdorff_um, missed = (float(word) for word in row[5:10])
         assert 0 < rms_um < 4 and rms_um < p95_um < max_um + 1 and hausdorff_um < 20 and missed == 0

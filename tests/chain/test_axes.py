@@ -43,7 +43,9 @@ def test_five_coordinates_go_through_file_tape_and_machine(tmp_path: FilePath) -
     # 0.3 m/s² of the kinks of the path file's straight pieces at 250 Hz
     assert np.abs(played.positions_mm[6000 : 6000 + len(wanted)] - wanted).max() < 0.5 * UM
     write_path(thin([played]), tmp_path / "b.csv")
-    assert read_path(tmp_path / "b.csv").positions_mm[-1] == pytest.approx(path.positions_mm[-1], abs=0.05 * UM)
+    assert read_path(tmp_path / "b.csv").positions_mm[-1] == pytest.approx(
+        path.positions_mm[-1], abs=0.05 * UM
+    )
 
 
 def test_a_stream_says_its_axes(tmp_path: FilePath) -> None:

@@ -21,16 +21,19 @@ from morfax.motion.contour import Distances, closure_mm, distance, length_mm
 from morfax.motion.motion import Path, join, thin
 from morfax.player.tape.playback import play
 from morfax.recorder.tape.tape import TapeFormat, record
-from tests.tracer.inked import UM, inked, polyline
 from morfax.tracer.drawing.deviation import deviation
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.trace import trace
 from morfax.tracer.program.trace_lines import trace_lines
+from tests.tracer.inked import UM, inked, polyline
 
 Array = NDArray[np.float64]
 SAMPLES = FilePath(__file__).parents[2] / "samples"
-PLAYED_RMS_MM, PLAYED_MAX_MM = 0.15 * UM, 1.5 * UM  # issue 0.5/3 um (0.07/0.8, the following error where it stops)
+PLAYED_RMS_MM, PLAYED_MAX_MM = (
+    0.15 * UM,
+    1.5 * UM,
+)  # issue 0.5/3 um (0.07/0.8, the following error where it stops)
 CLOSED_WITHIN_MM = 20 * UM
 SKIPPED = "no folder ../shared beside the repository: its drawings and vectors are not part of it"
 
@@ -126,9 +129,13 @@ PARTS = [
     Case("v06_dolphin.ngc", 5 * UM, 70 * UM),  # issue 60/700 um, sharp tips (2.8/22)
     Case("v11_stretching_cat.dxf", 7 * UM, 150 * UM),  # issue 60/700 um, sharp tips (3.7/93)
     Case("v04_star.ngc", 1.6 * UM, 10 * UM, dpi=600.0, scan=False),  # issue 2.5 um RMS (1.0/6)
-    Case("v16_spiral_open.dxf", 2.5 * UM, 15 * UM, "ended", dpi=600.0, scan=False),  # issue 2.5 um RMS (2.1/6)
+    Case(
+        "v16_spiral_open.dxf", 2.5 * UM, 15 * UM, "ended", dpi=600.0, scan=False
+    ),  # issue 2.5 um RMS (2.1/6)
     Case("v01_scroll_fixed.ngc", 2.5 * UM, 15 * UM, dpi=600.0, scan=False),  # issue 2.5 um RMS (2.3/10)
-    Case("v04_star.ngc", 4 * UM, 25 * UM, skew_deg=7.0, seed=2),  # turned on the sheet, other noise: issue 4/25 um
+    Case(
+        "v04_star.ngc", 4 * UM, 25 * UM, skew_deg=7.0, seed=2
+    ),  # turned on the sheet, other noise: issue 4/25 um
 ]
 
 
@@ -145,7 +152,9 @@ def render() -> ModuleType:
     return module
 
 
-def drawn(case: Case, render: ModuleType, folder: FilePath, line_mm: float = 0.5) -> tuple[Drawing, list[Array]]:
+def drawn(
+    case: Case, render: ModuleType, folder: FilePath, line_mm: float = 0.5
+) -> tuple[Drawing, list[Array]]:
     """A part as an image file, opened, and its truth on the sheet."""
     truth = FilePath(render.__file__ or "").parent / "truth" / f"{case.name}.csv"
     loops = render.read_truth(truth, None if case.loops is None else set(case.loops))
@@ -158,12 +167,16 @@ def drawn(case: Case, render: ModuleType, folder: FilePath, line_mm: float = 0.5
 
 
 @pytest.mark.parametrize("case", PARTS, ids=str)
-def test_a_part_is_one_path_nothing_missed_nothing_doubled(tmp_path: FilePath, render: ModuleType, case: Case) -> None:
+def test_a_part_is_one_path_nothing_missed_nothing_doubled(
+    tmp_path: FilePath, render: ModuleType, case: Case
+) -> None:
     drawing, truth = drawn(case, render, tmp_path)
     run = trace(drawing)
     assert run.fault is None and run.ending == (case.ending or run.ending)
     hold(distance(run.xy_mm[::6], truth), case.rms_mm, case.max_mm)
-    assert run.length_mm == pytest.approx(length_mm(truth), rel=0.01)  # the cat has spikes narrower than the pen
+    assert run.length_mm == pytest.approx(
+        length_mm(truth), rel=0.01
+    )  # the cat has spikes narrower than the pen
     if run.ending == "closed":
         assert np.hypot(*(run.xy_mm[-1] - run.xy_mm[0])) < CLOSED_WITHIN_MM
 
@@ -191,11 +204,17 @@ def test_the_bracket_comes_off_the_machine_with_its_slot_cut_first(tmp_path: Fil
 
 
 @pytest.mark.parametrize("line_mm", [0.3, 0.5, 0.8])
-def test_all_fifteen_lines_of_a_panel_are_one_program(tmp_path: FilePath, render: ModuleType, line_mm: float) -> None:
+def test_all_fifteen_lines_of_a_panel_are_one_program(
+    tmp_path: FilePath, render: ModuleType, line_mm: float
+) -> None:
     """Issue 15/200 um (4.0/26 at 0.3 mm; 3.7/22; 3.9/22), with holes of 3.2 and 4 mm."""
     drawing, truth = drawn(Case("v18_front_panel.dxf", 6 * UM, 40 * UM), render, tmp_path, line_mm)
     run = trace_lines(drawing)
-    assert run.fault is None and [line.ending for line in run.lines] == ["closed"] * 15 and run.lines[-1].number == 1
+    assert (
+        run.fault is None
+        and [line.ending for line in run.lines] == ["closed"] * 15
+        and run.lines[-1].number == 1
+    )
     hold(distance(thin(run), truth), 6 * UM, 40 * UM)
     assert run.length_mm == pytest.approx(sum(length_mm(loop) for loop in truth), rel=0.002)
 
@@ -209,7 +228,9 @@ def star() -> Trace:
     angle = np.arange(11) * np.pi / 5
     radius = np.where(np.arange(11) % 2, 4.5, 9.0)
     return trace(
-        inked(np.array([14.0, 14.0]) + radius[:, None] * np.column_stack([np.cos(angle), np.sin(angle)]), seed=1)
+        inked(
+            np.array([14.0, 14.0]) + radius[:, None] * np.column_stack([np.cos(angle), np.sin(angle)]), seed=1
+        )
     )
 
 
@@ -254,8 +275,12 @@ def test_the_machine_ends_where_the_head_did(tmp_path: FilePath, star: Trace) ->
     file = tmp_path / "star.wav"
     recording = record(star, file, TapeFormat())
     motion = join(play(file)).positions_mm
-    assert motion[-1] == pytest.approx([*star.xy_mm[-1], star.work.clearance_mm], abs=0.1 * UM)  # noise of 16 bit
-    assert recording.duration_s == pytest.approx(star.duration_s + 2.0, abs=0.01)  # a second of standstill at both ends
+    assert motion[-1] == pytest.approx(
+        [*star.xy_mm[-1], star.work.clearance_mm], abs=0.1 * UM
+    )  # noise of 16 bit
+    assert recording.duration_s == pytest.approx(
+        star.duration_s + 2.0, abs=0.01
+    )  # a second of standstill at both ends
 
 
 def test_a_path_beside_the_truth_is_not_let_through() -> None:

@@ -27,7 +27,10 @@ WORN = {
 
 def circle(speed_mm_s: float) -> Motion:
     """Once round at a speed: a coil's tracks grow and fall by a quarter at 75 mm/s."""
-    way = positions_mm([0.0], [4 * np.pi * RADIUS_MM], speed_mm_s, Ramp(acceleration_mm_s2=500))[:, 0] / RADIUS_MM
+    way = (
+        positions_mm([0.0], [4 * np.pi * RADIUS_MM], speed_mm_s, Ramp(acceleration_mm_s2=500))[:, 0]
+        / RADIUS_MM
+    )
     return Motion(RADIUS_MM * np.column_stack([np.sin(way), 1 - np.cos(way), 0 * way]))
 
 
@@ -39,7 +42,10 @@ def test_a_worn_tape_of_any_pick_up_plays(pickup: str, wear: str, tmp_path: Path
     record(motion, tmp_path / "a.wav", fmt)
     age(tmp_path / "a.wav", tmp_path / "b.wav", WORN[wear], seed=7)
     played = join(play(tmp_path / "b.wav"))
-    flat = [Motion(np.c_[one.positions_mm[:, :2], np.full(len(one.positions_mm), -1.0)]) for one in (motion, played)]
+    flat = [
+        Motion(np.c_[one.positions_mm[:, :2], np.full(len(one.positions_mm), -1.0)])
+        for one in (motion, played)
+    ]
     found = distance(thin([flat[1]]), thin([flat[0]]))
     # 0.4 um of following at 0.375 m/s² and 0.2 um of thinning beside the tape's own
     assert found.hausdorff_mm < 0.05 * fmt.mm_per_cycle + 0.6 * UM

@@ -12,11 +12,17 @@ import soundfile
 from tests.console.conftest import Morfax
 
 
-def test_a_worn_tape_is_written_and_the_same_seed_gives_the_same(morfax: Morfax, here: Path, tape_file: Path) -> None:
+def test_a_worn_tape_is_written_and_the_same_seed_gives_the_same(
+    morfax: Morfax, here: Path, tape_file: Path
+) -> None:
     for name in ("one.wav", "two.wav"):
-        answer = morfax("age", tape_file, "-o", name, "--as", "cassette", "--speed", "-1%", "--seed", 7, "--json")
+        answer = morfax(
+            "age", tape_file, "-o", name, "--as", "cassette", "--speed", "-1%", "--seed", 7, "--json"
+        )
         assert answer.exit_code == 0
-        assert answer.figures["duration_s"] == pytest.approx(soundfile.info(tape_file).duration / 0.99, rel=1e-3)
+        assert answer.figures["duration_s"] == pytest.approx(
+            soundfile.info(tape_file).duration / 0.99, rel=1e-3
+        )
     assert (here / "one.wav").read_bytes() == (here / "two.wav").read_bytes()
 
 
@@ -31,14 +37,27 @@ def test_a_worn_tape_is_written_and_the_same_seed_gives_the_same(morfax: Morfax,
         (["--stamped", "1e12"], "a header holds 1 to"),
     ],
 )
-def test_wrong_use_is_one_line(morfax: Morfax, here: Path, tape_file: Path, words: list[str], said: str) -> None:
+def test_wrong_use_is_one_line(
+    morfax: Morfax, here: Path, tape_file: Path, words: list[str], said: str
+) -> None:
     answer = morfax("age", tape_file, "-o", "w.wav", *words)
     assert answer.exit_code == 2 and said in answer.fault
     assert list(here.iterdir()) == []
 
 
 def test_a_fault_is_gone_on_from_by_hand(morfax: Morfax, here: Path, tape_file: Path) -> None:
-    words = ("--dropouts", 60, "--dropout-length", "30ms", "--dropout-depth", "60dB", "--cut-start", "0", "--seed", 5)
+    words = (
+        "--dropouts",
+        60,
+        "--dropout-length",
+        "30ms",
+        "--dropout-depth",
+        "60dB",
+        "--cut-start",
+        "0",
+        "--seed",
+        5,
+    )
     assert morfax("age", tape_file, "-o", "holes.wav", *words).exit_code == 0
     told = morfax("play", "holes.wav", "-o", "a.csv")
     assert told.exit_code == 6 and "last certain position" in told.fault and "--resume-at" in told.fault

@@ -64,7 +64,9 @@ def test_a_mono_tape_has_no_reference(morfax: Morfax, here: Path, frames: np.nda
 
 
 def test_a_tape_without_its_reference_cannot_be_known(morfax: Morfax, here: Path, frames: np.ndarray) -> None:
-    said = refused(morfax, written(frames[:, 1:]), *BY_HAND)  # X, Y, Z: the first of them is taken for the reference
+    said = refused(
+        morfax, written(frames[:, 1:]), *BY_HAND
+    )  # X, Y, Z: the first of them is taken for the reference
     assert "the reference is on track 3" in said and "--tracks" in said  # Z, which stands longest
     stated = tape_text(here, frames)
     said = refused(morfax, written(frames[:, 1:], stated))
@@ -99,7 +101,9 @@ def test_a_tape_at_another_speed_says_which_reference_it_has(
     assert f"--reference {6000 * share:.0f}Hz" in said
 
 
-def test_a_tape_backwards_is_no_other_tape_but_the_tool_goes_up(morfax: Morfax, here: Path, frames: np.ndarray) -> None:
+def test_a_tape_backwards_is_no_other_tape_but_the_tool_goes_up(
+    morfax: Morfax, here: Path, frames: np.ndarray
+) -> None:
     """Backwards every track turns the other way, so it ends where it should: only Z, which rises, is to be seen."""
     answer = morfax("play", written(frames[::-1].copy(), tape_text(here, frames)), "-o", "bad.csv")
     assert answer.exit_code == 0 and "backwards" in answer.err
@@ -124,7 +128,9 @@ def refused_after_motion(morfax: Morfax, name: str) -> str:
         ("recorded by aunt Ada", "does not say its format"),
     ],
 )
-def test_a_text_chunk_that_is_none(morfax: Morfax, here: Path, frames: np.ndarray, text: str, said: str) -> None:
+def test_a_text_chunk_that_is_none(
+    morfax: Morfax, here: Path, frames: np.ndarray, text: str, said: str
+) -> None:
     assert said in refused(morfax, written(frames, text))
 
 
@@ -165,13 +171,17 @@ def test_a_dropout_before_anything_is_known_says_so(morfax: Morfax, here: Path, 
     ("rate_hz", "reference_hz"), [(22050, 2756.25), (44100, 5512.5), (96000, 6000.0), (192000, 6000.0)]
 )
 @pytest.mark.parametrize("sample", ["16", "24", "32", "float"])
-def test_every_rate_and_kind_of_sample_is_played(here: Path, rate_hz: int, reference_hz: float, sample: str) -> None:
+def test_every_rate_and_kind_of_sample_is_played(
+    here: Path, rate_hz: int, reference_hz: float, sample: str
+) -> None:
     from morfax.motion.motion import Motion, join
     from morfax.player.tape.playback import play
     from morfax.recorder.tape.tape import TapeFormat, record
     from tests.player.carriers import circle
 
-    fmt = TapeFormat(sample_rate_hz=rate_hz, reference_hz=reference_hz, samples_per_motion=max(8, rate_hz // 6000))
+    fmt = TapeFormat(
+        sample_rate_hz=rate_hz, reference_hz=reference_hz, samples_per_motion=max(8, rate_hz // 6000)
+    )
     told = circle(3, 10)(np.arange(round(2.6 * fmt.motion_rate_hz)) / fmt.motion_rate_hz)
     record(Motion(told, fmt.motion_rate_hz), "a.wav", fmt, sample=sample)
     rows = round(fmt.dwell_s * fmt.motion_rate_hz)

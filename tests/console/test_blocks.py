@@ -18,7 +18,11 @@ def bracket(here: Path, morfax: Morfax) -> Path:
 
 def test_a_program_is_inspected_played_and_compared(bracket: Path, morfax: Morfax) -> None:
     found = morfax("inspect", bracket, "--json").figures
-    assert (found["lines"], found["arcs"], found["rapids"]) == (10, 4, 3)  # 9 drawn, and one down into the slot
+    assert (found["lines"], found["arcs"], found["rapids"]) == (
+        10,
+        4,
+        3,
+    )  # 9 drawn, and one down into the slot
     assert morfax("play", bracket, "-o", "played.csv").exit_code == 0
     figures = morfax("compare", "played.csv", SAMPLES / "bracket.csv", "--json").figures
     assert figures["largest_mm"] < 0.006  # 2 um of the fit, 4 pulses of 1 um
@@ -49,7 +53,9 @@ def test_what_is_for_another_control_is_refused(bracket: Path, morfax: Morfax) -
         ("G0 X0\nG1 X99999 F60\nM2\n", "line 2: X goes to 99999.000 mm; the machine has ±2000.000 mm"),
     ],
 )
-def test_bad_programs_move_nothing_and_leave_nothing(text: str, says: str, here: Path, morfax: Morfax) -> None:
+def test_bad_programs_move_nothing_and_leave_nothing(
+    text: str, says: str, here: Path, morfax: Morfax
+) -> None:
     (here / "bad.ngc").write_text(text)
     answer = morfax("play", "bad.ngc", "-o", "played.csv")
     assert answer.exit_code == 5 and says in answer.fault

@@ -55,11 +55,15 @@ def test_an_option_on_the_command_line_goes_before_the_card(
 
 
 @pytest.mark.parametrize("verb", ["trace", "run"])
-def test_a_mistake_on_the_card_is_one_line_and_nothing_is_written(morfax: Morfax, here: Path, verb: str) -> None:
+def test_a_mistake_on_the_card_is_one_line_and_nothing_is_written(
+    morfax: Morfax, here: Path, verb: str
+) -> None:
     Path("part.toml").write_text(CARD + 'rapid = "fast"\n')
     answer = morfax(verb, CAM, "--card", "part.toml")
     assert answer.exit_code == 9
-    assert answer.fault.startswith('morfax: part.toml, line 6: speeds.rapid holds "fast"; it may hold a speed of 0.01')
+    assert answer.fault.startswith(
+        'morfax: part.toml, line 6: speeds.rapid holds "fast"; it may hold a speed of 0.01'
+    )
     assert [file.name for file in here.iterdir()] == ["part.toml"]
 
 
@@ -82,7 +86,9 @@ def test_passes_at_a_stop_are_the_depths_of_the_line_that_begins_there(morfax: M
     assert answer.exit_code == 0, answer.err
     path = read_path("part.csv")
     assert [z_mm for z_mm in levels_mm(path.positions_mm[:, 2]) if z_mm < 0] == [-1.0, -2.5]
-    first, second = (path.xy_mm[np.abs(path.positions_mm[:, 2] + depth_mm) < 0.001] for depth_mm in (1.0, 2.5))
+    first, second = (
+        path.xy_mm[np.abs(path.positions_mm[:, 2] + depth_mm) < 0.001] for depth_mm in (1.0, 2.5)
+    )
     assert first[:, 0].min() == pytest.approx(21.5, abs=0.05)  # from the tick on
     assert second[:, 0].min() > 25  # the plate alone
     assert np.ptp(second[:, 1]) == pytest.approx(np.ptp(first[:, 1]), abs=0.01)

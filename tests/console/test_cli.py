@@ -43,7 +43,9 @@ def test_the_examples_in_the_help_are_commands_that_parse(verb: str) -> None:
 def test_help_lists_the_verbs_and_every_exit_code(morfax: Morfax) -> None:
     answer = morfax("--help")
     assert all(verb in answer.out for verb in cli.VERBS)
-    kinds = [kind for kind in vars(faults).values() if isinstance(kind, type) and issubclass(kind, faults.Fault)]
+    kinds = [
+        kind for kind in vars(faults).values() if isinstance(kind, type) and issubclass(kind, faults.Fault)
+    ]
     codes = {kind.exit_code for kind in kinds} | {0, 2, 70, 130}
     listed = {int(line.split()[0]) for line in cli.EXIT_CODES.splitlines() if line.strip()[:1].isdigit()}
     assert listed == codes
@@ -121,7 +123,10 @@ def test_ctrl_c_or_being_asked_to_end_stops_the_work_and_leaves_no_half_file(
         process.send_signal(number)
         _, err = process.communicate(timeout=20)
     assert process.returncode == 128 + number
-    assert err.split("\n")[-2:] == ["morfax: interrupted; no unfinished file was left under its final name", ""]
+    assert err.split("\n")[-2:] == [
+        "morfax: interrupted; no unfinished file was left under its final name",
+        "",
+    ]
     assert [file.name for file in tmp_path.iterdir()] == ["never.csv"]
 
 
@@ -129,7 +134,9 @@ def test_a_reader_that_goes_away_is_no_fault(path_file: Path) -> None:
     command = [*MORFAX, "compare", str(path_file), str(path_file), "--json"]
     read, write = os.pipe()
     os.close(read)
-    done = subprocess.run(command, stdout=write, stderr=subprocess.PIPE, text=True, env=_with_house(), check=False)
+    done = subprocess.run(
+        command, stdout=write, stderr=subprocess.PIPE, text=True, env=_with_house(), check=False
+    )
     os.close(write)
     assert done.stderr == ""
     assert done.returncode == 0

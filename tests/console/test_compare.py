@@ -30,7 +30,9 @@ def test_a_path_is_no_distance_from_itself(morfax: Morfax, path_file: Path) -> N
     assert answer.figures["within_tolerance"] is True
 
 
-def test_a_shifted_circle_is_as_far_off_as_it_was_shifted(morfax: Morfax, aside: Path, path_file: Path) -> None:
+def test_a_shifted_circle_is_as_far_off_as_it_was_shifted(
+    morfax: Morfax, aside: Path, path_file: Path
+) -> None:
     figures = morfax("compare", aside, path_file, "--json").figures
     assert figures["largest_mm"] == pytest.approx(0.1, abs=1 * UM)
     # the distance is the shift's part across the circle: RMS of the cosine
@@ -81,7 +83,9 @@ def test_a_path_from_another_zero_is_compared_where_it_was_drawn(
     morfax("trace", SAMPLES / "cam.png", "-o", "cam.csv")
     path = read_path(here / "cam.csv")
     write_path(Placement(origin_mm=(10.0, 0.0)).path(path), here / "moved.csv")
-    answer = morfax("compare", SAMPLES / "cam.png", "moved.csv", "--origin", origin, "--tolerance", "50um", "--json")
+    answer = morfax(
+        "compare", SAMPLES / "cam.png", "moved.csv", "--origin", origin, "--tolerance", "50um", "--json"
+    )
     assert answer.exit_code == exit_code
 
 

@@ -9,7 +9,9 @@ import pytest
 from tests.console.conftest import SAMPLES, Morfax
 
 
-def test_what_the_cutter_leaves_is_listed_and_the_edge_is_compared_with_the_drawing(morfax: Morfax, here: Path) -> None:
+def test_what_the_cutter_leaves_is_listed_and_the_edge_is_compared_with_the_drawing(
+    morfax: Morfax, here: Path
+) -> None:
     answer = morfax(
         "trace", SAMPLES / "gear.png", "--cutter", "3mm", "-o", "gear.csv", "--picture", "gear.png", "--json"
     )
@@ -18,7 +20,10 @@ def test_what_the_cutter_leaves_is_listed_and_the_edge_is_compared_with_the_draw
     assert len(answer.figures["unreached"]) == 8  # one between each two teeth
     assert 0.59 < answer.figures["unreached"][0]["left_mm"] < 0.61
     compared = morfax("compare", SAMPLES / "gear.png", "gear.csv", "--cutter", "3mm", "--json")
-    assert compared.figures["path_to_ink"]["rms_mm"] < 0.006 and compared.figures["path_to_ink"]["measured_share"] > 0.9
+    assert (
+        compared.figures["path_to_ink"]["rms_mm"] < 0.006
+        and compared.figures["path_to_ink"]["measured_share"] > 0.9
+    )
 
 
 def test_the_table_of_what_is_left_has_places(morfax: Morfax, here: Path) -> None:
@@ -32,10 +37,16 @@ def test_a_line_too_small_for_the_cutter_is_told_of_and_listed(morfax: Morfax, h
     options = (SAMPLES / "bracket.png", "--lines", "all", "-o", "bracket.csv", "--json", "--cutter")
     answer = morfax("trace", *options, "12mm", "--picture", "bracket.png")
     assert answer.exit_code == 0 and (here / "bracket.png").exists()
-    assert "line 2 is left out: a cutter of 12 mm has no room beside it, one of up to 7.95 mm has" in answer.err
+    assert (
+        "line 2 is left out: a cutter of 12 mm has no room beside it, one of up to 7.95 mm has" in answer.err
+    )
     assert [line["line"] for line in answer.figures["lines"]] == [1]
     (out,) = answer.figures["lines_left_out"]
-    assert out["line_left_out"] == 2 and out["cutter_up_to_mm"] == 7.95 and out["room_mm"] == pytest.approx(8, abs=0.02)
+    assert (
+        out["line_left_out"] == 2
+        and out["cutter_up_to_mm"] == 7.95
+        and out["room_mm"] == pytest.approx(8, abs=0.02)
+    )
     smaller = morfax("trace", *options, "7.95mm")
     assert smaller.exit_code == 0 and [line["line"] for line in smaller.figures["lines"]] == [2, 1]
     assert "lines_left_out" not in smaller.figures and "left out" not in smaller.err
@@ -44,7 +55,16 @@ def test_a_line_too_small_for_the_cutter_is_told_of_and_listed(morfax: Morfax, h
 def test_a_drawn_program_is_traced_with_a_cutter_and_begins_and_ends_on_its_reference_point(
     morfax: Morfax, here: Path
 ) -> None:
-    options = ("--card", SAMPLES / "program.toml", "--cutter", "6mm", "--origin", "reference", "-o", "beside.wav")
+    options = (
+        "--card",
+        SAMPLES / "program.toml",
+        "--cutter",
+        "6mm",
+        "--origin",
+        "reference",
+        "-o",
+        "beside.wav",
+    )
     answer = morfax("trace", SAMPLES / "program.png", *options, "--path", "beside.csv", "--json")
     assert answer.exit_code == 0
     places = [stop["stop_place_mm"] for stop in answer.figures["stops"]]
@@ -57,7 +77,9 @@ def test_a_drawn_program_is_traced_with_a_cutter_and_begins_and_ends_on_its_refe
         assert [float(number) for number in row.split(",")[1:3]] == pytest.approx([0, 0], abs=1e-4)
 
 
-def test_run_of_a_drawn_program_with_a_cutter_covers_its_lead_and_guide_lines(morfax: Morfax, here: Path) -> None:
+def test_run_of_a_drawn_program_with_a_cutter_covers_its_lead_and_guide_lines(
+    morfax: Morfax, here: Path
+) -> None:
     options = ("--card", SAMPLES / "program.toml", "--cutter", "6mm", "--side", "inside")
     figures = morfax("run", SAMPLES / "program.png", *options, "-o", "program", "--json").figures
     assert figures["played_to_ink"]["rms_mm"] < 0.004

@@ -16,14 +16,14 @@ from morfax.console.verbs.trace import command
 from morfax.jobs.tracing import Head
 from morfax.motion.contour import closure_mm, distance
 from morfax.motion.pathfile import read_path
-from tests.console.conftest import SAMPLES, Morfax
 from morfax.tracer.drawing import components as patches
 from morfax.tracer.drawing import memory as room
+from morfax.tracer.drawing.components import Patches, runs_of
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Sheet
-from morfax.tracer.operator.operator import Work
-from morfax.tracer.drawing.components import Patches, runs_of
 from morfax.tracer.head.settings import Settings
+from morfax.tracer.operator.operator import Work
+from tests.console.conftest import SAMPLES, Morfax
 
 UM = 1e-3
 CAM = SAMPLES / "cam.png"
@@ -43,7 +43,9 @@ def small() -> np.ndarray:
 
 def test_a_drawing_becomes_a_tape_and_the_tape_the_drawn_contour(morfax: Morfax, here: Path) -> None:
     traced = morfax("trace", CAM, "--path", "traced.csv", "--json")
-    assert traced.exit_code == 0 and traced.figures["ending"] == "closed" and traced.figures["tape"] == "cam.wav"
+    assert (
+        traced.exit_code == 0 and traced.figures["ending"] == "closed" and traced.figures["tape"] == "cam.wav"
+    )
     assert morfax("play", "cam.wav", "-o", "played.csv").exit_code == 0
     path, played, truth = read_path("traced.csv"), read_path("played.csv"), read_path(SAMPLES / "cam.csv")
     assert distance(path, truth).hausdorff_mm < TRACED_WITHIN_MM
@@ -90,7 +92,9 @@ def test_no_gap_is_gone_across_if_none_is_allowed(morfax: Morfax, here: Path, sm
     grey[:120, 150:157] = 240  # 0.6 mm
     Image.fromarray(grey).save("ring.png", dpi=DPI)
     for gap, ending in (("0.7mm", "closed"), ("0", "ended")):
-        assert morfax("trace", "ring.png", "-o", "ring.csv", "--json", "--gap", gap).figures["ending"] == ending
+        assert (
+            morfax("trace", "ring.png", "-o", "ring.csv", "--json", "--gap", gap).figures["ending"] == ending
+        )
 
 
 def test_one_line_of_several_that_cross_is_told_to_be_one_of_several(morfax: Morfax, here: Path) -> None:
@@ -99,7 +103,9 @@ def test_one_line_of_several_that_cross_is_told_to_be_one_of_several(morfax: Mor
         cv2.circle(grey, (x, 200), 120, 30, 6, cv2.LINE_AA)
     Image.fromarray(grey).save("rings.png", dpi=DPI)
     one = morfax("trace", "rings.png", "-o", "rings.csv")
-    said = re.search(r"about (\d+) mm of ink that is joined to the line was not followed: --lines all", one.err)
+    said = re.search(
+        r"about (\d+) mm of ink that is joined to the line was not followed: --lines all", one.err
+    )
     assert said is not None and int(said[1]) == pytest.approx(2 * 2 * np.pi * 10.2, rel=0.1)
     every = morfax("trace", "rings.png", "-o", "rings.csv", "--lines", "all", "--json")
     assert [line["ending"] for line in every.figures["lines"]] == ["closed"] * 3 and every.err == ""
@@ -221,7 +227,9 @@ def test_an_image_without_a_resolution_asks_for_one(morfax: Morfax, here: Path, 
     answer = morfax("trace", "photo.png")
     assert answer.exit_code == 3 and "--dpi" in answer.fault and "--width" in answer.fault
     by_dpi = morfax("trace", "photo.png", "--dpi", 300, "-o", "a.csv", "--json").figures
-    by_width = morfax("trace", "photo.png", "--width", f"{320 * 25.4 / 300}mm", "-o", "b.csv", "--json").figures
+    by_width = morfax(
+        "trace", "photo.png", "--width", f"{320 * 25.4 / 300}mm", "-o", "b.csv", "--json"
+    ).figures
     assert by_dpi["length_mm"] == pytest.approx(by_width["length_mm"], abs=1 * UM)
     assert morfax("trace", "photo.png", "--dpi", 300, "--width", "20mm").exit_code == 2
 

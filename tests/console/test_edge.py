@@ -59,7 +59,9 @@ def test_what_has_no_edge_is_refused_with_one_line(morfax: Morfax, here: Path) -
 def test_a_filled_shape_without_edge_is_told(morfax: Morfax, here: Path) -> None:
     radii = np.where(np.arange(10) % 2, 6.0, 14.0)
     angles = np.arange(10) * np.pi / 5
-    star = filled(here / "star.png", 16.5 + radii[:, None] * np.column_stack([np.cos(angles), np.sin(angles)]))
+    star = filled(
+        here / "star.png", 16.5 + radii[:, None] * np.column_stack([np.cos(angles), np.sin(angles)])
+    )
     followed = morfax("trace", star, "-o", "rim.csv")
     assert followed.exit_code == 0 and "--edge follows its outline" in followed.err
     assert "--edge" not in morfax("trace", star, "--edge", "-o", "edge.csv").err

@@ -45,16 +45,22 @@ def test_a_result_never_goes_over_what_it_is_made_from(morfax: Morfax, here: Pat
     assert (here / "a.wav").read_bytes() == before
 
 
-def test_a_made_up_name_that_is_taken_is_left_alone_unless_forced(morfax: Morfax, here: Path, path_file: Path) -> None:
+def test_a_made_up_name_that_is_taken_is_left_alone_unless_forced(
+    morfax: Morfax, here: Path, path_file: Path
+) -> None:
     (here / "circle.wav").write_text("dear to somebody")
     answer = morfax("record", path_file)
     assert answer.exit_code == 8 and "--force" in answer.fault
     assert (here / "circle.wav").read_text() == "dear to somebody"
     assert morfax("record", path_file, "--force").exit_code == 0
-    assert morfax("record", path_file, "-o", "circle.wav").exit_code == 0  # a name that was given is written over
+    assert (
+        morfax("record", path_file, "-o", "circle.wav").exit_code == 0
+    )  # a name that was given is written over
 
 
-def test_an_ending_that_says_no_kind_of_file_is_wrong_use(morfax: Morfax, here: Path, tape_file: Path) -> None:
+def test_an_ending_that_says_no_kind_of_file_is_wrong_use(
+    morfax: Morfax, here: Path, tape_file: Path
+) -> None:
     answer = morfax("play", tape_file, "-o", "path.doc")
     assert answer.exit_code == 2 and ".svg" in answer.fault
 
@@ -76,7 +82,9 @@ def small_disk(tmp_path: Path) -> Path:
     disk = tmp_path / "disk"
     disk.mkdir()
     try:
-        subprocess.run(["mount", "-t", "tmpfs", "-o", "size=64k", "tmpfs", disk], check=True, capture_output=True)
+        subprocess.run(
+            ["mount", "-t", "tmpfs", "-o", "size=64k", "tmpfs", disk], check=True, capture_output=True
+        )
     except (OSError, subprocess.CalledProcessError):
         pytest.skip("no disk can be mounted here")
     return disk

@@ -13,7 +13,9 @@ SUFFIXES = (".wav", ".steps", ".cubic", ".ngc")
 
 
 @pytest.fixture(scope="module", params=SUFFIXES)
-def program(request: pytest.FixtureRequest, path_file: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def program(
+    request: pytest.FixtureRequest, path_file: Path, tmp_path_factory: pytest.TempPathFactory
+) -> Path:
     """The circle as a program in each medium."""
     from morfax.console.cli import main
 
@@ -22,7 +24,9 @@ def program(request: pytest.FixtureRequest, path_file: Path, tmp_path_factory: p
     return file
 
 
-def test_every_control_tells_and_writes_how_its_axes_followed(morfax: Morfax, here: Path, program: Path) -> None:
+def test_every_control_tells_and_writes_how_its_axes_followed(
+    morfax: Morfax, here: Path, program: Path
+) -> None:
     answer = morfax("play", program, "--following", "a.csv", "--following", "a.png", "--json")
     assert answer.exit_code == 0
     assert answer.figures["following"] == ["a.csv", "a.png"]
@@ -37,7 +41,11 @@ def test_every_control_tells_and_writes_how_its_axes_followed(morfax: Morfax, he
         assert (np.abs(error) <= limit).all()
         told = answer.figures[f"{axis}_axis"]
         # the row nearest to its limit is not always that of the largest error, but little less
-        assert 0.8 * told["following_error_mm"] - 1e-7 <= np.abs(error).max() <= told["following_error_mm"] + 1e-7
+        assert (
+            0.8 * told["following_error_mm"] - 1e-7
+            <= np.abs(error).max()
+            <= told["following_error_mm"] + 1e-7
+        )
         assert told["limit_share"] == pytest.approx((np.abs(error) / limit).max(), abs=1e-3)
     assert answer.figures["largest_following_error_mm"] == max(
         answer.figures[f"{axis}_axis"]["following_error_mm"] for axis in "xyz"

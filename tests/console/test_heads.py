@@ -30,7 +30,9 @@ def test_the_historic_head_comes_round_too_and_cuts_its_corners(tmp_path: Path) 
 
 def test_a_setting_is_changed_by_its_name(tmp_path: Path) -> None:
     usual, slow = traced(tmp_path), traced(tmp_path, "--set", "speed_mm_s=5")
-    assert float(str(slow["duration_s"])) > 1.7 * float(str(usual["duration_s"]))  # Z moves take as long as before
+    assert float(str(slow["duration_s"])) > 1.7 * float(
+        str(usual["duration_s"])
+    )  # Z moves take as long as before
 
 
 @pytest.mark.parametrize(
@@ -73,4 +75,6 @@ def test_a_mistake_in_the_file_is_one_line_and_nothing_is_written(morfax: Morfax
     Path("head.toml").write_text("\nsweep_hz = 0\n")
     answer = morfax("trace", CAM, "--settings", "head.toml")
     assert answer.exit_code == 9 and list(here.iterdir()) == [here / "head.toml"]
-    assert answer.fault.startswith("morfax: head.toml, line 2: sweep_hz holds 0; it may hold a number from 1 to 750")
+    assert answer.fault.startswith(
+        "morfax: head.toml, line 2: sweep_hz holds 0; it may hold a number from 1 to 750"
+    )

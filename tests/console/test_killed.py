@@ -33,7 +33,10 @@ def words_of(verb: str, tape: Path, path: Path) -> list[str]:
 def started(words: list[str], folder: Path) -> subprocess.Popen[bytes]:
     """A run in a process of its own."""
     return subprocess.Popen(
-        [sys.executable, "-c", RUN, *words, "--quiet"], cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        [sys.executable, "-c", RUN, *words, "--quiet"],
+        cwd=folder,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
     )
 
 

@@ -51,7 +51,9 @@ def test_hydraulic_motors_follow_later(morfax: Morfax, here: Path, tape_file: Pa
         (("--motor", "steam"), "'steam' is not one of 'electric', 'hydraulic'"),
     ],
 )
-def test_what_is_refused(morfax: Morfax, here: Path, tape_file: Path, words: tuple[str, ...], says: str) -> None:
+def test_what_is_refused(
+    morfax: Morfax, here: Path, tape_file: Path, words: tuple[str, ...], says: str
+) -> None:
     answer = morfax("play", tape_file, "-o", "a.csv", *words)
     assert answer.exit_code == 2 and says in answer.fault
     assert not list(here.glob("*.csv"))
@@ -59,6 +61,12 @@ def test_what_is_refused(morfax: Morfax, here: Path, tape_file: Path, words: tup
 
 def test_other_controls_have_none_of_it(morfax: Morfax, here: Path, path_file: Path) -> None:
     assert morfax("record", path_file, "-o", "a.steps", "-q").exit_code == 0
-    assert "--motor, --zero is for tapes" in morfax("play", "a.steps", "--zero", "1,1", "--motor", "electric").fault
-    assert "--feed-override is for tapes and for programs of" in morfax("play", "a.steps", "--override", "50%").fault
+    assert (
+        "--motor, --zero is for tapes"
+        in morfax("play", "a.steps", "--zero", "1,1", "--motor", "electric").fault
+    )
+    assert (
+        "--feed-override is for tapes and for programs of"
+        in morfax("play", "a.steps", "--override", "50%").fault
+    )
     assert "--zero is for files, not for a pipe" in morfax("play", "-", "--zero", "1,1").fault

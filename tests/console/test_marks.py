@@ -12,9 +12,9 @@ from PIL import Image
 
 from morfax.console.terminal import attended
 from morfax.motion.pathfile import read_path
-from tests.console.conftest import SAMPLES, Answer, Morfax
 from morfax.tracer.following.line import Line
 from morfax.tracer.program.program import Trace
+from tests.console.conftest import SAMPLES, Answer, Morfax
 
 PROGRAM = SAMPLES / "program.png"
 CARD = ("--card", SAMPLES / "program.toml")
@@ -79,14 +79,19 @@ def test_a_turn_at_a_junction_that_is_not_there_is_told_of(morfax: Morfax, here:
 
 
 @pytest.mark.parametrize("round_about", ["left", "right"])
-def test_a_turn_to_a_side_to_which_no_line_leads_is_told_of(morfax: Morfax, here: Path, round_about: str) -> None:
+def test_a_turn_to_a_side_to_which_no_line_leads_is_told_of(
+    morfax: Morfax, here: Path, round_about: str
+) -> None:
     """The guide line leads off inward: to the right of the way round clockwise, for which the head turns left from the lead line."""
     inward = "left" if round_about == "right" else "right"
     Path("in.toml").write_text(f'turns = ["{round_about}", "{inward}"]\n')
     assert "no line leads off" not in morfax("trace", PROGRAM, "-o", "in.csv", "--card", "in.toml").err
     Path("out.toml").write_text(f'turns = ["{round_about}", "{round_about}"]\n')
     answer = morfax("trace", PROGRAM, "-o", "out.csv", "--card", "out.toml")
-    assert answer.exit_code == 0 and f"no line leads off to the {round_about} at junction 2 of the line" in answer.err
+    assert (
+        answer.exit_code == 0
+        and f"no line leads off to the {round_about} at junction 2 of the line" in answer.err
+    )
 
 
 @pytest.mark.parametrize("stops", ["0", "-1", "two", "1,", "1.5"])
@@ -120,7 +125,10 @@ def test_a_named_reference_point_that_no_line_begins_at_is_told_of(morfax: Morfa
     """The drawn one is taken then, and never a guide line for the lead line."""
     answer = morfax("trace", PROGRAM, "-o", "program.csv", "--json", "--reference", "5,55")
     assert answer.figures["reference_place_mm"] == pytest.approx(REFERENCE_MM, abs=WITHIN_MM)
-    assert "no line begins within 11 mm of the reference point 5,55 mm: the program does not begin there" in answer.err
+    assert (
+        "no line begins within 11 mm of the reference point 5,55 mm: the program does not begin there"
+        in answer.err
+    )
 
 
 def test_a_stem_that_nothing_makes_a_lead_line_is_told_to_be_cut(morfax: Morfax, here: Path) -> None:
@@ -134,7 +142,9 @@ def test_a_stem_that_nothing_makes_a_lead_line_is_told_to_be_cut(morfax: Morfax,
     assert "is cut too" not in told.err and told.figures["reference_place_mm"] == [3.0, 12.7]
 
 
-def test_a_lead_line_that_goes_on_beyond_the_contour_is_told_to_be_a_guide_line(morfax: Morfax, here: Path) -> None:
+def test_a_lead_line_that_goes_on_beyond_the_contour_is_told_to_be_a_guide_line(
+    morfax: Morfax, here: Path
+) -> None:
     grey = np.full((300, 600), 240, np.uint8)
     cv2.circle(grey, (430, 150), 100, 30, 6, cv2.LINE_AA)
     for end in ((360, 150), (80, 150)):
@@ -143,11 +153,14 @@ def test_a_lead_line_that_goes_on_beyond_the_contour_is_told_to_be_a_guide_line(
     Image.fromarray(grey).save("beyond.png", dpi=(300, 300))
     answer = morfax("trace", "beyond.png", "-o", "beyond.csv", "--lines", "all")
     assert re.search(
-        r"reference point 5.1,12.7 crosses another and ends at 30.\d,12.7 mm: it is taken for a guide", answer.err
+        r"reference point 5.1,12.7 crosses another and ends at 30.\d,12.7 mm: it is taken for a guide",
+        answer.err,
     )
 
 
-@pytest.mark.parametrize(("direction", "positive"), [("cw", False), ("ccw", True), ("left", False), ("right", True)])
+@pytest.mark.parametrize(
+    ("direction", "positive"), [("cw", False), ("ccw", True), ("left", False), ("right", True)]
+)
 def test_the_loop_is_taken_as_asked(morfax: Morfax, here: Path, direction: str, positive: bool) -> None:
     traced(morfax, "--direction", direction)
     path = read_path("program.csv")
@@ -160,13 +173,17 @@ def test_ask_needs_a_terminal(morfax: Morfax, here: Path) -> None:
     assert answer.exit_code == 2 and "--ask needs a terminal" in answer.err and not list(here.iterdir())
 
 
-def test_at_a_terminal_every_stop_is_asked_for(morfax: Morfax, here: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_at_a_terminal_every_stop_is_asked_for(
+    morfax: Morfax, here: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     answers = iter(["down 3mm 2mm/s", "sideways 2mm", "dwell 1s", "", ""])
     monkeypatch.setattr(attended, "at_terminal", lambda: True)
     monkeypatch.setattr("click.prompt", lambda *words, **options: next(answers))
     answer = morfax("trace", PROGRAM, "-o", "program.csv", "--ask")
     assert (
-        answer.exit_code == 0 and "stop 1 (tick) at 21.5" in answer.err and "'sideways 2mm' cannot be set" in answer.err
+        answer.exit_code == 0
+        and "stop 1 (tick) at 21.5" in answer.err
+        and "'sideways 2mm' cannot be set" in answer.err
     )
     assert (
         "or nothing: to Z -5 mm" in answer.err and "or nothing: dwell 500 ms" in answer.err

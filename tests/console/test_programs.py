@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from morfax.reports import punched
 from morfax.motion.contour import distance
 from morfax.motion.faults import FileFault
 from morfax.motion.pathfile import read_path
 from morfax.player.controls import CONTROLS
 from morfax.recorder.media import MEDIA, record
 from morfax.recorder.steps.file import Program, StepFormat, read_program
+from morfax.reports import punched
 from tests.console.conftest import SAMPLES, Morfax
 
 UM = 1e-3
@@ -22,7 +22,9 @@ WITHIN_MM = {".steps": 12.5 * UM, ".cubic": 4 * UM}
 
 
 @pytest.mark.parametrize("suffix", WITHIN_MM)
-def test_a_path_recorded_and_played_is_the_same_path(morfax: Morfax, here: Path, path_file: Path, suffix: str) -> None:
+def test_a_path_recorded_and_played_is_the_same_path(
+    morfax: Morfax, here: Path, path_file: Path, suffix: str
+) -> None:
     recorded = morfax("record", path_file, "-o", f"a{suffix}", "--json")
     assert recorded.exit_code == 0 and recorded.figures["program"] == f"a{suffix}"
     assert recorded.figures["bits_per_mm"] == pytest.approx(
@@ -49,7 +51,11 @@ def test_any_program_becomes_any_other(morfax: Morfax, here: Path, path_file: Pa
 def test_the_stairs_of_stepping_motors_are_no_tape(morfax: Morfax, here: Path, path_file: Path) -> None:
     assert morfax("record", path_file, "-o", "a.steps").exit_code == 0
     answer = morfax("record", "a.steps", "-o", "a.wav")
-    assert answer.exit_code == 7 and "the stairs of stepping motors" in answer.fault and not (here / "a.wav").exists()
+    assert (
+        answer.exit_code == 7
+        and "the stairs of stepping motors" in answer.fault
+        and not (here / "a.wav").exists()
+    )
 
 
 @pytest.mark.parametrize("suffix", WITHIN_MM)
@@ -59,7 +65,9 @@ def test_a_drawing_is_traced_into_any_medium(morfax: Morfax, here: Path, suffix:
     assert morfax("compare", f"part{suffix}", "part.csv", "--tolerance", WITHIN_MM[suffix]).exit_code == 0
 
 
-def test_what_is_for_tapes_only_is_wrong_use(morfax: Morfax, here: Path, path_file: Path, tape_file: Path) -> None:
+def test_what_is_for_tapes_only_is_wrong_use(
+    morfax: Morfax, here: Path, path_file: Path, tape_file: Path
+) -> None:
     assert morfax("record", path_file, "-o", "a.steps").exit_code == 0
     for words in (
         ["play", "a.steps", "--reference", "6kHz"],
@@ -73,17 +81,25 @@ def test_what_is_for_tapes_only_is_wrong_use(morfax: Morfax, here: Path, path_fi
         assert answer.exit_code == 2 and answer.fault
 
 
-def test_a_garbled_program_is_one_line_and_leaves_nothing(morfax: Morfax, here: Path, path_file: Path) -> None:
+def test_a_garbled_program_is_one_line_and_leaves_nothing(
+    morfax: Morfax, here: Path, path_file: Path
+) -> None:
     assert morfax("record", path_file, "-o", "a.steps").exit_code == 0
     text = (here / "a.steps").read_text()
     (here / "a.steps").write_text(text[: len(text) // 2])
-    for words in (["play", "a.steps", "-o", "b.csv"], ["record", "a.steps", "-o", "b.wav"], ["inspect", "a.steps"]):
+    for words in (
+        ["play", "a.steps", "-o", "b.csv"],
+        ["record", "a.steps", "-o", "b.wav"],
+        ["inspect", "a.steps"],
+    ):
         answer = morfax(*words)
         assert answer.exit_code == 5 and "a.steps" in answer.fault and answer.out == ""
     assert [file.name for file in here.iterdir()] == ["a.steps"]
 
 
-def test_inspect_tells_what_is_on_a_punched_tape_and_draws_it(morfax: Morfax, here: Path, path_file: Path) -> None:
+def test_inspect_tells_what_is_on_a_punched_tape_and_draws_it(
+    morfax: Morfax, here: Path, path_file: Path
+) -> None:
     assert morfax("record", path_file, "-o", "a.steps").exit_code == 0
     figures = morfax("inspect", "a.steps", "-o", "tape.png", "--json").figures
     assert figures["oscillator_hz"] == 10240 and figures["tool_changes"] == 2 and figures["channels"] == 8
@@ -91,13 +107,17 @@ def test_inspect_tells_what_is_on_a_punched_tape_and_draws_it(morfax: Morfax, he
     with Image.open(here / "tape.png") as image:
         assert image.info["dpi"][0] == pytest.approx(6 * 25.4, rel=1e-3)
     assert morfax("inspect", "a.steps", "-o", "tape.svg").exit_code == 0
-    assert (here / "tape.svg").read_text().count("<circle") == sum(1 for _ in punched.holes(read_program("a.steps")))
+    assert (here / "tape.svg").read_text().count("<circle") == sum(
+        1 for _ in punched.holes(read_program("a.steps"))
+    )
 
 
 def test_inspect_tells_what_is_in_a_cubic_program(morfax: Morfax, here: Path, path_file: Path) -> None:
     assert morfax("record", path_file, "-o", "a.cubic").exit_code == 0
     figures = morfax("inspect", "a.cubic", "--json").figures
-    assert figures["counts_per_mm"] == 2000 and figures["start_place_mm"][:2] == pytest.approx([40, 30], abs=1 * UM)
+    assert figures["counts_per_mm"] == 2000 and figures["start_place_mm"][:2] == pytest.approx(
+        [40, 30], abs=1 * UM
+    )
     assert morfax("inspect", "a.cubic", "-o", "tape.png").exit_code == 2
 
 
@@ -105,8 +125,12 @@ def test_holes_stand_where_their_bits_are() -> None:
     found = list(punched.holes(Program(StepFormat(), np.array([0b1000_0001, 0b100], np.uint8))))
     assert [hole.diameter_mm for hole in found] == [1.17, 1.83, 1.83, 1.17, 1.83]
     feed, first, eighth = found[:3]
-    assert first.x_mm - feed.x_mm == pytest.approx(3 * 2.54) and feed.x_mm - eighth.x_mm == pytest.approx(5 * 2.54)
-    assert found[4].x_mm - found[3].x_mm == pytest.approx(2.54) and found[3].y_mm - feed.y_mm == pytest.approx(2.54)
+    assert first.x_mm - feed.x_mm == pytest.approx(3 * 2.54) and feed.x_mm - eighth.x_mm == pytest.approx(
+        5 * 2.54
+    )
+    assert found[4].x_mm - found[3].x_mm == pytest.approx(2.54) and found[
+        3
+    ].y_mm - feed.y_mm == pytest.approx(2.54)
     (strip,) = punched.strips(Program(StepFormat(channels=5), np.zeros(3, np.uint8)))
     assert strip.width_mm == 17.46 and strip.length_mm == pytest.approx(4 * 2.54)
 

@@ -8,8 +8,8 @@ from pathlib import Path as FilePath
 import numpy as np
 import pytest
 
-from morfax.reports.svg import write_svg
 from morfax.motion.motion import Path
+from morfax.reports.svg import write_svg
 
 TENTH_UM = 1e-4  # mm; what the file is written to
 
@@ -23,7 +23,9 @@ def read(file: FilePath) -> tuple[np.ndarray, list[np.ndarray]]:
     """The page's width and height in mm, and the polylines with Y up from its lower edge."""
     root = ElementTree.parse(file).getroot()
     size = np.array([float(root.attrib[side].removesuffix("mm")) for side in ("width", "height")])
-    assert root.attrib["viewBox"].split()[2:] == [root.attrib[side].removesuffix("mm") for side in ("width", "height")]
+    assert root.attrib["viewBox"].split()[2:] == [
+        root.attrib[side].removesuffix("mm") for side in ("width", "height")
+    ]
     lines = root.iter("{http://www.w3.org/2000/svg}polyline")
     points = [np.array([p.split(",") for p in line.attrib["points"].split()], float) for line in lines]
     return size, [np.column_stack([p[:, 0], size[1] - p[:, 1]]) for p in points]

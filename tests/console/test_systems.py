@@ -35,7 +35,9 @@ def test_all_systems_side_by_side(morfax: Morfax, here: Path) -> None:
     assert figures["steps"]["bits_per_mm"] < 8 * figures["steps"]["bytes_per_mm"]  # the punched ones
     assert figures["steps"]["following_error_mm"] == 0 < figures["wav"]["following_error_mm"]
     report = (here / "report.html").read_text()
-    assert report.count('<img src="data:image/png;base64,') == report.count("<img") == 6  # contours, errors, four runs
+    assert (
+        report.count('<img src="data:image/png;base64,') == report.count("<img") == 6
+    )  # contours, errors, four runs
     assert report.count("<tr>") == 6 and "@media print" in report and "http" not in report
     assert [file.name for file in here.iterdir()] == ["report.html"]
 
@@ -83,7 +85,9 @@ def test_a_system_that_refuses_says_why_and_the_others_go_on(
         (("cam.png", "--systems", "all", "-o", "a.csv"), "must end in .html"),
     ],
 )
-def test_what_does_not_go_together_is_wrong_use(morfax: Morfax, here: Path, words: tuple[str, ...], told: str) -> None:
+def test_what_does_not_go_together_is_wrong_use(
+    morfax: Morfax, here: Path, words: tuple[str, ...], told: str
+) -> None:
     answer = morfax("compare", *(SAMPLES / word if word.startswith("cam") else word for word in words))
     assert answer.exit_code == 2 and told in answer.fault and not list(here.iterdir())
 

@@ -17,7 +17,9 @@ PLAYED_WITHIN_MM = 3 * UM  # what the issue allows at any place
 RATE_HZ = 48000
 
 
-def test_a_path_written_as_it_comes_is_the_path_written_whole(morfax: Morfax, here: Path, tape_file: Path) -> None:
+def test_a_path_written_as_it_comes_is_the_path_written_whole(
+    morfax: Morfax, here: Path, tape_file: Path
+) -> None:
     """With a picture the path is held whole; without one it goes to the file piece by piece: byte for byte the same, and so are the figures."""
     piece_by_piece = morfax("play", tape_file, "-o", "pieces.csv", "--json").figures
     whole = morfax("play", tape_file, "-o", "whole.csv", "-o", "whole.svg", "--json").figures
@@ -58,7 +60,9 @@ def test_play_writes_all_that_is_asked_for(morfax: Morfax, here: Path, tape_file
     assert sorted(file.name for file in here.iterdir()) == ["a.csv", "a.png", "a.svg"]
 
 
-def test_path_names_the_machine_s_path_as_trace_names_the_head_s(morfax: Morfax, here: Path, tape_file: Path) -> None:
+def test_path_names_the_machine_s_path_as_trace_names_the_head_s(
+    morfax: Morfax, here: Path, tape_file: Path
+) -> None:
     answer = morfax("play", tape_file, "-o", "a.csv", "--path", "b.csv", "--json")
     assert answer.exit_code == 0 and answer.figures["paths"] == ["a.csv", "b.csv"]
     assert (here / "a.csv").read_bytes() == (here / "b.csv").read_bytes()
@@ -86,12 +90,16 @@ def test_a_tape_without_text_plays_with_what_is_given_by_hand(
     assert np.ptp(played.xy_mm, axis=0) == pytest.approx([20, 20], abs=PLAYED_WITHIN_MM)
 
 
-def test_inspect_tells_tracks_carriers_levels_and_travel(morfax: Morfax, path_file: Path, tape_file: Path) -> None:
+def test_inspect_tells_tracks_carriers_levels_and_travel(
+    morfax: Morfax, path_file: Path, tape_file: Path
+) -> None:
     figures = morfax("inspect", tape_file, "--json").figures
     assert figures["tracks"] == 4 and figures["sample_rate_hz"] == RATE_HZ
     assert figures["reference_hz"] == 6000 and figures["cycles_per_mm"] == 20
     reference, x, y, z = (figures[f"track_{name}"] for name in ("1_reference", "2_x", "3_y", "4_z"))
-    assert [reference["from_hz"], reference["to_hz"]] == pytest.approx([6000, 6000], abs=1)  # a tenth of a bin
+    assert [reference["from_hz"], reference["to_hz"]] == pytest.approx(
+        [6000, 6000], abs=1
+    )  # a tenth of a bin
     truth = read_path(path_file)
     y_mm_s = np.gradient(truth.xy_mm[:, 1], truth.t_s)
     asked_hz = [6000 + 20 * y_mm_s.min(), 6000 + 20 * y_mm_s.max()]
@@ -140,7 +148,9 @@ def test_a_silent_track_is_told_and_what_was_played_before_is_kept(
 ) -> None:
     frames[2 * RATE_HZ :, 1] = 0
     broken = rewritten(tape_file, frames, "broken.wav")
-    answer = morfax("play", broken, "--reference", "6kHz", "--cycles-per-mm", "20", "-o", "broken.csv", "--json")
+    answer = morfax(
+        "play", broken, "--reference", "6kHz", "--cycles-per-mm", "20", "-o", "broken.csv", "--json"
+    )
     assert answer.exit_code == 5 and "X" in answer.fault
     assert answer.figures["incomplete"] is True
     assert not (here / "broken.csv").exists()
@@ -172,7 +182,9 @@ def test_record_takes_a_path_without_times_at_the_feed(morfax: Morfax, here: Pat
     (here / "line.csv").write_text("x,y\n0,0\n30,40\n")
     answer = morfax("record", "line.csv", "--feed", "25mm/s", "--json")
     assert answer.exit_code == 0
-    assert answer.figures["duration_s"] == pytest.approx(2 + 2, abs=0.01)  # a second of standstill at both ends
+    assert answer.figures["duration_s"] == pytest.approx(
+        2 + 2, abs=0.01
+    )  # a second of standstill at both ends
     assert (here / "line.wav").exists()
 
 

@@ -19,11 +19,16 @@ def test_the_names_offered_are_those_there_are() -> None:
 
 def test_the_default_tape_is_the_same_byte_for_byte(morfax: Morfax, here: Path, path_file: Path) -> None:
     assert morfax("record", path_file, "-o", "a.wav", "-q").exit_code == 0
-    assert morfax("record", path_file, "-o", "b.wav", "-q", "--pickup", "resolver", "--turn", "360").exit_code == 0
+    assert (
+        morfax("record", path_file, "-o", "b.wav", "-q", "--pickup", "resolver", "--turn", "360").exit_code
+        == 0
+    )
     assert Path("a.wav").read_bytes() == Path("b.wav").read_bytes()
 
 
-def test_a_pick_up_is_on_the_tape_with_its_travel_per_cycle(morfax: Morfax, here: Path, path_file: Path) -> None:
+def test_a_pick_up_is_on_the_tape_with_its_travel_per_cycle(
+    morfax: Morfax, here: Path, path_file: Path
+) -> None:
     answer = morfax("record", path_file, "-o", "a.wav", "--pickup", "scale", "--json")
     assert answer.figures["pickup"] == "scale"
     with Tape.open("a.wav") as tape:
@@ -33,15 +38,21 @@ def test_a_pick_up_is_on_the_tape_with_its_travel_per_cycle(morfax: Morfax, here
 
 def test_mirror_turn_and_scale_of_a_path(morfax: Morfax, here: Path) -> None:
     write_path(MotionPath(np.array([0.0, 1, 2]), np.array([[10.0, 5, 2], [14, 5, 0], [14, 7, 0]])), "l.csv")
-    answer = morfax("record", "l.csv", "-o", "l.wav", "--mirror", "x", "--scale", "2", "--turn", "90deg", "--json")
+    answer = morfax(
+        "record", "l.csv", "-o", "l.wav", "--mirror", "x", "--scale", "2", "--turn", "90deg", "--json"
+    )
     assert "cutter must be 2 times as thick" in answer.err
     assert answer.figures["end_place_mm"] == pytest.approx([6, -3, 0], abs=1e-9)
     assert morfax("play", "l.wav", "-o", "played.csv", "-q").exit_code == 0
-    assert read_path("played.csv").positions_mm[-1] == pytest.approx([6, -3, 0], abs=1e-5)  # what a path file keeps
+    assert read_path("played.csv").positions_mm[-1] == pytest.approx(
+        [6, -3, 0], abs=1e-5
+    )  # what a path file keeps
 
 
 def test_a_mirrored_drawing_is_compared_as_the_head_saw_it(morfax: Morfax, here: Path) -> None:
-    answer = morfax("run", SAMPLES / "cam.png", "-o", "out", "--mirror", "y", "--turn", "30deg", "-q", "--json")
+    answer = morfax(
+        "run", SAMPLES / "cam.png", "-o", "out", "--mirror", "y", "--turn", "30deg", "-q", "--json"
+    )
     assert answer.exit_code == 0
     assert answer.figures["played_to_ink"]["max_mm"] < 0.02  # as without: 0.0065
     traced, played = read_path("out/cam.traced.csv"), read_path("out/cam.played.csv")
@@ -59,11 +70,16 @@ def test_a_mirrored_drawing_is_compared_as_the_head_saw_it(morfax: Morfax, here:
         (("-o", "a.wav", "--turn", "north"), "'north' is no angle; give 90deg"),
     ],
 )
-def test_what_is_refused(morfax: Morfax, here: Path, path_file: Path, words: tuple[str, ...], says: str) -> None:
+def test_what_is_refused(
+    morfax: Morfax, here: Path, path_file: Path, words: tuple[str, ...], says: str
+) -> None:
     answer = morfax("record", path_file, *words)
     assert answer.exit_code == 2 and says in answer.fault
     assert not list(here.glob("a.*"))
 
 
 def test_a_path_alone_has_no_pick_up(morfax: Morfax, here: Path) -> None:
-    assert "--pickup is for tapes" in morfax("trace", SAMPLES / "cam.png", "-o", "a.csv", "--pickup", "coil").fault
+    assert (
+        "--pickup is for tapes"
+        in morfax("trace", SAMPLES / "cam.png", "-o", "a.csv", "--pickup", "coil").fault
+    )

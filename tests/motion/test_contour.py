@@ -116,10 +116,15 @@ def test_length_and_closure_of_a_circle() -> None:
 
 @settings(max_examples=30)
 @given(st.floats(-50, 50), st.floats(-50, 50), st.floats(0, 7))
-def test_a_distance_does_not_depend_on_where_the_sheet_lies(x_mm: float, y_mm: float, turn_rad: float) -> None:
+def test_a_distance_does_not_depend_on_where_the_sheet_lies(
+    x_mm: float, y_mm: float, turn_rad: float
+) -> None:
     path, reference = circle(5, 200), resampled(np.array([[-5.0, -5.0], [5.0, -5.0], [5.0, 5.0]]), 10)
     turn = np.array([[np.cos(turn_rad), -np.sin(turn_rad)], [np.sin(turn_rad), np.cos(turn_rad)]])
-    here, there = distance(path, reference), distance(path @ turn + [x_mm, y_mm], reference @ turn + [x_mm, y_mm])
+    here, there = (
+        distance(path, reference),
+        distance(path @ turn + [x_mm, y_mm], reference @ turn + [x_mm, y_mm]),
+    )
     assert there.hausdorff_mm == pytest.approx(here.hausdorff_mm, abs=1e-6 * MM)
     assert there.path_to_reference.rms_mm == pytest.approx(here.path_to_reference.rms_mm, abs=1e-6 * MM)
 

@@ -49,7 +49,9 @@ def star(seed: int) -> Array:
 
 
 @pytest.mark.parametrize(("left", "radius_mm"), [(True, 7.0), (False, 13.0)])
-def test_a_circle_becomes_the_circle_that_is_smaller_or_larger_by_the_radius(left: bool, radius_mm: float) -> None:
+def test_a_circle_becomes_the_circle_that_is_smaller_or_larger_by_the_radius(
+    left: bool, radius_mm: float
+) -> None:
     (way,) = offset([Guide(circle(10), True, left)], 3)
     assert way.closed and np.abs(np.hypot(*way.points_mm.T) - radius_mm).max() < 0.1 * UM
     start = way.points_mm[0]
@@ -73,7 +75,18 @@ def test_round_a_square_the_corners_are_rolled_round_and_inside_they_stay_sharp(
 
 def test_two_rooms_joined_by_a_passage_too_narrow_are_two_ways() -> None:
     rooms = polygon(
-        (0, 0), (10, 0), (10, 4), (20, 4), (20, 0), (30, 0), (30, 10), (20, 10), (20, 6), (10, 6), (10, 10), (0, 10)
+        (0, 0),
+        (10, 0),
+        (10, 4),
+        (20, 4),
+        (20, 0),
+        (30, 0),
+        (30, 10),
+        (20, 10),
+        (20, 6),
+        (10, 6),
+        (10, 10),
+        (0, 10),
     )
     assert [way.closed for way in offset([Guide(rooms, True, True)], 0.9)] == [True]
     assert [way.closed for way in offset([Guide(rooms, True, True)], 1.1)] == [True, True]
@@ -101,7 +114,9 @@ def test_the_ways_are_the_edges_of_the_buffer(seed: int, radius_mm: float, left:
     ours = [way.points_mm for way in ways if shapely.LineString(way.points_mm).length > 0.2]
     assert len(ours) == len(edges) and all(way.closed for way in ways)
     if ours:
-        assert distance(ours, edges).hausdorff_mm < 5 * UM  # shapely's own arcs are 4 mm * (1 - cos(90°/1000))
+        assert (
+            distance(ours, edges).hausdorff_mm < 5 * UM
+        )  # shapely's own arcs are 4 mm * (1 - cos(90°/1000))
         near = shapely.distance(shapely.points(np.vstack(ours)), shapely.LineString(line))
         assert near.min() > radius_mm - EXACT_MM
 
@@ -128,14 +143,18 @@ def test_the_line_may_be_run_either_way_and_the_cutter_goes_with_it() -> None:
 
 @pytest.mark.parametrize("feed_mm_s", [10.0, 90.0])
 @pytest.mark.parametrize(("left", "radius_mm"), [(False, 1.5), (True, 3.0)])
-def test_a_way_is_run_at_its_feed_and_within_its_acceleration(feed_mm_s: float, left: bool, radius_mm: float) -> None:
+def test_a_way_is_run_at_its_feed_and_within_its_acceleration(
+    feed_mm_s: float, left: bool, radius_mm: float
+) -> None:
     (way,) = offset([Guide(star(3), True, left)], radius_mm)
     xy_mm = run_along(way.points_mm, feed_mm_s, 500)
     velocity = np.diff(xy_mm, axis=0) * MOTION_RATE_HZ
     speed = np.hypot(*velocity.T)
     assert speed.max() < feed_mm_s * (1 + 1e-6)
     assert speed.max() > (0.99 * feed_mm_s if feed_mm_s < 20 else 35)
-    assert np.hypot(*np.diff(velocity, axis=0).T).max() * MOTION_RATE_HZ < 1.05 * 500  # along and across together
+    assert (
+        np.hypot(*np.diff(velocity, axis=0).T).max() * MOTION_RATE_HZ < 1.05 * 500
+    )  # along and across together
     assert xy_mm[0] == pytest.approx(way.points_mm[0]) and xy_mm[-1] == pytest.approx(way.points_mm[-1])
     assert distance(xy_mm, way.points_mm).hausdorff_mm < 0.3 * UM
 
@@ -143,7 +162,10 @@ def test_a_way_is_run_at_its_feed_and_within_its_acceleration(feed_mm_s: float, 
 def test_an_open_line_has_a_way_on_either_side() -> None:
     line = np.array([[0.0, 0], [10, 0], [10, 10]])
     (left,), (right,) = (offset([Guide(line, False, side)], 2) for side in (True, False))
-    assert not left.closed and distance(left.points_mm, np.array([[0.0, 2], [8, 2], [8, 10]])).hausdorff_mm < 0.1 * UM
+    assert (
+        not left.closed
+        and distance(left.points_mm, np.array([[0.0, 2], [8, 2], [8, 10]])).hausdorff_mm < 0.1 * UM
+    )
     length_mm = np.hypot(*np.diff(right.points_mm, axis=0).T).sum()
     assert length_mm == pytest.approx(20 + math.pi, abs=2 * UM)
 
@@ -160,7 +182,9 @@ KINK = (
 
 def test_a_kink_of_some_um_does_not_part_the_way() -> None:
     line = np.array([place.split(",") for place in KINK.split()], float) * 0.1 * UM
-    (way,) = offset([Guide(line, False, True)], 5.0)  # in two pieces, when a curl within the tolerance led back
+    (way,) = offset(
+        [Guide(line, False, True)], 5.0
+    )  # in two pieces, when a curl within the tolerance led back
     assert distance(way.points_mm, np.array([way.points_mm[0], way.points_mm[-1]])).hausdorff_mm < 0.2
     assert np.abs(Nearest([line], 5.0).distances_mm(way.points_mm) - 5.0).max() < 1 * UM
 
@@ -185,7 +209,9 @@ def scanned(line: Array, seed: int) -> Array:
     points = np.column_stack([np.interp(at, along, column) for column in line.T])
     for column in points.T:
         for waves in rng.integers(along[-1] / 3, along[-1] / 0.3, 12):
-            column += 0.3 * UM * rng.normal() * np.cos(math.tau * waves * at / along[-1] + rng.uniform(0, math.tau))
+            column += (
+                0.3 * UM * rng.normal() * np.cos(math.tau * waves * at / along[-1] + rng.uniform(0, math.tau))
+            )
     return np.vstack([points, points[:1]])
 
 

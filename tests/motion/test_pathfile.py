@@ -26,7 +26,9 @@ def read(folder: FilePath, text: str, **options: float) -> Path:
 
 @IN_ONE_FOLDER
 @given(arrays(np.float64, (20, 3), elements=st.floats(-1e4, 1e4)), st.floats(0, 1e4), st.floats(1e-4, 10))
-def test_a_written_path_reads_back(tmp_path: FilePath, positions: np.ndarray, start_s: float, step_s: float) -> None:
+def test_a_written_path_reads_back(
+    tmp_path: FilePath, positions: np.ndarray, start_s: float, step_s: float
+) -> None:
     path = Path(start_s + step_s * np.arange(20), positions)
     write_path(path, tmp_path / "p.csv")
     again = read_path(tmp_path / "p.csv")
@@ -35,7 +37,9 @@ def test_a_written_path_reads_back(tmp_path: FilePath, positions: np.ndarray, st
 
 
 def test_the_written_file_is_as_documented(tmp_path: FilePath) -> None:
-    write_path(Path(np.array([0.0, 0.5]), np.array([[1.0, -0.0, 2.0], [1.0, -1e-9, -5.0]])), tmp_path / "p.csv")
+    write_path(
+        Path(np.array([0.0, 0.5]), np.array([[1.0, -0.0, 2.0], [1.0, -1e-9, -5.0]])), tmp_path / "p.csv"
+    )
     assert (tmp_path / "p.csv").read_text().splitlines() == [
         "t_s,x_mm,y_mm,z_mm,tool",
         "0.0000000,1.00000,0.00000,2.00000,0",
@@ -115,14 +119,20 @@ def test_a_point_that_stands_twice_is_taken_once(tmp_path: FilePath) -> None:
         ("x,y\n1,2\n", "1 points in it"),
         ("1,2\n3,4\n5,6\n", "line 1: no column x_mm in '1,2'"),
         ("t_s,x_mm\n1,2\n3,4\n", "line 1: no column y_mm"),
-        ("x,y,a_deg\n1,2,3\n4,5,6\n", "line 1: column a_deg cannot be read; give a_mm, in mm, or take the column out"),
+        (
+            "x,y,a_deg\n1,2,3\n4,5,6\n",
+            "line 1: column a_deg cannot be read; give a_mm, in mm, or take the column out",
+        ),
         ("x,y,t_ms\n1,2,3\n4,5,6\n", "line 1: column t_ms cannot be read; give t_s, in seconds"),
         ("x,x_mm,y\n1,2,3\n4,5,6\n", "line 1: column x_mm stands there 2 times"),
         ("x,y\n1,2\n# remark\n3,four\n", "line 4: y_mm is 'four'; it must be a finite number"),
         ("x,y\n1,2\n3\n", "line 3: no value for y_mm in '3'"),
         ("x,y\n1,2\n3,nan\n", "line 3: y_mm is 'nan'"),
         ("x,y\n1,2\n3,\n", "line 3: y_mm is ''"),
-        ("x,y,tool\n1,2,1\n3,4,maybe\n", r"line 3: tool is 'maybe'; it must be 1 \(in the work\) or 0 \(up\)"),
+        (
+            "x,y,tool\n1,2,1\n3,4,maybe\n",
+            r"line 3: tool is 'maybe'; it must be 1 \(in the work\) or 0 \(up\)",
+        ),
         ("t_s,x,y\n0,1,2\n1,3,4\n0.5,5,6\n", "line 4: t_s is 0.5 after 1; times must grow"),
         ("t_s,x,y\n0,1,2\n0,3,4\n", "line 3: t_s is 0 after 0"),
         ("x,y\n1,2\n1,2\n", "stands still at one place"),

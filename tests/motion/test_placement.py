@@ -15,7 +15,12 @@ WHOLE = st.floats(-1e3, 1e3, allow_nan=False)
 
 
 def placed(placement: Placement) -> list[list[float]]:
-    return join(placement.stream([Motion(L_SHAPE[:1]), Motion(L_SHAPE[1:])])).positions_mm[:, :2].round(12).tolist()
+    return (
+        join(placement.stream([Motion(L_SHAPE[:1]), Motion(L_SHAPE[1:])]))
+        .positions_mm[:, :2]
+        .round(12)
+        .tolist()
+    )
 
 
 @pytest.mark.parametrize(
@@ -29,7 +34,9 @@ def placed(placement: Placement) -> list[list[float]]:
         (Placement("x", about_mm=(0, 0)), [[-10, 5], [-14, 5], [-14, 7]]),
     ],
 )
-def test_about_the_start_unless_another_point_is_given(placement: Placement, expected: list[list[float]]) -> None:
+def test_about_the_start_unless_another_point_is_given(
+    placement: Placement, expected: list[list[float]]
+) -> None:
     assert placed(placement) == expected
 
 

@@ -17,7 +17,9 @@ ROUNDING_MM = 1e-12
 def wave(seed: int, mm: float = 4.0, apart_mm: float = 0.03) -> np.ndarray:
     """A line that wanders at random."""
     turns = np.cumsum(np.random.default_rng(seed).normal(0, 0.7, 12))
-    nodes = np.vstack([np.zeros(2), np.cumsum(mm / 12 * np.column_stack([np.cos(turns), np.sin(turns)]), axis=0)])
+    nodes = np.vstack(
+        [np.zeros(2), np.cumsum(mm / 12 * np.column_stack([np.cos(turns), np.sin(turns)]), axis=0)]
+    )
     return with_places(nodes, apart_mm)
 
 
@@ -40,15 +42,22 @@ def test_fewer_places_are_within_what_is_allowed() -> None:
     angle = np.linspace(0, math.tau, 5001)
     circle = np.column_stack([10 * np.cos(angle), 10 * np.sin(angle)])
     kept = plain(circle, 0.01)
-    assert 70 <= len(kept) < 2 * 70  # chords with a rise of 0.01 mm are 0.9 mm long; they are halved as a whole
+    assert (
+        70 <= len(kept) < 2 * 70
+    )  # chords with a rise of 0.01 mm are 0.9 mm long; they are halved as a whole
     assert np.abs(np.hypot(*with_places(kept, 0.05).T) - 10).max() <= 0.01 + ROUNDING_MM
 
 
 @given(
-    one=st.integers(0, 10_000), other=st.integers(0, 10_000), turn=st.floats(0.5, 2.5), apart_mm=st.floats(0.02, 0.4)
+    one=st.integers(0, 10_000),
+    other=st.integers(0, 10_000),
+    turn=st.floats(0.5, 2.5),
+    apart_mm=st.floats(0.02, 0.4),
 )
 @settings(max_examples=100, deadline=None)
-def test_crossings_are_those_of_all_pairs_of_pieces(one: int, other: int, turn: float, apart_mm: float) -> None:
+def test_crossings_are_those_of_all_pairs_of_pieces(
+    one: int, other: int, turn: float, apart_mm: float
+) -> None:
     a = wave(one, apart_mm=apart_mm)
     c, s = math.cos(turn), math.sin(turn)
     b = wave(other, apart_mm=apart_mm) @ np.array([[c, s], [-s, c]]) + [0.3, -0.2]
@@ -59,7 +68,9 @@ def test_crossings_are_those_of_all_pairs_of_pieces(one: int, other: int, turn: 
     u, v = ((w[..., 0] * d[..., 1] - w[..., 1] * d[..., 0]) / cross for d in (q, p))
     i, j = np.nonzero((u >= 0) & (u < 1) & (v >= 0) & (v < 1))
     wanted = np.column_stack([i + u[i, j], j + v[i, j]])
-    assert found == pytest.approx(wanted[np.argsort(wanted[:, 0])], abs=1e-6)  # of a piece: where it is met at a slant
+    assert found == pytest.approx(
+        wanted[np.argsort(wanted[:, 0])], abs=1e-6
+    )  # of a piece: where it is met at a slant
 
 
 def test_distances_are_true_a_radius_away() -> None:

@@ -24,7 +24,9 @@ def test_every_one_of_100_000_random_moves_is_exactly_at_rest() -> None:
     for _ in range(MOVES):
         increments, changes = int(random.integers(1, 2000)), int(random.integers(0, 4))
         speeds = random.integers(1, 400, changes + 1).tolist()
-        profile = count_ramp(increments, speeds, np.sort(random.integers(0, increments + 1, changes)).tolist())
+        profile = count_ramp(
+            increments, speeds, np.sort(random.integers(0, increments + 1, changes)).tolist()
+        )
         assert profile.at_rest() == (2 * increments, 0), (increments, speeds)
 
 
@@ -59,7 +61,9 @@ def test_a_new_demand_on_the_way_ends_exactly_too(moving: int, further: int, spe
 
 
 def test_a_new_demand_too_near_to_stop_is_refused() -> None:
-    with pytest.raises(ValueError, match="9 increments are too few to stop in from a speed that needs 10; give 10"):
+    with pytest.raises(
+        ValueError, match="9 increments are too few to stop in from a speed that needs 10; give 10"
+    ):
         count_ramp(9, [20], moving=10)
 
 
@@ -82,7 +86,9 @@ def test_positions_end_exactly_within_feed_and_acceleration(
     way = positions_mm(start, end, feed_mm_s, changes=[(at_mm, later_mm_s)])
     assert (way[0] == start).all() and (way[-1] == end).all()
     speed = np.linalg.norm(np.diff(way, axis=0), axis=1) * MOTION_RATE_HZ
-    assert speed.max(initial=0) <= max(feed_mm_s, later_mm_s, 1.1) * (1 + 1e-6)  # 1 mm/s: a ramp of one increment
+    assert speed.max(initial=0) <= max(feed_mm_s, later_mm_s, 1.1) * (
+        1 + 1e-6
+    )  # 1 mm/s: a ramp of one increment
     around = np.vstack([start, way, end])  # standing before and after
     push = np.linalg.norm(np.diff(around, 2, axis=0), axis=1) * MOTION_RATE_HZ**2
     assert push.max() <= Ramp().acceleration_mm_s2 + 50 * ROUNDING
@@ -102,7 +108,9 @@ def test_feed_and_time_are_those_of_the_trapezium() -> None:
 
 def test_the_feed_is_reached_exactly_though_its_ramp_is_no_whole_number_of_increments() -> None:
     way = positions_mm([0, 0], [20, 7], 7.77, Ramp(acceleration_mm_s2=333))
-    assert np.linalg.norm(np.diff(way, axis=0), axis=1).max() * MOTION_RATE_HZ == pytest.approx(7.77, rel=1e-6)
+    assert np.linalg.norm(np.diff(way, axis=0), axis=1).max() * MOTION_RATE_HZ == pytest.approx(
+        7.77, rel=1e-6
+    )
 
 
 def test_a_move_of_nothing_is_one_row_and_one_below_an_increment_still_arrives() -> None:

@@ -33,18 +33,29 @@ def test_lengths(text: str, length_mm: float) -> None:
 
 @pytest.mark.parametrize(
     ("text", "speed_mm_s"),
-    [("10mm/s", 10.0), ("10", 10.0), ("1200mm/min", 20.0), ("24in/min", 10.16), ("1.2 m/min", 20.0), ("1in/s", 25.4)],
+    [
+        ("10mm/s", 10.0),
+        ("10", 10.0),
+        ("1200mm/min", 20.0),
+        ("24in/min", 10.16),
+        ("1.2 m/min", 20.0),
+        ("1in/s", 25.4),
+    ],
 )
 def test_speeds(text: str, speed_mm_s: float) -> None:
     assert units.parse_speed_mm_s(text) == pytest.approx(speed_mm_s, rel=1e-15)
 
 
-@pytest.mark.parametrize(("text", "hz"), [("6kHz", 6000.0), ("48000", 48000.0), ("400 hz", 400.0), ("0.5KHZ", 500.0)])
+@pytest.mark.parametrize(
+    ("text", "hz"), [("6kHz", 6000.0), ("48000", 48000.0), ("400 hz", 400.0), ("0.5KHZ", 500.0)]
+)
 def test_frequencies(text: str, hz: float) -> None:
     assert units.parse_frequency_hz(text) == hz
 
 
-@pytest.mark.parametrize(("text", "time_s"), [("2s", 2.0), ("300ms", 0.3), ("0", 0.0), ("1min", 60.0), ("1h", 3600.0)])
+@pytest.mark.parametrize(
+    ("text", "time_s"), [("2s", 2.0), ("300ms", 0.3), ("0", 0.0), ("1min", 60.0), ("1h", 3600.0)]
+)
 def test_times(text: str, time_s: float) -> None:
     assert units.parse_time_s(text) == pytest.approx(time_s, rel=1e-15)
 
@@ -153,13 +164,17 @@ FOUR_FIGURES = 0.51e-3  # half a unit in the fourth figure, at its worst relativ
 
 @given(st.floats(1e-4, 1e6) | st.floats(-1e6, -1e-4))
 def test_a_printed_length_reads_back(length_mm: float) -> None:
-    assert units.parse_length_mm(units.format_length_mm(length_mm)) == pytest.approx(length_mm, rel=FOUR_FIGURES)
+    assert units.parse_length_mm(units.format_length_mm(length_mm)) == pytest.approx(
+        length_mm, rel=FOUR_FIGURES
+    )
 
 
 @given(st.floats(1e-3, 1e6))
 def test_a_printed_speed_and_frequency_read_back(value: float) -> None:
     assert units.parse_speed_mm_s(units.format_speed_mm_s(value)) == pytest.approx(value, rel=FOUR_FIGURES)
-    assert units.parse_frequency_hz(units.format_frequency_hz(value)) == pytest.approx(value, rel=FOUR_FIGURES)
+    assert units.parse_frequency_hz(units.format_frequency_hz(value)) == pytest.approx(
+        value, rel=FOUR_FIGURES
+    )
 
 
 @given(st.text(max_size=30))

@@ -56,7 +56,9 @@ def swing(t_s: Array) -> Array:
     return np.column_stack([5 * grown * np.sin(8 * t), 5 * grown * np.cos(8 * t), -grown])
 
 
-def along(t_s: Array, length_mm: float, speed_mm_s: float, acceleration_mm_s2: float, start_s: float = 0.0) -> Array:
+def along(
+    t_s: Array, length_mm: float, speed_mm_s: float, acceleration_mm_s2: float, start_s: float = 0.0
+) -> Array:
     """Way in mm along a path started and stopped with a constant acceleration: 0 before, the whole length after."""
     rise_s = speed_mm_s / acceleration_mm_s2
     t = np.clip(t_s - start_s, 0, length_mm / speed_mm_s + rise_s)
@@ -66,7 +68,9 @@ def along(t_s: Array, length_mm: float, speed_mm_s: float, acceleration_mm_s2: f
     return np.where(left < rise_s, length_mm - acceleration_mm_s2 * left**2 / 2, way)
 
 
-def circle(radius_mm: float, speed_mm_s: float, acceleration_mm_s2: float = 500.0, start_s: float = 0.3) -> Course:
+def circle(
+    radius_mm: float, speed_mm_s: float, acceleration_mm_s2: float = 500.0, start_s: float = 0.3
+) -> Course:
     """Once round a circle from rest to rest."""
 
     def course(t_s: Array) -> Array:
@@ -76,7 +80,9 @@ def circle(radius_mm: float, speed_mm_s: float, acceleration_mm_s2: float = 500.
     return course
 
 
-def square(side_mm: float, speed_mm_s: float, acceleration_mm_s2: float = 500.0, start_s: float = 0.3) -> Course:
+def square(
+    side_mm: float, speed_mm_s: float, acceleration_mm_s2: float = 500.0, start_s: float = 0.3
+) -> Course:
     """Once round a square, stopping at each corner."""
     leg_s = side_mm / speed_mm_s + speed_mm_s / acceleration_mm_s2
 

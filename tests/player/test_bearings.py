@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from morfax.motion.faults import LockFault, TapeFault
-from morfax.player.tape.standstill import Bearings, decibels, strongest_hz, take_bearings
 from morfax.player.tape.discriminator import Discriminator, Phases
+from morfax.player.tape.standstill import Bearings, decibels, strongest_hz, take_bearings
 from morfax.recorder.tape.format import TapeFormat
 from tests.player.carriers import MOTION_RATE_HZ, RATE_HZ, REFERENCE_HZ, Transport, swing, tracks
 
@@ -18,7 +18,9 @@ FORMAT = TapeFormat()
 
 def bearings(frames: np.ndarray, fmt: TapeFormat = FORMAT) -> Bearings:
     """Bearings taken from a tape."""
-    phases = Discriminator(fmt.sample_rate_hz, fmt.reference_hz, fmt.samples_per_motion, fmt.tracks).feed(frames)
+    phases = Discriminator(fmt.sample_rate_hz, fmt.reference_hz, fmt.samples_per_motion, fmt.tracks).feed(
+        frames
+    )
     return take_bearings(frames, phases, fmt)
 
 
@@ -50,7 +52,9 @@ def test_the_strongest_tone_is_found(hz: float, phase: float, level: float) -> N
 def test_a_silent_track_is_named(track: int, name: str) -> None:
     frames = tracks(swing, 0.3)
     frames[:, track] = 0
-    with pytest.raises(TapeFault, match=rf"track {track + 1} \({name}\) is silent: level none, at least -60 dB"):
+    with pytest.raises(
+        TapeFault, match=rf"track {track + 1} \({name}\) is silent: level none, at least -60 dB"
+    ):
         bearings(frames)
 
 
@@ -83,7 +87,9 @@ def test_a_tape_without_a_standstill_starts_at_its_first_row() -> None:
 
 def block(rows: int = 100) -> Phases:
     """Rows without anything wrong, from row 6000 of the tape."""
-    return Phases(6000, np.zeros((rows, 3)), np.zeros((rows, 3), np.float32), np.full((rows, 4), 0.5, np.float32))
+    return Phases(
+        6000, np.zeros((rows, 3)), np.zeros((rows, 3), np.float32), np.full((rows, 4), 0.5, np.float32)
+    )
 
 
 WATCH = Bearings(np.full(4, 0.5), np.zeros(3), REFERENCE_HZ, ("x", "y", "z"))

@@ -51,7 +51,10 @@ RIGS = {
             "friction": (MotorCondition(friction_share=1.0), 0.02),
             "lost gain": (MotorCondition(torque_share=0.3), 0.02),
             "stuck axis": (MotorCondition(stuck=True), 0.02),
-            "runaway": (MotorCondition(stray_hz=25.0), 0.0),  # a quarter of a mm/s, from the first standstill on
+            "runaway": (
+                MotorCondition(stray_hz=25.0),
+                0.0,
+            ),  # a quarter of a mm/s, from the first standstill on
         },
     ),
     "cubic": Rig(
@@ -108,7 +111,9 @@ def test_a_sound_machine_passes(programs: dict[str, Path], name: str) -> None:
 
 
 @pytest.mark.parametrize(("name", "what"), CASES)
-def test_a_broken_drive_is_found_in_time_with_its_state(programs: dict[str, Path], name: str, what: str) -> None:
+def test_a_broken_drive_is_found_in_time_with_its_state(
+    programs: dict[str, Path], name: str, what: str
+) -> None:
     condition, within_s = RIGS[name].breaks[what]
     playback = play(programs[name])
     playback.conditions[0] = condition
@@ -126,10 +131,14 @@ def test_a_broken_drive_is_found_in_time_with_its_state(programs: dict[str, Path
 
 
 @pytest.mark.parametrize(("name", "what"), CASES)
-def test_one_limit_wide_enough_for_all_speeds_misses_it(programs: dict[str, Path], name: str, what: str) -> None:
+def test_one_limit_wide_enough_for_all_speeds_misses_it(
+    programs: dict[str, Path], name: str, what: str
+) -> None:
     playback = play(programs[name])
     playback.conditions[0], _ = RIGS[name].breaks[what]
     playback.limit = FollowingLimit.table([(0, 0)], RIGS[name].wide_mm)
-    with contextlib.suppress(LockFault):  # that the machine did not arrive shows at the end, where the program says it
+    with contextlib.suppress(
+        LockFault
+    ):  # that the machine did not arrive shows at the end, where the program says it
         assert list(playback)
     assert playback.following_error_mm[0] < RIGS[name].wide_mm

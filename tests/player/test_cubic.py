@@ -12,14 +12,12 @@ from hypothesis import strategies as st
 from morfax.motion.contour import distance
 from morfax.motion.faults import LockFault, ProgramFault
 from morfax.motion.motion import join, thin
-from morfax.player.cubics import cubic
-from morfax.player.cubics import interpolator
-from morfax.player.cubics import scales
+from morfax.player.cubics import cubic, interpolator, scales
 from morfax.player.cubics.cubic import Servo, play_cubic
 from morfax.player.cubics.interpolator import Interpolator, TimeBase, table, truncated_end
 from morfax.player.cubics.scales import Scales, joined, read_scales
-from morfax.recorder.cubics.file import CubicFormat
 from morfax.recorder.cubics.cubics import record_cubics
+from morfax.recorder.cubics.file import CubicFormat
 from tests.recorder.test_steps import SQUARE, circle
 
 UM = 1e-3
@@ -150,7 +148,9 @@ def test_the_times_of_the_blocks_join(round_file: Path) -> None:
     assert ends_s[-1] + blocks[-1].duration_s == pytest.approx(playback.duration_s, abs=1 / 1000)
 
 
-def test_the_kernels_do_as_plain_python_what_they_do_compiled(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_kernels_do_as_plain_python_what_they_do_compiled(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     short = record_cubics(SQUARE, tmp_path / "a.cubic", fmt=CubicFormat(points=64, linear=2)).file
     shaken = Servo(scales=Scales(fine_noise_counts=1), dropped_digits=1)
     compiled = join(play_cubic(short, servo=shaken)).positions_mm

@@ -11,7 +11,15 @@ from hypothesis import strategies as st
 
 from morfax.player.tape import discriminator as organ
 from morfax.player.tape.discriminator import Discriminator, Phases, discriminate, translating_taps
-from tests.player.carriers import CYCLES_PER_MM, MOTION_RATE_HZ, RATE_HZ, REFERENCE_HZ, Transport, swing, tracks
+from tests.player.carriers import (
+    CYCLES_PER_MM,
+    MOTION_RATE_HZ,
+    RATE_HZ,
+    REFERENCE_HZ,
+    Transport,
+    swing,
+    tracks,
+)
 
 SECONDS = 1.5
 ENDS = slice(8, -8)  # the rows whose filter would reach past the tape are held
@@ -21,7 +29,9 @@ def decode(frames: np.ndarray, block_frames: int = 10_000) -> Phases:
     """All phases of a tape, fed in blocks."""
     blocks = (frames[i : i + block_frames] for i in range(0, len(frames), block_frames))
     parts = list(discriminate(blocks, Discriminator(RATE_HZ, REFERENCE_HZ, 8, frames.shape[1])))
-    return Phases(0, *(np.vstack([getattr(p, name) for p in parts]) for name in ("cycles", "surprise", "levels")))
+    return Phases(
+        0, *(np.vstack([getattr(p, name) for p in parts]) for name in ("cycles", "surprise", "levels"))
+    )
 
 
 def truth(transport: Transport, rows: int) -> np.ndarray:
@@ -112,13 +122,17 @@ def test_dc_and_second_harmonic_are_kept_out() -> None:
     ("rate_hz", "reference_hz", "decimation", "speed_mm_s"),
     [(48000, 6000.0, 8, 90.0), (44100, 5512.5, 8, 80.0), (96000, 6000.0, 16, 90.0), (48000, 400.0, 8, 2.0)],
 )
-def test_other_rates_and_references(rate_hz: int, reference_hz: float, decimation: int, speed_mm_s: float) -> None:
+def test_other_rates_and_references(
+    rate_hz: int, reference_hz: float, decimation: int, speed_mm_s: float
+) -> None:
     t_s = np.arange(rate_hz) / rate_hz
     # A steady run, entered smoothly enough for the predictor.
     way_mm = speed_mm_s * np.where(t_s < 0.5, t_s**2, t_s - 0.25)
     cycles = reference_hz * t_s[:, None] + np.column_stack([0 * t_s, way_mm * CYCLES_PER_MM])
     organ_ = Discriminator(rate_hz, reference_hz, decimation, 2)
-    rows = np.vstack([p.cycles for p in discriminate([np.sin(2 * np.pi * cycles).astype(np.float32)], organ_)])
+    rows = np.vstack(
+        [p.cycles for p in discriminate([np.sin(2 * np.pi * cycles).astype(np.float32)], organ_)]
+    )
     ends = organ_.filter_frames // decimation + 1
     expected = way_mm[::decimation, None] * CYCLES_PER_MM
     assert len(rows) == len(expected)

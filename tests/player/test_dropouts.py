@@ -33,7 +33,9 @@ def test_a_side_is_the_motion_at_its_edge() -> None:
 def test_an_even_motion_is_bridged_exactly() -> None:
     before, after = side(parabola(np.arange(-35, 1)), 35), side(parabola(np.arange(30, 66)) - 3, 0)
     found = bridge(before, after, 30, 0.0)
-    assert found.travel == pytest.approx(parabola(np.array(30.0)) - 5, abs=1e-9)  # three cycles were miscounted
+    assert found.travel == pytest.approx(
+        parabola(np.array(30.0)) - 5, abs=1e-9
+    )  # three cycles were miscounted
     assert found.off == pytest.approx(0, abs=1e-9)
     between = filled(before, after, found.travel, 30)
     assert between == pytest.approx(parabola(np.arange(1, 30)), abs=1e-9)

@@ -21,7 +21,10 @@ def line(folder: Path, x_mm: float, y_mm: float, override: float | None = None) 
 @pytest.mark.parametrize("degrees", [0, 20, 45, 70])
 def test_along_a_line_it_holds_what_its_norm_allows(tmp_path: Path, degrees: float) -> None:
     end = 30 * np.cos(np.radians(degrees)), 30 * np.sin(np.radians(degrees))
-    for true_norm, least, most in ((True, 0.99, 1.01), (False, 0.925, 1.015)):  # ±0.5 %; -7.2 … +1.0 % in two axes
+    for true_norm, least, most in (
+        (True, 0.99, 1.01),
+        (False, 0.925, 1.015),
+    ):  # ±0.5 %; -7.2 … +1.0 % in two axes
         held = held_speed(line(tmp_path, *end), true_norm)
         middle = (held.way_mm > 5) & (held.way_mm < 25)
         assert middle.sum() > 50

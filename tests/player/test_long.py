@@ -32,7 +32,9 @@ print(f"{hours:g} h: {recording.bytes / 2**30:.2f} GiB written in {written - beg
 """
 
 
-@pytest.mark.parametrize(("name", "hours", "kind"), [("a.wav", 3, "WAV"), ("b.wav", 6, "RF64"), ("c.w64", 6, "W64")])
+@pytest.mark.parametrize(
+    ("name", "hours", "kind"), [("a.wav", 3, "WAV"), ("b.wav", 6, "RF64"), ("c.w64", 6, "W64")]
+)
 def test_a_tape_of_hours_is_written_and_played(tmp_path: Path, name: str, hours: float, kind: str) -> None:
     file = tmp_path / name
     try:

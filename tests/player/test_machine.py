@@ -57,10 +57,14 @@ def test_the_machine_goes_where_the_tape_says(tmp_path: Path) -> None:
     positions = played(tmp_path / "t.wav")
     told = swing(np.arange(len(positions)) / MOTION_RATE_HZ)
     assert len(positions) == SECONDS * MOTION_RATE_HZ
-    assert np.abs(positions - told)[:-8].max() < 0.6 * UM  # following error of 0.5 m/s²; the last rows are held
+    assert (
+        np.abs(positions - told)[:-8].max() < 0.6 * UM
+    )  # following error of 0.5 m/s²; the last rows are held
 
 
-@pytest.mark.parametrize(("course", "seconds"), [(circle(3, 10), 2.6), (square(10, 10), 5.0), (circle(50, 100), 4.0)])
+@pytest.mark.parametrize(
+    ("course", "seconds"), [(circle(3, 10), 2.6), (square(10, 10), 5.0), (circle(50, 100), 4.0)]
+)
 @pytest.mark.parametrize(
     ("transport", "rms_mm", "max_mm"),
     [(Transport(), 0.2 * UM, 0.6 * UM), (Transport(noise_db=40, flutter=0.005), 0.2 * UM, 0.7 * UM)],
@@ -161,7 +165,10 @@ def test_a_drive_that_cannot_follow_is_a_fault_with_its_state(tmp_path: Path) ->
     with pytest.raises(LockFault, match=r"the drive of Y lost its lock at 0\.3") as caught:
         join(by_hand(tape(tmp_path / "t.wav", tracks(dash, 0.5))))
     fault = caught.value
-    assert (fault.axis, fault.error_cycles) == ("y", pytest.approx(4.0, abs=0.2))  # found within a row, 80 mm/s
+    assert (fault.axis, fault.error_cycles) == (
+        "y",
+        pytest.approx(4.0, abs=0.2),
+    )  # found within a row, 80 mm/s
     assert 0.30 < fault.time_s < 0.32
     assert 0.0 < fault.position_mm < 0.64
 

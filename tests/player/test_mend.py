@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 
 from morfax.motion.faults import LockFault, TapeFault
 from morfax.motion.motion import Motion, join
-from morfax.player.tape.playback import play
 from morfax.player.tape.mend import _sets, mend
+from morfax.player.tape.playback import play
 from morfax.recorder.tape.tape import TapeFormat, record
 from tests.player.worn import program
 
@@ -29,7 +29,9 @@ def tape(tmp_path: Path) -> Path:
     return tmp_path / "a.wav"
 
 
-def holed(tape: Path, places_s: tuple[float, ...], length_ms: float, track: int = 1, text: str | None = None) -> Path:
+def holed(
+    tape: Path, places_s: tuple[float, ...], length_ms: float, track: int = 1, text: str | None = None
+) -> Path:
     """The tape with dropouts."""
     with soundfile.SoundFile(tape) as sound:
         frames, said = sound.read(dtype="float32"), sound.comment
@@ -44,7 +46,9 @@ def holed(tape: Path, places_s: tuple[float, ...], length_ms: float, track: int 
 
 
 @pytest.mark.parametrize("length_ms", [8.0, 30.0, 60.0])
-def test_a_dropout_that_is_too_long_for_the_player_is_mended(tape: Path, tmp_path: Path, length_ms: float) -> None:
+def test_a_dropout_that_is_too_long_for_the_player_is_mended(
+    tape: Path, tmp_path: Path, length_ms: float
+) -> None:
     whole, broken = join(play(tape)).positions_mm, holed(tape, (1.6,), length_ms)
     with pytest.raises(LockFault, match="morfax mend"):
         join(play(broken))
@@ -55,7 +59,9 @@ def test_a_dropout_that_is_too_long_for_the_player_is_mended(tape: Path, tmp_pat
     error = np.abs(went[600 : 600 + len(whole)] - whole)
     outside = np.ones(len(whole), bool)
     outside[9600 - 20 : 9600 + round(6 * length_ms) + 20] = False
-    assert error[outside].max() < 1.5 * UM  # read, recorded anew and read again: two following errors and 16 bit
+    assert (
+        error[outside].max() < 1.5 * UM
+    )  # read, recorded anew and read again: two following errors and 16 bit
     assert error.max() < mended.mends[0].unknown_mm
 
 
@@ -79,16 +85,24 @@ def test_what_cannot_be_known_is_told_and_nothing_is_written(tape: Path, tmp_pat
     ):
         mend(holed(tape, (1.6, 1.8), 40.0), tmp_path / "m.wav")
     off = TapeFormat(start_mm=(0.0, 0.0, 0.0), end_mm=(0.0, 0.1, 0.0))
-    with pytest.raises(TapeFault, match=r"Y ends \+2 cycles off, and there is no dropout that could have lost them"):
+    with pytest.raises(
+        TapeFault, match=r"Y ends \+2 cycles off, and there is no dropout that could have lost them"
+    ):
         mend(holed(tape, (1.6,), 40.0, text=off.to_json()), tmp_path / "m.wav")
     far = TapeFormat(start_mm=(0.0, 0.0, 0.0), end_mm=(5.0, 0.0, 0.0))
-    with pytest.raises(TapeFault, match=r"X ends \+100 cycles off, and the dropouts at 1.599 s are too short for it"):
+    with pytest.raises(
+        TapeFault, match=r"X ends \+100 cycles off, and the dropouts at 1.599 s are too short for it"
+    ):
         mend(holed(tape, (1.6,), 8.0, text=far.to_json()), tmp_path / "m.wav")
     assert not (tmp_path / "m.wav").exists()
 
 
 def test_a_lost_reference_is_mended_by_the_end_of_every_axis(tape: Path, tmp_path: Path) -> None:
-    assert [one.axis for one in mend(holed(tape, (1.6,), 40.0, 0), tmp_path / "m.wav").mends] == ["x", "y", "z"]
+    assert [one.axis for one in mend(holed(tape, (1.6,), 40.0, 0), tmp_path / "m.wav").mends] == [
+        "x",
+        "y",
+        "z",
+    ]
 
 
 def test_two_long_dropouts_on_two_axes_are_mended_each_by_its_own_end(tape: Path, tmp_path: Path) -> None:

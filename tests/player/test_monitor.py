@@ -13,8 +13,7 @@ from hypothesis import strategies as st
 from morfax.motion.drive import Condition
 from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.motion.ramp import Ramp, positions_mm
-from morfax.player.monitor import monitor
-from morfax.player.monitor import position_servo
+from morfax.player.monitor import monitor, position_servo
 from morfax.player.monitor.chart import Chart
 from morfax.player.monitor.monitor import FollowingLimit, Monitor, allowed_mm, learn_table
 from morfax.player.monitor.position_servo import PositionServo, PositionServos
@@ -39,7 +38,9 @@ def run(demand: np.ndarray, breaks_at: int, condition: Condition) -> np.ndarray:
 def test_the_limits_of_the_vectors(vectors: Callable[[str], Any]) -> None:
     limit = FollowingLimit.linear(lag_s=1 / 16.667, tolerance_mm=0.1)
     for case in vectors("he_monitor")["cases"]:
-        assert limit.limit_mm(case["demand_speed_mm_s"]) == pytest.approx(case["limit_mm"], abs=1e-5)  # as printed
+        assert limit.limit_mm(case["demand_speed_mm_s"]) == pytest.approx(
+            case["limit_mm"], abs=1e-5
+        )  # as printed
 
 
 def test_a_table_is_straight_between_its_points_and_holds_beyond() -> None:
@@ -88,7 +89,9 @@ def test_a_fault_carries_its_state() -> None:
     assert fault.demand_mm == demand[rows, 0]
     assert fault.limit_mm == pytest.approx(0.06 * 1.0 + 0.1, abs=1e-6)
     assert fault.demand_mm - fault.actual_mm == pytest.approx(fault.limit_mm, abs=2 * INCREMENT_MM)
-    assert "the drive of X does not follow at 1." in str(fault) and "allowed ±0.160 mm at 1 mm/s" in str(fault)
+    assert "the drive of X does not follow at 1." in str(fault) and "allowed ±0.160 mm at 1 mm/s" in str(
+        fault
+    )
 
 
 def test_a_warning_does_not_stop_and_comes_again_after_it_was_over() -> None:
@@ -111,7 +114,9 @@ def test_blocks_are_as_the_whole() -> None:
     whole, parts = Monitor("x", MOTION_RATE_HZ), Monitor("x", MOTION_RATE_HZ)
     whole.watch(demand, actual)
     for first in range(0, len(demand), 700):
-        if parts.watch(demand[first : first + 700], actual[first : first + 700]) < len(demand[first : first + 700]):
+        if parts.watch(demand[first : first + 700], actual[first : first + 700]) < len(
+            demand[first : first + 700]
+        ):
             break
     assert parts.warnings[0].time_s == whole.warnings[0].time_s
     assert parts.rows_seen == whole.rows_seen
@@ -127,7 +132,9 @@ def test_a_chart_of_every_row_holds_demand_actual_and_limit() -> None:
 
 
 @given(st.integers(1, 400), st.integers(1, 90))
-def test_a_chart_keeps_of_each_stretch_and_axis_the_row_nearest_to_its_limit(block: int, stretch: int) -> None:
+def test_a_chart_keeps_of_each_stretch_and_axis_the_row_nearest_to_its_limit(
+    block: int, stretch: int
+) -> None:
     rng, chart = np.random.default_rng(block), Chart(every_s=stretch / 1000)
     actual = rng.normal(size=(500, 2))
     watch = Monitor("xy", 1000.0, FollowingLimit.linear(tolerance_mm=9.0), stop=False, chart=chart)
@@ -157,7 +164,9 @@ def test_a_table_learnt_from_a_sound_run_passes_that_run() -> None:
     demand = move(50.0, 1.0)
     actual = PositionServos(demand[0]).follow(demand)
     speeds = np.linspace(0, 50, 26)
-    limit = FollowingLimit.table(learn_table(demand, actual, MOTION_RATE_HZ, speeds.tolist()), tolerance_mm=0.01)
+    limit = FollowingLimit.table(
+        learn_table(demand, actual, MOTION_RATE_HZ, speeds.tolist()), tolerance_mm=0.01
+    )
     assert Monitor("x", MOTION_RATE_HZ, limit).watch(demand, actual) == len(demand)
 
 
@@ -177,7 +186,9 @@ def test_shapes_that_do_not_fit_are_refused() -> None:
 def test_the_servo_is_behind_by_its_lag_and_arrives() -> None:
     demand = np.vstack([move(10.0, 2.0), np.full((6000, 1), 20.0)])
     actual = PositionServos(demand[0]).follow(demand)
-    assert demand[9000, 0] - actual[9000, 0] == pytest.approx(10 * PositionServo().lag_s, abs=2 * INCREMENT_MM)
+    assert demand[9000, 0] - actual[9000, 0] == pytest.approx(
+        10 * PositionServo().lag_s, abs=2 * INCREMENT_MM
+    )
     assert abs(actual[-1, 0] - 20.0) <= INCREMENT_MM
 
 

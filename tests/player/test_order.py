@@ -21,7 +21,10 @@ ORDERS = [(2, 1, 3, 4), (3, 2, 1, 4), (4, 2, 3, 1), (2, 3, 4, 1), (4, 3, 2, 1)]
 def mixed(folder: Path, end_mm: tuple[float, float, float], order: tuple[int, ...]) -> tuple[Path, Path]:
     """A tape that ends there, as it was recorded and with its tracks in another order."""
     positions = program(2.0, 20.0)
-    record(Motion(positions + np.linspace(0, 1, len(positions))[:, None] ** 3 * np.array(end_mm)), folder / "a.wav")
+    record(
+        Motion(positions + np.linspace(0, 1, len(positions))[:, None] ** 3 * np.array(end_mm)),
+        folder / "a.wav",
+    )
     age(folder / "a.wav", folder / "b.wav", replace(Wear(), order=order, speed=0.002, noise_db=46))
     return folder / "a.wav", folder / "b.wav"
 

@@ -10,8 +10,8 @@ from scipy.signal import dlsim, dlti
 
 from morfax.motion.contour import distance
 from morfax.motion.drive import Drive
-from morfax.player.tape import phase_lock as organ
 from morfax.player.monitor.monitor import Monitor
+from morfax.player.tape import phase_lock as organ
 from morfax.player.tape.phase_lock import Drives, PhaseLock, following_limit, place
 from tests.player.carriers import CYCLES_PER_MM, MOTION_RATE_HZ, UM, Course, along, circle, square
 
@@ -43,7 +43,10 @@ def test_a_step_is_answered_by_the_three_poles_asked_for(lock: PhaseLock) -> Non
 
 
 @given(
-    natural_hz=st.floats(20, 400), damping=st.floats(0.4, 1.2), third=st.floats(0.7, 3), lag_s=st.floats(0.0002, 0.005)
+    natural_hz=st.floats(20, 400),
+    damping=st.floats(0.4, 1.2),
+    third=st.floats(0.7, 3),
+    lag_s=st.floats(0.0002, 0.005),
 )
 @settings(max_examples=60, deadline=None)
 def test_placing_is_exact(natural_hz: float, damping: float, third: float, lag_s: float) -> None:
@@ -56,7 +59,9 @@ def test_placing_is_exact(natural_hz: float, damping: float, third: float, lag_s
 def test_the_loop_has_margin() -> None:
     z = np.exp(2j * np.pi * np.geomspace(1, 2990, 20_000) * DT_S)
     loop = open_loop(PhaseLock(), z)
-    assert np.abs(1 + loop).min() > 0.65  # vector margin: no gain from 0.4 to 2.8 of the right one breaks the loop
+    assert (
+        np.abs(1 + loop).min() > 0.65
+    )  # vector margin: no gain from 0.4 to 2.8 of the right one breaks the loop
     crossing = np.flatnonzero(np.diff(np.sign(np.abs(loop) - 1)))
     assert len(crossing) == 1
     assert np.degrees(np.angle(-loop[crossing[0]])) > 45  # phase margin
@@ -80,7 +85,8 @@ def test_constant_acceleration_leaves_the_error_of_the_loop_equation() -> None:
 
 
 @pytest.mark.parametrize(
-    ("course", "seconds"), [(circle(3, 10), 2.5), (circle(50, 100), 4.0), (square(10, 10), 5.0), (square(50, 100), 4.0)]
+    ("course", "seconds"),
+    [(circle(3, 10), 2.5), (circle(50, 100), 4.0), (square(10, 10), 5.0), (square(50, 100), 4.0)],
 )
 def test_the_screws_follow_the_path(course: Course, seconds: float) -> None:
     told = course(np.arange(round(seconds * MOTION_RATE_HZ)) * DT_S)
@@ -96,14 +102,20 @@ def test_a_stop_at_once_is_followed() -> None:
     moved = follow(told)
     assert len(moved) == len(told)
     assert abs(moved[-1, 0] - told[-1, 0]) < 1e-6 * UM
-    assert np.abs(moved - told).max() < 1.05 * 40.0**2 / (2 * 5000.0)  # 3.2 cycles: what 5 m/s² needs, hardly more
+    assert np.abs(moved - told).max() < 1.05 * 40.0**2 / (
+        2 * 5000.0
+    )  # 3.2 cycles: what 5 m/s² needs, hardly more
 
 
 LOCKS = (PhaseLock(), PhaseLock(150, 0.707), PhaseLock(drive=Drive(lag_s=0.004, acceleration_mm_s2=800.0)))
 
 
 @pytest.mark.parametrize("lock", LOCKS)
-@given(share=st.floats(0.01, 0.99), onto=st.sampled_from([-1.0, -0.5, 0.0, 0.5]), noise_um=st.sampled_from([0.0, 0.04]))
+@given(
+    share=st.floats(0.01, 0.99),
+    onto=st.sampled_from([-1.0, -0.5, 0.0, 0.5]),
+    noise_um=st.sampled_from([0.0, 0.04]),
+)
 @settings(max_examples=30, deadline=None)
 def test_a_sound_drive_passes_the_monitor_at_any_start_stop_and_turn_at_once(
     lock: PhaseLock, share: float, onto: float, noise_um: float
@@ -120,7 +132,9 @@ def test_a_sound_drive_passes_the_monitor_at_any_start_stop_and_turn_at_once(
 
 def test_the_limit_of_a_tape_drive_is_its_own_error_at_low_speed_and_its_range_at_high() -> None:
     limit = following_limit(PhaseLock(), Q_MM, MOTION_RATE_HZ)
-    assert limit.limit_mm(1.0) < 17 * UM  # a twelfth of the range: a quarter of a cycle, and 4 um of turning round
+    assert (
+        limit.limit_mm(1.0) < 17 * UM
+    )  # a twelfth of the range: a quarter of a cycle, and 4 um of turning round
     braked_mm = 2 * 10.0**2 / 5000.0  # from 10 mm/s to as fast the other way, at the limit of the current
     assert braked_mm < limit.limit_mm(10.0) - limit.tolerance_mm < 1.6 * braked_mm
     assert limit.limit_mm(100.0) == pytest.approx(4.25 * Q_MM)
@@ -136,7 +150,9 @@ def test_noise_that_meets_the_limit_of_the_current_on_one_side_does_not_push_the
     told = circle(10, 90)(np.arange(9000) * DT_S)  # 0.8 m/s² of 5, to and fro; 25 dB of noise
     noise = np.random.default_rng(1).normal(0, 4.4e-3, told.shape) * Q_MM
     off_cycles = np.abs(follow(told + noise) - follow(told)).max() * CYCLES_PER_MM
-    assert off_cycles < 0.022  # 0.01 to 0.017 by the seed; 0.036 to 0.045 where the integrator fell back at once
+    assert (
+        off_cycles < 0.022
+    )  # 0.01 to 0.017 by the seed; 0.036 to 0.045 where the integrator fell back at once
 
 
 def test_beyond_the_range_the_rows_end() -> None:

@@ -12,10 +12,15 @@ from hypothesis import strategies as st
 
 from morfax.motion.faults import FollowingFault, ProgramFault
 from morfax.motion.motion import MOTION_RATE_HZ, join
-from morfax.player.gcode import feed_control
-from morfax.player.gcode import pulse_servo
-from morfax.player.gcode import residues
-from morfax.player.gcode.feed_control import CLOCKS, FEED_BITS, OVERRIDE_BITS, count_feed, feed_number, override_number
+from morfax.player.gcode import feed_control, pulse_servo, residues
+from morfax.player.gcode.feed_control import (
+    CLOCKS,
+    FEED_BITS,
+    OVERRIDE_BITS,
+    count_feed,
+    feed_number,
+    override_number,
+)
 from morfax.player.gcode.pulse_servo import HISTORIC, PulseServo, PulseServos, lag, unit_circuit
 from morfax.player.gcode.pulses import PulseControl, PulsePlayback, play_pulses
 from morfax.player.gcode.residues import Feed, Interpolator
@@ -51,9 +56,13 @@ def test_10_000_random_moves_end_exactly_and_keep_to_their_line_or_arc() -> None
         radius, sense = math.exp(random.uniform(math.log(50), math.log(4000))), int(random.choice([-1, 1]))
         angles = random.uniform(0, 7) + np.array([0.0, sense * random.uniform(0.01, math.radians(170))])
         centre = random.integers(-900, 900, 2)
-        (x0, y0), (x1, y1) = np.rint(centre + radius * np.column_stack([np.cos(angles), np.sin(angles)])).astype(int)
+        (x0, y0), (x1, y1) = np.rint(
+            centre + radius * np.column_stack([np.cos(angles), np.sin(angles)])
+        ).astype(int)
         interpolator = Interpolator((x0, y0, 7))
-        pulses = interpolator.arc((x1, y1, 7), centre, sense, feed) if (x0, y0) != (x1, y1) else np.zeros((0, 3))
+        pulses = (
+            interpolator.arc((x1, y1, 7), centre, sense, feed) if (x0, y0) != (x1, y1) else np.zeros((0, 3))
+        )
         way = ways(pulses, (x0, y0, 7))
         assert tuple(way[-1]) == (x1, y1, 7)
         off = np.hypot(*(way[:, :2] - centre).T) - radius
@@ -92,7 +101,9 @@ def test_the_speed_is_held_within_what_the_weights_allow(axes: int) -> None:
         direction = np.r_[random.normal(size=axes), [0.0] * (3 - axes)]
         end = tuple(int(v) for v in np.rint(direction / np.linalg.norm(direction) * 15_000))
         speed = random.uniform(3_000, 16_000)
-        assert low - 0.005 < measured(end, speed) < high + 0.005  # half of 1 %: the counter fills at the start
+        assert (
+            low - 0.005 < measured(end, speed) < high + 0.005
+        )  # half of 1 %: the counter fills at the start
         assert measured(end, speed, true_norm=True) == pytest.approx(1.0, abs=0.005)
 
 
@@ -139,7 +150,9 @@ def test_and_wrong_beyond(behind: int) -> None:
 def test_a_lag_out_of_range_is_a_fault_and_not_a_wrong_position() -> None:
     fast = PulseControl(servo=PulseServo(icr_bits=5))
     run = playback("G1 X0 F1200", "G1 X5", control=fast)
-    with pytest.raises(FollowingFault, match=r"the lag of X left the range of the 5 bits .* -15 to 16 counts"):
+    with pytest.raises(
+        FollowingFault, match=r"the lag of X left the range of the 5 bits .* -15 to 16 counts"
+    ):
         list(run)
     assert run.end_mm[0] < 1.0
 
@@ -182,7 +195,9 @@ def test_it_plays_again_as_before() -> None:
 def test_what_cannot_be_run_is_refused_before_anything_moves() -> None:
     with pytest.raises(ProgramFault, match=r"line 2: X goes to 2000.100 mm; the machine has ±2000.000 mm"):
         playback("G1 X0 F600", "G1 X2000.1")
-    with pytest.raises(ProgramFault, match=r"line 2: X goes to 900.000 mm; the registers of 16 bits hold ±832"):
+    with pytest.raises(
+        ProgramFault, match=r"line 2: X goes to 900.000 mm; the registers of 16 bits hold ±832"
+    ):
         playback("G1 X0 F600", "G1 X900", control=PulseControl(servo=HISTORIC))
     with pytest.raises(
         ProgramFault, match=r"line 1: F9000: a speed of 150000 pulses/s has no feed number; give 0.256 to"
@@ -222,7 +237,9 @@ def test_the_compiled_kernels_are_the_plain_ones(monkeypatch: pytest.MonkeyPatch
             monkeypatch.setattr(pulse_servo, "_follow", pulse_servo._follow.py_func)
             monkeypatch.setattr(residues, "AT_ONCE", 4096)
         interpolator = Interpolator()
-        pulses = np.vstack([interpolator.line((120, -30, 4), feed), interpolator.arc((80, 10, 4), (100, -30), 1, feed)])
+        pulses = np.vstack(
+            [interpolator.line((120, -30, 4), feed), interpolator.arc((80, 10, 4), (100, -30), 1, feed)]
+        )
         commands, places, done = PulseServos(np.zeros(3, np.int64), RECIRCULATIONS_HZ).follow(pulses)
         results.append((pulses, commands, places, done))
     for compiled, interpreted in zip(*results, strict=True):

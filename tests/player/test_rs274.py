@@ -11,7 +11,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from morfax.motion.faults import FileFault, ProgramFault
-from morfax.player.gcode.rs274 import CLOCKWISE, COUNTER_CLOCKWISE, DWELL, LINE, RAPID, Move, parse_rs274, read_rs274
+from morfax.player.gcode.rs274 import (
+    CLOCKWISE,
+    COUNTER_CLOCKWISE,
+    DWELL,
+    LINE,
+    RAPID,
+    Move,
+    parse_rs274,
+    read_rs274,
+)
 
 WRITTEN_MM = 1e-4  # what four decimals of a program leave
 
@@ -94,7 +103,9 @@ def test_an_arc_by_radius_is_the_arc_by_centre(radius: float, first: float, turn
     (x0, y0), (x1, y1) = [(radius * math.cos(a), radius * math.sin(a)) for a in (first, first + sense * turn)]
     begin = f"G0 X{x0:.9f} Y{y0:.9f}"
     by_centre = moves(begin, f"{code} X{x1:.9f} Y{y1:.9f} I{-x0:.9f} J{-y0:.9f} F60")[-1]
-    by_radius = moves(begin, f"{code} X{x1:.9f} Y{y1:.9f} R{radius if turn < math.pi else -radius:.9f} F60")[-1]
+    by_radius = moves(begin, f"{code} X{x1:.9f} Y{y1:.9f} R{radius if turn < math.pi else -radius:.9f} F60")[
+        -1
+    ]
     for arc in (by_centre, by_radius):
         assert arc.centre_mm == pytest.approx((0, 0), abs=WRITTEN_MM)
         assert arc.turned_rad == pytest.approx(sense * turn, abs=1e-5)
@@ -139,9 +150,15 @@ def test_where_the_machine_stands_is_where_the_program_first_sends_each_axis() -
         ("G1 X1 I5 F60", "I5 belongs to an arc, and G1 is none"),
         ("G2 X1 F60", "G2 has no centre; give I and J, or R"),
         ("G2 X1 I1 R1 F60", "R1 stands with a centre"),
-        ("G2 X10 R4.9 F60", "R4.9 does not reach: the ends of the arc are 10.0000 mm apart; give 5.0000 mm or more"),
+        (
+            "G2 X10 R4.9 F60",
+            "R4.9 does not reach: the ends of the arc are 10.0000 mm apart; give 5.0000 mm or more",
+        ),
         ("G2 R4 F60", "give I and J for a whole turn"),
-        ("G2 X10 I4 F60", "I4 J0 is no centre of both ends: 4.0000 mm from the start, 6.0000 mm from the end"),
+        (
+            "G2 X10 I4 F60",
+            "I4 J0 is no centre of both ends: 4.0000 mm from the start, 6.0000 mm from the end",
+        ),
         ("G2 X10 Z1 I5 F60", "Z1 makes the arc a helix"),
         ("G18", "G18 is not played"),
     ],

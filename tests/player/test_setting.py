@@ -13,8 +13,8 @@ from morfax.motion.faults import FollowingFault, LockFault
 from morfax.motion.motion import MOTION_RATE_HZ, Motion, join, thin
 from morfax.motion.ramp import Ramp
 from morfax.motion.ramp import positions_mm as ramped_mm
-from morfax.player.tape.playback import play
 from morfax.player.tape.phase_lock import MOTORS, Drives, place
+from morfax.player.tape.playback import play
 from morfax.player.tape.setting import LARGEST_ZERO_MM, OVERRIDES, Setting
 from morfax.recorder.tape.tape import record
 
@@ -77,13 +77,20 @@ def test_the_following_error_grows_with_the_square_of_the_override(tmp_path: Pat
         join(playback)
         errors.append(playback.following_error_mm[:2].max())
     # e = acceleration / (K a): the loop is the same at all three, the acceleration is not
-    assert errors[1] / errors[0] == pytest.approx(4, rel=0.15) and errors[2] / errors[1] == pytest.approx(4, rel=0.15)
+    assert errors[1] / errors[0] == pytest.approx(4, rel=0.15) and errors[2] / errors[1] == pytest.approx(
+        4, rel=0.15
+    )
 
 
 def fast_turn(tmp_path: Path) -> Path:
     """X to and fro at 60 mm/s with 3 m/s²: the motors give 5."""
     t_s = np.arange(6000) / MOTION_RATE_HZ
-    speed = 60 * (2 * np.abs(2 * ((t_s / 0.08) % 1) - 1) - 1) * np.clip(4 * t_s, 0, 1) * np.clip(4 * (1 - t_s), 0, 1)
+    speed = (
+        60
+        * (2 * np.abs(2 * ((t_s / 0.08) % 1) - 1) - 1)
+        * np.clip(4 * t_s, 0, 1)
+        * np.clip(4 * (1 - t_s), 0, 1)
+    )
     x = np.cumsum(speed) / MOTION_RATE_HZ
     record(Motion(np.column_stack([x, 0 * x, 0 * x])), tmp_path / "fast.wav")
     return tmp_path / "fast.wav"

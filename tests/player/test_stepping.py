@@ -13,9 +13,17 @@ from morfax.motion.motion import join
 from morfax.player.steps import motor as motor_module
 from morfax.player.steps import stepping
 from morfax.player.steps.motor import Motor, Motors
-from morfax.player.steps.stepping import MEMORY_ENTRIES, decode, play_steps, pulse_ticks, pulses_of, ring_memory, tick_table
-from morfax.recorder.steps.rings import RINGS
+from morfax.player.steps.stepping import (
+    MEMORY_ENTRIES,
+    decode,
+    play_steps,
+    pulse_ticks,
+    pulses_of,
+    ring_memory,
+    tick_table,
+)
 from morfax.recorder.steps.file import TICKS, Program, StepFormat, write_program
+from morfax.recorder.steps.rings import RINGS
 
 INTERVAL_S = 1 / 160
 FORMATS = st.builds(StepFormat, vectors=st.sampled_from([1, 2]), channels=st.sampled_from([5, 8]))
@@ -99,7 +107,9 @@ def test_rates_need_not_be_linear(tmp_path: Path) -> None:
 @pytest.mark.parametrize("oscillator_hz", [10240, 7680, 5000])
 def test_the_oscillator_sets_the_interval(tmp_path: Path, oscillator_hz: float) -> None:
     fmt = StepFormat(oscillator_hz=oscillator_hz, end_mm=(0.04, 0, 0))
-    write_program(Program(fmt, np.array([0b10001, 0b10001, 0b10010, 0b10010], np.uint8)), tmp_path / "a.steps")
+    write_program(
+        Program(fmt, np.array([0b10001, 0b10001, 0b10010, 0b10010], np.uint8)), tmp_path / "a.steps"
+    )
     playback = play_steps(tmp_path / "a.steps")
     assert playback.duration_s == pytest.approx(4 * 64 / oscillator_hz)
     motion = join(playback)
@@ -137,6 +147,10 @@ def test_the_kernels_do_as_plain_python_what_they_do_compiled(monkeypatch: pytes
     for run in (motor_module._run, motor_module._run.py_func):
         monkeypatch.setattr(motor_module, "_run", run)
         motors = Motors(3, INTERVAL_S)
-        motors.conditions = [motor_module.SOUND, motor_module.MotorCondition(0.8, 0.1, 3.0), motor_module.SOUND]
+        motors.conditions = [
+            motor_module.SOUND,
+            motor_module.MotorCondition(0.8, 0.1, 3.0),
+            motor_module.SOUND,
+        ]
         runs.append((*motors.run(pulses, tick_table(), 8), motors.lost))
     assert all((one == other).all() for one, other in zip(*runs, strict=True))

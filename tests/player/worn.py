@@ -88,8 +88,12 @@ class Bench:
         if len(went) < 2 * ENDS:
             return 0.0, fault
         rows = (aged.timebase.programme_s(np.arange(len(went)) / 6000) + parts.get("cut_start_s", 0.0)) * 6000
-        wanted = np.column_stack([np.interp(rows, np.arange(len(self.clean)), column) for column in self.clean.T])
+        wanted = np.column_stack(
+            [np.interp(rows, np.arange(len(self.clean)), column) for column in self.clean.T]
+        )
         ends = slice(ENDS, len(went) - ENDS + 1)
         error, speed = (went - wanted)[ends], np.gradient(wanted, axis=0)[ends]  # mm, and mm per row
-        late = np.clip((error * speed).sum() / max((speed**2).sum(), 1e-12), -0.6, 0.6)  # of all axes: the tape's clock
+        late = np.clip(
+            (error * speed).sum() / max((speed**2).sum(), 1e-12), -0.6, 0.6
+        )  # of all axes: the tape's clock
         return float(np.abs(error - late * speed).max() * 20), fault

@@ -21,11 +21,16 @@ from morfax.motion.pathfile import read_path
 from morfax.player.gcode.rs274 import Move, Program, read_rs274
 from morfax.recorder.gcode.arcs import BREAK_RAD, Segment, fit
 from morfax.recorder.gcode.blocks import TOLERANCE_MM, WRITTEN_MM, record_blocks
-from morfax.recorder.media import record
 from morfax.recorder.gcode.pieces import corners, longest_pieces, off_circle_mm, off_line_mm, resample
+from morfax.recorder.media import record
 
 SAMPLES = Path(__file__).parents[2] / "samples"
-FEWEST = {"gear": 16, "bracket": 9 + 4, "cam": 15, "curve": 25}  # drawn; cam and curve: circles that need not meet
+FEWEST = {
+    "gear": 16,
+    "bracket": 9 + 4,
+    "cam": 15,
+    "curve": 25,
+}  # drawn; cam and curve: circles that need not meet
 ASKED = 1.3  # times as many segments at most
 
 
@@ -80,7 +85,9 @@ def test_the_samples_need_hardly_more_than_the_fewest_segments(name: str, tmp_pa
     report = record_blocks(path, tmp_path / "part.ngc")
     assert report.deviation_mm <= TOLERANCE_MM
     there_and_back = distance(run_of(read_rs274(report.file)), path.runs())
-    assert there_and_back.hausdorff_mm <= report.deviation_mm + 0.001  # 1 um: sagitta of what is drawn out here
+    assert (
+        there_and_back.hausdorff_mm <= report.deviation_mm + 0.001
+    )  # 1 um: sagitta of what is drawn out here
 
 
 def test_a_rounded_square_is_four_lines_and_four_arcs() -> None:
@@ -111,7 +118,10 @@ def test_a_line_is_one_line() -> None:
 def test_corners_are_kept(turn_deg: float) -> None:
     turn = math.radians(turn_deg)
     points = np.vstack(
-        [np.linspace([-30, 0], [0, 0], 300), np.linspace([0, 0], [30 * math.cos(turn), 30 * math.sin(turn)], 300)[1:]]
+        [
+            np.linspace([-30, 0], [0, 0], 300),
+            np.linspace([0, 0], [30 * math.cos(turn), 30 * math.sin(turn)], 300)[1:],
+        ]
     )
     chains = segments(points)
     assert [len(chain) for chain in chains] == [1, 1]
@@ -152,7 +162,9 @@ def test_a_smooth_line_is_run_tangent_at_every_joint_within_the_tolerance(seed: 
         assert abs(jump) <= 10 * BREAK_RAD
     assert chain.deviation_mm <= TOLERANCE_MM
     drawn = np.vstack([_drawn_segment(segment) for segment in chain.segments])
-    assert distance(drawn, points).hausdorff_mm <= TOLERANCE_MM + 0.002  # 1 um of sagitta, 1 um between samples
+    assert (
+        distance(drawn, points).hausdorff_mm <= TOLERANCE_MM + 0.002
+    )  # 1 um of sagitta, 1 um between samples
     fewest = len(longest_pieces(resample(points), TOLERANCE_MM))
     assert len(chain.segments) <= max(ASKED * fewest, fewest + 2)
 
@@ -209,7 +221,9 @@ def test_the_tool_goes_up_and_down_by_z_and_feeds_are_those_of_the_motion(tmp_pa
 def test_a_slope_is_run_with_lines(tmp_path: Path) -> None:
     points = np.array([[0, 0, 0], [10, 0, -1], [20, 5, -1.5], [20, 5, 2]], np.float64)
     report = record_blocks(MotionPath(np.arange(4.0), points), tmp_path / "part.ngc")
-    assert [move.end_mm for move in read_rs274(report.file).moves[1:]] == [tuple(row) for row in points[1:].tolist()]
+    assert [move.end_mm for move in read_rs274(report.file).moves[1:]] == [
+        tuple(row) for row in points[1:].tolist()
+    ]
 
 
 def test_the_suffix_makes_the_medium(tmp_path: Path) -> None:

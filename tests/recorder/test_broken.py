@@ -19,9 +19,9 @@ from hypothesis import strategies as st
 
 from morfax.motion.faults import Fault, TapeFault
 from morfax.motion.motion import Motion
+from morfax.recorder.tape.format import TapeFormat
 from morfax.recorder.tape.pipe import Pipe
 from morfax.recorder.tape.tape import Tape, record
-from morfax.recorder.tape.format import TapeFormat
 
 BY_HAND = {"reference_hz": 6000.0, "cycles_per_mm": 20.0}
 SLOW = settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture])
@@ -56,7 +56,11 @@ def test_a_broken_file_is_taken_or_told(
 
 
 @settings(max_examples=300)
-@given(st.recursive(st.none() | st.booleans() | st.floats() | st.text(), lambda inner: st.lists(inner), max_leaves=5))
+@given(
+    st.recursive(
+        st.none() | st.booleans() | st.floats() | st.text(), lambda inner: st.lists(inner), max_leaves=5
+    )
+)
 def test_nonsense_in_an_entry_is_told(value: object) -> None:
     good = json.loads(TapeFormat().to_json())
     for name in good:

@@ -12,20 +12,24 @@ from hypothesis import strategies as st
 from morfax.motion.contour import distance
 from morfax.motion.faults import MotionFault, ProgramFault
 from morfax.motion.motion import Path, thin
+from morfax.motion.segments import Limits
 from morfax.player.cubics.cubic import play_cubic
 from morfax.player.cubics.interpolator import Interpolator
-from morfax.recorder.cubics.file import CubicFormat, CubicProgram, read_program, write_program
 from morfax.recorder.cubics.cubics import differences, hermite, record_cubics
-from morfax.motion.segments import Limits
+from morfax.recorder.cubics.file import CubicFormat, CubicProgram, read_program, write_program
 from tests.recorder.test_steps import SQUARE, STAR, TOOL, circle
 
 UM = 1e-3
 SAMPLES = st.lists(
-    st.tuples(*[st.tuples(st.integers(-(10**6), 10**6), st.integers(-(10**5), 10**5))] * 3), min_size=2, max_size=6
+    st.tuples(*[st.tuples(st.integers(-(10**6), 10**6), st.integers(-(10**5), 10**5))] * 3),
+    min_size=2,
+    max_size=6,
 )
 
 
-@pytest.mark.parametrize("path", [circle(10, 10), circle(1, 10), SQUARE, STAR], ids=["10 mm", "1 mm", "square", "star"])
+@pytest.mark.parametrize(
+    "path", [circle(10, 10), circle(1, 10), SQUARE, STAR], ids=["10 mm", "1 mm", "square", "star"]
+)
 def test_the_machine_runs_what_was_recorded(tmp_path: FilePath, path: Path) -> None:
     report = record_cubics(path, tmp_path / "a.cubic")
     assert report.deviation_mm <= 2 * UM
@@ -34,7 +38,9 @@ def test_the_machine_runs_what_was_recorded(tmp_path: FilePath, path: Path) -> N
 
 
 def test_a_tolerance_sets_the_interval(tmp_path: FilePath) -> None:
-    reports = [record_cubics(circle(10, 10), tmp_path / "a.cubic", tolerance_mm=um * UM) for um in (50, 2, 0.6)]
+    reports = [
+        record_cubics(circle(10, 10), tmp_path / "a.cubic", tolerance_mm=um * UM) for um in (50, 2, 0.6)
+    ]
     intervals_s = [report.format.interval_s for report in reports]
     assert sorted(intervals_s, reverse=True) == intervals_s and intervals_s[0] > intervals_s[-1]
     for report, um in zip(reports, (50, 2, 0.6), strict=True):
@@ -90,9 +96,13 @@ def test_the_registers_run_along_the_closed_form(rows: list) -> None:  # type: i
 def test_a_program_whose_steps_are_partly_linear_ends_exactly_and_runs_coarser(tmp_path: FilePath) -> None:
     path, wide = circle(1, 5), Limits(100, 500, spacing_mm=0.005, window_mm=0.02, corner_rad=0.2)
     fine = record_cubics(path, tmp_path / "fine.cubic", fmt=CubicFormat(points=64), limits=wide)
-    coarse = record_cubics(path, tmp_path / "coarse.cubic", fmt=CubicFormat(points=64, linear=16), limits=wide)
+    coarse = record_cubics(
+        path, tmp_path / "coarse.cubic", fmt=CubicFormat(points=64, linear=16), limits=wide
+    )
     assert coarse.format.linear == 16 and fine.format.interval_s == coarse.format.interval_s
-    off = [distance(thin(play_cubic(report.file)), path).path_to_reference.rms_mm for report in (fine, coarse)]
+    off = [
+        distance(thin(play_cubic(report.file)), path).path_to_reference.rms_mm for report in (fine, coarse)
+    ]
     assert off[0] < off[1] < 20 * UM
 
 
@@ -155,7 +165,9 @@ BAD = [
 
 
 @pytest.mark.parametrize(("text", "told", "line"), BAD, ids=range(len(BAD)))
-def test_a_garbled_file_is_one_line_with_its_place(tmp_path: FilePath, text: str, told: str, line: int | None) -> None:
+def test_a_garbled_file_is_one_line_with_its_place(
+    tmp_path: FilePath, text: str, told: str, line: int | None
+) -> None:
     (tmp_path / "a.cubic").write_text(text, encoding="latin-1")
     with pytest.raises(ProgramFault, match=told) as met:
         play_cubic(tmp_path / "a.cubic")
@@ -184,7 +196,9 @@ def test_whatever_stands_in_a_file_is_played_or_refused_in_one_line(
 
 def test_a_loop_that_ends_where_it_began_is_no_further_off_there(tmp_path: FilePath) -> None:
     ring = circle(10, 10)
-    ring.positions_mm[-1, 2] += 0.25 * UM  # the tool is about to rise: the first place is nearer than the last
+    ring.positions_mm[-1, 2] += (
+        0.25 * UM
+    )  # the tool is about to rise: the first place is nearer than the last
     report = record_cubics(ring, tmp_path / "a.cubic", tolerance_mm=1 * UM)
     assert report.deviation_mm <= 1 * UM
     assert (

@@ -44,7 +44,9 @@ def test_harmonics_are_those_of_the_closed_form(name: str) -> None:
         # 65 536 points round a square's steps: 1e-8 of the wave
         assert PICK_UPS[name].amplitudes(count)[n // 2] == pytest.approx(amplitude, abs=1e-8)
         assert abs(np.mean(wave * np.cos(n * phi))) < 1e-8
-    assert max(abs(np.mean(wave * np.sin(n * phi))) for n in range(2, 2 * count, 2)) < 1e-8  # teeth as wide as gaps
+    assert (
+        max(abs(np.mean(wave * np.sin(n * phi))) for n in range(2, 2 * count, 2)) < 1e-8
+    )  # teeth as wide as gaps
 
 
 @pytest.mark.parametrize("name", ["resolver", "hall", "coil", "scale"])
@@ -66,7 +68,9 @@ def test_nothing_aliases(name: str, speed_mm_s: float) -> None:
     own = [int(n * hz) for n in range(1, 9, 2) if n * hz < 24_000]
     assert lines[own[0]] == pytest.approx(hz / 6000 if name == "coil" else 1.0, abs=ROUNDING)
     lines[own] = 0
-    assert lines.max() < 1e-6  # -120 dB; a square sampled as it is has its fifth harmonic at 30 kHz back at 18, -14 dB
+    assert (
+        lines.max() < 1e-6
+    )  # -120 dB; a square sampled as it is has its fifth harmonic at 30 kHz back at 18, -14 dB
 
 
 def test_a_square_that_is_not_band_limited_would_fail_that() -> None:
@@ -102,7 +106,12 @@ def reversals(largest_mm_s: float, acceleration_mm_s2: float = 4500.0) -> np.nda
     t_s = np.arange(4 * RATE_HZ) / RATE_HZ
     period_s = 4 * largest_mm_s / acceleration_mm_s2
     to_and_fro = 2 * np.abs(2 * ((t_s / period_s) % 1) - 1) - 1
-    speed = largest_mm_s * np.where(t_s < 2, 1, to_and_fro) * np.clip(8 * t_s, 0, 1) * np.clip(8 * (4 - t_s), 0, 1)
+    speed = (
+        largest_mm_s
+        * np.where(t_s < 2, 1, to_and_fro)
+        * np.clip(8 * t_s, 0, 1)
+        * np.clip(8 * (4 - t_s), 0, 1)
+    )
     x = np.cumsum(speed) / RATE_HZ
     return np.column_stack([x, 0.3 * x, 0 * x])
 

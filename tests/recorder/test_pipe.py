@@ -40,7 +40,9 @@ def test_a_wav_of_no_stated_length_plays_as_the_file(tape: Path) -> None:
     data = bytearray(tape.read_bytes())
     at = data.find(b"data")
     data[4:8] = data[at + 4 : at + 8] = struct.pack("<I", 0xFFFFFFFF)
-    assert np.array_equal(join(play_pipe(io.BytesIO(bytes(data)))).positions_mm, join(play(tape)).positions_mm)
+    assert np.array_equal(
+        join(play_pipe(io.BytesIO(bytes(data)))).positions_mm, join(play(tape)).positions_mm
+    )
 
 
 def test_raw_samples_play_with_what_is_given_by_hand(tape: Path) -> None:
@@ -69,4 +71,6 @@ def test_what_is_no_tape(data: bytes, said: str) -> None:
 
 
 def test_samples_of_a_frame() -> None:
-    assert Samples(3, bits=24).frames(b"\xff\xff\x7f\0\0\0\0\0\x80").tolist() == [[pytest.approx(1, abs=1e-6), 0, -1]]
+    assert Samples(3, bits=24).frames(b"\xff\xff\x7f\0\0\0\0\0\x80").tolist() == [
+        [pytest.approx(1, abs=1e-6), 0, -1]
+    ]

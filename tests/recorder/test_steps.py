@@ -9,15 +9,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from morfax.motion import segments as legs_module
 from morfax.motion.contour import distance
 from morfax.motion.faults import FileFault, MotionFault, ProgramFault
 from morfax.motion.motion import Path, thin
-from morfax.player.steps.stepping import play_steps
-from morfax.motion import segments as legs_module
-from morfax.recorder.steps import lengths as lengths_module
 from morfax.motion.segments import Limits, legs
-from morfax.recorder.steps.rings import RINGS, command, commands
+from morfax.player.steps.stepping import play_steps
+from morfax.recorder.steps import lengths as lengths_module
 from morfax.recorder.steps.file import Program, StepFormat, holes, read_program, write_program
+from morfax.recorder.steps.rings import RINGS, command, commands
 from morfax.recorder.steps.steps import encode, record_steps
 
 STEP_MM = 0.01
@@ -57,11 +57,15 @@ def test_the_tool_goes_down_and_up_over_its_places(tmp_path: FilePath) -> None:
     record_steps(TOOL, tmp_path / "a.steps")
     playback = play_steps(tmp_path / "a.steps")
     played = thin(playback)
-    assert played.positions_mm[0] == pytest.approx([3, 3, 2]) and played.positions_mm[-1] == pytest.approx([9, 7, 2])
+    assert played.positions_mm[0] == pytest.approx([3, 3, 2]) and played.positions_mm[-1] == pytest.approx(
+        [9, 7, 2]
+    )
     assert played.positions_mm[:, 2].min() == pytest.approx(-1, abs=STEP_MM)
     assert [change.down for change in playback.tool_changes] == [True, False]
     down_s = playback.tool_changes[0].time_s
-    assert np.interp(down_s, played.t_s, played.positions_mm[:, 2]) == pytest.approx(0.05, abs=0.15)  # one interval
+    assert np.interp(down_s, played.t_s, played.positions_mm[:, 2]) == pytest.approx(
+        0.05, abs=0.15
+    )  # one interval
 
 
 def test_a_tolerance_is_the_size_of_the_steps(tmp_path: FilePath) -> None:
@@ -94,7 +98,9 @@ def test_what_is_encoded_is_decoded(changes: list[tuple[int, int, int]], vectors
     from morfax.player.steps.stepping import decode, pulses_of
 
     lengths = np.clip(np.cumsum(np.array(changes, np.int64).reshape(-1, 3), axis=0), -7, 7)
-    lengths = lengths[np.r_[True, np.abs(np.diff(lengths, axis=0)).max(axis=1) <= 1]] if len(lengths) else lengths
+    lengths = (
+        lengths[np.r_[True, np.abs(np.diff(lengths, axis=0)).max(axis=1) <= 1]] if len(lengths) else lengths
+    )
     fmt = StepFormat(vectors=vectors)
     counts, _ = decode(Program(fmt, encode(lengths, np.zeros(len(lengths), bool), fmt)))
     assert (pulses_of(counts, fmt.rates) == lengths).all()
@@ -172,7 +178,9 @@ BAD = [
 
 
 @pytest.mark.parametrize(("text", "told", "line"), BAD, ids=range(len(BAD)))
-def test_a_garbled_file_is_one_line_with_its_place(tmp_path: FilePath, text: str, told: str, line: int | None) -> None:
+def test_a_garbled_file_is_one_line_with_its_place(
+    tmp_path: FilePath, text: str, told: str, line: int | None
+) -> None:
     (tmp_path / "a.steps").write_text(text, encoding="latin-1")
     with pytest.raises(ProgramFault, match=told) as met:
         play_steps(tmp_path / "a.steps")
@@ -194,7 +202,9 @@ def test_the_good_file_is_good(tmp_path: FilePath) -> None:
 def test_every_vector_command_stands_in_the_table() -> None:
     table = commands()
     assert np.count_nonzero(table >= 0) == 3 * sum(map(len, RINGS.values()))
-    assert command((6, 0), (6, -1)) == 0b10 and command((6, -1), (6, 0)) == 0b01 and command((6, 0), (6, 0)) == 0
+    assert (
+        command((6, 0), (6, -1)) == 0b10 and command((6, -1), (6, 0)) == 0b01 and command((6, 0), (6, 0)) == 0
+    )
     assert command((6, 0), (6, -2)) is None and command((0, 0), (1, 0)) is None
     assert table[6 + 7, 7, 1, 0] == 0b10
 
@@ -211,7 +221,9 @@ def test_legs_part_at_corners_and_rests_and_run_from_stop_to_stop() -> None:
 
 def test_a_bend_is_taken_no_faster_than_the_motor_can_pull() -> None:
     leg = max(legs(circle(0.5, 100), Limits(100, 256)), key=lambda leg: leg.length_mm)
-    assert leg.speed_mm_s.max() == pytest.approx(np.sqrt(0.7 * 256 * 0.5 * np.sqrt(2)), rel=0.05)  # at 45 degrees
+    assert leg.speed_mm_s.max() == pytest.approx(
+        np.sqrt(0.7 * 256 * 0.5 * np.sqrt(2)), rel=0.05
+    )  # at 45 degrees
 
 
 def test_the_kernels_do_as_plain_python_what_they_do_compiled() -> None:

@@ -75,7 +75,9 @@ def test_any_format_carries_the_motion(
     )
     random, samples = np.random.default_rng(seed), round(0.5 * fmt.motion_rate_hz)
     bend = np.sin(np.pi * np.arange(samples) / samples) ** 2
-    positions = random.uniform(-100, 100, 2) + bend[:, None] * random.uniform(-0.05, 0.05, 2) * fmt.largest_speed_mm_s
+    positions = (
+        random.uniform(-100, 100, 2) + bend[:, None] * random.uniform(-0.05, 0.05, 2) * fmt.largest_speed_mm_s
+    )
     record([Motion(positions, fmt.motion_rate_hz)], tmp_path / "a.wav", fmt, sample="float")
     turned = displacement_cycles(read_frames(tmp_path / "a.wav"), per_motion)
     dwell = round(0.1 * fmt.motion_rate_hz)
@@ -92,7 +94,9 @@ def test_blocks_do_not_show(tmp_path: Path) -> None:
 def test_a_path_is_recorded_as_it_is(tmp_path: Path) -> None:
     path = ThinnedPath(np.array([0.0, 0.5]), np.array([[0.0, 0.0, 2.0], [5.0, 0.0, 2.0]]))
     done: list[tuple[float, float | None]] = []
-    recording = record(path, tmp_path / "a.wav", progress=lambda done_s, total_s: done.append((done_s, total_s)))
+    recording = record(
+        path, tmp_path / "a.wav", progress=lambda done_s, total_s: done.append((done_s, total_s))
+    )
     assert recording.format.end_mm == (5.0, 0.0, 2.0)
     assert recording.largest_speed_mm_s == pytest.approx((10.0, 0.0, 0.0), abs=1e-9)
     assert done[-1] == (pytest.approx(0.5, abs=1e-3), 0.5)
@@ -196,7 +200,9 @@ def test_a_full_disk_is_a_fault_and_leaves_nothing(tmp_path: Path, name: str) ->
     import resource
 
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, before[1]))  # the disk takes 20 kB, as a full one would
+    resource.setrlimit(
+        resource.RLIMIT_FSIZE, (20_000, before[1])
+    )  # the disk takes 20 kB, as a full one would
     try:
         with pytest.raises(FileFault, match="no half file is left"):
             record(circle(), tmp_path / name)
@@ -323,7 +329,9 @@ def test_blocks_are_of_the_size_asked_for(tmp_path: Path) -> None:
     with Tape.open(tmp_path / "a.wav") as tape:
         sizes = [len(block) for block in tape.blocks(1000)]
         assert sizes[:-1] == [1000] * (len(sizes) - 1)
-        assert sum(sizes) == recording.frames == sum(len(block) for block in tape.blocks())  # and again from the start
+        assert (
+            sum(sizes) == recording.frames == sum(len(block) for block in tape.blocks())
+        )  # and again from the start
         assert all(block.dtype == np.float32 for block in tape.blocks())
         with pytest.raises(ValueError, match="at least 1"):
             next(tape.blocks(0))

@@ -19,13 +19,19 @@ millimetres = st.floats(-1e6, 1e6)
     st.floats(1.0, 17_999.0),
     st.floats(1e-3, 1e4),
     st.lists(
-        st.tuples(st.text("xyzabcuvw", min_size=1, max_size=5), millimetres, millimetres), min_size=1, max_size=15
+        st.tuples(st.text("xyzabcuvw", min_size=1, max_size=5), millimetres, millimetres),
+        min_size=1,
+        max_size=15,
     ),
 )
-def test_a_format_reads_back(reference_hz: float, cycles_per_mm: float, axes: list[tuple[str, float, float]]) -> None:
+def test_a_format_reads_back(
+    reference_hz: float, cycles_per_mm: float, axes: list[tuple[str, float, float]]
+) -> None:
     of_axis = {name: (start, end) for name, start, end in axes}
     names, starts, ends = tuple(of_axis), *zip(*of_axis.values(), strict=True)
-    fmt = TapeFormat(reference_hz=reference_hz, cycles_per_mm=cycles_per_mm, axes=names, start_mm=starts, end_mm=ends)
+    fmt = TapeFormat(
+        reference_hz=reference_hz, cycles_per_mm=cycles_per_mm, axes=names, start_mm=starts, end_mm=ends
+    )
     text = fmt.to_json()
     assert TapeFormat.from_json(text) == fmt
     assert is_format_text(text)
@@ -80,7 +86,9 @@ def test_entries_too_many_or_too_few_are_refused() -> None:
             TapeFormat.from_json(json.dumps({name: value for name, value in GOOD.items() if name != entry}))
 
 
-@pytest.mark.parametrize("text", ["", "{", "[]", "null", "remark", "[" * 1900, '{"version": 1' + " " * 3000 + "}"])
+@pytest.mark.parametrize(
+    "text", ["", "{", "[]", "null", "remark", "[" * 1900, '{"version": 1' + " " * 3000 + "}"]
+)
 def test_what_is_no_object_is_refused(text: str) -> None:
     with pytest.raises(TapeFault, match="text chunk"):
         TapeFormat.from_json(text)
@@ -88,7 +96,8 @@ def test_what_is_no_object_is_refused(text: str) -> None:
 
 @given(
     st.recursive(
-        st.none() | st.booleans() | st.floats() | st.text(max_size=5), lambda inner: st.lists(inner, max_size=4)
+        st.none() | st.booleans() | st.floats() | st.text(max_size=5),
+        lambda inner: st.lists(inner, max_size=4),
     )
 )
 def test_any_value_is_a_format_or_a_fault_of_one_line(value: Any) -> None:

@@ -24,7 +24,9 @@ def tones(tracks: int = 4) -> np.ndarray:
     return np.tile((0.5 * np.sin(2 * np.pi * HZ * t_s)).astype(np.float32)[:, None], (1, tracks))
 
 
-def worn(wear: Wear, frames: np.ndarray | None = None, block: int = 30_000, seed: int = 1) -> tuple[np.ndarray, Deck]:
+def worn(
+    wear: Wear, frames: np.ndarray | None = None, block: int = 30_000, seed: int = 1
+) -> tuple[np.ndarray, Deck]:
     """The frames after a deck, and the deck."""
     frames = tones() if frames is None else frames
     deck = Deck(wear, RATE_HZ, frames.shape[1], seed)

@@ -23,7 +23,9 @@ INCREMENT_MM = Ramp().increment_mm
 def test_the_limits_of_the_monitor(vectors: Vectors) -> None:
     limit = FollowingLimit.linear(lag_s=1 / 16.667, tolerance_mm=0.1)
     for case in vectors("he_monitor")["cases"]:
-        assert limit.limit_mm(case["demand_speed_mm_s"]) == pytest.approx(case["limit_mm"], abs=1e-5)  # as printed
+        assert limit.limit_mm(case["demand_speed_mm_s"]) == pytest.approx(
+            case["limit_mm"], abs=1e-5
+        )  # as printed
 
 
 def speeds_of(plan: list[list[Any]]) -> tuple[list[int], list[int]]:
@@ -60,18 +62,26 @@ def test_claim_1_a_servo_in_a_closed_loop_stepped_by_a_program() -> None:
     assert abs(pushed[-1, 0] - 8.0) <= PositionServo().increment_mm
     assert (np.diff(np.abs(8.0 - pushed[:, 0])) <= 1e-12).all()
     # and it is watched, by figures 1 and 2
-    assert Monitor("x", MOTION_RATE_HZ, FollowingLimit.linear(settle_s=0.06)).watch(demand, actual) == len(demand)
+    assert Monitor("x", MOTION_RATE_HZ, FollowingLimit.linear(settle_s=0.06)).watch(demand, actual) == len(
+        demand
+    )
 
 
 def test_claim_2_each_increment_counts_two_while_the_speed_grows_and_one_while_it_holds() -> None:
     profile = count_ramp(1_000, [150])
     (up, rising), (constant, holding), (down, falling) = profile.pieces.tolist()
     assert (up, constant, down) == (UP, CONSTANT, DOWN)
-    assert -1_000 + 2 * (rising // 2) + holding // 2 == profile.count_then == 0  # lengths are in half increments
+    assert (
+        -1_000 + 2 * (rising // 2) + holding // 2 == profile.count_then == 0
+    )  # lengths are in half increments
     assert rising == falling  # at the same rate
     way = positions_mm([0.0], [30.0], 10.0)[:, 0]
     push = np.diff(way, 2) * MOTION_RATE_HZ**2
-    assert push.max() == pytest.approx(-push.min(), rel=1e-3) == pytest.approx(Ramp().acceleration_mm_s2, rel=1e-3)
+    assert (
+        push.max()
+        == pytest.approx(-push.min(), rel=1e-3)
+        == pytest.approx(Ramp().acceleration_mm_s2, rel=1e-3)
+    )
 
 
 def test_claim_3_one_counter_holds_the_sum_of_the_movements_in_all_dimensions() -> None:
@@ -91,7 +101,11 @@ def test_claim_4_a_digital_counter_preset_by_the_initial_error() -> None:
         profile = count_ramp(increments, [200])
         modes, halves = profile.pieces.T
         counted = (
-            sum({UP: 2, CONSTANT: 1, DOWN: 0}[int(mode)] * half for mode, half in zip(modes, halves, strict=True)) / 2
+            sum(
+                {UP: 2, CONSTANT: 1, DOWN: 0}[int(mode)] * half
+                for mode, half in zip(modes, halves, strict=True)
+            )
+            / 2
         )
         assert -increments + counted in (0, 0.0)  # with the odd increment half and half: 2 · ½ + 0 · ½
         assert profile.count_then in (0, 1)  # as the counter saw it: whole increments

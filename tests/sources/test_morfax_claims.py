@@ -29,18 +29,18 @@ from morfax.motion.ramp import positions_mm
 from morfax.player.tape.playback import play
 from morfax.recorder.tape.pickups import PICK_UPS
 from morfax.recorder.tape.tape import Tape, TapeFormat, record
-from tests.tracer.inked import arc, inked, polyline
-from morfax.tracer.operator.card import Card, Stop
-from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.drawing.deviation import deviation
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.following.start import put_down
+from morfax.tracer.head.carriage import Carriage
+from morfax.tracer.head.settings import HISTORIC, Settings
+from morfax.tracer.operator.card import Card, Stop
 from morfax.tracer.operator.operator import Halt, Operator, Work
-from morfax.tracer.sensing.photocell import behind_aperture, sweep
+from morfax.tracer.operator.zunit import Counters, Move, Preset, counts_of
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.trace import trace
-from morfax.tracer.head.settings import HISTORIC, Settings
-from morfax.tracer.following.start import put_down
-from morfax.tracer.operator.zunit import Counters, Move, Preset, counts_of
+from morfax.tracer.sensing.photocell import behind_aperture, sweep
+from tests.tracer.inked import arc, inked, polyline
 
 Array = NDArray[np.float64]
 
@@ -50,8 +50,12 @@ REFERENCE_HZ, Q_MM = 6000.0, 0.05
 REFERENCE, X, Y, Z = range(4)
 CENTRE_MM, RADIUS_MM, SPEED_MM_S, DEPTH_MM = (40.0, 30.0), 10.0, 10.0, 5.0
 COUNTED_S = 0.05
-COUNTED_HZ = 0.6  # a crossing is placed to 0.015 of a cycle where eight samples make one: two of them over 0.05 s
-AT_REST_CYCLES = 2e-5  # 16 bit: a step is 3e-5 of full scale, and a carrier's zero is passed at pi of it per cycle
+COUNTED_HZ = (
+    0.6  # a crossing is placed to 0.015 of a cycle where eight samples make one: two of them over 0.05 s
+)
+AT_REST_CYCLES = (
+    2e-5  # 16 bit: a step is 3e-5 of full scale, and a carrier's zero is passed at pi of it per cycle
+)
 
 
 @pytest.fixture(scope="module")
@@ -104,7 +108,10 @@ def phase_apart(tape: Taped, number: int, from_s: float, to_s: float, window_s: 
     span = slice(round((from_s + 1) * RATE_HZ), round((to_s + 1) * RATE_HZ))
     turning = np.exp(-2j * np.pi * REFERENCE_HZ * np.arange(span.start, span.stop) / RATE_HZ)
     window = round(window_s * RATE_HZ)  # whole cycles: the mirror image falls out
-    beats = [(tape.track(track)[span] * turning)[: len(turning) // window * window] for track in (number, REFERENCE)]
+    beats = [
+        (tape.track(track)[span] * turning)[: len(turning) // window * window]
+        for track in (number, REFERENCE)
+    ]
     means = [beat.reshape(-1, window).mean(axis=1) for beat in beats]
     return float(np.ptp(np.unwrap(np.angle(means[0] * means[1].conj()))) / (2 * np.pi))
 
@@ -160,7 +167,9 @@ def test_claim_2_an_oscillating_cell_steers_and_the_tracks_lie_about_a_recorded_
         sweep(cells, sheet.pitch_mm, np.array([20.0, 30.0]), 0.0, aside_mm, HISTORIC.amplitude_mm, 400)[0]
         for aside_mm in (-0.3, -0.1, 0.1, 0.3)
     ]
-    assert sides[0] > sides[1] > 0.02 and sides[3] < sides[2] < -0.02  # the fundamental of its swing tells the side
+    assert (
+        sides[0] > sides[1] > 0.02 and sides[3] < sides[2] < -0.02
+    )  # the fundamental of its swing tells the side
     for aside_mm in (-0.2, 0.2):  # and turns the head back upon the line
         stance, _ = next(put_down(sheet, (15.0, 30.0), HISTORIC.aperture_mm, None))
         carriage = Carriage(stance, HISTORIC, MOTION_RATE_HZ)
@@ -180,7 +189,9 @@ def test_claim_3_the_panel_s_switches_put_the_tool_s_movements_on_a_z_track(run:
     from_s, to_s = standing_s(run, 1)
     middle_s = (from_s + to_s) / 2
     # 5 mm/s down are 100 Hz below; where Z stands the track is at the reference
-    assert tape.hz(Z, middle_s) == pytest.approx(REFERENCE_HZ - down.moves[0].feed_mm_s / Q_MM, abs=COUNTED_HZ)
+    assert tape.hz(Z, middle_s) == pytest.approx(
+        REFERENCE_HZ - down.moves[0].feed_mm_s / Q_MM, abs=COUNTED_HZ
+    )
     assert tape.hz(Z, from_s - 0.2) == pytest.approx(REFERENCE_HZ, abs=COUNTED_HZ)
     panel, after = Counters(counts_of(2.0)), Counters(counts_of(2.0)).after(Preset(700, "down"))
     assert Preset(700, "down").digits == "00700"  # five decades
@@ -248,7 +259,9 @@ def test_claim_7_the_contour_that_was_drawn_is_the_contour_that_is_cut(sheet: Dr
     aside = np.hypot(*(contour - CENTRE_MM).T) - RADIUS_MM
     assert np.sqrt(np.mean(aside**2)) < 4 * UM and np.abs(aside).max() < 15 * UM
     assert (
-        distance(cut, np.vstack([polyline((25, 30), (30, 30)), arc(CENTRE_MM, RADIUS_MM, 180, 540)])).hausdorff_mm
+        distance(
+            cut, np.vstack([polyline((25, 30), (30, 30)), arc(CENTRE_MM, RADIUS_MM, 180, 540)])
+        ).hausdorff_mm
         < 0.25
     )
 
@@ -256,7 +269,9 @@ def test_claim_7_the_contour_that_was_drawn_is_the_contour_that_is_cut(sheet: Dr
 # the apparatus
 
 
-def test_claim_8_what_is_recorded_is_the_turning_of_the_follower_s_own_motors(sheet: Drawing, tmp_path: Path) -> None:
+def test_claim_8_what_is_recorded_is_the_turning_of_the_follower_s_own_motors(
+    sheet: Drawing, tmp_path: Path
+) -> None:
     """With slower motors X and Y follow the head's demand later, and the tape has that motion and no other."""
     ways = []
     for lag_s in (0.001, 0.005):
@@ -303,13 +318,19 @@ def test_claim_11_a_member_that_stands_gives_the_reference_frequency(run: Trace,
     assert travel == pytest.approx((DEPTH_MM + run.work.clearance_mm) / Q_MM, abs=1e-3)  # 7 mm are 140 cycles
 
 
-def test_claim_12_a_sector_wheel_passes_a_lamp_and_a_photocell(run: Trace, tape: Taped, tmp_path: Path) -> None:
+def test_claim_12_a_sector_wheel_passes_a_lamp_and_a_photocell(
+    run: Trace, tape: Taped, tmp_path: Path
+) -> None:
     lit = taped(join(run), tmp_path / "a.wav", TapeFormat(pickup="photocell"))
     still = lit.track(X)[: RATE_HZ // 2]
     lines = 2 * np.abs(np.fft.rfft(still)) / len(still)
-    assert lines[9000] / lines[3000] == pytest.approx(1 / 3, abs=1e-4)  # light and dark: a square, up to 18 kHz
+    assert lines[9000] / lines[3000] == pytest.approx(
+        1 / 3, abs=1e-4
+    )  # light and dark: a square, up to 18 kHz
     for at_s in list(round_the_contour(lit))[::8]:
-        assert lit.hz(X, at_s) == pytest.approx(REFERENCE_HZ + lit.speed_mm_s(X, at_s) / Q_MM, abs=3 * COUNTED_HZ)
+        assert lit.hz(X, at_s) == pytest.approx(
+            REFERENCE_HZ + lit.speed_mm_s(X, at_s) / Q_MM, abs=3 * COUNTED_HZ
+        )
     assert distance(thin(play(lit.file)), thin(play(tape.file))).hausdorff_mm < 1 * UM
 
 
@@ -355,7 +376,9 @@ def test_claim_14_switches_a_motor_of_variable_speed_and_counters_make_a_sequenc
         shown = shown.after(preset)
     assert shown.digits == "-00375"
     speeds = [tape.hz(Z, from_s + after_s) - REFERENCE_HZ for after_s in _middles(z)]
-    assert speeds == pytest.approx([-4 / Q_MM, 2 / Q_MM, -3 / Q_MM], abs=COUNTED_HZ)  # the feeds, one after the other
+    assert speeds == pytest.approx(
+        [-4 / Q_MM, 2 / Q_MM, -3 / Q_MM], abs=COUNTED_HZ
+    )  # the feeds, one after the other
 
 
 def _middles(z_mm: Array) -> list[float]:
@@ -363,8 +386,14 @@ def _middles(z_mm: Array) -> list[float]:
     moving = np.r_[False, np.diff(z_mm) != 0, False]
     edges = np.flatnonzero(np.diff(moving.astype(int)))
     runs = [(a, b) for a, b in edges.reshape(-1, 2) if b - a > 600]
-    turns = [(a, a + int(np.argmax(z_mm[a:b])), b) for a, b in runs]  # the last two moves have no dwell between them
-    parts = [(a, b) for a, top, b in turns for a, b in ([(a, top), (top, b)] if a + 600 < top < b - 600 else [(a, b)])]
+    turns = [
+        (a, a + int(np.argmax(z_mm[a:b])), b) for a, b in runs
+    ]  # the last two moves have no dwell between them
+    parts = [
+        (a, b)
+        for a, top, b in turns
+        for a, b in ([(a, top), (top, b)] if a + 600 < top < b - 600 else [(a, b)])
+    ]
     return [float((a + b) / 2 / MOTION_RATE_HZ) for a, b in parts]
 
 
@@ -386,8 +415,12 @@ def test_claim_15_each_axis_moves_as_its_frequency_is_above_or_below(tmp_path: P
         ((6000, 6200, 5900, 6040), (10, -5, 2)),
         ((6000, 6200, 5900), (10, -5, 0)),
     ):  # Z if there is one
-        played = join(play(tones(tmp_path / "a.wav", *given), reference_hz=6000, cycles_per_mm=20)).positions_mm
-        assert (played[11_000] - played[5_000]).tolist() == pytest.approx(list(mm_s), abs=1 * UM)  # in one second
+        played = join(
+            play(tones(tmp_path / "a.wav", *given), reference_hz=6000, cycles_per_mm=20)
+        ).positions_mm
+        assert (played[11_000] - played[5_000]).tolist() == pytest.approx(
+            list(mm_s), abs=1 * UM
+        )  # in one second
 
 
 def test_claim_16_the_reference_from_the_tape_turns_the_wheel_of_every_axis(tmp_path: Path) -> None:

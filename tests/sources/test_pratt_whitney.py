@@ -50,7 +50,9 @@ def step(residue: int, error: int, total: int, gate_open: bool) -> tuple[int, in
     return now, 0 if (now < 0) != (residue < 0) else (-1 if now < 0 else 1)
 
 
-def residues(end: tuple[int, int, int], constant: int, feed: Feed, residue: int, cycles: int) -> list[tuple[int, int]]:
+def residues(
+    end: tuple[int, int, int], constant: int, feed: Feed, residue: int, cycles: int
+) -> list[tuple[int, int]]:
     """Residue of X and its pulse after each of the first recirculations, of the compiled loop."""
     found = []
     whole = Interpolator(servo_constant=constant, guard=False).line(end, feed, residue)
@@ -80,7 +82,9 @@ def test_table_1_as_a_run_with_one_rule(vectors: Vectors) -> None:
     found = residues((-6, 0, 0), 4, Feed(gate_period=3), 5, 45)
     assert [end for end, _ in found] == [row["end"] for row in run["rows"]]
     assert (
-        [cycle for cycle, (_, pulse) in enumerate(found, 1) if pulse] == run["pulse_cycles"] == [4, 9, 16, 21, 30, 45]
+        [cycle for cycle, (_, pulse) in enumerate(found, 1) if pulse]
+        == run["pulse_cycles"]
+        == [4, 9, 16, 21, 30, 45]
     )
 
 
@@ -100,7 +104,9 @@ def test_one_axis_never_pulses_the_wrong_way_and_always_arrives() -> None:
 
 def test_linear_runs(vectors: Vectors) -> None:
     for case in vectors("pw_linear")["cases"]:
-        pulses = Interpolator(servo_constant=case["L"], guard=False).line(tuple(case["target"]), ALWAYS, case["R0"])
+        pulses = Interpolator(servo_constant=case["L"], guard=False).line(
+            tuple(case["target"]), ALWAYS, case["R0"]
+        )
         assert len(pulses) == case["cycles"]
         first = [[int(i) + 1, pulses[i].tolist()] for i in np.flatnonzero(pulses.any(axis=1))]
         assert first[: len(case["first_pulses"])] == case["first_pulses"]
@@ -125,13 +131,22 @@ def test_circular_runs(vectors: Vectors) -> None:
 
 def test_the_weights_and_what_they_make_of_the_speed(vectors: Vectors) -> None:
     norms = vectors("pw_feed_norm")
-    assert norms["counter_weights_eighths"] | {"note": ""} == {"G": GREATEST, "M": MIDDLE, "S": SMALLEST, "note": ""}
+    assert norms["counter_weights_eighths"] | {"note": ""} == {
+        "G": GREATEST,
+        "M": MIDDLE,
+        "S": SMALLEST,
+        "note": "",
+    }
     for sample in norms["samples"]:
         direction = np.array(sample["vector"])
         approximate = direction @ resultant_weights(direction, true_norm=False) / (GREATEST * EIGHTH)
         true = direction @ resultant_weights(direction, true_norm=True) / (GREATEST * EIGHTH)
-        assert approximate == pytest.approx(sample["approx"]) and true == pytest.approx(sample["true"], rel=1e-4)
-        assert true / approximate == pytest.approx(sample["true_feed_over_programmed"], rel=1e-4)  # weights of 15 bits
+        assert approximate == pytest.approx(sample["approx"]) and true == pytest.approx(
+            sample["true"], rel=1e-4
+        )
+        assert true / approximate == pytest.approx(
+            sample["true_feed_over_programmed"], rel=1e-4
+        )  # weights of 15 bits
 
 
 def test_the_unit_circuit(vectors: Vectors) -> None:
@@ -191,7 +206,9 @@ def held(end: tuple[int, int, int], **how: Any) -> float:
 
 
 @pytest.mark.parametrize("direction", [(1, 1, 1), (10, 4, 3), (5, 3, 1), (3, 2, 1)])
-def test_claim_5_three_axes_weigh_two_and_a_half_to_one_to_three_quarters(direction: tuple[int, int, int]) -> None:
+def test_claim_5_three_axes_weigh_two_and_a_half_to_one_to_three_quarters(
+    direction: tuple[int, int, int],
+) -> None:
     size = np.array(direction, float)
     approximate = (2.5 * size[0] + size[1] + 0.75 * size[2]) / 2.5
     end = tuple((size / np.linalg.norm(size) * 20_000).astype(int))
@@ -361,7 +378,9 @@ def parts_of_an_arc() -> tuple[list[bool], list[int], list[int]]:
 def test_claim_25_larger_error_and_smaller_perpendicular_choose_how_the_errors_go_in() -> None:
     straight, _, _ = parts_of_an_arc()
     first, last = straight[:300], straight[-300:]
-    assert sum(first) < sum(last)  # as the chord gets shorter its perpendicular grows, and fewer errors are crossed
+    assert sum(first) < sum(
+        last
+    )  # as the chord gets shorter its perpendicular grows, and fewer errors are crossed
     # at the start of a quarter E_m / 2h_n is 1: as many crossed as straight
     assert sum(first) == pytest.approx(len(first) / 2, rel=0.15)
 

@@ -22,8 +22,8 @@ from morfax.player.cubics.cubic import Servo, play_cubic
 from morfax.player.cubics.interpolator import Interpolator, TimeBase, ends, table, truncated_end
 from morfax.player.cubics.scales import Scales, gated_pulses, joined, read_scales
 from morfax.player.cubics.stores import Store, Stores
-from morfax.recorder.cubics.file import CubicFormat, read_program
 from morfax.recorder.cubics.cubics import differences, record_cubics
+from morfax.recorder.cubics.file import CubicFormat, read_program
 from tests.recorder.test_steps import circle
 
 Vectors = Callable[[str], Any]
@@ -90,7 +90,9 @@ def test_registers_with_fewer_digits_end_beside_it(vectors: Vectors) -> None:
     told = vectors("sea_hermite")["truncated_register_worst_end_error_counts"]
     rng = np.random.default_rng(1957)
     for name, worst in told.items():
-        steps, *digits = (int("".join(filter(str.isdigit, part))) for part in name.split("_") if part != "frac")
+        steps, *digits = (
+            int("".join(filter(str.isdigit, part))) for part in name.split("_") if part != "frac"
+        )
         cubics = np.stack([rng.integers(-2000, 2001, (400, 2)), rng.integers(-4000, 4001, (400, 2))], axis=-1)
         off = []
         for sample in cubics:
@@ -195,7 +197,9 @@ def test_claim_8_the_program_holds_the_ratio(tmp_path: Path) -> None:
 
 def test_claim_9_each_store_needs_fewer_digits_than_the_one_before(orbit: Path) -> None:
     program = read_program(orbit)
-    largest = [np.abs(Interpolator(np.array(program.checks[0]), program.format.points).run(program.words)).max()]
+    largest = [
+        np.abs(Interpolator(np.array(program.checks[0]), program.format.points).run(program.words)).max()
+    ]
     largest += np.abs(program.words).max(axis=(0, 1)).tolist()
     digits = [int(word).bit_length() for word in largest]
     assert digits == sorted(digits, reverse=True) and len(set(digits)) == 4

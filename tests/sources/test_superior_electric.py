@@ -15,8 +15,8 @@ import pytest
 
 from morfax.motion.motion import join
 from morfax.player.steps.stepping import decode, play_steps, pulse_ticks, pulses_of, ring_memory, tick_table
-from morfax.recorder.steps.rings import RINGS
 from morfax.recorder.steps.file import Program, StepFormat, write_program
+from morfax.recorder.steps.rings import RINGS
 from morfax.recorder.steps.steps import encode
 
 Vectors = Callable[[str], Any]
@@ -171,12 +171,16 @@ def test_claim_11_two_axes_run_in_the_same_interval() -> None:
     assert pulses([0b11001]) == [[1, -1]]
 
 
-def test_claim_12_orders_of_both_axes_are_stored_together_and_taken_at_the_end_of_the_pulses(tmp_path: Path) -> None:
+def test_claim_12_orders_of_both_axes_are_stored_together_and_taken_at_the_end_of_the_pulses(
+    tmp_path: Path,
+) -> None:
     rows = [0b10101, 0b10101, 0b11010, 0b11010]
     write_program(program(rows, end_mm=(0.04, 0.04, 0)), tmp_path / "a.steps")
     motion = join(play_steps(tmp_path / "a.steps")).positions_mm
     assert (motion[:, 0] == motion[:, 1]).all()
-    assert motion[8::8, 0] == pytest.approx([0.01, 0.03, 0.04, 0.04])  # all pulses of an order before the next
+    assert motion[8::8, 0] == pytest.approx(
+        [0.01, 0.03, 0.04, 0.04]
+    )  # all pulses of an order before the next
 
 
 @pytest.mark.parametrize("oscillator_hz", [10240, 7680])

@@ -28,7 +28,11 @@ Points = NDArray[np.float64]
 
 
 def inked(
-    *lines: Points, width_mm: float = WIDTH_MM, dpi: float = DPI, seed: int | None = None, specks: Sequence[Points] = ()
+    *lines: Points,
+    width_mm: float = WIDTH_MM,
+    dpi: float = DPI,
+    seed: int | None = None,
+    specks: Sequence[Points] = (),
 ) -> Drawing:
     """The drawing of lines (n, 2) mm on a sheet with a margin above and right of all; specks are filled outlines."""
     high = np.vstack([*lines, *specks]).max(axis=0) + MARGIN_MM
@@ -36,7 +40,9 @@ def inked(
     fine = np.zeros((pixels[1] * OVERSAMPLE, pixels[0] * OVERSAMPLE), np.uint8)
     scale = dpi / MM_PER_INCH * OVERSAMPLE
     for line in lines:
-        cv2.polylines(fine, [_fixed(line, len(fine), scale)], False, 255, round(width_mm * scale), cv2.LINE_AA, 8)
+        cv2.polylines(
+            fine, [_fixed(line, len(fine), scale)], False, 255, round(width_mm * scale), cv2.LINE_AA, 8
+        )
     for speck in specks:
         cv2.fillPoly(fine, [_fixed(speck, len(fine), scale)], 255, cv2.LINE_AA, 8)
     return Drawing(_seen(fine, pixels, dpi, seed), MM_PER_INCH / dpi)
@@ -49,7 +55,9 @@ def together(*drawn: tuple[Points, float], seed: int | None = None) -> Drawing:
     fine = np.zeros((pixels[1] * OVERSAMPLE, pixels[0] * OVERSAMPLE), np.uint8)
     scale = DPI / MM_PER_INCH * OVERSAMPLE
     for line, width_mm in drawn:
-        cv2.polylines(fine, [_fixed(line, len(fine), scale)], False, 255, round(width_mm * scale), cv2.LINE_AA, 8)
+        cv2.polylines(
+            fine, [_fixed(line, len(fine), scale)], False, 255, round(width_mm * scale), cv2.LINE_AA, 8
+        )
     return Drawing(_seen(fine, pixels, DPI, seed), MM_PER_INCH / DPI)
 
 
@@ -59,7 +67,9 @@ def _fixed(line: Points, rows: int, scale: float) -> NDArray[np.int32]:
     return np.round(at * 256).astype(np.int32).reshape(-1, 1, 2)
 
 
-def _seen(fine: NDArray[np.uint8], pixels: NDArray[np.int_], dpi: float, seed: int | None) -> NDArray[np.float32]:
+def _seen(
+    fine: NDArray[np.uint8], pixels: NDArray[np.int_], dpi: float, seed: int | None
+) -> NDArray[np.float32]:
     """Darkness 0..1 of the pixels."""
     size = (int(pixels[0]), int(pixels[1]))
     ink = cv2.resize(fine, size, interpolation=cv2.INTER_AREA).astype(np.float32) / 255
@@ -74,10 +84,14 @@ def polyline(*points: tuple[float, float]) -> Points:
     return np.array(points, float)
 
 
-def arc(centre: tuple[float, float], radius_mm: float, from_deg: float = 0.0, to_deg: float = 360.0) -> Points:
+def arc(
+    centre: tuple[float, float], radius_mm: float, from_deg: float = 0.0, to_deg: float = 360.0
+) -> Points:
     """An arc, or the whole circle, its ends included."""
     step = 2 * math.acos(1 - min(SAGITTA_MM / radius_mm, 1.0))
-    angle = np.linspace(*np.radians([from_deg, to_deg]), 2 + math.ceil(abs(math.radians(to_deg - from_deg)) / step))
+    angle = np.linspace(
+        *np.radians([from_deg, to_deg]), 2 + math.ceil(abs(math.radians(to_deg - from_deg)) / step)
+    )
     return np.asarray(np.array(centre) + radius_mm * np.column_stack([np.cos(angle), np.sin(angle)]))
 
 

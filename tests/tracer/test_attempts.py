@@ -8,12 +8,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.tracer.inked import inked, polyline
 from morfax.tracer.following.attempts import Attempts
 from morfax.tracer.following.follower import Followed
-from morfax.tracer.head.settings import Settings
 from morfax.tracer.following.start import Stance
+from morfax.tracer.head.settings import Settings
 from morfax.tracer.sensing.view import View
+from tests.tracer.inked import inked, polyline
 
 DRAWING = inked(polyline((4, 4), (14, 4)))
 VIEW = View(DRAWING.darkness, DRAWING.pitch_mm, 0.5, 0.5)
@@ -39,7 +39,9 @@ def chosen(monkeypatch: pytest.MonkeyPatch, runs: Runs) -> Followed:
     return Attempts(DRAWING, Settings(), (), 100.0, None).all_of_it(STANCE)
 
 
-def test_a_line_that_closes_only_back_from_a_tip_is_tried_so_either_way_round(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_line_that_closes_only_back_from_a_tip_is_tried_so_either_way_round(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """A coast of 2.2 m ended in a bay one way round, and at a spike of two lines the other way: half of it was left."""
     runs: Runs = {
         (True, False): run("ended", 40),

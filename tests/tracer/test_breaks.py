@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tests.tracer.inked import UM, Points, arc, inked, polyline
-from morfax.tracer.program.trace import trace
 from morfax.tracer.head.settings import Settings
+from morfax.tracer.program.trace import trace
+from tests.tracer.inked import UM, Points, arc, inked, polyline
 
 STEP_MM = 0.1  # in which gaps are tried
 
@@ -33,7 +33,11 @@ def test_the_gap_of_a_dashed_line_is_told_and_takes_the_head_round(gap_mm: float
 def test_ink_that_does_not_go_on_straight_ahead_is_no_break() -> None:
     """A line that ends before another one across its way, or beside one, or far from one."""
     line = polyline((4, 10), (20, 10))
-    for other in (polyline((21.5, 4), (21.5, 16)), polyline((21.5, 11.5), (30, 11.5)), polyline((25, 10), (35, 10))):
+    for other in (
+        polyline((21.5, 4), (21.5, 16)),
+        polyline((21.5, 11.5), (30, 11.5)),
+        polyline((25, 10), (35, 10)),
+    ):
         (traced,) = trace(inked(line, other, seed=1), (8, 10)).lines
         assert traced.ending == "ended" and traced.breaks == ()
 

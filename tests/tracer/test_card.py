@@ -57,7 +57,11 @@ def test_a_card_says_what_is_set() -> None:
         turns=("straight", "left"),
         override=(3,),
         stops=(
-            Stop(1, (Preset(700, "down", 2.0), Preset(0, dwell_s=0.5), Preset(254, "up", 5.0)), restart="automatic"),
+            Stop(
+                1,
+                (Preset(700, "down", 2.0), Preset(0, dwell_s=0.5), Preset(254, "up", 5.0)),
+                restart="automatic",
+            ),
             Stop(None, drill=Drill(800, 300, dwell_s=0.2)),
         ),
     )
@@ -66,7 +70,11 @@ def test_a_card_says_what_is_set() -> None:
 def test_the_card_of_the_documentation_is_one() -> None:
     text = (Path(__file__).parents[2] / "docs" / "card.md").read_text(encoding="utf-8")
     card = Card.parse(text.split("```toml\n")[1].split("```")[0])
-    assert card.depths_mm == (2.0, 4.0) and card.stop(1).moves and card.stop(2).drill == Drill(800, 300, dwell_s=0.2)
+    assert (
+        card.depths_mm == (2.0, 4.0)
+        and card.stop(1).moves
+        and card.stop(2).drill == Drill(800, 300, dwell_s=0.2)
+    )
 
 
 def test_an_empty_card_says_nothing() -> None:
@@ -80,7 +88,9 @@ def test_a_stop_has_its_own_entry_or_that_of_all_others() -> None:
 
 
 def test_moves_that_name_no_feed_have_that_of_the_card() -> None:
-    (stop,) = Card.parse('speeds.feed = 3\n[[stop]]\nmoves = [{ down = 1 }, { up = 1, feed = "60mm/min" }]').stops
+    (stop,) = Card.parse(
+        'speeds.feed = 3\n[[stop]]\nmoves = [{ down = 1 }, { up = 1, feed = "60mm/min" }]'
+    ).stops
     assert [preset.feed_mm_s for preset in stop.moves] == [3.0, 1.0]
 
 
@@ -118,7 +128,13 @@ MISTAKES = [
     ('restart = "by hand"', 1, "restart", '"by hand"', 'it may hold "automatic" or "manual"'),
     ('turns = "left"', 1, "turns", '"left"', 'a list of "straight", "left" and "right"'),
     ('turns = ["left",\n"back"]', 2, "turns[2]", '"back"', 'it may hold "straight" or "left" or "right"'),
-    ('override = "some"', 1, "override", '"some"', 'it may hold "none", "all" or a list of stops, such as [1, 3]'),
+    (
+        'override = "some"',
+        1,
+        "override",
+        '"some"',
+        'it may hold "none", "all" or a list of stops, such as [1, 3]',
+    ),
     ("override = [0]", 1, "override[1]", "0", "it may hold a whole number from 1"),
     ("override = [true]", 1, "override[1]", "true", "it may hold a whole number from 1"),
     ("speeds = 5", 1, "speeds", "5", "it may hold a table with trace, feed, rapid"),
@@ -128,16 +144,40 @@ MISTAKES = [
     ("stop = 3", 1, "stop", "3", "it may hold entries [[stop]]"),
     ("stop = [1]", 1, "stop[1]", "1", "it may hold a table with number, moves, drill"),
     ("[[stop]]\nnumber = 1.0", 2, "stop[1].number", "1.0", "it may hold a whole number from 1"),
-    ("[[stop]]\n[[stop]]", 2, "stop[2]", "{}", "an entry before it is for the same stops; it may hold a number"),
+    (
+        "[[stop]]\n[[stop]]",
+        2,
+        "stop[2]",
+        "{}",
+        "an entry before it is for the same stops; it may hold a number",
+    ),
     ("[[stop]]\nnumber=2\n[[stop]]\nnumber=2", 3, "stop[2]", '{"number": 2}', "it may hold another number"),
-    ("[[stop]]\npasses = [1]\ndrill.depth = 1", 2, "stop[1].passes", "[1]", "beside drill there may be no passes"),
+    (
+        "[[stop]]\npasses = [1]\ndrill.depth = 1",
+        2,
+        "stop[1].passes",
+        "[1]",
+        "beside drill there may be no passes",
+    ),
     ("[[stop]]\ndwell = -1", 2, "stop[1].dwell", "-1", TIME),
     ("[[stop]]\ndwell = '1h'", 2, "stop[1].dwell", '"1h"', TIME),
     ("[[stop]]\nmoves = {}", 2, "stop[1].moves", "{}", 'it may hold moves such as [{ down = "7mm"'),
     ("[[stop]]\nmoves = [\n{},\n]", 3, "stop[1].moves[1]", "{}", "it may hold down or up, one of them"),
     ("[[stop]]\nmoves = [{up=1,down=1}]", 2, "stop[1].moves[1]", '{"up": 1, "down": 1}', "one of them"),
-    ("[[stop]]\nmoves = [{dwell=1,feed=1}]", 2, "stop[1].moves[1]", '{"dwell": 1, "feed": 1}', "a dwell alone"),
-    ("[[stop]]\n[[stop.moves]]\nup = 1\nby = 2", 4, "stop[1].moves[1].by", "2", "may hold down, up, feed, dwell"),
+    (
+        "[[stop]]\nmoves = [{dwell=1,feed=1}]",
+        2,
+        "stop[1].moves[1]",
+        '{"dwell": 1, "feed": 1}',
+        "a dwell alone",
+    ),
+    (
+        "[[stop]]\n[[stop.moves]]\nup = 1\nby = 2",
+        4,
+        "stop[1].moves[1].by",
+        "2",
+        "may hold down, up, feed, dwell",
+    ),
     ("[[stop]]\n[stop.drill]\npeck = 1", 2, "stop[1].drill", '{"peck": 1}', "it must hold a depth"),
     (
         "[[stop]]\n[stop.drill]\ndepth = 1\npeck = 2",
@@ -232,7 +272,11 @@ CARDS = st.builds(
 def in_toml(value: Any) -> str:
     """A value as it stands in TOML."""
     if isinstance(value, dict):
-        return "{ " + ", ".join(f"{key} = {in_toml(held)}" for key, held in value.items() if held is not None) + " }"
+        return (
+            "{ "
+            + ", ".join(f"{key} = {in_toml(held)}" for key, held in value.items() if held is not None)
+            + " }"
+        )
     if isinstance(value, list | tuple):
         return "[" + ",\n".join(in_toml(held) for held in value) + "]"
     return f'"{value}"' if isinstance(value, str) else repr(value)
@@ -257,8 +301,17 @@ def stop_row(stop: Stop) -> dict[str, Any]:
 
 def written(card: Card) -> str:
     """The card as an operator would write it."""
-    rows = {"start": card.start_mm, "passes": card.depths_mm or None, "entry": card.entry_mm, "restart": card.restart}
-    rows |= {"turns": card.turns or None, "override": card.override, "stop": [stop_row(s) for s in card.stops] or None}
+    rows = {
+        "start": card.start_mm,
+        "passes": card.depths_mm or None,
+        "entry": card.entry_mm,
+        "restart": card.restart,
+    }
+    rows |= {
+        "turns": card.turns or None,
+        "override": card.override,
+        "stop": [stop_row(s) for s in card.stops] or None,
+    }
     speeds = {"trace": card.trace_mm_s, "feed": card.feed_mm_s, "rapid": card.rapid_mm_s}
     rows |= {f"speeds.{name}": speed for name, speed in speeds.items()}
     return "\n".join(f"{key} = {in_toml(value)}" for key, value in rows.items() if value is not None)
@@ -294,11 +347,17 @@ def paths_of(value: Any, path: tuple[str | int, ...] = ()) -> set[tuple[str | in
     return {path}.union(*(paths_of(held, (*path, key)) for key, held in inside))
 
 
-@given(st.dictionaries(TEXTS, VALUES, max_size=3), st.lists(st.dictionaries(TEXTS, VALUES, max_size=3), max_size=3))
+@given(
+    st.dictionaries(TEXTS, VALUES, max_size=3),
+    st.lists(st.dictionaries(TEXTS, VALUES, max_size=3), max_size=3),
+)
 def test_every_field_of_a_card_has_a_line(top: dict[str, Any], rows: list[dict[str, Any]]) -> None:
     lines = [f"{json.dumps(key)} = {quoted(value)}" for key, value in top.items()]
     for row in rows:
-        lines += ["[[ zz . 'rows' ]]", *(f"{json.dumps(key)}={quoted(value)} # a" for key, value in row.items())]
+        lines += [
+            "[[ zz . 'rows' ]]",
+            *(f"{json.dumps(key)}={quoted(value)} # a" for key, value in row.items()),
+        ]
     text = "\n".join(lines)
     assert set(lines_of(text)) == paths_of(tomllib.loads(text))
 
@@ -329,7 +388,9 @@ def test_strings_of_several_lines_hide_what_is_in_them() -> None:
 
 
 @given(DRILLS, st.integers(-500, 500), SPEEDS)
-def test_a_drill_goes_down_to_depth_peck_by_peck_and_comes_back(drill: Drill, at: int, rapid_mm_s: float) -> None:
+def test_a_drill_goes_down_to_depth_peck_by_peck_and_comes_back(
+    drill: Drill, at: int, rapid_mm_s: float
+) -> None:
     if drill.depth_counts / drill.peck_counts > 500:
         return
     presets = drill.presets(Counters(at), rapid_mm_s)

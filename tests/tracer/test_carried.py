@@ -11,18 +11,18 @@ import pytest
 from morfax.motion.faults import LineFault, MotionFault
 from morfax.motion.motion import join
 from morfax.motion.polyline import Nearest
-from tests.tracer.inked import UM, arc, cross, dot, inked, polyline, tick
-from tests.tracer.test_program import EXACT_MM, WORK, at, in_work, run_through
 from morfax.tracer.cutter.contour import Cut
-from morfax.tracer.operator.card import Card
 from morfax.tracer.cutter.cutter import Cutter, Left, Side, with_cutter
-from morfax.tracer.junctions.guides import Guide
 from morfax.tracer.following.line import Line
+from morfax.tracer.junctions.guides import Guide
 from morfax.tracer.marks.marks import Mark
+from morfax.tracer.operator.card import Card
 from morfax.tracer.operator.operator import Halt, Operator
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.trace import trace
 from morfax.tracer.sensing.view import Array
+from tests.tracer.inked import UM, arc, cross, dot, inked, polyline, tick
+from tests.tracer.test_program import EXACT_MM, WORK, at, in_work, run_through
 
 FEED_MM_S = 10.0
 NEARER_MM = 1.0 * UM  # than the radius to a contour; asked of the cutter's ways: 1 um
@@ -41,12 +41,17 @@ BACK = OUT + at(WAY[OUT:], LEFT_TO)
 
 def marked(tick_mm: float = 5.0, *, guide: bool = False, way: Array = WAY) -> Line:
     """The square with a tick on its lead line, and one on its right side; with the guide line, or straight on."""
-    marks = [Mark("tick", (tick_mm, 4.0), float(at(way[:FROM], (tick_mm, 4)))), Mark("tick", (18.0, 3.0), 0.0)]
+    marks = [
+        Mark("tick", (tick_mm, 4.0), float(at(way[:FROM], (tick_mm, 4)))),
+        Mark("tick", (18.0, 3.0), 0.0),
+    ]
     if not guide:
         way = np.vstack([way[: at(way[:OUT], LEFT_TO)], way[BACK:]])
     marks[1] = replace(marks[1], at=float(FROM + at(way[FROM:], (18, 3))))
     guides = (Guide(at(way[:OUT], LEFT_TO), OUT, BACK),) if guide else ()
-    return Line(way, "joined", 0.5, 50.0, loop_from=FROM, marks=tuple(marks), guides=guides, reference_mm=(-3.0, 4.0))
+    return Line(
+        way, "joined", 0.5, 50.0, loop_from=FROM, marks=tuple(marks), guides=guides, reference_mm=(-3.0, 4.0)
+    )
 
 
 def beside(
@@ -54,7 +59,9 @@ def beside(
 ) -> tuple[Array, dict[int | None, Halt], Trace]:
     """The motion of a cutter beside a line, (n, 3) mm, its stops by number, and the program."""
     work = replace(WORK, passes_mm=passes_mm)
-    made, _ = with_cutter(Trace((line,), Operator(work, Card.parse(card))), Cutter(diameter_mm, side), FEED_MM_S)
+    made, _ = with_cutter(
+        Trace((line,), Operator(work, Card.parse(card))), Cutter(diameter_mm, side), FEED_MM_S
+    )
     stops = {a.halt.number: a.halt for actions in made.actions for a in actions if a.halt.number is not None}
     return join(made).positions_mm, stops, made
 
@@ -103,8 +110,12 @@ def test_a_guide_line_is_run_raised_as_drawn_and_its_hole_is_where_it_was_drawn(
     positions, stops, made = beside(marked(guide=True), side, passes_mm=(1.0,))
     assert [stops[k].kind for k in (1, 2, 3)] == ["tick", "hole", "tick"]
     assert stops[2].place_mm == tuple(WAY[OUT])
-    assert least_mm(positions, marked().xy_mm[FROM:], 2.0) > -NEARER_MM  # on no pass does it cut along the guide line
-    on_guide = positions[(np.abs(positions[:, 0] - 14) < UM) & (positions[:, 1] > 5) & (positions[:, 1] < 5.9)]
+    assert (
+        least_mm(positions, marked().xy_mm[FROM:], 2.0) > -NEARER_MM
+    )  # on no pass does it cut along the guide line
+    on_guide = positions[
+        (np.abs(positions[:, 0] - 14) < UM) & (positions[:, 1] > 5) & (positions[:, 1] < 5.9)
+    ]
     assert len(on_guide) and np.all(on_guide[:, 2] == WORK.clearance_mm)
     (guide,) = made.lines[0].guides
     y_mm = 10 if side == "outside" else 6
@@ -138,7 +149,10 @@ def test_a_card_that_has_the_tool_down_on_its_way_over_the_contour_is_refused() 
     card = '[[stop]]\nnumber = 1\nmoves = [{ down = "5mm" }]\n'
     with pytest.raises(MotionFault, match="would cut into the part at"):
         beside(line, "inside", card=card)
-    assert least_mm(beside(line, "outside", card=card)[0], line.xy_mm[int(line.loop_from or 0) + 1 :], 2.0) > -NEARER_MM
+    assert (
+        least_mm(beside(line, "outside", card=card)[0], line.xy_mm[int(line.loop_from or 0) + 1 :], 2.0)
+        > -NEARER_MM
+    )
 
 
 def test_a_guide_line_from_the_reference_point_is_run_as_drawn_and_one_with_a_tick_is_cut_beside() -> None:
@@ -161,9 +175,9 @@ def test_where_no_line_is_cut_nothing_is_in_the_tool_s_way() -> None:
     guide = Line(way, "ended", 0.5, 20.0, reference_mm=(-13.0, 0.0), marks=(dot_on_it,))
     card = Card.parse('[[stop]]\nnumber = 1\nmoves = [{ down = "5mm" }]\n')
     made, left = with_cutter(Trace((guide,), Operator(WORK, card)), Cutter(6.0), FEED_MM_S)
-    assert left == Left() and in_work(np.vstack([block.positions_mm for block in made]))[:, 0].max() == pytest.approx(
-        10
-    )
+    assert left == Left() and in_work(np.vstack([block.positions_mm for block in made]))[
+        :, 0
+    ].max() == pytest.approx(10)
 
 
 def test_of_a_lost_line_what_was_traced_is_cut_on_a_side_of_its_travel() -> None:
@@ -201,7 +215,10 @@ def test_beside_a_drawn_circle_runs_the_circle_and_all_that_is_drawn_on_it(
 ) -> None:
     lines, dots = program(angle_deg)
     followed = trace(
-        inked(*lines, seed=seed, specks=dots), None, None, Operator(WORK, Card.parse('turns = ["left", "right"]'))
+        inked(*lines, seed=seed, specks=dots),
+        None,
+        None,
+        Operator(WORK, Card.parse('turns = ["left", "right"]')),
     )
     cut = Cut.of(followed.lines[0], followed.operator, 1)
     assert cut is not None and len(cut.stops) == 3
@@ -220,8 +237,13 @@ def test_beside_a_drawn_circle_runs_the_circle_and_all_that_is_drawn_on_it(
         halts = {a.halt.number: a.halt for a in made.actions[0] if a.halt.number is not None}
         assert halts[hole.number].place_mm == pytest.approx(hole.place_mm, abs=EXACT_MM)
         assert math.dist(hole.place_mm, (30, 22)) < STANDS_WITHIN_MM
-        foot = 30 + radius_mm * math.cos(math.radians(angle_deg)), 20 + radius_mm * math.sin(math.radians(angle_deg))
-        ticked = next(halts[stop.number].place_mm for stop in cut.stops if stop.kind == "tick" and stop.number != 1)
+        foot = (
+            30 + radius_mm * math.cos(math.radians(angle_deg)),
+            20 + radius_mm * math.sin(math.radians(angle_deg)),
+        )
+        ticked = next(
+            halts[stop.number].place_mm for stop in cut.stops if stop.kind == "tick" and stop.number != 1
+        )
         assert math.dist(ticked, foot) < STANDS_WITHIN_MM
         for end in (positions[0], positions[-1]):
             assert end == pytest.approx([*(followed.reference_mm or ()), WORK.clearance_mm], abs=EXACT_MM)
@@ -229,11 +251,16 @@ def test_beside_a_drawn_circle_runs_the_circle_and_all_that_is_drawn_on_it(
 
 def test_beside_a_part_with_inner_corners_the_tool_gouges_nothing_and_lists_what_it_leaves() -> None:
     part = polyline((16, 20), (16, 36), (28, 36), (28, 26), (40, 26), (40, 8), (16, 8), (16, 20))
-    drawing = inked(part, polyline((4, 20), (16, 20)), tick((10, 20)), tick((34, 26)), *cross((4, 20)), seed=5)
+    drawing = inked(
+        part, polyline((4, 20), (16, 20)), tick((10, 20)), tick((34, 26)), *cross((4, 20)), seed=5
+    )
     followed = trace(drawing, None, None, Operator(WORK))
     cut = Cut.of(followed.lines[0], followed.operator, 1)
     assert cut is not None
-    for side, corners in (("outside", [(28, 26)]), ("inside", [(16, 36), (28, 36), (40, 26), (40, 8), (16, 8)])):
+    for side, corners in (
+        ("outside", [(28, 26)]),
+        ("inside", [(16, 36), (28, 36), (40, 26), (40, 8), (16, 8)]),
+    ):
         made, left = with_cutter(followed, Cutter(6.0, side), FEED_MM_S)  # type: ignore[arg-type]
         assert least_mm(join(made).positions_mm, cut.places_mm, 3.0) > -NEARER_MM
         assert len(left.stretches) == len(corners)

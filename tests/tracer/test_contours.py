@@ -14,17 +14,17 @@ from numpy.typing import NDArray
 from morfax.motion.contour import distance
 from morfax.motion.faults import LineFault
 from morfax.motion.motion import MOTION_RATE_HZ, join, thin
-from tests.tracer.inked import UM, Points, arc, inked, polyline
-from morfax.tracer.program import trace_lines as tour
-from morfax.tracer.program.selection import idle_way_mm, in_order, in_order_and_turned, nested, plan
-from morfax.tracer.program.joined_lines import joined_to
-from morfax.tracer.following.line import Line
 from morfax.tracer.drawing.strokes import Sheet
-from morfax.tracer.operator.operator import Operator
-from morfax.tracer.program.program import Trace
-from morfax.tracer.program.trace import trace
+from morfax.tracer.following.line import Line
 from morfax.tracer.head.settings import Settings
+from morfax.tracer.operator.operator import Operator
+from morfax.tracer.program import trace_lines as tour
+from morfax.tracer.program.joined_lines import joined_to
+from morfax.tracer.program.program import Trace
+from morfax.tracer.program.selection import idle_way_mm, in_order, in_order_and_turned, nested, plan
+from morfax.tracer.program.trace import trace
 from morfax.tracer.program.trace_lines import trace_lines
+from tests.tracer.inked import UM, Points, arc, inked, polyline
 
 FRAME = polyline((4, 4), (34, 4), (34, 24), (4, 24), (4, 4))
 ISLAND, HOLE, EYE = arc((12, 14), 6), arc((26, 14), 3), arc((12, 14), 1.5)
@@ -56,7 +56,9 @@ def best_mm(idle_mm: Points, before: Points) -> float:
 
 @tried(max_examples=60, deadline=None)
 @given(seed=st.integers(0, 1 << 30), open_lines=st.booleans(), holders=st.integers(0, 4))
-def test_the_idle_way_of_eight_lines_is_near_the_best_of_all_orders(seed: int, open_lines: bool, holders: int) -> None:
+def test_the_idle_way_of_eight_lines_is_near_the_best_of_all_orders(
+    seed: int, open_lines: bool, holders: int
+) -> None:
     """Some lines hold others; 1.1 is what is asked, 1.04 the worst of six hundred such sheets."""
     rng = np.random.default_rng(seed)
     starts = rng.uniform(0, 100, (8, 2))
@@ -147,7 +149,13 @@ def test_the_lines_asked_for_are_followed_and_no_others(all_lines: Trace) -> Non
 
 def test_a_letter_that_is_asked_for_by_its_number_is_refused_by_it() -> None:
     scribble = polyline(
-        (21.35, 16.07), (19.06, 14.04), (19.49, 15.6), (18.0, 14.01), (22.2, 16.67), (18.83, 15.71), (22.09, 17.75)
+        (21.35, 16.07),
+        (19.06, 14.04),
+        (19.49, 15.6),
+        (18.0, 14.01),
+        (22.2, 16.67),
+        (18.83, 15.71),
+        (22.09, 17.75),
     )
     drawing = inked(polyline((6, 6), (50, 6), (50, 30), (6, 30), (6, 6)), scribble, seed=1)
     assert [line.number for line in trace_lines(drawing).lines] == [1]
@@ -157,7 +165,9 @@ def test_a_letter_that_is_asked_for_by_its_number_is_refused_by_it() -> None:
 
 
 def test_a_line_with_gaps_is_one_line() -> None:
-    gapped = [arc((14, 14), 9, *span) for span in ((2, 118), (122, 238), (242, 358))]  # the pen fills most of 0.6 mm
+    gapped = [
+        arc((14, 14), 9, *span) for span in ((2, 118), (122, 238), (242, 358))
+    ]  # the pen fills most of 0.6 mm
     run = trace_lines(inked(*gapped, arc((14, 14), 3), width_mm=0.3))
     assert [line.ending for line in run.lines] == ["closed", "closed"]
     assert run.length_mm == pytest.approx(24 * np.pi, rel=0.01)
@@ -266,17 +276,22 @@ def test_a_lost_line_is_cut_as_far_as_it_was_followed_and_the_others_all_the_sam
     run = trace_lines(drawing, settings=Settings(line_width_mm=0.5))
     (lost,) = (line for line in run.lines if line.ending == "lost")
     assert [line.ending for line in run.lines].count("closed") == 2 and run.ending == "lost"
-    assert f"line {lost.number} of 3 is incomplete, the others are cut; line {lost.number}: line lost at" in str(
-        run.fault
+    assert (
+        f"line {lost.number} of 3 is incomplete, the others are cut; line {lost.number}: line lost at"
+        in str(run.fault)
     )
     assert run.fault is not None and lost.fault is not None and run.fault.x_mm == lost.fault.x_mm
     assert len(thin(run).runs()) == 3
 
 
-def test_a_large_line_that_cannot_be_begun_is_told_and_the_tool_stays_up(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_large_line_that_cannot_be_begun_is_told_and_the_tool_stays_up(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     followed = tour.followed
 
-    def not_the_hole(drawing: object, start_mm: tuple[float, float], *others: object, **more: object) -> object:
+    def not_the_hole(
+        drawing: object, start_mm: tuple[float, float], *others: object, **more: object
+    ) -> object:
         if start_mm[0] > 20:
             raise LineFault("no clean stretch of line to start on")
         return followed(drawing, start_mm, *others, **more)  # type: ignore[arg-type]

@@ -10,11 +10,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from tests.tracer.inked import UM, WIDTH_MM, corner, inked
 from morfax.tracer.head import course
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.leg import Leg, meet
 from morfax.tracer.sensing.view import LEVEL, View
+from tests.tracer.inked import UM, WIDTH_MM, corner, inked
 
 Array = NDArray[np.float64]
 NO_STATIONS = np.empty((0, 3))
@@ -62,7 +62,9 @@ def test_speeds_obey_bends_and_braking() -> None:
     assert allowed[-1] == 0 and allowed.max() <= 50
     assert allowed[200:300].max() <= math.sqrt(500 * 2) * 1.001  # v² / R = a on a radius of 2 mm
     steps = np.hypot(*np.diff(way, axis=0).T)
-    assert np.all(allowed[:-1] ** 2 - allowed[1:] ** 2 <= 2 * 500 * steps + 1e-9)  # never more braking than that
+    assert np.all(
+        allowed[:-1] ** 2 - allowed[1:] ** 2 <= 2 * 500 * steps + 1e-9
+    )  # never more braking than that
 
 
 def test_places_that_repeat_are_left_out() -> None:
@@ -98,10 +100,14 @@ def test_a_sharp_corner_goes_through_its_vertex(deflection_deg: float) -> None:
     stretches = through(eyes, incoming, outgoing, legs_mm)
     assert len(stretches) == 2  # the head stops and swivels between them
     vertex = corner(deflection_deg)[1]
-    assert stretches[0][-1] == pytest.approx(vertex, abs=1e-9) and stretches[1][0] == pytest.approx(vertex, abs=1e-9)
+    assert stretches[0][-1] == pytest.approx(vertex, abs=1e-9) and stretches[1][0] == pytest.approx(
+        vertex, abs=1e-9
+    )
 
 
-@pytest.mark.parametrize(("deflection_deg", "radius_mm"), [(60.0, 1.0), (90.0, 0.3), (90.0, 0.5), (120.0, 0.3)])
+@pytest.mark.parametrize(
+    ("deflection_deg", "radius_mm"), [(60.0, 1.0), (90.0, 0.3), (90.0, 0.5), (120.0, 0.3)]
+)
 def test_a_rounded_corner_goes_round_on_its_radius(deflection_deg: float, radius_mm: float) -> None:
     eyes, incoming, outgoing, legs_mm = at_corner(deflection_deg, radius_mm)
     missed = radius_mm * (1 / math.cos(math.radians(deflection_deg) / 2) - 1)

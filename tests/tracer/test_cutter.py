@@ -11,8 +11,6 @@ import pytest
 from morfax.motion.contour import distance
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import thin
-from tests.tracer.inked import UM, arc, inked, polyline
-from tests.tracer.test_program import WORK, run_through
 from morfax.tracer.cutter.cutter import Cutter, Left, Side, with_cutter
 from morfax.tracer.drawing.deviation import deviation, touched
 from morfax.tracer.following.line import Line
@@ -22,6 +20,8 @@ from morfax.tracer.program.program import Trace
 from morfax.tracer.program.trace import trace
 from morfax.tracer.program.trace_lines import trace_lines
 from morfax.tracer.sensing.view import Array
+from tests.tracer.inked import UM, arc, inked, polyline
+from tests.tracer.test_program import WORK, run_through
 
 shapely = pytest.importorskip("shapely")
 
@@ -31,7 +31,9 @@ SQUARE = polyline((12, 8), (20, 8), (20, 24), (8, 24), (8, 8), (12, 8))
 
 
 @pytest.mark.parametrize(("side", "radius_mm"), [("outside", 12.0), ("inside", 6.0)])
-def test_beside_a_circle_runs_the_circle_that_is_larger_or_smaller_by_the_radius(side: str, radius_mm: float) -> None:
+def test_beside_a_circle_runs_the_circle_that_is_larger_or_smaller_by_the_radius(
+    side: str, radius_mm: float
+) -> None:
     drawing = inked(arc((16, 16), 9), seed=1)
     beside, left = with_cutter(trace(drawing), Cutter(6, side), FEED_MM_S)  # type: ignore[arg-type]
     assert distance(thin(beside), arc((16, 16), radius_mm)).hausdorff_mm < FOLLOWED_MM
@@ -45,7 +47,9 @@ def test_inside_a_square_four_corners_are_left_and_listed() -> None:
     assert len(left.stretches) == 4 and not left.lines
     for stretch in left.stretches:
         assert stretch.left_mm == pytest.approx(3 * (math.sqrt(2) - 1), abs=FOLLOWED_MM)
-        assert stretch.length_mm == pytest.approx(6, abs=0.5)  # from where the cutter touches one leg to the other
+        assert stretch.length_mm == pytest.approx(
+            6, abs=0.5
+        )  # from where the cutter touches one leg to the other
         assert min(np.hypot(*(SQUARE - stretch.place_mm).T)) < FOLLOWED_MM
     assert (
         distance(thin(beside), np.array([[11, 11], [17, 11], [17, 21], [11, 21], [11.0, 11]])).hausdorff_mm
@@ -63,7 +67,9 @@ def test_outside_of_a_part_is_the_inside_of_its_holes() -> None:
         [2.5, 3.5, 17.5], abs=FOLLOWED_MM
     )
     pocket, _ = with_cutter(trace_lines(part), Cutter(3, "inside"), FEED_MM_S)
-    assert sorted(line.length_mm / math.tau for line in pocket.lines) == pytest.approx([5.5, 6.5, 14.5], abs=0.05)
+    assert sorted(line.length_mm / math.tau for line in pocket.lines) == pytest.approx(
+        [5.5, 6.5, 14.5], abs=0.05
+    )
 
 
 def test_a_cutter_wider_than_the_hole_is_refused_in_one_line() -> None:
@@ -88,12 +94,16 @@ def test_an_open_line_has_a_left_and_a_right_and_no_outside() -> None:
 
 
 def test_a_hole_too_small_is_left_out_and_listed_with_the_cutter_that_would_go_in() -> None:
-    plate = inked(polyline((8, 8), (44, 8), (44, 28), (8, 28), (8, 8)), arc((18, 18), 4), arc((34, 18), 1.6), seed=4)
+    plate = inked(
+        polyline((8, 8), (44, 8), (44, 28), (8, 28), (8, 8)), arc((18, 18), 4), arc((34, 18), 1.6), seed=4
+    )
     beside, left = with_cutter(trace_lines(plate), Cutter(4), FEED_MM_S)
     assert [line.number for line in beside.lines] == [2, 1] and not left.stretches
     (out,) = left.lines
     assert (
-        out.line == 3 and out.length_mm == pytest.approx(math.tau * 1.6, abs=2 * FOLLOWED_MM) and out.room is not None
+        out.line == 3
+        and out.length_mm == pytest.approx(math.tau * 1.6, abs=2 * FOLLOWED_MM)
+        and out.room is not None
     )
     assert out.room.place_mm == pytest.approx((34, 18), abs=FOLLOWED_MM)
     assert out.room.wide_mm == pytest.approx(3.2, abs=2 * FOLLOWED_MM)
@@ -107,7 +117,10 @@ def test_a_line_that_is_left_out_takes_its_stops_along_and_the_others_keep_their
         closed(run_through((0, 0), (6, 0), (6, 6), (0, 6), (0, 0))),
         closed(run_through((20, 0), (60, 0), (60, 40), (20, 40), (20, 0))),
     ]
-    lines = [replace(line, number=k, marks=(Mark("tick", line.place(900), 900.0),)) for k, line in enumerate(rings, 1)]
+    lines = [
+        replace(line, number=k, marks=(Mark("tick", line.place(900), 900.0),))
+        for k, line in enumerate(rings, 1)
+    ]
     beside, left = with_cutter(Trace(tuple(lines), Operator(WORK)), Cutter(8.0, "inside"), FEED_MM_S)
     assert [line.number for line in beside.lines] == [2] and beside.lines[0].numbers == (2,)
     assert [(out.line, out.stops) for out in left.lines] == [(1, (1,))]
@@ -135,7 +148,9 @@ CROSSING_THEMSELVES = {
 @pytest.mark.parametrize("name", CROSSING_THEMSELVES)
 def test_a_line_that_crosses_itself_has_no_outside(name: str, side: Side) -> None:
     line = closed(np.column_stack(CROSSING_THEMSELVES[name]))
-    with pytest.raises(MotionFault, match=f"line 1 crosses itself: it has no {side}; give --side left or right"):
+    with pytest.raises(
+        MotionFault, match=f"line 1 crosses itself: it has no {side}; give --side left or right"
+    ):
         with_cutter(Trace((line,)), Cutter(2, side), FEED_MM_S)
 
 
@@ -150,7 +165,10 @@ def test_on_a_side_of_a_line_that_crosses_itself_nothing_is_gouged_and_what_is_n
     except MotionFault as fault:
         assert "goes nowhere" in str(fault)
         return
-    ways, true = shapely.MultiLineString([each.xy_mm[::5] for each in beside.lines]), shapely.LineString(line.xy_mm)
+    ways, true = (
+        shapely.MultiLineString([each.xy_mm[::5] for each in beside.lines]),
+        shapely.LineString(line.xy_mm),
+    )
     assert true.distance(ways) > 1 - 1 * UM
     touched_mm = true.intersection(ways.buffer(1 + 2 * UM, quad_segs=500)).length
     assert sum(u.length_mm for u in left.stretches) == pytest.approx(true.length - touched_mm, abs=0.5)

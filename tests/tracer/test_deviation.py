@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import Path
-from tests.tracer.inked import UM, WIDTH_MM, arc, inked, polyline
 from morfax.tracer.drawing.deviation import AVERAGED_MM, deviation
 from morfax.tracer.program.trace import trace
+from tests.tracer.inked import UM, WIDTH_MM, arc, inked, polyline
 
 Array = NDArray[np.float64]
 MIDDLE = 14.0
@@ -76,7 +76,9 @@ def test_missed_ink_is_counted(drawing) -> None:  # type: ignore[no-untyped-def]
     """A path that stops after three quarters; a second line that no path covers; ink beside the line's own width."""
     quarter = 2 * np.pi * RADIUS_MM / 4
     most = deviation(drawing, [arc((MIDDLE, MIDDLE), RADIUS_MM, 0, 270)])
-    assert most.missed_mm == pytest.approx(quarter, abs=2 * WIDTH_MM)  # the cover is broader than the path is long
+    assert most.missed_mm == pytest.approx(
+        quarter, abs=2 * WIDTH_MM
+    )  # the cover is broader than the path is long
     assert most.missed_share == pytest.approx(0.25, abs=0.02)
     other = polyline((4, 27), (24, 27))
     both = deviation(inked(CIRCLE, other), [CIRCLE])
@@ -121,7 +123,9 @@ def test_only_what_is_run_with_the_tool_down_counts(drawing) -> None:  # type: i
 
 def test_a_point_repeated_or_a_stop_changes_nothing(drawing) -> None:  # type: ignore[no-untyped-def]
     stopping = np.repeat(CIRCLE, 2, axis=0)
-    assert deviation(drawing, [stopping]).rms_mm == pytest.approx(deviation(drawing, [CIRCLE]).rms_mm, abs=0.01 * UM)
+    assert deviation(drawing, [stopping]).rms_mm == pytest.approx(
+        deviation(drawing, [CIRCLE]).rms_mm, abs=0.01 * UM
+    )
 
 
 def test_what_the_head_follows_the_measure_finds_good(drawing) -> None:  # type: ignore[no-untyped-def]

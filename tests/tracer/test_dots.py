@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from morfax.motion.contour import distance
-from tests.tracer.inked import UM, arc, dot, inked, polyline
-from morfax.tracer.marks import dots
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.sensing.leg import leg_of
 from morfax.tracer.drawing.strokes import Sheet
-from morfax.tracer.program.trace import trace
 from morfax.tracer.following.start import view_of
+from morfax.tracer.marks import dots
+from morfax.tracer.program.trace import trace
+from morfax.tracer.sensing.leg import leg_of
 from morfax.tracer.sensing.view import View
+from tests.tracer.inked import UM, arc, dot, inked, polyline
 
 WITHIN_MM = 20 * UM  # a quarter of a pixel at 300 dpi
 LINE = polyline((4, 12), (24, 12))
@@ -75,7 +75,10 @@ def test_dots_alone_on_the_paper_are_found_and_rings_squares_and_blots_are_not()
     drawing = inked(LINE, arc((10, 5), 1.2), seed=5, specks=[dot((16, 6), 1.6), dot((22, 5), 3.0), square])
     found = sorted(tuple(centre) for centre in dots.alone(Sheet.of(drawing), seen(drawing)))
     assert len(found) == 2
-    assert [math.dist(a, b) < WITHIN_MM for a, b in zip(found, [(16, 6), (22, 5)], strict=True)] == [True, True]
+    assert [math.dist(a, b) < WITHIN_MM for a, b in zip(found, [(16, 6), (22, 5)], strict=True)] == [
+        True,
+        True,
+    ]
 
 
 def test_a_line_goes_on_through_a_dot_where_it_came_in() -> None:
@@ -96,7 +99,9 @@ def test_a_dot_soon_after_a_corner_is_no_tangle_with_it(seed: int) -> None:
     way, vertex = np.array([math.cos(turn), math.sin(turn)]), np.array([20.0, 12.0])
     centre = vertex + (radius_mm + gap_mm) * way
     corner = np.array([[4.0, 12.0], vertex, vertex + 16 * way])
-    drawing = inked(corner, width_mm=float(width_mm), seed=seed, specks=[dot((centre[0], centre[1]), 2 * radius_mm)])
+    drawing = inked(
+        corner, width_mm=float(width_mm), seed=seed, specks=[dot((centre[0], centre[1]), 2 * radius_mm)]
+    )
     line = trace(drawing).lines[0]
     assert distance(line.xy_mm[::4], corner).path_to_reference.max_mm < 100 * UM
     assert [mark.kind for mark in line.marks] == ["dot"]

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from morfax.motion.faults import DrawingFault, FileFault
-from tests.tracer.inked import UM, arc, inked, polyline
 from morfax.tracer.drawing.drawing import MM_PER_INCH, Drawing
+from tests.tracer.inked import UM, arc, inked, polyline
 
 DPI = (300.0, 300.0)
 PEN_MM = 1 * UM  # to which the pen draws: a tenth of its fine pixels of 10.6 um
@@ -72,7 +72,9 @@ def test_every_kind_of_image_has_its_line_where_it_was_drawn(tmp_path: Path, gre
     drawing = opened(KINDS[name](grey), tmp_path / name, dpi=DPI)
     off_mm = off_the_line_mm(drawing)
     assert abs(off_mm.mean()) < PEN_MM
-    assert off_mm.std() < (5 * UM if name.endswith("jpg") else 1 * UM)  # the ripple of JPEG, 6 % of a pixel of 85 um
+    assert off_mm.std() < (
+        5 * UM if name.endswith("jpg") else 1 * UM
+    )  # the ripple of JPEG, 6 % of a pixel of 85 um
     assert drawing.darkness.dtype == np.float32
     assert drawing.pitch_mm == pytest.approx(MM_PER_INCH / 300, rel=1e-9)
 
@@ -89,7 +91,9 @@ def test_a_1_bit_image_has_its_line_where_it_was_drawn(tmp_path: Path, grey: Gre
 def test_ink_is_one_and_paper_nothing(tmp_path: Path, grey: Grey) -> None:
     drawing = opened(Image.fromarray(grey), tmp_path / "a.png", dpi=DPI)
     assert np.percentile(drawing.darkness, 50) == pytest.approx(0, abs=0.01)
-    assert drawing.darkness.max() == pytest.approx(1, abs=0.1)  # a narrow line's ink is soft; its darker part counts
+    assert drawing.darkness.max() == pytest.approx(
+        1, abs=0.1
+    )  # a narrow line's ink is soft; its darker part counts
 
 
 def test_the_sheet_is_as_large_as_its_pixels(tmp_path: Path, grey: Grey) -> None:
@@ -126,12 +130,14 @@ def test_both_resolution_and_width_are_refused(tmp_path: Path, grey: Grey) -> No
 
 
 @pytest.mark.parametrize(
-    "scale", [{"dpi": v} for v in (0.0, -300.0, np.nan, np.inf, 1e-300)] + [{"width_mm": v} for v in (0.0, 1e-3, 1e6)]
+    "scale",
+    [{"dpi": v} for v in (0.0, -300.0, np.nan, np.inf, 1e-300)] + [{"width_mm": v} for v in (0.0, 1e-3, 1e6)],
 )
 def test_a_nonsense_scale_is_told(tmp_path: Path, grey: Grey, scale: dict[str, float]) -> None:
     Image.fromarray(grey).save(tmp_path / "a.png", dpi=DPI)
     with pytest.raises(
-        DrawingFault, match=r"--(dpi|width) is .*; it must give pixels of 0.001 to 10 mm, 2.54 to 2.54e\+04 dpi"
+        DrawingFault,
+        match=r"--(dpi|width) is .*; it must give pixels of 0.001 to 10 mm, 2.54 to 2.54e\+04 dpi",
     ):
         Drawing.open(tmp_path / "a.png", **scale)
 
@@ -176,7 +182,9 @@ def test_oblong_pixels_are_made_square(tmp_path: Path) -> None:
     """A fax has 204 x 98 dots per inch; a circle on it is round."""
     drawn = inked(arc((14, 14), 10), dpi=204)
     every_other = Image.fromarray(np.round(255 - 215 * drawn.darkness).astype(np.uint8))
-    every_other = every_other.resize((every_other.width, round(every_other.height * 98 / 204)), Image.Resampling.BOX)
+    every_other = every_other.resize(
+        (every_other.width, round(every_other.height * 98 / 204)), Image.Resampling.BOX
+    )
     drawing = opened(every_other, tmp_path / "fax.tif", dpi=(204, 98))
     assert drawing.width_mm == pytest.approx(drawing.height_mm, abs=MM_PER_INCH / 98)
     rows, columns = np.nonzero(drawing.darkness > 0.5)
@@ -194,7 +202,10 @@ def test_a_turned_photograph_is_set_upright(tmp_path: Path, grey: Grey, orientat
     stored = upright.transpose(undo[orientation]) if orientation > 1 else upright
     exif = Image.Exif()
     exif[0x0112] = orientation
-    for file, stated in ((tmp_path / "a.tif", {"compression": "tiff_lzw"}), (tmp_path / "a.jpg", {"quality": 90})):
+    for file, stated in (
+        (tmp_path / "a.tif", {"compression": "tiff_lzw"}),
+        (tmp_path / "a.jpg", {"quality": 90}),
+    ):
         drawing = opened(stored, file, exif=exif, dpi=DPI, **stated)
         assert drawing.darkness.shape == grey.shape
         assert abs(off_the_line_mm(drawing).mean()) < PEN_MM
@@ -217,7 +228,9 @@ def test_uneven_paper_is_levelled(tmp_path: Path, grey: Grey) -> None:
     assert np.abs(off_the_line_mm(drawing)).max() < 3 * UM
     assert np.abs(np.median(drawing.darkness, axis=0)).max() < 0.1  # paper that falls by 0.08 in 6 mm
     ridge = drawing.darkness.max(axis=0)[60:-60]  # the ends left out
-    assert ridge.min() > 0.7 and ridge.max() < 1.4  # the contrast is that of the light, 1 to 0.5, about 1 in the middle
+    assert (
+        ridge.min() > 0.7 and ridge.max() < 1.4
+    )  # the contrast is that of the light, 1 to 0.5, about 1 in the middle
 
 
 @pytest.mark.parametrize("level", [255, 0, 128])
@@ -239,7 +252,9 @@ def test_dirt_is_no_line(tmp_path: Path) -> None:
 # files
 
 
-@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")  # Pillow leaves a damaged file open
+@pytest.mark.filterwarnings(
+    "ignore::pytest.PytestUnraisableExceptionWarning"
+)  # Pillow leaves a damaged file open
 @pytest.mark.filterwarnings("ignore::ResourceWarning")
 def test_what_is_no_image_is_told(tmp_path: Path, grey: Grey) -> None:
     (tmp_path / "words.png").write_text("these are words")

@@ -8,10 +8,13 @@ import numpy as np
 import pytest
 
 from morfax.motion.offset import Guide, offset
-from tests.tracer.inked import UM, arc, polyline
 from morfax.tracer.cutter import sides as edges
+from tests.tracer.inked import UM, arc, polyline
 
-STAR = [(12 + r * math.cos(k * math.pi / 5), 12 + r * math.sin(k * math.pi / 5)) for k, r in enumerate([10, 4] * 5)]
+STAR = [
+    (12 + r * math.cos(k * math.pi / 5), 12 + r * math.sin(k * math.pi / 5))
+    for k, r in enumerate([10, 4] * 5)
+]
 GUIDES = {
     "hole": ([Guide(arc((9, 9), 2), True, True)], 4.0),
     "square": ([Guide(polyline((0, 0), (3, 0), (3, 3), (0, 3)), True, True)], 3.0),

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from morfax.motion.motion import MOTION_RATE_HZ
-from tests.tracer.inked import arc, inked, polyline
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.enlarger import enlarged, reduced
 from morfax.tracer.following.follower import Followed, Follower
-from morfax.tracer.drawing.strokes import Sheet
-from morfax.tracer.head.settings import Settings
 from morfax.tracer.following.start import Stance, put_down
+from morfax.tracer.head.settings import Settings
+from tests.tracer.inked import arc, inked, polyline
 
 TIMES = 4
 
@@ -26,7 +26,10 @@ def stance_on(drawing: Drawing) -> Stance:
 def small(stance: Stance) -> Stance:
     """The same drawing so many times smaller."""
     view = replace(
-        stance.view, pitch_mm=stance.view.pitch_mm / TIMES, width_mm=stance.view.width_mm / TIMES, usual_mm=None
+        stance.view,
+        pitch_mm=stance.view.pitch_mm / TIMES,
+        width_mm=stance.view.width_mm / TIMES,
+        usual_mm=None,
     )
     return replace(stance, place_mm=stance.place_mm / TIMES, view=view)
 

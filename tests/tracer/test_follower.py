@@ -14,13 +14,13 @@ from numpy.typing import NDArray
 
 from morfax.motion.contour import distance, length_mm, pointwise
 from morfax.motion.faults import LineFault
-from tests.tracer.inked import UM, arc, corner, inked, polyline
-from morfax.tracer.operator.card import Card
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.head.settings import Settings
+from morfax.tracer.operator.card import Card
 from morfax.tracer.operator.operator import Direction, Operator
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.trace import trace
-from morfax.tracer.head.settings import Settings
+from tests.tracer.inked import UM, arc, corner, inked, polyline
 
 Array = NDArray[np.float64]
 LINE_MM, END_MM = 25 * UM, 30 * UM
@@ -44,7 +44,9 @@ def followed(
 
 @pytest.mark.parametrize("deflection_deg", [90, 150])
 @pytest.mark.parametrize("shift_mm", [(0.0, 0.0), (0.0, 0.03), (0.03, 0.03)])
-def test_a_white_speck_on_the_vertex_does_not_round_it(deflection_deg: float, shift_mm: tuple[float, float]) -> None:
+def test_a_white_speck_on_the_vertex_does_not_round_it(
+    deflection_deg: float, shift_mm: tuple[float, float]
+) -> None:
     """One pixel without ink, wherever the vertex lies in it."""
     line = corner(deflection_deg) + shift_mm
     drawing = inked(line, seed=1)
@@ -82,7 +84,9 @@ def test_a_rounded_corner(radius_mm: float, width_mm: float, seed: int | None) -
 
 @pytest.mark.parametrize("radius_mm", [1.0, 1.5])
 @pytest.mark.parametrize("inside_mm", [0.1, 0.17, 0.24])
-def test_a_white_speck_in_the_edge_of_a_round_does_not_move_the_line_aside(radius_mm: float, inside_mm: float) -> None:
+def test_a_white_speck_in_the_edge_of_a_round_does_not_move_the_line_aside(
+    radius_mm: float, inside_mm: float
+) -> None:
     """One pixel without ink, half-way round; seen through the aperture it moves the middle of the ink by a quarter of a pixel, 21 um."""
     line = corner(90, radius_mm)
     drawing = inked(line, seed=1)
@@ -176,7 +180,9 @@ def test_a_line_into_a_black_patch_is_lost_and_says_where(seed: int | None) -> N
     run = trace(inked(ACROSS, specks=[patch], seed=seed), settings=Settings(line_width_mm=0.5))
     assert run.ending == "lost"
     assert run.fault is not None
-    assert (run.fault.x_mm, run.fault.y_mm) == pytest.approx((23.0, 10.0), abs=0.7)  # the guards see it 1 mm ahead
+    assert (run.fault.x_mm, run.fault.y_mm) == pytest.approx(
+        (23.0, 10.0), abs=0.7
+    )  # the guards see it 1 mm ahead
     assert run.fault.heading_rad == pytest.approx(0, abs=0.02)
     assert "line lost at" in str(run.fault) and "heading" in str(run.fault) and "--gap" in str(run.fault)
     assert distance(run.xy_mm[::4], ACROSS).path_to_reference.max_mm < LINE_MM  # what was traced is kept
@@ -211,7 +217,9 @@ def test_the_head_takes_a_loop_in_the_direction_that_is_asked_for(direction: Dir
 
 
 @pytest.mark.parametrize(("direction", "sign"), [("cw", -1), ("ccw", 1), ("left", -1), ("right", 1)])
-def test_so_it_does_on_a_line_without_a_lead_that_it_comes_to_from_below(direction: Direction, sign: int) -> None:
+def test_so_it_does_on_a_line_without_a_lead_that_it_comes_to_from_below(
+    direction: Direction, sign: int
+) -> None:
     run = trace(inked(CIRCLE), (16.0, 6.5), operator=Operator(direction=direction))
     assert run.ending == "closed" and math.copysign(1, enclosed_mm2(run.xy_mm)) == sign
 

@@ -17,13 +17,13 @@ from numpy.typing import NDArray
 from morfax.motion.contour import distance
 from morfax.motion.drive import Drive
 from morfax.motion.motion import MOTION_RATE_HZ
-from tests.tracer.inked import UM, arc, inked, polyline
-from morfax.tracer.head import kernel as head
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.follower import Followed, Follower
-from morfax.tracer.program.trace import Trace, trace
-from morfax.tracer.head.settings import Settings
 from morfax.tracer.following.start import put_down
+from morfax.tracer.head import kernel as head
+from morfax.tracer.head.settings import Settings
+from morfax.tracer.program.trace import Trace, trace
+from tests.tracer.inked import UM, arc, inked, polyline
 
 SPEED_MM_S = Settings().speed_mm_s
 ALONG_PIXELS_MM = 6 * UM
@@ -81,7 +81,9 @@ def test_a_circle_is_followed_round_and_closes_without_an_overlap(radius_mm: flo
     run = trace(inked(arc((middle, middle), radius_mm)))
     assert run.ending == "closed"
     assert np.hypot(*(run.xy_mm[-1] - run.xy_mm[0])) < 20 * UM  # as the issue asks
-    assert run.length_mm == pytest.approx(math.tau * radius_mm, rel=0.002)  # once round, neither more nor less
+    assert run.length_mm == pytest.approx(
+        math.tau * radius_mm, rel=0.002
+    )  # once round, neither more nor less
     angle = np.unwrap(np.arctan2(*(run.xy_mm - middle).T[::-1]))
     assert np.ptp(angle) * radius_mm == pytest.approx(math.tau * radius_mm, abs=20 * UM)
     radial = np.hypot(*(run.xy_mm - middle).T) - radius_mm
@@ -92,7 +94,9 @@ def test_a_circle_is_followed_round_and_closes_without_an_overlap(radius_mm: flo
 def test_a_line_whose_bend_changes_is_followed_along_its_middle() -> None:
     run = trace(inked(wave()))
     apart = distance(run.xy_mm[::4], wave())
-    assert apart.path_to_reference.rms_mm < 4 * UM  # the issue's figure for smooth lines, with a scanner's noise
+    assert (
+        apart.path_to_reference.rms_mm < 4 * UM
+    )  # the issue's figure for smooth lines, with a scanner's noise
     assert apart.path_to_reference.max_mm < 12 * UM
     assert np.sort(run.xy_mm[[0, -1], 0]) == pytest.approx([4, 44], abs=30 * UM)  # from end to end
 
@@ -127,7 +131,9 @@ def test_the_path_does_not_depend_on_where_the_head_is_put_down(radius_mm: float
     ]
     for path in paths[1:]:
         assert distance(path, paths[0]).path_to_reference.rms_mm < 1.5 * UM
-        assert distance(path, paths[0]).hausdorff_mm < 8 * UM  # at the start, where less of the line has been seen
+        assert (
+            distance(path, paths[0]).hausdorff_mm < 8 * UM
+        )  # at the start, where less of the line has been seen
 
 
 @pytest.mark.parametrize("lag_s", [0.0005, 0.002, 0.004])
@@ -136,7 +142,9 @@ def test_the_drives_lag_turns_no_corner(lag_s: float, corner: bool) -> None:
     """The path is the same with 1 ms as with 4 ms, by which the screws stay 40 um behind their demand."""
     line = polyline((4, 4), (16, 4), (16, 16)) if corner else wave(20.0)
     drawing = inked(line)
-    as_usual, lagging = (trace(drawing, settings=Settings(drive=Drive(lag_s=lag))).xy_mm for lag in (0.001, lag_s))
+    as_usual, lagging = (
+        trace(drawing, settings=Settings(drive=Drive(lag_s=lag))).xy_mm for lag in (0.001, lag_s)
+    )
     assert distance(lagging[::4], as_usual[::4]).hausdorff_mm < 4 * UM  # a tenth of what the screws owe
 
 
@@ -144,7 +152,9 @@ def test_the_lengthwise_part_of_the_sweep_makes_no_false_offset() -> None:
     """mf_scan: it turns the carrier's phase, and nothing else."""
     line = aslant(13)
     narrow, wide = (followed(inked(line), along_mm=along).positions_mm for along in (0.0, 0.3))
-    assert distance(wide[::4], narrow[::4]).hausdorff_mm < 1 * UM  # the head is not quite on the line's heading
+    assert (
+        distance(wide[::4], narrow[::4]).hausdorff_mm < 1 * UM
+    )  # the head is not quite on the line's heading
 
 
 def test_the_same_drawing_gives_the_same_path() -> None:
@@ -178,7 +188,9 @@ def test_the_look_ahead_slows_the_head_before_a_corner_and_lets_go_after_it() ->
     vertex = int(np.argmin(np.hypot(*(at - [16, 4]).T)))
     before = come[vertex] - come
     assert speed[(before > 3.5) & (before < 8)] == pytest.approx(SPEED_MM_S, rel=1e-3)
-    slowed = speed[(before > 1.2) & (before < 1.7)]  # cell 102, 1.85 mm ahead, sees the paper beyond the corner's ink
+    slowed = speed[
+        (before > 1.2) & (before < 1.7)
+    ]  # cell 102, 1.85 mm ahead, sees the paper beyond the corner's ink
     assert slowed.min() == pytest.approx(Settings().slowed * SPEED_MM_S, rel=1e-3)
     assert speed[np.abs(before) < 0.02].min() < 0.001 * SPEED_MM_S  # it stands to swivel
     assert speed[(before < -3) & (before > -8)] == pytest.approx(SPEED_MM_S, rel=1e-3)
@@ -209,11 +221,19 @@ def _some_steps(drawing: Drawing) -> tuple[Any, Any]:
     out = np.zeros((400, 2))
     drum, home = follower.carriage._drum, (0.0, 0.0, 0.0, 1e9)
     n, why = head.follow(
-        follower.view.cells, drawing.pitch_mm, follower.carriage.state, drum, follower.carriage.tuning, home, out[:240]
+        follower.view.cells,
+        drawing.pitch_mm,
+        follower.carriage.state,
+        drum,
+        follower.carriage.tuning,
+        home,
+        out[:240],
     )
     assert (n, why) == (240, head.MORE)
     way = follower.carriage.state[[head.X, head.Y]] + np.array([[0.0, 0.0], [0.2, 0.0], [0.2, 0.2]])
-    n += head.run(follower.carriage.state, follower.carriage.tuning, way, np.array([10.0, 2.0, 0.0]), out[240:360])
+    n += head.run(
+        follower.carriage.state, follower.carriage.tuning, way, np.array([10.0, 2.0, 0.0]), out[240:360]
+    )
     head.stand(follower.carriage.state, follower.carriage.tuning, out[360:])
     return follower.carriage.state.copy(), out
 

@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from morfax.motion.faults import CardFault, FileFault
-from morfax.tracer.operator.settings_file import as_toml, parse_changes, read_changes
 from morfax.tracer.head.settings import BOUNDS, HEADS, choose
+from morfax.tracer.operator.settings_file import as_toml, parse_changes, read_changes
 
 
 @pytest.mark.parametrize("head", list(HEADS))
@@ -34,7 +34,10 @@ def test_every_setting_is_written_with_what_it_may_hold() -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ('\nsweep_hz = "fast"', 'head.toml, line 2: sweep_hz holds "fast"; it may hold a number from 1 to 750, in'),
+        (
+            '\nsweep_hz = "fast"',
+            'head.toml, line 2: sweep_hz holds "fast"; it may hold a number from 1 to 750, in',
+        ),
         ("lead_mm = -1", "head.toml, line 1: lead_mm holds -1; it may hold a number from 0.01 to 20"),
         ("gap_mm = true", "head.toml, line 1: gap_mm holds true; it may hold a number from 0 to 20"),
         ("gap_mm = nan", "head.toml, line 1: gap_mm holds NaN; it may hold"),
@@ -52,5 +55,7 @@ def test_a_mistake_is_refused_with_its_line(text: str, said: str) -> None:
 
 
 def test_a_file_that_is_not_there_says_so(tmp_path: Path) -> None:
-    with pytest.raises(FileFault, match=r"cannot read the file of settings .*give another one with --settings"):
+    with pytest.raises(
+        FileFault, match=r"cannot read the file of settings .*give another one with --settings"
+    ):
         read_changes(tmp_path / "head.toml")

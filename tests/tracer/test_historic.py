@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 from morfax.motion.drive import Drive
-from tests.tracer.inked import inked, polyline
+from morfax.tracer.following.start import Stance, put_down
 from morfax.tracer.head import kernel as head
 from morfax.tracer.head.carriage import Carriage
-from morfax.tracer.program.trace import trace
 from morfax.tracer.head.settings import HISTORIC, Settings
-from morfax.tracer.following.start import Stance, put_down
+from morfax.tracer.program.trace import trace
+from tests.tracer.inked import inked, polyline
 
 RATE_HZ = 6000.0
 QUICK = Drive(1e-5, 1e9)  # the theory has no lag in the drives
@@ -46,7 +46,10 @@ def offsets_on_a_straight(settings: Settings, aside_mm: float, way_mm: float) ->
     assert math.cos(east - stance.heading_rad) > 0.99
     carriage = Carriage(Stance(np.array([4.0, 6.0]), 0.0, stance.view), settings, RATE_HZ)
     carriage.state[head.Y] += aside_mm
-    while carriage.travel_mm < way_mm - 4 * settings.lead_mm and carriage.follow(stance.view, NOWHERE) == head.MORE:
+    while (
+        carriage.travel_mm < way_mm - 4 * settings.lead_mm
+        and carriage.follow(stance.view, NOWHERE) == head.MORE
+    ):
         pass
     return carriage.positions_mm[1:, 1] - 6.0
 
@@ -78,14 +81,18 @@ def test_a_stiff_pursuit_runs_inside_a_circle_by_the_price_of_its_lead(
         inside = radius_mm - np.hypot(*(settled - radius_mm - 3).T)
         held = 2.0 / radius_mm / gain  # what the cell must see aside to turn at all: v/(R·k)
         wanted_mm = inward_mm - (held if inward_mm else 0.0)
-        assert abs(inside.mean() - wanted_mm) < 0.06 * row["inward_error"]  # the cell is linear to this so far aside
+        assert (
+            abs(inside.mean() - wanted_mm) < 0.06 * row["inward_error"]
+        )  # the cell is linear to this so far aside
 
 
 def test_the_historic_head_goes_round_a_gentle_cam() -> None:
     """Lead 2 mm, sweep 50 Hz, servo 30 ms: within a tenth of a mm on bends of 10 mm and more."""
     t = np.linspace(0, 2 * math.pi, 721)
     r = 16 + 0.5 * np.cos(2 * t)
-    run = trace(inked(np.column_stack([19 + r * np.cos(t), 19 + r * np.sin(t)]), width_mm=0.7), settings=HISTORIC)
+    run = trace(
+        inked(np.column_stack([19 + r * np.cos(t), 19 + r * np.sin(t)]), width_mm=0.7), settings=HISTORIC
+    )
     assert run.ending == "closed"
     polar = run.xy_mm - 19
     off = np.hypot(*polar.T) - 16 - 0.5 * np.cos(2 * np.arctan2(polar[:, 1], polar[:, 0]))
@@ -97,4 +104,6 @@ def test_the_historic_head_loses_the_line_where_it_cannot_turn() -> None:
     run = trace(inked(polyline((4, 6), (30, 6), (6, 12)), width_mm=0.7), (10, 6), HISTORIC)
     assert run.ending == "lost" and run.fault is not None
     assert str(run.fault).endswith("go slower there with --speed, or follow with --head precise")
-    assert run.fault.x_mm is not None and min(abs(run.fault.x_mm - x) for x in (4, 30)) < 4  # two leads from the place
+    assert (
+        run.fault.x_mm is not None and min(abs(run.fault.x_mm - x) for x in (4, 30)) < 4
+    )  # two leads from the place

@@ -7,12 +7,12 @@ import math
 import numpy as np
 import pytest
 
-from tests.tracer.inked import UM, arc, dot, inked, polyline
-from morfax.tracer.operator.card import Card
-from morfax.tracer.junctions.guides import AGAIN_MM, Guide, Junctions
 from morfax.tracer.following.line import Line
+from morfax.tracer.junctions.guides import AGAIN_MM, Guide, Junctions
+from morfax.tracer.operator.card import Card
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.trace import trace
+from tests.tracer.inked import UM, arc, dot, inked, polyline
 
 HERE, THERE = np.array([10.0, 0.0]), np.array([20.0, 0.0])
 WITHIN_MM = 50 * UM  # as a corner's vertex
@@ -34,7 +34,9 @@ def test_a_guide_line_is_left_for_ends_and_is_come_back_from() -> None:
     way = np.vstack([np.linspace([0, 0], [10, 0], 101), out, back, np.linspace([10, 0], [20, 0], 101)])
     junctions.take(HERE, 95)
     assert not junctions.comes_back(HERE, 1.0)  # not before it has been to the end
-    assert junctions.turn_round(152) and junctions.comes_back(HERE, 1.0) and not junctions.comes_back(THERE, 1.0)
+    assert (
+        junctions.turn_round(152) and junctions.comes_back(HERE, 1.0) and not junctions.comes_back(THERE, 1.0)
+    )
     junctions.is_back(200, 30.0)
     assert junctions.next(31.0) == -1 + len(junctions.places_mm) or not junctions.places_mm
     assert not junctions.comes_back(HERE, 1.0) and not junctions.turn_round(250)
@@ -50,11 +52,13 @@ def test_the_end_of_a_line_that_is_no_guide_is_the_end() -> None:
 # on drawings
 
 
-def traced(*lines: np.ndarray, turns: str = "[]", width_mm: float = 0.5, dots: tuple[np.ndarray, ...] = ()) -> Line:
+def traced(
+    *lines: np.ndarray, turns: str = "[]", width_mm: float = 0.5, dots: tuple[np.ndarray, ...] = ()
+) -> Line:
     operator = Operator(card=Card.parse(f"turns = {turns}\n"))
-    return trace(inked(LEAD, PLATE, *lines, width_mm=width_mm, seed=11, specks=dots), (4, 20), operator=operator).lines[
-        0
-    ]
+    return trace(
+        inked(LEAD, PLATE, *lines, width_mm=width_mm, seed=11, specks=dots), (4, 20), operator=operator
+    ).lines[0]
 
 
 def guide(at_deg: float, slant_deg: float, length_mm: float = 8.0) -> np.ndarray:
@@ -67,7 +71,9 @@ def guide(at_deg: float, slant_deg: float, length_mm: float = 8.0) -> np.ndarray
 
 @pytest.mark.parametrize("width_mm", [0.3, 0.8])
 @pytest.mark.parametrize("slant_deg", [-45.0, 0.0, 45.0])
-def test_a_junction_is_where_its_lines_meet_whether_it_is_taken_or_passed(slant_deg: float, width_mm: float) -> None:
+def test_a_junction_is_where_its_lines_meet_whether_it_is_taken_or_passed(
+    slant_deg: float, width_mm: float
+) -> None:
     off = guide(60, slant_deg)
     for turns, guides in (('["left"]', 0), ('["left", "right"]', 1)):
         line = traced(off, turns=turns, width_mm=width_mm)  # clockwise: what lies inside is on the right
@@ -81,7 +87,10 @@ def test_coming_back_from_a_guide_line_counts_no_junction_and_takes_no_turn() ->
     line = traced(first, second, turns='["left", "right", "right"]')
     assert line.is_lead is False and line.ending == "joined" and len(line.junctions_mm) == 3
     tips = [line.xy_mm[taken.tip] for taken in line.guides]
-    assert [math.dist(a, b) < WITHIN_MM for a, b in zip(tips, (first[1], second[1]), strict=True)] == [True, True]
+    assert [math.dist(a, b) < WITHIN_MM for a, b in zip(tips, (first[1], second[1]), strict=True)] == [
+        True,
+        True,
+    ]
 
 
 def test_a_guide_line_ends_in_the_middle_of_its_dot_though_it_comes_askew() -> None:
@@ -93,7 +102,9 @@ def test_a_guide_line_ends_in_the_middle_of_its_dot_though_it_comes_askew() -> N
 
 @pytest.mark.parametrize("width_mm", [0.3, 0.5, 0.8])
 @pytest.mark.parametrize("slant_deg", [54, -54])
-def test_where_a_lead_line_joins_aslant_is_where_it_meets_the_contour(slant_deg: float, width_mm: float) -> None:
+def test_where_a_lead_line_joins_aslant_is_where_it_meets_the_contour(
+    slant_deg: float, width_mm: float
+) -> None:
     """36 degrees to the contour are straight on at a junction, and yet the legs meet where they do: the clean end was 1.7 mm before that."""
     a = math.radians(slant_deg)
     lead = polyline((18 - 14 * math.cos(a), 28 - 14 * math.sin(a)), (18, 28))

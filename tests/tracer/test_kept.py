@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.tracer.inked import Points, arc, polyline
-from morfax.tracer.following.follower import Followed
 from morfax.tracer.following.edge_check import OFF_MM, kept_to
+from morfax.tracer.following.follower import Followed
 from morfax.tracer.sensing.view import View
+from tests.tracer.inked import Points, arc, polyline
 
 SQUARE = polyline((10, 10), (30, 10), (30, 30), (10, 30), (10, 10))
 HOLE = arc((20, 20), 4)
@@ -48,7 +48,9 @@ def test_a_run_that_leaves_the_edge_is_lost_where_it_does() -> None:
 
 def test_a_closed_run_that_leaves_some_of_its_edge_out_is_lost() -> None:
     """A tooth 0.3 mm wide and 2 mm high is cut across: no place of the run is off the edge, but the tooth is missed."""
-    tooth = polyline((10, 10), (20, 10), (20, 12), (20.3, 12), (20.3, 10), (30, 10), (30, 30), (10, 30), (10, 10))
+    tooth = polyline(
+        (10, 10), (20, 10), (20, 12), (20.3, 12), (20.3, 10), (30, 10), (30, 30), (10, 30), (10, 10)
+    )
     kept = kept_to((tooth, HOLE), along(SQUARE))
     assert kept.ending == "lost" and "leaves the edge out 2.0" in str(kept.fault)
     assert 9.5 < kept.travel_mm < 10.8

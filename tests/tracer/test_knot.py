@@ -11,12 +11,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from tests.tracer.inked import UM, WIDTH_MM, arc, inked, polyline
-from morfax.tracer.sensing import photocell
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.junctions.rings import corner_in, legs_around
+from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.leg import Leg, centre_at, end_of, leg_of, meet, reach_of_ink, stroke_end, turn
 from morfax.tracer.sensing.view import LEVEL, View
+from tests.tracer.inked import UM, WIDTH_MM, arc, inked, polyline
 
 Array = NDArray[np.float64]
 ALONG_PIXELS_MM = 6 * UM  # a line along pixels of 85 um is seen 5 um off its middle
@@ -54,7 +54,9 @@ def test_a_leg_that_bends_is_a_circle_to_the_third_order(heading: float, along_m
     centre = leg.end_mm + np.array([-math.sin(heading), math.cos(heading)]) / bend
     radius = np.hypot(*(leg.at(along_mm) - centre))
     assert radius == pytest.approx(1 / bend, abs=bend**3 * along_mm**4 / 4 + 1e-12)
-    assert leg.heading_at(along_mm) == pytest.approx(heading + bend * along_mm, abs=abs(bend * along_mm) ** 3 + 1e-12)
+    assert leg.heading_at(along_mm) == pytest.approx(
+        heading + bend * along_mm, abs=abs(bend * along_mm) ** 3 + 1e-12
+    )
 
 
 @pytest.mark.parametrize("last", [False, True])
@@ -104,10 +106,14 @@ def test_legs_meet_at_their_vertex(deflection_deg: float) -> None:
 def test_legs_that_bend_meet_where_their_curves_cross() -> None:
     """Two circles of 5 mm about (0, 5) and (5, 0), both through the origin, at right angles."""
     incoming = Leg(5 * np.array([-math.sin(0.1), 1 - math.cos(0.1)]), -0.1, 0.2, WIDTH_MM, NO_STATIONS)
-    outgoing = Leg(5 * np.array([1 - math.cos(0.1), math.sin(0.1)]), math.pi / 2 - 0.1, -0.2, WIDTH_MM, NO_STATIONS)
+    outgoing = Leg(
+        5 * np.array([1 - math.cos(0.1), math.sin(0.1)]), math.pi / 2 - 0.1, -0.2, WIDTH_MM, NO_STATIONS
+    )
     met = meet(incoming, outgoing)
     assert met is not None
-    assert incoming.at(met[0]) == pytest.approx(np.zeros(2), abs=1 * UM)  # a parabola for a circle over 0.5 mm
+    assert incoming.at(met[0]) == pytest.approx(
+        np.zeros(2), abs=1 * UM
+    )  # a parabola for a circle over 0.5 mm
     assert outgoing.at(-met[1]) == pytest.approx(np.zeros(2), abs=1 * UM)
 
 

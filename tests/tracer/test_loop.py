@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from morfax.motion.faults import LineFault
-from tests.tracer.inked import UM, arc, inked, polyline, tick
 from morfax.tracer.head.loop import comes_again, loop_in
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.trace import trace
+from tests.tracer.inked import UM, arc, inked, polyline, tick
 
 STEP_MM = 0.01
 WIDTH_MM = 0.5
@@ -21,7 +21,9 @@ def run_of(lead_mm: float, round_again_mm: float, radius_mm: float = 8.0) -> np.
     """A straight lead line onto a circle, round it once, and on along what was run before."""
     turns = np.arange(0, 2 * np.pi + round_again_mm / radius_mm, STEP_MM / radius_mm)
     loop = np.column_stack([-radius_mm * np.cos(turns), radius_mm * np.sin(turns)])
-    lead = np.column_stack([np.arange(-lead_mm - radius_mm, -radius_mm, STEP_MM), np.zeros(round(lead_mm / STEP_MM))])
+    lead = np.column_stack(
+        [np.arange(-lead_mm - radius_mm, -radius_mm, STEP_MM), np.zeros(round(lead_mm / STEP_MM))]
+    )
     return np.vstack([lead, loop])
 
 
@@ -75,7 +77,9 @@ def test_a_lead_line_joins_its_loop_at_any_angle(angle_deg: float) -> None:
 
 
 def test_a_guide_line_soon_after_the_join_does_not_lead_off_the_second_time() -> None:
-    a = math.radians(212)  # 5.6 mm beyond the join; on less than 3 mm the head cannot tell that it has been here
+    a = math.radians(
+        212
+    )  # 5.6 mm beyond the join; on less than 3 mm the head cannot tell that it has been here
     foot = (34 + 10 * math.cos(a), 16 - 10 * math.sin(a))
     guide = polyline(foot, (34 + 3 * math.cos(a), 16 - 3 * math.sin(a)))
     line = trace(inked(CIRCLE, polyline((8, 16), (24, 16)), tick((18, 16)), guide, seed=5)).lines[0]
@@ -92,7 +96,12 @@ def test_a_lead_line_in_line_with_the_side_of_a_corner(join: tuple[float, float]
 
 
 def test_of_several_open_ends_the_lead_line_is_begun_at() -> None:
-    lines = [polyline((8, 16), (24, 16)), tick((18, 16)), polyline((44, 16), (36, 16)), polyline((34, 26), (34, 19))]
+    lines = [
+        polyline((8, 16), (24, 16)),
+        tick((18, 16)),
+        polyline((44, 16), (36, 16)),
+        polyline((34, 26), (34, 19)),
+    ]
     line = trace(inked(CIRCLE, *lines, seed=5)).lines[0]
     assert line.is_lead and math.dist(line.start_mm, (8, 16)) < 50 * UM
 
@@ -101,7 +110,9 @@ def test_two_lead_lines_without_a_reference_point_are_asked_about() -> None:
     """Each bears a tick: nothing on the drawing says which leads, but the operator may."""
     lines = [polyline((8, 16), (24, 16)), tick((18, 16)), polyline((60, 16), (44, 16)), tick((50, 16))]
     drawing = inked(CIRCLE, *lines, seed=5)
-    with pytest.raises(LineFault, match=r"2 lines with a tick lead to the contour, .* draw a cross or ring .* --start"):
+    with pytest.raises(
+        LineFault, match=r"2 lines with a tick lead to the contour, .* draw a cross or ring .* --start"
+    ):
         trace(drawing)
     for start in ((8, 16), (60, 16)):
         assert math.dist(trace(drawing, start).lines[0].start_mm, start) < 50 * UM
@@ -120,7 +131,11 @@ def test_a_lead_line_with_a_tick_near_its_join_goes_to_the_very_place_and_comes_
     join = np.array([24.0, 16.0])
     near = tuple(join - (1.5 + width_mm) * way)
     drawing = inked(
-        CIRCLE, polyline(tuple(join - 14 * way), tuple(join)), tick(near, slant_deg), width_mm=width_mm, seed=5
+        CIRCLE,
+        polyline(tuple(join - 14 * way), tuple(join)),
+        tick(near, slant_deg),
+        width_mm=width_mm,
+        seed=5,
     )
     line = trace(drawing).lines[0]
     assert line.is_lead and line.loop_from is not None and len(line.marks) == 1

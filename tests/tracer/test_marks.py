@@ -13,17 +13,19 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from tests.tracer.inked import UM, arc, cross, dot, inked, polyline, tick
 from morfax.tracer.following.line import Line
 from morfax.tracer.program.trace import trace
 from morfax.tracer.program.trace_lines import trace_lines
+from tests.tracer.inked import UM, arc, cross, dot, inked, polyline, tick
 
 STANDS_WITHIN_MM = 50 * UM  # the issue's
 LINE = polyline((4, 12), (34, 12))
 CIRCLE = arc((16, 16), 10)
 
 
-def marks(*lines: np.ndarray, width_mm: float = 0.5, dpi: float = 300.0, specks: tuple[np.ndarray, ...] = ()) -> Line:
+def marks(
+    *lines: np.ndarray, width_mm: float = 0.5, dpi: float = 300.0, specks: tuple[np.ndarray, ...] = ()
+) -> Line:
     """The line of a scanned drawing, with its marks."""
     return trace(inked(*lines, width_mm=width_mm, dpi=dpi, seed=7, specks=specks)).lines[0]
 
@@ -42,7 +44,9 @@ def off_mm(line: Line, *places: tuple[float, float]) -> list[float]:
     length_mm=st.floats(2.5, 8),
     width_mm=st.sampled_from([0.3, 0.5, 0.8]),
 )
-def test_the_axis_stands_where_a_tick_crosses(x_mm: float, slant_deg: float, length_mm: float, width_mm: float) -> None:
+def test_the_axis_stands_where_a_tick_crosses(
+    x_mm: float, slant_deg: float, length_mm: float, width_mm: float
+) -> None:
     stroke = tick((x_mm, 12), before_mm=length_mm / 2, beyond_mm=length_mm / 2, slant_deg=slant_deg)
     assert off_mm(marks(LINE, stroke, width_mm=width_mm), (x_mm, 12))[0] < STANDS_WITHIN_MM
 
@@ -93,7 +97,10 @@ NO_MARKS = {
     "a sharp tip": [polyline((5, 5), (30, 9), (5, 13), (5, 5))],
     "a line beside the line": [LINE, polyline((4, 13.5), (34, 13.5))],
     "a reference point": [polyline((10, 12), (34, 12)), *cross((8, 12))],
-    "a crossing line in dashes": [LINE, *(polyline((20, y), (20, y + 2.6)) for y in (2.5, 6.6, 10.7, 14.8, 18.9))],
+    "a crossing line in dashes": [
+        LINE,
+        *(polyline((20, y), (20, y + 2.6)) for y in (2.5, 6.6, 10.7, 14.8, 18.9)),
+    ],
     "lettering": [LINE, *(polyline((x, 13.5), (x, 16.5)) for x in (17, 18.6, 20.2, 21.8))],
     "a stub": [LINE, polyline((20, 12), (20, 12.5))],
 }
@@ -176,7 +183,9 @@ def test_on_a_line_of_two_pixels_no_mark_is_read() -> None:
 def test_a_tick_that_nearly_touches_another_line_ends_all_the_same() -> None:
     for width_mm in (0.3, 0.5, 0.8):
         other = polyline((4, 14.2 + width_mm), (34, 14.2 + width_mm))  # 0.2 mm of paper between
-        line = trace(inked(LINE, tick((20, 12), before_mm=2, beyond_mm=2), other, width_mm=width_mm, seed=7), (5, 12))
+        line = trace(
+            inked(LINE, tick((20, 12), before_mm=2, beyond_mm=2), other, width_mm=width_mm, seed=7), (5, 12)
+        )
         assert off_mm(line.lines[0], (20, 12))[0] < STANDS_WITHIN_MM
 
 

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from morfax.motion.faults import CardFault
-from morfax.tracer.operator.card import Card, Stop
-from morfax.tracer.junctions.guides import Guide
 from morfax.tracer.following.line import Line
+from morfax.tracer.junctions.guides import Guide
 from morfax.tracer.marks.marks import Mark
+from morfax.tracer.operator.card import Card, Stop
 from morfax.tracer.operator.operator import STAND_S, Halt, Operator, Work
 from morfax.tracer.operator.zunit import Move
 
@@ -28,12 +28,16 @@ def tick(at: float) -> Mark:
 def line(*marks: Mark, guides: tuple[Guide, ...] = (), ending: str = "joined") -> Line:
     """A lead line of 30 mm from a reference point, and its loop; or a guide line that ends."""
     loop_from = 300 if ending == "joined" else None
-    return Line(WAY, ending, 0.5, 100.0, loop_from=loop_from, marks=marks, guides=guides, reference_mm=(0.0, 0.0))
+    return Line(
+        WAY, ending, 0.5, 100.0, loop_from=loop_from, marks=marks, guides=guides, reference_mm=(0.0, 0.0)
+    )
 
 
 def done(operator: Operator, *lines: Line) -> list[list[tuple[str, list[float]]]]:
     """Kind of each halt where something is done, and where Z goes."""
-    return [[(a.halt.kind, [m.to_mm for m in a.moves]) for a in actions] for actions in operator.actions(lines)]
+    return [
+        [(a.halt.kind, [m.to_mm for m in a.moves]) for a in actions] for actions in operator.actions(lines)
+    ]
 
 
 WORK = Work(depth_mm=4.0, clearance_mm=2.0)
@@ -70,7 +74,9 @@ def test_a_guide_line_from_the_reference_point_is_drilled_at_its_end() -> None:
 
 def test_a_dot_at_the_end_is_the_hole_and_no_other() -> None:
     halts = PLAIN.actions([line(Mark("dot", (99.5, 0.0), 995.0), ending="ended")])[0]
-    assert [(action.halt.kind, action.halt.number, action.halt.at) for action in halts] == [("hole", 1, 995.0)]
+    assert [(action.halt.kind, action.halt.number, action.halt.at) for action in halts] == [
+        ("hole", 1, 995.0)
+    ]
 
 
 def test_stops_are_numbered_over_all_lines() -> None:
@@ -103,7 +109,9 @@ def test_passes_below_a_tool_that_has_gone_up_are_refused() -> None:
     up = '[[stop]]\nnumber = 2\nmoves = [{ up = "9mm" }]\n'
     card = 'passes = ["1mm", "3mm"]\n' + up
     operator = Operator(replace(WORK, passes_mm=(1.0,), depth_mm=3.0), Card.parse(card))
-    with pytest.raises(CardFault, match=r"at stop 2, .* the tool goes up .* further passes, at 3 mm, have no stops"):
+    with pytest.raises(
+        CardFault, match=r"at stop 2, .* the tool goes up .* further passes, at 3 mm, have no stops"
+    ):
         operator.actions([line(tick(250), tick(600))])
     again = Card.parse(card + '[[stop]]\nnumber = 3\nmoves = [{ down = "9mm" }]\n')
     assert len(replace(operator, card=again).actions([line(tick(250), tick(600), tick(700))])[0]) == 3
@@ -114,7 +122,11 @@ def test_passes_below_a_tool_that_has_gone_up_are_refused() -> None:
     ("entry", "number", "said"),
     [
         ('moves = [{ up = "1mm" },\n{ up = "999.99mm" }]', 3, 'stop[1].moves[2] holds {"up": "999.99mm"}'),
-        ('drill = { depth = "999.99mm", peck = "1mm" }\ndwell = 1', 2, 'stop[1].drill holds {"depth": "999.99mm"'),
+        (
+            'drill = { depth = "999.99mm", peck = "1mm" }\ndwell = 1',
+            2,
+            'stop[1].drill holds {"depth": "999.99mm"',
+        ),
     ],
 )
 def test_a_move_that_five_digits_cannot_show_names_its_line_its_field_and_its_stop(
@@ -143,7 +155,10 @@ class Present:
 
 def test_somebody_at_the_panel_is_asked_at_every_stop_in_order() -> None:
     panel = Present()
-    assert done(Operator(WORK, panel=panel), line(tick(100), tick(250)))[0][:2] == [("tick", [3.0]), ("tick", [4.0])]
+    assert done(Operator(WORK, panel=panel), line(tick(100), tick(250)))[0][:2] == [
+        ("tick", [3.0]),
+        ("tick", [4.0]),
+    ]
     assert panel.asked == [1, 2]
 
 

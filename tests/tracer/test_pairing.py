@@ -13,15 +13,15 @@ import pytest
 from numpy.typing import NDArray
 
 from morfax.motion.contour import distance, length_mm
-from tests.tracer.inked import UM, inked, polyline
-from morfax.tracer.tangles import pen
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.sensing.leg import leg_of
-from morfax.tracer.tangles.redrawing import Sketch, Way, matchings, ways
-from morfax.tracer.sensing.photocell import behind_aperture
 from morfax.tracer.program.trace import trace
-from morfax.tracer.tangles.tangle import Tangle, tangle_ahead
+from morfax.tracer.sensing.leg import leg_of
+from morfax.tracer.sensing.photocell import behind_aperture
 from morfax.tracer.sensing.view import LEVEL, View
+from morfax.tracer.tangles import pen
+from morfax.tracer.tangles.redrawing import Sketch, Way, matchings, ways
+from morfax.tracer.tangles.tangle import Tangle, tangle_ahead
+from tests.tracer.inked import UM, inked, polyline
 
 Array = NDArray[np.float64]
 WIDTH_MM = 0.5
@@ -34,7 +34,9 @@ def seen(drawing: Drawing) -> View:
     return View(behind_aperture(drawing, 0.15), drawing.pitch_mm, WIDTH_MM, LEVEL)
 
 
-def tangle(*lines: Array, start: tuple[float, float] = (11.0, 10.0), seed: int | None = None) -> tuple[View, Tangle]:
+def tangle(
+    *lines: Array, start: tuple[float, float] = (11.0, 10.0), seed: int | None = None
+) -> tuple[View, Tangle]:
     """The tangle ahead of the line that goes right from a place on it."""
     view = seen(inked(*lines, seed=seed))
     return view, tangle_ahead(view, leg_of(view.feel(np.array(start), 0.0, 4.0), True, view.leg_mm))

@@ -15,10 +15,10 @@ import pytest
 from numpy.typing import NDArray
 
 from morfax.motion.contour import distance, length_mm
-from tests.tracer.inked import DPI, UM, arc, inked, polyline, together
 from morfax.tracer.drawing.drawing import MM_PER_INCH, Drawing
 from morfax.tracer.program.trace import trace
 from morfax.tracer.sensing.view import View
+from tests.tracer.inked import DPI, UM, arc, inked, polyline, together
 
 Array = NDArray[np.float64]
 SEEDS = pytest.mark.parametrize("seed", [1, 2, 3])
@@ -95,7 +95,9 @@ def test_the_grain_of_faint_pencil_is_no_end(seed: int) -> None:
 
 def test_a_gap_wider_than_allowed_ends_a_line_for_the_larger_cell_too() -> None:
     """0.7 mm of paper between two clean pieces, where 0.5 mm is crossed: the fine cell and the larger one agree."""
-    run = trace(inked(polyline((4, 10), (30, 10)), polyline((31.2, 10), (50, 10)), seed=1), start_mm=(6, 10)).lines[0]
+    run = trace(
+        inked(polyline((4, 10), (30, 10)), polyline((31.2, 10), (50, 10)), seed=1), start_mm=(6, 10)
+    ).lines[0]
     assert run.ending == "ended"
     assert run.xy_mm[:, 0].max() == pytest.approx(30, abs=0.05)
 

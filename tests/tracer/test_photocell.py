@@ -12,9 +12,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from tests.tracer.inked import UM, WIDTH_MM, arc, inked, polyline
-from morfax.tracer.sensing import photocell
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.sensing import photocell
+from tests.tracer.inked import UM, WIDTH_MM, arc, inked, polyline
 
 WIDE_MM, AMPLITUDE_MM, APERTURE_MM = 0.7, 1.0, 0.3  # the line, sweep and cell of the vectors
 FINE_MM = 0.005
@@ -38,7 +38,9 @@ def behind(strip: Drawing) -> photocell.Cells:
     return photocell.behind_aperture(strip, APERTURE_MM)
 
 
-def swept(cells: photocell.Cells, offset_mm: float, plain: bool = False, samples: int = 4000) -> tuple[float, float]:
+def swept(
+    cells: photocell.Cells, offset_mm: float, plain: bool = False, samples: int = 4000
+) -> tuple[float, float]:
     """Fundamental and mean of a sweep centred so far to the left of the line."""
     middle = np.array([0.6, 3.0])
     return kernel(photocell.sweep, plain)(cells, FINE_MM, middle, 0.0, offset_mm, AMPLITUDE_MM, samples)
@@ -54,17 +56,23 @@ def point_cell(offset_mm: float) -> float:
 
 
 @COMPILED_AND_PLAIN
-def test_a_swept_point_cell_sees_the_closed_form(strip: Drawing, vectors: Callable[[str], Any], plain: bool) -> None:
+def test_a_swept_point_cell_sees_the_closed_form(
+    strip: Drawing, vectors: Callable[[str], Any], plain: bool
+) -> None:
     for row in vectors("mf_scan")["rows"]:
         offset_mm = row["offset_mm"]
         assert point_cell(offset_mm) == pytest.approx(row["point_cell_closed_form"], abs=1e-5)
         # pixels of 5 um make an edge a ramp of that; where it stands at the turn of the sweep (0.65 mm), that is 0.1 of
         # the sweep's time
         share = 0.03 if abs(abs(offset_mm) - 0.65) < 0.01 else 0.003
-        assert swept(strip.darkness, offset_mm, plain)[0] == pytest.approx(row["point_cell_closed_form"], abs=share)
+        assert swept(strip.darkness, offset_mm, plain)[0] == pytest.approx(
+            row["point_cell_closed_form"], abs=share
+        )
 
 
-def test_a_swept_cell_with_an_aperture_sees_the_vectors(behind: photocell.Cells, vectors: Callable[[str], Any]) -> None:
+def test_a_swept_cell_with_an_aperture_sees_the_vectors(
+    behind: photocell.Cells, vectors: Callable[[str], Any]
+) -> None:
     """The vectors' aperture is a disc of 0.3 mm, ours a Gaussian of the same variance: 3 % of the peak of 0.566 apart."""
     for row in vectors("mf_scan")["rows"]:
         assert swept(behind, row["offset_mm"])[0] == pytest.approx(row["first_sin"], abs=0.017)
@@ -91,13 +99,17 @@ def test_the_signal_is_linear_then_monotonic_then_gone(behind: photocell.Cells) 
     rising = [-swept(behind, offset_mm)[0] for offset_mm in np.linspace(0, 0.76, 50)]
     assert np.all(np.diff(rising) > 0)
     # amplitude + half the line + half the aperture = 1.5 mm; the Gaussian's skirt there is 1/40 of a cell's light
-    assert swept(behind, 1.5)[0] == pytest.approx(0, abs=0.005) and swept(behind, 1.6)[0] == pytest.approx(0, abs=3e-4)
+    assert swept(behind, 1.5)[0] == pytest.approx(0, abs=0.005) and swept(behind, 1.6)[0] == pytest.approx(
+        0, abs=3e-4
+    )
     assert swept(behind, 1.7)[1] < 3e-4
 
 
 def test_the_mean_falls_when_the_line_goes(behind: photocell.Cells) -> None:
     on_it = swept(behind, 0.0)[1]
-    assert on_it == pytest.approx(2 / math.pi * math.asin(WIDE_MM / 2 / AMPLITUDE_MM), abs=0.005)  # share of the time
+    assert on_it == pytest.approx(
+        2 / math.pi * math.asin(WIDE_MM / 2 / AMPLITUDE_MM), abs=0.005
+    )  # share of the time
     assert swept(behind, 1.6)[1] < 0.01 * on_it
 
 
@@ -158,9 +170,13 @@ def test_a_straight_line_s_edges_are_where_they_are_at_any_heading_and_place(
 @COMPILED_AND_PLAIN
 def test_edges_that_are_not_there_are_nan(strip: Drawing, plain: bool) -> None:
     find = kernel(photocell.edges, plain)
-    assert np.isnan(find(strip.darkness, FINE_MM, 0.6, 5.0, 0.0, 0.8, 0.5)).all()  # no ink within half the reach
+    assert np.isnan(
+        find(strip.darkness, FINE_MM, 0.6, 5.0, 0.0, 0.8, 0.5)
+    ).all()  # no ink within half the reach
     right, left = find(strip.darkness, FINE_MM, 0.6, 3.1, 0.0, 0.3, 0.5)
-    assert math.isnan(right) and left == pytest.approx(0.25, abs=FINE_MM)  # 0.45 mm to the right is out of reach
+    assert math.isnan(right) and left == pytest.approx(
+        0.25, abs=FINE_MM
+    )  # 0.45 mm to the right is out of reach
 
 
 # rings
@@ -169,12 +185,19 @@ def test_edges_that_are_not_there_are_nan(strip: Drawing, plain: bool) -> None:
 @COMPILED_AND_PLAIN
 @pytest.mark.parametrize("aside_mm", [0.0, 0.1, -0.2])
 @pytest.mark.parametrize("radius_mm", [0.8, 1.0, 2.0])
-def test_a_ring_on_a_line_sees_two_arcs(strip: Drawing, aside_mm: float, radius_mm: float, plain: bool) -> None:
+def test_a_ring_on_a_line_sees_two_arcs(
+    strip: Drawing, aside_mm: float, radius_mm: float, plain: bool
+) -> None:
     long = Drawing(np.repeat(strip.darkness[:, :1], 1200, axis=1), FINE_MM)
     centre = np.array([3.0, 3.0 + aside_mm])
     arcs = kernel(photocell.ring, plain)(long.darkness, FINE_MM, centre, radius_mm, 0.5)
-    low, high = math.asin((-WIDE_MM / 2 - aside_mm) / radius_mm), math.asin((WIDE_MM / 2 - aside_mm) / radius_mm)
-    told = sorted([(low % math.tau, high % math.tau), ((math.pi - high) % math.tau, (math.pi - low) % math.tau)])
+    low, high = (
+        math.asin((-WIDE_MM / 2 - aside_mm) / radius_mm),
+        math.asin((WIDE_MM / 2 - aside_mm) / radius_mm),
+    )
+    told = sorted(
+        [(low % math.tau, high % math.tau), ((math.pi - high) % math.tau, (math.pi - low) % math.tau)]
+    )
     found = sorted((begin % math.tau, end % math.tau) for begin, end in arcs)
     assert np.array(found) == pytest.approx(np.array(told), abs=2 * FINE_MM / radius_mm)
     assert np.all(arcs[:, 1] > arcs[:, 0])
@@ -225,7 +248,9 @@ def test_feeling_stops_at_the_end_of_a_line_and_before_a_crossing(plain: bool) -
 def test_a_speck_is_passed_over() -> None:
     drawing = inked(polyline((2, 4), (10, 4)), specks=[arc((6, 4.3), 0.08)])
     cells = photocell.behind_aperture(drawing, 0.15)
-    seen = photocell.scout(cells, drawing.pitch_mm, np.array([4.0, 4.0]), 0.0, 0.05, 80, WIDTH_MM + 25 * UM, 0.5)
+    seen = photocell.scout(
+        cells, drawing.pitch_mm, np.array([4.0, 4.0]), 0.0, 0.05, 80, WIDTH_MM + 25 * UM, 0.5
+    )
     assert seen[-1, 0] > 7.5
     assert np.abs(seen[:, 1] - 4).max() < 0.08  # what is taken of the speck's edge stays below its half width
 

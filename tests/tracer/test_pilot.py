@@ -8,15 +8,15 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from tests.tracer.inked import arc, inked, polyline
 from morfax.tracer.head import course
+from morfax.tracer.head.settings import Settings
+from morfax.tracer.head.trail import Trail
+from morfax.tracer.junctions.planner import Pilot
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.leg import leg_of, turn
-from morfax.tracer.junctions.planner import Pilot
-from morfax.tracer.head.settings import Settings
-from morfax.tracer.tangles.strands import Planned
-from morfax.tracer.head.trail import Trail
 from morfax.tracer.sensing.view import Array, View
+from morfax.tracer.tangles.strands import Planned
+from tests.tracer.inked import arc, inked, polyline
 
 WIDTH_MM = 0.3
 DEFLECTION = math.radians(60)
@@ -42,7 +42,9 @@ def felt(radius_mm: float) -> tuple[View, Array]:
 
 
 @pytest.mark.parametrize(("radius_mm", "is_felt"), [(0.0, True), (0.3, True), (0.9, False), (1.3, False)])
-def test_a_way_by_the_vertex_is_taken_only_where_the_line_was_felt_there(radius_mm: float, is_felt: bool) -> None:
+def test_a_way_by_the_vertex_is_taken_only_where_the_line_was_felt_there(
+    radius_mm: float, is_felt: bool
+) -> None:
     """The vertex is 46 um off a round of 0.3 mm, and 139 um off one of 0.9 mm: r·(1/cos 30° - 1).
 
     Of a sharp corner it may be 78 um off: 23 um that the middle of its ink may be inside, and 55 um of single stations.

@@ -9,10 +9,10 @@ import pytest
 
 from morfax.motion.faults import LineFault
 from morfax.motion.motion import MOTION_RATE_HZ, join
-from morfax.tracer.operator.card import Card
-from morfax.tracer.junctions.guides import Guide
 from morfax.tracer.following.line import Line
+from morfax.tracer.junctions.guides import Guide
 from morfax.tracer.marks.marks import Mark
+from morfax.tracer.operator.card import Card
 from morfax.tracer.operator.operator import Operator, Work
 from morfax.tracer.program.program import BRAKE_MM_S2, Trace
 from morfax.tracer.sensing.view import Array
@@ -20,7 +20,9 @@ from morfax.tracer.sensing.view import Array
 WORK = Work(depth_mm=4.0, clearance_mm=2.0)
 STEP_MM = 10.0 / MOTION_RATE_HZ  # of a head at 10 mm/s
 EXACT_MM = 1e-9  # double precision
-WITHIN_MM = 0.05  # of a way that is run from memory by places 0.1 mm apart, which cut a corner by half of that
+WITHIN_MM = (
+    0.05  # of a way that is run from memory by places 0.1 mm apart, which cut a corner by half of that
+)
 
 
 def run_through(*corners: tuple[float, float]) -> Array:
@@ -62,7 +64,9 @@ def test_a_lead_line_s_program_begins_and_ends_at_the_reference_point_with_the_t
 def test_the_tool_is_in_the_work_from_the_tick_on_and_round_the_loop_only() -> None:
     cut = in_work(moved(LINE))
     assert cut[:, 0].min() == pytest.approx(6.0, abs=EXACT_MM)
-    assert cut[:, 0].max() == pytest.approx(18.0, abs=STEP_MM) and cut[:, 1].max() == pytest.approx(8.0, abs=STEP_MM)
+    assert cut[:, 0].max() == pytest.approx(18.0, abs=STEP_MM) and cut[:, 1].max() == pytest.approx(
+        8.0, abs=STEP_MM
+    )
     assert cut[-1] == pytest.approx([10.0, 0.0], abs=0.02)
 
 
@@ -97,7 +101,9 @@ def test_from_line_to_line_the_tool_goes_straight_at_clearance() -> None:
 
 def test_each_pass_of_a_loop_is_run_on_at_the_next_depth_and_the_tick_stops_the_first_only() -> None:
     positions = moved(LINE, operator=Operator(replace(WORK, passes_mm=(1.0, 2.0))))
-    levels = positions[np.r_[True, np.diff(positions[:, 2]) != 0] & np.r_[np.diff(positions[:, 2]) == 0, True], 2]
+    levels = positions[
+        np.r_[True, np.diff(positions[:, 2]) != 0] & np.r_[np.diff(positions[:, 2]) == 0, True], 2
+    ]
     assert levels.tolist() == [2.0, -1.0, -2.0, -4.0, 2.0]
     assert in_work(positions)[:, 0].min() == pytest.approx(6.0, abs=EXACT_MM)
     deepest = positions[positions[:, 2] == -4.0, :2]
@@ -108,9 +114,13 @@ def test_a_guide_line_is_left_for_on_the_first_pass_only_and_never_in_the_work()
     way = run_through((0, 0), (10, 0), (10, 8), (14, 8), (14, 4), (14, 8), (18, 8), (18, 0), (10.01, 0))
     tip = at(way, (14, 4))
     guide = Guide(at(way[:tip], (14, 8)), tip, tip + at(way[tip:], (14, 8)))
-    line = Line(way, "joined", 0.5, 50.0, loop_from=at(way, (10, 0)), guides=(guide,), reference_mm=(-3.0, 0.0))
+    line = Line(
+        way, "joined", 0.5, 50.0, loop_from=at(way, (10, 0)), guides=(guide,), reference_mm=(-3.0, 0.0)
+    )
     positions = moved(line, operator=Operator(replace(WORK, passes_mm=(2.0,))))
-    on_guide = positions[(positions[:, 1] > 4.1) & (positions[:, 1] < 7.9) & (np.abs(positions[:, 0] - 14) < EXACT_MM)]
+    on_guide = positions[
+        (positions[:, 1] > 4.1) & (positions[:, 1] < 7.9) & (np.abs(positions[:, 0] - 14) < EXACT_MM)
+    ]
     assert len(on_guide) and np.all(on_guide[:, 2] == WORK.clearance_mm)
     assert np.count_nonzero(np.diff(np.sign(on_guide[:, 1] - 6)) != 0) == 2  # out and back once
 
@@ -143,4 +153,6 @@ def test_a_line_that_was_lost_is_cut_as_far_as_it_goes_and_named() -> None:
 def test_duration_length_and_reference_are_those_of_the_lines() -> None:
     program = Trace((LINE, OPEN), Operator(WORK))
     assert program.duration_s == pytest.approx(len(join(program).positions_mm) / MOTION_RATE_HZ)
-    assert program.length_mm == 52.0 and program.reference_mm == (-3.0, 0.0) and program.start_mm == (0.0, 0.0)
+    assert (
+        program.length_mm == 52.0 and program.reference_mm == (-3.0, 0.0) and program.start_mm == (0.0, 0.0)
+    )

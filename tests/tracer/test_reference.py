@@ -7,10 +7,10 @@ import math
 import numpy as np
 import pytest
 
-from tests.tracer.inked import UM, arc, cross, inked, polyline, tick
 from morfax.tracer.following.line import Line
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.trace import trace
+from tests.tracer.inked import UM, arc, cross, inked, polyline, tick
 
 WITHIN_MM = 50 * UM
 CIRCLE = arc((36, 14), 9)
@@ -27,7 +27,9 @@ def stands_at(line: Line, place_mm: tuple[float, float]) -> None:
     """The reference point is there, and the line begins near it and leads to the loop."""
     assert line.reference_mm is not None and math.dist(line.reference_mm, place_mm) < WITHIN_MM
     assert line.is_lead and line.loop_from is not None
-    assert math.dist(line.place(line.loop_from), JOIN) < 0.5  # half a line's width from where the middle lines meet
+    assert (
+        math.dist(line.place(line.loop_from), JOIN) < 0.5
+    )  # half a line's width from where the middle lines meet
     assert line.begin_mm == line.end_mm == line.reference_mm
 
 
@@ -41,7 +43,9 @@ def test_a_cross_apart_from_its_lead_line(size_mm: float, apart_mm: float, width
 
 @pytest.mark.parametrize("width_mm", [0.3, 0.5, 0.8])
 @pytest.mark.parametrize("turn_deg", [0.0, 4.0, 9.0, 15.0, 22.0, 30.0, 45.0, 52.0])
-def test_a_cross_with_the_lead_line_from_its_middle_at_any_angle_to_its_arms(turn_deg: float, width_mm: float) -> None:
+def test_a_cross_with_the_lead_line_from_its_middle_at_any_angle_to_its_arms(
+    turn_deg: float, width_mm: float
+) -> None:
     stands_at(lead_line(polyline(AT, JOIN), *cross(AT, 4.0, turn_deg), width_mm=width_mm), AT)
 
 
@@ -57,7 +61,9 @@ def test_a_lead_line_drawn_a_little_beyond_the_contour_ends_at_it(
     lead = np.array([join - 18 * way, join + beyond_mm * way])
     place = (float(lead[0][0]), float(lead[0][1]))
     mark = join - 8 * way
-    line = lead_line(lead, *cross(place, 4.0), tick((float(mark[0]), float(mark[1])), slant_deg), width_mm=width_mm)
+    line = lead_line(
+        lead, *cross(place, 4.0), tick((float(mark[0]), float(mark[1])), slant_deg), width_mm=width_mm
+    )
     assert line.is_lead and line.loop_from is not None and len(line.marks) == 1
     assert np.hypot(*(line.xy_mm - (36, 14)).T).min() > 9 - WITHIN_MM
 
@@ -99,7 +105,9 @@ def test_from_a_named_reference_point_the_lead_line_is_found_whatever_is_drawn_t
     """Three strokes are no cross, and there is a guide line, at whose open end the head would begin otherwise."""
     strokes = [tick(AT, a, before_mm=2.0, beyond_mm=2.0) for a in (0, 50, 110)]
     guide = polyline((36, 5), (36, 12))
-    run = trace(inked(CIRCLE, polyline(AT, JOIN), guide, *strokes, seed=3), operator=Operator(reference_mm=named))
+    run = trace(
+        inked(CIRCLE, polyline(AT, JOIN), guide, *strokes, seed=3), operator=Operator(reference_mm=named)
+    )
     assert run.lines[0].is_lead and run.lines[0].begin_mm == named
     assert run.lines[0].start_mm[0] < 12 and abs(run.lines[0].start_mm[1] - 14) < WITHIN_MM
 

@@ -12,12 +12,12 @@ from hypothesis import strategies as st
 from morfax.motion.contour import distance
 from morfax.motion.faults import DrawingFault, LineFault
 from morfax.motion.motion import IN_WORK_BELOW_MM, MOTION_RATE_HZ, join, thin
-from tests.tracer.inked import UM, arc, inked, polyline
-from morfax.tracer.operator.card import Card
 from morfax.tracer.following.line import Line
+from morfax.tracer.operator.card import Card
 from morfax.tracer.operator.operator import Operator, Work
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.trace import trace
+from tests.tracer.inked import UM, arc, inked, polyline
 
 CIRCLE = arc((9, 9), 5)
 OPEN = polyline((4, 6), (24, 9))
@@ -138,7 +138,9 @@ def test_an_open_line_is_followed_from_end_to_end_wherever_the_head_is_put_down(
     run = trace(inked(OPEN), start_mm)
     assert run.ending == "ended"
     ends = run.xy_mm[[0, -1]]
-    assert ends[np.argsort(ends[:, 0])] == pytest.approx(OPEN, abs=30 * UM)  # the pen's round, seen by an aperture
+    assert ends[np.argsort(ends[:, 0])] == pytest.approx(
+        OPEN, abs=30 * UM
+    )  # the pen's round, seen by an aperture
     assert distance(run.xy_mm, OPEN).path_to_reference.max_mm < 25 * UM
     assert run.length_mm == pytest.approx(np.hypot(20, 3), abs=60 * UM)  # once
 
@@ -158,7 +160,9 @@ def test_a_contour_is_taken_before_the_pieces_of_a_centre_line_that_cross_it() -
 
 
 def test_a_start_far_from_any_line_says_how_far_the_nearest_is() -> None:
-    with pytest.raises(LineFault, match=r"no line within 3 mm of 9,9 mm: the nearest is 4\.[78] mm away") as caught:
+    with pytest.raises(
+        LineFault, match=r"no line within 3 mm of 9,9 mm: the nearest is 4\.[78] mm away"
+    ) as caught:
         trace(inked(CIRCLE), (9.0, 9.0))
     assert (caught.value.x_mm, caught.value.y_mm) == (9.0, 9.0)
 
@@ -187,8 +191,14 @@ def test_a_ramped_entry_goes_down_along_the_line_and_leaves_none_of_it_above_dep
     both = moving & (np.abs(np.diff(positions[:, 2])) > 1e-9)
     assert np.hypot(*np.diff(positions[:-1, :2][both], axis=0).T).sum() == pytest.approx(6, abs=0.05)
     z = positions[:-1, 2][both]
-    assert np.all(np.diff(z) <= 0) and z[0] == pytest.approx(0, abs=1 * UM) and z[-1] == pytest.approx(-5, abs=1 * UM)
+    assert (
+        np.all(np.diff(z) <= 0)
+        and z[0] == pytest.approx(0, abs=1 * UM)
+        and z[-1] == pytest.approx(-5, abs=1 * UM)
+    )
     at_depth = positions[positions[:, 2] == -ramped.work.depth_mm][:, :2]
     assert distance(CIRCLE, at_depth[::4]).path_to_reference.max_mm < 25 * UM
     assert positions[-1] == pytest.approx([*run.lines[0].xy_mm[-1], 2.0], abs=1 * UM)
-    assert np.abs(np.diff(positions[:, 2], 2)).max() * MOTION_RATE_HZ**2 <= 2.01 * ramped.work.acceleration_mm_s2
+    assert (
+        np.abs(np.diff(positions[:, 2], 2)).max() * MOTION_RATE_HZ**2 <= 2.01 * ramped.work.acceleration_mm_s2
+    )

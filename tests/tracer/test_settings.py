@@ -17,7 +17,9 @@ def test_the_precise_set_is_the_default() -> None:
 def test_every_setting_can_be_changed_by_name() -> None:
     for name, bounds in BOUNDS.items():
         assert value_of(choose("historic", {name: str(bounds.most)}), name) == bounds.most
-    assert len(BOUNDS) == len(fields(Settings)) - 1 + len(fields(Drive)) - 1  # all but the machine's top speed
+    assert (
+        len(BOUNDS) == len(fields(Settings)) - 1 + len(fields(Drive)) - 1
+    )  # all but the machine's top speed
     assert choose(changes={"drive_lag_s": 0.004}).drive.lag_s == 0.004
 
 

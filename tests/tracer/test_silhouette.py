@@ -15,24 +15,34 @@ from skimage.draw import polygon
 from morfax.motion.contour import distance
 from morfax.motion.faults import DrawingFault
 from morfax.motion.motion import thin
-from tests.tracer.inked import DPI, SOFTNESS_MM, UM, Points, arc, polyline
 from morfax.tracer.drawing.drawing import MM_PER_INCH, Drawing
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.program.trace import trace
 from morfax.tracer.program.trace_lines import trace_lines
+from tests.tracer.inked import DPI, SOFTNESS_MM, UM, Points, arc, polyline
 
 CIRCLE = arc((16, 16), 10)
-STEPPED = polyline((8, 8), (28, 8), (28, 18), (18, 18), (18, 26), (8, 26), (8, 8))  # five corners outward, one inward
+STEPPED = polyline(
+    (8, 8), (28, 8), (28, 18), (18, 18), (18, 26), (8, 26), (8, 8)
+)  # five corners outward, one inward
 
 
 def star(turned_deg: float = 7) -> Points:
     """Five tips of 36 degrees and five corners inward."""
-    angle, radius = np.radians(turned_deg + 36 * np.arange(11)), np.where(np.arange(11) % 2, 12 * 0.381966, 12)
+    angle, radius = (
+        np.radians(turned_deg + 36 * np.arange(11)),
+        np.where(np.arange(11) % 2, 12 * 0.381966, 12),
+    )
     return np.asarray(np.array([17, 17]) + np.column_stack([radius * np.cos(angle), radius * np.sin(angle)]))
 
 
 def filled(
-    file: Path, *outlines: Points, holes: tuple[Points, ...] = (), seed: int = 1, shade: float = 0, light: bool = False
+    file: Path,
+    *outlines: Points,
+    holes: tuple[Points, ...] = (),
+    seed: int = 1,
+    shade: float = 0,
+    light: bool = False,
 ) -> Path:
     """Filled shapes on a sheet of 36 x 34 mm at 300 dpi, eight times too fine by the middles of the pixels, as a scanner sees them.
 
@@ -45,7 +55,9 @@ def filled(
         i, j = polygon(8 * rows - outline[:, 1] * scale - 0.5, outline[:, 0] * scale - 0.5, fine.shape)
         fine[i, j] = level
     dark = cv2.GaussianBlur(
-        cv2.resize(fine, (columns, rows), interpolation=cv2.INTER_AREA), (0, 0), SOFTNESS_MM * DPI / MM_PER_INCH
+        cv2.resize(fine, (columns, rows), interpolation=cv2.INTER_AREA),
+        (0, 0),
+        SOFTNESS_MM * DPI / MM_PER_INCH,
     )
     grey = (
         (235 - shade * np.linspace(0, 1, columns)) * (1 - dark)
@@ -104,7 +116,9 @@ def test_on_uneven_paper_and_light_on_dark(tmp_path: Path, shade: float, light: 
 
 def test_a_slight_round_is_no_corner(tmp_path: Path) -> None:
     """Corners of an octagon with a round of 0.6 mm: 0.6 · (1/cos(22.5°) - 1) = 49 um inside where the legs meet."""
-    vertices = np.array([17, 17]) + 11 * np.array([[np.cos(a), np.sin(a)] for a in np.radians(10 + 45 * np.arange(8))])
+    vertices = np.array([17, 17]) + 11 * np.array(
+        [[np.cos(a), np.sin(a)] for a in np.radians(10 + 45 * np.arange(8))]
+    )
     outline = np.array(shapely.Polygon(vertices).buffer(-0.6).buffer(0.6, quad_segs=64).exterior.coords)
     run = trace(Drawing.open(filled(tmp_path / "octagon.png", outline), edge=True))
     found = distance(thin(run), outline)
@@ -123,7 +137,9 @@ def test_edges_may_be_0_3_mm_apart(tmp_path: Path) -> None:
 def test_a_slot_in_an_edge_is_followed_to_its_end(tmp_path: Path, apart_mm: float) -> None:
     """Its end has two corners nearer to one another than the lens lets legs be felt: they stay as round as the lens made them, 0.77 s = 66 um."""
     low, high = 17 - apart_mm / 2, 17 + apart_mm / 2
-    outline = polyline((8, 8), (28, 8), (28, low), (14, low), (14, high), (28, high), (28, 26), (8, 26), (8, 8))
+    outline = polyline(
+        (8, 8), (28, 8), (28, low), (14, low), (14, high), (28, high), (28, 26), (8, 26), (8, 8)
+    )
     run = trace(Drawing.open(filled(tmp_path / "slot.png", outline), edge=True))
     found = distance(thin(run), outline)
     assert run.ending == "closed" and found.path_to_reference.rms_mm < 6 * UM, found
@@ -169,7 +185,9 @@ def test_small_holes_are_round(tmp_path: Path, radius_mm: float) -> None:
 @pytest.mark.parametrize("apart_mm", [0.15, 0.2])
 def test_edges_that_run_together_are_refused(tmp_path: Path, apart_mm: float) -> None:
     bars = [polyline((8, y), (28, y), (28, y + 8), (8, y + 8), (8, y)) for y in (8.0, 16 + apart_mm)]
-    with pytest.raises(DrawingFault, match=r"two edges are 0\.[012]\d mm apart at \d+\.\d,1[56]\.\d mm, .*--scale"):
+    with pytest.raises(
+        DrawingFault, match=r"two edges are 0\.[012]\d mm apart at \d+\.\d,1[56]\.\d mm, .*--scale"
+    ):
         Drawing.open(filled(tmp_path / "bars.png", *bars), edge=True)
 
 

@@ -10,12 +10,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from morfax.motion.faults import DrawingFault, LineFault
-from tests.tracer.inked import UM, WIDTH_MM, arc, corner, dot, inked, polyline
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.sensing.leg import Leg
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.start import Stance, put_down
 from morfax.tracer.head.trail import Trail
+from morfax.tracer.sensing.leg import Leg
+from tests.tracer.inked import UM, WIDTH_MM, arc, corner, dot, inked, polyline
 
 ON_IT_MM = 8 * UM  # on clean ink, as a parabola through what was felt has it; 5 um on a line along the pixels
 
@@ -28,7 +28,9 @@ def test_lengths_and_widths_of_lines(width_mm: float) -> None:
     sheet = Sheet.of(inked(polyline((4, 4), (24, 7)), arc((14, 16), 6), width_mm=width_mm))
     line = sheet.nearest((14.0, 5.5), 3.0)
     circle = sheet.longest()
-    assert line.length_mm == pytest.approx(math.hypot(20, 3) + width_mm, rel=0.2)  # area over width: for choosing only
+    assert line.length_mm == pytest.approx(
+        math.hypot(20, 3) + width_mm, rel=0.2
+    )  # area over width: for choosing only
     assert circle.length_mm == pytest.approx(math.tau * 6, rel=0.2)
     assert line.width_mm == pytest.approx(width_mm, abs=0.15 * width_mm + 30 * UM)
 
@@ -44,7 +46,9 @@ def test_ends_are_found_and_a_closed_line_has_none() -> None:
 def test_the_nearest_line_is_within_reach_or_said_to_be_far() -> None:
     sheet = Sheet.of(inked(arc((10, 10), 6)))
     assert sheet.nearest((10.0, 14.0), 3.0).length_mm > 30
-    with pytest.raises(LineFault, match=r"no line within 3 mm of 10,10 mm: the nearest is 5\.[78] mm away, at"):
+    with pytest.raises(
+        LineFault, match=r"no line within 3 mm of 10,10 mm: the nearest is 5\.[78] mm away, at"
+    ):
         sheet.nearest((10.0, 10.0), 3.0)
 
 

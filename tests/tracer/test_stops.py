@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from morfax.motion.contour import distance
-from tests.tracer.inked import UM, arc, polyline
 from morfax.tracer.program import braking as stops
+from tests.tracer.inked import UM, arc, polyline
 
 RATE_HZ = 6000.0
 BRAKE_MM_S2 = 500.0
@@ -50,7 +50,9 @@ def test_each_piece_ends_exactly_on_its_place_and_the_next_begins_there(at: list
     assert len(pieces) == len(at) + 1
     for piece, following, row in zip(pieces, pieces[1:], at, strict=False):
         x = min(row * STEP_MM, way[-1, 0])
-        assert piece[-1] == pytest.approx([x, 3.0], abs=1e-9) and following[0] == pytest.approx([x, 3.0], abs=1e-9)
+        assert piece[-1] == pytest.approx([x, 3.0], abs=1e-9) and following[0] == pytest.approx(
+            [x, 3.0], abs=1e-9
+        )
     whole = np.vstack(pieces)
     assert np.all(np.diff(whole[:, 0]) >= -1e-12)  # never back
     v = speeds(whole)[:-3]  # where a way ends it is at rest, whatever it was
@@ -83,7 +85,9 @@ def test_the_way_back_stands_where_it_turns_sharply() -> None:
     run = stops.run(polyline((0, 0), (8, 0), (8, 8)), 50.0, BRAKE_MM_S2, RATE_HZ)
     at = int(np.argmin(np.hypot(*(run - [8, 0]).T)))
     assert run[at] == pytest.approx([8, 0], abs=2 * UM)
-    assert speeds(run)[at - 2 : at + 2].max() < 1.0  # of 50 mm/s; a corner at speed would need no end of acceleration
+    assert (
+        speeds(run)[at - 2 : at + 2].max() < 1.0
+    )  # of 50 mm/s; a corner at speed would need no end of acceleration
 
 
 def test_a_way_that_begins_with_a_swivel_begins_without_a_leap() -> None:
@@ -97,4 +101,6 @@ def test_a_way_that_begins_with_a_swivel_begins_without_a_leap() -> None:
 def test_a_short_way_back_is_made_from_rest_to_rest(length_mm: float) -> None:
     v = np.r_[0.0, speeds(stops.run(polyline((0, 0), (length_mm, 0)), 50.0, BRAKE_MM_S2, RATE_HZ)), 0.0]
     assert np.abs(np.diff(v)).max() * RATE_HZ <= 2.1 * BRAKE_MM_S2
-    assert v.max() == pytest.approx(np.sqrt(BRAKE_MM_S2 * length_mm), rel=0.1)  # half way to speed, half way to rest
+    assert v.max() == pytest.approx(
+        np.sqrt(BRAKE_MM_S2 * length_mm), rel=0.1
+    )  # half way to speed, half way to rest

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from tests.tracer.inked import UM, WIDTH_MM, inked, polyline
-from morfax.tracer.sensing import photocell
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.sensing.leg import Leg, leg_of
-from morfax.tracer.junctions.edge_following import ride_past
-from morfax.tracer.junctions.choice import goes_straight, straight_on, survey
 from morfax.tracer.head.trail import Trail
+from morfax.tracer.junctions.choice import goes_straight, straight_on, survey
+from morfax.tracer.junctions.edge_following import ride_past
+from morfax.tracer.sensing import photocell
+from morfax.tracer.sensing.leg import Leg, leg_of
 from morfax.tracer.sensing.view import LEVEL, View
+from tests.tracer.inked import UM, WIDTH_MM, inked, polyline
 
 Array = NDArray[np.float64]
 VERTEX_MM = 10 * UM  # to which straight legs, 5 um aside on clean ink, meet at 45 degrees and more
@@ -73,7 +73,9 @@ def test_at_a_fork_without_a_straight_leg_the_straightest_is_taken_and_the_next_
 def test_what_has_been_followed_already_is_not_taken_again() -> None:
     eyes, incoming, _ = come_along(inked(WAY_IN, polyline((X_MM, 10), (X_MM, 18))))
     up = Trail(np.array([X_MM, 18.0]), eyes.step_mm)
-    up.add(np.column_stack([np.full(800, X_MM), np.arange(18, 10, -0.01)]))  # came down here first, then round again
+    up.add(
+        np.column_stack([np.full(800, X_MM), np.arange(18, 10, -0.01)])
+    )  # came down here first, then round again
     up.add(np.column_stack([np.arange(4, X_MM - 2, 0.01), np.full(800, 10.0)]))
     outgoing, _, choices = survey(eyes, incoming, up)
     assert outgoing is None and choices == 1  # counted, as the line is joined and not ended
@@ -109,8 +111,14 @@ def test_two_lines_that_run_into_a_tip_are_one_that_turned_back() -> None:
     assert ride is not None and ride.back is not None
     assert np.hypot(*(ride.back[0, :2] - tip)) < 0.7  # the bound for sharp tips
     back = polyline(tip, (4, 12))
-    aside = (ride.back[:, :2] - tip) @ np.array([back[1, 1] - 10, tip[0] - back[1, 0]]) / np.hypot(*(back[1] - tip))
-    assert np.abs(aside[ride.back[:, 0] < 24]).max() < 25 * UM  # on the way back, where the ink is broader than the pen
+    aside = (
+        (ride.back[:, :2] - tip)
+        @ np.array([back[1, 1] - 10, tip[0] - back[1, 0]])
+        / np.hypot(*(back[1] - tip))
+    )
+    assert (
+        np.abs(aside[ride.back[:, 0] < 24]).max() < 25 * UM
+    )  # on the way back, where the ink is broader than the pen
 
 
 def test_a_clean_line_is_not_ridden() -> None:

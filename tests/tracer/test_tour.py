@@ -5,17 +5,19 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tests.tracer.inked import arc, inked
-from morfax.tracer.program import trace_lines as tour
 from morfax.tracer.following.line import Line
-from morfax.tracer.operator.operator import Operator
 from morfax.tracer.head.settings import Settings
+from morfax.tracer.operator.operator import Operator
+from morfax.tracer.program import trace_lines as tour
+from tests.tracer.inked import arc, inked
 
 DRAWING = inked(arc((16, 16), 10))
 
 
 def line(ending: str, length_mm: float, ink_mm: float = 100.0) -> Line:
-    return Line(np.column_stack([np.linspace(0, length_mm, 50), np.zeros(50)]), ending, 0.5, length_mm, ink_mm=ink_mm)
+    return Line(
+        np.column_stack([np.linspace(0, length_mm, 50), np.zeros(50)]), ending, 0.5, length_mm, ink_mm=ink_mm
+    )
 
 
 @pytest.mark.parametrize(

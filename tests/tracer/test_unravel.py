@@ -13,9 +13,9 @@ import pytest
 from numpy.typing import NDArray
 
 from morfax.motion.contour import distance, length_mm
-from tests.tracer.inked import UM, WIDTH_MM, inked, polyline
 from morfax.tracer.following.line import Line
 from morfax.tracer.program.trace import trace
+from tests.tracer.inked import UM, WIDTH_MM, inked, polyline
 
 Array = NDArray[np.float64]
 SEEDS = pytest.mark.parametrize("seed", [None, 1, 2])
@@ -54,7 +54,9 @@ SPIKES = {
     "beside a straight line": polyline((4, 10), (14, 10), (14.2, 7.8), (14.6, 10.1), (44, 10)),
     "of 22 degrees": polyline((4, 10), (14, 10), (13.2, 11.8), (14.7, 10.2), (44, 10)),
     "at a corner": polyline((4, 10), (14, 10), (11.5, 11.2), (14.4, 10.9), (14.4, 40)),
-    "one after the other": polyline((4, 10), (12, 10), (12.3, 7.6), (12.9, 10), (13.6, 12.4), (14.0, 10), (44, 10)),
+    "one after the other": polyline(
+        (4, 10), (12, 10), (12.3, 7.6), (12.9, 10), (13.6, 12.4), (14.0, 10), (44, 10)
+    ),
 }
 
 
@@ -79,7 +81,17 @@ def test_a_tick_is_no_spike(width_mm: float, slant_degrees: float, seed: int | N
 
 
 BAY = polyline(
-    (10, 10), (30, 10), (30, 18), (23.2, 18.2), (25, 22), (20, 24), (17, 21), (22.7, 18.6), (14, 14), (10, 18), (10, 10)
+    (10, 10),
+    (30, 10),
+    (30, 18),
+    (23.2, 18.2),
+    (25, 22),
+    (20, 24),
+    (17, 21),
+    (22.7, 18.6),
+    (14, 14),
+    (10, 18),
+    (10, 10),
 )  # the mouth of the bay at (23, 18.4) is narrower than the line
 
 

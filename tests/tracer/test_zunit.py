@@ -47,11 +47,15 @@ def test_more_than_five_decades_cannot_be_set(counts: int) -> None:
 
 
 def test_the_counters_go_no_further_than_five_digits() -> None:
-    with pytest.raises(ValueError, match=r"the counters cannot show -1000.00 mm; they go from -999.99 to 999.99 mm"):
+    with pytest.raises(
+        ValueError, match=r"the counters cannot show -1000.00 mm; they go from -999.99 to 999.99 mm"
+    ):
         moves(Counters(-1), [Preset(LARGEST_COUNT)])
 
 
-@pytest.mark.parametrize("wrong", [{"sense": "left"}, {"feed_mm_s": 0.0}, {"feed_mm_s": float("inf")}, {"dwell_s": -1}])
+@pytest.mark.parametrize(
+    "wrong", [{"sense": "left"}, {"feed_mm_s": 0.0}, {"feed_mm_s": float("inf")}, {"dwell_s": -1}]
+)
 def test_what_never_ends_or_has_no_sense_is_refused(wrong: dict[str, object]) -> None:
     with pytest.raises(ValueError, match="give"):
         Preset(100, **wrong)  # type: ignore[arg-type]
@@ -72,12 +76,16 @@ def test_parts_of_a_count_are_none() -> None:
 
 
 @given(st.integers(-3000, 3000), st.integers(1, 4000), SENSES, FEEDS)
-def test_coincidence_and_rest_fall_together_on_the_count(start: int, counts: int, sense: str, feed_mm_s: float) -> None:
+def test_coincidence_and_rest_fall_together_on_the_count(
+    start: int, counts: int, sense: str, feed_mm_s: float
+) -> None:
     counters, preset = Counters(start), Preset(counts, sense, feed_mm_s)  # type: ignore[arg-type]
     z_mm = run(counters, preset)
     assert z_mm[0] == counters.z_mm and z_mm[-1] == counters.after(preset).z_mm  # exactly
     met = coincidence(z_mm, counters, preset)
-    assert met is not None and len(z_mm) - 2 <= met <= len(z_mm) - 1  # the last period may move by less than a rounding
+    assert (
+        met is not None and len(z_mm) - 2 <= met <= len(z_mm) - 1
+    )  # the last period may move by less than a rounding
     assert abs(z_mm[met] - z_mm[-1]) < 1e-6  # mm: the disc tells no such part of a count
     assert np.all(np.diff(z_mm) * (1 if sense == "up" else -1) >= 0)  # and it never comes back
     assert np.abs(np.diff(z_mm)).max() * MOTION_RATE_HZ <= feed_mm_s * (1 + 1e-9)  # rounding

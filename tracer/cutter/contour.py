@@ -25,13 +25,17 @@ from numpy.polynomial import polynomial
 
 from morfax.motion.offset import Way
 from morfax.motion.polyline import APART_MM, crossings, lengths_mm, with_places
-from morfax.tracer.head.course import hermite
-from morfax.tracer.sensing.leg import turn
 from morfax.tracer.following.line import Line
+from morfax.tracer.head.course import hermite
 from morfax.tracer.operator.operator import Halt, Operator
+from morfax.tracer.sensing.leg import turn
 from morfax.tracer.sensing.view import Array
 
-ABOUT_MM = (3.0, 2.0, 1.0)  # to either side of a place its heading is felt: as far as the contour is a cubic there,
+ABOUT_MM = (
+    3.0,
+    2.0,
+    1.0,
+)  # to either side of a place its heading is felt: as far as the contour is a cubic there,
 STRAIGHT_MM = 0.015  # within this; about a tick the head wavers by some um
 MET_MM = 1.0  # over this a contour's beginning and end are brought together
 LEFT_OUT_MM = 0.5  # to either side of where a guide line leaves: the head swivelled there
@@ -136,7 +140,8 @@ class Beside:
             if met and met[0][0] >= (1 - NEAR) / (1 + NEAR) * (len(way) - 1):
                 return met[0][1]
         return min(
-            (_nearest(way.points_mm, place_mm, k) for k, way in enumerate(self.ways)), key=lambda found: found[0]
+            (_nearest(way.points_mm, place_mm, k) for k, way in enumerate(self.ways)),
+            key=lambda found: found[0],
         )[1]
 
     def met(self, line_mm: Array) -> Iterator[tuple[float, Place]]:

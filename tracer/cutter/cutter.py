@@ -138,7 +138,9 @@ def _planned(trace: Trace, side: Side) -> list[tuple[Line, Cut | None]]:
             planned.append((line, Cut.of(line, trace.operator, first)))
         first += len(halts)
     if planned and all(line.ending == "lost" and cut is None for line, cut in planned):
-        raise replace(trace, lines=tuple(line for line, _ in planned)).fault or LineFault("no line was followed")
+        raise replace(trace, lines=tuple(line for line, _ in planned)).fault or LineFault(
+            "no line was followed"
+        )
     return planned
 
 
@@ -196,7 +198,9 @@ def _guides(cuts: Sequence[Cut], side: Side) -> list[Guide]:
     if wrong:
         raise _without_side(wrong, [cut.line.number for cut in cuts if cut.line.number not in wrong], side)
     return [
-        Guide(cut.places_mm, True, edges.is_counterclockwise(line) == ((side == "inside") == (depth % 2 == 0)))
+        Guide(
+            cut.places_mm, True, edges.is_counterclockwise(line) == ((side == "inside") == (depth % 2 == 0))
+        )
         for cut, line, depth in zip(cuts, places, edges.depths(places, crossed), strict=True)
     ]
 
@@ -204,7 +208,9 @@ def _guides(cuts: Sequence[Cut], side: Side) -> list[Guide]:
 def _without_side(wrong: dict[int, str], others: Sequence[int], side: Side) -> MotionFault:
     """The fault of lines that have no outside and no inside, with the numbers of those that have."""
     number = min(wrong)
-    alone = f", or {side} of the others alone by --lines {','.join(map(str, sorted(others)))}" if others else ""
+    alone = (
+        f", or {side} of the others alone by --lines {','.join(map(str, sorted(others)))}" if others else ""
+    )
     return MotionFault(
         f"line {number} {wrong[number]}: it has no {side}; give --side left or right, by its travel{alone}"
     )

@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 
 from morfax.motion.offset import Guide
 from morfax.motion.polyline import Nearest, crossings_of, lengths_mm, with_places
-from morfax.tracer.program import selection as contours
 from morfax.tracer.following.line import THINNED
+from morfax.tracer.program import selection as contours
 from morfax.tracer.sensing.view import Array
 
 LOOP_MM = 1.0  # a shorter loop is the head's swivel, and not drawn
@@ -71,7 +71,9 @@ def crossing(lines_mm: Sequence[Array]) -> NDArray[np.bool_]:
     for a, b in pairs:
         i, j = owner[int(a)], owner[int(b)]
         if i == j:
-            loop_mm = float(abs(np.diff(np.interp([a, b], firsts[i] + np.arange(len(lengths[i])), lengths[i]))[0]))
+            loop_mm = float(
+                abs(np.diff(np.interp([a, b], firsts[i] + np.arange(len(lengths[i])), lengths[i]))[0])
+            )
             crossed[i, i] |= min(loop_mm, lengths[i][-1] - loop_mm) > LOOP_MM
         else:
             crossed[i, j] = crossed[j, i] = True
@@ -120,7 +122,9 @@ def _free(
     """A grid that is 0 where a line runs, else 1; and which of its cells can be come to from a line's own side without crossing any."""
     columns, rows = (np.ceil(size / cell_mm).astype(int) + 5).tolist()
     free, filled, beside = np.ones((rows, columns), np.uint8), *np.zeros((2, rows, columns), np.uint8)
-    cv2.polylines(free, [np.round((line - low) / cell_mm + 2).astype(np.int32) for line in lines_mm], False, 0)
+    cv2.polylines(
+        free, [np.round((line - low) / cell_mm + 2).astype(np.int32) for line in lines_mm], False, 0
+    )
     line = np.round((own.points_mm - low) / cell_mm + 2).astype(np.int32)
     cv2.fillPoly(filled, [line], 1)
     cv2.polylines(beside, [line], True, 1, 5)

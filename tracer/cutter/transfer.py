@@ -29,16 +29,18 @@ import numpy as np
 
 from morfax.motion.feed import run_along
 from morfax.motion.polyline import lengths_mm
-from morfax.tracer.program import braking as stops
 from morfax.tracer.cutter.contour import Beside, Place
-from morfax.tracer.junctions.guides import Guide
 from morfax.tracer.following.line import Line
+from morfax.tracer.junctions.guides import Guide
+from morfax.tracer.program import braking as stops
 from morfax.tracer.program.program import BRAKE_MM_S2
 from morfax.tracer.sensing.view import Array
 
 CLEAR_MM = 0.001  # a place is clear if it is no nearer to a contour than the radius less this
 NOTHING_MM = 1e-6
-OBLIQUE = 2.0  # radii along a guide line: where it crosses the way later than this, it comes to another part of it
+OBLIQUE = (
+    2.0  # radii along a guide line: where it crosses the way later than this, it comes to another part of it
+)
 
 Distances = Callable[[Array], Array]
 
@@ -63,7 +65,9 @@ class Feed:
         rests = [len(pieces[0]) - 1, *(len(piece) - 1 for piece in pieces[1:])]
         was, now = lengths_mm(rows_mm), lengths_mm(rested)
         knots = [np.r_[0.0, np.interp(at, np.arange(len(was)), was)], np.r_[0.0, now[np.cumsum(rests)]]]
-        return rested, lambda old: _position(rested, float(np.interp(np.interp(old, np.arange(len(was)), was), *knots)))
+        return rested, lambda old: _position(
+            rested, float(np.interp(np.interp(old, np.arange(len(was)), was), *knots))
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,7 +96,9 @@ class _Run:
         k = int(begin)
         place = way_mm[k] + (begin - k) * (way_mm[min(k + 1, len(way_mm) - 1)] - way_mm[k])
         points = np.vstack([place, way_mm[k + 1 :], way_mm[1 : k + 1], place]) if begin > 0 else way_mm
-        return cls(feed.run(points), way_mm, float(np.interp(begin, np.arange(len(way_mm)), lengths_mm(way_mm))))
+        return cls(
+            feed.run(points), way_mm, float(np.interp(begin, np.arange(len(way_mm)), lengths_mm(way_mm)))
+        )
 
     def position(self, place: Place) -> float:
         """Which position is at a place of the way, fractions included, before any guide line is put in."""
@@ -193,10 +199,14 @@ def _joins(beside: Beside, rows: Array) -> tuple[float, Place]:
 def _detour(beside: Beside, guide: Guide, runs: list[_Run], feed: Feed) -> tuple[int, _Detour]:
     """A guide line off the way of a cutter, and which way that is."""
     line, xy_mm = beside.cut.line, beside.cut.line.xy_mm
-    at = {mark.at: mark.at for mark in line.marks if guide.leave < mark.at < guide.back} | {guide.tip: guide.tip}
+    at = {mark.at: mark.at for mark in line.marks if guide.leave < mark.at < guide.back} | {
+        guide.tip: guide.tip
+    }
     drilled = [mark.at for mark in line.marks if mark.at in at and mark.kind == "dot"]
     out = xy_mm[guide.leave : round(min([*drilled, guide.tip])) + 1]
-    crossed = [(at, place) for at, place in beside.met(out) if lengths_mm(out)[int(at)] < OBLIQUE * beside.radius_mm]
+    crossed = [
+        (at, place) for at, place in beside.met(out) if lengths_mm(out)[int(at)] < OBLIQUE * beside.radius_mm
+    ]
     place = crossed[0][1] if crossed else beside.foot(xy_mm[guide.leave])
     row = round(runs[place.way].position(place))
     begin, end = guide.leave, guide.back
@@ -225,14 +235,18 @@ def _lines(beside: Beside, runs: list[_Run], lead: _Lead | None) -> list[Line]:
             plain = replace(plain, reference_mm=None)
         if lead is not None and k == main:
             run.put_after(lead)
-            plain = replace(plain, guides=tuple(lead.guides), loop_from=len(lead.xy_mm) if line.is_lead else None)
+            plain = replace(
+                plain, guides=tuple(lead.guides), loop_from=len(lead.xy_mm) if line.is_lead else None
+            )
             if not cut.closed:
                 run.at[len(line.xy_mm) - 1] = len(run.xy_mm) - 1
         marks = [replace(mark, at=run.at[mark.at]) for mark in line.marks if mark.at in run.at]
         made = replace(plain, xy_mm=run.xy_mm, guides=(*plain.guides, *run.guides))
         made = replace(made, marks=tuple(replace(mark, place_mm=made.place(mark.at)) for mark in marks))
         ours = sorted((run.at[stop.at], stop.number or 0) for stop in cut.stops if stop.at in run.at)
-        lines.append(replace(made, length_mm=float(lengths_mm(run.xy_mm)[-1]), numbers=tuple(n for _, n in ours)))
+        lines.append(
+            replace(made, length_mm=float(lengths_mm(run.xy_mm)[-1]), numbers=tuple(n for _, n in ours))
+        )
     return lines
 
 

@@ -51,7 +51,10 @@ class Patches:
         """Width or height of each patch, whichever is more; pixels."""
         sides = []
         for low, high in ((self.row, self.row + 1), (self.begin, self.end)):
-            least, most = np.full(self.count, np.iinfo(np.int32).max, np.int32), np.zeros(self.count, np.int32)
+            least, most = (
+                np.full(self.count, np.iinfo(np.int32).max, np.int32),
+                np.zeros(self.count, np.int32),
+            )
             np.minimum.at(least, self.patch, low)
             np.maximum.at(most, self.patch, high)
             sides.append(most - least)

@@ -22,8 +22,8 @@ from scipy.ndimage import map_coordinates
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import Path
 from morfax.motion.polyline import lengths_mm
-from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.components import Mask, Patches, runs_of, strips
+from morfax.tracer.drawing.drawing import Drawing
 
 Array = NDArray[np.float64]
 
@@ -34,7 +34,9 @@ STANDS, LEAP = (
     10.0,
 )  # of these: round a corner, and from one leg of a corner to the other, the edge is not on the line
 WIDEST = 1.3  # of the usual width: beyond this the ink's middle means nothing
-AVERAGED_MM = 0.5  # the middle of the ink is averaged along the path over this, against the noise of the paper
+AVERAGED_MM = (
+    0.5  # the middle of the ink is averaged along the path over this, against the noise of the paper
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +85,9 @@ def deviation(drawing: Drawing, path: Path | Sequence[Array], over: Sequence[Arr
     places = [_places(run) for run in runs if len(run) > 1]
     places = [(points, headings) for points, headings in places if len(points)]
     if not places:
-        raise MotionFault("the path has no run with the tool in the work; nothing to compare with the drawing")
+        raise MotionFault(
+            "the path has no run with the tool in the work; nothing to compare with the drawing"
+        )
     width_mm = _line_width(drawing, places)
     errors = [_averaged(_across(drawing, points, headings, width_mm)) for points, headings in places]
     if not any(np.isfinite(error).any() for error in errors):
@@ -120,7 +124,10 @@ def _places(run: Array, every_mm: float = EVERY_MM) -> tuple[Array, Array]:
     at = np.arange(0.5 * every_mm, s[-1], every_mm)
     points = np.column_stack([np.interp(at, s, run[:, 0]), np.interp(at, s, run[:, 1])])
     half = 0.5 * EVERY_MM
-    ends = [np.column_stack([np.interp(at + d, s, run[:, 0]), np.interp(at + d, s, run[:, 1])]) for d in (-half, half)]
+    ends = [
+        np.column_stack([np.interp(at + d, s, run[:, 0]), np.interp(at + d, s, run[:, 1])])
+        for d in (-half, half)
+    ]
     way = ends[1] - ends[0]
     return points, np.arctan2(way[:, 1], way[:, 0])
 
@@ -149,7 +156,9 @@ def _line_width(drawing: Drawing, places: list[tuple[Array, Array]]) -> float:
             break
         reach *= 2
     if not len(found):
-        raise MotionFault("the path lies nowhere on the drawing's ink; check that both have the same scale and origin")
+        raise MotionFault(
+            "the path lies nowhere on the drawing's ink; check that both have the same scale and origin"
+        )
     return float(np.median(found))
 
 
@@ -199,7 +208,10 @@ def _averaged(errors: Array) -> Array:
 def _missed(drawing: Drawing, runs: Sequence[Array], width_mm: float) -> tuple[float, float]:
     """Length of ink that no path covers, and of all ink, mm: area over the line's width; specks do not count."""
     patches = Patches.of(
-        runs_of((cv2.GaussianBlur(drawing.darkness[rows], (0, 0), 0.7) > 0.5)[top - rows.start :][: bottom - top], top)
+        runs_of(
+            (cv2.GaussianBlur(drawing.darkness[rows], (0, 0), 0.7) > 0.5)[top - rows.start :][: bottom - top],
+            top,
+        )
         for top, bottom, rows in strips(drawing.darkness.shape, halo=8)
     )
     counts = patches.areas * drawing.pitch_mm**2 >= width_mm**2
@@ -218,6 +230,8 @@ def _covered(drawing: Drawing, runs: Sequence[Array], width_mm: float) -> Mask:
     covered = np.zeros((rows, columns), np.uint8)
     thickness = max(1, round((1.6 * width_mm) / drawing.pitch_mm))
     for run in runs:
-        pixels = np.column_stack([run[:, 0] / drawing.pitch_mm - 0.5, rows - run[:, 1] / drawing.pitch_mm - 0.5])
+        pixels = np.column_stack(
+            [run[:, 0] / drawing.pitch_mm - 0.5, rows - run[:, 1] / drawing.pitch_mm - 0.5]
+        )
         cv2.polylines(covered, [np.round(pixels * 16).astype(np.int32)], False, 1, thickness, cv2.LINE_8, 4)
     return covered

@@ -26,8 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.faults import DrawingFault, FileFault
-from morfax.tracer.drawing import inks
-from morfax.tracer.drawing import paper
+from morfax.tracer.drawing import inks, paper
 from morfax.tracer.drawing import memory as room
 from morfax.tracer.drawing.components import Patches, runs_of, strips
 from morfax.tracer.drawing.shapes import outlined
@@ -97,7 +96,9 @@ class Drawing:
         )
         if abs(pitch[0] / pitch[1] - 1) > 1e-3:  # a fax has oblong pixels
             size = grey.shape[1], round(grey.shape[0] * pitch[1] / pitch[0])
-            grey = np.asarray(cv2.resize(grey.astype(np.float32), size, interpolation=cv2.INTER_LINEAR), np.float32)
+            grey = np.asarray(
+                cv2.resize(grey.astype(np.float32), size, interpolation=cv2.INTER_LINEAR), np.float32
+            )
         if edge:
             line = outlined(grey, pitch[0])
             return cls(line.darkness, pitch[0] / line.finer, file, line.finer, line.edges_mm)
@@ -139,7 +140,9 @@ def _read(file: Path, *, coloured: bool) -> tuple[Grey, tuple[float, float] | No
                 ImageOps.exif_transpose(image, in_place=True)
                 return np.array(image.convert("RGB")) if coloured else _grey(image), stated
     except UnidentifiedImageError:
-        raise DrawingFault(f"{file} is not an image that can be read; give a PNG, JPEG or TIFF file") from None
+        raise DrawingFault(
+            f"{file} is not an image that can be read; give a PNG, JPEG or TIFF file"
+        ) from None
     except FileNotFoundError:
         raise FileFault(f"{file} does not exist; check the name") from None
     except MemoryError:
@@ -222,14 +225,18 @@ def _pitches_mm(
     if dpi is not None:
         return (MM_PER_INCH / dpi,) * 2
     if stated is None:
-        raise DrawingFault(f"{file} states no resolution; give --dpi 300, or the sheet's width with --width 120mm")
+        raise DrawingFault(
+            f"{file} states no resolution; give --dpi 300, or the sheet's width with --width 120mm"
+        )
     return MM_PER_INCH / stated[0], MM_PER_INCH / stated[1]
 
 
 def _ink_contrast(contrast: Darkness, pitch_mm: float) -> float:
     """Contrast of the strokes against the paper, grey levels: what the darker part of the longer strokes has."""
     every = max(4, math.isqrt(contrast.size // FEWEST_SAMPLES))
-    sample = np.concatenate([soft[-top % every :: every, ::every].ravel() for top, soft in _softened(contrast)])
+    sample = np.concatenate(
+        [soft[-top % every :: every, ::every].ravel() for top, soft in _softened(contrast)]
+    )
     centre = float(np.median(sample))
     noise = 1.4826 * float(np.median(np.abs(sample - centre)))
     least = max(LEAST_CONTRAST, centre + 6 * noise)

@@ -22,8 +22,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.faults import DrawingFault
-from morfax.tracer.drawing.paper import Paper
 from morfax.tracer.drawing.components import strips
+from morfax.tracer.drawing.paper import Paper
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]  # rows from the top, columns, channels
@@ -52,7 +52,9 @@ def parsed(text: str) -> Colour:
     try:
         return ImageColor.getrgb(text.strip())[:3]
     except ValueError:
-        raise ValueError(f"{text!r} is no colour; give a name such as blue, or #rrggbb such as #0000c0") from None
+        raise ValueError(
+            f"{text!r} is no colour; give a name such as blue, or #rrggbb such as #0000c0"
+        ) from None
 
 
 def covered(picture: Picture, wanted: Colour, pitch_mm: float | None = None) -> NDArray[np.float32]:

@@ -44,7 +44,9 @@ class Paper:
         across = 2 * (max(24, round(WIDEST_STROKE_MM / pitch_mm)) // (2 * by)) + 1
         stroke = _disc(across // 2)
         relief = small - cv2.blur(small, (across, across))
-        is_light = float((relief**3).sum()) <= 0  # strokes take less room than paper: the few stand out further
+        is_light = (
+            float((relief**3).sum()) <= 0
+        )  # strokes take less room than paper: the few stand out further
         level = cv2.morphologyEx(small, cv2.MORPH_CLOSE if is_light else cv2.MORPH_OPEN, stroke)
         smooth = np.asarray(cv2.GaussianBlur(level, (0, 0), across / 2), np.float32)
         return cls(smooth, by, grey.shape[1], is_light, by * pitch_mm)
@@ -52,13 +54,17 @@ class Paper:
     def rows(self, top: int, bottom: int) -> Levels:
         """The paper of some rows of the picture."""
         first, last = max(0, top // self.by - 1), min(len(self.reduced), -(-bottom // self.by) + 1)
-        large = cv2.resize(self.reduced[first:last], None, fx=self.by, fy=self.by, interpolation=cv2.INTER_LINEAR)
+        large = cv2.resize(
+            self.reduced[first:last], None, fx=self.by, fy=self.by, interpolation=cv2.INTER_LINEAR
+        )
         return np.asarray(large[top - first * self.by : bottom - first * self.by, : self.columns], np.float32)
 
     def shapes(self, contrast: float) -> NDArray[np.bool_]:
         """Where the paper is as dark as ink of a contrast, or nearly, on the reduced picture: filled shapes that are broader than a stroke, and about them."""
         away = self.reduced.max() - self.reduced if self.is_light else self.reduced - self.reduced.min()
-        grown = cv2.dilate((away > SHAPE * contrast).view(np.uint8), _disc(round(WIDEST_STROKE_MM / 2 / self.pitch_mm)))
+        grown = cv2.dilate(
+            (away > SHAPE * contrast).view(np.uint8), _disc(round(WIDEST_STROKE_MM / 2 / self.pitch_mm))
+        )
         return np.asarray(grown, bool)
 
 

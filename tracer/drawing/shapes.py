@@ -23,8 +23,8 @@ from numpy.typing import NDArray
 
 from morfax.motion.faults import DrawingFault
 from morfax.motion.polyline import with_places
-from morfax.tracer.drawing.spacing import finer
 from morfax.tracer.drawing.sharpening import APART_PX, sharpened
+from morfax.tracer.drawing.spacing import finer
 
 EDGE_MM = 0.4  # at 300 dpi less than five pixels; with 0.3 mm a gear of 24 teeth did not close
 SOFT_PX = 0.7  # standard deviation: against the noise of the paper
@@ -78,12 +78,16 @@ def _mm(outline: Array, shape: tuple[int, ...], pitch_mm: float) -> Array:
 
 
 def _none() -> DrawingFault:
-    return DrawingFault("no filled shape on the drawing: nothing on it has an edge; leave --edge out for lines")
+    return DrawingFault(
+        "no filled shape on the drawing: nothing on it has an edge; leave --edge out for lines"
+    )
 
 
 def _share(soft: Grey, pitch_mm: float) -> Grey:
     """How much of each pixel is the darker of paper and shape, 0..1."""
-    level = np.full_like(soft, cv2.threshold(np.clip(soft, 0, 255).astype(np.uint8), 0, 255, cv2.THRESH_OTSU)[0])
+    level = np.full_like(
+        soft, cv2.threshold(np.clip(soft, 0, 255).astype(np.uint8), 0, 255, cv2.THRESH_OTSU)[0]
+    )
     for _ in range(2):  # the second time by levels that are those of the place
         dark = (soft <= level).view(np.uint8)
         if not 0 < int(dark.sum()) < dark.size:
@@ -99,16 +103,24 @@ def _level(soft: Grey, part: NDArray[np.uint8], pitch_mm: float) -> Grey:
     """The level of one part of the picture round about each pixel; far from it that of the part on the whole."""
     inner = cv2.erode(part, np.ones((2 * FADES_PX + 1,) * 2, np.uint8))
     inner = (inner if inner.any() else part).astype(np.float32)
-    size, small = (soft.shape[1], soft.shape[0]), (max(1, soft.shape[1] // REDUCED), max(1, soft.shape[0] // REDUCED))
+    size, small = (
+        (soft.shape[1], soft.shape[0]),
+        (max(1, soft.shape[1] // REDUCED), max(1, soft.shape[0] // REDUCED)),
+    )
     whole = float(np.median(soft[inner > 0]))
     about_px = ROUND_ABOUT_MM / pitch_mm / REDUCED
     total, count = (
         cv2.GaussianBlur(
-            cv2.resize(each, small, interpolation=cv2.INTER_AREA), (0, 0), about_px, borderType=cv2.BORDER_REFLECT
+            cv2.resize(each, small, interpolation=cv2.INTER_AREA),
+            (0, 0),
+            about_px,
+            borderType=cv2.BORDER_REFLECT,
         )
         for each in ((soft - whole) * inner, inner)
     )
-    return np.asarray(whole + cv2.resize(total / (count + 1e-3), size, interpolation=cv2.INTER_LINEAR), np.float32)
+    return np.asarray(
+        whole + cv2.resize(total / (count + 1e-3), size, interpolation=cv2.INTER_LINEAR), np.float32
+    )
 
 
 def _refuse_lines(share: Grey, pitch_mm: float) -> None:
@@ -137,7 +149,9 @@ def _refuse_cut(edges: list[Array], shape: tuple[int, ...], pitch_mm: float) -> 
 def _softness_px(share: Grey, edges: list[Array]) -> float:
     """Standard deviation of the lens, pixels, by how steep the edges are: 1/(√(2π) · steepness)."""
     rows, columns = np.round(np.vstack(edges)).astype(int).T
-    steep = np.hypot(cv2.Sobel(share, cv2.CV_32F, 1, 0, scale=1 / 8), cv2.Sobel(share, cv2.CV_32F, 0, 1, scale=1 / 8))
+    steep = np.hypot(
+        cv2.Sobel(share, cv2.CV_32F, 1, 0, scale=1 / 8), cv2.Sobel(share, cv2.CV_32F, 0, 1, scale=1 / 8)
+    )
     steepness = float(np.percentile(steep[rows, columns], 60))
     # the Sobel cells are themselves as soft as (1, 2, 1)/4 along and across, and the pixel as a twelfth
     return float(np.sqrt(max(1 / (2 * np.pi * steepness**2) - 0.4, SOFT_PX**2)))
@@ -150,13 +164,17 @@ def _refined(edges: list[Array], share: Grey) -> list[Array]:
     surface = spline_filter(share, 3, output=np.float32)
 
     def height(places: Array) -> Array:
-        return np.asarray(map_coordinates(surface, places.T, order=3, prefilter=False, mode="nearest"), np.float64)
+        return np.asarray(
+            map_coordinates(surface, places.T, order=3, prefilter=False, mode="nearest"), np.float64
+        )
 
     refined, nearby = list[Array](), SLOPE_PX * np.eye(2)
     for edge in edges:
         places = with_places(edge, APART_PX)
         for _ in range(2):  # steps of Newton's
-            slope = np.column_stack([height(places + way) - height(places - way) for way in nearby]) / (2 * SLOPE_PX)
+            slope = np.column_stack([height(places + way) - height(places - way) for way in nearby]) / (
+                2 * SLOPE_PX
+            )
             step = (height(places) - 0.5) / np.maximum((slope**2).sum(axis=1), LEAST_SLOPE**2)
             places = places - np.clip(step, -0.5, 0.5)[:, None] * slope
         refined.append(np.vstack([places[:-1], places[:1]]))

@@ -59,7 +59,9 @@ def sharpened(outline: Array, softness_px: float) -> Edge:
     places = _evenly(outline)
     turns = _corners(places, softness_px)
     parts, middles, come = list[Array](), list[int](), 0
-    for first, last, corner in [found for k in range(len(turns)) if (found := _corner(places, turns, k, softness_px))]:
+    for first, last, corner in [
+        found for k in range(len(turns)) if (found := _corner(places, turns, k, softness_px))
+    ]:
         if last > first >= come:
             parts += [places[come : first + 1], corner]
             middles.append(sum(map(len, parts)) - len(corner) + len(corner) // 2)
@@ -104,11 +106,16 @@ def _corner(places: Array, corners: list[int], k: int, softness_px: float) -> tu
     after = (corners[k + 1] if k + 1 < len(corners) else corners[0] + len(places)) - at
     angle, radius, taken_off, found = math.pi / 2, 0.0, 0.0, None
     for _ in range(TRIES):
-        away = max(CLEAR / max(math.sin(min(angle, math.pi / 2)), 0.2), _touch(angle, radius) + CLEAR_OF_ROUND) * dense
+        away = (
+            max(CLEAR / max(math.sin(min(angle, math.pi / 2)), 0.2), _touch(angle, radius) + CLEAR_OF_ROUND)
+            * dense
+        )
         spans = [min(away + LEG * dense, gap - CLEAR * dense, len(places) / 2) for gap in (before, after)]
         if min(spans) - away < SHORTEST_LEG * dense:
             break
-        legs = [_felt(places, at, sign * away, sign * span) for sign, span in zip((-1, 1), spans, strict=True)]
+        legs = [
+            _felt(places, at, sign * away, sign * span) for sign, span in zip((-1, 1), spans, strict=True)
+        ]
         met = _met(*legs)
         if met is None:
             return None
@@ -148,7 +155,9 @@ def _rounded(vertex: Array, towards: tuple[Array, Array], radius_px: float) -> A
     t, w = towards
     angle, inward = _between(t, w), -(t + w) / np.hypot(*(t + w))
     turns = math.copysign(math.pi - angle, t[1] * w[0] - t[0] * w[1])
-    outward = math.atan2(-inward[1], -inward[0]) + turns * np.linspace(-0.5, 0.5, 3 + math.ceil(abs(turns) * radius_px))
+    outward = math.atan2(-inward[1], -inward[0]) + turns * np.linspace(
+        -0.5, 0.5, 3 + math.ceil(abs(turns) * radius_px)
+    )
     middle = vertex + inward * radius_px / math.sin(angle / 2)
     return np.asarray(middle + radius_px * np.column_stack([np.cos(outward), np.sin(outward)]))
 
@@ -233,4 +242,6 @@ def _seen(angle: float, radius: float, way: float) -> float:
         np.where(x < radius / math.sin(half) - radius, 0, arc),
         np.maximum(x, 0) * math.tan(half),
     )
-    return float(np.trapezoid(erf(across / math.sqrt(2)) * np.exp(-0.5 * (x - way) ** 2), x)) / math.sqrt(2 * math.pi)
+    return float(np.trapezoid(erf(across / math.sqrt(2)) * np.exp(-0.5 * (x - way) ** 2), x)) / math.sqrt(
+        2 * math.pi
+    )

@@ -20,8 +20,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from morfax.motion.faults import DrawingFault, LineFault
-from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.components import Mask, Patches, runs_of, strips
+from morfax.tracer.drawing.drawing import Drawing
 
 Array = NDArray[np.float64]
 Pixels = NDArray[Any]
@@ -85,10 +85,16 @@ class Sheet:
         deep = np.bincount(patches.patch, np.concatenate(depths), patches.count) / areas
         widths = np.maximum(4 * deep - 2, 1.0)  # a line of w pixels has depths 1, 2 … w/2 … 2, 1
         sheet = cls(
-            drawing, patches, areas / widths * drawing.pitch_mm, widths * drawing.pitch_mm, _are_solid(drawing, patches)
+            drawing,
+            patches,
+            areas / widths * drawing.pitch_mm,
+            widths * drawing.pitch_mm,
+            _are_solid(drawing, patches),
         )
         if not sheet._long_enough().any():
-            raise DrawingFault("no line on the drawing: nothing on it is long enough; check the file and its scale")
+            raise DrawingFault(
+                "no line on the drawing: nothing on it is long enough; check the file and its scale"
+            )
         return sheet
 
     def longest(self) -> Stroke:
@@ -128,7 +134,9 @@ class Sheet:
 
     def _mm(self, rows: Pixels, columns: Pixels) -> Array:
         pitch = self.drawing.pitch_mm
-        return np.column_stack([(columns + 0.5) * pitch, (self.drawing.darkness.shape[0] - rows - 0.5) * pitch])
+        return np.column_stack(
+            [(columns + 0.5) * pitch, (self.drawing.darkness.shape[0] - rows - 0.5) * pitch]
+        )
 
     def stroke(self, patch: int) -> Stroke:
         """A patch as a line, with its middle places."""
@@ -136,7 +144,9 @@ class Sheet:
         disc_px = max(4, round(1.5 * self.widths_mm[patch] / self.drawing.pitch_mm))
         top, bottom, left, right = self.patches.box(chosen)
         tiles = [
-            self._middles(chosen, disc_px, (row, min(row + TILE_PX, bottom)), (column, min(column + TILE_PX, right)))
+            self._middles(
+                chosen, disc_px, (row, min(row + TILE_PX, bottom)), (column, min(column + TILE_PX, right))
+            )
             for row in range(top, bottom, TILE_PX)
             for column in range(left, right, TILE_PX)
         ]
@@ -174,7 +184,8 @@ def _are_solid(drawing: Drawing, patches: Patches) -> NDArray[np.bool_]:
     if drawing.shapes is None:
         return np.zeros(patches.count, bool)
     down, across = (
-        math.ceil(whole / part) for whole, part in zip(drawing.darkness.shape, drawing.shapes.shape, strict=True)
+        math.ceil(whole / part)
+        for whole, part in zip(drawing.darkness.shape, drawing.shapes.shape, strict=True)
     )
     beside = drawing.shapes[patches.row // down, (patches.begin + patches.end) // 2 // across]
     inked = np.bincount(patches.patch, beside * (patches.end - patches.begin), patches.count)
@@ -203,4 +214,6 @@ def _run_sums(values: NDArray[np.float32], ink: Mask, runs: tuple[Pixels, Pixels
     _, begin, end = runs
     if not len(begin):
         return np.empty(0)
-    return np.asarray(np.add.reduceat(values[ink.view(bool)].astype(float), np.r_[0, np.cumsum(end - begin)[:-1]]))
+    return np.asarray(
+        np.add.reduceat(values[ink.view(bool)].astype(float), np.r_[0, np.cumsum(end - begin)[:-1]])
+    )

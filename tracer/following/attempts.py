@@ -24,25 +24,31 @@ from morfax.motion.faults import LineFault
 from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.strokes import INK
+from morfax.tracer.following.edge_check import kept_to
 from morfax.tracer.following.enlarger import enlarged, reduced
 from morfax.tracer.following.follower import Followed, Follower
-from morfax.tracer.following.edge_check import kept_to
-from morfax.tracer.sensing.leg import turn
 from morfax.tracer.following.line import THINNED
-from morfax.tracer.drawing.strokes import INK
-from morfax.tracer.operator.operator import Direction, Operator
-from morfax.tracer.head.settings import Settings
 from morfax.tracer.following.start import Stance, turned_round
+from morfax.tracer.head.settings import Settings
 from morfax.tracer.junctions.choice import SIDES, Side
+from morfax.tracer.operator.operator import Direction, Operator
+from morfax.tracer.sensing.leg import turn
 
-SHORTER = 0.95  # the other way round is the line itself if it is shorter than this: straight on has led elsewhere
+SHORTER = (
+    0.95  # the other way round is the line itself if it is shorter than this: straight on has led elsewhere
+)
 DOUBTS = 8  # looked into, of a run
 TURNS = 12  # junctions at which another turn is tried
 TRIED_MM = 6000.0  # travel in all that is spent on other turns
 TWICE = 0.1  # of a run: legs that end in one tip run together for less, as crossing lines do
-ALONG = 0.1  # widths from place to place of it, and twice that from a place on its way back along the same line
+ALONG = (
+    0.1  # widths from place to place of it, and twice that from a place on its way back along the same line
+)
 AGAIN = 4  # widths on from a place, the run may come by it again
-OVERRUN_MM = 3.0  # a stub as short, straight on from a closed line, is where the pen set out, and not another's line
+OVERRUN_MM = (
+    3.0  # a stub as short, straight on from a closed line, is where the pen set out, and not another's line
+)
 
 Told = Callable[[float], None]
 
@@ -91,7 +97,9 @@ class Attempts:
     def run(self, stance: Stance, turns: tuple[int, ...] = ()) -> Followed:
         """Follow from a stance."""
         times, told = self.drawing.enlarged, self.told
-        follower = Follower(enlarged(stance, times), self.settings, MOTION_RATE_HZ, turns, self.sides, self.tips)
+        follower = Follower(
+            enlarged(stance, times), self.settings, MOTION_RATE_HZ, turns, self.sides, self.tips
+        )
         reduced_told = None if told is None else lambda come_mm: told(come_mm / times)
         run = reduced(follower.follow(times * self.longest_mm, reduced_told))
         return kept_to(self.drawing.edges_mm, run)
@@ -104,7 +112,10 @@ class Attempts:
         if (there_and_back := self._through_tips(stance, run)) is not None:
             return there_and_back
         other = self.run(turned_about(stance))
-        if run.ending != "closed" and (there_and_back := self._through_tips(turned_about(stance), other)) is not None:
+        if (
+            run.ending != "closed"
+            and (there_and_back := self._through_tips(turned_about(stance), other)) is not None
+        ):
             return there_and_back
         if run.ending == "closed":
             if other.ending == "closed" and other.travel_mm < SHORTER * run.travel_mm:
@@ -112,7 +123,10 @@ class Attempts:
             return self._taken_in(stance, run)
         if run.ending == "ended":
             back = self.run(turned_round(run.positions_mm[-1], run.heading_rad, run.view))
-            if other.ending == "closed" and not other.travel_mm < back.travel_mm < other.travel_mm + OVERRUN_MM:
+            if (
+                other.ending == "closed"
+                and not other.travel_mm < back.travel_mm < other.travel_mm + OVERRUN_MM
+            ):
                 return other
             return max(run, back, key=lambda r: r.travel_mm)
         if other.ending == "closed":

@@ -41,7 +41,9 @@ def kept_to(edges_mm: tuple[Array, ...], run: Followed) -> Followed:
         worst = int(np.argmax(missed_mm))
         if missed_mm[worst] > OFF_MM:
             return _lost(
-                run, THINNED * int(passed[worst]), f"it leaves the edge out {missed_mm[worst]:.2f} mm beside its way"
+                run,
+                THINNED * int(passed[worst]),
+                f"it leaves the edge out {missed_mm[worst]:.2f} mm beside its way",
             )
     return run
 

@@ -22,21 +22,21 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from morfax.motion.faults import LineFault
+from morfax.tracer.following.start import Stance
 from morfax.tracer.head import course
 from morfax.tracer.head import kernel as head
 from morfax.tracer.head.carriage import Carriage
-from morfax.tracer.marks.dots import disc, dot_ahead, dot_at_end
-from morfax.tracer.junctions.guides import Guide, Junctions
-from morfax.tracer.junctions.rings import fork_in
-from morfax.tracer.sensing.leg import Leg, end_of, leg_of, turn
 from morfax.tracer.head.loop import loop_in
-from morfax.tracer.junctions.width_change import Onward, another_pen, of_another_pen
-from morfax.tracer.junctions.planner import Pilot
 from morfax.tracer.head.settings import Settings
-from morfax.tracer.following.start import Stance
 from morfax.tracer.junctions.choice import AHEAD, SIDES, Side, Way, goes_straight, survey, turns_off
-from morfax.tracer.tangles.memory import Tangles
+from morfax.tracer.junctions.guides import Guide, Junctions
+from morfax.tracer.junctions.planner import Pilot
+from morfax.tracer.junctions.rings import fork_in
+from morfax.tracer.junctions.width_change import Onward, another_pen, of_another_pen
+from morfax.tracer.marks.dots import disc, dot_ahead, dot_at_end
+from morfax.tracer.sensing.leg import Leg, end_of, leg_of, turn
 from morfax.tracer.sensing.view import Array, View
+from morfax.tracer.tangles.memory import Tangles
 
 SWELLS = 0.5  # of the change of a clean line's width is usual from then on
 BACK_MM = 4.0  # a junction that the head comes back to is no further ahead: a speck may end the clean line before it
@@ -55,7 +55,9 @@ class Followed:
         tuple[float, float], ...
     ]  # places of the junctions, in the order in which the head came to them
     fault: LineFault | None = None
-    loop_from: int | None = None  # the position at which the loop of a joined line begins: before it is the lead line
+    loop_from: int | None = (
+        None  # the position at which the loop of a joined line begins: before it is the lead line
+    )
     guides: tuple[Guide, ...] = ()
     at_tip: bool = False  # it ended where another line, that has not been followed, ends too
     doubts: tuple[
@@ -63,7 +65,9 @@ class Followed:
     ] = ()  # where another way would have done as well: the junction, and the way's rank
 
 
-Anchor = tuple[Array, float, float]  # a place from which on the line is clean, the heading there, and the travel
+Anchor = tuple[
+    Array, float, float
+]  # a place from which on the line is clean, the heading there, and the travel
 
 
 class Follower:
@@ -108,7 +112,9 @@ class Follower:
                 self.carriage.retune(self.view)
                 continue
             if why != head.MORE and self.settings.direct_rad_s_mm > 0:
-                why_lost = "the swinging cell sees no more ink, and this head has no guard cells to find on by"
+                why_lost = (
+                    "the swinging cell sees no more ink, and this head has no guard cells to find on by"
+                )
                 return self._lost(why_lost, "go slower there with --speed, or follow with --head precise")
             if why != head.MORE:
                 ending = self._through_knot()
@@ -194,7 +200,10 @@ class Follower:
     def _trail_behind(self) -> Array:
         """The last stretch of the trail as stations of the line, (n, 3)."""
         places = np.vstack(
-            [self.carriage.trail.recent()[-round(self.view.leg_mm / self.view.step_mm) :], self.carriage.stands()[0]]
+            [
+                self.carriage.trail.recent()[-round(self.view.leg_mm / self.view.step_mm) :],
+                self.carriage.stands()[0],
+            ]
         )
         return np.column_stack([places, np.full(len(places), self.view.width_mm)])
 
@@ -207,7 +216,9 @@ class Follower:
         number = self._junctions.next(self.carriage.travel_mm)
         side = self._sides[number] if number < len(self._sides) else None
         leads = number == 0 and self.stance.reference_mm is not None
-        found = outgoing, _, choices = survey(self.view, incoming, trail, self._turns.count(number), side, leads=leads)
+        found = outgoing, _, choices = survey(
+            self.view, incoming, trail, self._turns.count(number), side, leads=leads
+        )
         if choices > 1:
             place = self._place_of(incoming, found)
             self._junctions.come_to(place, self.carriage.travel_mm)
@@ -239,7 +250,9 @@ class Follower:
         """Where a junction is: where the way out, or else a line that turns off from it, meets the way in."""
         ways = [found, *(survey(self.view, incoming, self.carriage.trail, side=side) for side in SIDES)]
         met = [
-            legs_mm for leg, legs_mm, _ in ways if legs_mm is not None and leg is not None and turns_off(incoming, leg)
+            legs_mm
+            for leg, legs_mm, _ in ways
+            if legs_mm is not None and leg is not None and turns_off(incoming, leg)
         ]
         return incoming.at(met[0][0]) if met else incoming.end_mm
 
@@ -266,7 +279,9 @@ class Follower:
     def _across_to_home(self, incoming: Leg, end_mm: float) -> Followed:
         """Run to the end of the line, and across the paper to the end at which the head began."""
         way, along = course.onto(*self.carriage.stands(), incoming, end_mm)
-        self.carriage.run([np.vstack([way, course.along_leg(incoming, along, end_mm)])], self.settings.speed_mm_s)
+        self.carriage.run(
+            [np.vstack([way, course.along_leg(incoming, along, end_mm)])], self.settings.speed_mm_s
+        )
         self.carriage.run([self._way_home()])
         return self._done("closed")
 
@@ -274,7 +289,9 @@ class Follower:
         """Run to an end of the line; back from there, if it is a guide line's, or a tip in which two lines have run together."""
         way, along = course.onto(*self.carriage.stands(), incoming, end_mm)
         self.carriage.run([np.vstack([way, course.along_leg(incoming, along, end_mm)])])
-        self._at_tip = self._tangles.goes_back(self.carriage.stands()[0], self.carriage.trail, self.view.width_mm)
+        self._at_tip = self._tangles.goes_back(
+            self.carriage.stands()[0], self.carriage.trail, self.view.width_mm
+        )
         to_tip = self._at_tip and self._tips
         if joined and not to_tip:
             return self._done("joined")
@@ -306,7 +323,11 @@ class Follower:
         here = int(np.argmin(back))
         i = max(0, here - round(self.view.leg_mm / self.view.step_mm))
         way = seen[i + 2, :2] - seen[i, :2]
-        return seen[i, :2], math.atan2(way[1], way[0]), self.carriage.travel_mm - (here - i) * self.view.step_mm
+        return (
+            seen[i, :2],
+            math.atan2(way[1], way[0]),
+            self.carriage.travel_mm - (here - i) * self.view.step_mm,
+        )
 
     def _home_on(self, stretches: list[Array]) -> list[Array] | None:
         """The course up to home, if it passes home on home's heading."""
@@ -351,7 +372,9 @@ class Follower:
         )
         return done if ending != "joined" else _without_repeat(done)
 
-    def _lost(self, why: str, instead: str = "bridge a gap with --gap, or scan at a higher resolution") -> Followed:
+    def _lost(
+        self, why: str, instead: str = "bridge a gap with --gap, or scan at a higher resolution"
+    ) -> Followed:
         """The end of a line that was lost: the fault says where, and what may be done instead."""
         place_mm, heading = self.carriage.stands()
         x, y = place_mm / self.view.enlarged

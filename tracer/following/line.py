@@ -18,12 +18,12 @@ import numpy as np
 
 from morfax.motion.faults import LineFault
 from morfax.motion.polyline import lengths_mm
-from morfax.tracer.junctions.gaps import Break, breaks
 from morfax.tracer.following.follower import Followed
-from morfax.tracer.junctions.guides import Guide
-from morfax.tracer.sensing.leg import turn
-from morfax.tracer.marks.marks import Mark, marks_along
 from morfax.tracer.junctions.choice import TURNS_OFF, Side
+from morfax.tracer.junctions.gaps import Break, breaks
+from morfax.tracer.junctions.guides import Guide
+from morfax.tracer.marks.marks import Mark, marks_along
+from morfax.tracer.sensing.leg import turn
 from morfax.tracer.sensing.view import Array
 
 THINNED = 30  # of the positions one in so many tells where a line is: every 50 um at 10 mm/s
@@ -74,7 +74,9 @@ class Line:
             run.guides,
             reference_mm,
             run.junctions_mm,
-            breaks=breaks(run.view, run.positions_mm, run.ending == "ended") if run.ending in ("ended", "lost") else (),
+            breaks=breaks(run.view, run.positions_mm, run.ending == "ended")
+            if run.ending in ("ended", "lost")
+            else (),
         )
 
     @classmethod
@@ -82,7 +84,13 @@ class Line:
         """A dot that stands alone, a drill point without a guide line."""
         place_mm = (float(centre_mm[0]), float(centre_mm[1]))
         return cls(
-            np.tile(centre_mm, (2, 1)), "ended", width_mm, 0.0, None, number, marks=(Mark("dot", place_mm, 0.0),)
+            np.tile(centre_mm, (2, 1)),
+            "ended",
+            width_mm,
+            0.0,
+            None,
+            number,
+            marks=(Mark("dot", place_mm, 0.0),),
         )
 
     @property
@@ -112,7 +120,10 @@ class Line:
         if self.ending != "ended" or not 0 < gap_mm < min(NEARLY_MM, 0.1 * self.length_mm):
             return None
         moving = self.xy_mm[np.r_[True, np.any(np.diff(self.xy_mm, axis=0) != 0, axis=1)]]
-        ends = (moving[min(HEADING, len(moving) - 1)] - moving[0], moving[-1] - moving[max(-HEADING, -len(moving))])
+        ends = (
+            moving[min(HEADING, len(moving) - 1)] - moving[0],
+            moving[-1] - moving[max(-HEADING, -len(moving))],
+        )
         ahead = [float(way @ across) > 0.7 * gap_mm * float(np.hypot(*way)) for way in ends]
         return gap_mm if all(ahead) else None
 
@@ -158,7 +169,10 @@ class Line:
         for visit in np.split(near, np.flatnonzero(np.diff(near) > 1) + 1) if len(near) else ():
             i = visit[np.argmin(away[visit])]
             before, after = np.searchsorted(come_mm, come_mm[i] + np.array([-TURN_MM, TURN_MM]))
-            there, on = self.xy_mm[i] - self.xy_mm[before], self.xy_mm[min(after, len(come_mm) - 1)] - self.xy_mm[i]
+            there, on = (
+                self.xy_mm[i] - self.xy_mm[before],
+                self.xy_mm[min(after, len(come_mm) - 1)] - self.xy_mm[i],
+            )
             turned = turn(math.atan2(there[1], there[0]), math.atan2(on[1], on[0]))
             if abs(turned) > TURNS_OFF and (turned > 0) == (side == "left"):
                 return True
@@ -167,7 +181,10 @@ class Line:
     def without_guides(self, first: int, last: int) -> list[Array]:
         """Stretches (n, 2) mm from one position to another, between the guide lines that are left for on the way."""
         left_for = [guide for guide in self.guides if first < guide.leave <= last]
-        begins, ends = [first, *(guide.back for guide in left_for)], [*(guide.leave for guide in left_for), last + 1]
+        begins, ends = (
+            [first, *(guide.back for guide in left_for)],
+            [*(guide.leave for guide in left_for), last + 1],
+        )
         return [self.xy_mm[begin:end] for begin, end in zip(begins, ends, strict=True) if begin < end]
 
     def place(self, at: float) -> tuple[float, float]:
@@ -177,4 +194,6 @@ class Line:
 
 
 def _near(mark: Mark, reference_mm: tuple[float, float]) -> bool:
-    return float(np.hypot(mark.place_mm[0] - reference_mm[0], mark.place_mm[1] - reference_mm[1])) < REFERENCE_MM
+    return (
+        float(np.hypot(mark.place_mm[0] - reference_mm[0], mark.place_mm[1] - reference_mm[1])) < REFERENCE_MM
+    )

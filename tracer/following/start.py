@@ -17,14 +17,23 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from morfax.motion.faults import LineFault
-from morfax.tracer.sensing import photocell
-from morfax.tracer.head.course import FELT_LEGS
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.sensing.leg import Leg, centre_at, end_of, leg_of, reach_of_ink, stroke_end, strokes_on, turn
 from morfax.tracer.drawing.strokes import Sheet, Stroke
+from morfax.tracer.head.course import FELT_LEGS
+from morfax.tracer.junctions.choice import straight_on
 from morfax.tracer.marks.marks import longest_mm
 from morfax.tracer.marks.reference import Reference, references
-from morfax.tracer.junctions.choice import straight_on
+from morfax.tracer.sensing import photocell
+from morfax.tracer.sensing.leg import (
+    Leg,
+    centre_at,
+    end_of,
+    leg_of,
+    reach_of_ink,
+    stroke_end,
+    strokes_on,
+    turn,
+)
 from morfax.tracer.sensing.view import LEVEL, Array, View
 
 CATCH_MM = 3.0  # how far from a given place the line may be
@@ -35,7 +44,10 @@ LEAD_MM = 11.0  # at most, from the middle of a reference point to the lead line
 NAMED_MM = 5.0  # a cross or ring nearer to the reference point that is named is that point, drawn
 LEADS_AWAY = math.radians(45)
 SPUR = 2.7  # a line that ends sooner, in widths, is a burr
-GROWS, GROWS_PX = 0.08, 0.4  # widths, or pixels: along half of what is felt of it the tip of two lines widens so much
+GROWS, GROWS_PX = (
+    0.08,
+    0.4,
+)  # widths, or pixels: along half of what is felt of it the tip of two lines widens so much
 PLACES = 80  # tried along a line
 ENDS = 6  # open ends that are tried: a lead line may begin at any
 BENT = 0.8  # times a leg's length: a line that bends by more is no parabola over so much of it
@@ -132,7 +144,9 @@ def view_of(sheet: Sheet, aperture_mm: float | None, width_mm: float) -> View:
     """The sheet through cells for a line of a width."""
     least_mm = LEAST_APERTURE_MM / sheet.drawing.enlarged
     aperture_mm = aperture_mm or min(max(APERTURE * width_mm, least_mm), LARGEST_APERTURE_MM)
-    return View(photocell.behind_aperture(sheet.drawing, aperture_mm), sheet.drawing.pitch_mm, width_mm, LEVEL)
+    return View(
+        photocell.behind_aperture(sheet.drawing, aperture_mm), sheet.drawing.pitch_mm, width_mm, LEVEL
+    )
 
 
 def _at_ends(
@@ -169,7 +183,9 @@ def _leading_away(view: View, stroke: Stroke, reference_mm: tuple[float, float])
         seen = local.feel(start, heading, 2 * local.leg_mm)
         if stroke.is_at(start) and (len(seen) - 1) * local.step_mm > 1.5 * local.leg_mm:
             leg = leg_of(seen, False, local.leg_mm)
-            return Stance(leg.end_mm, leg.heading_rad, replace(local, width_mm=leg.width_mm), True, reference_mm)
+            return Stance(
+                leg.end_mm, leg.heading_rad, replace(local, width_mm=leg.width_mm), True, reference_mm
+            )
     return None
 
 
@@ -177,7 +193,9 @@ def _named_first(
     found: Iterator[Reference], named_mm: tuple[float, float] | None
 ) -> Iterator[tuple[tuple[float, float], Leg | None]]:
     """Places of reference points and the lead lines drawn from them; of those that the operator's is, his place, and before the others."""
-    for reference in found if named_mm is None else sorted(found, key=lambda r: math.dist(named_mm, r.place_mm)):
+    for reference in (
+        found if named_mm is None else sorted(found, key=lambda r: math.dist(named_mm, r.place_mm))
+    ):
         is_named = named_mm is not None and math.dist(named_mm, reference.place_mm) < NAMED_MM
         yield named_mm if named_mm is not None and is_named else reference.place_mm, reference.lead
 
@@ -240,7 +258,9 @@ def _heading(view: View, place: Array) -> float | None:
 
 def _both_ways(view: View, place: Array, heading: float) -> tuple[Leg, float] | None:
     """The line felt forward and backward from a place as one leg about it, and the length felt on the shorter side, mm."""
-    right, left = photocell.edges(view.cells, view.pitch_mm, place[0], place[1], heading, 2 * view.width_mm, view.level)
+    right, left = photocell.edges(
+        view.cells, view.pitch_mm, place[0], place[1], heading, 2 * view.width_mm, view.level
+    )
     if not math.isfinite(left - right) or not 0.4 < (left - right) / view.width_mm < 2.5:
         return None
     view = replace(view, width_mm=left - right)

@@ -13,12 +13,12 @@ import math
 
 import numpy as np
 
+from morfax.tracer.following.start import Stance
 from morfax.tracer.head import course
 from morfax.tracer.head import kernel as head
-from morfax.tracer.sensing.leg import Leg, turn
 from morfax.tracer.head.settings import Settings, tune
-from morfax.tracer.following.start import Stance
 from morfax.tracer.head.trail import Trail
+from morfax.tracer.sensing.leg import Leg, turn
 from morfax.tracer.sensing.view import Array, View
 
 CHUNK = 6000  # samples that the kernel follows before it reports
@@ -125,8 +125,14 @@ class Carriage:
         felt = leg.seen[np.hypot(*(leg.seen[:, :2] - leg.end_mm).T) < lead, :2]
         c, n = math.cos(leg.heading_rad), math.sin(leg.heading_rad)
         along, aside = (felt[-1] - leg.end_mm) @ np.array([[c, -n], [n, c]]) if len(felt) else (0.0, 0.0)
-        s[head.HEADING], s[head.BEND], s[head.TURN] = leg.heading_rad, leg.bend_per_mm, s[head.SPEED] * leg.bend_per_mm
-        s[head.MIDDLE] = aside * (lead / along) ** 2 if along > 0.5 * lead else 0.5 * leg.bend_per_mm * lead * lead
+        s[head.HEADING], s[head.BEND], s[head.TURN] = (
+            leg.heading_rad,
+            leg.bend_per_mm,
+            s[head.SPEED] * leg.bend_per_mm,
+        )
+        s[head.MIDDLE] = (
+            aside * (lead / along) ** 2 if along > 0.5 * lead else 0.5 * leg.bend_per_mm * lead * lead
+        )
         s[head.POINT_X], s[head.POINT_Y] = leg.at(self.tuning.point_mm)
         s[head.SWEEP] = s[head.FIRST] = s[head.MEAN] = s[head.LEFT] = s[head.RIGHT] = 0.0
         s[head.AHEAD] = s[head.INK] = 1.0

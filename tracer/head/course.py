@@ -68,12 +68,19 @@ def through_corner(
     if bent:
         way, along = onto(*stands, incoming, min(s, 0.0))
         start, end = incoming.at(along), outgoing.at(end_mm)
-        return [np.vstack([way, hermite(start, incoming.heading_at(along), end, outgoing.heading_at(end_mm))])]
+        return [
+            np.vstack([way, hermite(start, incoming.heading_at(along), end, outgoing.heading_at(end_mm))])
+        ]
     return sharp_corner(stands, incoming, outgoing, legs_mm, end_mm)
 
 
 def rounded_corner(
-    stands: tuple[Array, float], incoming: Leg, outgoing: Leg, legs_mm: Meeting, touch_mm: float, end_mm: float
+    stands: tuple[Array, float],
+    incoming: Leg,
+    outgoing: Leg,
+    legs_mm: Meeting,
+    touch_mm: float,
+    end_mm: float,
 ) -> Array:
     """The way (n, 2) from where the head stands by the arc that touches both legs so far from their vertex, to beyond the outgoing leg's first station."""
     s, u = legs_mm
@@ -137,7 +144,9 @@ def rounding(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> tupl
 def is_sharp(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> bool:
     """Whether the ink of an obtuse corner is that of a sharp one: it misses less than a third of what an arc over the hidden stations would."""
     turned = deflection(incoming, outgoing, legs_mm)
-    return missing_ink_mm(view, incoming, outgoing, legs_mm) <= HIDDEN * view.step_mm * math.tan(turned / 4) / 3
+    return (
+        missing_ink_mm(view, incoming, outgoing, legs_mm) <= HIDDEN * view.step_mm * math.tan(turned / 4) / 3
+    )
 
 
 def missing_ink_mm(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> float:
@@ -145,10 +154,16 @@ def missing_ink_mm(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -
 
     Where another line leaves on the outside of a slight turn, it is by how much the ink is more than a sharp corner's on the inside.
     """
-    found, width_mm = _edge_mm(view, incoming, outgoing, legs_mm, 1), 0.5 * (incoming.width_mm + outgoing.width_mm)
+    found, width_mm = (
+        _edge_mm(view, incoming, outgoing, legs_mm, 1),
+        0.5 * (incoming.width_mm + outgoing.width_mm),
+    )
     if not hides_outside(view, incoming, outgoing, legs_mm):
         return max(0.0, 0.5 * width_mm - found) if math.isfinite(found) else 0.0
-    within, half = _edge_mm(view, incoming, outgoing, legs_mm, -1), 0.5 * deflection(incoming, outgoing, legs_mm)
+    within, half = (
+        _edge_mm(view, incoming, outgoing, legs_mm, -1),
+        0.5 * deflection(incoming, outgoing, legs_mm),
+    )
     return max(0.0, within - 0.5 * width_mm / math.cos(half)) if math.isfinite(within) else 0.0
 
 

@@ -46,7 +46,9 @@ STATES = 24
 DRUM = 256  # places remembered
 LOST = 0.2  # of the ink, over a sweep: the line has gone from under a head without guard cells
 BESIDE = 0.4  # of the ink, averaged by the guard cells: there is ink beside the line
-ALTERED = 0.2  # of the ink over a sweep: the line has swollen or faded by so much since the head was tuned to it
+ALTERED = (
+    0.2  # of the ink over a sweep: the line has swollen or faded by so much since the head was tuned to it
+)
 
 MORE, KNOT, TIGHT, HOME, CHANGED = range(5)  # why the kernel returned
 
@@ -132,7 +134,9 @@ def _detect(state, drum, t):  # type: ignore[no-untyped-def]
         return
     limit = 0.5 * t.amplitude_mm
     state[MIDDLE] += min(max(aside, -limit), limit)
-    middle = state[HEADING] - 0.5 * t.sweep_periods * t.period_s * state[TURN]  # as it was in the middle of the sweep
+    middle = (
+        state[HEADING] - 0.5 * t.sweep_periods * t.period_s * state[TURN]
+    )  # as it was in the middle of the sweep
     c, s = math.cos(middle), math.sin(middle)
     if abs(aside) < limit:  # or else the sweep was not on the line
         place = int(state[PLACES]) % DRUM
@@ -183,7 +187,10 @@ def _look(cells, pitch_mm, state, t):  # type: ignore[no-untyped-def]
         state[LEFT + k] += 0.5 * (d / state[INK] - state[LEFT + k])
     far = t.look_ahead_mm
     u = curve * far * far
-    if darkness_at(cells, pitch_mm, state[X] + far * c - u * s, state[Y] + far * s + u * c) < 0.5 * state[INK]:
+    if (
+        darkness_at(cells, pitch_mm, state[X] + far * c - u * s, state[Y] + far * s + u * c)
+        < 0.5 * state[INK]
+    ):
         state[SLOW] = t.slow_periods
     if t.direct_rad_s_mm > 0:
         return KNOT if state[AHEAD] < LOST else MORE
@@ -202,7 +209,9 @@ def _at_home(state, t, home):  # type: ignore[no-untyped-def]
     dx, dy = home[0] - state[X], home[1] - state[Y]
     c, s = math.cos(state[HEADING]), math.sin(state[HEADING])
     along, aside = dx * c + dy * s, dy * c - dx * s
-    return 0.0 < along < t.lead_mm and abs(aside) < 0.3 * t.lead_mm and math.cos(home[2] - state[HEADING]) > 0.8
+    return (
+        0.0 < along < t.lead_mm and abs(aside) < 0.3 * t.lead_mm and math.cos(home[2] - state[HEADING]) > 0.8
+    )
 
 
 @njit(cache=True)

@@ -49,7 +49,10 @@ def loop_in(positions: Array, width_mm: float) -> tuple[int, int] | None:
     apart, alike = _apart(places[m::-1], places[j::-1])
     back = _first_not((apart < TOGETHER * width_mm) & alike)
     if back == 0:
-        return _crossed(places, index, j, round(2 * AT_ALL * width_mm / STEP_MM)) or (int(index[j]), len(positions) - 1)
+        return _crossed(places, index, j, round(2 * AT_ALL * width_mm / STEP_MM)) or (
+            int(index[j]),
+            len(positions) - 1,
+        )
     back = int(
         np.flatnonzero(apart[:back] < ON_IT * width_mm)[-1:].sum()
     )  # where the corner onto the loop has been left

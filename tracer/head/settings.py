@@ -17,9 +17,9 @@ from typing import Any
 import numpy as np
 
 from morfax.motion.drive import Drive
+from morfax.tracer.following.start import Stance
 from morfax.tracer.head.kernel import Tuning
 from morfax.tracer.sensing.photocell import sweep
-from morfax.tracer.following.start import Stance
 
 OF_DRIVE = "drive_"  # what the name of a setting of the drives begins with
 
@@ -51,7 +51,9 @@ class Settings:
     steering_lag_s: float = _within(0.001, 0, 1, "lag of the steering servo (M, T)")
     swivel_rad_s: float = _within(20.0, 0.1, 1000, "turn rate of the swivel at a sharp corner")
     gap_mm: float = _within(0.5, 0, 20, "widest gap that the head goes across")
-    recatch_mm: float = _within(0.0, 0, 50, "how far ahead a line that is lost is looked for; 0: it stays lost")
+    recatch_mm: float = _within(
+        0.0, 0, 50, "how far ahead a line that is lost is looked for; 0: it stays lost"
+    )
     line_width_mm: float | None = _within(None, 0.01, 20, "width of the line")
     lead_mm: float | None = _within(None, 0.01, 20, "how far the cell is ahead of the steering axis")
     amplitude_mm: float | None = _within(None, 0.01, 20, "of the swing to either side")
@@ -107,7 +109,9 @@ def value_of(settings: Settings, name: str) -> float | None:
 
 def allowed(name: str) -> str:
     """What a setting may hold, in words."""
-    return f"a number from {BOUNDS[name].least:g} to {BOUNDS[name].most:g}, in the unit that its name ends with"
+    return (
+        f"a number from {BOUNDS[name].least:g} to {BOUNDS[name].most:g}, in the unit that its name ends with"
+    )
 
 
 def _number(name: str, value: object) -> float:
@@ -158,7 +162,9 @@ def tune(stance: Stance, settings: Settings, rate_hz: float) -> Tuning:
         mean=mean,
         drive_gain=settings.drive.gain(1 / rate_hz),
         drive_change_mm_s=settings.drive.acceleration_mm_s2 / rate_hz,
-        steering_gain=1 - math.exp(-1 / rate_hz / settings.steering_lag_s) if settings.steering_lag_s > 0 else 1.0,
+        steering_gain=1 - math.exp(-1 / rate_hz / settings.steering_lag_s)
+        if settings.steering_lag_s > 0
+        else 1.0,
         direct_rad_s_mm=settings.direct_rad_s_mm,
     )
 

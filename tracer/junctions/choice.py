@@ -20,17 +20,19 @@ from typing import Literal
 
 import numpy as np
 
-from morfax.tracer.sensing import photocell
-from morfax.tracer.junctions.rings import legs_around
-from morfax.tracer.sensing.leg import Leg, Meeting, leg_of, meet, reach_of_ink, stroke_end, turn
-from morfax.tracer.marks.marks import longest_mm
 from morfax.tracer.head.trail import Trail
+from morfax.tracer.junctions.rings import legs_around
+from morfax.tracer.marks.marks import longest_mm
+from morfax.tracer.sensing import photocell
+from morfax.tracer.sensing.leg import Leg, Meeting, leg_of, meet, reach_of_ink, stroke_end, turn
 from morfax.tracer.sensing.view import Array, View
 
 STRAIGHT = math.radians(40)  # straight on is within this
 TURNS_OFF = math.radians(20)  # a leg turns off to a side by more than this
 AHEAD = math.radians(75)  # a lost line is looked for within this of its heading
-SQUARE = math.radians(20)  # two legs that turn off to both sides alike, within this, are a line that the head comes to
+SQUARE = math.radians(
+    20
+)  # two legs that turn off to both sides alike, within this, are a line that the head comes to
 PASSES = math.radians(12)  # two legs in line with each other within this are one line that passes
 SIDEWAYS_WIDTHS = (
     0.0,
@@ -102,7 +104,9 @@ def _look(
     return outgoing, legs_mm, choices
 
 
-def _chosen(incoming: Leg, rank: int, side: Side | None, legs: list[Leg], every: list[Leg], view: View) -> Leg:
+def _chosen(
+    incoming: Leg, rank: int, side: Side | None, legs: list[Leg], every: list[Leg], view: View
+) -> Leg:
     """The leg to take: by side, if one turns off there; else by how straight it goes on."""
     turns = {id(leg): turn(incoming.heading_rad, leg.heading_rad) for leg in legs}
     if side is not None:
@@ -136,7 +140,9 @@ def _without_marks(view: View, incoming: Leg, legs: list[Leg]) -> list[Leg]:
     """The legs but for those that are marks and not straight on, if others are left."""
     reach = [math.inf if goes_straight(incoming, leg) else _reach_mm(view, incoming, leg) for leg in legs]
     kept = [
-        leg for leg, mm in zip(legs, reach, strict=True) if mm > longest_mm(view, across=_is_across(leg, legs, reach))
+        leg
+        for leg, mm in zip(legs, reach, strict=True)
+        if mm > longest_mm(view, across=_is_across(leg, legs, reach))
     ]
     return kept or legs
 
@@ -144,10 +150,14 @@ def _without_marks(view: View, incoming: Leg, legs: list[Leg]) -> list[Leg]:
 def _without_overrun(view: View, incoming: Leg, legs: list[Leg]) -> list[Leg]:
     """The legs but for one straight on that ends soon, if the others are a line that passes: the end of a lead line drawn beyond the contour."""
     passing = [leg for leg in legs if not goes_straight(incoming, leg)]
-    if not any(abs(turn(a.heading_rad + math.pi, b.heading_rad)) < SQUARE for a, b in combinations(passing, 2)):
+    if not any(
+        abs(turn(a.heading_rad + math.pi, b.heading_rad)) < SQUARE for a, b in combinations(passing, 2)
+    ):
         return legs
     overrun_mm = max(OVERRUN_MM, OVERRUN_WIDTHS * view.width_mm)
-    return [leg for leg in legs if any(leg is u for u in passing) or _reach_mm(view, incoming, leg) > overrun_mm]
+    return [
+        leg for leg in legs if any(leg is u for u in passing) or _reach_mm(view, incoming, leg) > overrun_mm
+    ]
 
 
 def _without_stubs(view: View, incoming: Leg, legs: list[Leg], every: list[Leg]) -> list[Leg]:
@@ -156,7 +166,9 @@ def _without_stubs(view: View, incoming: Leg, legs: list[Leg], every: list[Leg])
     Where it crosses a line that it has followed, what lies beyond is its own, and may end soon.
     """
     held = [leg for leg in every if not any(leg is other for other in legs)]
-    passing = any(abs(turn(a.heading_rad + math.pi, b.heading_rad)) < SQUARE for a, b in combinations(held, 2))
+    passing = any(
+        abs(turn(a.heading_rad + math.pi, b.heading_rad)) < SQUARE for a, b in combinations(held, 2)
+    )
     if not held or passing:
         return legs
     return [leg for leg in legs if _reach_mm(view, incoming, leg) > longest_mm(view)]

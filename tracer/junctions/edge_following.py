@@ -78,7 +78,9 @@ def to_vertex(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> tup
 def _passes(view: View, leg: Leg, vertex_mm: float, deflection: float) -> bool:
     """Whether a line goes on along a leg's line beyond the vertex of a corner, to where the other leg's ink does not reach."""
     clear_mm = view.width_mm * max(1.5, 1.2 / max(abs(math.sin(deflection)), 0.1))
-    if clear_mm > 4 * view.width_mm or not all(view.dark(place) for place in leg.at(vertex_mm + clear_mm * PASSED)):
+    if clear_mm > 4 * view.width_mm or not all(
+        view.dark(place) for place in leg.at(vertex_mm + clear_mm * PASSED)
+    ):
         return False
     (x, y), heading = leg.at(vertex_mm + clear_mm), leg.heading_at(vertex_mm + clear_mm)
     right, left = edges(view.cells, view.pitch_mm, x, y, heading, 2 * view.width_mm, view.level)
@@ -110,7 +112,16 @@ def _along_outside(view: View, seen: Array, side: float, beyond_mm: float, last:
     width = float(np.median(seen[base:, 2]))
     heading = math.atan2(way[1], way[0])
     felt = _along_edge(
-        view.cells, view.pitch_mm, seen[base, :2], heading, side, view.step_mm, count, width, view.level, count
+        view.cells,
+        view.pitch_mm,
+        seen[base, :2],
+        heading,
+        side,
+        view.step_mm,
+        count,
+        width,
+        view.level,
+        count,
     )
     if len(felt) < 4:
         return None
@@ -143,12 +154,23 @@ def _ends_ahead(view: View, seen: Array, width_mm: float) -> bool:
     way = seen[-1, :2] - seen[max(0, len(seen) - 6), :2]
     t = way / np.hypot(*way)
     end = _first_light(
-        view.cells, view.pitch_mm, seen[-1, 0], seen[-1, 1], t[0], t[1], 0.0, width_mm, 0.35 * view.pitch_mm, view.level
+        view.cells,
+        view.pitch_mm,
+        seen[-1, 0],
+        seen[-1, 1],
+        t[0],
+        t[1],
+        0.0,
+        width_mm,
+        0.35 * view.pitch_mm,
+        view.level,
     )
     return math.isfinite(end)
 
 
-def _turned_back(stations: Array, seen: Array, first: int, last: int, side: float, width_mm: float) -> Ride | None:
+def _turned_back(
+    stations: Array, seen: Array, first: int, last: int, side: float, width_mm: float
+) -> Ride | None:
     """The ride to the tip where the ink beside the line ends with it, and the way back along the far edge."""
     excess = stations[:, 2] - 0.5 * width_mm
     if excess[-1] > 0.25 * width_mm:

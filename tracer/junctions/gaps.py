@@ -15,8 +15,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from morfax.tracer.sensing.leg import leg_of
 from morfax.tracer.junctions.choice import straight_on
+from morfax.tracer.sensing.leg import leg_of
 from morfax.tracer.sensing.view import Array, View
 
 FARTHEST_WIDTHS = 6.0  # ink further ahead is another line's

@@ -96,7 +96,9 @@ class Junctions:
         )
 
 
-def _nearest(positions: Array, first: int, last: int, place_mm: Array, first_within_mm: float | None = None) -> int:
+def _nearest(
+    positions: Array, first: int, last: int, place_mm: Array, first_within_mm: float | None = None
+) -> int:
     """The position from first to last that is nearest to a place, or of those that are near enough the first run of them."""
     away = np.hypot(*(positions[first:last] - place_mm).T)
     if first_within_mm is not None and away.min() < first_within_mm:

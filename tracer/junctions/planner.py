@@ -15,15 +15,15 @@ from scipy.spatial import cKDTree
 
 from morfax.motion.polyline import with_places
 from morfax.tracer.head import course
-from morfax.tracer.junctions.rings import corner_in
-from morfax.tracer.sensing.leg import Leg, Meeting, leg_of, meet, turn
-from morfax.tracer.junctions.width_change import Onward
-from morfax.tracer.junctions.edge_following import Ride, ride_past, to_vertex
 from morfax.tracer.head.settings import Settings
-from morfax.tracer.tangles.strands import Planned
-from morfax.tracer.junctions.choice import Way, caught_again, goes_straight, straight_on
 from morfax.tracer.head.trail import Trail
+from morfax.tracer.junctions.choice import Way, caught_again, goes_straight, straight_on
+from morfax.tracer.junctions.edge_following import Ride, ride_past, to_vertex
+from morfax.tracer.junctions.rings import corner_in
+from morfax.tracer.junctions.width_change import Onward
+from morfax.tracer.sensing.leg import Leg, Meeting, leg_of, meet, turn
 from morfax.tracer.sensing.view import Array, View
+from morfax.tracer.tangles.strands import Planned
 
 SMOOTH = math.radians(14)  # a smaller change of heading is no corner
 LEAST_GAP_PX = 2.5  # a scan can lose this much of a line
@@ -51,14 +51,18 @@ class Pilot:
             planned = self._course(incoming, outgoing, legs_mm)
             if course.on_ink(self.view, planned.stretches):
                 is_sharp = len(planned.stretches) > 1 and not self._is_round(incoming, outgoing, legs_mm)
-                return planned if is_sharp else self._past_speck(planned, incoming, outgoing) or planned, choices
+                return planned if is_sharp else self._past_speck(
+                    planned, incoming, outgoing
+                ) or planned, choices
             choices = 0  # that leg is another line's
         gap_mm = max(self.settings.gap_mm, LEAST_GAP_PX * self.view.pitch_mm)
         outgoing = straight_on(self.view, incoming, gap_mm)
         if outgoing is None and not choices:
             outgoing = straight_on(replace(self.view, level=FAINTER * self.view.level), incoming, gap_mm)
         if outgoing is None and not choices:
-            outgoing = straight_on(self.view.through_larger(incoming.seen, incoming.heading_rad), incoming, gap_mm)
+            outgoing = straight_on(
+                self.view.through_larger(incoming.seen, incoming.heading_rad), incoming, gap_mm
+            )
             if outgoing is not None and self._blank_mm(incoming, outgoing) > gap_mm:
                 outgoing = None
         if outgoing is not None and choices and self._goes_back(outgoing.seen):
@@ -120,7 +124,9 @@ class Pilot:
     def _past_speck(self, planned: Planned, incoming: Leg, outgoing: Leg) -> Planned | None:
         """A way without a corner once more, felt along it: None if the line is not clean there but for a speck."""
         way = course.distinct(np.vstack(planned.stretches))
-        beyond = [course.ahead_mm(place, outgoing) > 0 and course.ahead_mm(place, incoming) < 0 for place in way]
+        beyond = [
+            course.ahead_mm(place, outgoing) > 0 and course.ahead_mm(place, incoming) < 0 for place in way
+        ]
         seen = self.view.feel_along(way[beyond])
         there = np.vstack([incoming.seen, seen, outgoing.seen])
         if np.hypot(*np.diff(there[:, :2], axis=0).T).max() > SPECK_PX * self.view.pitch_mm:
@@ -142,13 +148,20 @@ class Pilot:
     def _bend_on(self, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> bool:
         """Whether two legs meet at no greater angle than one of them makes by bending on over the stations between them."""
         bends = max(abs(incoming.bend_per_mm), abs(outgoing.bend_per_mm))
-        return course.deflection(incoming, outgoing, legs_mm) < SMOOTH + bends * course.HIDDEN * self.view.step_mm
+        return (
+            course.deflection(incoming, outgoing, legs_mm)
+            < SMOOTH + bends * course.HIDDEN * self.view.step_mm
+        )
 
     def round_corner(self, seen: Array, here: int) -> Planned | None:
         """The way round a corner that the line was felt clean round, as it is obtuse or a tight round; None if there is none, or if its ink shows neither."""
         longer = self._felt_on(seen)
         i = corner_in(longer, here + 4)
-        return None if i is None or i > len(seen) - LEG_STATIONS else self._obtuse(longer, i) or self._tight(longer, i)
+        return (
+            None
+            if i is None or i > len(seen) - LEG_STATIONS
+            else self._obtuse(longer, i) or self._tight(longer, i)
+        )
 
     def _felt_on(self, seen: Array) -> Array:
         """What was felt of a line, (n, 3), with a leg's length more of it where that is clean: the corner in it may be near the end."""
@@ -169,7 +182,11 @@ class Pilot:
         if not course.is_sharp(self.view, incoming, outgoing, legs_mm):
             return None
         planned = self._course(incoming, outgoing, legs_mm)
-        return planned if self._as_felt(planned, seen, abs(turn(incoming.heading_rad, outgoing.heading_rad))) else None
+        return (
+            planned
+            if self._as_felt(planned, seen, abs(turn(incoming.heading_rad, outgoing.heading_rad)))
+            else None
+        )
 
     def _tight(self, seen: Array, i: int) -> Planned | None:
         """The way by an arc between two straight legs about a station, each felt up to where its ink shows that the round begins; None if there is none.
@@ -237,4 +254,7 @@ class Pilot:
 
     def _far(self, incoming: Leg, outgoing: Leg | None) -> bool:
         """Whether the ink runs beside the line for so long that it may be the line's own way back."""
-        return outgoing is not None and course.ahead_mm(incoming.end_mm, outgoing) > FAR_WIDTHS * self.view.width_mm
+        return (
+            outgoing is not None
+            and course.ahead_mm(incoming.end_mm, outgoing) > FAR_WIDTHS * self.view.width_mm
+        )

@@ -66,7 +66,9 @@ def fork_in(view: View, seen: Array, first: int) -> int | None:
         if not len(away):
             break
         along = float(d[away[0]] @ t)
-        if all(view.dark(seen[i, :2] + share * t) for share in np.linspace(0, along + 0.8 * view.width_mm, 12)):
+        if all(
+            view.dark(seen[i, :2] + share * t) for share in np.linspace(0, along + 0.8 * view.width_mm, 12)
+        ):
             return i
     return None
 
@@ -169,5 +171,7 @@ def _leg_outward(view: View, centre: Array, radius: float, arc: _Arc) -> Leg | N
     seen = view.feel(places[0], heading, view.leg_mm)
     if len(seen) < 4:
         seen = view.feel(places[-1], heading, view.leg_mm)
-    least = max(4, math.ceil(LEAST_WIDTHS * view.width_mm / view.step_mm))  # less may be the blunt end of a tip
+    least = max(
+        4, math.ceil(LEAST_WIDTHS * view.width_mm / view.step_mm)
+    )  # less may be the blunt end of a tip
     return leg_of(seen, False, view.leg_mm) if len(seen) >= least else None

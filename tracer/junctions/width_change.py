@@ -24,21 +24,27 @@ from typing import NamedTuple
 
 import numpy as np
 
-from morfax.tracer.sensing import photocell
 from morfax.tracer.head.course import ahead_mm
-from morfax.tracer.sensing.leg import Leg, Meeting, leg_of, meet, turn
-from morfax.tracer.junctions.choice import survey
 from morfax.tracer.head.trail import Trail
+from morfax.tracer.junctions.choice import survey
+from morfax.tracer.sensing import photocell
+from morfax.tracer.sensing.leg import Leg, Meeting, leg_of, meet, turn
 from morfax.tracer.sensing.view import Array, View
 
-PENS = (2.0, 0.45)  # times the line's width: with a ring's tolerance each, from a quarter of it to three times
+PENS = (
+    2.0,
+    0.45,
+)  # times the line's width: with a ring's tolerance each, from a quarter of it to three times
 WIDEST, NARROWEST = 3.5, 0.25  # times the line's width, straight ahead
 ALIKE = 0.1  # of the width: no other pen
 STEP = 0.2  # of the width: another pen, and no swelling of the line
 STEADY_WIDTHS, STEADY = 8.0, 0.06  # so long and so evenly
 AHEAD_WIDTHS = 4.0  # as far as the other line is looked for
 FAR_LEGS = 2.0  # the vertex lies further off than at a corner of one width
-ASIDE, LEAST_ASIDE_MM = 0.4, 0.015  # of what a line beside it would set it off; as well as the way ahead is known
+ASIDE, LEAST_ASIDE_MM = (
+    0.4,
+    0.015,
+)  # of what a line beside it would set it off; as well as the way ahead is known
 IN_LINE = math.radians(12)
 
 
@@ -83,7 +89,9 @@ def _straight_ahead(view: View, incoming: Leg) -> Iterator[Onward]:
     for along in np.arange(step, AHEAD_WIDTHS * view.width_mm, step):
         place, heading = incoming.at(along), incoming.heading_at(along)
         reach_mm = WIDEST * view.width_mm
-        right, left = photocell.edges(view.cells, view.pitch_mm, place[0], place[1], heading, reach_mm, view.level)
+        right, left = photocell.edges(
+            view.cells, view.pitch_mm, place[0], place[1], heading, reach_mm, view.level
+        )
         times = (left - right) / view.width_mm
         if not NARROWEST < times < WIDEST or abs(times - 1) < ALIKE:
             continue

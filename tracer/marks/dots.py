@@ -15,9 +15,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from morfax.tracer.sensing.leg import Leg, turn
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.sensing.circles import ANGLES, WAYS, circle_through, spokes
+from morfax.tracer.sensing.leg import Leg, turn
 from morfax.tracer.sensing.view import Array, View
 
 LEAST_WIDTHS = 0.85  # radius of a dot
@@ -72,7 +72,9 @@ def alone(sheet: Sheet, view: View) -> Iterator[Array]:
     full = patches.areas * pitch**2 > LEAST_FULL * sides**2
     for patch in np.flatnonzero(small & full):
         top, bottom, left, right = patches.box(np.arange(patches.count) == patch)
-        middle = np.array([0.5 * (left + right), sheet.drawing.darkness.shape[0] - 0.5 * (top + bottom)]) * pitch
+        middle = (
+            np.array([0.5 * (left + right), sheet.drawing.darkness.shape[0] - 0.5 * (top + bottom)]) * pitch
+        )
         found = _disc(view, middle)
         if found is not None and not len(found[1]):
             yield found[0]

@@ -24,9 +24,9 @@ import numpy as np
 from numba import njit
 
 from morfax.tracer.marks import dots
-from morfax.tracer.sensing import photocell
 from morfax.tracer.marks import ticks as strokes
 from morfax.tracer.marks.ticks import Stroke
+from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.view import Array, View
 
 LONGEST_MM, LONGEST_WIDTHS = 5.0, 10.0  # of a mark across the line, beyond its edge on each side
@@ -63,7 +63,9 @@ class Way:
 
     def place(self, mm: float) -> tuple[float, float]:
         """Where the way is after a length."""
-        return float(np.interp(mm, self.at_mm, self.places[:, 0])), float(np.interp(mm, self.at_mm, self.places[:, 1]))
+        return float(np.interp(mm, self.at_mm, self.places[:, 0])), float(
+            np.interp(mm, self.at_mm, self.places[:, 1])
+        )
 
     def position_at(self, mm: float) -> float:
         """Which position of the way is there after a length."""
@@ -82,7 +84,11 @@ class Way:
 
 def longest_mm(view: View, *, across: bool = True) -> float:
     """How far a mark reaches beyond the line's edge at most, mm."""
-    return max(LONGEST_MM, LONGEST_WIDTHS * view.width_mm) if across else max(BESIDE_MM, BESIDE_WIDTHS * view.width_mm)
+    return (
+        max(LONGEST_MM, LONGEST_WIDTHS * view.width_mm)
+        if across
+        else max(BESIDE_MM, BESIDE_WIDTHS * view.width_mm)
+    )
 
 
 def marks_along(view: View, positions: Array) -> list[Mark]:
@@ -116,14 +122,17 @@ def _ticks(view: View, way: Way) -> list[float]:
             continue  # it is a line that crosses and goes on on the other side, in dashes perhaps
         if not way.goes_straight(foot, max(1.2 * view.width_mm, 0.5), 0.25 * view.width_mm):
             continue  # that is a corner
-        if _is_way(view, way, stroke) or (not stroke.touches and any(_is_same(view, stroke, o) for o in every)):
+        if _is_way(view, way, stroke) or (
+            not stroke.touches and any(_is_same(view, stroke, o) for o in every)
+        ):
             continue
         across = [o for o in opposite if o.ends and o.straight and o.is_like]
         if not across and stroke.touches and stroke.length_mm > longest_mm(view, across=False):
             continue  # that is a line that begins here
         station = int(np.clip(round(foot / way.step_mm), 0, len(way.places) - 1))
         feet.append(
-            way.at_mm[station] + strokes.crossing_mm(view, way.places[station], way.along[station], [stroke, *across])
+            way.at_mm[station]
+            + strokes.crossing_mm(view, way.places[station], way.along[station], [stroke, *across])
         )
     return feet
 
@@ -137,7 +146,9 @@ def _is_way(view: View, way: Way, stroke: Stroke) -> bool:
 def _is_same(view: View, stroke: Stroke, other: Stroke) -> bool:
     """Whether a stroke beside the line is one that touches the line elsewhere."""
     return (
-        other.touches and abs(other.foot_mm - stroke.foot_mm) > view.width_mm and _mostly_on(view, stroke, other.places)
+        other.touches
+        and abs(other.foot_mm - stroke.foot_mm) > view.width_mm
+        and _mostly_on(view, stroke, other.places)
     )
 
 
@@ -150,17 +161,27 @@ def _mostly_on(view: View, stroke: Stroke, others: Array) -> bool:
 
 def _strokes(view: View, way: Way, side: int) -> list[Stroke]:
     """Ink of about a line's width that stands beside the way on one side."""
-    rows = view.width_mm + np.arange(0.0, strokes.FARTHEST_MM + 0.1, max(0.5 * view.width_mm, 2 * view.pitch_mm))
+    rows = view.width_mm + np.arange(
+        0.0, strokes.FARTHEST_MM + 0.1, max(0.5 * view.width_mm, 2 * view.pitch_mm)
+    )
     found: list[Stroke] = []
     for away in rows:
         dark = _row(view.cells, view.pitch_mm, way.places, way.along, side * away) > view.level
         edges = np.flatnonzero(np.diff(np.r_[False, dark, False].astype(np.int8)))
         for begin, end in zip(edges[::2], edges[1::2], strict=True):
-            if not strokes.SEEN[0] * view.width_mm < (end - begin) * way.step_mm < 2 * strokes.SEEN[1] * view.width_mm:
+            if (
+                not strokes.SEEN[0] * view.width_mm
+                < (end - begin) * way.step_mm
+                < 2 * strokes.SEEN[1] * view.width_mm
+            ):
                 continue
             i = (begin + end) // 2
-            stroke = strokes.felt(view, way.places[i], way.along[i], way.at_mm[i], side, away, longest_mm(view))
-            if stroke is not None and all(abs(stroke.foot_mm - o.foot_mm) > 0.6 * view.width_mm for o in found):
+            stroke = strokes.felt(
+                view, way.places[i], way.along[i], way.at_mm[i], side, away, longest_mm(view)
+            )
+            if stroke is not None and all(
+                abs(stroke.foot_mm - o.foot_mm) > 0.6 * view.width_mm for o in found
+            ):
                 found.append(stroke)
     return found
 
@@ -202,7 +223,9 @@ def _beside_dot(view: View, way: Way, begin: int, end: int) -> View:
     for k in near[::2]:
         if 0 <= k < len(way.places):
             (x, y), heading = way.places[k], float(np.arctan2(way.along[k, 1], way.along[k, 0]))
-            right, left = photocell.edges(view.cells, view.pitch_mm, x, y, heading, 2 * view.width_mm, view.level)
+            right, left = photocell.edges(
+                view.cells, view.pitch_mm, x, y, heading, 2 * view.width_mm, view.level
+            )
             found.append(left - right)
     width_mm = float(np.nanmedian(found)) if np.isfinite(found).any() else view.width_mm
     return replace(view, width_mm=max(width_mm, view.width_mm))

@@ -23,10 +23,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.tracer.sensing import photocell
-from morfax.tracer.sensing.leg import SPECK_WIDTHS, Leg, is_tip, leg_of, lines_on
 from morfax.tracer.drawing.strokes import Sheet, Stroke
+from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.circles import WAYS, circle_through, spokes
+from morfax.tracer.sensing.leg import SPECK_WIDTHS, Leg, is_tip, leg_of, lines_on
 from morfax.tracer.sensing.view import Array, View
 
 LEAST_MM, LARGEST_MM = 1.5, 10.0  # across
@@ -99,7 +99,10 @@ def _holes(sheet: Sheet, patch: int) -> Iterator[Array]:
     for contour in contours:
         x, y, wide, high = cv2.boundingRect(contour)
         if LEAST_MM <= max(wide, high) * pitch <= LARGEST_MM and min(wide, high) > 0.7 * max(wide, high):
-            yield np.array([left + x + 0.5 * wide, sheet.drawing.darkness.shape[0] - top - y - 0.5 * high]) * pitch
+            yield (
+                np.array([left + x + 0.5 * wide, sheet.drawing.darkness.shape[0] - top - y - 0.5 * high])
+                * pitch
+            )
 
 
 def _crosses(view: View, tips_mm: Array) -> Iterator[Reference]:
@@ -121,7 +124,9 @@ def _cross(view: View, a: Array, b: Array, c: Array) -> Reference | None:
     length = float(np.hypot(*arm))
     if not abs(length - reach) < ALIKE * reach or abs(arm @ half) > SQUARE * length * reach:
         return None
-    if not all(_inked(view, middle, middle + way) for way in (-half, half, arm, -arm * min(1.0, reach / length))):
+    if not all(
+        _inked(view, middle, middle + way) for way in (-half, half, arm, -arm * min(1.0, reach / length))
+    ):
         return None
     arms = [_felt_inward(view, tip, middle) for tip in (a, b, c)]
     if min(len(arm) for arm in arms) < 4:
@@ -154,12 +159,16 @@ def _lead(view: View, centre: Array, reach_mm: float) -> Leg | None:
     for arc in photocell.ring(view.cells, view.pitch_mm, centre, reach_mm + 1.5 * view.width_mm, view.level):
         for outside in (1.5, 1.9, 2.3):
             way = _unit(float(arc.mean()))
-            seen = view.feel(centre + (reach_mm + outside * view.width_mm) * way, float(arc.mean()), view.leg_mm)
+            seen = view.feel(
+                centre + (reach_mm + outside * view.width_mm) * way, float(arc.mean()), view.leg_mm
+            )
             if len(seen) < 4:
                 continue
             leg = leg_of(seen, False, view.leg_mm)
             back = view.feel(leg.end_mm, leg.heading_rad + math.pi, reach_mm + view.width_mm)
-            back = back[1 : max(1, len(back) - round(view.width_mm / view.step_mm))]  # well clear of the other arms
+            back = back[
+                1 : max(1, len(back) - round(view.width_mm / view.step_mm))
+            ]  # well clear of the other arms
             return leg_of(np.vstack([back[::-1], seen]), False, view.leg_mm)
     return None
 

@@ -85,7 +85,9 @@ def felt(
 ) -> Stroke | None:
     """The stroke that a cell is on beside a place of the way, which is `at_mm` along it; None if it is not nearly as wide as the line, or too short."""
     width = view.width_mm
-    seen = _stroke_at(view.cells, view.pitch_mm, place, along, side, away_mm, longest_mm + width, width, view.level)
+    seen = _stroke_at(
+        view.cells, view.pitch_mm, place, along, side, away_mm, longest_mm + width, width, view.level
+    )
     inner = seen[:, 1] > CLEAR_OF_LINE * width
     wide = float(np.median(seen[inner, 2])) / width if inner.sum() > 2 else 0.0
     if not SEEN[0] < wide < SEEN[1]:
@@ -99,7 +101,10 @@ def felt(
     middles, others = seen[inner], max(DASH_MM, DASH_WIDTHS * width)
     is_like = LIKE[0] < wide < LIKE[1] and INK[0] < _darkness(*where, middles) * LEVEL / view.level < INK[1]
     across = side * np.array([-along[1], along[0]])
-    tips = [seen[np.argmax(seen[:, 1]), :2] - [0, 0.5 * width], seen[np.argmin(seen[:, 1]), :2] + [0, 0.5 * width]]
+    tips = [
+        seen[np.argmax(seen[:, 1]), :2] - [0, 0.5 * width],
+        seen[np.argmin(seen[:, 1]), :2] + [0, 0.5 * width],
+    ]
     at_tips = [is_tip(view, place + u * along + v * across) for u, v in tips[: 1 if touches else 2]]
     ends = reach < longest_mm and all(at_tips) and not _goes_on(*where, middles, others, width, view.level)
     clear_mm = CLEAR_WIDTHS * width if touches else max(APART_MM, APART_WIDTHS * width)

@@ -72,7 +72,9 @@ class Stop:
     passes_mm: tuple[float, ...] = ()
     dwell_s: float = 0.0
     restart: Restart | None = None
-    written: Field | None = field(default=None, compare=False, repr=False)  # where a card has the moves, or the hole
+    written: Field | None = field(
+        default=None, compare=False, repr=False
+    )  # where a card has the moves, or the hole
 
     def presets(self, at: Counters, rapid_mm_s: float) -> tuple[Preset, ...]:
         """Settings of the panel from a place, the dwell last; passes are no move of this stop, but of the line."""
@@ -90,7 +92,9 @@ class Stop:
         except ValueError as error:
             if self.written is None:
                 raise CardFault(f"{where}: {error}") from None
-            (self.written.elements("moves")[len(made)] if self.moves else self.written).refuse(f"{where}: {error}")
+            (self.written.elements("moves")[len(made)] if self.moves else self.written).refuse(
+                f"{where}: {error}"
+            )
         return made
 
 
@@ -175,7 +179,9 @@ def _override(field: Field) -> Override:
     """Which stop marks do not stop the head."""
     if field.value in ("none", "all"):
         return cast(Literal["none", "all"], field.value)
-    return tuple(number.number() for number in field.elements('"none", "all" or a list of stops, such as [1, 3]'))
+    return tuple(
+        number.number() for number in field.elements('"none", "all" or a list of stops, such as [1, 3]')
+    )
 
 
 def _stops(field: Field, feed_mm_s: float) -> tuple[Stop, ...]:

@@ -21,10 +21,10 @@ from dataclasses import dataclass, field, replace
 from typing import Literal, NamedTuple, Protocol
 
 from morfax.motion.faults import CardFault
-from morfax.tracer.operator import zunit
-from morfax.tracer.operator.card import Card, Stop
 from morfax.tracer.following.line import Line
 from morfax.tracer.junctions.choice import Side
+from morfax.tracer.operator import zunit
+from morfax.tracer.operator.card import Card, Stop
 from morfax.tracer.operator.zunit import Move
 
 Direction = Literal["cw", "ccw", "left", "right"]
@@ -96,7 +96,9 @@ class Operator:
     work: Work = field(default_factory=Work)
     card: Card = field(default_factory=Card)
     panel: Panel | None = None
-    reference_mm: tuple[float, float] | None = None  # where the reference point is, if it is not to be looked for
+    reference_mm: tuple[float, float] | None = (
+        None  # where the reference point is, if it is not to be looked for
+    )
     direction: Direction | None = None  # in which the head takes the line
 
     @property
@@ -122,7 +124,9 @@ class Operator:
 
     def stops(self, line: Line, first: int) -> list[Halt]:
         """The stops of a line in order, with the numbers that it has for them, or numbered from `first`."""
-        stops = [Halt(mark.at, "tick" if mark.kind == "tick" else "dot", mark.place_mm) for mark in line.marks]
+        stops = [
+            Halt(mark.at, "tick" if mark.kind == "tick" else "dot", mark.place_mm) for mark in line.marks
+        ]
         tips = [guide.tip for guide in line.guides] + ([len(line.xy_mm) - 1] if line.is_guide else [])
         for tip in tips:
             place, near = line.place(tip), NEAR_WIDTHS * line.width_mm
@@ -150,7 +154,9 @@ class Operator:
     def _overridden(self, halt: Halt) -> bool:
         """Whether the operator lets a stop mark pass by; a hole at the end of a guide line is none."""
         override = self.card.override
-        return halt.kind in ("tick", "dot") and (override == "all" or (override != "none" and halt.number in override))
+        return halt.kind in ("tick", "dot") and (
+            override == "all" or (override != "none" and halt.number in override)
+        )
 
     def depths_mm(self, actions: Sequence[Action]) -> tuple[float, ...]:
         """Depths at which a line is run: the passes of the stop where the tool goes down, or those of the work."""
@@ -241,7 +247,10 @@ class Operator:
         if is_down:
             return [Move(-self._depths(halt)[0], self.work.feed_mm_s, stop.dwell_s)]
         if halt.kind in ("dot", "hole") and z_mm > 0:
-            return [Move(-self.work.depth_mm, self.work.feed_mm_s, stop.dwell_s), Move(z_mm, self.work.feed_mm_s)]
+            return [
+                Move(-self.work.depth_mm, self.work.feed_mm_s, stop.dwell_s),
+                Move(z_mm, self.work.feed_mm_s),
+            ]
         return [Move(z_mm, self.work.feed_mm_s, stop.dwell_s or STAND_S)]
 
     def _asked(self, halt: Halt, stop: Stop, z_mm: float) -> list[Move]:

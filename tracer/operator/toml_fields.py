@@ -60,7 +60,10 @@ class Field:
         line, holds = self.page.lines.get(self.path, 1), held or _shown(self.value)
         where = self.name or self.page.called
         raise CardFault(
-            f"{self.page.name}, line {line}: {where} holds {holds}; {allowed}", line=line, field=where, holds=holds
+            f"{self.page.name}, line {line}: {where} holds {holds}; {allowed}",
+            line=line,
+            field=where,
+            holds=holds,
         )
 
     def counts(self, least: int = 1) -> int:
@@ -113,7 +116,9 @@ class Field:
         fields = {key: Field(value, (*self.path, key), self.page) for key, value in self.value.items()}
         for key, field in fields.items():
             if key not in keys:
-                field.refuse(f"there is no such field; {self.name or self.page.called} may hold {', '.join(keys)}")
+                field.refuse(
+                    f"there is no such field; {self.name or self.page.called} may hold {', '.join(keys)}"
+                )
         return fields
 
     def _quantity(self, allowed: str) -> str:
@@ -138,7 +143,9 @@ def opened(file: FilePath, called: str = "the card", option: str = "--card") -> 
     try:
         raw = file.read_bytes()
     except OSError as error:
-        raise FileFault(f"cannot read {called} {file}: {error.strerror}; give another one with {option}") from error
+        raise FileFault(
+            f"cannot read {called} {file}: {error.strerror}; give another one with {option}"
+        ) from error
     try:
         return parsed(raw.decode("utf-8-sig"), file.name, called)
     except UnicodeDecodeError as error:
@@ -152,7 +159,9 @@ def parsed(text: str, name: str = "card", called: str = "the card") -> Field:
     try:
         return Field(tomllib.loads(text), (), Page(name, lines_of(text), called))
     except RecursionError:
-        return Field(None, (), Page(name, {}, called)).refuse("it may hold a few", "too many brackets in one another")
+        return Field(None, (), Page(name, {}, called)).refuse(
+            "it may hold a few", "too many brackets in one another"
+        )
     except ValueError as error:
         refused = str(error)
     at = _AT.search(refused)

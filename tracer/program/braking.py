@@ -42,7 +42,8 @@ def pieces(xy_mm: Array, halts: Sequence[float], acceleration_mm_s2: float, rate
     took_s = np.maximum(steps_s, steps_mm / mean)
     ends = [0, *cuts, len(nodes) - 1]
     return [
-        _timed(places[a : b + 1], took_s[a:b], steps_mm[a:b], speeds[a : b + 1], rate_hz) for a, b in pairwise(ends)
+        _timed(places[a : b + 1], took_s[a:b], steps_mm[a:b], speeds[a : b + 1], rate_hz)
+        for a, b in pairwise(ends)
     ]
 
 
@@ -59,7 +60,9 @@ def run(way_mm: Array, speed_mm_s: float, acceleration_mm_s2: float, rate_hz: fl
     speeds = np.zeros(len(places))
     for a, b in pairwise(corners):
         there = course.speeds(places[a : b + 1], speed_mm_s, acceleration_mm_s2, 0.0)
-        back = course.speeds(places[b : (a - 1 if a else None) : -1], speed_mm_s, acceleration_mm_s2, 0.0)[::-1]
+        back = course.speeds(places[b : (a - 1 if a else None) : -1], speed_mm_s, acceleration_mm_s2, 0.0)[
+            ::-1
+        ]
         speeds[a : b + 1] = np.minimum(there, back)
     steps_mm = np.hypot(*np.diff(places, axis=0).T)
     from_rest_mm_s = 0.5 * np.sqrt(acceleration_mm_s2 * steps_mm)  # mean of a step from rest to rest
@@ -71,7 +74,9 @@ def _corners(places: Array) -> list[int]:
     """Places (n, 2) at which a way turns sharply, where the head stops to swivel."""
     steps = np.diff(places, axis=0)
     turned = np.diff(np.arctan2(steps[:, 1], steps[:, 0]))
-    return [int(i) + 1 for i in np.flatnonzero(np.abs(np.remainder(turned + np.pi, 2 * np.pi) - np.pi) > CORNER)]
+    return [
+        int(i) + 1 for i in np.flatnonzero(np.abs(np.remainder(turned + np.pi, 2 * np.pi) - np.pi) > CORNER)
+    ]
 
 
 def _speeds(steps_mm: Array, steps_s: Array, cuts: Array, acceleration_mm_s2: float) -> Array:

@@ -22,13 +22,13 @@ from dataclasses import replace
 import numpy as np
 from scipy.spatial import cKDTree
 
-from morfax.tracer.program.selection import LEAST_MM, LEAST_WIDTHS, LETTER_MM, Contour
-from morfax.tracer.following.line import Line
 from morfax.tracer.drawing.strokes import Array, Sheet, Stroke
-from morfax.tracer.operator.operator import Operator
-from morfax.tracer.program.trace import followed_through
-from morfax.tracer.head.settings import Settings
+from morfax.tracer.following.line import Line
 from morfax.tracer.following.start import stance_near, view_of
+from morfax.tracer.head.settings import Settings
+from morfax.tracer.operator.operator import Operator
+from morfax.tracer.program.selection import LEAST_MM, LEAST_WIDTHS, LETTER_MM, Contour
+from morfax.tracer.program.trace import followed_through
 
 NEW = 0.6  # of a line's way: the rest may be another's too
 BESIDE = 1.5  # widths: ink nearer to a way than this is that way's

@@ -26,11 +26,11 @@ from morfax.motion import ramp
 from morfax.motion.faults import LineFault
 from morfax.motion.motion import BLOCK_SAMPLES, MOTION_RATE_HZ, Motion
 from morfax.motion.polyline import lengths_mm
-from morfax.tracer.program import braking as stops
 from morfax.tracer.following.line import Line
 from morfax.tracer.operator.operator import Action, Entry, Operator, Work
-from morfax.tracer.sensing.view import Array
 from morfax.tracer.operator.zunit import Move, z_moves
+from morfax.tracer.program import braking as stops
+from morfax.tracer.sensing.view import Array
 
 ENDINGS = ("lost", "joined", "ended", "closed")  # the one that tells most first
 BRAKE_MM_S2 = 500.0  # of X and Y, as the head's own
@@ -155,7 +155,9 @@ class Trace:
                 z_mm = float(along_mm[-1])
                 yield _at(block, along_mm)
             if action is not None:
-                yield _standing(piece[-1], z_moves(z_mm, action.moves, self.work.acceleration_mm_s2, self.rate_hz))
+                yield _standing(
+                    piece[-1], z_moves(z_mm, action.moves, self.work.acceleration_mm_s2, self.rate_hz)
+                )
                 z_mm, entry, come_mm = action.moves[-1].to_mm, action.entry, 0.0
 
     def _where_it_entered(self, line: Line, actions: list[Action]) -> Iterator[Array]:
@@ -166,7 +168,9 @@ class Trace:
         first = line.loop_from if line.is_lead and line.loop_from is not None else 0
         lengths = lengths_mm(line.xy_mm)
         last = int(
-            np.searchsorted(lengths, np.interp(down.halt.at, range(len(lengths)), lengths) + down.entry.length_mm)
+            np.searchsorted(
+                lengths, np.interp(down.halt.at, range(len(lengths)), lengths) + down.entry.length_mm
+            )
         )
         if last <= first:
             return
@@ -193,7 +197,9 @@ class Trace:
             for way in line.without_guides(first, last)
         ]
         between = [self._feed(a[-1], b[0]) for a, b in pairwise(stretches)]
-        return np.vstack([part for pair in zip_longest(stretches, between) for part in pair if part is not None])
+        return np.vstack(
+            [part for pair in zip_longest(stretches, between) for part in pair if part is not None]
+        )
 
     def _feed(self, start_mm: Array, end_mm: Array) -> Array:
         """Straight from a place to another in the work, (n, 2) mm."""
@@ -219,7 +225,9 @@ class Trace:
 
     def _z(self, from_mm: float, to_mm: float) -> Array:
         """Z of a move that the Z unit makes, (n,) mm at the motion rate."""
-        return z_moves(from_mm, [Move(to_mm, self.work.feed_mm_s)], self.work.acceleration_mm_s2, self.rate_hz)
+        return z_moves(
+            from_mm, [Move(to_mm, self.work.feed_mm_s)], self.work.acceleration_mm_s2, self.rate_hz
+        )
 
 
 def _incomplete(lost: list[Line], lines: int) -> LineFault:

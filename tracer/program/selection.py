@@ -110,7 +110,10 @@ def _reach_mm(sheet: Sheet) -> Array:
 def nested(lines_mm: Sequence[Array], round_about: Sequence[bool]) -> NDArray[np.bool_]:
     """Which line (n, 2) mm lies inside which: `nested[i, j]` if i lies inside j, and j goes round about something."""
     inner = [
-        [round_j and a is not b and lies_inside(a, b) for b, round_j in zip(lines_mm, round_about, strict=True)]
+        [
+            round_j and a is not b and lies_inside(a, b)
+            for b, round_j in zip(lines_mm, round_about, strict=True)
+        ]
         for a in lines_mm
     ]
     return np.array(inner, bool).reshape(len(lines_mm), len(lines_mm))
@@ -120,7 +123,10 @@ def in_order(starts_mm: Array, ends_mm: Array, before: NDArray[np.bool_]) -> lis
     """The order of lines that keeps the idle way from each end to the next start short; `before[i, j]`: i is cut before j."""
     idle_mm = np.hypot(*(np.asarray(ends_mm)[:, None] - np.asarray(starts_mm)[None]).transpose(2, 0, 1))
     ways = [_improved(way, idle_mm, before) for way in _from_firsts(idle_mm, before)]
-    ways += [_improved(way[::-1].copy(), idle_mm, before) for way in _from_firsts(idle_mm.T.copy(), before.T.copy())]
+    ways += [
+        _improved(way[::-1].copy(), idle_mm, before)
+        for way in _from_firsts(idle_mm.T.copy(), before.T.copy())
+    ]
     return [int(i) for i in min(ways, key=lambda way: idle_way_mm(way, idle_mm))]
 
 
@@ -144,12 +150,16 @@ def in_order_and_turned(
     return best[1], best[2]
 
 
-def _to_turn(starts_mm: Array, ends_mm: Array, order: list[int], may_turn: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def _to_turn(
+    starts_mm: Array, ends_mm: Array, order: list[int], may_turn: NDArray[np.bool_]
+) -> NDArray[np.bool_]:
     """Which lines of an order are best turned round: the shortest way through it, each line as it is or turned."""
     ends = np.stack([starts_mm, ends_mm])
     idle_mm, came = np.where([True, bool(may_turn[order[0]])], 0.0, np.inf), []
     for a, b in pairwise(order):
-        steps = np.hypot(*(ends[:, b][None] - ends[::-1, a][:, None]).transpose(2, 0, 1))  # from a (as is, turned) to b
+        steps = np.hypot(
+            *(ends[:, b][None] - ends[::-1, a][:, None]).transpose(2, 0, 1)
+        )  # from a (as is, turned) to b
         total = idle_mm[:, None] + steps
         total[:, 1] = total[:, 1] if may_turn[b] else np.inf
         came.append(total.argmin(axis=0))
@@ -192,7 +202,9 @@ def no_line(number: int, have: Sequence[int]) -> LineFault:
 
 def _told(numbers: Sequence[int]) -> str:
     """Numbers as people read them, "1 to 3, 5"."""
-    runs = [[n for _, n in run] for _, run in groupby(enumerate(sorted(numbers)), key=lambda at: at[1] - at[0])]
+    runs = [
+        [n for _, n in run] for _, run in groupby(enumerate(sorted(numbers)), key=lambda at: at[1] - at[0])
+    ]
     return ", ".join(f"{run[0]} to {run[-1]}" if len(run) > 2 else ", ".join(map(str, run)) for run in runs)
 
 
@@ -264,7 +276,9 @@ def _move_lines(way, idle_mm, before):  # type: ignore[no-untyped-def]
     """Move up to three lines to where they are better off in the order; whether there was any gain."""
     for i in range(len(way)):
         for j in range(i, min(i + MOVED, len(way))):
-            out = _leg(way, idle_mm, i - 1, i) + _leg(way, idle_mm, j, j + 1) - _leg(way, idle_mm, i - 1, j + 1)
+            out = (
+                _leg(way, idle_mm, i - 1, i) + _leg(way, idle_mm, j, j + 1) - _leg(way, idle_mm, i - 1, j + 1)
+            )
             for k in range(-1, len(way)):
                 if i - 1 <= k <= j:
                     continue

@@ -18,16 +18,18 @@ from functools import partial
 import numpy as np
 
 from morfax.motion.faults import LineFault
-from morfax.tracer.following.attempts import Attempts, asked_for, goes, longest_mm, turned_about
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.following.line import Line
 from morfax.tracer.drawing.strokes import Sheet, Stroke
+from morfax.tracer.following.attempts import Attempts, asked_for, goes, longest_mm, turned_about
+from morfax.tracer.following.line import Line
+from morfax.tracer.following.start import Stance, ends_of, put_down, turned_round
+from morfax.tracer.head.settings import Settings
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.program import Trace
-from morfax.tracer.head.settings import Settings
-from morfax.tracer.following.start import Stance, ends_of, put_down, turned_round
 
-SHORT = 0.5  # of the ink that is joined to it: a run that ends so soon is another line's, which crosses this one
+SHORT = (
+    0.5  # of the ink that is joined to it: a run that ends so soon is another line's, which crosses this one
+)
 ELSEWHERE = 5  # places at which the head is put down then
 
 # a line, where the head was put down for it, and the length of the ink that is joined to it, mm
@@ -47,7 +49,9 @@ def trace(
     the operator cannot serve; a line that is lost on the way is no exception, but the trace's `fault`.
     """
     operator = operator or Operator()
-    return Trace((followed(Sheet.of(drawing), start_mm, settings or Settings(), operator, progress),), operator)
+    return Trace(
+        (followed(Sheet.of(drawing), start_mm, settings or Settings(), operator, progress),), operator
+    )
 
 
 def followed(
@@ -92,7 +96,9 @@ def followed_through(sheet: Sheet, stance: Stance, settings: Settings, operator:
     runs = [attempts.run(stance)]
     if runs[0].ending == "ended":
         runs.append(attempts.run(turned_round(runs[0].positions_mm[-1], runs[0].heading_rad, runs[0].view)))
-    elif runs[0].ending != "closed" or (operator.direction in ("cw", "ccw") and not goes(runs[0], operator.direction)):
+    elif runs[0].ending != "closed" or (
+        operator.direction in ("cw", "ccw") and not goes(runs[0], operator.direction)
+    ):
         runs.append(attempts.run(turned_about(stance)))
     return [Line.of(run) for run in runs]
 

@@ -19,19 +19,19 @@ from functools import partial
 import numpy as np
 
 from morfax.motion.faults import LineFault
-from morfax.tracer.program import selection as contours
-from morfax.tracer.marks import dots
-from morfax.tracer.program.selection import Contour, Which
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.program.joined_lines import joined_to
-from morfax.tracer.following.line import THINNED, Line
 from morfax.tracer.drawing.strokes import Sheet
-from morfax.tracer.operator.operator import Operator
-from morfax.tracer.program.program import Trace
-from morfax.tracer.marks.reference import LARGEST_MM
-from morfax.tracer.program.trace import SHORT, followed, followed_from_an_end
-from morfax.tracer.head.settings import Settings
+from morfax.tracer.following.line import THINNED, Line
 from morfax.tracer.following.start import view_of
+from morfax.tracer.head.settings import Settings
+from morfax.tracer.marks import dots
+from morfax.tracer.marks.reference import LARGEST_MM
+from morfax.tracer.operator.operator import Operator
+from morfax.tracer.program import selection as contours
+from morfax.tracer.program.joined_lines import joined_to
+from morfax.tracer.program.program import Trace
+from morfax.tracer.program.selection import Contour, Which
+from morfax.tracer.program.trace import SHORT, followed, followed_from_an_end
 from morfax.tracer.sensing.view import Array
 
 ALIKE = 0.02  # a line is as long from its other end, within this share
@@ -52,7 +52,9 @@ def trace_lines(
     """
     sheet, settings, operator = Sheet.of(drawing), settings or Settings(), operator or Operator()
     patches = len(contours.lines_of(sheet))
-    beyond = not isinstance(which, str) and max(which) > patches  # a number that only a line joined to another may have
+    beyond = (
+        not isinstance(which, str) and max(which) > patches
+    )  # a number that only a line joined to another may have
     asked, left_out = contours.plan(sheet, "all" if beyond else which)
     lines, refused = _follow_each(sheet, asked, which, settings, operator, progress)
     left_out += refused
@@ -60,7 +62,9 @@ def trace_lines(
     if beyond or isinstance(which, str):
         numbered = enumerate(sorted(joined, key=lambda line: -line.length_mm), patches + 1)
         lines += [
-            replace(line, number=number) for number, line in numbered if which != "outer" or not _is_in(line, lines)
+            replace(line, number=number)
+            for number, line in numbered
+            if which != "outer" or not _is_in(line, lines)
         ]
     if beyond or which == "all":
         holes = _dots(sheet, asked, settings, max((line.number for line in lines), default=patches))
@@ -74,7 +78,12 @@ def trace_lines(
 
 
 def _follow_each(
-    sheet: Sheet, asked: list[Contour], which: Which, settings: Settings, operator: Operator, progress: Told | None
+    sheet: Sheet,
+    asked: list[Contour],
+    which: Which,
+    settings: Settings,
+    operator: Operator,
+    progress: Told | None,
 ) -> tuple[list[Line], int]:
     """One line of each patch that is asked for, and how many patches are letters."""
     total_mm, lines, refused = sum(contour.stroke.length_mm for contour in asked), list[Line](), 0
@@ -117,7 +126,9 @@ def _numbered(lines: list[Line], numbers: Which) -> list[Line]:
     return [line for line in lines if line.number in numbers]
 
 
-def _follow(sheet: Sheet, contour: Contour, settings: Settings, operator: Operator, told: Told | None) -> Line | None:
+def _follow(
+    sheet: Sheet, contour: Contour, settings: Settings, operator: Operator, told: Told | None
+) -> Line | None:
     """Follow a line from an open end, or from the plainest of its places where the head can be put down; None for a letter, where it cannot be.
 
     From an end that leads round less than half of the ink, the line has to be longer than round about from such a place.
@@ -144,7 +155,11 @@ def _follow_from_plain_places(
 
     From a place that does not lead round, as on a chord, no other turns are tried before straight on is from some others.
     """
-    in_vain, tried, fault = list[tuple[float, float]](), list[Array](), LineFault("no place to put the head down")
+    in_vain, tried, fault = (
+        list[tuple[float, float]](),
+        list[Array](),
+        LineFault("no place to put the head down"),
+    )
     for start_mm in contour.starts_mm():
         if any(np.hypot(*(places_mm - start_mm).T).min() < contour.stroke.width_mm for places_mm in tried):
             continue
@@ -201,7 +216,9 @@ def _is_reference(contour: Contour, lines: list[Line]) -> bool:
 def _are_reference(places: Array, lines: list[Line]) -> bool:
     """Whether some places (n, 2) mm are those of the reference point from which one of the lines, or a lead line, begins."""
     references_mm = [line.begin_mm for line in lines if line.is_lead or line.reference_mm is not None]
-    return any(np.hypot(*(places - reference_mm).T).max() < 0.5 * LARGEST_MM + 1 for reference_mm in references_mm)
+    return any(
+        np.hypot(*(places - reference_mm).T).max() < 0.5 * LARGEST_MM + 1 for reference_mm in references_mm
+    )
 
 
 def _is_inner(contour: Contour, lines: list[Line]) -> bool:

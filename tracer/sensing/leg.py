@@ -227,7 +227,9 @@ def stroke_end(view: View, leg: Leg, farthest_mm: float) -> float | None:
 
 def _inks(view: View, leg: Leg, farthest_mm: float) -> list[float]:
     """How far the ink of a stroke may go on from a leg's end, mm: along its middle, beside that, and past a speck of paper; none if farther."""
-    middle, *beside = (reach_of_ink(view, leg, farthest_mm, share * view.width_mm) for share in (0.0, -0.25, 0.25))
+    middle, *beside = (
+        reach_of_ink(view, leg, farthest_mm, share * view.width_mm) for share in (0.0, -0.25, 0.25)
+    )
     if middle is None:
         return []
     inks = [middle, *(reach for reach in beside if reach is not None and reach > middle)]
@@ -253,7 +255,9 @@ def lines_from(view: View, centre: Array, radius_mm: float) -> int:
     for heading in strokes_on(view, centre, radius_mm).mean(axis=1):
         way = np.array([math.cos(heading), math.sin(heading)])
         beside = np.outer(BESIDE * view.width_mm, [-way[1], way[0]])
-        joined += any(all(lighter.dark(centre + off + share * radius_mm * way) for share in SPOKE) for off in beside)
+        joined += any(
+            all(lighter.dark(centre + off + share * radius_mm * way) for share in SPOKE) for off in beside
+        )
     return joined
 
 

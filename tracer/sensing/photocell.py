@@ -31,7 +31,9 @@ TWO_PI = 2.0 * math.pi
 SPECK_PX, SPECK_MM = 2.2, 0.25  # no wider is a speck: one pixel seen through the aperture
 REACH, REACH_PX = 0.8, 3.0  # widths and pixels from where a line is expected, within which its edges are
 CLEAN = 0.2  # of the width, by which a clean line's may differ
-FOLLOWS_PER_MM = 0.2  # a line that is felt may swell: its width follows what was felt, by so much of the difference
+FOLLOWS_PER_MM = (
+    0.2  # a line that is felt may swell: its width follows what was felt, by so much of the difference
+)
 Cells = NDArray[np.float32]
 
 
@@ -135,7 +137,9 @@ def ring(cells, pitch_mm, centre, radius_mm, level):  # type: ignore[no-untyped-
     seen = np.empty(samples)
     for k in range(samples):
         a = TWO_PI * k / samples
-        seen[k] = darkness_at(cells, pitch_mm, centre[0] + radius_mm * math.cos(a), centre[1] + radius_mm * math.sin(a))
+        seen[k] = darkness_at(
+            cells, pitch_mm, centre[0] + radius_mm * math.cos(a), centre[1] + radius_mm * math.sin(a)
+        )
     arcs = np.empty((samples // 2 + 1, 2))
     first_light = -1
     for k in range(samples):

@@ -61,13 +61,20 @@ class View:
             return np.empty((0, 3))
         come_mm = lengths_mm(way)
         every = way[np.searchsorted(come_mm, np.arange(0.0, come_mm[-1], self.step_mm))]
-        reach, seen = photocell.REACH * self.width_mm + photocell.REACH_PX * self.pitch_mm, list[tuple[float, ...]]()
+        reach, seen = (
+            photocell.REACH * self.width_mm + photocell.REACH_PX * self.pitch_mm,
+            list[tuple[float, ...]](),
+        )
         for place, before, after in zip(every[1:-1], every[:-2], every[2:], strict=True):
             heading = math.atan2(*(after - before)[::-1])
-            right, left = photocell.edges(self.cells, self.pitch_mm, place[0], place[1], heading, reach, self.level)
+            right, left = photocell.edges(
+                self.cells, self.pitch_mm, place[0], place[1], heading, reach, self.level
+            )
             aside = 0.5 * (left + right)
             if abs(left - right - self.width_mm) < photocell.CLEAN * self.width_mm:
-                seen.append((place[0] - aside * math.sin(heading), place[1] + aside * math.cos(heading), left - right))
+                seen.append(
+                    (place[0] - aside * math.sin(heading), place[1] + aside * math.cos(heading), left - right)
+                )
         return np.array(seen).reshape(-1, 3)
 
     def like(self, place: Array, heading: float, follows: float = 0.1) -> View:
@@ -80,7 +87,9 @@ class View:
         ink = float(np.median([photocell.darkness_at(self.cells, self.pitch_mm, p[0], p[1]) for p in places]))
         level = LEVEL * min(max(ink, self.level), 4 * self.level)
         reach = 1.5 * self.width_mm + 2 * self.pitch_mm
-        found = [photocell.edges(self.cells, self.pitch_mm, p[0], p[1], heading, reach, level) for p in places]
+        found = [
+            photocell.edges(self.cells, self.pitch_mm, p[0], p[1], heading, reach, level) for p in places
+        ]
         width = float(np.median([left - right for right, left in found]))  # NaN if any has no edge
         usual = self.usual_mm or self.width_mm
         if not 0.5 < width / usual < 1.6:
@@ -92,7 +101,9 @@ class View:
         sigma_px = GRAIN * self.width_mm / self.pitch_mm
         cells = np.asarray(cv2.GaussianBlur(self.cells, (0, 0), sigma_px), np.float32)
         places = stations[-GRAIN_STATIONS:, :2]
-        level = GRAIN_LEVEL * float(np.median([photocell.darkness_at(cells, self.pitch_mm, x, y) for x, y in places]))
+        level = GRAIN_LEVEL * float(
+            np.median([photocell.darkness_at(cells, self.pitch_mm, x, y) for x, y in places])
+        )
         reach = 3 * self.width_mm
         found = [photocell.edges(cells, self.pitch_mm, x, y, heading, reach, level) for x, y in places]
         widths = [left - right for right, left in found if math.isfinite(left - right)]

@@ -12,14 +12,14 @@ import math
 import numpy as np
 
 from morfax.tracer.head.course import ahead_mm
-from morfax.tracer.sensing.leg import Leg, stroke_end, turn
+from morfax.tracer.head.trail import Trail
 from morfax.tracer.marks.marks import longest_mm
+from morfax.tracer.sensing.leg import Leg, stroke_end, turn
+from morfax.tracer.sensing.view import Array, View
 from morfax.tracer.tangles.redrawing import MOST_LEGS, Sketch, Way
+from morfax.tracer.tangles.solution import unravelled
 from morfax.tracer.tangles.strands import Planned, same_line, stretches_over
 from morfax.tracer.tangles.tangle import Tangle, tangle_ahead
-from morfax.tracer.head.trail import Trail
-from morfax.tracer.tangles.solution import unravelled
-from morfax.tracer.sensing.view import Array, View
 
 LEAST_SEEN = 4  # stations of the incoming leg, to know the pen by
 LEAST_AHEAD_MM = 0.1
@@ -56,7 +56,9 @@ class Tangles:
             first, vertices, last = strand
             return Planned(stretches_over(way_in, first, vertices, last), last), True
         tangle = tangle_ahead(view, incoming)
-        odd = len(tangle.legs) % 2 == 1  # one line ends on another: that is a junction, which the legs tell better
+        odd = (
+            len(tangle.legs) % 2 == 1
+        )  # one line ends on another: that is a junction, which the legs tell better
         if odd:
             self._beside += [leg for leg in tangle.legs[1:] if _runs_back(view, incoming, leg)]
         if not tangle.whole or not 2 <= len(tangle.legs) <= MOST_LEGS or (odd and plan is not None):
@@ -78,7 +80,9 @@ class Tangles:
         """Numbers of the junctions where another way out would have done as well and leads to ink that has not been followed, and its rank."""
         return tuple((number, rank) for number, rank, leg in self._left if not trail.holds(leg, width_mm))
 
-    def _strand_left(self, incoming: Leg, trail: Trail, place: Array, width_mm: float) -> tuple[Leg, Array, Leg] | None:
+    def _strand_left(
+        self, incoming: Leg, trail: Trail, place: Array, width_mm: float
+    ) -> tuple[Leg, Array, Leg] | None:
         """The legs and the vertices between them of the strand that a line leads into; None if it leads into no tangle that is known."""
         for tangle, way in self._known:
             legs = [tangle.legs[0].turned_round(), *tangle.legs[1:]]
@@ -88,7 +92,11 @@ class Tangles:
                 for a, b, between in ((*pair, vertices), (*pair[::-1], vertices[::-1])):
                     first = legs[a].turned_round()
                     if same_line(first, incoming, width_mm) and not trail.holds(legs[b], width_mm):
-                        return first if ahead_mm(place, first) > LEAST_AHEAD_MM else incoming, between, legs[b]
+                        return (
+                            first if ahead_mm(place, first) > LEAST_AHEAD_MM else incoming,
+                            between,
+                            legs[b],
+                        )
         return None
 
 

@@ -157,7 +157,9 @@ def settle(places, darkness, known_mm, pen, ends, counts, strokes, vertices, rou
         for i in range(p):
             old = vertices[i // 2, i % 2]
             vertices[i // 2, i % 2] = old + NUDGE_MM
-            _wrong(places, darkness, known_mm, pen, ends, counts, strokes, vertices, lines, distance, change[i])
+            _wrong(
+                places, darkness, known_mm, pen, ends, counts, strokes, vertices, lines, distance, change[i]
+            )
             vertices[i // 2, i % 2] = old
             change[i] = (change[i] - now) / NUDGE_MM
         square, right = change @ change.T, change @ now
@@ -166,7 +168,9 @@ def settle(places, darkness, known_mm, pen, ends, counts, strokes, vertices, rou
             step = np.linalg.solve(square + np.diag(damping * np.diag(square) + 1e-6), right)
             step *= min(1.0, FARTHEST_MM / (np.max(np.abs(step)) + 1e-12))
             moved = vertices - step.reshape(-1, 2)
-            total = _wrong(places, darkness, known_mm, pen, ends, counts, strokes, moved, lines, distance, trial)
+            total = _wrong(
+                places, darkness, known_mm, pen, ends, counts, strokes, moved, lines, distance, trial
+            )
             if total < best:
                 best, damping = total, max(0.3 * damping, 1e-4)
                 vertices[:] = moved

@@ -20,11 +20,11 @@ from itertools import pairwise, product
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.tracer.tangles import pen
 from morfax.tracer.sensing.leg import Leg, end_of, meet, turn
 from morfax.tracer.sensing.photocell import darkness_at
-from morfax.tracer.tangles.tangle import Tangle
 from morfax.tracer.sensing.view import Array, View
+from morfax.tracer.tangles import pen
+from morfax.tracer.tangles.tangle import Tangle
 
 Pair = tuple[int, int]
 
@@ -73,7 +73,9 @@ class Sketch:
             way = leg.at(np.linspace(0, 1.2 if k else -1.2, 7))
             pen.away(tangle.places_mm, np.hstack([way[:-1], way[1:]]).T.copy(), len(way) - 1, known)
         softness = _softness(view, tangle.legs[0])
-        return cls(view, tangle, poses, (0.5 * width, softness), known, tangle.area_mm2 / len(known) / width**2)
+        return cls(
+            view, tangle, poses, (0.5 * width, softness), known, tangle.area_mm2 / len(known) / width**2
+        )
 
     def _drawn(self, way: Way) -> tuple[Array, NDArray[np.int64], int, Array]:
         """A way as the pen takes it."""
@@ -112,7 +114,9 @@ class Sketch:
         """What a way costs by its vertices and strokes, in vertices."""
         effort = STROKE * (len(way.strokes) - len(self.poses) % 2)  # a leg that is left over has its stroke
         for (a, b), vertices in zip(way.pairs, way.vertices, strict=True):
-            effort += len(vertices) + DOUBLED * _doubled(np.vstack([self.poses[a, :2], vertices, self.poses[b, :2]]))
+            effort += len(vertices) + DOUBLED * _doubled(
+                np.vstack([self.poses[a, :2], vertices, self.poses[b, :2]])
+            )
         return effort
 
     def plainest(self, pairs: tuple[Pair, ...], *, bare: bool = False) -> Way:
@@ -120,7 +124,9 @@ class Sketch:
         joints = [self._joints(a, b)[: 2 if bare else None] for a, b in pairs]
         spare = set(range(len(self.poses))) - {leg for pair in pairs for leg in pair}
         ends = tuple(self._end(leg) for leg in spare)
-        rough = sorted((self.settled(Way(pairs, v, ends), 0) for v in product(*joints)), key=lambda way: way.cost)
+        rough = sorted(
+            (self.settled(Way(pairs, v, ends), 0) for v in product(*joints)), key=lambda way: way.cost
+        )
         return min((self.settled(way, 4) for way in rough[:MOST_SETTLED]), key=lambda way: way.cost)
 
     def _joints(self, a: int, b: int) -> list[Array]:
@@ -137,7 +143,8 @@ class Sketch:
     def _meeting(self, a: int, b: int) -> Array:
         """Where two legs meet, (1, 2); half way between their ends if they do not."""
         one, other = (
-            Leg(pose[:2], pose[2], 0.0, 0.0, NONE) for pose in (self.poses[a], self.poses[b] + [0, 0, math.pi])
+            Leg(pose[:2], pose[2], 0.0, 0.0, NONE)
+            for pose in (self.poses[a], self.poses[b] + [0, 0, math.pi])
         )
         met = meet(one, other)
         if met is None or min(met) < -2 * self.pen[0] or max(met) > 5.0:
@@ -159,7 +166,9 @@ class Sketch:
         _, distance, _ = self._ink(way)
         for stretch in stretches:
             some = np.vstack([stretch[:-1:PLAN_EVERY], stretch[-1:]])
-            pen.away(self.tangle.places_mm, np.hstack([some[:-1], some[1:]]).T.copy(), len(some) - 1, distance)
+            pen.away(
+                self.tangle.places_mm, np.hstack([some[:-1], some[1:]]).T.copy(), len(some) - 1, distance
+            )
         drawn = np.empty(len(distance))
         pen.ink(distance, *self.pen, drawn)
         return float(np.sum((drawn - self.tangle.darkness) ** 2)) * self.unit
@@ -220,7 +229,9 @@ def matchings(legs: int) -> list[tuple[Pair, ...]]:
         if not rest:
             return [()]
         out = [
-            ((rest[0], rest[k]), *more) for k in range(1, len(rest)) for more in of(rest[1:k] + rest[k + 1 :], spare)
+            ((rest[0], rest[k]), *more)
+            for k in range(1, len(rest))
+            for more in of(rest[1:k] + rest[k + 1 :], spare)
         ]
         return out + (of(rest[1:], False) if spare else [])
 

@@ -13,22 +13,28 @@ from itertools import combinations
 
 import numpy as np
 
-from morfax.tracer.sensing.leg import Leg, turn
+from morfax.tracer.head.trail import Trail
+from morfax.tracer.junctions.choice import goes_straight
 from morfax.tracer.marks.marks import longest_mm
+from morfax.tracer.sensing.leg import Leg, turn
+from morfax.tracer.sensing.view import Array
 from morfax.tracer.tangles.redrawing import NONE, VERTEX, Sketch, Way, ways
 from morfax.tracer.tangles.strands import Planned, as_drawn, aside_mm, same_line, stretches_over
-from morfax.tracer.junctions.choice import goes_straight
-from morfax.tracer.head.trail import Trail
-from morfax.tracer.sensing.view import Array
 
 CLEAR = 0.25  # misfit up to which a way explains the ink
 LEAST_CLEAR, BETTER = 1.0, 0.25  # up to this for two legs far apart, if it is so much better than the plan
 FEW = 2.5  # vertices: no more for that, if the plan leads there too
-TWICE, LEAST_MISFIT = 2.0, 0.02  # one way explains the ink as well as another: so many times its misfit, and more
+TWICE, LEAST_MISFIT = (
+    2.0,
+    0.02,
+)  # one way explains the ink as well as another: so many times its misfit, and more
 DOUBTFUL = 0.08  # straight on stands unless the ink tells against it by more
 AS_GOOD = 0.05  # misfit of a plan that needs no other to be compared with
 WELL_MM2 = 0.015  # area of wrong ink in a way that explains all of it
-BLOT_VERTICES, BLOT_WIDTHS = 4.5, 4.0  # a way with more vertices that reaches no farther, and leaves ink, is a scribble
+BLOT_VERTICES, BLOT_WIDTHS = (
+    4.5,
+    4.0,
+)  # a way with more vertices that reaches no farther, and leaves ink, is a scribble
 ROUGH_WIDTHS = 0.6  # to and fro within the line's own ink: that is rough
 MARK_AS_GOOD = 1.3  # times the misfit of a way: a tick in its place explains the ink as well
 CROSSES_RAD = math.radians(25)  # a line that bends less goes straight on
@@ -66,13 +72,21 @@ def unravelled(
     if any(_is_rough(way, line, view.width_mm) for line in (plan, direct)):
         return plan or direct, way, as_good
     if straight or (
-        plan is not None and same_line(plan.leg, tangle.legs[leg], view.width_mm) and _stands(sketch, way, plan, drawn)
+        plan is not None
+        and same_line(plan.leg, tangle.legs[leg], view.width_mm)
+        and _stands(sketch, way, plan, drawn)
     ):
         return plan, way, as_good
-    return Planned(stretches_over(way_in, incoming, _own(way), tangle.legs[leg]), tangle.legs[leg]), way, as_good
+    return (
+        Planned(stretches_over(way_in, incoming, _own(way), tangle.legs[leg]), tangle.legs[leg]),
+        way,
+        as_good,
+    )
 
 
-def _by_leg(sketch: Sketch, every: list[Way], trail: Trail, plan: Planned | None, clear: float) -> dict[int, Way]:
+def _by_leg(
+    sketch: Sketch, every: list[Way], trail: Trail, plan: Planned | None, clear: float
+) -> dict[int, Way]:
     """The best way to each leg that has not been followed, the best first, of those that explain the ink."""
     view, legs = sketch.view, sketch.tangle.legs
     best: dict[int, Way] = {}

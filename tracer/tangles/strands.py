@@ -13,11 +13,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from morfax.tracer.tangles import pen
 from morfax.tracer.head.course import SPACING_MM, ahead_mm, along_leg, hermite, onto
 from morfax.tracer.sensing.leg import Leg, turn
-from morfax.tracer.tangles.tangle import Tangle
 from morfax.tracer.sensing.view import Array
+from morfax.tracer.tangles import pen
+from morfax.tracer.tangles.tangle import Tangle
 
 SAME_RAD = math.radians(20)
 NEAR_MM = 3.0
@@ -38,7 +38,9 @@ def stretches_over(way_in: tuple[Array, float], incoming: Leg, vertices: Array, 
     start = np.vstack([way, along_leg(incoming, along, 0.0)])
     if not len(vertices):
         return [
-            np.vstack([start, hermite(incoming.end_mm, incoming.heading_rad, outgoing.end_mm, outgoing.heading_rad)])
+            np.vstack(
+                [start, hermite(incoming.end_mm, incoming.heading_rad, outgoing.end_mm, outgoing.heading_rad)]
+            )
         ]
     first = np.vstack([start, _bend(incoming.end_mm, incoming.heading_rad, vertices[0])])
     last = _bend(outgoing.end_mm, outgoing.heading_rad + math.pi, vertices[-1])[::-1]
@@ -66,7 +68,11 @@ def same_line(leg: Leg, other: Leg, width_mm: float) -> bool:
     along = ahead_mm(leg.end_mm, other) * math.cos(turn(leg.heading_rad, other.heading_rad))
     gap = other.end_mm - leg.at(along)
     turned = abs(turn(leg.heading_at(along), other.heading_rad))
-    return turned < SAME_RAD and float(np.hypot(*gap)) < 0.5 * width_mm and abs(along) < max(4 * width_mm, NEAR_MM)
+    return (
+        turned < SAME_RAD
+        and float(np.hypot(*gap)) < 0.5 * width_mm
+        and abs(along) < max(4 * width_mm, NEAR_MM)
+    )
 
 
 def aside_mm(vertices: Array, stretches: list[Array]) -> float:

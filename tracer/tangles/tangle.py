@@ -18,10 +18,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.tracer.tangles.wavefront import Fronts, fronts_from
 from morfax.tracer.sensing.leg import Leg, leg_of
 from morfax.tracer.sensing.photocell import Cells
 from morfax.tracer.sensing.view import Array, View
+from morfax.tracer.tangles.wavefront import Fronts, fronts_from
 
 Flags = NDArray[np.bool_]
 
