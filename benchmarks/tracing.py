@@ -32,7 +32,8 @@ from morfax.motion.pathfile import read_path
 from morfax.motion.polyline import lengths_mm
 from morfax.player.tape.playback import play
 from morfax.recorder.tape.tape import TapeFormat, record
-from morfax.tracer.drawing.drawing import MM_PER_INCH, Drawing
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.raster import MM_PER_INCH
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.trace import trace
 

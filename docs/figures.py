@@ -20,8 +20,8 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.tracer.drawing.drawing import Drawing, levelled
 from morfax.tracer.following import follower
@@ -32,8 +32,6 @@ from morfax.tracer.junctions import planner as pilot
 from morfax.tracer.sensing import photocell
 from morfax.tracer.tangles import memory as tangles
 from samples import draw
-
-Array = NDArray[np.float64]
 
 PITCH_MM = 1 / draw.PIXELS_PER_MM
 BLUE, RED, GREEN, ORANGE, VIOLET = "#1f5fa8", "#c1121f", "#2a7f3f", "#e07b00", "#7a3fa0"

@@ -13,8 +13,8 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
-from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.motion.drive import Condition
 from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.motion.ramp import Ramp, positions_mm
@@ -23,8 +23,6 @@ from morfax.player.gcode.residues import Feed, Interpolator
 from morfax.player.monitor.chart import Chart
 from morfax.player.monitor.monitor import FollowingLimit, Monitor
 from morfax.player.monitor.position_servo import PositionServos
-
-Array = NDArray[np.float64]
 
 BLUE, RED, GREEN, GREY = "#1f5fa8", "#c1121f", "#2a7f3f", "#888888"
 RECIRCULATIONS_HZ = 8 * MOTION_RATE_HZ

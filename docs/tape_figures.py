@@ -13,13 +13,11 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
-from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.recorder.tape.carrier import Carrier, PickUp
 from morfax.recorder.tape.pickups import PICK_UPS, Sensor
-
-Array = NDArray[np.float64]
 
 BLUE, RED, GREY = "#1f5fa8", "#c1121f", "#888888"
 SLOW_REFERENCE_HZ = 200.0  # on a tape of 48 kHz: 113 harmonics, the wave as the pick-up gives it

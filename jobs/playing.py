@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any, TextIO
 
 import click
 import numpy as np
-from numpy.typing import NDArray
 
 from morfax.console.options.types import FREQUENCY, NUMBER, PLACES, TRACKS
 from morfax.console.terminal.desk import Desk
@@ -33,7 +32,7 @@ if TYPE_CHECKING:
 CYCLES_PER_MM = NUMBER
 PIPE = "-"
 
-Array = NDArray[np.float64]
+from morfax.motion.arrays import Array
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,7 +19,6 @@ from typing import TYPE_CHECKING, Any
 
 import click
 import numpy as np
-from numpy.typing import NDArray
 
 from morfax.console.terminal.desk import Desk
 from morfax.jobs import comparison
@@ -48,7 +47,7 @@ HELD_SHARE = 0.05  # of the tracing speed, either way
 HELD_OVER_S = 0.5  # a step of 10 um is a fivehundredth of the way at 10 mm/s
 CORNER_RAD = 0.5  # of turn within 50 um
 
-Array = NDArray[np.float64]
+from morfax.motion.arrays import Array
 
 
 class Systems(click.ParamType):

@@ -19,9 +19,10 @@ if TYPE_CHECKING:
     from morfax.console.terminal.attended import Attended
     from morfax.tracer.cutter.cutter import Cutter, Left
     from morfax.tracer.drawing.drawing import Drawing
+    from morfax.tracer.following.direction import Direction
     from morfax.tracer.head.settings import Settings
     from morfax.tracer.operator.card import Card, Override
-    from morfax.tracer.operator.operator import Direction, Operator
+    from morfax.tracer.operator.operator import Operator
     from morfax.tracer.program.program import Trace
 
 # settings of the head that have an option of their own

@@ -28,7 +28,8 @@ LARGEST_SAMPLES = 1_000_000  # beyond 10 m of path the samples stand further apa
 _NEIGHBOURS = 4
 _SAMPLES_AT_ONCE = 100_000
 
-Array = NDArray[np.float64]
+from morfax.motion.arrays import Array
+
 Contour = Path | Motion | Array | Sequence[Array]
 
 

@@ -16,7 +16,6 @@ import math
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
 from morfax.motion.motion import MOTION_RATE_HZ
 
@@ -29,7 +28,7 @@ SMOOTHED_S = 0.002
 BEND_WITHIN_MM = 0.1  # to either side of a place its bend is counted
 STANDS_S = 2 * SMOOTHED_S  # at either end, so that the average comes to rest
 
-Array = NDArray[np.float64]
+from morfax.motion.arrays import Array
 
 
 def run_along(

@@ -31,7 +31,7 @@ IN_WORK_BELOW_MM = (
 THINNING_TOLERANCE_MM = 2e-4
 BLOCK_SAMPLES = 65536
 
-Array = NDArray[np.float64]
+from morfax.motion.arrays import Array
 
 
 @dataclass(frozen=True, slots=True)

@@ -50,7 +50,7 @@ _DOWN = {"1", "1.0", "true", "down"}
 _ROWS_AT_ONCE = 4096
 _EXPECTED = "a line of names such as t_s,x_mm,y_mm,z_mm,tool"
 
-Array = NDArray[np.float64]
+from morfax.motion.arrays import Array
 
 
 def write_path(path: Path, file: str | os.PathLike[str]) -> None:

@@ -20,11 +20,10 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.motion.motion import Motion, Path
 
-Array = NDArray[np.float64]
 _MIRRORS = {"": (1.0, 1.0), "x": (-1.0, 1.0), "y": (1.0, -1.0)}
 
 

@@ -19,7 +19,8 @@ APART_MM = 0.02  # between places that stand for a line
 WITHIN_MM = 0.05 * UM  # distances from a line are true to this
 CELL_MM = 0.05  # at least, of the grid in which crossings are sought
 
-Array = NDArray[np.float64]
+from morfax.motion.arrays import Array
+
 Ints = NDArray[np.int64]
 
 

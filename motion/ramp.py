@@ -40,7 +40,8 @@ UP, CONSTANT, DOWN = 1, 0, -1
 _LARGEST_COUNT = 1 << 40  # 1000 km in increments of 1 um: the counter is a 64-bit integer
 _NOTHING_MM = 1e-9  # done in one period: a hundredth of an atom, and its square still a number
 
-Array = NDArray[np.float64]
+from morfax.motion.arrays import Array
+
 Counts = NDArray[np.int64]
 
 

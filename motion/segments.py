@@ -31,10 +31,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import Motion, Path, thin
 
-Array = NDArray[np.float64]
 Source = Iterable[Motion] | Motion | Path
 
 SHARE = 0.7  # of the acceleration, along the path and across it

@@ -17,14 +17,10 @@ from dataclasses import dataclass
 from pathlib import Path as FilePath
 from typing import Any, Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
+from morfax.motion.arrays import Array
 from morfax.motion.motion import Motion
 from morfax.player.monitor.chart import Chart
 from morfax.player.monitor.monitor import FollowingLimit, Monitor
-
-Array = NDArray[np.float64]
 
 
 class Playback(Protocol):

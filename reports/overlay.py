@@ -16,7 +16,6 @@ from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from morfax.motion.files import written_beside
 from morfax.motion.motion import Path
@@ -27,7 +26,7 @@ if TYPE_CHECKING:
 
     from morfax.tracer.drawing.drawing import Drawing
 
-Array = NDArray[np.float64]
+from morfax.motion.arrays import Array
 
 UM_PER_MM = 1000.0
 COLOURS = ("#1f5fa8", "#5fa8d3", "#f2a65a", "#c1121f")  # no error … largest error

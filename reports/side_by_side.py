@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from morfax.motion.polyline import lengths_mm
 from morfax.reports.overlay import DPI, REFERENCE, UM_PER_MM, Picture, ground, view_of
@@ -28,7 +27,7 @@ INSETS = 6
 APART_MM = 2.0
 LEAST_REACH_UM = 5.0
 
-Array = NDArray[np.float64]
+from morfax.motion.arrays import Array
 
 
 def contours(

@@ -29,7 +29,7 @@ from morfax.reports.table import Figures
 if TYPE_CHECKING:
     from morfax.recorder.tape.tape import Tape
 
-Array = NDArray[np.float64]
+from morfax.motion.arrays import Array
 
 WINDOW_FRAMES = 4096  # 85 ms at 48 kHz: bins of 12 Hz
 BLOCK_FRAMES = 16 * WINDOW_FRAMES

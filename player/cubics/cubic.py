@@ -46,7 +46,7 @@ _BLOCK_INTERVALS = 256
 _LARGEST_WORD = 2**62  # of register I with its digits
 _TOLERANCE_MM = 0.005  # of following: a tenth of the lag at 10 mm/s
 
-Array = NDArray[np.float64]
+from morfax.motion.arrays import Array
 
 
 @dataclass(frozen=True, slots=True)

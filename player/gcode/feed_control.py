@@ -45,8 +45,6 @@ BLOCKED, EVERY, FOURTH = (
     32 * EIGHTH,
 )  # from here on stages 5 to 8 are set; 7 or 8; 6
 
-Array = NDArray[np.float64]
-
 
 def feed_number(pulses_per_s: float, recirculations_hz: float) -> int:
     """The feed number for a resultant speed; raises ValueError where there is none."""

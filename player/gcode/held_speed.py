@@ -15,13 +15,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from morfax.player.gcode.pulses import PulsePlayback
 
 WINDOW_S = 0.02
 
-Array = NDArray[np.float64]
+from morfax.motion.arrays import Array
 
 
 @dataclass(frozen=True, slots=True)

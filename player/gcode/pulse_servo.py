@@ -43,7 +43,8 @@ QUANTA_PER_PULSE = 2  # multiplier 111
 COMMAND, HALF, ICR, QUANTA, COUNT, LAG, LARGEST = range(7)  # registers of an axis
 PLACE, SPEED = range(2)  # its table: mm, mm/s
 
-Array = NDArray[np.float64]
+from morfax.motion.arrays import Array
+
 Counts = NDArray[np.int64]
 Pulses = NDArray[np.int8]
 

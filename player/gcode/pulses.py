@@ -45,7 +45,8 @@ LARGEST_ARC = math.radians(170)
 STANDSTILL_S = 0.25
 _DWELL_AT_ONCE = 65536  # recirculations
 
-Array = NDArray[np.float64]
+from morfax.motion.arrays import Array
+
 Counts = NDArray[np.int64]
 Pulses = NDArray[np.int8]
 

@@ -16,9 +16,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from morfax.motion.arrays import Array
 
 DEMAND, ACTUAL, LIMIT = range(3)
 

@@ -27,14 +27,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
 from morfax.motion.faults import FollowingFault
 from morfax.player.monitor.chart import Chart
 
 DEMAND, SPEED, COUNTED, FAULTY, LARGEST, SHARE = range(6)  # columns of the state of an axis
 
-Array = NDArray[np.float64]
+from morfax.motion.arrays import Array
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,14 +21,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
 from morfax.motion.drive import SOUND, Drive, as_rows, conditioned_step
 from morfax.motion.motion import MOTION_RATE_HZ
 
 POSITION, MOVING = range(2)  # columns of the state of an axis: mm and mm/s
 
-Array = NDArray[np.float64]
+from morfax.motion.arrays import Array
 
 
 @dataclass(frozen=True, slots=True)

@@ -31,6 +31,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.motion.axis import TRAVEL_MM
 from morfax.motion.faults import ProgramFault
 from morfax.motion.motion import AXES, Motion
@@ -47,7 +48,6 @@ _BLOCK_INTERVALS = 4096
 _PRINTED_TICKS = {1: (32,), 2: (16, 48), 3: (10, 31, 52)}
 
 Counts = NDArray[np.int8]
-Array = NDArray[np.float64]
 
 
 def pulse_ticks(pulses: int) -> tuple[int, ...]:

@@ -47,7 +47,7 @@ COUNT_MARGIN = 0.1  # cycles, for noise
 BETWEEN_CYCLES = 0.05
 ROUGH_CYCLES = 0.04  # what is left of the parabola; 26 dB of noise leave 0.015
 
-Array = NDArray[np.float64]
+from morfax.motion.arrays import Array
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,7 +23,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from morfax.motion.faults import LockFault, TapeFault
 from morfax.motion.motion import Motion
@@ -36,7 +35,8 @@ END_S = 0.05  # of the standstill at the end, over which the place is averaged
 KEPT_DWELL = 0.1  # of the standstills: the tape may have run this much fast, and gets new ones
 MANY = 2  # sets of numbers that fulfil the end: more need not be counted
 
-Array = NDArray[np.float64]
+from morfax.motion.arrays import Array
+
 Gap = tuple[int, int]  # first row, axis
 
 

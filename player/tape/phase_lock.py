@@ -44,13 +44,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.motion.drive import SOUND, Drive, as_rows, conditioned_step
 from morfax.motion.ramp import positions_mm
 from morfax.player.monitor.monitor import FollowingLimit, learn_table
 
-Array = NDArray[np.float64]
 TOLERANCE_CYCLES = 0.25  # of following: noise of the phase, and what a dropout leaves unknown
 TRIED_SPEEDS = 16
 ADJUSTING_MM_S = 10.0  # how fast the machine creeps while the phase changer is turned

@@ -25,7 +25,6 @@ from os import PathLike
 from typing import BinaryIO
 
 import numpy as np
-from numpy.typing import NDArray
 
 from morfax.motion.drive import SOUND
 from morfax.motion.faults import LockFault
@@ -40,7 +39,7 @@ from morfax.recorder.tape.tape import Tape, TapeFormat
 
 END_CYCLES = 0.25  # a cycle lost is four times as much, and a drive at rest stands a hundred times nearer
 
-Array = NDArray[np.float64]
+from morfax.motion.arrays import Array
 
 
 def play(

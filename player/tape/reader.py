@@ -30,7 +30,8 @@ from morfax.recorder.tape.tape import Stored, Tape, TapeFormat, full_scale
 
 BLOCK_FRAMES = 65536
 
-Array = NDArray[np.float64]
+from morfax.motion.arrays import Array
+
 Read = tuple[Phases, Bearings, tuple[int, Fault] | None]
 
 

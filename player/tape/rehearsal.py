@@ -30,7 +30,7 @@ STANDS_S = 0.05  # behind the end, so that a sudden stop there is seen
 WINDOWS = 4  # of shaking, a quarter of one from each to the next
 WITHIN_ROWS = 16  # of the motion: a jump surprises most within these
 
-Array = NDArray[np.float64]
+from morfax.motion.arrays import Array
 
 
 @dataclass(frozen=True, slots=True)

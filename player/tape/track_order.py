@@ -17,7 +17,6 @@ from __future__ import annotations
 from itertools import permutations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from morfax.motion.faults import TapeFault
 from morfax.player.tape.discriminator import Discriminator, discriminate
@@ -29,7 +28,7 @@ SEARCHED_S = 20.0  # of a tape that stands for so long nothing is known beforeha
 END_CYCLES = 0.25
 MOST_AXES = 6  # whose orders are gone through
 
-Array = NDArray[np.float64]
+from morfax.motion.arrays import Array
 
 
 def found_order(tape: Tape) -> tuple[int, ...] | None:

@@ -23,6 +23,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.motion.faults import Fault, LockFault, TapeFault
 from morfax.player.tape.discriminator import Frames, Phases, translating_taps
 from morfax.player.tape.standstill import Bearings, track_name
@@ -41,7 +42,6 @@ SHAKE_CYCLES = 0.0047  # 26 dB of noise shake by 0.0033, and seldom by 0.0045; a
 STUCK_NOISE = 1e-4  # of full scale and of the carrier: below it noise may be the rounding of the samples
 
 Float32s = NDArray[np.float32]
-Array = NDArray[np.float64]
 
 
 class Watch:

@@ -32,13 +32,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import Path
 from morfax.motion.segments import Leg, Limits, Source, as_path, legs
 from morfax.recorder.cubics.file import STEPS_PER_CONSTANT, CubicFormat, CubicProgram, write_program
 from morfax.recorder.report import WrittenIntervals
 
-Array = NDArray[np.float64]
 Words = NDArray[np.int64]
 
 TOLERANCE_MM = 0.002

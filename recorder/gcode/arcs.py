@@ -53,7 +53,7 @@ ROUNDS = 20
 BREAK_RAD = 1e-4
 _STEP = 1e-7  # mm and rad, of the slopes by differences
 
-Array = NDArray[np.float64]
+from morfax.motion.arrays import Array
 
 
 @dataclass(frozen=True, slots=True)

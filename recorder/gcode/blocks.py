@@ -28,7 +28,6 @@ from pathlib import Path as FilePath
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from morfax.motion.faults import MotionFault
 from morfax.motion.files import written_beside
@@ -44,7 +43,7 @@ _LEVEL = 0.02  # Z that changes less than this share of the way stands
 _NOISE_MM = 2e-4  # of a thinned path
 _SLOWEST_MM_S, _FASTEST_MM_S = 0.01, 1000.0
 
-Array = NDArray[np.float64]
+from morfax.motion.arrays import Array
 
 
 @dataclass(frozen=True, slots=True)

@@ -27,7 +27,8 @@ CORNER_RAD = 0.2
 SAME_MM = 1e-6
 LARGEST_TURN_RAD = 3.5
 
-Array = NDArray[np.float64]
+from morfax.motion.arrays import Array
+
 Piece = tuple[int, int, bool]  # first place, last place, whether it is straight
 
 

@@ -26,9 +26,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.recorder.steps.rings import LARGEST, commands
 
-Array = NDArray[np.float64]
 Steps = NDArray[np.int64]
 
 WIDTH = 16

@@ -23,8 +23,8 @@ from typing import Any
 
 import numpy as np
 import soundfile
-from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.motion.faults import MotionFault
 from morfax.motion.files import disk_full_fault, written_beside
 from morfax.motion.motion import AXES, Motion, Path
@@ -39,7 +39,6 @@ _PLACE_DECIMALS = 6  # of the start and end in the text chunk: a nanometre
 _PLACE_CHARACTERS = 24  # room for one coordinate of the end
 
 Progress = Callable[[float, float | None], None]
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

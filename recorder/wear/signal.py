@@ -27,7 +27,8 @@ FLANK_S = 1e-4
 UNEVEN_HZ = (0.2, 8.0)
 SPREAD = 0.5  # of the logarithm of a dropout's length
 
-Array = NDArray[np.float64]
+from morfax.motion.arrays import Array
+
 Frames = NDArray[np.float32]
 
 

@@ -32,7 +32,8 @@ KAISER_BETA = 8.5
 PARTS = 512  # of a sample, between which the filter is interpolated
 KNOT_FRAMES = 8  # the slow curves are laid through every eighth frame
 
-Array = NDArray[np.float64]
+from morfax.motion.arrays import Array
+
 Frames = NDArray[np.float32]
 
 

@@ -14,9 +14,9 @@ from types import ModuleType
 import numpy as np
 import pytest
 import soundfile
-from numpy.typing import NDArray
 from PIL import Image
 
+from morfax.motion.arrays import Array
 from morfax.motion.contour import Distances, closure_mm, distance, length_mm
 from morfax.motion.motion import Path, join, thin
 from morfax.player.tape.playback import play
@@ -28,7 +28,6 @@ from morfax.tracer.program.trace import trace
 from morfax.tracer.program.trace_lines import trace_lines
 from tests.tracer.inked import UM, inked, polyline
 
-Array = NDArray[np.float64]
 SAMPLES = FilePath(__file__).parents[2] / "samples"
 PLAYED_RMS_MM, PLAYED_MAX_MM = (
     0.15 * UM,

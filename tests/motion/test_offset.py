@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
 from morfax.motion.contour import distance
 from morfax.motion.feed import run_along
@@ -18,7 +17,8 @@ from morfax.motion.polyline import Nearest
 
 shapely = pytest.importorskip("shapely")
 
-Array = NDArray[np.float64]
+from morfax.motion.arrays import Array
+
 UM = 1e-3  # mm
 EXACT_MM = 0.5 * UM  # places known to 0.05 um, nearer by 0.2 um at most; asked: 1 um
 

@@ -14,7 +14,8 @@ REFERENCE_HZ = 6000.0
 CYCLES_PER_MM = 20.0
 MOTION_RATE_HZ = 6000.0
 
-Array = NDArray[np.float64]
+from morfax.motion.arrays import Array
+
 Course = Callable[[Array], Array]  # times in s -> positions (n, 3) in mm
 
 

@@ -18,8 +18,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 import soundfile
-from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.motion.axis import LeadScrew
 from morfax.motion.contour import distance
 from morfax.motion.drive import Condition, Drive
@@ -41,8 +41,6 @@ from morfax.tracer.program.program import Trace
 from morfax.tracer.program.trace import trace
 from morfax.tracer.sensing.photocell import behind_aperture, sweep
 from tests.tracer.inked import arc, inked, polyline
-
-Array = NDArray[np.float64]
 
 UM = 1e-3
 RATE_HZ = 48_000

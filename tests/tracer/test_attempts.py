@@ -10,8 +10,8 @@ import pytest
 
 from morfax.tracer.following.attempts import Attempts
 from morfax.tracer.following.follower import Followed
-from morfax.tracer.following.start import Stance
 from morfax.tracer.head.settings import Settings
+from morfax.tracer.head.stance import Stance
 from morfax.tracer.sensing.view import View
 from tests.tracer.inked import inked, polyline
 

@@ -14,14 +14,16 @@ from numpy.typing import NDArray
 from morfax.motion.contour import distance
 from morfax.motion.faults import LineFault
 from morfax.motion.motion import MOTION_RATE_HZ, join, thin
+from morfax.motion.nesting import nested
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program import trace_lines as tour
 from morfax.tracer.program.joined_lines import joined_to
+from morfax.tracer.program.order import idle_way_mm, in_order, in_order_and_turned
 from morfax.tracer.program.program import Trace
-from morfax.tracer.program.selection import idle_way_mm, in_order, in_order_and_turned, nested, plan
+from morfax.tracer.program.selection import plan
 from morfax.tracer.program.trace import trace
 from morfax.tracer.program.trace_lines import trace_lines
 from tests.tracer.inked import UM, Points, arc, inked, polyline

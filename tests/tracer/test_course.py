@@ -8,15 +8,16 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
-from morfax.tracer.head import course
+from morfax.motion import curves
+from morfax.motion.arrays import Array
+from morfax.tracer.junctions import corner
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.leg import Leg, meet
 from morfax.tracer.sensing.view import LEVEL, View
-from tests.tracer.inked import UM, WIDTH_MM, corner, inked
+from tests.tracer.inked import UM, WIDTH_MM, inked
+from tests.tracer.inked import corner as drawn_corner
 
-Array = NDArray[np.float64]
 NO_STATIONS = np.empty((0, 3))
 
 
@@ -36,10 +37,10 @@ def test_a_cubic_leaves_and_arrives_on_its_headings(
     start: tuple[float, float], way: float, length_mm: float, headings: tuple[float, float]
 ) -> None:
     a, b = np.array(start), np.array(start) + length_mm * np.array([math.cos(way), math.sin(way)])
-    line = course.hermite(a, way + headings[0], b, way + headings[1])
+    line = curves.hermite(a, way + headings[0], b, way + headings[1])
     assert line[0] == pytest.approx(a) and line[-1] == pytest.approx(b)
-    assert np.hypot(*np.diff(line, axis=0).T).max() < 2 * course.SPACING_MM
-    step = course.SPACING_MM / length_mm  # the first chord has turned by half of what the cubic turns on it
+    assert np.hypot(*np.diff(line, axis=0).T).max() < 2 * curves.SPACING_MM
+    step = curves.SPACING_MM / length_mm  # the first chord has turned by half of what the cubic turns on it
     assert abs(math.remainder(heading(line, 0) - way - headings[0], math.tau)) < 4 * step + 1e-6
     assert abs(math.remainder(heading(line, -1) - way - headings[1], math.tau)) < 4 * step + 1e-6
 
@@ -49,7 +50,7 @@ def test_a_cubic_is_a_circle_to_its_fourth_order(radius_mm: float) -> None:
     """Over an arc of 0.3 rad: R·a⁴/384 of radial error and less."""
     a = np.array([radius_mm, 0.0])
     b = radius_mm * np.array([math.cos(0.3), math.sin(0.3)])
-    line = course.hermite(a, math.pi / 2, b, math.pi / 2 + 0.3)
+    line = curves.hermite(a, math.pi / 2, b, math.pi / 2 + 0.3)
     assert np.abs(np.hypot(*line.T) - radius_mm).max() < radius_mm * 0.3**4 / 384 + 0.3 * UM
 
 
@@ -58,7 +59,7 @@ def test_speeds_obey_bends_and_braking() -> None:
         [np.sin(np.linspace(0, math.pi / 2, 200)), 1 - np.cos(np.linspace(0, math.pi / 2, 200))]
     )
     way = np.vstack([np.column_stack([np.linspace(-3, 0, 150)[:-1], np.zeros(149)]), quarter])
-    allowed = course.speeds(way, 50.0, 500.0, 0.0)
+    allowed = curves.speeds(way, 50.0, 500.0, 0.0)
     assert allowed[-1] == 0 and allowed.max() <= 50
     assert allowed[200:300].max() <= math.sqrt(500 * 2) * 1.001  # v² / R = a on a radius of 2 mm
     steps = np.hypot(*np.diff(way, axis=0).T)
@@ -69,16 +70,16 @@ def test_speeds_obey_bends_and_braking() -> None:
 
 def test_places_that_repeat_are_left_out() -> None:
     way = np.array([[0.0, 0], [0, 0], [1, 0], [1, 1e-9], [1, 1]])
-    assert course.distinct(way).tolist() == [[0, 0], [1, 0], [1, 1]]
+    assert curves.distinct(way).tolist() == [[0, 0], [1, 0], [1, 1]]
 
 
 def at_corner(
     deflection_deg: float, radius_mm: float, seed: int | None = None
 ) -> tuple[View, Leg, Leg, tuple[float, float]]:
     """A drawn corner, its legs as they are, 1.2 mm before and after the vertex, and where they meet."""
-    line = corner(deflection_deg, radius_mm)
+    line = drawn_corner(deflection_deg, radius_mm)
     drawing = inked(line, seed=seed)
-    vertex = corner(deflection_deg)[1]
+    vertex = drawn_corner(deflection_deg)[1]
     out = math.radians(deflection_deg)
     incoming = Leg(vertex - [1.2, 0], 0.0, 0.0, WIDTH_MM, NO_STATIONS)
     outgoing = Leg(vertex + 1.2 * np.array([math.cos(out), math.sin(out)]), out, 0.0, WIDTH_MM, NO_STATIONS)
@@ -91,7 +92,7 @@ def at_corner(
 def through(eyes: View, incoming: Leg, outgoing: Leg, legs_mm: tuple[float, float]) -> list[Array]:
     """The course of a head that stands 0.5 mm before the incoming leg's clean end."""
     stands = incoming.at(-0.5), incoming.heading_rad
-    return course.through_corner(eyes, stands, incoming, outgoing, legs_mm, 0.0)
+    return corner.through_corner(eyes, stands, incoming, outgoing, legs_mm, 0.0)
 
 
 @pytest.mark.parametrize("deflection_deg", [60.0, 90.0, 120.0, 144.0])
@@ -99,7 +100,7 @@ def test_a_sharp_corner_goes_through_its_vertex(deflection_deg: float) -> None:
     eyes, incoming, outgoing, legs_mm = at_corner(deflection_deg, 0.0)
     stretches = through(eyes, incoming, outgoing, legs_mm)
     assert len(stretches) == 2  # the head stops and swivels between them
-    vertex = corner(deflection_deg)[1]
+    vertex = drawn_corner(deflection_deg)[1]
     assert stretches[0][-1] == pytest.approx(vertex, abs=1e-9) and stretches[1][0] == pytest.approx(
         vertex, abs=1e-9
     )
@@ -111,13 +112,13 @@ def test_a_sharp_corner_goes_through_its_vertex(deflection_deg: float) -> None:
 def test_a_rounded_corner_goes_round_on_its_radius(deflection_deg: float, radius_mm: float) -> None:
     eyes, incoming, outgoing, legs_mm = at_corner(deflection_deg, radius_mm)
     missed = radius_mm * (1 / math.cos(math.radians(deflection_deg) / 2) - 1)
-    assert course.missing_ink_mm(eyes, incoming, outgoing, legs_mm) == pytest.approx(missed, abs=20 * UM)
+    assert corner.missing_ink_mm(eyes, incoming, outgoing, legs_mm) == pytest.approx(missed, abs=20 * UM)
     (way,) = through(eyes, incoming, outgoing, legs_mm)
-    nearest = np.hypot(*(way - corner(deflection_deg)[1]).T).min()
+    nearest = np.hypot(*(way - drawn_corner(deflection_deg)[1]).T).min()
     assert nearest == pytest.approx(missed, abs=25 * UM)  # the ink's edge is a round, seen by an aperture
 
 
 def test_a_sharp_corner_misses_no_ink() -> None:
     for deflection_deg in (60.0, 90.0, 120.0):
         eyes, *legs = at_corner(deflection_deg, 0.0)
-        assert course.missing_ink_mm(eyes, *legs) < course.SHARP * WIDTH_MM
+        assert corner.missing_ink_mm(eyes, *legs) < corner.SHARP * WIDTH_MM

@@ -6,15 +6,14 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import Path
 from morfax.tracer.drawing.deviation import AVERAGED_MM, deviation
 from morfax.tracer.program.trace import trace
 from tests.tracer.inked import UM, WIDTH_MM, arc, inked, polyline
 
-Array = NDArray[np.float64]
 MIDDLE = 14.0
 RADIUS_MM = 10.0
 CIRCLE = arc((MIDDLE, MIDDLE), RADIUS_MM)

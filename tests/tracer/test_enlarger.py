@@ -12,8 +12,9 @@ from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.enlarger import enlarged, reduced
 from morfax.tracer.following.follower import Followed, Follower
-from morfax.tracer.following.start import Stance, put_down
+from morfax.tracer.following.start import put_down
 from morfax.tracer.head.settings import Settings
+from morfax.tracer.head.stance import Stance
 from tests.tracer.inked import arc, inked, polyline
 
 TIMES = 4

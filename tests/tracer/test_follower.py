@@ -10,19 +10,19 @@ import math
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.motion.contour import distance, length_mm, pointwise
 from morfax.motion.faults import LineFault
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.following.direction import Direction
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.operator.card import Card
-from morfax.tracer.operator.operator import Direction, Operator
+from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.trace import trace
 from tests.tracer.inked import UM, arc, corner, inked, polyline
 
-Array = NDArray[np.float64]
 LINE_MM, END_MM = 25 * UM, 30 * UM
 SEEDS = pytest.mark.parametrize("seed", [None, 1, 2])
 ACROSS = polyline((4, 10), (24, 10))

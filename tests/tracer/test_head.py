@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.motion.contour import distance
 from morfax.motion.drive import Drive
 from morfax.motion.motion import MOTION_RATE_HZ
@@ -27,7 +27,6 @@ from tests.tracer.inked import UM, arc, inked, polyline
 
 SPEED_MM_S = Settings().speed_mm_s
 ALONG_PIXELS_MM = 6 * UM
-Array = NDArray[np.float64]
 
 
 def aslant(deg: float, length_mm: float = 16.0) -> Array:

@@ -10,10 +10,11 @@ import numpy as np
 import pytest
 
 from morfax.motion.drive import Drive
-from morfax.tracer.following.start import Stance, put_down
+from morfax.tracer.following.start import put_down
 from morfax.tracer.head import kernel as head
 from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.settings import HISTORIC, Settings
+from morfax.tracer.head.stance import Stance
 from morfax.tracer.program.trace import trace
 from tests.tracer.inked import inked, polyline
 

@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.junctions.rings import corner_in, legs_around
 from morfax.tracer.sensing import photocell
-from morfax.tracer.sensing.leg import Leg, centre_at, end_of, leg_of, meet, reach_of_ink, stroke_end, turn
+from morfax.tracer.sensing.leg import Leg, centre_at, leg_of, meet, turn
+from morfax.tracer.sensing.probe import end_of, reach_of_ink, stroke_end
 from morfax.tracer.sensing.view import LEVEL, View
 from tests.tracer.inked import UM, WIDTH_MM, arc, inked, polyline
 
-Array = NDArray[np.float64]
 ALONG_PIXELS_MM = 6 * UM  # a line along pixels of 85 um is seen 5 um off its middle
 NO_STATIONS = np.empty((0, 3))
 

@@ -10,8 +10,8 @@ import math
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.motion.contour import distance, length_mm
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.program.trace import trace
@@ -23,7 +23,6 @@ from morfax.tracer.tangles.redrawing import Sketch, Way, matchings, ways
 from morfax.tracer.tangles.tangle import Tangle, tangle_ahead
 from tests.tracer.inked import UM, inked, polyline
 
-Array = NDArray[np.float64]
 WIDTH_MM = 0.5
 SEEDS = pytest.mark.parametrize("seed", [None, 1, 2])
 ACROSS = polyline((4, 10), (24, 10))

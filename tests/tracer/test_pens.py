@@ -12,15 +12,15 @@ from itertools import pairwise
 import cv2
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.motion.contour import distance, length_mm
-from morfax.tracer.drawing.drawing import MM_PER_INCH, Drawing
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.raster import MM_PER_INCH
 from morfax.tracer.program.trace import trace
 from morfax.tracer.sensing.view import View
 from tests.tracer.inked import DPI, UM, arc, inked, polyline, together
 
-Array = NDArray[np.float64]
 SEEDS = pytest.mark.parametrize("seed", [1, 2, 3])
 CENTRE, RADIUS_MM = (26.0, 26.0), 20.0
 

@@ -8,14 +8,14 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from morfax.tracer.head import course
+from morfax.motion import curves
+from morfax.tracer.head.planned import Planned
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.trail import Trail
 from morfax.tracer.junctions.planner import Pilot
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.leg import leg_of, turn
 from morfax.tracer.sensing.view import Array, View
-from morfax.tracer.tangles.strands import Planned
 from tests.tracer.inked import arc, inked, polyline
 
 WIDTH_MM = 0.3
@@ -57,4 +57,4 @@ def test_a_way_by_the_vertex_is_taken_only_where_the_line_was_felt_there(
     deflection = abs(turn(legs[0].heading_rad, legs[1].heading_rad))
     assert deflection == pytest.approx(DEFLECTION, abs=math.radians(2))
     assert pilot._as_felt(Planned(stretches, legs[1]), seen, deflection) is is_felt
-    assert pilot._as_felt(Planned([course.distinct(seen[:, :2])], legs[1]), seen, deflection)
+    assert pilot._as_felt(Planned([curves.distinct(seen[:, :2])], legs[1]), seen, deflection)

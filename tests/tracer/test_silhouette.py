@@ -15,7 +15,8 @@ from skimage.draw import polygon
 from morfax.motion.contour import distance
 from morfax.motion.faults import DrawingFault
 from morfax.motion.motion import thin
-from morfax.tracer.drawing.drawing import MM_PER_INCH, Drawing
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.raster import MM_PER_INCH
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.program.trace import trace
 from morfax.tracer.program.trace_lines import trace_lines

@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from morfax.motion.faults import DrawingFault, LineFault
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Sheet
-from morfax.tracer.following.start import Stance, put_down
+from morfax.tracer.following.start import put_down
+from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.trail import Trail
 from morfax.tracer.sensing.leg import Leg
 from tests.tracer.inked import UM, WIDTH_MM, arc, corner, dot, inked, polyline

@@ -6,18 +6,16 @@ import math
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.head.trail import Trail
-from morfax.tracer.junctions.choice import goes_straight, straight_on, survey
+from morfax.tracer.junctions.choice import straight_on, survey
 from morfax.tracer.junctions.edge_following import ride_past
 from morfax.tracer.sensing import photocell
-from morfax.tracer.sensing.leg import Leg, leg_of
+from morfax.tracer.sensing.leg import Leg, goes_straight, leg_of
 from morfax.tracer.sensing.view import LEVEL, View
 from tests.tracer.inked import UM, WIDTH_MM, inked, polyline
 
-Array = NDArray[np.float64]
 VERTEX_MM = 10 * UM  # to which straight legs, 5 um aside on clean ink, meet at 45 degrees and more
 X_MM = 14.0
 WAY_IN = polyline((4, 10), (X_MM, 10))

@@ -10,14 +10,13 @@ import math
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.motion.contour import distance, length_mm
 from morfax.tracer.following.line import Line
 from morfax.tracer.program.trace import trace
 from tests.tracer.inked import UM, WIDTH_MM, inked, polyline
 
-Array = NDArray[np.float64]
 SEEDS = pytest.mark.parametrize("seed", [None, 1, 2])
 MOST_RUN_TOGETHER_MM = WIDTH_MM
 

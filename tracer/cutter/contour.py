@@ -23,10 +23,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import polynomial
 
+from morfax.motion.curves import hermite
 from morfax.motion.offset import Way
 from morfax.motion.polyline import APART_MM, crossings, lengths_mm, with_places
 from morfax.tracer.following.line import Line
-from morfax.tracer.head.course import hermite
 from morfax.tracer.operator.operator import Halt, Operator
 from morfax.tracer.sensing.leg import turn
 from morfax.tracer.sensing.view import Array

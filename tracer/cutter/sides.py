@@ -17,10 +17,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.motion import nesting
 from morfax.motion.offset import Guide
 from morfax.motion.polyline import Nearest, crossings_of, lengths_mm, with_places
-from morfax.tracer.following.line import THINNED
-from morfax.tracer.program import selection as contours
+from morfax.tracer.following.thinning import THINNED
 from morfax.tracer.sensing.view import Array
 
 LOOP_MM = 1.0  # a shorter loop is the head's swivel, and not drawn
@@ -82,7 +82,7 @@ def crossing(lines_mm: Sequence[Array]) -> NDArray[np.bool_]:
 
 def depths(lines_mm: Sequence[Array], crossed: NDArray[np.bool_]) -> list[int]:
     """In how many of the others each closed line lies."""
-    return [int(n) for n in (contours.nested(lines_mm, [True] * len(lines_mm)) & ~crossed).sum(axis=1)]
+    return [int(n) for n in (nesting.nested(lines_mm, [True] * len(lines_mm)) & ~crossed).sum(axis=1)]
 
 
 def room(guides: Sequence[Guide], number: int) -> Room | None:

@@ -19,13 +19,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import map_coordinates
 
+from morfax.motion.arrays import Array
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import Path
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.drawing.components import Mask, Patches, runs_of, strips
 from morfax.tracer.drawing.drawing import Drawing
-
-Array = NDArray[np.float64]
 
 EVERY_MM = 0.1
 TOUCH_MM = 0.02  # between the places of a cutter's way

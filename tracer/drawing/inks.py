@@ -21,11 +21,11 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault
 from morfax.tracer.drawing.components import strips
 from morfax.tracer.drawing.paper import Paper
 
-Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]  # rows from the top, columns, channels
 Colour = tuple[int, int, int]
 

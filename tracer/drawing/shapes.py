@@ -37,7 +37,8 @@ SLOPE_PX = 0.3  # to both sides, to measure a slope
 LEAST_SLOPE = 0.1  # per pixel
 REDUCED = 4  # levels are estimated on a picture reduced by this
 
-Array = NDArray[np.float64]
+from morfax.motion.arrays import Array
+
 Grey = NDArray[np.float32]
 
 

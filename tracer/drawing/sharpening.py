@@ -43,7 +43,7 @@ FURTHER, NOISE = (
 )  # of the way, and standard deviations: by noise the outline of a sharp corner is further inside (98 %)
 SHORT, LEGS = 0.1, 0.35  # and by the legs' bend less far
 
-Array = NDArray[np.float64]
+from morfax.motion.arrays import Array
 
 
 @dataclass(frozen=True, slots=True)

@@ -31,7 +31,7 @@ BACK = 1.5  # times as far along the edge as straight across: it comes back, as 
 LEG = 0.95  # of the way along the edge is straight to a corner and straight on from it: legs of one corner
 ROUND_ABOUT = 8  # times as far along, and it is another edge, and no corner that the lens has blurred
 
-Array = NDArray[np.float64]
+from morfax.motion.arrays import Array
 
 
 def finer(edges: list[Edge], shape: tuple[int, ...], pitch_mm: float, softness_px: float) -> int:

@@ -19,11 +19,11 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault, LineFault
 from morfax.tracer.drawing.components import Mask, Patches, runs_of, strips
 from morfax.tracer.drawing.drawing import Drawing
 
-Array = NDArray[np.float64]
 Pixels = NDArray[Any]
 
 INK = 0.5

@@ -25,15 +25,16 @@ from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import INK
+from morfax.tracer.following.direction import Direction
 from morfax.tracer.following.edge_check import kept_to
 from morfax.tracer.following.enlarger import enlarged, reduced
 from morfax.tracer.following.follower import Followed, Follower
-from morfax.tracer.following.line import THINNED
-from morfax.tracer.following.start import Stance, turned_round
+from morfax.tracer.following.thinning import THINNED
 from morfax.tracer.head.settings import Settings
-from morfax.tracer.junctions.choice import SIDES, Side
-from morfax.tracer.operator.operator import Direction, Operator
+from morfax.tracer.head.stance import Stance, turned_round
+from morfax.tracer.operator.operator import Operator
 from morfax.tracer.sensing.leg import turn
+from morfax.tracer.sensing.side import SIDES, Side
 
 SHORTER = (
     0.95  # the other way round is the line itself if it is shorter than this: straight on has led elsewhere

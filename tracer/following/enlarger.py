@@ -13,7 +13,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from morfax.tracer.following.follower import Followed
-from morfax.tracer.following.start import Stance
+from morfax.tracer.head.stance import Stance
 from morfax.tracer.sensing.view import View
 
 

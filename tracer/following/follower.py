@@ -21,20 +21,23 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from morfax.motion import curves
 from morfax.motion.faults import LineFault
-from morfax.tracer.following.start import Stance
 from morfax.tracer.head import course
 from morfax.tracer.head import kernel as head
 from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.loop import loop_in
 from morfax.tracer.head.settings import Settings
-from morfax.tracer.junctions.choice import AHEAD, SIDES, Side, Way, goes_straight, survey, turns_off
+from morfax.tracer.head.stance import Stance
+from morfax.tracer.junctions.choice import AHEAD, Way, survey
 from morfax.tracer.junctions.guides import Guide, Junctions
 from morfax.tracer.junctions.planner import Pilot
 from morfax.tracer.junctions.rings import fork_in
 from morfax.tracer.junctions.width_change import Onward, another_pen, of_another_pen
 from morfax.tracer.marks.dots import disc, dot_ahead, dot_at_end
-from morfax.tracer.sensing.leg import Leg, end_of, leg_of, turn
+from morfax.tracer.sensing.leg import Leg, goes_straight, leg_of, turn, turns_off
+from morfax.tracer.sensing.probe import end_of
+from morfax.tracer.sensing.side import SIDES, Side
 from morfax.tracer.sensing.view import Array, View
 from morfax.tracer.tangles.memory import Tangles
 
@@ -305,7 +308,7 @@ class Follower:
 
     def _way_home(self) -> Array:
         """The way onto the place where the head began."""
-        return course.hermite(*self.carriage.stands(), self.stance.place_mm, self.stance.heading_rad)
+        return curves.hermite(*self.carriage.stands(), self.stance.place_mm, self.stance.heading_rad)
 
     def _pass(self, stretches: list[Array], outgoing: Leg, seen: Array | None = None) -> Followed | None:
         """Run a course and go on following at its end; or stop at home if the course passes there. `seen` is what was clean on the way."""
@@ -334,7 +337,7 @@ class Follower:
         if self.carriage.travel_mm < self._away_mm:
             return None
         home, heading = self.stance.place_mm, self.stance.heading_rad
-        stretches = [course.distinct(way) for way in stretches]  # a step of no length has no heading
+        stretches = [curves.distinct(way) for way in stretches]  # a step of no length has no heading
         for k, way in enumerate(stretches):
             near = int(np.argmin(np.hypot(*(way - home).T)))
             step = way[min(near + 1, len(way) - 1)] - way[min(near, len(way) - 2)]

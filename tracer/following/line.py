@@ -19,14 +19,14 @@ import numpy as np
 from morfax.motion.faults import LineFault
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.following.follower import Followed
-from morfax.tracer.junctions.choice import TURNS_OFF, Side
+from morfax.tracer.following.thinning import THINNED
 from morfax.tracer.junctions.gaps import Break, breaks
 from morfax.tracer.junctions.guides import Guide
 from morfax.tracer.marks.marks import Mark, marks_along
-from morfax.tracer.sensing.leg import turn
+from morfax.tracer.sensing.leg import TURNS_OFF, turn
+from morfax.tracer.sensing.side import Side
 from morfax.tracer.sensing.view import Array
 
-THINNED = 30  # of the positions one in so many tells where a line is: every 50 um at 10 mm/s
 HEADING = 300  # positions that tell the heading at an end: half a mm at 10 mm/s
 NEARLY_MM = 5.0  # a line that ends so near to its beginning may be a closed one
 AT_JUNCTION = 1.5  # widths: as near to a junction a line is come to it

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -20,20 +20,13 @@ from morfax.motion.faults import LineFault
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Sheet, Stroke
 from morfax.tracer.head.course import FELT_LEGS
+from morfax.tracer.head.stance import Stance
 from morfax.tracer.junctions.choice import straight_on
 from morfax.tracer.marks.marks import longest_mm
 from morfax.tracer.marks.reference import Reference, references
 from morfax.tracer.sensing import photocell
-from morfax.tracer.sensing.leg import (
-    Leg,
-    centre_at,
-    end_of,
-    leg_of,
-    reach_of_ink,
-    stroke_end,
-    strokes_on,
-    turn,
-)
+from morfax.tracer.sensing.leg import Leg, centre_at, leg_of, turn
+from morfax.tracer.sensing.probe import end_of, reach_of_ink, stroke_end, strokes_on
 from morfax.tracer.sensing.view import LEVEL, Array, View
 
 CATCH_MM = 3.0  # how far from a given place the line may be
@@ -51,22 +44,6 @@ GROWS, GROWS_PX = (
 PLACES = 80  # tried along a line
 ENDS = 6  # open ends that are tried: a lead line may begin at any
 BENT = 0.8  # times a leg's length: a line that bends by more is no parabola over so much of it
-
-
-@dataclass(frozen=True, slots=True)
-class Stance:
-    """The head put down: place on the line, heading along it, and how it sees the line."""
-
-    place_mm: Array
-    heading_rad: float
-    view: View
-    at_end: bool = False
-    reference_mm: tuple[float, float] | None = None  # the reference point from which it goes
-
-
-def turned_round(end_mm: Array, heading_rad: float, view: View) -> Stance:
-    """The head at the end of a line where it arrived on a heading, to go back along it."""
-    return Stance(end_mm, math.remainder(heading_rad + math.pi, math.tau), view, True)
 
 
 def put_down(

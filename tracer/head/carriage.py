@@ -13,10 +13,10 @@ import math
 
 import numpy as np
 
-from morfax.tracer.following.start import Stance
-from morfax.tracer.head import course
+from morfax.motion import curves
 from morfax.tracer.head import kernel as head
 from morfax.tracer.head.settings import Settings, tune
+from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.trail import Trail
 from morfax.tracer.sensing.leg import Leg, turn
 from morfax.tracer.sensing.view import Array, View
@@ -80,14 +80,14 @@ class Carriage:
     def run(self, stretches: list[Array], end_mm_s: float = 0.0) -> None:
         """Run along stretches, swivelling between them, and end at a speed."""
         for k, stretch in enumerate(stretches):
-            way = course.distinct(stretch)
+            way = curves.distinct(stretch)
             if len(way) < 2:
                 continue
             step = way[1] - way[0]
             if k > 0:
                 self.swivel(math.atan2(step[1], step[0]))
             last = k == len(stretches) - 1
-            limits = course.speeds(
+            limits = curves.speeds(
                 way, self.settings.speed_mm_s, self.settings.acceleration_mm_s2, end_mm_s if last else 0.0
             )
             self._run(way, limits)

@@ -16,7 +16,6 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from itertools import combinations
-from typing import Literal
 
 import numpy as np
 
@@ -24,11 +23,11 @@ from morfax.tracer.head.trail import Trail
 from morfax.tracer.junctions.rings import legs_around
 from morfax.tracer.marks.marks import longest_mm
 from morfax.tracer.sensing import photocell
-from morfax.tracer.sensing.leg import Leg, Meeting, leg_of, meet, reach_of_ink, stroke_end, turn
+from morfax.tracer.sensing.leg import STRAIGHT, Leg, Meeting, goes_straight, leg_of, meet, turn, turns_off
+from morfax.tracer.sensing.probe import reach_of_ink, stroke_end
+from morfax.tracer.sensing.side import Side
 from morfax.tracer.sensing.view import Array, View
 
-STRAIGHT = math.radians(40)  # straight on is within this
-TURNS_OFF = math.radians(20)  # a leg turns off to a side by more than this
 AHEAD = math.radians(75)  # a lost line is looked for within this of its heading
 SQUARE = math.radians(
     20
@@ -44,8 +43,6 @@ FARTHEST_WIDTHS = 6.0  # how far the heading is held through a blot, in widths o
 
 
 Way = tuple[Leg | None, Meeting | None, int]
-Side = Literal["left", "right"]
-SIDES: tuple[Side, Side] = ("left", "right")
 
 
 def survey(
@@ -131,11 +128,6 @@ def _is_aside(incoming: Leg, leg: Leg, side: Side) -> bool:
     return (turn(incoming.heading_rad, leg.heading_rad) > 0) == (side == "left") and turns_off(incoming, leg)
 
 
-def turns_off(incoming: Leg, leg: Leg) -> bool:
-    """Whether a leg turns off from another so far that it is certain where they meet."""
-    return abs(turn(incoming.heading_rad, leg.heading_rad)) > TURNS_OFF
-
-
 def _without_marks(view: View, incoming: Leg, legs: list[Leg]) -> list[Leg]:
     """The legs but for those that are marks and not straight on, if others are left."""
     reach = [math.inf if goes_straight(incoming, leg) else _reach_mm(view, incoming, leg) for leg in legs]
@@ -202,11 +194,6 @@ def _without_pairs(view: View, incoming: Leg, legs: list[Leg], every: list[Leg])
             if bent < PASSES and aside < 0.35 * view.width_mm and own > bent + PASSES:
                 taken += [a, b]
     return [leg for leg in legs if not any(leg is other for other in taken)]
-
-
-def goes_straight(incoming: Leg, outgoing: Leg | None) -> bool:
-    """Whether a leg goes on straight from another."""
-    return outgoing is not None and abs(turn(incoming.heading_rad, outgoing.heading_rad)) < STRAIGHT
 
 
 def straight_on(view: View, incoming: Leg, gap_mm: float) -> Leg | None:

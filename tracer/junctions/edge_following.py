@@ -22,7 +22,7 @@ from itertools import pairwise
 import numpy as np
 from numba import njit
 
-from morfax.tracer.head.course import hides_outside, rounding
+from morfax.tracer.junctions.corner import hides_outside, rounding
 from morfax.tracer.sensing.leg import Leg, Meeting, leg_of, meet, turn
 from morfax.tracer.sensing.photocell import darkness_at, edge_along, edges, onward
 from morfax.tracer.sensing.view import Array, View

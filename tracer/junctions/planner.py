@@ -13,17 +13,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.spatial import cKDTree
 
+from morfax.motion import curves
 from morfax.motion.polyline import with_places
 from morfax.tracer.head import course
+from morfax.tracer.head.planned import Planned
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.trail import Trail
-from morfax.tracer.junctions.choice import Way, caught_again, goes_straight, straight_on
+from morfax.tracer.junctions import corner
+from morfax.tracer.junctions.choice import Way, caught_again, straight_on
 from morfax.tracer.junctions.edge_following import Ride, ride_past, to_vertex
 from morfax.tracer.junctions.rings import corner_in
 from morfax.tracer.junctions.width_change import Onward
-from morfax.tracer.sensing.leg import Leg, Meeting, leg_of, meet, turn
+from morfax.tracer.sensing.leg import Leg, Meeting, goes_straight, leg_of, meet, turn
 from morfax.tracer.sensing.view import Array, View
-from morfax.tracer.tangles.strands import Planned
 
 SMOOTH = math.radians(14)  # a smaller change of heading is no corner
 LEAST_GAP_PX = 2.5  # a scan can lose this much of a line
@@ -77,7 +79,7 @@ class Pilot:
         planned = self._course(incoming, leg, None)
         if legs_mm is not None and self._is_corner(incoming, leg, legs_mm):
             end_mm = max(0.05 - legs_mm[1], 0.0)
-            stretches = course.sharp_corner(self.stands, incoming, leg, legs_mm, end_mm)
+            stretches = corner.sharp_corner(self.stands, incoming, leg, legs_mm, end_mm)
             planned = Planned(stretches, leg.shifted(end_mm, leg.seen))
         return planned if course.on_ink(self.view, planned.stretches) else None
 
@@ -108,12 +110,12 @@ class Pilot:
         if legs_mm is not None and self._is_corner(incoming, outgoing, legs_mm):
             arriving, leaving, met = to_vertex(self.view, incoming, outgoing, legs_mm)
             end_mm = max(0.05 - met[1], course.ahead_mm(leaving.end_mm, outgoing))
-            stretches = course.through_corner(self.view, self.stands, arriving, leaving, met, end_mm)
+            stretches = corner.through_corner(self.view, self.stands, arriving, leaving, met, end_mm)
             return Planned(stretches, leaving.shifted(end_mm, leaving.seen))
         limit = float(np.hypot(*(outgoing.end_mm - incoming.end_mm)))
         way, along = course.onto(*self.stands, incoming, 0.5 * limit)
         start, heading = incoming.at(along), incoming.heading_at(along)
-        through = course.hermite(start, heading, outgoing.end_mm, outgoing.heading_rad)
+        through = curves.hermite(start, heading, outgoing.end_mm, outgoing.heading_rad)
         return Planned([np.vstack([way, through])], outgoing)
 
     def _is_corner(self, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> bool:
@@ -123,7 +125,7 @@ class Pilot:
 
     def _past_speck(self, planned: Planned, incoming: Leg, outgoing: Leg) -> Planned | None:
         """A way without a corner once more, felt along it: None if the line is not clean there but for a speck."""
-        way = course.distinct(np.vstack(planned.stretches))
+        way = curves.distinct(np.vstack(planned.stretches))
         beyond = [
             course.ahead_mm(place, outgoing) > 0 and course.ahead_mm(place, incoming) < 0 for place in way
         ]
@@ -134,23 +136,23 @@ class Pilot:
         nodes, leg = course.nodes_along(self.view, self.stands, there)
         if leg is None:
             return None
-        felt = course.distinct(course.through_nodes(nodes))
-        averaged = course.bends_per_mm(felt).max() * course.FELT_LEGS * self.view.leg_mm > 1
+        felt = curves.distinct(course.through_nodes(nodes))
+        averaged = curves.bends_per_mm(felt).max() * course.FELT_LEGS * self.view.leg_mm > 1
         return None if averaged else Planned([felt], leg, there)
 
     def _is_round(self, incoming: Leg, outgoing: Leg, legs_mm: Meeting | None) -> bool:
         """Whether the legs, or the ink where they meet, show a round and no corner."""
         if legs_mm is None:
             return False
-        touch_mm = course.rounding(self.view, incoming, outgoing, legs_mm)[1]
+        touch_mm = corner.rounding(self.view, incoming, outgoing, legs_mm)[1]
         return touch_mm > 0 or self._bend_on(incoming, outgoing, legs_mm)
 
     def _bend_on(self, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> bool:
         """Whether two legs meet at no greater angle than one of them makes by bending on over the stations between them."""
         bends = max(abs(incoming.bend_per_mm), abs(outgoing.bend_per_mm))
         return (
-            course.deflection(incoming, outgoing, legs_mm)
-            < SMOOTH + bends * course.HIDDEN * self.view.step_mm
+            corner.deflection(incoming, outgoing, legs_mm)
+            < SMOOTH + bends * corner.HIDDEN * self.view.step_mm
         )
 
     def round_corner(self, seen: Array, here: int) -> Planned | None:
@@ -179,7 +181,7 @@ class Pilot:
             return None
         if self._bend_on(incoming, outgoing, legs_mm):
             return None
-        if not course.is_sharp(self.view, incoming, outgoing, legs_mm):
+        if not corner.is_sharp(self.view, incoming, outgoing, legs_mm):
             return None
         planned = self._course(incoming, outgoing, legs_mm)
         return (
@@ -200,27 +202,27 @@ class Pilot:
             legs_mm = meet(incoming, outgoing)
             if legs_mm is None:
                 return None
-            touch_mm = course.rounding(self.view, incoming, outgoing, legs_mm)[1]
+            touch_mm = corner.rounding(self.view, incoming, outgoing, legs_mm)[1]
             back, on = (
                 2 if leg.bend_per_mm else max(0, math.ceil((touch_mm - mm) / self.view.step_mm))
                 for leg, mm in zip((incoming, outgoing), legs_mm, strict=True)
             )
             if not back and not on:
                 planned = self._by_arc(incoming, outgoing, legs_mm, touch_mm)
-                turned = course.deflection(incoming, outgoing, legs_mm)
+                turned = corner.deflection(incoming, outgoing, legs_mm)
                 return planned if planned is not None and self._as_felt(planned, seen, turned) else None
             last, first = last - back, first + on
         return None
 
     def _by_arc(self, incoming: Leg, outgoing: Leg, legs_mm: Meeting, touch_mm: float) -> Planned | None:
         """The way by the arc that touches two straight legs so far from their vertex; None if it is sharp, slight or wide, or if the head is in it."""
-        deflection = course.deflection(incoming, outgoing, legs_mm)
+        deflection = corner.deflection(incoming, outgoing, legs_mm)
         widest_mm = TIGHT_LEGS * self.view.leg_mm * math.tan(deflection / 2)
         before_mm = legs_mm[0] + course.ahead_mm(self.stands[0], incoming)
-        if deflection < course.SLIGHT or not 0 < touch_mm < min(widest_mm, before_mm):
+        if deflection < corner.SLIGHT or not 0 < touch_mm < min(widest_mm, before_mm):
             return None
         end_mm = max(0.05 - legs_mm[1], 0.0)
-        way = course.rounded_corner(self.stands, incoming, outgoing, legs_mm, touch_mm, end_mm)
+        way = corner.rounded_corner(self.stands, incoming, outgoing, legs_mm, touch_mm, end_mm)
         return Planned([way], outgoing.shifted(end_mm, outgoing.seen))
 
     def _as_felt(self, planned: Planned, seen: Array, deflection: float) -> bool:
@@ -229,7 +231,7 @@ class Pilot:
         A pen of width w that turns by d about a vertex leaves the inner edge of its ink w/2/cos(d/2) from it, and the outer one w/2 before the lens rounds it.
         """
         inside_mm = 0.5 * self.view.width_mm * (1 / max(math.cos(deflection / 2), 0.5) - 1)
-        away_mm = cKDTree(with_places(seen[:, :2], course.SPACING_MM)).query(np.vstack(planned.stretches))[0]
+        away_mm = cKDTree(with_places(seen[:, :2], curves.SPACING_MM)).query(np.vstack(planned.stretches))[0]
         return bool(away_mm.max() < inside_mm + AS_FELT * self.view.pitch_mm)
 
     def _ride(self, incoming: Leg, ride: Ride) -> Planned | None:

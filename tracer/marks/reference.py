@@ -26,7 +26,8 @@ from numpy.typing import NDArray
 from morfax.tracer.drawing.strokes import Sheet, Stroke
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.circles import WAYS, circle_through, spokes
-from morfax.tracer.sensing.leg import SPECK_WIDTHS, Leg, is_tip, leg_of, lines_on
+from morfax.tracer.sensing.leg import Leg, leg_of
+from morfax.tracer.sensing.probe import SPECK_WIDTHS, is_tip, lines_on
 from morfax.tracer.sensing.view import Array, View
 
 LEAST_MM, LARGEST_MM = 1.5, 10.0  # across

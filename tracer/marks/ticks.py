@@ -20,7 +20,7 @@ import numpy as np
 from numba import njit
 
 from morfax.tracer.sensing import photocell
-from morfax.tracer.sensing.leg import is_tip
+from morfax.tracer.sensing.probe import is_tip
 from morfax.tracer.sensing.view import LEVEL, Array, View
 
 LEAST_MM, LEAST_WIDTHS = 0.6, 1.2  # of a stroke, beyond the line's edge

@@ -21,13 +21,13 @@ from dataclasses import dataclass, field, replace
 from typing import Literal, NamedTuple, Protocol
 
 from morfax.motion.faults import CardFault
+from morfax.tracer.following.direction import Direction
 from morfax.tracer.following.line import Line
-from morfax.tracer.junctions.choice import Side
 from morfax.tracer.operator import zunit
 from morfax.tracer.operator.card import Card, Stop
 from morfax.tracer.operator.zunit import Move
+from morfax.tracer.sensing.side import Side
 
-Direction = Literal["cw", "ccw", "left", "right"]
 STAND_S = 0.5
 NEAR_WIDTHS = 3.0  # a dot at the end of a guide line is the hole drilled there, and no other
 

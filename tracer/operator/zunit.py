@@ -40,7 +40,8 @@ ACCELERATION_MM_S2 = 200.0
 _OFF_COUNT = 1e-6  # of a count: what arithmetic with inches leaves
 _PULSE = 1e-9  # of a count: what rounding takes off a pulse that has passed, 1e5 counts in 53 bits
 
-Array = NDArray[np.float64]
+from morfax.motion.arrays import Array
+
 Sense = Literal["up", "down"]
 
 

@@ -20,7 +20,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from morfax.tracer.head import course
+from morfax.motion import curves
 from morfax.tracer.sensing.view import Array
 
 _NOTHING_MM = 1e-9
@@ -59,8 +59,8 @@ def run(way_mm: Array, speed_mm_s: float, acceleration_mm_s2: float, rate_hz: fl
     corners = [0, *_corners(places), len(places) - 1]
     speeds = np.zeros(len(places))
     for a, b in pairwise(corners):
-        there = course.speeds(places[a : b + 1], speed_mm_s, acceleration_mm_s2, 0.0)
-        back = course.speeds(places[b : (a - 1 if a else None) : -1], speed_mm_s, acceleration_mm_s2, 0.0)[
+        there = curves.speeds(places[a : b + 1], speed_mm_s, acceleration_mm_s2, 0.0)
+        back = curves.speeds(places[b : (a - 1 if a else None) : -1], speed_mm_s, acceleration_mm_s2, 0.0)[
             ::-1
         ]
         speeds[a : b + 1] = np.minimum(there, back)

@@ -22,8 +22,9 @@ from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Sheet, Stroke
 from morfax.tracer.following.attempts import Attempts, asked_for, goes, longest_mm, turned_about
 from morfax.tracer.following.line import Line
-from morfax.tracer.following.start import Stance, ends_of, put_down, turned_round
+from morfax.tracer.following.start import ends_of, put_down
 from morfax.tracer.head.settings import Settings
+from morfax.tracer.head.stance import Stance, turned_round
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.program import Trace
 

@@ -18,15 +18,18 @@ from functools import partial
 
 import numpy as np
 
+from morfax.motion import nesting
 from morfax.motion.faults import LineFault
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Sheet
-from morfax.tracer.following.line import THINNED, Line
+from morfax.tracer.following.line import Line
 from morfax.tracer.following.start import view_of
+from morfax.tracer.following.thinning import THINNED
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.marks import dots
 from morfax.tracer.marks.reference import LARGEST_MM
 from morfax.tracer.operator.operator import Operator
+from morfax.tracer.program import order
 from morfax.tracer.program import selection as contours
 from morfax.tracer.program.joined_lines import joined_to
 from morfax.tracer.program.program import Trace
@@ -228,16 +231,16 @@ def _is_inner(contour: Contour, lines: list[Line]) -> bool:
 
 def _is_in(line: Line, lines: list[Line]) -> bool:
     """Whether a line lies inside one of some others."""
-    return any(_goes_round(other) and contours.lies_inside(line.places_mm, _loop(other)) for other in lines)
+    return any(_goes_round(other) and nesting.lies_inside(line.places_mm, _loop(other)) for other in lines)
 
 
 def _in_order(lines: list[Line], again: Callable[[Line], Line]) -> list[Line]:
     """The lines in the order in which they are cut; open ones are followed once more from their other end where that is nearer."""
-    inner = contours.nested([_loop(line) for line in lines], [_goes_round(line) for line in lines])
+    inner = nesting.nested([_loop(line) for line in lines], [_goes_round(line) for line in lines])
     starts, ends = (np.array([getattr(line, end) for line in lines]) for end in ("begin_mm", "end_mm"))
     may_turn = np.array([line.ending == "ended" and not line.goes_back for line in lines])
-    order, turned = contours.in_order_and_turned(starts, ends, inner, may_turn)
-    return [again(lines[i]) if turned[i] else lines[i] for i in order]
+    sequence, turned = order.in_order_and_turned(starts, ends, inner, may_turn)
+    return [again(lines[i]) if turned[i] else lines[i] for i in sequence]
 
 
 def _turned_round(sheet: Sheet, line: Line, settings: Settings, operator: Operator) -> Line:

@@ -12,13 +12,11 @@ from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.photocell import Cells
-
-Array = NDArray[np.float64]
 
 LEVEL = 0.5  # an edge is at this share of the line's darkness
 LEG_MM = 1.2  # how much of a leg is felt for its direction, at a line of 0.5 mm

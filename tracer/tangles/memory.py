@@ -12,13 +12,15 @@ import math
 import numpy as np
 
 from morfax.tracer.head.course import ahead_mm
+from morfax.tracer.head.planned import Planned
 from morfax.tracer.head.trail import Trail
 from morfax.tracer.marks.marks import longest_mm
-from morfax.tracer.sensing.leg import Leg, stroke_end, turn
+from morfax.tracer.sensing.leg import Leg, turn
+from morfax.tracer.sensing.probe import stroke_end
 from morfax.tracer.sensing.view import Array, View
 from morfax.tracer.tangles.redrawing import MOST_LEGS, Sketch, Way
 from morfax.tracer.tangles.solution import unravelled
-from morfax.tracer.tangles.strands import Planned, same_line, stretches_over
+from morfax.tracer.tangles.strands import same_line, stretches_over
 from morfax.tracer.tangles.tangle import Tangle, tangle_ahead
 
 LEAST_SEEN = 4  # stations of the incoming leg, to know the pen by

@@ -20,8 +20,9 @@ from itertools import pairwise, product
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.tracer.sensing.leg import Leg, end_of, meet, turn
+from morfax.tracer.sensing.leg import Leg, meet, turn
 from morfax.tracer.sensing.photocell import darkness_at
+from morfax.tracer.sensing.probe import end_of
 from morfax.tracer.sensing.view import Array, View
 from morfax.tracer.tangles import pen
 from morfax.tracer.tangles.tangle import Tangle

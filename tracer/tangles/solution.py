@@ -13,13 +13,13 @@ from itertools import combinations
 
 import numpy as np
 
+from morfax.tracer.head.planned import Planned
 from morfax.tracer.head.trail import Trail
-from morfax.tracer.junctions.choice import goes_straight
 from morfax.tracer.marks.marks import longest_mm
-from morfax.tracer.sensing.leg import Leg, turn
+from morfax.tracer.sensing.leg import Leg, goes_straight, turn
 from morfax.tracer.sensing.view import Array
 from morfax.tracer.tangles.redrawing import NONE, VERTEX, Sketch, Way, ways
-from morfax.tracer.tangles.strands import Planned, as_drawn, aside_mm, same_line, stretches_over
+from morfax.tracer.tangles.strands import as_drawn, aside_mm, same_line, stretches_over
 
 CLEAR = 0.25  # misfit up to which a way explains the ink
 LEAST_CLEAR, BETTER = 1.0, 0.25  # up to this for two legs far apart, if it is so much better than the plan

@@ -9,11 +9,12 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 
-from morfax.tracer.head.course import SPACING_MM, ahead_mm, along_leg, hermite, onto
+from morfax.motion.curves import SPACING_MM, hermite
+from morfax.tracer.head.course import ahead_mm, along_leg, onto
+from morfax.tracer.head.planned import Planned
 from morfax.tracer.sensing.leg import Leg, turn
 from morfax.tracer.sensing.view import Array
 from morfax.tracer.tangles import pen
@@ -22,14 +23,6 @@ from morfax.tracer.tangles.tangle import Tangle
 SAME_RAD = math.radians(20)
 NEAR_MM = 3.0
 KINK_RAD = math.radians(14)  # a smaller change of heading is run through
-
-
-class Planned(NamedTuple):
-    """Stretches from where the head is, the leg that they lead to, and what of the line was felt clean on the way."""
-
-    stretches: list[Array]
-    leg: Leg
-    seen: Array | None = None
 
 
 def stretches_over(way_in: tuple[Array, float], incoming: Leg, vertices: Array, outgoing: Leg) -> list[Array]:

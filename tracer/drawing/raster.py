@@ -1,0 +1,130 @@
+"""TODO."""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.motion.faults import DrawingFault, FileFault
+from morfax.tracer.drawing import memory as room
+from morfax.tracer.drawing.components import strips
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
+
+MM_PER_INCH = 25.4
+LEAST_PITCH_MM, LARGEST_PITCH_MM = 0.001, 10.0
+Grey = NDArray[np.uint8] | NDArray[np.float32]  # levels 0..255
+
+
+def _read(file: Path, *, coloured: bool) -> tuple[Grey, tuple[float, float] | None]:
+    """Grey levels, or colours, of the first page of an image file, upright, and the resolution that the file states."""
+    from PIL import Image, ImageOps, UnidentifiedImageError
+
+    Image.MAX_IMAGE_PIXELS = None  # a large sheet is no attack; a lack of memory is said below
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            with (
+                file.open("rb") as stream,
+                Image.open(stream) as image,
+            ):  # a stream is never mapped: Pillow turns maps wrongly
+                room.make_sure(file, *image.size)
+                image.load()
+                stated = _stated_dpi(image)
+                ImageOps.exif_transpose(image, in_place=True)
+                return np.array(image.convert("RGB")) if coloured else _grey(image), stated
+    except UnidentifiedImageError:
+        raise DrawingFault(
+            f"{file} is not an image that can be read; give a PNG, JPEG or TIFF file"
+        ) from None
+    except FileNotFoundError:
+        raise FileFault(f"{file} does not exist; check the name") from None
+    except MemoryError:
+        raise DrawingFault(
+            f"{file} is too large for the memory of this computer; scan it at a lower resolution"
+        ) from None
+    except DrawingFault:
+        raise
+    except (OSError, SyntaxError, ValueError) as error:
+        if isinstance(error, OSError) and error.errno is not None:
+            raise FileFault(f"{file} cannot be read: {error.strerror}") from None
+        raise DrawingFault(f"{file} is a damaged image ({error}); scan or save it again") from None
+
+
+def _states_resolution(image: Image) -> bool:
+    """Whether the file itself states a resolution: Pillow answers 72 dpi for a JPEG with Exif that does not."""
+    if "dpi" not in image.info:
+        return False
+    by_jfif = image.info.get("jfif_unit", 0) in (1, 2)
+    return image.format != "JPEG" or by_jfif or 282 in image.getexif()  # 282: XResolution
+
+
+def _grey(image: Image) -> Grey:
+    """Grey levels 0..255 of an image of any mode; the darkest colour channel, so that a coloured line is as dark as it can be."""
+    columns, rows = image.size
+    deep = image.mode in ("I;16", "I;16B", "I;16L", "I", "F")
+    grey = np.empty((rows, columns), np.float32 if deep else np.uint8)
+    for top, bottom, _ in strips(grey.shape):
+        strip = image.crop((0, top, columns, bottom))  # as a whole it would be held twice more
+        grey[top:bottom] = np.asarray(strip) if deep else _darkest_channel(strip)
+    if deep:
+        np.multiply(grey, 255 / _white(image.mode, float(grey.max())), out=grey)
+    return grey
+
+
+def _white(mode: str, lightest: float) -> float:
+    """The level that stands for white in a picture of 16 bits, or of whole or broken numbers."""
+    if mode == "I;16" or lightest > 255:
+        return 65535.0
+    return 1.0 if mode == "F" and lightest <= 1 else 255.0
+
+
+def _darkest_channel(image: Image) -> NDArray[np.uint8]:
+    """The darkest of the colour channels of an image of eight bits or fewer, on white where it is transparent."""
+    if image.mode in ("1", "L"):
+        return np.asarray(image.convert("L"))
+    if image.mode in ("LA", "PA", "RGBA", "La", "RGBa") or "transparency" in image.info:
+        from PIL import Image as Images
+
+        rgba = image.convert("RGBA")
+        image = Images.alpha_composite(Images.new("RGBA", rgba.size, "white"), rgba)
+    return np.asarray(np.asarray(image.convert("RGB")).min(axis=2))
+
+
+def _stated_dpi(image: Image) -> tuple[float, float] | None:
+    """Resolution that the file states, dots per inch in X and Y; whole numbers where the file rounds to dots per metre."""
+    if not _states_resolution(image):
+        return None
+    x, y = (float(v) for v in image.info["dpi"])
+    if not (np.isfinite(x) and np.isfinite(y) and x > 1 and y > 1):
+        return None
+    return tuple(round(v) if abs(v - round(v)) < 0.02 else v for v in (x, y))  # type: ignore[return-value]
+
+
+def _pitches_mm(
+    file: Path, columns: int, stated: tuple[float, float] | None, dpi: float | None, width_mm: float | None
+) -> tuple[float, float]:
+    """Pixel pitch in X and Y, mm."""
+    for name, value, pitch_mm in (
+        ("--dpi", dpi, dpi and MM_PER_INCH / dpi),
+        ("--width", width_mm, width_mm and width_mm / columns),
+    ):
+        if value is not None and not LEAST_PITCH_MM <= (pitch_mm or 0.0) <= LARGEST_PITCH_MM:
+            allowed = f"{MM_PER_INCH / LARGEST_PITCH_MM:.3g} to {MM_PER_INCH / LEAST_PITCH_MM:.3g} dpi"
+            raise DrawingFault(
+                f"{name} is {value:g}; it must give pixels of {LEAST_PITCH_MM:g} to {LARGEST_PITCH_MM:g} mm, {allowed}"
+            )
+    if width_mm is not None:
+        return (width_mm / columns,) * 2
+    if dpi is not None:
+        return (MM_PER_INCH / dpi,) * 2
+    if stated is None:
+        raise DrawingFault(
+            f"{file} states no resolution; give --dpi 300, or the sheet's width with --width 120mm"
+        )
+    return MM_PER_INCH / stated[0], MM_PER_INCH / stated[1]

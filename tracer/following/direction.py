@@ -1,0 +1,7 @@
+"""TODO."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+Direction = Literal["cw", "ccw", "left", "right"]

@@ -1,0 +1,24 @@
+"""TODO."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from morfax.tracer.sensing.view import Array, View
+
+
+@dataclass(frozen=True, slots=True)
+class Stance:
+    """The head put down: place on the line, heading along it, and how it sees the line."""
+
+    place_mm: Array
+    heading_rad: float
+    view: View
+    at_end: bool = False
+    reference_mm: tuple[float, float] | None = None  # the reference point from which it goes
+
+
+def turned_round(end_mm: Array, heading_rad: float, view: View) -> Stance:
+    """The head at the end of a line where it arrived on a heading, to go back along it."""
+    return Stance(end_mm, math.remainder(heading_rad + math.pi, math.tau), view, True)

@@ -1,0 +1,8 @@
+"""TODO."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+Side = Literal["left", "right"]
+SIDES: tuple[Side, Side] = ("left", "right")
