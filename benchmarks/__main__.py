@@ -1,4 +1,6 @@
-"""Run all benchmarks, or those named: `python -m benchmarks [tape …]`; `folder DIR` is the table of a folder of drawings."""
+"""Run all benchmarks, or those named: `python -m benchmarks [tape …]`; `folder DIR` is the table of a folder
+of drawings.
+"""
 
 from __future__ import annotations
 

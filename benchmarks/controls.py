@@ -1,7 +1,9 @@
-"""The other controls: the step decoder and the cubic interpolator, against the same in numpy where there is such.
+"""The other controls: the step decoder and the cubic interpolator, against the same in numpy where there is
+such.
 
-The step program is a minute of vectors of six steps with both axes running, decoded to positions at eight samples to
-the interval; the cubic one 2000 intervals of 64 points on three axes. Best of five, kernels compiled before.
+The step program is a minute of vectors of six steps with both axes running, decoded to positions at eight
+samples to the interval; the cubic one 2000 intervals of 64 points on three axes. Best of five, kernels
+compiled before.
 """
 
 from __future__ import annotations

@@ -1,10 +1,12 @@
 """The table of a folder of drawings: `python -m benchmarks folder DIR [--line 0.5mm]... [--size 300mm]`.
 
-Every truth file (`*.csv` with columns loop, x, y in mm) is traced as a program of all its lines: from the image beside it (`name.png`, .jpg or .tif, in the
-same sheet coordinates) or, where there is none, from a picture drawn of it here, at 300 dpi with each of the line widths, scaled to the size where one is
-given, and with a scanner's softness and noise. Every loop of the truth has its row; a traced line counts for the loop that it is nearest to.
-Printed are ending, pieces (lines traced for the loop), RMS, 95 % and largest distance of the path from the truth, Hausdorff distance, and the share of the
-truth that no path comes within 0.2 mm of. The time is that of the whole drawing.
+Every truth file (`*.csv` with columns loop, x, y in mm) is traced as a program of all its lines: from the
+image beside it (`name.png`, .jpg or .tif, in the same sheet coordinates) or, where there is none, from a
+picture drawn of it here, at 300 dpi with each of the line widths, scaled to the size where one is given, and
+with a scanner's softness and noise. Every loop of the truth has its row; a traced line counts for the loop
+that it is nearest to. Printed are ending, pieces (lines traced for the loop), RMS, 95 % and largest distance
+of the path from the truth, Hausdorff distance, and the share of the truth that no path comes within 0.2 mm
+of. The time is that of the whole drawing.
 """
 
 from __future__ import annotations

@@ -1,9 +1,10 @@
 """Pulse control and monitored servos: recirculations, periods and lines of program in a second.
 
-The interpolator runs a line on three axes and a quarter turn, with feed control; the pulse servo follows three axes of
-it. The monitored servo is the position servo with its monitor over ten seconds of demand on three axes. The program is
-100 000 lines, three fifths of them arcs and lines with all their words, read beside merely finding its numbers. Best of
-three in turn, kernels compiled before; time of this process only, as other work may share the machine.
+The interpolator runs a line on three axes and a quarter turn, with feed control; the pulse servo follows
+three axes of it. The monitored servo is the position servo with its monitor over ten seconds of demand on
+three axes. The program is 100 000 lines, three fifths of them arcs and lines with all their words, read
+beside merely finding its numbers. Best of three in turn, kernels compiled before; time of this process only,
+as other work may share the machine.
 """
 
 from __future__ import annotations

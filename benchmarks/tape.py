@@ -1,8 +1,8 @@
 """Tapes: decoding against the analytic signal of scipy and against merely reading; playing against real time.
 
-All are run in turn, three times over, and the best of each is taken, so that what else the machine does falls on all
-alike. The tape is a minute of circles at 50 mm/s, four tracks of 48 kHz and 16 bit. Memory is what Python and numpy
-hold at most, for that tape and for one ten times as long.
+All are run in turn, three times over, and the best of each is taken, so that what else the machine does falls
+on all alike. The tape is a minute of circles at 50 mm/s, four tracks of 48 kHz and 16 bit. Memory is what
+Python and numpy hold at most, for that tape and for one ten times as long.
 """
 
 from __future__ import annotations
@@ -27,7 +27,9 @@ BLOCK_FRAMES = 65536
 
 
 def circles(seconds: float) -> Iterator[Motion]:
-    """Motion round a circle of 20 mm at 50 mm/s, started and stopped within two seconds, in blocks of a second."""
+    """Motion round a circle of 20 mm at 50 mm/s, started and stopped within two seconds, in blocks of a
+    second.
+    """
     rate = int(MOTION_RATE_HZ)
     for second in range(round(seconds)):
         t_s = second + np.arange(rate) / rate

@@ -1,10 +1,11 @@
-"""Tracing a drawing, side by side with what one would reach for first: the contours and the skeleton of scikit-image.
+"""Tracing a drawing, side by side with what one would reach for first: the contours and the skeleton of
+scikit-image.
 
-All begin with the same file, a scan at 300 dpi of a star inked with a line of 0.5 mm (where the collection of real parts
-is not at hand, the project's own cam), and end with places in mm on the sheet. The time is that of the whole way from
-the file, kernels warm; the accuracy is the root mean square distance of those places from the true line that the ink was
-drawn along. Contours run along both edges of the ink, half a line's width away: that half is taken off in a row of its
-own, as if the width were known.
+All begin with the same file, a scan at 300 dpi of a star inked with a line of 0.5 mm (where the collection of
+real parts is not at hand, the project's own cam), and end with places in mm on the sheet. The time is that of
+the whole way from the file, kernels warm; the accuracy is the root mean square distance of those places from
+the true line that the ink was drawn along. Contours run along both edges of the ink, half a line's width
+away: that half is taken off in a row of its own, as if the width were known.
 
 Times real time: the motion's own duration over the time that the processor spent (all its cores counted).
 """
@@ -79,7 +80,9 @@ def on_sheet(rows: Points, columns: Points, height_px: int) -> Points:
 
 
 def contours(file: Path) -> Points:
-    """Places on the edges of the longest patch of ink, by marching squares between the grey levels; as one would first write it."""
+    """Places on the edges of the longest patch of ink, by marching squares between the grey levels; as one
+    would first write it.
+    """
     grey = np.asarray(Image.open(file).convert("L"))
     found = sorted(find_contours(grey, threshold_otsu(grey)), key=len)[-2:]  # both edges of a closed line
     return np.vstack([on_sheet(edge[:, 0], edge[:, 1], len(grey)) for edge in found])

@@ -1,7 +1,7 @@
 """The command line `morfax`: one verb per machine, and one line on stderr for whatever goes wrong.
 
-Signals in: the words on the command line. Signals out: figures on stdout, everything else on stderr, an exit code.
-Verbs are loaded when they are called, so that `morfax --help` does not wait for the machines.
+Signals in: the words on the command line. Signals out: figures on stdout, everything else on stderr, an exit
+code. Verbs are loaded when they are called, so that `morfax --help` does not wait for the machines.
 """
 
 from __future__ import annotations
@@ -85,8 +85,8 @@ class Verbs(click.Group):
 def cli() -> None:
     """Follow a drawing, record the motion on a tape, play the tape on a machine, and compare.
 
-    Lengths, speeds and frequencies are given with their unit: 10mm, 0.4in, 50um, 1200mm/min, 6kHz. A bare number is in
-    mm, mm/s or Hz. Places are X,Y in mm from the lower-left corner of the sheet.
+    Lengths, speeds and frequencies are given with their unit: 10mm, 0.4in, 50um, 1200mm/min, 6kHz. A bare
+    number is in mm, mm/s or Hz. Places are X,Y in mm from the lower-left corner of the sheet.
     """
 
 
@@ -131,7 +131,9 @@ def _ended(words: Sequence[str] | None) -> int:
 
 @contextmanager
 def _stopped_by_signals() -> Iterator[None]:
-    """Have the signals that ask a program to end stop the work as Ctrl-C does, so that unfinished files are removed."""
+    """Have the signals that ask a program to end stop the work as Ctrl-C does, so that unfinished files are
+    removed.
+    """
 
     def stop(number: int, frame: object) -> None:
         raise KeyboardInterrupt(number)
@@ -175,7 +177,9 @@ def _cause(error: OSError) -> str:
 
 
 def _is_out_of_memory(error: Exception) -> bool:
-    """Whether Python, numpy or OpenCV (which has its own error for it, with the code StsNoMem) found no memory."""
+    """Whether Python, numpy or OpenCV (which has its own error for it, with the code StsNoMem) found no
+    memory.
+    """
     return isinstance(error, MemoryError) or getattr(error, "code", None) == -4
 
 

@@ -1,9 +1,10 @@
-"""Draw the figures of `how-the-head-works.md`: the head itself, at work on small drawings, with what it sees and decides drawn over them.
+"""Draw the figures of `how-the-head-works.md`: the head itself, at work on small drawings, with what it sees
+and decides drawn over them.
 
     make figures        (python -m docs.figures [FOLDER])
 
-Nothing is sketched: the drawings are made and scanned as the samples are, the head is the one that `morfax trace` runs, and what it asks of its rings
-and surveys is listened to while it runs.
+Nothing is sketched: the drawings are made and scanned as the samples are, the head is the one that `morfax
+trace` runs, and what it asks of its rings and surveys is listened to while it runs.
 """
 
 from __future__ import annotations
@@ -49,7 +50,9 @@ DRUM_STYLES: tuple[dict[str, Any], ...] = (
 
 
 def inked(*lines: Array) -> tuple[Drawing, Array]:
-    """The lines drawn and scanned as a sample is; the drawing, and by how much the lines were moved onto the sheet, mm."""
+    """The lines drawn and scanned as a sample is; the drawing, and by how much the lines were moved onto the
+    sheet, mm.
+    """
     moved, sheet_px = draw.placed(list(lines))
     grey = draw.scanned(draw.coverage(moved, sheet_px), seed=5)
     return Drawing(levelled(grey, PITCH_MM)[0], PITCH_MM), moved[0][0] - lines[0][0]
@@ -139,7 +142,9 @@ def sweep_figure() -> plt.Figure:
 
 
 def seen_from_axis(run: follower.Follower) -> dict[str, Array]:
-    """What the head remembers, concludes and looks at just now, each (n, 2) mm along its heading and to the left of it."""
+    """What the head remembers, concludes and looks at just now, each (n, 2) mm along its heading and to the
+    left of it.
+    """
     s, t = run.carriage.state, run.carriage.tuning
     heading = s[head.HEADING]
     turn = np.array([[np.cos(heading), -np.sin(heading)], [np.sin(heading), np.cos(heading)]])

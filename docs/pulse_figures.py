@@ -55,7 +55,9 @@ def draw_speed(file: Path) -> None:
 
 
 def draw_following(file: Path) -> None:
-    """Following error against its limit: a move at low speed, then a fast one; the drive loses gain on the way."""
+    """Following error against its limit: a move at low speed, then a fast one; the drive loses gain on the
+    way.
+    """
     slow = positions_mm([0.0], [3.0], 1.0, Ramp(acceleration_mm_s2=20))
     fast = positions_mm([3.0], [43.0], 20.0, Ramp(acceleration_mm_s2=100))
     demand = np.vstack([slow, np.full((3000, 1), 3.0), fast, np.full((3000, 1), 43.0)])

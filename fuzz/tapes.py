@@ -1,8 +1,9 @@
 """Fuzz the tape reader, the pipe and the text chunk with atheris: `python -m fuzz.tapes -runs=1000000`.
 
-The first inputs are whole tapes of a moment, of every kind of file, and their text: what is broken from there gets past the
-first bytes. Every input must end as a fault of the domain or be taken; any other exception, 2 s of work or 1 GB of memory ends the run
-with the input kept in a file (`-timeout=2 -rss_limit_mb=1024` are set by `make fuzz`).
+The first inputs are whole tapes of a moment, of every kind of file, and their text: what is broken from there
+gets past the first bytes. Every input must end as a fault of the domain or be taken; any other exception, 2 s
+of work or 1 GB of memory ends the run with the input kept in a file (`-timeout=2 -rss_limit_mb=1024` are set
+by `make fuzz`).
 """
 
 from __future__ import annotations

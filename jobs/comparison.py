@@ -1,8 +1,10 @@
-"""How far a path is from another path, or from the ink of a drawing: figures, and the error along the contour.
+"""How far a path is from another path, or from the ink of a drawing: figures, and the error along the
+contour.
 
-A path from a path: the distance of each sample of the first from the nearest place of the second, and back. A path from
-a drawing: the distance of each point from the ink's own centre, measured across the path in the image, not a number
-where the ink has no centre that means anything (crossings, corners); and the ink that no path covers.
+A path from a path: the distance of each sample of the first from the nearest place of the second, and back. A
+path from a drawing: the distance of each point from the ink's own centre, measured across the path in the
+image, not a number where the ink has no centre that means anything (crossings, corners); and the ink that no
+path covers.
 """
 
 from __future__ import annotations

@@ -1,4 +1,6 @@
-"""The drawing put in: the options that say how an image file is to be read, which become the `Sheet` of a verb."""
+"""The drawing put in: the options that say how an image file is to be read, which become the `Sheet` of a
+verb.
+"""
 
 from __future__ import annotations
 

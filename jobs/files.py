@@ -7,8 +7,8 @@ A file's kind is read off its first bytes, and off its name where they say nothi
     drawing   PNG, JPEG, TIFF, BMP, …     or  .png .jpg .tif …
     path      any other text              or  .csv
 
-A name that was given for a result is written over; a name that morfax made up is not, unless --force says so. A result
-never goes over the file that it is made from.
+A name that was given for a result is written over; a name that morfax made up is not, unless --force says so.
+A result never goes over the file that it is made from.
 """
 
 from __future__ import annotations
@@ -89,7 +89,9 @@ def outgoing(file: FilePath, *made_from: FilePath) -> FilePath:
 
 
 def made_up(name: FilePath, *made_from: FilePath, force: bool) -> FilePath:
-    """A name that nobody gave, for a result in the current folder; raises FileFault if it is taken and not `force`."""
+    """A name that nobody gave, for a result in the current folder; raises FileFault if it is taken and not
+    `force`.
+    """
     if name.exists() and not force:
         raise FileFault(f"{name} is there already; give a name with -o, or --force to write over it")
     return outgoing(name, *made_from)

@@ -1,6 +1,7 @@
 """A tape played for a verb: the options that a bare tape needs, the bar, and the path that the machine ran.
 
-What the machine ran before a fault is kept: the path then holds the motion up to there, and the fault is given beside.
+What the machine ran before a fault is kept: the path then holds the motion up to there, and the fault is
+given beside.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ import numpy as np
 from morfax.console.options.types import FREQUENCY, NUMBER, PLACES, TRACKS
 from morfax.console.terminal.desk import Desk
 from morfax.jobs import files as medium
+from morfax.motion.arrays import Array
 from morfax.motion.faults import Fault
 from morfax.motion.files import written_beside
 from morfax.motion.pathfile import write_rows
@@ -32,8 +34,6 @@ if TYPE_CHECKING:
 CYCLES_PER_MM = NUMBER
 PIPE = "-"
 
-from morfax.motion.arrays import Array
-
 
 @dataclass(frozen=True, slots=True)
 class Played:
@@ -46,7 +46,9 @@ class Played:
 
 @dataclass(slots=True)
 class Passage:
-    """What a path was, taken down piece by piece: when and where it began and ended, and its length in the work."""
+    """What a path was, taken down piece by piece: when and where it began and ended, and its length in the
+    work.
+    """
 
     start_s: float = 0.0
     end_s: float = 0.0
@@ -107,7 +109,8 @@ class Controls:
     def play(
         self, file: FilePath, desk: Desk, *, raw: bool = False, chart: Chart | None = None, **settings: Any
     ) -> Played:
-        """Play a tape, or what comes through a pipe (-), to its end or to its fault; `settings` as `play` takes them.
+        """Play a tape, or what comes through a pipe (-), to its end or to its fault; `settings` as `play`
+        takes them.
 
         The chart takes down the following errors. Raises the fault if nothing was played before it.
         """
@@ -125,9 +128,11 @@ class Controls:
         chart: Chart | None = None,
         **settings: Any,
     ) -> tuple[Passage, Playback, Fault | None]:
-        """Play a tape as `play` does, and write its path (.csv) as it comes, so that a tape of any length takes no more memory.
+        """Play a tape as `play` does, and write its path (.csv) as it comes, so that a tape of any length
+        takes no more memory.
 
-        A path that a fault ended early is marked in its name. Gives what the path was; raises the fault if nothing was played before it.
+        A path that a fault ended early is marked in its name. Gives what the path was; raises the fault if
+        nothing was played before it.
         """
         from morfax.motion.motion import thinned
 
@@ -146,7 +151,9 @@ class Controls:
     def _stream(
         self, file: FilePath, desk: Desk, chart: Chart | None, settings: dict[str, Any]
     ) -> tuple[Playback, Iterator[Motion], list[Fault]]:
-        """A file in its machine, the motion that this makes up to its end or its fault, and the fault once it is met."""
+        """A file in its machine, the motion that this makes up to its end or its fault, and the fault once it
+        is met.
+        """
         desk.warn_of_compiling("the controls", "motion", "player")
         playback = self._put_in(file, settings)
         playback.chart = chart

@@ -52,7 +52,9 @@ class Unit:
             )
 
     def record(self, stream: Iterable[Motion], file: FilePath, desk: Desk) -> Report:
-        """Record a motion, placed, in the medium that the name says; what a tape's player would refuse is refused."""
+        """Record a motion, placed, in the medium that the name says; what a tape's player would refuse is
+        refused.
+        """
         from morfax.recorder.media import record
 
         placed = self.placement.stream(stream)
@@ -84,7 +86,9 @@ class Unit:
 
 
 def rehearsed(stream: Iterable[Motion], fmt: TapeFormat, desk: Desk) -> Iterator[Motion]:
-    """Pass a motion on to its tape; raises MotionFault where no player could read that, and notes where a drive could not follow."""
+    """Pass a motion on to its tape; raises MotionFault where no player could read that, and notes where a
+    drive could not follow.
+    """
     from morfax.player.tape.rehearsal import Rehearsal
 
     rehearsal = Rehearsal(fmt)

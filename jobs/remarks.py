@@ -1,4 +1,5 @@
-"""Remarks: what the operator is told of a traced drawing beside its figures: what was not found, not followed, or is cut though it may not be meant.
+"""Remarks: what the operator is told of a traced drawing beside its figures: what was not found, not
+followed, or is cut though it may not be meant.
 
 Signals: the traced lines, and what was asked of the head, in; texts out.
 """
@@ -23,7 +24,9 @@ FEW = 0.7  # of the ink that is joined to a line: what is left is worth a word
 
 
 def remarks(trace: Trace, head: Head, gap_mm: float, enlarged: int) -> Iterator[str]:
-    """All that is worth a word of a trace, the head having gone across gaps up to this, on a drawing enlarged so many times."""
+    """All that is worth a word of a trace, the head having gone across gaps up to this, on a drawing enlarged
+    so many times.
+    """
     if enlarged > 1:
         yield f"edges are near one another: followed {enlarged} times enlarged, so the machine goes {enlarged} times slower than the head"
     yield from _of_solids(trace)
@@ -39,7 +42,9 @@ def remarks(trace: Trace, head: Head, gap_mm: float, enlarged: int) -> Iterator[
 
 
 def of_cutter(beside: Trace, left: Left, cutter: Cutter) -> Iterator[str]:
-    """All that is worth a word of a program beside the lines: what the cutter leaves out, leaves much of, or runs in pieces."""
+    """All that is worth a word of a program beside the lines: what the cutter leaves out, leaves much of, or
+    runs in pieces.
+    """
     if left.lines:
         yield _of_left_out(left.lines, cutter)
     for number, stretches in groupby(sorted(left.stretches, key=lambda u: u.line), key=lambda u: u.line):
@@ -122,7 +127,9 @@ def _of_gaps(trace: Trace) -> Iterator[str]:
 
 
 def _of_breaks(trace: Trace, gap_mm: float) -> Iterator[str]:
-    """Of the first end from which ink goes on straight ahead, beyond the gap that is allowed, and of how many there are."""
+    """Of the first end from which ink goes on straight ahead, beyond the gap that is allowed, and of how many
+    there are.
+    """
     lines = [line for line in trace.lines if line.gap_mm is None]
     found = [(line, broken) for line in lines for broken in line.breaks if broken.gap_mm > gap_mm]
     if not found:
@@ -147,7 +154,9 @@ def _of_stems(trace: Trace) -> Iterator[str]:
 
 
 def _of_crossing_guides(trace: Trace) -> Iterator[str]:
-    """Of lines from a reference point that cross others and end beyond them: they lead to a hole, and may be meant to lead to a contour."""
+    """Of lines from a reference point that cross others and end beyond them: they lead to a hole, and may be
+    meant to lead to a contour.
+    """
     for line in trace.lines:
         if line.is_guide and line.junctions_mm:
             (x, y), (u, v) = line.begin_mm, line.place(len(line.xy_mm) - 1)

@@ -1,7 +1,7 @@
 """The systems side by side: one traced contour recorded in each medium, played on each control, and measured.
 
-Signals in: a drawing and what the head traced of it. Signals out: for each system the path that its machine ran and its
-figures, or the fault that kept it from running; the others go on.
+Signals in: a drawing and what the head traced of it. Signals out: for each system the path that its machine
+ran and its figures, or the fault that kept it from running; the others go on.
 
     drawing ─► head ─► traced ─┬─► .wav   ─► phase-locked drives ───────► path ─┐
                                ├─► .steps ─► stepping motors ───────────► path ─┤ against the ink's centre,
@@ -24,6 +24,7 @@ from morfax.console.terminal.desk import Desk
 from morfax.jobs import comparison
 from morfax.jobs import files as medium
 from morfax.jobs.playing import Controls
+from morfax.motion.arrays import Array
 from morfax.motion.faults import Fault
 from morfax.motion.motion import IN_WORK_BELOW_MM, Path
 from morfax.reports import following
@@ -46,8 +47,6 @@ OUTPUTS = (".html", ".png", ".svg", ".pdf")
 HELD_SHARE = 0.05  # of the tracing speed, either way
 HELD_OVER_S = 0.5  # a step of 10 um is a fivehundredth of the way at 10 mm/s
 CORNER_RAD = 0.5  # of turn within 50 um
-
-from morfax.motion.arrays import Array
 
 
 class Systems(click.ParamType):
@@ -93,7 +92,9 @@ class Result:
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
-    """What is asked of a comparison: the drawing, the systems, a report or a picture, and how far a contour may be off."""
+    """What is asked of a comparison: the drawing, the systems, a report or a picture, and how far a contour
+    may be off.
+    """
 
     drawing: FilePath
     asked: tuple[str, ...]
@@ -102,7 +103,9 @@ class Wanted:
 
 
 def compare(wanted: Wanted, sheet: Sheet, head: Head, desk: Desk) -> bool:
-    """Trace, measure, tell and draw; whether a contour is beyond the tolerance. Raises the first fault when all is told."""
+    """Trace, measure, tell and draw; whether a contour is beyond the tolerance. Raises the first fault when
+    all is told.
+    """
     if wanted.output is not None:
         medium.outgoing(medium.with_suffix_in(wanted.output, OUTPUTS), wanted.drawing)
     if medium.kind_of(wanted.drawing) != "drawing":

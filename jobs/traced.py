@@ -1,7 +1,7 @@
 """What comes of a traced drawing: the tape and the path, and the figures.
 
-When the head loses the line, what it traced until then is kept, with `.incomplete` in the names, and the fault is given
-beside.
+When the head loses the line, what it traced until then is kept, with `.incomplete` in the names, and the
+fault is given beside.
 """
 
 from __future__ import annotations

@@ -1,4 +1,6 @@
-"""A drawing traced for a verb: the head as it is set by options, card and file, and what is said of its run (see `traced` for what comes of it)."""
+"""A drawing traced for a verb: the head as it is set by options, card and file, and what is said of its run
+(see `traced` for what comes of it).
+"""
 
 from __future__ import annotations
 
@@ -62,7 +64,8 @@ class Head:
     def trace(self, drawing: Drawing, desk: Desk, picture: FilePath | None = None) -> Traced:
         """Follow the drawing's line, or all that are asked for, to the end or until it is lost.
 
-        Raises LineFault if there is none to start on; the sheet is then drawn, if a name for a picture is given.
+        Raises LineFault if there is none to start on; the sheet is then drawn, if a name for a picture is
+        given.
         """
         from morfax.motion.motion import thin
         from morfax.tracer.program.trace import trace
@@ -96,7 +99,9 @@ class Head:
         return Traced(beside, thin(beside), self.lines is not None, origin_mm, self.cutter, left)
 
     def _beside(self, traced: Trace, settings: Settings, desk: Desk) -> tuple[Trace, Left | None]:
-        """The program of the cutter beside the lines, and what it cannot reach; without a cutter the lines themselves."""
+        """The program of the cutter beside the lines, and what it cannot reach; without a cutter the lines
+        themselves.
+        """
         if self.cutter is None:
             return traced, None
         from morfax.tracer.cutter.cutter import with_cutter
@@ -107,7 +112,9 @@ class Head:
         return beside, left
 
     def _reference_mm(self, drawing: Drawing, trace: Trace) -> tuple[float, float]:
-        """The reference point: the one given, that from which the program begins, or the only one on the sheet; raises LineFault without one."""
+        """The reference point: the one given, that from which the program begins, or the only one on the
+        sheet; raises LineFault without one.
+        """
         from morfax.tracer.following.start import reference_on
 
         return self.marks.reference_mm or trace.reference_mm or reference_on(drawing)
@@ -146,7 +153,9 @@ class Head:
         return replace(self, card=card, **set_by_card)
 
     def _operator(self) -> Operator:
-        """What is done at the stops: depths, feeds and clearance of the tool (of the card's passes those less deep than the depth), and the card."""
+        """What is done at the stops: depths, feeds and clearance of the tool (of the card's passes those less
+        deep than the depth), and the card.
+        """
         from morfax.tracer.operator.card import Card
         from morfax.tracer.operator.operator import Operator, Work
 

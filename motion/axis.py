@@ -1,12 +1,14 @@
 """Lead screw and sector wheel: the geometry that recorder and player must share.
 
-A screw of pitch p carries the lamp and cell round a wheel of N sectors, so one cycle of phase is q = p/N of travel, and
+A screw of pitch p carries the lamp and cell round a wheel of N sectors, so one cycle of phase is q = p/N of
+travel, and
 
     phase of the track = phase of the reference + displacement / q          (cycles)
     frequency of the track = reference + speed / q                          (Hz)
 
-Source: patent ES 361967, figures 2 and 4 (sector wheel 115, arm 118, cell 141, lead screw 111).
-Questions: the patent gives no numbers. Chosen for the tape: pitch 5 mm, 100 sectors, q = 50 um; historic: pitch 5 mm, 40 sectors, q = 125 um.
+Source: patent ES 361967, figures 2 and 4 (sector wheel 115, arm 118, cell 141, lead screw 111). Questions:
+the patent gives no numbers. Chosen for the tape: pitch 5 mm, 100 sectors, q = 50 um; historic: pitch 5 mm, 40
+sectors, q = 125 um.
 """
 
 from __future__ import annotations

@@ -1,15 +1,15 @@
 """Contour measures: how far two paths are apart, how long one is, whether it closes.
 
-Signals: Path, Motion, (n, 2) arrays of mm, or lists of such polylines; of a Path or Motion only what is run with the
-tool in the work counts.
+Signals: Path, Motion, (n, 2) arrays of mm, or lists of such polylines; of a Path or Motion only what is run
+with the tool in the work counts.
 
-Each polyline is sampled every 0.01 mm, its own points included. The nearest samples of the other are found in a k-d
-tree, and the sample is then projected on the straight pieces that meet there, so that equal curves with different
-points are zero apart, not half a sample. Figures are weighted with the length that each sample stands for: many points
-in a corner count no more than the corner is long.
+Each polyline is sampled every 0.01 mm, its own points included. The nearest samples of the other are found in
+a k-d tree, and the sample is then projected on the straight pieces that meet there, so that equal curves with
+different points are zero apart, not half a sample. Figures are weighted with the length that each sample
+stands for: many points in a corner count no more than the corner is long.
 
-Questions: where the other path crosses itself within a sample, the nearest piece may not start at the nearest sample.
-The four nearest are tried.
+Questions: where the other path crosses itself within a sample, the nearest piece may not start at the nearest
+sample. The four nearest are tried.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import IN_WORK_BELOW_MM, Motion, Path
 
@@ -28,7 +29,6 @@ LARGEST_SAMPLES = 1_000_000  # beyond 10 m of path the samples stand further apa
 _NEIGHBOURS = 4
 _SAMPLES_AT_ONCE = 100_000
 
-from morfax.motion.arrays import Array
 
 Contour = Path | Motion | Array | Sequence[Array]
 
@@ -91,7 +91,9 @@ def closure_mm(path: Contour) -> float:
 
 
 def polylines(path: Contour) -> list[Array]:
-    """The (n, 2) polylines in mm that count; raises MotionFault if there are none, ValueError if it is no contour."""
+    """The (n, 2) polylines in mm that count; raises MotionFault if there are none, ValueError if it is no
+    contour.
+    """
     if isinstance(path, Motion):
         path = Path(path.times_s, path.positions_mm, path.axes)
     if isinstance(path, Path):
@@ -114,7 +116,9 @@ def polylines(path: Contour) -> list[Array]:
 
 @dataclass(frozen=True, slots=True)
 class _Sampled:
-    """Points (n, 2) along polylines, the length each stands for, and whether a straight piece leads on to the next."""
+    """Points (n, 2) along polylines, the length each stands for, and whether a straight piece leads on to the
+    next.
+    """
 
     points_mm: Array
     weights_mm: Array
@@ -178,7 +182,9 @@ class _Finder:
         return best
 
     def _to_piece(self, points: Array, piece: NDArray[np.int64]) -> Array:
-        """Distance of each point from the straight piece that leads on from a sample; infinite where none does."""
+        """Distance of each point from the straight piece that leads on from a sample; infinite where none
+        does.
+        """
         at, leads_on = self._sampled.points_mm, self._sampled.leads_on
         start = at[piece]  # piece -1 is the last sample, from which none leads on
         along = at[(piece + 1) % len(at)] - start

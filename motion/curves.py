@@ -1,4 +1,4 @@
-"""TODO."""
+"""Curves: a smooth way between two places and headings, and how fast a way may be run for its bends."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from morfax.tracer.sensing.view import Array
+from morfax.motion.arrays import Array
 
 SPACING_MM = 0.02
 

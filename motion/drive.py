@@ -1,19 +1,21 @@
-"""A velocity servo: amplifier, motor and tachogenerator of one axis, shared by the line follower and the machine.
+"""A velocity servo: amplifier, motor and tachogenerator of one axis, shared by the line follower and the
+machine.
 
 Signals: speed demand in mm/s in, speed of the screw in mm/s out, one value per period of `dt_s`.
 
-The tacho closes the loop round the motor, so that what is left is one lag, and the amplifier's current limits the acceleration:
+The tacho closes the loop round the motor, so that what is left is one lag, and the amplifier's current limits
+the acceleration:
 
     dv/dt = clip((demand - v) / lag, -acceleration, +acceleration)
 
 stepped exactly for the lag: v += clip((demand - v)·(1 - exp(-dt/lag)), ±acceleration·dt).
 
-What may be wrong with a drive is its `Condition`: of the demand a share is left, friction takes a part of what is left,
-a runaway adds to it, and a stuck axis does not turn.
+What may be wrong with a drive is its `Condition`: of the demand a share is left, friction takes a part of
+what is left, a runaway adds to it, and a stuck axis does not turn.
 
-Source: patent ES 361967, figure 1 (amplifiers DCX and DCY, tachos TX and TY, motors 17 and 12) and figure 5 (amplifier 161, motor 163).
-Questions: the patent gives no figures. Chosen: a lag of 1 ms and 5 m/s², a modern servo; the historic set takes 30 ms.
-Conditions are in no patent; they are what a monitor is for.
+Source: patent ES 361967, figure 1 (amplifiers DCX and DCY, tachos TX and TY, motors 17 and 12) and figure 5
+(amplifier 161, motor 163). Questions: the patent gives no figures. Chosen: a lag of 1 ms and 5 m/s², a modern
+servo; the historic set takes 30 ms. Conditions are in no patent; they are what a monitor is for.
 """
 
 from __future__ import annotations
@@ -68,7 +70,8 @@ def drive_step(speed_mm_s, demand_mm_s, gain, largest_change_mm_s):  # type: ign
 
 
 @njit(cache=True, inline="always")
-def conditioned_step(speed_mm_s, demand_mm_s, gain, largest_change_mm_s, condition):  # type: ignore[no-untyped-def]
+# type: ignore[no-untyped-def]
+def conditioned_step(speed_mm_s, demand_mm_s, gain, largest_change_mm_s, condition):
     """Speed of the screw after one period, mm/s, with what is wrong with the drive."""
     left = demand_mm_s * condition[0]
     wanted = left - min(max(left, -condition[1]), condition[1]) + condition[2]

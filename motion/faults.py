@@ -30,7 +30,9 @@ class DrawingFault(Fault, ValueError):
 
 
 class LineFault(Fault):
-    """No line at the place asked for (the nearest is at `nearest_mm`), or the head lost it; sheet mm, radians."""
+    """No line at the place asked for (the nearest is at `nearest_mm`), or the head lost it; sheet mm,
+    radians.
+    """
 
     exit_code = 4
 
@@ -58,7 +60,9 @@ class TapeFault(Fault, ValueError):
 
 
 class ProgramFault(TapeFault):
-    """The file is no program of its medium that can be played; `line` is the line of the file where one is known."""
+    """The file is no program of its medium that can be played; `line` is the line of the file where one is
+    known.
+    """
 
     def __init__(self, message: str, *, line: int | None = None, time_s: float | None = None) -> None:
         super().__init__(message, time_s=time_s)

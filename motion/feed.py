@@ -1,13 +1,17 @@
-"""Feed: a way run at a speed, slower where bends and corners ask for it, from rest to rest; as positions at the motion rate.
+"""Feed: a way run at a speed, slower where bends and corners ask for it, from rest to rest; as positions at
+the motion rate.
 
-Signals: a polyline (n, 2) mm, a feed in mm/s and one acceleration in mm/s² in; positions (m, 2) mm at the motion rate out.
+Signals: a polyline (n, 2) mm, a feed in mm/s and one acceleration in mm/s² in; positions (m, 2) mm at the
+motion rate out.
 
     v <= feed      v² · bend <= a/3      v · dv/ds <= 0.7 a      v = 0 at a corner (`SHARP`)
 
-A way is made of straight pieces, so at each of its places the velocity would jump by v · turn. It is averaged over `SMOOTHED_S`, in which the jump is made good
-at a third of the acceleration, and which moves the way inward by no more than a · SMOOTHED_S² / 24: 0.1 um. Across and along together stay within a.
+A way is made of straight pieces, so at each of its places the velocity would jump by v · turn. It is averaged
+over `SMOOTHED_S`, in which the jump is made good at a third of the acceleration, and which moves the way
+inward by no more than a · SMOOTHED_S² / 24: 0.1 um. Across and along together stay within a.
 
-Source: the two passes that are usual in controls (see `recorder.legs`, which has them for a machine's axes); our own.
+Source: the two passes that are usual in controls (see `recorder.legs`, which has them for a machine's axes);
+our own.
 """
 
 from __future__ import annotations
@@ -17,6 +21,7 @@ import math
 import numpy as np
 from numba import njit
 
+from morfax.motion.arrays import Array
 from morfax.motion.motion import MOTION_RATE_HZ
 
 SHARP = math.radians(10)
@@ -27,8 +32,6 @@ ALONG, ACROSS = (
 SMOOTHED_S = 0.002
 BEND_WITHIN_MM = 0.1  # to either side of a place its bend is counted
 STANDS_S = 2 * SMOOTHED_S  # at either end, so that the average comes to rest
-
-from morfax.motion.arrays import Array
 
 
 def run_along(
@@ -52,7 +55,9 @@ def run_along(
 
 
 def _with_halves(way_mm: Array) -> Array:
-    """The way without places that repeat, and with its first and last pieces halved: a piece between two stops has none."""
+    """The way without places that repeat, and with its first and last pieces halved: a piece between two
+    stops has none.
+    """
     way_mm = way_mm[np.r_[True, np.hypot(*np.diff(way_mm, axis=0).T) > 1e-9]]
     middles = 0.5 * (way_mm[1:] + way_mm[:-1])
     both = np.empty((2 * len(way_mm) - 1, 2))
@@ -61,7 +66,9 @@ def _with_halves(way_mm: Array) -> Array:
 
 
 def _allowed(way_mm: Array, steps: Array, feed_mm_s: float, acceleration_mm_s2: float) -> Array:
-    """Highest speed at each place, mm/s, by the turn there and by the bend about it; 0 at both ends and at sharp corners."""
+    """Highest speed at each place, mm/s, by the turn there and by the bend about it; 0 at both ends and at
+    sharp corners.
+    """
     ways = np.diff(way_mm, axis=0)
     turns = np.abs(
         np.arctan2(

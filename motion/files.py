@@ -1,7 +1,7 @@
 """Files that appear under their name only when they are whole.
 
-A file is written beside its final name, in the same folder and so on the same disk, and renamed when it is complete.
-A broken run, a full disk or Ctrl-C leaves what stood there before, and no half file.
+A file is written beside its final name, in the same folder and so on the same disk, and renamed when it is
+complete. A broken run, a full disk or Ctrl-C leaves what stood there before, and no half file.
 """
 
 from __future__ import annotations
@@ -24,11 +24,13 @@ _DISK_FULL = {
 
 @contextmanager
 def written_beside(file: str | os.PathLike[str], named: Callable[[], Path] | None = None) -> Iterator[Path]:
-    """Give a new, hidden file of the same suffix beside `file`; it is renamed to `file` on success, removed on failure.
+    """Give a new, hidden file of the same suffix beside `file`; it is renamed to `file` on success, removed
+    on failure.
 
     `named` tells another name for it in the same folder, when it is whole.
 
-    Raises FileFault if the folder is missing or not writable, if `file` is no regular file, or if the disk is full.
+    Raises FileFault if the folder is missing or not writable, if `file` is no regular file, or if the disk is
+    full.
     """
     final = Path(file)
     beside = _create_beside(final)

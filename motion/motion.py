@@ -1,9 +1,10 @@
 """Motion: positions of the axes at a uniform rate, in blocks; and Path: the same motion thinned.
 
-Signals: positions in mm, a column for each axis (X, Y, Z, and further ones where a machine has them), at the motion rate
-(the tape's sample rate over 8, 6 kHz by default). A long program is a
-stream of blocks, so that nothing has to hold a whole tape in memory. A Path keeps only the samples between which straight interpolation in time gives
-every sample back within a tolerance on each axis (a swinging-door compression: J. Bristol, "Swinging door trending", ISA 1990).
+Signals: positions in mm, a column for each axis (X, Y, Z, and further ones where a machine has them), at the
+motion rate (the tape's sample rate over 8, 6 kHz by default). A long program is a stream of blocks, so that
+nothing has to hold a whole tape in memory. A Path keeps only the samples between which straight interpolation
+in time gives every sample back within a tolerance on each axis (a swinging-door compression: J. Bristol,
+"Swinging door trending", ISA 1990).
 """
 
 from __future__ import annotations
@@ -15,6 +16,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
+
 AXES: tuple[str, ...] = ("x", "y", "z")
 FURTHER_AXES = (
     "a",
@@ -25,13 +28,10 @@ FURTHER_AXES = (
     "w",
 )  # what a fourth and later axis may be called; all in mm of their own screws
 MOTION_RATE_HZ = 6000.0  # 48 kHz / 8
-IN_WORK_BELOW_MM = (
-    0.05  # the tool is in the work at and below the surface; the margin is for a servo's rest error
-)
+# the tool is in the work at and below the surface; the margin is for a servo's rest error
+IN_WORK_BELOW_MM = 0.05
 THINNING_TOLERANCE_MM = 2e-4
 BLOCK_SAMPLES = 65536
-
-from morfax.motion.arrays import Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +97,9 @@ def join(stream: Iterable[Motion]) -> Motion:
 
 
 def thin(stream: Iterable[Motion], tolerance_mm: float = THINNING_TOLERANCE_MM) -> Path:
-    """Thin a stream to the samples that give all others back within `tolerance_mm` per axis; memory grows with the path only."""
+    """Thin a stream to the samples that give all others back within `tolerance_mm` per axis; memory grows
+    with the path only.
+    """
     pieces = list(thinned(stream, tolerance_mm))
     if not pieces:
         raise ValueError("the stream of motion is empty; it must hold at least one block")
@@ -109,7 +111,9 @@ def thin(stream: Iterable[Motion], tolerance_mm: float = THINNING_TOLERANCE_MM) 
 
 
 def thinned(stream: Iterable[Motion], tolerance_mm: float = THINNING_TOLERANCE_MM) -> Iterator[Path]:
-    """The pieces of a thinned path as the blocks of a stream come, so that nothing has to hold all of it; none of an empty stream."""
+    """The pieces of a thinned path as the blocks of a stream come, so that nothing has to hold all of it;
+    none of an empty stream.
+    """
     state: Array | None = None
     samples, start_s, rate_hz, axes = 0, 0.0, MOTION_RATE_HZ, AXES
     for block in stream:

@@ -1,4 +1,4 @@
-"""TODO."""
+"""Nesting: which closed line lies inside which."""
 
 from __future__ import annotations
 
@@ -8,11 +8,13 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.tracer.drawing.strokes import Array
+from morfax.motion.arrays import Array
 
 
 def nested(lines_mm: Sequence[Array], round_about: Sequence[bool]) -> NDArray[np.bool_]:
-    """Which line (n, 2) mm lies inside which: `nested[i, j]` if i lies inside j, and j goes round about something."""
+    """Which line (n, 2) mm lies inside which: `nested[i, j]` if i lies inside j, and j goes round about
+    something.
+    """
     inner = [
         [
             round_j and a is not b and lies_inside(a, b)
@@ -24,7 +26,9 @@ def nested(lines_mm: Sequence[Array], round_about: Sequence[bool]) -> NDArray[np
 
 
 def lies_inside(inner_mm: Array, outer_mm: Array) -> bool:
-    """Whether a line begins inside another, whose end is joined to its start, and reaches less far than that one."""
+    """Whether a line begins inside another, whose end is joined to its start, and reaches less far than that
+    one.
+    """
     x, y = float(inner_mm[0, 0]), float(inner_mm[0, 1])
     if not (np.ptp(inner_mm, axis=0) < np.ptp(outer_mm, axis=0)).all():
         return False  # lines that cross are in neither's inside: an order there must be

@@ -1,6 +1,8 @@
-"""Offsets: the way of a round tool that runs along lines, its middle a radius away from them and nowhere nearer to any.
+"""Offsets: the way of a round tool that runs along lines, its middle a radius away from them and nowhere
+nearer to any.
 
-Signals: polylines in mm, each with the side on which the tool runs, in; out the ways of the tool's middle, closed where the line is.
+Signals: polylines in mm, each with the side on which the tool runs, in; out the ways of the tool's middle,
+closed where the line is.
 
     swung     the end of an arm as long as the radius, across the heading. Where the line turns away, the arm swings round the vertex: an arc. Where
               it turns towards the tool, the arm is drawn in, swings back, and is put out again: that is within the radius of the vertex.
@@ -11,11 +13,12 @@ Signals: polylines in mm, each with the side on which the tool runs, in; out the
             /   line  ____                   │ both legs: the way turns where they cross, and
            |    _____|    \\   loop          ┘ the corner itself is left
 
-A way of the tool never changes the side: a place a radius away along the normal, and not nearer to any line, has no line between.
+A way of the tool never changes the side: a place a radius away along the normal, and not nearer to any line,
+has no line between.
 
-Source: our own, from first principles (patent ES 361967 has the draughtsman allow for the cutter). At a crossing the way turns as far to the left as it can,
-which is the way round the free side, as one walks round a face of a plane map.
-Questions: the end of an open line has no cap: the tool does not go round it.
+Source: our own, from first principles (patent ES 361967 has the draughtsman allow for the cutter). At a
+crossing the way turns as far to the left as it can, which is the way round the free side, as one walks round
+a face of a plane map. Questions: the end of an open line has no cap: the tool does not go round it.
 """
 
 from __future__ import annotations
@@ -28,7 +31,8 @@ from itertools import pairwise
 import numpy as np
 from numba import njit
 
-from morfax.motion.polyline import APART_MM, UM, Array, Nearest, crossings_of, plain, with_places
+from morfax.motion.arrays import Array
+from morfax.motion.polyline import APART_MM, UM, Nearest, crossings_of, plain, with_places
 
 PLAIN = 0.05 * UM  # a line is known by places between which it is straight within this
 NEARER = 0.2 * UM  # than the radius: taken out
@@ -62,7 +66,9 @@ class Guide:
 
 @dataclass(frozen=True, slots=True)
 class Way:
-    """A way of the tool's middle (n, 2) mm, and the number of the guide that most of it runs along; a closed one ends where it begins."""
+    """A way of the tool's middle (n, 2) mm, and the number of the guide that most of it runs along; a closed
+    one ends where it begins.
+    """
 
     points_mm: Array
     closed: bool
@@ -91,7 +97,9 @@ def offset(guides: Sequence[Guide], radius_mm: float) -> list[Way]:
 
 
 def _guided(guide: Guide, radius_mm: float) -> Array:
-    """The places of a guide that count for a tool, the tool on its left; of a closed one the last is not the first again."""
+    """The places of a guide that count for a tool, the tool on its left; of a closed one the last is not the
+    first again.
+    """
     points = np.ascontiguousarray(guide.points_mm if guide.left else guide.points_mm[::-1], float)
     points = plain(points, PLAIN)
     points = points[np.r_[True, np.hypot(*np.diff(points, axis=0).T) > PLAIN]]
@@ -102,7 +110,9 @@ def _guided(guide: Guide, radius_mm: float) -> Array:
 
 @njit(cache=True)
 def _within_reach(points, wide_mm):  # type: ignore[no-untyped-def]
-    """Which places of a line the tool on its left may touch: not one that is set back between two so near that the tool does not sink in between."""
+    """Which places of a line the tool on its left may touch: not one that is set back between two so near
+    that the tool does not sink in between.
+    """
     kept, count = np.empty(len(points), np.int64), 0
     for k in range(len(points)):
         while count > 1:
@@ -122,7 +132,9 @@ def _closed_up(points: Array, closed: bool) -> Array:
 
 
 def _swung(line: Array, closed: bool, radius_mm: float) -> Array:
-    """The end of the arm to the left of a line, (n, 2) mm; of a closed line the last place is not the first again."""
+    """The end of the arm to the left of a line, (n, 2) mm; of a closed line the last place is not the first
+    again.
+    """
     whole = _closed_up(line, closed)
     ways = np.diff(whole, axis=0)
     lengths = np.hypot(*ways.T)
@@ -145,7 +157,9 @@ def _swung(line: Array, closed: bool, radius_mm: float) -> Array:
 
 
 def _swing(vertex: Array, arm: Array, turn: float, beside_mm: float, radius_mm: float) -> Array:
-    """Places of the arm's end while it turns at a vertex, to either side of which the line is straight for so many mm at least."""
+    """Places of the arm's end while it turns at a vertex, to either side of which the line is straight for so
+    many mm at least.
+    """
     back_mm = max(
         0.0, radius_mm * math.tan(max(turn, 0.0) / 2) - beside_mm
     )  # beyond where the two ways beside it meet
@@ -169,7 +183,9 @@ def _turned(arm: Array, angles: Array) -> Array:
 
 @dataclass(frozen=True, slots=True)
 class _Piece:
-    """A stretch of a swung way from one crossing to the next: its places (n, 2) mm and the numbers of the crossings, -1 for a free end."""
+    """A stretch of a swung way from one crossing to the next: its places (n, 2) mm and the numbers of the
+    crossings, -1 for a free end.
+    """
 
     points_mm: Array
     guide: int
@@ -207,7 +223,9 @@ def _parted(swung: list[Array], closed: list[bool], near: Nearest, radius_mm: fl
 
 
 def _cleared(piece: _Piece, near: Nearest, radius_mm: float) -> _Piece | None:
-    """A piece that is nowhere nearer than the radius to a line, a long one with its places set back by some um if need be; None if it is nearer."""
+    """A piece that is nowhere nearer than the radius to a line, a long one with its places set back by some
+    um if need be; None if it is nearer.
+    """
     nearest_mm = near.distances_mm(_inner(piece.points_mm)).min()
     if nearest_mm >= radius_mm - NEARER:
         return piece
@@ -242,7 +260,9 @@ def _inner(points: Array) -> Array:
 
 
 def _chains(pieces: list[_Piece]) -> list[list[_Piece]]:
-    """The pieces, one joined to the next where they cross, always the one furthest to the left: away from the lines."""
+    """The pieces, one joined to the next where they cross, always the one furthest to the left: away from the
+    lines.
+    """
     leaving: dict[int, list[_Piece]] = {}
     for piece in pieces:
         leaving.setdefault(piece.start, []).append(piece)
@@ -259,7 +279,9 @@ def _chains(pieces: list[_Piece]) -> list[list[_Piece]]:
 
 
 def _next(arriving: _Piece, leaving: list[_Piece], passed: set[int]) -> _Piece:
-    """The piece furthest to the left of those at a crossing, but for one that only curls back to a crossing passed already, within `NEARER`."""
+    """The piece furthest to the left of those at a crossing, but for one that only curls back to a crossing
+    passed already, within `NEARER`.
+    """
     on = [piece for piece in leaving if piece.end not in passed] or leaving
     return max(on, key=lambda piece: _turn(arriving, piece))
 

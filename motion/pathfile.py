@@ -1,10 +1,10 @@
 """Path files: CSV with the columns t_s, x_mm, y_mm, z_mm, tool, and one for each further axis: u_mm, v_mm …
 
-Signals: times in s, places in mm; `tool` is 1 where the tool is in the work. Written to 0.1 us and 0.01 um, well inside
-the thinning's 0.2 um.
+Signals: times in s, places in mm; `tool` is 1 where the tool is in the work. Written to 0.1 us and 0.01 um,
+well inside the thinning's 0.2 um.
 
-Reading is tolerant, since paths also come from other programs. Columns stand in any order and only x_mm and y_mm (or x
-and y, in mm) are required:
+Reading is tolerant, since paths also come from other programs. Columns stand in any order and only x_mm and
+y_mm (or x and y, in mm) are required:
 
     no t_s     the points are run through at the feed, along the polyline
     no z_mm    the tool column gives Z: in the work 0, up +2 mm; without either the tool is always in the work
@@ -18,8 +18,8 @@ Where Z follows from tool or loop, X and Y stand while Z moves at the feed:
                  |              |           another over the first one after it; later times move on
         0  ______|              |______
 
-Questions: a change of `tool` from one row to the next does not say where between them the tool moves; here it moves
-over the row that is in the work.
+Questions: a change of `tool` from one row to the next does not say where between them the tool moves; here it
+moves over the row that is in the work.
 """
 
 from __future__ import annotations
@@ -35,6 +35,7 @@ from typing import TextIO
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.motion.faults import FileFault, MotionFault
 from morfax.motion.files import written_beside
 from morfax.motion.motion import AXES, FURTHER_AXES, IN_WORK_BELOW_MM, Path
@@ -50,8 +51,6 @@ _DOWN = {"1", "1.0", "true", "down"}
 _ROWS_AT_ONCE = 4096
 _EXPECTED = "a line of names such as t_s,x_mm,y_mm,z_mm,tool"
 
-from morfax.motion.arrays import Array
-
 
 def write_path(path: Path, file: str | os.PathLike[str]) -> None:
     """Write a path as CSV: t_s, x_mm, y_mm, z_mm, tool, further axes."""
@@ -60,7 +59,9 @@ def write_path(path: Path, file: str | os.PathLike[str]) -> None:
 
 
 def write_rows(path: Path, out: TextIO, *, header: bool = False) -> None:
-    """Write the rows of a path, or of a piece of one, to a file that is open, after the line of names if that is asked for."""
+    """Write the rows of a path, or of a piece of one, to a file that is open, after the line of names if that
+    is asked for.
+    """
     if header:
         out.write(_header(path))
     places_mm = np.round(path.positions_mm, 5)
@@ -122,7 +123,9 @@ class _Table:
 
 @dataclass(frozen=True, slots=True)
 class _Rows:
-    """Points with the time since the point before, from the file: NaN where it says nothing and the feed decides."""
+    """Points with the time since the point before, from the file: NaN where it says nothing and the feed
+    decides.
+    """
 
     positions_mm: Array
     since_last_s: Array
@@ -254,7 +257,9 @@ def _with_z_moves(table: _Table) -> _Rows:
 
 
 def _z_moves(table: _Table, points: Array, since: Array) -> tuple[NDArray[np.int64], Array, Array]:
-    """After which rows new points come, the points, their times since the last; changes `since` for the step after."""
+    """After which rows new points come, the points, their times since the last; changes `since` for the step
+    after.
+    """
     after: list[int] = []
     over: list[Array] = []
     over_since: list[float] = []

@@ -4,13 +4,14 @@ Signals: a stream of Motion or a Path in, the same out. With c the point that st
 
     place' = c + scale · R(turn) · M (place - c) - origin      M: X or Y the other way; R: counter-clockwise
 
-The point is the start of the motion (the reference point of the patent, where the head stands when the tape starts)
-unless another is given. Times stay, so what is scaled by 2 runs twice as fast.
+The point is the start of the motion (the reference point of the patent, where the head stands when the tape
+starts) unless another is given. Times stay, so what is scaled by 2 runs twice as fast.
 
-Source: patent ES 361967, lines 508 to 513: a mirror image "by regrouping the circuit" so that a drive turns the other
-way; the tape then holds the same displacements from the same start with one sign changed, which is M about the start.
-Questions: turn and scale are not in the patent. A turn is what turning the drawing on the table gives, a scale what a
-changed gear 113 between screw and pick-up gives; like the mirror they are made where the tape is.
+Source: patent ES 361967, lines 508 to 513: a mirror image "by regrouping the circuit" so that a drive turns
+the other way; the tape then holds the same displacements from the same start with one sign changed, which is
+M about the start. Questions: turn and scale are not in the patent. A turn is what turning the drawing on the
+table gives, a scale what a changed gear 113 between screw and pick-up gives; like the mirror they are made
+where the tape is.
 """
 
 from __future__ import annotations
@@ -29,7 +30,9 @@ _MIRRORS = {"": (1.0, 1.0), "x": (-1.0, 1.0), "y": (1.0, -1.0)}
 
 @dataclass(frozen=True, slots=True)
 class Placement:
-    """What is done to a motion: the axis that runs the other way ("x", "y" or none), scale, turn, about which point; and where the zero is."""
+    """What is done to a motion: the axis that runs the other way ("x", "y" or none), scale, turn, about which
+    point; and where the zero is.
+    """
 
     mirror: str = ""
     scale: float = 1.0

@@ -1,6 +1,8 @@
-"""Polylines: how long they are, where they cross, how far places are from them, and with fewer or more places on them.
+"""Polylines: how long they are, where they cross, how far places are from them, and with fewer or more places
+on them.
 
-Signals: polylines (n, 2) mm in; lengths, distances and polylines in mm out, crossings as numbers of places with their share on.
+Signals: polylines (n, 2) mm in; lengths, distances and polylines in mm out, crossings as numbers of places
+with their share on.
 
 Source: our own; fewer places as by Douglas and Peucker, The Canadian Cartographer 10 (1973).
 """
@@ -14,12 +16,13 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
+
 UM = 1e-3  # mm
 APART_MM = 0.02  # between places that stand for a line
 WITHIN_MM = 0.05 * UM  # distances from a line are true to this
 CELL_MM = 0.05  # at least, of the grid in which crossings are sought
 
-from morfax.motion.arrays import Array
 
 Ints = NDArray[np.int64]
 
@@ -51,7 +54,8 @@ class Nearest:
     def __init__(self, lines_mm: Sequence[Array], radius_mm: float) -> None:
         from scipy.spatial import cKDTree
 
-        # half is for the places that are left out, and half for the sagitta between those that stand for the line
+        # half is for the places that are left out, and half for the sagitta between those that stand for the
+        # line
         share_mm = 0.5 * WITHIN_MM
         apart_mm = math.sqrt(8 * radius_mm * share_mm)
         self._tree = cKDTree(np.vstack([with_places(plain(line, share_mm), apart_mm) for line in lines_mm]))
@@ -61,7 +65,9 @@ class Nearest:
         return np.asarray(self._tree.query(places_mm)[0])
 
     def set_back(self, places_mm: Array, distance_mm: float) -> Array:
-        """The places (n, 2), those that are nearer than a distance moved straight away from the nearest place of a line to it."""
+        """The places (n, 2), those that are nearer than a distance moved straight away from the nearest place
+        of a line to it.
+        """
         away, index = self._tree.query(places_mm)
         lines = np.asarray(self._tree.data)[index]
         return np.asarray(
@@ -70,7 +76,9 @@ class Nearest:
 
 
 def crossings(one_mm: Array, other_mm: Array) -> Array:
-    """Where two polylines cross: (n, 2) places of each, as numbers of points with their share on, along the first; quick if all their pieces are short."""
+    """Where two polylines cross: (n, 2) places of each, as numbers of points with their share on, along the
+    first; quick if all their pieces are short.
+    """
     pieces = np.delete(np.arange(len(one_mm) + len(other_mm) - 1), len(one_mm) - 1)
     found = crossings_of(np.ascontiguousarray(np.vstack([one_mm, other_mm])), pieces)
     found = found[(found[:, 0] < len(one_mm)) & (found[:, 1] >= len(one_mm))] - [0, len(one_mm)]
@@ -78,7 +86,9 @@ def crossings(one_mm: Array, other_mm: Array) -> Array:
 
 
 def crossings_of(points: Array, pieces: Ints) -> Array:
-    """Where straight pieces (numbers of their first points) cross each other: (n, 2) places as numbers of points with their share on."""
+    """Where straight pieces (numbers of their first points) cross each other: (n, 2) places as numbers of
+    points with their share on.
+    """
     if not len(pieces):
         return np.empty((0, 2))
     longest_mm = float(np.hypot(*(points[pieces + 1] - points[pieces]).T).max())
@@ -124,7 +134,9 @@ def _crossings_in(points, pieces, keys, wide):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def _kept(points, tolerance):  # type: ignore[no-untyped-def]
-    """Which points of a polyline to keep so that none is further than this from the straight pieces (Douglas and Peucker)."""
+    """Which points of a polyline to keep so that none is further than this from the straight pieces (Douglas
+    and Peucker).
+    """
     kept = np.zeros(len(points), np.bool_)
     kept[0] = kept[-1] = True
     stack = np.empty((len(points) + 1, 2), np.int64)

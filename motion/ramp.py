@@ -1,7 +1,7 @@
 """Ramp counter: a positioning move speeds up, holds its feed, and comes to rest exactly where it was sent.
 
-Signals in: the demanded place in mm, a feed in mm/s, one acceleration in mm/s² for all changes of speed. Signals out:
-positions in mm at the motion rate.
+Signals in: the demanded place in mm, a feed in mm/s, one acceleration in mm/s² for all changes of speed.
+Signals out: positions in mm at the motion rate.
 
     feed        ___________
                /           \\            counter, set to -N, the increments of the whole move (of all axes together):
@@ -9,19 +9,21 @@ positions in mm at the motion rate.
         _____/               \\_____       +1 for each at constant speed, 0 while the speed falls
              +2    +1       0 ^ 0        ramp down as soon as the counter is no longer negative
 
-With one acceleration a and increments d the square of the speed is a whole number of steps, v² = 2 a d e: each
-increment of a ramp up adds one to e, each of a ramp down takes one. At zero the increments left are exactly e, as
+With one acceleration a and increments d the square of the speed is a whole number of steps, v² = 2 a d e:
+each increment of a ramp up adds one to e, each of a ramp down takes one. At zero the increments left are
+exactly e, as
 
     left = N - up - const - down  and  0 = -N + 2 up + const  give  left = up - down = e,
 
 whatever changes of speed there were on the way. No division, and no second comparison per increment.
 
-Source: patent ES 414458, figures 3 and 4 (counter 60, gates 72 and 74, pulse doubler 76, line 78), claims 2 to 4.
-Questions: the patent leaves out what follows. A move too short to reach its feed turns from ramp up to ramp down; if N
-is odd there the counter goes from -1 to +1 within one increment, so the test is for >= 0, and that one increment is run
-half up, half down. Several axes have one counter and keep the ratio of their distances, as only then each of them ends
-exactly. The first feed is reached after a whole number of increments: the acceleration is lowered by the little that
-this takes; later feeds are the next lower whole numbers. A new demand on the way sets the counter to -N + e.
+Source: patent ES 414458, figures 3 and 4 (counter 60, gates 72 and 74, pulse doubler 76, line 78), claims 2
+to 4. Questions: the patent leaves out what follows. A move too short to reach its feed turns from ramp up to
+ramp down; if N is odd there the counter goes from -1 to +1 within one increment, so the test is for >= 0, and
+that one increment is run half up, half down. Several axes have one counter and keep the ratio of their
+distances, as only then each of them ends exactly. The first feed is reached after a whole number of
+increments: the acceleration is lowered by the little that this takes; later feeds are the next lower whole
+numbers. A new demand on the way sets the counter to -N + e.
 """
 
 from __future__ import annotations
@@ -34,13 +36,13 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.motion.motion import MOTION_RATE_HZ
 
 UP, CONSTANT, DOWN = 1, 0, -1
 _LARGEST_COUNT = 1 << 40  # 1000 km in increments of 1 um: the counter is a 64-bit integer
 _NOTHING_MM = 1e-9  # done in one period: a hundredth of an atom, and its square still a number
 
-from morfax.motion.arrays import Array
 
 Counts = NDArray[np.int64]
 
@@ -62,7 +64,9 @@ class Ramp:
 
 @dataclass(frozen=True, slots=True)
 class Profile:
-    """What the counter made of a move: rows (mode, half increments), and where it reached zero with what count."""
+    """What the counter made of a move: rows (mode, half increments), and where it reached zero with what
+    count.
+    """
 
     pieces: Counts
     increments: int
@@ -71,7 +75,9 @@ class Profile:
     count_then: int
 
     def at_rest(self) -> tuple[int, int]:
-        """Half increments travelled and square of the speed (in half increments) at the end: (2 N, 0) if exact."""
+        """Half increments travelled and square of the speed (in half increments) at the end: (2 N, 0) if
+        exact.
+        """
         modes, halves = self.pieces.T
         return int(halves.sum()), 2 * self.moving + int((modes * halves).sum())
 
@@ -81,8 +87,9 @@ def count_ramp(
 ) -> Profile:
     """Run the counter over a move of so many increments, of all axes together.
 
-    Speeds are given as the increments that a ramp from rest needs to reach them; `speeds[i + 1]` is asked for after
-    `changes_at[i]` increments. `moving` is the speed at a new demand on the way. Raises ValueError if it is too short.
+    Speeds are given as the increments that a ramp from rest needs to reach them; `speeds[i + 1]` is asked for
+    after `changes_at[i]` increments. `moving` is the speed at a new demand on the way. Raises ValueError if
+    it is too short.
     """
     if not 0 <= moving <= increments <= _LARGEST_COUNT:
         raise ValueError(
@@ -171,7 +178,8 @@ def _sample(profile: Profile, acceleration_s2: float, rate_hz: float) -> Array:
 
 @njit(cache=True)
 def _count(increments, square, changes_at, speeds, pieces):  # type: ignore[no-untyped-def]
-    """Counter 60 over one move, increment by increment; rows of `pieces` used, where zero was reached, the count then.
+    """Counter 60 over one move, increment by increment; rows of `pieces` used, where zero was reached, the
+    count then.
 
     In a kernel, as a move of 300 mm on three axes has a million increments.
     """

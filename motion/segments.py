@@ -1,24 +1,25 @@
 """Legs: a motion cut at its stops, and how fast each leg may be run.
 
-Signals: a motion in mm at any rate, or a path; out come legs, each a row of places at equal distances along the path
-with the speed (mm/s) that the machine may have there, zero at both ends. A program whose medium bounds the
-acceleration is made of these and not of the motion's own times:
+Signals: a motion in mm at any rate, or a path; out come legs, each a row of places at equal distances along
+the path with the speed (mm/s) that the machine may have there, zero at both ends. A program whose medium
+bounds the acceleration is made of these and not of the motion's own times:
 
     speed        __________________              ______
               __/  the motion's own \\____    ___/      \\
              /  or less, in a bend       \\__/           \\
             stop                       corner            stop
 
-The legs part where the motion stands, and at corners: places where the direction turns by more than `corner_rad`
-within `window_mm` to either side. Within a leg, with v the speed, t the tangent and k the curvature, axis by axis:
+The legs part where the motion stands, and at corners: places where the direction turns by more than
+`corner_rad` within `window_mm` to either side. Within a leg, with v the speed, t the tangent and k the
+curvature, axis by axis:
 
     v |t| <= speed        v² |k| <= acceleration        |v dv/ds| <= acceleration
 
 Source: patents ES 443122 (the motor's change of speed is limited, and so the smallest radius at a speed) and
-US 3062995, column 2 (the curve may at no point be angular).
-Questions: neither says how its programmer slowed down; here by the two passes that are usual in controls. The times of
-the motion count only as an upper bound of the speed, and as rests where it stands. Pull along the path and pull across
-it may each take their share of the acceleration (0.7, so that together they stay within it).
+US 3062995, column 2 (the curve may at no point be angular). Questions: neither says how its programmer slowed
+down; here by the two passes that are usual in controls. The times of the motion count only as an upper bound
+of the speed, and as rests where it stands. Pull along the path and pull across it may each take their share
+of the acceleration (0.7, so that together they stay within it).
 """
 
 from __future__ import annotations
@@ -56,7 +57,9 @@ class Limits:
 
 @dataclass(frozen=True, slots=True)
 class Leg:
-    """Places (m, 3) at equal distances, the speed allowed at each, and how long the motion rests before the leg."""
+    """Places (m, 3) at equal distances, the speed allowed at each, and how long the motion rests before the
+    leg.
+    """
 
     places_mm: Array
     speed_mm_s: Array
@@ -76,7 +79,9 @@ class Leg:
 
 
 def legs(source: Source, limits: Limits) -> list[Leg]:
-    """The legs of a motion; none where it stands all the time. Raises MotionFault if it is empty or not finite."""
+    """The legs of a motion; none where it stands all the time. Raises MotionFault if it is empty or not
+    finite.
+    """
     path = as_path(source)
     points_mm, speeds_mm_s, rests_s = _moving(path)
     if len(points_mm) < 2:
@@ -92,7 +97,9 @@ def legs(source: Source, limits: Limits) -> list[Leg]:
 
 
 def as_path(source: Source) -> Path:
-    """A motion as a path of X, Y, Z; raises MotionFault if there is nothing in it, or a place that is no number."""
+    """A motion as a path of X, Y, Z; raises MotionFault if there is nothing in it, or a place that is no
+    number.
+    """
     try:
         path = (
             source if isinstance(source, Path) else thin([source] if isinstance(source, Motion) else source)
@@ -121,7 +128,9 @@ def as_path(source: Source) -> Path:
 
 
 def _moving(path: Path) -> tuple[Array, Array, Array]:
-    """Different points, the speed from each to the next (infinite: whatever is allowed), and the rest at each, s."""
+    """Different points, the speed from each to the next (infinite: whatever is allowed), and the rest at
+    each, s.
+    """
     length_mm = np.sqrt((np.diff(path.positions_mm, axis=0) ** 2).sum(axis=1))
     took_s = np.diff(path.t_s)
     stands = length_mm <= STANDING_MM_S * took_s

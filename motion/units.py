@@ -1,7 +1,7 @@
 """Units at the edge: "10mm" becomes 10.0 and back again. Inside the house there are mm, s and Hz only.
 
-A bare number has one documented unit: mm, mm/s, Hz, s or degrees. A space may stand between number and unit, and capitals do
-not matter.
+A bare number has one documented unit: mm, mm/s, Hz, s or degrees. A space may stand between number and unit,
+and capitals do not matter.
 
     length      um µm mm cm m in "           speed    mm/s mm/min m/min um/s cm/s in/s in/min
     frequency   Hz kHz MHz                   time     us ms s min h

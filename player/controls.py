@@ -1,11 +1,12 @@
 """The controls: which of them plays a program of which suffix.
 
-Signals: a program file in, blocks of Motion out: the simulated machine's own motion, whatever the control. A control is
-only imported when a program asks for it; each has the signature
+Signals: a program file in, blocks of Motion out: the simulated machine's own motion, whatever the control. A
+control is only imported when a program asks for it; each has the signature
 
     play_xxx(file, **by_hand) -> Playback
 
-A file of any other suffix is taken for a magnetic tape, whose control says what is wrong with it if it is none.
+A file of any other suffix is taken for a magnetic tape, whose control says what is wrong with it if it is
+none.
 """
 
 from __future__ import annotations
@@ -24,12 +25,13 @@ from morfax.player.monitor.monitor import FollowingLimit, Monitor
 
 
 class Playback(Protocol):
-    """A program in its machine: iterate for the motion; the figures, one per axis, are those of the last time through.
+    """A program in its machine: iterate for the motion; the figures, one per axis, are those of the last time
+    through.
 
-    `following_error_mm` is the largest, `end_mm` where the machine stands, `end_error_mm` the same against the end that
-    the program states (None before the end, or if it states none). The `monitor` (Herbert's) watches every drive by the
-    `limit`; a `chart` put in takes the run down; `conditions` are what is wrong with the drives, and may be changed
-    while it runs.
+    `following_error_mm` is the largest, `end_mm` where the machine stands, `end_error_mm` the same against
+    the end that the program states (None before the end, or if it states none). The `monitor` (Herbert's)
+    watches every drive by the `limit`; a `chart` put in takes the run down; `conditions` are what is wrong
+    with the drives, and may be changed while it runs.
     """
 
     start_mm: Array

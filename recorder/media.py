@@ -5,8 +5,8 @@ Signals: a stream of Motion in, a program file out, and a report of what was rec
 
     record_xxx(stream, file, **settings) -> Report
 
-Questions: none of the patents speaks of another's medium; that the suffix of the file tells which it is, is this
-project's own rule.
+Questions: none of the patents speaks of another's medium; that the suffix of the file tells which it is, is
+this project's own rule.
 """
 
 from __future__ import annotations

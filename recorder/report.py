@@ -31,7 +31,9 @@ class Written:
 
 @dataclass(frozen=True, slots=True)
 class WrittenIntervals(Written, Generic[Format]):
-    """A program of equal intervals: its format, how many there are, and how far they lead off the motion at most."""
+    """A program of equal intervals: its format, how many there are, and how far they lead off the motion at
+    most.
+    """
 
     format: Format
     intervals: int

@@ -1,8 +1,8 @@
 """Following errors of a run: as a picture, error against limit for each axis, and as CSV.
 
-Signals in: the chart of a playing, mm; of a program of lines and arcs the speeds that it holds, mm/s. Out: a picture, or
-rows `t_s, x_demand_mm, x_actual_mm, x_error_mm, x_limit_mm, …`, each of 10 ms (with --raw of every sample): that in
-which the axis came nearest to its limit.
+Signals in: the chart of a playing, mm; of a program of lines and arcs the speeds that it holds, mm/s. Out: a
+picture, or rows `t_s, x_demand_mm, x_actual_mm, x_error_mm, x_limit_mm, …`, each of 10 ms (with --raw of
+every sample): that in which the axis came nearest to its limit.
 """
 
 from __future__ import annotations
@@ -89,7 +89,9 @@ def picture(chart: Chart, title: str, speeds: Speeds | None = None) -> Figure:
 
 
 def _panel(axes: Axes, chart: Chart, number: int, name: str) -> None:
-    """Error and limit of one axis over the run, on a scale of decades; where it left its limit there is a cross."""
+    """Error and limit of one axis over the run, on a scale of decades; where it left its limit there is a
+    cross.
+    """
     error_um = np.maximum(np.abs(chart.error_mm[:, number]) * UM_PER_MM, SMALLEST_UM)
     limit_um = chart.limit_mm[:, number] * UM_PER_MM
     axes.semilogy(chart.t_s, limit_um, color=LIMIT, linewidth=1.0, label="limit")

@@ -1,8 +1,8 @@
 """Pictures: the path over its drawing, with the error along the contour in colour.
 
-Signals in: a path, and what it was compared with: the drawing it came from, or another path, with the error at each of
-some points along the contour, all in mm. Out: a picture; its axes are sheet coordinates in mm. The worst places are
-shown once more, enlarged so much that the error can be seen.
+Signals in: a path, and what it was compared with: the drawing it came from, or another path, with the error
+at each of some points along the contour, all in mm. Out: a picture; its axes are sheet coordinates in mm. The
+worst places are shown once more, enlarged so much that the error can be seen.
 
 matplotlib takes most of a second to import: nothing here does it before a picture is asked for.
 """
@@ -75,7 +75,9 @@ def draw(picture: Picture, file: FilePath) -> None:
 
 
 def draw_sheet(drawing: Drawing, places_mm: dict[str, tuple[float, float]], file: FilePath) -> None:
-    """Write a picture of the whole sheet, with a grid and with places that have a name (those beyond its edges left out)."""
+    """Write a picture of the whole sheet, with a grid and with places that have a name (those beyond its
+    edges left out).
+    """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -97,7 +99,9 @@ def draw_sheet(drawing: Drawing, places_mm: dict[str, tuple[float, float]], file
 
 
 def save(figure: Figure, file: FilePath) -> None:
-    """Write a figure whole or not at all; made in memory first, since not every kind of picture tells of a full disk."""
+    """Write a figure whole or not at all; made in memory first, since not every kind of picture tells of a
+    full disk.
+    """
     made = io.BytesIO()
     figure.savefig(made, format=file.suffix[1:].lower(), dpi=DPI, bbox_inches="tight", pad_inches=0.15)
     with written_beside(file) as unfinished:
@@ -162,7 +166,9 @@ def _cut_out(
 
 
 def _contour(axes: Axes, picture: Picture, line_pt: float) -> Any:
-    """Draw the path: in the colours of its error where there is one (gives what a colour bar needs), else in one."""
+    """Draw the path: in the colours of its error where there is one (gives what a colour bar needs), else in
+    one.
+    """
     measured = (
         picture.points_mm is not None and picture.error_mm is not None and np.isfinite(picture.error_mm).any()
     )
@@ -262,7 +268,9 @@ def _worst_places(picture: Picture) -> list[Array]:
 
 
 def view_of(picture: Picture) -> tuple[float, float, float, float]:
-    """What part of the sheet to show, mm: all of it where there is no error to look at, else what was compared."""
+    """What part of the sheet to show, mm: all of it where there is no error to look at, else what was
+    compared.
+    """
     if picture.drawing is not None and picture.points_mm is None:
         return 0.0, picture.drawing.width_mm, 0.0, picture.drawing.height_mm
     parts = [run for path in (picture.path, picture.reference) if path is not None for run in path.runs()]

@@ -1,10 +1,11 @@
-"""The punched tape as a picture: strips of tape in their true size, with their holes and feed holes (.svg, .png).
+"""The punched tape as a picture: strips of tape in their true size, with their holes and feed holes (.svg,
+.png).
 
-Signals in: a step program. Out: strips of 100 rows side by side, read from the top down, the row's number at the head of
-each; bit 1 is at the right-hand edge, as in the file.
+Signals in: a step program. Out: strips of 100 rows side by side, read from the top down, the row's number at
+the head of each; bit 1 is at the right-hand edge, as in the file.
 
-Sizes are those of ISO 1154 (1975): rows and channels 2.54 mm apart, holes of 1.83 mm, feed holes of 1.17 mm between
-channels 3 and 4, tape 25.4 mm wide for eight channels and 17.46 mm for five.
+Sizes are those of ISO 1154 (1975): rows and channels 2.54 mm apart, holes of 1.83 mm, feed holes of 1.17 mm
+between channels 3 and 4, tape 25.4 mm wide for eight channels and 17.46 mm for five.
 """
 
 from __future__ import annotations

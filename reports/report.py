@@ -1,7 +1,7 @@
 """The report of a comparison: one file of HTML, pictures inside, that prints on A4.
 
-Signals in: figures as `console.table` takes them, and figures of matplotlib with a caption each. Out: a file that needs
-no other.
+Signals in: figures as `console.table` takes them, and figures of matplotlib with a caption each. Out: a file
+that needs no other.
 """
 
 from __future__ import annotations

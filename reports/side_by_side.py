@@ -1,7 +1,9 @@
-"""Pictures of the systems side by side: all contours with the places where they differ enlarged, and errors along the way.
+"""Pictures of the systems side by side: all contours with the places where they differ enlarged, and errors
+along the way.
 
-Signals in: the results of `console.systems`, the traced path and the drawing, mm. Out: figures of matplotlib. Errors are
-micrometres, so the contours lie on each other on the sheet; the enlargements have axes in um from their place.
+Signals in: the results of `console.systems`, the traced path and the drawing, mm. Out: figures of matplotlib.
+Errors are micrometres, so the contours lie on each other on the sheet; the enlargements have axes in um from
+their place.
 """
 
 from __future__ import annotations
@@ -11,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from morfax.motion.arrays import Array
 from morfax.motion.polyline import lengths_mm
 from morfax.reports.overlay import DPI, REFERENCE, UM_PER_MM, Picture, ground, view_of
 
@@ -27,13 +30,13 @@ INSETS = 6
 APART_MM = 2.0
 LEAST_REACH_UM = 5.0
 
-from morfax.motion.arrays import Array
-
 
 def contours(
     title: str, results: Sequence[Result], traced: Path, drawing: Drawing, corners_mm: Array
 ) -> Figure:
-    """All contours over the drawing, and where each is furthest from the traced path, and at corners, enlarged."""
+    """All contours over the drawing, and where each is furthest from the traced path, and at corners,
+    enlarged.
+    """
     ran = [result for result in results if result.path is not None]
     figure = _figure(11, 11)
     grid = figure.add_gridspec(3, 3, height_ratios=(2.1, 1, 1))
@@ -100,7 +103,9 @@ def _lines(axes: Axes, ran: Sequence[Result], traced: Path, origin_mm: Array, sc
 
 
 def _places(ran: Sequence[Result], corners_mm: Array) -> list[tuple[Array, str]]:
-    """Where each system is furthest from the traced path, then corners, apart from each other; and what it is."""
+    """Where each system is furthest from the traced path, then corners, apart from each other; and what it
+    is.
+    """
     wanted: list[tuple[Array, str]] = []
     for result in ran:
         assert result.from_traced is not None

@@ -1,8 +1,9 @@
 """Figures as text for people and as JSON for programs.
 
-Signals in: a dictionary whose keys carry the unit (`rms_mm`, `duration_s`); a value may itself be such a dictionary,
-and values of None are left out. Out: JSON with just those keys, or text with the figures in the unit that reads best.
-Dictionaries inside become the rows of one table, and a list of them one of its own, whose rows are called by their first figure:
+Signals in: a dictionary whose keys carry the unit (`rms_mm`, `duration_s`); a value may itself be such a
+dictionary, and values of None are left out. Out: JSON with just those keys, or text with the figures in the
+unit that reads best. Dictionaries inside become the rows of one table, and a list of them one of its own,
+whose rows are called by their first figure:
 
     duration  26.4 s
                          RMS    95 %  largest
@@ -69,7 +70,9 @@ def _is_listing(value: Any) -> bool:
 
 
 def _named(listing: list[Figures]) -> list[Row]:
-    """The rows of a list of dictionaries, called by the first figure of each: "line 3", twice if it was cut in two pieces."""
+    """The rows of a list of dictionaries, called by the first figure of each: "line 3", twice if it was cut
+    in two pieces.
+    """
     first = next(iter(listing[0]))
     return [(f"{first} {row[first]}", {key: row[key] for key in row if key != first}) for row in listing]
 

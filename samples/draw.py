@@ -2,10 +2,10 @@
 
     python samples/draw.py [FOLDER]
 
-Each drawing is a line of 0.5 mm at 300 dpi: the ink's coverage drawn eight times too fine and averaged, softened by
-the scanner's lens (0.05 mm), on unevenly lit paper, with noise, in 21 grey levels and cut off at the scanner's white
-(which keeps the files small). The truth is `loop,x,y` in mm in sheet coordinates: from the lower-left corner of the
-sheet, X right, Y up; pixel i covers [i, i+1) pixel pitches.
+Each drawing is a line of 0.5 mm at 300 dpi: the ink's coverage drawn eight times too fine and averaged,
+softened by the scanner's lens (0.05 mm), on unevenly lit paper, with noise, in 21 grey levels and cut off at
+the scanner's white (which keeps the files small). The truth is `loop,x,y` in mm in sheet coordinates: from
+the lower-left corner of the sheet, X right, Y up; pixel i covers [i, i+1) pixel pitches.
 """
 
 from __future__ import annotations
@@ -51,7 +51,9 @@ def closed(*pieces: Points) -> Points:
 
 
 def cam() -> list[Points]:
-    """Plate cam: base radius 30 mm, lift 15 mm; dwell 100°, cycloidal rise 80°, dwell 80°, cycloidal return 100°."""
+    """Plate cam: base radius 30 mm, lift 15 mm; dwell 100°, cycloidal rise 80°, dwell 80°, cycloidal return
+    100°.
+    """
     angle_deg = np.linspace(0, 360, 1400)
     turns = np.interp(angle_deg, [0, 100, 180, 260, 360], [0, 0, 1, 1, 2])
     lift = np.abs((turns - np.sin(2 * np.pi * turns) / (2 * np.pi) + 1) % 2 - 1)
@@ -85,7 +87,9 @@ def gear() -> list[Points]:
 
 
 def program() -> list[Points]:
-    """A rounded plate of 44 x 32 mm, the lead line to it, its reference point, two stop marks, and a guide line to a drill point."""
+    """A rounded plate of 44 x 32 mm, the lead line to it, its reference point, two stop marks, and a guide
+    line to a drill point.
+    """
     plate = closed(
         np.array([18.0, 12.0]),
         arc((24, 6), 6, 180, 270),

@@ -189,7 +189,9 @@ def head_options(verb: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def _head(options: dict[str, Any]) -> Head:
-    """The head of the command line, its options taken out of all; raises UsageError for those that do not go together."""
+    """The head of the command line, its options taken out of all; raises UsageError for those that do not go
+    together.
+    """
     taken = {name: options.pop(name) for name in (*_OF_MARKS, *_OF_HEAD, "cutter_mm", "side")}
     if taken["lines"] is not None and taken["start_mm"] is not None:
         raise click.UsageError("--start picks one line, --lines several; give one of them")

@@ -1,4 +1,6 @@
-"""Lengths, speeds, frequencies, places and lines as the command line takes them: text with a unit becomes mm, mm/s, Hz."""
+"""Lengths, speeds, frequencies, places and lines as the command line takes them: text with a unit becomes mm,
+mm/s, Hz.
+"""
 
 from __future__ import annotations
 

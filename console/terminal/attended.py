@@ -1,7 +1,9 @@
-"""The operator at the terminal: asked for the decades at every stop (--ask), and for the button where the card says so.
+"""The operator at the terminal: asked for the decades at every stop (--ask), and for the button where the
+card says so.
 
-Questions and answers go over stderr and stdin. An answer is a move (down 7mm 5mm/s), a dwell (dwell 2s) or a drill cycle (drill 8mm, or
-drill 8mm peck 2mm); an empty one ends the stop. A stop of no moves is left to what is usual there, which the question says.
+Questions and answers go over stderr and stdin. An answer is a move (down 7mm 5mm/s), a dwell (dwell 2s) or a
+drill cycle (drill 8mm, or drill 8mm peck 2mm); an empty one ends the stop. A stop of no moves is left to what
+is usual there, which the question says.
 """
 
 from __future__ import annotations

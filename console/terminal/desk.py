@@ -1,6 +1,7 @@
 """The operator's desk: what a verb tells while it works and when it has done.
 
-Figures go to stdout, as text or as JSON; notes, details and progress bars to stderr. A bar shows on a terminal only.
+Figures go to stdout, as text or as JSON; notes, details and progress bars to stderr. A bar shows on a
+terminal only.
 """
 
 from __future__ import annotations

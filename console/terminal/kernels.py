@@ -27,14 +27,18 @@ def choose_cache() -> None:
 
 
 def are_cold(packages: tuple[str, ...] = PACKAGES) -> bool:
-    """Whether a kernel of these packages has still to be compiled (never, or not since its source was changed)."""
+    """Whether a kernel of these packages has still to be compiled (never, or not since its source was
+    changed).
+    """
     return any(_is_cold(package) for package in packages)
 
 
 def told(packages: tuple[str, ...] = PACKAGES) -> bool:
-    """Whether the operator was told already that kernels of the sources as they are have to be compiled; he is from now on.
+    """Whether the operator was told already that kernels of the sources as they are have to be compiled; he
+    is from now on.
 
-    A kernel that a verb never runs stays older than its source: without this the verb would tell of it at every run.
+    A kernel that a verb never runs stays older than its source: without this the verb would tell of it at
+    every run.
     """
     newest_s = max(file.stat().st_mtime for package in packages for file in _sources(package))
     given = os.environ.get("NUMBA_CACHE_DIR")

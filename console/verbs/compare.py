@@ -97,12 +97,13 @@ def command(
 ) -> None:
     """Say how far two contours are apart: paths, tapes, or one of them a drawing.
 
-    A and B are path files (.csv), tapes (.wav; they are played first) or, one of them, a drawing. Only what is run with
-    the tool in the work counts. Between two paths the distance is measured both ways. Against a drawing it is the
-    distance to the ink's own centre, measured across the path in the image, and the ink that no path covers is counted.
+    A and B are path files (.csv), tapes (.wav; they are played first) or, one of them, a drawing. Only what
+    is run with the tool in the work counts. Between two paths the distance is measured both ways. Against a
+    drawing it is the distance to the ink's own centre, measured across the path in the image, and the ink
+    that no path covers is counted.
 
-    With --systems the systems are set side by side: A is a drawing and there is no B: the table has a row for each system, and one that refuses or
-    faults says why in its row.
+    With --systems the systems are set side by side: A is a drawing and there is no B: the table has a row for
+    each system, and one that refuses or faults says why in its row.
     """
     if asked is not None:
         _refuse(b is not None, "--systems compares one drawing; leave B out")

@@ -1,6 +1,7 @@
 """The verb `inspect`: what is on a tape.
 
-The carriers are measured in windows of 4096 frames, and say what they are even where nothing else is known of the tape:
+The carriers are measured in windows of 4096 frames, and say what they are even where nothing else is known of
+the tape:
 
     level        root mean square of the track, against that of a full-scale sine                       (dB)
     frequency    the peak of the window's spectrum, by a parabola through the logarithms of three bins  (Hz)
@@ -72,8 +73,8 @@ class Carrier:
 def command(tape: FilePath, picture: FilePath | None, controls: Controls, desk: Desk) -> None:
     """Say what is on a tape: tracks, carriers, levels, travel, format.
 
-    A tape that cannot be played is told as far as it goes, and then why it cannot. Of a program in another medium
-    (.steps, .cubic, .ngc) its format and what it does are told.
+    A tape that cannot be played is told as far as it goes, and then why it cannot. Of a program in another
+    medium (.steps, .cubic, .ngc) its format and what it does are told.
     """
     if medium.kind_of(tape) == "program":
         controls.of_tape(tape)
@@ -152,7 +153,9 @@ def _listen(file: FilePath, fault: TapeFault | None) -> tuple[dict[str, Any], li
 
 
 def _carriers(blocks: Iterable[NDArray[np.float32]], rate_hz: float, tracks: int) -> list[Carrier]:
-    """Measure the tracks, window by window; what is left over at the end is shorter than a window and left out."""
+    """Measure the tracks, window by window; what is left over at the end is shorter than a window and left
+    out.
+    """
     levels, frequencies = [np.full((1, tracks), -np.inf)], [np.full((1, tracks), np.nan)]
     for block in blocks:
         windows = block[: len(block) // WINDOW_FRAMES * WINDOW_FRAMES].reshape(-1, WINDOW_FRAMES, tracks)

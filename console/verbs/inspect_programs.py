@@ -1,4 +1,6 @@
-"""What is in a program that is no tape, for the verb `inspect`: format, length, travel, and the picture of its holes."""
+"""What is in a program that is no tape, for the verb `inspect`: format, length, travel, and the picture of
+its holes.
+"""
 
 from __future__ import annotations
 

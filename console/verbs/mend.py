@@ -37,8 +37,8 @@ def command(
 ) -> None:
     """Record a tape anew whose end tells which dropout lost how many whole cycles.
 
-    The end is that which the tape states, or with --closed its start. Where cycles could have been lost in more than one
-    way, nothing is written and the exit code is 5.
+    The end is that which the tape states, or with --closed its start. Where cycles could have been lost in
+    more than one way, nothing is written and the exit code is 5.
     """
     from morfax.player.tape.mend import mend
 

@@ -119,8 +119,9 @@ def command(
 ) -> None:
     """Play a tape into the simulated machine and write the path it runs.
 
-    The path is that of the machine's own lead screws, phase-locked to the tape. Without -o only the figures are
-    printed. TAPE - is a pipe: a WAV, or raw 16-bit samples of four tracks. If the machine faults, the path up to there is kept, with `.incomplete` in its name.
+    The path is that of the machine's own lead screws, phase-locked to the tape. Without -o only the figures
+    are printed. TAPE - is a pipe: a WAV, or raw 16-bit samples of four tracks. If the machine faults, the
+    path up to there is kept, with `.incomplete` in its name.
     """
     outputs = _outputs(tape, outputs, path_file, followed)
     settings: dict[str, Any] = {
@@ -154,7 +155,9 @@ def command(
 def _outputs(
     tape: FilePath, outputs: tuple[FilePath, ...], path_file: FilePath | None, followed: tuple[FilePath, ...]
 ) -> tuple[FilePath, ...]:
-    """Names for the machine's path, each of which can be written, as those for its errors can; raises FileFault if not."""
+    """Names for the machine's path, each of which can be written, as those for its errors can; raises
+    FileFault if not.
+    """
     named = (
         *(("-o", file, SUFFIXES) for file in outputs),
         *(("--path", file, (".csv",)) for file in (path_file,) if file is not None),
@@ -166,7 +169,9 @@ def _outputs(
 
 
 def _given(tape: FilePath, given: dict[str, Any], controls: Controls) -> dict[str, Any]:
-    """The settings that were given, as the control takes them; raises UsageError for one that it does not take."""
+    """The settings that were given, as the control takes them; raises UsageError for one that it does not
+    take.
+    """
     _refuse_foreign(tape, given)
     if "resume_at_s" in given and controls.start_mm is None:
         raise click.UsageError(
@@ -182,7 +187,9 @@ def _given(tape: FilePath, given: dict[str, Any], controls: Controls) -> dict[st
 def _played(
     tape: FilePath, outputs: tuple[FilePath, ...], controls: Controls, desk: Desk, given: dict[str, Any]
 ) -> tuple[Passage, Playback, Fault | None]:
-    """Play a tape and write the machine's path: as it comes if nothing else is asked for, as a picture wants the whole of it."""
+    """Play a tape and write the machine's path: as it comes if nothing else is asked for, as a picture wants
+    the whole of it.
+    """
     if all(file.suffix.lower() == ".csv" for file in outputs):
         return controls.play_into(tape, desk, outputs, **given)
     played = controls.play(tape, desk, **given)

@@ -79,9 +79,9 @@ def command(
 ) -> None:
     """Record a path file, or another program, in the medium that the name after -o says.
 
-    SOURCE is a CSV file with the columns t_s, x_mm, y_mm, z_mm, tool (x_mm and y_mm, or x and y, are enough; without
-    times the path is run at the feed), and u_mm, v_mm … for further axes (A, B, C, U, V, W), which only a tape takes; or
-    a program in any medium, which is first played on its own control.
+    SOURCE is a CSV file with the columns t_s, x_mm, y_mm, z_mm, tool (x_mm and y_mm, or x and y, are enough;
+    without times the path is run at the feed), and u_mm, v_mm … for further axes (A, B, C, U, V, W), which
+    only a tape takes; or a program in any medium, which is first played on its own control.
     """
     from morfax.motion.contour import length_mm
     from morfax.recorder.media import record

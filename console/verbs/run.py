@@ -61,9 +61,9 @@ def command(
 ) -> None:
     """Go the whole way: trace a drawing, play the tape, compare all three.
 
-    The folder then holds the tape (.wav), the traced and the played path (.csv), the picture of the played path with
-    its error in colour (.png) and the figures (.json). What was there under these names is written over. Mirrored,
-    scaled or turned paths are compared with the drawing as they were before.
+    The folder then holds the tape (.wav), the traced and the played path (.csv), the picture of the played
+    path with its error in colour (.png) and the figures (.json). What was there under these names is written
+    over. Mirrored, scaled or turned paths are compared with the drawing as they were before.
     """
     opened = sheet.open(drawing)
     place = _make(folder or FilePath(drawing.stem), drawing)

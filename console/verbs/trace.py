@@ -68,11 +68,11 @@ def command(
 ) -> None:
     """Follow the line of a drawing and record the head's motion on a tape.
 
-    DRAWING is an image file (PNG, JPEG, TIFF) of known resolution. A closed line is followed until it closes, an open
-    one from end to end. If the line is lost, what was traced until then is kept, with `.incomplete` in the names; of
-    several lines (--lines) the others are cut all the same. The picture numbers them. If there is no line to start on,
-    --picture shows the sheet, so that a place for --start can be read off it. The picture is the drawing's; tape and
-    path are mirrored, scaled and turned as asked for.
+    DRAWING is an image file (PNG, JPEG, TIFF) of known resolution. A closed line is followed until it closes,
+    an open one from end to end. If the line is lost, what was traced until then is kept, with `.incomplete`
+    in the names; of several lines (--lines) the others are cut all the same. The picture numbers them. If
+    there is no line to start on, --picture shows the sheet, so that a place for --start can be read off it.
+    The picture is the drawing's; tape and path are mirrored, scaled and turned as asked for.
     """
     outputs = _outputs(drawing, output, path_file, picture, force)
     unit.check(outputs.tape)

@@ -9,15 +9,16 @@ Signals: a `.cubic` file in; the machine's own motion out, one sample for each i
 
     speed demand = modulus · (predicted place of the next point - present place)
 
-The difference carries the speed and the correction both: at a constant speed v the machine lags by v / modulus, on all
-axes alike, so that straight lines stay straight and a circle of radius r shrinks by about v² / (2 r modulus²). A larger
-modulus makes a faster machine of the same program (rough), a smaller one a smoother (fine). Dropping the lowest digits of
-the difference makes a rough pass. The monitor allows the lag that the speed explains, and no more.
+The difference carries the speed and the correction both: at a constant speed v the machine lags by v /
+modulus, on all axes alike, so that straight lines stay straight and a circle of radius r shrinks by about v²
+/ (2 r modulus²). A larger modulus makes a faster machine of the same program (rough), a smaller one a
+smoother (fine). Dropping the lowest digits of the difference makes a rough pass. The monitor allows the lag
+that the speed explains, and no more.
 
-Source: patent US 3062995, figures 1 and 3, claims 1 to 10.
-Questions: the patent gives no modulus; 200 mm/s for each mm here. Register 34 has 12 digits and a sign: 4095 counts, 2
-mm at 2000 counts per mm; beyond, the drive is lost, and the patent's register would have been full. At the end the last
-place is held until the lag is run off, 15 / modulus. A start at speed and a corner are refused when the program is read.
+Source: patent US 3062995, figures 1 and 3, claims 1 to 10. Questions: the patent gives no modulus; 200 mm/s
+for each mm here. Register 34 has 12 digits and a sign: 4095 counts, 2 mm at 2000 counts per mm; beyond, the
+drive is lost, and the patent's register would have been full. At the end the last place is held until the lag
+is run off, 15 / modulus. A start at speed and a corner are refused when the program is read.
 """
 
 from __future__ import annotations
@@ -31,6 +32,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.motion.axis import TRAVEL_MM
 from morfax.motion.drive import SOUND, Drive, as_rows, conditioned_step
 from morfax.motion.faults import LockFault, ProgramFault
@@ -46,12 +48,12 @@ _BLOCK_INTERVALS = 256
 _LARGEST_WORD = 2**62  # of register I with its digits
 _TOLERANCE_MM = 0.005  # of following: a tenth of the lag at 10 mm/s
 
-from morfax.motion.arrays import Array
-
 
 @dataclass(frozen=True, slots=True)
 class Servo:
-    """Settings of the servo: modulus in mm/s per mm (None: the program's), lowest digits dropped, scales, motor."""
+    """Settings of the servo: modulus in mm/s per mm (None: the program's), lowest digits dropped, scales,
+    motor.
+    """
 
     modulus_per_s: float | None = None
     dropped_digits: int = 0
@@ -63,7 +65,8 @@ class Servo:
     def limit(self, modulus_per_s: float, counts_per_mm: float, point_rate_hz: float) -> FollowingLimit:
         """The following error that is allowed.
 
-        It is the lag of modulus, motor and one point, as the next one is predicted, and what scales and dropped digits add.
+        It is the lag of modulus, motor and one point, as the next one is predicted, and what scales and
+        dropped digits add.
         """
         lag_s, settle_s = 1 / modulus_per_s + self.drive.lag_s + 1 / point_rate_hz, 1 / modulus_per_s
         added = 2**self.dropped_digits + 2 * self.scales.fine_noise_counts
@@ -81,7 +84,8 @@ class CubicPlayback(Supervised):
     """A cubic program in the machine: iterate for the machine's motion, as often as wanted.
 
     Known beforehand: `format`, `duration_s`, `start_mm`. Figures of the last time through, one per axis:
-    `following_error_mm` (the largest difference), `end_mm`, `end_error_mm`. `conditions`: what is wrong with the drives.
+    `following_error_mm` (the largest difference), `end_mm`, `end_error_mm`. `conditions`: what is wrong with
+    the drives.
     """
 
     def __init__(self, program: CubicProgram, servo: Servo, travel_mm: float, name: str) -> None:
@@ -113,7 +117,9 @@ class CubicPlayback(Supervised):
         return math.ceil(_SETTLING / self._modulus_per_s * self.format.point_rate_hz)
 
     def __iter__(self) -> Iterator[Motion]:
-        """Play: the machine's motion in blocks; raises LockFault or FollowingFault after the last sample that was right."""
+        """Play: the machine's motion in blocks; raises LockFault or FollowingFault after the last sample that
+        was right.
+        """
         fmt, start = self.format, np.array(self.program.checks[0], np.int64)
         state = np.zeros((len(AXES), 2))
         state[:, 0] = self.start_mm
@@ -228,7 +234,8 @@ class CubicPlayback(Supervised):
 
 
 @njit(cache=True)
-def _servo(predicted, noise, scales, register, drive, conditions, state, seen, moved_mm):  # type: ignore[no-untyped-def]
+# type: ignore[no-untyped-def]
+def _servo(predicted, noise, scales, register, drive, conditions, state, seen, moved_mm):
     """Run the servos of all axes through a block; the number of rows done before a difference was too large."""
     counts_per_mm, largest, dropped = register
     modulus, gain, change, dt_s = drive

@@ -1,21 +1,23 @@
 """The interpolator: four registers that make a cubic by additions only.
 
-Signals: words A, A², A³ of each interval and axis in; the position at each of the p steps of the interval out, all in
-counts with 3·log2(p) binary digits behind the point, 64-bit integers.
+Signals: words A, A², A³ of each interval and axis in; the position at each of the p steps of the interval
+out, all in counts with 3·log2(p) binary digits behind the point, 64-bit integers.
 
     step n → n+1       I + II  →  I        II + III  →  II        III + IV  →  III        IV stays
 
-All sums are of what the registers held before the step (table I). With the switch open (q > 1) only every q-th step is
-such a step, and the q - 1 before it add II to I alone; the words are then those of p/q steps, A A² A³ over q:
+All sums are of what the registers held before the step (table I). With the switch open (q > 1) only every
+q-th step is such a step, and the q - 1 before it add II to I alone; the words are then those of p/q steps, A
+A² A³ over q:
 
     I  ____╱‾    cubic, q = 1            I  ____/‾     q = 4: straight from one exact place to the next
 
 Register I is loaded once; II, III and IV anew in each interval, so that nothing builds up.
 
-Source: patent US 3062995, table I, figure 2 (stores I to IV, adders 50, gates 51 and 53) and figure 3 (dividers 58, 59).
-Questions: the text adds IV to III before III to II, which is not table I; the table holds. The divider 59 is said to
-make a ratio p + q; two dividers in a row make p·q. Registers with fewer digits to the left, as claim 9 has them, end up
-to 20 counts off at 16 steps, and the next interval starts there (`truncated_end`); all four have all digits here.
+Source: patent US 3062995, table I, figure 2 (stores I to IV, adders 50, gates 51 and 53) and figure 3
+(dividers 58, 59). Questions: the text adds IV to III before III to II, which is not table I; the table holds.
+The divider 59 is said to make a ratio p + q; two dividers in a row make p·q. Registers with fewer digits to
+the left, as claim 9 has them, end up to 20 counts off at 16 steps, and the next interval starts there
+(`truncated_end`); all four have all digits here.
 """
 
 from __future__ import annotations
@@ -31,7 +33,9 @@ Words = NDArray[np.int64]
 
 @dataclass(frozen=True, slots=True)
 class TimeBase:
-    """The common time base 14: fast pulses and the dividers that all else is clocked by (figure 3's own figures)."""
+    """The common time base 14: fast pulses and the dividers that all else is clocked by (figure 3's own
+    figures).
+    """
 
     fast_hz: float = 3500.0
     word_digits: int = 16  # divider 56, n
@@ -124,7 +128,8 @@ def table(start: int, words: tuple[int, int, int], steps: int) -> list[tuple[int
 def truncated_end(
     start: int, words: tuple[int, int, int], steps: int, digits: tuple[int, int, int, int]
 ) -> float:
-    """Where an interval ends, in counts, if the registers have so many digits and what is below is dropped on the way.
+    """Where an interval ends, in counts, if the registers have so many digits and what is below is dropped on
+    the way.
 
     The words are given with 3 log2(steps) digits, as ever.
     """
@@ -140,14 +145,17 @@ def truncated_end(
 
 
 def ends(words: Words, points: int, linear: int = 1) -> Words:
-    """How far each interval takes register I (k, axes), by the closed form: p A + p(p-1)/2 A² + p(p-1)(p-2)/6 A³."""
+    """How far each interval takes register I (k, axes), by the closed form: p A + p(p-1)/2 A² + p(p-1)(p-2)/6
+    A³.
+    """
     n = points // linear
     first, second, third = words[..., 0], words[..., 1], words[..., 2]
     return np.asarray(linear * (n * first + n * (n - 1) // 2 * second + n * (n - 1) * (n - 2) // 6 * third))
 
 
 def slopes(words: Words, points: int, linear: int = 1) -> tuple[Words, Words]:
-    """Slopes at the start and the end of each interval (k, axes), six times points · the words' unit per step.
+    """Slopes at the start and the end of each interval (k, axes), six times points · the words' unit per
+    step.
 
     The cubic's own slope is not the first difference: x'(0) = A - A²/2 + A³/3 to a step.
     """

@@ -1,20 +1,20 @@
 """The two-scale measurement: a fine scale that repeats and a coarse one that tells which pitch it is.
 
-Signals: position of the slide in counts; out the code of the position, free of ambiguity. The fine resolver on the
-slide gives the position within a pitch; the coarse one on the shaft counts half pitches, so that its lowest digit has
-the weight of the fine one's highest:
+Signals: position of the slide in counts; out the code of the position, free of ambiguity. The fine resolver
+on the slide gives the position within a pitch; the coarse one on the shaft counts half pitches, so that its
+lowest digit has the weight of the fine one's highest:
 
     fine      0 … 31 | 32 … 63 |  0 … 31 | 32 … 63       highest digit  0 1 0 1
     coarse        0  |    1    |    2    |    3            lowest digit   0 1 0 1, set late by half a digit
 
-Where the two digits differ (exclusive OR 24), one is added to the coarse count. That is right as long as the coarse
-scale is late by 0 … 1 of its digits, so it is set 0.5 late. The digit that both have counts once:
+Where the two digits differ (exclusive OR 24), one is added to the coarse count. That is right as long as the
+coarse scale is late by 0 … 1 of its digits, so it is set 0.5 late. The digit that both have counts once:
 
     position = (coarse >> 1) · pitch + fine
 
-Source: patent US 3062995, figure 3 and column 5 (resolvers 5-11 and 10-12, counters 18 and 19).
-Questions: the patent gives 64 counts to a pitch and no length. Here a pitch has 4096 counts, 2.048 mm at 2000 counts
-per mm. Noise stands for the jitter of the gates' edges: evenly spread, the same at any speed.
+Source: patent US 3062995, figure 3 and column 5 (resolvers 5-11 and 10-12, counters 18 and 19). Questions:
+the patent gives 64 counts to a pitch and no length. Here a pitch has 4096 counts, 2.048 mm at 2000 counts per
+mm. Noise stands for the jitter of the gates' edges: evenly spread, the same at any speed.
 """
 
 from __future__ import annotations
@@ -33,7 +33,9 @@ Codes = NDArray[np.int64]
 
 @dataclass(frozen=True, slots=True)
 class Scales:
-    """Settings of a two-scale measurement: lag and misalignment in coarse digits, noise as the largest either way."""
+    """Settings of a two-scale measurement: lag and misalignment in coarse digits, noise as the largest either
+    way.
+    """
 
     pitch_counts: int = 4096
     lag_digits: float = RIGHT_LAG
@@ -71,7 +73,9 @@ def read_scales(position_counts: NDArray[np.float64], scales: Scales, seed: int 
 
 
 def gated_pulses(phase_cycles: float, base: TimeBase) -> int:
-    """Fast pulses that pass a gate which a resolver's phase holds open: the count of its place within the pitch."""
+    """Fast pulses that pass a gate which a resolver's phase holds open: the count of its place within the
+    pitch.
+    """
     open_s = phase_cycles % 1.0 / base.carrier_hz
     return int(open_s * base.fast_hz + 1e-9)
 

@@ -1,17 +1,18 @@
 """The interpolator as figure 2 draws it: four recirculating stores, whose digits come round one by one.
 
-Signals: a word is a train of binary digits, the lowest first, negative numbers as the two's complement. In each round a
-store's digits pass its maintenance gate 52 and come back; while a transfer gate 51 is open the digits of the store to
-the right are added on the way, by an adder 50 of one digit with its carry:
+Signals: a word is a train of binary digits, the lowest first, negative numbers as the two's complement. In
+each round a store's digits pass its maintenance gate 52 and come back; while a transfer gate 51 is open the
+digits of the store to the right are added on the way, by an adder 50 of one digit with its carry:
 
     IV ─51─► +III ─51─► +II ─51─► +I ─530─► out         each store: ┌► 52 ─► adder 50 ─► delay ┐
                                                                    └─────────────────────────┘
 
-All three adders work in the same round, on what the stores held before it: that is table I. `player.interpolator` makes
-the same sums with whole words, a million times as fast; this is what they are held to.
+All three adders work in the same round, on what the stores held before it: that is table I.
+`player.interpolator` makes the same sums with whole words, a million times as fast; this is what they are
+held to.
 
-Source: patent US 3062995, figure 2, columns 7 and 8.
-Questions: the patent gives no width. A sum that needs more digits than the store has loses them, as it would there.
+Source: patent US 3062995, figure 2, columns 7 and 8. Questions: the patent gives no width. A sum that needs
+more digits than the store has loses them, as it would there.
 """
 
 from __future__ import annotations

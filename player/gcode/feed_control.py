@@ -1,7 +1,7 @@
 """Feed control: an up/down counter decides how often the error gates of the interpolator open.
 
-Signals in: the feed number and the override as binary fractions of the clock, and the command pulses of the axes.
-Signals out: whether the error gates are open for a recirculation (16 clocks).
+Signals in: the feed number and the override as binary fractions of the clock, and the command pulses of the
+axes. Signals out: whether the error gates are open for a recirculation (16 clocks).
 
     clock ──► rate multiplier: feed ──► rate multiplier: override ──► f_p ──► counter 81 up, 7 eighths each
     command pulses ──► gate 88: G 20, M 8, S 6 eighths ─────────────────────► counter 81 down
@@ -9,20 +9,22 @@ Signals out: whether the error gates are open for a recirculation (16 clocks).
                                           stage 6      ──► every fourth
                                           5 to 8 all ones ──► no more feed pulses
 
-A binary rate multiplier of n stages passes F of every 2^n clocks, evenly: the clock at which its counter's bit k turns
-to 1 is passed where bit n - 1 - k of F is set. The counter comes to rest where feed pulses and command pulses balance:
+A binary rate multiplier of n stages passes F of every 2^n clocks, evenly: the clock at which its counter's
+bit k turns to 1 is passed where bit n - 1 - k of F is set. The counter comes to rest where feed pulses and
+command pulses balance:
 
     7/8 f_p = 2.5 V,    2.5 V = 2.5 G + M + 0.75 S (three axes), 2.5 V = 2.5 G + M (two)         pulses per second
 
-so that V is the resultant speed within -10.6 … +1.9 % (three axes), -7.2 … +1.0 % (two). With a true norm each axis
-weighs 2.5 times its direction cosine instead.
+so that V is the resultant speed within -10.6 … +1.9 % (three axes), -7.2 … +1.0 % (two). With a true norm
+each axis weighs 2.5 times its direction cosine instead.
 
-Source: patent from US application 631 214 of 1967, figures 4 and 17, equations II and III, claims 4 to 6 and 15.
-Questions: feed pulses enter stages 1, 2 and 3, so they weigh 7 eighths. Stage 7 stands in both the gate for every and
-the one for every second recirculation; the first includes the second. Three pulses at once take 34 eighths from the 32
-with which the gates first open, so the counter has a sign; feed pulses that come within one recirculation are counted
-one by one. The patent gives neither the length of the feed number, here 20 bits, nor that of the override, 10 bits. The
-true norm is ours; for it the counter holds 1/1024 of an eighth.
+Source: patent from US application 631 214 of 1967, figures 4 and 17, equations II and III, claims 4 to 6 and
+15. Questions: feed pulses enter stages 1, 2 and 3, so they weigh 7 eighths. Stage 7 stands in both the gate
+for every and the one for every second recirculation; the first includes the second. Three pulses at once take
+34 eighths from the 32 with which the gates first open, so the counter has a sign; feed pulses that come
+within one recirculation are counted one by one. The patent gives neither the length of the feed number, here
+20 bits, nor that of the override, 10 bits. The true norm is ours; for it the counter holds 1/1024 of an
+eighth.
 """
 
 from __future__ import annotations
@@ -91,7 +93,9 @@ def passes(count, number, bits):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, inline="always")
 def feed_pulses(recirculation, number):  # type: ignore[no-untyped-def]
-    """Feed pulses within a recirculation, 1 and on: the four fast stages pass the same number in each, a slow one may."""
+    """Feed pulses within a recirculation, 1 and on: the four fast stages pass the same number in each, a slow
+    one may.
+    """
     fast = number >> (FEED_BITS - 4)
     slow = number & ((1 << (FEED_BITS - 4)) - 1)
     return fast + passes(recirculation, slow, FEED_BITS - 4)

@@ -1,13 +1,13 @@
 """The speed that the pulse control holds, beside the one that is programmed, along the way.
 
-Signals in: a program in the control. Signals out: way in mm, programmed speed (with the override) and the speed of the
-command pulses in mm/s, each over a window of 20 ms of a move; dwells have none.
+Signals in: a program in the control. Signals out: way in mm, programmed speed (with the override) and the
+speed of the command pulses in mm/s, each over a window of 20 ms of a move; dwells have none.
 
     held = pulse · sqrt(nx² + ny² + nz²) / window
 
-Source: patent from US application 631 214, pages on the functional gating 88: its weights make the resultant of three
-axes good to -10.6 … +1.9 %.
-Questions: at the end of each move the interpolator comes to rest, so that the last windows of a move are slower.
+Source: patent from US application 631 214, pages on the functional gating 88: its weights make the resultant
+of three axes good to -10.6 … +1.9 %. Questions: at the end of each move the interpolator comes to rest, so
+that the last windows of a move are slower.
 """
 
 from __future__ import annotations
@@ -16,11 +16,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from morfax.motion.arrays import Array
 from morfax.player.gcode.pulses import PulsePlayback
 
 WINDOW_S = 0.02
-
-from morfax.motion.arrays import Array
 
 
 @dataclass(frozen=True, slots=True)

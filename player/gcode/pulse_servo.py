@@ -1,7 +1,8 @@
-"""Pulse servo: command pulses in, a moving table out, with its instantaneous command register, unit circuit and lag.
+"""Pulse servo: command pulses in, a moving table out, with its instantaneous command register, unit circuit
+and lag.
 
-Signals in: command pulses -1, 0, +1 per recirculation. Signals out: position of the table in mm, once in `sampled`
-recirculations.
+Signals in: command pulses -1, 0, +1 per recirculation. Signals out: position of the table in mm, once in
+`sampled` recirculations.
 
     command pulses ──┬──► × 2 ──► counter 104 ──► frequency 105 ──► amplifier 106 ──► motor 107 ──┬──► table
                      │              ▲   ▲ −                                                       │
@@ -9,22 +10,25 @@ recirculations.
                      │      overflow 118                                                          ▼
                      └──► ICR 54 ──► lag subtractor 116, lag register 117 ◄── position register 51
 
-The instantaneous command register (ICR) holds the low bits of where the axis has been told to be. The unit circuit
-joins them to the high bits of the position register, and adds or takes one there where the two straddle a carry:
+The instantaneous command register (ICR) holds the low bits of where the axis has been told to be. The unit
+circuit joins them to the high bits of the position register, and adds or takes one there where the two
+straddle a carry:
 
     difference = (position low bits - ICR) as a number of that many bits
     no borrow, difference negative: + 1        borrow, difference positive: - 1
 
-The lag is added to itself in each recirculation, and its overflows are further pulses to the servo: the position loop.
+The lag is added to itself in each recirculation, and its overflows are further pulses to the servo: the
+position loop.
 
     speed demanded = gain · count,   count' = V + k · lag - v,   k = recirculations per s / 2^(stages of the lag register)
 
 Source: patent from US application 631 214 of 1967, figures 7, 18, 20 and 21, claims 13 and 17 to 22.
-Questions: with an ICR of 5 bits the unit circuit is right for lags of -15 … +16 counts only (the text's own example, 24,
-is not); beyond that is a fault here. The lag counts half position counts, as the command does: with the whole counts of
-the text an axis told to stand between two counts would never rest. The text says that the lag stays in proportion to
-the speed; its counter adds up lag pulses, so here the lag goes to nothing at constant speed. A lag register of 5 stages
-asks for a servo faster than the motor; chosen: 10 stages, and a gain of 500 1/s.
+Questions: with an ICR of 5 bits the unit circuit is right for lags of -15 … +16 counts only (the text's own
+example, 24, is not); beyond that is a fault here. The lag counts half position counts, as the command does:
+with the whole counts of the text an axis told to stand between two counts would never rest. The text says
+that the lag stays in proportion to the speed; its counter adds up lag pulses, so here the lag goes to nothing
+at constant speed. A lag register of 5 stages asks for a servo faster than the motor; chosen: 10 stages, and a
+gain of 500 1/s.
 """
 
 from __future__ import annotations
@@ -36,6 +40,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.motion.drive import SOUND, Drive, as_rows, conditioned_step
 
 PULSES_PER_COUNT = 2  # 0.0005 in and 0.001 in
@@ -43,7 +48,6 @@ QUANTA_PER_PULSE = 2  # multiplier 111
 COMMAND, HALF, ICR, QUANTA, COUNT, LAG, LARGEST = range(7)  # registers of an axis
 PLACE, SPEED = range(2)  # its table: mm, mm/s
 
-from morfax.motion.arrays import Array
 
 Counts = NDArray[np.int64]
 Pulses = NDArray[np.int8]
@@ -51,7 +55,9 @@ Pulses = NDArray[np.int8]
 
 @dataclass(frozen=True, slots=True)
 class PulseServo:
-    """Settings of the pulse servos; the patent's own are a pulse of 0.0127 mm, registers of 16 and 5 bits, 5 stages."""
+    """Settings of the pulse servos; the patent's own are a pulse of 0.0127 mm, registers of 16 and 5 bits, 5
+    stages.
+    """
 
     pulse_mm: float = 0.001
     register_bits: int = 24
@@ -76,7 +82,9 @@ HISTORIC = PulseServo(pulse_mm=0.0127, register_bits=16, icr_bits=5, lag_stages=
 
 
 class PulseServos:
-    """The servos of a machine; registers and tables are carried from block to block. They start at rest, in pulses."""
+    """The servos of a machine; registers and tables are carried from block to block. They start at rest, in
+    pulses.
+    """
 
     def __init__(
         self, start: Counts, recirculations_hz: float, settings: PulseServo | None = None, sampled: int = 8
@@ -108,7 +116,8 @@ class PulseServos:
         return self._registers[:, COMMAND].copy()
 
     def follow(self, pulses: Pulses) -> tuple[Array, Array, int]:
-        """Commands and table positions (n, axes) in mm once in `sampled` recirculations, and the recirculations done.
+        """Commands and table positions (n, axes) in mm once in `sampled` recirculations, and the
+        recirculations done.
 
         They are fewer than the pulses given where a lag left the range of the unit circuit.
         """
@@ -127,7 +136,9 @@ class PulseServos:
 
 
 def unit_circuit(position: int, icr: int, icr_bits: int = 5) -> int:
-    """The interpolated position, from the position register and the low bits of the instantaneous command register."""
+    """The interpolated position, from the position register and the low bits of the instantaneous command
+    register.
+    """
     return int(_unit(position, icr, icr_bits))
 
 
@@ -160,8 +171,11 @@ def _lag(position, icr, bits):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
-def _follow(pulses, analogue, timing, conditions, registers, tables, commands, places):  # type: ignore[no-untyped-def]
-    """Step all axes through a block; recirculations done before a lag was out of range. One loop: all of figure 7."""
+# type: ignore[no-untyped-def]
+def _follow(pulses, analogue, timing, conditions, registers, tables, commands, places):
+    """Step all axes through a block; recirculations done before a lag was out of range. One loop: all of
+    figure 7.
+    """
     speed_per_count, share, largest_change, quantum_mm, dt_s, pulse_mm = analogue
     sampled, phase, bits, stages = timing
     mask, overflow = (1 << bits) - 1, 1 << stages

@@ -1,23 +1,24 @@
 """Pulse control: a program of lines and arcs in, the motion of the machine's own tables out.
 
-Signals in: an RS-274 program. Signals out: Motion in blocks at the motion rate, from standstill to standstill; a fault
-comes after the last sample that was still right.
+Signals in: an RS-274 program. Signals out: Motion in blocks at the motion rate, from standstill to
+standstill; a fault comes after the last sample that was still right.
 
     rs274 ──► command registers ──► residues, feed_control ──► command pulses ──► pulse_servo ──► tables
                                                                               └──► monitor ◄──┘
 
-Each move is brought to rest at its end point by the interpolator: the approach depends on the error alone, with the
-time constant L / recirculations per s, so L is the servos' time constant in recirculations. Arcs of half a turn and
-more are cut into equal ones below it. What leaves the registers' range, or asks for a speed that has no feed number, is
-refused before anything moves.
+Each move is brought to rest at its end point by the interpolator: the approach depends on the error alone,
+with the time constant L / recirculations per s, so L is the servos' time constant in recirculations. Arcs of
+half a turn and more are cut into equal ones below it. What leaves the registers' range, or asks for a speed
+that has no feed number, is refused before anything moves.
 
-The interpolator works on where the axes have been told to be. The unit circuit gives it that number, and a lag for which
-it would not is a fault; so interpolator and servos can be stepped one after the other, a block at a time.
+The interpolator works on where the axes have been told to be. The unit circuit gives it that number, and a
+lag for which it would not is a fault; so interpolator and servos can be stepped one after the other, a block
+at a time.
 
-Source: patent from US application 631 214 of 1967, figures 3, 7 and 9.
-Questions: the patent gives no rate and no L. Chosen: 48 000 recirculations per s (8 to a sample), L = 480 (10 ms), pulses
-of 1 um, rapids at 20 mm/s, which the servos start to at once within their lag. The cut of long arcs is ours; arcs up to
-170 degrees are run whole.
+Source: patent from US application 631 214 of 1967, figures 3, 7 and 9. Questions: the patent gives no rate
+and no L. Chosen: 48 000 recirculations per s (8 to a sample), L = 480 (10 ms), pulses of 1 um, rapids at 20
+mm/s, which the servos start to at once within their lag. The cut of long arcs is ours; arcs up to 170 degrees
+are run whole.
 """
 
 from __future__ import annotations
@@ -31,6 +32,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.motion.axis import TRAVEL_MM
 from morfax.motion.drive import SOUND
 from morfax.motion.faults import FollowingFault, ProgramFault
@@ -45,7 +47,6 @@ LARGEST_ARC = math.radians(170)
 STANDSTILL_S = 0.25
 _DWELL_AT_ONCE = 65536  # recirculations
 
-from morfax.motion.arrays import Array
 
 Counts = NDArray[np.int64]
 Pulses = NDArray[np.int8]
@@ -64,7 +65,8 @@ class PulseControl:
 
     @property
     def limit(self) -> FollowingLimit:
-        """The following error that is allowed: what the servo needs to get to a speed at once, and some pulses.
+        """The following error that is allowed: what the servo needs to get to a speed at once, and some
+        pulses.
 
         That is its lag, and at speed what the motor's current takes to bring it there.
         """
@@ -85,9 +87,11 @@ def play_pulses(
     true_norm: bool | None = None,
     override: float | None = None,
 ) -> PulsePlayback:
-    """Put an RS-274 program in the control; `true_norm` and `override` go before what the settings say of them.
+    """Put an RS-274 program in the control; `true_norm` and `override` go before what the settings say of
+    them.
 
-    Raises ProgramFault with the line, FileFault, or ValueError for an override that is none, before anything moves.
+    Raises ProgramFault with the line, FileFault, or ValueError for an override that is none, before anything
+    moves.
     """
     asked: dict[str, Any] = {"true_norm": true_norm, "override": override}
     control = replace(
@@ -97,7 +101,8 @@ def play_pulses(
 
 
 class PulsePlayback(Supervised):
-    """A program in the control: iterate for the machine's motion; the figures are those of the last time through.
+    """A program in the control: iterate for the machine's motion; the figures are those of the last time
+    through.
 
     `conditions` say what is wrong with the drives.
     """
@@ -159,7 +164,9 @@ class PulsePlayback(Supervised):
         yield from self._stand(STANDSTILL_S)
 
     def run_moves(self) -> Iterator[tuple[float, Iterator[Pulses]]]:
-        """Programmed speed in mm/s and command pulses of each move but dwells, to be taken one after the other."""
+        """Programmed speed in mm/s and command pulses of each move but dwells, to be taken one after the
+        other.
+        """
         interpolator = Interpolator(self._pulses(self.start_mm), self.settings.servo_constant)
         for move, (speed_mm_s, run) in zip(self.program.moves, self._jobs, strict=True):
             if move.kind != DWELL:

@@ -1,7 +1,7 @@
 """Residue loops: from the position errors to command pulses, along lines and arcs.
 
-Signals in: end point (and centre of an arc) in pulses, feed number. Signals out: per recirculation of 16 clocks a
-command pulse -1, 0 or +1 for each axis.
+Signals in: end point (and centre of an arc) in pulses, feed number. Signals out: per recirculation of 16
+clocks a command pulse -1, 0 or +1 for each axis.
 
     error E = X_c - X_t ──► error gate 94 ──► + ──► + ──► residue register 96 ──┬──► sign not changed: command pulse
                                               ▲     ▲                           │    (detector 101)
@@ -11,19 +11,21 @@ command pulse -1, 0 or +1 for each axis.
     line    RR ← RR + E (gate open) ∓ (L + E_m),       pulses per second  f_gate · E / (E_m + L)
     arc     tangent V = E + A,  A_x = ± E_y · E/2h,  A_y = ∓ E_x · E/2h          (chord E, perpendicular h from M)
 
-All axes keep the ratio of their errors, and the rate falls to nothing at the end point by itself. The ratio E/2h is made
-without division by one more residue loop Q: while it is positive E_m is taken from it and the errors go to their own
-axes; while it is negative 2h is added and they are crossed. In pulses E/2h is E_m / 2h_n,
+All axes keep the ratio of their errors, and the rate falls to nothing at the end point by itself. The ratio
+E/2h is made without division by one more residue loop Q: while it is positive E_m is taken from it and the
+errors go to their own axes; while it is negative 2h is added and they are crossed. In pulses E/2h is E_m /
+2h_n,
 
     2h_n = 2 (M_y - T_y) - E_y  where |E_x| > |E_y|,  else  2 (M_x - T_x) - E_x.
 
 Source: patent from US application 631 214 of 1967, figures 5, 6, 8 to 10 and 19, equations IV to XI, table I.
-Questions: table I uses L = 4 where the text says 8, and takes over a new sum L + E_m sometimes at once and sometimes a
-recirculation late; here always at once. 2h has the error of the other axis, as in equations X and XI, not the larger
-one as in the text. Residues are loaded with (L + E_m) / 2, and Q with 0. A guard of ours freezes an axis without error
-on a line, and swallows a pulse that leads away from the end point: it comes of a sum that has shrunk since the residue
-last crossed zero, so the residue is put back to the edge of its own side. (With the pulse merely swallowed 10 000 lines
-deviate by up to 4.5 pulses, so by 1.6.) Arcs must be of less than half a turn.
+Questions: table I uses L = 4 where the text says 8, and takes over a new sum L + E_m sometimes at once and
+sometimes a recirculation late; here always at once. 2h has the error of the other axis, as in equations X and
+XI, not the larger one as in the text. Residues are loaded with (L + E_m) / 2, and Q with 0. A guard of ours
+freezes an axis without error on a line, and swallows a pulse that leads away from the end point: it comes of
+a sum that has shrunk since the residue last crossed zero, so the residue is put back to the edge of its own
+side. (With the pulse merely swallowed 10 000 lines deviate by up to 4.5 pulses, so by 1.6.) Arcs must be of
+less than half a turn.
 """
 
 from __future__ import annotations
@@ -67,7 +69,9 @@ Pulses = NDArray[np.int8]
 
 @dataclass(frozen=True, slots=True)
 class Feed:
-    """What drives the error gates: feed number and override, or a fixed period in recirculations (0 = feed control)."""
+    """What drives the error gates: feed number and override, or a fixed period in recirculations (0 = feed
+    control).
+    """
 
     number: int = 0
     override: int = 1 << OVERRIDE_BITS
@@ -76,7 +80,9 @@ class Feed:
 
 
 class Interpolator:
-    """The three residue loops with the feed counter; all registers carry over from block to block of a program."""
+    """The three residue loops with the feed counter; all registers carry over from block to block of a
+    program.
+    """
 
     def __init__(
         self,
@@ -152,7 +158,9 @@ class Interpolator:
 
 @njit(cache=True, nogil=True)
 def _recirculate(end, centre, settings, weights, true_norm, state, pulses):  # type: ignore[no-untyped-def]
-    """Recirculate until there is no error or `pulses` is full; rows used. One loop: all registers of a recirculation."""
+    """Recirculate until there is no error or `pulses` is full; rows used. One loop: all registers of a
+    recirculation.
+    """
     constant, sense, guard, number, override, period = settings
     error = np.empty(3, np.int64)
     added = np.empty(3, np.int64)

@@ -10,13 +10,14 @@ Signals in: the text of a program. Signals out: moves in mm, mm/s and s, in the 
     M0 M3 M5        stop for the operator, spindle on, off   M2 M30      end of the program; nothing after it is read
     N               line number                  ( ) ;       comments        %   begin and end
 
-Anything else is refused with its line and word: a word that is passed over may be the one that keeps the tool out of
-the clamp. A program without an end is taken for cut short.
+Anything else is refused with its line and word: a word that is passed over may be the one that keeps the tool
+out of the clamp. A program without an end is taken for cut short.
 
 Source: RS-274-D; NIST RS274/NGC interpreter, version 3 (Kramer, Proctor, Messina, 2000), sections 2 and 3.
-Questions: before G20 or G21 a number is in mm. Where the machine stands is not in a program: each axis stands where the
-program first sends it, unless a start is given. The ends of an arc may lie on circles that differ by 5 um, or by 0.1 %
-of the radius if that is more but at most 0.5 mm (Grbl's rule); its centre is then moved to be as far from both.
+Questions: before G20 or G21 a number is in mm. Where the machine stands is not in a program: each axis stands
+where the program first sends it, unless a start is given. The ends of an arc may lie on circles that differ
+by 5 um, or by 0.1 % of the radius if that is more but at most 0.5 mm (Grbl's rule); its centre is then moved
+to be as far from both.
 """
 
 from __future__ import annotations
@@ -60,7 +61,9 @@ Place = tuple[float, float, float]
 
 
 class Move(NamedTuple):
-    """One move: where it ends; of an arc the centre and the angle turned, rad; feed in mm/s; of a dwell the time, s."""
+    """One move: where it ends; of an arc the centre and the angle turned, rad; feed in mm/s; of a dwell the
+    time, s.
+    """
 
     line: int
     kind: str
@@ -80,7 +83,9 @@ class Program:
 
 
 def read_rs274(file: str | os.PathLike[str], start_mm: Sequence[float] | None = None) -> Program:
-    """Read a program; raises ProgramFault with line and word for what is refused, FileFault if it cannot be read."""
+    """Read a program; raises ProgramFault with line and word for what is refused, FileFault if it cannot be
+    read.
+    """
     try:
         text = FilePath(file).read_bytes().decode("ascii")
     except UnicodeDecodeError as error:
@@ -164,7 +169,9 @@ class _Reader:
         self.ended = stop in (2, 30)
 
     def _codes(self, letters: list[str], numbers: list[str]) -> dict[str, int]:
-        """The G and M words of a line by their groups; raises ProgramFault for a word that is not played or doubled."""
+        """The G and M words of a line by their groups; raises ProgramFault for a word that is not played or
+        doubled.
+        """
         groups: dict[str, int] = {}
         for at, (letter, text) in enumerate(zip(letters, numbers, strict=True)):
             group = _CODES.get((letter, float(text))) if letter in "GM" else letter

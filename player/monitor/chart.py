@@ -1,7 +1,7 @@
 """Chart recorder: what a pen on each servo would draw over a run, demand, actual position and limit.
 
-Signals in: the rows that a monitor has watched, in mm at any rate. Signals out: for each stretch of `every_s` and each
-axis the row that came nearest to its limit; with 0 every row.
+Signals in: the rows that a monitor has watched, in mm at any rate. Signals out: for each stretch of `every_s`
+and each axis the row that came nearest to its limit; with 0 every row.
 
     error │      ╭──╮ limit                 rows     · · · ● · · · · ● · ·      one is kept of each stretch,
           │ ╭────╯  ╰───╮                   stretch  └──────┘└──────┘           the nearest to its limit

@@ -1,22 +1,23 @@
 """Following-error monitor: is a servo as far behind its demand as its speed explains, or further?
 
-Signals in: demand and actual position of each axis in mm, at any one rate. Signals out: the limit in mm, a fault with
-its state, and whether to stop.
+Signals in: demand and actual position of each axis in mm, at any one rate. Signals out: the limit in mm, a
+fault with its state, and whether to stop.
 
     demand ──► rate of change 35 ──► table 32, 34 ──► + tolerance 38 ──► limit ──┐
     demand − actual ─────────────────────────────────────────────────────► comparator 40 ──► warning, stop
 
     fault  ⇔  |demand − actual| > table(|d demand / dt|) + tolerance
 
-The table is a linear function (a servo of type 1 is behind by its lag times its speed) or empirical points, straight
-in between. One limit for all speeds must be as wide as full speed wants it, and is blind at low speed.
+The table is a linear function (a servo of type 1 is behind by its lag times its speed) or empirical points,
+straight in between. One limit for all speeds must be as wide as full speed wants it, and is blind at low
+speed.
 
-Source: patent ES 414458, figures 1 and 2 (numbers above).
-Questions: the patent gives no figures. Chosen: lag 0.06 s (1 m/min per mm) and tolerance 0.1 mm. Beyond its last point
-an empirical table holds its value. When the demand stops a servo is still behind for a while: `settle_s` gives the
-rate of change that same lag, with which a linear table is exactly the error of a type-1 servo; 0 is the patent's rule.
-It also smooths a demand that comes in pulses. A servo of type 2 is behind after a change of speed and not at one:
-`hold_s` lets a rate that was count for a while. A warning is given once, and again after the error was inside the limit.
+Source: patent ES 414458, figures 1 and 2 (numbers above). Questions: the patent gives no figures. Chosen: lag
+0.06 s (1 m/min per mm) and tolerance 0.1 mm. Beyond its last point an empirical table holds its value. When
+the demand stops a servo is still behind for a while: `settle_s` gives the rate of change that same lag, with
+which a linear table is exactly the error of a type-1 servo; 0 is the patent's rule. It also smooths a demand
+that comes in pulses. A servo of type 2 is behind after a change of speed and not at one: `hold_s` lets a rate
+that was count for a while. A warning is given once, and again after the error was inside the limit.
 """
 
 from __future__ import annotations
@@ -28,17 +29,18 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
+from morfax.motion.arrays import Array
 from morfax.motion.faults import FollowingFault
 from morfax.player.monitor.chart import Chart
 
 DEMAND, SPEED, COUNTED, FAULTY, LARGEST, SHARE = range(6)  # columns of the state of an axis
 
-from morfax.motion.arrays import Array
-
 
 @dataclass(frozen=True, slots=True)
 class FollowingLimit:
-    """The table, points (mm/s, mm) from a speed of 0 on, its slope beyond them in s, tolerance, settling and hold of the rate."""
+    """The table, points (mm/s, mm) from a speed of 0 on, its slope beyond them in s, tolerance, settling and
+    hold of the rate.
+    """
 
     points: tuple[tuple[float, float], ...] = ((0.0, 0.0),)
     beyond_s: float = 0.06
@@ -98,7 +100,9 @@ class FollowingLimit:
 def learn_table(
     demand_mm: Array, actual_mm: Array, rate_hz: float, speeds_mm_s: Sequence[float]
 ) -> tuple[tuple[float, float], ...]:
-    """Empirical points from a run of a sound servo: at each speed the largest error seen up to the next one, mm."""
+    """Empirical points from a run of a sound servo: at each speed the largest error seen up to the next one,
+    mm.
+    """
     speed = np.abs(np.diff(demand_mm, axis=0, prepend=demand_mm[:1])) * rate_hz
     error = np.abs(demand_mm - actual_mm)
     upto = [*speeds_mm_s[1:], np.inf]
@@ -110,8 +114,8 @@ def learn_table(
 class Monitor:
     """Watches the axes of a machine; state is carried from block to block.
 
-    `warnings` are the faults so far. With `stop`, the rows after the first one are not sound. `rows_seen` may be set
-    where a run begins later than at 0 s. A `chart` is a pen on each axis.
+    `warnings` are the faults so far. With `stop`, the rows after the first one are not sound. `rows_seen` may
+    be set where a run begins later than at 0 s. A `chart` is a pen on each axis.
     """
 
     def __init__(
@@ -195,7 +199,9 @@ class Monitor:
 
 
 class Supervised:
-    """What every playback has of its monitor: its limit, the one of the last time through, a chart if one is put in."""
+    """What every playback has of its monitor: its limit, the one of the last time through, a chart if one is
+    put in.
+    """
 
     limit: FollowingLimit
     monitor: Monitor

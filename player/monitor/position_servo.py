@@ -1,4 +1,5 @@
-"""Position servo: demand, transducer, subtractor, amplifier, servo unit and load, stepped at regular intervals.
+"""Position servo: demand, transducer, subtractor, amplifier, servo unit and load, stepped at regular
+intervals.
 
 Signals in: demanded positions in mm at the motion rate. Signals out: positions of the load in mm.
 
@@ -10,9 +11,9 @@ Signals in: demanded positions in mm at the motion rate. Signals out: positions 
 
 A servo of type 1: at constant speed it is behind by speed / gain, the following error that `monitor` watches.
 
-Source: patent ES 414458, figure 1 and claim 1; the computer that steps it under its micro-program is this kernel.
-Questions: the patent gives no figures. Chosen: gain 16.667 1/s (1 m/min per mm), increments of 1 um, the drive of
-`motion.drive`, whose `Condition` says what may be wrong with it.
+Source: patent ES 414458, figure 1 and claim 1; the computer that steps it under its micro-program is this
+kernel. Questions: the patent gives no figures. Chosen: gain 16.667 1/s (1 m/min per mm), increments of 1 um,
+the drive of `motion.drive`, whose `Condition` says what may be wrong with it.
 """
 
 from __future__ import annotations
@@ -22,12 +23,11 @@ from dataclasses import dataclass, field
 import numpy as np
 from numba import njit
 
+from morfax.motion.arrays import Array
 from morfax.motion.drive import SOUND, Drive, as_rows, conditioned_step
 from morfax.motion.motion import MOTION_RATE_HZ
 
 POSITION, MOVING = range(2)  # columns of the state of an axis: mm and mm/s
-
-from morfax.motion.arrays import Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +45,9 @@ class PositionServo:
 
 
 class PositionServos:
-    """The servos of a machine; state is carried from block to block, so a drive may break between two of them."""
+    """The servos of a machine; state is carried from block to block, so a drive may break between two of
+    them.
+    """
 
     def __init__(
         self, start_mm: Array, rate_hz: float = MOTION_RATE_HZ, settings: PositionServo | None = None

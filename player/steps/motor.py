@@ -6,17 +6,18 @@ A motor's torque can change its rate by `acceleration` steps/s², which over an 
 
     most = acceleration · T²      steps more or less than in the interval before
 
-What is asked beyond that is not done: of pulses that come too quickly the rest is lost, and where they stop too quickly
-the load overruns. A lost step stays lost, as nothing tells the control.
+What is asked beyond that is not done: of pulses that come too quickly the rest is lost, and where they stop
+too quickly the load overruns. A lost step stays lost, as nothing tells the control.
 
     pulses  0 3 3 3 3 0        most = 1
     steps   0 1 2 3 3 2        lost 2 + 1, overrun 2
 
-Source: patent ES 443122, pages 12 to 14 (25 600 steps/s²; the same at all speeds).
-Questions: the patent reckons by whole intervals only, and so does this. A real motor that falls out of step may stall
-altogether; here it runs on at the rate that its torque allows, which loses the least. A rotor swings behind its field by
-less than a step and comes back by itself; what does not come back is whole steps, and so they are the following error
-of such a drive, at every speed the same. What may be wrong with a motor, `MotorCondition`, is in no patent.
+Source: patent ES 443122, pages 12 to 14 (25 600 steps/s²; the same at all speeds). Questions: the patent
+reckons by whole intervals only, and so does this. A real motor that falls out of step may stall altogether;
+here it runs on at the rate that its torque allows, which loses the least. A rotor swings behind its field by
+less than a step and comes back by itself; what does not come back is whole steps, and so they are the
+following error of such a drive, at every speed the same. What may be wrong with a motor, `MotorCondition`, is
+in no patent.
 """
 
 from __future__ import annotations
@@ -44,7 +45,9 @@ class Motor:
 
 @dataclass(frozen=True, slots=True)
 class MotorCondition:
-    """What is wrong with a motor: share of its torque left, share that friction takes, steps/s that nobody asked for."""
+    """What is wrong with a motor: share of its torque left, share that friction takes, steps/s that nobody
+    asked for.
+    """
 
     torque_share: float = 1.0
     friction_share: float = 0.0
@@ -52,7 +55,9 @@ class MotorCondition:
     stuck: bool = False
 
     def row(self, most: int, interval_s: float) -> tuple[float, float, float, float]:
-        """For the kernel: changes of rate upwards and downwards and stray steps, in steps per interval; whether free."""
+        """For the kernel: changes of rate upwards and downwards and stray steps, in steps per interval;
+        whether free.
+        """
         rise, fall = self.torque_share - self.friction_share, self.torque_share + self.friction_share
         return most * max(rise, 0.0), most * fall, self.stray_hz * interval_s, not self.stuck
 
@@ -61,7 +66,9 @@ SOUND = MotorCondition()
 
 
 class Motors:
-    """The motors of a machine; state is carried from block to block, so a motor may break between two of them."""
+    """The motors of a machine; state is carried from block to block, so a motor may break between two of
+    them.
+    """
 
     def __init__(self, axes: int, interval_s: float, motor: Motor | None = None) -> None:
         self._most, self._interval_s = (motor or Motor()).most(interval_s), interval_s
@@ -73,7 +80,8 @@ class Motors:
     def run(
         self, pulses: NDArray[np.int64], ticks: NDArray[np.int64], samples: int
     ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Pulses so far and steps (samples · k, axes) for pulses (k, axes), at the end of even parts of each interval.
+        """Pulses so far and steps (samples · k, axes) for pulses (k, axes), at the end of even parts of each
+        interval.
 
         `ticks` is the table of the pulses that have come by each tick.
         """

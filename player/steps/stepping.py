@@ -1,7 +1,8 @@
 """The step control: rows of a punched tape become pulses, and pulses become steps of the motors.
 
-Signals: a `.steps` file in; counts 1 … 15 of one up/down counter for each axis and interval; from them whole pulses of
-the interval, evenly spread over its 64 oscillator ticks; out come blocks of Motion, eight samples to the interval.
+Signals: a `.steps` file in; counts 1 … 15 of one up/down counter for each axis and interval; from them whole
+pulses of the interval, evenly spread over its 64 oscillator ticks; out come blocks of Motion, eight samples
+to the interval.
 
     count      1   2   3   4   5   6   7   8   9  10  11  12  13  14  15
     pulses    -7  -6  -5  -4  -3  -2  -1   0   1   2   3   4   5   6   7     per interval, K = 1/interval each
@@ -10,15 +11,15 @@ the interval, evenly spread over its 64 oscillator ticks; out come blocks of Mot
            bit 5 = 0: ring memory (figure 9)    ─┴─► UP, DOWN ─► counters ─► gates ─► pulses ─┬─► motors
                                                                                          └──► monitor
 
-The counters go up or down by one, and never above 15 or below 1: no tape of any content can ask a motor for a change of
-more than one rate in an interval. The ring memory has nine inputs, both counts and the direction, and gives nothing
-where the counts are no vector of a ring. The control never learns what the motors did; the monitor counts their steps
-beside the pulses, and stops the machine at the first that is lost.
+The counters go up or down by one, and never above 15 or below 1: no tape of any content can ask a motor for a
+change of more than one rate in an interval. The ring memory has nine inputs, both counts and the direction,
+and gives nothing where the counts are no vector of a ring. The control never learns what the motors did; the
+monitor counts their steps beside the pulses, and stops the machine at the first that is lost.
 
-Source: patent ES 443122, figures 1, 2, 4 and 9, claims 1 to 39.
-Questions: the AND gate on bits 1 and 2 cannot tell 01 from 10; the direction is bit 2 here. Printed are the ticks 32;
-16, 48; and 10, 31, 52; the others are those nearest below (2j + 1) · 64/2n. A program that ends at speed is refused, as
-standing still at once would be a change of more than one.
+Source: patent ES 443122, figures 1, 2, 4 and 9, claims 1 to 39. Questions: the AND gate on bits 1 and 2
+cannot tell 01 from 10; the direction is bit 2 here. Printed are the ticks 32; 16, 48; and 10, 31, 52; the
+others are those nearest below (2j + 1) · 64/2n. A program that ends at speed is refused, as standing still at
+once would be a change of more than one.
 """
 
 from __future__ import annotations
@@ -102,9 +103,9 @@ class ToolChange:
 class StepPlayback(Supervised):
     """A step program in the machine: iterate for the machine's motion, as often as wanted.
 
-    Known beforehand: `format`, `counts`, `pulses`, `duration_s`, `start_mm`. Figures of the last time through, one per
-    axis: `following_error_mm` (steps lost), `end_mm`, `end_error_mm` against the end that the program states.
-    `conditions`: what is wrong with the motors.
+    Known beforehand: `format`, `counts`, `pulses`, `duration_s`, `start_mm`. Figures of the last time
+    through, one per axis: `following_error_mm` (steps lost), `end_mm`, `end_error_mm` against the end that
+    the program states. `conditions`: what is wrong with the motors.
     """
 
     def __init__(self, program: Program, motor: Motor, travel_mm: float, name: str) -> None:
@@ -135,7 +136,9 @@ class StepPlayback(Supervised):
         return [ToolChange(k * self.format.interval_s, bool(down[k])) for k in at]
 
     def __iter__(self) -> Iterator[Motion]:
-        """Play: the machine's motion in blocks; raises FollowingFault after the last sample before a step was lost."""
+        """Play: the machine's motion in blocks; raises FollowingFault after the last sample before a step was
+        lost.
+        """
         fmt = self.format
         rate_hz = SAMPLES_PER_INTERVAL * fmt.rate_hz
         motors = Motors(len(AXES), fmt.interval_s, self._motor)

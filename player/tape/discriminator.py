@@ -1,24 +1,26 @@
-"""Discriminator: the phases of the X, Y and Z tracks against the reference track, in cycles, at the motion rate.
+"""Discriminator: the phases of the X, Y and Z tracks against the reference track, in cycles, at the motion
+rate.
 
-Signals in: frames of the tape (n, tracks), float32 of full scale 1 or 16-bit samples as they are stored, track 1 the
-reference, at the sample rate. Signals out, one row per `decimation` frames, row i standing at frame i·decimation:
-cycles (axes), levels (tracks, amplitude), surprise (axes, cycles: how far a phase lay from the predicted one).
+Signals in: frames of the tape (n, tracks), float32 of full scale 1 or 16-bit samples as they are stored,
+track 1 the reference, at the sample rate. Signals out, one row per `decimation` frames, row i standing at
+frame i·decimation: cycles (axes), levels (tracks, amplitude), surprise (axes, cycles: how far a phase lay
+from the predicted one).
 
     y(t) = sum over n of  h(n) · exp(-j w n) · x(t + n)          translating filter: h low-pass, w the nominal reference
     cycles = arg( y_axis · conj(y_reference) ) / 2 pi            counted on from the predictor's guess, nearest turn (predictor.py)
 
-Both tracks are translated by the same w, so its phase and any error of the tape's speed cancel in the product, and
-only the difference is left. It is a phase all the way: nothing is integrated, so nothing drifts. The filter stands
-symmetrically about its frame, so the time axis is the tape's own. The rows at the two ends, whose filter would reach
-past the tape, hold the nearest full one (the tape stands still there).
+Both tracks are translated by the same w, so its phase and any error of the tape's speed cancel in the
+product, and only the difference is left. It is a phase all the way: nothing is integrated, so nothing drifts.
+The filter stands symmetrically about its frame, so the time axis is the tape's own. The rows at the two ends,
+whose filter would reach past the tape, hold the nearest full one (the tape stands still there).
 
-The low-pass is 0.6 dB down at 2 kHz from the carrier, 6 dB at 3 kHz and 80 dB from 5 kHz on, which keeps out what the
-decimation would fold upon the carrier: its own mirror (12 kHz away), a DC offset and the second harmonic (6 kHz
-away). With a lower reference it is as much narrower and longer.
+The low-pass is 0.6 dB down at 2 kHz from the carrier, 6 dB at 3 kHz and 80 dB from 5 kHz on, which keeps out
+what the decimation would fold upon the carrier: its own mirror (12 kHz away), a DC offset and the second
+harmonic (6 kHz away). With a lower reference it is as much narrower and longer.
 
 Source: patent ES 361967, figure 5 (amplifiers 151, triggers 152, the tape's side of comparator 153).
-Questions: the patent compares edges, at best one per cycle of the carrier; here the whole wave is used, which is what
-beats the tape's noise. A square-wave trigger would be a hundred times coarser.
+Questions: the patent compares edges, at best one per cycle of the carrier; here the whole wave is used, which
+is what beats the tape's noise. A square-wave trigger would be a hundred times coarser.
 """
 
 from __future__ import annotations
@@ -97,10 +99,11 @@ def _taps(values: Float64s) -> Float32s:
 def branches(
     sample_rate_hz: float, reference_hz: float, decimation: int
 ) -> tuple[Float32s, Float32s, Float32s]:
-    """The filter as real sums down the columns of a row, each sum turned once: taps (branches, columns, rows), turns.
+    """The filter as real sums down the columns of a row, each sum turned once: taps (branches, columns,
+    rows), turns.
 
-    With a whole number of reference cycles to a row, as most tapes have, all taps of a column turn alike and one real
-    branch is enough; else there is one for the real and one for the imaginary taps.
+    With a whole number of reference cycles to a row, as most tapes have, all taps of a column turn alike and
+    one real branch is enough; else there is one for the real and one for the imaginary taps.
     """
     low_pass, turns = _low_pass(sample_rate_hz, reference_hz, decimation)
     if (reference_hz * decimation / sample_rate_hz).is_integer():
@@ -200,9 +203,11 @@ def discriminate(blocks: Iterable[Frames], discriminator: Discriminator) -> Iter
 
 @njit(cache=True, nogil=True)
 def _wrap(rows, scale, taps, turns_re, turns_im, phase, levels):  # type: ignore[no-untyped-def]
-    """Fill `phase` (axes, n), each from -0.5 to 0.5 cycle, and `levels`, by chunks that fit the processor's cache.
+    """Fill `phase` (axes, n), each from -0.5 to 0.5 cycle, and `levels`, by chunks that fit the processor's
+    cache.
 
-    `rows` of the tape (n, frame within the row · tracks + track), `scale` of a sample; the filter as `branches` has it.
+    `rows` of the tape (n, frame within the row · tracks + track), `scale` of a sample; the filter as
+    `branches` has it.
     """
     tracks = levels.shape[1]
     reach = len(rows) - len(levels)  # rows that a filter reaches beyond its first
@@ -229,8 +234,9 @@ def _unlace(rows, scale, columns):  # type: ignore[no-untyped-def]
             columns[column, row] = rows[row, column] * scale
 
 
-# The order of the sum is free (reassoc, contract), so that it runs in vectors; nan and inf keep their meaning.
-# Eight taps at a time: with one, most of the time went into taking the sums out of memory and putting them back.
+# The order of the sum is free (reassoc, contract), so that it runs in vectors; nan and inf keep their
+# meaning. Eight taps at a time: with one, most of the time went into taking the sums out of memory and
+# putting them back.
 @njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "nsz"})
 def _translate(columns, track, taps, turns_re, turns_im, re, im):  # type: ignore[no-untyped-def]
     """Filter one track's columns, one output per row."""
@@ -265,7 +271,9 @@ def _amplitude(re, im, level):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "nsz"}, error_model="numpy")
 def _turn(re, im, ref_re, ref_im, phase):  # type: ignore[no-untyped-def]
-    """Phase of a track against the reference, cycles -0.5 to 0.5: an arc tangent that runs in vectors, 1e-8 cycle."""
+    """Phase of a track against the reference, cycles -0.5 to 0.5: an arc tangent that runs in vectors, 1e-8
+    cycle.
+    """
     for k in range(len(phase)):
         along = float(re[k]) * float(ref_re[k]) + float(im[k]) * float(ref_im[k])
         across = float(im[k]) * float(ref_re[k]) - float(re[k]) * float(ref_im[k])

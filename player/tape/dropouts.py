@@ -1,11 +1,14 @@
-"""Dropouts: where a track fails for a moment, what its motion was is told from both sides, or the machine stops.
+"""Dropouts: where a track fails for a moment, what its motion was is told from both sides, or the machine
+stops.
 
-Signals: rows of the discriminator in (cycles, surprise, levels), at the motion rate; the same rows out, a few ms later,
-with the gaps filled and the cycles beyond them counted on; or the row from which nothing is certain, with its fault.
+Signals: rows of the discriminator in (cycles, surprise, levels), at the motion rate; the same rows out, a few
+ms later, with the gaps filled and the cycles beyond them counted on; or the row from which nothing is
+certain, with its fault.
 
-A row is lost while the level of its track (or of the reference) is a fifth off what it was 20 ms ago, or below a fifth of
-its level at standstill, and as long as the discriminator's filter reaches into such rows. A parabola through the 6 ms
-before the gap (p0, v0, a0: held, as rewound past the filter) and one through the 6 ms after it (p1, v1, a1) then give
+A row is lost while the level of its track (or of the reference) is a fifth off what it was 20 ms ago, or
+below a fifth of its level at standstill, and as long as the discriminator's filter reaches into such rows. A
+parabola through the 6 ms before the gap (p0, v0, a0: held, as rewound past the filter) and one through the 6
+ms after it (p1, v1, a1) then give
 
     d      = T (v0 + v1) / 2 + T² (a0 - a1) / 12              travel over the gap of a motion of even jerk
     r      = (p1 - p0) - d,  nearest whole number taken off   what was measured against what was held
@@ -20,8 +23,8 @@ and the way between where it lies within a twentieth of a cycle:   |r| / 2 + |dv
                      gap, T           p1 _______
 
 Source: patent ES 361967, figure 5 (fault circuit 162) asks for it; the bounds are derived in docs/player.md.
-Questions: A is not on the tape: it is taken as what the machine's own motors can do, 5 m/s², and may be given where the
-program is known to be smoother.
+Questions: A is not on the tape: it is taken as what the machine's own motors can do, 5 m/s², and may be given
+where the program is known to be smoother.
 """
 
 from __future__ import annotations
@@ -33,6 +36,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.motion.faults import Fault, LockFault, TapeFault
 from morfax.player.tape.discriminator import Discriminator, Phases
 from morfax.player.tape.predictor import recount
@@ -46,8 +50,6 @@ LONGEST_S = 0.1  # a track that is away longer has ended
 COUNT_MARGIN = 0.1  # cycles, for noise
 BETWEEN_CYCLES = 0.05
 ROUGH_CYCLES = 0.04  # what is left of the parabola; 26 dB of noise leave 0.015
-
-from morfax.motion.arrays import Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,7 +98,9 @@ def bridge(before: Side, after: Side, rows: int, acceleration: float) -> Bridge:
 
 
 def longest_s(acceleration_mm_s2: float, cycles_per_mm: float) -> float:
-    """The longest gap whose count is certain where both sides agree, filter included, s: A T² / 4 = 0.9 cycle."""
+    """The longest gap whose count is certain where both sides agree, filter included, s: A T² / 4 = 0.9
+    cycle.
+    """
     return float(np.sqrt(4 * (1 - COUNT_MARGIN) / (acceleration_mm_s2 * cycles_per_mm)))
 
 
@@ -108,7 +112,9 @@ def filled(before: Side, after: Side, travel: float, rows: int) -> Array:
 
 
 def under_way(rows: Phases, discriminator: Discriminator) -> Array:
-    """Count the first rows of a tape taken up in the middle of a motion, whose speed they tell; where it starts."""
+    """Count the first rows of a tape taken up in the middle of a motion, whose speed they tell; where it
+    starts.
+    """
     places = np.zeros(rows.cycles.shape[1])
     for axis in range(rows.cycles.shape[1]):
         first = side(np.unwrap(rows.cycles[:SIDE_ROWS, axis], period=1.0), 0)
@@ -176,7 +182,9 @@ class Gaps:
         return out, fault
 
     def _bridge_all(self, rows: Phases, ready: int, last: bool) -> tuple[int, tuple[int, Fault] | None]:
-        """Bridge the gaps of all axes; how many rows are certain then, and the fault that ends the tape there."""
+        """Bridge the gaps of all axes; how many rows are certain then, and the fault that ends the tape
+        there.
+        """
         first: tuple[int, Fault] | None = None
         for axis in range(len(self._names)):
             for a, b in self._gaps_of(axis):
@@ -247,7 +255,9 @@ class Gaps:
         )
 
     def _uncertain(self, axis: int, place: float, time_s: float, gap_s: float) -> LockFault:
-        """The fault of a gap over which cycles may have been lost; `place` is the last certain one, in cycles."""
+        """The fault of a gap over which cycles may have been lost; `place` is the last certain one, in
+        cycles.
+        """
         name, position_mm = self._names[axis], self._place_mm(axis, place)
         return LockFault(
             f"{name.upper()} was lost for {gap_s * 1e3:.1f} ms at {time_s:.3f} s, last certain position "

@@ -1,18 +1,22 @@
-"""Mending: where the end of a tape tells how many whole cycles were lost in which dropout, the tape is recorded anew.
+"""Mending: where the end of a tape tells how many whole cycles were lost in which dropout, the tape is
+recorded anew.
 
-Signals: a tape in; a tape out whose dropouts are gone, and what was found of each that the player would stop at.
+Signals: a tape in; a tape out whose dropouts are gone, and what was found of each that the player would stop
+at.
 
-The tape is read through with every dropout bridged as the motion on both sides suggests. A travel over a dropout may
-still be wrong by whole cycles N, within what the acceleration A allows (dropouts.py: |r + N| < H + 0.1). Each axis then
-ends whole cycles off the end that the tape states, or off its start where the program is closed:
+The tape is read through with every dropout bridged as the motion on both sides suggests. A travel over a
+dropout may still be wrong by whole cycles N, within what the acceleration A allows (dropouts.py: |r + N| < H
++ 0.1). Each axis then ends whole cycles off the end that the tape states, or off its start where the program
+is closed:
 
     N of the first doubtful dropout + N of the second + ...  =  cycles missing at the end
 
-If just one set of N fulfils that, it is known, and the tape is read again with it. If there are several (two dropouts
-that could each have lost the cycle), or none, or what is missing is no whole number, it cannot be known.
+If just one set of N fulfils that, it is known, and the tape is read again with it. If there are several (two
+dropouts that could each have lost the cycle), or none, or what is missing is no whole number, it cannot be
+known.
 
-Source: patent ES 361967 (a program is a tape, and may be copied); fault circuit 162 asks for it.
-Questions: within a dropout the way between both sides is laid as a cubic; `unknown_mm` says how far off it may be. What
+Source: patent ES 361967 (a program is a tape, and may be copied); fault circuit 162 asks for it. Questions:
+within a dropout the way between both sides is laid as a cubic; `unknown_mm` says how far off it may be. What
 the tape's noise did to the motion is recorded with it.
 """
 
@@ -24,6 +28,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from morfax.motion.arrays import Array
 from morfax.motion.faults import LockFault, TapeFault
 from morfax.motion.motion import Motion
 from morfax.player.tape.dropouts import COUNT_MARGIN, Bridge
@@ -35,14 +40,15 @@ END_S = 0.05  # of the standstill at the end, over which the place is averaged
 KEPT_DWELL = 0.1  # of the standstills: the tape may have run this much fast, and gets new ones
 MANY = 2  # sets of numbers that fulfil the end: more need not be counted
 
-from morfax.motion.arrays import Array
 
 Gap = tuple[int, int]  # first row, axis
 
 
 @dataclass(frozen=True, slots=True)
 class Mend:
-    """A dropout at which the player would have stopped: where, whole cycles put back, how far the way in it may be off."""
+    """A dropout at which the player would have stopped: where, whole cycles put back, how far the way in it
+    may be off.
+    """
 
     axis: str
     time_s: float
@@ -71,14 +77,17 @@ def mend(
     acceleration_mm_s2: float | None = None,
     progress: Progress | None = None,
 ) -> Mended:
-    """Mend a tape; raises TapeFault where it cannot be known what was lost, and what playing and recording raise."""
+    """Mend a tape; raises TapeFault where it cannot be known what was lost, and what playing and recording
+    raise.
+    """
     by_hand = {
         "reference_hz": reference_hz,
         "cycles_per_mm": cycles_per_mm,
         "start_mm": start_mm,
         "order": order,
     }
-    playback = play(file, **by_hand, closed=closed, acceleration_mm_s2=acceleration_mm_s2)  # type: ignore[arg-type]
+    # type: ignore[arg-type]
+    playback = play(file, **by_hand, closed=closed, acceleration_mm_s2=acceleration_mm_s2)
     fmt, reader = playback.format, playback.reader
     if fmt.end_mm is None:
         raise TapeFault(
@@ -101,7 +110,9 @@ def mend(
 
 
 def _mend(gap: Gap, found: Bridge, cycles: int, fmt: TapeFormat) -> Mend:
-    """What was made of a dropout; a motion of acceleration A between the same ends may swing out by A T² / 16."""
+    """What was made of a dropout; a motion of acceleration A between the same ends may swing out by A T² /
+    16.
+    """
     unknown_cycles = abs(found.off + cycles) / 2 + found.reach / 4
     return Mend(fmt.axes[gap[1]], gap[0] / fmt.motion_rate_hz, cycles, unknown_cycles * fmt.mm_per_cycle)
 

@@ -1,4 +1,5 @@
-"""Phase lock: the axis drives, from the phase on the tape to the turning of the lead screw, stepped at the motion rate.
+"""Phase lock: the axis drives, from the phase on the tape to the turning of the lead screw, stepped at the
+motion rate.
 
 Signals in: phase of the axis track in cycles (tape against reference, from zero at standstill). Signals out:
 displacement of the machine's screw in mm.
@@ -7,9 +8,9 @@ displacement of the machine's screw in mm.
                  ▲   (decoder 158)  lead               PI          velocity servo          │
                  └───────────── pick-up 141, zero 155, trigger 157: displacement / q ──────┘
 
-The decoder counts whole cycles, so the error is known over several of them and not over half of one; beyond its range
-fault circuit 162 stops the drive. With e the error in mm, lag T of the motor under its tacho, and s the complex
-frequency:
+The decoder counts whole cycles, so the error is known over several of them and not over half of one; beyond
+its range fault circuit 162 stops the drive. With e the error in mm, lag T of the motor under its tacho, and s
+the complex frequency:
 
     lead    w = e · (1 + T s) / (1 + s/b)            answers the motor's lag
     PI      u = K (w + a ∫ w dt)                     mm/s, demand to the motor
@@ -18,22 +19,22 @@ frequency:
     loop    s² (1 + s/b) + K (s + a) = 0             type 2: standing errors at rest and at constant speed are zero,
                                                      and at constant acceleration  e = acceleration / (K a)
 
-K, a and b are placed so that the loop has the pair of poles (natural frequency, damping) and a third real one further
-out. The placing is done for the stepped loop itself, exactly: with g the motor's gain per period, l = 1 - g, and z
-the shift by one period,
+K, a and b are placed so that the loop has the pair of poles (natural frequency, damping) and a third real one
+further out. The placing is done for the stepped loop itself, exactly: with g the motor's gain per period, l =
+1 - g, and z the shift by one period,
 
     (z - 1)² (z - pole) + k (z + 1)(z - zero) = (z - p1)(z - p2)(z - p3),       k = gain · g · dt / 2.
 
-Source: patent ES 361967, figure 5.
-Questions: the patent gives neither the networks nor a figure. Chosen: no path from the tape's speed round the
-comparator (feed-forward is not in the patent); natural frequency 250 Hz, damping 1, third pole at 500 Hz: a stop with
-0.5 m/s² to 0.5 um, a phase margin of 49 degrees. Twice as fast would follow noise of 26 dB up to the motor's limit.
-Without the lead in amplifier 161 a loop beyond about 70 Hz round a motor of 1 ms cannot be damped. While the motor's
-current is at its limit the integrator goes back to what that gives, else it would run on and the screw far past; in
-half a millisecond and not at once, else noise that meets the limit on one side only would push the screw off the tape.
-The decoder's range is 4 cycles (0.2 mm): a start or stop from 40 mm/s at once is still followed, more is a fault (off a
-tape 34 mm/s at once can be counted, see `rehearsal`). That range is one limit for all speeds; below it `following_limit`
-allows what a sound drive needs at the tape's speed.
+Source: patent ES 361967, figure 5. Questions: the patent gives neither the networks nor a figure. Chosen: no
+path from the tape's speed round the comparator (feed-forward is not in the patent); natural frequency 250 Hz,
+damping 1, third pole at 500 Hz: a stop with 0.5 m/s² to 0.5 um, a phase margin of 49 degrees. Twice as fast
+would follow noise of 26 dB up to the motor's limit. Without the lead in amplifier 161 a loop beyond about 70
+Hz round a motor of 1 ms cannot be damped. While the motor's current is at its limit the integrator goes back
+to what that gives, else it would run on and the screw far past; in half a millisecond and not at once, else
+noise that meets the limit on one side only would push the screw off the tape. The decoder's range is 4 cycles
+(0.2 mm): a start or stop from 40 mm/s at once is still followed, more is a fault (off a tape 34 mm/s at once
+can be counted, see `rehearsal`). That range is one limit for all speeds; below it `following_limit` allows
+what a sound drive needs at the tape's speed.
 """
 
 from __future__ import annotations
@@ -62,8 +63,9 @@ POSITION, SPEED, DEMAND, LEAD, ERROR = range(5)  # columns of the state of an ax
 
 # A DC motor of 3 000/min on a screw of 5 mm.
 ELECTRIC = Drive(lag_s=0.001, acceleration_mm_s2=5000.0, top_speed_mm_s=250.0)
-# A motor of 20 cm³/rev on the same screw: 9 MPa over it are 29 N m, on 4 g m² of screw and table 7 200 rad/s². A servo valve
-# of 40 l/min turns it 2 000/min, and is itself a lag of some ms (W. J. Thayer, Transfer Functions for Moog Servovalves, 1958).
+# A motor of 20 cm³/rev on the same screw: 9 MPa over it are 29 N m, on 4 g m² of screw and table 7 200
+# rad/s². A servo valve of 40 l/min turns it 2 000/min, and is itself a lag of some ms (W. J. Thayer, Transfer
+# Functions for Moog Servovalves, 1958).
 HYDRAULIC = Drive(lag_s=0.003, acceleration_mm_s2=5700.0, top_speed_mm_s=167.0)
 
 
@@ -89,7 +91,8 @@ class PhaseLock:
         return np.exp([pair, other, -natural * self.third_pole])
 
 
-# The spring of 40 cm³ of oil (1.4 GPa) under that motor swings at 95 Hz. It is not simulated; the loop stays below it.
+# The spring of 40 cm³ of oil (1.4 GPa) under that motor swings at 95 Hz. It is not simulated; the loop stays
+# below it.
 MOTORS = {"electric": PhaseLock(), "hydraulic": PhaseLock(natural_hz=60.0, drive=HYDRAULIC)}
 
 
@@ -104,7 +107,9 @@ class Network:
 
 
 def place(settings: PhaseLock, dt_s: float) -> Network:
-    """Solve the loop equation for the poles asked for; raises ValueError where the motion rate is too low for them."""
+    """Solve the loop equation for the poles asked for; raises ValueError where the motion rate is too low for
+    them.
+    """
     if not 0 < settings.natural_hz * dt_s * FEWEST_STEPS <= 1:
         raise ValueError(
             f"a loop of {settings.natural_hz:g} Hz cannot be stepped at {1 / dt_s:g} Hz; "
@@ -119,7 +124,9 @@ def place(settings: PhaseLock, dt_s: float) -> Network:
 
 
 class Drives:
-    """The axis drives of a machine; state is carried from block to block. `steps`: of the loop from row to row."""
+    """The axis drives of a machine; state is carried from block to block. `steps`: of the loop from row to
+    row.
+    """
 
     def __init__(
         self,
@@ -143,7 +150,9 @@ class Drives:
         self.conditions = [SOUND] * axes
 
     def follow(self, cycles: Array) -> Array:
-        """Displacements (n, axes) in mm for phases (n, axes); fewer rows where a drive left the decoder's range."""
+        """Displacements (n, axes) in mm for phases (n, axes); fewer rows where a drive left the decoder's
+        range.
+        """
         cycles = self._between(np.ascontiguousarray(cycles, dtype=np.float64))
         moved = np.empty_like(cycles)
         range_mm = self.settings.range_cycles * self._mm_per_cycle
@@ -163,7 +172,9 @@ class Drives:
         return (before[:, None] + share * (cycles - before)[:, None]).reshape(-1, cycles.shape[1])
 
     def adjust(self, shift_mm: Array) -> None:
-        """Turn the phase changers 155 until the screws stand so far from where they did, while the tape stands still."""
+        """Turn the phase changers 155 until the screws stand so far from where they did, while the tape
+        stands still.
+        """
         rate_hz = 1 / (self._dt_s * self._steps)
         way = positions_mm(np.zeros(len(shift_mm)), shift_mm, ADJUSTING_MM_S, rate_hz=rate_hz)
         still = np.repeat(way[-1:], round(SETTLING_S * rate_hz), axis=0)
@@ -176,10 +187,12 @@ class Drives:
 
 
 def following_limit(settings: PhaseLock, mm_per_cycle: float, rate_hz: float) -> FollowingLimit:
-    """The following error that a tape's speed explains: at each the largest of a sound drive turned round at once.
+    """The following error that a tape's speed explains: at each the largest of a sound drive turned round at
+    once.
 
-    No program whose axis runs at a speed can ask for a greater change than from there to as fast the other way. A rate
-    is held for twice the time in which the motor stops out of the fastest speed that it can be stopped from at once.
+    No program whose axis runs at a speed can ask for a greater change than from there to as fast the other
+    way. A rate is held for twice the time in which the motor stops out of the fastest speed that it can be
+    stopped from at once.
     """
     range_mm, most_mm_s2 = settings.range_cycles * mm_per_cycle, settings.drive.acceleration_mm_s2
     speeds = np.linspace(0, math.sqrt(range_mm * most_mm_s2 / 2), TRIED_SPEEDS + 1)[1:]

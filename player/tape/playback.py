@@ -1,18 +1,18 @@
 """The machine: a tape in, the motion of the machine's own lead screws out.
 
-Signals in: the tape's frames in blocks. Signals out: Motion in blocks at the motion rate, sample 0 at the start of
-the tape, standstill included; a fault of the tape or a drive comes after the last sample that was still right. One
-block of tape is held at a time.
+Signals in: the tape's frames in blocks. Signals out: Motion in blocks at the motion rate, sample 0 at the
+start of the tape, standstill included; a fault of the tape or a drive comes after the last sample that was
+still right. One block of tape is held at a time.
 
-The reference track turns the sector wheels through the synchronous motor 116, so the machine's clock is the tape: a
-tape that runs fast or flutters makes the machine run fast or flutter along the same path, and the times here are the
-tape's own (at an override, the machine's: see setting.py). The zero of each axis is the phase at standstill; the tape
-holds displacements, and where they start from is in its text chunk or given by hand.
+The reference track turns the sector wheels through the synchronous motor 116, so the machine's clock is the
+tape: a tape that runs fast or flutters makes the machine run fast or flutter along the same path, and the
+times here are the tape's own (at an override, the machine's: see setting.py). The zero of each axis is the
+phase at standstill; the tape holds displacements, and where they start from is in its text chunk or given by
+hand.
 
-Source: patent ES 361967, figure 5 and claims 15 to 17.
-Questions: which motion is "played" is not in doubt: that of the machine's screws, never of the tape; they differ by
-the following error. The end position, where the tape states one, is checked to a quarter of a cycle, as a whole cycle
-lost on the way shows nowhere else.
+Source: patent ES 361967, figure 5 and claims 15 to 17. Questions: which motion is "played" is not in doubt:
+that of the machine's screws, never of the tape; they differ by the following error. The end position, where
+the tape states one, is checked to a quarter of a cycle, as a whole cycle lost on the way shows nowhere else.
 """
 
 from __future__ import annotations
@@ -26,6 +26,7 @@ from typing import BinaryIO
 
 import numpy as np
 
+from morfax.motion.arrays import Array
 from morfax.motion.drive import SOUND
 from morfax.motion.faults import LockFault
 from morfax.motion.motion import AXES, Motion
@@ -38,8 +39,6 @@ from morfax.recorder.tape.pipe import Pipe, Samples
 from morfax.recorder.tape.tape import Tape, TapeFormat
 
 END_CYCLES = 0.25  # a cycle lost is four times as much, and a drive at rest stands a hundred times nearer
-
-from morfax.motion.arrays import Array
 
 
 def play(
@@ -56,15 +55,19 @@ def play(
     zero_mm: Sequence[float] = (),
     override: float = 1.0,
 ) -> Playback:
-    """Put a tape in the machine; what is given by hand goes before its text chunk. Raises TapeFault, FileFault.
+    """Put a tape in the machine; what is given by hand goes before its text chunk. Raises TapeFault,
+    FileFault.
 
-    `order`: on which tracks of the file reference, X, Y … are. `closed`: it returns to its start, if it does not say where it ends.
+    `order`: on which tracks of the file reference, X, Y … are. `closed`: it returns to its start, if it does
+    not say where it ends.
 
-    `settings` are those of the drives (MOTORS). `zero_mm`: by how much the phase changers move each axis; `override`: how
-    fast the tape runs against the speed at which it was recorded. Raises ValueError for what cannot be of these.
+    `settings` are those of the drives (MOTORS). `zero_mm`: by how much the phase changers move each axis;
+    `override`: how fast the tape runs against the speed at which it was recorded. Raises ValueError for what
+    cannot be of these.
 
-    `acceleration_mm_s2` is the most that the program asks of an axis (else what the motors can do); a dropout is ridden
-    over as long as that makes the count certain. `resume_at_s` is a tape time at which the machine stands at `start_mm`.
+    `acceleration_mm_s2` is the most that the program asks of an axis (else what the motors can do); a dropout
+    is ridden over as long as that makes the count certain. `resume_at_s` is a tape time at which the machine
+    stands at `start_mm`.
     """
 
     def open_tape() -> Tape:
@@ -98,7 +101,9 @@ def play_pipe(
     closed: bool = False,
     samples: Samples | None = None,
 ) -> Playback:
-    """Put a tape that comes through a pipe in the machine, as it comes; it can be played once. Raises TapeFault."""
+    """Put a tape that comes through a pipe in the machine, as it comes; it can be played once. Raises
+    TapeFault.
+    """
     start = None if start_mm is None else tuple(start_mm)
     pipe = Pipe.open(
         stream,
@@ -131,11 +136,12 @@ def _check_resumption(resume_at_s: float, start_mm: Sequence[float] | None, dura
 class Playback(Supervised):
     """A tape in the machine: iterate for the machine's motion, as often as wanted.
 
-    Known beforehand: `format`, `frames`, `duration_s`, `start_mm`. Figures of the last time through, one per axis of
-    the tape: `following_error_mm` (the largest), `end_mm` (where the machine stands), `end_error_mm` (against the end
-    that the tape states; None before the end, or if it states none). `conditions`: what is wrong with the drives.
-    `found_order`: on which tracks reference, X, Y … were found, if that was not as they should be.
-    The rate and the times of the motion are the machine's, as are those of a drive's fault; a tape's fault has tape time.
+    Known beforehand: `format`, `frames`, `duration_s`, `start_mm`. Figures of the last time through, one per
+    axis of the tape: `following_error_mm` (the largest), `end_mm` (where the machine stands), `end_error_mm`
+    (against the end that the tape states; None before the end, or if it states none). `conditions`: what is
+    wrong with the drives. `found_order`: on which tracks reference, X, Y … were found, if that was not as
+    they should be. The rate and the times of the motion are the machine's, as are those of a drive's fault; a
+    tape's fault has tape time.
     """
 
     def __init__(
@@ -179,7 +185,9 @@ class Playback(Supervised):
         return self.frames / self.format.sample_rate_hz / self.setting.override
 
     def __iter__(self) -> Iterator[Motion]:
-        """Play: the motion in blocks; raises TapeFault, LockFault or FollowingFault after the last sample that was right."""
+        """Play: the motion in blocks; raises TapeFault, LockFault or FollowingFault after the last sample
+        that was right.
+        """
         fmt = self.format
         drives = Drives(len(fmt.axes), fmt.mm_per_cycle, self.rate_hz, self.settings, steps=self._steps)
         drives.adjust(self._zero_mm)
@@ -206,7 +214,9 @@ class Playback(Supervised):
         self._check_end()
 
     def _motion(self, places_mm: Array, first_row: int) -> Motion:
-        """A block of positions: X, Y, Z and what other axes the tape has; an axis without a track stands at 0."""
+        """A block of positions: X, Y, Z and what other axes the tape has; an axis without a track stands at
+        0.
+        """
         rate_hz, names = self.rate_hz, self.format.axes
         if tuple(names[: len(AXES)]) == AXES:
             return Motion(places_mm, rate_hz, first_row / rate_hz, names)
@@ -235,7 +245,9 @@ class Playback(Supervised):
         )
 
     def _check_end(self) -> None:
-        """Compare where the machine stands with what the tape says; raises LockFault beyond a quarter of a cycle."""
+        """Compare where the machine stands with what the tape says; raises LockFault beyond a quarter of a
+        cycle.
+        """
         fmt = self.format
         if fmt.end_mm is None:
             return

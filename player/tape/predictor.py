@@ -1,16 +1,19 @@
-"""Predictor: counts the turns of a phase that is known to a whole cycle only, by where its motion was taking it.
+"""Predictor: counts the turns of a phase that is known to a whole cycle only, by where its motion was taking
+it.
 
-Signals in: phases of the axes, cycles, each in any turn, one per row of the motion rate. Signals out: cycles counted on from the row before, and the
-surprise: how far a phase lay from the predicted one, cycles.
+Signals in: phases of the axes, cycles, each in any turn, one per row of the motion rate. Signals out: cycles
+counted on from the row before, and the surprise: how far a phase lay from the predicted one, cycles.
 
-It keeps position, velocity and acceleration (three equal poles); it only chooses the turn, and the phase itself is not smoothed by it.
+It keeps position, velocity and acceleration (three equal poles); it only chooses the turn, and the phase
+itself is not smoothed by it.
 
         position        += (1 - theta³) surprise                      theta = exp(-2 pi f dt)
         velocity · dt   += 1.5 (1 - theta²)(1 - theta) surprise
         acc. · dt² / 2  += 0.5 (1 - theta)³ surprise
 
-Source: E. Brookner, Tracking and Kalman Filtering Made Easy, 1998, section 1.3 (fading-memory filter). Questions: the patent's comparator needs no count,
-as its error never leaves half a cycle; here a decoder knows it over several (see `phase_lock`).
+Source: E. Brookner, Tracking and Kalman Filtering Made Easy, 1998, section 1.3 (fading-memory filter).
+Questions: the patent's comparator needs no count, as its error never leaves half a cycle; here a decoder
+knows it over several (see `phase_lock`).
 """
 
 from __future__ import annotations
@@ -34,7 +37,9 @@ def predictor_gains(rate_hz: float, natural_hz: float = PREDICTOR_HZ) -> Float64
 
 
 def recount(phase: Float64s, gains: Float64s, state: Float64s, surprise: Float32s) -> Float64s:
-    """Count the phases of an axis anew from a state (place, speed, bend); they and the surprise are written over."""
+    """Count the phases of an axis anew from a state (place, speed, bend); they and the surprise are written
+    over.
+    """
     turns, states = np.ascontiguousarray(phase)[None], state[None].copy()
     counted, told = np.empty((len(phase), 1)), np.empty((len(phase), 1), np.float32)
     count_turns(turns, gains, states, counted, told)
@@ -44,7 +49,8 @@ def recount(phase: Float64s, gains: Float64s, state: Float64s, surprise: Float32
 
 @njit(cache=True, nogil=True)
 def count_turns(phase, gains, state, cycles, surprise):  # type: ignore[no-untyped-def]
-    """Count the phases (axes, n) on by the predictor; `state` (axes: cycles, cycles/row, half of cycles/row²) is carried.
+    """Count the phases (axes, n) on by the predictor; `state` (axes: cycles, cycles/row, half of cycles/row²)
+    is carried.
 
     All axes row by row: each waits for its own last row, and they can wait together.
     """

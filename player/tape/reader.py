@@ -1,10 +1,12 @@
-"""The reader: all that stands between a tape and the drives, read through from its start or from a place on it.
+"""The reader: all that stands between a tape and the drives, read through from its start or from a place on
+it.
 
     tape ──► discriminator ──► levels evened ──► gaps bridged ──► watch ──► rows that are certain, or a fault
                   └── first block ──► bearings: zero, levels, reference
 
-Signals in: the tape's frames in blocks. Signals out: rows of phases at the motion rate, the bearings they count from,
-and the row of the block from which nothing is certain, with its fault. One block of tape is held at a time.
+Signals in: the tape's frames in blocks. Signals out: rows of phases at the motion rate, the bearings they
+count from, and the row of the block from which nothing is certain, with its fault. One block of tape is held
+at a time.
 
 Source: patent ES 361967, figure 5 (from the reading heads to the comparators).
 Questions: the patent's machine starts where the tape does; here a run may also begin at a later tape time.
@@ -20,6 +22,7 @@ from itertools import chain
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.motion.faults import Fault, TapeFault
 from morfax.player.tape.discriminator import Discriminator, Phases, discriminate
 from morfax.player.tape.dropouts import Bridge, Gaps, under_way
@@ -30,7 +33,6 @@ from morfax.recorder.tape.tape import Stored, Tape, TapeFormat, full_scale
 
 BLOCK_FRAMES = 65536
 
-from morfax.motion.arrays import Array
 
 Read = tuple[Phases, Bearings, tuple[int, Fault] | None]
 
@@ -38,9 +40,9 @@ Read = tuple[Phases, Bearings, tuple[int, Fault] | None]
 class Reader:
     """Reads one tape, as often as wanted.
 
-    Of the last time through: `bridged`, the dropouts that were ridden over (tape time in s, axis: length in s). With
-    `told`, whole cycles to add at dropouts (row, axis), none is too uncertain to be ridden over; those that would have
-    been are then in `doubtful`.
+    Of the last time through: `bridged`, the dropouts that were ridden over (tape time in s, axis: length in
+    s). With `told`, whole cycles to add at dropouts (row, axis), none is too uncertain to be ridden over;
+    those that would have been are then in `doubtful`.
     """
 
     def __init__(
@@ -58,7 +60,8 @@ class Reader:
         self.doubtful: dict[tuple[int, int], Bridge] = {}
 
     def read(self, stands_mm: Callable[[], Sequence[float]]) -> Iterator[Read]:
-        """Rows, bearings, and the row of the block from which nothing is certain; `stands_mm`: where the machine is.
+        """Rows, bearings, and the row of the block from which nothing is certain; `stands_mm`: where the
+        machine is.
 
         Raises TapeFault where the tape is none, or its reference is on another track.
         """

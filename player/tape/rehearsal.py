@@ -1,13 +1,14 @@
-"""Rehearsal: a motion run past the player's own limits before it is recorded, so that no tape is made that cannot be played.
+"""Rehearsal: a motion run past the player's own limits before it is recorded, so that no tape is made that
+cannot be played.
 
-Signals in: the blocks of a motion that is to be recorded, mm. Signals out: the same blocks; a fault where the tape could not be read; and, told at the end,
-where a drive could not follow it.
+Signals in: the blocks of a motion that is to be recorded, mm. Signals out: the same blocks; a fault where the
+tape could not be read; and, told at the end, where a drive could not follow it.
 
     motion ──► cycles ──┬──► predictor ──► jumps (bearings.py), shaking (watch.py)    no player reads such a tape: a fault
                         └──► axis drives ──► lock lost (phase_lock.py)                at another feed override it may be followed
 
-Source: our own. Questions: the tape's filter rounds a jump a little, so it is found here at speeds up to 0.5 % lower; noise, which no rehearsal knows, comes
-on top.
+Source: our own. Questions: the tape's filter rounds a jump a little, so it is found here at speeds up to 0.5
+% lower; noise, which no rehearsal knows, comes on top.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import Motion
 from morfax.player.tape.phase_lock import Drives, PhaseLock
@@ -29,8 +31,6 @@ from morfax.recorder.tape.format import TapeFormat
 STANDS_S = 0.05  # behind the end, so that a sudden stop there is seen
 WINDOWS = 4  # of shaking, a quarter of one from each to the next
 WITHIN_ROWS = 16  # of the motion: a jump surprises most within these
-
-from morfax.motion.arrays import Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +58,9 @@ class Rehearsal:
         self.unfollowed: Unfollowed | None = None
 
     def of(self, stream: Iterable[Motion]) -> Iterator[Motion]:
-        """Pass the blocks of a motion on; raises MotionFault after one in which a tape could not be read, which the recorder has checked by then."""
+        """Pass the blocks of a motion on; raises MotionFault after one in which a tape could not be read,
+        which the recorder has checked by then.
+        """
         for block in stream:
             yield block
             self._run(np.asarray(block.positions_mm, np.float64))
@@ -96,7 +98,9 @@ class Rehearsal:
         )
 
     def _refuse_shaking(self, positions_mm: Array, surprise: NDArray[np.float32]) -> None:
-        """Raise MotionFault where an axis shakes so that it is taken for noise, wherever the player's windows begin."""
+        """Raise MotionFault where an axis shakes so that it is taken for noise, wherever the player's windows
+        begin.
+        """
         held, window = len(self._shown), shake_rows(self._format.motion_rate_hz)
         self._shown, step, first = np.vstack([self._shown, np.abs(surprise)]), window // WINDOWS, 0
         while first + window <= len(self._shown):

@@ -1,4 +1,5 @@
-"""What is set at the machine before a tape is played: its motors, the zero of each axis, the speed of the tape.
+"""What is set at the machine before a tape is played: its motors, the zero of each axis, the speed of the
+tape.
 
 Signals: none; machine.py plays by it.
 
@@ -6,9 +7,10 @@ Signals: none; machine.py plays by it.
     override    the tape runs so many times as fast, and with it the sector wheels and the screws, along the same path;
                 the drives stay what they are, so what is too fast for them is a fault
 
-Source: patent ES 361967, figure 5 (phase changer 155 "for the adjustment of the zero", motor 163 electric or hydraulic).
-Questions: how far a phase changer turns is not said; here a metre at most, at 10 mm/s, before the tape starts. A speed
-of the tape other than its own is not in the patent, but follows from it: the reference on the tape turns the wheels.
+Source: patent ES 361967, figure 5 (phase changer 155 "for the adjustment of the zero", motor 163 electric or
+hydraulic). Questions: how far a phase changer turns is not said; here a metre at most, at 10 mm/s, before the
+tape starts. A speed of the tape other than its own is not in the patent, but follows from it: the reference
+on the tape turns the wheels.
 """
 
 from __future__ import annotations

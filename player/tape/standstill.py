@@ -1,20 +1,21 @@
 """Bearings: what the standstill at the start of a tape tells the machine, and the watch kept over its tracks.
 
-Signals in: the first frames of the tape (n, tracks) and the first rows of the discriminator; later all its rows. Out:
-level of each track (amplitude, full scale 1), frequency of the reference (Hz), zero of each axis (cycles); later the
-first row that cannot be trusted, with its fault.
+Signals in: the first frames of the tape (n, tracks) and the first rows of the discriminator; later all its
+rows. Out: level of each track (amplitude, full scale 1), frequency of the reference (Hz), zero of each axis
+(cycles); later the first row that cannot be trusted, with its fault.
 
     zero of an axis = mean of its phase over the first 50 ms   (phase changer 155, turned until the drive stands)
 
-A track that starts at another phase, by another head or by skew that stands still, has thereby only another zero. A
-tape is refused when a track is silent or has no carrier, or when the strongest tone of track 1 is not the reference.
-A row cannot be trusted when a phase lies a quarter of a cycle or more from where its motion was taking it (beyond half
-a cycle it would be counted as another turn). What a lost level means is in dropouts.py.
+A track that starts at another phase, by another head or by skew that stands still, has thereby only another
+zero. A tape is refused when a track is silent or has no carrier, or when the strongest tone of track 1 is not
+the reference. A row cannot be trusted when a phase lies a quarter of a cycle or more from where its motion
+was taking it (beyond half a cycle it would be counted as another turn). What a lost level means is in
+dropouts.py.
 
-Source: patent ES 361967, figure 5 (phase changer 155, triggers 152 and 154, fault circuit 162).
-Questions: the patent sets the zero by hand and says nothing of levels. A tape that moves from its very first row has
-no standstill: its first row is then the zero. A splice that is a whole number of cycles out has no mark upon it here;
-the end position tells it.
+Source: patent ES 361967, figure 5 (phase changer 155, triggers 152 and 154, fault circuit 162). Questions:
+the patent sets the zero by hand and says nothing of levels. A tape that moves from its very first row has no
+standstill: its first row is then the zero. A splice that is a whole number of cycles out has no mark upon it
+here; the end position tells it.
 """
 
 from __future__ import annotations
@@ -34,18 +35,16 @@ from morfax.recorder.tape.pickups import DEFAULT_PICK_UP, PICK_UPS
 STANDSTILL_S = 0.05
 STANDSTILL_CYCLES = 0.25  # phase that moves more than this within the 50 ms moves on purpose
 SILENT_LEVEL = 1e-3  # -60 dB of full scale
-CARRIER_SHARE = (
-    0.9  # of a track's power; 20 dB of noise leave 0.99, clipping to a square 0.81, white noise has 0.2
-)
+# of a track's power; 20 dB of noise leave 0.99, clipping to a square 0.81, white noise has 0.2
+CARRIER_SHARE = 0.9
 LEVEL_STEADY, LEVEL_LOST, FEWEST_STEADY_ROWS = (
     0.8,
     0.5,
     48,
 )  # shares of the level; 8 ms at 6 kHz: a dropout, or no carrier
 LEAST_CREST = 1.24  # 1.31 and more of a sine with eight samples, 1.20 where two thirds of it are cut off
-UNSTEADY_CYCLES = (
-    0.009  # RMS at standstill: five times as much is a twentieth of a cycle; 20 dB of noise make 0.0079
-)
+# RMS at standstill: five times as much is a twentieth of a cycle; 20 dB of noise make 0.0079
+UNSTEADY_CYCLES = 0.009
 REFERENCE_BAND = 0.1  # a tape's speed may be this much off
 SURPRISE_CYCLES = 0.25
 SPECTRUM_FRAMES = 16384
@@ -66,7 +65,9 @@ class Bearings:
     def first_fault(
         self, phases: Phases, rate_hz: float, positions_mm: Sequence[float]
     ) -> tuple[int, Fault] | None:
-        """The first row of a block that no motion explains, and why; the screws stood at `positions_mm` before it."""
+        """The first row of a block that no motion explains, and why; the screws stood at `positions_mm`
+        before it.
+        """
         jumped = ~(np.abs(phases.surprise) < SURPRISE_CYCLES)
         if not jumped.any():
             return None
@@ -87,7 +88,9 @@ class Bearings:
 
 
 def take_bearings(frames: Float32s, phases: Phases, fmt: TapeFormat) -> Bearings:
-    """Bearings from the first frames and rows of a tape; raises TapeFault where a track or the reference is missing."""
+    """Bearings from the first frames and rows of a tape; raises TapeFault where a track or the reference is
+    missing.
+    """
     names, reference_hz = fmt.axes, fmt.reference_hz
     still = frames[: round(STANDSTILL_S * fmt.sample_rate_hz)]
     power = np.var(still, axis=0, dtype=np.float64)  # without a DC offset
@@ -134,7 +137,9 @@ def _standing(cycles: Float64s, zero: Float64s, fmt: TapeFormat, least: int) -> 
 
 
 def _demand_standstill(cycles: Float64s, names: Sequence[str]) -> None:
-    """Raise TapeFault where a tape that states a standstill starts under way: where it starts from is not known."""
+    """Raise TapeFault where a tape that states a standstill starts under way: where it starts from is not
+    known.
+    """
     moved = np.ptp(cycles, axis=0)
     axis = int(np.argmax(moved))
     if moved[axis] >= STANDSTILL_CYCLES:
@@ -156,7 +161,9 @@ def _demand_steady(standing: Float64s, names: Sequence[str]) -> None:
 
 
 def evened(phases: Phases, fmt: TapeFormat) -> Phases:
-    """The rows with levels as they would be at standstill: those of a coil grow with the frequency of their track."""
+    """The rows with levels as they would be at standstill: those of a coil grow with the frequency of their
+    track.
+    """
     if not fmt.sensor.by_speed or len(phases) < 2:
         return phases
     speed = np.gradient(phases.cycles, axis=0) * fmt.motion_rate_hz
@@ -167,7 +174,9 @@ def evened(phases: Phases, fmt: TapeFormat) -> Phases:
 
 
 def strongest_hz(samples: Float32s, sample_rate_hz: float) -> float:
-    """Frequency of the strongest tone in the first samples of a track, to a tenth of a line of the spectrum, Hz."""
+    """Frequency of the strongest tone in the first samples of a track, to a tenth of a line of the spectrum,
+    Hz.
+    """
     samples = samples[:SPECTRUM_FRAMES]
     spectrum = np.abs(np.fft.rfft((samples - samples.mean()) * np.hanning(len(samples))))
     peak = min(max(int(np.argmax(spectrum)), 1), len(spectrum) - 2)

@@ -1,12 +1,12 @@
 """The order of the tracks: whether the reference is on another track, before anything moves.
 
-Signals in: the tape's first seconds, until something moves; where the reference then turns out to be on another track, its
-phases to the end. Out: the order of the tracks, where it is certain; a fault, where the reference is elsewhere and the
-rest is not certain; nothing, where track 1 may be the reference.
+Signals in: the tape's first seconds, until something moves; where the reference then turns out to be on
+another track, its phases to the end. Out: the order of the tracks, where it is certain; a fault, where the
+reference is elsewhere and the rest is not certain; nothing, where track 1 may be the reference.
 
-The reference is the track that stands when the others move (watch.py). Which of the others is X, Y or Z is not to be
-seen on them: only if the tape states an end that differs from its start on some axes, and just one order of the tracks
-ends there on all, is it known.
+The reference is the track that stands when the others move (watch.py). Which of the others is X, Y or Z is
+not to be seen on them: only if the tape states an end that differs from its start on some axes, and just one
+order of the tracks ends there on all, is it known.
 
 Source: patent ES 361967, figure 5; the patent's tracks lie in the order in which the tape is wired.
 Questions: X and Y in each other's places make a mirror image, so an order that is only likely is not taken.
@@ -18,6 +18,7 @@ from itertools import permutations
 
 import numpy as np
 
+from morfax.motion.arrays import Array
 from morfax.motion.faults import TapeFault
 from morfax.player.tape.discriminator import Discriminator, discriminate
 from morfax.player.tape.standstill import Bearings, strongest_hz, take_bearings
@@ -28,11 +29,11 @@ SEARCHED_S = 20.0  # of a tape that stands for so long nothing is known beforeha
 END_CYCLES = 0.25
 MOST_AXES = 6  # whose orders are gone through
 
-from morfax.motion.arrays import Array
-
 
 def found_order(tape: Tape) -> tuple[int, ...] | None:
-    """The tracks of the file on which reference, X, Y … are, if that is not their order; raises TapeFault if it is not known."""
+    """The tracks of the file on which reference, X, Y … are, if that is not their order; raises TapeFault if
+    it is not known.
+    """
     fmt = tape.format
     watch: Watch | None = None
     time_s = 0.0
@@ -80,7 +81,9 @@ def _by_the_end(tape: Tape, reference: int, fault: TapeFault) -> tuple[int, ...]
 
 
 def _travelled(tape: Tape, reference: int, others: list[int]) -> Array:
-    """How far each of the other tracks goes against the reference from the start to the end of the tape, cycles."""
+    """How far each of the other tracks goes against the reference from the start to the end of the tape,
+    cycles.
+    """
     fmt = tape.format
     organ = Discriminator(fmt.sample_rate_hz, fmt.reference_hz, fmt.samples_per_motion, fmt.tracks)
     first = last = np.zeros(len(others))

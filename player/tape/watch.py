@@ -11,9 +11,9 @@ Signals in: blocks of frames (n, tracks) and rows of phases; out: nothing, or a 
                   the carrier, and beyond 0.0047 cycle bring the motors to the limit of their current
     stuck         two tracks with the same noise, sample for sample, are one signal
 
-Source: patent ES 361967, figure 5 (fault circuit 162).
-Questions: half a cycle of zero is a track with the other polarity and no skew. A skew of a quarter of the reference's
-period and more (42 us at 6 kHz) cannot be told from a smaller one with it, and one of a half not from none.
+Source: patent ES 361967, figure 5 (fault circuit 162). Questions: half a cycle of zero is a track with the
+other polarity and no skew. A skew of a quarter of the reference's period and more (42 us at 6 kHz) cannot be
+told from a smaller one with it, and one of a half not from none.
 """
 
 from __future__ import annotations
@@ -38,7 +38,8 @@ LEAST_APART_HZ = 1.0
 SKEW_CYCLES = 0.05
 SHAKE_S = 0.096  # 576 rows at 6 kHz
 SHAKE_STRIDE = 4
-SHAKE_CYCLES = 0.0047  # 26 dB of noise shake by 0.0033, and seldom by 0.0045; a corner shakes less than half of the window
+# 26 dB of noise shake by 0.0033, and seldom by 0.0045; a corner shakes less than half of the window
+SHAKE_CYCLES = 0.0047
 STUCK_NOISE = 1e-4  # of full scale and of the carrier: below it noise may be the rounding of the samples
 
 Float32s = NDArray[np.float32]
@@ -201,7 +202,9 @@ def demand_apart(frames: Float32s, levels: Array, names: Sequence[str]) -> None:
 
 
 def _noise(samples: Float32s) -> float:
-    """White noise of a track, RMS: by the weakest tenth of its spectrum's lines, which tones and flutter do not reach."""
+    """White noise of a track, RMS: by the weakest tenth of its spectrum's lines, which tones and flutter do
+    not reach.
+    """
     window = np.hanning(len(samples))
     lines = np.abs(np.fft.rfft(samples * window)) ** 2 / np.sum(window**2)
     return float(np.sqrt(np.percentile(lines, 10) / -np.log(0.9)))

@@ -3,22 +3,22 @@
 Signals: a stream of Motion or a Path in, a `.cubic` file out: words (k, 3 axes, 3 differences) in counts with
 3·log2(p) binary digits behind the point.
 
-The motion is cut into legs at its corners and rests (`recorder.legs`); a corner is a stop with speed zero at a sample.
-Each leg is stretched to a whole number of intervals and a cubic spline laid through it, nearest in the squares, from
-rest to rest. Its places x and slopes m at the intervals' ends are rounded to whole counts, and so the cubic that meets
-them has exact differences, for steps of 1/n of the interval:
+The motion is cut into legs at its corners and rests (`recorder.legs`); a corner is a stop with speed zero at
+a sample. Each leg is stretched to a whole number of intervals and a cubic spline laid through it, nearest in
+the squares, from rest to rest. Its places x and slopes m at the intervals' ends are rounded to whole counts,
+and so the cubic that meets them has exact differences, for steps of 1/n of the interval:
 
     a = 2(x1 - x2) + m1 + m2     b = 3(x2 - x1) - 2 m1 - m2     c = m1
 
     A  = a/n³ + b/n² + c/n       A² = 6a/n³ + 2b/n²             A³ = 6a/n³
 
-The interval is the longest of a series of halves with which the path stays within the tolerance, and the program takes
-no more than a tenth longer than the motion. What counts as a corner is tried from blunt to sharp, and taken is the
-program with the fewest intervals.
+The interval is the longest of a series of halves with which the path stays within the tolerance, and the
+program takes no more than a tenth longer than the motion. What counts as a corner is tried from blunt to
+sharp, and taken is the program with the fewest intervals.
 
-Source: patent US 3062995, column 3 and relations (III) to (IX).
-Questions: the patent leaves places and slopes to a desk calculator (slopes by a formula that is lost in the print).
-Rounded slopes cost an eighth of a count at most between the samples, nothing at them.
+Source: patent US 3062995, column 3 and relations (III) to (IX). Questions: the patent leaves places and
+slopes to a desk calculator (slopes by a formula that is lost in the print). Rounded slopes cost an eighth of
+a count at most between the samples, nothing at them.
 """
 
 from __future__ import annotations
@@ -86,7 +86,8 @@ def record_cubics(
     fmt: CubicFormat | None = None,
     limits: Limits | None = None,
 ) -> CubicReport:
-    """Record a motion as cubics within a tolerance of it; the interval and the places in `fmt` are the recorder's.
+    """Record a motion as cubics within a tolerance of it; the interval and the places in `fmt` are the
+    recorder's.
 
     Raises MotionFault for a motion that is empty, or cannot be had within the tolerance.
     """
@@ -106,10 +107,12 @@ def record_cubics(
 
 
 def differences(samples: Words, points: int, linear: int = 1) -> Words:
-    """Differences A, A², A³ (k, axes, 3) for samples (k + 1, axes, 2) of whole counts and counts per interval.
+    """Differences A, A², A³ (k, axes, 3) for samples (k + 1, axes, 2) of whole counts and counts per
+    interval.
 
-    The unit of the words is the count divided by points³, in which they are exact; points is a power of two. For an
-    interpolator of which only every `linear`-th step is cubic they are those of so many fewer steps, over `linear`.
+    The unit of the words is the count divided by points³, in which they are exact; points is a power of two.
+    For an interpolator of which only every `linear`-th step is cubic they are those of so many fewer steps,
+    over `linear`.
     """
     if points < 2 or points & (points - 1) or points % linear:
         raise ValueError(
@@ -214,7 +217,9 @@ def _spline(at: Array, places: Array, intervals: int) -> tuple[Array, Array]:
 
 
 def _off_mm(leg: Leg, samples: Words, counts_per_mm: float) -> float:
-    """The largest distance of the cubics from the leg's path, mm: across it, as time may run a little differently."""
+    """The largest distance of the cubics from the leg's path, mm: across it, as time may run a little
+    differently.
+    """
     at = np.linspace(0, len(samples) - 1, max(64, 4 * len(leg.places_mm) // 3))
     run_mm = hermite(samples, at) / counts_per_mm
     return float(_nearest_mm(leg.places_mm, run_mm).max())
@@ -223,7 +228,8 @@ def _off_mm(leg: Leg, samples: Words, counts_per_mm: float) -> float:
 def _nearest_mm(places: Array, run_mm: Array) -> Array:
     """Distance of each point of a run from the leg's places, straight in between.
 
-    The piece that leads to the nearest place or on from it may be the wrong one where a closed leg ends beside its start.
+    The piece that leads to the nearest place or on from it may be the wrong one where a closed leg ends
+    beside its start.
     """
     from scipy.spatial import cKDTree
 

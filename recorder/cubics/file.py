@@ -15,12 +15,13 @@
     at 90173 53256 4000
     end
 
-The first `at` loads register I; each other is a check of what the interpolator has come to there, and the last stands
-at the end. Blank lines and lines that begin with # are passed over.
+The first `at` loads register I; each other is a check of what the interpolator has come to there, and the
+last stands at the end. Blank lines and lines that begin with # are passed over.
 
-Source: patent US 3062995, columns 3, 7 and 8 (the words of the tape, their tags, and positions to be checked).
-Questions: the patent's tape is punched, in a code that it does not tell; here the words are decimal. `points` is p,
-`linear` q (1: all steps cubic), `modulus_per_s` the speed modulus: mm/s of demand for each mm of difference.
+Source: patent US 3062995, columns 3, 7 and 8 (the words of the tape, their tags, and positions to be
+checked). Questions: the patent's tape is punched, in a code that it does not tell; here the words are
+decimal. `points` is p, `linear` q (1: all steps cubic), `modulus_per_s` the speed modulus: mm/s of demand for
+each mm of difference.
 """
 
 from __future__ import annotations
@@ -81,7 +82,8 @@ class CubicFormat:
 
 @dataclass(frozen=True, slots=True)
 class CubicProgram:
-    """A cubic program: format, words (k, axes, 3), positions in counts by the interval before which they stand.
+    """A cubic program: format, words (k, axes, 3), positions in counts by the interval before which they
+    stand.
 
     `checks[0]` is the start; `lines` holds the line in the file of each interval.
     """

@@ -2,18 +2,20 @@
 
 Signals in: a polyline in the plane, mm. Signals out: chains of segments, each a line or an arc, end to end.
 
-From corner to corner the pieces (`recorder.pieces`) are laid anew as one chain, each tangent to the one before:
+From corner to corner the pieces (`recorder.pieces`) are laid anew as one chain, each tangent to the one
+before:
 
     heading at the end of segment i  =  heading at the start of segment i + 1
 
-with the joints between them, and half the angle that each arc turns, by least squares of the distances; a break of the
-tangent of 1e-4 rad counts as much as a place at the edge of the tolerance. Where the chain leaves the tolerance the
-worst places weigh more, and where that does not do it pieces are taken for a narrower tolerance.
+with the joints between them, and half the angle that each arc turns, by least squares of the distances; a
+break of the tangent of 1e-4 rad counts as much as a place at the edge of the tolerance. Where the chain
+leaves the tolerance the worst places weigh more, and where that does not do it pieces are taken for a
+narrower tolerance.
 
-Source: none of the patents says how the lines and arcs of a program are found; chosen here: an arc spline (D. Meek and
-D. Walton, Approximating quadratic NURBS curves by arc splines, 1993), fitted instead of laid through points.
-Questions: a closed line without a corner has one tangent at its start and end; there the chain is closed. A stretch for
-which no chain is found, such as noise beyond the tolerance, is given as chords.
+Source: none of the patents says how the lines and arcs of a program are found; chosen here: an arc spline (D.
+Meek and D. Walton, Approximating quadratic NURBS curves by arc splines, 1993), fitted instead of laid through
+points. Questions: a closed line without a corner has one tangent at its start and end; there the chain is
+closed. A stretch for which no chain is found, such as noise beyond the tolerance, is given as chords.
 """
 
 from __future__ import annotations
@@ -26,6 +28,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.motion.polyline import lengths_mm
 from morfax.recorder.gcode.pieces import (
     SAME_MM,
@@ -53,12 +56,12 @@ ROUNDS = 20
 BREAK_RAD = 1e-4
 _STEP = 1e-7  # mm and rad, of the slopes by differences
 
-from morfax.motion.arrays import Array
-
 
 @dataclass(frozen=True, slots=True)
 class Segment:
-    """A line or arc of a chain: where it begins, its heading there, length, and curvature (0 for a line, + left)."""
+    """A line or arc of a chain: where it begins, its heading there, length, and curvature (0 for a line, +
+    left).
+    """
 
     begin_mm: tuple[float, float]
     heading_rad: float
@@ -95,7 +98,9 @@ def fit(points_mm: Array, tolerance_mm: float) -> list[Chain]:
 
 
 def _chain(points_mm: Array, tolerance_mm: float) -> Chain:
-    """The chain of one stretch without corners: of the longest pieces first, then of shorter ones until it is within."""
+    """The chain of one stretch without corners: of the longest pieces first, then of shorter ones until it is
+    within.
+    """
     s = lengths_mm(points_mm)
     if s[-1] < SAME_MM:
         return Chain([], 0.0)
@@ -148,7 +153,9 @@ class _Spline:
         )  # of each segment's five numbers
 
     def laid(self, tolerance_mm: float) -> Chain | None:
-        """The chain by least squares, and where that leaves the tolerance with more weight on the worst; or none."""
+        """The chain by least squares, and where that leaves the tolerance with more weight on the worst; or
+        none.
+        """
         weights = np.ones(len(self.few))
         for _ in range(4):
             self._settle(weights, tolerance_mm)

@@ -9,13 +9,13 @@ Signals: a stream of Motion or a Path in, a `.ngc` file out, in mm and mm/min:
     G3 X13.1 Y19.2 I0.2 J1.1     arcs, by the centre from where they begin
     G0 Z2                        the tool goes up; M2 ends the program
 
-The path is cut where Z begins or ends to move. What lies in a plane is fitted with lines and arcs (`recorder.arcs`),
-what does not with lines alone. The feed of a stretch is the speed at which most of its length is run; what is run with
-the tool above the work, or upwards, is a rapid.
+The path is cut where Z begins or ends to move. What lies in a plane is fitted with lines and arcs
+(`recorder.arcs`), what does not with lines alone. The feed of a stretch is the speed at which most of its
+length is run; what is run with the tool above the work, or upwards, is a rapid.
 
-Source: RS-274-D, in the words that LinuxCNC and Grbl both take: no %, no G64, F before the first G1, M2 at the end.
-Questions: a motion has a speed at every place and a program a feed for each block; its slowing down before corners is
-left to the control. Rests are left out. Places are written to 0.1 um.
+Source: RS-274-D, in the words that LinuxCNC and Grbl both take: no %, no G64, F before the first G1, M2 at
+the end. Questions: a motion has a speed at every place and a program a feed for each block; its slowing down
+before corners is left to the control. Rests are left out. Places are written to 0.1 um.
 """
 
 from __future__ import annotations
@@ -29,6 +29,7 @@ from typing import Any
 
 import numpy as np
 
+from morfax.motion.arrays import Array
 from morfax.motion.faults import MotionFault
 from morfax.motion.files import written_beside
 from morfax.motion.motion import IN_WORK_BELOW_MM, Path
@@ -43,12 +44,12 @@ _LEVEL = 0.02  # Z that changes less than this share of the way stands
 _NOISE_MM = 2e-4  # of a thinned path
 _SLOWEST_MM_S, _FASTEST_MM_S = 0.01, 1000.0
 
-from morfax.motion.arrays import Array
-
 
 @dataclass(frozen=True, slots=True)
 class BlockReport(Written):
-    """What was recorded: file, lines and arcs (rapids are lines), running time, largest distance from the motion."""
+    """What was recorded: file, lines and arcs (rapids are lines), running time, largest distance from the
+    motion.
+    """
 
     lines: int
     arcs: int
@@ -79,7 +80,9 @@ class _Stretch:
 def record_blocks(
     stream: Source, file: str | os.PathLike[str], *, tolerance_mm: float = TOLERANCE_MM
 ) -> BlockReport:
-    """Record a motion as a program of lines and arcs that stay within the tolerance of it; raises MotionFault, FileFault."""
+    """Record a motion as a program of lines and arcs that stay within the tolerance of it; raises
+    MotionFault, FileFault.
+    """
     if not 2 * WRITTEN_MM <= tolerance_mm < math.inf:
         raise ValueError(
             f"a tolerance of {tolerance_mm} mm cannot be written; give {2 * WRITTEN_MM} mm or more"
@@ -155,7 +158,9 @@ class _Writer:
                 self._segment(segment, stretch, chain.deviation_mm)
 
     def _segment(self, segment: Segment, stretch: _Stretch, off_mm: float) -> None:
-        """Write a line or an arc; an arc is a line where no digit tells it from its chord, or its centre is in the next street."""
+        """Write a line or an arc; an arc is a line where no digit tells it from its chord, or its centre is
+        in the next street.
+        """
         place: Array = np.array([*np.round(segment.end_mm, 4), self.place[2]])
         half = segment.turned_rad / 2
         (dx, dy), bulge = (place - self.place)[:2], segment.length_mm / 2 * math.tan(half / 2)
@@ -201,7 +206,9 @@ def _digits(value: float, places: int) -> str:
 
 
 def _straightest(points: Array, tolerance_mm: float) -> tuple[list[int], float]:
-    """Points between which lines stay within the tolerance of all others (Douglas and Peucker), and the largest gap."""
+    """Points between which lines stay within the tolerance of all others (Douglas and Peucker), and the
+    largest gap.
+    """
     kept, worst_mm, waiting = {0, len(points) - 1}, 0.0, [(0, len(points) - 1)]
     while waiting:
         first, last = waiting.pop()

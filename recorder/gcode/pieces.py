@@ -1,15 +1,16 @@
 """Pieces of a path: where its corners are, and how far a line or a circle reaches from each place.
 
-Signals in: a polyline in the plane, mm. Signals out: its corners, and pieces that a line or an arc can stand for.
+Signals in: a polyline in the plane, mm. Signals out: its corners, and pieces that a line or an arc can stand
+for.
 
-1. Corners are kept: places where the direction turns as much over a quarter of the window as over all of it; a bend of
-   any radius turns a quarter.
-2. From a corner on, each piece is made as long as a line or a circle (least squares) stays within the tolerance. Where
-   a long piece fits so does every part of it, so no row of pieces has fewer.
+1. Corners are kept: places where the direction turns as much over a quarter of the window as over all of it;
+   a bend of any radius turns a quarter.
+2. From a corner on, each piece is made as long as a line or a circle (least squares) stays within the
+   tolerance. Where a long piece fits so does every part of it, so no row of pieces has fewer.
 
-Source: none of the patents says how the lines and arcs of a program are found; chosen here.
-Questions: a bend of less than a tenth of a mm cannot be told from a corner, and is made one. An arc of more than 200
-degrees is cut in two, as its chord no longer says where its centre is.
+Source: none of the patents says how the lines and arcs of a program are found; chosen here. Questions: a bend
+of less than a tenth of a mm cannot be told from a corner, and is made one. An arc of more than 200 degrees is
+cut in two, as its chord no longer says where its centre is.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.motion.polyline import lengths_mm
 
 SPACING_MM = 0.05
@@ -27,7 +29,6 @@ CORNER_RAD = 0.2
 SAME_MM = 1e-6
 LARGEST_TURN_RAD = 3.5
 
-from morfax.motion.arrays import Array
 
 Piece = tuple[int, int, bool]  # first place, last place, whether it is straight
 
@@ -62,7 +63,9 @@ def _turn_rad(points: Array, s: Array, reach_mm: float) -> Array:
 
 
 def longest_pieces(places: Array, tolerance_mm: float) -> list[Piece]:
-    """Pieces (first, last, straight) of a row of places, each as long as a line or circle stays within the tolerance."""
+    """Pieces (first, last, straight) of a row of places, each as long as a line or circle stays within the
+    tolerance.
+    """
     pieces, first, last = [], 0, len(places) - 1
     while first < last:
         low, step = first + 1, 1  # low is known to fit
@@ -107,7 +110,9 @@ def off_circle_mm(points: Array) -> Array:
 
 
 def _circle(points: Array) -> tuple[float, float, float]:
-    """Centre and radius of the circle that fits best, by Kasa's linear least squares; short arcs have little noise."""
+    """Centre and radius of the circle that fits best, by Kasa's linear least squares; short arcs have little
+    noise.
+    """
     middle = points.mean(axis=0)
     u, v = (points - middle).T
     matrix = np.column_stack([u, v, np.ones_like(u)])

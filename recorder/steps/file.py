@@ -14,15 +14,14 @@
     ...o....  x12    the same row twelve times
     end
 
-`rates` are the pulses of an interval for each count from the middle; `vectors` the vector commands in one row (1 as in
-figure 6, 2 as in figure 11); `rows` counts repeated rows each time. Blank lines and lines that begin with # are passed
-over.
+`rates` are the pulses of an interval for each count from the middle; `vectors` the vector commands in one row
+(1 as in figure 6, 2 as in figure 11); `rows` counts repeated rows each time. Blank lines and lines that begin
+with # are passed over.
 
-Source: patent ES 443122, figures 3, 6 and 11; page 23 (a succession of like commands may be stored shorter, further
-bits may command a tool).
-Questions: the patent has five channels, for two axes. Bits 7 and 6 are the Z counter's here, in the code of figure 3,
-and bit 8 says that the tool is in the work. What a program starts from and how large its steps are was set at the
-machine; here the file says it.
+Source: patent ES 443122, figures 3, 6 and 11; page 23 (a succession of like commands may be stored shorter,
+further bits may command a tool). Questions: the patent has five channels, for two axes. Bits 7 and 6 are the
+Z counter's here, in the code of figure 3, and bit 8 says that the tool is in the work. What a program starts
+from and how large its steps are was set at the machine; here the file says it.
 """
 
 from __future__ import annotations

@@ -1,12 +1,12 @@
 """Lengths: a leg cut into steps per interval, near its path, near its speed, and in rings where that can be.
 
-Signals in: a leg's places in steps, its speeds in steps per interval. Signals out: the steps (k, 3) of each interval,
--7 … +7 on an axis, no two intervals in succession more than one apart, from rest to rest, from one whole step to
-another.
+Signals in: a leg's places in steps, its speeds in steps per interval. Signals out: the steps (k, 3) of each
+interval, -7 … +7 on an axis, no two intervals in succession more than one apart, from rest to rest, from one
+whole step to another.
 
-No interval can be chosen for itself, as what is too fast now cannot be stopped later. So a beam of the best few
-courses is carried on interval by interval; each is continued in all ways that its motors allow, 3 for each axis that
-moves, and the best of all these are kept. A course pays for each interval
+No interval can be chosen for itself, as what is too fast now cannot be stopped later. So a beam of the best
+few courses is carried on interval by interval; each is continued in all ways that its motors allow, 3 for
+each axis that moves, and the best of all these are kept. A course pays for each interval
 
     distance of its place from the path          steps²
     0.05 · (way along the path - speed)²         1.0 for what is more than half a step above it
@@ -15,9 +15,9 @@ moves, and the best of all these are kept. A course pays for each interval
 
 The last keeps the courses that stand from being the cheapest.
 
-Source: patent ES 443122, page 25 ("calculate each length required to produce a trajectory within the tolerance").
-Questions: the patent leaves the way to the programmer. Widths of 8 to 128 courses came within 0.3 % of each other in
-distance (root mean square), share of vectors and time, on the sample drawings.
+Source: patent ES 443122, page 25 ("calculate each length required to produce a trajectory within the
+tolerance"). Questions: the patent leaves the way to the programmer. Widths of 8 to 128 courses came within
+0.3 % of each other in distance (root mean square), share of vectors and time, on the sample drawings.
 """
 
 from __future__ import annotations
@@ -41,8 +41,8 @@ _PX, _NX, _AT = 0, 3, 6  # columns of a course: place, steps in the interval, ne
 def cut(places_steps: Array, speeds: Array, spacing_steps: float, start_steps: Steps) -> tuple[Steps, Array]:
     """Steps (k, 3) of the intervals of a leg, and how far off its path each interval ends, steps.
 
-    The leg starts at the whole steps given and ends at those nearest to its end. Raises ValueError where no course
-    arrives: the leg is too fast for its bends.
+    The leg starts at the whole steps given and ends at those nearest to its end. Raises ValueError where no
+    course arrives: the leg is too fast for its bends.
     """
     end = np.rint(places_steps[-1]).astype(np.int64)
     moves = (np.ptp(places_steps, axis=0) > 0.5) | (end != start_steps)
@@ -86,7 +86,9 @@ def _traced_back(
 
 @njit(cache=True)
 def _nearest(places, first, guess, x, y, z):  # type: ignore[no-untyped-def]
-    """The place of the leg nearest to a point, not before `first`, downhill from a guess; and the squared distance."""
+    """The place of the leg nearest to a point, not before `first`, downhill from a guess; and the squared
+    distance.
+    """
     n = len(places)
     at = min(max(guess, first), n - 1)
     best = (places[at, 0] - x) ** 2 + (places[at, 1] - y) ** 2 + (places[at, 2] - z) ** 2
@@ -127,7 +129,8 @@ def _keep(beam, costs, origin, count, course, cost, parent):  # type: ignore[no-
 
 
 @njit(cache=True)
-def _search(places, speeds, left, settings, start, end, moves, table, parents, taken, off):  # type: ignore[no-untyped-def]
+# type: ignore[no-untyped-def]
+def _search(places, speeds, left, settings, start, end, moves, table, parents, taken, off):
     """Carry the beam on until a course stands at the end; the last level and the winner, or -1."""
     spacing, width = settings[0], int(settings[1])
     beam, new = np.zeros((width, 7), np.int64), np.zeros((width, 7), np.int64)

@@ -1,19 +1,22 @@
-"""The endless series of vectors: rings of steps per interval, one ring for each speed of nearly constant length.
+"""The endless series of vectors: rings of steps per interval, one ring for each speed of nearly constant
+length.
 
-Signals: a vector is (steps in X, steps in Y) of one interval. In a ring each vector differs from its neighbours by one
-step or less on each axis, and the last is the neighbour of the first; the vectors laid end to end draw a circle whose
-radius is the smallest that the machine can run at that speed. No vector is in two rings, so a vector tells its ring.
+Signals: a vector is (steps in X, steps in Y) of one interval. In a ring each vector differs from its
+neighbours by one step or less on each axis, and the last is the neighbour of the first; the vectors laid end
+to end draw a circle whose radius is the smallest that the machine can run at that speed. No vector is in two
+rings, so a vector tells its ring.
 
     steps per interval      2     3     4     5      6      7
     vectors in the ring    12    16    20    28     32     40        148 in all
     radius, steps           4    7.5   12   22.5    30    44.5
 
-Each ring is given by its first octant, from (s, 0) to the diagonal, and mirrored from there. It runs on towards -Y.
+Each ring is given by its first octant, from (s, 0) to the diagonal, and mirrored from there. It runs on
+towards -Y.
 
-Source: patent ES 443122, figures 5 and 10.
-Questions: figure 5 prints the ring of six; the others are told by their radii alone. Of all rings with eightfold
-symmetry, changes of one and lengths within half a step there is exactly one to each radius. The text lets the vectors
-run on towards +Y, figure 8 and the example of the memory towards -Y; built is what the figure shows.
+Source: patent ES 443122, figures 5 and 10. Questions: figure 5 prints the ring of six; the others are told by
+their radii alone. Of all rings with eightfold symmetry, changes of one and lengths within half a step there
+is exactly one to each radius. The text lets the vectors run on towards +Y, figure 8 and the example of the
+memory towards -Y; built is what the figure shows.
 """
 
 from __future__ import annotations
@@ -51,7 +54,9 @@ RINGS: dict[int, tuple[Vector, ...]] = {speed: _ring(octant) for speed, octant i
 
 
 def command(present: Vector, wanted: Vector) -> int | None:
-    """The vector command that leads from one vector to another: SAME, PREVIOUS or NEXT; None if there is none."""
+    """The vector command that leads from one vector to another: SAME, PREVIOUS or NEXT; None if there is
+    none.
+    """
     for ring in RINGS.values():
         if present in ring and wanted in ring:
             places = (ring.index(wanted) - ring.index(present)) % len(ring)
@@ -60,7 +65,9 @@ def command(present: Vector, wanted: Vector) -> int | None:
 
 
 def commands() -> NDArray[np.int8]:
-    """All commands: [x, y, wanted x - x + 1, wanted y - y + 1], each axis from 0 for -7; -1 where there is none."""
+    """All commands: [x, y, wanted x - x + 1, wanted y - y + 1], each axis from 0 for -7; -1 where there is
+    none.
+    """
     size = 2 * LARGEST + 1
     table = np.full((size, size, 3, 3), NOT_IN_A_RING, np.int8)
     for ring in RINGS.values():

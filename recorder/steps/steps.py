@@ -1,20 +1,22 @@
 """The step recorder: a motion becomes differences of steps per interval, punched in rows.
 
-Signals: a stream of Motion or a Path in, a `.steps` file out. The motion is cut into legs (`recorder.legs`), each leg
-into lengths of one interval (`recorder.lengths`), and of each length only the difference from the one before is
-punched, two bits for an axis; or, where both lengths are of one ring, the step along the ring, two bits for both.
+Signals: a stream of Motion or a Path in, a `.steps` file out. The motion is cut into legs (`recorder.legs`),
+each leg into lengths of one interval (`recorder.lengths`), and of each length only the difference from the
+one before is punched, two bits for an axis; or, where both lengths are of one ring, the step along the ring,
+two bits for both.
 
     bit        8       7 6      5    4 3          2 1
     axis row   tool    Z 01 10  1    Y 01 10      X 01 up, 10 down, 00 same
     vector     tool    Z        0    the second   01 previous, 10 next, 00 the same vector
 
-With two vector commands in a row (figure 11) a vector row lasts two intervals, an axis row one. What is left over of a
-run of vectors is punched as an axis row, which every change can be.
+With two vector commands in a row (figure 11) a vector row lasts two intervals, an axis row one. What is left
+over of a run of vectors is punched as an axis row, which every change can be.
 
-Source: patent ES 443122, figures 1, 3, 6 and 11.
-Questions: which bit of a pair is printed first the figures leave open; "01" is read as the higher bit 0, the lower bit
-1. In a row with two vector commands the Z bits hold for the first interval, and the recorder pairs no interval with a
-change of Z behind it. The program may be off the motion by one step; a motion whose bends ask for more is run slower.
+Source: patent ES 443122, figures 1, 3, 6 and 11. Questions: which bit of a pair is printed first the figures
+leave open; "01" is read as the higher bit 0, the lower bit
+1. In a row with two vector commands the Z bits hold for the first interval, and the recorder pairs no
+interval with a change of Z behind it. The program may be off the motion by one step; a motion whose bends ask
+for more is run slower.
 """
 
 from __future__ import annotations
@@ -46,7 +48,9 @@ Steps = NDArray[np.int64]
 
 @dataclass(frozen=True, slots=True)
 class StepReport(WrittenIntervals[StepFormat]):
-    """What was punched: rows, how many intervals are vectors, and steps; the intervals' ends are what may lie off."""
+    """What was punched: rows, how many intervals are vectors, and steps; the intervals' ends are what may lie
+    off.
+    """
 
     rows: int
     vector_intervals: int
@@ -74,8 +78,8 @@ def record_steps(
 ) -> StepReport:
     """Record a motion as a step program within a tolerance of it, by default one step.
 
-    Without a format the step is the tolerance. Raises MotionFault for a motion that is empty, or cannot be had within
-    the tolerance; nothing is left under the name then.
+    Without a format the step is the tolerance. Raises MotionFault for a motion that is empty, or cannot be
+    had within the tolerance; nothing is left under the name then.
     """
     if tolerance_mm is not None and not tolerance_mm > 0:
         raise ValueError(f"a tolerance of {tolerance_mm} mm leaves no room; give one above zero")
@@ -98,7 +102,8 @@ def record_steps(
 
 
 def encode(lengths: Steps, down: NDArray[np.bool_], fmt: StepFormat) -> NDArray[np.uint8]:
-    """The rows for steps (k, 3) of the intervals, the first after standstill; raises ValueError for what none can say.
+    """The rows for steps (k, 3) of the intervals, the first after standstill; raises ValueError for what none
+    can say.
 
     A program of five channels holds X and Y only.
     """
@@ -148,7 +153,9 @@ def _axis_codes(changes: Steps) -> NDArray[np.int64]:
 
 
 def _within(tolerance_mm: float, path: Source, fmt: StepFormat) -> tuple[Steps, NDArray[np.bool_], float]:
-    """The lengths of the whole motion, the tool in each, and the deviation; slower where it would be too large."""
+    """The lengths of the whole motion, the tool in each, and the deviation; slower where it would be too
+    large.
+    """
     off_mm = np.inf
     for share in _SLOWER:
         try:

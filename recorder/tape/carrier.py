@@ -1,29 +1,31 @@
 """The pick-ups: displacement of the screws -> phase -> samples of the carrier tracks.
 
-Signals: positions in mm in, one row per sample of the motion (6 kHz); frames in float32 out, full scale 1, one row per
-sample of the tape (48 kHz), columns reference, X, Y, Z. Sample k of the motion stands at frame 8 k of the carriers.
+Signals: positions in mm in, one row per sample of the motion (6 kHz); frames in float32 out, full scale 1,
+one row per sample of the tape (48 kHz), columns reference, X, Y, Z. Sample k of the motion stands at frame 8
+k of the carriers.
 
     phase of the reference = reference · t                                        (cycles)
     phase of a track       = phase of the reference + (position - start) / q      (cycles),   q = 1 / cycles per mm
     sample                 = level · sin(2 pi phase)            (or the wave of another pick-up, see pickups.py)
 
-The sector wheel turns at a constant speed, so the phase of the reference follows from the count of samples alone, and
-that of a track from the absolute position: nothing is summed up, and nothing drifts. Between two samples of the motion
-the phase is a Catmull-Rom cubic, whose slope at each sample is that from its left to its right neighbour; this leaves
-no images of the motion rate and no kink in the phase:
+The sector wheel turns at a constant speed, so the phase of the reference follows from the count of samples
+alone, and that of a track from the absolute position: nothing is summed up, and nothing drifts. Between two
+samples of the motion the phase is a Catmull-Rom cubic, whose slope at each sample is that from its left to
+its right neighbour; this leaves no images of the motion rate and no kink in the phase:
 
     position     p0      p1 ~~~~~~~ p2      p3        frames between p1 and p2 need p0 and p3: the carrier holds back
     motion        |-------|----x----|-------|         two samples from one block to the next
 
-A wave with harmonics is summed up harmonic by harmonic. Each fades out by its own frequency at the moment, before half
-the sample rate, so that nothing folds back upon the carrier:
+A wave with harmonics is summed up harmonic by harmonic. Each fades out by its own frequency at the moment,
+before half the sample rate, so that nothing folds back upon the carrier:
 
     weight  1 _________                        frequency of the harmonic over the sample rate
                        ╲_____ 0                0.4 ... 0.475
 
 Source: patent ES 361967, figures 2 and 4 (sector wheel 115, motor 116, lamp 119, photocell 141 on arm 118).
-Questions: the patent's photocell gives a square wave; recorded sample by sample it aliases (0.16 cycle of error), so it
-is band-limited here, and the wave is the sine of a resolver, which the patent names as an equivalent, unless asked.
+Questions: the patent's photocell gives a square wave; recorded sample by sample it aliases (0.16 cycle of
+error), so it is band-limited here, and the wave is the sine of a resolver, which the patent names as an
+equivalent, unless asked.
 """
 
 from __future__ import annotations
@@ -44,7 +46,9 @@ Frames = NDArray[np.float32]
 
 @dataclass(frozen=True, slots=True)
 class PickUp:
-    """What a carrier needs to know of wheel and screw; `level` is the amplitude of the fundamental, full scale 1."""
+    """What a carrier needs to know of wheel and screw; `level` is the amplitude of the fundamental, full
+    scale 1.
+    """
 
     reference_hz: float = 6000.0
     cycles_per_mm: float = 20.0
@@ -60,7 +64,9 @@ class PickUp:
 
 
 class Carrier:
-    """The carriers of one tape, block by block; `start_mm` is where the screws have no phase against the reference."""
+    """The carriers of one tape, block by block; `start_mm` is where the screws have no phase against the
+    reference.
+    """
 
     def __init__(self, pick_up: PickUp, start_mm: ArrayLike) -> None:
         self._pick_up = pick_up
@@ -73,7 +79,9 @@ class Carrier:
         self._harmonics = int((FADE_TO / lowest + 1) / 2)
 
     def frames(self, positions_mm: ArrayLike) -> Frames:
-        """Frames (n, 1 + axes) of what a block of positions (n, axes) in mm completes; two samples stay behind."""
+        """Frames (n, 1 + axes) of what a block of positions (n, axes) in mm completes; two samples stay
+        behind.
+        """
         positions = np.asarray(positions_mm, np.float64)
         if positions.ndim != 2 or positions.shape[1] != len(self._start_mm):
             raise ValueError(
@@ -128,7 +136,8 @@ def _write(cycles, first_period, reference_cycles, level, frames):  # type: igno
 
 
 @njit(cache=True)
-def _write_wave(cycles, first_period, reference_cycles, amplitudes, by_speed, frames):  # type: ignore[no-untyped-def]
+# type: ignore[no-untyped-def]
+def _write_wave(cycles, first_period, reference_cycles, amplitudes, by_speed, frames):
     """Fill frames as `_write` does, the tracks of the axes with a wave of odd harmonics."""
     periods, axes = cycles.shape[0] - 3, cycles.shape[1]
     steps = frames.shape[0] // periods
@@ -173,8 +182,9 @@ def _wave(cycles, frequency, amplitudes):  # type: ignore[no-untyped-def]
 def _sine(cycles):  # type: ignore[no-untyped-def]
     """sin(2 pi cycles) within 1.1e-7, for a few cycles or fewer.
 
-    x (1 - 4 x²) P(x²) on -1/2 ... 1/2, with P fitted at Chebyshev's points to sin(2 pi x) / (x (1 - 4 x²)): it vanishes
-    where the sine does, and needs no table and no branch, so that the compiler makes several at a time.
+    x (1 - 4 x²) P(x²) on -1/2 ... 1/2, with P fitted at Chebyshev's points to sin(2 pi x) / (x (1 - 4 x²)):
+    it vanishes where the sine does, and needs no table and no branch, so that the compiler makes several at a
+    time.
     """
     x = cycles - np.floor(cycles + 0.5)
     t = x * x

@@ -1,17 +1,18 @@
 """The tape format: what a player must know of a tape, carried in the file's text chunk as one line of JSON.
 
-    {"version": 1, "sample_rate_hz": 48000, "reference_hz": 6000.0, "cycles_per_mm": 20.0, "axes": ["x", "y", "z"],
+    {"version": 1, "sample_rate_hz": 48000, "reference_hz": 6000.0, "cycles_per_mm": 20.0, "axes": ["x", "y",
+    "z"],
      "start_mm": [40.1, 12.0, 2.0], "end_mm": [40.1, 12.0, 2.0], "dwell_s": 1.0, "level": 0.5,
      "samples_per_motion": 8}
 
 A tape whose pick-ups are not resolvers has one more entry, `"pickup": "photocell"`, and is of version 2.
 
-Signals: track 1 is the reference, then one per axis; phase of a track - phase of the reference = displacement from
-`start_mm` times `cycles_per_mm`, in cycles. An axis may use a third of the reference as deviation, which leaves room to
-tell the tracks from hum below and from the reference's own harmonics above.
+Signals: track 1 is the reference, then one per axis; phase of a track - phase of the reference = displacement
+from `start_mm` times `cycles_per_mm`, in cycles. An axis may use a third of the reference as deviation, which
+leaves room to tell the tracks from hum below and from the reference's own harmonics above.
 
-Source: patent ES 361967 (the reference and the tracks of the axes side by side on one tape).
-Questions: the patent gives no figures; the start position was set by hand on the machine, here the tape says it.
+Source: patent ES 361967 (the reference and the tracks of the axes side by side on one tape). Questions: the
+patent gives no figures; the start position was set by hand on the machine, here the tape says it.
 """
 
 from __future__ import annotations
@@ -35,10 +36,11 @@ _AGAIN = "record the tape again"
 
 @dataclass(frozen=True, slots=True)
 class TapeFormat:
-    """Format of a tape; raises ValueError if it cannot be. `level` is the amplitude of a carrier, full scale 1.
+    """Format of a tape; raises ValueError if it cannot be. `level` is the amplitude of a carrier, full scale
+    1.
 
-    Without `start_mm` the start is zero on all axes; `end_mm` is None where it is not known. The version is the lowest
-    that can say it.
+    Without `start_mm` the start is zero on all axes; `end_mm` is None where it is not known. The version is
+    the lowest that can say it.
     """
 
     version: int = 1
@@ -139,7 +141,9 @@ class TapeFormat:
 
 
 def columns_of(order: Sequence[int] | None, tracks: int) -> list[int] | None:
-    """Columns of a file whose tracks are given in this order; None: as they are. Raises TapeFault for what is no order."""
+    """Columns of a file whose tracks are given in this order; None: as they are. Raises TapeFault for what is
+    no order.
+    """
     if order is None:
         return None
     if sorted(order) != list(range(1, tracks + 1)):

@@ -1,7 +1,7 @@
 """The kinds of pick-up: the wave that each makes of the turning of a screw, and the travel of one cycle.
 
-Signals: none of their own; carrier.py makes the samples by what stands here. With phi the phase of the track, f its
-frequency now and r = exp(-2 pi · gap / pitch of the teeth), each is a sum of odd harmonics:
+Signals: none of their own; carrier.py makes the samples by what stands here. With phi the phase of the track,
+f its frequency now and r = exp(-2 pi · gap / pitch of the teeth), each is a sum of odd harmonics:
 
     resolver    sin phi                                                        sine
     photocell   sum of sin(n phi) / n                    = pi/4 · sign(sin phi)    square: light or dark
@@ -9,15 +9,17 @@ frequency now and r = exp(-2 pi · gap / pitch of the teeth), each is a sum of o
     hall        sum of r^(n-1) sin(n phi) / n            = arctan(2 r sin phi / (1 - r²)) / 2 r
     coil        f / reference · sum of (-1)^k r^(n-1) sin(n phi)    = f / reference · slope of the flux that Hall sees
 
-so that the fundamental of all has the level of the tape at standstill, and the phase of all is that of the sine. Teeth
-as wide as their gaps make no even harmonics. A field falls off from the teeth by r^n for each harmonic, so at a gap of
-a quarter of the pitch little more than the fundamental is left (r = 0.21), of which a coil gives the rate of change: the
-faster the teeth pass, the stronger. A grating as wide as the gaps of a scale uncovers them in proportion: a triangle.
+so that the fundamental of all has the level of the tape at standstill, and the phase of all is that of the
+sine. Teeth as wide as their gaps make no even harmonics. A field falls off from the teeth by r^n for each
+harmonic, so at a gap of a quarter of the pitch little more than the fundamental is left (r = 0.21), of which
+a coil gives the rate of change: the faster the teeth pass, the stronger. A grating as wide as the gaps of a
+scale uncovers them in proportion: a triangle.
 
-Source: patent ES 361967, lines 471 to 507 (sector wheel and photocell, magnetic wheel and coil, a toothed member along
-the slide, Hall effect, resolvers). Field of a toothed rack: Laplace's equation over a periodic boundary.
-Questions: the patent gives no figures. Chosen: on a screw of 5 mm pitch 100 sectors, teeth or pole pairs; a scale of 0.1 mm.
-The reference track is that of the source 142 itself and a sine whatever the pick-ups are.
+Source: patent ES 361967, lines 471 to 507 (sector wheel and photocell, magnetic wheel and coil, a toothed
+member along the slide, Hall effect, resolvers). Field of a toothed rack: Laplace's equation over a periodic
+boundary. Questions: the patent gives no figures. Chosen: on a screw of 5 mm pitch 100 sectors, teeth or pole
+pairs; a scale of 0.1 mm. The reference track is that of the source 142 itself and a sine whatever the
+pick-ups are.
 """
 
 from __future__ import annotations
@@ -40,10 +42,12 @@ _SCREW = LeadScrew(pitch_mm=5.0, sectors=100)
 
 @dataclass(frozen=True, slots=True)
 class Sensor:
-    """A kind of pick-up; `harmonic` is the amplitude of harmonic n = 2 k + 1 against the fundamental, by n and k.
+    """A kind of pick-up; `harmonic` is the amplitude of harmonic n = 2 k + 1 against the fundamental, by n
+    and k.
 
-    `largest`: the most that a sample can be where the fundamental is 1. `by_speed`: whether the amplitude grows with the
-    frequency of the track. `flat`: whether the top is flat, so that clipping cannot be told from it.
+    `largest`: the most that a sample can be where the fundamental is 1. `by_speed`: whether the amplitude
+    grows with the frequency of the track. `flat`: whether the top is flat, so that clipping cannot be told
+    from it.
     """
 
     what: str

@@ -1,13 +1,14 @@
 """A tape that comes through a pipe: WAV or raw samples from any recorder program, as they come.
 
-Signals: bytes in; float32 frames (n, tracks) out, full scale 1, as soon as a block of them is there. Nothing but one
-block is held, so a pipe may run for hours.
+Signals: bytes in; float32 frames (n, tracks) out, full scale 1, as soon as a block of them is there. Nothing
+but one block is held, so a pipe may run for hours.
 
-A WAV through a pipe states no length, or a wrong one: it ends where the pipe ends. Chunks before its data are read, and
-the text chunk with them; raw samples are 16 bit, little-endian, interleaved, at 48 kHz with four tracks unless told.
+A WAV through a pipe states no length, or a wrong one: it ends where the pipe ends. Chunks before its data are
+read, and the text chunk with them; raw samples are 16 bit, little-endian, interleaved, at 48 kHz with four
+tracks unless told.
 
-Source: Microsoft and IBM, Multimedia Programming Interface 1.0 (RIFF); what `arecord`, `sox` and `ffmpeg` write.
-Questions: text that stands behind the data comes too late; such a tape needs its figures by hand.
+Source: Microsoft and IBM, Multimedia Programming Interface 1.0 (RIFF); what `arecord`, `sox` and `ffmpeg`
+write. Questions: text that stands behind the data comes too late; such a tape needs its figures by hand.
 """
 
 from __future__ import annotations
@@ -85,7 +86,9 @@ class Pipe:
         order: Sequence[int] | None = None,
         samples: Samples | None = None,
     ) -> Pipe:
-        """Read the header, if there is one; raises TapeFault for what is no tape, or one whose format is not known."""
+        """Read the header, if there is one; raises TapeFault for what is no tape, or one whose format is not
+        known.
+        """
         begun = _whole(stream, 12)
         if not begun:
             raise TapeFault("nothing came through the pipe; give a WAV or raw 16-bit samples")
@@ -108,7 +111,9 @@ class Pipe:
         return None
 
     def blocks(self, frames: int = PIPE_FRAMES, first: int = 0) -> Iterator[Frames]:
-        """The tape in blocks as it comes, from frame `first` on; what is left of a frame at the end is dropped."""
+        """The tape in blocks as it comes, from frame `first` on; what is left of a frame at the end is
+        dropped.
+        """
         step, held = self._samples.frame_bytes, self._begun
         skip = first * step
         while True:

@@ -1,15 +1,16 @@
 """The recording: a stream of Motion becomes a sound file with a carrier per track.
 
-Signals: Motion in, at the format's motion rate; a sound file out (see spool.py). One block is held at a time, however long the
-tape. The tape starts and ends with standstill, the reference frequency on all tracks:
+Signals: Motion in, at the format's motion rate; a sound file out (see spool.py). One block is held at a time,
+however long the tape. The tape starts and ends with standstill, the reference frequency on all tracks:
 
     speed            ___________
            _________/           \\_________
            | dwell |  the motion |  dwell |
 
-Source: patent ES 361967, figure 2 and the sequence at the end (a section at the reference frequency is standstill).
-Questions: the patent's tape says nothing of its start; here the text chunk does. It is written before the frames, as a
-FLAC takes it nowhere else, with room for the end position, which is put in when it is known.
+Source: patent ES 361967, figure 2 and the sequence at the end (a section at the reference frequency is
+standstill). Questions: the patent's tape says nothing of its start; here the text chunk does. It is written
+before the frames, as a FLAC takes it nowhere else, with room for the end position, which is put in when it is
+known.
 """
 
 from __future__ import annotations
@@ -67,12 +68,13 @@ def record(
     progress: Progress | None = None,
     sample: str = "16",
 ) -> Recording:
-    """Record a motion as a tape: .wav (RF64 inside from 4 GiB on), .rf64, .w64, .flac or .aiff, samples as in SUBTYPES.
+    """Record a motion as a tape: .wav (RF64 inside from 4 GiB on), .rf64, .w64, .flac or .aiff, samples as in
+    SUBTYPES.
 
-    Start and end in `fmt` are those of the motion, whatever is given; without `fmt` it is the usual one for its axes.
-    `progress(done_s, total_s)` is called after each block; the total is None where a stream does not tell. Raises
-    MotionFault for a motion that is empty, of another rate, not finite or too fast, and FileFault; nothing is left under
-    the name then.
+    Start and end in `fmt` are those of the motion, whatever is given; without `fmt` it is the usual one for
+    its axes. `progress(done_s, total_s)` is called after each block; the total is None where a stream does
+    not tell. Raises MotionFault for a motion that is empty, of another rate, not finite or too fast, and
+    FileFault; nothing is left under the name then.
     """
     if fmt is None:
         stream, axes = _axes_of(stream)

@@ -1,19 +1,21 @@
-"""The chunks of a WAV file, as far as the tape needs them beside libsndfile: sizes, and what stands in a header.
+"""The chunks of a WAV file, as far as the tape needs them beside libsndfile: sizes, and what stands in a
+header.
 
-A plain WAV counts its bytes with 32 bits, so it ends at 4 GiB; what libsndfile writes beyond is lost without an error.
-An RF64 has a chunk of 64-bit sizes in front. Tapes are therefore written as RF64, and one that turned out small enough
-is made a plain WAV in place when it is finished, as EBU Tech 3306 foresees:
+A plain WAV counts its bytes with 32 bits, so it ends at 4 GiB; what libsndfile writes beyond is lost without
+an error. An RF64 has a chunk of 64-bit sizes in front. Tapes are therefore written as RF64, and one that
+turned out small enough is made a plain WAV in place when it is finished, as EBU Tech 3306 foresees:
 
     "RF64" ffffffff "WAVE" "ds64" sizes   "fmt " fffe …  "data" ffffffff  frames
     "RIFF" size     "WAVE" "JUNK" unread  "fmt " 0001 …  "data" size      frames
 
-Its format goes back to plain PCM (or float) with it: the extensible one of an RF64 names loudspeakers, which the tracks
-are not, and simple programs do not read it. The bytes that follow are then ignored, as the Windows SDK has it.
+Its format goes back to plain PCM (or float) with it: the extensible one of an RF64 names loudspeakers, which
+the tracks are not, and simple programs do not read it. The bytes that follow are then ignored, as the Windows
+SDK has it.
 
 Reading, libsndfile takes a file that ends before its data chunk does for a shorter one; `Sizes` tells.
 
-Source: EBU Tech 3306 v1.1 (RF64); Microsoft and IBM, Multimedia Programming Interface 1.0 (RIFF); Windows SDK,
-WAVEFORMATEX (cbSize) and WAVEFORMATEXTENSIBLE.
+Source: EBU Tech 3306 v1.1 (RF64); Microsoft and IBM, Multimedia Programming Interface 1.0 (RIFF); Windows
+SDK, WAVEFORMATEX (cbSize) and WAVEFORMATEXTENSIBLE.
 """
 
 from __future__ import annotations
@@ -32,7 +34,9 @@ _SEARCHED_BYTES = 65536
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """What the header says of the data chunk and what the file holds of it, bytes; where format and data start."""
+    """What the header says of the data chunk and what the file holds of it, bytes; where format and data
+    start.
+    """
 
     kind: bytes
     format_at: int
@@ -88,7 +92,9 @@ def replace_text(file: str | os.PathLike[str], old: str, new: str) -> None:
 
 
 def _name_samples_plainly(opened: BinaryIO, format_at: int) -> None:
-    """Put the kind of sample of an extensible format, the first two bytes of its GUID, where a plain one has it."""
+    """Put the kind of sample of an extensible format, the first two bytes of its GUID, where a plain one has
+    it.
+    """
     opened.seek(format_at)
     body = opened.read(40)
     if body[:2] == _EXTENSIBLE and len(body) == 40:

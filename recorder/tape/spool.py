@@ -1,12 +1,12 @@
 """The spool: a sound file being written, of whatever kind its name asks for, that cannot end as half a tape.
 
-Signals: frames float32 (n, tracks), full scale 1, in blocks in; a WAV (RF64 inside while it grows), RF64, W64, FLAC or
-AIFF out. The text goes into the header before the first frame, as a FLAC takes it nowhere else. A W64 has no place for
-a text: it goes into a file beside it, `cam.w64.json` (see `sidecar`).
+Signals: frames float32 (n, tracks), full scale 1, in blocks in; a WAV (RF64 inside while it grows), RF64,
+W64, FLAC or AIFF out. The text goes into the header before the first frame, as a FLAC takes it nowhere else.
+A W64 has no place for a text: it goes into a file beside it, `cam.w64.json` (see `sidecar`).
 
 Source: EBU Tech 3306 (RF64); Apple, Audio Interchange File Format 1.3; Sonic Foundry, Wave64 file format 2.
-Questions: a plain WAV and an AIFF count their bytes with 32 bits. The first is written as an RF64 until it is known to
-be small enough; the second has no larger kind and is refused beyond its size.
+Questions: a plain WAV and an AIFF count their bytes with 32 bits. The first is written as an RF64 until it is
+known to be small enough; the second has no larger kind and is refused beyond its size.
 """
 
 from __future__ import annotations
@@ -38,7 +38,9 @@ Frames = NDArray[np.float32]
 
 
 def medium(file: FilePath, sample: str) -> tuple[str, str]:
-    """Container and kind of sample for libsndfile, by the file's name; raises FileFault, TapeFault, ValueError."""
+    """Container and kind of sample for libsndfile, by the file's name; raises FileFault, TapeFault,
+    ValueError.
+    """
     if sample not in SUBTYPES:
         raise ValueError(f"sample is {sample!r}; it must be one of {', '.join(SUBTYPES)}")
     suffix = file.suffix.lower()
@@ -57,7 +59,9 @@ def sidecar(file: FilePath) -> FilePath:
 
 
 class Spool:
-    """A sound file that is being written; a context manager. Raises SoundFileError where the disk takes no more."""
+    """A sound file that is being written; a context manager. Raises SoundFileError where the disk takes no
+    more.
+    """
 
     def __init__(
         self,
@@ -93,7 +97,9 @@ class Spool:
             self._check_whole()
 
     def put(self, frames: Frames) -> None:
-        """Write frames; raises SoundFileRuntimeError when the disk takes only a part, TapeFault beyond an AIFF's size."""
+        """Write frames; raises SoundFileRuntimeError when the disk takes only a part, TapeFault beyond an
+        AIFF's size.
+        """
         self.frames += len(frames)
         if self._container == "AIFF" and self.frames * self._frame_bytes > LARGEST_AIFF_BYTES:
             raise TapeFault(
@@ -105,7 +111,9 @@ class Spool:
             raise soundfile.SoundFileRuntimeError("not all frames were written") from None
 
     def _check_whole(self) -> None:
-        """Raise SoundFileError unless the last frame is there: a FLAC meets the full disk only when it is closed."""
+        """Raise SoundFileError unless the last frame is there: a FLAC meets the full disk only when it is
+        closed.
+        """
         if not self.frames:
             return
         with soundfile.SoundFile(self._file) as written:
@@ -116,7 +124,9 @@ class Spool:
 
 @njit(cache=True)
 def _to_16_bit(frames):  # type: ignore[no-untyped-def]
-    """Frames (n, tracks) of full scale 1 as 16-bit samples, clipped; libsndfile takes six times as long over it."""
+    """Frames (n, tracks) of full scale 1 as 16-bit samples, clipped; libsndfile takes six times as long over
+    it.
+    """
     out = np.empty(frames.shape, np.int16)
     for i in range(frames.shape[0]):
         for j in range(frames.shape[1]):

@@ -1,10 +1,11 @@
 """The tape as it is read: tracks in blocks, with the format that its text chunk states.
 
-Signals: a WAV, RF64 or FLAC in; float32 frames (n, tracks) out, full scale 1, columns reference, X, Y, Z. One block is
-held at a time, however long the tape.
+Signals: a WAV, RF64 or FLAC in; float32 frames (n, tracks) out, full scale 1, columns reference, X, Y, Z. One
+block is held at a time, however long the tape.
 
-A tape that another program wrote or stripped has no format in it; reference and cycles per mm are then given by hand,
-and what they do not say is taken for granted: the axes are X, Y, Z … in the order of the tracks, and start at zero.
+A tape that another program wrote or stripped has no format in it; reference and cycles per mm are then given
+by hand, and what they do not say is taken for granted: the axes are X, Y, Z … in the order of the tracks, and
+start at zero.
 
 Source: patent ES 361967, figure 5 (the tracks that the machine is given).
 Questions: a file resampled by a sound program keeps its text; its own sample rate counts, not the one stated.
@@ -59,11 +60,13 @@ class Tape:
         start_mm: Sequence[float] | None = None,
         order: Sequence[int] | None = None,
     ) -> Tape:
-        """Open a tape; what is given by hand goes before what its text chunk says; a start X, Y leaves Z alone.
+        """Open a tape; what is given by hand goes before what its text chunk says; a start X, Y leaves Z
+        alone.
 
         `order`: the tracks of the file, from 1, on which reference, X, Y … are, where it is not this order.
 
-        Raises FileFault if the file cannot be read, TapeFault if it is no tape, cut short, empty or of unknown format.
+        Raises FileFault if the file cannot be read, TapeFault if it is no tape, cut short, empty or of
+        unknown format.
         """
         sound = _open_sound(FilePath(file))
         try:

@@ -1,7 +1,8 @@
-"""What a tape and its amplifiers do to the strength of a signal, each part a block-wise organ with its own memory.
+"""What a tape and its amplifiers do to the strength of a signal, each part a block-wise organ with its own
+memory.
 
-Signals: frames float32 (n, tracks), full scale 1, in and out. Every part gives the same frames however the tape is cut
-into blocks: a filter carries its state, a random part draws in the order of the frames.
+Signals: frames float32 (n, tracks), full scale 1, in and out. Every part gives the same frames however the
+tape is cut into blocks: a filter carries its state, a random part draws in the order of the frames.
 
     print-through    y(n) = x(n) + g x(n - d) + g x(n + d)      d one turn of the reel
     distortion       y = x - 4 h (x³ / peak² - 3/4 x)           h third harmonic over the fundamental, at the peak
@@ -9,8 +10,8 @@ into blocks: a filter carries its state, a random part draws in the order of the
     level            gain by tones of 0.2 to 8 Hz, on each track its own
 
 Source: IEC 60094 (tape recording: print-through, crosstalk, dropouts, distortion at reference level).
-Questions: saturation also compresses and shifts the bias; only the third harmonic is made, which is what is left of it
-in the band of the carriers' neighbours.
+Questions: saturation also compresses and shifts the bias; only the third harmonic is made, which is what is
+left of it in the band of the carriers' neighbours.
 """
 
 from __future__ import annotations
@@ -21,13 +22,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import butter, sosfilt
 
+from morfax.motion.arrays import Array
 from morfax.recorder.wear.timebase import Tones
 
 FLANK_S = 1e-4
 UNEVEN_HZ = (0.2, 8.0)
 SPREAD = 0.5  # of the logarithm of a dropout's length
 
-from morfax.motion.arrays import Array
 
 Frames = NDArray[np.float32]
 

@@ -1,20 +1,22 @@
-"""The time base of a worn transport: which moment of the programme passes the head of each track at a moment of play.
+"""The time base of a worn transport: which moment of the programme passes the head of each track at a moment
+of play.
 
 Signals: time of play in s in; programme time in s out, per track; and frames read off at those moments.
 
     programme(t, track) = (1 + speed) t + sum over tones of  a / (2 pi f) · (sin(2 pi f t + phi) - sin phi)
                           - track · (skew + weave(t))
 
-The flutter is a sum of tones, so its displacement has a closed form and never drifts; a third of the tones each lie in
-the bands of wow, flutter and scrape, evenly over the logarithm of the frequency, each at a random phase:
+The flutter is a sum of tones, so its displacement has a closed form and never drifts; a third of the tones
+each lie in the bands of wow, flutter and scrape, evenly over the logarithm of the frequency, each at a random
+phase:
 
     wow 0.5 ... 4 Hz        flutter 4 ... 100 Hz        scrape 100 ... 2000 Hz
 
 Frames between the samples are read by a windowed sinc (32 taps, Kaiser window, -85 dB up to 18 kHz of 48).
 
-Source: IEC 60386 (wow below and flutter above 4 Hz); AES6; for scrape the usual range of tape over a fixed head.
-Questions: a real spectrum has lines at capstan, pinch roller and reels; here it is even, so that no line misses the
-part of the player that it would trouble.
+Source: IEC 60386 (wow below and flutter above 4 Hz); AES6; for scrape the usual range of tape over a fixed
+head. Questions: a real spectrum has lines at capstan, pinch roller and reels; here it is even, so that no
+line misses the part of the player that it would trouble.
 """
 
 from __future__ import annotations
@@ -25,6 +27,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
+
 WOW_HZ, FLUTTER_HZ, SCRAPE_HZ, WEAVE_HZ = (0.5, 4.0), (4.0, 100.0), (100.0, 2000.0), (0.3, 20.0)
 TONES = 8  # to a band
 HALF_TAPS = 16
@@ -32,7 +36,6 @@ KAISER_BETA = 8.5
 PARTS = 512  # of a sample, between which the filter is interpolated
 KNOT_FRAMES = 8  # the slow curves are laid through every eighth frame
 
-from morfax.motion.arrays import Array
 
 Frames = NDArray[np.float32]
 

@@ -1,17 +1,18 @@
 """The transport: what a real recorder, its tape and the years do to a tape.
 
-Signals: a sound file in, the worn sound file out, in blocks of constant size; the text chunk goes along. Each part
-stands by itself and does nothing at its default; what a maker states of a kind of machine is a named set.
+Signals: a sound file in, the worn sound file out, in blocks of constant size; the text chunk goes along. Each
+part stands by itself and does nothing at its default; what a maker states of a kind of machine is a named
+set.
 
     programme ─► distortion ─► crosstalk ─► print-through ─► dropouts ─► head (speed, flutter, skew)
               ─► level, unevenness ─► bandwidth ─► hum, DC, noise ─► order, polarity ─► clipping ─► worn tape
 
-The worn tape starts at `cut_start_s` of the programme and ends `cut_end_s` before its end. All chance comes from one
-seed, part by part, so that a part is the same whatever the others are, and however long the blocks.
+The worn tape starts at `cut_start_s` of the programme and ends `cut_end_s` before its end. All chance comes
+from one seed, part by part, so that a part is the same whatever the others are, and however long the blocks.
 
-Source: patent ES 361967 (the tape goes from one machine to another); figures and their sources: docs/transport.md.
-Questions: wow and flutter are given unweighted, root mean square. A head's azimuth makes skew that grows evenly from
-track to track; weave is the tape wandering in its guides, in the same proportion.
+Source: patent ES 361967 (the tape goes from one machine to another); figures and their sources:
+docs/transport.md. Questions: wow and flutter are given unweighted, root mean square. A head's azimuth makes
+skew that grows evenly from track to track; weave is the tape wandering in its guides, in the same proportion.
 """
 
 from __future__ import annotations
@@ -126,7 +127,9 @@ def age(
     sample: str = "16",
     progress: Progress | None = None,
 ) -> Aged:
-    """Wear a tape; raises FileFault and TapeFault where it cannot be read or written, ValueError for a bad setting."""
+    """Wear a tape; raises FileFault and TapeFault where it cannot be read or written, ValueError for a bad
+    setting.
+    """
     source, target = FilePath(file), FilePath(worn)
     try:
         with soundfile.SoundFile(source) as sound:

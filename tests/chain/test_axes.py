@@ -1,4 +1,6 @@
-"""Further axes the whole way: columns of a path file, tracks of a tape, the machine's own screws, columns again."""
+"""Further axes the whole way: columns of a path file, tracks of a tape, the machine's own screws, columns
+again.
+"""
 
 from __future__ import annotations
 

@@ -1,7 +1,9 @@
-"""The whole way round: a drawing is traced, the motion recorded, the tape played, and the played contour is the drawn one.
+"""The whole way round: a drawing is traced, the motion recorded, the tape played, and the played contour is
+the drawn one.
 
-Bounds of drawings are the issue's; where it is measured to be far better, the bound stands at about one and a half times what was measured (in brackets,
-RMS/largest, um), so that a change for the worse is seen. Distances are exact, between polylines, of `motion.contour`.
+Bounds of drawings are the issue's; where it is measured to be far better, the bound stands at about one and a
+half times what was measured (in brackets, RMS/largest, um), so that a change for the worse is seen. Distances
+are exact, between polylines, of `motion.contour`.
 """
 
 from __future__ import annotations
@@ -98,7 +100,9 @@ def test_a_sample_comes_off_the_machine_as_it_was_drawn(tmp_path: FilePath, case
 
 
 def test_a_drawn_program_comes_off_the_machine_in_order(tmp_path: FilePath) -> None:
-    """Lead-in, contour, tick: one ordered path, stopped within 50 um of the tick's centre (issue), as the tape is played."""
+    """Lead-in, contour, tick: one ordered path, stopped within 50 um of the tick's centre (issue), as the
+    tape is played.
+    """
     truth = np.loadtxt(SAMPLES / "program.csv", delimiter=",", skiprows=1)
     lead, plate = (truth[truth[:, 0] == k, 1:] for k in (0, 1))
     run = trace(Drawing.open(SAMPLES / "program.png"))
@@ -234,7 +238,9 @@ def star() -> Trace:
 
 
 def worn(file: FilePath, flutter: float, noise_db: float) -> FilePath:
-    """A tape as a tape machine gives it back: flutter of 8 Hz on all tracks together, noise below the carrier."""
+    """A tape as a tape machine gives it back: flutter of 8 Hz on all tracks together, noise below the
+    carrier.
+    """
     with soundfile.SoundFile(file) as sound:
         frames, rate_hz, text = sound.read(), sound.samplerate, sound.comment
     w = 2 * np.pi * 8.0

@@ -70,7 +70,9 @@ def _eased(share: np.ndarray) -> np.ndarray:
 
 @pytest.fixture(scope="session")
 def path_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A path file: once round a circle of 10 mm about 30,30 in three seconds, with the tool going down and up."""
+    """A path file: once round a circle of 10 mm about 30,30 in three seconds, with the tool going down and
+    up.
+    """
     t_s = np.arange(0, 4.001, 0.01)
     z_mm = 2 - 7 * (_eased(t_s / 0.5) - _eased((t_s - 3.5) / 0.5))
     turn = 2 * np.pi * _eased((t_s - 0.5) / 3)
@@ -82,7 +84,9 @@ def path_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def hasty_file(here: Path) -> Path:
-    """A path file: X from rest to 90 mm/s at 10 m/s², on, and to rest; twice what the motors of the machine can."""
+    """A path file: X from rest to 90 mm/s at 10 m/s², on, and to rest; twice what the motors of the machine
+    can.
+    """
     t_s = np.arange(0, 0.06, 1e-3)
     x_mm = np.where(t_s < 9e-3, 5e3 * t_s**2, 0.405 + 90 * (t_s - 9e-3))
     there = np.r_[x_mm, 2 * x_mm[-1] - x_mm[-2::-1]]

@@ -1,4 +1,6 @@
-"""Tapes that are none, or not as they should be: one line that says what was wrong and what to do, an exit code, no file."""
+"""Tapes that are none, or not as they should be: one line that says what was wrong and what to do, an exit
+code, no file.
+"""
 
 from __future__ import annotations
 
@@ -104,7 +106,9 @@ def test_a_tape_at_another_speed_says_which_reference_it_has(
 def test_a_tape_backwards_is_no_other_tape_but_the_tool_goes_up(
     morfax: Morfax, here: Path, frames: np.ndarray
 ) -> None:
-    """Backwards every track turns the other way, so it ends where it should: only Z, which rises, is to be seen."""
+    """Backwards every track turns the other way, so it ends where it should: only Z, which rises, is to be
+    seen.
+    """
     answer = morfax("play", written(frames[::-1].copy(), tape_text(here, frames)), "-o", "bad.csv")
     assert answer.exit_code == 0 and "backwards" in answer.err
     assert "backwards" not in morfax("play", written(frames, tape_text(here, frames)), "-o", "good.csv").err

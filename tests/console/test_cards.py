@@ -1,4 +1,6 @@
-"""--card by its behaviour: what it sets is what the tool does, and a mistake on it stops the verb before anything moves."""
+"""--card by its behaviour: what it sets is what the tool does, and a mistake on it stops the verb before
+anything moves.
+"""
 
 from __future__ import annotations
 
@@ -80,7 +82,9 @@ def test_run_takes_a_card(morfax: Morfax, here: Path) -> None:
 
 
 def test_passes_at_a_stop_are_the_depths_of_the_line_that_begins_there(morfax: Morfax, here: Path) -> None:
-    """The lead line's tick is stop 1: the plate is run at 1 mm and then at 2.5 mm, whatever the card asks for elsewhere."""
+    """The lead line's tick is stop 1: the plate is run at 1 mm and then at 2.5 mm, whatever the card asks for
+    elsewhere.
+    """
     Path("part.toml").write_text('depth = "4mm"\n[[stop]]\nnumber = 1\npasses = ["1mm", "2.5mm"]\n')
     answer = morfax("trace", SAMPLES / "program.png", "--card", "part.toml", "-o", "part.csv", "--quiet")
     assert answer.exit_code == 0, answer.err

@@ -1,4 +1,6 @@
-"""kill -9 at random moments of every verb that writes: no half file under a final name, and the next run is not disturbed."""
+"""kill -9 at random moments of every verb that writes: no half file under a final name, and the next run is
+not disturbed.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""The drawing as the program, by the command line's behaviour: reference point, turns, stops, overrides, the operator at a terminal."""
+"""The drawing as the program, by the command line's behaviour: reference point, turns, stops, overrides, the
+operator at a terminal.
+"""
 
 from __future__ import annotations
 
@@ -82,7 +84,9 @@ def test_a_turn_at_a_junction_that_is_not_there_is_told_of(morfax: Morfax, here:
 def test_a_turn_to_a_side_to_which_no_line_leads_is_told_of(
     morfax: Morfax, here: Path, round_about: str
 ) -> None:
-    """The guide line leads off inward: to the right of the way round clockwise, for which the head turns left from the lead line."""
+    """The guide line leads off inward: to the right of the way round clockwise, for which the head turns left
+    from the lead line.
+    """
     inward = "left" if round_about == "right" else "right"
     Path("in.toml").write_text(f'turns = ["{round_about}", "{inward}"]\n')
     assert "no line leads off" not in morfax("trace", PROGRAM, "-o", "in.csv", "--card", "in.toml").err

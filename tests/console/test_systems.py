@@ -1,4 +1,6 @@
-"""compare --systems: one drawing on every system, the table, the picture, the report, and a system that refuses."""
+"""compare --systems: one drawing on every system, the table, the picture, the report, and a system that
+refuses.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,8 @@ from morfax.recorder import media
 from tests.console.conftest import SAMPLES, Morfax
 
 UM = 1e-3
-# furthest from the traced path: 0.5 um asked of the tape; one step and a half; 2 um and the servo; 10 um of fit and 4
+# furthest from the traced path: 0.5 um asked of the tape; one step and a half; 2 um and the servo; 10 um of
+# fit and 4
 FURTHEST_MM = {"wav": 3 * UM, "steps": 15 * UM, "cubic": 4 * UM, "ngc": 14 * UM}
 
 

@@ -20,7 +20,9 @@ RATE_HZ = 48000
 def test_a_path_written_as_it_comes_is_the_path_written_whole(
     morfax: Morfax, here: Path, tape_file: Path
 ) -> None:
-    """With a picture the path is held whole; without one it goes to the file piece by piece: byte for byte the same, and so are the figures."""
+    """With a picture the path is held whole; without one it goes to the file piece by piece: byte for byte
+    the same, and so are the figures.
+    """
     piece_by_piece = morfax("play", tape_file, "-o", "pieces.csv", "--json").figures
     whole = morfax("play", tape_file, "-o", "whole.csv", "-o", "whole.svg", "--json").figures
     assert Path("pieces.csv").read_bytes() == Path("whole.csv").read_bytes()

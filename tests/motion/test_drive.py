@@ -21,14 +21,16 @@ def speeds_mm_s(drive: Drive, demand_mm_s: float, steps: int) -> np.ndarray:
 
 
 def test_a_step_of_demand_is_answered_by_the_lag() -> None:
-    # 1 mm/s within the lag asks for 1 / 0.001 = 1000 mm/s², under the limit: the drive is linear, and the step exact
+    # 1 mm/s within the lag asks for 1 / 0.001 = 1000 mm/s², under the limit: the drive is linear, and the
+    # step exact
     drive, t_s = Drive(), DT_S * np.arange(1, 61)
     closed_form = 1.0 - np.exp(-t_s / drive.lag_s)
     assert np.abs(speeds_mm_s(drive, 1.0, 60) - closed_form).max() < ROUNDING
 
 
 def test_a_large_step_is_answered_by_the_limit_and_then_the_lag() -> None:
-    # with v' = (V - v) / lag limited to a, the limit ends at V - a lag, in closed form a straight line until then
+    # with v' = (V - v) / lag limited to a, the limit ends at V - a lag, in closed form a straight line until
+    # then
     drive, demand = Drive(lag_s=0.01, acceleration_mm_s2=1000.0), 50.0
     speed, t_s = speeds_mm_s(drive, demand, 600), DT_S * np.arange(1, 601)
     straight = t_s <= (demand - drive.acceleration_mm_s2 * drive.lag_s) / drive.acceleration_mm_s2

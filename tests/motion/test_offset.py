@@ -9,6 +9,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from morfax.motion.arrays import Array
 from morfax.motion.contour import distance
 from morfax.motion.feed import run_along
 from morfax.motion.motion import MOTION_RATE_HZ
@@ -17,14 +18,15 @@ from morfax.motion.polyline import Nearest
 
 shapely = pytest.importorskip("shapely")
 
-from morfax.motion.arrays import Array
 
 UM = 1e-3  # mm
 EXACT_MM = 0.5 * UM  # places known to 0.05 um, nearer by 0.2 um at most; asked: 1 um
 
 
 def circle(radius_mm: float, noise_mm: float = 0.0, seed: int = 0) -> Array:
-    """A circle as a head would run it: a place every 2 um, with waves of 0.5 to 3 mm as a scan's noise makes them."""
+    """A circle as a head would run it: a place every 2 um, with waves of 0.5 to 3 mm as a scan's noise makes
+    them.
+    """
     angle = np.linspace(0, math.tau, round(math.tau * radius_mm / 0.002) + 1)
     rng, radius = np.random.default_rng(seed), np.full_like(angle, radius_mm)
     for waves in range(20, 120, 10):
@@ -191,7 +193,9 @@ def test_a_kink_of_some_um_does_not_part_the_way() -> None:
 
 @pytest.mark.parametrize("radius_mm", [0.5, 2.0, 3.0, 8.0])
 def test_a_kink_among_short_steps_is_no_end_of_the_way(radius_mm: float) -> None:
-    """Six degrees towards the tool, and 0.03 mm of line beside them: the ways beside the vertex do not meet where it would have them."""
+    """Six degrees towards the tool, and 0.03 mm of line beside them: the ways beside the vertex do not meet
+    where it would have them.
+    """
     half = np.r_[np.full(620, 186.3 / 620), -6.3]  # degrees that each step turns; twice that closes
     heading = np.radians(np.cumsum(np.r_[half, half]))
     line = np.cumsum(0.03 * np.column_stack([np.cos(heading), np.sin(heading)]), axis=0)

@@ -1,4 +1,6 @@
-"""Path files: what is written reads back, what others wrote is understood, what is none is refused with its line."""
+"""Path files: what is written reads back, what others wrote is understood, what is none is refused with its
+line.
+"""
 
 from pathlib import Path as FilePath
 

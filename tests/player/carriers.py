@@ -8,13 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
+
 UM = 1e-3  # mm
 RATE_HZ = 48000
 REFERENCE_HZ = 6000.0
 CYCLES_PER_MM = 20.0
 MOTION_RATE_HZ = 6000.0
 
-from morfax.motion.arrays import Array
 
 Course = Callable[[Array], Array]  # times in s -> positions (n, 3) in mm
 
@@ -51,7 +52,9 @@ def tracks(course: Course, seconds: float, transport: Transport | None = None) -
 
 
 def swing(t_s: Array) -> Array:
-    """Stand for 0.2 s, then round a circle of 5 mm that is gone into smoothly, Z down by 1 mm; 50 mm/s, 0.5 m/s²."""
+    """Stand for 0.2 s, then round a circle of 5 mm that is gone into smoothly, Z down by 1 mm; 50 mm/s, 0.5
+    m/s².
+    """
     t = np.clip(t_s - 0.2, 0, None)
     grown = 1 - np.exp(-((t / 0.3) ** 3))
     return np.column_stack([5 * grown * np.sin(8 * t), 5 * grown * np.cos(8 * t), -grown])
@@ -60,7 +63,9 @@ def swing(t_s: Array) -> Array:
 def along(
     t_s: Array, length_mm: float, speed_mm_s: float, acceleration_mm_s2: float, start_s: float = 0.0
 ) -> Array:
-    """Way in mm along a path started and stopped with a constant acceleration: 0 before, the whole length after."""
+    """Way in mm along a path started and stopped with a constant acceleration: 0 before, the whole length
+    after.
+    """
     rise_s = speed_mm_s / acceleration_mm_s2
     t = np.clip(t_s - start_s, 0, length_mm / speed_mm_s + rise_s)
     left = length_mm / speed_mm_s + rise_s - t

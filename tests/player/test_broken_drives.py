@@ -1,4 +1,6 @@
-"""Every control under the monitor: a sound drive passes, a broken one is found in time, and one wide limit misses it."""
+"""Every control under the monitor: a sound drive passes, a broken one is found in time, and one wide limit
+misses it.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +26,9 @@ SPEED_MM_S, LENGTH_MM, REST_S = 1.0, 0.15, 0.3
 
 @dataclass(frozen=True)
 class Rig:
-    """A control: suffix of its programs, one limit that would do for all its speeds, what to break, how soon it is found."""
+    """A control: suffix of its programs, one limit that would do for all its speeds, what to break, how soon
+    it is found.
+    """
 
     suffix: str
     wide_mm: float
@@ -36,7 +40,8 @@ RIGS = {
         ".wav",
         0.2,  # the range of the comparator
         {
-            # The integrator makes up for a fifth of the gain and for friction below 5.4 mm/s: nothing is behind then.
+            # The integrator makes up for a fifth of the gain and for friction below 5.4 mm/s: nothing is
+            # behind then.
             "friction": (Condition(friction_mm_s=6.0), 0.03),
             "lost gain": (Condition(gain_share=0.1), 0.06),
             "stuck axis": (Condition(stuck=True), 0.03),
@@ -45,7 +50,8 @@ RIGS = {
     ),
     "steps": Rig(
         ".steps",
-        # A motor loses steps at any speed alike, so half a step is the limit for all; this is what a servo would want.
+        # A motor loses steps at any speed alike, so half a step is the limit for all; this is what a servo
+        # would want.
         0.2,
         {
             "friction": (MotorCondition(friction_share=1.0), 0.02),

@@ -1,4 +1,6 @@
-"""The discriminator against closed forms: phases of known courses, whatever the tape's level, start phase and speed."""
+"""The discriminator against closed forms: phases of known courses, whatever the tape's level, start phase and
+speed.
+"""
 
 from __future__ import annotations
 
@@ -59,7 +61,8 @@ def test_a_clean_tape_is_read_to_a_hundred_thousandth_of_a_cycle() -> None:
 
 
 def test_noise_of_40_db_costs_what_the_filter_lets_through() -> None:
-    # Noise in an eighth of the band, of two tracks: sqrt(2 · 1e-4 / 16 · 2) / 2 pi / sqrt(2)… = 7.9e-4 cycle at most.
+    # Noise in an eighth of the band, of two tracks: sqrt(2 · 1e-4 / 16 · 2) / 2 pi / sqrt(2)… = 7.9e-4 cycle
+    # at most.
     rms = np.sqrt(np.mean(error_cycles(Transport(noise_db=40)) ** 2))
     assert 6.5e-4 < rms < 8.0e-4
 
@@ -113,8 +116,8 @@ def test_dc_and_second_harmonic_are_kept_out() -> None:
     frames = tracks(swing, SECONDS)
     spoilt = frames + np.float32(0.05) + 0.05 * (2 * frames**2 - 0.25)
     error = (decode(spoilt).cycles - decode(frames).cycles)[ENDS]
-    # DC of a tenth of the carrier at -83 dB: 1e-5 cycle. A harmonic of 2.5 %, that of a track moving at -40 mm/s comes
-    # within 4.4 kHz, where the filter leaves 1.5 %: 6e-5 cycle.
+    # DC of a tenth of the carrier at -83 dB: 1e-5 cycle. A harmonic of 2.5 %, that of a track moving at -40
+    # mm/s comes within 4.4 kHz, where the filter leaves 1.5 %: 6e-5 cycle.
     assert np.abs(error).max() < 8e-5
 
 

@@ -42,7 +42,8 @@ def test_an_even_motion_is_bridged_exactly() -> None:
 
 
 def test_the_bound_is_where_another_count_could_be_meant() -> None:
-    # There and back with the acceleration A in the gap T: A T² / 4 of travel, against one cycle less the margin.
+    # There and back with the acceleration A in the gap T: A T² / 4 of travel, against one cycle less the
+    # margin.
     limit_s = longest_s(5000, 20)
     assert limit_s == pytest.approx(6.0e-3, abs=1e-5)
     rate_hz, acceleration = 6000, 5000 * 20 / 6000**2

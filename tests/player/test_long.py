@@ -1,4 +1,6 @@
-"""Tapes of three and six hours, the second beyond 4 GiB: written and played in bounded memory. Only with MORFAX_SOAK=1."""
+"""Tapes of three and six hours, the second beyond 4 GiB: written and played in bounded memory. Only with
+MORFAX_SOAK=1.
+"""
 
 from __future__ import annotations
 

@@ -120,7 +120,8 @@ LOCKS = (PhaseLock(), PhaseLock(150, 0.707), PhaseLock(drive=Drive(lag_s=0.004, 
 def test_a_sound_drive_passes_the_monitor_at_any_start_stop_and_turn_at_once(
     lock: PhaseLock, share: float, onto: float, noise_um: float
 ) -> None:
-    # From rest to the fastest speed that it can be turned round from within its range, and at once to another one.
+    # From rest to the fastest speed that it can be turned round from within its range, and at once to another
+    # one.
     speed = share * np.sqrt(lock.range_cycles * Q_MM * lock.drive.acceleration_mm_s2 / 2)
     t_s = np.arange(4800) * DT_S
     told = speed * (np.clip(t_s - 0.1, 0, 0.3) + onto * np.clip(t_s - 0.4, 0, None))[:, None]

@@ -24,7 +24,9 @@ def jump(speed_mm_s: float) -> np.ndarray:
 
 
 def turn(speed_mm_s: float) -> np.ndarray:
-    """X runs there and back, from a speed to as much the other way, after a start and before an end without a jump."""
+    """X runs there and back, from a speed to as much the other way, after a start and before an end without a
+    jump.
+    """
     speed = speed_mm_s * np.clip(np.minimum(T_S, T_S[::-1]) / 0.1, 0, 1) * np.where(T_S < 0.3, 1, -1)
     return np.column_stack([np.cumsum(speed) / MOTION_RATE_HZ, 0 * T_S])
 

@@ -1,4 +1,6 @@
-"""What is set at the machine: zero, override and motors, each by what it does to the played path, and where it faults."""
+"""What is set at the machine: zero, override and motors, each by what it does to the played path, and where
+it faults.
+"""
 
 from __future__ import annotations
 
@@ -64,7 +66,8 @@ def test_an_override_changes_the_time_and_not_the_path(tape: Path, override: flo
     as_recorded, played = thin(plain), thin(run)
     assert played.t_s[-1] == pytest.approx(as_recorded.t_s[-1] / override, rel=1e-9)
     assert run.duration_s == pytest.approx(plain.duration_s / override)
-    # 10 mm/s round 10 mm is 10 mm/s², 10 nm of following, four times that at 200 %; the rest is the thinning, 0.2 um
+    # 10 mm/s round 10 mm is 10 mm/s², 10 nm of following, four times that at 200 %; the rest is the thinning,
+    # 0.2 um
     assert distance(played, as_recorded).hausdorff_mm < 1 * UM
     assert run.end_error_mm is not None and np.abs(run.end_error_mm).max() < 10 * REST_MM
 

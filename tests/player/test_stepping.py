@@ -1,4 +1,6 @@
-"""The step control: decoder, ring memory, pulses, and motors that lose steps when asked for more than they can do."""
+"""The step control: decoder, ring memory, pulses, and motors that lose steps when asked for more than they
+can do.
+"""
 
 from __future__ import annotations
 

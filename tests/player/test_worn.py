@@ -1,4 +1,6 @@
-"""Trust: a worn tape is played right within a twentieth of a cycle, or it is a fault. Long with MORFAX_SOAK=1."""
+"""Trust: a worn tape is played right within a twentieth of a cycle, or it is a fault. Long with
+MORFAX_SOAK=1.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""The block recorder: the fewest lines and arcs within a tolerance, tangent where smooth, corners kept; RS-274 text."""
+"""The block recorder: the fewest lines and arcs within a tolerance, tangent where smooth, corners kept;
+RS-274 text.
+"""
 
 from __future__ import annotations
 

@@ -40,7 +40,8 @@ def test_samples_are_the_sine_of_reference_plus_displacement() -> None:
     t_s = np.arange(len(frames)) / 48_000
     phase = (6000 * t_s)[:, None] + np.column_stack([0 * t_s, 20 * at(t_s)])
     error = np.abs(frames - np.sin(2 * np.pi * phase))
-    # not the first and last periods: before and after them the screws stand, so that they start and stop there
+    # not the first and last periods: before and after them the screws stand, so that they start and stop
+    # there
     assert error[8:-16].max() <= SINE + 5e-8
 
 
@@ -70,7 +71,8 @@ def test_standstill_is_the_reference_frequency() -> None:
 
 
 def test_nothing_drifts_in_ten_hours() -> None:
-    # one period after ten hours of a reference that is no whole fraction of the motion rate: float64 keeps 2e-8 cycle
+    # one period after ten hours of a reference that is no whole fraction of the motion rate: float64 keeps
+    # 2e-8 cycle
     first_period, reference_cycles = 10 * 3600 * 6000, 6001.37 / 6000
     frames = np.empty((8, 2), np.float32)
     carrier._write(np.zeros((4, 1)), first_period, reference_cycles, 1.0, frames)

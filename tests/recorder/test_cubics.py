@@ -70,7 +70,8 @@ def test_the_tool_goes_down_and_up(tmp_path: FilePath) -> None:
 
 
 @given(SAMPLES, st.sampled_from([(16, 1), (32, 1), (64, 4), (16, 4), (256, 2)]))
-def test_ends_and_slopes_meet_to_the_digit(rows: list, steps: tuple[int, int]) -> None:  # type: ignore[type-arg]
+# type: ignore[type-arg]
+def test_ends_and_slopes_meet_to_the_digit(rows: list, steps: tuple[int, int]) -> None:
     """Path continuous in slope across intervals, whatever the samples; and each sample met exactly."""
     from morfax.player.cubics.interpolator import ends, slopes
 

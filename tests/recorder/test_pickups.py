@@ -1,4 +1,6 @@
-"""The kinds of pick-up: their waves against closed forms, no aliases, the coil's amplitude, and the way to the machine."""
+"""The kinds of pick-up: their waves against closed forms, no aliases, the coil's amplitude, and the way to
+the machine.
+"""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -102,7 +104,9 @@ def test_the_plain_kernel_is_the_compiled_one(name: str, monkeypatch: pytest.Mon
 
 
 def reversals(largest_mm_s: float, acceleration_mm_s2: float = 4500.0) -> np.ndarray:
-    """Two seconds at an even speed, then two to and fro as hard as the motors can; gently from rest and to rest."""
+    """Two seconds at an even speed, then two to and fro as hard as the motors can; gently from rest and to
+    rest.
+    """
     t_s = np.arange(4 * RATE_HZ) / RATE_HZ
     period_s = 4 * largest_mm_s / acceleration_mm_s2
     to_and_fro = 2 * np.abs(2 * ((t_s / period_s) % 1) - 1) - 1
@@ -128,10 +132,12 @@ def test_the_machine_plays_back_what_was_recorded(name: str, tmp_path: Path) -> 
     assert not playback.bridged
     # the third harmonic lies 80 dB down in the discriminator, 1e-4 · 1/3 / 2 pi of a cycle: 5e-6 of 0.1 mm
     assert np.abs(played - positions)[steady].max() < 2e-5
-    # at a reversal the motors are at their limit, 0.03 mm behind, and there every pick-up is as good as another
+    # at a reversal the motors are at their limit, 0.03 mm behind, and there every pick-up is as good as
+    # another
     record(Motion(positions), tmp_path / "b.wav")
     as_sine = join(play(tmp_path / "b.wav")).positions_mm[RATE_HZ : RATE_HZ + len(positions)]
-    # (0.5 um of it: the phase of a scale, of twice the pitch, is bent half as much, and rounded less by the low-pass)
+    # (0.5 um of it: the phase of a scale, of twice the pitch, is bent half as much, and rounded less by the
+    # low-pass)
     assert np.abs(played - as_sine).max() < 6e-4
 
 

@@ -17,8 +17,9 @@ from morfax.recorder.tape import riff
 from morfax.recorder.tape.tape import Tape, TapeFormat, record
 
 RATE_HZ = 6000
-# a step of 16 bit at half level is 1/16384 of the carrier; half of it turns a track by 5e-6 cycle, two tracks by 1e-5,
-# and the test's own transform, which also takes the noise from all other frequencies, by as much again
+# a step of 16 bit at half level is 1/16384 of the carrier; half of it turns a track by 5e-6 cycle, two tracks
+# by 1e-5, and the test's own transform, which also takes the noise from all other frequencies, by as much
+# again
 QUANTISED_CYCLES = 2e-5
 
 

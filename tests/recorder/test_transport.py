@@ -55,7 +55,8 @@ def test_the_time_base_is_what_it_says() -> None:
     for track in (0, 3):
         at = deck.timebase.programme_s(t_s) - track * deck.timebase.lag_s(t_s)
         expected = 0.5 * np.sin(2 * np.pi * HZ * at)
-        # laid through every eighth frame: scrape of 0.1 % at 2 kHz is 40 ns of bend, 1e-3 of a cycle at the most
+        # laid through every eighth frame: scrape of 0.1 % at 2 kHz is 40 ns of bend, 1e-3 of a cycle at the
+        # most
         assert np.abs(out[RATE_HZ : 3 * RATE_HZ, track] - expected).max() < 0.01
     speed = np.diff(deck.timebase.programme_s(np.arange(10 * RATE_HZ) / RATE_HZ)) * RATE_HZ
     assert speed.mean() == pytest.approx(1.015, abs=3e-4)  # ten seconds hold few periods of the slowest tone

@@ -29,7 +29,9 @@ def test_the_limits_of_the_monitor(vectors: Vectors) -> None:
 
 
 def speeds_of(plan: list[list[Any]]) -> tuple[list[int], list[int]]:
-    """A plan of ramps and constant pieces as speeds, and the increments after which each later one is asked for."""
+    """A plan of ramps and constant pieces as speeds, and the increments after which each later one is asked
+    for.
+    """
     speeds, changes_at, speed, travelled = [], [], 0, 0
     for mode, length in plan:
         if mode in ("up", "down"):
@@ -54,7 +56,8 @@ def test_where_the_ramp_down_starts(vectors: Vectors) -> None:
 
 
 def test_claim_1_a_servo_in_a_closed_loop_stepped_by_a_program() -> None:
-    # demand, transducer, comparator, error and servo: the error goes to nothing, and a load that is pushed comes back
+    # demand, transducer, comparator, error and servo: the error goes to nothing, and a load that is pushed
+    # comes back
     demand = np.vstack([positions_mm([0.0], [8.0], 20.0), np.full((6_000, 1), 8.0)])
     actual = PositionServos(demand[0]).follow(demand)
     assert abs(demand[-1, 0] - actual[-1, 0]) <= PositionServo().increment_mm

@@ -1,7 +1,7 @@
 """Patent ES 361967 (Morfax, 1969): one test for each of its 17 claims, on the running system.
 
-`docs/claims-morfax.md` has the table from claim to test. The sheet is what the patent's draughtsman draws: a reference point, a lead line with a stop mark
-just before the contour, the contour, a stop mark on it.
+`docs/claims-morfax.md` has the table from claim to test. The sheet is what the patent's draughtsman draws: a
+reference point, a lead line with a stop mark just before the contour, the contour, a stop mark on it.
 
        ┼──────┼──── contour ──┼── and back          drawn with 0.5 mm, scanned at 300 dpi with noise
 
@@ -48,12 +48,10 @@ REFERENCE_HZ, Q_MM = 6000.0, 0.05
 REFERENCE, X, Y, Z = range(4)
 CENTRE_MM, RADIUS_MM, SPEED_MM_S, DEPTH_MM = (40.0, 30.0), 10.0, 10.0, 5.0
 COUNTED_S = 0.05
-COUNTED_HZ = (
-    0.6  # a crossing is placed to 0.015 of a cycle where eight samples make one: two of them over 0.05 s
-)
-AT_REST_CYCLES = (
-    2e-5  # 16 bit: a step is 3e-5 of full scale, and a carrier's zero is passed at pi of it per cycle
-)
+# a crossing is placed to 0.015 of a cycle where eight samples make one: two of them over 0.05 s
+COUNTED_HZ = 0.6
+# 16 bit: a step is 3e-5 of full scale, and a carrier's zero is passed at pi of it per cycle
+AT_REST_CYCLES = 2e-5
 
 
 @pytest.fixture(scope="module")
@@ -102,7 +100,9 @@ def counted_hz(samples: Array) -> float:
 
 
 def phase_apart(tape: Taped, number: int, from_s: float, to_s: float, window_s: float = 0.01) -> float:
-    """How far the phase of a track goes against the reference's within a time of the motion, cycles; of means over a window."""
+    """How far the phase of a track goes against the reference's within a time of the motion, cycles; of means
+    over a window.
+    """
     span = slice(round((from_s + 1) * RATE_HZ), round((to_s + 1) * RATE_HZ))
     turning = np.exp(-2j * np.pi * REFERENCE_HZ * np.arange(span.start, span.stop) / RATE_HZ)
     window = round(window_s * RATE_HZ)  # whole cycles: the mirror image falls out
@@ -200,7 +200,9 @@ def test_claim_3_the_panel_s_switches_put_the_tool_s_movements_on_a_z_track(run:
 def test_claim_4_a_member_on_the_screw_and_one_on_the_reference_motor_make_the_signal(
     pickup: str, tmp_path: Path
 ) -> None:
-    """Photoelectric or inductive: a turn of the screw shifts the phase by as many cycles as the wheel has sectors."""
+    """Photoelectric or inductive: a turn of the screw shifts the phase by as many cycles as the wheel has
+    sectors.
+    """
     screw, turns_per_s = LeadScrew(pitch_mm=5.0, sectors=100), 2.0
     fmt = TapeFormat(cycles_per_mm=screw.cycles_per_mm, pickup=pickup, dwell_s=0.0)
     for sense in (1, -1):
@@ -285,7 +287,9 @@ def test_claim_8_what_is_recorded_is_the_turning_of_the_follower_s_own_motors(
 
 
 def test_claim_9_each_drive_turns_a_member_beside_one_of_constant_speed(tmp_path: Path) -> None:
-    """The shift is the speed of the screw times the sectors of the wheel; with twice the sectors it is twice as much."""
+    """The shift is the speed of the screw times the sectors of the wheel; with twice the sectors it is twice
+    as much.
+    """
     for sectors in (40, 80):
         screw = LeadScrew(pitch_mm=5.0, sectors=sectors)
         places = 5.0 * np.arange(12_000) / MOTION_RATE_HZ  # one turn a second
@@ -422,7 +426,9 @@ def test_claim_15_each_axis_moves_as_its_frequency_is_above_or_below(tmp_path: P
 
 
 def test_claim_16_the_reference_from_the_tape_turns_the_wheel_of_every_axis(tmp_path: Path) -> None:
-    """A tape on which everything is 2 % high means the same motion; one whose reference alone is 20 Hz off moves all axes."""
+    """A tape on which everything is 2 % high means the same motion; one whose reference alone is 20 Hz off
+    moves all axes.
+    """
     high = tones(tmp_path / "a.wav", 6120, 6120 + 204, 6120 - 102, 6120)
     played = join(play(high, reference_hz=6000, cycles_per_mm=20)).positions_mm
     assert (played[11_000] - played[5_000]).tolist() == pytest.approx([10.2, -5.1, 0], abs=1 * UM)
@@ -432,7 +438,9 @@ def test_claim_16_the_reference_from_the_tape_turns_the_wheel_of_every_axis(tmp_
 
 
 def test_claim_17_the_motor_turns_a_member_whose_signal_is_fed_back(tmp_path: Path) -> None:
-    """A loop makes up for a motor that has lost gain and is held by friction; one that does not turn is found out."""
+    """A loop makes up for a motor that has lost gain and is held by friction; one that does not turn is found
+    out.
+    """
     way = positions_mm([0.0], [2 * math.pi * RADIUS_MM], SPEED_MM_S)[:, 0] / RADIUS_MM
     circle = RADIUS_MM * np.column_stack([np.sin(way), 1 - np.cos(way), 0 * way])
     record(Motion(circle), tmp_path / "a.wav")

@@ -1,6 +1,8 @@
-"""Patent from US application 631 214 (Pratt & Whitney, 1967): its worked examples, and one test for each claim.
+"""Patent from US application 631 214 (Pratt & Whitney, 1967): its worked examples, and one test for each
+claim.
 
-`docs/claims-pratt-whitney.md` has the table from claim to test. Pulses are of 0.0005 in, position counts of 0.001 in.
+`docs/claims-pratt-whitney.md` has the table from claim to test. Pulses are of 0.0005 in, position counts of
+0.001 in.
 """
 
 from __future__ import annotations
@@ -239,7 +241,8 @@ def test_claim_9_the_largest_error_is_found_whichever_axis_has_it() -> None:
 
 
 def test_claim_10_the_constant_is_added_to_the_largest_error() -> None:
-    # one axis from a residue that alternates evenly: a pulse needs RR + E - (L + E_m) >= 0 after so many openings
+    # one axis from a residue that alternates evenly: a pulse needs RR + E - (L + E_m) >= 0 after so many
+    # openings
     for constant in (1, 7, 60):
         pulses = Interpolator(servo_constant=constant, guard=False).line((100, 0, 0), ALWAYS, residue=0)
         residue, cycle = 0, 0
@@ -394,7 +397,8 @@ def test_claims_27_and_28_straight_where_it_is_positive_crossed_and_one_negative
     # E = (-1000, 1000) at the start of a quarter turn: Q = 0 is positive, so both go to their own axes
     straight, _, _ = parts_of_an_arc()
     assert straight[:2] == [True, False]
-    # straight (-1000, 1000), then crossed (1000, 1000): X has none left, Y twice as much, the tangent at (1000, 0)
+    # straight (-1000, 1000), then crossed (1000, 1000): X has none left, Y twice as much, the tangent at
+    # (1000, 0)
     pulses = Interpolator((1_000, 0, 0)).arc((0, 1_000, 0), (0, 0), COUNTER_CLOCKWISE, ALWAYS)[:40]
     assert abs(int(pulses[:, 0].sum())) <= 2 and int(pulses[:, 1].sum()) >= 35
     # the other way round the other one is negative

@@ -86,7 +86,9 @@ def test_the_differences_of_a_cubic_are_exact_in_3_log2_p_digits(vectors: Vector
 
 
 def test_registers_with_fewer_digits_end_beside_it(vectors: Vectors) -> None:
-    """The patent's narrower registers, on random cubics with the vectors' bounds: never worse than told, and nearly so."""
+    """The patent's narrower registers, on random cubics with the vectors' bounds: never worse than told, and
+    nearly so.
+    """
     told = vectors("sea_hermite")["truncated_register_worst_end_error_counts"]
     rng = np.random.default_rng(1957)
     for name, worst in told.items():
@@ -131,7 +133,9 @@ def test_the_coarse_scale_may_be_late_by_one_digit_at_most(vectors: Vectors) -> 
 
 
 def test_claim_1_program_interpolator_measurement_comparison_and_drive(orbit: Path) -> None:
-    """The whole loop runs the curve; four stores in cascade, p in the program; smooth from one set to the next."""
+    """The whole loop runs the curve; four stores in cascade, p in the program; smooth from one set to the
+    next.
+    """
     playback = play_cubic(orbit)
     assert distance(thin(playback), ORBIT).hausdorff_mm < 4 * UM
     assert playback.format.points in (16, 32, 64, 128, 256, 512, 1024, 2048)

@@ -1,7 +1,8 @@
-"""Drawings whose geometry is known: lines inked with a round pen, apart from the tracer, clean or as a scanner sees them.
+"""Drawings whose geometry is known: lines inked with a round pen, apart from the tracer, clean or as a
+scanner sees them.
 
-Coordinates are sheet mm. The pen's ink is drawn eight times too fine and averaged over each pixel, then softened as by a scanner's lens. With a seed it is
-seen on paper with a scanner's noise, 4 % of the contrast.
+Coordinates are sheet mm. The pen's ink is drawn eight times too fine and averaged over each pixel, then
+softened as by a scanner's lens. With a seed it is seen on paper with a scanner's noise, 4 % of the contrast.
 """
 
 from __future__ import annotations
@@ -35,7 +36,9 @@ def inked(
     seed: int | None = None,
     specks: Sequence[Points] = (),
 ) -> Drawing:
-    """The drawing of lines (n, 2) mm on a sheet with a margin above and right of all; specks are filled outlines."""
+    """The drawing of lines (n, 2) mm on a sheet with a margin above and right of all; specks are filled
+    outlines.
+    """
     high = np.vstack([*lines, *specks]).max(axis=0) + MARGIN_MM
     pixels = np.ceil(high * dpi / MM_PER_INCH).astype(int)
     fine = np.zeros((pixels[1] * OVERSAMPLE, pixels[0] * OVERSAMPLE), np.uint8)
@@ -97,7 +100,9 @@ def arc(
 
 
 def corner(deflection_deg: float, radius_mm: float = 0.0, leg_mm: float = 10.0) -> Points:
-    """Two straight legs, the first along X, the second turned left by the deflection; the vertex is rounded by the radius."""
+    """Two straight legs, the first along X, the second turned left by the deflection; the vertex is rounded
+    by the radius.
+    """
     turn = math.radians(deflection_deg)
     way = np.array([math.cos(turn), math.sin(turn)])
     touch = radius_mm * math.tan(turn / 2)
@@ -117,7 +122,9 @@ def tick(
     beyond_mm: float = 1.5,
     slant_deg: float = 0.0,
 ) -> Points:
-    """A stop mark through a place on a line of a heading: from `before_mm` on its right to `beyond_mm` on its left (one negative: beside the line)."""
+    """A stop mark through a place on a line of a heading: from `before_mm` on its right to `beyond_mm` on its
+    left (one negative: beside the line).
+    """
     a = math.radians(line_deg + 90 + slant_deg)
     way = np.array([math.cos(a), math.sin(a)])
     return np.asarray(place) + np.array([-before_mm * way, beyond_mm * way])

@@ -42,7 +42,9 @@ def chosen(monkeypatch: pytest.MonkeyPatch, runs: Runs) -> Followed:
 def test_a_line_that_closes_only_back_from_a_tip_is_tried_so_either_way_round(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """A coast of 2.2 m ended in a bay one way round, and at a spike of two lines the other way: half of it was left."""
+    """A coast of 2.2 m ended in a bay one way round, and at a spike of two lines the other way: half of it
+    was left.
+    """
     runs: Runs = {
         (True, False): run("ended", 40),
         (False, False): run("joined", 65, at_tip=True),

@@ -1,4 +1,6 @@
-"""The operator's card: what it says is what is set, and every mistake is refused with its line, field, contents and what may stand there."""
+"""The operator's card: what it says is what is set, and every mistake is refused with its line, field,
+contents and what may stand there.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""A drawn program under a cutter: lead line, stops, guide lines and the way back, on lines of known geometry and on scanned drawings."""
+"""A drawn program under a cutter: lead line, stops, guide lines and the way back, on lines of known geometry
+and on scanned drawings.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault, MotionFault
 from morfax.motion.motion import join
 from morfax.motion.polyline import Nearest
@@ -20,7 +23,6 @@ from morfax.tracer.operator.card import Card
 from morfax.tracer.operator.operator import Halt, Operator
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.trace import trace
-from morfax.tracer.sensing.view import Array
 from tests.tracer.inked import UM, arc, cross, dot, inked, polyline, tick
 from tests.tracer.test_program import EXACT_MM, WORK, at, in_work, run_through
 
@@ -40,7 +42,9 @@ BACK = OUT + at(WAY[OUT:], LEFT_TO)
 
 
 def marked(tick_mm: float = 5.0, *, guide: bool = False, way: Array = WAY) -> Line:
-    """The square with a tick on its lead line, and one on its right side; with the guide line, or straight on."""
+    """The square with a tick on its lead line, and one on its right side; with the guide line, or straight
+    on.
+    """
     marks = [
         Mark("tick", (tick_mm, 4.0), float(at(way[:FROM], (tick_mm, 4)))),
         Mark("tick", (18.0, 3.0), 0.0),
@@ -200,7 +204,9 @@ def test_of_a_lost_line_what_was_traced_is_cut_on_a_side_of_its_travel() -> None
 
 
 def program(angle_deg: float, radius_mm: float = 12.0) -> tuple[list[Array], list[Array]]:
-    """A circle about (30, 20) with a cross, a lead line and its tick, a tick on the circle, a guide line inwards and its dot."""
+    """A circle about (30, 20) with a cross, a lead line and its tick, a tick on the circle, a guide line
+    inwards and its dot.
+    """
     x, y = 30.0, 20.0
     a = math.radians(angle_deg)
     on_circle = (x + radius_mm * math.cos(a), y + radius_mm * math.sin(a))

@@ -1,4 +1,6 @@
-"""Several contours: which patches are lines, inner before outer, an idle way not much longer than the best, one stream, and what a lost line leaves of it."""
+"""Several contours: which patches are lines, inner before outer, an idle way not much longer than the best,
+one stream, and what a lost line leaves of it.
+"""
 
 from __future__ import annotations
 
@@ -93,7 +95,9 @@ def test_many_lines_are_ordered_as_well_as_a_square_of_holes_allows() -> None:
 @tried(max_examples=40, deadline=None)
 @given(seed=st.integers(0, 1 << 30))
 def test_lines_are_turned_round_as_is_best_in_their_order(seed: int) -> None:
-    """Six lines, four of which may be turned: no choice of those makes the same order shorter, and turning them makes no way longer."""
+    """Six lines, four of which may be turned: no choice of those makes the same order shorter, and turning
+    them makes no way longer.
+    """
     rng = np.random.default_rng(seed)
     ends, may_turn, none = rng.uniform(0, 100, (2, 6, 2)), np.arange(6) < 4, np.zeros((6, 6), bool)
 
@@ -109,7 +113,9 @@ def test_lines_are_turned_round_as_is_best_in_their_order(seed: int) -> None:
 
 
 def test_hatching_is_drawn_to_and_fro() -> None:
-    """Five strokes 3 mm apart, each begun where the one before has ended: 12 mm from line to line, and the pen's round at both ends."""
+    """Five strokes 3 mm apart, each begun where the one before has ended: 12 mm from line to line, and the
+    pen's round at both ends.
+    """
     strokes = [polyline((4, y), (20, y)) for y in range(4, 19, 3)]
     program = trace_lines(inked(*strokes))
     assert program.idle_mm == pytest.approx(12, abs=0.2)
@@ -198,7 +204,9 @@ UPRIGHT, BAR = polyline((20, 6), (20, 39)), polyline((8, 28), (32, 28))
 
 
 def test_a_head_put_down_on_a_chord_is_put_down_elsewhere_before_it_tries_other_turns() -> None:
-    """A shield with an upright between two of its corners and a bar: with other turns half of the shield closes, along the upright."""
+    """A shield with an upright between two of its corners and a bar: with other turns half of the shield
+    closes, along the upright.
+    """
     drawing = inked(OUTLINE, UPRIGHT, BAR, width_mm=0.3, seed=2)
     for run in (trace(drawing), trace_lines(drawing)):
         (line,) = run.lines
@@ -207,7 +215,9 @@ def test_a_head_put_down_on_a_chord_is_put_down_elsewhere_before_it_tries_other_
 
 
 def test_a_run_from_a_chord_does_not_hide_the_contour_that_it_went_along() -> None:
-    """The bar has been followed; from the upright the head runs into the outline and most of the way round it."""
+    """The bar has been followed; from the upright the head runs into the outline and most of the way round
+    it.
+    """
     sheet = Sheet.of(inked(OUTLINE, UPRIGHT, BAR, width_mm=0.3, seed=2))
     (contour,), _ = plan(sheet, "all")
     bar = Line(np.linspace(*BAR, 6000), "ended", 0.3, 24.0)

@@ -1,4 +1,6 @@
-"""The cutter beside the lines: sides by nesting and by travel, corners rolled round, what is left in corners listed."""
+"""The cutter beside the lines: sides by nesting and by travel, corners rolled round, what is left in corners
+listed.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from morfax.motion.arrays import Array
 from morfax.motion.contour import distance
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import thin
@@ -19,7 +22,6 @@ from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.trace import trace
 from morfax.tracer.program.trace_lines import trace_lines
-from morfax.tracer.sensing.view import Array
 from tests.tracer.inked import UM, arc, inked, polyline
 from tests.tracer.test_program import WORK, run_through
 
@@ -87,7 +89,8 @@ def test_an_open_line_has_a_left_and_a_right_and_no_outside() -> None:
     both = Trace((replace(plate, number=4), replace(line.lines[0], number=7)))
     with pytest.raises(MotionFault, match=r"line 7 is open.*, or outside of the others alone by --lines 4$"):
         with_cutter(both, Cutter(4), FEED_MM_S)
-    ways = {side: thin(with_cutter(line, Cutter(4, side), FEED_MM_S)[0]) for side in ("left", "right")}  # type: ignore[arg-type]
+    # type: ignore[arg-type]
+    ways = {side: thin(with_cutter(line, Cutter(4, side), FEED_MM_S)[0]) for side in ("left", "right")}
     middle = 0.5 * (ways["left"].runs()[0].mean(axis=0) + ways["right"].runs()[0].mean(axis=0))
     assert middle == pytest.approx([14, 7.5], abs=0.3)
     assert distance(ways["left"], ways["right"]).hausdorff_mm == pytest.approx(4, abs=0.05)

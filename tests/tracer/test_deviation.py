@@ -1,4 +1,6 @@
-"""The measure of a path against the ink itself: it must find what is wrong, to the micrometre and with its sign."""
+"""The measure of a path against the ink itself: it must find what is wrong, to the micrometre and with its
+sign.
+"""
 
 from __future__ import annotations
 
@@ -72,7 +74,9 @@ def test_a_bump_is_found_where_it_is(drawing) -> None:  # type: ignore[no-untype
 
 
 def test_missed_ink_is_counted(drawing) -> None:  # type: ignore[no-untyped-def]
-    """A path that stops after three quarters; a second line that no path covers; ink beside the line's own width."""
+    """A path that stops after three quarters; a second line that no path covers; ink beside the line's own
+    width.
+    """
     quarter = 2 * np.pi * RADIUS_MM / 4
     most = deviation(drawing, [arc((MIDDLE, MIDDLE), RADIUS_MM, 0, 270)])
     assert most.missed_mm == pytest.approx(

@@ -92,7 +92,9 @@ def test_a_line_goes_on_through_a_dot_where_it_came_in() -> None:
 
 @pytest.mark.parametrize("seed", [1, 44])
 def test_a_dot_soon_after_a_corner_is_no_tangle_with_it(seed: int) -> None:
-    """The pen's width does not explain a dot: drawn with strokes the way went 0.8 mm to and fro in the first, past its edge in the second."""
+    """The pen's width does not explain a dot: drawn with strokes the way went 0.8 mm to and fro in the first,
+    past its edge in the second.
+    """
     rng = np.random.default_rng(seed)
     width_mm, turn = rng.choice([0.5, 0.8]), math.radians(rng.uniform(60, 140))
     gap_mm, radius_mm = rng.uniform(2.9, 5.4) * width_mm, rng.uniform(0.95, 2.0) * width_mm

@@ -223,7 +223,9 @@ def test_light_on_dark_is_found_out(tmp_path: Path, grey: Grey) -> None:
 
 
 def test_uneven_paper_is_levelled(tmp_path: Path, grey: Grey) -> None:
-    """The lamp's light falls off to a half towards one side; the ink stays as dark, relative to the paper there."""
+    """The lamp's light falls off to a half towards one side; the ink stays as dark, relative to the paper
+    there.
+    """
     light = np.linspace(1.0, 0.5, grey.shape[1])[None, :]
     drawing = opened(Image.fromarray(np.round(grey * light).astype(np.uint8)), tmp_path / "a.png", dpi=DPI)
     assert np.abs(off_the_line_mm(drawing)).max() < 3 * UM

@@ -1,4 +1,6 @@
-"""A drawing followed enlarged: the same path as on one drawn so large, and every place in the measure of the drawing itself."""
+"""A drawing followed enlarged: the same path as on one drawn so large, and every place in the measure of the
+drawing itself.
+"""
 
 from __future__ import annotations
 

@@ -1,7 +1,8 @@
 """The follower on whole lines with knots in them: each one path, on the line that was drawn, to its end.
 
-Bounds: 25 um at any place of a plain line, as the issue allows; the end of a line is half a width within the pen's round, seen by an aperture of 0.15 mm,
-so the path may be 30 um short of it; at a rounded corner or a speck the line is known only from ink that is not the line's own.
+Bounds: 25 um at any place of a plain line, as the issue allows; the end of a line is half a width within the
+pen's round, seen by an aperture of 0.15 mm, so the path may be 30 um short of it; at a rounded corner or a
+speck the line is known only from ink that is not the line's own.
 """
 
 from __future__ import annotations
@@ -64,7 +65,9 @@ def test_a_sharp_corner(deflection_deg: float, seed: int | None) -> None:
 
 @SEEDS
 def test_an_acute_tip_of_36_degrees(seed: int | None) -> None:
-    """The inks of the legs separate only 0.8 mm from the vertex; from there on each must be right, the tip to a tenth of that."""
+    """The inks of the legs separate only 0.8 mm from the vertex; from there on each must be right, the tip to
+    a tenth of that.
+    """
     line = corner(144)
     run = followed(line, inked(line, seed=seed), within_mm=80 * UM)
     places, off_mm = pointwise(run.xy_mm[::4], line)
@@ -77,7 +80,9 @@ def test_an_acute_tip_of_36_degrees(seed: int | None) -> None:
 @pytest.mark.parametrize("width_mm", [0.3, 0.5, 0.8])
 @pytest.mark.parametrize("radius_mm", [0.3, 0.5, 0.7, 1.0, 1.5])
 def test_a_rounded_corner(radius_mm: float, width_mm: float, seed: int | None) -> None:
-    """A sharp one would be off by 0.41 of the radius, 124 um and more; ink tells the radius to the noise of an edge, 5 um as a rule."""
+    """A sharp one would be off by 0.41 of the radius, 124 um and more; ink tells the radius to the noise of
+    an edge, 5 um as a rule.
+    """
     line = corner(90, radius_mm)
     followed(line, inked(line, width_mm=width_mm, seed=seed), within_mm=15 * UM)
 
@@ -87,7 +92,9 @@ def test_a_rounded_corner(radius_mm: float, width_mm: float, seed: int | None) -
 def test_a_white_speck_in_the_edge_of_a_round_does_not_move_the_line_aside(
     radius_mm: float, inside_mm: float
 ) -> None:
-    """One pixel without ink, half-way round; seen through the aperture it moves the middle of the ink by a quarter of a pixel, 21 um."""
+    """One pixel without ink, half-way round; seen through the aperture it moves the middle of the ink by a
+    quarter of a pixel, 21 um.
+    """
     line = corner(90, radius_mm)
     drawing = inked(line, seed=1)
     half_way = line[len(line) // 2] + (0.25 - inside_mm) * np.array([math.sqrt(0.5), -math.sqrt(0.5)])
@@ -157,7 +164,9 @@ def test_a_line_passes_a_circle_that_nearly_touches_it(seed: int | None) -> None
 
 
 def test_a_hairpin_is_followed_to_its_tip_and_back() -> None:
-    """Two lines 7 degrees apart: their inks run together 4 mm before the tip. The issue's bound for sharp tips, 0.7 mm."""
+    """Two lines 7 degrees apart: their inks run together 4 mm before the tip. The issue's bound for sharp
+    tips, 0.7 mm.
+    """
     line = polyline((4, 10), (20, 11), (4, 12))
     run = trace(inked(line))
     assert run.ending == "ended"

@@ -1,7 +1,8 @@
 """The head on clean lines: where its axis goes, how fast, and that nothing but the line decides it.
 
-The drawings are clean, so that what is left is the head's own error. A line at 300 dpi that runs along the pixels is seen 5 um off its middle, as straight
-interpolation between pixels of 85 um has it; on any other line that averages out.
+The drawings are clean, so that what is left is the head's own error. A line at 300 dpi that runs along the
+pixels is seen 5 um off its middle, as straight interpolation between pixels of 85 um has it; on any other
+line that averages out.
 """
 
 from __future__ import annotations
@@ -166,7 +167,9 @@ def test_the_same_drawing_gives_the_same_path() -> None:
 
 @pytest.mark.parametrize("seed", [None, 1])
 def test_the_resultant_speed_is_the_same_in_every_direction(seed: int | None) -> None:
-    """Potentiometer 59: sine and cosine of the heading; on a bend the drives lag by 1 ms, which is 2e-6 of the speed."""
+    """Potentiometer 59: sine and cosine of the heading; on a bend the drives lag by 1 ms, which is 2e-6 of
+    the speed.
+    """
     speed = speeds_mm_s(trace(inked(arc((9, 9), 5), seed=seed)).xy_mm)
     rise = round(1.5 * SPEED_MM_S / Settings().acceleration_mm_s2 * MOTION_RATE_HZ)
     assert speed[rise:-rise] == pytest.approx(SPEED_MM_S, rel=1e-4)
@@ -214,7 +217,9 @@ def plain_head(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 
 def _some_steps(drawing: Drawing) -> tuple[Any, Any]:
-    """A head's state and positions after following for 40 ms, running round a corner from memory and standing."""
+    """A head's state and positions after following for 40 ms, running round a corner from memory and
+    standing.
+    """
     stance, _ = next(iter(put_down(drawing, None, 0.15, None)))
     follower = Follower(stance, Settings(), MOTION_RATE_HZ)
     out = np.zeros((400, 2))

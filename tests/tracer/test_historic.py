@@ -1,4 +1,6 @@
-"""The historic head: steered straight by its swinging cell, it does what the linear theory says (shared vectors `mf_steering`)."""
+"""The historic head: steered straight by its swinging cell, it does what the linear theory says (shared
+vectors `mf_steering`).
+"""
 
 from __future__ import annotations
 
@@ -24,7 +26,9 @@ NOWHERE = (0.0, 0.0, 0.0, 1e9)
 
 
 def direct(lead_mm: float, gain: float, lag_s: float, speed_mm_s: float) -> Settings:
-    """A head of the historic kind, its sweep so fast that sampling adds little lag to the theory's: 24 periods of the motion rate."""
+    """A head of the historic kind, its sweep so fast that sampling adds little lag to the theory's: 24
+    periods of the motion rate.
+    """
     return Settings(
         speed_mm_s=speed_mm_s,
         acceleration_mm_s2=1e6,
@@ -56,7 +60,9 @@ def offsets_on_a_straight(settings: Settings, aside_mm: float, way_mm: float) ->
 
 
 def test_steering_is_stable_just_where_the_theory_says(vectors: Callable[[str], Any]) -> None:
-    """s³·lag + s² + k·a·s + k·v: stable for a > v·lag (Routh). Growing or dying: the last fifth against the first."""
+    """s³·lag + s² + k·a·s + k·v: stable for a > v·lag (Routh). Growing or dying: the last fifth against the
+    first.
+    """
     for row in vectors("mf_steering")["stability"]:
         if row["routh_stable"] not in (True, False):
             continue  # the boundary itself
@@ -71,7 +77,9 @@ def test_steering_is_stable_just_where_the_theory_says(vectors: Callable[[str], 
 def test_a_stiff_pursuit_runs_inside_a_circle_by_the_price_of_its_lead(
     vectors: Callable[[str], Any], radius_mm: float
 ) -> None:
-    """The axis stands where the circle's radius and the lead make a right angle; with k = 2v/a² it stands on the circle."""
+    """The axis stands where the circle's radius and the lead make a right angle; with k = 2v/a² it stands on
+    the circle.
+    """
     row = next(r for r in vectors("mf_steering")["circle_cut_in"] if r["R"] == radius_mm and r["a"] == 2)
     t = np.linspace(0, 2 * math.pi, 721)
     circle = np.column_stack([radius_mm + 3 + radius_mm * np.cos(t), radius_mm + 3 + radius_mm * np.sin(t)])
@@ -101,7 +109,9 @@ def test_the_historic_head_goes_round_a_gentle_cam() -> None:
 
 
 def test_the_historic_head_loses_the_line_where_it_cannot_turn() -> None:
-    """A hairpin, or an end, is more than a head without guard cells can find round; it says where it lost the line."""
+    """A hairpin, or an end, is more than a head without guard cells can find round; it says where it lost the
+    line.
+    """
     run = trace(inked(polyline((4, 6), (30, 6), (6, 12)), width_mm=0.7), (10, 6), HISTORIC)
     assert run.ending == "lost" and run.fault is not None
     assert str(run.fault).endswith("go slower there with --speed, or follow with --head precise")

@@ -26,7 +26,9 @@ NOISE = 6.0  # levels in each channel, 4 % of the line's contrast
 def drawn(
     file: Path, grid: tuple[int, int, int] | None, line: tuple[int, int, int] = BLUE, seed: int = 1
 ) -> Path:
-    """A coloured circle on a sheet of 30 x 30 mm, on squared paper of 5 mm printed in another colour; a scan with noise."""
+    """A coloured circle on a sheet of 30 x 30 mm, on squared paper of 5 mm printed in another colour; a scan
+    with noise.
+    """
     squares = [polyline((k, 0), (k, 30)) for k in range(3, 30, 5)] + [
         polyline((0, k), (30, k)) for k in range(3, 30, 5)
     ]
@@ -109,7 +111,8 @@ def test_two_other_inks_are_passed_over(
     )
     found = distance(thin(run), CIRCLE)
     assert run.ending == "closed"
-    # measured 4.0 and, as JPEG, which keeps colours more coarsely than lightness, 10.4 um RMS and 51 um at most: half as much again
+    # measured 4.0 and, as JPEG, which keeps colours more coarsely than lightness, 10.4 um RMS and 51 um at
+    # most: half as much again
     assert found.path_to_reference.rms_mm < (15 if suffix == ".jpg" else 6) * UM, found
     assert found.hausdorff_mm < (80 if suffix == ".jpg" else 30) * UM, found
 

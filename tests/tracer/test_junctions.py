@@ -1,4 +1,6 @@
-"""Junctions counted once each, and guide lines from where they were left to where the line goes on; both by hand and on drawings."""
+"""Junctions counted once each, and guide lines from where they were left to where the line goes on; both by
+hand and on drawings.
+"""
 
 from __future__ import annotations
 
@@ -105,7 +107,9 @@ def test_a_guide_line_ends_in_the_middle_of_its_dot_though_it_comes_askew() -> N
 def test_where_a_lead_line_joins_aslant_is_where_it_meets_the_contour(
     slant_deg: float, width_mm: float
 ) -> None:
-    """36 degrees to the contour are straight on at a junction, and yet the legs meet where they do: the clean end was 1.7 mm before that."""
+    """36 degrees to the contour are straight on at a junction, and yet the legs meet where they do: the clean
+    end was 1.7 mm before that.
+    """
     a = math.radians(slant_deg)
     lead = polyline((18 - 14 * math.cos(a), 28 - 14 * math.sin(a)), (18, 28))
     line = trace(inked(arc((30, 28), 12), lead, width_mm=width_mm, seed=5), (lead[0, 0], lead[0, 1])).lines[0]
@@ -114,7 +118,9 @@ def test_where_a_lead_line_joins_aslant_is_where_it_meets_the_contour(
 
 @pytest.mark.parametrize("seed", [7, 94, 101])
 def test_a_guide_line_on_the_outside_of_a_bend_makes_no_corner_of_it(seed: int) -> None:
-    """On its inside the bend is seen to be round; by the outside alone the head went 0.2 mm up the guide line on the second of these."""
+    """On its inside the bend is seen to be round; by the outside alone the head went 0.2 mm up the guide line
+    on the second of these.
+    """
     rng = np.random.default_rng(seed)
     radius_mm, width_mm, angle = rng.uniform(4, 10), rng.choice([0.3, 0.5, 0.8]), rng.uniform(0, math.tau)
     out = angle + math.radians(rng.uniform(-45, 45))

@@ -47,7 +47,9 @@ def test_a_run_that_leaves_the_edge_is_lost_where_it_does() -> None:
 
 
 def test_a_closed_run_that_leaves_some_of_its_edge_out_is_lost() -> None:
-    """A tooth 0.3 mm wide and 2 mm high is cut across: no place of the run is off the edge, but the tooth is missed."""
+    """A tooth 0.3 mm wide and 2 mm high is cut across: no place of the run is off the edge, but the tooth is
+    missed.
+    """
     tooth = polyline(
         (10, 10), (20, 10), (20, 12), (20.3, 12), (20.3, 10), (30, 10), (30, 30), (10, 30), (10, 10)
     )

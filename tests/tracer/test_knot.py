@@ -167,7 +167,9 @@ def test_ink_beyond_reach_has_no_end() -> None:
 
 
 def test_a_centre_on_the_way_in_has_the_legs_ahead_of_it_only() -> None:
-    """Straight on and almost straight on meet anywhere: the head looks about a place behind it then, and must not turn round there."""
+    """Straight on and almost straight on meet anywhere: the head looks about a place behind it then, and must
+    not turn round there.
+    """
     drawing = inked(polyline((4, 10), (24, 10)), polyline((16, 10), (16, 20)))
     trail = np.column_stack([np.arange(4, 15.6, 0.05), np.full(232, 10.0)])
     for behind_mm in (0.2, 0.5, 1.0):
@@ -177,7 +179,9 @@ def test_a_centre_on_the_way_in_has_the_legs_ahead_of_it_only() -> None:
 
 @pytest.mark.parametrize("pixels", [1, 2])
 def test_a_speck_of_paper_on_a_thin_line_is_not_its_end(pixels: int) -> None:
-    """Half a width before the speck a ray of cells through it sees no line beyond; but the line is felt on past it."""
+    """Half a width before the speck a ray of cells through it sees no line beyond; but the line is felt on
+    past it.
+    """
     drawing = inked(polyline((4, 4), (24, 14)), width_mm=0.3)
     for along_mm in np.arange(1.5, 3.5, 0.03):
         x, y = np.array([10, 7]) + along_mm * np.array([2, 1]) / math.sqrt(5)
@@ -225,7 +229,9 @@ def test_a_line_close_by_is_no_leg() -> None:
 
 
 def test_lines_swell_and_fade() -> None:
-    """The width and darkness of a line are taken anew where it is met again, but only if it is like the line followed."""
+    """The width and darkness of a line are taken anew where it is met again, but only if it is like the line
+    followed.
+    """
     wider = inked(polyline((4, 5), (16, 5)), width_mm=0.62)
     found = view(wider).like(np.array([9.0, 5.0]), 0.0)
     assert found.width_mm == pytest.approx(0.62, abs=40 * UM)

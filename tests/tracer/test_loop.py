@@ -125,7 +125,9 @@ def test_two_lead_lines_without_a_reference_point_are_asked_about() -> None:
 def test_a_lead_line_with_a_tick_near_its_join_goes_to_the_very_place_and_comes_back_there(
     slant_deg: float, width_mm: float
 ) -> None:
-    """A corner's vertex is right to 50 um, though between tick and contour only a millimetre of line is clean."""
+    """A corner's vertex is right to 50 um, though between tick and contour only a millimetre of line is
+    clean.
+    """
     a = math.radians(slant_deg)
     way = np.array([math.cos(a), math.sin(a)])
     join = np.array([24.0, 16.0])

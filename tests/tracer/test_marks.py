@@ -1,6 +1,7 @@
 """Marks on drawings of known geometry: where the axis stands, and what is no mark.
 
-The issue asks for 50 um from the tick's centre; on scans of 300 dpi it is 3 um as a rule, 28 um at most over 130 random drawings.
+The issue asks for 50 um from the tick's centre; on scans of 300 dpi it is 3 um as a rule, 28 um at most over
+130 random drawings.
 """
 
 from __future__ import annotations
@@ -139,7 +140,9 @@ def test_a_tick_with_a_speck_of_paper_in_its_tip_is_no_junction(y_mm: float) -> 
 
 @pytest.mark.parametrize("seed", [6, 27, 33, 47, 68, 106, 115, 168])
 def test_a_speck_of_paper_anywhere_on_a_tick_hides_neither_its_tip_nor_the_way_straight_on(seed: int) -> None:
-    """Of 240 such drawings the head went up the tick on six, and the tick was no mark on eighteen, before it knew better; these are eight of them."""
+    """Of 240 such drawings the head went up the tick on six, and the tick was no mark on eighteen, before it
+    knew better; these are eight of them.
+    """
     rng = np.random.default_rng(seed)
     width_mm, pixels, angle = rng.choice([0.3, 0.5]), int(rng.integers(1, 3)), rng.uniform(0, math.pi)
     slant_deg, half_mm = rng.uniform(-20, 20), rng.uniform(1.2, 2.2)
@@ -160,7 +163,9 @@ def test_a_speck_of_paper_anywhere_on_a_tick_hides_neither_its_tip_nor_the_way_s
 
 @pytest.mark.parametrize("seed", [29, 62, 65, 83, 112, 116])
 def test_a_tick_with_a_speck_of_paper_is_no_line_of_its_own(seed: int) -> None:
-    """Of 120 such drawings 33 had the tick cut as a line; on these the way over the line is told by the tick's other half."""
+    """Of 120 such drawings 33 had the tick cut as a line; on these the way over the line is told by the
+    tick's other half.
+    """
     rng = np.random.default_rng(seed)
     width_mm, pixels = rng.choice([0.3, 0.5]), int(rng.integers(1, 3))
     a, half_mm = rng.uniform(0, math.tau), rng.uniform(1.2, 2.4)

@@ -1,7 +1,9 @@
-"""Tangles explained by redrawing their ink: which legs belong together, and over which vertices, where inks of several legs run together.
+"""Tangles explained by redrawing their ink: which legs belong together, and over which vertices, where inks
+of several legs run together.
 
-Bounds: 30 um for a place of the path, as the issue allows where lines come within a width of each other; at the vertex of a tip the pen's round is all that
-tells, and the aperture of 0.15 mm rounds that off: half the width.
+Bounds: 30 um for a place of the path, as the issue allows where lines come within a width of each other; at
+the vertex of a tip the pen's round is all that tells, and the aperture of 0.15 mm rounds that off: half the
+width.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """Lines that swell, fade, or go on with another pen are followed whole, along their middle.
 
-Bounds: 2.2 um RMS and 10 um are what the smooth closed lines of one width are held to; a step in the width is an end of one line's ink and the beginning of
-the other's, 25 um; at a corner of two widths the vertex is where the middles meet, 50 um as for any right-angled corner.
+Bounds: 2.2 um RMS and 10 um are what the smooth closed lines of one width are held to; a step in the width is
+an end of one line's ink and the beginning of the other's, 25 um; at a corner of two widths the vertex is
+where the middles meet, 50 um as for any right-angled corner.
 """
 
 from __future__ import annotations
@@ -77,7 +78,8 @@ def test_a_line_beside_it_is_no_wider_pen(seed: int) -> None:
 
 @SEEDS
 def test_the_grain_of_faint_pencil_is_no_end(seed: int) -> None:
-    """A third as dark as ink, so that noise is thrice as strong, and a grain of 25 % a quarter of a millimetre wide.
+    """A third as dark as ink, so that noise is thrice as strong, and a grain of 25 % a quarter of a
+    millimetre wide.
 
     The ink's own middle wanders with its grain: 30 um RMS.
     """
@@ -94,7 +96,9 @@ def test_the_grain_of_faint_pencil_is_no_end(seed: int) -> None:
 
 
 def test_a_gap_wider_than_allowed_ends_a_line_for_the_larger_cell_too() -> None:
-    """0.7 mm of paper between two clean pieces, where 0.5 mm is crossed: the fine cell and the larger one agree."""
+    """0.7 mm of paper between two clean pieces, where 0.5 mm is crossed: the fine cell and the larger one
+    agree.
+    """
     run = trace(
         inked(polyline((4, 10), (30, 10)), polyline((31.2, 10), (50, 10)), seed=1), start_mm=(6, 10)
     ).lines[0]

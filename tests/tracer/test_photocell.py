@@ -1,4 +1,6 @@
-"""The photocells against closed forms: a swept cell on a straight line, edges, rings and the way felt along a line."""
+"""The photocells against closed forms: a swept cell on a straight line, edges, rings and the way felt along a
+line.
+"""
 
 from __future__ import annotations
 
@@ -62,8 +64,8 @@ def test_a_swept_point_cell_sees_the_closed_form(
     for row in vectors("mf_scan")["rows"]:
         offset_mm = row["offset_mm"]
         assert point_cell(offset_mm) == pytest.approx(row["point_cell_closed_form"], abs=1e-5)
-        # pixels of 5 um make an edge a ramp of that; where it stands at the turn of the sweep (0.65 mm), that is 0.1 of
-        # the sweep's time
+        # pixels of 5 um make an edge a ramp of that; where it stands at the turn of the sweep (0.65 mm), that
+        # is 0.1 of the sweep's time
         share = 0.03 if abs(abs(offset_mm) - 0.65) < 0.01 else 0.003
         assert swept(strip.darkness, offset_mm, plain)[0] == pytest.approx(
             row["point_cell_closed_form"], abs=share
@@ -73,7 +75,9 @@ def test_a_swept_point_cell_sees_the_closed_form(
 def test_a_swept_cell_with_an_aperture_sees_the_vectors(
     behind: photocell.Cells, vectors: Callable[[str], Any]
 ) -> None:
-    """The vectors' aperture is a disc of 0.3 mm, ours a Gaussian of the same variance: 3 % of the peak of 0.566 apart."""
+    """The vectors' aperture is a disc of 0.3 mm, ours a Gaussian of the same variance: 3 % of the peak of
+    0.566 apart.
+    """
     for row in vectors("mf_scan")["rows"]:
         assert swept(behind, row["offset_mm"])[0] == pytest.approx(row["first_sin"], abs=0.017)
 
@@ -88,7 +92,8 @@ def test_the_fundamental_is_odd_and_the_mean_even(behind: photocell.Cells) -> No
 
 
 def test_the_signal_is_linear_then_monotonic_then_gone(behind: photocell.Cells) -> None:
-    """The facts stated with the vectors: linear within 15 % to 0.4 mm, monotonic to 0.79 mm, gone beyond 1.5 mm.
+    """The facts stated with the vectors: linear within 15 % to 0.4 mm, monotonic to 0.79 mm, gone beyond 1.5
+    mm.
 
     Monotonic to 0.79 mm is with a disc; the Gaussian's skirts bring the peak 0.03 mm nearer.
     """
@@ -98,7 +103,8 @@ def test_the_signal_is_linear_then_monotonic_then_gone(behind: photocell.Cells) 
         assert -swept(behind, offset_mm)[0] == pytest.approx(slope * offset_mm, rel=0.15)
     rising = [-swept(behind, offset_mm)[0] for offset_mm in np.linspace(0, 0.76, 50)]
     assert np.all(np.diff(rising) > 0)
-    # amplitude + half the line + half the aperture = 1.5 mm; the Gaussian's skirt there is 1/40 of a cell's light
+    # amplitude + half the line + half the aperture = 1.5 mm; the Gaussian's skirt there is 1/40 of a cell's
+    # light
     assert swept(behind, 1.5)[0] == pytest.approx(0, abs=0.005) and swept(behind, 1.6)[0] == pytest.approx(
         0, abs=3e-4
     )
@@ -141,7 +147,9 @@ def test_an_aperture_keeps_the_ink(strip: Drawing, behind: photocell.Cells) -> N
 
 
 def analytic(offset_mm: float, heading: float) -> NDArray[np.float32]:
-    """Soft ink of a line of 0.5 mm at a distance to the left of (3, 3) mm, on 6 x 6 mm at 300 dpi, by its closed form."""
+    """Soft ink of a line of 0.5 mm at a distance to the left of (3, 3) mm, on 6 x 6 mm at 300 dpi, by its
+    closed form.
+    """
     from scipy.special import erf
 
     pitch = 25.4 / 300
@@ -162,7 +170,8 @@ def test_a_straight_line_s_edges_are_where_they_are_at_any_heading_and_place(
     place = 3.0, 3.0 - (6 - height)
     find = kernel(photocell.edges, plain)
     right, left = find(analytic(offset_mm, heading), 25.4 / 300, *place, heading, 1.0, 0.5)
-    # straight between pixels of 85 um, an edge 0.1 mm soft is off by up to 3 um; both are off alike, away from the ink
+    # straight between pixels of 85 um, an edge 0.1 mm soft is off by up to 3 um; both are off alike, away
+    # from the ink
     assert left - right == pytest.approx(0.5, abs=8 * UM)
     assert (left + right) / 2 == pytest.approx(offset_mm, abs=3 * UM)
 
@@ -227,7 +236,8 @@ def test_a_circle_is_felt_along_its_middle(radius_mm: float, plain: bool) -> Non
     assert np.abs(radial).max() < 6 * UM  # between pixels of 85 um, on a clean drawing
     assert abs(radial.mean()) < 1.5 * UM  # over 2 mm of line: two dozen pixels
     assert np.hypot(*np.diff(seen[:, :2], axis=0).T) == pytest.approx(0.05, abs=5 * UM)
-    # the softness of lens, aperture and pixel widens a line at half its darkness hardly; the pen draws to 10 um
+    # the softness of lens, aperture and pixel widens a line at half its darkness hardly; the pen draws to 10
+    # um
     assert seen[:, 2] == pytest.approx(WIDTH_MM, abs=40 * UM)
 
 

@@ -9,13 +9,14 @@ import numpy as np
 import pytest
 
 from morfax.motion import curves
+from morfax.motion.arrays import Array
 from morfax.tracer.head.planned import Planned
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.trail import Trail
 from morfax.tracer.junctions.planner import Pilot
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.leg import leg_of, turn
-from morfax.tracer.sensing.view import Array, View
+from morfax.tracer.sensing.view import View
 from tests.tracer.inked import arc, inked, polyline
 
 WIDTH_MM = 0.3
@@ -47,7 +48,8 @@ def test_a_way_by_the_vertex_is_taken_only_where_the_line_was_felt_there(
 ) -> None:
     """The vertex is 46 um off a round of 0.3 mm, and 139 um off one of 0.9 mm: r·(1/cos 30° - 1).
 
-    Of a sharp corner it may be 78 um off: 23 um that the middle of its ink may be inside, and 55 um of single stations.
+    Of a sharp corner it may be 78 um off: 23 um that the middle of its ink may be inside, and 55 um of single
+    stations.
     """
     view, seen = felt(radius_mm)
     pilot = Pilot(view, (seen[0, :2], 0.0), Trail(seen[0, :2], view.step_mm), Settings())

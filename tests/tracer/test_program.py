@@ -1,4 +1,6 @@
-"""Lines cut one after the other: where the tool is up and down, the way back along a lead line, and what the whole says of itself."""
+"""Lines cut one after the other: where the tool is up and down, the way back along a lead line, and what the
+whole says of itself.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault
 from morfax.motion.motion import MOTION_RATE_HZ, join
 from morfax.tracer.following.line import Line
@@ -15,14 +18,12 @@ from morfax.tracer.marks.marks import Mark
 from morfax.tracer.operator.card import Card
 from morfax.tracer.operator.operator import Operator, Work
 from morfax.tracer.program.program import BRAKE_MM_S2, Trace
-from morfax.tracer.sensing.view import Array
 
 WORK = Work(depth_mm=4.0, clearance_mm=2.0)
 STEP_MM = 10.0 / MOTION_RATE_HZ  # of a head at 10 mm/s
 EXACT_MM = 1e-9  # double precision
-WITHIN_MM = (
-    0.05  # of a way that is run from memory by places 0.1 mm apart, which cut a corner by half of that
-)
+# of a way that is run from memory by places 0.1 mm apart, which cut a corner by half of that
+WITHIN_MM = 0.05
 
 
 def run_through(*corners: tuple[float, float]) -> Array:

@@ -102,7 +102,9 @@ def test_specks_at_the_tips_of_a_cross_leave_it_a_cross() -> None:
 def test_from_a_named_reference_point_the_lead_line_is_found_whatever_is_drawn_there(
     named: tuple[float, float],
 ) -> None:
-    """Three strokes are no cross, and there is a guide line, at whose open end the head would begin otherwise."""
+    """Three strokes are no cross, and there is a guide line, at whose open end the head would begin
+    otherwise.
+    """
     strokes = [tick(AT, a, before_mm=2.0, beyond_mm=2.0) for a in (0, 50, 110)]
     guide = polyline((36, 5), (36, 12))
     run = trace(

@@ -1,4 +1,6 @@
-"""A run as the operator makes it: Z down and up while X and Y stand, the line between, from end to end, in blocks."""
+"""A run as the operator makes it: Z down and up while X and Y stand, the line between, from end to end, in
+blocks.
+"""
 
 from __future__ import annotations
 
@@ -184,7 +186,9 @@ def test_progress_is_told_up_to_the_line_s_length() -> None:
 
 
 def test_a_ramped_entry_goes_down_along_the_line_and_leaves_none_of_it_above_depth(run: Trace) -> None:
-    """Z goes from the surface to depth over 6 mm of the line; what was run above depth is run again, and the tool comes back to the line's end."""
+    """Z goes from the surface to depth over 6 mm of the line; what was run above depth is run again, and the
+    tool comes back to the line's end.
+    """
     ramped = Trace(run.lines, Operator(card=Card.parse('entry = "6mm"')))
     positions = join(ramped).positions_mm
     moving = np.hypot(*np.diff(positions[:, :2], axis=0).T) > 1e-9

@@ -1,4 +1,6 @@
-"""Filled shapes: the head rides on their edge as on a line, round corners as sharp as drawn, and holes are lines of their own."""
+"""Filled shapes: the head rides on their edge as on a line, round corners as sharp as drawn, and holes are
+lines of their own.
+"""
 
 from __future__ import annotations
 
@@ -45,7 +47,8 @@ def filled(
     shade: float = 0,
     light: bool = False,
 ) -> Path:
-    """Filled shapes on a sheet of 36 x 34 mm at 300 dpi, eight times too fine by the middles of the pixels, as a scanner sees them.
+    """Filled shapes on a sheet of 36 x 34 mm at 300 dpi, eight times too fine by the middles of the pixels,
+    as a scanner sees them.
 
     The paper is darker to the right by `shade` levels; `light` shapes are on dark paper.
     """
@@ -116,7 +119,9 @@ def test_on_uneven_paper_and_light_on_dark(tmp_path: Path, shade: float, light: 
 
 
 def test_a_slight_round_is_no_corner(tmp_path: Path) -> None:
-    """Corners of an octagon with a round of 0.6 mm: 0.6 · (1/cos(22.5°) - 1) = 49 um inside where the legs meet."""
+    """Corners of an octagon with a round of 0.6 mm: 0.6 · (1/cos(22.5°) - 1) = 49 um inside where the legs
+    meet.
+    """
     vertices = np.array([17, 17]) + 11 * np.array(
         [[np.cos(a), np.sin(a)] for a in np.radians(10 + 45 * np.arange(8))]
     )
@@ -127,7 +132,9 @@ def test_a_slight_round_is_no_corner(tmp_path: Path) -> None:
 
 
 def test_edges_may_be_0_3_mm_apart(tmp_path: Path) -> None:
-    """Two bars, the slot between them 0.3 mm: to either side of it the corners are those of a line that is 0.1 mm wide."""
+    """Two bars, the slot between them 0.3 mm: to either side of it the corners are those of a line that is
+    0.1 mm wide.
+    """
     bars = [polyline((8, y), (28, y), (28, y + 8), (8, y + 8), (8, y)) for y in (8.0, 16.3)]
     run = trace_lines(Drawing.open(filled(tmp_path / "bars.png", *bars), edge=True))
     assert [line.ending for line in run.lines] == ["closed", "closed"]
@@ -136,7 +143,9 @@ def test_edges_may_be_0_3_mm_apart(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("apart_mm", [0.4, 0.7])
 def test_a_slot_in_an_edge_is_followed_to_its_end(tmp_path: Path, apart_mm: float) -> None:
-    """Its end has two corners nearer to one another than the lens lets legs be felt: they stay as round as the lens made them, 0.77 s = 66 um."""
+    """Its end has two corners nearer to one another than the lens lets legs be felt: they stay as round as
+    the lens made them, 0.77 s = 66 um.
+    """
     low, high = 17 - apart_mm / 2, 17 + apart_mm / 2
     outline = polyline(
         (8, 8), (28, 8), (28, low), (14, low), (14, high), (28, high), (28, 26), (8, 26), (8, 8)
@@ -166,7 +175,9 @@ def teeth(top_mm: float, number: int = 9) -> Points:
 
 @pytest.mark.parametrize("top_mm", [0.4, 0.7])
 def test_narrow_teeth_are_all_followed(tmp_path: Path, top_mm: float) -> None:
-    """Tops too short for the lens to show their corners stay round: 100 um. With the line at 0.4 mm the head cut across, 0.9 mm off, and said nothing."""
+    """Tops too short for the lens to show their corners stay round: 100 um. With the line at 0.4 mm the head
+    cut across, 0.9 mm off, and said nothing.
+    """
     rack = teeth(top_mm)
     run = trace(Drawing.open(filled(tmp_path / "rack.png", rack), edge=True))
     found = distance(thin(run), rack)

@@ -112,7 +112,9 @@ def test_a_speck_beside_an_end_does_not_hide_it() -> None:
 
 @pytest.mark.parametrize("seed", [1, 67, 187, 196])
 def test_a_wavering_line_of_three_pixels_has_ends_and_no_tips(seed: int) -> None:
-    """Its width is seen to waver by a quarter of a pixel; on the last three of two hundred as much as that of a tip grows."""
+    """Its width is seen to waver by a quarter of a pixel; on the last three of two hundred as much as that of
+    a tip grows.
+    """
     rng, x_mm = np.random.default_rng(seed), np.linspace(-10, 10, 400)
     wave = np.column_stack([x_mm, 0.1 * np.sin(rng.uniform(0.5, 1.2) * x_mm + rng.uniform(0, 6))])
     a = rng.uniform(0, math.tau)

@@ -1,4 +1,6 @@
-"""Stops on the way: the brake by its closed form, v² = 2 a d; the stand exactly on its place; the way itself unchanged."""
+"""Stops on the way: the brake by its closed form, v² = 2 a d; the stand exactly on its place; the way itself
+unchanged.
+"""
 
 from __future__ import annotations
 

@@ -38,4 +38,5 @@ def test_a_line_from_an_end_that_leads_round_little_of_the_ink_gives_way(
     monkeypatch.setattr(tour, "followed", lambda *_, **__: round_about)
     monkeypatch.setattr(tour, "_joined", lambda *_: ([], 0.0))
     found = tour.trace_lines(DRAWING, (1,), Settings(), Operator()).lines
-    assert [each.length_mm for each in found] == [(from_end if taken == "end" else round_about).length_mm]  # type: ignore[union-attr]
+    # type: ignore[union-attr]
+    assert [each.length_mm for each in found] == [(from_end if taken == "end" else round_about).length_mm]

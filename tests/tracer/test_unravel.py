@@ -1,7 +1,8 @@
-"""Lines that come within their own width of themselves: spikes, bays and coasts are followed whole, and marks are not taken for spikes.
+"""Lines that come within their own width of themselves: spikes, bays and coasts are followed whole, and marks
+are not taken for spikes.
 
-Bounds: 30 um for 95 % of the path, as the issue allows where lines come within a width of each other. Where inks have run together nothing but the sum of both
-tells where each was: one width, 0.5 mm, for the whole.
+Bounds: 30 um for 95 % of the path, as the issue allows where lines come within a width of each other. Where
+inks have run together nothing but the sum of both tells where each was: one width, 0.5 mm, for the whole.
 """
 
 from __future__ import annotations
@@ -36,7 +37,9 @@ def followed_whole(
 
 
 def ragged(seed: int) -> Array:
-    """A closed line of 70 vertices about 2 mm apart, each up to 2.5 mm in or out: capes, bays and spikes of a few degrees."""
+    """A closed line of 70 vertices about 2 mm apart, each up to 2.5 mm in or out: capes, bays and spikes of a
+    few degrees.
+    """
     random = np.random.default_rng(seed)
     angle = np.sort((np.arange(70) + random.uniform(-0.3, 0.3, 70)) * math.tau / 70)
     radius = 22 + random.uniform(-2.5, 2.5, 70)

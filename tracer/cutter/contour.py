@@ -1,14 +1,15 @@
-"""Beside a contour: the ways of the cutter along it, and the places of them that belong to what is drawn on the contour and to it.
+"""Beside a contour: the ways of the cutter along it, and the places of them that belong to what is drawn on
+the contour and to it.
 
-Signals: a line as it was followed and ways of the cutter's middle, mm, in; out where the contour begins, and places of the ways: which way, and which of its
-points, fractions included.
+Signals: a line as it was followed and ways of the cutter's middle, mm, in; out where the contour begins, and
+places of the ways: which way, and which of its points, fractions included.
 
     ───┼──── contour        the foot of a stop mark: the arm of the cutter's radius stands on the contour at the mark, across its heading;
        │arm                 where the cutter cannot come to it (in an inner corner), the place of the ways that is nearest
     ───●──── way
 
-The contour is what is cut of a line: not the lead line to it, and not the guide lines off it. Where a guide line was left for and come back from, the contour
-goes straight on.
+The contour is what is cut of a line: not the lead line to it, and not the guide lines off it. Where a guide
+line was left for and come back from, the contour goes straight on.
 
 Source: our own; the heading at a place is that of a cubic through the places about it, least squares.
 """
@@ -23,13 +24,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import polynomial
 
+from morfax.motion.arrays import Array
 from morfax.motion.curves import hermite
 from morfax.motion.offset import Way
 from morfax.motion.polyline import APART_MM, crossings, lengths_mm, with_places
 from morfax.tracer.following.line import Line
 from morfax.tracer.operator.operator import Halt, Operator
 from morfax.tracer.sensing.leg import turn
-from morfax.tracer.sensing.view import Array
 
 ABOUT_MM = (
     3.0,
@@ -53,7 +54,9 @@ class Place(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Cut:
-    """What is cut of a line: from its position `first` on, (n, 2) mm without guide lines, closed if it comes back there; and the line's stops."""
+    """What is cut of a line: from its position `first` on, (n, 2) mm without guide lines, closed if it comes
+    back there; and the line's stops.
+    """
 
     line: Line
     first: int
@@ -69,7 +72,9 @@ class Cut:
 
     @classmethod
     def of(cls, line: Line, operator: Operator, number: int) -> Cut | None:
-        """What an operator cuts of a line, its stops numbered from one on; None if nothing, as of a guide line without a tick."""
+        """What an operator cuts of a line, its stops numbered from one on; None if nothing, as of a guide
+        line without a tick.
+        """
         down_at = operator.down_at(line, number)
         if len(line.xy_mm) < 2 or line.is_dot or (line.is_guide and down_at is None):
             return None
@@ -97,7 +102,9 @@ def _places(line: Line, first: int) -> Array:
 
 
 def _bridge(before: Array, after: Array) -> Array:
-    """A cubic from the end of some places (n, 2) mm to the beginning of others, on their headings; nothing where those are a corner's."""
+    """A cubic from the end of some places (n, 2) mm to the beginning of others, on their headings; nothing
+    where those are a corner's.
+    """
     ways = [before[-1] - before[max(0, len(before) - FELT)], after[min(FELT, len(after)) - 1] - after[0]]
     headings = [math.atan2(way[1], way[0]) for way in ways]
     if abs(turn(*headings)) > CORNER:
@@ -106,7 +113,9 @@ def _bridge(before: Array, after: Array) -> Array:
 
 
 def _closed(places_mm: Array) -> Array:
-    """Places of a closed contour (n, 2) mm, brought together where it begins and ends: the head came there twice, some um apart."""
+    """Places of a closed contour (n, 2) mm, brought together where it begins and ends: the head came there
+    twice, some um apart.
+    """
     lengths = lengths_mm(places_mm)
     gap_mm = 0.5 * (places_mm[-1] - places_mm[0])
     after, before = (np.clip(1 - mm / MET_MM, 0.0, 1.0) for mm in (lengths, lengths[-1] - lengths))
@@ -115,7 +124,9 @@ def _closed(places_mm: Array) -> Array:
 
 @dataclass(frozen=True, slots=True)
 class Beside:
-    """The ways (n, 2) mm of a cutter along a contour, on its left or its right; a closed way ends where it begins."""
+    """The ways (n, 2) mm of a cutter along a contour, on its left or its right; a closed way ends where it
+    begins.
+    """
 
     cut: Cut
     left: bool

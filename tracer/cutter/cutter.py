@@ -1,20 +1,26 @@
-"""The cutter: a program whose tool runs beside the lines that were followed, a cutter's radius away, and never nearer to any of them.
+"""The cutter: a program whose tool runs beside the lines that were followed, a cutter's radius away, and
+never nearer to any of them.
 
-Signals: a Trace along the lines' middles and a cutter in; out a Trace along the ways of the cutter's middle, and the places that the cutter cannot reach (mm).
+Signals: a Trace along the lines' middles and a cutter in; out a Trace along the ways of the cutter's middle,
+and the places that the cutter cannot reach (mm).
 
-    The tool is on an arm of the cutter's radius across the heading. Where the head swivels on a corner the arm swings the tool round it: the corner
-    stays sharp, and the tool's way round. In a corner towards the tool the way turns where the tool touches both legs; what it leaves there is listed.
+    The tool is on an arm of the cutter's radius across the heading. Where the head swivels on a corner the
+    arm swings the tool round it: the corner stays sharp, and the tool's way round. In a corner towards the
+    tool the way turns where the tool touches both legs; what it leaves there is listed.
 
-Side: `left` and `right` are those of the head's travel. `outside` is the outside of the part: of a line that lies in none of the others its outside, of one
-in it (a hole) its inside, of one in that its outside, and so on; `inside` (a pocket and its islands) is the other side of each. All lines that are
-followed count as the part's edge: where two are nearer to each other than the cutter is wide, it does not go between them. A line of which it can touch
-nothing, such as a hole that is too small, is left out and listed.
+Side: `left` and `right` are those of the head's travel. `outside` is the outside of the part: of a line that
+lies in none of the others its outside, of one in it (a hole) its inside, of one in that its outside, and so
+on; `inside` (a pocket and its islands) is the other side of each. All lines that are followed count as the
+part's edge: where two are nearer to each other than the cutter is wide, it does not go between them. A line
+of which it can touch nothing, such as a hole that is too small, is left out and listed.
 
-What is drawn besides contours is carried over to the ways (see `carried`). Neither lead nor guide lines count as edges, and no hole is moved.
+What is drawn besides contours is carried over to the ways (see `carried`). Neither lead nor guide lines count
+as edges, and no hole is moved.
 
-Source: patent ES 361967, section on use, has the draughtsman draw the contour larger by the cutter's radius; the arm is our own, as on steered copying heads.
-Questions: a line that was lost is open so far as it was traced: it is cut on the left or the right of its travel, and has no outside. A card may have the tool
-down where no line is cut; what would cut into a contour is refused.
+Source: patent ES 361967, section on use, has the draughtsman draw the contour larger by the cutter's radius;
+the arm is our own, as on steered copying heads. Questions: a line that was lost is open so far as it was
+traced: it is cut on the left or the right of its travel, and has no outside. A card may have the tool down
+where no line is cut; what would cut into a contour is refused.
 """
 
 from __future__ import annotations
@@ -25,6 +31,7 @@ from typing import Literal
 
 import numpy as np
 
+from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault, MotionFault
 from morfax.motion.offset import Guide, Way, offset
 from morfax.motion.polyline import WITHIN_MM, Nearest, plain, with_places
@@ -33,7 +40,6 @@ from morfax.tracer.cutter.contour import Beside, Cut
 from morfax.tracer.cutter.transfer import Feed, carried
 from morfax.tracer.following.line import Line
 from morfax.tracer.program.program import Trace
-from morfax.tracer.sensing.view import Array
 
 Side = Literal["outside", "inside", "left", "right"]
 
@@ -59,7 +65,9 @@ class Cutter:
 
 @dataclass(frozen=True, slots=True)
 class Unreached:
-    """A stretch of a line that the cutter does not touch: where it leaves most, how much that is, how long the stretch is, and the line (mm)."""
+    """A stretch of a line that the cutter does not touch: where it leaves most, how much that is, how long
+    the stretch is, and the line (mm).
+    """
 
     line: int
     place_mm: tuple[float, float]
@@ -70,7 +78,9 @@ class Unreached:
 
 @dataclass(frozen=True, slots=True)
 class LeftOut:
-    """A line of which the cutter touches nothing: how long it is (mm), its stops, and how much room there is beside it, if it is shut in."""
+    """A line of which the cutter touches nothing: how long it is (mm), its stops, and how much room there is
+    beside it, if it is shut in.
+    """
 
     line: int
     length_mm: float
@@ -80,7 +90,9 @@ class LeftOut:
 
 @dataclass(frozen=True, slots=True)
 class Left:
-    """What the cutter leaves: stretches of lines, that of which most is left first, and whole lines, by number."""
+    """What the cutter leaves: stretches of lines, that of which most is left first, and whole lines, by
+    number.
+    """
 
     stretches: list[Unreached] = field(default_factory=list)
     lines: list[LeftOut] = field(default_factory=list)
@@ -89,8 +101,8 @@ class Left:
 def with_cutter(trace: Trace, cutter: Cutter, feed_mm_s: float) -> tuple[Trace, Left]:
     """The program of a cutter beside the lines, run at a feed; and what it cannot reach.
 
-    Raises MotionFault if the cutter goes nowhere, if a line has no such side, or if the tool would be in the work nearer to a line than its radius;
-    LineFault if all lines were lost, and have no such side.
+    Raises MotionFault if the cutter goes nowhere, if a line has no such side, or if the tool would be in the
+    work nearer to a line than its radius; LineFault if all lines were lost, and have no such side.
     """
     planned = _planned(trace, cutter.side)
     cuts = [cut for _, cut in planned if cut is not None]
@@ -127,7 +139,9 @@ def _goes_nowhere(guides: Sequence[Guide], cutter: Cutter) -> MotionFault:
 
 
 def _planned(trace: Trace, side: Side) -> list[tuple[Line, Cut | None]]:
-    """The lines with the numbers of their stops, each with what is cut of it; a line that was lost has no outside and no inside."""
+    """The lines with the numbers of their stops, each with what is cut of it; a line that was lost has no
+    outside and no inside.
+    """
     planned, first = list[tuple[Line, Cut | None]](), 1
     for line in trace.lines:
         halts = trace.operator.stops(line, first)
@@ -157,7 +171,9 @@ def _not_cut(line: Line, side: Side) -> Line:
 
 
 def _has_ways(cut: Cut, ways: Sequence[Way], cutter: Cutter) -> bool:
-    """Whether the cutter runs along a line; raises MotionFault if it only comes by, and something is to be done there, or if a lead line comes to no round."""
+    """Whether the cutter runs along a line; raises MotionFault if it only comes by, and something is to be
+    done there, or if a lead line comes to no round.
+    """
     what = f"a cutter of {cutter.diameter_mm:g} mm {cutter.side} of line {cut.line.number}"
     if not ways and (cut.stops or cut.first > 0):
         raise MotionFault(
@@ -171,7 +187,9 @@ def _has_ways(cut: Cut, ways: Sequence[Way], cutter: Cutter) -> bool:
 
 
 def _refuse_gouges(beside: Trace, near: Nearest, cutter: Cutter) -> None:
-    """Raise MotionFault if the tool moves in the work nearer to a line than its radius, as where a card has it go down on the way to a contour."""
+    """Raise MotionFault if the tool moves in the work nearer to a line than its radius, as where a card has
+    it go down on the way to a contour.
+    """
     for block in beside:
         moves = np.flatnonzero(np.any(np.diff(block.positions_mm[:, :2], axis=0) != 0, axis=1))
         cutting = block.positions_mm[moves][block.positions_mm[moves, 2] < 0, :2][::GOUGES]
@@ -217,7 +235,9 @@ def _without_side(wrong: dict[int, str], others: Sequence[int], side: Side) -> M
 
 
 def _left(cuts: Sequence[Cut], guides: Sequence[Guide], ways: Sequence[Way], radius_mm: float) -> Left:
-    """The stretches of the lines that are further from every way than the cutter reaches, and the lines that are so all along."""
+    """The stretches of the lines that are further from every way than the cutter reaches, and the lines that
+    are so all along.
+    """
     near, left = Nearest([way.points_mm for way in ways], radius_mm), Left()
     for k, cut in enumerate(cuts):
         places = with_places(plain(cut.places_mm, WITHIN_MM), EVERY_MM)

@@ -1,11 +1,14 @@
-"""Edges of the part: on which side of each line the cutter runs, and how wide the room is that a line leaves it.
+"""Edges of the part: on which side of each line the cutter runs, and how wide the room is that a line leaves
+it.
 
-Signals: closed lines and open ones, (n, 2) mm, in; out guides, each with its side, and the largest circle that has room beside a line (mm).
+Signals: closed lines and open ones, (n, 2) mm, in; out guides, each with its side, and the largest circle
+that has room beside a line (mm).
 
-    lines that cross each other are both edges: none of them lies in the other. A line that crosses itself has no outside and no inside: what lies between
-    its lobes is as much the one as the other.
+    lines that cross each other are both edges: none of them lies in the other. A line that crosses itself has
+    no outside and no inside: what lies between its lobes is as much the one as the other.
 
-Source: our own. The largest circle is found on a grid, by the distances from all lines, and again on finer ones about its middle.
+Source: our own. The largest circle is found on a grid, by the distances from all lines, and again on finer
+ones about its middle.
 """
 
 from __future__ import annotations
@@ -18,10 +21,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion import nesting
+from morfax.motion.arrays import Array
 from morfax.motion.offset import Guide
 from morfax.motion.polyline import Nearest, crossings_of, lengths_mm, with_places
 from morfax.tracer.following.thinning import THINNED
-from morfax.tracer.sensing.view import Array
 
 LOOP_MM = 1.0  # a shorter loop is the head's swivel, and not drawn
 CELLS = 500  # of the grid, along the longer side of what is looked at
@@ -60,7 +63,9 @@ def thinned(line_mm: Array) -> Array:
 
 
 def crossing(lines_mm: Sequence[Array]) -> NDArray[np.bool_]:
-    """Which lines (n, 2) mm, taken for closed, cross which: `crossing[i, j]`; `[i, i]` if line i crosses itself."""
+    """Which lines (n, 2) mm, taken for closed, cross which: `crossing[i, j]`; `[i, i]` if line i crosses
+    itself.
+    """
     closed = [np.vstack([line, line[:1]]) for line in lines_mm]
     owner = np.concatenate([np.full(len(line), k) for k, line in enumerate(closed)])
     last = np.flatnonzero(np.r_[np.diff(owner) != 0, True])
@@ -119,7 +124,9 @@ def room(guides: Sequence[Guide], number: int) -> Room | None:
 def _free(
     lines_mm: Sequence[Array], own: Guide, inside: bool, low: Array, size: Array, cell_mm: float
 ) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
-    """A grid that is 0 where a line runs, else 1; and which of its cells can be come to from a line's own side without crossing any."""
+    """A grid that is 0 where a line runs, else 1; and which of its cells can be come to from a line's own
+    side without crossing any.
+    """
     columns, rows = (np.ceil(size / cell_mm).astype(int) + 5).tolist()
     free, filled, beside = np.ones((rows, columns), np.uint8), *np.zeros((2, rows, columns), np.uint8)
     cv2.polylines(

@@ -1,7 +1,8 @@
-"""A drawn program carried over from its contour to the ways of the cutter beside it: lead line, stops, guide lines, and the way back.
+"""A drawn program carried over from its contour to the ways of the cutter beside it: lead line, stops, guide
+lines, and the way back.
 
-Signals: a line as it was followed, and the ways of the cutter along its contour, in; out the lines that are run instead, mm at the motion rate, each with
-its lead line, marks and guide lines where they are then.
+Signals: a line as it was followed, and the ways of the cutter along its contour, in; out the lines that are
+run instead, mm at the motion rate, each with its lead line, marks and guide lines where they are then.
 
     reference ──tick──┐ way of the cutter          reference ──────── contour
                       │   ─── contour                            tick   │   raised over the contour,
@@ -16,8 +17,9 @@ its lead line, marks and guide lines where they are then.
 
 The numbers of the stops stay those of the drawing, also where the cutter comes to them in another order.
 
-Source: our own. The patent's draughtsman allows for the cutter himself (ES 361967, section on use). Questions: a contour of which the cutter's way is in pieces
-has one lead line. The other pieces are run before it, from the reference point, so that the program ends there; the tool is raised from piece to piece.
+Source: our own. The patent's draughtsman allows for the cutter himself (ES 361967, section on use).
+Questions: a contour of which the cutter's way is in pieces has one lead line. The other pieces are run before
+it, from the reference point, so that the program ends there; the tool is raised from piece to piece.
 """
 
 from __future__ import annotations
@@ -27,6 +29,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from morfax.motion.arrays import Array
 from morfax.motion.feed import run_along
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.cutter.contour import Beside, Place
@@ -34,13 +37,11 @@ from morfax.tracer.following.line import Line
 from morfax.tracer.junctions.guides import Guide
 from morfax.tracer.program import braking as stops
 from morfax.tracer.program.program import BRAKE_MM_S2
-from morfax.tracer.sensing.view import Array
 
 CLEAR_MM = 0.001  # a place is clear if it is no nearer to a contour than the radius less this
 NOTHING_MM = 1e-6
-OBLIQUE = (
-    2.0  # radii along a guide line: where it crosses the way later than this, it comes to another part of it
-)
+# radii along a guide line: where it crosses the way later than this, it comes to another part of it
+OBLIQUE = 2.0
 
 Distances = Callable[[Array], Array]
 
@@ -59,7 +60,9 @@ class Feed:
         return run_along(way_mm, self.mm_s, BRAKE_MM_S2, self.rate_hz)
 
     def resting(self, rows_mm: Array, at: Sequence[float]) -> tuple[Array, Callable[[float], float]]:
-        """Positions (n, 2) mm that come to rest at some of them, fractions included, the last of which ends them; and where each is then."""
+        """Positions (n, 2) mm that come to rest at some of them, fractions included, the last of which ends
+        them; and where each is then.
+        """
         pieces = stops.pieces(rows_mm, at, BRAKE_MM_S2, self.rate_hz)[: len(at)]
         rested = np.vstack([pieces[0], *(piece[1:] for piece in pieces[1:])])
         rests = [len(pieces[0]) - 1, *(len(piece) - 1 for piece in pieces[1:])]
@@ -72,7 +75,9 @@ class Feed:
 
 @dataclass(frozen=True, slots=True)
 class _Lead:
-    """The lead line to a way: positions (n, 2) mm, the last at rest on the way, and where that is; those for the drawn marks, and guide lines."""
+    """The lead line to a way: positions (n, 2) mm, the last at rest on the way, and where that is; those for
+    the drawn marks, and guide lines.
+    """
 
     xy_mm: Array
     place: Place
@@ -82,7 +87,9 @@ class _Lead:
 
 @dataclass(slots=True)
 class _Run:
-    """A way as it is run, from one of its places on: positions (n, 2) mm, and for positions of the drawn line those that stand for them."""
+    """A way as it is run, from one of its places on: positions (n, 2) mm, and for positions of the drawn line
+    those that stand for them.
+    """
 
     xy_mm: Array
     way_mm: Array
@@ -127,7 +134,9 @@ class _Run:
 
 @dataclass(frozen=True, slots=True)
 class _Detour:
-    """A guide line off a way: the way's position where it leaves, positions (n, 2) mm, the drawn tip, and which stand for the drawn ones."""
+    """A guide line off a way: the way's position where it leaves, positions (n, 2) mm, the drawn tip, and
+    which stand for the drawn ones.
+    """
 
     leave: int
     xy_mm: Array
@@ -136,7 +145,8 @@ class _Detour:
 
 
 def carried(beside: Beside, away_mm: Distances, feed: Feed) -> list[Line]:
-    """The lines that the cutter runs for a line: one for each way, that to which the lead line comes the last.
+    """The lines that the cutter runs for a line: one for each way, that to which the lead line comes the
+    last.
 
     `away_mm` tells how far places are from all contours.
     """
@@ -181,7 +191,9 @@ def _lead(beside: Beside, away_mm: Distances, feed: Feed) -> _Lead:
 
 
 def _joins(beside: Beside, rows: Array) -> tuple[float, Place]:
-    """Which position of a lead line is its last, and where it comes onto the way: not before what is drilled on it."""
+    """Which position of a lead line is its last, and where it comes onto the way: not before what is drilled
+    on it.
+    """
     cut, line = beside.cut, beside.cut.line
     last = float(len(rows) - 1)
     if not cut.closed:

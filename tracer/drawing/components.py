@@ -1,7 +1,9 @@
-"""Patches of ink: what hangs together on a sheet, kept as runs of pixels, so that a large sheet costs no more than its ink.
+"""Patches of ink: what hangs together on a sheet, kept as runs of pixels, so that a large sheet costs no more
+than its ink.
 
-Signals: masks of ink in strips of whole rows, from the top, in; out for each run its row, where it begins and ends (pixels, the end not included), and the
-number of the patch that it belongs to. Two runs of neighbouring rows belong together if they touch, be it at a corner.
+Signals: masks of ink in strips of whole rows, from the top, in; out for each run its row, where it begins and
+ends (pixels, the end not included), and the number of the patch that it belongs to. Two runs of neighbouring
+rows belong together if they touch, be it at a corner.
 
                 row  ..####....##..      3 runs, 2 patches: an image of labels would take four bytes for every pixel
               row+1  ....####......      of the paper
@@ -76,7 +78,9 @@ class Patches:
 
 
 def strips(shape: tuple[int, ...], halo: int = 0) -> Iterator[tuple[int, int, slice]]:
-    """First row and last row + 1 of each strip of a sheet, and the rows of the strip with a halo of neighbours."""
+    """First row and last row + 1 of each strip of a sheet, and the rows of the strip with a halo of
+    neighbours.
+    """
     rows, columns = shape[:2]
     height = max(4 * halo, STRIP_PX // max(columns, 1), 1)
     for top in range(0, rows, height):

@@ -1,10 +1,13 @@
-"""How far a path is from the ink's own centre, and which ink no path covers: the measure of `compare DRAWING PATH`, independent of the head.
+"""How far a path is from the ink's own centre, and which ink no path covers: the measure of `compare DRAWING
+PATH`, independent of the head.
 
-Signals: a Drawing and a path's polylines (sheet mm) in; the signed distance of the path from the middle of the ink at places along it, mm (positive: the
-path lies to the left of the ink's middle), and the length of ink that lies beside the path.
+Signals: a Drawing and a path's polylines (sheet mm) in; the signed distance of the path from the middle of
+the ink at places along it, mm (positive: the path lies to the left of the ink's middle), and the length of
+ink that lies beside the path.
 
-Across the path, the ink's two edges are where the darkness falls through half of what it is between them; the middle is halfway. Where the ink is much
-wider than the line usually is (a crossing, a corner) the middle means nothing, and the place is not measured.
+Across the path, the ink's two edges are where the darkness falls through half of what it is between them; the
+middle is halfway. Where the ink is much wider than the line usually is (a crossing, a corner) the middle
+means nothing, and the place is not measured.
 
 Source: our own; the darkness is the drawing's, interpolated by scipy, and not the head's cells.
 """
@@ -33,14 +36,15 @@ STANDS, LEAP = (
     10.0,
 )  # of these: round a corner, and from one leg of a corner to the other, the edge is not on the line
 WIDEST = 1.3  # of the usual width: beyond this the ink's middle means nothing
-AVERAGED_MM = (
-    0.5  # the middle of the ink is averaged along the path over this, against the noise of the paper
-)
+# the middle of the ink is averaged along the path over this, against the noise of the paper
+AVERAGED_MM = 0.5
 
 
 @dataclass(frozen=True, slots=True)
 class Deviation:
-    """Distances of a path from the ink's middle (mm, NaN where there is none to measure) at places (n, 2) along it, and ink missed."""
+    """Distances of a path from the ink's middle (mm, NaN where there is none to measure) at places (n, 2)
+    along it, and ink missed.
+    """
 
     points_mm: Array
     error_mm: Array
@@ -75,10 +79,11 @@ class Deviation:
 
 
 def deviation(drawing: Drawing, path: Path | Sequence[Array], over: Sequence[Array] = ()) -> Deviation:
-    """Measure a path, or its runs as (n, 2) polylines in sheet mm, against the drawing; MotionFault if it nowhere follows the ink.
+    """Measure a path, or its runs as (n, 2) polylines in sheet mm, against the drawing; MotionFault if it
+    nowhere follows the ink.
 
-    Distances are those of the runs with the tool in the work; ink is missed if the path nowhere goes over it, be it with the tool up as on a lead line,
-    nor anything in `over`.
+    Distances are those of the runs with the tool in the work; ink is missed if the path nowhere goes over it,
+    be it with the tool up as on a lead line, nor anything in `over`.
     """
     runs = path.runs() if isinstance(path, Path) else list(path)
     places = [_places(run) for run in runs if len(run) > 1]
@@ -98,7 +103,9 @@ def deviation(drawing: Drawing, path: Path | Sequence[Array], over: Sequence[Arr
 
 
 def touched(drawing: Drawing, path: Path, radius_mm: float) -> list[Array]:
-    """What the edge of a cutter touches whose middle runs along a path, as (n, 2) polylines: on the side of each run where there is more ink."""
+    """What the edge of a cutter touches whose middle runs along a path, as (n, 2) polylines: on the side of
+    each run where there is more ink.
+    """
     polylines = []
     for run in path.runs():
         points, headings = _places(run, TOUCH_MM)
@@ -162,7 +169,9 @@ def _line_width(drawing: Drawing, places: list[tuple[Array, Array]]) -> float:
 
 
 def _edges(drawing: Drawing, points: Array, headings: Array, reach_mm: float) -> tuple[Array, Array]:
-    """Edges of the ink nearest to a path, mm to its left; NaN where there is no ink under it or no edge within reach."""
+    """Edges of the ink nearest to a path, mm to its left; NaN where there is no ink under it or no edge
+    within reach.
+    """
     step = 0.25 * drawing.pitch_mm
     count = int(np.ceil(reach_mm / step))
     across = np.arange(-count, count + 1, dtype=float) * step

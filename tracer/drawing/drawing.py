@@ -1,15 +1,20 @@
 """The drawing on its table: an image file becomes darkness 0..1 on a sheet in mm.
 
-Signals: an image file in (PNG, JPEG, TIFF, …; any depth, grey or colour, with or without alpha), darkness out: float32 (rows from the top, columns),
-0 = paper, 1 = the ink of the drawing's lines, on square pixels of `pitch_mm`.
+Signals: an image file in (PNG, JPEG, TIFF, …; any depth, grey or colour, with or without alpha), darkness
+out: float32 (rows from the top, columns), 0 = paper, 1 = the ink of the drawing's lines, on square pixels of
+`pitch_mm`.
 
-Uneven paper is levelled (see `paper`), dark on light or light on dark. Ink is how dark the longer strokes are at their darkest.
+Uneven paper is levelled (see `paper`), dark on light or light on dark. Ink is how dark the longer strokes are
+at their darkest.
 
-Sheet coordinates: mm from the lower-left corner, X right, Y up; pixel i covers [i, i+1) pitches, so the centre of pixel 0 is at half a pitch.
+Sheet coordinates: mm from the lower-left corner, X right, Y up; pixel i covers [i, i+1) pitches, so the
+centre of pixel 0 is at half a pitch.
 
-A sheet may have a thousand million pixels: all that is done to every pixel is done strip by strip, and only the darkness is kept as a whole.
+A sheet may have a thousand million pixels: all that is done to every pixel is done strip by strip, and only
+the darkness is kept as a whole.
 
-Questions: the patent takes the drawing for granted. A resolution that the file does not state is asked for, never guessed.
+Questions: the patent takes the drawing for granted. A resolution that the file does not state is asked for,
+never guessed.
 """
 
 from __future__ import annotations
@@ -45,8 +50,9 @@ Shapes = NDArray[np.bool_]
 class Drawing:
     """A drawing as the cells see it: `darkness` (rows from the top, columns) on pixels of `pitch_mm`.
 
-    Of filled shapes the `edges_mm`, closed polylines (n, 2), that a run has to keep to, and how many times `enlarged` the head sees the line along them; if
-    they are not asked for, where there are `shapes`, on the picture reduced by a whole number.
+    Of filled shapes the `edges_mm`, closed polylines (n, 2), that a run has to keep to, and how many times
+    `enlarged` the head sees the line along them; if they are not asked for, where there are `shapes`, on the
+    picture reduced by a whole number.
     """
 
     darkness: Darkness
@@ -75,10 +81,11 @@ class Drawing:
         ink: str | None = None,
         edge: bool = False,
     ) -> Drawing:
-        """Read an image file; its scale from `dpi`, or from the sheet's `width_mm`, or from the file. Of a coloured drawing only one `ink`, if given;
-        of filled shapes their edges, if `edge`.
+        """Read an image file; its scale from `dpi`, or from the sheet's `width_mm`, or from the file. Of a
+        coloured drawing only one `ink`, if given; of filled shapes their edges, if `edge`.
 
-        Raises DrawingFault if it is no image, states no resolution, or holds no line; FileFault if it cannot be read.
+        Raises DrawingFault if it is no image, states no resolution, or holds no line; FileFault if it cannot
+        be read.
         """
         file, wanted = Path(file), None if ink is None else inks.parsed(ink)
         if dpi is not None and width_mm is not None:
@@ -103,7 +110,8 @@ class Drawing:
 
 
 def levelled(grey: Grey, pitch_mm: float) -> tuple[Darkness, Shapes]:
-    """Darkness 0..1 of a grey picture (0..255): paper levelled, contrast of the strokes 1; and where filled shapes are, on a picture reduced by a whole number.
+    """Darkness 0..1 of a grey picture (0..255): paper levelled, contrast of the strokes 1; and where filled
+    shapes are, on a picture reduced by a whole number.
 
     Raises DrawingFault if nothing on it is long and dark enough to be a line.
     """

@@ -1,16 +1,20 @@
-"""One ink of several: how much of a pixel is covered by the ink of a colour, whatever other inks, such as a printed grid's, are on the sheet.
+"""One ink of several: how much of a pixel is covered by the ink of a colour, whatever other inks, such as a
+printed grid's, are on the sheet.
 
-Signals: a colour picture and the colour asked for in; out grey levels, 255 where there is none of that ink and 0 where it covers the pixel.
+Signals: a colour picture and the colour asked for in; out grey levels, 255 where there is none of that ink
+and 0 where it covers the pixel.
 
-A pixel on an edge is a mixture of paper and ink, so its colour lies on the straight way from the one to the other, and how far along it is the share that is
-covered. The inks are found by the direction in which their colours lie from the paper's; then w is chosen so that
+A pixel on an edge is a mixture of paper and ink, so its colour lies on the straight way from the one to the
+other, and how far along it is the share that is covered. The inks are found by the direction in which their
+colours lie from the paper's; then w is chosen so that
 
     share = w · (pixel - paper)        w · (ink - paper) = 1        Σ (w · (other - paper))² + noise² · |w|²  least
 
-over the pixels of other colours. It is linear in the pixel's colour, so that edges stay where they are, to a part of a pixel.
+over the pixels of other colours. It is linear in the pixel's colour, so that edges stay where they are, to a
+part of a pixel.
 
-Source: the matched filter of linear unmixing; our own.
-Questions: an ink printed over another lets it shine through or not; both are mixtures here, right to within the other ink's own darkness.
+Source: the matched filter of linear unmixing; our own. Questions: an ink printed over another lets it shine
+through or not; both are mixtures here, right to within the other ink's own darkness.
 """
 
 from __future__ import annotations
@@ -60,7 +64,8 @@ def parsed(text: str) -> Colour:
 def covered(picture: Picture, wanted: Colour, pitch_mm: float | None = None) -> NDArray[np.float32]:
     """Grey levels of the ink that is nearest to a colour; raises DrawingFault if there is none like it.
 
-    With a pitch uneven paper is levelled first, in place: on a sheet with broad areas of ink it cannot be told from them.
+    With a pitch uneven paper is levelled first, in place: on a sheet with broad areas of ink it cannot be
+    told from them.
     """
     if pitch_mm is not None:
         _level(picture, pitch_mm)
@@ -82,7 +87,9 @@ def covered(picture: Picture, wanted: Colour, pitch_mm: float | None = None) -> 
 
 
 def _level(picture: Picture, pitch_mm: float) -> None:
-    """Make light paper as light all over as it is as a rule, and white if a photograph has it grey, each channel by itself."""
+    """Make light paper as light all over as it is as a rule, and white if a photograph has it grey, each
+    channel by itself.
+    """
     for channel in np.moveaxis(picture, 2, 0):
         paper = Paper.of(channel, pitch_mm)
         usual = float(np.median(paper.reduced))
@@ -95,7 +102,9 @@ def _level(picture: Picture, pitch_mm: float) -> None:
 
 
 def _weights(picture: Picture, paper: Array, own: Array, near: float) -> Array:
-    """The weights that give 1 for an ink's colour and as little as they can for others: those away from that ink, whose fringes have any colour."""
+    """The weights that give 1 for an ink's colour and as little as they can for others: those away from that
+    ink, whose fringes have any colour.
+    """
     spread, count = np.zeros((3, 3)), 1
     about = np.ones((2 * FRINGE_PX + 1,) * 2, np.uint8)
     for top, bottom, rows in strips(picture.shape[:2], halo=FRINGE_PX):
@@ -151,7 +160,9 @@ def _angle(a: Array, b: Array) -> float:
 
 
 def _unlike(wanted: Array, found: Array) -> float:
-    """Angle between the directions of a colour that is asked for and of an ink, rad; a right angle if the one has a hue and the other is black or pencil."""
+    """Angle between the directions of a colour that is asked for and of an ink, rad; a right angle if the one
+    has a hue and the other is black or pencil.
+    """
     grey = np.ones(3)
     has_hue, is_grey = _angle(wanted, grey) > HUE, _angle(found, grey) < NO_HUE
     return math.pi / 2 if has_hue and is_grey else _angle(wanted, found)

@@ -1,8 +1,11 @@
-"""Room for the sheet: how much memory a drawing takes, and whether this computer has it, asked before the picture is unpacked.
+"""Room for the sheet: how much memory a drawing takes, and whether this computer has it, asked before the
+picture is unpacked.
 
-    pixels · (darkness 4 bytes + the same behind the aperture 4 bytes + what the picture itself takes) + strips
+    pixels · (darkness 4 bytes + the same behind the aperture 4 bytes + what the picture itself takes) +
+    strips
 
-Source: our own. Questions: a system that does not say how much memory is free is taken to have enough; the fault then comes from the system.
+Source: our own. Questions: a system that does not say how much memory is free is taken to have enough; the
+fault then comes from the system.
 """
 
 from __future__ import annotations
@@ -13,7 +16,8 @@ from pathlib import Path
 from morfax.motion.faults import DrawingFault
 
 GB = 1e9
-PER_PIXEL = 9.0  # bytes: darkness, cells behind the aperture, ink and paper on the way; measured on a sheet of 900 Mpx
+# bytes: darkness, cells behind the aperture, ink and paper on the way; measured on a sheet of 900 Mpx
+PER_PIXEL = 9.0
 FIXED_BYTES = 0.3 * GB  # strips in work, libraries
 SMALL_PX = 16e6  # a sheet below this is tried in any case
 
@@ -31,7 +35,9 @@ def make_sure(file: Path, columns: int, rows: int) -> None:
 
 
 def free_bytes() -> int | None:
-    """Memory that can be had without swapping, within the limit of a container; None if the system does not say."""
+    """Memory that can be had without swapping, within the limit of a container; None if the system does not
+    say.
+    """
     known = [free for free in (_of_the_system(), _of_the_container()) if free is not None]
     return min(known, default=None)
 
@@ -48,7 +54,9 @@ def _of_the_system() -> int | None:
 
 
 def _of_the_container(folder: Path = Path("/sys/fs/cgroup")) -> int | None:
-    """What the limit of a container (cgroup, version 2) leaves; files in its cache can be dropped and do not count."""
+    """What the limit of a container (cgroup, version 2) leaves; files in its cache can be dropped and do not
+    count.
+    """
     try:
         limit = int((folder / "memory.max").read_text())
     except (OSError, ValueError):  # none, or "max"

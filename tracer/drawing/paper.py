@@ -2,8 +2,9 @@
 
 Signals: a grey picture (0..255), or a channel of a coloured one, in; the paper's level at every pixel out.
 
-The paper is what is left of the picture when dark strokes narrower than a few mm are closed (a grey closing), smoothed. Whether the strokes are dark on light
-or light on dark is read off the skew of the grey levels about their local mean: strokes are the smaller part, so they stand out further.
+The paper is what is left of the picture when dark strokes narrower than a few mm are closed (a grey closing),
+smoothed. Whether the strokes are dark on light or light on dark is read off the skew of the grey levels about
+their local mean: strokes are the smaller part, so they stand out further.
 
 Source: our own; the patent takes the drawing for granted.
 """
@@ -28,7 +29,9 @@ Grey = NDArray[np.uint8] | NDArray[np.float32]
 
 @dataclass(frozen=True, slots=True)
 class Paper:
-    """The level of the paper on a picture reduced by a whole number to a pitch, how wide the picture is, and whether the strokes are darker than it."""
+    """The level of the paper on a picture reduced by a whole number to a pitch, how wide the picture is, and
+    whether the strokes are darker than it.
+    """
 
     reduced: Levels
     by: int
@@ -60,7 +63,9 @@ class Paper:
         return np.asarray(large[top - first * self.by : bottom - first * self.by, : self.columns], np.float32)
 
     def shapes(self, contrast: float) -> NDArray[np.bool_]:
-        """Where the paper is as dark as ink of a contrast, or nearly, on the reduced picture: filled shapes that are broader than a stroke, and about them."""
+        """Where the paper is as dark as ink of a contrast, or nearly, on the reduced picture: filled shapes
+        that are broader than a stroke, and about them.
+        """
         away = self.reduced.max() - self.reduced if self.is_light else self.reduced - self.reduced.min()
         grown = cv2.dilate(
             (away > SHAPE * contrast).view(np.uint8), _disc(round(WIDEST_STROKE_MM / 2 / self.pitch_mm))

@@ -22,7 +22,9 @@ Grey = NDArray[np.uint8] | NDArray[np.float32]  # levels 0..255
 
 
 def _read(file: Path, *, coloured: bool) -> tuple[Grey, tuple[float, float] | None]:
-    """Grey levels, or colours, of the first page of an image file, upright, and the resolution that the file states."""
+    """Grey levels, or colours, of the first page of an image file, upright, and the resolution that the file
+    states.
+    """
     from PIL import Image, ImageOps, UnidentifiedImageError
 
     Image.MAX_IMAGE_PIXELS = None  # a large sheet is no attack; a lack of memory is said below
@@ -65,7 +67,9 @@ def _states_resolution(image: Image) -> bool:
 
 
 def _grey(image: Image) -> Grey:
-    """Grey levels 0..255 of an image of any mode; the darkest colour channel, so that a coloured line is as dark as it can be."""
+    """Grey levels 0..255 of an image of any mode; the darkest colour channel, so that a coloured line is as
+    dark as it can be.
+    """
     columns, rows = image.size
     deep = image.mode in ("I;16", "I;16B", "I;16L", "I", "F")
     grey = np.empty((rows, columns), np.float32 if deep else np.uint8)
@@ -85,7 +89,9 @@ def _white(mode: str, lightest: float) -> float:
 
 
 def _darkest_channel(image: Image) -> NDArray[np.uint8]:
-    """The darkest of the colour channels of an image of eight bits or fewer, on white where it is transparent."""
+    """The darkest of the colour channels of an image of eight bits or fewer, on white where it is
+    transparent.
+    """
     if image.mode in ("1", "L"):
         return np.asarray(image.convert("L"))
     if image.mode in ("LA", "PA", "RGBA", "La", "RGBa") or "transparency" in image.info:
@@ -97,7 +103,9 @@ def _darkest_channel(image: Image) -> NDArray[np.uint8]:
 
 
 def _stated_dpi(image: Image) -> tuple[float, float] | None:
-    """Resolution that the file states, dots per inch in X and Y; whole numbers where the file rounds to dots per metre."""
+    """Resolution that the file states, dots per inch in X and Y; whole numbers where the file rounds to dots
+    per metre.
+    """
     if not _states_resolution(image):
         return None
     x, y = (float(v) for v in image.info["dpi"])

@@ -1,15 +1,20 @@
-"""Silhouettes: the edge of a filled shape as the cells see it behind a mask that passes light on the edge only, so that the head rides on it as on a line.
+"""Silhouettes: the edge of a filled shape as the cells see it behind a mask that passes light on the edge
+only, so that the head rides on it as on a line.
 
-Signals: grey levels in; out darkness 0..1 of a line of `EDGE_MM` whose middle is where the picture is half way between paper and shape, and that middle as
-outlines: not for the head, but to see afterwards that it kept to them (see `kept`).
+Signals: grey levels in; out darkness 0..1 of a line of `EDGE_MM` whose middle is where the picture is half
+way between paper and shape, and that middle as outlines: not for the head, but to see afterwards that it kept
+to them (see `kept`).
 
-The line is as a round pen would draw it along the edge: dark where the edge is within half the line's width. So corners look as inked corners do, and the head
-takes them as it takes those: it finds its way by its own cells, and the mask is not its path. What the scanner's lens has taken off the corners is put back
-(see `vertices`). Where edges are near one another the line is finer, on finer pixels; edges nearer than the lens tells apart are refused.
-Paper and shape may both be uneven: their levels are those round about (`ROUND_ABOUT_MM`).
+The line is as a round pen would draw it along the edge: dark where the edge is within half the line's width.
+So corners look as inked corners do, and the head takes them as it takes those: it finds its way by its own
+cells, and the mask is not its path. What the scanner's lens has taken off the corners is put back (see
+`vertices`). Where edges are near one another the line is finer, on finer pixels; edges nearer than the lens
+tells apart are refused. Paper and shape may both be uneven: their levels are those round about
+(`ROUND_ABOUT_MM`).
 
-Source: our own; the patent's follower has lines only. Questions: an edge is the same from both sides, so light shapes on dark paper need no word; which of the
-two is paper matters for what is too thin to be a shape only: paper is what most of the sheet's border is.
+Source: our own; the patent's follower has lines only. Questions: an edge is the same from both sides, so
+light shapes on dark paper need no word; which of the two is paper matters for what is too thin to be a shape
+only: paper is what most of the sheet's border is.
 """
 
 from __future__ import annotations
@@ -21,6 +26,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault
 from morfax.motion.polyline import with_places
 from morfax.tracer.drawing.sharpening import APART_PX, sharpened
@@ -37,14 +43,15 @@ SLOPE_PX = 0.3  # to both sides, to measure a slope
 LEAST_SLOPE = 0.1  # per pixel
 REDUCED = 4  # levels are estimated on a picture reduced by this
 
-from morfax.motion.arrays import Array
 
 Grey = NDArray[np.float32]
 
 
 @dataclass(frozen=True, slots=True)
 class Outlined:
-    """A line along the edges of filled shapes: its darkness on pixels so many times `finer` than the picture's, and the edges (n, 2) in sheet mm."""
+    """A line along the edges of filled shapes: its darkness on pixels so many times `finer` than the
+    picture's, and the edges (n, 2) in sheet mm.
+    """
 
     darkness: Grey
     finer: int
@@ -54,7 +61,8 @@ class Outlined:
 def outlined(grey: NDArray[Any], pitch_mm: float) -> Outlined:
     """The line along the edges of filled shapes, finer where they are near one another.
 
-    Raises DrawingFault if there are no shapes, if one is cut by the border of the sheet, and if edges are nearer than can be told apart.
+    Raises DrawingFault if there are no shapes, if one is cut by the border of the sheet, and if edges are
+    nearer than can be told apart.
     """
     from skimage.measure import find_contours
 
@@ -159,7 +167,9 @@ def _softness_px(share: Grey, edges: list[Array]) -> float:
 
 
 def _refined(edges: list[Array], share: Grey) -> list[Array]:
-    """The edges where a smooth surface through the pixels is half way: straight pieces from pixel to pixel cut corners by a tenth of a pixel."""
+    """The edges where a smooth surface through the pixels is half way: straight pieces from pixel to pixel
+    cut corners by a tenth of a pixel.
+    """
     from scipy.ndimage import map_coordinates, spline_filter
 
     surface = spline_filter(share, 3, output=np.float32)

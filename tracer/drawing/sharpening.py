@@ -1,17 +1,19 @@
 """Vertices: corners of an edge that the scanner's lens has rounded, brought back to where their legs meet.
 
-Signals: an outline (n, 2) in pixels where a picture has half of its contrast, and the softness of the edge (standard deviation, pixels) in; out the outline
-with its sharp corners. A lens as soft as s puts the outline of a sharp corner whose legs are an angle a apart a way w · s inside the vertex, where
+Signals: an outline (n, 2) in pixels where a picture has half of its contrast, and the softness of the edge
+(standard deviation, pixels) in; out the outline with its sharp corners. A lens as soft as s puts the outline
+of a sharp corner whose legs are an angle a apart a way w · s inside the vertex, where
 
     ∫ φ(x - w) · erf(x · tan(a/2) / √2) dx  (x > 0) = 1/2          right angle 0.77    36 degrees 2.5
 
-and leaves the legs where they are from 3 s / sin(a) on. There they are felt, as parabolas where they are bent. A corner whose outline is further inside than
-that by more than noise does it is a round one: its radius is that with which the same integral, over the width of a rounded corner, is a half. A corner
-that does not fit its outline beside the vertex stays as it is: the lens does not explain it.
+and leaves the legs where they are from 3 s / sin(a) on. There they are felt, as parabolas where they are
+bent. A corner whose outline is further inside than that by more than noise does it is a round one: its radius
+is that with which the same integral, over the width of a rounded corner, is a half. A corner that does not
+fit its outline beside the vertex stays as it is: the lens does not explain it.
 
-Source: the half-plane and the wedge seen through a normal distribution; our own.
-Questions: a round that moves the outline by less than noise does (`FURTHER`, `NOISE`) is taken for a sharp corner: at a right angle one of
-0.12 mm at 300 dpi, which is 0.05 mm out.
+Source: the half-plane and the wedge seen through a normal distribution; our own. Questions: a round that
+moves the outline by less than noise does (`FURTHER`, `NOISE`) is taken for a sharp corner: at a right angle
+one of 0.12 mm at 300 dpi, which is 0.05 mm out.
 """
 
 from __future__ import annotations
@@ -25,6 +27,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 from scipy.spatial import cKDTree
 
+from morfax.motion.arrays import Array
 from morfax.motion.polyline import with_places
 
 APART_PX = 0.25  # between the places of an outline
@@ -34,7 +37,8 @@ SHORTEST_LEG = 2.5
 LEAST_TURN = math.radians(15)
 NARROWEST = math.radians(12)  # between the legs
 CLEAR_OF_ROUND = 2.0  # standard deviations from where the round touches the leg
-ASIDE = 0.25  # standard deviations: noise, beside the vertex; the lens moves an outline there by no more than at it
+# standard deviations: noise, beside the vertex; the lens moves an outline there by no more than at it
+ASIDE = 0.25
 TRIES = 5  # each with the legs felt where the angle and the round of the one before leave them clear
 BENT = 0.7  # of what is left by a straight leg: a parabola has to leave less than this share
 FURTHER, NOISE = (
@@ -43,12 +47,12 @@ FURTHER, NOISE = (
 )  # of the way, and standard deviations: by noise the outline of a sharp corner is further inside (98 %)
 SHORT, LEGS = 0.1, 0.35  # and by the legs' bend less far
 
-from morfax.motion.arrays import Array
-
 
 @dataclass(frozen=True, slots=True)
 class Edge:
-    """A closed outline (n, 2), its last place its first, and which of its places are the middles of corners that were put back."""
+    """A closed outline (n, 2), its last place its first, and which of its places are the middles of corners
+    that were put back.
+    """
 
     outline: Array
     corners: NDArray[np.int64]
@@ -70,7 +74,9 @@ def sharpened(outline: Array, softness_px: float) -> Edge:
 
 
 def _evenly(outline: Array) -> Array:
-    """Places at equal distances, the first not once more at the end, begun furthest from where the outline turns."""
+    """Places at equal distances, the first not once more at the end, begun furthest from where the outline
+    turns.
+    """
     s = np.r_[0.0, np.cumsum(np.hypot(*np.diff(outline, axis=0).T))]
     at = np.linspace(0, s[-1], max(8, round(s[-1] / APART_PX)), endpoint=False)
     places = np.column_stack([np.interp(at, s, column) for column in outline.T])
@@ -100,7 +106,9 @@ def _corners(places: Array, softness_px: float) -> list[int]:
 
 
 def _corner(places: Array, corners: list[int], k: int, softness_px: float) -> tuple[int, int, Array] | None:
-    """What stands in the place of a corner, and the places between which; None if the corner is none, or the lens does not explain it."""
+    """What stands in the place of a corner, and the places between which; None if the corner is none, or the
+    lens does not explain it.
+    """
     at, dense = corners[k], softness_px / APART_PX
     before = at - corners[k - 1] if k else at + len(places) - corners[-1]
     after = (corners[k + 1] if k + 1 < len(corners) else corners[0] + len(places)) - at
@@ -149,7 +157,9 @@ def _touch(angle: float, radius: float) -> float:
 
 
 def _rounded(vertex: Array, towards: tuple[Array, Array], radius_px: float) -> Array:
-    """A corner with a round as places (n, 2), from the leg with the first direction towards it to the other; the vertex alone if there is none."""
+    """A corner with a round as places (n, 2), from the leg with the first direction towards it to the other;
+    the vertex alone if there is none.
+    """
     if radius_px < APART_PX:
         return vertex[None]
     t, w = towards
@@ -168,7 +178,9 @@ def _between(t: Array, w: Array) -> float:
 
 
 def _felt(places: Array, at: int, near: float, far: float) -> tuple[Array, Array, Array]:
-    """A leg as a parabola seen from its near end: that place, the direction towards the corner, and the coefficients across it."""
+    """A leg as a parabola seen from its near end: that place, the direction towards the corner, and the
+    coefficients across it.
+    """
     rows = np.arange(round(min(near, far)), round(max(near, far)) + 1) + at
     leg = places[rows % len(places)]
     origin = leg[-1] if near < 0 else leg[0]
@@ -221,7 +233,9 @@ def _way(angle: float) -> float:
 
 @lru_cache(maxsize=4096)
 def _radius(angle: float, way: float) -> float:
-    """Radius of the round with which the outline is so far inside the vertex, in standard deviations; 0 if a sharp corner's is."""
+    """Radius of the round with which the outline is so far inside the vertex, in standard deviations; 0 if a
+    sharp corner's is.
+    """
     from scipy.optimize import brentq
 
     if way <= _way(angle):
@@ -231,7 +245,9 @@ def _radius(angle: float, way: float) -> float:
 
 
 def _seen(angle: float, radius: float, way: float) -> float:
-    """Share of the shape that a lens sees so far inside the vertex of a rounded corner, in standard deviations."""
+    """Share of the shape that a lens sees so far inside the vertex of a rounded corner, in standard
+    deviations.
+    """
     from scipy.special import erf
 
     half = angle / 2

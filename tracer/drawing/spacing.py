@@ -5,7 +5,8 @@ Signals: edges in pixels and the lens's softness in; out by how much finer than 
     ____      ____        A rib, a slot, the top of a tooth: the edge comes back beside itself. So do the two legs of a corner,
         \\____/            which are a corner's all the same: a corner put back (see `vertices`) is known, and does not count.
 
-Source: our own. Questions: edges nearer than the lens tells apart (`CLEAR`) move one another, and are refused.
+Source: our own. Questions: edges nearer than the lens tells apart (`CLEAR`) move one another, and are
+refused.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault
 from morfax.motion.polyline import lengths_mm as lengths_px
 from morfax.motion.polyline import with_places
@@ -31,11 +33,11 @@ BACK = 1.5  # times as far along the edge as straight across: it comes back, as 
 LEG = 0.95  # of the way along the edge is straight to a corner and straight on from it: legs of one corner
 ROUND_ABOUT = 8  # times as far along, and it is another edge, and no corner that the lens has blurred
 
-from morfax.motion.arrays import Array
-
 
 def finer(edges: list[Edge], shape: tuple[int, ...], pitch_mm: float, softness_px: float) -> int:
-    """By how much finer the line has to be drawn for edges that are near one another; raises DrawingFault if they are nearer than told apart."""
+    """By how much finer the line has to be drawn for edges that are near one another; raises DrawingFault if
+    they are nearer than told apart.
+    """
     pairs = _Pairs.of(edges, APART_MM / pitch_mm)
     least_mm = max(LEAST_APART_MM, CLEAR * softness_px * pitch_mm)
     beside = pairs.some(pairs.back > ROUND_ABOUT)
@@ -64,8 +66,8 @@ def _make_room(apart_mm: float, times: int, shape: tuple[int, ...]) -> None:
 
 @dataclass(frozen=True, slots=True)
 class _Pairs:
-    """Places of edges that are near each other: places (n, 2, 2), edges (n, 2), ways along them (n, 2), and how many times as far along as across (n,), all in
-    pixels; infinitely many from one edge to another."""
+    """Places of edges that are near each other: places (n, 2, 2), edges (n, 2), ways along them (n, 2), and
+    how many times as far along as across (n,), all in pixels; infinitely many from one edge to another."""
 
     places: Array
     edge: NDArray[np.int64]

@@ -1,9 +1,11 @@
 """Which lines there are on a drawing, and where the head may be put down: plans only, never the path.
 
-Signals: a Drawing in; strokes out, each a connected patch of ink with its length, width and places near its middle (sheet mm).
+Signals: a Drawing in; strokes out, each a connected patch of ink with its length, width and places near its
+middle (sheet mm).
 
-Ink is what is darker than half. A patch's width follows from the mean distance of its pixels to the paper, its length from its area over its width, so
-that a patch needs no skeleton. An end is where a disc about a middle place holds much less ink than elsewhere on the line.
+Ink is what is darker than half. A patch's width follows from the mean distance of its pixels to the paper,
+its length from its area over its width, so that a patch needs no skeleton. An end is where a disc about a
+middle place holds much less ink than elsewhere on the line.
 
 Source: patent ES 361967 leaves the choice of the line to the operator, who brings the head over it.
 """
@@ -38,7 +40,9 @@ MOST_ENDS = 100
 
 @dataclass(frozen=True, slots=True)
 class Stroke:
-    """A connected patch of ink: places near the middle of its line (n, 2) mm, and how much ink there is about each."""
+    """A connected patch of ink: places near the middle of its line (n, 2) mm, and how much ink there is about
+    each.
+    """
 
     length_mm: float
     width_mm: float
@@ -51,7 +55,9 @@ class Stroke:
         return bool(np.hypot(*(self.middles_mm - place_mm).T).min() < self.width_mm)
 
     def ends_mm(self) -> Array:
-        """Places that may be ends of the line, most likely first; (n, 2) mm, none closer together than two widths."""
+        """Places that may be ends of the line, most likely first; (n, 2) mm, none closer together than two
+        widths.
+        """
         order = np.argsort(self.filled)
         places = self.middles_mm[order[self.filled[order] < LESS * np.median(self.filled)]]
         kept: list[Array] = []
@@ -63,7 +69,9 @@ class Stroke:
 
 @dataclass(frozen=True, slots=True)
 class Sheet:
-    """The patches of ink on a drawing, with the length and the width that each has as a line, and which of them are filled shapes."""
+    """The patches of ink on a drawing, with the length and the width that each has as a line, and which of
+    them are filled shapes.
+    """
 
     drawing: Drawing
     patches: Patches
@@ -102,7 +110,9 @@ class Sheet:
         return self.stroke(int(np.argmax(self.lengths_mm)))
 
     def nearest(self, place_mm: tuple[float, float], within_mm: float) -> Stroke:
-        """The line nearest to a place; raises LineFault if none is within reach, and says how far the nearest is."""
+        """The line nearest to a place; raises LineFault if none is within reach, and says how far the nearest
+        is.
+        """
         distance_mm, (x, y), patch = self._nearest_ink(place_mm)
         if distance_mm > within_mm:
             raise LineFault(
@@ -123,7 +133,9 @@ class Sheet:
         return self.lengths_mm >= max(LEAST_LENGTH_MM, LEAST_LENGTH_PX * self.drawing.pitch_mm)
 
     def _nearest_ink(self, place_mm: tuple[float, float]) -> tuple[float, Array, int]:
-        """Distance of the ink of a line nearest to a place, mm, where it is, and the patch that it belongs to."""
+        """Distance of the ink of a line nearest to a place, mm, where it is, and the patch that it belongs
+        to.
+        """
         runs = self.patches
         column = np.clip(round(place_mm[0] / self.drawing.pitch_mm - 0.5), runs.begin, runs.end - 1)
         places = self._mm(runs.row, column)
@@ -162,7 +174,9 @@ class Sheet:
     def _middles(
         self, chosen: NDArray[np.bool_], disc_px: int, rows: tuple[int, int], columns: tuple[int, int]
     ) -> tuple[Pixels, Pixels, Array]:
-        """Row, column and ink about it of the pixels in a tile no neighbour of which is deeper in the patch's ink."""
+        """Row, column and ink about it of the pixels in a tile no neighbour of which is deeper in the patch's
+        ink.
+        """
         halo = max(disc_px, DEEPEST_PX) + 1
         part = [
             edge for (a, b), size in zip((rows, columns), self.drawing.darkness.shape, strict=True)

@@ -2,10 +2,11 @@
 
 Signals: a stance in; the run that is kept out: positions and how it ended.
 
-A line that turns out to be open is followed from end to end: the head that was put down on its middle runs to one end first, with nothing recorded, and
-begins there. A line that does not come back one way round is tried the other way; one that runs into what has been followed already is tried with
-other turns at its junctions, as an operator would: but not before the head has been put down elsewhere (see `sequence`). It may stand on a chord, and the
-line is what that leads to.
+A line that turns out to be open is followed from end to end: the head that was put down on its middle runs to
+one end first, with nothing recorded, and begins there. A line that does not come back one way round is tried
+the other way; one that runs into what has been followed already is tried with other turns at its junctions,
+as an operator would: but not before the head has been put down elsewhere (see `sequence`). It may stand on a
+chord, and the line is what that leads to.
 
 Source: patent ES 361967, section on use: the operator brings the head over the drawing and lets it run.
 """
@@ -25,31 +26,27 @@ from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import INK
-from morfax.tracer.following.direction import Direction
+from morfax.tracer.following.direction import Direction, Route
 from morfax.tracer.following.edge_check import kept_to
 from morfax.tracer.following.enlarger import enlarged, reduced
 from morfax.tracer.following.follower import Followed, Follower
 from morfax.tracer.following.thinning import THINNED
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance, turned_round
-from morfax.tracer.operator.operator import Operator
 from morfax.tracer.sensing.leg import turn
 from morfax.tracer.sensing.side import SIDES, Side
 
-SHORTER = (
-    0.95  # the other way round is the line itself if it is shorter than this: straight on has led elsewhere
-)
+# the other way round is the line itself if it is shorter than this: straight on has led elsewhere
+SHORTER = 0.95
 DOUBTS = 8  # looked into, of a run
 TURNS = 12  # junctions at which another turn is tried
 TRIED_MM = 6000.0  # travel in all that is spent on other turns
 TWICE = 0.1  # of a run: legs that end in one tip run together for less, as crossing lines do
-ALONG = (
-    0.1  # widths from place to place of it, and twice that from a place on its way back along the same line
-)
+# widths from place to place of it, and twice that from a place on its way back along the same line
+ALONG = 0.1
 AGAIN = 4  # widths on from a place, the run may come by it again
-OVERRUN_MM = (
-    3.0  # a stub as short, straight on from a closed line, is where the pen set out, and not another's line
-)
+# a stub as short, straight on from a closed line, is where the pen set out, and not another's line
+OVERRUN_MM = 3.0
 
 Told = Callable[[float], None]
 
@@ -58,13 +55,15 @@ def asked_for(
     drawing: Drawing,
     stance: Stance,
     start_mm: tuple[float, float] | None,
-    operator: Operator,
+    route: Route,
     settings: Settings,
     told: Told | None,
     other_turns: bool = True,
 ) -> Followed:
-    """The run from a stance, in the direction and with the turns that the operator asks for; with other turns than those, or straight on only."""
-    direction, sides = operator.direction, operator.sides
+    """The run from a stance, in the direction and with the turns that the operator asks for; with other turns
+    than those, or straight on only.
+    """
+    direction, sides = route
     if direction in ("left", "right"):
         if stance.at_end:
             sides = sides or (direction,)
@@ -85,7 +84,9 @@ def longest_mm(drawing: Drawing, width_mm: float) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Attempts:
-    """How a line of a drawing may be followed: the head's settings, the turns that the operator asks for, and how long a run may be."""
+    """How a line of a drawing may be followed: the head's settings, the turns that the operator asks for, and
+    how long a run may be.
+    """
 
     drawing: Drawing
     settings: Settings
@@ -106,7 +107,9 @@ class Attempts:
         return kept_to(self.drawing.edges_mm, run)
 
     def all_of_it(self, stance: Stance) -> Followed:
-        """Follow a line from a stance: either way round, an open one from end to end, and one that does not come back with other turns."""
+        """Follow a line from a stance: either way round, an open one from end to end, and one that does not
+        come back with other turns.
+        """
         run = self.run(stance)
         if stance.at_end or (run.ending == "closed" and not run.junctions_mm):
             return self._taken_in(stance, run)
@@ -135,7 +138,8 @@ class Attempts:
         return self._with_other_turns(stance, run) if run.ending == "joined" and self.other_turns else run
 
     def _through_tips(self, stance: Stance, run: Followed) -> Followed | None:
-        """The run from a stance that goes back from tips in which two lines end, if the one that does not ended in such a tip, and this one closes.
+        """The run from a stance that goes back from tips in which two lines end, if the one that does not
+        ended in such a tip, and this one closes.
 
         It does not if it goes back from there along the line that it came by.
         """
@@ -147,7 +151,9 @@ class Attempts:
         return both._taken_in(stance, there_and_back) if closes else None
 
     def _taken_in(self, stance: Stance, run: Followed) -> Followed:
-        """A run that closes, with the ink taken in that it left out where another way would have done as well: the longest of `DOUBTS` more runs."""
+        """A run that closes, with the ink taken in that it left out where another way would have done as
+        well: the longest of `DOUBTS` more runs.
+        """
         best, tried = run, 0
         open_runs: list[tuple[Followed, tuple[int, ...]]] = [(run, ())]
         while open_runs and best.doubts:
@@ -162,7 +168,8 @@ class Attempts:
         return best
 
     def _with_other_turns(self, stance: Stance, run: Followed) -> Followed:
-        """The shortest run that closes because it takes another turn at one junction, or else at two; else the run as it was.
+        """The shortest run that closes because it takes another turn at one junction, or else at two; else
+        the run as it was.
 
         No more are tried when the head has gone `TRIED_MM` with them.
         """
@@ -179,7 +186,9 @@ class Attempts:
         return run
 
     def round_about(self, stance: Stance, direction: Direction) -> Followed:
-        """Follow a line in the direction that the operator asks for; raises LineFault if it has none, or does not come back in it."""
+        """Follow a line in the direction that the operator asks for; raises LineFault if it has none, or does
+        not come back in it.
+        """
         run = self.all_of_it(stance)
         if direction in ("left", "right") or goes(run, direction):
             return run
@@ -218,7 +227,9 @@ def turned_about(stance: Stance) -> Stance:
 
 
 def _turned_to(stance: Stance, start_mm: tuple[float, float] | None, side: Side) -> Stance:
-    """The stance as the head comes to it from the place where it was put down, turning to a side; raises LineFault if that is on the line."""
+    """The stance as the head comes to it from the place where it was put down, turning to a side; raises
+    LineFault if that is on the line.
+    """
     way = stance.place_mm - np.asarray(stance.place_mm if start_mm is None else start_mm)
     if np.hypot(*way) < 0.5 * stance.view.width_mm:
         raise LineFault(

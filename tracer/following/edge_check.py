@@ -1,8 +1,10 @@
-"""Whether the head kept to the edges of filled shapes: they are known, and a run that left them, or left some of one out, is a fault.
+"""Whether the head kept to the edges of filled shapes: they are known, and a run that left them, or left some
+of one out, is a fault.
 
 Signals: edges and a run in; out the run as it was, or as lost where it left the edge.
 
-Lines leave it to the head what is one; of filled shapes the picture says it beforehand. The edges do not lead the head: they only judge it.
+Lines leave it to the head what is one; of filled shapes the picture says it beforehand. The edges do not lead
+the head: they only judge it.
 
 Source: our own.
 """
@@ -14,10 +16,10 @@ from dataclasses import replace
 import numpy as np
 from scipy.spatial import cKDTree
 
+from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault
 from morfax.motion.polyline import lengths_mm, with_places
 from morfax.tracer.following.follower import Followed
-from morfax.tracer.sensing.view import Array
 
 OFF_MM = 0.15  # further from the edge than the head cuts a corner
 EVERY_MM = 0.02  # between the places of an edge
@@ -25,7 +27,9 @@ THINNED = 8  # of the positions one in so many is looked at
 
 
 def kept_to(edges_mm: tuple[Array, ...], run: Followed) -> Followed:
-    """The run, if it kept to the edges, and, closed, left nothing of its edge out; else a run lost at the first place where it did not."""
+    """The run, if it kept to the edges, and, closed, left nothing of its edge out; else a run lost at the
+    first place where it did not.
+    """
     if not edges_mm:
         return run
     lines = [with_places(edge, EVERY_MM) for edge in edges_mm]

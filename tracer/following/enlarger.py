@@ -1,9 +1,12 @@
-"""The enlarger: a drawing too fine for the head is followed enlarged, and the path reduced again, as by a pantograph between the head and the screws.
+"""The enlarger: a drawing too fine for the head is followed enlarged, and the path reduced again, as by a
+pantograph between the head and the screws.
 
-Signals: a stance on the drawing in, the same on the enlarged one out; what the head did there in, the same on the drawing out.
+Signals: a stance on the drawing in, the same on the enlarged one out; what the head did there in, the same on
+the drawing out.
 
-The head works in mm: so much of a leg it feels, so far ahead it looks. What is finer than that stays so in a finer picture, but not in a larger one. The head
-goes as fast on the enlarged drawing, and so the machine as many times slower.
+The head works in mm: so much of a leg it feels, so far ahead it looks. What is finer than that stays so in a
+finer picture, but not in a larger one. The head goes as fast on the enlarged drawing, and so the machine as
+many times slower.
 
 Source: our own; photographic enlargement and pantographs were what a drawing office had for this.
 """

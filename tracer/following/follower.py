@@ -1,14 +1,17 @@
-"""The follower: the head put down on a line, following it, taken through its knots, until the line closes, ends or is lost.
+"""The follower: the head put down on a line, following it, taken through its knots, until the line closes,
+ends or is lost.
 
-Signals: a drawing, a place and a heading in; positions of the X and Y screws (n, 2) mm at the motion rate out, with the ending:
+Signals: a drawing, a place and a heading in; positions of the X and Y screws (n, 2) mm at the motion rate
+out, with the ending:
 
     closed    the head is back where it began, on the same heading
     ended     the line ended
     joined    the line ran into what the head has followed already: a lead line, and the loop that it led to (see `loop`)
     lost      no clean line could be found on from there
 
-Between knots the kernel `head.follow` steers by the swinging cell. At a knot, `knot` says which legs there are, `course` draws the way through, and the
-head runs it from memory until the swinging cell stands on the clean outgoing leg.
+Between knots the kernel `head.follow` steers by the swinging cell. At a knot, `knot` says which legs there
+are, `course` draws the way through, and the head runs it from memory until the swinging cell stands on the
+clean outgoing leg.
 
 Source: patent ES 361967, figure 1. Questions: see `head`, `knot` and `course`.
 """
@@ -22,6 +25,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from morfax.motion import curves
+from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault
 from morfax.tracer.head import course
 from morfax.tracer.head import kernel as head
@@ -38,16 +42,19 @@ from morfax.tracer.marks.dots import disc, dot_ahead, dot_at_end
 from morfax.tracer.sensing.leg import Leg, goes_straight, leg_of, turn, turns_off
 from morfax.tracer.sensing.probe import end_of
 from morfax.tracer.sensing.side import SIDES, Side
-from morfax.tracer.sensing.view import Array, View
+from morfax.tracer.sensing.view import View
 from morfax.tracer.tangles.memory import Tangles
 
 SWELLS = 0.5  # of the change of a clean line's width is usual from then on
-BACK_MM = 4.0  # a junction that the head comes back to is no further ahead: a speck may end the clean line before it
+# a junction that the head comes back to is no further ahead: a speck may end the clean line before it
+BACK_MM = 4.0
 
 
 @dataclass(slots=True)
 class Followed:
-    """What the head did: positions (n, 2) mm at the motion rate, how it ended, and the fault if the line was lost."""
+    """What the head did: positions (n, 2) mm at the motion rate, how it ended, and the fault if the line was
+    lost.
+    """
 
     positions_mm: Array
     ending: str
@@ -58,9 +65,8 @@ class Followed:
         tuple[float, float], ...
     ]  # places of the junctions, in the order in which the head came to them
     fault: LineFault | None = None
-    loop_from: int | None = (
-        None  # the position at which the loop of a joined line begins: before it is the lead line
-    )
+    # the position at which the loop of a joined line begins: before it is the lead line
+    loop_from: int | None = None
     guides: tuple[Guide, ...] = ()
     at_tip: bool = False  # it ended where another line, that has not been followed, ends too
     doubts: tuple[
@@ -87,8 +93,9 @@ class Follower:
     ) -> None:
         """Put a head down at a stance.
 
-        At the junctions numbered in `turns` it takes the second straightest leg, the third where a number stands twice. At the first, the second … it turns
-        off to its side in `sides`, where there is one, and comes back if the line that it takes ends; with `tips` also from where two lines end together.
+        At the junctions numbered in `turns` it takes the second straightest leg, the third where a number
+        stands twice. At the first, the second … it turns off to its side in `sides`, where there is one, and
+        comes back if the line that it takes ends; with `tips` also from where two lines end together.
         """
         self.view, self.settings, self.stance = stance.view, settings, stance
         self._junctions, self._turns, self._sides, self._tips = Junctions(), turns, sides, tips
@@ -99,7 +106,9 @@ class Follower:
         self._aim(self._first_leg(stance))
 
     def follow(self, longest_mm: float, told: Callable[[float], None] | None = None) -> Followed:
-        """Follow until the line closes, ends or is lost; `told` hears the travel in mm. `longest_mm` bounds a run in circles."""
+        """Follow until the line closes, ends or is lost; `told` hears the travel in mm. `longest_mm` bounds a
+        run in circles.
+        """
         home = (*self.stance.place_mm, self.stance.heading_rad, self._away_mm)
         while self.carriage.travel_mm < longest_mm:
             why = self.carriage.follow(self.view, home)
@@ -146,7 +155,9 @@ class Follower:
         return self._through_legs(leg_of(seen, True, self.view.leg_mm))
 
     def _through_legs(self, incoming: Leg) -> Followed | None:
-        """Take the head from an incoming leg out of the knot, by a leg that leads on; what it did in all, if there is none."""
+        """Take the head from an incoming leg out of the knot, by a leg that leads on; what it did in all, if
+        there is none.
+        """
         way, asked = self._survey(incoming)
         dot = None if goes_straight(incoming, way[0]) else dot_at_end(self.view, incoming)
         if dot is not None:
@@ -173,7 +184,9 @@ class Follower:
         return self._at_end(incoming, choices) if plan is None else self._pass(*plan)
 
     def _is_dot(self, incoming: Leg, outgoing: Leg | None) -> bool:
-        """Whether the knot between two legs that go straight on is a dot on the line, or the leg out of it leads to one: no pen drew that by its width."""
+        """Whether the knot between two legs that go straight on is a dot on the line, or the leg out of it
+        leads to one: no pen drew that by its width.
+        """
         if outgoing is None or dot_ahead(self.view, outgoing):
             return outgoing is not None
         if not goes_straight(incoming, outgoing):
@@ -271,7 +284,9 @@ class Follower:
         return self._end(incoming, end, joined=choices > 0)
 
     def _catches_home(self, incoming: Leg, end_mm: float) -> bool:
-        """Whether the end at which the head began is ahead of the end of the line, no further than the line may be caught again."""
+        """Whether the end at which the head began is ahead of the end of the line, no further than the line
+        may be caught again.
+        """
         home, heading = self.stance.place_mm, self.stance.heading_rad
         way = home - incoming.at(end_mm)
         if not self.stance.at_end or np.hypot(*way) > self.settings.recatch_mm:
@@ -289,7 +304,9 @@ class Follower:
         return self._done("closed")
 
     def _end(self, incoming: Leg, end_mm: float, *, joined: bool = False) -> Followed | None:
-        """Run to an end of the line; back from there, if it is a guide line's, or a tip in which two lines have run together."""
+        """Run to an end of the line; back from there, if it is a guide line's, or a tip in which two lines
+        have run together.
+        """
         way, along = course.onto(*self.carriage.stands(), incoming, end_mm)
         self.carriage.run([np.vstack([way, course.along_leg(incoming, along, end_mm)])])
         self._at_tip = self._tangles.goes_back(
@@ -311,7 +328,9 @@ class Follower:
         return curves.hermite(*self.carriage.stands(), self.stance.place_mm, self.stance.heading_rad)
 
     def _pass(self, stretches: list[Array], outgoing: Leg, seen: Array | None = None) -> Followed | None:
-        """Run a course and go on following at its end; or stop at home if the course passes there. `seen` is what was clean on the way."""
+        """Run a course and go on following at its end; or stop at home if the course passes there. `seen` is
+        what was clean on the way.
+        """
         cut = self._home_on(stretches)
         if cut is not None:
             self.carriage.run(cut)

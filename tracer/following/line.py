@@ -1,6 +1,7 @@
 """One line as it was followed: the head's way along it, how it ended, and what the drawing says on the way.
 
-Signals: what a Follower did, and the marks along it, in; out the line as the operator and the program need it: mm at the motion rate.
+Signals: what a Follower did, and the marks along it, in; out the line as the operator and the program need
+it: mm at the motion rate.
 
     lead line    ├───────●───────┐loop       begins at a reference point, or bears a tick, and runs into its loop
     guide line   ├───────────────●           begins at a reference point and ends
@@ -16,6 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.following.follower import Followed
@@ -25,7 +27,6 @@ from morfax.tracer.junctions.guides import Guide
 from morfax.tracer.marks.marks import Mark, marks_along
 from morfax.tracer.sensing.leg import TURNS_OFF, turn
 from morfax.tracer.sensing.side import Side
-from morfax.tracer.sensing.view import Array
 
 HEADING = 300  # positions that tell the heading at an end: half a mm at 10 mm/s
 NEARLY_MM = 5.0  # a line that ends so near to its beginning may be a closed one
@@ -36,7 +37,9 @@ REFERENCE_MM = 3.0  # a stroke nearer to a reference point is one of its own
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """One line as it was followed: positions (n, 2) mm at the motion rate, how it ended ("closed", "ended", "joined", "lost"), its number on the drawing."""
+    """One line as it was followed: positions (n, 2) mm at the motion rate, how it ended ("closed", "ended",
+    "joined", "lost"), its number on the drawing.
+    """
 
     xy_mm: Array
     ending: str
@@ -56,7 +59,9 @@ class Line:
 
     @classmethod
     def of(cls, run: Followed, number: int = 1, reference_mm: tuple[float, float] | None = None) -> Line:
-        """What the head did, as a line of the drawing, with the marks along it; those at the reference point are that point's."""
+        """What the head did, as a line of the drawing, with the marks along it; those at the reference point
+        are that point's.
+        """
         marks = [
             mark
             for mark in marks_along(run.view, run.positions_mm)
@@ -105,7 +110,9 @@ class Line:
 
     @property
     def own_mm(self) -> Array:
-        """Places that are its own, (n, 2) mm: all of them, or up to the first junction if it did not come back; beyond that it may have been another's."""
+        """Places that are its own, (n, 2) mm: all of them, or up to the first junction if it did not come
+        back; beyond that it may have been another's.
+        """
         places = self.places_mm
         if self.ending in ("closed", "ended") or not self.junctions_mm:
             return places
@@ -114,7 +121,9 @@ class Line:
 
     @property
     def gap_mm(self) -> float | None:
-        """How far the end of an open line is from its beginning, if it leads there within `NEARLY_MM`: a gap in a closed line, perhaps; else None."""
+        """How far the end of an open line is from its beginning, if it leads there within `NEARLY_MM`: a gap
+        in a closed line, perhaps; else None.
+        """
         across = self.xy_mm[0] - self.xy_mm[-1]
         gap_mm = float(np.hypot(*across))
         if self.ending != "ended" or not 0 < gap_mm < min(NEARLY_MM, 0.1 * self.length_mm):
@@ -179,7 +188,9 @@ class Line:
         return False
 
     def without_guides(self, first: int, last: int) -> list[Array]:
-        """Stretches (n, 2) mm from one position to another, between the guide lines that are left for on the way."""
+        """Stretches (n, 2) mm from one position to another, between the guide lines that are left for on the
+        way.
+        """
         left_for = [guide for guide in self.guides if first < guide.leave <= last]
         begins, ends = (
             [first, *(guide.back for guide in left_for)],

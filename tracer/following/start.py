@@ -1,9 +1,11 @@
 """Putting the head down: where on a line it can start, and what it sees there.
 
-Signals: a drawing and places near the middle of a line in; a stance out: place on the line's centre, heading, the line's width and darkness.
+Signals: a drawing and places near the middle of a line in; a stance out: place on the line's centre, heading,
+the line's width and darkness.
 
-A ring of cells about a place sees two arcs opposite each other when the place is on a clean line; between them lies the heading. The line is then felt
-both ways, and of several places the one is taken from which it can be felt furthest, and is straightest.
+A ring of cells about a place sees two arcs opposite each other when the place is on a clean line; between
+them lies the heading. The line is then felt both ways, and of several places the one is taken from which it
+can be felt furthest, and is straightest.
 
 Source: patent ES 361967, section on use: the operator brings the head over the drawing.
 """
@@ -16,6 +18,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Sheet, Stroke
@@ -27,7 +30,7 @@ from morfax.tracer.marks.reference import Reference, references
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.leg import Leg, centre_at, leg_of, turn
 from morfax.tracer.sensing.probe import end_of, reach_of_ink, stroke_end, strokes_on
-from morfax.tracer.sensing.view import LEVEL, Array, View
+from morfax.tracer.sensing.view import LEVEL, View
 
 CATCH_MM = 3.0  # how far from a given place the line may be
 APERTURE = 0.3  # of the line's width, within bounds that a scan's noise and a corner set
@@ -54,10 +57,12 @@ def put_down(
     gap_mm: float = 0.5,
     reference_mm: tuple[float, float] | None = None,
 ) -> Iterator[tuple[Stance, float]]:
-    """Put the head down near a place, or on the longest line: where it comes from a reference point, else at its open ends if it has any (there), then where
-    it is smooth, the plainest place first; and the line's length, mm.
+    """Put the head down near a place, or on the longest line: where it comes from a reference point, else at
+    its open ends if it has any (there), then where it is smooth, the plainest place first; and the line's
+    length, mm.
 
-    A reference point that is not given is looked for. Raises LineFault if there is no line near the place, or no clean stretch on the line.
+    A reference point that is not given is looked for. Raises LineFault if there is no line near the place, or
+    no clean stretch on the line.
     """
     sheet = drawing if isinstance(drawing, Sheet) else Sheet.of(drawing)
     catch_mm = max(CATCH_MM, 12 * sheet.drawing.pitch_mm)
@@ -148,7 +153,9 @@ def _at_ends(
 
 
 def _leading_away(view: View, stroke: Stroke, reference_mm: tuple[float, float]) -> Stance | None:
-    """The stance on the only line that leads away from what is drawn about a reference point, whatever that is; None if there is no such line."""
+    """The stance on the only line that leads away from what is drawn about a reference point, whatever that
+    is; None if there is no such line.
+    """
     place = np.asarray(reference_mm)
     local = _local(view, stroke.middles_mm[np.argmin(np.hypot(*(stroke.middles_mm - place).T))])
     for radius in np.arange(view.width_mm, LEAD_MM, 0.5 * view.width_mm):
@@ -169,7 +176,9 @@ def _leading_away(view: View, stroke: Stroke, reference_mm: tuple[float, float])
 def _named_first(
     found: Iterator[Reference], named_mm: tuple[float, float] | None
 ) -> Iterator[tuple[tuple[float, float], Leg | None]]:
-    """Places of reference points and the lead lines drawn from them; of those that the operator's is, his place, and before the others."""
+    """Places of reference points and the lead lines drawn from them; of those that the operator's is, his
+    place, and before the others.
+    """
     for reference in (
         found if named_mm is None else sorted(found, key=lambda r: math.dist(named_mm, r.place_mm))
     ):
@@ -222,7 +231,9 @@ def _local(view: View, place: Array) -> View:
 
 
 def _heading(view: View, place: Array) -> float | None:
-    """Heading of the line through a place, from the two arcs that a ring sees; None if it does not see two, opposite."""
+    """Heading of the line through a place, from the two arcs that a ring sees; None if it does not see two,
+    opposite.
+    """
     radius = max(0.9 * view.width_mm, 4.5 * view.pitch_mm)
     arcs = photocell.ring(view.cells, view.pitch_mm, place, radius, view.level)
     if len(arcs) != 2:
@@ -234,7 +245,9 @@ def _heading(view: View, place: Array) -> float | None:
 
 
 def _both_ways(view: View, place: Array, heading: float) -> tuple[Leg, float] | None:
-    """The line felt forward and backward from a place as one leg about it, and the length felt on the shorter side, mm."""
+    """The line felt forward and backward from a place as one leg about it, and the length felt on the shorter
+    side, mm.
+    """
     right, left = photocell.edges(
         view.cells, view.pitch_mm, place[0], place[1], heading, 2 * view.width_mm, view.level
     )
@@ -279,7 +292,9 @@ def _at_end(view: View, place: Array, gap_mm: float) -> Stance | None:
 
 
 def _is_end(view: View, inward: Array, heading: float, radius: float) -> bool:
-    """Whether a line goes on from its end: not a burr, not the tip of two lines that part, not a mark on another line."""
+    """Whether a line goes on from its end: not a burr, not the tip of two lines that part, not a mark on
+    another line.
+    """
     seen = view.feel(inward, heading, max(4 * view.width_mm, view.leg_mm))
     if len(seen) * view.step_mm < SPUR * view.width_mm - radius:
         return False

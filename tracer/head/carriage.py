@@ -1,8 +1,10 @@
 """The carriage: the head on its two screws, moved by its kernels, and what it remembers of its way.
 
-Signals: a leg to follow from, or a course to run (sheet mm, mm/s) in; positions of the screws (n, 2) mm at the motion rate out.
+Signals: a leg to follow from, or a course to run (sheet mm, mm/s) in; positions of the screws (n, 2) mm at
+the motion rate out.
 
-The carriage keeps every position that its screws took (`positions_mm`), and the trail of them by which the head knows where it has been.
+The carriage keeps every position that its screws took (`positions_mm`), and the trail of them by which the
+head knows where it has been.
 
 Source: patent ES 361967, figure 1: lead screws 111 with their motors 17 and 12, and the head that they carry.
 """
@@ -14,12 +16,13 @@ import math
 import numpy as np
 
 from morfax.motion import curves
+from morfax.motion.arrays import Array
 from morfax.tracer.head import kernel as head
 from morfax.tracer.head.settings import Settings, tune
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.trail import Trail
 from morfax.tracer.sensing.leg import Leg, turn
-from morfax.tracer.sensing.view import Array, View
+from morfax.tracer.sensing.view import View
 
 CHUNK = 6000  # samples that the kernel follows before it reports
 SETTLE_LAGS = 7  # a stop lasts this many lags of the drives: 1/1000 of the last speed is left

@@ -1,13 +1,14 @@
 """Courses: the short ways that the head runs from memory through a knot.
 
-A course is a list of stretches, each a polyline (n, 2) in sheet mm with a place every few hundredths; between stretches the head stops and swivels.
+A course is a list of stretches, each a polyline (n, 2) in sheet mm with a place every few hundredths; between
+stretches the head stops and swivels.
 
     smooth     from heading to heading by a cubic (Hermite), which is right to its fourth order
     corner     along the incoming leg's line to the vertex, stop, swivel, along the outgoing leg's line
     rounding   where the ink shows that the corner is rounded: an arc that touches both legs
 
-Whether a corner is sharp is seen on the outside of its ink: a pen of width w that turns on the vertex inks w/2 beyond it on the bisector; what is missing
-there is by how much the line passes the vertex.
+Whether a corner is sharp is seen on the outside of its ink: a pen of width w that turns on the vertex inks
+w/2 beyond it on the bisector; what is missing there is by how much the line passes the vertex.
 
 Source: our own, from first principles (the patent's head swivels on its axis; how sharply is left open).
 """
@@ -19,18 +20,21 @@ from itertools import pairwise
 
 import numpy as np
 
+from morfax.motion.arrays import Array
 from morfax.motion.curves import SPACING_MM, hermite
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.leg import Leg, centre_at
-from morfax.tracer.sensing.view import Array, View
+from morfax.tracer.sensing.view import View
 
 FELT_LEGS = 0.3  # of a leg's length, to both sides: what a place on a felt line is averaged over
 
 
 def onto(place: Array, heading: float, leg: Leg, limit_mm: float) -> tuple[Array, float]:
-    """From where the head is onto the incoming leg's line; the way, and how far along the leg (mm from its end) it arrives.
+    """From where the head is onto the incoming leg's line; the way, and how far along the leg (mm from its
+    end) it arrives.
 
-    It arrives at the leg's clean end, or beyond it if that is too near, but never beyond half the way to `limit_mm`.
+    It arrives at the leg's clean end, or beyond it if that is too near, but never beyond half the way to
+    `limit_mm`.
     """
     ahead = ahead_mm(place, leg)
     along = min(0.0 if ahead > 0.2 else min(0.2 - ahead, 0.5 * (limit_mm - ahead)), limit_mm)
@@ -45,7 +49,8 @@ def along_leg(leg: Leg, start_mm: float, end_mm: float) -> Array:
 def nodes_along(
     view: View, start: tuple[Array, float], seen: Array, left: float = 0.55
 ) -> tuple[list[tuple[Array, float]], Leg | None]:
-    """Places and headings along a line that was felt throughout (n, 3), from where the head stands; the last also as a leg, None if there is too little.
+    """Places and headings along a line that was felt throughout (n, 3), from where the head stands; the last
+    also as a leg, None if there is too little.
 
     A share of a leg is `left` over: too little to tell a corner by.
     """

@@ -2,16 +2,19 @@
 
 Signals: the drawing behind the aperture in; positions of the X and Y lead screws out, mm, at the motion rate.
 
-The cell swings across the line one lead ahead of the steering axis. Once a sweep, synchronous detection gives the side and distance of the line from the
-middle of the sweep, and the sweep is centred on it for the next time, so that the measure is a null. The place of the line on the sheet is remembered (a
-drum of places), and when the axis comes to a place, as much of the line has been seen ahead of it as behind it: a parabola through the remembered
-places about a point just ahead of the axis averages the noise of the paper away, and leaves a line whose bend changes where it is. For that point the
-axis steers, on the circle that touches its heading (pure pursuit), which is the steering law k = 2v/a² of the linear theory and has no error on a circle:
+The cell swings across the line one lead ahead of the steering axis. Once a sweep, synchronous detection gives
+the side and distance of the line from the middle of the sweep, and the sweep is centred on it for the next
+time, so that the measure is a null. The place of the line on the sheet is remembered (a drum of places), and
+when the axis comes to a place, as much of the line has been seen ahead of it as behind it: a parabola through
+the remembered places about a point just ahead of the axis averages the noise of the paper away, and leaves a
+line whose bend changes where it is. For that point the axis steers, on the circle that touches its heading
+(pure pursuit), which is the steering law k = 2v/a² of the linear theory and has no error on a circle:
 
     turn rate = v · 2e / (l² + e²)          l, e: the point along and across the heading, as seen from the axis now
 
-The speed is resolved by sine and cosine of the heading into demands on the two drives; the axis is where their screws have gone. What the drives owe
-(lag times speed, from the tachos) is added to the place that steers, so that their lag turns no corner.
+The speed is resolved by sine and cosine of the heading into demands on the two drives; the axis is where
+their screws have gone. What the drives owe (lag times speed, from the tachos) is added to the place that
+steers, so that their lag turns no corner.
 
                       drum of places                  cell
       . . . . . . . . .  o-> .  x  . . . . . . . . .  )|(      guards
@@ -21,11 +24,12 @@ The speed is resolved by sine and cosine of the heading into demands on the two 
     mean           of a sweep against what it was when the head was tuned: when the line swells or fades, the kernel returns to be tuned anew
     look-ahead     cell 102, a mm ahead of the swinging cell: when the line is not where the sweep's curve leads, the relay slows the head and holds it slow
 
-A head without a drum, as in 1969, steers straight by what the cell sees aside, turn rate = k·e, and has neither guard cells nor a way through knots.
+A head without a drum, as in 1969, steers straight by what the cell sees aside, turn rate = k·e, and has
+neither guard cells nor a way through knots.
 
-Source: patent ES 361967, figure 1: cell 101, mount 42, pin 48, motor 45, amplifier FSA, servo M and tacho T, potentiometer 59, drives DCX and DCY with
-tachos TX and TY, forward cell 102, relay RL, delay DL, resistor SR, speed control WC.
-Questions: the patent gives no figures, no drum and no guard cells. Chosen: see `settings`.
+Source: patent ES 361967, figure 1: cell 101, mount 42, pin 48, motor 45, amplifier FSA, servo M and tacho T,
+potentiometer 59, drives DCX and DCY with tachos TX and TY, forward cell 102, relay RL, delay DL, resistor SR,
+speed control WC. Questions: the patent gives no figures, no drum and no guard cells. Chosen: see `settings`.
 """
 
 from __future__ import annotations
@@ -38,17 +42,17 @@ from numba import njit
 from morfax.motion.drive import drive_step
 from morfax.tracer.sensing.photocell import TWO_PI, darkness_at
 
-# State of the head, one float each: screws, speeds of the screws, heading, its rate, speed along, the sweep, the ink, guard cells, relay, travel,
-# the point that is steered for, the bend there, how many places are on the drum, and how far aside the cell of a head without a drum sees the line
+# State of the head, one float each: screws, speeds of the screws, heading, its rate, speed along, the sweep,
+# the ink, guard cells, relay, travel, the point that is steered for, the bend there, how many places are on
+# the drum, and how far aside the cell of a head without a drum sees the line
 X, Y, VX, VY, HEADING, TURN, SPEED, SWEEP, FIRST, MEAN, MIDDLE, SWEPT_X, SWEPT_Y, INK = range(14)
 LEFT, AHEAD, RIGHT, SLOW, TRAVEL, POINT_X, POINT_Y, BEND, PLACES, ASIDE = range(14, 24)
 STATES = 24
 DRUM = 256  # places remembered
 LOST = 0.2  # of the ink, over a sweep: the line has gone from under a head without guard cells
 BESIDE = 0.4  # of the ink, averaged by the guard cells: there is ink beside the line
-ALTERED = (
-    0.2  # of the ink over a sweep: the line has swollen or faded by so much since the head was tuned to it
-)
+# of the ink over a sweep: the line has swollen or faded by so much since the head was tuned to it
+ALTERED = 0.2
 
 MORE, KNOT, TIGHT, HOME, CHANGED = range(5)  # why the kernel returned
 
@@ -88,7 +92,8 @@ def owed_s(tuning_gain: float, period_s: float) -> float:
 def follow(cells, pitch_mm, state, drum, t, home, out):  # type: ignore[no-untyped-def]
     """Follow the line until something happens or `out` (n, 2) is full; (positions written, why).
 
-    `drum` (DRUM, 2) holds the places seen last; `home` is (x, y, heading, travel from which on the head may close there).
+    `drum` (DRUM, 2) holds the places seen last; `home` is (x, y, heading, travel from which on the head may
+    close there).
     """
     for n in range(len(out)):
         _swing(cells, pitch_mm, state, t)
@@ -148,9 +153,11 @@ def _detect(state, drum, t):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def _fit(state, drum, t):  # type: ignore[no-untyped-def]
-    """Parabola through the drum's places about the point ahead of the axis: where the line is there, and its bend.
+    """Parabola through the drum's places about the point ahead of the axis: where the line is there, and its
+    bend.
 
-    Weights fall to nothing at the window's ends (1 - (x/h)²). The sums solve for y = p0 + p1·x + p2·x² from the point.
+    Weights fall to nothing at the window's ends (1 - (x/h)²). The sums solve for y = p0 + p1·x + p2·x² from
+    the point.
     """
     c, s = math.cos(state[HEADING]), math.sin(state[HEADING])
     x0, y0 = state[X] + t.point_mm * c, state[Y] + t.point_mm * s
@@ -176,7 +183,9 @@ def _fit(state, drum, t):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def _look(cells, pitch_mm, state, t):  # type: ignore[no-untyped-def]
-    """The guard cells and the look-ahead cell, read once a sweep; why the head must stop following, if it must."""
+    """The guard cells and the look-ahead cell, read once a sweep; why the head must stop following, if it
+    must.
+    """
     c, s = math.cos(state[HEADING]), math.sin(state[HEADING])
     ahead = t.guard_lead_mm
     curve = state[MIDDLE] / (t.lead_mm * t.lead_mm)

@@ -6,10 +6,12 @@ Signals: positions of the head (n, 2) mm in; out the positions between which the
     start ───────────┤ loop │         last     and came back here at the end
                      ╰──────╯
 
-The end of a run that has come onto its own way again may lie some way beyond that place, on what was followed already: the way is then gone back, on the run
-and on what it repeats together, for as long as they are one. A run that ends square to it, and a little beyond, is cut off where it crosses it.
+The end of a run that has come onto its own way again may lie some way beyond that place, on what was followed
+already: the way is then gone back, on the run and on what it repeats together, for as long as they are one. A
+run that ends square to it, and a little beyond, is cut off where it crosses it.
 
-Source: patent ES 361967, section on use: a lead line from the reference point to the contour, and round that to where it was joined.
+Source: patent ES 361967, section on use: a lead line from the reference point to the contour, and round that
+to where it was joined.
 """
 
 from __future__ import annotations
@@ -19,8 +21,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.motion.polyline import crossings
-from morfax.tracer.sensing.view import Array
 
 STEP_MM = 0.03
 FRESH_MM = 3.0  # the newest stretch is no earlier one
@@ -31,7 +33,9 @@ ALIKE = math.cos(math.radians(30))
 
 
 def loop_in(positions: Array, width_mm: float) -> tuple[int, int] | None:
-    """The first and the last position of the loop with which a run ends; None if its end does not lie on its own way."""
+    """The first and the last position of the loop with which a run ends; None if its end does not lie on its
+    own way.
+    """
     lengths = np.r_[0.0, np.cumsum(np.hypot(*np.diff(positions, axis=0).T))]
     at_mm = np.arange(0.0, lengths[-1], STEP_MM)
     if not len(at_mm):
@@ -60,7 +64,9 @@ def loop_in(positions: Array, width_mm: float) -> tuple[int, int] | None:
 
 
 def _crossed(places: Array, index: NDArray[np.int64], j: int, reach: int) -> tuple[int, int] | None:
-    """The positions at which the end of a run crosses the earlier way about place j, so many places about either; None if it does not come so far."""
+    """The positions at which the end of a run crosses the earlier way about place j, so many places about
+    either; None if it does not come so far.
+    """
     first, last = max(0, j - reach), max(0, len(places) - 1 - reach)
     met = crossings(places[last:], places[first : min(j + reach, last)])
     if not len(met):
@@ -70,7 +76,9 @@ def _crossed(places: Array, index: NDArray[np.int64], j: int, reach: int) -> tup
 
 
 def comes_again(places: Array, step_mm: float, width_mm: float) -> bool:
-    """Whether the newest stretch of a trail (n, 2), a place every `step_mm`, runs along an earlier one in the same sense."""
+    """Whether the newest stretch of a trail (n, 2), a place every `step_mm`, runs along an earlier one in the
+    same sense.
+    """
     fresh = round(FRESH_MM / step_mm)
     old, newest = places[: -2 * fresh], places[-fresh:]
     if len(old) < fresh:
@@ -89,7 +97,9 @@ def _first_not(good: NDArray[np.bool_]) -> int:
 
 
 def _apart(run: Array, old: Array) -> tuple[Array, NDArray[np.bool_]]:
-    """Two ways, both given from their newest place back: how far they are apart, mm, and whether they have about one heading."""
+    """Two ways, both given from their newest place back: how far they are apart, mm, and whether they have
+    about one heading.
+    """
     n = min(len(run), len(old))
     apart = np.full(n, math.inf)
     for shift in (-1, 0, 1):  # the places of one need not fall on the other's

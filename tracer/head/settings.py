@@ -1,10 +1,12 @@
 """Settings of the head, and the tuning that follows from them and from the line that it stands on.
 
-The sweep's amplitude is 0.6 of the line's width, so that its ends stand just outside the edges; the slope of the fundamental and the mean darkness are
-measured on the line itself, with the sweep set a little to one side and to the other.
+The sweep's amplitude is 0.6 of the line's width, so that its ends stand just outside the edges; the slope of
+the fundamental and the mean darkness are measured on the line itself, with the sweep set a little to one side
+and to the other.
 
-Source: patent ES 361967 gives no figures. Chosen for the precise head: a lead of 0.5 mm on a line of 0.5 mm; averaging along two leads is what beats the
-noise of a scan, and the error on a changing bend grows with the cube of the lead.
+Source: patent ES 361967 gives no figures. Chosen for the precise head: a lead of 0.5 mm on a line of 0.5 mm;
+averaging along two leads is what beats the noise of a scan, and the error on a changing bend grows with the
+cube of the lead.
 """
 
 from __future__ import annotations
@@ -85,9 +87,11 @@ BOUNDS: dict[str, Bounds] = {
 
 
 def choose(head: str = "precise", changes: Mapping[str, object] | None = None) -> Settings:
-    """A named set of settings with changes by name; `drive_lag_s` and `drive_acceleration_mm_s2` reach the drives.
+    """A named set of settings with changes by name; `drive_lag_s` and `drive_acceleration_mm_s2` reach the
+    drives.
 
-    Raises ValueError for a head or a setting that there is not, and for a value that is no number or out of bounds.
+    Raises ValueError for a head or a setting that there is not, and for a value that is no number or out of
+    bounds.
     """
     if head not in HEADS:
         raise ValueError(f"there is no head {head!r}; give one of {', '.join(HEADS)}")
@@ -170,7 +174,9 @@ def tune(stance: Stance, settings: Settings, rate_hz: float) -> Tuning:
 
 
 def _calibrate(stance: Stance, amplitude_mm: float) -> tuple[float, float]:
-    """Slope of the sweep's fundamental (per mm) and mean darkness, over a few stations of the line under the stance."""
+    """Slope of the sweep's fundamental (per mm) and mean darkness, over a few stations of the line under the
+    stance.
+    """
     view, aside = stance.view, 0.1 * stance.view.width_mm
     c, s = math.cos(stance.heading_rad), math.sin(stance.heading_rad)
     slopes, means = 0.0, 0.0

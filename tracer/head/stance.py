@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from morfax.tracer.sensing.view import Array, View
+from morfax.motion.arrays import Array
+from morfax.tracer.sensing.view import View
 
 
 @dataclass(frozen=True, slots=True)

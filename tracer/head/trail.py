@@ -1,6 +1,7 @@
 """The trail: where the axis has been, as the head remembers it.
 
-Signals: screw positions in, thinned to a place every step; places behind the head, and whether a leg has been followed already, out. mm.
+Signals: screw positions in, thinned to a place every step; places behind the head, and whether a leg has been
+followed already, out. mm.
 """
 
 from __future__ import annotations
@@ -9,9 +10,9 @@ import math
 
 import numpy as np
 
+from morfax.motion.arrays import Array
 from morfax.tracer.head import loop
 from morfax.tracer.sensing.leg import Leg
-from morfax.tracer.sensing.view import Array
 
 MEMORY_MM = 8.0  # how far back the way in is remembered for the rings
 FRESH_MM = 3.0  # the newest stretch does not count as followed before

@@ -2,9 +2,10 @@
 
 Signals: the incoming leg and the trail in; the outgoing leg out, and where the two meet.
 
-Straight on at a crossing; on along the only leg at a corner; never onto what has been followed already; across a gap no wider than allowed. A stroke that
-ends soon and is not straight on is a mark, no leg. At a junction the operator may turn left or right; where a lead line ends square on another the head
-turns left, which is clockwise round a contour that it comes to from outside.
+Straight on at a crossing; on along the only leg at a corner; never onto what has been followed already;
+across a gap no wider than allowed. A stroke that ends soon and is not straight on is a mark, no leg. At a
+junction the operator may turn left or right; where a lead line ends square on another the head turns left,
+which is clockwise round a contour that it comes to from outside.
 
 Source: our own (see `knot`).
 """
@@ -19,6 +20,7 @@ from itertools import combinations
 
 import numpy as np
 
+from morfax.motion.arrays import Array
 from morfax.tracer.head.trail import Trail
 from morfax.tracer.junctions.rings import legs_around
 from morfax.tracer.marks.marks import longest_mm
@@ -26,7 +28,7 @@ from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.leg import STRAIGHT, Leg, Meeting, goes_straight, leg_of, meet, turn, turns_off
 from morfax.tracer.sensing.probe import reach_of_ink, stroke_end
 from morfax.tracer.sensing.side import Side
-from morfax.tracer.sensing.view import Array, View
+from morfax.tracer.sensing.view import View
 
 AHEAD = math.radians(75)  # a lost line is looked for within this of its heading
 SQUARE = math.radians(
@@ -48,12 +50,14 @@ Way = tuple[Leg | None, Meeting | None, int]
 def survey(
     view: View, incoming: Leg, trail: Trail, rank: int = 0, side: Side | None = None, *, leads: bool = False
 ) -> Way:
-    """The outgoing leg (None if there is none), the distances (mm) beyond the incoming and before the outgoing clean end where they meet, and how many
-    legs there were, counting 1 more where one was left out because it has been followed already.
+    """The outgoing leg (None if there is none), the distances (mm) beyond the incoming and before the
+    outgoing clean end where they meet, and how many legs there were, counting 1 more where one was left out
+    because it has been followed already.
 
-    Looked for where the line stops being clean, and, unless it goes straight on from there, where the ink ahead ends: at the tip of a sharp corner.
-    `rank` 1 takes the second straightest leg, `side` the straightest that turns off to that side, if there is one. A line that `leads` ends at the line that
-    it comes to, though the pen ran on a little beyond that.
+    Looked for where the line stops being clean, and, unless it goes straight on from there, where the ink
+    ahead ends: at the tip of a sharp corner. `rank` 1 takes the second straightest leg, `side` the
+    straightest that turns off to that side, if there is one. A line that `leads` ends at the line that it
+    comes to, though the pen ran on a little beyond that.
     """
     ink = reach_of_ink(view, incoming, 6 * view.width_mm + 2.0)
     half = 0.5 * view.width_mm
@@ -78,7 +82,9 @@ def _look(
     centre: Array,
     choose: Callable[[list[Leg], list[Leg], View], Leg],
 ) -> Way:
-    """Look for legs about a centre, and again about the place where incoming and outgoing meet, until that is known."""
+    """Look for legs about a centre, and again about the place where incoming and outgoing meet, until that is
+    known.
+    """
     way_in = np.vstack([trail.recent(), incoming.seen[:, :2]])
     outgoing, legs_mm, choices = None, None, 0
     for _ in range(3):
@@ -140,7 +146,9 @@ def _without_marks(view: View, incoming: Leg, legs: list[Leg]) -> list[Leg]:
 
 
 def _without_overrun(view: View, incoming: Leg, legs: list[Leg]) -> list[Leg]:
-    """The legs but for one straight on that ends soon, if the others are a line that passes: the end of a lead line drawn beyond the contour."""
+    """The legs but for one straight on that ends soon, if the others are a line that passes: the end of a
+    lead line drawn beyond the contour.
+    """
     passing = [leg for leg in legs if not goes_straight(incoming, leg)]
     if not any(
         abs(turn(a.heading_rad + math.pi, b.heading_rad)) < SQUARE for a, b in combinations(passing, 2)
@@ -153,7 +161,8 @@ def _without_overrun(view: View, incoming: Leg, legs: list[Leg]) -> list[Leg]:
 
 
 def _without_stubs(view: View, incoming: Leg, legs: list[Leg], every: list[Leg]) -> list[Leg]:
-    """The legs but for marks on what has been followed already, however straight on: the head has come back to its lead line.
+    """The legs but for marks on what has been followed already, however straight on: the head has come back
+    to its lead line.
 
     Where it crosses a line that it has followed, what lies beyond is its own, and may end soon.
     """
@@ -175,7 +184,9 @@ def _is_across(leg: Leg, legs: list[Leg], reach_mm: list[float]) -> bool:
 
 
 def _reach_mm(view: View, incoming: Leg, leg: Leg) -> float:
-    """How far a leg reaches beyond the edge of the line that comes in, mm; infinite if it does not end within a mark's length."""
+    """How far a leg reaches beyond the edge of the line that comes in, mm; infinite if it does not end within
+    a mark's length.
+    """
     end = stroke_end(view, leg, longest_mm(view))
     way = leg.end_mm - incoming.end_mm
     aside = abs(way[1] * math.cos(incoming.heading_rad) - way[0] * math.sin(incoming.heading_rad))
@@ -183,7 +194,9 @@ def _reach_mm(view: View, incoming: Leg, leg: Leg) -> float:
 
 
 def _without_pairs(view: View, incoming: Leg, legs: list[Leg], every: list[Leg]) -> list[Leg]:
-    """The legs that are not the two ends of a line that passes here, straighter than any leg goes on from the incoming one."""
+    """The legs that are not the two ends of a line that passes here, straighter than any leg goes on from the
+    incoming one.
+    """
     taken: list[Leg] = []
     for i, a in enumerate(every):
         for b in every[i + 1 :]:
@@ -197,7 +210,8 @@ def _without_pairs(view: View, incoming: Leg, legs: list[Leg], every: list[Leg])
 
 
 def straight_on(view: View, incoming: Leg, gap_mm: float) -> Leg | None:
-    """The clean line met by going straight on, through a blot, or across a gap no wider than allowed: along the leg's bend, or else with the heading held.
+    """The clean line met by going straight on, through a blot, or across a gap no wider than allowed: along
+    the leg's bend, or else with the heading held.
 
     The bend of a dash two or three millimetres long is uncertain.
     """
@@ -224,7 +238,8 @@ def _met(view: View, incoming: Leg, gap_mm: float) -> Leg | None:
 
 
 def caught_again(view: View, incoming: Leg, trail: Trail, within_mm: float) -> Leg | None:
-    """The line that the head meets first in widening arcs ahead of where it lost it, no further than allowed; None if there is none.
+    """The line that the head meets first in widening arcs ahead of where it lost it, no further than allowed;
+    None if there is none.
 
     Only lines that have not been followed, and that lead on ahead.
     """

@@ -6,11 +6,12 @@ import math
 
 import numpy as np
 
+from morfax.motion.arrays import Array
 from morfax.motion.curves import hermite
 from morfax.tracer.head.course import ahead_mm, along_leg, onto
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.leg import Leg, Meeting, turn
-from morfax.tracer.sensing.view import Array, View
+from morfax.tracer.sensing.view import View
 
 HIDDEN = 8  # stations at a corner between those that its legs are felt by
 SLIGHT = math.radians(40)  # a turn up to this goes straight on at a junction
@@ -21,7 +22,9 @@ SHARP = 0.08  # of the line's width: a corner whose ink misses less than this on
 def through_corner(
     view: View, stands: tuple[Array, float], incoming: Leg, outgoing: Leg, legs_mm: Meeting, end_mm: float
 ) -> list[Array]:
-    """Stretches from where the head stands (place, heading) through a corner to `end_mm` beyond the outgoing leg's first station."""
+    """Stretches from where the head stands (place, heading) through a corner to `end_mm` beyond the outgoing
+    leg's first station.
+    """
     s, u = legs_mm
     missing, touch = rounding(view, incoming, outgoing, legs_mm)
     bent = touch > 0 and (missing > 0.3 * view.width_mm or deflection(incoming, outgoing, legs_mm) < SLIGHT)
@@ -44,7 +47,9 @@ def rounded_corner(
     touch_mm: float,
     end_mm: float,
 ) -> Array:
-    """The way (n, 2) from where the head stands by the arc that touches both legs so far from their vertex, to beyond the outgoing leg's first station."""
+    """The way (n, 2) from where the head stands by the arc that touches both legs so far from their vertex,
+    to beyond the outgoing leg's first station.
+    """
     s, u = legs_mm
     way, along = onto(*stands, incoming, s - touch_mm)
     a, b = s - touch_mm, -u + touch_mm
@@ -55,7 +60,9 @@ def rounded_corner(
 def sharp_corner(
     stands: tuple[Array, float], incoming: Leg, outgoing: Leg, legs_mm: Meeting, end_mm: float
 ) -> list[Array]:
-    """Stretches from where the head stands to the vertex, and from there to `end_mm` beyond the outgoing leg's first station."""
+    """Stretches from where the head stands to the vertex, and from there to `end_mm` beyond the outgoing
+    leg's first station.
+    """
     s, u = legs_mm
     way, along = onto(*stands, incoming, s)
     vertex = 0.5 * (incoming.at(s) + outgoing.at(-u))
@@ -65,7 +72,9 @@ def sharp_corner(
 
 
 def rounding(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> tuple[float, float]:
-    """The ink missing on the outside of a corner, mm, and how far from the vertex its round touches the legs (0: it is sharp), mm."""
+    """The ink missing on the outside of a corner, mm, and how far from the vertex its round touches the legs
+    (0: it is sharp), mm.
+    """
     missing = missing_ink_mm(view, incoming, outgoing, legs_mm)
     if missing <= SHARP * view.width_mm:
         return missing, 0.0
@@ -74,7 +83,9 @@ def rounding(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> tupl
 
 
 def is_sharp(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> bool:
-    """Whether the ink of an obtuse corner is that of a sharp one: it misses less than a third of what an arc over the hidden stations would."""
+    """Whether the ink of an obtuse corner is that of a sharp one: it misses less than a third of what an arc
+    over the hidden stations would.
+    """
     turned = deflection(incoming, outgoing, legs_mm)
     return (
         missing_ink_mm(view, incoming, outgoing, legs_mm) <= HIDDEN * view.step_mm * math.tan(turned / 4) / 3
@@ -82,9 +93,11 @@ def is_sharp(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> bool
 
 
 def missing_ink_mm(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> float:
-    """By how much the ink falls short of a sharp corner's on the outside of the bisector, mm (0 if it does not).
+    """By how much the ink falls short of a sharp corner's on the outside of the bisector, mm (0 if it does
+    not).
 
-    Where another line leaves on the outside of a slight turn, it is by how much the ink is more than a sharp corner's on the inside.
+    Where another line leaves on the outside of a slight turn, it is by how much the ink is more than a sharp
+    corner's on the inside.
     """
     found, width_mm = (
         _edge_mm(view, incoming, outgoing, legs_mm, 1),
@@ -100,7 +113,9 @@ def missing_ink_mm(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -
 
 
 def hides_outside(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> bool:
-    """Whether another line leaves on the outside of a slight turn: there is more ink than a corner's, and its edges tell nothing of it."""
+    """Whether another line leaves on the outside of a slight turn: there is more ink than a corner's, and its
+    edges tell nothing of it.
+    """
     found = _edge_mm(view, incoming, outgoing, legs_mm, 1)
     return deflection(incoming, outgoing, legs_mm) < SLIGHT and not found < HIDES * incoming.width_mm
 
@@ -111,7 +126,9 @@ def deflection(incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> float:
 
 
 def _edge_mm(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting, side: int) -> float:
-    """How far the ink of a corner reaches from the vertex along the bisector, to the outside (1) or the inside (-1), mm; NaN if it has no edge there."""
+    """How far the ink of a corner reaches from the vertex along the bisector, to the outside (1) or the
+    inside (-1), mm; NaN if it has no edge there.
+    """
     vertex, width_mm = incoming.at(legs_mm[0]), 0.5 * (incoming.width_mm + outgoing.width_mm)
     before, after = incoming.heading_at(legs_mm[0]), outgoing.heading_at(-legs_mm[1])
     out = side * np.array([math.cos(before) - math.cos(after), math.sin(before) - math.sin(after)])
@@ -126,7 +143,9 @@ def _edge_mm(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting, side: i
 
 
 def _edge_outward(view: View, place: Array, outward: float, width_mm: float, reach_mm: float) -> float:
-    """Where the ink about a place ends outward, mm; NaN if there is none. A light speck in the ink does not end it."""
+    """Where the ink about a place ends outward, mm; NaN if there is none. A light speck in the ink does not
+    end it.
+    """
     _, edge = photocell.edges(
         view.cells, view.pitch_mm, place[0], place[1], outward - math.pi / 2, reach_mm, view.level
     )

@@ -1,7 +1,8 @@
 """Riding on an edge: how the head gets past ink that runs beside its line for longer than a knot.
 
-Two lines that come closer than a width run together: the edge between them is gone, but each line's outer edge is as clean as before, and the line's
-middle is half a width within it. So the line is felt on along that edge.
+Two lines that come closer than a width run together: the edge between them is gone, but each line's outer
+edge is as clean as before, and the line's middle is half a width within it. So the line is felt on along that
+edge.
 
             ____________________ left edge: clean                    After a while the other edge comes back: the line goes on.
              . . . . . . . . . .   the line, half a width within     Or the ink ends in a tip: there the line turned back, and came
@@ -22,10 +23,11 @@ from itertools import pairwise
 import numpy as np
 from numba import njit
 
+from morfax.motion.arrays import Array
 from morfax.tracer.junctions.corner import hides_outside, rounding
 from morfax.tracer.sensing.leg import Leg, Meeting, leg_of, meet, turn
 from morfax.tracer.sensing.photocell import darkness_at, edge_along, edges, onward
-from morfax.tracer.sensing.view import Array, View
+from morfax.tracer.sensing.view import View
 
 FARTHEST_MM = 40.0
 WELL_WITHIN = 10  # stations from a leg's clean end: both edges are clean there
@@ -39,24 +41,30 @@ WIDE = 0.62  # of the width, from the middle to the far edge: ink beside the lin
 
 @dataclass(frozen=True, slots=True)
 class Ride:
-    """Stations of a line felt along one edge, (n, 3) centre and width; `back` are those of the way back if it turned at a tip."""
+    """Stations of a line felt along one edge, (n, 3) centre and width; `back` are those of the way back if it
+    turned at a tip.
+    """
 
     seen: Array
     back: Array | None
 
 
 def ride_past(view: View, incoming: Leg) -> Ride | None:
-    """Feel on from a leg's clean end along one of its edges; None if neither edge leads past the ink beside the line."""
+    """Feel on from a leg's clean end along one of its edges; None if neither edge leads past the ink beside
+    the line.
+    """
     rides = [_ride(view, incoming, side) for side in (-1.0, 1.0)]
     found = [r for r in rides if r is not None]
     return max(found, key=lambda r: len(r.seen)) if found else None
 
 
 def to_vertex(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> tuple[Leg, Leg, Meeting]:
-    """The legs of a corner felt on along their outer edges, which stay clean up to the vertex, and where they meet then.
+    """The legs of a corner felt on along their outer edges, which stay clean up to the vertex, and where they
+    meet then.
 
-    A corner that is rounded is felt up to where its round begins. A leg that meets a line which passes here has no outer edge, and that line's may be
-    spoiled by an end of the other's drawn beyond it; nor has a turn on whose outside another line leaves.
+    A corner that is rounded is felt up to where its round begins. A leg that meets a line which passes here
+    has no outer edge, and that line's may be spoiled by an end of the other's drawn beyond it; nor has a turn
+    on whose outside another line leaves.
     """
     if hides_outside(view, incoming, outgoing, legs_mm):
         return incoming, outgoing, legs_mm
@@ -76,7 +84,9 @@ def to_vertex(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> tup
 
 
 def _passes(view: View, leg: Leg, vertex_mm: float, deflection: float) -> bool:
-    """Whether a line goes on along a leg's line beyond the vertex of a corner, to where the other leg's ink does not reach."""
+    """Whether a line goes on along a leg's line beyond the vertex of a corner, to where the other leg's ink
+    does not reach.
+    """
     clear_mm = view.width_mm * max(1.5, 1.2 / max(abs(math.sin(deflection)), 0.1))
     if clear_mm > 4 * view.width_mm or not all(
         view.dark(place) for place in leg.at(vertex_mm + clear_mm * PASSED)
@@ -88,7 +98,9 @@ def _passes(view: View, leg: Leg, vertex_mm: float, deflection: float) -> bool:
 
 
 def _within_ink(view: View, arriving: Leg, leaving: Leg, met: Meeting) -> Meeting:
-    """Where the legs of a sharp tip meet, but not beyond where the pen turned: lines that are nearly parallel meet anywhere."""
+    """Where the legs of a sharp tip meet, but not beyond where the pen turned: lines that are nearly parallel
+    meet anywhere.
+    """
     if abs(turn(arriving.heading_rad, leaving.heading_rad)) < TIP:
         return met
     (x, y), reach_mm = arriving.end_mm, max(0.0, met[0]) + 2 * view.width_mm
@@ -98,10 +110,11 @@ def _within_ink(view: View, arriving: Leg, leaving: Leg, met: Meeting) -> Meetin
 
 
 def _along_outside(view: View, seen: Array, side: float, beyond_mm: float, last: bool) -> Leg | None:
-    """A leg felt along one edge to `beyond_mm` past its clean end: from well within it, where the knot's ink has not yet reached the other edge.
+    """A leg felt along one edge to `beyond_mm` past its clean end: from well within it, where the knot's ink
+    has not yet reached the other edge.
 
-    `seen` is in order from the knot outwards, the side is that of somebody who goes towards the knot; the leg's clean end is the `last` in travel, or
-    the first. None if there is nothing to feel.
+    `seen` is in order from the knot outwards, the side is that of somebody who goes towards the knot; the
+    leg's clean end is the `last` in travel, or the first. None if there is nothing to feel.
     """
     base = min(WELL_WITHIN, len(seen) // 2)
     way = seen[base, :2] - seen[min(base + 5, len(seen) - 1), :2]
@@ -190,17 +203,22 @@ def _turned_back(
 
 
 def _from_tip(excess: Array, first: int, tip: int, jump_mm: float) -> list[int]:
-    """The stations from a tip back to the first at which the far edge was met, up to where it jumps: there it is another line's."""
+    """The stations from a tip back to the first at which the far edge was met, up to where it jumps: there it
+    is another line's.
+    """
     measured = [i for i in range(tip, first - 1, -1) if math.isfinite(excess[i])]
     jumps = [k + 1 for k, (i, j) in enumerate(pairwise(measured)) if abs(excess[i] - excess[j]) > jump_mm]
     return measured[: jumps[0]] if jumps else measured
 
 
 @njit(cache=True)
-def _along_edge(cells, pitch_mm, start, heading, side, step_mm, stations, width_mm, level, regained):  # type: ignore[no-untyped-def]
-    """Stations (n, 3): middle half a width within the edge on one side, and distance to the first light on the other (NaN beyond three widths).
+# type: ignore[no-untyped-def]
+def _along_edge(cells, pitch_mm, start, heading, side, step_mm, stations, width_mm, level, regained):
+    """Stations (n, 3): middle half a width within the edge on one side, and distance to the first light on
+    the other (NaN beyond three widths).
 
-    It stops where that edge or the ink under the middle is lost, or when the line has been by itself for `regained` stations after ink beside it.
+    It stops where that edge or the ink under the middle is lost, or when the line has been by itself for
+    `regained` stations after ink beside it.
     """
     out = np.empty((stations, 3))
     fine = 0.35 * pitch_mm
@@ -229,8 +247,11 @@ def _along_edge(cells, pitch_mm, start, heading, side, step_mm, stations, width_
 
 
 @njit(cache=True)
-def _first_light(cells, pitch_mm, x, y, nx, ny, begin_mm, end_mm, step_mm, level):  # type: ignore[no-untyped-def]
-    """Distance along a direction at which the darkness falls through the level; NaN if it does not, or is light at the beginning."""
+# type: ignore[no-untyped-def]
+def _first_light(cells, pitch_mm, x, y, nx, ny, begin_mm, end_mm, step_mm, level):
+    """Distance along a direction at which the darkness falls through the level; NaN if it does not, or is
+    light at the beginning.
+    """
     u = begin_mm
     before = darkness_at(cells, pitch_mm, x + u * nx, y + u * ny)
     if before < level:

@@ -1,11 +1,13 @@
-"""Breaks: where a line ends, or was lost, and ink goes on in line with it behind more paper than the head may go across.
+"""Breaks: where a line ends, or was lost, and ink goes on in line with it behind more paper than the head may
+go across.
 
-Signals: the view of a line and the way of the head along it in; the ends of that way from which ink goes on straight ahead, and how wide a gap would have to
-be allowed to get there (mm) out.
+Signals: the view of a line and the way of the head along it in; the ends of that way from which ink goes on
+straight ahead, and how wide a gap would have to be allowed to get there (mm) out.
 
     ━━━━━━━━━●   1.2 mm   ━━━━━━━━        as of a dashed line: the operator is told of `--gap`
 
-Source: our own. What the head would make of a wider gap is what it makes of one that is allowed (see `survey.straight_on`).
+Source: our own. What the head would make of a wider gap is what it makes of one that is allowed (see
+`survey.straight_on`).
 """
 
 from __future__ import annotations
@@ -15,9 +17,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from morfax.motion.arrays import Array
 from morfax.tracer.junctions.choice import straight_on
 from morfax.tracer.sensing.leg import leg_of
-from morfax.tracer.sensing.view import Array, View
+from morfax.tracer.sensing.view import View
 
 FARTHEST_WIDTHS = 6.0  # ink further ahead is another line's
 EVERY_MM = 0.1  # gaps are tried in these steps
@@ -25,7 +28,9 @@ FEWEST = 8  # stations of a leg
 
 
 class Break(NamedTuple):
-    """An end of a line from which ink goes on straight ahead: where it is, and how wide a gap takes the head across, mm."""
+    """An end of a line from which ink goes on straight ahead: where it is, and how wide a gap takes the head
+    across, mm.
+    """
 
     place_mm: tuple[float, float]
     gap_mm: float
@@ -39,7 +44,9 @@ def breaks(view: View, way_mm: Array, at_start: bool) -> tuple[Break, ...]:
 
 
 def _gap_mm(view: View, way_mm: Array) -> float | None:
-    """The gap that would have to be allowed to go on straight from the end of a way; None if no ink goes on there."""
+    """The gap that would have to be allowed to go on straight from the end of a way; None if no ink goes on
+    there.
+    """
     before = np.hypot(*(way_mm - way_mm[-1]).T) > 1.5 * view.leg_mm
     if not before.any():
         return None

@@ -1,6 +1,7 @@
 """The junctions that the head has come to, and the guide lines that it has taken there.
 
-Signals: places and travel of the head in; the number of a junction out, and for each guide line the positions where it was left for, ended, and come back from.
+Signals: places and travel of the head in; the number of a junction out, and for each guide line the positions
+where it was left for, ended, and come back from.
 
          3 back  1 leave
     ─────────┬┬────────▶        a guide line is taken where the operator says left or right; where it ends the head turns round, and
@@ -16,14 +17,16 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from morfax.tracer.sensing.view import Array
+from morfax.motion.arrays import Array
 
 AGAIN_MM = 4.0  # the head has not left a junction before it has come further than this
 
 
 @dataclass(frozen=True, slots=True)
 class Guide:
-    """A guide line off the line that is followed, by positions: where the line was left, the guide's end, and where the line went on."""
+    """A guide line off the line that is followed, by positions: where the line was left, the guide's end, and
+    where the line went on.
+    """
 
     leave: int
     tip: int
@@ -32,7 +35,9 @@ class Guide:
 
 @dataclass(slots=True)
 class _Taken:
-    """A guide line that was taken: the junction's place, and how many positions there were then, at the tip, and when the head came back."""
+    """A guide line that was taken: the junction's place, and how many positions there were then, at the tip,
+    and when the head came back.
+    """
 
     place_mm: Array
     left: int
@@ -49,7 +54,9 @@ class Junctions:
     _taken: list[_Taken] = field(default_factory=list)
 
     def next(self, travel_mm: float) -> int:
-        """The number, from 0, of a junction that the head comes to now: it may not have left the last one yet."""
+        """The number, from 0, of a junction that the head comes to now: it may not have left the last one
+        yet.
+        """
         return len(self.places_mm) - (travel_mm - self._travel_mm < AGAIN_MM and bool(self.places_mm))
 
     def come_to(self, place_mm: Array, travel_mm: float) -> None:
@@ -99,7 +106,9 @@ class Junctions:
 def _nearest(
     positions: Array, first: int, last: int, place_mm: Array, first_within_mm: float | None = None
 ) -> int:
-    """The position from first to last that is nearest to a place, or of those that are near enough the first run of them."""
+    """The position from first to last that is nearest to a place, or of those that are near enough the first
+    run of them.
+    """
     away = np.hypot(*(positions[first:last] - place_mm).T)
     if first_within_mm is not None and away.min() < first_within_mm:
         near = np.flatnonzero(away < first_within_mm)

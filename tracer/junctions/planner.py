@@ -1,6 +1,7 @@
 """The pilot: plans the way from where the head is through the knot ahead, as the legs and the edges tell it.
 
-Signals: the view, where the head stands, its trail, and the legs that the survey found in; stretches and the outgoing leg out.
+Signals: the view, where the head stands, its trail, and the legs that the survey found in; stretches and the
+outgoing leg out.
 
 Source: our own (see `knot`, `course` and `riding`).
 """
@@ -14,6 +15,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from morfax.motion import curves
+from morfax.motion.arrays import Array
 from morfax.motion.polyline import with_places
 from morfax.tracer.head import course
 from morfax.tracer.head.planned import Planned
@@ -25,7 +27,7 @@ from morfax.tracer.junctions.edge_following import Ride, ride_past, to_vertex
 from morfax.tracer.junctions.rings import corner_in
 from morfax.tracer.junctions.width_change import Onward
 from morfax.tracer.sensing.leg import Leg, Meeting, goes_straight, leg_of, meet, turn
-from morfax.tracer.sensing.view import Array, View
+from morfax.tracer.sensing.view import View
 
 SMOOTH = math.radians(14)  # a smaller change of heading is no corner
 LEAST_GAP_PX = 2.5  # a scan can lose this much of a line
@@ -39,7 +41,9 @@ FAR_WIDTHS = 4.0  # to where the line goes on clean
 
 @dataclass(frozen=True, slots=True)
 class Pilot:
-    """What a way is planned by: the view, where the head stands (place, heading), where it has been, and its settings."""
+    """What a way is planned by: the view, where the head stands (place, heading), where it has been, and its
+    settings.
+    """
 
     view: View
     stands: tuple[Array, float]
@@ -84,7 +88,9 @@ class Pilot:
         return planned if course.on_ink(self.view, planned.stretches) else None
 
     def _blank_mm(self, incoming: Leg, outgoing: Leg) -> float:
-        """The longest stretch without any ink across the line, on the way from one leg's clean end straight to another's."""
+        """The longest stretch without any ink across the line, on the way from one leg's clean end straight
+        to another's.
+        """
         view, step = self.view, 0.35 * self.view.pitch_mm
         along = np.arange(0.0, course.ahead_mm(incoming.end_mm, outgoing), step)
         across = np.linspace(-0.5, 0.5, 7) * view.width_mm
@@ -97,7 +103,9 @@ class Pilot:
         return longest
 
     def past(self, incoming: Leg, way: Way) -> Planned | None:
-        """The way past ink that runs beside the line, felt along an edge; None if the line goes on straight before, or if there is no such way."""
+        """The way past ink that runs beside the line, felt along an edge; None if the line goes on straight
+        before, or if there is no such way.
+        """
         outgoing, _, choices = way
         straight = goes_straight(incoming, outgoing)
         ride = None if straight and not self._far(incoming, outgoing) else ride_past(self.view, incoming)
@@ -119,12 +127,16 @@ class Pilot:
         return Planned([np.vstack([way, through])], outgoing)
 
     def _is_corner(self, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> bool:
-        """Whether two legs that meet make a corner, and do not run into one another smoothly, or meet behind their clean ends."""
+        """Whether two legs that meet make a corner, and do not run into one another smoothly, or meet behind
+        their clean ends.
+        """
         deflection = abs(turn(incoming.heading_rad, outgoing.heading_rad))
         return deflection > SMOOTH and min(legs_mm) > -self.view.width_mm
 
     def _past_speck(self, planned: Planned, incoming: Leg, outgoing: Leg) -> Planned | None:
-        """A way without a corner once more, felt along it: None if the line is not clean there but for a speck."""
+        """A way without a corner once more, felt along it: None if the line is not clean there but for a
+        speck.
+        """
         way = curves.distinct(np.vstack(planned.stretches))
         beyond = [
             course.ahead_mm(place, outgoing) > 0 and course.ahead_mm(place, incoming) < 0 for place in way
@@ -148,7 +160,9 @@ class Pilot:
         return touch_mm > 0 or self._bend_on(incoming, outgoing, legs_mm)
 
     def _bend_on(self, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> bool:
-        """Whether two legs meet at no greater angle than one of them makes by bending on over the stations between them."""
+        """Whether two legs meet at no greater angle than one of them makes by bending on over the stations
+        between them.
+        """
         bends = max(abs(incoming.bend_per_mm), abs(outgoing.bend_per_mm))
         return (
             corner.deflection(incoming, outgoing, legs_mm)
@@ -156,7 +170,9 @@ class Pilot:
         )
 
     def round_corner(self, seen: Array, here: int) -> Planned | None:
-        """The way round a corner that the line was felt clean round, as it is obtuse or a tight round; None if there is none, or if its ink shows neither."""
+        """The way round a corner that the line was felt clean round, as it is obtuse or a tight round; None
+        if there is none, or if its ink shows neither.
+        """
         longer = self._felt_on(seen)
         i = corner_in(longer, here + 4)
         return (
@@ -166,7 +182,9 @@ class Pilot:
         )
 
     def _felt_on(self, seen: Array) -> Array:
-        """What was felt of a line, (n, 3), with a leg's length more of it where that is clean: the corner in it may be near the end."""
+        """What was felt of a line, (n, 3), with a leg's length more of it where that is clean: the corner in
+        it may be near the end.
+        """
         way = seen[3, :2] - seen[0, :2]
         length_mm = len(seen) * self.view.step_mm + self.view.leg_mm
         more = self.view.feel(seen[0, :2], math.atan2(way[1], way[0]), length_mm)
@@ -191,7 +209,8 @@ class Pilot:
         )
 
     def _tight(self, seen: Array, i: int) -> Planned | None:
-        """The way by an arc between two straight legs about a station, each felt up to where its ink shows that the round begins; None if there is none.
+        """The way by an arc between two straight legs about a station, each felt up to where its ink shows
+        that the round begins; None if there is none.
 
         What is felt of a round is averaged over more of the line than the round is long.
         """
@@ -215,7 +234,9 @@ class Pilot:
         return None
 
     def _by_arc(self, incoming: Leg, outgoing: Leg, legs_mm: Meeting, touch_mm: float) -> Planned | None:
-        """The way by the arc that touches two straight legs so far from their vertex; None if it is sharp, slight or wide, or if the head is in it."""
+        """The way by the arc that touches two straight legs so far from their vertex; None if it is sharp,
+        slight or wide, or if the head is in it.
+        """
         deflection = corner.deflection(incoming, outgoing, legs_mm)
         widest_mm = TIGHT_LEGS * self.view.leg_mm * math.tan(deflection / 2)
         before_mm = legs_mm[0] + course.ahead_mm(self.stands[0], incoming)
@@ -226,16 +247,20 @@ class Pilot:
         return Planned([way], outgoing.shifted(end_mm, outgoing.seen))
 
     def _as_felt(self, planned: Planned, seen: Array, deflection: float) -> bool:
-        """Whether a way round a corner is where the line was felt, but for the vertex: there the middle of the ink is inside of it.
+        """Whether a way round a corner is where the line was felt, but for the vertex: there the middle of
+        the ink is inside of it.
 
-        A pen of width w that turns by d about a vertex leaves the inner edge of its ink w/2/cos(d/2) from it, and the outer one w/2 before the lens rounds it.
+        A pen of width w that turns by d about a vertex leaves the inner edge of its ink w/2/cos(d/2) from it,
+        and the outer one w/2 before the lens rounds it.
         """
         inside_mm = 0.5 * self.view.width_mm * (1 / max(math.cos(deflection / 2), 0.5) - 1)
         away_mm = cKDTree(with_places(seen[:, :2], curves.SPACING_MM)).query(np.vstack(planned.stretches))[0]
         return bool(away_mm.max() < inside_mm + AS_FELT * self.view.pitch_mm)
 
     def _ride(self, incoming: Leg, ride: Ride) -> Planned | None:
-        """Stretches along a line that was felt on one edge; round the tip and back, if that is how it went; None if it is too short."""
+        """Stretches along a line that was felt on one edge; round the tip and back, if that is how it went;
+        None if it is too short.
+        """
         there = np.vstack([incoming.seen, ride.seen])
         if ride.back is None:
             nodes, leg = course.nodes_along(self.view, self.stands, there)
@@ -249,7 +274,9 @@ class Pilot:
         return Planned([course.through_nodes(onto_tip), course.through_nodes(from_tip)], leg)
 
     def _goes_back(self, seen: Array) -> bool:
-        """Whether what was felt from a knot on, from a width behind it, has been followed already, and the other way."""
+        """Whether what was felt from a knot on, from a width behind it, has been followed already, and the
+        other way.
+        """
         beyond = seen[min(round(self.view.width_mm / self.view.step_mm), len(seen) - 4) :]
         leg, trail = leg_of(beyond, False, self.view.leg_mm), self.trail
         return trail.holds(leg, self.view.width_mm) and trail.comes_back(leg)

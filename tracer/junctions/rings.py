@@ -1,7 +1,8 @@
 """Knots: places where the cells do not see one clean line, and what the head makes of them.
 
-Corners, crossings, junctions, touching lines, gaps and ends have this in common: near them the inks of several legs run together, and what a swinging
-cell sees there is not the line. So the head looks at the legs where they are clean, further out, and concludes:
+Corners, crossings, junctions, touching lines, gaps and ends have this in common: near them the inks of
+several legs run together, and what a swinging cell sees there is not the line. So the head looks at the legs
+where they are clean, further out, and concludes:
 
     incoming   the line felt forward from behind the axis until it is no longer clean: place, heading and bend at its last clean station
     legs       cells on rings about the knot: an arc of ink that is joined to the knot by ink, ring by ring, and has the line's width for three rings, is
@@ -11,8 +12,9 @@ cell sees there is not the line. So the head looks at the legs where they are cl
 
 All places are sheet mm; a ring's radius grows until legs are found.
 
-Source: patent ES 361967, cell 102 senses an abrupt change of direction ahead of the follower; how it finds the way on is left to the two British patents
-named there. Questions: everything else is our own, from first principles.
+Source: patent ES 361967, cell 102 senses an abrupt change of direction ahead of the follower; how it finds
+the way on is left to the two British patents named there. Questions: everything else is our own, from first
+principles.
 """
 
 from __future__ import annotations
@@ -23,9 +25,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import maximum_filter1d
 
+from morfax.motion.arrays import Array
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.leg import Leg, leg_of, turn
-from morfax.tracer.sensing.view import Array, View
+from morfax.tracer.sensing.view import View
 
 CORNER = math.radians(20)  # a line that turns less within a few stations is smooth
 LEAST_WIDTHS = 0.8  # of clean line make a leg
@@ -35,8 +38,8 @@ FARTHEST_MM = 5.0  # rings do not grow beyond this, or ten widths
 def corner_in(seen: Array, first: int) -> int | None:
     """The station, from `first` on, at which a line that was felt clean turns sharply; None if it does not.
 
-    Chords of seven stations before and after, three stations away from it, differ more there than anywhere within seven stations, by more than `CORNER`.
-    The line's last stations lean towards what ended it.
+    Chords of seven stations before and after, three stations away from it, differ more there than anywhere
+    within seven stations, by more than `CORNER`. The line's last stations lean towards what ended it.
     """
     n, skip, lean = 7, 3, 3
     places = seen[:, :2]
@@ -52,9 +55,11 @@ def corner_in(seen: Array, first: int) -> int | None:
 
 
 def fork_in(view: View, seen: Array, first: int) -> int | None:
-    """The station, from `first` on, from which ink goes straight on although the line that was felt bends away from it; None if there is none.
+    """The station, from `first` on, from which ink goes straight on although the line that was felt bends
+    away from it; None if there is none.
 
-    Where the felt line has left the straight one by nearly a width, its own ink no longer reaches there: ink there is that of another leg.
+    Where the felt line has left the straight one by nearly a width, its own ink no longer reaches there: ink
+    there is that of another leg.
     """
     back = 6
     for i in range(max(first, back), len(seen) - 4, 4):
@@ -104,7 +109,9 @@ def legs_around(view: View, centre: Array, trail: Array) -> list[Leg]:
 
 @dataclass(slots=True)
 class _Arc:
-    """An arc of ink on a ring: where it begins and ends (rad), for how many rings it has been clean, whether it is the way in, or a leg already."""
+    """An arc of ink on a ring: where it begins and ends (rad), for how many rings it has been clean, whether
+    it is the way in, or a leg already.
+    """
 
     begin: float
     end: float
@@ -122,14 +129,18 @@ class _Arc:
 
 
 def _up_to(trail: Array, centre: Array) -> Array:
-    """The trail without its newest places beyond a centre that lies on it: there it came in from behind, and not from where it ends."""
+    """The trail without its newest places beyond a centre that lies on it: there it came in from behind, and
+    not from where it ends.
+    """
     back_mm = np.r_[0.0, np.cumsum(np.hypot(*np.diff(trail[::-1], axis=0).T))]
     newest = trail[::-1][back_mm <= 2 * math.dist(trail[-1], centre)]
     return trail[: len(trail) - int(np.argmin(np.hypot(*(newest - centre).T)))]
 
 
 def _crossing(trail: Array, trail_mm: Array, centre: Array, radius: float) -> float | None:
-    """Direction in which the trail crosses a ring, going back from its newest place; None if it does not reach so far."""
+    """Direction in which the trail crosses a ring, going back from its newest place; None if it does not
+    reach so far.
+    """
     beyond = np.flatnonzero(trail_mm >= radius)
     if not len(beyond):
         return None

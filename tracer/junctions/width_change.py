@@ -1,8 +1,9 @@
 """Pens: where a line goes on with another pen, which draws wider or narrower.
 
-Engraved and inked drawings have shade lines: the sides of a part away from the light are drawn wider. A line that goes on with a step in its width ends the
-clean leg, and no leg of its own width leads on. So the head looks on for a line of another width: straight ahead, in line with its own; else about the knot,
-where it takes the leg that goes on straightest.
+Engraved and inked drawings have shade lines: the sides of a part away from the light are drawn wider. A line
+that goes on with a step in its width ends the clean leg, and no leg of its own width leads on. So the head
+looks on for a line of another width: straight ahead, in line with its own; else about the knot, where it
+takes the leg that goes on straightest.
 
     ________                          ________
             |_________________                |     two lines that run together are wider too, but to one side of the head's own
@@ -24,12 +25,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from morfax.motion.arrays import Array
 from morfax.tracer.head.course import ahead_mm
 from morfax.tracer.head.trail import Trail
 from morfax.tracer.junctions.choice import survey
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.leg import Leg, Meeting, leg_of, meet, turn
-from morfax.tracer.sensing.view import Array, View
+from morfax.tracer.sensing.view import View
 
 PENS = (
     2.0,
@@ -49,7 +51,9 @@ IN_LINE = math.radians(12)
 
 
 class Onward(NamedTuple):
-    """A line of another width: how it is seen, its leg, and where it meets the way in; None if it lies in line with it."""
+    """A line of another width: how it is seen, its leg, and where it meets the way in; None if it lies in
+    line with it.
+    """
 
     view: View
     leg: Leg
@@ -57,7 +61,9 @@ class Onward(NamedTuple):
 
 
 def of_another_pen(view: View, incoming: Leg, trail: Trail) -> Onward | None:
-    """The line that goes on from a leg's clean end with another width; None if there is none that has not been followed."""
+    """The line that goes on from a leg's clean end with another width; None if there is none that has not
+    been followed.
+    """
     for onward in _straight_ahead(view, incoming):
         if not trail.holds(onward.leg, view.width_mm):
             return onward
@@ -72,7 +78,9 @@ def of_another_pen(view: View, incoming: Leg, trail: Trail) -> Onward | None:
 
 
 def another_pen(view: View, leg: Leg) -> bool:
-    """Whether a leg is wider or narrower than the line, and stays so: two lines that run together do not stay as wide for long."""
+    """Whether a leg is wider or narrower than the line, and stays so: two lines that run together do not stay
+    as wide for long.
+    """
     if abs(leg.width_mm / view.width_mm - 1) < STEP:
         return False
     other = replace(view, width_mm=leg.width_mm)

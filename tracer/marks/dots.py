@@ -4,8 +4,8 @@ Signals: places near the line's middle in; the dot's centre out, or that of the 
 
     ───●───      ───●         spokes from its middle end alike all round, but for those along the line
 
-Source: patent ES 361967, section on use: guide lines to drill points. Questions: the patent does not say how a drill point is drawn. Chosen: the end of a
-guide line, or a dot at least 1.7 times as wide as the line.
+Source: patent ES 361967, section on use: guide lines to drill points. Questions: the patent does not say how
+a drill point is drawn. Chosen: the end of a guide line, or a dot at least 1.7 times as wide as the line.
 """
 
 from __future__ import annotations
@@ -15,10 +15,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from morfax.motion.arrays import Array
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.sensing.circles import ANGLES, WAYS, circle_through, spokes
 from morfax.tracer.sensing.leg import Leg, turn
-from morfax.tracer.sensing.view import Array, View
+from morfax.tracer.sensing.view import View
 
 LEAST_WIDTHS = 0.85  # radius of a dot
 LARGEST_WIDTHS = 6.0
@@ -28,7 +29,9 @@ ALONG = math.radians(50)  # the line leaves a dot within this of its heading
 
 
 def disc(view: View, place: Array, along: Array) -> Array | None:
-    """The centre of a dot about a place on the line, which has the direction `along` there; None if there is none."""
+    """The centre of a dot about a place on the line, which has the direction `along` there; None if there is
+    none.
+    """
     found = _disc(view, place)
     if found is None:
         return None

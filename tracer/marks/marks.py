@@ -1,18 +1,21 @@
 """Marks on the line: what tells the operator's machine to stop.
 
-Signals: the way of the head (n, 2) mm at the motion rate, and the cells' picture, in; marks out, each with the place of the way on which the axis is to
-stand.
+Signals: the way of the head (n, 2) mm at the motion rate, and the cells' picture, in; marks out, each with
+the place of the way on which the axis is to stand.
 
     tick     a short stroke across the line, or beside it     the line ───┼───    ───┴───    ─── ╵ ───
     dot      a round of ink on the line, wider than it                 ───●───    or at its end  ───●
 
-Two rows of cells ride beside the line, right and left. Where one sees a pulse of ink as wide as a line is, the stroke is felt outward until it ends: a mark
-ends within `LONGEST_MM`, a crossing line goes on beyond it. The foot of the mark is where its own middle line meets the way of the head. No mark is at a
-corner: the line goes straight on through the foot of one.
+Two rows of cells ride beside the line, right and left. Where one sees a pulse of ink as wide as a line is,
+the stroke is felt outward until it ends: a mark ends within `LONGEST_MM`, a crossing line goes on beyond it.
+The foot of the mark is where its own middle line meets the way of the head. No mark is at a corner: the line
+goes straight on through the foot of one.
 
-Source: patent ES 361967, figure 1, stop marks: a line across the contour, or a mark beside it. Questions: the patent gives no sizes. Chosen: a mark reaches
-from 1.2 of the line's width (0.6 mm) to 5 mm beyond its edge on each side (ten widths, of wide lines), to 3.5 mm (seven) if it touches the line on one side
-only, stands within 40 degrees of square to it and not further from it than 1.5 mm, is drawn with a pen like the line's, and has paper to both sides.
+Source: patent ES 361967, figure 1, stop marks: a line across the contour, or a mark beside it. Questions: the
+patent gives no sizes. Chosen: a mark reaches from 1.2 of the line's width (0.6 mm) to 5 mm beyond its edge on
+each side (ten widths, of wide lines), to 3.5 mm (seven) if it touches the line on one side only, stands
+within 40 degrees of square to it and not further from it than 1.5 mm, is drawn with a pen like the line's,
+and has paper to both sides.
 """
 
 from __future__ import annotations
@@ -23,11 +26,12 @@ from typing import Literal
 import numpy as np
 from numba import njit
 
+from morfax.motion.arrays import Array
 from morfax.tracer.marks import dots
 from morfax.tracer.marks import ticks as strokes
 from morfax.tracer.marks.ticks import Stroke
 from morfax.tracer.sensing import photocell
-from morfax.tracer.sensing.view import Array, View
+from morfax.tracer.sensing.view import View
 
 LONGEST_MM, LONGEST_WIDTHS = 5.0, 10.0  # of a mark across the line, beyond its edge on each side
 BESIDE_MM, BESIDE_WIDTHS = (
@@ -41,7 +45,9 @@ SPACING = 0.5  # of a pixel: how closely the cells look
 
 @dataclass(frozen=True, slots=True)
 class Mark:
-    """A mark: the place on which the axis stands, mm, and which position of the way that is, fractions included."""
+    """A mark: the place on which the axis stands, mm, and which position of the way that is, fractions
+    included.
+    """
 
     kind: Literal["tick", "dot"]
     place_mm: tuple[float, float]
@@ -216,7 +222,9 @@ def _dots(view: View, way: Way) -> list[Mark]:
 
 
 def _beside_dot(view: View, way: Way, begin: int, end: int) -> View:
-    """The view with the line's width on both sides of a dot that is seen between two stations: a ragged line is wide in places."""
+    """The view with the line's width on both sides of a dot that is seen between two stations: a ragged line
+    is wide in places.
+    """
     reach = int(BESIDE_DOT * view.width_mm / way.step_mm)
     near = [*range(begin - 2 * reach, begin - reach), *range(end + reach, end + 2 * reach)]
     found = []

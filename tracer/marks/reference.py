@@ -1,15 +1,17 @@
-"""The reference point: a small cross or ring that the draughtsman drew, where the operator brings the head before the run.
+"""The reference point: a small cross or ring that the draughtsman drew, where the operator brings the head
+before the run.
 
-Signals: the patches of ink of a drawing and the cells' picture in; places (sheet mm) out, each with the lead line that leaves it if it touches one.
+Signals: the patches of ink of a drawing and the cells' picture in; places (sheet mm) out, each with the lead
+line that leaves it if it touches one.
 
     ─┼─   ○       alone on the paper           ─┼────  ○────       with the lead line drawn from it
 
-A cross: a ring of cells sees arms square to each other that end alike, four of them, or three and the lead line. Its place is where the
-middle lines of the arms meet. A ring: spokes from its middle meet paper, then ink as wide as a line, then paper again; its place is the middle of the
-circle through them.
+A cross: a ring of cells sees arms square to each other that end alike, four of them, or three and the lead
+line. Its place is where the middle lines of the arms meet. A ring: spokes from its middle meet paper, then
+ink as wide as a line, then paper again; its place is the middle of the circle through them.
 
-Source: patent ES 361967, section on use: a reference point, normally outside the contour. Questions: the patent says neither how it is drawn nor how large
-it is. Chosen: 1.5 to 10 mm across.
+Source: patent ES 361967, section on use: a reference point, normally outside the contour. Questions: the
+patent says neither how it is drawn nor how large it is. Chosen: 1.5 to 10 mm across.
 """
 
 from __future__ import annotations
@@ -23,12 +25,13 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.tracer.drawing.strokes import Sheet, Stroke
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.circles import WAYS, circle_through, spokes
 from morfax.tracer.sensing.leg import Leg, leg_of
 from morfax.tracer.sensing.probe import SPECK_WIDTHS, is_tip, lines_on
-from morfax.tracer.sensing.view import Array, View
+from morfax.tracer.sensing.view import View
 
 LEAST_MM, LARGEST_MM = 1.5, 10.0  # across
 SQUARE = math.sin(math.radians(15))  # arms are this near to square
@@ -118,7 +121,9 @@ def _crosses(view: View, tips_mm: Array) -> Iterator[Reference]:
 
 
 def _cross(view: View, a: Array, b: Array, c: Array) -> Reference | None:
-    """The cross of which three tips are given, a and b of one stroke; the fourth arm may run on as the lead line, or another line begin anywhere on it."""
+    """The cross of which three tips are given, a and b of one stroke; the fourth arm may run on as the lead
+    line, or another line begin anywhere on it.
+    """
     half = 0.5 * (b - a)
     middle, reach = a + half, float(np.hypot(*half))
     arm = c - middle
@@ -156,7 +161,9 @@ def _felt_inward(view: View, tip: Array, middle: Array) -> Array:
 
 
 def _lead(view: View, centre: Array, reach_mm: float) -> Leg | None:
-    """The clean beginning of the line that leaves a cross or ring which reaches so far from its centre, felt back to it as far as it is clean."""
+    """The clean beginning of the line that leaves a cross or ring which reaches so far from its centre, felt
+    back to it as far as it is clean.
+    """
     for arc in photocell.ring(view.cells, view.pitch_mm, centre, reach_mm + 1.5 * view.width_mm, view.level):
         for outside in (1.5, 1.9, 2.3):
             way = _unit(float(arc.mean()))

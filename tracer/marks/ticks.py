@@ -1,7 +1,7 @@
 """Strokes beside the line, felt outward by cells: what may be a stop mark.
 
-Signals: the way of the head at a station, a side of it and a distance in; the stroke there out: its middles in mm along and away from the way and on the
-sheet, how far it reaches, and what is about it.
+Signals: the way of the head at a station, a side of it and a distance in; the stroke there out: its middles
+in mm along and away from the way and on the sheet, how far it reaches, and what is about it.
 
     away  │   ▮   │ <- paper to both sides for so many widths: else it is lettering, a blot, a line beside the line
           │   ▮   │
@@ -19,9 +19,10 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
+from morfax.motion.arrays import Array
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.probe import is_tip
-from morfax.tracer.sensing.view import LEVEL, Array, View
+from morfax.tracer.sensing.view import LEVEL, View
 
 LEAST_MM, LEAST_WIDTHS = 0.6, 1.2  # of a stroke, beyond the line's edge
 FARTHEST_MM = 1.5  # from the line's edge to a stroke beside it
@@ -30,7 +31,9 @@ LIKE = (0.5, 1.6)  # a stroke's width, of the line's
 SEEN = (
     0.3,
     2.0,
-)  # the same, of a stroke that is none of the line's pen, but is seen: what crosses the line may be one half by half
+    # the same, of a stroke that is none of the line's pen, but is seen: what crosses the line may be one half
+    # by half
+)
 CLEAR_OF_LINE = 0.9  # widths from the line's middle: nearer, a stroke's ink and the line's run together
 TURNS = 3  # the cells are turned so often until they look square to a stroke
 CLEAR_WIDTHS = 1.5  # of paper to both sides of a stroke that touches the line
@@ -42,8 +45,9 @@ DASH_MM, DASH_WIDTHS = 2.0, 4.0  # dashes of one line are no further apart
 
 @dataclass(frozen=True, slots=True)
 class Stroke:
-    """Ink beside the line, felt outward: its middles (n, 2) as mm along and away from the way, and on the sheet, whether it touches the line, whether it
-    ends, how far beyond the line's edge, whether there is paper about it, and whether the line's pen drew it."""
+    """Ink beside the line, felt outward: its middles (n, 2) as mm along and away from the way, and on the
+    sheet, whether it touches the line, whether it ends, how far beyond the line's edge, whether there is
+    paper about it, and whether the line's pen drew it."""
 
     side: int
     middles: Array
@@ -83,7 +87,9 @@ class Stroke:
 def felt(
     view: View, place: Array, along: Array, at_mm: float, side: int, away_mm: float, longest_mm: float
 ) -> Stroke | None:
-    """The stroke that a cell is on beside a place of the way, which is `at_mm` along it; None if it is not nearly as wide as the line, or too short."""
+    """The stroke that a cell is on beside a place of the way, which is `at_mm` along it; None if it is not
+    nearly as wide as the line, or too short.
+    """
     width = view.width_mm
     seen = _stroke_at(
         view.cells, view.pitch_mm, place, along, side, away_mm, longest_mm + width, width, view.level
@@ -115,9 +121,11 @@ def felt(
 
 
 def crossing_mm(view: View, place: Array, along: Array, mark: Sequence[Stroke]) -> float:
-    """Where the middle line of a mark, which is one stroke or one on either side, meets the way, mm along it from a place of it near by.
+    """Where the middle line of a mark, which is one stroke or one on either side, meets the way, mm along it
+    from a place of it near by.
 
-    Felt square to the mark: along the way, its round tips and the corners at its foot would draw the middle of a slanted one aside.
+    Felt square to the mark: along the way, its round tips and the corners at its foot would draw the middle
+    of a slanted one aside.
     """
     left = np.array([-along[1], along[0]])
     slant, foot_mm = mark[0].side * mark[0].slant, 0.0
@@ -129,7 +137,9 @@ def crossing_mm(view: View, place: Array, along: Array, mark: Sequence[Stroke]) 
 
 
 def _square_to(view: View, place: Array, square: Array, slant: float, stroke: Stroke) -> Array:
-    """Middles (n, 2) of a stroke on the sheet, felt along a direction square to it from clear of the line on; as they were, if there are too few."""
+    """Middles (n, 2) of a stroke on the sheet, felt along a direction square to it from clear of the line on;
+    as they were, if there are too few.
+    """
     width, lean, away = view.width_mm, math.hypot(1.0, slant), stroke.middles[:, 1]
     seen = _stroke_at(
         view.cells,
@@ -174,7 +184,8 @@ def _darkness(cells, pitch_mm, place, along, side, middles):  # type: ignore[no-
 
 
 @njit(cache=True)
-def _soiled(cells, pitch_mm, place, along, side, middles, from_mm, to_mm, level):  # type: ignore[no-untyped-def]
+# type: ignore[no-untyped-def]
+def _soiled(cells, pitch_mm, place, along, side, middles, from_mm, to_mm, level):
     """The share of ink to both sides of a stroke, between two distances from its edges."""
     dark = count = 0
     for k in range(len(middles)):
@@ -187,7 +198,8 @@ def _soiled(cells, pitch_mm, place, along, side, middles, from_mm, to_mm, level)
 
 
 @njit(cache=True)
-def _goes_on(cells, pitch_mm, place, along, side, middles, beyond_mm, width_mm, level):  # type: ignore[no-untyped-def]
+# type: ignore[no-untyped-def]
+def _goes_on(cells, pitch_mm, place, along, side, middles, beyond_mm, width_mm, level):
     """Whether a stroke goes on in its own line after a gap, for one and a half widths or more."""
     last = np.argmax(middles[:, 1])
     first = np.argmin(middles[:, 1])
@@ -205,8 +217,11 @@ def _goes_on(cells, pitch_mm, place, along, side, middles, beyond_mm, width_mm, 
 
 
 @njit(cache=True)
-def _stroke_at(cells, pitch_mm, place, along, side, away_mm, farthest_mm, width_mm, level):  # type: ignore[no-untyped-def]
-    """Middles (along, away) and widths of a stroke, (n, 3) mm, felt inward and outward from a place beside the way until there is no ink, specks apart."""
+# type: ignore[no-untyped-def]
+def _stroke_at(cells, pitch_mm, place, along, side, away_mm, farthest_mm, width_mm, level):
+    """Middles (along, away) and widths of a stroke, (n, 3) mm, felt inward and outward from a place beside
+    the way until there is no ink, specks apart.
+    """
     step = 0.5 * pitch_mm
     speck_mm = min(max(0.16, 2.5 * pitch_mm), 0.6 * width_mm)
     seen = np.empty((2 * int(farthest_mm / step) + 4, 3))
@@ -233,7 +248,9 @@ def _stroke_at(cells, pitch_mm, place, along, side, away_mm, farthest_mm, width_
 
 @njit(cache=True)
 def _across(cells, pitch_mm, place, along, side, u_mm, v_mm, reach_mm, level):  # type: ignore[no-untyped-def]
-    """Where ink about u ends, back and forth along the way, at a distance v from it; NaN without ink, or without an end in reach."""
+    """Where ink about u ends, back and forth along the way, at a distance v from it; NaN without ink, or
+    without an end in reach.
+    """
     step = 0.35 * pitch_mm
     if _seen(cells, pitch_mm, place, along, side, u_mm, v_mm) < level:
         return math.nan, math.nan

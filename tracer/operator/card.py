@@ -1,7 +1,8 @@
 """The operator's card: what the operator would set on the panel during a run, written down before it.
 
-Signals in: a text in TOML (`docs/card.md` has the whole format). Signals out: a Card: start position and depths in mm, speeds in mm/s, and for each stop the
-presets of the Z unit. What a card does not say is None, and stays as it is without a card.
+Signals in: a text in TOML (`docs/card.md` has the whole format). Signals out: a Card: start position and
+depths in mm, speeds in mm/s, and for each stop the presets of the Z unit. What a card does not say is None,
+and stays as it is without a card.
 
     start = "2mm"                # where the tool stands above the work
     passes = ["2mm", "4mm"]      # or depth = "4mm"
@@ -10,12 +11,14 @@ presets of the Z unit. What a card does not say is None, and stays as it is with
     [[stop]]
     drill = { depth = "8mm", peck = "2mm" }
 
-A card is read whole before anything moves; one with a mistake is refused with the line, the field, what it holds and what it may hold (see `cardfields`).
+A card is read whole before anything moves; one with a mistake is refused with the line, the field, what it
+holds and what it may hold (see `cardfields`).
 
-Source: patent ES 361967, figure 3 (switches 126: start position, each move, its feed; the start button) and the section on use; speed control WC, override
-button and stop marks of figure 1. The patent's operator sets the decades anew at each stop; a card sets them for all stops beforehand.
-Questions: the patent names neither drill cycle nor passes. Chosen: a drill goes down peck by peck, comes up to where it began after each, and goes down
-again to one clear distance above the bottom of the hole.
+Source: patent ES 361967, figure 3 (switches 126: start position, each move, its feed; the start button) and
+the section on use; speed control WC, override button and stop marks of figure 1. The patent's operator sets
+the decades anew at each stop; a card sets them for all stops beforehand. Questions: the patent names neither
+drill cycle nor passes. Chosen: a drill goes down peck by peck, comes up to where it began after each, and
+goes down again to one clear distance above the bottom of the hole.
 """
 
 from __future__ import annotations
@@ -41,7 +44,9 @@ _DRILL_KEYS = ("depth", "peck", "clear", "feed", "dwell")
 
 @dataclass(frozen=True, slots=True)
 class Drill:
-    """A hole: its depth below the work, and how it is drilled, in counts of 0.01 mm; the dwell is at the bottom."""
+    """A hole: its depth below the work, and how it is drilled, in counts of 0.01 mm; the dwell is at the
+    bottom.
+    """
 
     depth_counts: int
     peck_counts: int
@@ -50,7 +55,9 @@ class Drill:
     dwell_s: float = 0.0
 
     def presets(self, at: Counters, rapid_mm_s: float) -> tuple[Preset, ...]:
-        """Settings of the panel from a place down to depth and back to that place; none if it is as deep already."""
+        """Settings of the panel from a place down to depth and back to that place; none if it is as deep
+        already.
+        """
         made, bottom = list[Preset](), max(0, -at.count)
         while bottom < self.depth_counts:
             near = min(self.clear_counts - bottom, at.count)  # counters where the drill goes on at its feed
@@ -77,12 +84,16 @@ class Stop:
     )  # where a card has the moves, or the hole
 
     def presets(self, at: Counters, rapid_mm_s: float) -> tuple[Preset, ...]:
-        """Settings of the panel from a place, the dwell last; passes are no move of this stop, but of the line."""
+        """Settings of the panel from a place, the dwell last; passes are no move of this stop, but of the
+        line.
+        """
         made = self.moves if self.drill is None else self.drill.presets(at, rapid_mm_s)
         return (*made, Preset(0, dwell_s=self.dwell_s)) if self.dwell_s > 0 else made
 
     def motor_moves(self, z_mm: float, rapid_mm_s: float, where: str) -> list[Move]:
-        """What the motor does from a height; raises CardFault, with the field, for a move that the counters cannot show."""
+        """What the motor does from a height; raises CardFault, with the field, for a move that the counters
+        cannot show.
+        """
         made = list[Move]()
         try:
             at = Counters(counts_of(z_mm))

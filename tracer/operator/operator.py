@@ -1,17 +1,20 @@
-"""The operator at the panel: what the Z unit does at the start of a line, at its stops, where it is left and come back to, and at its end.
+"""The operator at the panel: what the Z unit does at the start of a line, at its stops, where it is left and
+come back to, and at its end.
 
-Signals: a line as it was followed, with its marks, in; actions out: at which position of the line X and Y stand, and what moves Z makes there.
+Signals: a line as it was followed, with its marks, in; actions out: at which position of the line X and Y
+stand, and what moves Z makes there.
 
     plain line     down at its start                                                      X,Y  ──●──
     lead line      raised; down at the last tick before the loop, or where that begins         ▼ stand ▲
     guide line     raised; at its end, or at a dot, a hole is drilled                     Z    ╲______╱
     stop           what the card says; without one Z stands for half a second
 
-A lead line begins at a reference point, or bears a tick, and runs into a loop; a line that begins at a reference point and ends is a guide line. Any other
-is cut from its start. Stops are numbered along the way, over all the lines; those that the operator overrides are passed by.
+A lead line begins at a reference point, or bears a tick, and runs into a loop; a line that begins at a
+reference point and ends is a guide line. Any other is cut from its start. Stops are numbered along the way,
+over all the lines; those that the operator overrides are passed by.
 
-Source: patent ES 361967, section on use, and figure 3; override button of figure 1. Questions: the patent's operator knows what a line is for; here its
-marks say it.
+Source: patent ES 361967, section on use, and figure 3; override button of figure 1. Questions: the patent's
+operator knows what a line is for; here its marks say it.
 """
 
 from __future__ import annotations
@@ -21,7 +24,7 @@ from dataclasses import dataclass, field, replace
 from typing import Literal, NamedTuple, Protocol
 
 from morfax.motion.faults import CardFault
-from morfax.tracer.following.direction import Direction
+from morfax.tracer.following.direction import Direction, Route
 from morfax.tracer.following.line import Line
 from morfax.tracer.operator import zunit
 from morfax.tracer.operator.card import Card, Stop
@@ -68,7 +71,8 @@ class Entry(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Action:
-    """What is done where the axis stands: moves of Z one after the other, each with its dwell; and how deep Z goes on the way after it, over how many mm.
+    """What is done where the axis stands: moves of Z one after the other, each with its dwell; and how deep Z
+    goes on the way after it, over how many mm.
 
     Where the tool goes down into the line: the depths at which that is run.
     """
@@ -96,10 +100,14 @@ class Operator:
     work: Work = field(default_factory=Work)
     card: Card = field(default_factory=Card)
     panel: Panel | None = None
-    reference_mm: tuple[float, float] | None = (
-        None  # where the reference point is, if it is not to be looked for
-    )
+    # where the reference point is, if it is not to be looked for
+    reference_mm: tuple[float, float] | None = None
     direction: Direction | None = None  # in which the head takes the line
+
+    @property
+    def route(self) -> Route:
+        """Which way the head takes the line, and where it turns off."""
+        return Route(self.direction, self.sides)
 
     @property
     def sides(self) -> tuple[Side | None, ...]:
@@ -107,7 +115,9 @@ class Operator:
         return tuple(None if side == "straight" else side for side in self.card.turns)
 
     def actions(self, lines: Sequence[Line]) -> list[list[Action]]:
-        """The actions along each of several lines, in the order in which they are cut; raises CardFault for moves that the Z unit cannot make."""
+        """The actions along each of several lines, in the order in which they are cut; raises CardFault for
+        moves that the Z unit cannot make.
+        """
         made, first = [], 1
         for line in lines:
             halts = self._halts(line, first)
@@ -159,11 +169,15 @@ class Operator:
         )
 
     def depths_mm(self, actions: Sequence[Action]) -> tuple[float, ...]:
-        """Depths at which a line is run: the passes of the stop where the tool goes down, or those of the work."""
+        """Depths at which a line is run: the passes of the stop where the tool goes down, or those of the
+        work.
+        """
         return next((action.depths_mm for action in actions if action.depths_mm), self.work.depths_mm)
 
     def down_at(self, line: Line, first: int) -> float | None:
-        """Which position of a line, its stops numbered from `first`, has the tick at which the tool goes down; None if that is at no tick."""
+        """Which position of a line, its stops numbered from `first`, has the tick at which the tool goes
+        down; None if that is at no tick.
+        """
         down = self._down([halt for halt in self._halts(line, first) if not self._overridden(halt)], line)
         return down.at if down is not None and down.kind == "tick" else None
 
@@ -208,7 +222,9 @@ class Operator:
         return actions
 
     def _refuse_passes_above(self, actions: Sequence[Action]) -> None:
-        """Raise CardFault if a line that ends with the tool up was to be run at further depths: only the first pass has stops."""
+        """Raise CardFault if a line that ends with the tool up was to be run at further depths: only the
+        first pass has stops.
+        """
         depths_mm = self.depths_mm(actions)
         if any(action.depths_mm for action in actions) and len(depths_mm) > 1:
             last = next(action for action in reversed(actions) if action.moves[-1].to_mm >= 0)
@@ -219,7 +235,9 @@ class Operator:
             )
 
     def _entered(self, action: Action) -> Action:
-        """The action where the tool goes down, with the card's entry: to the surface standing, and the rest on the way."""
+        """The action where the tool goes down, with the card's entry: to the surface standing, and the rest
+        on the way.
+        """
         to_mm, length_mm = action.moves[-1].to_mm, self.card.entry_mm
         if length_mm is None or to_mm >= 0 or len(action.moves) > 1:
             return action

@@ -1,11 +1,13 @@
 """A file of settings of the head (TOML): read with each mistake pointed at, and written as it is read.
 
-Signals in: a text with a line for each setting that is to differ from the head's own, by the names that `--set` takes; out: numbers by name, or a
-CardFault:
+Signals in: a text with a line for each setting that is to differ from the head's own, by the names that
+`--set` takes; out: numbers by name, or a CardFault:
 
-    head.toml, line 3: sweep_hz holds "fast"; it may hold a number from 1 to 750, in the unit that its name ends with
+    head.toml, line 3: sweep_hz holds "fast"; it may hold a number from 1 to 750, in the unit that its name
+    ends with
 
-Written are all settings; one that follows from the line stands as a comment, so that what is written can be read again and means the same.
+Written are all settings; one that follows from the line stands as a comment, so that what is written can be
+read again and means the same.
 
 Source: our own; the patent's follower has a knob for its speed (WC), and screws for all else.
 """

@@ -1,6 +1,7 @@
 """A field of a card: what it holds, what it may hold, and the fault that says so with its line.
 
-Signals in: the text of a card (TOML). Signals out: quantities in counts of 0.01 mm, mm/s and s, choices, whole numbers; or a CardFault:
+Signals in: the text of a card (TOML). Signals out: quantities in counts of 0.01 mm, mm/s and s, choices,
+whole numbers; or a CardFault:
 
     part.toml, line 7: speeds.feed holds "5kg"; it may hold a speed of 0.01 to 100 mm/s, such as "5mm/s"
 

@@ -1,10 +1,11 @@
 """On which line of a card each field stands, so that a mistake can be pointed at.
 
-Signals in: the text of a card that tomllib has read. Signals out: the line (from 1) of every field, by its path: the keys down to it, and the number (from 0)
-of an element of an array: `("stop", 1, "moves", 0, "down")`.
+Signals in: the text of a card that tomllib has read. Signals out: the line (from 1) of every field, by its
+path: the keys down to it, and the number (from 0) of an element of an array: `("stop", 1, "moves", 0,
+"down")`.
 
-tomllib says what a card holds, and not where. So the text is gone through once more, for its keys, brackets and commas only; what a value means is
-tomllib's business.
+tomllib says what a card holds, and not where. So the text is gone through once more, for its keys, brackets
+and commas only; what a value means is tomllib's business.
 
 Source: TOML 1.0.0 (toml.io/en/v1.0.0): keys, strings, arrays, inline tables, tables, arrays of tables.
 """

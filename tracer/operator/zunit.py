@@ -1,23 +1,26 @@
-"""Z unit: the operator sets a move on decade switches, the motor runs, and stops where the counters agree with the switches.
+"""Z unit: the operator sets a move on decade switches, the motor runs, and stops where the counters agree
+with the switches.
 
-Signals in: presets of the switches (whole counts of 0.01 mm, sense, feed in mm/s, dwell in s) and the start position in mm above the work. Signal out: Z
-in mm at the motion rate, up positive, 0 the surface of the work.
+Signals in: presets of the switches (whole counts of 0.01 mm, sense, feed in mm/s, dwell in s) and the start
+position in mm above the work. Signal out: Z in mm at the motion rate, up positive, 0 the surface of the work.
 
     switches 126 ──▶ coincidence 133 ──▶ stop        one move:  feed  ____
                         ▲                                            /    \\
     disc 128 ──▶ counters 127 (up and down)                    _____/      \\_____   dwell
        └──── motor 125 ◀── amplifier 135, tacho 136
 
-One pulse of the disc is one count. Each move is run by the ramp counter with the count as its increment: it speeds up, holds the feed, and comes to rest
-on the last pulse, so that coincidence and rest fall together:
+One pulse of the disc is one count. Each move is run by the ramp counter with the count as its increment: it
+speeds up, holds the feed, and comes to rest on the last pulse, so that coincidence and rest fall together:
 
     count at rest = count before ± switches,     Z = 0.01 mm · count                (both exact, as counts are whole)
 
-Source: patent ES 361967, figure 3 (switches 126, counters 127, disc 128, counting unit 124, coincidence 133, motor 125, amplifier 135, tacho 136), claims 3,
-13 and 14; the ramp from patent ES 414458, figures 3 and 4 (see `motion.ramp`).
-Questions: the patent gives no figures. Chosen: five digits of 0.01 mm, the first preset being the start position above the work, and counters that show
-the sign and five digits too. The patent's motor is switched off at coincidence and would run on; the ramp counter brakes before it. Without a card the depth
-and clearance need not be whole counts: the move is then divided into increments as near to a count as make a whole number.
+Source: patent ES 361967, figure 3 (switches 126, counters 127, disc 128, counting unit 124, coincidence 133,
+motor 125, amplifier 135, tacho 136), claims 3, 13 and 14; the ramp from patent ES 414458, figures 3 and 4
+(see `motion.ramp`). Questions: the patent gives no figures. Chosen: five digits of 0.01 mm, the first preset
+being the start position above the work, and counters that show the sign and five digits too. The patent's
+motor is switched off at coincidence and would run on; the ramp counter brakes before it. Without a card the
+depth and clearance need not be whole counts: the move is then divided into increments as near to a count as
+make a whole number.
 """
 
 from __future__ import annotations
@@ -31,6 +34,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion import ramp
+from morfax.motion.arrays import Array
 from morfax.motion.motion import MOTION_RATE_HZ
 
 COUNT_MM = 0.01  # one pulse of disc 128
@@ -40,14 +44,15 @@ ACCELERATION_MM_S2 = 200.0
 _OFF_COUNT = 1e-6  # of a count: what arithmetic with inches leaves
 _PULSE = 1e-9  # of a count: what rounding takes off a pulse that has passed, 1e5 counts in 53 bits
 
-from morfax.motion.arrays import Array
 
 Sense = Literal["up", "down"]
 
 
 @dataclass(frozen=True, slots=True)
 class Preset:
-    """One setting of the panel: so many counts up or down at a feed, then a dwell; of no counts it is the dwell alone."""
+    """One setting of the panel: so many counts up or down at a feed, then a dwell; of no counts it is the
+    dwell alone.
+    """
 
     counts: int
     sense: Sense = "down"
@@ -136,7 +141,9 @@ def z_moves(
     acceleration_mm_s2: float = ACCELERATION_MM_S2,
     rate_hz: float = MOTION_RATE_HZ,
 ) -> Array:
-    """Z of moves made one after the other from a place, (n,) mm at the motion rate; each ends exactly where it was sent."""
+    """Z of moves made one after the other from a place, (n,) mm at the motion rate; each ends exactly where
+    it was sent.
+    """
     parts, at_mm = [np.empty(0)], start_mm
     for move in moves:
         parts.append(_one(at_mm, move, acceleration_mm_s2, rate_hz))
@@ -145,7 +152,9 @@ def z_moves(
 
 
 def counted(z_mm: Array) -> NDArray[np.int64]:
-    """What the counters show at each place of a move: the pulses of disc 128 that have passed, from the surface."""
+    """What the counters show at each place of a move: the pulses of disc 128 that have passed, from the
+    surface.
+    """
     return np.trunc(z_mm * COUNTS_PER_MM + np.copysign(_PULSE, z_mm)).astype(np.int64)
 
 

@@ -1,7 +1,7 @@
 """Stops on the way: the axis brakes, stands on a place exactly, and goes on.
 
-Signals: positions of the head (n, 2) mm at the motion rate, and which of them to stand on (fractions included), in; pieces (n, 2) mm out, each of which
-comes to rest on the place where the next begins.
+Signals: positions of the head (n, 2) mm at the motion rate, and which of them to stand on (fractions
+included), in; pieces (n, 2) mm out, each of which comes to rest on the place where the next begins.
 
     speed ─────╮         ╭──────       within the braking distance the speed is the lower of what it was and of what the brake allows:
                 ╲       ╱
@@ -9,8 +9,9 @@ comes to rest on the place where the next begins.
 
 The way stays the same, only its timing changes; outside the braking distances that too stays as it was.
 
-Source: patent ES 361967, figure 1: a stop mark stops the follower; X and Y tracks then carry the reference frequency while the tape runs on. Questions: how
-far before a mark the follower brakes the patent leaves open. The cell sees the mark one lead before the axis, which is enough for it at 10 mm/s.
+Source: patent ES 361967, figure 1: a stop mark stops the follower; X and Y tracks then carry the reference
+frequency while the tape runs on. Questions: how far before a mark the follower brakes the patent leaves open.
+The cell sees the mark one lead before the axis, which is enough for it at 10 mm/s.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from itertools import pairwise
 import numpy as np
 
 from morfax.motion import curves
-from morfax.tracer.sensing.view import Array
+from morfax.motion.arrays import Array
 
 _NOTHING_MM = 1e-9
 CORNER = np.radians(20)
@@ -30,7 +31,9 @@ SLOWEST_MM_S = 0.02  # where the head swivels it stands: its time there is kept
 
 
 def pieces(xy_mm: Array, halts: Sequence[float], acceleration_mm_s2: float, rate_hz: float) -> list[Array]:
-    """The way cut where it is to stand, in order: one piece more than `halts`, each at rest at the cuts; positions before the first are row 0."""
+    """The way cut where it is to stand, in order: one piece more than `halts`, each at rest at the cuts;
+    positions before the first are row 0.
+    """
     rows = np.arange(len(xy_mm), dtype=float)
     at = np.clip(np.asarray(halts, float), 0, len(xy_mm) - 1)
     nodes = np.unique(np.r_[rows, at])
@@ -48,7 +51,9 @@ def pieces(xy_mm: Array, halts: Sequence[float], acceleration_mm_s2: float, rate
 
 
 def run(way_mm: Array, speed_mm_s: float, acceleration_mm_s2: float, rate_hz: float) -> Array:
-    """Along a way (n, 2) mm from rest to rest, as fast as its bends allow and no faster than asked; at a uniform rate."""
+    """Along a way (n, 2) mm from rest to rest, as fast as its bends allow and no faster than asked; at a
+    uniform rate.
+    """
     steps_mm = np.hypot(*np.diff(way_mm, axis=0).T)
     lengths = np.r_[0.0, np.cumsum(steps_mm)]
     stood = np.unique(np.round(lengths[1:][steps_mm < _NOTHING_MM], 6))  # where the head swivelled
@@ -91,7 +96,9 @@ def _speeds(steps_mm: Array, steps_s: Array, cuts: Array, acceleration_mm_s2: fl
 
 
 def _timed(places: Array, took_s: Array, steps_mm: Array, speeds: Array, rate_hz: float) -> Array:
-    """Nodes with the times that their steps take, as positions at a uniform rate: first and last exactly, the last one perhaps a part of a period late."""
+    """Nodes with the times that their steps take, as positions at a uniform rate: first and last exactly, the
+    last one perhaps a part of a period late.
+    """
     times = np.r_[0.0, np.cumsum(took_s)]
     if times[-1] <= 0 or len(places) < 2:
         return places[:1]

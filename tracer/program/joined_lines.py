@@ -1,6 +1,7 @@
 """Lines that are joined to another: what is left of a patch of ink when one of its lines has been followed.
 
-Signals: a patch and the lines followed on it in; out further lines of the patch, each followed from end to end or round about.
+Signals: a patch and the lines followed on it in; out further lines of the patch, each followed from end to
+end or round about.
 
     ╭─────╮                  one patch of ink, three lines: from any place the head goes straight
     │   ╭─┼───╮              on over the crossings, and comes round, or to the ends
@@ -8,11 +9,14 @@ Signals: a patch and the lines followed on it in; out further lines of the patch
     ────┼─────┼────
         ╰─────╯
 
-The head is put down on the plainest place that no run has come by, and then on those that have not been tried, until there is none. A run counts if it
-closes, or ends at both ends, and most of its way is new; one that ends in another line (a guide line, an arrow, hatching) or is lost, does not. Of such a run
-no more has been tried than the way to its first junction: beyond that it may have gone along a whole line, which it would follow from there.
+The head is put down on the plainest place that no run has come by, and then on those that have not been
+tried, until there is none. A run counts if it closes, or ends at both ends, and most of its way is new; one
+that ends in another line (a guide line, an arrow, hatching) or is lost, does not. Of such a run no more has
+been tried than the way to its first junction: beyond that it may have gone along a whole line, which it would
+follow from there.
 
-Source: our own; the patent has one contour to a tape. Questions: what of ink that no such run comes by? It is no line, and is told of.
+Source: our own; the patent has one contour to a tape. Questions: what of ink that no such run comes by? It is
+no line, and is told of.
 """
 
 from __future__ import annotations
@@ -22,7 +26,8 @@ from dataclasses import replace
 import numpy as np
 from scipy.spatial import cKDTree
 
-from morfax.tracer.drawing.strokes import Array, Sheet, Stroke
+from morfax.motion.arrays import Array
+from morfax.tracer.drawing.strokes import Sheet, Stroke
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.start import stance_near, view_of
 from morfax.tracer.head.settings import Settings
@@ -39,7 +44,9 @@ TRIED_MM = 1500.0  # and travel, besides the length of its ink, in runs that are
 def joined_to(
     line: Line, contour: Contour, sheet: Sheet, settings: Settings, operator: Operator
 ) -> tuple[list[Line], float]:
-    """Further lines of the patch that a contour is, besides the line followed on it, and the length of the ink that is left, mm."""
+    """Further lines of the patch that a contour is, besides the line followed on it, and the length of the
+    ink that is left, mm.
+    """
     stroke, found, tried, in_vain = contour.stroke, list[Line](), [line.places_mm], list[Array]()
     left = _left(stroke, tried)
     if left.length_mm < _least_mm(stroke):
@@ -88,7 +95,9 @@ def _left(stroke: Stroke, ways: list[Array]) -> Stroke:
 
 
 def _crowded(stroke: Stroke) -> Array:
-    """How many middle places of a stroke are within its width of each: a line along the rows has two abreast, and a sloping one has one."""
+    """How many middle places of a stroke are within its width of each: a line along the rows has two abreast,
+    and a sloping one has one.
+    """
     tree = cKDTree(stroke.middles_mm)
     return np.asarray(tree.query_ball_point(stroke.middles_mm, stroke.width_mm, return_length=True), float)
 

@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from morfax.tracer.drawing.strokes import Array
+from morfax.motion.arrays import Array
 
 FIRSTS = 16  # lines that are tried as the first of the order, and as the last
 SOME = 2000  # places in all the orders that are tried: of a hundred lines all FIRSTS are, of a thousand two
@@ -18,7 +18,9 @@ TURNINGS = 6  # orders that are tried, each with the lines turned as is best for
 
 
 def in_order(starts_mm: Array, ends_mm: Array, before: NDArray[np.bool_]) -> list[int]:
-    """The order of lines that keeps the idle way from each end to the next start short; `before[i, j]`: i is cut before j."""
+    """The order of lines that keeps the idle way from each end to the next start short; `before[i, j]`: i is
+    cut before j.
+    """
     idle_mm = np.hypot(*(np.asarray(ends_mm)[:, None] - np.asarray(starts_mm)[None]).transpose(2, 0, 1))
     ways = [_improved(way, idle_mm, before) for way in _from_firsts(idle_mm, before)]
     ways += [
@@ -31,7 +33,9 @@ def in_order(starts_mm: Array, ends_mm: Array, before: NDArray[np.bool_]) -> lis
 def in_order_and_turned(
     starts_mm: Array, ends_mm: Array, before: NDArray[np.bool_], may_turn: NDArray[np.bool_]
 ) -> tuple[list[int], NDArray[np.bool_]]:
-    """The order of lines, and which of those that may be begun at their other end are to be, that keep the idle way short."""
+    """The order of lines, and which of those that may be begun at their other end are to be, that keep the
+    idle way short.
+    """
     ends = np.stack([np.asarray(starts_mm, float), np.asarray(ends_mm, float)])
     turned = np.zeros(len(may_turn), bool)
     best: tuple[float, list[int], NDArray[np.bool_]] | None = None
@@ -51,7 +55,9 @@ def in_order_and_turned(
 def _to_turn(
     starts_mm: Array, ends_mm: Array, order: list[int], may_turn: NDArray[np.bool_]
 ) -> NDArray[np.bool_]:
-    """Which lines of an order are best turned round: the shortest way through it, each line as it is or turned."""
+    """Which lines of an order are best turned round: the shortest way through it, each line as it is or
+    turned.
+    """
     ends = np.stack([starts_mm, ends_mm])
     idle_mm, came = np.where([True, bool(may_turn[order[0]])], 0.0, np.inf), []
     for a, b in pairwise(order):
@@ -77,7 +83,9 @@ def idle_way_mm(way: Sequence[int] | NDArray[np.int64], idle_mm: Array) -> float
 
 
 def _from_firsts(idle_mm: Array, before: NDArray[np.bool_]) -> list[NDArray[np.int64]]:
-    """Orders that go on to the nearest line from each of those that may be first, or from some of them if they are many."""
+    """Orders that go on to the nearest line from each of those that may be first, or from some of them if
+    they are many.
+    """
     firsts = np.flatnonzero(~before.any(axis=0))
     tried = min(FIRSTS, max(1, SOME // len(idle_mm)))
     return [_on_to_nearest(int(first), idle_mm, before) for first in firsts[:: -(-len(firsts) // tried)]]

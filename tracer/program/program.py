@@ -1,16 +1,19 @@
 """The program: the lines that the head followed, cut one after the other, with the Z moves of the operator.
 
-Signals: lines and what the operator does along them in; out a Trace, which is a stream of Motion (X, Y, Z in sheet mm at the motion rate).
+Signals: lines and what the operator does along them in; out a Trace, which is a stream of Motion (X, Y, Z in
+sheet mm at the motion rate).
 
     Z  clearance ──╮                           ╭── clearance
        0           │ X, Y stand     X, Y stand │
        -depth      ╰────── the line ───────────╯
 
-A line of several passes is run at each depth: a closed one straight on from its end, another one from its start again, with the tool up on the way; its marks
-stop the head on the first pass. From one line to the next the tool goes straight at clearance; from a lead line's loop it goes back along the lead line, and
-so to the reference point, as it came.
+A line of several passes is run at each depth: a closed one straight on from its end, another one from its
+start again, with the tool up on the way; its marks stop the head on the first pass. From one line to the next
+the tool goes straight at clearance; from a lead line's loop it goes back along the lead line, and so to the
+reference point, as it came.
 
-Source: patent ES 361967, section on use; the Z moves are the Z unit's (see `zunit`), and when they are made is the operator's (see `operator`).
+Source: patent ES 361967, section on use; the Z moves are the Z unit's (see `zunit`), and when they are made
+is the operator's (see `operator`).
 """
 
 from __future__ import annotations
@@ -23,6 +26,7 @@ from itertools import pairwise, zip_longest
 import numpy as np
 
 from morfax.motion import ramp
+from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault
 from morfax.motion.motion import BLOCK_SAMPLES, MOTION_RATE_HZ, Motion
 from morfax.motion.polyline import lengths_mm
@@ -30,7 +34,6 @@ from morfax.tracer.following.line import Line
 from morfax.tracer.operator.operator import Action, Entry, Operator, Work
 from morfax.tracer.operator.zunit import Move, z_moves
 from morfax.tracer.program import braking as stops
-from morfax.tracer.sensing.view import Array
 
 ENDINGS = ("lost", "joined", "ended", "closed")  # the one that tells most first
 BRAKE_MM_S2 = 500.0  # of X and Y, as the head's own
@@ -40,7 +43,8 @@ BRAKE_MM_S2 = 500.0  # of X and Y, as the head's own
 class Trace:
     """What the head did: a stream of Motion over its lines, in the order in which they are cut.
 
-    `left_out` patches of ink were too short to be lines, and `left_out_mm` of ink is joined to the lines and is none.
+    `left_out` patches of ink were too short to be lines, and `left_out_mm` of ink is joined to the lines and
+    is none.
     """
 
     lines: tuple[Line, ...]
@@ -66,7 +70,9 @@ class Trace:
 
     @property
     def fault(self) -> LineFault | None:
-        """The fault of the line that was lost; of several the first one's, with the numbers of all that are incomplete."""
+        """The fault of the line that was lost; of several the first one's, with the numbers of all that are
+        incomplete.
+        """
         lost = [line for line in self.lines if line.fault is not None]
         lines = len({line.number for line in self.lines})  # a cutter may run one in pieces
         return _incomplete(lost, lines) if lost and lines > 1 else lost[0].fault if lost else None
@@ -178,7 +184,9 @@ class Trace:
         yield _at(self._from_rest(line, first, min(last, len(line.xy_mm) - 1)), -down.entry.depth_mm)
 
     def _again(self, line: Line, z_mm: float, depth_mm: float) -> Iterator[Array]:
-        """Along a line, or the loop that it leads to, once more at another depth, (n, 3) mm: straight on where it closes, else up and over."""
+        """Along a line, or the loop that it leads to, once more at another depth, (n, 3) mm: straight on
+        where it closes, else up and over.
+        """
         xy_mm = self._from_rest(line, (line.loop_from or 0) if line.is_lead else 0, len(line.xy_mm) - 1)
         if line.ending == "closed" or line.is_lead:
             yield _at(self._feed(xy_mm[-1], xy_mm[0]), z_mm)
@@ -191,7 +199,9 @@ class Trace:
             yield _at(xy_mm[first : first + BLOCK_SAMPLES], -depth_mm)
 
     def _from_rest(self, line: Line, first: int, last: int) -> Array:
-        """Along a line without its guide lines, from rest to rest, (n, 2) mm: where it left for one it came back some um aside."""
+        """Along a line without its guide lines, from rest to rest, (n, 2) mm: where it left for one it came
+        back some um aside.
+        """
         stretches = [
             stops.pieces(way, [0, len(way) - 1], BRAKE_MM_S2, self.rate_hz)[1]
             for way in line.without_guides(first, last)
@@ -206,7 +216,9 @@ class Trace:
         return ramp.positions_mm(start_mm, end_mm, self.work.feed_mm_s, rate_hz=self.rate_hz)
 
     def _home(self, line: Line, at_mm: Array) -> Iterator[Array]:
-        """Back along a lead or guide line to where it began, and to the reference point, at clearance, (n, 3) mm."""
+        """Back along a lead or guide line to where it began, and to the reference point, at clearance, (n, 3)
+        mm.
+        """
         if not line.goes_back:
             if np.any(at_mm != line.xy_mm[-1]):
                 yield self._rapid(at_mm, line.xy_mm[-1])
@@ -250,7 +262,9 @@ def _at(xy_mm: Array, z_mm: float | Array) -> Array:
 
 
 def _entered(xy_mm: Array, entry: Entry, come_mm: float) -> tuple[Array, float]:
-    """Z along a piece (n, 2) mm of the way on which the tool goes down, (n,) mm, and how far it has come then: smooth at both ends, 3s² - 2s³."""
+    """Z along a piece (n, 2) mm of the way on which the tool goes down, (n,) mm, and how far it has come
+    then: smooth at both ends, 3s² - 2s³.
+    """
     lengths = come_mm + lengths_mm(xy_mm)
     share = np.minimum(lengths / entry.length_mm, 1.0)
     return -entry.depth_mm * share**2 * (3 - 2 * share), float(lengths[-1])

@@ -1,22 +1,26 @@
-"""Several contours of one drawing: which lines, which of them lie inside which, and in what order they are cut. Plans only, never the path.
+"""Several contours of one drawing: which lines, which of them lie inside which, and in what order they are
+cut. Plans only, never the path.
 
-Signals: a Drawing and what is asked for ("all", "outer" or numbers) in; contours out, each a stroke of ink with its number. Then the places where the followed
-lines begin and end, and which lie inside which, in; the order out (all mm on the sheet).
+Signals: a Drawing and what is asked for ("all", "outer" or numbers) in; contours out, each a stroke of ink
+with its number. Then the places where the followed lines begin and end, and which lie inside which, in; the
+order out (all mm on the sheet).
 
     ┌───────────────┐        numbers: 1 is the longest line, then as they get shorter
     │  ( 2 )   ( 3 )│        order: 2, 3, 1: what lies inside is cut first, as what lies outside
     └─────── 1 ─────┘        comes loose when it is cut; the idle way is 2 → 3 → 1
 
-Order: from each of several first lines always on to the nearest that may be cut, and back from each of several last ones; then, as long as it makes the idle
-way shorter and keeps inner before outer, a stretch of the order is turned round, or up to three lines are moved elsewhere. Where the first line is does not
-count: the tool stands at clearance there when the program begins.
+Order: from each of several first lines always on to the nearest that may be cut, and back from each of
+several last ones; then, as long as it makes the idle way shorter and keeps inner before outer, a stretch of
+the order is turned round, or up to three lines are moved elsewhere. Where the first line is does not count:
+the tool stands at clearance there when the program begins.
 
-Source: patent ES 361967 has one contour to a tape; several are our own. Improving by turning stretches round is Croes, Operations Research 6 (1958); by
-moving short stretches, Or (1976).
+Source: patent ES 361967 has one contour to a tape; several are our own. Improving by turning stretches round
+is Croes, Operations Research 6 (1958); by moving short stretches, Or (1976).
 
-Questions: what is a line and what a speck, a letter or a burr? A patch of ink shorter than 4 mm, or than six of its widths, is none unless it reaches over
-12 mm: the hole of 2 mm that is drawn with 0.8 mm has 6.3 mm and eight widths, and a long line that runs into a blot has a large mean width. A larger letter is
-a line, and is left out by asking for the others by number.
+Questions: what is a line and what a speck, a letter or a burr? A patch of ink shorter than 4 mm, or than six
+of its widths, is none unless it reaches over 12 mm: the hole of 2 mm that is drawn with 0.8 mm has 6.3 mm and
+eight widths, and a long line that runs into a blot has a large mean width. A larger letter is a line, and is
+left out by asking for the others by number.
 """
 
 from __future__ import annotations
@@ -28,15 +32,17 @@ from itertools import groupby
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault
 from morfax.motion.nesting import lies_inside
-from morfax.tracer.drawing.strokes import Array, Sheet, Stroke
+from morfax.tracer.drawing.strokes import Sheet, Stroke
 
 Which = str | tuple[int, ...]  # "all", "outer", or the numbers of lines
 
 LEAST_MM, LEAST_WIDTHS = 4.0, 6.0  # a shorter patch is a speck, a letter or a burr,
 LETTER_MM = 12.0  # unless it reaches as far as this
-PLAIN = 0.06  # ink about a place of a plain stretch differs by less than this share from what is usual on the line
+# ink about a place of a plain stretch differs by less than this share from what is usual on the line
+PLAIN = 0.06
 STARTS = 8  # places at which the head may be put down on a line
 LOOKED_AT = 400  # places of a line that are looked at for them
 COVERED = 0.8  # a stroke is a part of a followed line if as much of it lies on that line
@@ -51,7 +57,9 @@ class Contour:
     reach_mm: float
 
     def starts_mm(self) -> list[tuple[float, float]]:
-        """Places to put the head down, the plainest first: those furthest from corners, crossings and ends; a few, apart."""
+        """Places to put the head down, the plainest first: those furthest from corners, crossings and ends; a
+        few, apart.
+        """
         stroke = self.stroke
         some = slice(None, None, max(1, len(stroke.middles_mm) // LOOKED_AT))
         places, filled = stroke.middles_mm[some], stroke.filled[some]
@@ -64,7 +72,9 @@ class Contour:
         return [(float(x), float(y)) for x, y in kept]
 
     def lies_on(self, line_mm: Array) -> bool:
-        """Whether a followed line (n, 2) mm runs along most of this stroke, as it does along a line with gaps."""
+        """Whether a followed line (n, 2) mm runs along most of this stroke, as it does along a line with
+        gaps.
+        """
         places = self.stroke.middles_mm[:: max(1, len(self.stroke.middles_mm) // 40)]
         near = (places > line_mm.min(axis=0) - 1) & (places < line_mm.max(axis=0) + 1)
         if near.all(axis=1).mean() < COVERED:
@@ -77,9 +87,11 @@ class Contour:
 
 
 def plan(sheet: Sheet, which: Which) -> tuple[list[Contour], int]:
-    """Contours that are asked for, the widest spread first (so none comes before one that it lies in), and how many patches are too short.
+    """Contours that are asked for, the widest spread first (so none comes before one that it lies in), and
+    how many patches are too short.
 
-    "outer" is still all of them: what lies inside which is known when they have been followed. Raises LineFault for a number that no line has.
+    "outer" is still all of them: what lies inside which is known when they have been followed. Raises
+    LineFault for a number that no line has.
     """
     reach_mm, patches = _reach_mm(sheet), lines_of(sheet)
     numbers = _numbers(which, len(patches))

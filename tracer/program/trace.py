@@ -1,10 +1,12 @@
 """A run as the operator makes it: the head put down, the line followed, and cut (see `program`).
 
-Signals: a Drawing in; out a Trace, which is a stream of Motion (X, Y, Z in sheet mm at the motion rate) and says how the run ended. Several lines: see `tour`.
+Signals: a Drawing in; out a Trace, which is a stream of Motion (X, Y, Z in sheet mm at the motion rate) and
+says how the run ended. Several lines: see `tour`.
 
-From each of the places where the head may be put down the line is followed in several attempts (see `attempts`), until one of them is the line. Other
-turns than straight on are tried when the head has been put down elsewhere in vain: from a chord it does not come back straight on, and with other turns it
-comes back round half of the contour.
+From each of the places where the head may be put down the line is followed in several attempts (see
+`attempts`), until one of them is the line. Other turns than straight on are tried when the head has been put
+down elsewhere in vain: from a chord it does not come back straight on, and with other turns it comes back
+round half of the contour.
 
 Source: patent ES 361967, section on use: the operator brings the head over the drawing and lets it run.
 """
@@ -28,9 +30,8 @@ from morfax.tracer.head.stance import Stance, turned_round
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.program import Trace
 
-SHORT = (
-    0.5  # of the ink that is joined to it: a run that ends so soon is another line's, which crosses this one
-)
+# of the ink that is joined to it: a run that ends so soon is another line's, which crosses this one
+SHORT = 0.5
 ELSEWHERE = 5  # places at which the head is put down then
 
 # a line, where the head was put down for it, and the length of the ink that is joined to it, mm
@@ -46,8 +47,9 @@ def trace(
 ) -> Trace:
     """Follow a line of the drawing: the one at `start_mm` (sheet mm), or the longest.
 
-    `progress` hears how far the head has come and the length of the line, mm. Raises LineFault if there is no line to start on, CardFault for a stop that
-    the operator cannot serve; a line that is lost on the way is no exception, but the trace's `fault`.
+    `progress` hears how far the head has come and the length of the line, mm. Raises LineFault if there is no
+    line to start on, CardFault for a stop that the operator cannot serve; a line that is lost on the way is
+    no exception, but the trace's `fault`.
     """
     operator = operator or Operator()
     return Trace(
@@ -64,7 +66,9 @@ def followed(
     number: int = 1,
     other_turns: bool = True,
 ) -> Line:
-    """The head's best run along the line at a place, or along the longest; with other turns than straight on if that does not come back, unless left out."""
+    """The head's best run along the line at a place, or along the longest; with other turns than straight on
+    if that does not come back, unless left out.
+    """
     stances = put_down(
         sheet, start_mm, settings.aperture_mm, settings.line_width_mm, settings.gap_mm, operator.reference_mm
     )
@@ -83,7 +87,9 @@ def followed_from_an_end(
     progress: Callable[[float, float], None] | None = None,
     number: int = 1,
 ) -> Line | None:
-    """The head's best run from the open ends of a line, as of a lead line; None if it has none, or the line is lost from each."""
+    """The head's best run from the open ends of a line, as of a lead line; None if it has none, or the line
+    is lost from each.
+    """
     stances = ends_of(
         sheet, stroke, settings.aperture_mm, settings.line_width_mm, settings.gap_mm, operator.reference_mm
     )
@@ -92,7 +98,9 @@ def followed_from_an_end(
 
 
 def followed_through(sheet: Sheet, stance: Stance, settings: Settings, operator: Operator) -> list[Line]:
-    """The head's runs straight on through a stance, the last one round about in the direction asked for, or from end to end; no other turns are tried."""
+    """The head's runs straight on through a stance, the last one round about in the direction asked for, or
+    from end to end; no other turns are tried.
+    """
     attempts = Attempts(sheet.drawing, settings, (), longest_mm(sheet.drawing, stance.view.width_mm), None)
     runs = [attempts.run(stance)]
     if runs[0].ending == "ended":
@@ -114,9 +122,11 @@ def _best(
     number: int,
     other_turns: bool = True,
 ) -> tuple[Line | None, list[Line]]:
-    """The best run from one of some stances, None if there are none; and other runs that are as good: lead lines all.
+    """The best run from one of some stances, None if there are none; and other runs that are as good: lead
+    lines all.
 
-    Which of several open ends a lead line begins at is judged without the card's turns: those are counted from there.
+    Which of several open ends a lead line begins at is judged without the card's turns: those are counted
+    from there.
     """
     follow = partial(_line, sheet, start_mm, settings, progress, number)
     straight = replace(operator, card=replace(operator.card, turns=()))
@@ -156,21 +166,27 @@ def _best(
 
 
 def _goes_before(run: Run, best: Run) -> bool:
-    """Whether a run is better than the best so far: the longer one, but one that closes before one that ran into what it had followed."""
+    """Whether a run is better than the best so far: the longer one, but one that closes before one that ran
+    into what it had followed.
+    """
     if "closed" in (run[0].ending, best[0].ending) and _ran_in(run) != _ran_in(best):
         return _ran_in(best)
     return run[0].length_mm > best[0].length_mm
 
 
 def _ran_in(run: Run) -> bool:
-    """Whether a run from the middle of a line, and not from an end of it, ended in what it had followed: perhaps it began on a chord."""
+    """Whether a run from the middle of a line, and not from an end of it, ended in what it had followed:
+    perhaps it began on a chord.
+    """
     line, stance, _ = run
     began_there = float(np.hypot(*(line.start_mm - stance.place_mm))) < stance.view.width_mm
     return line.ending == "joined" and not stance.at_end and began_there
 
 
 def _with_other_turns(best: Run, smooth: list[Run], follow: Callable[..., Line]) -> Run:
-    """The first run that closes with other turns than straight on, in place of the best if that ran into itself, or is shorter and a small part of the ink."""
+    """The first run that closes with other turns than straight on, in place of the best if that ran into
+    itself, or is shorter and a small part of the ink.
+    """
     if not _ran_in(best) and not (best[0].ending == "closed" and best[0].length_mm < SHORT * best[2]):
         return best
     for _, stance, length_mm in filter(_ran_in, smooth):
@@ -203,14 +219,16 @@ def _line(
     length_mm: float,
     other_turns: bool = False,
 ) -> Line:
-    """The line as it is followed from a stance; with other turns also where straight on does not go round in the direction asked for."""
+    """The line as it is followed from a stance; with other turns also where straight on does not go round in
+    the direction asked for.
+    """
     told = None if progress is None else partial(_tell, progress, length_mm)
     try:
-        run = asked_for(sheet.drawing, stance, start_mm, operator, settings, told, other_turns)
+        run = asked_for(sheet.drawing, stance, start_mm, operator.route, settings, told, other_turns)
     except LineFault:
         if other_turns:
             raise
-        run = asked_for(sheet.drawing, stance, start_mm, operator, settings, told)
+        run = asked_for(sheet.drawing, stance, start_mm, operator.route, settings, told)
     line = Line.of(run, number, stance.reference_mm)
     return replace(line, ink_mm=length_mm, is_solid=sheet.is_solid_at(stance.place_mm))
 

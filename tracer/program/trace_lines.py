@@ -1,13 +1,18 @@
-"""The tour over several lines of a drawing: which the head follows, and in what order they become one program.
+"""The tour over several lines of a drawing: which the head follows, and in what order they become one
+program.
 
-Signals: a Drawing and what is asked for in; out a Trace over all those lines, inner before outer, the idle way from one to the next short.
+Signals: a Drawing and what is asked for in; out a Trace over all those lines, inner before outer, the idle
+way from one to the next short.
 
-The lines are followed one after the other, the widest spread first, and ordered when it is known where each begins and ends. One that is lost is cut as far as
-it was followed, and the others all the same. A stroke along which a line was followed before is a piece of that line, which has gaps. Lines that cross or
-touch one another are one patch of ink: the others of it are followed when one has been (see `joined`), and numbered on from the patches.
+The lines are followed one after the other, the widest spread first, and ordered when it is known where each
+begins and ends. One that is lost is cut as far as it was followed, and the others all the same. A stroke
+along which a line was followed before is a piece of that line, which has gaps. Lines that cross or touch one
+another are one patch of ink: the others of it are followed when one has been (see `joined`), and numbered on
+from the patches.
 
-Source: patent ES 361967 has one contour to a tape, and an operator who brings the head over it; the tour is that operator's, our own.
-Questions: a small stroke on which the head can nowhere be put down is taken for a letter, as is one too short (see `contours`); a larger one counts as lost.
+Source: patent ES 361967 has one contour to a tape, and an operator who brings the head over it; the tour is
+that operator's, our own. Questions: a small stroke on which the head can nowhere be put down is taken for a
+letter, as is one too short (see `contours`); a larger one counts as lost.
 """
 
 from __future__ import annotations
@@ -19,6 +24,7 @@ from functools import partial
 import numpy as np
 
 from morfax.motion import nesting
+from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Sheet
@@ -35,7 +41,6 @@ from morfax.tracer.program.joined_lines import joined_to
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.selection import Contour, Which
 from morfax.tracer.program.trace import SHORT, followed, followed_from_an_end
-from morfax.tracer.sensing.view import Array
 
 ALIKE = 0.02  # a line is as long from its other end, within this share
 
@@ -49,9 +54,11 @@ def trace_lines(
     operator: Operator | None = None,
     progress: Told | None = None,
 ) -> Trace:
-    """Follow several lines of the drawing: "all", those that lie inside no other ("outer"), or some by their numbers (1 is the longest).
+    """Follow several lines of the drawing: "all", those that lie inside no other ("outer"), or some by their
+    numbers (1 is the longest).
 
-    `progress` hears how far the head has come and the length of all the lines, mm. Raises LineFault if there is no line to start on, or none of a number.
+    `progress` hears how far the head has come and the length of all the lines, mm. Raises LineFault if there
+    is no line to start on, or none of a number.
     """
     sheet, settings, operator = Sheet.of(drawing), settings or Settings(), operator or Operator()
     patches = len(contours.lines_of(sheet))
@@ -110,7 +117,9 @@ def _follow_each(
 def _joined(
     sheet: Sheet, asked: list[Contour], lines: list[Line], settings: Settings, operator: Operator
 ) -> tuple[list[Line], float]:
-    """Further lines of the patches of which one line was followed each, and the length of the ink that is left of them, mm."""
+    """Further lines of the patches of which one line was followed each, and the length of the ink that is
+    left of them, mm.
+    """
     joined, left_mm, own = list[Line](), 0.0, {line.number: line for line in lines}
     for contour in asked:
         line = own.get(contour.number)
@@ -132,9 +141,11 @@ def _numbered(lines: list[Line], numbers: Which) -> list[Line]:
 def _follow(
     sheet: Sheet, contour: Contour, settings: Settings, operator: Operator, told: Told | None
 ) -> Line | None:
-    """Follow a line from an open end, or from the plainest of its places where the head can be put down; None for a letter, where it cannot be.
+    """Follow a line from an open end, or from the plainest of its places where the head can be put down; None
+    for a letter, where it cannot be.
 
-    From an end that leads round less than half of the ink, the line has to be longer than round about from such a place.
+    From an end that leads round less than half of the ink, the line has to be longer than round about from
+    such a place.
     """
     from_end = followed_from_an_end(sheet, contour.stroke, settings, operator, told, contour.number)
     if from_end is not None and (from_end.ending != "joined" or from_end.length_mm > SHORT * from_end.ink_mm):
@@ -154,9 +165,11 @@ def _follow(
 def _follow_from_plain_places(
     sheet: Sheet, contour: Contour, settings: Settings, operator: Operator, told: Told | None
 ) -> Line | LineFault:
-    """Follow a line from the plainest of its places where the head can be put down; the fault if it can be nowhere.
+    """Follow a line from the plainest of its places where the head can be put down; the fault if it can be
+    nowhere.
 
-    From a place that does not lead round, as on a chord, no other turns are tried before straight on is from some others.
+    From a place that does not lead round, as on a chord, no other turns are tried before straight on is from
+    some others.
     """
     in_vain, tried, fault = (
         list[tuple[float, float]](),
@@ -178,7 +191,9 @@ def _follow_from_plain_places(
 
 
 def _dots(sheet: Sheet, asked: list[Contour], settings: Settings, last: int) -> list[Line]:
-    """The dots that stand alone on the paper, numbered on from the lines; none if neither a line nor a setting says how wide the pen is."""
+    """The dots that stand alone on the paper, numbered on from the lines; none if neither a line nor a
+    setting says how wide the pen is.
+    """
     if settings.line_width_mm is None and not asked:
         return []
     width_mm = settings.line_width_mm or float(np.median([contour.stroke.width_mm for contour in asked]))
@@ -217,7 +232,9 @@ def _is_reference(contour: Contour, lines: list[Line]) -> bool:
 
 
 def _are_reference(places: Array, lines: list[Line]) -> bool:
-    """Whether some places (n, 2) mm are those of the reference point from which one of the lines, or a lead line, begins."""
+    """Whether some places (n, 2) mm are those of the reference point from which one of the lines, or a lead
+    line, begins.
+    """
     references_mm = [line.begin_mm for line in lines if line.is_lead or line.reference_mm is not None]
     return any(
         np.hypot(*(places - reference_mm).T).max() < 0.5 * LARGEST_MM + 1 for reference_mm in references_mm
@@ -235,7 +252,9 @@ def _is_in(line: Line, lines: list[Line]) -> bool:
 
 
 def _in_order(lines: list[Line], again: Callable[[Line], Line]) -> list[Line]:
-    """The lines in the order in which they are cut; open ones are followed once more from their other end where that is nearer."""
+    """The lines in the order in which they are cut; open ones are followed once more from their other end
+    where that is nearer.
+    """
     inner = nesting.nested([_loop(line) for line in lines], [_goes_round(line) for line in lines])
     starts, ends = (np.array([getattr(line, end) for line in lines]) for end in ("begin_mm", "end_mm"))
     may_turn = np.array([line.ending == "ended" and not line.goes_back for line in lines])

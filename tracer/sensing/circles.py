@@ -1,6 +1,7 @@
 """Rounds: dots and rings, felt by spokes of cells from their middle.
 
-Signals: a place on the sheet in; out how far ink or paper reaches from it all round, and the circle through places (mm).
+Signals: a place on the sheet in; out how far ink or paper reaches from it all round, and the circle through
+places (mm).
 
 Source: our own.
 """
@@ -12,8 +13,9 @@ import math
 import numpy as np
 from numba import njit
 
+from morfax.motion.arrays import Array
 from morfax.tracer.sensing import photocell
-from morfax.tracer.sensing.view import Array, View
+from morfax.tracer.sensing.view import View
 
 SPOKES = 72
 ANGLES = np.arange(SPOKES) * math.tau / SPOKES
@@ -21,7 +23,9 @@ WAYS = np.column_stack([np.cos(ANGLES), np.sin(ANGLES)])
 
 
 def spokes(view: View, place: Array, reach_mm: float) -> Array:
-    """Where ink and paper change first and second along each spoke, (SPOKES, 2) mm from the place; NaN beyond reach."""
+    """Where ink and paper change first and second along each spoke, (SPOKES, 2) mm from the place; NaN beyond
+    reach.
+    """
     return np.asarray(_changes(view.cells, view.pitch_mm, place, WAYS, reach_mm, view.level))
 
 

@@ -1,6 +1,7 @@
 """Legs: clean stretches of line, as parabolas through what was felt of them.
 
-Signals: stations of the line (n, 3: centre x, y and width, mm) in; place, heading (rad) and bend (1/mm) of the line out, and where two legs meet.
+Signals: stations of the line (n, 3: centre x, y and width, mm) in; place, heading (rad) and bend (1/mm) of
+the line out, and where two legs meet.
 
     place(s) = end + s·t + bend/2·s²·n          t, n: along and across the heading at the leg's clean end
 
@@ -15,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
-from morfax.tracer.sensing.view import Array
+from morfax.motion.arrays import Array
 
 STRAIGHT = math.radians(40)  # straight on is within this
 TURNS_OFF = math.radians(20)  # a leg turns off to a side by more than this
@@ -30,7 +31,9 @@ BITTEN = 0.06  # of the width: more than a scan's noise
 
 @dataclass(frozen=True, slots=True)
 class Leg:
-    """A clean stretch of line at a knot: `end_mm` is its clean end, the heading there and the bend are along the travel."""
+    """A clean stretch of line at a knot: `end_mm` is its clean end, the heading there and the bend are along
+    the travel.
+    """
 
     end_mm: Array
     heading_rad: float
@@ -59,7 +62,8 @@ class Leg:
 
 
 def leg_of(seen: Array, last: bool, length_mm: float) -> Leg:
-    """Fit a leg to what was felt, (n, 3) in the order of travel; its clean end is towards the `last` station, or else the first.
+    """Fit a leg to what was felt, (n, 3) in the order of travel; its clean end is towards the `last` station,
+    or else the first.
 
     As long a stretch is taken as one parabola fits about as well as the nearest part of it.
     """
@@ -76,7 +80,9 @@ def leg_of(seen: Array, last: bool, length_mm: float) -> Leg:
 
 
 def _without_blot(seen: Array, last: bool) -> Array:
-    """The stations without those next to the knot whose width shows a little of its ink already: a third of them at most."""
+    """The stations without those next to the knot whose width shows a little of its ink already: a third of
+    them at most.
+    """
     widths = seen[::-1, 2] if last else seen[:, 2]
     usual = float(np.median(widths))
     spread = 1.4826 * float(np.median(np.abs(widths - usual)))
@@ -101,9 +107,11 @@ def _leg(near: Array, end: Array, seen: Array) -> tuple[Leg, float]:
 
 @njit(cache=True)
 def _fit(x, y):  # type: ignore[no-untyped-def]
-    """(slope, offset, bend) at x = 0 of y(x), and the misfit; stations off by more than three times the usual are left out.
+    """(slope, offset, bend) at x = 0 of y(x), and the misfit; stations off by more than three times the usual
+    are left out.
 
-    Straight, unless a bend stands out fivefold of the uncertainty that independent stations would have: neighbours share their ink.
+    Straight, unless a bend stands out fivefold of the uncertainty that independent stations would have:
+    neighbours share their ink.
     """
     degree = 2 if len(x) >= 8 else min(1, len(x) - 1)
     found, unsure = _parabola(x, y, np.ones(len(x)), degree)
@@ -123,7 +131,9 @@ def _fit(x, y):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def _parabola(x, y, weights, degree):  # type: ignore[no-untyped-def]
-    """Coefficients of 1, x, x² of the weighted parabola (or straight line, or mean), and the last one's uncertainty per unit of noise in y."""
+    """Coefficients of 1, x, x² of the weighted parabola (or straight line, or mean), and the last one's
+    uncertainty per unit of noise in y.
+    """
     n = degree + 1
     sums, right = np.zeros((n, n)), np.zeros(n)
     for k in range(len(x)):
@@ -138,7 +148,8 @@ def _parabola(x, y, weights, degree):  # type: ignore[no-untyped-def]
 
 
 def centre_at(seen: Array, i: int, half_mm: float) -> Leg:
-    """The line about station i of what was felt: the parabola through the stations within `half_mm`, weighted towards the middle.
+    """The line about station i of what was felt: the parabola through the stations within `half_mm`, weighted
+    towards the middle.
 
     A station whose width differs is spoiled by a speck on one edge: it counts the less.
     """
@@ -168,7 +179,9 @@ def turn(a: float, b: float) -> float:
 
 
 def meet(incoming: Leg, outgoing: Leg) -> Meeting | None:
-    """Distances (beyond the incoming leg's end, before the outgoing leg's end) where their lines cross, mm; None if they do not."""
+    """Distances (beyond the incoming leg's end, before the outgoing leg's end) where their lines cross, mm;
+    None if they do not.
+    """
     s = u = 0.0
     for _ in range(6):
         a, b = incoming.heading_at(s), outgoing.heading_at(-u)

@@ -2,7 +2,8 @@
 
 Signals: places in sheet mm in, darkness out (0 paper, 1 ink), averaged over the cell's aperture.
 
-A cell swept across a line, u = centre + amplitude·sin(phase), sees a current whose fundamental tells the side and whose mean tells that the line is there:
+A cell swept across a line, u = centre + amplitude·sin(phase), sees a current whose fundamental tells the side
+and whose mean tells that the line is there:
 
     first = 2/N · sum D(u)·sin(phase)       0 when the sweep is centred; its sign is the side
     mean  = 1/N · sum D(u)                  falls when the line goes
@@ -12,8 +13,9 @@ A cell swept across a line, u = centre + amplitude·sin(phase), sees a current w
                       ____/             \\____      just outside the edges, where the current changes most
                          |<-- sweep --->|
 
-Source: patent ES 361967, figure 1: cell 101 on mount 42, eccentric pin 48, synchronous motor 45, amplifier FSA; cell 102.
-Questions: the patent gives no aperture. Chosen: a spot of Gaussian weight as wide as a disc of the aperture (standard deviation a quarter of it).
+Source: patent ES 361967, figure 1: cell 101 on mount 42, eccentric pin 48, synchronous motor 45, amplifier
+FSA; cell 102. Questions: the patent gives no aperture. Chosen: a spot of Gaussian weight as wide as a disc of
+the aperture (standard deviation a quarter of it).
 """
 
 from __future__ import annotations
@@ -31,9 +33,8 @@ TWO_PI = 2.0 * math.pi
 SPECK_PX, SPECK_MM = 2.2, 0.25  # no wider is a speck: one pixel seen through the aperture
 REACH, REACH_PX = 0.8, 3.0  # widths and pixels from where a line is expected, within which its edges are
 CLEAN = 0.2  # of the width, by which a clean line's may differ
-FOLLOWS_PER_MM = (
-    0.2  # a line that is felt may swell: its width follows what was felt, by so much of the difference
-)
+# a line that is felt may swell: its width follows what was felt, by so much of the difference
+FOLLOWS_PER_MM = 0.2
 Cells = NDArray[np.float32]
 
 
@@ -76,9 +77,11 @@ def sweep(cells, pitch_mm, place, heading, centre_mm, amplitude_mm, samples):  #
 
 @njit(cache=True)
 def edges(cells, pitch_mm, x_mm, y_mm, heading, reach_mm, level):  # type: ignore[no-untyped-def]
-    """Where the line under (x, y) ends to the right and to the left of a heading, mm; NaN for an edge out of reach or no ink.
+    """Where the line under (x, y) ends to the right and to the left of a heading, mm; NaN for an edge out of
+    reach or no ink.
 
-    An edge is where the darkness crosses `level`; the search starts at the darkest place within half the reach.
+    An edge is where the darkness crosses `level`; the search starts at the darkest place within half the
+    reach.
     """
     nx, ny = -math.sin(heading), math.cos(heading)
     step = 0.35 * pitch_mm
@@ -110,7 +113,9 @@ def edges(cells, pitch_mm, x_mm, y_mm, heading, reach_mm, level):  # type: ignor
 
 @njit(cache=True)
 def edge_along(cells, pitch_mm, x_mm, y_mm, direction, reach_mm, level):  # type: ignore[no-untyped-def]
-    """How far the ink under (x, y) goes on in a direction, mm; NaN if there is none, or if it reaches farther. A light speck in it is passed over."""
+    """How far the ink under (x, y) goes on in a direction, mm; NaN if there is none, or if it reaches
+    farther. A light speck in it is passed over.
+    """
     c, s, step = math.cos(direction), math.sin(direction), 0.35 * pitch_mm
     found, before = math.nan, darkness_at(cells, pitch_mm, x_mm, y_mm)
     if before < level:
@@ -129,7 +134,8 @@ def edge_along(cells, pitch_mm, x_mm, y_mm, direction, reach_mm, level):  # type
 
 @njit(cache=True)
 def ring(cells, pitch_mm, centre, radius_mm, level):  # type: ignore[no-untyped-def]
-    """Dark arcs that a cell sees going once round a centre: (n, 2) angles where each begins and ends (end > begin), rad.
+    """Dark arcs that a cell sees going once round a centre: (n, 2) angles where each begins and ends (end >
+    begin), rad.
 
     A ring that is dark all round is one arc of a whole turn.
     """
@@ -163,12 +169,15 @@ def ring(cells, pitch_mm, centre, radius_mm, level):  # type: ignore[no-untyped-
 
 
 @njit(cache=True)
-def scout(cells, pitch_mm, start, heading, step_mm, stations, width_mm, level):  # type: ignore[no-untyped-def]
-    """Feel along a line from a place on it: (n, 3) centre x, y and width, mm, where the line is seen clean between two edges.
+# type: ignore[no-untyped-def]
+def scout(cells, pitch_mm, start, heading, step_mm, stations, width_mm, level):
+    """Feel along a line from a place on it: (n, 3) centre x, y and width, mm, where the line is seen clean
+    between two edges.
 
-    At each station the edges are found across the way that the last stations point. A station is not clean where an edge is missing, where the width
-    leaves what the line has had by a fifth, or where the centre leaps aside by a sixth of the width. A speck may spoil a few stations: they are passed
-    over if the line is clean for longer behind them; else the clean line ends before them.
+    At each station the edges are found across the way that the last stations point. A station is not clean
+    where an edge is missing, where the width leaves what the line has had by a fifth, or where the centre
+    leaps aside by a sixth of the width. A speck may spoil a few stations: they are passed over if the line is
+    clean for longer behind them; else the clean line ends before them.
     """
     seen = np.empty((stations, 3))
     reach = REACH * width_mm + REACH_PX * pitch_mm
@@ -203,7 +212,9 @@ def scout(cells, pitch_mm, start, heading, step_mm, stations, width_mm, level): 
 
 @njit(cache=True)
 def onward(seen, count):  # type: ignore[no-untyped-def]
-    """Heading from the newest of some stations to the next: that of the last stations' chord, and on by what the chords have turned."""
+    """Heading from the newest of some stations to the next: that of the last stations' chord, and on by what
+    the chords have turned.
+    """
     last, back = count - 1, max(0, count - 5)
     chord = math.atan2(seen[last, 1] - seen[back, 1], seen[last, 0] - seen[back, 0])
     if count < 9:

@@ -8,9 +8,10 @@ from dataclasses import replace
 import numpy as np
 from numba import njit
 
+from morfax.motion.arrays import Array
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.leg import Leg, leg_of
-from morfax.tracer.sensing.view import Array, View
+from morfax.tracer.sensing.view import View
 
 SPOKE = np.linspace(0.2, 1.0, 17)
 BESIDE = np.array([0.0, -0.25, 0.25])  # widths
@@ -20,7 +21,9 @@ SPECK_WIDTHS = 0.4  # ink narrower than this is no stroke
 
 
 def reach_of_ink(view: View, incoming: Leg, farthest_mm: float, aside_mm: float = 0.0) -> float | None:
-    """How far the ink goes on from the incoming leg's end along its line, or beside it (left positive), mm; None if farther than asked."""
+    """How far the ink goes on from the incoming leg's end along its line, or beside it (left positive), mm;
+    None if farther than asked.
+    """
     step = 0.35 * view.pitch_mm
     left = np.array([-math.sin(incoming.heading_rad), math.cos(incoming.heading_rad)])
     places = incoming.at(np.asarray(np.arange(int(farthest_mm / step)) * step, float)) + aside_mm * left
@@ -30,7 +33,9 @@ def reach_of_ink(view: View, incoming: Leg, farthest_mm: float, aside_mm: float 
 
 @njit(cache=True)
 def _steps_of_ink(cells, pitch_mm, places, level):  # type: ignore[no-untyped-def]
-    """How many of some places (n, 2) are on ink, one after the other, and the share of a step to where it ends; n if all are."""
+    """How many of some places (n, 2) are on ink, one after the other, and the share of a step to where it
+    ends; n if all are.
+    """
     before = 1.0
     for k in range(len(places)):
         now = photocell.darkness_at(cells, pitch_mm, places[k, 0], places[k, 1])
@@ -41,10 +46,11 @@ def _steps_of_ink(cells, pitch_mm, places, level):  # type: ignore[no-untyped-de
 
 
 def stroke_end(view: View, leg: Leg, farthest_mm: float) -> float | None:
-    """How far the ink of a stroke goes on from a leg's end, mm, if the stroke ends there: no ink leaves its tip but the stroke's own; None if not.
+    """How far the ink of a stroke goes on from a leg's end, mm, if the stroke ends there: no ink leaves its
+    tip but the stroke's own; None if not.
 
-    It is felt as far as it is clean, round its bends, and only from there on looked for ahead. A speck of paper on the stroke is not its end: beside
-    its middle the ink goes on.
+    It is felt as far as it is clean, round its bends, and only from there on looked for ahead. A speck of
+    paper on the stroke is not its end: beside its middle the ink goes on.
     """
     seen, come_mm = view.feel(leg.end_mm, leg.heading_rad, farthest_mm), 0.0
     if len(seen) > len(leg.seen):
@@ -59,7 +65,9 @@ def stroke_end(view: View, leg: Leg, farthest_mm: float) -> float | None:
 
 
 def _inks(view: View, leg: Leg, farthest_mm: float) -> list[float]:
-    """How far the ink of a stroke may go on from a leg's end, mm: along its middle, beside that, and past a speck of paper; none if farther."""
+    """How far the ink of a stroke may go on from a leg's end, mm: along its middle, beside that, and past a
+    speck of paper; none if farther.
+    """
     middle, *beside = (
         reach_of_ink(view, leg, farthest_mm, share * view.width_mm) for share in (0.0, -0.25, 0.25)
     )
@@ -74,14 +82,17 @@ def _inks(view: View, leg: Leg, farthest_mm: float) -> list[float]:
 
 
 def is_tip(view: View, place: Array) -> bool:
-    """Whether a place half a width within the end of ink is the tip of a single stroke; what it does not touch is no matter."""
+    """Whether a place half a width within the end of ink is the tip of a single stroke; what it does not
+    touch is no matter.
+    """
     return lines_from(view, place, max(1.2 * view.width_mm, 5 * view.pitch_mm)) == 1
 
 
 def lines_from(view: View, centre: Array, radius_mm: float) -> int:
     """How many strokes leave a place by ink, of those that a ring of cells sees about it; specks are none.
 
-    Paper on the way to a stroke is lighter than where the way grazes an edge; a speck of it is not on all of the ways side by side.
+    Paper on the way to a stroke is lighter than where the way grazes an edge; a speck of it is not on all of
+    the ways side by side.
     """
     lighter = replace(view, level=PAPER * view.level)
     joined = 0
@@ -106,6 +117,8 @@ def strokes_on(view: View, centre: Array, radius_mm: float) -> Array:
 
 
 def end_of(view: View, incoming: Leg) -> float | None:
-    """How far beyond a leg's clean end the pen was lifted, mm: half a width within the end of the ink; None if the ink goes on."""
+    """How far beyond a leg's clean end the pen was lifted, mm: half a width within the end of the ink; None
+    if the ink goes on.
+    """
     ink = reach_of_ink(view, incoming, 6 * view.width_mm + 2.0)
     return None if ink is None else ink - 0.5 * incoming.width_mm

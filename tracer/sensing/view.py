@@ -27,7 +27,9 @@ GRAIN_STATIONS = 20
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """What the head knows of the line it is on: the cells' picture, the line's width, and the darkness at an edge."""
+    """What the head knows of the line it is on: the cells' picture, the line's width, and the darkness at an
+    edge.
+    """
 
     cells: Cells
     pitch_mm: float
@@ -54,7 +56,9 @@ class View:
         )
 
     def feel_along(self, way: Array) -> Array:
-        """Centres and widths (n, 3) of the line across a way (n, 2) mm, a station's distance apart, wherever it is clean."""
+        """Centres and widths (n, 3) of the line across a way (n, 2) mm, a station's distance apart, wherever
+        it is clean.
+        """
         if len(way) < 3:
             return np.empty((0, 3))
         come_mm = lengths_mm(way)
@@ -76,7 +80,8 @@ class View:
         return np.array(seen).reshape(-1, 3)
 
     def like(self, place: Array, heading: float, follows: float = 0.1) -> View:
-        """The view with the width and the darkness that the line has about a place, if they are like what they were: lines swell and fade.
+        """The view with the width and the darkness that the line has about a place, if they are like what
+        they were: lines swell and fade.
 
         The usual width follows by a share of how far the width differs from it.
         """
@@ -95,7 +100,9 @@ class View:
         return replace(self, width_mm=width, level=level, usual_mm=usual + follows * (width - usual))
 
     def through_larger(self, stations: Array, heading: float) -> View:
-        """The line through cells as large as it is wide, which average its grain; its width and its darkness as seen so at some stations (n, 3) of it."""
+        """The line through cells as large as it is wide, which average its grain; its width and its darkness
+        as seen so at some stations (n, 3) of it.
+        """
         sigma_px = GRAIN * self.width_mm / self.pitch_mm
         cells = np.asarray(cv2.GaussianBlur(self.cells, (0, 0), sigma_px), np.float32)
         places = stations[-GRAIN_STATIONS:, :2]

@@ -11,13 +11,14 @@ import math
 
 import numpy as np
 
+from morfax.motion.arrays import Array
 from morfax.tracer.head.course import ahead_mm
 from morfax.tracer.head.planned import Planned
 from morfax.tracer.head.trail import Trail
 from morfax.tracer.marks.marks import longest_mm
 from morfax.tracer.sensing.leg import Leg, turn
 from morfax.tracer.sensing.probe import stroke_end
-from morfax.tracer.sensing.view import Array, View
+from morfax.tracer.sensing.view import View
 from morfax.tracer.tangles.redrawing import MOST_LEGS, Sketch, Way
 from morfax.tracer.tangles.solution import unravelled
 from morfax.tracer.tangles.strands import same_line, stretches_over
@@ -29,7 +30,9 @@ BACK_RAD, LONGEST_TIP_MM = math.radians(130), 5.5  # lines that run together to 
 
 
 class Tangles:
-    """The tangles that the head has come to, each with the way it was drawn: where a line leads into one again it takes the strand that is left."""
+    """The tangles that the head has come to, each with the way it was drawn: where a line leads into one
+    again it takes the strand that is left.
+    """
 
     def __init__(self) -> None:
         self._known: list[tuple[Tangle, Way]] = []
@@ -46,10 +49,12 @@ class Tangles:
         number: int = 0,
         rank: int = 0,
     ) -> tuple[Planned | None, bool]:
-        """The way from where the head is (place, heading) out of the tangle ahead, and whether it explains the tangle's ink.
+        """The way from where the head is (place, heading) out of the tangle ahead, and whether it explains
+        the tangle's ink.
 
-        It is the plan if that explains the ink as well as any other way, or if the tangle does not end in legs, or in too many, or if no way explains its
-        ink. `rank` 1 takes the second best way out, 2 the third, and `number` is that of the tangle among the junctions.
+        It is the plan if that explains the ink as well as any other way, or if the tangle does not end in
+        legs, or in too many, or if no way explains its ink. `rank` 1 takes the second best way out, 2 the
+        third, and `number` is that of the tangle among the junctions.
         """
         if len(incoming.seen) < LEAST_SEEN:
             return plan, False
@@ -73,19 +78,25 @@ class Tangles:
         return found, way is not None
 
     def goes_back(self, tip: Array, trail: Trail, width_mm: float) -> bool:
-        """Whether the line that ends at a tip is two that ran together a little before, of which the one has not been followed."""
+        """Whether the line that ends at a tip is two that ran together a little before, of which the one has
+        not been followed.
+        """
         near = [leg for leg in self._beside if np.hypot(*(leg.end_mm - tip)) < LONGEST_TIP_MM]
         self._beside = []
         return any(not trail.holds(leg, width_mm) for leg in near)
 
     def doubts(self, trail: Trail, width_mm: float) -> tuple[tuple[int, int], ...]:
-        """Numbers of the junctions where another way out would have done as well and leads to ink that has not been followed, and its rank."""
+        """Numbers of the junctions where another way out would have done as well and leads to ink that has
+        not been followed, and its rank.
+        """
         return tuple((number, rank) for number, rank, leg in self._left if not trail.holds(leg, width_mm))
 
     def _strand_left(
         self, incoming: Leg, trail: Trail, place: Array, width_mm: float
     ) -> tuple[Leg, Array, Leg] | None:
-        """The legs and the vertices between them of the strand that a line leads into; None if it leads into no tangle that is known."""
+        """The legs and the vertices between them of the strand that a line leads into; None if it leads into
+        no tangle that is known.
+        """
         for tangle, way in self._known:
             legs = [tangle.legs[0].turned_round(), *tangle.legs[1:]]
             for pair, vertices in zip(way.pairs, way.vertices, strict=True):

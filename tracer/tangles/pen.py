@@ -1,13 +1,16 @@
 """The pen: what ink it would leave on a way through a tangle, and the way that leaves the ink that is there.
 
-A strand leads from one leg's clean end to another's. It leaves each along the leg's heading, bends evenly to its first vertex, and goes straight between its
-vertices; without a vertex it is one cubic. A stroke is a straight line by itself. A pen of the line's width w leaves on a place at distance d
+A strand leads from one leg's clean end to another's. It leaves each along the leg's heading, bends evenly to
+its first vertex, and goes straight between its vertices; without a vertex it is one cubic. A stroke is a
+straight line by itself. A pen of the line's width w leaves on a place at distance d
 
     darkness = erfc((d - w/2) / (softness·√2)) / 2
 
-The vertices are moved until the square of what is wrong, summed over the tangle, is least (Levenberg and Marquardt).
+The vertices are moved until the square of what is wrong, summed over the tangle, is least (Levenberg and
+Marquardt).
 
-Signals: places and darkness (see `tangle`), poses (x, y, heading) of the legs' ends, mm and rad; vertices in and out.
+Signals: places and darkness (see `tangle`), poses (x, y, heading) of the legs' ends, mm and rad; vertices in
+and out.
 
 Source: our own.
 """
@@ -51,7 +54,9 @@ def cubic(pose, other, t):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def pieces(ends, counts, strokes, vertices, out):  # type: ignore[no-untyped-def]
-    """Straight pieces (4, n) of strands between pairs of poses (k, 2, 3) with `counts` vertices each, and of single strokes; how many."""
+    """Straight pieces (4, n) of strands between pairs of poses (k, 2, 3) with `counts` vertices each, and of
+    single strokes; how many.
+    """
     n = at = 0
     for k in range(len(ends)):
         first, last = ends[k, 0], ends[k, 1]
@@ -85,7 +90,9 @@ def pieces(ends, counts, strokes, vertices, out):  # type: ignore[no-untyped-def
 
 @njit(cache=True, fastmath=True)
 def away(places, lines, count, out):  # type: ignore[no-untyped-def]
-    """Bring distances (n,) of places down to those from the first pieces of some lines (4, k), where these are nearer; mm."""
+    """Bring distances (n,) of places down to those from the first pieces of some lines (4, k), where these
+    are nearer; mm.
+    """
     x0, y0 = lines[0, :count].copy(), lines[1, :count].copy()
     vx, vy = lines[2, :count] - x0, lines[3, :count] - y0
     per = 1.0 / (vx * vx + vy * vy + 1e-18)
@@ -102,7 +109,9 @@ def away(places, lines, count, out):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def on_paper_mm(cells, pitch_mm, level, lines, count):  # type: ignore[no-untyped-def]
-    """Length of the first pieces of some lines (4, k) that lies on paper, mm; a speck of it with ink on both sides is none."""
+    """Length of the first pieces of some lines (4, k) that lies on paper, mm; a speck of it with ink on both
+    sides is none.
+    """
     total = 0.0
     for i in range(count):
         vx, vy = lines[2, i] - lines[0, i], lines[3, i] - lines[1, i]
@@ -129,7 +138,8 @@ def ink(distance_mm, half_mm, softness_mm, out):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _wrong(places, darkness, known_mm, pen, ends, counts, strokes, vertices, lines, distance, out):  # type: ignore[no-untyped-def]
+# type: ignore[no-untyped-def]
+def _wrong(places, darkness, known_mm, pen, ends, counts, strokes, vertices, lines, distance, out):
     """What is drawn too dark at each place, into `out`; the sum of its squares."""
     distance[:] = known_mm
     away(places, lines, pieces(ends, counts, strokes, vertices, lines), distance)
@@ -142,8 +152,10 @@ def _wrong(places, darkness, known_mm, pen, ends, counts, strokes, vertices, lin
 
 
 @njit(cache=True)
-def settle(places, darkness, known_mm, pen, ends, counts, strokes, vertices, rounds):  # type: ignore[no-untyped-def]
-    """Move the vertices (k, 2), in place, to where the pen (half a width, softness) leaves the ink that is there; the sum of squares that is left.
+# type: ignore[no-untyped-def]
+def settle(places, darkness, known_mm, pen, ends, counts, strokes, vertices, rounds):
+    """Move the vertices (k, 2), in place, to where the pen (half a width, softness) leaves the ink that is
+    there; the sum of squares that is left.
 
     `known_mm` is how far each place is from what is drawn anyway: the legs.
     """

@@ -1,14 +1,18 @@
 """Pairing: which legs of a tangle belong together, and by what way, as its ink shows.
 
-Every leg is the end of a strand, and each strand has two. So all ways to join the legs in pairs are tried: for each the strands are drawn as plainly as can be,
-and the pen's ink (see `pen`) is compared with the ink that is there. Where ink is left over, the strand next to it gets a vertex more at the end of that
-ink, or a stroke is drawn there that belongs to no strand: a tick, or the end of another line. Whatever explains the ink with the fewest vertices is the way.
+Every leg is the end of a strand, and each strand has two. So all ways to join the legs in pairs are tried:
+for each the strands are drawn as plainly as can be, and the pen's ink (see `pen`) is compared with the ink
+that is there. Where ink is left over, the strand next to it gets a vertex more at the end of that ink, or a
+stroke is drawn there that belongs to no strand: a tick, or the end of another line. Whatever explains the ink
+with the fewest vertices is the way.
 
     misfit = sum((drawn - seen)²) · area of a pixel / width²        what a wrong or a missing stretch as long as the line is wide costs: about 1
 
-Signals: a tangle in; ways to draw it out, the best first: pairs of legs, the vertices between them (mm), strokes, misfit.
+Signals: a tangle in; ways to draw it out, the best first: pairs of legs, the vertices between them (mm),
+strokes, misfit.
 
-Source: our own. Questions: a line that goes to a tip and back on itself leaves the ink of a tick; it is taken for a tick.
+Source: our own. Questions: a line that goes to a tip and back on itself leaves the ink of a tick; it is taken
+for a tick.
 """
 
 from __future__ import annotations
@@ -20,10 +24,11 @@ from itertools import pairwise, product
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.tracer.sensing.leg import Leg, meet, turn
 from morfax.tracer.sensing.photocell import darkness_at
 from morfax.tracer.sensing.probe import end_of
-from morfax.tracer.sensing.view import Array, View
+from morfax.tracer.sensing.view import View
 from morfax.tracer.tangles import pen
 from morfax.tracer.tangles.tangle import Tangle
 
@@ -43,7 +48,9 @@ NONE = np.empty((0, 2))
 
 @dataclass(frozen=True, slots=True)
 class Way:
-    """A way to draw a tangle: its strands as pairs of legs with the vertices between them, strokes (2, 2) besides, and what is left unexplained."""
+    """A way to draw a tangle: its strands as pairs of legs with the vertices between them, strokes (2, 2)
+    besides, and what is left unexplained.
+    """
 
     pairs: tuple[Pair, ...]
     vertices: tuple[Array, ...]
@@ -54,7 +61,9 @@ class Way:
 
 @dataclass(frozen=True, slots=True)
 class Sketch:
-    """A tangle as the pen sees it: poses of the legs' ends, facing in, the pen, and how far each place is from the legs."""
+    """A tangle as the pen sees it: poses of the legs' ends, facing in, the pen, and how far each place is
+    from the legs.
+    """
 
     view: View
     tangle: Tangle
@@ -121,7 +130,9 @@ class Sketch:
         return effort
 
     def plainest(self, pairs: tuple[Pair, ...], *, bare: bool = False) -> Way:
-        """The legs joined with no vertex, with one where they meet, or, unless `bare`, with those where the ink ahead of the one, the other or both ends."""
+        """The legs joined with no vertex, with one where they meet, or, unless `bare`, with those where the
+        ink ahead of the one, the other or both ends.
+        """
         joints = [self._joints(a, b)[: 2 if bare else None] for a, b in pairs]
         spare = set(range(len(self.poses))) - {leg for pair in pairs for leg in pair}
         ends = tuple(self._end(leg) for leg in spare)
@@ -175,7 +186,9 @@ class Sketch:
         return float(np.sum((drawn - self.tangle.darkness) ** 2)) * self.unit
 
     def _left_over(self, way: Way) -> tuple[Array, Array, int] | None:
-        """The tip of the ink that is farthest from what is drawn, half a width within, the place drawn next to it, and the piece that it lies on."""
+        """The tip of the ink that is farthest from what is drawn, half a width within, the place drawn next
+        to it, and the piece that it lies on.
+        """
         drawn, distance, lines = self._ink(way)
         left = (self.tangle.darkness - drawn > LEFT_OVER) & (distance > self.pen[0])
         if not left.any():
@@ -189,7 +202,9 @@ class Sketch:
         return place + (foot - place) * self.pen[0] / max(float(np.hypot(*(foot - place))), 1e-9), foot, piece
 
     def improved(self, way: Way, *, marks_only: bool = False) -> Way:
-        """The way with vertices and strokes added while they explain more ink than they cost; `marks_only`: strokes alone."""
+        """The way with vertices and strokes added while they explain more ink than they cost; `marks_only`:
+        strokes alone.
+        """
         way = self.settled(way)
         for _ in range(MOST_ADDED):
             found = self._left_over(way) if way.misfit > VERTEX else None
@@ -240,7 +255,9 @@ def matchings(legs: int) -> list[tuple[Pair, ...]]:
 
 
 def _with_more(way: Way, tip: Array, foot: Array, piece: int) -> list[Way]:
-    """The way with a stroke from a foot to a tip, then with the tip as a vertex, or as that of a spike, of the strand on whose piece the foot is."""
+    """The way with a stroke from a foot to a tip, then with the tip as a vertex, or as that of a spike, of
+    the strand on whose piece the foot is.
+    """
     more = [replace(way, strokes=(*way.strokes, np.array([foot, tip])))]
     for k, v in enumerate(way.vertices):
         pieces = 2 * pen.PIECES + max(len(v) - 1, 0)

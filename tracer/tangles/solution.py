@@ -1,6 +1,7 @@
 """Unravelling a tangle: by which leg, and over which vertices, the head's own line leaves it.
 
-Signals: a tangle, the incoming leg, the trail, and what was planned by the legs alone in; stretches and the outgoing leg out.
+Signals: a tangle, the incoming leg, the trail, and what was planned by the legs alone in; stretches and the
+outgoing leg out.
 
 Source: our own (see `pairing`).
 """
@@ -13,11 +14,11 @@ from itertools import combinations
 
 import numpy as np
 
+from morfax.motion.arrays import Array
 from morfax.tracer.head.planned import Planned
 from morfax.tracer.head.trail import Trail
 from morfax.tracer.marks.marks import longest_mm
 from morfax.tracer.sensing.leg import Leg, goes_straight, turn
-from morfax.tracer.sensing.view import Array
 from morfax.tracer.tangles.redrawing import NONE, VERTEX, Sketch, Way, ways
 from morfax.tracer.tangles.strands import as_drawn, aside_mm, same_line, stretches_over
 
@@ -43,7 +44,9 @@ CROSSES_RAD = math.radians(25)  # a line that bends less goes straight on
 def unravelled(
     sketch: Sketch, incoming: Leg, trail: Trail, way_in: tuple[Array, float], plan: Planned | None, rank: int
 ) -> tuple[Planned | None, Way | None, list[Leg]]:
-    """The way out of a tangle, the way in which its ink is drawn then, None if no way explains it, and the legs of others that would do as well."""
+    """The way out of a tangle, the way in which its ink is drawn then, None if no way explains it, and the
+    legs of others that would do as well.
+    """
     view, tangle = sketch.view, sketch.tangle
     drawn = [] if plan is None else as_drawn(plan, tangle, view.width_mm)
     planned = math.inf if plan is None else sketch.misfit_with(Way((), ()), drawn)
@@ -109,7 +112,9 @@ def _stands(sketch: Sketch, way: Way, plan: Planned, drawn: list[Array]) -> bool
 
 
 def _is_rough(way: Way, line: Planned | None, width_mm: float) -> bool:
-    """Whether a way only goes to and fro within the ink of a line, and leaves some unexplained all the same: its edges are rough."""
+    """Whether a way only goes to and fro within the ink of a line, and leaves some unexplained all the same:
+    its edges are rough.
+    """
     own = _own(way)
     if line is None or len(own) < 2 or way.misfit < WELL_MM2 / width_mm**2:
         return False
@@ -117,7 +122,9 @@ def _is_rough(way: Way, line: Planned | None, width_mm: float) -> bool:
 
 
 def _bends(sketch: Sketch, way: Way) -> bool:
-    """Whether no strand of a way goes straight on: lines that do are lines that cross, or that another touches."""
+    """Whether no strand of a way goes straight on: lines that do are lines that cross, or that another
+    touches.
+    """
     headings = sketch.poses[:, 2]
     return all(abs(turn(headings[a], headings[b] + math.pi)) > CROSSES_RAD for a, b in way.pairs)
 
@@ -128,7 +135,9 @@ def _as_good(way: Way, other: Way) -> bool:
 
 
 def _is_mark(sketch: Sketch, way: Way, plan: Planned) -> bool:
-    """Whether what a way draws beside the straight one may be a mark or a blot: no longer than a mark, and no stroke of the line explains it better."""
+    """Whether what a way draws beside the straight one may be a mark or a blot: no longer than a mark, and no
+    stroke of the line explains it better.
+    """
     width_mm = sketch.view.width_mm
     beside_mm = aside_mm(_own(way), plan.stretches)
     if beside_mm >= longest_mm(sketch.view):

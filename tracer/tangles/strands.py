@@ -1,6 +1,7 @@
 """Strands: the head's own way through a tangle, as stretches that it can run.
 
-Signals: legs and the vertices between them in; stretches (n, 2) mm out, one ending at each vertex where the head swivels.
+Signals: legs and the vertices between them in; stretches (n, 2) mm out, one ending at each vertex where the
+head swivels.
 
 Source: our own (see `pairing`).
 """
@@ -12,11 +13,11 @@ from itertools import pairwise
 
 import numpy as np
 
+from morfax.motion.arrays import Array
 from morfax.motion.curves import SPACING_MM, hermite
 from morfax.tracer.head.course import ahead_mm, along_leg, onto
 from morfax.tracer.head.planned import Planned
 from morfax.tracer.sensing.leg import Leg, turn
-from morfax.tracer.sensing.view import Array
 from morfax.tracer.tangles import pen
 from morfax.tracer.tangles.tangle import Tangle
 
@@ -26,7 +27,9 @@ KINK_RAD = math.radians(14)  # a smaller change of heading is run through
 
 
 def stretches_over(way_in: tuple[Array, float], incoming: Leg, vertices: Array, outgoing: Leg) -> list[Array]:
-    """Stretches from where the head is over the vertices to the outgoing leg's clean end, one ending at each vertex where the head swivels."""
+    """Stretches from where the head is over the vertices to the outgoing leg's clean end, one ending at each
+    vertex where the head swivels.
+    """
     way, along = onto(*way_in, incoming, 0.0)
     start = np.vstack([way, along_leg(incoming, along, 0.0)])
     if not len(vertices):
@@ -48,7 +51,9 @@ def stretches_over(way_in: tuple[Array, float], incoming: Leg, vertices: Array, 
 
 
 def as_drawn(plan: Planned, tangle: Tangle, width_mm: float) -> list[Array]:
-    """What a plan draws: its stretches, what was felt of its leg, and on to that leg's clean end in the tangle."""
+    """What a plan draws: its stretches, what was felt of its leg, and on to that leg's clean end in the
+    tangle.
+    """
     way = [*plan.stretches[:-1], np.vstack([plan.stretches[-1], plan.leg.seen[:, :2]])]
     for leg in tangle.legs[1:]:
         if same_line(plan.leg, leg, width_mm):

@@ -1,10 +1,12 @@
 """Tangles: all the ink about a knot, as far as the clean legs that lead out of it.
 
-Where inks of several lines run together for longer than a corner, no one leg tells the way on. So the head sends a wave through the ink from its clean
-incoming leg (see `fronts`): a branch of it that stays as broad as the line is, and is felt clean, is a leg, and the wave ends there; one that ends is a
-tip. What is left between the legs is the tangle's own ink, which `pairing` explains.
+Where inks of several lines run together for longer than a corner, no one leg tells the way on. So the head
+sends a wave through the ink from its clean incoming leg (see `fronts`): a branch of it that stays as broad as
+the line is, and is felt clean, is a leg, and the wave ends there; one that ends is a tip. What is left
+between the legs is the tangle's own ink, which `pairing` explains.
 
-Signals: the incoming leg in; the legs (the way in first, its heading into the tangle; the others' out of it) and the ink out, places in sheet mm.
+Signals: the incoming leg in; the legs (the way in first, its heading into the tangle; the others' out of it)
+and the ink out, places in sheet mm.
 
 Source: our own (see `knot`).
 """
@@ -18,9 +20,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.tracer.sensing.leg import Leg, leg_of
 from morfax.tracer.sensing.photocell import Cells
-from morfax.tracer.sensing.view import Array, View
+from morfax.tracer.sensing.view import View
 from morfax.tracer.tangles.wavefront import Fronts, fronts_from
 
 Flags = NDArray[np.bool_]
@@ -37,7 +40,9 @@ ABOUT_MM = 0.25  # of paper about the ink belongs to the tangle
 
 @dataclass(frozen=True, slots=True)
 class Tangle:
-    """The legs about a knot, the way in first, and the darkness (n,) of the places (n, 2) in and about the ink between them, 1 on the line."""
+    """The legs about a knot, the way in first, and the darkness (n,) of the places (n, 2) in and about the
+    ink between them, 1 on the line.
+    """
 
     legs: list[Leg]
     places_mm: Array
@@ -92,7 +97,9 @@ def _legs(view: View, fronts: Fronts, reach_mm: float) -> tuple[list[Leg], Flags
 
 
 def _latest(fronts: Fronts, k: int, count: int) -> list[float]:
-    """Breadths of a front and of those that it came from: of one alone it tells only roughly, by its few pixels."""
+    """Breadths of a front and of those that it came from: of one alone it tells only roughly, by its few
+    pixels.
+    """
     out = [float(fronts.breadth_mm[k])]
     while len(out) < count and len(fronts.parents[k]) == 1:
         k = fronts.parents[k][0]
@@ -125,7 +132,9 @@ def _tapers(seen: Array) -> bool:
 
 
 def _ink(view: View, fronts: Fronts, ended: Flags) -> tuple[Array, Array, float]:
-    """Places and darkness, and the area, of the tangle's ink and the paper about it, without what is near ink that is not the tangle's."""
+    """Places and darkness, and the area, of the tangle's ink and the paper about it, without what is near ink
+    that is not the tangle's.
+    """
     (inside, cells), (top, left) = _inside(view, fronts, ended), fronts.corner
     square = np.ones((3, 3), np.uint8)
     about = cv2.dilate(inside.view(np.uint8), square, iterations=max(2, round(ABOUT_MM / view.pitch_mm)))

@@ -1,7 +1,8 @@
 """Fronts: how a wave runs through the ink ahead of the head, and splits where the ink does.
 
-Signals: darkness on a window of the sheet, pixels; out a tree of fronts, each the ink that the wave reaches within one step of its way, with its place and its
-breadth. In a line the fronts are as broad as the line is, however it bends; in a tangle they are broader; at a tip they end.
+Signals: darkness on a window of the sheet, pixels; out a tree of fronts, each the ink that the wave reaches
+within one step of its way, with its place and its breadth. In a line the fronts are as broad as the line is,
+however it bends; in a tangle they are broader; at a tip they end.
 
             |  |  | |||                      in ink, not on paper: a ring of cells would see the neighbour's ink too
       ------|--|--||  |||--|--|---
@@ -20,7 +21,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from morfax.tracer.sensing.view import Array, View
+from morfax.motion.arrays import Array
+from morfax.tracer.sensing.view import View
 
 FAR = 1e9
 STEP_MM, STEP_PX = 0.1, 1.5  # how far the wave runs from front to front, at least
@@ -28,7 +30,9 @@ STEP_MM, STEP_PX = 0.1, 1.5  # how far the wave runs from front to front, at lea
 
 @dataclass(frozen=True, slots=True)
 class Fronts:
-    """Fronts in the order in which the wave comes to them: number (at steps from the start), places (n, 2) mm and breadth, mm; and of which they come."""
+    """Fronts in the order in which the wave comes to them: number (at steps from the start), places (n, 2) mm
+    and breadth, mm; and of which they come.
+    """
 
     step_mm: float
     at: NDArray[np.int64]
@@ -48,7 +52,9 @@ class Fronts:
 
 
 def fronts_from(view: View, place: Array, heading: float, reach_mm: float) -> Fronts:
-    """The fronts of a wave that starts across the line at a place and runs ahead as far as `reach_mm`; the ink behind is shut off."""
+    """The fronts of a wave that starts across the line at a place and runs ahead as far as `reach_mm`; the
+    ink behind is shut off.
+    """
     rows, pitch = view.cells.shape[0], view.pitch_mm
     half = math.ceil(reach_mm / pitch) + 4
     row, column = round(rows - place[1] / pitch - 0.5), round(place[0] / pitch - 0.5)
@@ -75,7 +81,9 @@ def fronts_from(view: View, place: Array, heading: float, reach_mm: float) -> Fr
 
 @njit(cache=True)
 def _wave(cells, level, start, heading, width_px, reach_px):  # type: ignore[no-untyped-def]
-    """How far each pixel of ink is from the start, within the ink, pixels; FAR on paper, behind the start and out of reach."""
+    """How far each pixel of ink is from the start, within the ink, pixels; FAR on paper, behind the start and
+    out of reach.
+    """
     rows, columns = cells.shape
     out = np.full((rows, columns), FAR)
     queue = np.empty((rows * columns, 2), np.int32)
@@ -120,7 +128,9 @@ def _wave(cells, level, start, heading, width_px, reach_px):  # type: ignore[no-
 
 @njit(cache=True)
 def _split(distance, step_px):  # type: ignore[no-untyped-def]
-    """The fronts as connected pixels within one step: label of each pixel, (step, pixels, row, column) of each front, pairs of fronts that follow."""
+    """The fronts as connected pixels within one step: label of each pixel, (step, pixels, row, column) of
+    each front, pairs of fronts that follow.
+    """
     rows, columns = distance.shape
     label = np.full((rows, columns), -1, np.int32)
     stack = np.empty((rows * columns, 2), np.int32)
