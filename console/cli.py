@@ -70,7 +70,7 @@ class Verbs(click.Group):
         """Import a verb; None if there is no such verb."""
         if cmd_name not in VERBS:
             return None
-        command = importlib.import_module(f"morfax.console.{cmd_name}").command
+        command = importlib.import_module(f"morfax.console.verbs.{cmd_name}").command
         assert isinstance(command, click.Command)
         return command
 

@@ -70,8 +70,7 @@ def drive_step(speed_mm_s, demand_mm_s, gain, largest_change_mm_s):  # type: ign
 
 
 @njit(cache=True, inline="always")
-# type: ignore[no-untyped-def]
-def conditioned_step(speed_mm_s, demand_mm_s, gain, largest_change_mm_s, condition):
+def conditioned_step(speed_mm_s, demand_mm_s, gain, largest_change_mm_s, condition):  # type: ignore[no-untyped-def]
     """Speed of the screw after one period, mm/s, with what is wrong with the drive."""
     left = demand_mm_s * condition[0]
     wanted = left - min(max(left, -condition[1]), condition[1]) + condition[2]

@@ -11,14 +11,14 @@ import os
 import tempfile
 from pathlib import Path
 
-HOUSE = Path(__file__).parents[1]
+HOUSE = Path(__file__).parents[2]  # the package morfax
 PACKAGES = ("motion", "tracer", "recorder", "player")
 
 
 def choose_cache() -> None:
     """Send the kernels to a folder that can be written; only takes effect before numba is imported."""
     if "NUMBA_CACHE_DIR" in os.environ or all(
-        _writable(HOUSE / package / "__pycache__") for package in PACKAGES
+        _writable(folder / "__pycache__") for package in PACKAGES for folder in _rooms(package)
     ):
         return
     user = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "morfax"
@@ -55,16 +55,16 @@ def told(packages: tuple[str, ...] = PACKAGES) -> bool:
 
 def _sources(package: str) -> list[Path]:
     """The modules of a package that have kernels; all of them if none has."""
-    every = sorted((HOUSE / package).glob("*.py"))
+    every = sorted((HOUSE / package).rglob("*.py"))
     return [file for file in every if "@njit(cache=True" in file.read_text("utf-8")] or every
 
 
 def _is_cold(package: str) -> bool:
     """Whether a package that has kernels has none compiled, or older ones than its sources."""
     sources = [
-        file for file in (HOUSE / package).glob("*.py") if "@njit(cache=True" in file.read_text("utf-8")
+        file for file in (HOUSE / package).rglob("*.py") if "@njit(cache=True" in file.read_text("utf-8")
     ]
-    compiled = {file: _compiled_s(package, file.stem) for file in sources}
+    compiled = {file: _compiled_s(file) for file in sources}
     newest = max(compiled.values(), default=None)
     if newest is None:
         return False
@@ -72,11 +72,16 @@ def _is_cold(package: str) -> bool:
     return newest == 0 or any(0 < when < file.stat().st_mtime for file, when in compiled.items())
 
 
-def _compiled_s(package: str, module: str) -> float:
+def _rooms(package: str) -> list[Path]:
+    """The folders of a package that hold modules with kernels."""
+    return sorted({file.parent for file in _sources(package)})
+
+
+def _compiled_s(module: Path) -> float:
     """When a module's kernels were last compiled, s since the epoch; 0 if never."""
     given = os.environ.get("NUMBA_CACHE_DIR")
-    folders = Path(given).glob(f"{package}_*") if given else [HOUSE / package / "__pycache__"]
-    found = [file.stat().st_mtime for folder in folders for file in folder.glob(f"{module}.*.nbi")]
+    folders = Path(given).glob(f"{module.parent.name}_*") if given else [module.parent / "__pycache__"]
+    found = [file.stat().st_mtime for folder in folders for file in folder.glob(f"{module.stem}.*.nbi")]
     return max(found, default=0.0)
 
 

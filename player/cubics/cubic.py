@@ -234,8 +234,7 @@ class CubicPlayback(Supervised):
 
 
 @njit(cache=True)
-# type: ignore[no-untyped-def]
-def _servo(predicted, noise, scales, register, drive, conditions, state, seen, moved_mm):
+def _servo(predicted, noise, scales, register, drive, conditions, state, seen, moved_mm):  # type: ignore[no-untyped-def]
     """Run the servos of all axes through a block; the number of rows done before a difference was too large."""
     counts_per_mm, largest, dropped = register
     modulus, gain, change, dt_s = drive

@@ -171,8 +171,7 @@ def _lag(position, icr, bits):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
-# type: ignore[no-untyped-def]
-def _follow(pulses, analogue, timing, conditions, registers, tables, commands, places):
+def _follow(pulses, analogue, timing, conditions, registers, tables, commands, places):  # type: ignore[no-untyped-def]
     """Step all axes through a block; recirculations done before a lag was out of range. One loop: all of
     figure 7.
     """

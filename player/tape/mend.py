@@ -86,8 +86,8 @@ def mend(
         "start_mm": start_mm,
         "order": order,
     }
-    # type: ignore[arg-type]
-    playback = play(file, **by_hand, closed=closed, acceleration_mm_s2=acceleration_mm_s2)
+    limits = {"closed": closed, "acceleration_mm_s2": acceleration_mm_s2}
+    playback = play(file, **by_hand, **limits)  # type: ignore[arg-type]
     fmt, reader = playback.format, playback.reader
     if fmt.end_mm is None:
         raise TapeFault(

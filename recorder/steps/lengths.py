@@ -129,8 +129,7 @@ def _keep(beam, costs, origin, count, course, cost, parent):  # type: ignore[no-
 
 
 @njit(cache=True)
-# type: ignore[no-untyped-def]
-def _search(places, speeds, left, settings, start, end, moves, table, parents, taken, off):
+def _search(places, speeds, left, settings, start, end, moves, table, parents, taken, off):  # type: ignore[no-untyped-def]
     """Carry the beam on until a course stands at the end; the last level and the winner, or -1."""
     spacing, width = settings[0], int(settings[1])
     beam, new = np.zeros((width, 7), np.int64), np.zeros((width, 7), np.int64)

@@ -136,8 +136,7 @@ def _write(cycles, first_period, reference_cycles, level, frames):  # type: igno
 
 
 @njit(cache=True)
-# type: ignore[no-untyped-def]
-def _write_wave(cycles, first_period, reference_cycles, amplitudes, by_speed, frames):
+def _write_wave(cycles, first_period, reference_cycles, amplitudes, by_speed, frames):  # type: ignore[no-untyped-def]
     """Fill frames as `_write` does, the tracks of the axes with a wave of odd harmonics."""
     periods, axes = cycles.shape[0] - 3, cycles.shape[1]
     steps = frames.shape[0] // periods

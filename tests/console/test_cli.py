@@ -33,7 +33,7 @@ def test_every_verb_has_help_with_real_examples(morfax: Morfax, verb: str) -> No
 @pytest.mark.parametrize("verb", cli.VERBS)
 def test_the_examples_in_the_help_are_commands_that_parse(verb: str) -> None:
     """Each example is parsed by the verb itself; nothing is run."""
-    command = importlib.import_module(f"morfax.console.{verb}").command
+    command = importlib.import_module(f"morfax.console.verbs.{verb}").command
     for line in command.epilog.splitlines():
         if line.strip().startswith("morfax"):
             words = line.split()[2:]
@@ -144,4 +144,4 @@ def test_a_reader_that_goes_away_is_no_fault(path_file: Path) -> None:
 
 def _with_house() -> dict[str, str]:
     """The environment, with the packages on the path wherever the command is called."""
-    return {**os.environ, "PYTHONPATH": str(Path(cli.__file__).parents[1])}
+    return {**os.environ, "PYTHONPATH": str(Path(cli.__file__).absolute().parents[2])}

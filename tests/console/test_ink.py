@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from tests.console.conftest import SAMPLES, Morfax
-from tests.tracer.test_ink import ORANGE, drawn
+from tests.tracer.drawing.test_inks import ORANGE, drawn
 
 
 def test_one_ink_is_followed_and_compared(morfax: Morfax, here: Path) -> None:

@@ -24,7 +24,7 @@ from morfax.player.cubics.scales import Scales, gated_pulses, joined, read_scale
 from morfax.player.cubics.stores import Store, Stores
 from morfax.recorder.cubics.cubics import differences, record_cubics
 from morfax.recorder.cubics.file import CubicFormat, read_program
-from tests.recorder.test_steps import circle
+from tests.recorder.steps.test_steps import circle
 
 Vectors = Callable[[str], Any]
 

@@ -12,7 +12,8 @@ Direction = Literal["cw", "ccw", "left", "right"]
 class Route(NamedTuple):
     """How the operator has the head go: which way it takes the line, and to which side at each junction.
 
-    A direction of None is either; a side of None is straight on, as at every junction after the last that is named.
+    A direction of None is either; a side of None is straight on, as at every junction after the last that is
+    named.
     """
 
     direction: Direction | None = None

@@ -212,8 +212,7 @@ def _from_tip(excess: Array, first: int, tip: int, jump_mm: float) -> list[int]:
 
 
 @njit(cache=True)
-# type: ignore[no-untyped-def]
-def _along_edge(cells, pitch_mm, start, heading, side, step_mm, stations, width_mm, level, regained):
+def _along_edge(cells, pitch_mm, start, heading, side, step_mm, stations, width_mm, level, regained):  # type: ignore[no-untyped-def]
     """Stations (n, 3): middle half a width within the edge on one side, and distance to the first light on
     the other (NaN beyond three widths).
 
@@ -247,8 +246,7 @@ def _along_edge(cells, pitch_mm, start, heading, side, step_mm, stations, width_
 
 
 @njit(cache=True)
-# type: ignore[no-untyped-def]
-def _first_light(cells, pitch_mm, x, y, nx, ny, begin_mm, end_mm, step_mm, level):
+def _first_light(cells, pitch_mm, x, y, nx, ny, begin_mm, end_mm, step_mm, level):  # type: ignore[no-untyped-def]
     """Distance along a direction at which the darkness falls through the level; NaN if it does not, or is
     light at the beginning.
     """

@@ -184,8 +184,7 @@ def _darkness(cells, pitch_mm, place, along, side, middles):  # type: ignore[no-
 
 
 @njit(cache=True)
-# type: ignore[no-untyped-def]
-def _soiled(cells, pitch_mm, place, along, side, middles, from_mm, to_mm, level):
+def _soiled(cells, pitch_mm, place, along, side, middles, from_mm, to_mm, level):  # type: ignore[no-untyped-def]
     """The share of ink to both sides of a stroke, between two distances from its edges."""
     dark = count = 0
     for k in range(len(middles)):
@@ -198,8 +197,7 @@ def _soiled(cells, pitch_mm, place, along, side, middles, from_mm, to_mm, level)
 
 
 @njit(cache=True)
-# type: ignore[no-untyped-def]
-def _goes_on(cells, pitch_mm, place, along, side, middles, beyond_mm, width_mm, level):
+def _goes_on(cells, pitch_mm, place, along, side, middles, beyond_mm, width_mm, level):  # type: ignore[no-untyped-def]
     """Whether a stroke goes on in its own line after a gap, for one and a half widths or more."""
     last = np.argmax(middles[:, 1])
     first = np.argmin(middles[:, 1])
@@ -217,8 +215,7 @@ def _goes_on(cells, pitch_mm, place, along, side, middles, beyond_mm, width_mm, 
 
 
 @njit(cache=True)
-# type: ignore[no-untyped-def]
-def _stroke_at(cells, pitch_mm, place, along, side, away_mm, farthest_mm, width_mm, level):
+def _stroke_at(cells, pitch_mm, place, along, side, away_mm, farthest_mm, width_mm, level):  # type: ignore[no-untyped-def]
     """Middles (along, away) and widths of a stroke, (n, 3) mm, felt inward and outward from a place beside
     the way until there is no ink, specks apart.
     """

@@ -169,8 +169,7 @@ def ring(cells, pitch_mm, centre, radius_mm, level):  # type: ignore[no-untyped-
 
 
 @njit(cache=True)
-# type: ignore[no-untyped-def]
-def scout(cells, pitch_mm, start, heading, step_mm, stations, width_mm, level):
+def scout(cells, pitch_mm, start, heading, step_mm, stations, width_mm, level):  # type: ignore[no-untyped-def]
     """Feel along a line from a place on it: (n, 3) centre x, y and width, mm, where the line is seen clean
     between two edges.
 

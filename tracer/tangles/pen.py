@@ -138,8 +138,7 @@ def ink(distance_mm, half_mm, softness_mm, out):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-# type: ignore[no-untyped-def]
-def _wrong(places, darkness, known_mm, pen, ends, counts, strokes, vertices, lines, distance, out):
+def _wrong(places, darkness, known_mm, pen, ends, counts, strokes, vertices, lines, distance, out):  # type: ignore[no-untyped-def]
     """What is drawn too dark at each place, into `out`; the sum of its squares."""
     distance[:] = known_mm
     away(places, lines, pieces(ends, counts, strokes, vertices, lines), distance)
@@ -152,8 +151,7 @@ def _wrong(places, darkness, known_mm, pen, ends, counts, strokes, vertices, lin
 
 
 @njit(cache=True)
-# type: ignore[no-untyped-def]
-def settle(places, darkness, known_mm, pen, ends, counts, strokes, vertices, rounds):
+def settle(places, darkness, known_mm, pen, ends, counts, strokes, vertices, rounds):  # type: ignore[no-untyped-def]
     """Move the vertices (k, 2), in place, to where the pen (half a width, softness) leaves the ink that is
     there; the sum of squares that is left.
 

@@ -23,7 +23,7 @@ from morfax.tracer.program.program import Trace
 from morfax.tracer.program.trace import trace
 from morfax.tracer.program.trace_lines import trace_lines
 from tests.tracer.inked import UM, arc, inked, polyline
-from tests.tracer.test_program import WORK, run_through
+from tests.tracer.program.test_program import WORK, run_through
 
 shapely = pytest.importorskip("shapely")
 

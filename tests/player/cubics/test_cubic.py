@@ -18,7 +18,7 @@ from morfax.player.cubics.interpolator import Interpolator, TimeBase, table, tru
 from morfax.player.cubics.scales import Scales, joined, read_scales
 from morfax.recorder.cubics.cubics import record_cubics
 from morfax.recorder.cubics.file import CubicFormat
-from tests.recorder.test_steps import SQUARE, circle
+from tests.recorder.steps.test_steps import SQUARE, circle
 
 UM = 1e-3
 

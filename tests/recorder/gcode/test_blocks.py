@@ -26,7 +26,7 @@ from morfax.recorder.gcode.blocks import TOLERANCE_MM, WRITTEN_MM, record_blocks
 from morfax.recorder.gcode.pieces import corners, longest_pieces, off_circle_mm, off_line_mm, resample
 from morfax.recorder.media import record
 
-SAMPLES = Path(__file__).parents[2] / "samples"
+SAMPLES = Path(__file__).parents[3] / "samples"
 FEWEST = {
     "gear": 16,
     "bracket": 9 + 4,

@@ -24,7 +24,7 @@ from morfax.tracer.operator.operator import Halt, Operator
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.trace import trace
 from tests.tracer.inked import UM, arc, cross, dot, inked, polyline, tick
-from tests.tracer.test_program import EXACT_MM, WORK, at, in_work, run_through
+from tests.tracer.program.test_program import EXACT_MM, WORK, at, in_work, run_through
 
 FEED_MM_S = 10.0
 NEARER_MM = 1.0 * UM  # than the radius to a contour; asked of the cutter's ways: 1 um

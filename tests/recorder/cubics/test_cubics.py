@@ -17,7 +17,7 @@ from morfax.player.cubics.cubic import play_cubic
 from morfax.player.cubics.interpolator import Interpolator
 from morfax.recorder.cubics.cubics import differences, hermite, record_cubics
 from morfax.recorder.cubics.file import CubicFormat, CubicProgram, read_program, write_program
-from tests.recorder.test_steps import SQUARE, STAR, TOOL, circle
+from tests.recorder.steps.test_steps import SQUARE, STAR, TOOL, circle
 
 UM = 1e-3
 SAMPLES = st.lists(
@@ -70,8 +70,7 @@ def test_the_tool_goes_down_and_up(tmp_path: FilePath) -> None:
 
 
 @given(SAMPLES, st.sampled_from([(16, 1), (32, 1), (64, 4), (16, 4), (256, 2)]))
-# type: ignore[type-arg]
-def test_ends_and_slopes_meet_to_the_digit(rows: list, steps: tuple[int, int]) -> None:
+def test_ends_and_slopes_meet_to_the_digit(rows: list, steps: tuple[int, int]) -> None:  # type: ignore[type-arg]
     """Path continuous in slope across intervals, whatever the samples; and each sample met exactly."""
     from morfax.player.cubics.interpolator import ends, slopes
 
