@@ -16,7 +16,9 @@ def main(names: list[str]) -> None:
         importlib.import_module("benchmarks.folder").main(names[1:])
         return
     here = [
-        module.name for module in pkgutil.iter_modules([str(Path(__file__).parent)]) if module.name[0] != "_"
+        module.name
+        for module in pkgutil.iter_modules([str(Path(__file__).parent)])
+        if module.name[0] != "_"
     ]
     if unknown := [name for name in names if name not in here]:
         sys.exit(

@@ -52,41 +52,66 @@ def loops_of(file: Path) -> list[Points]:
     return [np.array(loop) for loop in loops.values() if len(loop) > 1]
 
 
-def drawn(loops: list[Points], line_mm: float, size_mm: float | None = None) -> tuple[Drawing, list[Points]]:
+def drawn(
+    loops: list[Points], line_mm: float, size_mm: float | None = None
+) -> tuple[Drawing, list[Points]]:
     """A picture of the lines as a scanner sees it, and the lines in its sheet coordinates."""
     every = np.vstack(loops)
     scale = 1.0 if size_mm is None else size_mm / float(np.ptp(every, axis=0).max())
     loops, every = [loop * scale for loop in loops], every * scale
     loops = [loop - every.min(axis=0) + MARGIN_MM for loop in loops]
-    columns, rows = np.ceil((np.ptp(every, axis=0) + 2 * MARGIN_MM) * DPI / MM_PER_INCH).astype(int)
+    columns, rows = np.ceil((np.ptp(every, axis=0) + 2 * MARGIN_MM) * DPI / MM_PER_INCH).astype(
+        int
+    )
     scale = DPI / MM_PER_INCH * FINE
     fine = np.zeros((rows * FINE, columns * FINE), np.uint8)
     for loop in loops:
         at = np.column_stack([loop[:, 0] * scale, len(fine) - loop[:, 1] * scale]) - 0.5
         cv2.polylines(
-            fine, [np.round(at * 256).astype(np.int32)], False, 255, round(line_mm * scale), cv2.LINE_AA, 8
+            fine,
+            [np.round(at * 256).astype(np.int32)],
+            False,
+            255,
+            round(line_mm * scale),
+            cv2.LINE_AA,
+            8,
         )
-    ink = cv2.resize(fine, (int(columns), int(rows)), interpolation=cv2.INTER_AREA).astype(np.float32) / 255
+    ink = (
+        cv2.resize(fine, (int(columns), int(rows)), interpolation=cv2.INTER_AREA).astype(
+            np.float32
+        )
+        / 255
+    )
     soft = cv2.GaussianBlur(ink, (0, 0), SOFTNESS_MM * DPI / MM_PER_INCH)
     seen = soft + np.random.default_rng(1).normal(0, NOISE, soft.shape)
     return Drawing(np.asarray(seen, np.float32), MM_PER_INCH / DPI), loops
 
 
-def rows(file: Path, loops: list[Points], line_mm: float, size_mm: float | None = None) -> list[str]:
+def rows(
+    file: Path, loops: list[Points], line_mm: float, size_mm: float | None = None
+) -> list[str]:
     """One drawing traced and measured, as lines of the table: one for each loop."""
     image = next(
-        (file.with_suffix(s) for s in (".png", ".jpg", ".tif") if file.with_suffix(s).exists()), None
+        (file.with_suffix(s) for s in (".png", ".jpg", ".tif") if file.with_suffix(s).exists()),
+        None,
     )
     begun = time.perf_counter()
     width = f"{line_mm:9g}" if image is None else f"{'scan':>9s}"
     try:
-        drawing, truth = (Drawing.open(image), loops) if image is not None else drawn(loops, line_mm, size_mm)
+        drawing, truth = (
+            (Drawing.open(image), loops)
+            if image is not None
+            else drawn(loops, line_mm, size_mm)
+        )
         lines = [line for line in trace_lines(drawing).lines if len(line.xy_mm) > 1]
     except Fault as fault:
         return [f"{file.stem[:27]:28s}{width}  {fault}"]
     took_s = time.perf_counter() - begun
     own = [nearest(line, truth) for line in lines]
-    parts = [[line for line, k in zip(lines, own, strict=True) if k == loop] for loop in range(len(truth))]
+    parts = [
+        [line for line, k in zip(lines, own, strict=True) if k == loop]
+        for loop in range(len(truth))
+    ]
     found = [
         f"{file.stem[:27]:28s}{width}{k:5d}  {figures(part, loop)}"
         for k, (part, loop) in enumerate(zip(parts, truth, strict=True))
@@ -104,8 +129,14 @@ def figures(lines: list[Line], loop: Points) -> str:
     if not lines:
         return f"{'missed':8s}{0:7d}{'':38s}{100:10.2f}"
     path = [line.xy_mm for line in lines]
-    found, ending = distance(path, [loop]), min((line.ending for line in lines), key=ENDINGS.index)
-    there, missed = found.path_to_reference, np.mean(pointwise([loop], path, 0.05)[1] > MISSED_MM)
+    found, ending = (
+        distance(path, [loop]),
+        min((line.ending for line in lines), key=ENDINGS.index),
+    )
+    there, missed = (
+        found.path_to_reference,
+        np.mean(pointwise([loop], path, 0.05)[1] > MISSED_MM),
+    )
     return (
         f"{ending:8s}{len(lines):7d}{there.rms_mm * 1e3:9.1f}{there.p95_mm * 1e3:9.1f}{there.max_mm * 1e3:9.0f}"
         f"{found.hausdorff_mm * 1e3:11.0f}{100 * missed:10.2f}"
@@ -125,7 +156,9 @@ def lengths_mm(
 
 
 @click.command("folder")
-@click.argument("folder", metavar="DIR", type=click.Path(exists=True, file_okay=False, path_type=Path))
+@click.argument(
+    "folder", metavar="DIR", type=click.Path(exists=True, file_okay=False, path_type=Path)
+)
 @click.option(
     "--line",
     "widths_mm",
@@ -143,7 +176,9 @@ def lengths_mm(
 )
 def table(folder: Path, widths_mm: tuple[float, ...], size_mm: float | None) -> None:
     """Print the table of a folder of drawings."""
-    truths = [(file, loops) for file in sorted(folder.glob("*.csv")) if (loops := loops_of(file))]
+    truths = [
+        (file, loops) for file in sorted(folder.glob("*.csv")) if (loops := loops_of(file))
+    ]
     if not truths:
         raise click.ClickException(f"{folder} holds no truth file (.csv with columns loop,x,y)")
     click.echo(HEAD)

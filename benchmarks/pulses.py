@@ -31,7 +31,9 @@ AXES = 3
 
 def line() -> np.ndarray:
     """Pulses of a line of 37 mm on three axes at 10 mm/s."""
-    return Interpolator().line((30_000, 20_000, 10_000), Feed(feed_number(10_000, RECIRCULATIONS_HZ)))
+    return Interpolator().line(
+        (30_000, 20_000, 10_000), Feed(feed_number(10_000, RECIRCULATIONS_HZ))
+    )
 
 
 def quarter() -> np.ndarray:
@@ -43,7 +45,9 @@ def quarter() -> np.ndarray:
 def watched_servo(demand: np.ndarray) -> int:
     """The servo over all of a demand, and its monitor; rows that were sound."""
     actual = PositionServos(demand[0]).follow(demand)
-    return Monitor("xyz", MOTION_RATE_HZ, FollowingLimit.linear(settle_s=0.06)).watch(demand, actual)
+    return Monitor("xyz", MOTION_RATE_HZ, FollowingLimit.linear(settle_s=0.06)).watch(
+        demand, actual
+    )
 
 
 def program() -> list[str]:
@@ -75,7 +79,9 @@ def rows() -> list[Row]:
         {
             "line": line,
             "quarter": quarter,
-            "servo": lambda: PulseServos(np.zeros(AXES, np.int64), RECIRCULATIONS_HZ).follow(pulses),
+            "servo": lambda: PulseServos(np.zeros(AXES, np.int64), RECIRCULATIONS_HZ).follow(
+                pulses
+            ),
             "watched": lambda: watched_servo(demand),
             "read": lambda: parse_rs274(lines),
             "numbers": lambda: numbers_only(lines),
@@ -90,7 +96,11 @@ def rows() -> list[Row]:
             AXES * len(pulses) / took["servo"] / 1e6,
             "million periods/s/axis",
         ),
-        Row("monitored servo", AXES * len(demand) / took["watched"] / 1e6, "million periods/s/axis"),
+        Row(
+            "monitored servo",
+            AXES * len(demand) / took["watched"] / 1e6,
+            "million periods/s/axis",
+        ),
         Row(
             "G-code",
             len(lines) / took["read"] / 1e3,

@@ -58,7 +58,9 @@ def decode(file: Path) -> None:
     """File to phases with the player's discriminator."""
     with Tape.open(file) as tape:
         fmt = tape.format
-        organ = Discriminator(fmt.sample_rate_hz, fmt.reference_hz, fmt.samples_per_motion, fmt.tracks)
+        organ = Discriminator(
+            fmt.sample_rate_hz, fmt.reference_hz, fmt.samples_per_motion, fmt.tracks
+        )
         for _ in discriminate(tape.stored_blocks(BLOCK_FRAMES), organ):
             pass
 
@@ -70,7 +72,9 @@ def decode_by_hilbert(file: Path) -> None:
     with soundfile.SoundFile(file) as sound:
         while len(frames := sound.read(BLOCK_FRAMES, dtype="float32")):
             analytic = hilbert(frames, axis=0)
-            np.unwrap(np.angle(analytic[:, 1:] * analytic[:, :1].conj()), axis=0)[::8] / (2 * np.pi)
+            np.unwrap(np.angle(analytic[:, 1:] * analytic[:, :1].conj()), axis=0)[::8] / (
+                2 * np.pi
+            )
 
 
 def play_whole(file: Path) -> None:
@@ -119,7 +123,13 @@ def speed_rows(folder: Path) -> list[Row]:
             "reading",
         ),
         Row("scipy.signal.hilbert, blocks", mega["hilbert"], "million frames/s"),
-        Row("decoding", mega["decode"], "million frames/s", mega["decode"] / mega["hilbert"], "hilbert"),
+        Row(
+            "decoding",
+            mega["decode"],
+            "million frames/s",
+            mega["decode"] / mega["hilbert"],
+            "hilbert",
+        ),
         Row("writing float32 as 16 bit", mega["write"], "million frames/s"),
         Row(
             "recording, motion to file",

@@ -84,7 +84,9 @@ def contours(file: Path) -> Points:
     would first write it.
     """
     grey = np.asarray(Image.open(file).convert("L"))
-    found = sorted(find_contours(grey, threshold_otsu(grey)), key=len)[-2:]  # both edges of a closed line
+    found = sorted(find_contours(grey, threshold_otsu(grey)), key=len)[
+        -2:
+    ]  # both edges of a closed line
     return np.vstack([on_sheet(edge[:, 0], edge[:, 1], len(grey)) for edge in found])
 
 
@@ -167,7 +169,11 @@ def speed_rows(file: Path, folder: Path) -> list[Row]:
 
     recorded(), played()
     took = best_s(
-        {"follower, finding the line too": lambda: trace(drawing), "recorder": recorded, "player": played},
+        {
+            "follower, finding the line too": lambda: trace(drawing),
+            "recorder": recorded,
+            "player": played,
+        },
         time.process_time,
     )
     simulated = {name: motion.duration_s / taken for name, taken in took.items()}

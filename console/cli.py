@@ -101,7 +101,9 @@ def _ended(words: Sequence[str] | None) -> int:
     """Run the verb, and tell how it ended."""
     try:
         outcome = cli.main(
-            args=None if words is None else list(words), prog_name="morfax", standalone_mode=False
+            args=None if words is None else list(words),
+            prog_name="morfax",
+            standalone_mode=False,
         )
         sys.stdout.flush()
         return outcome if isinstance(outcome, int) else 0
@@ -111,13 +113,20 @@ def _ended(words: Sequence[str] | None) -> int:
     except click.ClickException as wrong_use:
         return _say(_told(wrong_use), wrong_use.exit_code)
     except (click.Abort, KeyboardInterrupt) as stop:
-        return _say("interrupted; no unfinished file was left under its final name", 128 + _signal_of(stop))
+        return _say(
+            "interrupted; no unfinished file was left under its final name",
+            128 + _signal_of(stop),
+        )
     except Fault as fault:
         return _say(str(fault), fault.exit_code)
     except SystemExit:  # what click makes of a broken pipe
         return _broken_pipe()
     except OSError as error:
-        return _broken_pipe() if error.errno == errno.EPIPE else _say(_cause(error), FileFault.exit_code)
+        return (
+            _broken_pipe()
+            if error.errno == errno.EPIPE
+            else _say(_cause(error), FileFault.exit_code)
+        )
     except Exception as error:
         if _is_out_of_memory(error):
             return _say(NO_MEMORY, DrawingFault.exit_code)
@@ -125,7 +134,8 @@ def _ended(words: Sequence[str] | None) -> int:
             traceback.print_exc()
         told = " ".join(str(error).split())
         return _say(
-            f"a mistake in morfax: {type(error).__name__}: {told} (MORFAX_TRACEBACK=1 shows where)", MISTAKE
+            f"a mistake in morfax: {type(error).__name__}: {told} (MORFAX_TRACEBACK=1 shows where)",
+            MISTAKE,
         )
 
 
@@ -141,7 +151,9 @@ def _stopped_by_signals() -> Iterator[None]:
     before = {}
     if threading.current_thread() is threading.main_thread():  # no other one may
         for name in ("SIGTERM", "SIGHUP"):
-            number = getattr(signal, name, None)  # SIGHUP: not on every system; ignored under nohup
+            number = getattr(
+                signal, name, None
+            )  # SIGHUP: not on every system; ignored under nohup
             if number is not None and signal.getsignal(number) is not signal.SIG_IGN:
                 before[number] = signal.signal(number, stop)
     try:
@@ -154,7 +166,11 @@ def _stopped_by_signals() -> Iterator[None]:
 def _signal_of(stop: BaseException) -> int:
     """The number of the signal that interrupted: what click makes of it has it as its cause."""
     cause = stop.__cause__ or stop
-    return int(cause.args[0]) if cause.args and isinstance(cause.args[0], int) else int(signal.SIGINT)
+    return (
+        int(cause.args[0])
+        if cause.args and isinstance(cause.args[0], int)
+        else int(signal.SIGINT)
+    )
 
 
 def _say(message: str, exit_code: int) -> int:

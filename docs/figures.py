@@ -60,7 +60,9 @@ def inked(*lines: Array) -> tuple[Drawing, Array]:
 
 def put_head(drawing: Drawing, start_mm: Array) -> follower.Follower:
     """A head put down on the line at a place, heading to the right."""
-    stance, _ = next(put_down(drawing, (float(start_mm[0]), float(start_mm[1])), SETTINGS.aperture_mm, None))
+    stance, _ = next(
+        put_down(drawing, (float(start_mm[0]), float(start_mm[1])), SETTINGS.aperture_mm, None)
+    )
     if np.cos(stance.heading_rad) < 0:
         stance = type(stance)(stance.place_mm, stance.heading_rad - np.pi, stance.view)
     return follower.Follower(stance, SETTINGS, MOTION_RATE_HZ)
@@ -87,7 +89,9 @@ def listening(place: Any, name: str) -> Iterator[list[tuple[tuple[Any, ...], Any
 def ground(axes: Axes, drawing: Drawing, view: tuple[float, float, float, float]) -> None:
     """The drawing in grey, and the part of it to show, mm."""
     extent = (0.0, drawing.width_mm, 0.0, drawing.height_mm)
-    axes.imshow(drawing.darkness, extent=extent, cmap="Greys", vmin=0, vmax=2.6, interpolation="nearest")
+    axes.imshow(
+        drawing.darkness, extent=extent, cmap="Greys", vmin=0, vmax=2.6, interpolation="nearest"
+    )
     axes.set(xlim=view[:2], ylim=view[2:], aspect="equal", xlabel="X, mm", ylabel="Y, mm")
 
 
@@ -116,7 +120,11 @@ def sweep_figure() -> plt.Figure:
         first, mean = photocell.sweep(cells, PITCH_MM, place, 0.0, -offset, amplitude, 24)
         axes.plot(phase / 2 / np.pi, seen, color=colour, label="darkness seen")
         axes.plot(
-            phase / 2 / np.pi, mean + first * np.sin(phase), "--", color="#555555", label="mean + fundamental"
+            phase / 2 / np.pi,
+            mean + first * np.sin(phase),
+            "--",
+            color="#555555",
+            label="mean + fundamental",
         )
         axes.set(
             ylim=(-0.3, 1.35),
@@ -125,14 +133,22 @@ def sweep_figure() -> plt.Figure:
         )
         axes.legend(fontsize=7, loc="lower center")
     every = np.linspace(-1.0, 1.0, 201)
-    both = np.array([photocell.sweep(cells, PITCH_MM, place, 0.0, -e, amplitude, 24) for e in every])
+    both = np.array(
+        [photocell.sweep(cells, PITCH_MM, place, 0.0, -e, amplitude, 24) for e in every]
+    )
     slope.plot(every, both[:, 0], color=BLUE, label="fundamental")
     slope.plot(every, both[:, 1], color=ORANGE, label="mean")
     slope.plot(
-        every, run.carriage.tuning.slope_per_mm * every, ":", color="#555555", label="slope as calibrated"
+        every,
+        run.carriage.tuning.slope_per_mm * every,
+        ":",
+        color="#555555",
+        label="slope as calibrated",
     )
     slope.set(
-        ylim=(-1.1, 1.1), xlabel="line's distance to the left, mm", title="the detector's characteristic"
+        ylim=(-1.1, 1.1),
+        xlabel="line's distance to the left, mm",
+        title="the detector's characteristic",
     )
     slope.legend(fontsize=7)
     slope.grid(alpha=0.3)
@@ -148,20 +164,29 @@ def seen_from_axis(run: follower.Follower) -> dict[str, Array]:
     s, t = run.carriage.state, run.carriage.tuning
     heading = s[head.HEADING]
     turn = np.array([[np.cos(heading), -np.sin(heading)], [np.sin(heading), np.cos(heading)]])
-    places = (run.carriage._drum[: min(int(s[head.PLACES]), head.DRUM)] - s[[head.X, head.Y]]) @ turn
+    places = (
+        run.carriage._drum[: min(int(s[head.PLACES]), head.DRUM)] - s[[head.X, head.Y]]
+    ) @ turn
     x, y = places[np.abs(places[:, 0] - t.point_mm) < t.half_window_mm].T
     fitted = np.polyfit(x, y, 2, w=np.sqrt(1 - ((x - t.point_mm) / t.half_window_mm) ** 2))
     window = t.point_mm + np.linspace(-1, 1, 60) * t.half_window_mm
     phase, curve = np.linspace(0, 2 * np.pi, 100), s[head.MIDDLE] / t.lead_mm**2
-    ellipse = [t.lead_mm + t.along_mm * np.cos(phase), s[head.MIDDLE] + t.amplitude_mm * np.sin(phase)]
+    ellipse = [
+        t.lead_mm + t.along_mm * np.cos(phase),
+        s[head.MIDDLE] + t.amplitude_mm * np.sin(phase),
+    ]
     beside = t.guard_mm * np.hypot(1, 2 * curve * t.guard_lead_mm) * np.array([1, 0, -1])
     return {
         "drum: the line's places, one a sweep": places,
         "parabola about the point": np.column_stack([window, np.polyval(fitted, window)]),
         "steering axis": np.zeros((1, 2)),
-        "point steered for": ((s[[head.POINT_X, head.POINT_Y]] - s[[head.X, head.Y]]) @ turn)[None],
+        "point steered for": ((s[[head.POINT_X, head.POINT_Y]] - s[[head.X, head.Y]]) @ turn)[
+            None
+        ],
         "sweep of cell 101": np.column_stack(ellipse),
-        "guard cells": np.column_stack([np.full(3, t.guard_lead_mm), curve * t.guard_lead_mm**2 + beside]),
+        "guard cells": np.column_stack(
+            [np.full(3, t.guard_lead_mm), curve * t.guard_lead_mm**2 + beside]
+        ),
         "look-ahead cell 102": np.array([[t.look_ahead_mm, curve * t.look_ahead_mm**2]]),
     }
 
@@ -181,7 +206,9 @@ def drum_figure() -> plt.Figure:
         np.empty((3000, 2)),
     )
     axis, heading = run.carriage.state[[head.X, head.Y]], run.carriage.state[head.HEADING]
-    to_sheet = np.array([[np.cos(heading), np.sin(heading)], [-np.sin(heading), np.cos(heading)]])
+    to_sheet = np.array(
+        [[np.cos(heading), np.sin(heading)], [-np.sin(heading), np.cos(heading)]]
+    )
     figure, (sheet, close) = plt.subplots(1, 2, figsize=(13, 5.6))
     ground(sheet, drawing, about(axis + 0.6 * to_sheet[0], 1.6, 1.6))
     for (name, points), style in zip(seen_from_axis(run).items(), DRUM_STYLES, strict=True):
@@ -191,7 +218,10 @@ def drum_figure() -> plt.Figure:
     sheet.legend(fontsize=7, loc="lower left")
     sheet.set_title("on the sheet")
     close.set(
-        xlim=(-0.8, 1.2), ylim=(-0.07, 0.01), xlabel="along the heading, mm", ylabel="to the left of it, mm"
+        xlim=(-0.8, 1.2),
+        ylim=(-0.07, 0.01),
+        xlabel="along the heading, mm",
+        ylabel="to the left of it, mm",
     )
     close.set_title("seen from the axis, sideways enlarged")
     close.grid(alpha=0.3)
@@ -203,7 +233,11 @@ def draw_ring(axes: Axes, centre: Array, radius: float, arcs: Array) -> None:
     """A ring that was looked round, and the ink that was seen on it."""
     for begin, end, width in ((0, 2 * np.pi, 0.25), *((*arc, 0.9) for arc in arcs)):
         a = np.linspace(begin, end, 100)
-        axes.plot(*(centre[:, None] + radius * np.array([np.cos(a), np.sin(a)])), color=VIOLET, lw=width)
+        axes.plot(
+            *(centre[:, None] + radius * np.array([np.cos(a), np.sin(a)])),
+            color=VIOLET,
+            lw=width,
+        )
 
 
 def corner_figure() -> plt.Figure:
@@ -211,7 +245,9 @@ def corner_figure() -> plt.Figure:
     figure, panels = plt.subplots(1, 2, figsize=(13, 6))
     for axes, angle in zip(panels, (90, 36), strict=True):
         turned = np.radians(180 - angle)
-        corner = np.array([[-14.0, 0.0], [0.0, 0.0], [14 * np.cos(turned), 14 * np.sin(turned)]])
+        corner = np.array(
+            [[-14.0, 0.0], [0.0, 0.0], [14 * np.cos(turned), 14 * np.sin(turned)]]
+        )
         drawing, by = inked(corner)
         run = put_head(drawing, by + np.array([-7, 0]))
         with (
@@ -227,9 +263,16 @@ def corner_figure() -> plt.Figure:
                 draw_ring(axes, centre, radius, arcs)
         (_, incoming, *_), (outgoing, *_) = surveys[0]
         for leg, colour, name in ((incoming, BLUE, "incoming"), (outgoing, GREEN, "outgoing")):
-            axes.plot(*leg.seen[:, :2].T, ".", color=colour, markersize=4, label=f"{name} leg, felt")
+            axes.plot(
+                *leg.seen[:, :2].T, ".", color=colour, markersize=4, label=f"{name} leg, felt"
+            )
         for k, stretch in enumerate(drives[0][0][0]):
-            axes.plot(*stretch.T, color=ORANGE, lw=2.5, label="course through the knot" if k == 0 else None)
+            axes.plot(
+                *stretch.T,
+                color=ORANGE,
+                lw=2.5,
+                label="course through the knot" if k == 0 else None,
+            )
         axes.plot(*done.positions_mm.T, color=RED, lw=0.9, label="motion of the axis")
         axes.plot(*vertex, "+", color="black", markersize=12, label="the corner as drawn")
         near = float(np.min(np.hypot(*(done.positions_mm - vertex).T))) * 1000
@@ -259,7 +302,11 @@ def ride_figure() -> plt.Figure:
     edge = seen + 0.5 * incoming.width_mm * right
     axes.plot(*edge.T, color=VIOLET, lw=1.2, label="outer edge, felt")
     axes.plot(
-        *incoming.seen[:, :2].T, ".", color=BLUE, markersize=4, label="incoming leg, felt on both edges"
+        *incoming.seen[:, :2].T,
+        ".",
+        color=BLUE,
+        markersize=4,
+        label="incoming leg, felt on both edges",
     )
     axes.plot(*seen.T, ".", color=GREEN, markersize=3, label="the line, half a width within")
     axes.plot(*done.positions_mm.T, color=RED, lw=0.9, label="motion of the axis")
@@ -273,12 +320,16 @@ def ride_figure() -> plt.Figure:
 
 def tangle_figure() -> plt.Figure:
     """A tangle: two spikes whose inks run together, and the vertices by which the pen leaves the same ink."""
-    own = np.array([(0, 0), (9, 0), (9.4, -2.4), (10.0, 0.1), (10.5, 2.3), (10.9, 0), (20, 0)], float)
+    own = np.array(
+        [(0, 0), (9, 0), (9.4, -2.4), (10.0, 0.1), (10.5, 2.3), (10.9, 0), (20, 0)], float
+    )
     drawing, by = inked(own)
     run = put_head(drawing, by + np.array([1.5, 0]))
     with listening(tangles, "unravelled") as unravelled:
         done = run.follow(40.0)
-    sketch, way = next((words[0], answer[1]) for words, answer in unravelled if answer[1] is not None)
+    sketch, way = next(
+        (words[0], answer[1]) for words, answer in unravelled if answer[1] is not None
+    )
     figure, axes = plt.subplots(figsize=(13, 7))
     ground(axes, drawing, about(by + np.array([10, 0]), 4.5, 3.2))
     axes.plot(
@@ -290,7 +341,13 @@ def tangle_figure() -> plt.Figure:
         label="places of the tangle's ink, and about it",
     )
     for k, leg in enumerate(sketch.tangle.legs):
-        axes.plot(*leg.end_mm, "s", color=GREEN, markersize=7, label=None if k else "clean ends of the legs")
+        axes.plot(
+            *leg.end_mm,
+            "s",
+            color=GREEN,
+            markersize=7,
+            label=None if k else "clean ends of the legs",
+        )
     axes.plot(
         *way.vertices[0].T,
         "o",

@@ -43,12 +43,21 @@ def draw_speed(file: Path) -> None:
     angles = np.arange(91)
     flat = np.column_stack([np.cos(np.radians(angles)), np.sin(np.radians(angles)), 0 * angles])
     up = flat * np.cos(np.radians(25)) + [0, 0, np.sin(np.radians(25))]
-    for directions, name, line in ((flat, "in the plane X Y", "-"), (up, "25° out of it", "--")):
+    for directions, name, line in (
+        (flat, "in the plane X Y", "-"),
+        (up, "25° out of it", "--"),
+    ):
         for true_norm, norm, colour in ((False, "weights", BLUE), (True, "--norm true", GREEN)):
             speeds = [100 * held(direction, true_norm) for direction in directions]
             axes.plot(angles, speeds, line, color=colour, label=f"{norm}, {name}")
-    axes.axhspan(89.4, 101.9, color=GREY, alpha=0.15, label="what the weights allow, -10.6 … +1.9 %")
-    axes.set(xlabel="direction from X to Y, degrees", ylabel="speed, % of the programmed one", xlim=(0, 90))
+    axes.axhspan(
+        89.4, 101.9, color=GREY, alpha=0.15, label="what the weights allow, -10.6 … +1.9 %"
+    )
+    axes.set(
+        xlabel="direction from X to Y, degrees",
+        ylabel="speed, % of the programmed one",
+        xlim=(0, 90),
+    )
     axes.legend(fontsize=8, ncols=2)
     figure.savefig(file, dpi=DPI)
     plt.close(figure)
@@ -68,7 +77,9 @@ def draw_following(file: Path) -> None:
     broken.conditions = [Condition(gain_share=0.3)]
     bad = np.vstack([bad, broken.follow(demand[half:])])
     chart = Chart(every_s=0)
-    watch = Monitor("x", MOTION_RATE_HZ, FollowingLimit.linear(settle_s=0.06), stop=False, chart=chart)
+    watch = Monitor(
+        "x", MOTION_RATE_HZ, FollowingLimit.linear(settle_s=0.06), stop=False, chart=chart
+    )
     watch.watch(demand, bad)
     t_s = np.arange(len(demand)) / MOTION_RATE_HZ
     figure, axes = plt.subplots(figsize=(8, 3.6), constrained_layout=True)

@@ -20,12 +20,15 @@ from morfax.recorder.tape.carrier import Carrier, PickUp
 from morfax.recorder.tape.pickups import PICK_UPS, Sensor
 
 BLUE, RED, GREY = "#1f5fa8", "#c1121f", "#888888"
-SLOW_REFERENCE_HZ = 200.0  # on a tape of 48 kHz: 113 harmonics, the wave as the pick-up gives it
+# on a tape of 48 kHz: 113 harmonics, the wave as the pick-up gives it
+SLOW_REFERENCE_HZ = 200.0
 SPEEDS_MM_S = (-90.0, 0.0, 90.0)
 DPI = 95
 
 
-def track(sensor: Sensor, reference_hz: float, speed_mm_s: float, cycles_per_mm: float) -> Array:
+def track(
+    sensor: Sensor, reference_hz: float, speed_mm_s: float, cycles_per_mm: float
+) -> Array:
     """Some frames of the track of an axis at an even speed."""
     positions = speed_mm_s * np.arange(2000)[:, None] / MOTION_RATE_HZ
     pick_up = PickUp(reference_hz, cycles_per_mm, level=0.5, sensor=sensor)
@@ -35,7 +38,12 @@ def track(sensor: Sensor, reference_hz: float, speed_mm_s: float, cycles_per_mm:
 def draw_waves(file: Path) -> None:
     """Left the whole wave on a slow carrier, right the samples on a tape at three speeds."""
     figure, rows = plt.subplots(
-        len(PICK_UPS), 4, figsize=(11, 8), sharey=True, constrained_layout=True, width_ratios=(1.6, 1, 1, 1)
+        len(PICK_UPS),
+        4,
+        figsize=(11, 8),
+        sharey=True,
+        constrained_layout=True,
+        width_ratios=(1.6, 1, 1, 1),
     )
     for (name, sensor), (whole, *at_speeds) in zip(PICK_UPS.items(), rows, strict=True):
         wave = track(sensor, SLOW_REFERENCE_HZ, 0.0, 1.0)[:480]
@@ -47,7 +55,9 @@ def draw_waves(file: Path) -> None:
             axes.set(xlim=(0, 1))
     rows[0, 0].set_title("the wave: standstill, 200 Hz", fontsize=9)
     for axes, speed_mm_s in zip(rows[0, 1:], SPEEDS_MM_S, strict=True):
-        axes.set_title(f"on the tape: {speed_mm_s:g} mm/s, {6 + 0.02 * speed_mm_s:g} kHz", fontsize=9)
+        axes.set_title(
+            f"on the tape: {speed_mm_s:g} mm/s, {6 + 0.02 * speed_mm_s:g} kHz", fontsize=9
+        )
     rows[-1, 0].set_xlabel("cycles")
     for axes in rows[-1, 1:]:
         axes.set_xlabel("ms")

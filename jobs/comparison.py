@@ -53,7 +53,9 @@ def from_path(path: Path, reference: Path, names: tuple[str, str] = ("a", "b")) 
     return Comparison(rows, found.hausdorff_mm, *pointwise(path, reference, SAMPLE_MM))
 
 
-def from_drawing(drawing: Drawing, path: Path, name: str = "path", radius_mm: float = 0.0) -> Comparison:
+def from_drawing(
+    drawing: Drawing, path: Path, name: str = "path", radius_mm: float = 0.0
+) -> Comparison:
     """Compare a path with the ink of its drawing; with a cutter's radius, what the cutter's edge touches."""
     from morfax.tracer.drawing.deviation import deviation, touched
 
@@ -65,7 +67,9 @@ def from_drawing(drawing: Drawing, path: Path, name: str = "path", radius_mm: fl
     row = {"rms_mm": found.rms_mm, "p95_mm": found.p95_mm, "max_mm": found.max_mm}
     row["measured_share"] = found.measured_share
     missed = {"missed_ink_mm": found.missed_mm, "missed_ink_share": found.missed_share}
-    return Comparison({f"{name}_to_ink": row}, found.max_mm, found.points_mm, found.error_mm, missed)
+    return Comparison(
+        {f"{name}_to_ink": row}, found.max_mm, found.points_mm, found.error_mm, missed
+    )
 
 
 def _row(summary: Summary) -> Figures:

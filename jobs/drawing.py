@@ -33,7 +33,9 @@ class Sheet:
 
         if self.dpi is not None and self.width_mm is not None:
             raise click.UsageError("--dpi and --width were both given; give one of them")
-        return Drawing.open(file, dpi=self.dpi, width_mm=self.width_mm, ink=self.ink, edge=self.edge)
+        return Drawing.open(
+            file, dpi=self.dpi, width_mm=self.width_mm, ink=self.ink, edge=self.edge
+        )
 
 
 def sheet_options(verb: Callable[..., Any]) -> Callable[..., Any]:
@@ -45,7 +47,10 @@ def sheet_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         help="Resolution of the drawing, dots per inch.  [default: what the file states]",
     )
     @click.option(
-        "--width", "width_mm", type=LENGTH, help="Width of the whole sheet, such as 120mm; instead of --dpi."
+        "--width",
+        "width_mm",
+        type=LENGTH,
+        help="Width of the whole sheet, such as 120mm; instead of --dpi.",
     )
     @click.option(
         "--ink",
@@ -57,7 +62,12 @@ def sheet_options(verb: Callable[..., Any]) -> Callable[..., Any]:
     @click.option("--edge", is_flag=True, help="Filled shapes: the head rides on their edges.")
     @functools.wraps(verb)
     def with_sheet(
-        *args: Any, dpi: float | None, width_mm: float | None, ink: str | None, edge: bool, **options: Any
+        *args: Any,
+        dpi: float | None,
+        width_mm: float | None,
+        ink: str | None,
+        edge: bool,
+        **options: Any,
     ) -> Any:
         return verb(*args, sheet=Sheet(dpi, width_mm, ink, edge), **options)
 

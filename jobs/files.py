@@ -47,7 +47,9 @@ _FIRST_BYTES: dict[bytes, Kind] = {
 _SUFFIXES: dict[str, Kind] = {
     **dict.fromkeys((".wav", ".rf64", ".flac", ".w64", ".aiff", ".aif"), "tape"),
     **dict.fromkeys((".steps", ".cubic", ".ngc"), "program"),
-    **dict.fromkeys((".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".gif", ".webp", ".pgm"), "drawing"),
+    **dict.fromkeys(
+        (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".gif", ".webp", ".pgm"), "drawing"
+    ),
     **dict.fromkeys((".csv", ".txt", ".tsv"), "path"),
 }
 
@@ -61,7 +63,9 @@ def kind_of(file: FilePath) -> Kind:
         raise FileFault(f"cannot read {file}: {error.strerror}; check the name") from error
     if first[:4] == b"RIFF" and first[8:12] == b"WEBP":
         return "drawing"
-    by_bytes = next((kind for magic, kind in _FIRST_BYTES.items() if first.startswith(magic)), None)
+    by_bytes = next(
+        (kind for magic, kind in _FIRST_BYTES.items() if first.startswith(magic)), None
+    )
     kind = by_bytes or _SUFFIXES.get(file.suffix.lower())
     if kind is None and b"\0" in first:
         raise FileFault(
@@ -80,7 +84,9 @@ def outgoing(file: FilePath, *made_from: FilePath) -> FilePath:
     if file.is_dir():
         raise FileFault(f"cannot write {file}: it is a folder; give the name of a file")
     if not os.access(folder, os.W_OK):
-        raise FileFault(f"cannot write {file}: the folder {folder} may not be written to; give another name")
+        raise FileFault(
+            f"cannot write {file}: the folder {folder} may not be written to; give another name"
+        )
     if any(file.exists() and source.exists() and file.samefile(source) for source in made_from):
         raise FileFault(
             f"cannot write {file}: the result would go over the file it is made from; give another name"
@@ -93,7 +99,9 @@ def made_up(name: FilePath, *made_from: FilePath, force: bool) -> FilePath:
     `force`.
     """
     if name.exists() and not force:
-        raise FileFault(f"{name} is there already; give a name with -o, or --force to write over it")
+        raise FileFault(
+            f"{name} is there already; give a name with -o, or --force to write over it"
+        )
     return outgoing(name, *made_from)
 
 
@@ -116,5 +124,7 @@ def incomplete(file: FilePath) -> FilePath:
 def with_suffix_in(file: FilePath, suffixes: tuple[str, ...], option: str = "-o") -> FilePath:
     """The file itself if its name ends in one of the suffixes; else wrong use of the command line."""
     if file.suffix.lower() not in suffixes:
-        raise click.BadParameter(f"{str(file)!r} must end in {', '.join(suffixes)}", param_hint=f"'{option}'")
+        raise click.BadParameter(
+            f"{str(file)!r} must end in {', '.join(suffixes)}", param_hint=f"'{option}'"
+        )
     return file

@@ -104,10 +104,18 @@ class Controls:
         """Open a tape for reading; a context manager."""
         from morfax.recorder.tape.tape import Tape
 
-        return Tape.open(file, **{name: value for name, value in self.by_hand().items() if name != "closed"})
+        return Tape.open(
+            file, **{name: value for name, value in self.by_hand().items() if name != "closed"}
+        )
 
     def play(
-        self, file: FilePath, desk: Desk, *, raw: bool = False, chart: Chart | None = None, **settings: Any
+        self,
+        file: FilePath,
+        desk: Desk,
+        *,
+        raw: bool = False,
+        chart: Chart | None = None,
+        **settings: Any,
     ) -> Played:
         """Play a tape, or what comes through a pipe (-), to its end or to its fault; `settings` as `play`
         takes them.
@@ -163,7 +171,9 @@ class Controls:
                 f"{file.name} has its tracks in another order; by where it ends it is --tracks {tracks}"
             )
         met: list[Fault] = []
-        stream = desk.watched(_until_fault(playback, met), f"playing {file.name}", playback.duration_s)
+        stream = desk.watched(
+            _until_fault(playback, met), f"playing {file.name}", playback.duration_s
+        )
         return playback, stream, met
 
     def _put_in(self, file: FilePath, settings: dict[str, Any]) -> Playback:

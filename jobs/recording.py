@@ -21,7 +21,13 @@ if TYPE_CHECKING:
     from morfax.recorder.media import Report
     from morfax.recorder.tape.tape import TapeFormat
 
-PICK_UPS = ("resolver", "photocell", "coil", "hall", "scale")  # recorder.pickups; the first is the default
+PICK_UPS = (
+    "resolver",
+    "photocell",
+    "coil",
+    "hall",
+    "scale",
+)  # recorder.pickups; the first is the default
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +43,9 @@ class Unit:
 
     def check(self, program: FilePath | None) -> None:
         """Raise UsageError where the pick-up is for another medium than the program's."""
-        if self.pickup is not None and (program is None or program.suffix.lower() not in medium.TAPES):
+        if self.pickup is not None and (
+            program is None or program.suffix.lower() not in medium.TAPES
+        ):
             raise click.UsageError(
                 f"--pickup is for tapes, {', '.join(medium.TAPES)}; give -o such a name, or leave it out"
             )
@@ -71,7 +79,9 @@ class Unit:
         pickup = self.pickup or pickups.DEFAULT_PICK_UP
         own = pickups.PICK_UPS[pickup].cycles_per_mm
         return TapeFormat(
-            pickup=pickup, cycles_per_mm=own if cycles_per_mm is None else cycles_per_mm, **entries
+            pickup=pickup,
+            cycles_per_mm=own if cycles_per_mm is None else cycles_per_mm,
+            **entries,
         )
 
     def figures(self) -> dict[str, Any]:
@@ -112,7 +122,10 @@ def unit_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         f"[default: {PICK_UPS[0]}]",
     )
     @click.option(
-        "--mirror", type=click.Choice(["x", "y"]), default=None, help="Have X, or Y, run the other way."
+        "--mirror",
+        type=click.Choice(["x", "y"]),
+        default=None,
+        help="Have X, or Y, run the other way.",
     )
     @click.option(
         "--scale",
@@ -147,6 +160,10 @@ def unit_options(verb: Callable[..., Any]) -> Callable[..., Any]:
     ) -> Any:
         from morfax.motion.placement import Placement
 
-        return verb(*args, unit=Unit(pickup, Placement(mirror or "", scale, turn_rad, about_mm)), **options)
+        return verb(
+            *args,
+            unit=Unit(pickup, Placement(mirror or "", scale, turn_rad, about_mm)),
+            **options,
+        )
 
     return with_unit

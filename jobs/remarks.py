@@ -47,7 +47,9 @@ def of_cutter(beside: Trace, left: Left, cutter: Cutter) -> Iterator[str]:
     """
     if left.lines:
         yield _of_left_out(left.lines, cutter)
-    for number, stretches in groupby(sorted(left.stretches, key=lambda u: u.line), key=lambda u: u.line):
+    for number, stretches in groupby(
+        sorted(left.stretches, key=lambda u: u.line), key=lambda u: u.line
+    ):
         uncut = list(stretches)
         uncut_mm, of_mm = sum(u.length_mm for u in uncut), uncut[0].of_mm
         if uncut_mm > UNCUT * of_mm:
@@ -64,14 +66,26 @@ def _of_left_out(lines: list[LeftOut], cutter: Cutter) -> str:
     one = len(lines) == 1
     return (
         f"{_numbered('line', numbers)} left out: a cutter of {cutter.diameter_mm:g} mm has no room beside {'it' if one else 'them'}"
-        + (f", one of up to {passes_mm:g} mm has{'' if one else ' beside all'}" if passes_mm > 0 else "")
-        + (f"; {_numbered('stop', stops)} left out with {'it' if one else 'them'}" if stops else "")
+        + (
+            f", one of up to {passes_mm:g} mm has{'' if one else ' beside all'}"
+            if passes_mm > 0
+            else ""
+        )
+        + (
+            f"; {_numbered('stop', stops)} left out with {'it' if one else 'them'}"
+            if stops
+            else ""
+        )
     )
 
 
 def _numbered(what: str, numbers: list[int]) -> str:
     """Some things by their numbers, with their verb."""
-    return f"{what} {numbers[0]} is" if len(numbers) == 1 else f"{what}s {', '.join(map(str, numbers))} are"
+    return (
+        f"{what} {numbers[0]} is"
+        if len(numbers) == 1
+        else f"{what}s {', '.join(map(str, numbers))} are"
+    )
 
 
 def _of_solids(trace: Trace) -> Iterator[str]:
@@ -92,8 +106,13 @@ def _of_stops(trace: Trace) -> Iterator[str]:
 
 def _of_turns(trace: Trace) -> Iterator[str]:
     """Of turns that the card has for junctions to which the head did not come."""
-    turns, most = trace.operator.sides, max((len(line.junctions_mm) for line in trace.lines), default=0)
-    beyond = [f"{k} ({side})" for k, side in enumerate(turns, 1) if side is not None and k > most]
+    turns, most = (
+        trace.operator.sides,
+        max((len(line.junctions_mm) for line in trace.lines), default=0),
+    )
+    beyond = [
+        f"{k} ({side})" for k, side in enumerate(turns, 1) if side is not None and k > most
+    ]
     if beyond:
         yield f"there is no junction {', '.join(beyond)} to turn at: the head came to {most}, see their places in the figures; the rest is followed"
     for line in trace.lines:
@@ -110,7 +129,9 @@ def _of_reference(trace: Trace, marks: Marks) -> Iterator[str]:
     if named is None or any(line.reference_mm == named for line in trace.lines):
         return
     use = (
-        "it is the machine's zero only" if marks.origin == "reference" else "the program does not begin there"
+        "it is the machine's zero only"
+        if marks.origin == "reference"
+        else "the program does not begin there"
     )
     yield f"no line begins within {LEAD_MM:g} mm of the reference point {named[0]:g},{named[1]:g} mm: {use}"
 
@@ -131,10 +152,15 @@ def _of_breaks(trace: Trace, gap_mm: float) -> Iterator[str]:
     there are.
     """
     lines = [line for line in trace.lines if line.gap_mm is None]
-    found = [(line, broken) for line in lines for broken in line.breaks if broken.gap_mm > gap_mm]
+    found = [
+        (line, broken) for line in lines for broken in line.breaks if broken.gap_mm > gap_mm
+    ]
     if not found:
         return
-    (line, ((x, y), _)), more = found[0], f", as at {len(found) - 1} more" if len(found) > 1 else ""
+    (line, ((x, y), _)), more = (
+        found[0],
+        f", as at {len(found) - 1} more" if len(found) > 1 else "",
+    )
     wide_mm = math.ceil(10 * UNEVEN * max(broken.gap_mm for _, broken in found)) / 10
     yield (
         f"{_named(line, trace)} ends at {x:.1f},{y:.1f} mm, and ink goes on straight ahead of it{more}: if that is one line, "

@@ -54,7 +54,9 @@ class Systems(click.ParamType):
 
     name = "systems"
 
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> Any:
         """Read "all" or a list such as "wav,steps"."""
         if not isinstance(value, str):
             return value
@@ -66,7 +68,9 @@ class Systems(click.ParamType):
         unknown = [word for word in asked if word not in NAMES]
         if unknown:
             self.fail(
-                f"there is no system {unknown[0]!r}; give all, or some of {','.join(NAMES)}", param, ctx
+                f"there is no system {unknown[0]!r}; give all, or some of {','.join(NAMES)}",
+                param,
+                ctx,
             )
         return tuple(dict.fromkeys(asked))
 
@@ -115,9 +119,16 @@ def compare(wanted: Wanted, sheet: Sheet, head: Head, desk: Desk) -> bool:
     drawing = sheet.open(wanted.drawing)
     traced = head.trace(drawing, desk)
     results = measure(drawing, traced, head.speed_mm_s, wanted.asked, desk)
-    largest_mm = [result.from_ink.largest_mm for result in results if result.from_ink is not None]
-    beyond = wanted.tolerance_mm is not None and max(largest_mm, default=0.0) > wanted.tolerance_mm
-    rows = {"traced": traced_row(drawing, traced, head.speed_mm_s), **{r.name: r.figures for r in results}}
+    largest_mm = [
+        result.from_ink.largest_mm for result in results if result.from_ink is not None
+    ]
+    beyond = (
+        wanted.tolerance_mm is not None and max(largest_mm, default=0.0) > wanted.tolerance_mm
+    )
+    rows = {
+        "traced": traced_row(drawing, traced, head.speed_mm_s),
+        **{r.name: r.figures for r in results},
+    }
     if wanted.output is not None:
         _draw(wanted, drawing, traced, results, rows)
     desk.figures(
@@ -129,7 +140,11 @@ def compare(wanted: Wanted, sheet: Sheet, head: Head, desk: Desk) -> bool:
             "ending": traced.trace.ending,
             "length_mm": traced.trace.length_mm,
             "corners": len(corner_places(traced.path)),
-            **({"traced": rows["traced"], **{r.suffix: r.figures for r in results}} if desk.json else rows),
+            **(
+                {"traced": rows["traced"], **{r.suffix: r.figures for r in results}}
+                if desk.json
+                else rows
+            ),
         }
     )
     for fault in (traced.fault, *(result.fault for result in results)):
@@ -139,7 +154,11 @@ def compare(wanted: Wanted, sheet: Sheet, head: Head, desk: Desk) -> bool:
 
 
 def _draw(
-    wanted: Wanted, drawing: Drawing, traced: Traced, results: list[Result], rows: dict[str, Figures]
+    wanted: Wanted,
+    drawing: Drawing,
+    traced: Traced,
+    results: list[Result],
+    rows: dict[str, Figures],
 ) -> None:
     """Write the report, or the picture of all contours alone."""
     from morfax.reports import report, side_by_side
@@ -147,7 +166,9 @@ def _draw(
 
     assert wanted.output is not None
     title = f"{wanted.drawing.name} on {len(wanted.asked)} systems"
-    contours = side_by_side.contours(title, results, traced.path, drawing, corner_places(traced.path))
+    contours = side_by_side.contours(
+        title, results, traced.path, drawing, corner_places(traced.path)
+    )
     if wanted.output.suffix.lower() != ".html":
         save(contours, wanted.output)
         return
@@ -183,13 +204,23 @@ def measure(
         desk.bar("comparing", len(asked)) as advance,
     ):
         for done, suffix in enumerate(asked):
-            desk.note(f"{NAMES[suffix]}: {MEDIA[f'.{suffix}'].what}, played by {CONTROLS[f'.{suffix}'].what}")
+            desk.note(
+                f"{NAMES[suffix]}: {MEDIA[f'.{suffix}'].what}, played by {CONTROLS[f'.{suffix}'].what}"
+            )
             try:
                 results.append(
-                    _measured(drawing, traced, speed_mm_s, corners_mm, FilePath(folder) / f"part.{suffix}")
+                    _measured(
+                        drawing,
+                        traced,
+                        speed_mm_s,
+                        corners_mm,
+                        FilePath(folder) / f"part.{suffix}",
+                    )
                 )
             except Fault as fault:
-                results.append(Result(suffix, {"fault": " ".join(str(fault).split())}, fault=fault))
+                results.append(
+                    Result(suffix, {"fault": " ".join(str(fault).split())}, fault=fault)
+                )
             advance(done + 1)
     return results
 
@@ -197,14 +228,20 @@ def measure(
 def traced_row(drawing: Drawing, traced: Traced, speed_mm_s: float) -> Figures:
     """The figures of the head's own path, to set the others against."""
     row = comparison.from_drawing(drawing, traced.path).rows["path_to_ink"]
-    return {**_from_ink(row), "duration_s": _duration_s(traced.path), **held(traced.path, speed_mm_s)}
+    return {
+        **_from_ink(row),
+        "duration_s": _duration_s(traced.path),
+        **held(traced.path, speed_mm_s),
+    }
 
 
 def corner_places(path: Path) -> Array:
     """Where a path turns sharply with the tool in the work, (n, 2) mm."""
     from morfax.motion.segments import Limits, corners
 
-    limits = Limits(1.0, 1.0, window_mm=0.05, corner_rad=CORNER_RAD)  # speeds do not matter here
+    limits = Limits(
+        1.0, 1.0, window_mm=0.05, corner_rad=CORNER_RAD
+    )  # speeds do not matter here
     found = [np.zeros((0, 2))]
     for run in path.runs():
         points = run[np.r_[True, np.hypot(*np.diff(run, axis=0).T) > 1e-6]]
@@ -216,7 +253,9 @@ def corner_places(path: Path) -> Array:
 def held(path: Path, speed_mm_s: float) -> Figures:
     """The mean speed in the work, and the share of the way there that is run within 5 % of a speed."""
     t_s = np.arange(path.t_s[0], path.t_s[-1], HELD_OVER_S)
-    places_mm = np.column_stack([np.interp(t_s, path.t_s, column) for column in path.positions_mm.T])
+    places_mm = np.column_stack(
+        [np.interp(t_s, path.t_s, column) for column in path.positions_mm.T]
+    )
     way_mm = np.sqrt((np.diff(places_mm, axis=0) ** 2).sum(axis=1))
     works = places_mm[:, 2] <= IN_WORK_BELOW_MM
     way_mm = way_mm[works[1:] & works[:-1]]

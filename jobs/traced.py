@@ -35,7 +35,11 @@ class Traced:
     @property
     def places_mm(self) -> list[tuple[str, tuple[float, float]]]:
         """Where each of several lines, or piece of one, begins, and its number."""
-        return [(str(line.number), line.start_mm) for line in self.trace.lines] if self.several else []
+        return (
+            [(str(line.number), line.start_mm) for line in self.trace.lines]
+            if self.several
+            else []
+        )
 
     @property
     def fault(self) -> Fault | None:
@@ -109,7 +113,9 @@ class Traced:
         if self.left is None:
             return self.stops_mm
         out = {
-            f"line {out.line} left out": out.room.place_mm for out in self.left.lines if out.room is not None
+            f"line {out.line} left out": out.room.place_mm
+            for out in self.left.lines
+            if out.room is not None
         }
         return {
             **self.stops_mm,

@@ -86,7 +86,11 @@ class Head:
                     )
                 else:
                     traced = trace_lines(
-                        drawing, self.lines, settings, operator, lambda come, all_: advance(come / all_)
+                        drawing,
+                        self.lines,
+                        settings,
+                        operator,
+                        lambda come, all_: advance(come / all_),
                     )
         except LineFault as fault:
             if picture is not None:
@@ -94,11 +98,17 @@ class Head:
             raise
         for text in remarks(traced, self, settings.gap_mm, drawing.enlarged):
             desk.note(text)
-        origin_mm = (0.0, 0.0) if self.marks.origin == "sheet" else self._reference_mm(drawing, traced)
+        origin_mm = (
+            (0.0, 0.0) if self.marks.origin == "sheet" else self._reference_mm(drawing, traced)
+        )
         beside, left = self._beside(traced, settings, desk)
-        return Traced(beside, thin(beside), self.lines is not None, origin_mm, self.cutter, left)
+        return Traced(
+            beside, thin(beside), self.lines is not None, origin_mm, self.cutter, left
+        )
 
-    def _beside(self, traced: Trace, settings: Settings, desk: Desk) -> tuple[Trace, Left | None]:
+    def _beside(
+        self, traced: Trace, settings: Settings, desk: Desk
+    ) -> tuple[Trace, Left | None]:
         """The program of the cutter beside the lines, and what it cannot reach; without a cutter the lines
         themselves.
         """
@@ -146,7 +156,11 @@ class Head:
     def by_card(self, card: Card, given: Callable[[str], bool]) -> Head:
         """The same with what the card says, but for the options that were given on the command line."""
         depth_mm = card.depths_mm[-1] if card.depths_mm else None
-        says = {"speed_mm_s": card.trace_mm_s, "depth_mm": depth_mm, "clearance_mm": card.start_mm}
+        says = {
+            "speed_mm_s": card.trace_mm_s,
+            "depth_mm": depth_mm,
+            "clearance_mm": card.start_mm,
+        }
         set_by_card: dict[str, Any] = {
             name: v for name, v in says.items() if v is not None and not given(name)
         }
@@ -165,7 +179,9 @@ class Head:
             work,
             feed_mm_s=card.feed_mm_s or work.feed_mm_s,
             rapid_mm_s=card.rapid_mm_s or work.rapid_mm_s,
-            passes_mm=tuple(depth_mm for depth_mm in card.depths_mm if depth_mm < self.depth_mm),
+            passes_mm=tuple(
+                depth_mm for depth_mm in card.depths_mm if depth_mm < self.depth_mm
+            ),
         )
         marks = self.marks
         if marks.override is not None:
@@ -181,17 +197,23 @@ class Head:
         if at_terminal():
             return Attended(asking=self.marks.ask)
         if self.marks.ask:
-            raise click.UsageError("--ask needs a terminal to ask at; write a card instead, see docs/card.md")
+            raise click.UsageError(
+                "--ask needs a terminal to ask at; write a card instead, see docs/card.md"
+            )
         raise CardFault(
             'restart = "manual" waits for the operator\'s button, and there is no terminal; run it at one, or set "automatic"',
             field="restart",
             holds="manual",
         )
 
-    def _show_sheet(self, drawing: Drawing, fault: LineFault, file: FilePath, desk: Desk) -> None:
+    def _show_sheet(
+        self, drawing: Drawing, fault: LineFault, file: FilePath, desk: Desk
+    ) -> None:
         """Draw the sheet with the place that was asked for and the nearest line's."""
         from morfax.reports.overlay import draw_sheet
 
         places = {"--start": self.start_mm, "nearest line": fault.nearest_mm}
-        draw_sheet(drawing, {name: place for name, place in places.items() if place is not None}, file)
+        draw_sheet(
+            drawing, {name: place for name, place in places.items() if place is not None}, file
+        )
         desk.note(f"the sheet is drawn in {file}; read a place for --start off its axes")

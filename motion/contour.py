@@ -25,7 +25,8 @@ from morfax.motion.faults import MotionFault
 from morfax.motion.motion import IN_WORK_BELOW_MM, Motion, Path
 
 SAMPLE_MM = 0.01
-LARGEST_SAMPLES = 1_000_000  # beyond 10 m of path the samples stand further apart: memory stays below 200 MB
+# beyond 10 m of path the samples stand further apart: memory stays below 200 MB
+LARGEST_SAMPLES = 1_000_000
 _NEIGHBOURS = 4
 _SAMPLES_AT_ONCE = 100_000
 
@@ -65,11 +66,16 @@ class Distances:
 def distance(path: Contour, reference: Contour) -> Distances:
     """Distances of a path from a reference and back, mm."""
     ours, theirs = _sampled(path), _sampled(reference)
-    there, back = _Finder(theirs).distances_mm(ours.points_mm), _Finder(ours).distances_mm(theirs.points_mm)
+    there, back = (
+        _Finder(theirs).distances_mm(ours.points_mm),
+        _Finder(ours).distances_mm(theirs.points_mm),
+    )
     return Distances(_summary(there, ours.weights_mm), _summary(back, theirs.weights_mm))
 
 
-def pointwise(path: Contour, reference: Contour, sample_mm: float = SAMPLE_MM) -> tuple[Array, Array]:
+def pointwise(
+    path: Contour, reference: Contour, sample_mm: float = SAMPLE_MM
+) -> tuple[Array, Array]:
     """Samples (n, 2) along a path, and the distance of each from the reference, mm."""
     ours = _sampled(path, sample_mm)
     return ours.points_mm, _Finder(_sampled(reference)).distances_mm(ours.points_mm)
@@ -128,10 +134,14 @@ class _Sampled:
 def _sampled(path: Contour, sample_mm: float = SAMPLE_MM) -> _Sampled:
     """Sample all polylines so densely, their own points included."""
     runs = polylines(path)
-    apart_mm = max(sample_mm, sum(float(_steps_mm(run).sum()) for run in runs) / LARGEST_SAMPLES)
+    apart_mm = max(
+        sample_mm, sum(float(_steps_mm(run).sum()) for run in runs) / LARGEST_SAMPLES
+    )
     parts = [_along(run, apart_mm) for run in runs]
     leads_on = np.concatenate([np.arange(len(part)) < len(part) - 1 for part in parts])
-    return _Sampled(np.vstack(parts), np.concatenate([_shares_mm(part) for part in parts]), leads_on)
+    return _Sampled(
+        np.vstack(parts), np.concatenate([_shares_mm(part) for part in parts]), leads_on
+    )
 
 
 def _along(run: Array, apart_mm: float) -> Array:
@@ -167,7 +177,8 @@ class _Finder:
     def distances_mm(self, points: Array) -> Array:
         """Distance of each point (n, 2) from the nearest straight piece, mm."""
         parts = [
-            self._some(points[i : i + _SAMPLES_AT_ONCE]) for i in range(0, len(points), _SAMPLES_AT_ONCE)
+            self._some(points[i : i + _SAMPLES_AT_ONCE])
+            for i in range(0, len(points), _SAMPLES_AT_ONCE)
         ]
         return np.concatenate(parts)
 
@@ -189,7 +200,9 @@ class _Finder:
         start = at[piece]  # piece -1 is the last sample, from which none leads on
         along = at[(piece + 1) % len(at)] - start
         squared = np.einsum("ij,ij->i", along, along)
-        share = np.einsum("ij,ij->i", points - start, along) / np.where(squared > 0, squared, 1.0)
+        share = np.einsum("ij,ij->i", points - start, along) / np.where(
+            squared > 0, squared, 1.0
+        )
         off = points - start - np.clip(share, 0.0, 1.0)[:, None] * along
         return np.where(leads_on[piece], np.hypot(off[:, 0], off[:, 1]), np.inf)
 

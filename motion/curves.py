@@ -29,7 +29,9 @@ def bends_per_mm(points: Array) -> Array:
     return np.asarray(np.abs(np.diff(headings)) / (0.5 * (lengths[1:] + lengths[:-1])))
 
 
-def speeds(points: Array, speed_mm_s: float, acceleration_mm_s2: float, end_mm_s: float) -> Array:
+def speeds(
+    points: Array, speed_mm_s: float, acceleration_mm_s2: float, end_mm_s: float
+) -> Array:
     """Highest speed at each place of a stretch: what bends and braking allow, `end_mm_s` at its end; mm/s."""
     lengths = np.maximum(np.hypot(*np.diff(points, axis=0).T), 1e-9)
     allowed = np.full(len(points), speed_mm_s)
@@ -38,7 +40,9 @@ def speeds(points: Array, speed_mm_s: float, acceleration_mm_s2: float, end_mm_s
         allowed[1:-1] = np.minimum(speed_mm_s, np.sqrt(acceleration_mm_s2 / bends))
     allowed[-1] = min(allowed[-1], end_mm_s)
     for i in range(len(points) - 2, -1, -1):
-        allowed[i] = min(allowed[i], math.sqrt(allowed[i + 1] ** 2 + 2 * acceleration_mm_s2 * lengths[i]))
+        allowed[i] = min(
+            allowed[i], math.sqrt(allowed[i + 1] ** 2 + 2 * acceleration_mm_s2 * lengths[i])
+        )
     return allowed
 
 

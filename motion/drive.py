@@ -58,7 +58,8 @@ SOUND = Condition()
 def as_rows(conditions: Sequence[Condition]) -> NDArray[np.float64]:
     """Conditions as `conditioned_step` takes them, a row for each axis."""
     return np.array(
-        [[c.gain_share, c.friction_mm_s, c.runaway_mm_s, not c.stuck] for c in conditions], np.float64
+        [[c.gain_share, c.friction_mm_s, c.runaway_mm_s, not c.stuck] for c in conditions],
+        np.float64,
     )
 
 

@@ -46,7 +46,12 @@ class LineFault(Fault):
         nearest_mm: tuple[float, float] | None = None,
     ) -> None:
         super().__init__(message)
-        self.x_mm, self.y_mm, self.heading_rad, self.nearest_mm = x_mm, y_mm, heading_rad, nearest_mm
+        self.x_mm, self.y_mm, self.heading_rad, self.nearest_mm = (
+            x_mm,
+            y_mm,
+            heading_rad,
+            nearest_mm,
+        )
 
 
 class TapeFault(Fault, ValueError):
@@ -64,7 +69,9 @@ class ProgramFault(TapeFault):
     known.
     """
 
-    def __init__(self, message: str, *, line: int | None = None, time_s: float | None = None) -> None:
+    def __init__(
+        self, message: str, *, line: int | None = None, time_s: float | None = None
+    ) -> None:
         super().__init__(message, time_s=time_s)
         self.line = line
 
@@ -78,7 +85,12 @@ class LockFault(Fault):
         self, message: str, *, axis: str, time_s: float, error_cycles: float, position_mm: float
     ) -> None:
         super().__init__(message)
-        self.axis, self.time_s, self.error_cycles, self.position_mm = axis, time_s, error_cycles, position_mm
+        self.axis, self.time_s, self.error_cycles, self.position_mm = (
+            axis,
+            time_s,
+            error_cycles,
+            position_mm,
+        )
 
 
 class FollowingFault(Fault):
@@ -87,7 +99,14 @@ class FollowingFault(Fault):
     exit_code = 6
 
     def __init__(
-        self, message: str, *, axis: str, time_s: float, demand_mm: float, actual_mm: float, limit_mm: float
+        self,
+        message: str,
+        *,
+        axis: str,
+        time_s: float,
+        demand_mm: float,
+        actual_mm: float,
+        limit_mm: float,
     ) -> None:
         super().__init__(message)
         self.axis, self.time_s = axis, time_s
@@ -122,6 +141,8 @@ class CardFault(Fault, ValueError):
 
     exit_code = 9
 
-    def __init__(self, message: str, *, line: int | None = None, field: str = "", holds: str = "") -> None:
+    def __init__(
+        self, message: str, *, line: int | None = None, field: str = "", holds: str = ""
+    ) -> None:
         super().__init__(message)
         self.line, self.field, self.holds = line, field, holds

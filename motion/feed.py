@@ -41,7 +41,9 @@ def run_along(
     way_mm = _with_halves(way_mm)
     steps = np.hypot(*np.diff(way_mm, axis=0).T)
     speeds = _slowed(
-        _allowed(way_mm, steps, feed_mm_s, acceleration_mm_s2), steps, ALONG * acceleration_mm_s2
+        _allowed(way_mm, steps, feed_mm_s, acceleration_mm_s2),
+        steps,
+        ALONG * acceleration_mm_s2,
     )
     t_s = np.r_[0.0, np.cumsum(2 * steps / (speeds[1:] + speeds[:-1]))]
     s_mm = np.r_[0.0, np.cumsum(steps)]
@@ -51,7 +53,9 @@ def run_along(
     along = s_mm[k] + since * (speeds[k] + 0.5 * (speeds[k + 1] - speeds[k]) * since / whole)
     stands = round(STANDS_S * rate_hz)
     along = np.r_[np.zeros(stands), along, np.full(stands, s_mm[-1])]
-    return _averaged(np.column_stack([np.interp(along, s_mm, column) for column in way_mm.T]), rate_hz)
+    return _averaged(
+        np.column_stack([np.interp(along, s_mm, column) for column in way_mm.T]), rate_hz
+    )
 
 
 def _with_halves(way_mm: Array) -> Array:
@@ -79,7 +83,10 @@ def _allowed(way_mm: Array, steps: Array, feed_mm_s: float, acceleration_mm_s2: 
     turns = np.r_[math.pi, turns, math.pi]
     s = np.r_[0.0, np.cumsum(steps)]
     turned = np.r_[0.0, np.cumsum(np.where(turns > SHARP, 0.0, turns))]
-    low, high = np.searchsorted(s, s - BEND_WITHIN_MM), np.searchsorted(s, s + BEND_WITHIN_MM, side="right")
+    low, high = (
+        np.searchsorted(s, s - BEND_WITHIN_MM),
+        np.searchsorted(s, s + BEND_WITHIN_MM, side="right"),
+    )
     bend = np.maximum(turned[high] - turned[:-1], turned[1:] - turned[low]) / np.minimum(
         BEND_WITHIN_MM, s[-1]
     )
@@ -93,9 +100,13 @@ def _slowed(allowed, steps, acceleration_mm_s2):  # type: ignore[no-untyped-def]
     """The speeds that one acceleration can reach from place to place, mm/s."""
     speeds = allowed.copy()
     for k in range(len(steps) - 1, -1, -1):
-        speeds[k] = min(speeds[k], math.sqrt(speeds[k + 1] ** 2 + 2 * acceleration_mm_s2 * steps[k]))
+        speeds[k] = min(
+            speeds[k], math.sqrt(speeds[k + 1] ** 2 + 2 * acceleration_mm_s2 * steps[k])
+        )
     for k in range(len(steps)):
-        speeds[k + 1] = min(speeds[k + 1], math.sqrt(speeds[k] ** 2 + 2 * acceleration_mm_s2 * steps[k]))
+        speeds[k + 1] = min(
+            speeds[k + 1], math.sqrt(speeds[k] ** 2 + 2 * acceleration_mm_s2 * steps[k])
+        )
     return speeds
 
 

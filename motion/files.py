@@ -23,7 +23,9 @@ _DISK_FULL = {
 
 
 @contextmanager
-def written_beside(file: str | os.PathLike[str], named: Callable[[], Path] | None = None) -> Iterator[Path]:
+def written_beside(
+    file: str | os.PathLike[str], named: Callable[[], Path] | None = None
+) -> Iterator[Path]:
     """Give a new, hidden file of the same suffix beside `file`; it is renamed to `file` on success, removed
     on failure.
 
@@ -49,7 +51,9 @@ def written_beside(file: str | os.PathLike[str], named: Callable[[], Path] | Non
 def disk_full_fault(file: str | os.PathLike[str], code: int = errno.ENOSPC) -> FileFault:
     """The fault of a file that the disk would not take whole."""
     reason = _DISK_FULL.get(code, os.strerror(code))
-    return FileFault(f"cannot write {file}: {reason}; no half file is left; make room or write elsewhere")
+    return FileFault(
+        f"cannot write {file}: {reason}; no half file is left; make room or write elsewhere"
+    )
 
 
 def _create_beside(final: Path) -> Path:

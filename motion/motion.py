@@ -77,9 +77,14 @@ class Path:
         edges = np.flatnonzero(np.diff(np.r_[False, self.tool, False].astype(np.int8)))
         return [self.xy_mm[a:b] for a, b in edges.reshape(-1, 2)]
 
-    def motion(self, rate_hz: float = MOTION_RATE_HZ, block_samples: int = BLOCK_SAMPLES) -> Iterator[Motion]:
+    def motion(
+        self, rate_hz: float = MOTION_RATE_HZ, block_samples: int = BLOCK_SAMPLES
+    ) -> Iterator[Motion]:
         """Stream the path as blocks at a rate, from its first time to its last."""
-        start_s, samples = float(self.t_s[0]), int(np.floor((self.t_s[-1] - self.t_s[0]) * rate_hz + 0.5)) + 1
+        start_s, samples = (
+            float(self.t_s[0]),
+            int(np.floor((self.t_s[-1] - self.t_s[0]) * rate_hz + 0.5)) + 1,
+        )
         for first in range(0, samples, block_samples):
             t_s = start_s + np.arange(first, min(first + block_samples, samples)) / rate_hz
             columns = [np.interp(t_s, self.t_s, column) for column in self.positions_mm.T]
@@ -92,7 +97,10 @@ def join(stream: Iterable[Motion]) -> Motion:
     if not blocks:
         raise ValueError("the stream of motion is empty; it must hold at least one block")
     return Motion(
-        np.vstack([b.positions_mm for b in blocks]), blocks[0].rate_hz, blocks[0].start_s, blocks[0].axes
+        np.vstack([b.positions_mm for b in blocks]),
+        blocks[0].rate_hz,
+        blocks[0].start_s,
+        blocks[0].axes,
     )
 
 
@@ -110,7 +118,9 @@ def thin(stream: Iterable[Motion], tolerance_mm: float = THINNING_TOLERANCE_MM) 
     )
 
 
-def thinned(stream: Iterable[Motion], tolerance_mm: float = THINNING_TOLERANCE_MM) -> Iterator[Path]:
+def thinned(
+    stream: Iterable[Motion], tolerance_mm: float = THINNING_TOLERANCE_MM
+) -> Iterator[Path]:
     """The pieces of a thinned path as the blocks of a stream come, so that nothing has to hold all of it;
     none of an empty stream.
     """

@@ -40,7 +40,10 @@ SET_BACK, LONG_MM = (
     5 * UM,
     1.0,
 )  # so much nearer in places does not make a piece as long as this a loop: a kink of the line does
-FREE, ALONE = -1, -2  # ends of a piece that lie at no crossing: of an open line, and of one round about
+FREE, ALONE = (
+    -1,
+    -2,
+)  # ends of a piece that lie at no crossing: of an open line, and of one round about
 DEEP_MM = 0.05  # nearer than the radius by this: no crossing there can count
 SAME_MM = 0.01 * UM  # places as near as this are one
 SHAKEN_MM = 1e-4 * SAME_MM
@@ -52,7 +55,9 @@ SLIGHT = math.radians(
 KINK_MM = (
     0.1 * UM
 )  # if that is no nearer to the line than this: it is, where the line beside the vertex is short
-BACK = math.radians(179)  # a line that turns by more comes back along itself: the tool goes round its tip
+BACK = math.radians(
+    179
+)  # a line that turns by more comes back along itself: the tool goes round its tip
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,9 +84,12 @@ def offset(guides: Sequence[Guide], radius_mm: float) -> list[Way]:
     """Ways of a tool of this radius along guides, each as the guide goes; none where the tool does not fit."""
     lines = [_guided(guide, radius_mm) for guide in guides]
     near = Nearest(
-        [_closed_up(line, guide.closed) for line, guide in zip(lines, guides, strict=True)], radius_mm
+        [_closed_up(line, guide.closed) for line, guide in zip(lines, guides, strict=True)],
+        radius_mm,
     )
-    swung = [_swung(line, guide.closed, radius_mm) for line, guide in zip(lines, guides, strict=True)]
+    swung = [
+        _swung(line, guide.closed, radius_mm) for line, guide in zip(lines, guides, strict=True)
+    ]
     pieces = _parted(swung, [guide.closed for guide in guides], near, radius_mm)
     ways = list[Way]()
     for chain in _chains(pieces):
@@ -100,7 +108,9 @@ def _guided(guide: Guide, radius_mm: float) -> Array:
     """The places of a guide that count for a tool, the tool on its left; of a closed one the last is not the
     first again.
     """
-    points = np.ascontiguousarray(guide.points_mm if guide.left else guide.points_mm[::-1], float)
+    points = np.ascontiguousarray(
+        guide.points_mm if guide.left else guide.points_mm[::-1], float
+    )
     points = plain(points, PLAIN)
     points = points[np.r_[True, np.hypot(*np.diff(points, axis=0).T) > PLAIN]]
     if guide.closed and len(points) > 1 and np.hypot(*(points[-1] - points[0])) <= APART_MM:
@@ -143,13 +153,21 @@ def _swung(line: Array, closed: bool, radius_mm: float) -> Array:
     before = np.roll(ways, 1, axis=0) if closed else ways[:-1]
     after = ways if closed else ways[1:]
     turns = np.arctan2(
-        before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0], np.einsum("ij,ij->i", before, after)
+        before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0],
+        np.einsum("ij,ij->i", before, after),
     )
     turns[np.abs(turns) > BACK] = -math.pi
     at_vertices = line if closed else line[1:-1]
     arms_before = np.roll(arms, 1, axis=0) if closed else arms[:-1]
-    beside = np.minimum(np.roll(lengths, 1), lengths) if closed else np.minimum(lengths[:-1], lengths[1:])
-    parts = [_swing(*each, radius_mm) for each in zip(at_vertices, arms_before, turns, beside, strict=True)]
+    beside = (
+        np.minimum(np.roll(lengths, 1), lengths)
+        if closed
+        else np.minimum(lengths[:-1], lengths[1:])
+    )
+    parts = [
+        _swing(*each, radius_mm)
+        for each in zip(at_vertices, arms_before, turns, beside, strict=True)
+    ]
     if closed:
         way = np.vstack(parts)
         return with_places(_closed_up(way, True), APART_MM)[:-1]
@@ -163,7 +181,9 @@ def _swing(vertex: Array, arm: Array, turn: float, beside_mm: float, radius_mm: 
     back_mm = max(
         0.0, radius_mm * math.tan(max(turn, 0.0) / 2) - beside_mm
     )  # beyond where the two ways beside it meet
-    if (0 <= turn < SLIGHT and back_mm * turn < KINK_MM) or -math.sqrt(8 * PLAIN / radius_mm) < turn < 0:
+    if (0 <= turn < SLIGHT and back_mm * turn < KINK_MM) or -math.sqrt(
+        8 * PLAIN / radius_mm
+    ) < turn < 0:
         return np.asarray(vertex + _turned(arm, np.array([turn / 2])) / math.cos(turn / 2))
     if turn > 0:
         arms, drawn_in = (
@@ -198,13 +218,17 @@ class _Piece:
         return float(np.hypot(*np.diff(self.points_mm, axis=0).T).sum())
 
 
-def _parted(swung: list[Array], closed: list[bool], near: Nearest, radius_mm: float) -> list[_Piece]:
+def _parted(
+    swung: list[Array], closed: list[bool], near: Nearest, radius_mm: float
+) -> list[_Piece]:
     """The pieces between the crossings of swung ways that are nowhere nearer than the radius to a line."""
     shake = np.random.default_rng(
         0
     )  # no way lies exactly on another, and none crosses exactly in one of its places
     swung = [way + shake.uniform(-SHAKEN_MM, SHAKEN_MM, way.shape) for way in swung]
-    ways = [_closed_up(way, round_about) for way, round_about in zip(swung, closed, strict=True)]
+    ways = [
+        _closed_up(way, round_about) for way, round_about in zip(swung, closed, strict=True)
+    ]
     firsts = np.r_[0, np.cumsum([len(way) for way in ways])]
     every = np.vstack(ways)
     close = near.distances_mm(every) > radius_mm - DEEP_MM
@@ -219,7 +243,9 @@ def _parted(swung: list[Array], closed: list[bool], near: Nearest, radius_mm: fl
         order = np.argsort(at[own])
         cuts = list(zip(at[own][order] - firsts[guide], number[own][order], strict=True))
         pieces += _between(way, cuts, closed[guide], guide)
-    return [clear for piece in pieces if (clear := _cleared(piece, near, radius_mm)) is not None]
+    return [
+        clear for piece in pieces if (clear := _cleared(piece, near, radius_mm)) is not None
+    ]
 
 
 def _cleared(piece: _Piece, near: Nearest, radius_mm: float) -> _Piece | None:
@@ -232,10 +258,16 @@ def _cleared(piece: _Piece, near: Nearest, radius_mm: float) -> _Piece | None:
     if nearest_mm < radius_mm - SET_BACK or piece.length_mm < LONG_MM:
         return None
     piece = replace(piece, points_mm=near.set_back(piece.points_mm, radius_mm))
-    return piece if near.distances_mm(_inner(piece.points_mm)).min() >= radius_mm - NEARER else None
+    return (
+        piece
+        if near.distances_mm(_inner(piece.points_mm)).min() >= radius_mm - NEARER
+        else None
+    )
 
 
-def _between(way: Array, cuts: list[tuple[float, int]], closed: bool, guide: int) -> list[_Piece]:
+def _between(
+    way: Array, cuts: list[tuple[float, int]], closed: bool, guide: int
+) -> list[_Piece]:
     """A way parted at its cuts: how far along it in places, and the number of the crossing."""
     if not cuts:
         return [_Piece(way, guide, *((ALONE, ALONE) if closed else (FREE, FREE)))]
@@ -271,9 +303,15 @@ def _chains(pieces: list[_Piece]) -> list[list[_Piece]]:
         if not any(first is piece for piece in leaving[first.start]):
             continue  # it is in a chain already
         chain, passed = [_taken(first, leaving)], {first.start}
-        while chain[-1].end >= 0 and chain[-1].end != first.start and leaving.get(chain[-1].end):
+        while (
+            chain[-1].end >= 0 and chain[-1].end != first.start and leaving.get(chain[-1].end)
+        ):
             passed.add(chain[-1].end)
-            chain.append(_taken(_next(chain[-1], leaving[chain[-1].end], passed - {first.start}), leaving))
+            chain.append(
+                _taken(
+                    _next(chain[-1], leaving[chain[-1].end], passed - {first.start}), leaving
+                )
+            )
         chains.append(chain)
     return chains
 
@@ -294,16 +332,23 @@ def _taken(piece: _Piece, leaving: dict[int, list[_Piece]]) -> _Piece:
 
 def _turn(arriving: _Piece, leaving: _Piece) -> float:
     """By how much the way turns to the left from the end of a piece onto another, rad."""
-    a, b = arriving.points_mm[-1] - arriving.points_mm[-2], leaving.points_mm[1] - leaving.points_mm[0]
+    a, b = (
+        arriving.points_mm[-1] - arriving.points_mm[-2],
+        leaving.points_mm[1] - leaving.points_mm[0],
+    )
     return math.atan2(a[0] * b[1] - a[1] * b[0], a @ b)
 
 
 def _is_scrap(points: Array, closed: bool, radius_mm: float, least_mm: float) -> bool:
     """Whether a way is none: too short, or round nothing, though to the right it must go round a line."""
     length_mm = float(np.hypot(*np.diff(points, axis=0).T).sum())
-    area_mm2 = 0.5 * float(np.sum(points[:-1, 0] * points[1:, 1] - points[1:, 0] * points[:-1, 1]))
+    area_mm2 = 0.5 * float(
+        np.sum(points[:-1, 0] * points[1:, 1] - points[1:, 0] * points[:-1, 1])
+    )
     round_a_line = area_mm2 < 0 and length_mm > 6 * radius_mm
-    return length_mm < least_mm or (closed and not round_a_line and 2 * area_mm2 < NEARER * length_mm)
+    return length_mm < least_mm or (
+        closed and not round_a_line and 2 * area_mm2 < NEARER * length_mm
+    )
 
 
 def _begun(points: Array, start_mm: Array) -> Array:
@@ -313,7 +358,9 @@ def _begun(points: Array, start_mm: Array) -> Array:
     first = int(np.argmin(away))
     if away[first] > SAME_MM:
         ways = np.diff(_closed_up(points, True), axis=0)
-        turns = np.abs(np.angle(np.exp(1j * np.diff(np.r_[0, np.arctan2(ways[:, 1], ways[:, 0])]))))
+        turns = np.abs(
+            np.angle(np.exp(1j * np.diff(np.r_[0, np.arctan2(ways[:, 1], ways[:, 0])])))
+        )
         sharp = np.flatnonzero(turns > SLIGHT)
         gaps = np.diff(np.r_[sharp, sharp[:1] + len(points)])
         first = int(sharp[np.argmax(gaps)] + gaps.max() // 2) % len(points) if len(sharp) else 0

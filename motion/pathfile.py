@@ -43,8 +43,22 @@ from morfax.motion.motion import AXES, FURTHER_AXES, IN_WORK_BELOW_MM, Path
 CLEARANCE_MM = 2.0  # where the tool stands when it is up, docs/design.md
 FEED_MM_S = 10.0
 
-_NAMES = {"t": "t_s", "time_s": "t_s", "x": "x_mm", "y": "y_mm", "z": "z_mm"}  # short names of the columns
-_COLUMNS = ("t_s", "x_mm", "y_mm", "z_mm", "tool", "loop", *(f"{axis}_mm" for axis in FURTHER_AXES))
+_NAMES = {
+    "t": "t_s",
+    "time_s": "t_s",
+    "x": "x_mm",
+    "y": "y_mm",
+    "z": "z_mm",
+}  # short names of the columns
+_COLUMNS = (
+    "t_s",
+    "x_mm",
+    "y_mm",
+    "z_mm",
+    "tool",
+    "loop",
+    *(f"{axis}_mm" for axis in FURTHER_AXES),
+)
 _OTHER_UNITS = {"", "in", "inch", "cm", "m", "um", "deg", "rad", "ms", "us", "min"}
 _UP = {"0", "0.0", "false", "up"}
 _DOWN = {"1", "1.0", "true", "down"}
@@ -66,7 +80,8 @@ def write_rows(path: Path, out: TextIO, *, header: bool = False) -> None:
         out.write(_header(path))
     places_mm = np.round(path.positions_mm, 5)
     rows = (
-        np.column_stack([np.round(path.t_s, 7), places_mm[:, :3], path.tool, places_mm[:, 3:]]) + 0.0
+        np.column_stack([np.round(path.t_s, 7), places_mm[:, :3], path.tool, places_mm[:, 3:]])
+        + 0.0
     )  # no minus zero
     line = "%.7f,%.5f,%.5f,%.5f,%d" + ",%.5f" * len(path.axes[3:]) + "\n"
     for first in range(0, len(rows), _ROWS_AT_ONCE):
@@ -76,7 +91,9 @@ def write_rows(path: Path, out: TextIO, *, header: bool = False) -> None:
 
 def _header(path: Path) -> str:
     """The line of names."""
-    return ",".join(["t_s,x_mm,y_mm,z_mm,tool", *(f"{axis}_mm" for axis in path.axes[3:])]) + "\n"
+    return (
+        ",".join(["t_s,x_mm,y_mm,z_mm,tool", *(f"{axis}_mm" for axis in path.axes[3:])]) + "\n"
+    )
 
 
 def read_path(file: str | os.PathLike[str], feed_mm_s: float = FEED_MM_S) -> Path:
@@ -92,7 +109,9 @@ def read_path(file: str | os.PathLike[str], feed_mm_s: float = FEED_MM_S) -> Pat
         raise MotionFault(
             f"{file}: the path stands still at one place; a path needs at least two different points"
         )
-    return Path(t_s[keep], np.ascontiguousarray(rows.positions_mm[keep]), (*AXES, *table.further))
+    return Path(
+        t_s[keep], np.ascontiguousarray(rows.positions_mm[keep]), (*AXES, *table.further)
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,14 +129,19 @@ class _Table:
     def further(self) -> tuple[str, ...]:
         """The axes beyond X, Y and Z, in the order of their columns."""
         return tuple(
-            axis for axis in (name.removesuffix("_mm") for name in self.columns) if axis in FURTHER_AXES
+            axis
+            for axis in (name.removesuffix("_mm") for name in self.columns)
+            if axis in FURTHER_AXES
         )
 
     @property
     def further_mm(self) -> Array:
         """Their places, (n, axes beyond Z)."""
         return np.column_stack(
-            [np.empty((len(self.lines), 0)), *(self.columns[f"{axis}_mm"] for axis in self.further)]
+            [
+                np.empty((len(self.lines), 0)),
+                *(self.columns[f"{axis}_mm"] for axis in self.further),
+            ]
         )
 
 
@@ -133,14 +157,23 @@ class _Rows:
 
     def times_s(self, feed_mm_s: float) -> Array:
         """Times of the points, s."""
-        at_feed_s = np.r_[0.0, np.sqrt((np.diff(self.positions_mm, axis=0) ** 2).sum(axis=1))] / feed_mm_s
-        return self.start_s + np.cumsum(np.where(np.isnan(self.since_last_s), at_feed_s, self.since_last_s))
+        at_feed_s = (
+            np.r_[0.0, np.sqrt((np.diff(self.positions_mm, axis=0) ** 2).sum(axis=1))]
+            / feed_mm_s
+        )
+        return self.start_s + np.cumsum(
+            np.where(np.isnan(self.since_last_s), at_feed_s, self.since_last_s)
+        )
 
 
 def _read_table(file: str | os.PathLike[str]) -> _Table:
     """Read the columns that a path needs, all rows at once; look for the culprit only when that fails."""
     written = enumerate(_read_text(file).splitlines(), 1)
-    lines = [(number, line) for number, line in written if line.strip() and not line.lstrip().startswith("#")]
+    lines = [
+        (number, line)
+        for number, line in written
+        if line.strip() and not line.lstrip().startswith("#")
+    ]
     if len(lines) < 3:
         raise MotionFault(
             f"{file}: {max(0, len(lines) - 1)} points in it; a path needs {_EXPECTED}, then two or more"
@@ -172,21 +205,33 @@ def _find_columns(header: str, separator: str, place: str) -> dict[str, int]:
     names = [_NAMES.get(name, name) for name in names]
     for required in ("x_mm", "y_mm"):
         if required not in names:
-            raise MotionFault(f"{place}: no column {required} in {header.strip()[:60]!r}; give {_EXPECTED}")
+            raise MotionFault(
+                f"{place}: no column {required} in {header.strip()[:60]!r}; give {_EXPECTED}"
+            )
     for name in _COLUMNS:
         if names.count(name) > 1:
-            raise MotionFault(f"{place}: column {name} stands there {names.count(name)} times; leave one")
+            raise MotionFault(
+                f"{place}: column {name} stands there {names.count(name)} times; leave one"
+            )
     for name in names:
         axis, _, unit = name.partition("_")
-        if name not in _COLUMNS and unit in _OTHER_UNITS and axis in ("t", *AXES, *FURTHER_AXES):
+        if (
+            name not in _COLUMNS
+            and unit in _OTHER_UNITS
+            and axis in ("t", *AXES, *FURTHER_AXES)
+        ):
             wanted = "t_s, in seconds" if axis == "t" else f"{axis}_mm, in mm"
-            raise MotionFault(f"{place}: column {name} cannot be read; give {wanted}, or take the column out")
+            raise MotionFault(
+                f"{place}: column {name} cannot be read; give {wanted}, or take the column out"
+            )
     return {name: names.index(name) for name in names if name in _COLUMNS}
 
 
 def _convert(lines: list[str], where: dict[str, int], separator: str) -> Array | None:
     """All rows as numbers, one column per entry of `where`; None if a row is bad."""
-    tool: dict[int | str, Callable[[str], float]] = {where["tool"]: _tool} if "tool" in where else {}
+    tool: dict[int | str, Callable[[str], float]] = (
+        {where["tool"]: _tool} if "tool" in where else {}
+    )
     wanted = tuple(where.values())
     try:
         values = np.loadtxt(
@@ -215,7 +260,9 @@ def _culprit(lines: list[tuple[int, str]], where: dict[str, int], separator: str
             if not _is_good(name, fields[column]):
                 allowed = "1 (in the work) or 0 (up)" if name == "tool" else "a finite number"
                 return f", line {number}: {name} is {fields[column].strip()[:30]!r}; it must be {allowed}"
-    return f": the rows cannot be read as numbers; a path file is CSV and starts with {_EXPECTED}"
+    return (
+        f": the rows cannot be read as numbers; a path file is CSV and starts with {_EXPECTED}"
+    )
 
 
 def _is_good(name: str, field: str) -> bool:
@@ -253,10 +300,16 @@ def _with_z_moves(table: _Table) -> _Rows:
     since = np.full(n, np.nan) if times is None else np.r_[0.0, np.diff(times)]
     after, over, over_since = _z_moves(table, points, since)
     start_s = 0.0 if times is None else float(times[0])
-    return _Rows(np.insert(points, after + 1, over, axis=0), np.insert(since, after + 1, over_since), start_s)
+    return _Rows(
+        np.insert(points, after + 1, over, axis=0),
+        np.insert(since, after + 1, over_since),
+        start_s,
+    )
 
 
-def _z_moves(table: _Table, points: Array, since: Array) -> tuple[NDArray[np.int64], Array, Array]:
+def _z_moves(
+    table: _Table, points: Array, since: Array
+) -> tuple[NDArray[np.int64], Array, Array]:
     """After which rows new points come, the points, their times since the last; changes `since` for the step
     after.
     """
@@ -274,7 +327,11 @@ def _z_moves(table: _Table, points: Array, since: Array) -> tuple[NDArray[np.int
             over.append(_raised(points[i + 1]))
             over_since.append(since[i + 1] if z0 > IN_WORK_BELOW_MM else np.nan)
             since[i + 1] = np.nan
-    return np.array(after, np.int64), np.array(over).reshape(-1, points.shape[1]), np.array(over_since)
+    return (
+        np.array(after, np.int64),
+        np.array(over).reshape(-1, points.shape[1]),
+        np.array(over_since),
+    )
 
 
 def _raised(point_mm: Array) -> Array:

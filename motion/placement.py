@@ -55,7 +55,11 @@ class Placement:
     def matrix(self) -> Array:
         """Scale · turn · mirror, (2, 2); quarter turns are exact."""
         cosine, sine = round(math.cos(self.turn_rad), 15), round(math.sin(self.turn_rad), 15)
-        return self.scale * np.array([[cosine, -sine], [sine, cosine]]) * np.array(_MIRRORS[self.mirror])
+        return (
+            self.scale
+            * np.array([[cosine, -sine], [sine, cosine]])
+            * np.array(_MIRRORS[self.mirror])
+        )
 
     def about(self, start_mm: Array) -> Placement:
         """The same with its point: the one given, or where the motion starts."""
@@ -72,7 +76,10 @@ class Placement:
     def path(self, path: Path) -> Path:
         """A path, placed."""
         return replace(
-            path, positions_mm=self.about(path.positions_mm[0])._moved(path.positions_mm, self.matrix)
+            path,
+            positions_mm=self.about(path.positions_mm[0])._moved(
+                path.positions_mm, self.matrix
+            ),
         )
 
     def back(self, path: Path) -> Path:
@@ -80,7 +87,9 @@ class Placement:
         moved = np.array(path.positions_mm, np.float64)
         moved[:, :2] += self.origin_mm
         undo = replace(self, origin_mm=(0.0, 0.0))
-        return replace(path, positions_mm=undo._moved(moved, np.asarray(np.linalg.inv(self.matrix))))
+        return replace(
+            path, positions_mm=undo._moved(moved, np.asarray(np.linalg.inv(self.matrix)))
+        )
 
     def _placed(self, stream: Iterable[Motion]) -> Iterator[Motion]:
         """Place block by block."""
@@ -88,10 +97,15 @@ class Placement:
         for block in stream:
             if placement.about_mm is None and len(block.positions_mm):
                 placement = self.about(block.positions_mm[0])
-            yield replace(block, positions_mm=placement._moved(block.positions_mm, placement.matrix))
+            yield replace(
+                block, positions_mm=placement._moved(block.positions_mm, placement.matrix)
+            )
 
     def _moved(self, positions_mm: Array, matrix: Array) -> Array:
         """Positions with X and Y put through a matrix about the point."""
-        moved, point_mm = np.array(positions_mm, np.float64), np.array(self.about_mm, np.float64)
+        moved, point_mm = (
+            np.array(positions_mm, np.float64),
+            np.array(self.about_mm, np.float64),
+        )
         moved[:, :2] = (moved[:, :2] - point_mm) @ matrix.T + point_mm - self.origin_mm
         return moved

@@ -58,7 +58,9 @@ class Nearest:
         # line
         share_mm = 0.5 * WITHIN_MM
         apart_mm = math.sqrt(8 * radius_mm * share_mm)
-        self._tree = cKDTree(np.vstack([with_places(plain(line, share_mm), apart_mm) for line in lines_mm]))
+        self._tree = cKDTree(
+            np.vstack([with_places(plain(line, share_mm), apart_mm) for line in lines_mm])
+        )
 
     def distances_mm(self, places_mm: Array) -> Array:
         """Distance of each place (n, 2) from the nearest line, mm."""
@@ -71,7 +73,8 @@ class Nearest:
         away, index = self._tree.query(places_mm)
         lines = np.asarray(self._tree.data)[index]
         return np.asarray(
-            lines + (places_mm - lines) * np.maximum(1.0, distance_mm / np.maximum(away, UM))[:, None]
+            lines
+            + (places_mm - lines) * np.maximum(1.0, distance_mm / np.maximum(away, UM))[:, None]
         )
 
 

@@ -55,7 +55,10 @@ class Ramp:
     increment_mm: float = 0.001
 
     def __post_init__(self) -> None:
-        for name, value in (("acceleration", self.acceleration_mm_s2), ("increment", self.increment_mm)):
+        for name, value in (
+            ("acceleration", self.acceleration_mm_s2),
+            ("increment", self.increment_mm),
+        ):
             if not 0 < value < math.inf:
                 raise ValueError(
                     f"a ramp's {name} of {value:g} moves nothing; give one above zero and finite"
@@ -120,7 +123,11 @@ def positions_mm(
 
     `changes` holds (mm along the path, new feed in mm/s). A move of nothing is one row.
     """
-    ramp, start, end = ramp or Ramp(), np.asarray(start_mm, np.float64), np.asarray(end_mm, np.float64)
+    ramp, start, end = (
+        ramp or Ramp(),
+        np.asarray(start_mm, np.float64),
+        np.asarray(end_mm, np.float64),
+    )
     feeds = [feed_mm_s, *(feed for _, feed in changes)]
     _check(start, end, feeds, rate_hz)
     length_mm = math.dist(start, end)
@@ -128,7 +135,9 @@ def positions_mm(
         return np.array([start, end])[: 1 + bool((start != end).any())]
     increments = max(1, int(np.rint(np.abs(end - start) / ramp.increment_mm).sum()))
     mm_per_count = length_mm / increments
-    speeds, acceleration_mm_s2 = _speeds(feeds, mm_per_count, ramp.acceleration_mm_s2, increments)
+    speeds, acceleration_mm_s2 = _speeds(
+        feeds, mm_per_count, ramp.acceleration_mm_s2, increments
+    )
     changes_at = [round(min(max(at_mm / mm_per_count, 0), increments)) for at_mm, _ in changes]
     profile = count_ramp(increments, speeds, changes_at)
     travelled = _sample(profile, acceleration_mm_s2 / mm_per_count, rate_hz) / increments
@@ -140,10 +149,14 @@ def positions_mm(
 def _check(start: Array, end: Array, feeds: Sequence[float], rate_hz: float) -> None:
     """Raise ValueError for what is no move."""
     if start.ndim != 1 or start.shape != end.shape or not np.isfinite([start, end]).all():
-        raise ValueError(f"a move from {start} to {end} is none; give two places of as many finite mm each")
+        raise ValueError(
+            f"a move from {start} to {end} is none; give two places of as many finite mm each"
+        )
     for name, value in [("feed", feed) for feed in feeds] + [("rate", rate_hz)]:
         if not 0 < value < math.inf:
-            raise ValueError(f"a {name} of {value:g} never arrives; give one above zero and finite")
+            raise ValueError(
+                f"a {name} of {value:g} never arrives; give one above zero and finite"
+            )
 
 
 def _speeds(
@@ -156,14 +169,20 @@ def _speeds(
     exactly = feeds[0] ** 2 / (2 * acceleration_mm_s2 * mm_per_count)
     if exactly < increments:
         acceleration_mm_s2 *= exactly / max(1, math.ceil(exactly * (1 - 1e-12)))
-    squares = [feed**2 / (2 * acceleration_mm_s2 * mm_per_count) * (1 + 1e-12) for feed in feeds]
-    return [max(1, math.floor(min(square, increments))) for square in squares], acceleration_mm_s2
+    squares = [
+        feed**2 / (2 * acceleration_mm_s2 * mm_per_count) * (1 + 1e-12) for feed in feeds
+    ]
+    return [
+        max(1, math.floor(min(square, increments))) for square in squares
+    ], acceleration_mm_s2
 
 
 def _sample(profile: Profile, acceleration_s2: float, rate_hz: float) -> Array:
     """Increments travelled at each period of the motion rate, for an acceleration in increments/s²."""
     modes, halves = profile.pieces.T
-    squares = 2 * profile.moving + np.r_[0, np.cumsum(modes * halves)]  # of the speed, in half increments
+    squares = (
+        2 * profile.moving + np.r_[0, np.cumsum(modes * halves)]
+    )  # of the speed, in half increments
     speed = np.sqrt(acceleration_s2 * squares)  # increments/s
     took_s = halves / (
         speed[:-1] + speed[1:]

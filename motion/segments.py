@@ -92,7 +92,9 @@ def legs(source: Source, limits: Limits) -> list[Leg]:
     found = []
     for a, b in pairwise(cuts.tolist()):
         part = slice(a, b + 1)
-        found.append(_leg(points_mm[part], along_mm[part], speeds_mm_s[a:b], float(rests_s[a]), limits))
+        found.append(
+            _leg(points_mm[part], along_mm[part], speeds_mm_s[a:b], float(rests_s[a]), limits)
+        )
     return found
 
 
@@ -102,10 +104,14 @@ def as_path(source: Source) -> Path:
     """
     try:
         path = (
-            source if isinstance(source, Path) else thin([source] if isinstance(source, Motion) else source)
+            source
+            if isinstance(source, Path)
+            else thin([source] if isinstance(source, Motion) else source)
         )
     except ValueError:
-        raise MotionFault("the motion is empty; a program needs at least one position") from None
+        raise MotionFault(
+            "the motion is empty; a program needs at least one position"
+        ) from None
     bad = np.flatnonzero(~np.isfinite(path.positions_mm).all(axis=1))
     if len(bad):
         time_s = float(path.t_s[bad[0]])
@@ -114,7 +120,9 @@ def as_path(source: Source) -> Path:
         )
     moving = [
         axis.upper()
-        for axis, mm in zip(path.axes[3:], np.ptp(path.positions_mm[:, 3:], axis=0), strict=False)
+        for axis, mm in zip(
+            path.axes[3:], np.ptp(path.positions_mm[:, 3:], axis=0), strict=False
+        )
         if mm
     ]
     if moving:
@@ -138,7 +146,9 @@ def _moving(path: Path) -> tuple[Array, Array, Array]:
     group = np.cumsum(keep) - 1  # which kept point each point falls to
     rests_s = np.bincount(group[:-1], np.where(stands, took_s, 0.0), minlength=int(keep.sum()))
     moves = keep[1:]
-    speeds = np.divide(length_mm, took_s, out=np.full(len(took_s), np.inf), where=~stands & (took_s > 0))
+    speeds = np.divide(
+        length_mm, took_s, out=np.full(len(took_s), np.inf), where=~stands & (took_s > 0)
+    )
     return path.positions_mm[keep], speeds[moves], np.where(rests_s >= REST_S, rests_s, 0.0)
 
 
@@ -152,17 +162,23 @@ def corners(points_mm: Array, limits: Limits) -> NDArray[np.int64]:
     sharp = np.flatnonzero(turn > limits.corner_rad)
     if not len(sharp):
         return sharp
-    groups = np.split(sharp, np.flatnonzero(np.diff(along_mm[sharp]) > 2 * limits.window_mm) + 1)
+    groups = np.split(
+        sharp, np.flatnonzero(np.diff(along_mm[sharp]) > 2 * limits.window_mm) + 1
+    )
     return np.array([group[np.argmax(turn[group])] for group in groups])
 
 
-def _leg(points_mm: Array, along_mm: Array, speeds_mm_s: Array, rest_s: float, limits: Limits) -> Leg:
+def _leg(
+    points_mm: Array, along_mm: Array, speeds_mm_s: Array, rest_s: float, limits: Limits
+) -> Leg:
     """A leg: its places, and its speeds by one pass forwards and one back."""
     length_mm = along_mm[-1] - along_mm[0]
     pieces = max(2, int(np.ceil(length_mm / limits.spacing_mm)))
     at_mm = along_mm[0] + length_mm * np.arange(pieces + 1) / pieces
     places = _at(points_mm, along_mm, at_mm)
-    own = speeds_mm_s[np.clip(np.searchsorted(along_mm, at_mm, "right") - 1, 0, len(speeds_mm_s) - 1)]
+    own = speeds_mm_s[
+        np.clip(np.searchsorted(along_mm, at_mm, "right") - 1, 0, len(speeds_mm_s) - 1)
+    ]
     allowed = np.minimum(own, _allowed_mm_s(places, length_mm / pieces, limits))
     squared = np.minimum(allowed, 1e6) ** 2
     _passes(squared, 2 * SHARE * limits.acceleration_mm_s2 * length_mm / pieces)
@@ -178,7 +194,9 @@ def _allowed_mm_s(places: Array, spacing_mm: float, limits: Limits) -> Array:
     way = np.maximum(np.sqrt(((after - before) ** 2).sum(axis=1)), 1e-12)
     bend = np.abs(before - 2 * places + after).max(axis=1) / (reach * spacing_mm) ** 2
     by_axis = limits.speed_mm_s * way / np.maximum(chord, 1e-12)
-    return np.minimum(by_axis, np.sqrt(SHARE * limits.acceleration_mm_s2 / np.maximum(bend, 1e-9)))
+    return np.minimum(
+        by_axis, np.sqrt(SHARE * limits.acceleration_mm_s2 / np.maximum(bend, 1e-9))
+    )
 
 
 def _at(points_mm: Array, along_mm: Array, at_mm: Array) -> Array:

@@ -16,7 +16,14 @@ import re
 LONGEST_MM = 1e6
 MM_PER_INCH = 25.4  # exact since the international yard and pound agreement, 1959
 
-_LENGTH_MM = {"mm": 1.0, "um": 1e-3, "cm": 10.0, "m": 1000.0, "in": MM_PER_INCH, '"': MM_PER_INCH}
+_LENGTH_MM = {
+    "mm": 1.0,
+    "um": 1e-3,
+    "cm": 10.0,
+    "m": 1000.0,
+    "in": MM_PER_INCH,
+    '"': MM_PER_INCH,
+}
 _TIME_S = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0, "h": 3600.0}
 _FREQUENCY_HZ = {"hz": 1.0, "khz": 1e3, "mhz": 1e6}
 _SPEED_MM_S = {
@@ -28,9 +35,17 @@ _SPEED_MM_S = {
     "in/s": MM_PER_INCH,
     "in/min": MM_PER_INCH / 60.0,
 }
-_ANGLE_RAD = {"": math.pi / 180, "deg": math.pi / 180, "°": math.pi / 180, "rad": 1.0, "turn": 2 * math.pi}
+_ANGLE_RAD = {
+    "": math.pi / 180,
+    "deg": math.pi / 180,
+    "°": math.pi / 180,
+    "rad": 1.0,
+    "turn": 2 * math.pi,
+}
 _SHARE = {"%": 0.01}
-_NUMBER_AND_UNIT = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)\s*([a-z/\"°%]*)", re.ASCII)
+_NUMBER_AND_UNIT = re.compile(
+    r"([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)\s*([a-z/\"°%]*)", re.ASCII
+)
 
 
 def parse_length_mm(text: str) -> float:
@@ -51,7 +66,9 @@ def parse_speed_mm_s(text: str) -> float:
 def parse_frequency_hz(text: str) -> float:
     """Frequency in Hz of "6kHz" or a bare number of Hz; above zero."""
     allowed = "6kHz, 400Hz or a bare number of Hz, above zero"
-    return _positive(_parse(text, "frequency", _FREQUENCY_HZ, allowed), text, "frequency", allowed)
+    return _positive(
+        _parse(text, "frequency", _FREQUENCY_HZ, allowed), text, "frequency", allowed
+    )
 
 
 def parse_time_s(text: str) -> float:
@@ -125,7 +142,9 @@ def format_place_mm(x_mm: float, y_mm: float) -> str:
 
 def _parse(text: str, kind: str, units: dict[str, float], allowed: str) -> float:
     """Number times unit; raises ValueError that says what was got and what is allowed."""
-    plain = text.strip().lower().replace("\u00b5", "u").replace("\u03bc", "u")  # micro sign, Greek mu
+    plain = (
+        text.strip().lower().replace("\u00b5", "u").replace("\u03bc", "u")
+    )  # micro sign, Greek mu
     found = _NUMBER_AND_UNIT.fullmatch(plain)
     scale = {"": 1.0, **units}.get(found[2]) if found else None
     value = float(found[1]) * scale if found and scale is not None else math.nan

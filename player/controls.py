@@ -61,7 +61,9 @@ class Control:
 
     def player(self) -> Callable[..., Playback]:
         """Import the control."""
-        player: Callable[..., Playback] = getattr(importlib.import_module(self.module), self.function)
+        player: Callable[..., Playback] = getattr(
+            importlib.import_module(self.module), self.function
+        )
         return player
 
 
@@ -74,8 +76,12 @@ CONTROLS: dict[str, Control] = {
     ".steps": Control(
         "stepping motors at selected pulse rates", "morfax.player.steps.stepping", "play_steps"
     ),
-    ".cubic": Control("difference interpolator and servo", "morfax.player.cubics.cubic", "play_cubic"),
-    ".ngc": Control("pulse interpolator and pulse servos", "morfax.player.gcode.pulses", "play_pulses"),
+    ".cubic": Control(
+        "difference interpolator and servo", "morfax.player.cubics.cubic", "play_cubic"
+    ),
+    ".ngc": Control(
+        "pulse interpolator and pulse servos", "morfax.player.gcode.pulses", "play_pulses"
+    ),
 }
 
 

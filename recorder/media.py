@@ -44,7 +44,9 @@ class Medium:
 
     def recorder(self) -> Callable[..., Report]:
         """Import the recorder."""
-        recorder: Callable[..., Report] = getattr(importlib.import_module(self.module), self.function)
+        recorder: Callable[..., Report] = getattr(
+            importlib.import_module(self.module), self.function
+        )
         return recorder
 
 
@@ -54,7 +56,9 @@ MEDIA: dict[str, Medium] = {
     ".wav": _TAPE,
     ".rf64": _TAPE,
     ".flac": _TAPE,
-    ".steps": Medium("punched tape of step vectors", "morfax.recorder.steps.steps", "record_steps"),
+    ".steps": Medium(
+        "punched tape of step vectors", "morfax.recorder.steps.steps", "record_steps"
+    ),
     ".cubic": Medium("differences of cubics", "morfax.recorder.cubics.cubics", "record_cubics"),
     ".ngc": Medium("lines and arcs in RS-274", "morfax.recorder.gcode.blocks", "record_blocks"),
 }

@@ -53,7 +53,9 @@ def speeds_held(playback: Playback) -> Speeds | None:
 def figures(playback: Playback) -> dict[str, Any]:
     """The largest following error of each axis, and the share of its limit."""
     watch = playback.monitor
-    each = zip(watch.axes, watch.largest_error_mm.tolist(), watch.largest_share.tolist(), strict=True)
+    each = zip(
+        watch.axes, watch.largest_error_mm.tolist(), watch.largest_share.tolist(), strict=True
+    )
     return {
         f"{axis}_axis": {"following_error_mm": error_mm, "limit_share": share}
         for axis, error_mm, share in each
@@ -98,7 +100,9 @@ def _panel(axes: Axes, chart: Chart, number: int, name: str) -> None:
     axes.semilogy(chart.t_s, error_um, color=ERROR, linewidth=0.8, label="following error")
     over = error_um > limit_um
     if over.any():
-        axes.semilogy(chart.t_s[over], error_um[over], "x", color=LIMIT, markersize=9, label="fault")
+        axes.semilogy(
+            chart.t_s[over], error_um[over], "x", color=LIMIT, markersize=9, label="fault"
+        )
     axes.set_ylabel(f"{name.upper()}, µm")
     axes.set_ylim(bottom=SMALLEST_UM)
     axes.grid(alpha=0.3)
@@ -108,10 +112,16 @@ def _speeds(axes: Axes, speeds: Speeds) -> None:
     """Programmed and held speed along the way."""
     programmed = next(iter(speeds.values()))
     axes.plot(
-        programmed.way_mm, programmed.programmed_mm_s, color=PROGRAMMED, linewidth=1.0, label="programmed"
+        programmed.way_mm,
+        programmed.programmed_mm_s,
+        color=PROGRAMMED,
+        linewidth=1.0,
+        label="programmed",
     )
     for (name, held), colour in zip(speeds.items(), (ERROR, TRUE), strict=False):
-        axes.plot(held.way_mm, held.held_mm_s, color=colour, linewidth=0.8, label=f"held, {name}")
+        axes.plot(
+            held.way_mm, held.held_mm_s, color=colour, linewidth=0.8, label=f"held, {name}"
+        )
     axes.set(xlabel="way along the program, mm", ylabel="speed, mm/s", ylim=(0, None))
     axes.legend(fontsize=8, ncols=3, loc="lower right", bbox_to_anchor=(1, 1), frameon=False)
     axes.grid(alpha=0.3)
@@ -121,8 +131,22 @@ def _write_csv(chart: Chart, file: FilePath) -> None:
     """Write the rows."""
     columns: list[NDArray[np.float64]] = [chart.t_s]
     for number in range(len(chart.axes)):
-        of_axis: tuple[Any, ...] = (chart.demand_mm, chart.actual_mm, chart.error_mm, chart.limit_mm)
+        of_axis: tuple[Any, ...] = (
+            chart.demand_mm,
+            chart.actual_mm,
+            chart.error_mm,
+            chart.limit_mm,
+        )
         columns += [column[:, number] for column in of_axis]
-    header = ",".join(["t_s", *(f"{name}_{what}_mm" for name in chart.axes for what in _HEADINGS)])
+    header = ",".join(
+        ["t_s", *(f"{name}_{what}_mm" for name in chart.axes for what in _HEADINGS)]
+    )
     with written_beside(file) as beside:
-        np.savetxt(beside, np.column_stack(columns), fmt="%.7f", delimiter=",", header=header, comments="")
+        np.savetxt(
+            beside,
+            np.column_stack(columns),
+            fmt="%.7f",
+            delimiter=",",
+            header=header,
+            comments="",
+        )

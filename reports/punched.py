@@ -82,7 +82,9 @@ def holes(program: Program) -> Iterator[Hole]:
         right_mm = (
             strip.x_mm + (strip.width_mm + channels * PITCH_MM) / 2
         )  # channels and the feed track: centred
-        for row, code in enumerate(codes[strip.first_row : strip.first_row + ROWS_PER_STRIP], 1):
+        for row, code in enumerate(
+            codes[strip.first_row : strip.first_row + ROWS_PER_STRIP], 1
+        ):
             y_mm = HEAD_MM + row * PITCH_MM
             yield Hole(right_mm - 3 * PITCH_MM, y_mm, FEED_HOLE_MM)
             for bit in range(channels):
@@ -93,7 +95,9 @@ def holes(program: Program) -> Iterator[Hole]:
 
 def _size_mm(parts: list[Strip]) -> tuple[float, float]:
     """Width and height of the picture."""
-    return parts[-1].x_mm + parts[-1].width_mm + BETWEEN_MM, HEAD_MM + parts[0].length_mm + BETWEEN_MM
+    return parts[-1].x_mm + parts[-1].width_mm + BETWEEN_MM, HEAD_MM + parts[
+        0
+    ].length_mm + BETWEEN_MM
 
 
 def _write_svg(program: Program, file: FilePath) -> None:
@@ -131,7 +135,10 @@ def _write_png(program: Program, file: FilePath) -> None:
         pen.text((s.x_mm * PX_PER_MM, 1.5 * PX_PER_MM), str(s.first_row + 1), fill=INK)
     for h in holes(program):
         r = h.diameter_mm / 2
-        pen.ellipse([mm * PX_PER_MM for mm in (h.x_mm - r, h.y_mm - r, h.x_mm + r, h.y_mm + r)], fill=HOLE)
+        pen.ellipse(
+            [mm * PX_PER_MM for mm in (h.x_mm - r, h.y_mm - r, h.x_mm + r, h.y_mm + r)],
+            fill=HOLE,
+        )
     dpi = PX_PER_MM * 25.4
     with written_beside(file) as beside:
         image.save(beside, dpi=(dpi, dpi))

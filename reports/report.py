@@ -40,7 +40,8 @@ def write(
     """Write the report: what is told first, a table with a row for each system, faults in full, the pictures."""
     faults = [f"{name}: {row['fault']}" for name, row in rows.items() if row.get("fault")]
     plain = [
-        (name, {key: value for key, value in row.items() if key != "fault"}) for name, row in rows.items()
+        (name, {key: value for key, value in row.items() if key != "fault"})
+        for name, row in rows.items()
     ]
     body = [
         f"<h1>{escape(title)}</h1>",
@@ -65,7 +66,9 @@ def _table(cells: list[list[str]]) -> str:
     lines = []
     for number, line in enumerate(cells):
         tag = "td" if number else "th"
-        lines.append("<tr>" + "".join(f"<{tag}>{escape(cell)}</{tag}>" for cell in line) + "</tr>")
+        lines.append(
+            "<tr>" + "".join(f"<{tag}>{escape(cell)}</{tag}>" for cell in line) + "</tr>"
+        )
     return "<table>" + "\n".join(lines) + "</table>"
 
 

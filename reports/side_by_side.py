@@ -50,8 +50,16 @@ def contours(
     main.legend(fontsize=8, loc="center left", bbox_to_anchor=(1, 0.5))
     for number, (place_mm, what) in enumerate(_places(ran, corners_mm), 1):
         axes = figure.add_subplot(grid[1 + (number - 1) // 3, (number - 1) % 3])
-        _enlarge(axes, ran, traced, place_mm, f"{number}: {what} at {place_mm[0]:.1f}, {place_mm[1]:.1f}")
-        main.annotate(str(number), tuple(place_mm), (7, 7), textcoords="offset points", fontsize=9)
+        _enlarge(
+            axes,
+            ran,
+            traced,
+            place_mm,
+            f"{number}: {what} at {place_mm[0]:.1f}, {place_mm[1]:.1f}",
+        )
+        main.annotate(
+            str(number), tuple(place_mm), (7, 7), textcoords="offset points", fontsize=9
+        )
         main.plot(*place_mm, "+", color="black", markersize=8)
     return figure
 
@@ -84,9 +92,16 @@ def _figure(width_in: float, height_in: float) -> Figure:
     return figure
 
 
-def _lines(axes: Axes, ran: Sequence[Result], traced: Path, origin_mm: Array, scale: float) -> None:
+def _lines(
+    axes: Axes, ran: Sequence[Result], traced: Path, origin_mm: Array, scale: float
+) -> None:
     """The traced path and those of the machines, from an origin, in mm or in um."""
-    style: dict[str, Any] = {"color": "black", "linewidth": 1.0, "linestyle": (0, (4, 3)), "zorder": 5}
+    style: dict[str, Any] = {
+        "color": "black",
+        "linewidth": 1.0,
+        "linestyle": (0, (4, 3)),
+        "zorder": 5,
+    }
     for number, run in enumerate(traced.runs()):
         axes.plot(*((run - origin_mm) * scale).T, label=None if number else "traced", **style)
     for result in ran:
@@ -111,7 +126,9 @@ def _places(ran: Sequence[Result], corners_mm: Array) -> list[tuple[Array, str]]
         assert result.from_traced is not None
         worst = int(result.from_traced.error_mm.argmax())
         off_um = result.from_traced.error_mm[worst] * UM_PER_MM
-        wanted.append((result.from_traced.points_mm[worst], f".{result.suffix} {off_um:.3g} µm off"))
+        wanted.append(
+            (result.from_traced.points_mm[worst], f".{result.suffix} {off_um:.3g} µm off")
+        )
     wanted += [(corner_mm, "corner") for corner_mm in corners_mm]
     chosen: list[tuple[Array, str]] = []
     for place_mm, what in wanted:
@@ -120,13 +137,17 @@ def _places(ran: Sequence[Result], corners_mm: Array) -> list[tuple[Array, str]]
     return chosen[:INSETS]
 
 
-def _enlarge(axes: Axes, ran: Sequence[Result], traced: Path, place_mm: Array, title: str) -> None:
+def _enlarge(
+    axes: Axes, ran: Sequence[Result], traced: Path, place_mm: Array, title: str
+) -> None:
     """One place, so large that the contours part."""
     reach_um = LEAST_REACH_UM
     for result in ran:
         assert result.from_traced is not None
         near = np.hypot(*(result.from_traced.points_mm - place_mm).T) < 0.2
-        reach_um = max(reach_um, 3 * UM_PER_MM * float(result.from_traced.error_mm[near].max(initial=0.0)))
+        reach_um = max(
+            reach_um, 3 * UM_PER_MM * float(result.from_traced.error_mm[near].max(initial=0.0))
+        )
     _lines(axes, ran, traced, place_mm, UM_PER_MM)
     axes.set(xlim=(-reach_um, reach_um), ylim=(-reach_um, reach_um), aspect="equal")
     axes.set_title(title, fontsize=8)

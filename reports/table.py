@@ -54,7 +54,9 @@ def as_text(figures: Figures) -> str:
     rows = [(key, value) for key, value in told.items() if isinstance(value, Mapping)]
     lists = [_named(value) for value in told.values() if _is_listing(value)]
     alone = {
-        key: value for key, value in told.items() if not (isinstance(value, Mapping) or _is_listing(value))
+        key: value
+        for key, value in told.items()
+        if not (isinstance(value, Mapping) or _is_listing(value))
     }
     if alone:
         console.print(_lines(alone))
@@ -66,7 +68,11 @@ def as_text(figures: Figures) -> str:
 
 def _is_listing(value: Any) -> bool:
     """Whether a figure is a list of dictionaries."""
-    return isinstance(value, list) and bool(value) and all(isinstance(row, Mapping) for row in value)
+    return (
+        isinstance(value, list)
+        and bool(value)
+        and all(isinstance(row, Mapping) for row in value)
+    )
 
 
 def _named(listing: list[Figures]) -> list[Row]:
@@ -74,7 +80,10 @@ def _named(listing: list[Figures]) -> list[Row]:
     in two pieces.
     """
     first = next(iter(listing[0]))
-    return [(f"{first} {row[first]}", {key: row[key] for key in row if key != first}) for row in listing]
+    return [
+        (f"{first} {row[first]}", {key: row[key] for key in row if key != first})
+        for row in listing
+    ]
 
 
 def _lines(figures: Figures) -> Any:
@@ -104,10 +113,13 @@ def _grid(rows: Sequence[Row]) -> Any:
 
 def as_cells(rows: Sequence[Row]) -> list[list[str]]:
     """A head of labels, then a line for each row: its name, and each figure that any of them has."""
-    keys = list(dict.fromkeys(key for _, row in rows for key, value in row.items() if value is not None))
+    keys = list(
+        dict.fromkeys(key for _, row in rows for key, value in row.items() if value is not None)
+    )
     header = ["", *(_told(key, None)[0] for key in keys)]
     return [header] + [
-        [name.replace("_", " "), *(_told(key, row.get(key))[1] for key in keys)] for name, row in rows
+        [name.replace("_", " "), *(_told(key, row.get(key))[1] for key in keys)]
+        for name, row in rows
     ]
 
 

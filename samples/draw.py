@@ -36,10 +36,14 @@ WHITE_GREY = 240  # whatever is lighter, the scanner gives as white
 Points = NDArray[np.float64]
 
 
-def arc(centre_mm: tuple[float, float], radius_mm: float, from_deg: float, to_deg: float) -> Points:
+def arc(
+    centre_mm: tuple[float, float], radius_mm: float, from_deg: float, to_deg: float
+) -> Points:
     """Points of an arc, both ends included, mm."""
     angle = np.radians(
-        np.linspace(from_deg, to_deg, 2 + int(abs(np.radians(to_deg - from_deg)) * radius_mm / STEP_MM))
+        np.linspace(
+            from_deg, to_deg, 2 + int(abs(np.radians(to_deg - from_deg)) * radius_mm / STEP_MM)
+        )
     )
     return np.array(centre_mm) + radius_mm * np.column_stack([np.cos(angle), np.sin(angle)])
 
@@ -97,7 +101,10 @@ def program() -> list[Points]:
         arc((56, 26), 6, 0, 90),
         arc((24, 26), 6, 90, 180),
     )
-    lead, before_plate = np.array([[0.0, 16.0], [18.0, 16.0]]), np.array([[13.0, 14.5], [13.0, 17.5]])
+    lead, before_plate = (
+        np.array([[0.0, 16.0], [18.0, 16.0]]),
+        np.array([[13.0, 14.5], [13.0, 17.5]]),
+    )
     on_plate = np.array([[62.0, 14.0], [65.0, 14.0]])
     cross = [np.array([[-1.5, 16.0], [1.5, 16.0]]), np.array([[0.0, 14.5], [0.0, 17.5]])]
     guide, dot = (
@@ -120,9 +127,9 @@ def placed(loops: list[Points]) -> tuple[list[Points], NDArray[np.int_]]:
     """The loops moved to the margin, mm, and the sheet's size in whole pixels (x, y)."""
     every = np.vstack(loops)
     low, high = every.min(axis=0), every.max(axis=0)
-    return [p - low + MARGIN_MM for p in loops], np.ceil((high - low + 2 * MARGIN_MM) * PIXELS_PER_MM).astype(
-        int
-    )
+    return [p - low + MARGIN_MM for p in loops], np.ceil(
+        (high - low + 2 * MARGIN_MM) * PIXELS_PER_MM
+    ).astype(int)
 
 
 def coverage(loops: list[Points], sheet_px: NDArray[np.int_]) -> NDArray[np.float32]:
@@ -130,10 +137,19 @@ def coverage(loops: list[Points], sheet_px: NDArray[np.int_]) -> NDArray[np.floa
     fine = np.zeros(tuple(sheet_px[::-1] * OVERSAMPLE), np.uint8)
     scale = PIXELS_PER_MM * OVERSAMPLE
     for points in loops:
-        at = np.column_stack([points[:, 0], sheet_px[1] / PIXELS_PER_MM - points[:, 1]]) * scale - 0.5
+        at = (
+            np.column_stack([points[:, 0], sheet_px[1] / PIXELS_PER_MM - points[:, 1]]) * scale
+            - 0.5
+        )
         fixed = np.round(at * 256).astype(np.int32).reshape(-1, 1, 2)
         cv2.polylines(
-            fine, [fixed], False, 255, thickness=round(LINE_MM * scale), lineType=cv2.LINE_AA, shift=8
+            fine,
+            [fixed],
+            False,
+            255,
+            thickness=round(LINE_MM * scale),
+            lineType=cv2.LINE_AA,
+            shift=8,
         )
     size = (int(sheet_px[0]), int(sheet_px[1]))
     return (cv2.resize(fine, size, interpolation=cv2.INTER_AREA) / 255).astype(np.float32)
@@ -145,7 +161,11 @@ def scanned(ink: NDArray[np.float32], seed: int) -> NDArray[np.uint8]:
     rows, columns = soft.shape
     shade = np.linspace(-1, 1, columns)[None, :] * np.linspace(1, 0.3, rows)[:, None]
     paper = PAPER_GREY + SHADE_GREY * shade
-    grey = paper - (paper - INK_GREY) * soft + np.random.default_rng(seed).normal(0, NOISE_GREY, soft.shape)
+    grey = (
+        paper
+        - (paper - INK_GREY) * soft
+        + np.random.default_rng(seed).normal(0, NOISE_GREY, soft.shape)
+    )
     return np.clip(np.round(grey / GREY_STEP) * GREY_STEP, 0, WHITE_GREY).astype(np.uint8)
 
 

@@ -21,11 +21,15 @@ settings.load_profile("house")
 def shared() -> Path:
     """The folder of drawings, specifications and vectors beside the repository; skips where it is absent."""
     if not SHARED.is_dir():
-        pytest.skip("no folder ../shared beside the repository: its drawings and vectors are not part of it")
+        pytest.skip(
+            "no folder ../shared beside the repository: its drawings and vectors are not part of it"
+        )
     return SHARED
 
 
 @pytest.fixture(scope="session")
 def vectors(shared: Path) -> Callable[[str], Any]:
     """Reads a file of test vectors by name: vectors("mf_tape")."""
-    return lambda name: json.loads((shared / "vectors" / f"{name}.json").read_text(encoding="utf-8"))
+    return lambda name: json.loads(
+        (shared / "vectors" / f"{name}.json").read_text(encoding="utf-8")
+    )

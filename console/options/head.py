@@ -31,7 +31,9 @@ if TYPE_CHECKING:
 
 _OF_MARKS = tuple(field.name for field in fields(Marks))
 _OF_HEAD = tuple(
-    field.name for field in fields(Head) if field.name not in ("card", "filed", "marks", "cutter")
+    field.name
+    for field in fields(Head)
+    if field.name not in ("card", "filed", "marks", "cutter")
 )
 
 # what is asked of the head and the tool, in the order of --help
@@ -50,7 +52,12 @@ _LINE = (
         "1,3; 1 is the longest.  [default: one line, the longest or that at --start]",
     ),
     click.option(
-        "--speed", "speed_mm_s", type=SPEED, default="10mm/s", show_default=True, help="Tracing speed."
+        "--speed",
+        "speed_mm_s",
+        type=SPEED,
+        default="10mm/s",
+        show_default=True,
+        help="Tracing speed.",
     ),
 )
 _TOOL = (
@@ -133,7 +140,9 @@ _MARKS = (
         type=OVERRIDE,
         help="Stop marks that do not stop the head: none, all, or numbers such as 1,3.  [default: the card's, or none]",
     ),
-    click.option("--ask", is_flag=True, help="Stop at every mark and ask for the Z moves, at a terminal."),
+    click.option(
+        "--ask", is_flag=True, help="Stop at every mark and ask for the Z moves, at a terminal."
+    ),
     click.option(
         "--card",
         "card_file",
@@ -242,4 +251,6 @@ def _print_settings(head: Head) -> NoReturn:
 
 def _given(option: str) -> bool:
     """Whether an option was given on the command line."""
-    return click.get_current_context().get_parameter_source(option) is ParameterSource.COMMANDLINE
+    return (
+        click.get_current_context().get_parameter_source(option) is ParameterSource.COMMANDLINE
+    )

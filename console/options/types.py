@@ -25,12 +25,19 @@ class Quantity(click.ParamType):
     """A parameter with a unit; what cannot be read is wrong use of the command line."""
 
     def __init__(
-        self, name: str, parse: Callable[[str], Any], *, above_zero: bool = False, within: str | None = None
+        self,
+        name: str,
+        parse: Callable[[str], Any],
+        *,
+        above_zero: bool = False,
+        within: str | None = None,
     ) -> None:
         self.name, self._parse, self._above_zero = name, parse, above_zero
         self._within = within  # such as "0.05mm to 500mm"
 
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> Any:
         """Read the text; a value that is a number already stays as it is."""
         try:
             quantity = self._parse(value) if isinstance(value, str) else value
@@ -41,7 +48,9 @@ class Quantity(click.ParamType):
         if self._within is not None:
             least, most = (self._parse(end) for end in self._within.split(" to "))
             if not least <= quantity <= most:
-                self.fail(f"{value!r} is no {self.name} here; it may be {self._within}", param, ctx)
+                self.fail(
+                    f"{value!r} is no {self.name} here; it may be {self._within}", param, ctx
+                )
         return quantity
 
 
@@ -59,7 +68,10 @@ def _number(text: str) -> float:
 def _parse_places_mm(text: str) -> tuple[float, ...]:
     """Place in mm of "X,Y", "X,Y,Z" or more axes, each a length."""
     parts = text.split(",")
-    return (*parse_place_mm(",".join(parts[:2])), *(parse_length_mm(part) for part in parts[2:]))
+    return (
+        *parse_place_mm(",".join(parts[:2])),
+        *(parse_length_mm(part) for part in parts[2:]),
+    )
 
 
 def _parse_lines(text: str) -> str | tuple[int, ...]:
@@ -70,7 +82,9 @@ def _parse_lines(text: str) -> str | tuple[int, ...]:
     try:
         return tuple(int(number) for number in word.split(","))
     except ValueError:
-        raise ValueError(f"{text!r} names no lines; give all, outer, or numbers such as 1,3") from None
+        raise ValueError(
+            f"{text!r} names no lines; give all, outer, or numbers such as 1,3"
+        ) from None
 
 
 def _parse_override(text: str) -> str | tuple[int, ...]:
@@ -80,7 +94,9 @@ def _parse_override(text: str) -> str | tuple[int, ...]:
         return word
     parts = [part.strip() for part in word.split(",")]
     if not all(part.isdecimal() and int(part) > 0 for part in parts):
-        raise ValueError(f"{text!r} names no stops; give none, all, or numbers from 1 on, such as 1,3")
+        raise ValueError(
+            f"{text!r} names no stops; give none, all, or numbers from 1 on, such as 1,3"
+        )
     return tuple(map(int, parts))
 
 
@@ -101,7 +117,12 @@ def _decades(least_counts: int) -> Callable[[str], float]:
     """How to read a length of Z, which is set on five decades."""
 
     def parse(text: str) -> float:
-        from morfax.tracer.operator.zunit import COUNT_MM, COUNTS_PER_MM, LARGEST_COUNT, counts_of
+        from morfax.tracer.operator.zunit import (
+            COUNT_MM,
+            COUNTS_PER_MM,
+            LARGEST_COUNT,
+            counts_of,
+        )
 
         length_mm, most_mm = parse_length_mm(text), LARGEST_COUNT * COUNT_MM
         allowed = f"give {least_counts * COUNT_MM:.2f} to {most_mm:.2f} mm in steps of {COUNT_MM:g} mm, such as 2.5mm"
@@ -110,7 +131,9 @@ def _decades(least_counts: int) -> Callable[[str], float]:
         try:
             return counts_of(length_mm) / COUNTS_PER_MM
         except ValueError:
-            raise ValueError(f"{text!r} cannot be set on the five decades of Z; {allowed}") from None
+            raise ValueError(
+                f"{text!r} cannot be set on the five decades of Z; {allowed}"
+            ) from None
 
     return parse
 
@@ -118,7 +141,9 @@ def _decades(least_counts: int) -> Callable[[str], float]:
 LENGTH = Quantity("length", parse_length_mm, above_zero=True)
 REACH = Quantity("length", parse_length_mm)  # of the head, which may be none
 DEPTH = Quantity("length", _decades(1))
-CLEARANCE = Quantity("length", _decades(6))  # up to 0.05 mm above the work the tool counts as in it
+CLEARANCE = Quantity(
+    "length", _decades(6)
+)  # up to 0.05 mm above the work the tool counts as in it
 CUTTER = Quantity("length", parse_length_mm, within="0.05mm to 500mm")
 SPEED = Quantity("speed", parse_speed_mm_s)
 FEED = Quantity("speed", parse_speed_mm_s, within="0.01mm/s to 1000mm/s")

@@ -52,14 +52,19 @@ class Attended:
                 entry = more
             except (CardFault, ValueError) as fault:
                 click.echo(
-                    f"  {answer!r} cannot be set: {fault}; give {ANSWERS}, or nothing to go on", err=True
+                    f"  {answer!r} cannot be set: {fault}; give {ANSWERS}, or nothing to go on",
+                    err=True,
                 )
 
     def wait(self, halt: Halt) -> float:
         """Wait for the button, while the tape runs; for how long, s."""
         began = time.perf_counter()
         click.prompt(
-            f"{_stop(halt)}: press Enter to go on", default="", show_default=False, prompt_suffix="", err=True
+            f"{_stop(halt)}: press Enter to go on",
+            default="",
+            show_default=False,
+            prompt_suffix="",
+            err=True,
         )
         return time.perf_counter() - began
 
@@ -107,8 +112,12 @@ def _read(entry: str) -> Stop:
     """What the answers so far say, as the entry of a card; raises CardFault for a mistake."""
     from morfax.tracer.operator.card import Card
 
-    moves = [line.removeprefix("move ") for line in entry.splitlines() if line.startswith("move")]
-    drills = [line.removeprefix("drill ") for line in entry.splitlines() if line.startswith("drill")]
+    moves = [
+        line.removeprefix("move ") for line in entry.splitlines() if line.startswith("move")
+    ]
+    drills = [
+        line.removeprefix("drill ") for line in entry.splitlines() if line.startswith("drill")
+    ]
     text = (
         "[[stop]]\n"
         + (f"moves = [{', '.join(moves)}]\n" if moves else "")

@@ -60,7 +60,11 @@ class Desk:
         from rich.console import Console
         from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
-        columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.percentage:3.0f} %"))
+        columns = (
+            TextColumn("{task.description}"),
+            BarColumn(),
+            TextColumn("{task.percentage:3.0f} %"),
+        )
         with Progress(
             *columns, TimeElapsedColumn(), console=Console(stderr=True), transient=True
         ) as progress:
@@ -80,10 +84,17 @@ class Desk:
 def desk_options(verb: Callable[..., Any]) -> Callable[..., Any]:
     """Give a verb --quiet, --verbose and --json, and hand it the `desk`."""
 
-    @click.option("-q", "--quiet", is_flag=True, help="No notes and no progress bar; faults are still told.")
+    @click.option(
+        "-q",
+        "--quiet",
+        is_flag=True,
+        help="No notes and no progress bar; faults are still told.",
+    )
     @click.option("-v", "--verbose", is_flag=True, help="Tell more on stderr.")
     @click.option(
-        "--json", is_flag=True, help="Print the figures on stdout as one JSON object, units in the keys."
+        "--json",
+        is_flag=True,
+        help="Print the figures on stdout as one JSON object, units in the keys.",
     )
     @functools.wraps(verb)
     def with_desk(*args: Any, quiet: bool, verbose: bool, json: bool, **options: Any) -> Any:

@@ -22,7 +22,10 @@ def choose_cache() -> None:
     ):
         return
     user = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "morfax"
-    temporary = Path(tempfile.gettempdir()) / f"morfax-{os.getuid() if hasattr(os, 'getuid') else 'user'}"
+    temporary = (
+        Path(tempfile.gettempdir())
+        / f"morfax-{os.getuid() if hasattr(os, 'getuid') else 'user'}"
+    )
     os.environ["NUMBA_CACHE_DIR"] = str(user if _writable(user) else temporary)
 
 
@@ -62,14 +65,18 @@ def _sources(package: str) -> list[Path]:
 def _is_cold(package: str) -> bool:
     """Whether a package that has kernels has none compiled, or older ones than its sources."""
     sources = [
-        file for file in (HOUSE / package).rglob("*.py") if "@njit(cache=True" in file.read_text("utf-8")
+        file
+        for file in (HOUSE / package).rglob("*.py")
+        if "@njit(cache=True" in file.read_text("utf-8")
     ]
     compiled = {file: _compiled_s(file) for file in sources}
     newest = max(compiled.values(), default=None)
     if newest is None:
         return False
     # a kernel that is only ever part of others has no file of its own: 0 beside modules that have one
-    return newest == 0 or any(0 < when < file.stat().st_mtime for file, when in compiled.items())
+    return newest == 0 or any(
+        0 < when < file.stat().st_mtime for file, when in compiled.items()
+    )
 
 
 def _rooms(package: str) -> list[Path]:
@@ -80,8 +87,16 @@ def _rooms(package: str) -> list[Path]:
 def _compiled_s(module: Path) -> float:
     """When a module's kernels were last compiled, s since the epoch; 0 if never."""
     given = os.environ.get("NUMBA_CACHE_DIR")
-    folders = Path(given).glob(f"{module.parent.name}_*") if given else [module.parent / "__pycache__"]
-    found = [file.stat().st_mtime for folder in folders for file in folder.glob(f"{module.stem}.*.nbi")]
+    folders = (
+        Path(given).glob(f"{module.parent.name}_*")
+        if given
+        else [module.parent / "__pycache__"]
+    )
+    found = [
+        file.stat().st_mtime
+        for folder in folders
+        for file in folder.glob(f"{module.stem}.*.nbi")
+    ]
     return max(found, default=0.0)
 
 

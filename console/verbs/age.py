@@ -29,7 +29,9 @@ def _share(text: str) -> float:
     try:
         return float(text[:-1]) / 100 if text.endswith("%") else float(text)
     except ValueError:
-        raise ValueError(f"{text[:40]!r} is no share; give 1.5%, or a bare number such as 0.015") from None
+        raise ValueError(
+            f"{text[:40]!r} is no share; give 1.5%, or a bare number such as 0.015"
+        ) from None
 
 
 def _decibels(text: str) -> float:
@@ -38,7 +40,9 @@ def _decibels(text: str) -> float:
     try:
         return float(found[1]) if found else float("x")
     except ValueError:
-        raise ValueError(f"{text[:40]!r} is no level; give 46dB or a bare number of dB") from None
+        raise ValueError(
+            f"{text[:40]!r} is no level; give 46dB or a bare number of dB"
+        ) from None
 
 
 SHARE, DECIBELS = Quantity("share", _share), Quantity("dB", _decibels)
@@ -53,7 +57,12 @@ PARTS: tuple[tuple[str, str, Any, str], ...] = (
     ("--noise", "noise_db", DECIBELS, "Noise, dB below the carrier."),
     ("--level", "level_db", DECIBELS, "Level, dB against what it was."),
     ("--uneven", "uneven_db", DECIBELS, "Level rising and falling slowly, dB RMS."),
-    ("--crosstalk", "crosstalk_db", DECIBELS, "Crosstalk from the neighbouring tracks, dB below."),
+    (
+        "--crosstalk",
+        "crosstalk_db",
+        DECIBELS,
+        "Crosstalk from the neighbouring tracks, dB below.",
+    ),
     ("--print-through", "print_db", DECIBELS, "Echo of the layers above and below, dB below."),
     ("--dropouts", "dropouts_per_min", click.FloatRange(min=0), "Dropouts in a minute."),
     ("--dropout-length", "dropout_s", TIME, "Their length, in the middle."),
@@ -82,16 +91,31 @@ def part_options(verb: Any) -> Any:
 @click.command("age", epilog=EXAMPLES)
 @click.argument("tape", type=medium.FILE)
 @click.option(
-    "-o", "output", type=medium.FILE, required=True, help="The worn tape (.wav, .rf64, .w64, .flac, .aiff)."
+    "-o",
+    "output",
+    type=medium.FILE,
+    required=True,
+    help="The worn tape (.wav, .rf64, .w64, .flac, .aiff).",
 )
 @click.option(
-    "--as", "machine", type=click.Choice(SETS), help="All that a kind of machine does; parts go before it."
+    "--as",
+    "machine",
+    type=click.Choice(SETS),
+    help="All that a kind of machine does; parts go before it.",
 )
 @click.option(
-    "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Another seed, another tape."
+    "--seed",
+    type=click.IntRange(min=0),
+    default=0,
+    show_default=True,
+    help="Another seed, another tape.",
 )
 @click.option(
-    "--all-tracks", "dropout_all", is_flag=True, default=None, help="Dropouts on all tracks at once."
+    "--all-tracks",
+    "dropout_all",
+    is_flag=True,
+    default=None,
+    help="Dropouts on all tracks at once.",
 )
 @part_options
 @desk_options
@@ -115,12 +139,21 @@ def command(
         with desk.bar(f"wearing {tape.name}", 1.0) as advance:
             wear = replace(WEAR[machine] if machine else Wear(), **given)
             aged = age(
-                tape, output, wear, seed, progress=lambda done_s, total_s: advance(done_s / (total_s or 1))
+                tape,
+                output,
+                wear,
+                seed,
+                progress=lambda done_s, total_s: advance(done_s / (total_s or 1)),
             )
     except ValueError as refused:
         if type(refused) is not ValueError:
             raise
         raise click.UsageError(str(refused)) from None
     desk.figures(
-        {"tape": str(output), "duration_s": aged.duration_s, "dropouts": len(aged.dropouts), "seed": seed}
+        {
+            "tape": str(output),
+            "duration_s": aged.duration_s,
+            "dropouts": len(aged.dropouts),
+            "seed": seed,
+        }
     )

@@ -19,7 +19,11 @@ from morfax.motion.motion import Path
 from morfax.motion.units import format_length_mm
 
 BEYOND_TOLERANCE = 1
-DEPTH_MM, CLEARANCE_MM, GAP_MM = 5.0, 2.0, 0.5  # of the head that traces for --systems, as trace has them
+DEPTH_MM, CLEARANCE_MM, GAP_MM = (
+    5.0,
+    2.0,
+    0.5,
+)  # of the head that traces for --systems, as trace has them
 
 EXAMPLES = """\b
 Examples:
@@ -42,7 +46,10 @@ OF_SYSTEMS = ("head_mm", "lines", "speed_mm_s")
     f"{','.join(systems.NAMES)}.",
 )
 @click.option(
-    "--tolerance", "tolerance_mm", type=LENGTH, help="End with exit code 1 if any place is further off."
+    "--tolerance",
+    "tolerance_mm",
+    type=LENGTH,
+    help="End with exit code 1 if any place is further off.",
 )
 @click.option(
     "-o",
@@ -52,9 +59,16 @@ OF_SYSTEMS = ("head_mm", "lines", "speed_mm_s")
     "report in one file (.html).",
 )
 @click.option(
-    "--start", "head_mm", type=PLACE, help="Of --systems: where the head looks for the line, as in trace."
+    "--start",
+    "head_mm",
+    type=PLACE,
+    help="Of --systems: where the head looks for the line, as in trace.",
 )
-@click.option("--lines", type=LINES, help="Of --systems: several lines, all, outer or numbers, as in trace.")
+@click.option(
+    "--lines",
+    type=LINES,
+    help="Of --systems: several lines, all, outer or numbers, as in trace.",
+)
 @click.option(
     "--speed",
     "speed_mm_s",
@@ -113,15 +127,25 @@ def command(
         )
         of_path = cutter_mm is not None or origin is not None or bool(controls.by_hand())
         _refuse(
-            of_path, "--cutter, --origin and what a tape does not say are of B; with --systems leave them out"
+            of_path,
+            "--cutter, --origin and what a tape does not say are of B; with --systems leave them out",
         )
         head = Head(head_mm, speed_mm_s, DEPTH_MM, CLEARANCE_MM, None, GAP_MM, lines)
-        beyond = systems.compare(systems.Wanted(a, asked, picture, tolerance_mm), sheet, head, desk)
+        beyond = systems.compare(
+            systems.Wanted(a, asked, picture, tolerance_mm), sheet, head, desk
+        )
         ctx.exit(BEYOND_TOLERANCE if beyond else 0)
     if b is None:
         raise click.UsageError("there is nothing to compare with; give B, or --systems all")
-    given = [name for name in OF_SYSTEMS if ctx.get_parameter_source(name) is ParameterSource.COMMANDLINE]
-    _refuse(bool(given), "--start, --lines and --speed are for --systems; without it nothing is traced")
+    given = [
+        name
+        for name in OF_SYSTEMS
+        if ctx.get_parameter_source(name) is ParameterSource.COMMANDLINE
+    ]
+    _refuse(
+        bool(given),
+        "--start, --lines and --speed are for --systems; without it nothing is traced",
+    )
     drawing_file, paths = _sorted(a, b)
     if picture is not None:
         medium.outgoing(medium.with_suffix_in(picture, (".png", ".svg", ".pdf")), a, b)
@@ -163,7 +187,9 @@ def _sorted(a: FilePath, b: FilePath) -> tuple[FilePath | None, list[FilePath]]:
         raise click.UsageError(
             f"{a} and {b} are both drawings; trace one of them first, or give a path or a tape"
         )
-    return (drawings[0] if drawings else None), [file for file in (a, b) if file not in drawings]
+    return (drawings[0] if drawings else None), [
+        file for file in (a, b) if file not in drawings
+    ]
 
 
 def _path(file: FilePath, controls: Controls, desk: Desk) -> Path:
@@ -184,7 +210,9 @@ def _from(origin: Any, drawing: Any, path: Path) -> Path:
     return Placement(origin_mm=(-x_mm, -y_mm)).path(path)
 
 
-def _draw(file: FilePath, names: str, found: comparison.Comparison, paths: list[Path], drawing: Any) -> None:
+def _draw(
+    file: FilePath, names: str, found: comparison.Comparison, paths: list[Path], drawing: Any
+) -> None:
     """Draw the first path with its error in colour over what it was compared with."""
     from morfax.reports.overlay import Picture, draw
 
@@ -196,4 +224,8 @@ def _draw(file: FilePath, names: str, found: comparison.Comparison, paths: list[
 def _judged(found: comparison.Comparison, tolerance_mm: float | None) -> dict[str, Any]:
     """The largest distance, and whether it is within the tolerance."""
     within = None if tolerance_mm is None else found.largest_mm <= tolerance_mm
-    return {"tolerance_mm": tolerance_mm, "within_tolerance": within, "largest_mm": found.largest_mm}
+    return {
+        "tolerance_mm": tolerance_mm,
+        "within_tolerance": within,
+        "largest_mm": found.largest_mm,
+    }

@@ -66,7 +66,10 @@ class Carrier:
 @click.command("inspect", epilog=EXAMPLES)
 @click.argument("tape", type=medium.FILE)
 @click.option(
-    "-o", "picture", type=medium.FILE, help="Draw the punched tape of a .steps program (.png, .svg)."
+    "-o",
+    "picture",
+    type=medium.FILE,
+    help="Draw the punched tape of a .steps program (.png, .svg).",
 )
 @tape_options
 @desk_options
@@ -91,7 +94,10 @@ def command(tape: FilePath, picture: FilePath | None, controls: Controls, desk: 
     except TapeFault as met:
         fault = met
     file, carriers = _listen(tape, fault)
-    names = [*("reference", *travels)[: len(carriers)], *("" for _ in carriers[1 + len(travels) :])]
+    names = [
+        *("reference", *travels)[: len(carriers)],
+        *("" for _ in carriers[1 + len(travels) :]),
+    ]
     tracks = {
         f"track_{number}_{name}".rstrip("_"): {**carrier.figures(), **travels.get(name, {})}
         for number, (name, carrier) in enumerate(zip(names, carriers, strict=True), 1)
@@ -120,12 +126,17 @@ def _travels(tape: Tape, desk: Desk) -> dict[str, Figures]:
 
     fmt = tape.format
     desk.warn_of_compiling("the discriminator", "player")
-    discriminator = Discriminator(fmt.sample_rate_hz, fmt.reference_hz, fmt.samples_per_motion, fmt.tracks)
+    discriminator = Discriminator(
+        fmt.sample_rate_hz, fmt.reference_hz, fmt.samples_per_motion, fmt.tracks
+    )
     low, high = np.full(len(fmt.axes), np.inf), np.full(len(fmt.axes), -np.inf)
     zero: Array | None = None
     for phases in discriminate(tape.stored_blocks(BLOCK_FRAMES), discriminator):
         zero = phases.cycles[0] if zero is None else zero
-        low, high = np.fmin(low, phases.cycles.min(axis=0)), np.fmax(high, phases.cycles.max(axis=0))
+        low, high = (
+            np.fmin(low, phases.cycles.min(axis=0)),
+            np.fmax(high, phases.cycles.max(axis=0)),
+        )
     if zero is None:
         return {name: {} for name in fmt.axes}
     lowest, highest = (low - zero) / fmt.cycles_per_mm, (high - zero) / fmt.cycles_per_mm
@@ -145,24 +156,35 @@ def _listen(file: FilePath, fault: TapeFault | None) -> tuple[dict[str, Any], li
             blocks = sound.blocks(BLOCK_FRAMES, dtype="float32", always_2d=True)
             carriers = _carriers(blocks, sound.samplerate, sound.channels)
             duration_s = sound.frames / sound.samplerate
-            return {**kind, "sample_rate_hz": sound.samplerate, "duration_s": duration_s}, carriers
+            return {
+                **kind,
+                "sample_rate_hz": sound.samplerate,
+                "duration_s": duration_s,
+            }, carriers
     except soundfile.SoundFileError as error:
         raise (
-            fault or TapeFault(f"{file} cannot be read as a sound file: {error}; record it again")
+            fault
+            or TapeFault(f"{file} cannot be read as a sound file: {error}; record it again")
         ) from None
 
 
-def _carriers(blocks: Iterable[NDArray[np.float32]], rate_hz: float, tracks: int) -> list[Carrier]:
+def _carriers(
+    blocks: Iterable[NDArray[np.float32]], rate_hz: float, tracks: int
+) -> list[Carrier]:
     """Measure the tracks, window by window; what is left over at the end is shorter than a window and left
     out.
     """
     levels, frequencies = [np.full((1, tracks), -np.inf)], [np.full((1, tracks), np.nan)]
     for block in blocks:
-        windows = block[: len(block) // WINDOW_FRAMES * WINDOW_FRAMES].reshape(-1, WINDOW_FRAMES, tracks)
+        windows = block[: len(block) // WINDOW_FRAMES * WINDOW_FRAMES].reshape(
+            -1, WINDOW_FRAMES, tracks
+        )
         if len(windows):
             level_db = 10 * np.log10(2 * (windows.astype(float) ** 2).mean(axis=1) + 1e-30)
             levels.append(level_db)
-            frequencies.append(np.where(level_db > SILENT_DB, _peak_hz(windows, rate_hz), np.nan))
+            frequencies.append(
+                np.where(level_db > SILENT_DB, _peak_hz(windows, rate_hz), np.nan)
+            )
     level, frequency = (np.vstack(rows[1:] or rows) for rows in (levels, frequencies))
     return [Carrier(level[:, track], frequency[:, track]) for track in range(tracks)]
 

@@ -19,7 +19,9 @@ def inspect(file: FilePath, picture: FilePath | None, desk: Desk) -> dict[str, A
     """The figures of a program; draws its punched tape if asked to. Raises ProgramFault, FileFault."""
     if picture is not None:
         medium.outgoing(medium.with_suffix_in(picture, punched.SUFFIXES), file)
-    told = {".steps": _of_steps, ".cubic": _of_cubic, ".ngc": _of_blocks}.get(file.suffix.lower())
+    told = {".steps": _of_steps, ".cubic": _of_cubic, ".ngc": _of_blocks}.get(
+        file.suffix.lower()
+    )
     if picture is not None and told is not _of_steps:
         raise click.UsageError(f"{file} has no punched tape to draw; -o is for .steps")
     desk.warn_of_compiling("the controls", "motion", "player")
@@ -33,7 +35,10 @@ def _drawn(file: FilePath, picture: FilePath | None) -> dict[str, Any]:
         return {}
     from morfax.recorder.steps.file import read_program
 
-    return {"picture": str(picture), "rows_shown": punched.draw_tape(read_program(file), picture)}
+    return {
+        "picture": str(picture),
+        "rows_shown": punched.draw_tape(read_program(file), picture),
+    }
 
 
 def _of_steps(file: FilePath) -> dict[str, Any]:
@@ -111,10 +116,14 @@ def _played(file: FilePath) -> dict[str, Any]:
 
 def _places(places_mm: Any) -> dict[str, Any]:
     """Start and end, and the reach of each axis."""
-    reach = {f"{axis}_axis": {"from_mm": low, "to_mm": high} for axis, low, high in _reach(places_mm)}
+    reach = {
+        f"{axis}_axis": {"from_mm": low, "to_mm": high} for axis, low, high in _reach(places_mm)
+    }
     return {"start_place_mm": places_mm[0], "end_place_mm": places_mm[-1], **reach}
 
 
 def _reach(places_mm: Any) -> list[tuple[str, float, float]]:
     """Lowest and highest place of each axis, mm."""
-    return list(zip("xyz", places_mm.min(axis=0).tolist(), places_mm.max(axis=0).tolist(), strict=True))
+    return list(
+        zip("xyz", places_mm.min(axis=0).tolist(), places_mm.max(axis=0).tolist(), strict=True)
+    )

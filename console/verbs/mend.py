@@ -22,7 +22,11 @@ Examples:
 @click.command("mend", epilog=EXAMPLES)
 @click.argument("tape", type=medium.FILE)
 @click.option(
-    "-o", "output", type=medium.FILE, required=True, help="The mended tape (.wav, .rf64, .w64, .flac, .aiff)."
+    "-o",
+    "output",
+    type=medium.FILE,
+    required=True,
+    help="The mended tape (.wav, .rf64, .w64, .flac, .aiff).",
 )
 @click.option(
     "--acceleration",
@@ -33,7 +37,11 @@ Examples:
 @tape_options
 @desk_options
 def command(
-    tape: FilePath, output: FilePath, acceleration_mm_s2: float | None, controls: Controls, desk: Desk
+    tape: FilePath,
+    output: FilePath,
+    acceleration_mm_s2: float | None,
+    controls: Controls,
+    desk: Desk,
 ) -> None:
     """Record a tape anew whose end tells which dropout lost how many whole cycles.
 
@@ -62,7 +70,15 @@ def command(
         }
         for number, one in enumerate(mended.mends, 1)
     ]
-    told = {"tape": str(output), "duration_s": mended.recording.duration_s, "dropouts": mended.dropouts}
+    told = {
+        "tape": str(output),
+        "duration_s": mended.recording.duration_s,
+        "dropouts": mended.dropouts,
+    }
     desk.figures(
-        {**told, "cycles_put_back": sum(abs(one.cycles) for one in mended.mends), "mends": rows or None}
+        {
+            **told,
+            "cycles_put_back": sum(abs(one.cycles) for one in mended.mends),
+            "mends": rows or None,
+        }
     )

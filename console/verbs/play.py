@@ -50,7 +50,9 @@ Examples:
     multiple=True,
     help="Write the machine's path: .csv, .svg (true size) or .png.",
 )
-@click.option("--path", "path_file", type=medium.FILE, help="Write the machine's path (.csv), as -o does.")
+@click.option(
+    "--path", "path_file", type=medium.FILE, help="Write the machine's path (.csv), as -o does."
+)
 @click.option(
     "--following",
     "followed",
@@ -132,7 +134,9 @@ def command(
         "settings": motor,
         "zero_mm": zero_mm,
     }
-    given = _given(tape, {name: value for name, value in settings.items() if value is not None}, controls)
+    given = _given(
+        tape, {name: value for name, value in settings.items() if value is not None}, controls
+    )
     given |= {"raw": raw, "chart": following.new_chart(raw) if followed else None}
     try:
         passage, playback, fault = _played(tape, outputs, controls, desk, given)
@@ -143,7 +147,9 @@ def command(
     written = [medium.incomplete(file) if fault else file for file in outputs]
     charts = _write_following(playback, fault, followed, tape.name)
     results = {"paths": [str(file) for file in written] or None, "following": charts or None}
-    desk.figures({medium.called(tape): str(tape), **results, **figures(passage, playback, fault)})
+    desk.figures(
+        {medium.called(tape): str(tape), **results, **figures(passage, playback, fault)}
+    )
     if fault:
         raise fault
     if not passage.worked:
@@ -153,7 +159,10 @@ def command(
 
 
 def _outputs(
-    tape: FilePath, outputs: tuple[FilePath, ...], path_file: FilePath | None, followed: tuple[FilePath, ...]
+    tape: FilePath,
+    outputs: tuple[FilePath, ...],
+    path_file: FilePath | None,
+    followed: tuple[FilePath, ...],
 ) -> tuple[FilePath, ...]:
     """Names for the machine's path, each of which can be written, as those for its errors can; raises
     FileFault if not.
@@ -185,7 +194,11 @@ def _given(tape: FilePath, given: dict[str, Any], controls: Controls) -> dict[st
 
 
 def _played(
-    tape: FilePath, outputs: tuple[FilePath, ...], controls: Controls, desk: Desk, given: dict[str, Any]
+    tape: FilePath,
+    outputs: tuple[FilePath, ...],
+    controls: Controls,
+    desk: Desk,
+    given: dict[str, Any],
 ) -> tuple[Passage, Playback, Fault | None]:
     """Play a tape and write the machine's path: as it comes if nothing else is asked for, as a picture wants
     the whole of it.
@@ -194,7 +207,11 @@ def _played(
         return controls.play_into(tape, desk, outputs, **given)
     played = controls.play(tape, desk, **given)
     for file in outputs:
-        write(played.path, medium.incomplete(file) if played.fault else file, f"{tape.name}, played")
+        write(
+            played.path,
+            medium.incomplete(file) if played.fault else file,
+            f"{tape.name}, played",
+        )
     return Passage.of(played.path), played.playback, played.fault
 
 
@@ -206,9 +223,13 @@ def _refuse_foreign(tape: FilePath, given: dict[str, Any]) -> None:
     if str(tape) == PIPE and given:
         raise click.UsageError(f"{_options(given)} is for files, not for a pipe")
     if control != TAPE and not given.keys().isdisjoint(FOR_TAPES):
-        raise click.UsageError(f"{_options(given.keys() & FOR_TAPES)} is for tapes; {tape} is none")
+        raise click.UsageError(
+            f"{_options(given.keys() & FOR_TAPES)} is for tapes; {tape} is none"
+        )
     if control != CONTROLS[".ngc"] and "true_norm" in given:
-        raise click.UsageError(f"--norm is for programs of lines and arcs, .ngc; {tape} is none")
+        raise click.UsageError(
+            f"--norm is for programs of lines and arcs, .ngc; {tape} is none"
+        )
     if control not in (TAPE, CONTROLS[".ngc"]) and "override" in given:
         raise click.UsageError(
             f"--feed-override is for tapes and for programs of lines and arcs, .ngc; {tape} is none"
@@ -243,7 +264,9 @@ def _write_following(
     for file in written:
         assert playback.chart is not None
         title = f"{name}: following error against its limit"
-        following.write(playback.chart, file, title, following.speeds_held(playback) if pictures else None)
+        following.write(
+            playback.chart, file, title, following.speeds_held(playback) if pictures else None
+        )
     return [str(file) for file in written]
 
 

@@ -62,7 +62,9 @@ Examples:
     help="How far the program's path may be off; not for tapes.  [default: the medium's own]",
 )
 @click.option(
-    "--force", is_flag=True, help="Write over a tape that is there already under a name not given with -o."
+    "--force",
+    is_flag=True,
+    help="Write over a tape that is there already under a name not given with -o.",
 )
 @unit_options
 @desk_options
@@ -94,7 +96,9 @@ def command(
         settings["fmt"] = replace(settings["fmt"], axes=read.axes, start_mm=())
     unit.warn(desk)
     desk.warn_of_compiling("the recorder", "motion", "recorder")
-    stream = desk.watched(read.motion(), f"recording {program.name}", float(read.t_s[-1] - read.t_s[0]))
+    stream = desk.watched(
+        read.motion(), f"recording {program.name}", float(read.t_s[-1] - read.t_s[0])
+    )
     if "fmt" in settings:
         stream = rehearsed(stream, settings["fmt"], desk)
     recording = record(stream, program, **settings)
@@ -145,7 +149,9 @@ def _settings(
     if program.suffix.lower() not in medium.TAPES:
         return {} if tolerance_mm is None else {"tolerance_mm": tolerance_mm}
     if tolerance_mm is not None:
-        raise click.UsageError("--tolerance is not for tapes: a tape holds the motion itself; leave it out")
+        raise click.UsageError(
+            "--tolerance is not for tapes: a tape holds the motion itself; leave it out"
+        )
     try:
         return {"fmt": unit.tape_format(reference_hz=reference_hz, cycles_per_mm=cycles_per_mm)}
     except ValueError as refused:

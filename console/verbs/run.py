@@ -70,11 +70,16 @@ def command(
     traced = head.trace(opened, desk, place.file(".png"))
     unit = unit.at(traced.origin_mm)
     tape = traced.record(place.file(".wav"), unit, desk)
-    written = {"tape": str(tape), "traced_path": str(traced.write(place.file(".traced.csv"), unit))}
+    written = {
+        "tape": str(tape),
+        "traced_path": str(traced.write(place.file(".traced.csv"), unit)),
+    }
     played = Controls().play(tape, desk)
     written["played_path"] = str(_write(played, traced, place))
     unit.warn(desk)
-    played = replace(played, path=unit.placement.about(traced.path.positions_mm[0]).back(played.path))
+    played = replace(
+        played, path=unit.placement.about(traced.path.positions_mm[0]).back(played.path)
+    )
     figures = {
         "drawing": str(drawing),
         **written,
@@ -112,7 +117,9 @@ def _write(played: Played, traced: Traced, place: Folder) -> FilePath:
     return file
 
 
-def _compare(drawing: Drawing, traced: Traced, played: Played, place: Folder, desk: Desk) -> dict[str, Any]:
+def _compare(
+    drawing: Drawing, traced: Traced, played: Played, place: Folder, desk: Desk
+) -> dict[str, Any]:
     """Compare all three, and draw the played path with its error from the ink; the figures."""
     desk.detail("comparing drawing, traced path and played path")
     radius_mm = traced.cutter.radius_mm if traced.cutter else 0.0
@@ -129,7 +136,11 @@ def _compare(drawing: Drawing, traced: Traced, played: Played, place: Folder, de
 
 
 def _draw(
-    file: FilePath, name: str, drawing: Drawing, paths: tuple[Traced, Played], from_ink: comparison.Comparison
+    file: FilePath,
+    name: str,
+    drawing: Drawing,
+    paths: tuple[Traced, Played],
+    from_ink: comparison.Comparison,
 ) -> None:
     """Draw the played path over the drawing, with its distance from the ink's centre in colour."""
     from morfax.reports.overlay import Picture, draw

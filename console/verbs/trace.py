@@ -46,10 +46,16 @@ class Outputs:
     help="The tape (.wav), another program (.steps, .cubic, .ngc), or a path file only (.csv).  [default: the "
     "drawing's name with .wav, in this folder]",
 )
-@click.option("--path", "path_file", type=medium.FILE, help="Write the head's path as well (.csv).")
-@click.option("--picture", type=medium.FILE, help="Draw the path over the drawing (.png, .svg, .pdf).")
 @click.option(
-    "--force", is_flag=True, help="Write over a tape that is there already under a name not given with -o."
+    "--path", "path_file", type=medium.FILE, help="Write the head's path as well (.csv)."
+)
+@click.option(
+    "--picture", type=medium.FILE, help="Draw the path over the drawing (.png, .svg, .pdf)."
+)
+@click.option(
+    "--force",
+    is_flag=True,
+    help="Write over a tape that is there already under a name not given with -o.",
 )
 @sheet_options
 @head_options
@@ -112,7 +118,9 @@ def _outputs(
     return Outputs(output, path_file, picture)
 
 
-def _write(traced: Traced, outputs: Outputs, drawing: Drawing, unit: Unit, desk: Desk) -> dict[str, str]:
+def _write(
+    traced: Traced, outputs: Outputs, drawing: Drawing, unit: Unit, desk: Desk
+) -> dict[str, str]:
     """Write what was asked for; the names under which it stands."""
     written = {}
     if outputs.tape is not None:
@@ -124,7 +132,11 @@ def _write(traced: Traced, outputs: Outputs, drawing: Drawing, unit: Unit, desk:
 
         name = drawing.file.name if drawing.file else "drawing"
         picture = Picture(
-            f"{name}, traced", traced.path, drawing, numbers_mm=traced.places_mm, stops_mm=traced.marked_mm
+            f"{name}, traced",
+            traced.path,
+            drawing,
+            numbers_mm=traced.places_mm,
+            stops_mm=traced.marked_mm,
         )
         draw(picture, traced.name(outputs.picture))
         written["picture"] = str(traced.name(outputs.picture))

@@ -62,13 +62,18 @@ class Servo:
     drive: Drive = field(default_factory=Drive)
     seed: int = 0
 
-    def limit(self, modulus_per_s: float, counts_per_mm: float, point_rate_hz: float) -> FollowingLimit:
+    def limit(
+        self, modulus_per_s: float, counts_per_mm: float, point_rate_hz: float
+    ) -> FollowingLimit:
         """The following error that is allowed.
 
         It is the lag of modulus, motor and one point, as the next one is predicted, and what scales and
         dropped digits add.
         """
-        lag_s, settle_s = 1 / modulus_per_s + self.drive.lag_s + 1 / point_rate_hz, 1 / modulus_per_s
+        lag_s, settle_s = (
+            1 / modulus_per_s + self.drive.lag_s + 1 / point_rate_hz,
+            1 / modulus_per_s,
+        )
         added = 2**self.dropped_digits + 2 * self.scales.fine_noise_counts
         return FollowingLimit.linear(lag_s, _TOLERANCE_MM + added / counts_per_mm, settle_s)
 
@@ -88,7 +93,9 @@ class CubicPlayback(Supervised):
     the drives.
     """
 
-    def __init__(self, program: CubicProgram, servo: Servo, travel_mm: float, name: str) -> None:
+    def __init__(
+        self, program: CubicProgram, servo: Servo, travel_mm: float, name: str
+    ) -> None:
         self.program, self.servo, self._name, self.format = program, servo, name, program.format
         self._modulus_per_s = servo.modulus_per_s or program.format.modulus_per_s
         self.start_mm: Array = np.array(program.checks[0]) / self.format.counts_per_mm
@@ -101,7 +108,9 @@ class CubicPlayback(Supervised):
                 f"points per s; give at most {self.format.point_rate_hz / STEPS_PER_CONSTANT:g}, or record more points"
             )
         self._check(travel_mm)
-        self.limit = servo.limit(self._modulus_per_s, self.format.counts_per_mm, self.format.point_rate_hz)
+        self.limit = servo.limit(
+            self._modulus_per_s, self.format.counts_per_mm, self.format.point_rate_hz
+        )
         self.supervise(AXES, self.format.point_rate_hz)
 
     @property
@@ -129,7 +138,9 @@ class CubicPlayback(Supervised):
         done = 0
         for predicted in self._predicted(start):
             moved, present = self._follow(predicted, state, noise)
-            rows = monitor.watch(predicted[: len(moved)] / fmt.counts_per_mm, present / fmt.counts_per_mm)
+            rows = monitor.watch(
+                predicted[: len(moved)] / fmt.counts_per_mm, present / fmt.counts_per_mm
+            )
             if rows:
                 self.end_mm = moved[rows - 1].copy()
                 yield Motion(moved[:rows], fmt.point_rate_hz, (done + 1) / fmt.point_rate_hz)
@@ -139,7 +150,8 @@ class CubicPlayback(Supervised):
             if rows < len(predicted):
                 raise self._out_of_range(predicted[rows], done)
         self.end_error_mm = (
-            self.end_mm - np.array(self.program.checks[len(self.program.words)]) / fmt.counts_per_mm
+            self.end_mm
+            - np.array(self.program.checks[len(self.program.words)]) / fmt.counts_per_mm
         )
 
     def _predicted(self, start: NDArray[np.int64]) -> Iterator[NDArray[np.int64]]:
@@ -147,7 +159,9 @@ class CubicPlayback(Supervised):
         fmt = self.format
         interpolator = Interpolator(start, fmt.points, fmt.linear)
         for first in range(0, len(self.program.words), _BLOCK_INTERVALS):
-            yield interpolator.counts(interpolator.run(self.program.words[first : first + _BLOCK_INTERVALS]))
+            yield interpolator.counts(
+                interpolator.run(self.program.words[first : first + _BLOCK_INTERVALS])
+            )
         yield np.repeat(interpolator.at[None], self._settling_points, axis=0)
 
     def _follow(
@@ -160,18 +174,41 @@ class CubicPlayback(Supervised):
         servo, fmt = self.servo, self.format
         dt_s = 1 / fmt.point_rate_hz
         moved, present = np.empty(predicted.shape), np.empty(predicted.shape)
-        jitter = noise.uniform(-1, 1, (*predicted.shape, 2)) if self._noisy else np.zeros((1, len(AXES), 2))
-        register = np.array([fmt.counts_per_mm, 2.0**servo.register_digits, 2.0**servo.dropped_digits])
+        jitter = (
+            noise.uniform(-1, 1, (*predicted.shape, 2))
+            if self._noisy
+            else np.zeros((1, len(AXES), 2))
+        )
+        register = np.array(
+            [fmt.counts_per_mm, 2.0**servo.register_digits, 2.0**servo.dropped_digits]
+        )
         drive = np.array(
-            [self._modulus_per_s, servo.drive.gain(dt_s), servo.drive.acceleration_mm_s2 * dt_s, dt_s]
+            [
+                self._modulus_per_s,
+                servo.drive.gain(dt_s),
+                servo.drive.acceleration_mm_s2 * dt_s,
+                dt_s,
+            ]
         )
         wrong = as_rows(self.conditions)
-        rows = _servo(predicted, jitter, servo.scales.table(), register, drive, wrong, state, present, moved)
+        rows = _servo(
+            predicted,
+            jitter,
+            servo.scales.table(),
+            register,
+            drive,
+            wrong,
+            state,
+            present,
+            moved,
+        )
         return moved[:rows], present[:rows]
 
     @property
     def _noisy(self) -> bool:
-        return self.servo.scales.fine_noise_counts > 0 or self.servo.scales.coarse_noise_digits > 0
+        return (
+            self.servo.scales.fine_noise_counts > 0 or self.servo.scales.coarse_noise_digits > 0
+        )
 
     def _out_of_range(self, predicted: NDArray[np.int64], row: int) -> LockFault:
         """The fault of a difference that register 34 cannot hold."""
@@ -194,16 +231,21 @@ class CubicPlayback(Supervised):
         digits = fmt.digits
         reach = np.abs(words.astype(np.float64)) @ float(fmt.points) ** np.arange(1, 4)
         if reach.sum(axis=0).max(initial=0) > _LARGEST_WORD:
-            raise self._fault(int(np.argmax(reach.max(axis=1))), "its words are too large for the registers")
+            raise self._fault(
+                int(np.argmax(reach.max(axis=1))), "its words are too large for the registers"
+            )
         start = np.array(self.program.checks[0], np.int64) << digits
-        places = np.vstack([start[None], start + np.cumsum(ends(words, fmt.points, fmt.linear), axis=0)])
+        places = np.vstack(
+            [start[None], start + np.cumsum(ends(words, fmt.points, fmt.linear), axis=0)]
+        )
         self._check_travel(places, travel_mm)
         for k, place in self.program.checks.items():
             if (places[k] != np.array(place) << digits).any():
                 got = [f"{count / 2**digits:g}" for count in places[k].tolist()]
                 stated = " ".join(map(str, place))
                 raise self._fault(
-                    k - 1, f"the interpolator comes to {', '.join(got)}; the program states {stated}"
+                    k - 1,
+                    f"the interpolator comes to {', '.join(got)}; the program states {stated}",
                 )
         self._check_slopes(*slopes(words, fmt.points, fmt.linear))
 
@@ -222,7 +264,8 @@ class CubicPlayback(Supervised):
         bad = np.flatnonzero((np.vstack([stop, end]) != np.vstack([start, stop])).any(axis=1))
         if len(bad):
             raise self._fault(
-                int(bad[0]), "the curve has a corner there; a corner must be a stop, with speed zero"
+                int(bad[0]),
+                "the curve has a corner there; a corner must be a stop, with speed zero",
             )
 
     def _fault(self, interval: int, what: str) -> ProgramFault:
@@ -230,7 +273,9 @@ class CubicPlayback(Supervised):
         lines = self.program.lines
         line = lines[min(max(interval, 0), len(lines) - 1)] if lines else None
         place = "" if line is None else f", line {line}"
-        return ProgramFault(f"{self._name}{place}: {what}; copy it again or record it again", line=line)
+        return ProgramFault(
+            f"{self._name}{place}: {what}; copy it again or record it again", line=line
+        )
 
 
 @njit(cache=True)
@@ -241,7 +286,9 @@ def _servo(predicted, noise, scales, register, drive, conditions, state, seen, m
     for row in range(len(predicted)):
         for axis in range(len(state)):
             jitter = noise[min(row, len(noise) - 1), axis]
-            present = measured(state[axis, 0] * counts_per_mm + 0.5, jitter[0], jitter[1], scales)
+            present = measured(
+                state[axis, 0] * counts_per_mm + 0.5, jitter[0], jitter[1], scales
+            )
             difference = predicted[row, axis] - present  # adder 29
             if abs(difference) >= largest:  # register 34 is full
                 return row

@@ -92,7 +92,9 @@ class Interpolator:
     def digits_for(points: int) -> int:
         """Binary digits behind the point that make all differences of p steps exact."""
         if points < 2 or points & (points - 1):
-            raise ValueError(f"{points} steps to an interval are no power of two; give 2, 4, 8, 16 …")
+            raise ValueError(
+                f"{points} steps to an interval are no power of two; give 2, 4, 8, 16 …"
+            )
         return 3 * (points.bit_length() - 1)
 
     def run(self, words: Words) -> Words:
@@ -115,7 +117,9 @@ class Interpolator:
         return self.counts(self._first)
 
 
-def table(start: int, words: tuple[int, int, int], steps: int) -> list[tuple[int, int, int, int]]:
+def table(
+    start: int, words: tuple[int, int, int], steps: int
+) -> list[tuple[int, int, int, int]]:
     """Table I: the four registers before the first step and after each, in whole units."""
     one, two, three, four = start, *words
     rows = [(one, two, three, four)]
@@ -150,7 +154,9 @@ def ends(words: Words, points: int, linear: int = 1) -> Words:
     """
     n = points // linear
     first, second, third = words[..., 0], words[..., 1], words[..., 2]
-    return np.asarray(linear * (n * first + n * (n - 1) // 2 * second + n * (n - 1) * (n - 2) // 6 * third))
+    return np.asarray(
+        linear * (n * first + n * (n - 1) // 2 * second + n * (n - 1) * (n - 2) // 6 * third)
+    )
 
 
 def slopes(words: Words, points: int, linear: int = 1) -> tuple[Words, Words]:

@@ -57,18 +57,28 @@ class Scales:
     def table(self) -> NDArray[np.float64]:
         """What the kernel needs."""
         return np.array(
-            [self.pitch_counts, self.late_digits, self.fine_noise_counts, self.coarse_noise_digits]
+            [
+                self.pitch_counts,
+                self.late_digits,
+                self.fine_noise_counts,
+                self.coarse_noise_digits,
+            ]
         )
 
 
-def read_scales(position_counts: NDArray[np.float64], scales: Scales, seed: int = 0) -> tuple[Codes, Codes]:
+def read_scales(
+    position_counts: NDArray[np.float64], scales: Scales, seed: int = 0
+) -> tuple[Codes, Codes]:
     """Fine and coarse counts at positions; the noise is the same for the same seed."""
     noise = np.random.default_rng(seed).uniform(-1, 1, (2, len(position_counts)))
     half = scales.pitch_counts / 2
     fine = (
-        np.floor(position_counts + noise[0] * scales.fine_noise_counts).astype(np.int64) % scales.pitch_counts
+        np.floor(position_counts + noise[0] * scales.fine_noise_counts).astype(np.int64)
+        % scales.pitch_counts
     )
-    coarse = np.floor(position_counts / half - scales.late_digits + noise[1] * scales.coarse_noise_digits)
+    coarse = np.floor(
+        position_counts / half - scales.late_digits + noise[1] * scales.coarse_noise_digits
+    )
     return fine, coarse.astype(np.int64)
 
 

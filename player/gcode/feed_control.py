@@ -52,11 +52,15 @@ def feed_number(pulses_per_s: float, recirculations_hz: float) -> int:
     """The feed number for a resultant speed; raises ValueError where there is none."""
     feed_pulses_hz = pulses_per_s * GREATEST / FEED_EIGHTHS
     clocks_hz = CLOCKS * recirculations_hz
-    number = round(feed_pulses_hz / clocks_hz * 2**FEED_BITS) if math.isfinite(feed_pulses_hz) else 0
+    number = (
+        round(feed_pulses_hz / clocks_hz * 2**FEED_BITS) if math.isfinite(feed_pulses_hz) else 0
+    )
     if number <= 0 or pulses_per_s > recirculations_hz:
         smallest = clocks_hz * FEED_EIGHTHS / GREATEST / 2**FEED_BITS
         allowed = f"{smallest:.3g} to {recirculations_hz:g} pulses/s"
-        raise ValueError(f"a speed of {pulses_per_s:g} pulses/s has no feed number; give {allowed}")
+        raise ValueError(
+            f"a speed of {pulses_per_s:g} pulses/s has no feed number; give {allowed}"
+        )
     return number
 
 
@@ -71,11 +75,15 @@ def resultant_weights(errors: NDArray[np.int64], *, true_norm: bool) -> NDArray[
     """What a command pulse of each axis takes from the counter, in its units, on a line with these errors."""
     size = np.abs(errors).astype(np.float64)
     if true_norm:
-        return np.rint(GREATEST * EIGHTH * size / max(math.sqrt(float(size @ size)), 1.0)).astype(np.int64)
+        return np.rint(
+            GREATEST * EIGHTH * size / max(math.sqrt(float(size @ size)), 1.0)
+        ).astype(np.int64)
     weights = np.empty(len(errors), np.int64)
-    weights[np.argsort(-size, kind="stable")] = [GREATEST * EIGHTH, MIDDLE * EIGHTH, SMALLEST * EIGHTH][
-        : len(errors)
-    ]
+    weights[np.argsort(-size, kind="stable")] = [
+        GREATEST * EIGHTH,
+        MIDDLE * EIGHTH,
+        SMALLEST * EIGHTH,
+    ][: len(errors)]
     return weights
 
 

@@ -36,11 +36,15 @@ def held_speed(playback: PulsePlayback, true_norm: bool) -> HeldSpeed:
     control = replace(playback.settings, true_norm=true_norm)
     window = round(WINDOW_S * control.recirculations_hz)
     ways, asked, held = [0.0], [0.0], [0.0]
-    for speed_mm_s, pulses in PulsePlayback(playback.program, control, playback.name).run_moves():
+    for speed_mm_s, pulses in PulsePlayback(
+        playback.program, control, playback.name
+    ).run_moves():
         every = np.vstack([np.zeros((0, 3), np.int8), *pulses])
         for first in range(0, len(every), window):
             part = every[first : first + window]
-            way_mm = float(np.linalg.norm(part.sum(axis=0, dtype=np.int64))) * control.servo.pulse_mm
+            way_mm = (
+                float(np.linalg.norm(part.sum(axis=0, dtype=np.int64))) * control.servo.pulse_mm
+            )
             ways.append(ways[-1] + way_mm)
             asked.append(speed_mm_s * control.override)
             held.append(way_mm * control.recirculations_hz / len(part))

@@ -87,7 +87,11 @@ class PulseServos:
     """
 
     def __init__(
-        self, start: Counts, recirculations_hz: float, settings: PulseServo | None = None, sampled: int = 8
+        self,
+        start: Counts,
+        recirculations_hz: float,
+        settings: PulseServo | None = None,
+        sampled: int = 8,
     ):
         self.settings, self.sampled = settings or PulseServo(), sampled
         self._dt_s, self._phase = 1 / recirculations_hz, 0
@@ -95,7 +99,9 @@ class PulseServos:
         self._tables = np.zeros((len(start), 2))
         self._registers[:, COMMAND] = start
         self._registers[:, HALF] = self._registers[:, COMMAND] & 1
-        self._registers[:, ICR] = (self._registers[:, COMMAND] >> 1) & ((1 << self.settings.icr_bits) - 1)
+        self._registers[:, ICR] = (self._registers[:, COMMAND] >> 1) & (
+            (1 << self.settings.icr_bits) - 1
+        )
         self._registers[:, QUANTA] = self._registers[:, COMMAND] * QUANTA_PER_PULSE
         self._tables[:, PLACE] = self._registers[:, COMMAND] * self.settings.pulse_mm
         self.conditions = [SOUND] * len(start)
@@ -123,13 +129,20 @@ class PulseServos:
         """
         s, sampled, phase = self.settings, self.sampled, self._phase
         samples = (len(pulses) + phase) // sampled
-        commands, places = np.empty((samples, len(self._tables))), np.empty((samples, len(self._tables)))
+        commands, places = (
+            np.empty((samples, len(self._tables))),
+            np.empty((samples, len(self._tables))),
+        )
         drive = s.drive.gain(self._dt_s), s.drive.acceleration_mm_s2 * self._dt_s
         quantum_mm = s.pulse_mm / QUANTA_PER_PULSE
-        analogue = np.array([s.gain_per_s * quantum_mm, *drive, quantum_mm, self._dt_s, s.pulse_mm])
+        analogue = np.array(
+            [s.gain_per_s * quantum_mm, *drive, quantum_mm, self._dt_s, s.pulse_mm]
+        )
         timing = np.array([sampled, phase, s.icr_bits, s.lag_stages])
         wrong = as_rows(self.conditions)
-        done = _follow(pulses, analogue, timing, wrong, self._registers, self._tables, commands, places)
+        done = _follow(
+            pulses, analogue, timing, wrong, self._registers, self._tables, commands, places
+        )
         self._phase = (phase + done) % sampled
         kept = (done + phase) // sampled
         return commands[:kept], places[:kept], done
@@ -200,7 +213,9 @@ def _follow(pulses, analogue, timing, conditions, registers, tables, commands, p
                 further = 1 if lags > 0 else -1
                 lags -= further * overflow
                 count += 2 * further
-            speed = conditioned_step(speed, count * speed_per_count, share, largest_change, conditions[axis])
+            speed = conditioned_step(
+                speed, count * speed_per_count, share, largest_change, conditions[axis]
+            )
             place += speed * dt_s
             moved = math.floor(place / quantum_mm + 0.5) - quanta
             quanta += moved

@@ -95,7 +95,8 @@ def play_pulses(
     """
     asked: dict[str, Any] = {"true_norm": true_norm, "override": override}
     control = replace(
-        settings or PulseControl(), **{name: value for name, value in asked.items() if value is not None}
+        settings or PulseControl(),
+        **{name: value for name, value in asked.items() if value is not None},
     )
     return PulsePlayback(read_rs274(file, start_mm), control, str(file))
 
@@ -186,10 +187,13 @@ class PulsePlayback(Supervised):
         feed = Feed()
         if move.kind != DWELL:
             try:
-                number = feed_number(speed_mm_s / control.servo.pulse_mm, control.recirculations_hz)
+                number = feed_number(
+                    speed_mm_s / control.servo.pulse_mm, control.recirculations_hz
+                )
             except ValueError as error:
                 raise ProgramFault(
-                    f"{self.name}, line {move.line}: F{speed_mm_s * 60:g}: {error}", line=move.line
+                    f"{self.name}, line {move.line}: F{speed_mm_s * 60:g}: {error}",
+                    line=move.line,
                 ) from None
             feed = Feed(number, override_number(control.override), control.true_norm)
             self._check_travel(move)
@@ -198,7 +202,11 @@ class PulsePlayback(Supervised):
     def _check_travel(self, move: Move) -> None:
         """Raise ProgramFault if a move leaves the machine's travel or the range of the registers."""
         servo = self.settings.servo
-        travel_mm, what, remedy = TRAVEL_MM, "the machine has", "move the zero, or make it smaller"
+        travel_mm, what, remedy = (
+            TRAVEL_MM,
+            "the machine has",
+            "move the zero, or make it smaller",
+        )
         if servo.travel_mm < TRAVEL_MM:
             travel_mm, remedy = servo.travel_mm, "move the zero, or use longer ones"
             what = f"the registers of {servo.register_bits} bits hold"
@@ -220,10 +228,15 @@ class PulsePlayback(Supervised):
         parts = math.ceil(abs(move.turned_rad) / LARGEST_ARC)
         sense, centre = int(math.copysign(1, move.turned_rad)), self._pulses(move.centre_mm)
         radius = math.dist(move.centre_mm, move.end_mm[:2])
-        last = math.atan2(move.end_mm[1] - move.centre_mm[1], move.end_mm[0] - move.centre_mm[0])
+        last = math.atan2(
+            move.end_mm[1] - move.centre_mm[1], move.end_mm[0] - move.centre_mm[0]
+        )
         for left in range(parts - 1, -1, -1):
             angle = last - move.turned_rad * left / parts
-            way = move.centre_mm[0] + radius * math.cos(angle), move.centre_mm[1] + radius * math.sin(angle)
+            way = (
+                move.centre_mm[0] + radius * math.cos(angle),
+                move.centre_mm[1] + radius * math.sin(angle),
+            )
             place = np.r_[self._pulses(way), end[2]] if left else end
             yield from interpolator.recirculate(place, centre, sense, feed)
 
@@ -236,7 +249,10 @@ class PulsePlayback(Supervised):
         servo = self.settings.servo
         axis = int(np.argmax(servos.largest_lag))
         limit_mm = servo.lag_counts[1] * 2 * servo.pulse_mm
-        demand_mm, actual_mm = float(servos.command[axis]) * servo.pulse_mm, float(self.end_mm[axis])
+        demand_mm, actual_mm = (
+            float(servos.command[axis]) * servo.pulse_mm,
+            float(self.end_mm[axis]),
+        )
         return FollowingFault(
             f"the lag of {AXES[axis].upper()} left the range of the {servo.icr_bits} bits of its command register at "
             f"{time_s:.3f} s: allowed {servo.lag_counts[0]} to {servo.lag_counts[1]} counts, {limit_mm:.3f} mm; "
@@ -259,7 +275,9 @@ def _reached(move: Move) -> Iterator[tuple[float, ...]]:
     radius = math.dist(move.centre_mm, move.end_mm[:2])
     last = math.atan2(move.end_mm[1] - y, move.end_mm[0] - x)
     for quarter in range(4):
-        before = math.copysign(1, move.turned_rad) * (last - quarter * math.pi / 2) % (2 * math.pi)
+        before = (
+            math.copysign(1, move.turned_rad) * (last - quarter * math.pi / 2) % (2 * math.pi)
+        )
         if before <= abs(move.turned_rad):
             yield (
                 x + radius * (quarter == 0) - radius * (quarter == 2),

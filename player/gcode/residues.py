@@ -114,16 +114,24 @@ class Interpolator:
         """Counter 81, in units (stage 4 is one)."""
         return float(self._state[_COUNTER]) / (8 * EIGHTH)
 
-    def line(self, end: tuple[int, int, int] | Counts, feed: Feed, residue: int | None = None) -> Pulses:
+    def line(
+        self, end: tuple[int, int, int] | Counts, feed: Feed, residue: int | None = None
+    ) -> Pulses:
         """Command pulses (recirculations, axes) of a line to an end point."""
         return np.concatenate(list(self.recirculate(end, (0, 0), LINE, feed, residue)))
 
     def arc(
-        self, end: tuple[int, int, int] | Counts, centre: tuple[int, int] | Counts, sense: int, feed: Feed
+        self,
+        end: tuple[int, int, int] | Counts,
+        centre: tuple[int, int] | Counts,
+        sense: int,
+        feed: Feed,
     ) -> Pulses:
         """Command pulses of an arc in X and Y of less than half a turn, +1 counter-clockwise, -1 clockwise."""
         if sense not in (CLOCKWISE, COUNTER_CLOCKWISE):
-            raise ValueError(f"an arc turns counter-clockwise, +1, or clockwise, -1; not {sense}")
+            raise ValueError(
+                f"an arc turns counter-clockwise, +1, or clockwise, -1; not {sense}"
+            )
         if end[2] != self._state[_POSITION + 2]:
             raise ValueError(
                 f"an arc from Z {self._state[2]} to {end[2]} is a helix; its plane is X and Y: keep Z"
@@ -147,12 +155,21 @@ class Interpolator:
         self._state[_RATIO] = 0
         weights = resultant_weights(error, true_norm=feed.true_norm)
         settings = np.array(
-            [self.servo_constant, sense, self.guard, feed.number, feed.override, feed.gate_period]
+            [
+                self.servo_constant,
+                sense,
+                self.guard,
+                feed.number,
+                feed.override,
+                feed.gate_period,
+            ]
         )
         rows = AT_ONCE
         while rows == AT_ONCE:
             pulses = np.zeros((AT_ONCE, AXES), np.int8)
-            rows = _recirculate(target, middle, settings, weights, feed.true_norm, self._state, pulses)
+            rows = _recirculate(
+                target, middle, settings, weights, feed.true_norm, self._state, pulses
+            )
             yield pulses[:rows]
 
 
@@ -179,7 +196,9 @@ def _recirculate(end, centre, settings, weights, true_norm, state, pulses):  # t
             for _ in range(feed_pulses(state[_RECIRCULATION], number)):
                 state[_FED] += 1
                 if state[_COUNTER] < BLOCKED:
-                    state[_COUNTER] += FEED_EIGHTHS * EIGHTH * passes(state[_FED], override, OVERRIDE_BITS)
+                    state[_COUNTER] += (
+                        FEED_EIGHTHS * EIGHTH * passes(state[_FED], override, OVERRIDE_BITS)
+                    )
             is_open = gate_opens(state[_COUNTER], state[_RECIRCULATION])
         added[0], added[1], added[2] = error[0], error[1], error[2]
         if sense != 0:

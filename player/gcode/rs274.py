@@ -52,7 +52,9 @@ _GROUPS = {
     "stop": ("M0", "M2", "M30"),
     "spindle": ("M3", "M5"),
 }
-_CODES = {(code[0], float(code[1:])): group for group, codes in _GROUPS.items() for code in codes}
+_CODES = {
+    (code[0], float(code[1:])): group for group, codes in _GROUPS.items() for code in codes
+}
 _KINDS = {0.0: RAPID, 1.0: LINE, 2.0: CLOCKWISE, 3.0: COUNTER_CLOCKWISE}
 _PLAIN, _MOVING, _ARC_WORDS = frozenset("GXYZIJRFPSTN"), frozenset("XYZIJR"), frozenset("IJR")
 _READ = "G0 G1 G2 G3 G4 G17 G20 G21 G54 G90 G91 G94, X Y Z I J R F P S T N, M0 M2 M3 M5 M30"
@@ -82,7 +84,9 @@ class Program:
     moves: list[Move]
 
 
-def read_rs274(file: str | os.PathLike[str], start_mm: Sequence[float] | None = None) -> Program:
+def read_rs274(
+    file: str | os.PathLike[str], start_mm: Sequence[float] | None = None
+) -> Program:
     """Read a program; raises ProgramFault with line and word for what is refused, FileFault if it cannot be
     read.
     """
@@ -115,7 +119,8 @@ def parse_rs274(
             else f"breaks off after line {reader.number}"
         )
         raise ProgramFault(
-            f"{name} {what}; a program ends with M2, M30 or %: get the whole of it", line=reader.number
+            f"{name} {what}; a program ends with M2, M30 or %: get the whole of it",
+            line=reader.number,
         )
     start = tuple(0.0 if place is None else place for place in reader.start)
     return Program((start[0], start[1], start[2]), reader.moves)
@@ -127,7 +132,9 @@ class _Reader:
     def __init__(self, name: str, start_mm: Sequence[float] | None) -> None:
         self.name, self.number, self.ended = name, 0, False
         self.moves: list[Move] = []
-        self.start: list[float | None] = [None, None, None] if start_mm is None else list(start_mm)
+        self.start: list[float | None] = (
+            [None, None, None] if start_mm is None else list(start_mm)
+        )
         self.place = [0.0, 0.0, 0.0] if start_mm is None else list(start_mm)
         self.kind, self.scale, self.relative, self.feed_mm_s = "", 1.0, False, 0.0
         self.begun = False  # whether there was a % or a word
@@ -136,7 +143,9 @@ class _Reader:
         """Read a line."""
         if "(" in text or ";" in text:
             text = _COMMENT.sub("", text)
-        parts = _WORD.split("".join(text.split()))  # what stands between words, a letter, a number, and so on
+        parts = _WORD.split(
+            "".join(text.split())
+        )  # what stands between words, a letter, a number, and so on
         if any(parts[::3]):
             parts = self._second_look("".join(parts))
         if len(parts) > 1:
@@ -159,7 +168,11 @@ class _Reader:
         """Do what the words of a line say, in the order of the standard."""
         values = dict(zip(letters, map(float, numbers), strict=True))
         dwell, stop = False, -1
-        if len(values) != len(letters) or not values.keys() <= _PLAIN or values.get("G", 0.0) not in _KINDS:
+        if (
+            len(values) != len(letters)
+            or not values.keys() <= _PLAIN
+            or values.get("G", 0.0) not in _KINDS
+        ):
             groups = self._codes(letters, numbers)
             self._set_modes(groups)
             dwell, stop = "dwell" in groups, groups.get("stop", -1)
@@ -178,7 +191,9 @@ class _Reader:
             if group is None or (group == letter and letter not in _PLAIN):
                 raise self._fault(letter + text, f"is not played; this control reads {_READ}")
             if group in groups or (group == letter and letter in letters[:at]):
-                raise self._fault(letter + text, f"is the second word for {group} in the line; give one")
+                raise self._fault(
+                    letter + text, f"is the second word for {group} in the line; give one"
+                )
             if group != letter:
                 groups[group] = int(float(text))
         return groups
@@ -191,7 +206,9 @@ class _Reader:
             self.relative = groups[_DISTANCE] == 91
         if _MOTION in groups:
             if "dwell" in groups:
-                raise self._fault("G4", "stands with another motion in one line; give it a line of its own")
+                raise self._fault(
+                    "G4", "stands with another motion in one line; give it a line of its own"
+                )
             self.kind = _KINDS[groups[_MOTION]]
 
     def _move(self, values: dict[str, float], dwell: bool) -> None:
@@ -199,7 +216,8 @@ class _Reader:
         if "F" in values:
             if values["F"] <= 0:
                 raise self._fault(
-                    f"F{values['F']:g}", "moves nothing; give a feed above zero, in units per minute"
+                    f"F{values['F']:g}",
+                    "moves nothing; give a feed above zero, in units per minute",
                 )
             self.feed_mm_s = values["F"] * self.scale / 60
         if dwell:
@@ -211,8 +229,12 @@ class _Reader:
 
     def _dwell(self, values: dict[str, float]) -> None:
         """G4: stand still."""
-        if not 0 <= values.get("P", -1.0) <= LONGEST_DWELL_S or not values.keys().isdisjoint("XYZIJR"):
-            raise self._fault("G4", "wants a time in seconds, a day at most, and no place; give G4 P0.5")
+        if not 0 <= values.get("P", -1.0) <= LONGEST_DWELL_S or not values.keys().isdisjoint(
+            "XYZIJR"
+        ):
+            raise self._fault(
+                "G4", "wants a time in seconds, a day at most, and no place; give G4 P0.5"
+            )
         self.moves.append(
             Move(
                 self.number,
@@ -229,48 +251,73 @@ class _Reader:
         """G0 to G3: to the place that the axis words give."""
         kind, place, scale = self.kind, self.place, self.scale
         if not kind:
-            word = next(f"{letter}{values[letter]:g}" for letter in "XYZIJR" if letter in values)
-            raise self._fault(word, "asks for a move, but none of G0 G1 G2 G3 was given; give one first")
+            word = next(
+                f"{letter}{values[letter]:g}" for letter in "XYZIJR" if letter in values
+            )
+            raise self._fault(
+                word, "asks for a move, but none of G0 G1 G2 G3 was given; give one first"
+            )
         begin = place[0], place[1], place[2]
         for axis, letter in enumerate("XYZ"):
             if letter in values:
                 place[axis] = values[letter] * scale + (place[axis] if self.relative else 0.0)
                 if self.start[axis] is None:
                     self.start[axis] = (
-                        begin[axis] if self.relative or kind not in (RAPID, LINE) else place[axis]
+                        begin[axis]
+                        if self.relative or kind not in (RAPID, LINE)
+                        else place[axis]
                     )
         end = place[0], place[1], place[2]
         if kind != RAPID and self.feed_mm_s == 0:
-            raise self._fault(kind, "has no feed; give F, in units per minute, before it or with it")
+            raise self._fault(
+                kind, "has no feed; give F, in units per minute, before it or with it"
+            )
         if kind in (CLOCKWISE, COUNTER_CLOCKWISE):
             self.moves.append(self._arc(values, begin, end))
             return
         if not _ARC_WORDS.isdisjoint(values):
             letter = next(letter for letter in "IJR" if letter in values)
             raise self._fault(
-                f"{letter}{values[letter]:g}", f"belongs to an arc, and {kind} is none; leave it out"
+                f"{letter}{values[letter]:g}",
+                f"belongs to an arc, and {kind} is none; leave it out",
             )
-        self.moves.append(Move(self.number, kind, end, 0.0 if kind == RAPID else self.feed_mm_s))
+        self.moves.append(
+            Move(self.number, kind, end, 0.0 if kind == RAPID else self.feed_mm_s)
+        )
 
     def _arc(self, values: dict[str, float], begin: Place, end: Place) -> Move:
         """G2 and G3: the arc between two places."""
         if end[2] != begin[2]:
             raise self._fault(
-                f"Z{values['Z']:g}", "makes the arc a helix; this control turns arcs in X and Y: keep Z"
+                f"Z{values['Z']:g}",
+                "makes the arc a helix; this control turns arcs in X and Y: keep Z",
             )
         if "R" in values and ("I" in values or "J" in values):
-            raise self._fault(f"R{values['R']:g}", "stands with a centre, I or J; give one of the two")
+            raise self._fault(
+                f"R{values['R']:g}", "stands with a centre, I or J; give one of the two"
+            )
         sense = 1 if self.kind == COUNTER_CLOCKWISE else -1
         given = "R" in values
         centre = (
-            self._by_radius(begin, end, values["R"], sense) if given else self._by_offset(begin, end, values)
+            self._by_radius(begin, end, values["R"], sense)
+            if given
+            else self._by_offset(begin, end, values)
         )
         first = math.atan2(begin[1] - centre[1], begin[0] - centre[0])
         turned = sense * (math.atan2(end[1] - centre[1], end[0] - centre[0]) - first) % TURN
         whole = begin == end or (turned < 1e-12 and "R" not in values)
-        return Move(self.number, self.kind, end, self.feed_mm_s, centre, sense * (TURN if whole else turned))
+        return Move(
+            self.number,
+            self.kind,
+            end,
+            self.feed_mm_s,
+            centre,
+            sense * (TURN if whole else turned),
+        )
 
-    def _by_radius(self, begin: Place, end: Place, given: float, sense: int) -> tuple[float, float]:
+    def _by_radius(
+        self, begin: Place, end: Place, given: float, sense: int
+    ) -> tuple[float, float]:
         """The centre that leaves less than half a turn, or with a negative radius more."""
         across, up, radius = end[0] - begin[0], end[1] - begin[1], given * self.scale
         chord = math.hypot(across, up)
@@ -279,13 +326,21 @@ class _Reader:
                 f"R{given:g}",
                 f"does not reach: the ends of the arc are {chord:.4f} mm apart; give "
                 + (
-                    "I and J for a whole turn" if chord == 0 else f"{chord / 2:.4f} mm or more, or other ends"
+                    "I and J for a whole turn"
+                    if chord == 0
+                    else f"{chord / 2:.4f} mm or more, or other ends"
                 ),
             )
-        off = math.sqrt(max(radius**2 - chord**2 / 4, 0.0)) * math.copysign(sense, sense * radius) / chord
+        off = (
+            math.sqrt(max(radius**2 - chord**2 / 4, 0.0))
+            * math.copysign(sense, sense * radius)
+            / chord
+        )
         return (begin[0] + end[0]) / 2 - off * up, (begin[1] + end[1]) / 2 + off * across
 
-    def _by_offset(self, begin: Place, end: Place, values: dict[str, float]) -> tuple[float, float]:
+    def _by_offset(
+        self, begin: Place, end: Place, values: dict[str, float]
+    ) -> tuple[float, float]:
         """The centre from I and J, moved to be as far from both ends."""
         i, j = values.get("I", 0.0) * self.scale, values.get("J", 0.0) * self.scale
         centre = begin[0] + i, begin[1] + j

@@ -36,7 +36,12 @@ class Chart:
         self.axes, self._times_s, self._rows = tuple(axes), [], []
 
     def note(
-        self, first_row: int, rate_hz: float, demand_mm: Array, actual_mm: Array, limit_mm: Array
+        self,
+        first_row: int,
+        rate_hz: float,
+        demand_mm: Array,
+        actual_mm: Array,
+        limit_mm: Array,
     ) -> None:
         """Take a block (n, axes) that begins with a row of the run."""
         step = max(1, round(self.every_s * rate_hz))
@@ -77,4 +82,8 @@ class Chart:
 
     def _column(self, which: int) -> Array:
         """One of the three."""
-        return np.concatenate(self._rows)[:, :, which] if self._rows else np.zeros((0, len(self.axes)))
+        return (
+            np.concatenate(self._rows)[:, :, which]
+            if self._rows
+            else np.zeros((0, len(self.axes)))
+        )

@@ -66,7 +66,9 @@ class FollowingLimit:
             )
 
     @classmethod
-    def linear(cls, lag_s: float = 0.06, tolerance_mm: float = 0.1, settle_s: float = 0.0) -> FollowingLimit:
+    def linear(
+        cls, lag_s: float = 0.06, tolerance_mm: float = 0.1, settle_s: float = 0.0
+    ) -> FollowingLimit:
         """The limit of a servo that is behind by a lag."""
         return cls(((0.0, 0.0),), lag_s, tolerance_mm, settle_s)
 
@@ -107,7 +109,8 @@ def learn_table(
     error = np.abs(demand_mm - actual_mm)
     upto = [*speeds_mm_s[1:], np.inf]
     return tuple(
-        (float(v), float(error[speed <= u].max(initial=0.0))) for v, u in zip(speeds_mm_s, upto, strict=True)
+        (float(v), float(error[speed <= u].max(initial=0.0)))
+        for v, u in zip(speeds_mm_s, upto, strict=True)
     )
 
 
@@ -127,14 +130,21 @@ class Monitor:
         stop: bool = True,
         chart: Chart | None = None,
     ) -> None:
-        self.axes, self.rate_hz, self.limit, self.stop = tuple(axes), rate_hz, limit or FollowingLimit(), stop
+        self.axes, self.rate_hz, self.limit, self.stop = (
+            tuple(axes),
+            rate_hz,
+            limit or FollowingLimit(),
+            stop,
+        )
         self.warnings: list[FollowingFault] = []
         self.rows_seen = 0
         self._chart = chart
         if chart is not None:
             chart.begin(self.axes)
         share, fade = 1 - self._fade(self.limit.settle_s), self._fade(self.limit.hold_s)
-        self._settings = np.array([rate_hz, share, fade, self.limit.beyond_s, self.limit.tolerance_mm])
+        self._settings = np.array(
+            [rate_hz, share, fade, self.limit.beyond_s, self.limit.tolerance_mm]
+        )
         self._state = np.zeros((len(self.axes), 6))
         self._state[:, DEMAND] = np.nan
 
@@ -158,32 +168,52 @@ class Monitor:
             np.ascontiguousarray(demand_mm, np.float64),
             np.ascontiguousarray(actual_mm, np.float64),
         )
-        if demand.shape != actual.shape or demand.ndim != 2 or demand.shape[1] != len(self.axes):
+        if (
+            demand.shape != actual.shape
+            or demand.ndim != 2
+            or demand.shape[1] != len(self.axes)
+        ):
             raise ValueError(
                 f"demand {demand.shape} and actual {actual.shape}: both must be (n, {len(self.axes)})"
             )
         limits = np.zeros((0 if self._chart is None else len(demand), len(self.axes)))
         row = 0
         while row < len(demand):
-            row, axis = _watch(demand, actual, row, self._settings, self.limit.rows, self._state, limits)
+            row, axis = _watch(
+                demand, actual, row, self._settings, self.limit.rows, self._state, limits
+            )
             if axis < 0:
                 break
-            limit_mm = float(allowed_mm(self._state[axis, COUNTED], self.limit.rows, *self._settings[3:]))
+            limit_mm = float(
+                allowed_mm(self._state[axis, COUNTED], self.limit.rows, *self._settings[3:])
+            )
             self._warn(
-                axis, self.rows_seen + row, float(demand[row, axis]), float(actual[row, axis]), limit_mm
+                axis,
+                self.rows_seen + row,
+                float(demand[row, axis]),
+                float(actual[row, axis]),
+                limit_mm,
             )
             if self.stop:
                 break
             row += 1
         if self._chart is not None:  # the row of a fault too
             noted = min(row + 1, len(demand))
-            self._chart.note(self.rows_seen, self.rate_hz, demand[:noted], actual[:noted], limits[:noted])
+            self._chart.note(
+                self.rows_seen, self.rate_hz, demand[:noted], actual[:noted], limits[:noted]
+            )
         self.rows_seen += row
         return row
 
-    def _warn(self, axis: int, row: int, demand_mm: float, actual_mm: float, limit_mm: float) -> None:
+    def _warn(
+        self, axis: int, row: int, demand_mm: float, actual_mm: float, limit_mm: float
+    ) -> None:
         """Keep a fault with its state."""
-        name, time_s, speed = self.axes[axis], row / self.rate_hz, float(self._state[axis, COUNTED])
+        name, time_s, speed = (
+            self.axes[axis],
+            row / self.rate_hz,
+            float(self._state[axis, COUNTED]),
+        )
         self.warnings.append(
             FollowingFault(
                 f"the drive of {name.upper()} does not follow at {time_s:.3f} s: demand {demand_mm:.3f} mm, actual "

@@ -50,7 +50,10 @@ class PositionServos:
     """
 
     def __init__(
-        self, start_mm: Array, rate_hz: float = MOTION_RATE_HZ, settings: PositionServo | None = None
+        self,
+        start_mm: Array,
+        rate_hz: float = MOTION_RATE_HZ,
+        settings: PositionServo | None = None,
     ) -> None:
         self.settings, self.rate_hz = settings or PositionServo(), rate_hz
         self._state = np.zeros((len(start_mm), 2))
@@ -66,10 +69,23 @@ class PositionServos:
             )
         drive, dt_s = self.settings.drive, 1 / self.rate_hz
         common = np.array(
-            [drive.gain(dt_s), drive.acceleration_mm_s2 * dt_s, self.settings.increment_mm, dt_s], np.float64
+            [
+                drive.gain(dt_s),
+                drive.acceleration_mm_s2 * dt_s,
+                self.settings.increment_mm,
+                dt_s,
+            ],
+            np.float64,
         )
         actual = np.empty_like(demand)
-        _follow(demand, self.settings.gain_per_s, common, as_rows(self.conditions), self._state, actual)
+        _follow(
+            demand,
+            self.settings.gain_per_s,
+            common,
+            as_rows(self.conditions),
+            self._state,
+            actual,
+        )
         return actual
 
 

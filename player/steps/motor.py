@@ -58,7 +58,10 @@ class MotorCondition:
         """For the kernel: changes of rate upwards and downwards and stray steps, in steps per interval;
         whether free.
         """
-        rise, fall = self.torque_share - self.friction_share, self.torque_share + self.friction_share
+        rise, fall = (
+            self.torque_share - self.friction_share,
+            self.torque_share + self.friction_share,
+        )
         return most * max(rise, 0.0), most * fall, self.stray_hz * interval_s, not self.stuck
 
 
@@ -92,7 +95,8 @@ class Motors:
         told = np.empty((len(pulses) * samples, len(self._state)), np.int64)
         made = np.empty_like(told)
         wrong = np.array(
-            [condition.row(self._most, self._interval_s) for condition in self.conditions], np.float64
+            [condition.row(self._most, self._interval_s) for condition in self.conditions],
+            np.float64,
         )
         _run(pulses, ticks, samples, wrong, self._state, told, made)
         return told, made
@@ -117,7 +121,11 @@ def _run(pulses, ticks, samples, conditions, state, told, made):  # type: ignore
             whole, whole_all = round(steps + rate) - round(steps), round(steps)
             _spread(asked, asked_all, ticks, part, told[k * samples : (k + 1) * samples, axis])
             _spread(whole, whole_all, ticks, part, made[k * samples : (k + 1) * samples, axis])
-            state[axis, 0], state[axis, 1], state[axis, 2] = rate, steps + rate, asked_all + asked
+            state[axis, 0], state[axis, 1], state[axis, 2] = (
+                rate,
+                steps + rate,
+                asked_all + asked,
+            )
 
 
 @njit(cache=True, inline="always")

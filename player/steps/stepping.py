@@ -54,7 +54,9 @@ Counts = NDArray[np.int8]
 def pulse_ticks(pulses: int) -> tuple[int, ...]:
     """The oscillator ticks of an interval at which so many pulses come."""
     if not 0 <= pulses <= TICKS:
-        raise ValueError(f"{pulses} pulses do not fit in an interval; it has room for 0 to {TICKS}")
+        raise ValueError(
+            f"{pulses} pulses do not fit in an interval; it has room for 0 to {TICKS}"
+        )
     spread = tuple((2 * j + 1) * TICKS // (2 * pulses) for j in range(pulses))
     return _PRINTED_TICKS.get(pulses, spread)
 
@@ -66,7 +68,9 @@ def ring_memory() -> NDArray[np.uint8]:
         for place, (x, y) in enumerate(ring):
             for direction, other in ((1, place + 1), (0, place - 1)):
                 to_x, to_y = ring[other % len(ring)]
-                memory[_address(x + STANDSTILL, y + STANDSTILL, direction)] = _outputs(to_x - x, to_y - y)
+                memory[_address(x + STANDSTILL, y + STANDSTILL, direction)] = _outputs(
+                    to_x - x, to_y - y
+                )
     return memory
 
 
@@ -109,7 +113,12 @@ class StepPlayback(Supervised):
     """
 
     def __init__(self, program: Program, motor: Motor, travel_mm: float, name: str) -> None:
-        self.format, self._motor, self._program, self._name = program.format, motor, program, name
+        self.format, self._motor, self._program, self._name = (
+            program.format,
+            motor,
+            program,
+            name,
+        )
         _check_motor(name, program.format, motor)
         self.counts, self._rows = decode(program)
         self.pulses = pulses_of(self.counts, program.format.rates)
@@ -147,14 +156,20 @@ class StepPlayback(Supervised):
         yield Motion(self.start_mm[None], rate_hz, 0.0)
         for first in range(0, len(self.pulses), _BLOCK_INTERVALS):
             told, made = motors.run(
-                self.pulses[first : first + _BLOCK_INTERVALS], tick_table(), SAMPLES_PER_INTERVAL
+                self.pulses[first : first + _BLOCK_INTERVALS],
+                tick_table(),
+                SAMPLES_PER_INTERVAL,
             )
             places_mm = self.start_mm + made * fmt.step_mm
             monitor.rows_seen = first * SAMPLES_PER_INTERVAL + 1
             rows = monitor.watch(self.start_mm + told * fmt.step_mm, places_mm)
             if rows:
                 self.end_mm = places_mm[rows - 1]
-                yield Motion(places_mm[:rows], rate_hz, (first + 1 / SAMPLES_PER_INTERVAL) * fmt.interval_s)
+                yield Motion(
+                    places_mm[:rows],
+                    rate_hz,
+                    (first + 1 / SAMPLES_PER_INTERVAL) * fmt.interval_s,
+                )
             if rows < len(places_mm):
                 raise monitor.warnings[-1]
         self.end_error_mm = self.end_mm - np.array(fmt.end_mm)
@@ -187,7 +202,9 @@ class StepPlayback(Supervised):
 
     def _line(self, interval: int) -> int | None:
         """The line of the file that an interval comes from, where there is a file."""
-        return int(self._program.lines[self._rows[interval]]) if len(self._program.lines) else None
+        return (
+            int(self._program.lines[self._rows[interval]]) if len(self._program.lines) else None
+        )
 
 
 def tick_table() -> NDArray[np.int64]:

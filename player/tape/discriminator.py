@@ -62,7 +62,10 @@ class Phases:
     def joined(self, after: Phases) -> Phases:
         """These rows and those after them."""
         names = ("cycles", "surprise", "levels")
-        return Phases(self.first_row, *(np.concatenate([getattr(self, n), getattr(after, n)]) for n in names))
+        return Phases(
+            self.first_row,
+            *(np.concatenate([getattr(self, n), getattr(after, n)]) for n in names),
+        )
 
     def moved(self, rows: int) -> Phases:
         """The same rows, so many later on the tape."""
@@ -71,7 +74,12 @@ class Phases:
     def cut(self, first: int, last: int) -> Phases:
         """Rows `first` to before `last` of these."""
         rows = slice(max(first, 0), max(last, first, 0))
-        return Phases(self.first_row + rows.start, self.cycles[rows], self.surprise[rows], self.levels[rows])
+        return Phases(
+            self.first_row + rows.start,
+            self.cycles[rows],
+            self.surprise[rows],
+            self.levels[rows],
+        )
 
 
 def translating_taps(
@@ -82,12 +90,16 @@ def translating_taps(
     return _taps((low_pass * turns).real), _taps((low_pass * turns).imag)
 
 
-def _low_pass(sample_rate_hz: float, reference_hz: float, decimation: int) -> tuple[Float64s, Complexes]:
+def _low_pass(
+    sample_rate_hz: float, reference_hz: float, decimation: int
+) -> tuple[Float64s, Complexes]:
     """Taps h of the low-pass, and how far each is turned, exp(-j w n)."""
     cut_hz = min(sample_rate_hz / decimation, reference_hz) / 2
     half = round(2 * sample_rate_hz / cut_hz)
     n = np.arange(-half, half + 1)
-    low_pass = np.sinc(2 * cut_hz / sample_rate_hz * n) * np.kaiser(2 * half + 1, STOP_BAND_BETA)
+    low_pass = np.sinc(2 * cut_hz / sample_rate_hz * n) * np.kaiser(
+        2 * half + 1, STOP_BAND_BETA
+    )
     return low_pass / low_pass.sum(), np.exp(-2j * np.pi * reference_hz / sample_rate_hz * n)
 
 
@@ -112,7 +124,10 @@ def branches(
         taps = [(low_pass * turns).real, (low_pass * turns).imag]
         turned = np.repeat([[1], [1j]], decimation, axis=1)
     rows = np.stack(
-        [np.pad(one, (0, -len(one) % decimation)).reshape(-1, decimation).T for one in map(_taps, taps)]
+        [
+            np.pad(one, (0, -len(one) % decimation)).reshape(-1, decimation).T
+            for one in map(_taps, taps)
+        ]
     )
     rows = rows[
         :, :, : int(np.flatnonzero(rows.any(axis=(0, 1)))[-1]) + 1
@@ -124,7 +139,9 @@ def branches(
 class Discriminator:
     """Tracks in, phases out, block by block of any length."""
 
-    def __init__(self, sample_rate_hz: float, reference_hz: float, decimation: int, tracks: int) -> None:
+    def __init__(
+        self, sample_rate_hz: float, reference_hz: float, decimation: int, tracks: int
+    ) -> None:
         if not 0 < reference_hz < sample_rate_hz / 2:
             raise ValueError(
                 f"reference of {reference_hz:g} Hz cannot be on a tape of {sample_rate_hz:g} samples/s; "
@@ -138,7 +155,9 @@ class Discriminator:
         self.filter_frames = len(translating_taps(sample_rate_hz, reference_hz, decimation)[0])
         self._filter = branches(sample_rate_hz, reference_hz, decimation)
         self._half = self.filter_frames // 2
-        self._reach = 2 * self._half // decimation  # rows that the filter reaches beyond its first
+        self._reach = (
+            2 * self._half // decimation
+        )  # rows that the filter reaches beyond its first
         self.gains = predictor_gains(sample_rate_hz / decimation)
         self.state = np.full((tracks - 1, 3), np.nan)
         self._tail: Frames = np.zeros((0, tracks), np.float32)
@@ -148,7 +167,11 @@ class Discriminator:
 
     def feed(self, frames: Frames) -> Phases:
         """Take the next frames (n, tracks) of the tape; the rows that are complete by now, perhaps none."""
-        frames = np.concatenate([self._tail, frames]) if len(self._tail) else np.ascontiguousarray(frames)
+        frames = (
+            np.concatenate([self._tail, frames])
+            if len(self._tail)
+            else np.ascontiguousarray(frames)
+        )
         row = max(self._row, -(-self._half // self.decimation))
         skipped = row * self.decimation - self._half - self._tail_frame
         count = max((len(frames) - skipped) // self.decimation - self._reach, 0)
@@ -163,20 +186,28 @@ class Discriminator:
 
     def finish(self) -> Phases:
         """The rows at the end of the tape that the filter could not fill: the last one held."""
-        return self._held(-(-(self._tail_frame + len(self._tail)) // self.decimation) - self._row)
+        return self._held(
+            -(-(self._tail_frame + len(self._tail)) // self.decimation) - self._row
+        )
 
     def _demodulated(self, rows: Frames, row: int) -> Phases:
         """Run the kernels; before the tape's first full row that row is held."""
         count, tracks = len(rows) - self._reach, rows.shape[1] // self.decimation
         phase, levels = np.empty((tracks - 1, count)), np.empty((count, tracks), np.float32)
-        cycles, surprise = np.empty((count, tracks - 1)), np.empty((count, tracks - 1), np.float32)
+        cycles, surprise = (
+            np.empty((count, tracks - 1)),
+            np.empty((count, tracks - 1), np.float32),
+        )
         scale = np.float32(1 / 32768 if rows.dtype == np.int16 else 1)
         _wrap(rows, scale, *self._filter, phase, levels)
         count_turns(phase, self.gains, self.state, cycles, surprise)
         lead = ((row - self._row, 0), (0, 0))
         if row > self._row:
             cycles = np.pad(cycles, lead, mode="edge")
-            surprise, levels = np.pad(surprise, lead, mode="edge"), np.pad(levels, lead, mode="edge")
+            surprise, levels = (
+                np.pad(surprise, lead, mode="edge"),
+                np.pad(levels, lead, mode="edge"),
+            )
         return Phases(self._row, cycles, surprise, levels)
 
     def _held(self, count: int) -> Phases:
@@ -187,7 +218,9 @@ class Discriminator:
             return Phases(0, empty, empty.astype(np.float32), np.zeros((0, tracks), np.float32))
         cycles = np.repeat(self._last.cycles[-1:], count, axis=0)
         surprise = np.repeat(self._last.surprise[-1:], count, axis=0)
-        return Phases(self._row, cycles, surprise, np.repeat(self._last.levels[-1:], count, axis=0))
+        return Phases(
+            self._row, cycles, surprise, np.repeat(self._last.levels[-1:], count, axis=0)
+        )
 
 
 def discriminate(blocks: Iterable[Frames], discriminator: Discriminator) -> Iterator[Phases]:
@@ -212,7 +245,10 @@ def _wrap(rows, scale, taps, turns_re, turns_im, phase, levels):  # type: ignore
     tracks = levels.shape[1]
     reach = len(rows) - len(levels)  # rows that a filter reaches beyond its first
     columns = np.zeros((rows.shape[1], CHUNK_ROWS + max(reach, taps.shape[2])), np.float32)
-    re, im = np.empty((tracks, CHUNK_ROWS), np.float32), np.empty((tracks, CHUNK_ROWS), np.float32)
+    re, im = (
+        np.empty((tracks, CHUNK_ROWS), np.float32),
+        np.empty((tracks, CHUNK_ROWS), np.float32),
+    )
     level = np.empty(CHUNK_ROWS, np.float32)
     for first in range(0, len(levels), CHUNK_ROWS):
         last = min(first + CHUNK_ROWS, len(levels))
@@ -259,7 +295,16 @@ def _translate(columns, track, taps, turns_re, turns_im, re, im):  # type: ignor
 @njit(cache=True, nogil=True, inline="always")
 def _group(taps, i):  # type: ignore[no-untyped-def]
     """Eight taps as numbers."""
-    return taps[i], taps[i + 1], taps[i + 2], taps[i + 3], taps[i + 4], taps[i + 5], taps[i + 6], taps[i + 7]
+    return (
+        taps[i],
+        taps[i + 1],
+        taps[i + 2],
+        taps[i + 3],
+        taps[i + 4],
+        taps[i + 5],
+        taps[i + 6],
+        taps[i + 7],
+    )
 
 
 @njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "nsz"})
@@ -279,10 +324,13 @@ def _turn(re, im, ref_re, ref_im, phase):  # type: ignore[no-untyped-def]
         across = float(im[k]) * float(ref_re[k]) - float(re[k]) * float(ref_im[k])
         small, large = min(abs(along), abs(across)), max(abs(along), abs(across))
         oblique = small > 0.41421356237309503 * large  # tangent of an eighth of half a turn
-        t = (small - large if oblique else small) / max(small + large if oblique else large, SMALLEST_PRODUCT)
+        t = (small - large if oblique else small) / max(
+            small + large if oblique else large, SMALLEST_PRODUCT
+        )
         z = t * t  # polynomial: S. Moshier, Cephes, atanf
         angle = (
-            ((8.05374449538e-2 * z - 1.38776856032e-1) * z + 1.99777106478e-1) * z - 3.33329491539e-1
+            ((8.05374449538e-2 * z - 1.38776856032e-1) * z + 1.99777106478e-1) * z
+            - 3.33329491539e-1
         ) * z * t + t
         angle = angle + math.pi / 4 if oblique else angle
         angle = math.pi / 2 - angle if abs(across) > abs(along) else angle

@@ -41,7 +41,8 @@ from morfax.motion.faults import Fault, LockFault, TapeFault
 from morfax.player.tape.discriminator import Discriminator, Phases
 from morfax.player.tape.predictor import recount
 
-LEVEL_STEADY = 0.8  # of the level 20 ms ago: 0.2 of another signal turns the phase by 0.03 cycle
+# of the level 20 ms ago: 0.2 of another signal turns the phase by 0.03 cycle
+LEVEL_STEADY = 0.8
 LEVEL_KEPT = 0.2  # of the level at standstill
 STEADY_S = 0.02
 SIDE_S = 0.006  # of sound tape on each side
@@ -94,7 +95,13 @@ def bridge(before: Side, after: Side, rows: int, acceleration: float) -> Bridge:
     off -= round(off)
     jolt = abs(after.speed - before.speed - rows * (before.bend + after.bend))
     reach = acceleration * rows**2 / 4 + jolt * rows / 2
-    return Bridge(travel + off, off, reach, abs(off) / 2 + jolt * rows / 8, max(before.misfit, after.misfit))
+    return Bridge(
+        travel + off,
+        off,
+        reach,
+        abs(off) / 2 + jolt * rows / 8,
+        max(before.misfit, after.misfit),
+    )
 
 
 def longest_s(acceleration_mm_s2: float, cycles_per_mm: float) -> float:
@@ -108,7 +115,9 @@ def filled(before: Side, after: Side, travel: float, rows: int) -> Array:
     """The rows within a gap: a cubic with the place and speed of both sides."""
     u = np.arange(1, rows) / rows
     v0, v1, way = before.speed * rows, after.speed * rows, travel
-    return np.asarray(before.place + v0 * u + (3 * way - 2 * v0 - v1) * u**2 + (v0 + v1 - 2 * way) * u**3)
+    return np.asarray(
+        before.place + v0 * u + (3 * way - 2 * v0 - v1) * u**2 + (v0 + v1 - 2 * way) * u**3
+    )
 
 
 def under_way(rows: Phases, discriminator: Discriminator) -> Array:
@@ -124,7 +133,11 @@ def under_way(rows: Phases, discriminator: Discriminator) -> Array:
 
 
 def _count_on(
-    discriminator: Discriminator, axis: int, at: Side, cycles: Array, surprise: NDArray[np.float32]
+    discriminator: Discriminator,
+    axis: int,
+    at: Side,
+    cycles: Array,
+    surprise: NDArray[np.float32],
 ) -> None:
     """Count an axis anew from a place on to the last row that the discriminator has given."""
     state = np.array([at.place - at.speed + at.bend, at.speed - 2 * at.bend, at.bend])
@@ -156,16 +169,24 @@ class Gaps:
         self._acceleration = acceleration  # cycles/row²
         self._side = max(round(SIDE_S * rate_hz), 6)
         self._spread = -(-discriminator.filter_frames // (2 * discriminator.decimation))
-        self._rows: Phases | None = None  # from `side` rows before the first that is not yet given out
+        self._rows: Phases | None = (
+            None  # from `side` rows before the first that is not yet given out
+        )
         self._lost = np.zeros((0, len(levels)), bool)
         self._given: int | None = None  # the row up to which rows were given out
-        self.bridged: dict[tuple[float, str], float] = {}  # tape time in s and axis: length in s
+        self.bridged: dict[
+            tuple[float, str], float
+        ] = {}  # tape time in s and axis: length in s
 
-    def feed(self, phases: Phases, *, last: bool = False) -> tuple[Phases, tuple[int, Fault] | None]:
+    def feed(
+        self, phases: Phases, *, last: bool = False
+    ) -> tuple[Phases, tuple[int, Fault] | None]:
         """Take the next rows; those that are certain by now, and the first that is not, with its fault."""
         lost = np.zeros((len(phases), len(self._levels)), bool)
         share = 1 - np.exp(-1 / (STEADY_S * self._rate_hz))
-        _mark(phases.levels, self._levels * LEVEL_KEPT, LEVEL_STEADY, share, self._tracked, lost)
+        _mark(
+            phases.levels, self._levels * LEVEL_KEPT, LEVEL_STEADY, share, self._tracked, lost
+        )
         self._lost = np.vstack([self._lost, lost])
         self._given = phases.first_row if self._given is None else self._given
         rows = phases if self._rows is None else self._rows.joined(phases)
@@ -181,7 +202,9 @@ class Gaps:
         self._rows, self._lost = rows.cut(keep, len(rows)), self._lost[keep:]
         return out, fault
 
-    def _bridge_all(self, rows: Phases, ready: int, last: bool) -> tuple[int, tuple[int, Fault] | None]:
+    def _bridge_all(
+        self, rows: Phases, ready: int, last: bool
+    ) -> tuple[int, tuple[int, Fault] | None]:
         """Bridge the gaps of all axes; how many rows are certain then, and the fault that ends the tape
         there.
         """
@@ -277,7 +300,9 @@ def _mark(levels, least, steady, share, tracked, lost):  # type: ignore[no-untyp
         slow = tracked[track]
         for row in range(len(levels)):
             level = levels[row, track]
-            if not (level >= least[track] and level >= steady * slow and level * steady <= slow):
+            if not (
+                level >= least[track] and level >= steady * slow and level * steady <= slow
+            ):
                 lost[row, track] = True
             else:
                 slow += share * (level - slow)

@@ -114,7 +114,9 @@ def _mend(gap: Gap, found: Bridge, cycles: int, fmt: TapeFormat) -> Mend:
     16.
     """
     unknown_cycles = abs(found.off + cycles) / 2 + found.reach / 4
-    return Mend(fmt.axes[gap[1]], gap[0] / fmt.motion_rate_hz, cycles, unknown_cycles * fmt.mm_per_cycle)
+    return Mend(
+        fmt.axes[gap[1]], gap[0] / fmt.motion_rate_hz, cycles, unknown_cycles * fmt.mm_per_cycle
+    )
 
 
 def _read(playback: Playback) -> Iterator[tuple[int, Array]]:
@@ -124,7 +126,9 @@ def _read(playback: Playback) -> Iterator[tuple[int, Array]]:
         fault = bearings.first_fault(phases, fmt.motion_rate_hz, place_mm.tolist()) or fault
         if fault is not None:
             raise fault[1]
-        places_mm = playback.start_mm + (phases.cycles - bearings.zero_cycles) * fmt.mm_per_cycle
+        places_mm = (
+            playback.start_mm + (phases.cycles - bearings.zero_cycles) * fmt.mm_per_cycle
+        )
         if len(places_mm):
             place_mm[:] = places_mm[-1]
             yield phases.first_row, places_mm
@@ -159,7 +163,13 @@ def _lost(doubtful: dict[Gap, Bridge], missing: Array, fmt: TapeFormat) -> dict[
             raise _not_whole(axis, cycles, fmt)
         sets = _sets([_candidates(doubtful[gap]) for gap in gaps], round(cycles))
         if len(sets) != 1:
-            raise _unknown(axis, round(cycles), [gap[0] / fmt.motion_rate_hz for gap in gaps], len(sets), fmt)
+            raise _unknown(
+                axis,
+                round(cycles),
+                [gap[0] / fmt.motion_rate_hz for gap in gaps],
+                len(sets),
+                fmt,
+            )
         told |= dict(zip(gaps, sets[0], strict=True))
     return told
 
@@ -175,7 +185,10 @@ def _sets(candidates: list[range], total: int) -> list[tuple[int, ...]]:
     if not candidates:
         return [()] if total == 0 else []
     found: list[tuple[int, ...]] = []
-    rest_low, rest_high = sum(r[0] for r in candidates[1:] if r), sum(r[-1] for r in candidates[1:] if r)
+    rest_low, rest_high = (
+        sum(r[0] for r in candidates[1:] if r),
+        sum(r[-1] for r in candidates[1:] if r),
+    )
     for number in candidates[0]:
         if rest_low <= total - number <= rest_high:
             found += [(number, *rest) for rest in _sets(candidates[1:], total - number)]
@@ -184,9 +197,14 @@ def _sets(candidates: list[range], total: int) -> list[tuple[int, ...]]:
     return found
 
 
-def _unknown(axis: int, cycles: int, times_s: list[float], sets: int, fmt: TapeFormat) -> TapeFault:
+def _unknown(
+    axis: int, cycles: int, times_s: list[float], sets: int, fmt: TapeFormat
+) -> TapeFault:
     """The fault of cycles that no dropout, or one of several, has lost."""
-    name, places = fmt.axes[axis].upper(), ", ".join(f"{time_s:.3f} s" for time_s in times_s[:6])
+    name, places = (
+        fmt.axes[axis].upper(),
+        ", ".join(f"{time_s:.3f} s" for time_s in times_s[:6]),
+    )
     if sets and not cycles:
         why = f"where it should, but what one of the {len(times_s)} dropouts at {places} lost another may have put back"
     elif sets:

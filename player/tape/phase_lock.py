@@ -140,10 +140,16 @@ class Drives:
         self.settings = settings or PhaseLock()
         self._mm_per_cycle, self._dt_s, self._steps = mm_per_cycle, 1 / (rate_hz * steps), steps
         network = place(self.settings, self._dt_s)
-        self._network = np.array([network.gain, network.zero, network.lead_zero, network.lead_pole])
+        self._network = np.array(
+            [network.gain, network.zero, network.lead_zero, network.lead_pole]
+        )
         drive = self.settings.drive
         self._drive = np.array(
-            [drive.gain(self._dt_s), drive.acceleration_mm_s2 * self._dt_s, drive.top_speed_mm_s]
+            [
+                drive.gain(self._dt_s),
+                drive.acceleration_mm_s2 * self._dt_s,
+                drive.top_speed_mm_s,
+            ]
         )
         self._state = np.zeros((axes, 5))
         self._last = np.zeros((1, axes))  # row of phases
@@ -159,7 +165,13 @@ class Drives:
         back = -math.expm1(-self._dt_s / BACK_S)
         scale = np.array([self._mm_per_cycle, range_mm, self._dt_s, back])
         rows = _follow(
-            cycles, scale, self._network, self._drive, as_rows(self.conditions), self._state, moved
+            cycles,
+            scale,
+            self._network,
+            self._drive,
+            as_rows(self.conditions),
+            self._state,
+            moved,
         )
         return moved[self._steps - 1 : rows : self._steps]
 
@@ -169,7 +181,9 @@ class Drives:
             return cycles
         before, self._last = np.vstack([self._last, cycles[:-1]]), cycles[-1:]
         share = np.arange(1, self._steps + 1)[None, :, None] / self._steps
-        return (before[:, None] + share * (cycles - before)[:, None]).reshape(-1, cycles.shape[1])
+        return (before[:, None] + share * (cycles - before)[:, None]).reshape(
+            -1, cycles.shape[1]
+        )
 
     def adjust(self, shift_mm: Array) -> None:
         """Turn the phase changers 155 until the screws stand so far from where they did, while the tape
@@ -194,11 +208,16 @@ def following_limit(settings: PhaseLock, mm_per_cycle: float, rate_hz: float) ->
     way. A rate is held for twice the time in which the motor stops out of the fastest speed that it can be
     stopped from at once.
     """
-    range_mm, most_mm_s2 = settings.range_cycles * mm_per_cycle, settings.drive.acceleration_mm_s2
+    range_mm, most_mm_s2 = (
+        settings.range_cycles * mm_per_cycle,
+        settings.drive.acceleration_mm_s2,
+    )
     speeds = np.linspace(0, math.sqrt(range_mm * most_mm_s2 / 2), TRIED_SPEEDS + 1)[1:]
     half = round(rate_hz * (0.05 + 4 * speeds[-1] / most_mm_s2))
     turn = (half - np.abs(np.arange(2 * half) - half))[:, None] / rate_hz * speeds
-    sound = Drives(TRIED_SPEEDS, 1.0, rate_hz, replace(settings, range_cycles=math.inf)).follow(turn)
+    sound = Drives(TRIED_SPEEDS, 1.0, rate_hz, replace(settings, range_cycles=math.inf)).follow(
+        turn
+    )
     learnt = learn_table(turn, sound, rate_hz, [0.0, *(speeds[:-1] * (1 + 1e-6))])
     hold_s = 2 * math.sqrt(2 * range_mm / most_mm_s2)
     points = [(speed, min(error_mm, range_mm)) for speed, error_mm in learnt] + [
@@ -212,7 +231,9 @@ def _follow(cycles, scale, network, drive, conditions, state, moved_mm):  # type
     """Step all axes through a block; the number of rows done before an error was out of range."""
     mm_per_cycle, range_mm, dt_s, back = scale
     gain, zero, lead_zero, lead_pole = network
-    reach = drive[1] / drive[0]  # mm/s that a demand may lie off the speed before the current is at its limit
+    reach = (
+        drive[1] / drive[0]
+    )  # mm/s that a demand may lie off the speed before the current is at its limit
     top = drive[2]
     for row in range(len(cycles)):
         for axis in range(len(state)):
@@ -224,7 +245,9 @@ def _follow(cycles, scale, network, drive, conditions, state, moved_mm):  # type
                 return row
             lead_now = lead_pole * lead + now - lead_zero * error  # amplifier 161
             demand += gain * (lead_now - zero * lead)  # integrator 159
-            given = min(max(demand, speed - reach), speed + reach)  # what the motor's current can answer,
+            given = min(
+                max(demand, speed - reach), speed + reach
+            )  # what the motor's current can answer,
             given = min(max(given, -top), top)  # and its speed
             demand += back * (given - demand)
             speed_now = conditioned_step(
@@ -232,5 +255,9 @@ def _follow(cycles, scale, network, drive, conditions, state, moved_mm):  # type
             )  # motor 163, tacho
             speed_now = min(max(speed_now, -top), top)
             state[axis, POSITION] = position + (speed + speed_now) / 2 * dt_s
-            state[axis, SPEED], state[axis, DEMAND], state[axis, LEAD] = speed_now, demand, lead_now
+            state[axis, SPEED], state[axis, DEMAND], state[axis, LEAD] = (
+                speed_now,
+                demand,
+                lead_now,
+            )
     return len(cycles)

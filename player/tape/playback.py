@@ -72,7 +72,11 @@ def play(
 
     def open_tape() -> Tape:
         return Tape.open(
-            file, reference_hz=reference_hz, cycles_per_mm=cycles_per_mm, start_mm=start_mm, order=order
+            file,
+            reference_hz=reference_hz,
+            cycles_per_mm=cycles_per_mm,
+            start_mm=start_mm,
+            order=order,
         )
 
     with open_tape() as tape:
@@ -121,7 +125,9 @@ def _ending(fmt: TapeFormat, closed: bool) -> TapeFormat:
     return replace(fmt, end_mm=fmt.start_mm) if closed and fmt.end_mm is None else fmt
 
 
-def _check_resumption(resume_at_s: float, start_mm: Sequence[float] | None, duration_s: float) -> None:
+def _check_resumption(
+    resume_at_s: float, start_mm: Sequence[float] | None, duration_s: float
+) -> None:
     """Raise ValueError for a tape time from which a tape cannot be gone on with."""
     if not 0 <= resume_at_s < duration_s:
         raise ValueError(
@@ -162,16 +168,22 @@ class Playback(Supervised):
         motors_mm_s2 = (
             self.settings.drive.acceleration_mm_s2 / setting.override**2
         )  # as it would be on the tape
-        self.acceleration_mm_s2 = motors_mm_s2 if acceleration_mm_s2 is None else acceleration_mm_s2
+        self.acceleration_mm_s2 = (
+            motors_mm_s2 if acceleration_mm_s2 is None else acceleration_mm_s2
+        )
         self._zero_mm = setting.zeros_mm(fmt.axes)
         self._rows = 0
         self.start_mm: Array = np.array(fmt.start_mm, dtype=np.float64) + self._zero_mm
-        self.reader = Reader(open_tape, fmt, self.start_mm, self.acceleration_mm_s2, resume_at_s)
+        self.reader = Reader(
+            open_tape, fmt, self.start_mm, self.acceleration_mm_s2, resume_at_s
+        )
         self.end_mm: Array = self.start_mm.copy()
         self.end_error_mm: Array | None = None
         self.found_order: tuple[int, ...] | None = None
         self.conditions = [SOUND] * len(fmt.axes)
-        self.limit = following_limit(self.settings, fmt.mm_per_cycle, self.rate_hz * self._steps)
+        self.limit = following_limit(
+            self.settings, fmt.mm_per_cycle, self.rate_hz * self._steps
+        )
         self.supervise(fmt.axes, self.rate_hz)
 
     @property
@@ -189,15 +201,21 @@ class Playback(Supervised):
         that was right.
         """
         fmt = self.format
-        drives = Drives(len(fmt.axes), fmt.mm_per_cycle, self.rate_hz, self.settings, steps=self._steps)
+        drives = Drives(
+            len(fmt.axes), fmt.mm_per_cycle, self.rate_hz, self.settings, steps=self._steps
+        )
         drives.adjust(self._zero_mm)
         drives.conditions = self.conditions
         rest_mm = self.start_mm - self._zero_mm  # where the screws stood before that
         monitor, self.end_error_mm = self.supervise(fmt.axes, self.rate_hz), None
         for phases, bearings, gap in self.reader.read(lambda: self.end_mm.tolist()):
-            found = bearings.first_fault(phases, fmt.motion_rate_hz, self.end_mm.tolist()) or gap
+            found = (
+                bearings.first_fault(phases, fmt.motion_rate_hz, self.end_mm.tolist()) or gap
+            )
             sound = len(phases) if found is None else min(found[0], len(phases))
-            cycles = phases.cycles[:sound] - bearings.zero_cycles + self._zero_mm * fmt.cycles_per_mm
+            cycles = (
+                phases.cycles[:sound] - bearings.zero_cycles + self._zero_mm * fmt.cycles_per_mm
+            )
             places_mm = drives.follow(cycles) + rest_mm
             demand_mm = cycles[: len(places_mm)] * fmt.mm_per_cycle + rest_mm
             monitor.rows_seen = phases.first_row

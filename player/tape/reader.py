@@ -74,7 +74,9 @@ class Reader:
             lead = min(
                 first_row, discriminator.filter_frames // fmt.samples_per_motion
             )  # rows that the filter needs
-            blocks = iter(tape.stored_blocks(BLOCK_FRAMES, (first_row - lead) * fmt.samples_per_motion))
+            blocks = iter(
+                tape.stored_blocks(BLOCK_FRAMES, (first_row - lead) * fmt.samples_per_motion)
+            )
             first = next(blocks, np.zeros((0, fmt.tracks), np.float32))
             held = [first]
 
@@ -84,7 +86,8 @@ class Reader:
                     yield block
 
             rows = (
-                evened(rows.moved(first_row - lead), fmt) for rows in discriminate(noted(), discriminator)
+                evened(rows.moved(first_row - lead), fmt)
+                for rows in discriminate(noted(), discriminator)
             )
             start = next(rows, None)
             if start is None:
@@ -94,7 +97,9 @@ class Reader:
             gaps, watch = self._gaps(discriminator, bearings), Watch(fmt, bearings)
             for phases in chain([start], rows):
                 out, fault = gaps.feed(phases)
-                wrong = None if first_row else watch.wrong_reference(held[0], self._time_s(phases))
+                wrong = (
+                    None if first_row else watch.wrong_reference(held[0], self._time_s(phases))
+                )
                 if wrong is not None:
                     raise wrong
                 yield out, bearings, watch.first_fault(out, stands_mm()) or fault
@@ -104,14 +109,18 @@ class Reader:
             if doubt is not None:
                 raise doubt
 
-    def _bearings(self, first: NDArray[np.float32], start: Phases, discriminator: Discriminator) -> Bearings:
+    def _bearings(
+        self, first: NDArray[np.float32], start: Phases, discriminator: Discriminator
+    ) -> Bearings:
         """What the first block tells; on the way the zero is where the machine is said to stand."""
         fmt = self._format
         if self._resume_at_s:
             places = under_way(start, discriminator)
             return replace(take_bearings(first, start, fmt), zero_cycles=places)
         bearings = take_bearings(first, start, fmt)
-        demand_apart(first[: round(STANDSTILL_S * fmt.sample_rate_hz)], bearings.levels, fmt.axes)
+        demand_apart(
+            first[: round(STANDSTILL_S * fmt.sample_rate_hz)], bearings.levels, fmt.axes
+        )
         return bearings
 
     def _gaps(self, discriminator: Discriminator, bearings: Bearings) -> Gaps:
@@ -119,10 +128,20 @@ class Reader:
         fmt, start_mm = self._format, self._start_mm
 
         def place_mm(axis: int, cycles: float) -> float:
-            return float(start_mm[axis] + (cycles - bearings.zero_cycles[axis]) * fmt.mm_per_cycle)
+            return float(
+                start_mm[axis] + (cycles - bearings.zero_cycles[axis]) * fmt.mm_per_cycle
+            )
 
         most = self._acceleration_mm_s2 * fmt.cycles_per_mm / fmt.motion_rate_hz**2
-        gaps = Gaps(discriminator, bearings.levels, fmt.motion_rate_hz, most, place_mm, fmt.axes, self.told)
+        gaps = Gaps(
+            discriminator,
+            bearings.levels,
+            fmt.motion_rate_hz,
+            most,
+            place_mm,
+            fmt.axes,
+            self.told,
+        )
         self.bridged, self.doubtful = gaps.bridged, gaps.doubtful
         return gaps
 

@@ -49,7 +49,9 @@ class Rehearsal:
         rate_hz, axes = fmt.motion_rate_hz, len(fmt.axes)
         self._format, self._gains = fmt, predictor_gains(rate_hz)
         self._state = np.full((axes, 3), np.nan)
-        self._drives = Drives(axes, fmt.mm_per_cycle, rate_hz, (settings or PhaseLock()).suited_to(rate_hz))
+        self._drives = Drives(
+            axes, fmt.mm_per_cycle, rate_hz, (settings or PhaseLock()).suited_to(rate_hz)
+        )
         self._shown = np.zeros((0, axes), np.float32)  # surprises from the next window on
         self._loud = np.zeros(axes, int)  # windows in a row in which an axis shook
         self._before = np.zeros((0, axes))  # positions just before the block
@@ -64,7 +66,9 @@ class Rehearsal:
         for block in stream:
             yield block
             self._run(np.asarray(block.positions_mm, np.float64))
-        self._run(np.repeat(self._before[-1:], round(STANDS_S * self._format.motion_rate_hz), axis=0))
+        self._run(
+            np.repeat(self._before[-1:], round(STANDS_S * self._format.motion_rate_hz), axis=0)
+        )
 
     def _run(self, positions_mm: Array) -> None:
         """Run a block of positions past all limits."""
@@ -86,8 +90,12 @@ class Rehearsal:
         if not jumps.any():
             return
         row, axis = (int(i) for i in np.argwhere(jumps)[0])
-        around = np.vstack([self._before, positions_mm])[: len(self._before) + row + 1, axis][-WITHIN_ROWS:]
-        speeds = np.diff(around, prepend=around[:1]) * self._format.motion_rate_hz  # the first one stands
+        around = np.vstack([self._before, positions_mm])[: len(self._before) + row + 1, axis][
+            -WITHIN_ROWS:
+        ]
+        speeds = (
+            np.diff(around, prepend=around[:1]) * self._format.motion_rate_hz
+        )  # the first one stands
         by_mm_s = float(np.ptp(speeds))
         raise self._fault(
             f"changes its speed by {by_mm_s:.3g} mm/s at once, and a tape can be read up to {self._largest_jump_mm_s:.3g} mm/s: "
@@ -102,7 +110,11 @@ class Rehearsal:
         begin.
         """
         held, window = len(self._shown), shake_rows(self._format.motion_rate_hz)
-        self._shown, step, first = np.vstack([self._shown, np.abs(surprise)]), window // WINDOWS, 0
+        self._shown, step, first = (
+            np.vstack([self._shown, np.abs(surprise)]),
+            window // WINDOWS,
+            0,
+        )
         while first + window <= len(self._shown):
             shakes = np.median(self._shown[first : first + window : SHAKE_STRIDE], axis=0)
             self._loud = np.where(shakes > SHAKE_CYCLES, self._loud + 1, 0)
@@ -126,7 +138,9 @@ class Rehearsal:
         if row < len(cycles):
             axis = int(np.argmax(np.abs(self._drives.error_mm)))
             time_s = (self._rows + row) / self._format.motion_rate_hz
-            self.unfollowed = Unfollowed(self._format.axes[axis], time_s, tuple(positions_mm[row].tolist()))
+            self.unfollowed = Unfollowed(
+                self._format.axes[axis], time_s, tuple(positions_mm[row].tolist())
+            )
 
     @property
     def _largest_jump_mm_s(self) -> float:
@@ -138,7 +152,11 @@ class Rehearsal:
         return by_cycles * fmt.mm_per_cycle * fmt.motion_rate_hz
 
     def _fault(
-        self, what: str, at: tuple[int, int], positions_mm: Array, speed_mm_s: float | None = None
+        self,
+        what: str,
+        at: tuple[int, int],
+        positions_mm: Array,
+        speed_mm_s: float | None = None,
     ) -> MotionFault:
         """The fault of a row and axis of a block."""
         row, axis = at

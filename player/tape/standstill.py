@@ -42,7 +42,8 @@ LEVEL_STEADY, LEVEL_LOST, FEWEST_STEADY_ROWS = (
     0.5,
     48,
 )  # shares of the level; 8 ms at 6 kHz: a dropout, or no carrier
-LEAST_CREST = 1.24  # 1.31 and more of a sine with eight samples, 1.20 where two thirds of it are cut off
+# 1.31 and more of a sine with eight samples, 1.20 where two thirds of it are cut off
+LEAST_CREST = 1.24
 # RMS at standstill: five times as much is a twentieth of a cycle; 20 dB of noise make 0.0079
 UNSTEADY_CYCLES = 0.009
 REFERENCE_BAND = 0.1  # a tape's speed may be this much off
@@ -73,7 +74,9 @@ class Bearings:
             return None
         row = int(np.argmax(jumped.any(axis=1)))
         time_s, axis = (phases.first_row + row) / rate_hz, int(np.argmax(jumped[row]))
-        return row, self._jump(axis, float(phases.surprise[row, axis]), time_s, positions_mm[axis])
+        return row, self._jump(
+            axis, float(phases.surprise[row, axis]), time_s, positions_mm[axis]
+        )
 
     def _jump(self, axis: int, surprise: float, time_s: float, position_mm: float) -> LockFault:
         """The fault of a phase that no motion explains."""
@@ -118,7 +121,9 @@ def take_bearings(frames: Float32s, phases: Phases, fmt: TapeFormat) -> Bearings
         _demand_standstill(phases.cycles[:rows], names)
     standing = phases.cycles[: _standing(phases.cycles, zero, fmt, rows)]
     if len(standing) > rows:
-        off = standing - zero - np.round(standing - zero)  # a dropout may have cost whole cycles by now
+        off = (
+            standing - zero - np.round(standing - zero)
+        )  # a dropout may have cost whole cycles by now
         _demand_steady(off, names)
         zero = zero + np.median(off, axis=0)
     return Bearings(levels, zero, found_hz, names)
@@ -130,7 +135,9 @@ def _standing(cycles: Float64s, zero: Float64s, fmt: TapeFormat, least: int) -> 
     if len(stated) < least:
         return 0
     moved = (np.abs(stated - zero) > STANDSTILL_CYCLES).mean(axis=1)
-    steps = np.flatnonzero(np.convolve(moved > 0, np.ones(least), "valid") == least)  # longer than a dropout
+    steps = np.flatnonzero(
+        np.convolve(moved > 0, np.ones(least), "valid") == least
+    )  # longer than a dropout
     return (
         max(int(steps[0]) - least, 0) if len(steps) else len(stated)
     )  # an axis may have crept before it was seen
@@ -151,7 +158,9 @@ def _demand_standstill(cycles: Float64s, names: Sequence[str]) -> None:
 
 def _demand_steady(standing: Float64s, names: Sequence[str]) -> None:
     """Raise TapeFault where the phases of a standing machine swing so far that no position is certain."""
-    swing = np.diff(np.percentile(standing, [2.3, 97.7], axis=0), axis=0)[0] / 4  # dropouts left out
+    swing = (
+        np.diff(np.percentile(standing, [2.3, 97.7], axis=0), axis=0)[0] / 4
+    )  # dropouts left out
     axis = int(np.argmax(swing))
     if not swing[axis] <= UNSTEADY_CYCLES:
         raise TapeFault(
@@ -230,9 +239,13 @@ def _demand_no_dropout(
     """Raise TapeFault for a track that has a carrier, but not through all of the 50 ms."""
     steady = levels > LEVEL_STEADY * np.percentile(levels, 90)
     edges = np.flatnonzero(np.diff(np.r_[False, steady, False]))
-    if not len(edges) or float(levels.mean()) ** 2 / 2 >= share * float(np.var(samples, dtype=np.float64)):
+    if not len(edges) or float(levels.mean()) ** 2 / 2 >= share * float(
+        np.var(samples, dtype=np.float64)
+    ):
         return  # nothing to be heard, or enough of it
-    first, last = max(zip(edges[::2], edges[1::2], strict=True), key=lambda run: run[1] - run[0])
+    first, last = max(
+        zip(edges[::2], edges[1::2], strict=True), key=lambda run: run[1] - run[0]
+    )
     heard = samples[first * fmt.samples_per_motion : last * fmt.samples_per_motion]
     level, power = float(levels[first:last].mean()), float(np.var(heard, dtype=np.float64))
     weak = levels < LEVEL_LOST * level
@@ -245,7 +258,9 @@ def _demand_no_dropout(
     )
 
 
-def _demand_carrier(track: int, level: float, mean_square: float, least: float, names: Sequence[str]) -> None:
+def _demand_carrier(
+    track: int, level: float, mean_square: float, least: float, names: Sequence[str]
+) -> None:
     """Raise TapeFault for a track with a signal but no carrier in it."""
     share = level**2 / 2 / mean_square
     if not share >= least:

@@ -25,7 +25,8 @@ from morfax.player.tape.standstill import Bearings, strongest_hz, take_bearings
 from morfax.player.tape.watch import Watch
 from morfax.recorder.tape.tape import Tape, full_scale
 
-SEARCHED_S = 20.0  # of a tape that stands for so long nothing is known beforehand; the watch goes on
+# of a tape that stands for so long nothing is known beforehand; the watch goes on
+SEARCHED_S = 20.0
 END_CYCLES = 0.25
 MOST_AXES = 6  # whose orders are gone through
 
@@ -56,9 +57,9 @@ def _demand_tape(tape: Tape) -> None:
     """Raise TapeFault unless every track carries what a tape does: of music too one track is the steadiest."""
     fmt = tape.format
     frames = full_scale(next(tape.stored_blocks()))
-    rows = Discriminator(fmt.sample_rate_hz, fmt.reference_hz, fmt.samples_per_motion, fmt.tracks).feed(
-        frames
-    )
+    rows = Discriminator(
+        fmt.sample_rate_hz, fmt.reference_hz, fmt.samples_per_motion, fmt.tracks
+    ).feed(frames)
     take_bearings(frames, rows, fmt)
 
 
@@ -85,8 +86,12 @@ def _travelled(tape: Tape, reference: int, others: list[int]) -> Array:
     cycles.
     """
     fmt = tape.format
-    organ = Discriminator(fmt.sample_rate_hz, fmt.reference_hz, fmt.samples_per_motion, fmt.tracks)
+    organ = Discriminator(
+        fmt.sample_rate_hz, fmt.reference_hz, fmt.samples_per_motion, fmt.tracks
+    )
     first = last = np.zeros(len(others))
-    for phases in discriminate((block[:, [reference, *others]] for block in tape.stored_blocks()), organ):
+    for phases in discriminate(
+        (block[:, [reference, *others]] for block in tape.stored_blocks()), organ
+    ):
         first, last = (phases.cycles[0] if not phases.first_row else first), phases.cycles[-1]
     return np.asarray(last - first)

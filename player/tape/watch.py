@@ -40,7 +40,8 @@ SHAKE_S = 0.096  # 576 rows at 6 kHz
 SHAKE_STRIDE = 4
 # 26 dB of noise shake by 0.0033, and seldom by 0.0045; a corner shakes less than half of the window
 SHAKE_CYCLES = 0.0047
-STUCK_NOISE = 1e-4  # of full scale and of the carrier: below it noise may be the rounding of the samples
+# of full scale and of the carrier: below it noise may be the rounding of the samples
+STUCK_NOISE = 1e-4
 
 Float32s = NDArray[np.float32]
 
@@ -54,7 +55,9 @@ class Watch:
         self._taps = re.astype(np.float64) + 1j * im
         self._still_hz = bearings.reference_hz
         self._sums, self._apart, self._moments = np.zeros(fmt.tracks), np.zeros(fmt.tracks), 0
-        self._noise: Array | None = None  # mean square of a frequency less that of track 1, at standstill
+        self._noise: Array | None = (
+            None  # mean square of a frequency less that of track 1, at standstill
+        )
 
     def wrong_reference(self, frames: Frames, time_s: float) -> TapeFault | None:
         """The fault of a track 1 that moves more than another; frames of one block."""
@@ -82,7 +85,9 @@ class Watch:
     def reference_is_steady(self) -> bool:
         """Whether another track has moved, and far more than track 1."""
         most = float(self._sums.max()) / max(self._moments, 1)
-        return most >= LEAST_MOTION_HZ**2 and most >= STEADIER * float(self._sums[0]) / max(self._moments, 1)
+        return most >= LEAST_MOTION_HZ**2 and most >= STEADIER * float(self._sums[0]) / max(
+            self._moments, 1
+        )
 
     def doubtful_reference(self, time_s: float) -> Fault | None:
         """The fault of a track that moved against track 1 and was the steadier one over the whole tape."""
@@ -120,10 +125,14 @@ class Watch:
         first = np.einsum("n,mnt->mt", self._taps, seen[:, :length])
         after = np.einsum("n,mnt->mt", self._taps, seen[:, step:])
         rate_hz, hz = self._format.sample_rate_hz / step, self._format.reference_hz
-        turned = np.angle(after * first.conj()) / (2 * np.pi) - hz / rate_hz  # the taps do not turn along
+        turned = (
+            np.angle(after * first.conj()) / (2 * np.pi) - hz / rate_hz
+        )  # the taps do not turn along
         return np.asarray(hz + (turned - np.round(turned)) * rate_hz)
 
-    def first_fault(self, phases: Phases, positions_mm: Sequence[float]) -> tuple[int, Fault] | None:
+    def first_fault(
+        self, phases: Phases, positions_mm: Sequence[float]
+    ) -> tuple[int, Fault] | None:
         """The first row of a block that skew or shaking make uncertain, with its fault."""
         found = [
             f
@@ -156,7 +165,9 @@ class Watch:
             position_mm=positions_mm[axis],
         )
 
-    def unsteady(self, phases: Phases, positions_mm: Sequence[float]) -> tuple[int, Fault] | None:
+    def unsteady(
+        self, phases: Phases, positions_mm: Sequence[float]
+    ) -> tuple[int, Fault] | None:
         """The first row of a window in which the phase of an axis shakes, and the fault."""
         window = shake_rows(self._format.motion_rate_hz)
         whole = len(phases) // window * window
@@ -169,7 +180,10 @@ class Watch:
         if not (shakes > SHAKE_CYCLES).any():
             return None
         at, axis = (int(i) for i in np.argwhere(shakes > SHAKE_CYCLES)[0])
-        name, time_s = self._format.axes[axis], (phases.first_row + at * window) / self._format.motion_rate_hz
+        name, time_s = (
+            self._format.axes[axis],
+            (phases.first_row + at * window) / self._format.motion_rate_hz,
+        )
         return at * window, LockFault(
             f"the phase of {name.upper()} shakes by {shakes[at, axis]:.4f} cycle (median) at {time_s:.3f} s, "
             f"{SHAKE_CYCLES:g} is allowed: noise, crosstalk or print-through, which the motors cannot follow; copy the tape "

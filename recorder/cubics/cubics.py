@@ -36,7 +36,12 @@ from morfax.motion.arrays import Array
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import Path
 from morfax.motion.segments import Leg, Limits, Source, as_path, legs
-from morfax.recorder.cubics.file import STEPS_PER_CONSTANT, CubicFormat, CubicProgram, write_program
+from morfax.recorder.cubics.file import (
+    STEPS_PER_CONSTANT,
+    CubicFormat,
+    CubicProgram,
+    write_program,
+)
 from morfax.recorder.report import WrittenIntervals
 
 Words = NDArray[np.int64]
@@ -93,11 +98,15 @@ def record_cubics(
     """
     tolerance_mm = TOLERANCE_MM if tolerance_mm is None else tolerance_mm
     if not tolerance_mm > 0:
-        raise ValueError(f"a tolerance of {tolerance_mm} mm leaves no room; give one above zero")
+        raise ValueError(
+            f"a tolerance of {tolerance_mm} mm leaves no room; give one above zero"
+        )
     path = as_path(stream)
     fit = _best_fit(path, tolerance_mm, limits or LIMITS, (fmt or CubicFormat()).counts_per_mm)
     fmt = replace(fmt or CubicFormat(points=_points(fit.interval_s)), interval_s=fit.interval_s)
-    fmt = replace(fmt, modulus_per_s=min(fmt.modulus_per_s, fmt.point_rate_hz / STEPS_PER_CONSTANT))
+    fmt = replace(
+        fmt, modulus_per_s=min(fmt.modulus_per_s, fmt.point_rate_hz / STEPS_PER_CONSTANT)
+    )
     words = differences(fit.samples, fmt.points, fmt.linear)
     places = fit.samples[:, :, 0]
     checks = {k: tuple(places[k].tolist()) for k in range(0, len(places), CHECK_EVERY)}
@@ -118,7 +127,12 @@ def differences(samples: Words, points: int, linear: int = 1) -> Words:
         raise ValueError(
             f"{points} points, {linear} to a cubic step, have no whole digits; give powers of two"
         )
-    x1, m1, x2, m2 = samples[:-1, :, 0], samples[:-1, :, 1], samples[1:, :, 0], samples[1:, :, 1]
+    x1, m1, x2, m2 = (
+        samples[:-1, :, 0],
+        samples[:-1, :, 1],
+        samples[1:, :, 0],
+        samples[1:, :, 1],
+    )
     a, b = 2 * (x1 - x2) + m1 + m2, 3 * (x2 - x1) - 2 * m1 - m2
     n = points // linear
     words = np.stack([a + b * n + m1 * n**2, 6 * a + 2 * b * n, 6 * a], axis=-1)
@@ -134,7 +148,12 @@ def hermite(samples: Words, at: Array) -> Array:
     """Places (axes) of the cubics at times in intervals from the start, counts; the closed form."""
     k = np.clip(at.astype(np.int64), 0, len(samples) - 2)
     u = (at - k)[:, None]
-    x1, m1, x2, m2 = samples[k, :, 0], samples[k, :, 1], samples[k + 1, :, 0], samples[k + 1, :, 1]
+    x1, m1, x2, m2 = (
+        samples[k, :, 0],
+        samples[k, :, 1],
+        samples[k + 1, :, 0],
+        samples[k + 1, :, 1],
+    )
     a, b = 2 * (x1 - x2) + m1 + m2, 3 * (x2 - x1) - 2 * m1 - m2
     return np.asarray(((a * u + b) * u + m1) * u + x1)
 
@@ -159,7 +178,9 @@ def _best_fit(path: Path, tolerance_mm: float, limits: Limits, counts_per_mm: fl
     return min(good, key=lambda fit: len(fit.samples))
 
 
-def _fitted(parts: list[Leg], start_mm: Array, counts_per_mm: float, tolerance_mm: float) -> _Fit:
+def _fitted(
+    parts: list[Leg], start_mm: Array, counts_per_mm: float, tolerance_mm: float
+) -> _Fit:
     """The fit with the longest interval that will do, or with the shortest if none will."""
     interval_s = LONGEST_S
     longest_s = STRETCH * sum(float(leg.times_s[-1]) + leg.rest_s for leg in parts)
@@ -200,7 +221,10 @@ def _spline(at: Array, places: Array, intervals: int) -> tuple[Array, Array]:
 
     knots = np.r_[[0.0] * 3, np.arange(intervals + 1), [float(intervals)] * 3]
     coefficients = np.empty((intervals + 3, places.shape[1]))
-    coefficients[:2], coefficients[-2:] = places[0], places[-1]  # the first two alike: slope zero
+    coefficients[:2], coefficients[-2:] = (
+        places[0],
+        places[-1],
+    )  # the first two alike: slope zero
     if intervals > 1:
         basis = BSpline.design_matrix(np.clip(at, 0, intervals), knots, 3).tocsc()
         rest = np.r_[0, 1, intervals + 1, intervals + 2]
@@ -240,7 +264,9 @@ def _nearest_mm(places: Array, run_mm: Array) -> Array:
         along = places[first + 1] - places[first]
         squared = np.maximum(np.einsum("ij,ij->i", along, along), 1e-30)
         share = np.clip(np.einsum("ij,ij->i", run_mm - places[first], along) / squared, 0, 1)
-        best = np.minimum(best, np.sqrt(((run_mm - places[first] - share[:, None] * along) ** 2).sum(axis=1)))
+        best = np.minimum(
+            best, np.sqrt(((run_mm - places[first] - share[:, None] * along) ** 2).sum(axis=1))
+        )
     return best
 
 

@@ -61,13 +61,25 @@ class CubicFormat:
     modulus_per_s: float = 200.0
 
     def __post_init__(self) -> None:
-        _demand(1e-4 <= self.interval_s <= 3600, "interval_s", self.interval_s, "from 0.0001 s to 3600 s")
+        _demand(
+            1e-4 <= self.interval_s <= 3600,
+            "interval_s",
+            self.interval_s,
+            "from 0.0001 s to 3600 s",
+        )
         power = 2 <= self.points <= MOST_POINTS and self.points & (self.points - 1) == 0
         _demand(power, "points", self.points, f"a power of two from 2 to {MOST_POINTS}")
         divides = 1 <= self.linear <= self.points and self.points % max(1, self.linear) == 0
         _demand(divides, "linear", self.linear, f"a divisor of the {self.points} points")
-        _demand(1 <= self.counts_per_mm <= 1e6, "counts_per_mm", self.counts_per_mm, "from 1 to 1e6")
-        _demand(0 < self.modulus_per_s <= 1e5, "modulus_per_s", self.modulus_per_s, "above 0 and at most 1e5")
+        _demand(
+            1 <= self.counts_per_mm <= 1e6, "counts_per_mm", self.counts_per_mm, "from 1 to 1e6"
+        )
+        _demand(
+            0 < self.modulus_per_s <= 1e5,
+            "modulus_per_s",
+            self.modulus_per_s,
+            "above 0 and at most 1e5",
+        )
 
     @property
     def digits(self) -> int:
@@ -97,7 +109,10 @@ class CubicProgram:
 def write_program(program: CubicProgram, file: str | os.PathLike[str]) -> None:
     """Write a program."""
     fmt = program.format
-    with written_beside(file) as beside, beside.open("w", encoding="ascii", newline="\n") as out:
+    with (
+        written_beside(file) as beside,
+        beside.open("w", encoding="ascii", newline="\n") as out,
+    ):
         out.write(
             f"{HEADER} {VERSION}\ninterval_s {fmt.interval_s:.12g}\npoints {fmt.points}\nlinear {fmt.linear}\n"
         )
@@ -109,7 +124,10 @@ def write_program(program: CubicProgram, file: str | os.PathLike[str]) -> None:
             if k in program.checks:
                 out.write("at " + " ".join(map(str, program.checks[k])) + "\n")
             if k < len(program.words):
-                out.write("  ".join(" ".join(map(str, axis)) for axis in program.words[k].tolist()) + "\n")
+                out.write(
+                    "  ".join(" ".join(map(str, axis)) for axis in program.words[k].tolist())
+                    + "\n"
+                )
         out.write("end\n")
 
 
@@ -119,12 +137,14 @@ def read_program(file: str | os.PathLike[str]) -> CubicProgram:
     _, version = next(lines, (1, ""))
     if version.split()[:2] != HEADER.split():
         raise ProgramFault(
-            f"{file} is no cubic program: it must begin with '{HEADER} {VERSION}'; give another", line=1
+            f"{file} is no cubic program: it must begin with '{HEADER} {VERSION}'; give another",
+            line=1,
         )
     if version != f"{HEADER} {VERSION}":
         found = version.split()[-1][:20]
         raise ProgramFault(
-            f"{file}: the format is version {found}; this program reads {VERSION}: use a later one", line=1
+            f"{file}: the format is version {found}; this program reads {VERSION}: use a later one",
+            line=1,
         )
     fmt, intervals = _read_header(file, lines)
     return _read_words(file, lines, fmt, intervals)
@@ -145,25 +165,42 @@ def _numbered(file: FilePath) -> Iterator[tuple[int, str]]:
             yield number, line.strip()
 
 
-def _read_header(file: str | os.PathLike[str], lines: Iterator[tuple[int, str]]) -> tuple[CubicFormat, int]:
+def _read_header(
+    file: str | os.PathLike[str], lines: Iterator[tuple[int, str]]
+) -> tuple[CubicFormat, int]:
     """The format and the number of intervals."""
     values: dict[str, float] = {}
     number = 1
-    for name in ("interval_s", "points", "linear", "counts_per_mm", "modulus_per_s", "axes", "intervals"):
+    for name in (
+        "interval_s",
+        "points",
+        "linear",
+        "counts_per_mm",
+        "modulus_per_s",
+        "axes",
+        "intervals",
+    ):
         number, line = next(lines, (number, ""))
         words = line.split()
         if len(words) < 2 or words[0] != name or (name == "axes" and line != AXES_LINE):
             wanted = AXES_LINE if name == "axes" else name
             raise ProgramFault(
-                f"{file}, line {number}: {line[:40]!r} instead of {wanted}; {_AGAIN}", line=number
+                f"{file}, line {number}: {line[:40]!r} instead of {wanted}; {_AGAIN}",
+                line=number,
             )
         if name != "axes":
             values[name] = _number(file, number, words)
     try:
-        for name, most in (("points", MOST_POINTS), ("linear", MOST_POINTS), ("intervals", MOST_INTERVALS)):
+        for name, most in (
+            ("points", MOST_POINTS),
+            ("linear", MOST_POINTS),
+            ("intervals", MOST_INTERVALS),
+        ):
             whole = 0 <= values[name] <= most and values[name] == int(values[name])
             _demand(whole, name, values[name], f"a whole number up to {most}")
-        intervals, points, linear = (int(values.pop(name)) for name in ("intervals", "points", "linear"))
+        intervals, points, linear = (
+            int(values.pop(name)) for name in ("intervals", "points", "linear")
+        )
         return CubicFormat(points=points, linear=linear, **values), intervals
     except ValueError as error:
         raise ProgramFault(f"{file}, header: {error}; {_AGAIN}") from None
@@ -182,7 +219,10 @@ def _number(file: str | os.PathLike[str], number: int, words: list[str]) -> floa
 
 
 def _read_words(
-    file: str | os.PathLike[str], lines: Iterator[tuple[int, str]], fmt: CubicFormat, intervals: int
+    file: str | os.PathLike[str],
+    lines: Iterator[tuple[int, str]],
+    fmt: CubicFormat,
+    intervals: int,
 ) -> CubicProgram:
     """The words up to `end`, as many intervals as the header says."""
     words: list[list[int]] = []

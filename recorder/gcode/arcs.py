@@ -79,7 +79,9 @@ class Segment:
         half = self.turned_rad / 2
         chord = self.length_mm * float(np.sinc(half / math.pi))
         along = self.heading_rad + half
-        return self.begin_mm[0] + chord * math.cos(along), self.begin_mm[1] + chord * math.sin(along)
+        return self.begin_mm[0] + chord * math.cos(along), self.begin_mm[1] + chord * math.sin(
+            along
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,9 +121,13 @@ def _chain(points_mm: Array, tolerance_mm: float) -> Chain:
     return _chords(places, tolerance_mm)
 
 
-def _straightened(chain: Chain, places: Array, pieces: list[Piece], tolerance_mm: float) -> Chain:
+def _straightened(
+    chain: Chain, places: Array, pieces: list[Piece], tolerance_mm: float
+) -> Chain:
     """The chain with lines for what bends by less than half the tolerance, if that stays within it."""
-    curved = np.array([abs(s.turned_rad) * s.length_mm / 8 > tolerance_mm / 2 for s in chain.segments])
+    curved = np.array(
+        [abs(s.turned_rad) * s.length_mm / 8 > tolerance_mm / 2 for s in chain.segments]
+    )
     if curved.tolist() == [s.curvature_per_mm != 0 for s in chain.segments]:
         return chain
     spline = _Spline(places, pieces, curved)
@@ -140,9 +146,14 @@ class _Spline:
         n = len(pieces)
         self.places, self.s = places, lengths_mm(places)
         self.joints = places[[0, *(b for _, b, _ in pieces)]]
-        halves = [curvature_per_mm(places[a : b + 1]) * (self.s[b] - self.s[a]) / 2 for a, b, _ in pieces]
+        halves = [
+            curvature_per_mm(places[a : b + 1]) * (self.s[b] - self.s[a]) / 2
+            for a, b, _ in pieces
+        ]
         self.halves = np.where(curved, halves, 0.0)
-        self.few = np.unique(np.linspace(0, len(places) - 1, min(len(places), 60 * n + 20)).astype(int))
+        self.few = np.unique(
+            np.linspace(0, len(places) - 1, min(len(places), 60 * n + 20)).astype(int)
+        )
         self.closed = n > 1 and math.dist(places[0], places[-1]) < SPACING_MM
         columns = np.r_[np.full(2, -1), np.arange(2 * n - 2), np.full(2, -1)].reshape(
             -1, 2
@@ -159,7 +170,9 @@ class _Spline:
         weights = np.ones(len(self.few))
         for _ in range(4):
             self._settle(weights, tolerance_mm)
-            off = np.abs(_off_rows(self._rows()[self._owner(np.arange(len(self.s)))], self.places))
+            off = np.abs(
+                _off_rows(self._rows()[self._owner(np.arange(len(self.s)))], self.places)
+            )
             if off.max() <= tolerance_mm:
                 return Chain(_segments(self._rows()), float(off.max()))
             if off.max() > 2 * tolerance_mm:
@@ -239,7 +252,11 @@ class _Spline:
                 rows.append(np.full(5, n + j))
                 columns.append(self.columns[segment])
                 values.append(slopes[segment] * [sign, sign, sign, sign, -1.0] / BREAK_RAD)
-        row, column, value = np.concatenate(rows), np.concatenate(columns), np.concatenate(values)
+        row, column, value = (
+            np.concatenate(rows),
+            np.concatenate(columns),
+            np.concatenate(values),
+        )
         free = column >= 0
         shape = (len(residuals), int(self.columns.max()) + 1)
         return residuals, coo_matrix((value[free], (row[free], column[free])), shape).tocsr()
@@ -256,7 +273,9 @@ class _Spline:
 
 def _segments(rows: Array) -> list[Segment]:
     """Rows as segments."""
-    return [Segment((x, y), heading, length, bend) for x, y, heading, length, bend in rows.tolist()]
+    return [
+        Segment((x, y), heading, length, bend) for x, y, heading, length, bend in rows.tolist()
+    ]
 
 
 def _rows_of(table: Array) -> Array:
@@ -264,7 +283,9 @@ def _rows_of(table: Array) -> Array:
     x0, y0, x1, y1, half = table.T
     chord = np.hypot(x1 - x0, y1 - y0)
     length = chord / np.sinc(half / math.pi)
-    return np.column_stack([x0, y0, np.arctan2(y1 - y0, x1 - x0) - half, length, 2 * half / length])
+    return np.column_stack(
+        [x0, y0, np.arctan2(y1 - y0, x1 - x0) - half, length, 2 * half / length]
+    )
 
 
 def _off_table(table: Array, points: Array, owner: NDArray[np.int64]) -> Array:
@@ -286,7 +307,8 @@ def _chords(places: Array, tolerance_mm: float) -> Chain:
     while first < len(places) - 1:
         last, off_mm = first + 1, 0.0
         while (
-            last + 1 < len(places) and (further_mm := _off_chord_mm(places[first : last + 2])) <= tolerance_mm
+            last + 1 < len(places)
+            and (further_mm := _off_chord_mm(places[first : last + 2])) <= tolerance_mm
         ):
             last, off_mm = last + 1, further_mm
         kept.append(last)

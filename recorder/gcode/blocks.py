@@ -98,7 +98,9 @@ def record_blocks(
         writer.stretch(stretch, tolerance_mm - WRITTEN_MM)
     with written_beside(file) as beside:
         beside.write_text("\n".join([*writer.text, "M2", ""]), encoding="ascii")
-    return BlockReport(FilePath(file), writer.lines, writer.arcs, writer.duration_s, writer.deviation_mm)
+    return BlockReport(
+        FilePath(file), writer.lines, writer.arcs, writer.duration_s, writer.deviation_mm
+    )
 
 
 def _stretches(path: Path, tolerance_mm: float) -> Iterator[_Stretch]:
@@ -138,13 +140,20 @@ class _Writer:
     def __init__(self, start_mm: Array) -> None:
         self.place = np.round(start_mm, 4)
         self.text = ["G17 G21 G90 G94", "G0" + self._words("XYZ", self.place)]
-        self.feed, self.lines, self.arcs, self.duration_s, self.deviation_mm = "", 0, 0, 0.0, 0.0
+        self.feed, self.lines, self.arcs, self.duration_s, self.deviation_mm = (
+            "",
+            0,
+            0,
+            0.0,
+            0.0,
+        )
 
     def stretch(self, stretch: _Stretch, tolerance_mm: float) -> None:
         """Write a stretch."""
         points = np.vstack([self.place, stretch.points_mm[1:]])
         self.duration_s += (
-            float(np.sqrt((np.diff(points, axis=0) ** 2).sum(axis=1)).sum()) / stretch.speed_mm_s
+            float(np.sqrt((np.diff(points, axis=0) ** 2).sum(axis=1)).sum())
+            / stretch.speed_mm_s
         )
         if stretch.rapid or not stretch.level:
             kept, off_mm = _straightest(points, tolerance_mm)
@@ -196,7 +205,10 @@ class _Writer:
     @staticmethod
     def _words(letters: str, values: Any) -> str:
         """Words such as X5 Y-0.25."""
-        return "".join(f" {letter}{_digits(value, 4)}" for letter, value in zip(letters, values, strict=True))
+        return "".join(
+            f" {letter}{_digits(value, 4)}"
+            for letter, value in zip(letters, values, strict=True)
+        )
 
 
 def _digits(value: float, places: int) -> str:

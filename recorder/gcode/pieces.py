@@ -37,7 +37,9 @@ def resample(points_mm: Array, spacing_mm: float = SPACING_MM) -> Array:
     """Points at about equal distances along a polyline; its first and last are kept."""
     s = lengths_mm(points_mm)
     at = np.linspace(0.0, s[-1], max(2, round(s[-1] / spacing_mm) + 1))
-    return np.column_stack([np.interp(at, s, points_mm[:, 0]), np.interp(at, s, points_mm[:, 1])])
+    return np.column_stack(
+        [np.interp(at, s, points_mm[:, 0]), np.interp(at, s, points_mm[:, 1])]
+    )
 
 
 def corners(points_mm: Array) -> NDArray[np.int64]:
@@ -54,7 +56,8 @@ def corners(points_mm: Array) -> NDArray[np.int64]:
 def _turn_rad(points: Array, s: Array, reach_mm: float) -> Array:
     """How much the direction turns within a reach to either side of each point; 0 near the ends."""
     before, after = (
-        np.column_stack([np.interp(s + r, s, c) for c in points.T]) for r in (-reach_mm, reach_mm)
+        np.column_stack([np.interp(s + r, s, c) for c in points.T])
+        for r in (-reach_mm, reach_mm)
     )
     (ax, ay), (bx, by) = (points - before).T, (after - points).T
     turn = np.arctan2(ax * by - ay * bx, ax * bx + ay * by)
@@ -74,7 +77,11 @@ def longest_pieces(places: Array, tolerance_mm: float) -> list[Piece]:
         high = min(low + step, last + 1)
         while high - low > 1:
             middle = (low + high) // 2
-            low, high = (middle, high) if _fits(places[first : middle + 1], tolerance_mm) else (low, middle)
+            low, high = (
+                (middle, high)
+                if _fits(places[first : middle + 1], tolerance_mm)
+                else (low, middle)
+            )
         straight = bool(np.abs(off_line_mm(places[first : low + 1])).max() <= tolerance_mm)
         if not straight and _turned_rad(places[first : low + 1]) > LARGEST_TURN_RAD:
             pieces.append((first, (first + low) // 2, False))
@@ -124,7 +131,10 @@ def curvature_per_mm(places: Array) -> float:
     """Curvature of the arc that is nearest to a row of places, + left."""
     chord, heading = math.dist(places[0], places[-1]), heading_rad(places)
     dx, dy = (places - places[0]).T
-    u, v = dx * math.cos(heading) + dy * math.sin(heading), dy * math.cos(heading) - dx * math.sin(heading)
+    u, v = (
+        dx * math.cos(heading) + dy * math.sin(heading),
+        dy * math.cos(heading) - dx * math.sin(heading),
+    )
     if np.abs(v).max() > 0.2 * chord:  # more than a third of a turn: a chord says little
         side = places[len(places) // 2] - places.mean(axis=0)
         across = dx[len(dx) // 4] * dy[len(dy) // 2] - dy[len(dy) // 4] * dx[len(dx) // 2]

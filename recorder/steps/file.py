@@ -65,10 +65,17 @@ class StepFormat:
 
     def __post_init__(self) -> None:
         _demand(0 < self.step_mm <= 1, "step_mm", self.step_mm, "above 0 and at most 1 mm")
-        _demand(1 <= self.oscillator_hz <= 1e9, "oscillator_hz", self.oscillator_hz, "from 1 Hz to 1e9 Hz")
+        _demand(
+            1 <= self.oscillator_hz <= 1e9,
+            "oscillator_hz",
+            self.oscillator_hz,
+            "from 1 Hz to 1e9 Hz",
+        )
         good = len(self.rates) == 7 and all(0 < n <= TICKS for n in self.rates)
         _demand(good, "rates", self.rates, f"7 whole numbers of pulses from 1 to {TICKS}")
-        _demand(self.vectors in (1, 2), "vectors", self.vectors, "1 (figure 6) or 2 (figure 11)")
+        _demand(
+            self.vectors in (1, 2), "vectors", self.vectors, "1 (figure 6) or 2 (figure 11)"
+        )
         _demand(self.channels in (5, 8), "channels", self.channels, "5 or 8")
         for name in ("start_mm", "end_mm"):
             place = getattr(self, name)
@@ -92,7 +99,10 @@ class StepFormat:
     @property
     def acceleration_steps_s2(self) -> float:
         """The largest change of the rate of pulses that any tape of this format can ask for, steps/s²."""
-        return max(abs(b - a) for a, b in zip((0, *self.rates), self.rates, strict=False)) * self.rate_hz**2
+        return (
+            max(abs(b - a) for a, b in zip((0, *self.rates), self.rates, strict=False))
+            * self.rate_hz**2
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,7 +116,10 @@ class Program:
 
 def write_program(program: Program, file: str | os.PathLike[str]) -> None:
     """Write a program; equal rows that follow each other stand in one line."""
-    with written_beside(file) as beside, beside.open("w", encoding="ascii", newline="\n") as out:
+    with (
+        written_beside(file) as beside,
+        beside.open("w", encoding="ascii", newline="\n") as out,
+    ):
         out.write(f"{HEADER} {VERSION}\n")
         for entry in fields(StepFormat):
             out.write(f"{entry.name} {_told(getattr(program.format, entry.name))}\n")
@@ -121,7 +134,8 @@ def read_program(file: str | os.PathLike[str]) -> Program:
     version_line, version = next(lines, (1, ""))
     if version.split()[:2] != HEADER.split():
         raise ProgramFault(
-            f"{file} is no step program: it must begin with '{HEADER} {VERSION}'; give another", line=1
+            f"{file} is no step program: it must begin with '{HEADER} {VERSION}'; give another",
+            line=1,
         )
     if version != f"{HEADER} {VERSION}":
         raise ProgramFault(
@@ -165,7 +179,9 @@ def _numbered(file: FilePath) -> Iterator[tuple[int, str]]:
             yield number, line.strip()
 
 
-def _read_header(file: str | os.PathLike[str], lines: Iterator[tuple[int, str]]) -> tuple[StepFormat, int]:
+def _read_header(
+    file: str | os.PathLike[str], lines: Iterator[tuple[int, str]]
+) -> tuple[StepFormat, int]:
     """The format, and the number of rows; all entries must be there, in their order."""
     values: dict[str, tuple[float, ...]] = {}
     number = 1
@@ -192,11 +208,18 @@ def _format(values: dict[str, tuple[float, ...]]) -> StepFormat:
     """The format of the header's numbers; raises ValueError."""
     whole = {name: int(_single(values, name, 0, TICKS)) for name in ("vectors", "channels")}
     rates = tuple(int(n) if n == round(n) else 0 for n in values["rates"] if abs(n) <= TICKS)
-    step, oscillator = _single(values, "step_mm", 0, 1), _single(values, "oscillator_hz", 1, 1e9)
-    return StepFormat(step, oscillator, rates, **whole, start_mm=values["start_mm"], end_mm=values["end_mm"])
+    step, oscillator = (
+        _single(values, "step_mm", 0, 1),
+        _single(values, "oscillator_hz", 1, 1e9),
+    )
+    return StepFormat(
+        step, oscillator, rates, **whole, start_mm=values["start_mm"], end_mm=values["end_mm"]
+    )
 
 
-def _single(values: dict[str, tuple[float, ...]], name: str, least: float, most: float) -> float:
+def _single(
+    values: dict[str, tuple[float, ...]], name: str, least: float, most: float
+) -> float:
     """The one number of an entry; raises ValueError."""
     got = values[name]
     _demand(
@@ -223,7 +246,8 @@ def _read_rows(
         if found is None or len(found[1]) != fmt.channels:
             allowed = f"{fmt.channels} of o and ., or end"
             raise ProgramFault(
-                f"{file}, line {number}: {line[:40]!r} is no row; it must be {allowed}", line=number
+                f"{file}, line {number}: {line[:40]!r} is no row; it must be {allowed}",
+                line=number,
             )
         codes.append(int(found[1].replace("o", "1").replace(".", "0"), 2))
         times.append(int(found[2] or 1))
@@ -231,16 +255,21 @@ def _read_rows(
         total += times[-1]
         if total > count:
             raise ProgramFault(
-                f"{file}, line {number}: more than the {count} rows stated; {_AGAIN}", line=number
+                f"{file}, line {number}: more than the {count} rows stated; {_AGAIN}",
+                line=number,
             )
     else:
         raise ProgramFault(
             f"{file} is cut short: {total} of {count} rows and no end; copy it again or {_AGAIN}"
         )
     if total != count:
-        raise ProgramFault(f"{file} has {total} rows, but states {count}; copy it again or {_AGAIN}")
+        raise ProgramFault(
+            f"{file} has {total} rows, but states {count}; copy it again or {_AGAIN}"
+        )
     return Program(
-        fmt, np.repeat(np.array(codes, np.uint8), times), np.repeat(np.array(places, np.int64), times)
+        fmt,
+        np.repeat(np.array(codes, np.uint8), times),
+        np.repeat(np.array(places, np.int64), times),
     )
 
 

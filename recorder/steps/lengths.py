@@ -35,10 +35,16 @@ WIDTH = 16
 SPARE_LEVELS = 400  # intervals that a course may take beyond twice the leg's own time
 _SPEED, _TOO_FAST, _NO_VECTOR, _STANDING = 0.05, 1.0, 0.4, 0.5
 _SLOWEST = 0.7  # steps per interval: near a stop the speed goes to nothing, and a course must still arrive
-_PX, _NX, _AT = 0, 3, 6  # columns of a course: place, steps in the interval, nearest place of the leg
+_PX, _NX, _AT = (
+    0,
+    3,
+    6,
+)  # columns of a course: place, steps in the interval, nearest place of the leg
 
 
-def cut(places_steps: Array, speeds: Array, spacing_steps: float, start_steps: Steps) -> tuple[Steps, Array]:
+def cut(
+    places_steps: Array, speeds: Array, spacing_steps: float, start_steps: Steps
+) -> tuple[Steps, Array]:
     """Steps (k, 3) of the intervals of a leg, and how far off its path each interval ends, steps.
 
     The leg starts at the whole steps given and ends at those nearest to its end. Raises ValueError where no
@@ -74,7 +80,11 @@ def cut(places_steps: Array, speeds: Array, spacing_steps: float, start_steps: S
 
 
 def _traced_back(
-    last: int, winner: int, parents: NDArray[np.int16], taken: NDArray[np.int8], off: NDArray[np.float32]
+    last: int,
+    winner: int,
+    parents: NDArray[np.int16],
+    taken: NDArray[np.int8],
+    off: NDArray[np.float32],
 ) -> tuple[Steps, Array]:
     """The winning course from its start."""
     steps, distances = np.zeros((last + 1, 3), np.int64), np.zeros(last + 1)
@@ -111,7 +121,9 @@ def _keep(beam, costs, origin, count, course, cost, parent):  # type: ignore[no-
     at = count
     for i in range(count):
         if beam[i, 0] == course[0] and beam[i, 1] == course[1] and beam[i, 2] == course[2]:
-            same = beam[i, 3] == course[3] and beam[i, 4] == course[4] and beam[i, 5] == course[5]
+            same = (
+                beam[i, 3] == course[3] and beam[i, 4] == course[4] and beam[i, 5] == course[5]
+            )
             if same:
                 if costs[i] <= cost:
                     return count
@@ -137,7 +149,9 @@ def _search(places, speeds, left, settings, start, end, moves, table, parents, t
     course = np.zeros(7, np.int64)
     beam[0, :3] = start
     count = 1
-    near = len(places) - 1 - int(1 / spacing)  # the end itself may lie up to half a step off the whole steps
+    near = (
+        len(places) - 1 - int(1 / spacing)
+    )  # the end itself may lie up to half a step off the whole steps
     low, high = np.where(moves, -1, 0), np.where(moves, 1, 0)
     for level in range(len(parents)):
         new_count = 0
@@ -145,22 +159,38 @@ def _search(places, speeds, left, settings, start, end, moves, table, parents, t
             for dx in range(low[0], high[0] + 1):
                 for dy in range(low[1], high[1] + 1):
                     for dz in range(low[2], high[2] + 1):
-                        course[3], course[4], course[5] = beam[b, 3] + dx, beam[b, 4] + dy, beam[b, 5] + dz
+                        course[3], course[4], course[5] = (
+                            beam[b, 3] + dx,
+                            beam[b, 4] + dy,
+                            beam[b, 5] + dz,
+                        )
                         if max(abs(course[3]), abs(course[4]), abs(course[5])) > LARGEST:
                             continue
                         for axis in range(3):
                             course[axis] = beam[b, axis] + course[3 + axis]
                         way = np.sqrt(course[3] ** 2 + course[4] ** 2 + course[5] ** 2)
                         guess = beam[b, 6] + int(way / spacing)
-                        at, squared = _nearest(places, beam[b, 6], guess, course[0], course[1], course[2])
+                        at, squared = _nearest(
+                            places, beam[b, 6], guess, course[0], course[1], course[2]
+                        )
                         course[6] = at
                         wanted = max((speeds[beam[b, 6]] + speeds[at]) / 2, _SLOWEST)
                         excess = way - wanted
-                        cost = costs[b] + squared + (_TOO_FAST if excess > 0.5 else _SPEED) * excess**2
+                        cost = (
+                            costs[b]
+                            + squared
+                            + (_TOO_FAST if excess > 0.5 else _SPEED) * excess**2
+                        )
                         cost += _STANDING * (1 - left[beam[b, 6]] + left[at])
-                        if dz != 0 or table[beam[b, 3] + LARGEST, beam[b, 4] + LARGEST, dx + 1, dy + 1] < 0:
+                        if (
+                            dz != 0
+                            or table[beam[b, 3] + LARGEST, beam[b, 4] + LARGEST, dx + 1, dy + 1]
+                            < 0
+                        ):
                             cost += _NO_VECTOR
-                        new_count = _keep(new, new_costs[:width], origin, new_count, course, cost, b)
+                        new_count = _keep(
+                            new, new_costs[:width], origin, new_count, course, cost, b
+                        )
         for b in range(new_count):
             beam[b], costs[b] = new[b], new_costs[b]
             parents[level, b] = origin[b]
@@ -172,6 +202,12 @@ def _search(places, speeds, left, settings, start, end, moves, table, parents, t
         count = new_count
         for b in range(count):
             arrived = beam[b, 0] == end[0] and beam[b, 1] == end[1] and beam[b, 2] == end[2]
-            if arrived and beam[b, 3] == 0 and beam[b, 4] == 0 and beam[b, 5] == 0 and beam[b, 6] >= near:
+            if (
+                arrived
+                and beam[b, 3] == 0
+                and beam[b, 4] == 0
+                and beam[b, 5] == 0
+                and beam[b, 6] >= near
+            ):
                 return level, b
     return -1, 0

@@ -50,7 +50,9 @@ def _ring(octant: tuple[Vector, ...]) -> tuple[Vector, ...]:
     return tuple(vector for part in turned for vector in part)
 
 
-RINGS: dict[int, tuple[Vector, ...]] = {speed: _ring(octant) for speed, octant in _OCTANTS.items()}
+RINGS: dict[int, tuple[Vector, ...]] = {
+    speed: _ring(octant) for speed, octant in _OCTANTS.items()
+}
 
 
 def command(present: Vector, wanted: Vector) -> int | None:

@@ -82,13 +82,17 @@ def record_steps(
     had within the tolerance; nothing is left under the name then.
     """
     if tolerance_mm is not None and not tolerance_mm > 0:
-        raise ValueError(f"a tolerance of {tolerance_mm} mm leaves no room; give one above zero")
+        raise ValueError(
+            f"a tolerance of {tolerance_mm} mm leaves no room; give one above zero"
+        )
     fmt = fmt or StepFormat(step_mm=min(tolerance_mm or STEP_MM, 1.0))
     path = as_path(stream)
     tolerance_mm = tolerance_mm or fmt.step_mm
     lengths, down, off_mm = _within(tolerance_mm, path, fmt)
     start_mm = tuple(np.round(path.positions_mm[0], 6).tolist())
-    end_mm = tuple(np.round(path.positions_mm[0] + lengths.sum(axis=0) * fmt.step_mm, 6).tolist())
+    end_mm = tuple(
+        np.round(path.positions_mm[0] + lengths.sum(axis=0) * fmt.step_mm, 6).tolist()
+    )
     fmt = replace(fmt, start_mm=start_mm, end_mm=end_mm)
     rows = encode(lengths, down, fmt)
     if len(rows) > MOST_ROWS:
@@ -109,13 +113,17 @@ def encode(lengths: Steps, down: NDArray[np.bool_], fmt: StepFormat) -> NDArray[
     """
     changes = np.diff(lengths, axis=0, prepend=np.zeros((1, 3), np.int64))
     if np.abs(changes).max(initial=0) > 1 or np.abs(lengths).max(initial=0) > LARGEST:
-        raise ValueError("a length differs by more than one step from the one before; cut the motion anew")
+        raise ValueError(
+            "a length differs by more than one step from the one before; cut the motion anew"
+        )
     if fmt.channels == 5 and changes[:, 2].any():
         raise ValueError("the motion moves Z, and five channels hold X and Y only; take eight")
     return np.array(list(_rows(lengths, changes, down, fmt)), np.uint8) & (2**fmt.channels - 1)
 
 
-def _rows(lengths: Steps, changes: Steps, down: NDArray[np.bool_], fmt: StepFormat) -> Iterator[int]:
+def _rows(
+    lengths: Steps, changes: Steps, down: NDArray[np.bool_], fmt: StepFormat
+) -> Iterator[int]:
     """Row by row; with two vector commands in a row, runs of vectors are taken in pairs."""
     vectors = _vector_commands(lengths, changes).tolist()
     z_moves, tool = (changes[:, 2] != 0).tolist(), (down * TOOL_DOWN).tolist()
@@ -148,11 +156,15 @@ def _vector_commands(lengths: Steps, changes: Steps) -> NDArray[np.int8]:
 
 def _axis_codes(changes: Steps) -> NDArray[np.int64]:
     """Bits 2 1, 4 3 and 7 6 of the changes of X, Y and Z."""
-    code = np.where(changes > 0, _UP_DOWN_SAME[1], np.where(changes < 0, _UP_DOWN_SAME[-1], SAME))
+    code = np.where(
+        changes > 0, _UP_DOWN_SAME[1], np.where(changes < 0, _UP_DOWN_SAME[-1], SAME)
+    )
     return np.asarray(code[:, 0] | code[:, 1] << 2 | code[:, 2] << 5)
 
 
-def _within(tolerance_mm: float, path: Source, fmt: StepFormat) -> tuple[Steps, NDArray[np.bool_], float]:
+def _within(
+    tolerance_mm: float, path: Source, fmt: StepFormat
+) -> tuple[Steps, NDArray[np.bool_], float]:
     """The lengths of the whole motion, the tool in each, and the deviation; slower where it would be too
     large.
     """
@@ -174,7 +186,9 @@ def _limits(fmt: StepFormat, share: float) -> Limits:
     """What the motors can do, in mm: one step more or less per interval."""
     step = fmt.step_mm
     speed = share * _MARGIN * LARGEST * step * fmt.rate_hz
-    return Limits(speed, share**2 * step * fmt.rate_hz**2, spacing_mm=step / 4, window_mm=5 * step)
+    return Limits(
+        speed, share**2 * step * fmt.rate_hz**2, spacing_mm=step / 4, window_mm=5 * step
+    )
 
 
 def _lengths(parts: list[Leg], fmt: StepFormat) -> tuple[Steps, NDArray[np.bool_], float]:
@@ -184,7 +198,10 @@ def _lengths(parts: list[Leg], fmt: StepFormat) -> tuple[Steps, NDArray[np.bool_
     at = np.zeros(3, np.int64)
     for leg in parts:
         rest = np.zeros((round(leg.rest_s / fmt.interval_s), 3), np.int64)
-        places, speeds = (leg.places_mm - origin) / fmt.step_mm, leg.speed_mm_s / fmt.step_mm * fmt.interval_s
+        places, speeds = (
+            (leg.places_mm - origin) / fmt.step_mm,
+            leg.speed_mm_s / fmt.step_mm * fmt.interval_s,
+        )
         lengths, away = cut(places, speeds, leg.spacing_mm / fmt.step_mm, at)
         z_mm = origin[2] + (at[2] + np.cumsum(np.r_[rest, lengths][:, 2])) * fmt.step_mm
         at = at + lengths.sum(axis=0)

@@ -39,7 +39,8 @@ from numpy.typing import ArrayLike, NDArray
 from morfax.recorder.tape.pickups import DEFAULT_PICK_UP, PICK_UPS, Sensor
 
 FADE_FROM, FADE_TO = 0.4, 0.475  # of the sample rate
-_HELD_BACK = 3  # samples that the next frames still need: the neighbour before, and two not yet played
+# samples that the next frames still need: the neighbour before, and two not yet played
+_HELD_BACK = 3
 
 Frames = NDArray[np.float32]
 
@@ -89,7 +90,9 @@ class Carrier:
             )
         cycles = (positions - self._start_mm) * self._pick_up.cycles_per_mm
         if not len(self._held):
-            cycles = np.vstack([cycles[:1], cycles])  # the screws stood at the first position before
+            cycles = np.vstack(
+                [cycles[:1], cycles]
+            )  # the screws stood at the first position before
         return self._synthesise(np.vstack([self._held, cycles]))
 
     def rest(self) -> Frames:
@@ -144,7 +147,9 @@ def _write_wave(cycles, first_period, reference_cycles, amplitudes, by_speed, fr
         turned = (first_period + i) * reference_cycles
         turned -= np.floor(turned)
         for k in range(steps):
-            frames[i * steps + k, 0] = amplitudes[0] * _sine(turned + k * (reference_cycles / steps))
+            frames[i * steps + k, 0] = amplitudes[0] * _sine(
+                turned + k * (reference_cycles / steps)
+            )
         for j in range(axes):
             p0, p1, p2, p3 = cycles[i, j], cycles[i + 1, j], cycles[i + 2, j], cycles[i + 3, j]
             c0 = turned + (p1 - np.floor(p1))
@@ -153,9 +158,13 @@ def _write_wave(cycles, first_period, reference_cycles, amplitudes, by_speed, fr
             c3 = 0.5 * (p3 - p0) + 1.5 * (p1 - p2)
             for k in range(steps):
                 u = k / steps
-                speed = c1 + u * (2.0 * c2 + u * 3.0 * c3)  # cycles per period: the frequency of the track
+                speed = c1 + u * (
+                    2.0 * c2 + u * 3.0 * c3
+                )  # cycles per period: the frequency of the track
                 wave = _wave(c0 + u * (c1 + u * (c2 + u * c3)), abs(speed) / steps, amplitudes)
-                frames[i * steps + k, 1 + j] = wave * speed / reference_cycles if by_speed else wave
+                frames[i * steps + k, 1 + j] = (
+                    wave * speed / reference_cycles if by_speed else wave
+                )
 
 
 @njit(cache=True, inline="always")

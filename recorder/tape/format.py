@@ -112,13 +112,16 @@ class TapeFormat:
     def carrier(self) -> PickUp:
         """What the carrier needs of the format."""
         hz, rate = self.reference_hz, self.sample_rate_hz
-        return PickUp(hz, self.cycles_per_mm, rate, self.samples_per_motion, self.level, self.sensor)
+        return PickUp(
+            hz, self.cycles_per_mm, rate, self.samples_per_motion, self.level, self.sensor
+        )
 
     def to_json(self) -> str:
         """The format as one line of JSON."""
         entries = _entries(self.version)
         return json.dumps(
-            {name: value for name, value in asdict(self).items() if name in entries}, allow_nan=False
+            {name: value for name, value in asdict(self).items() if name in entries},
+            allow_nan=False,
         )
 
     @classmethod
@@ -180,12 +183,16 @@ def _check_entries(values: dict[str, Any]) -> None:
     if missing:
         raise TapeFault(f"the tape's text chunk lacks {missing[0]}; {_AGAIN}")
     if unknown:
-        raise TapeFault(f"the tape's text chunk has an unknown entry {unknown[0][:30]!r}; {_AGAIN}")
+        raise TapeFault(
+            f"the tape's text chunk has an unknown entry {unknown[0][:30]!r}; {_AGAIN}"
+        )
 
 
 def _entries(version: object) -> set[str]:
     """The entries that a text of a version has."""
-    return {field.name for field in fields(TapeFormat)} - (set() if version == 2 else {"pickup"})
+    return {field.name for field in fields(TapeFormat)} - (
+        set() if version == 2 else {"pickup"}
+    )
 
 
 def _check_numbers(fmt: TapeFormat) -> None:
@@ -194,7 +201,10 @@ def _check_numbers(fmt: TapeFormat) -> None:
     for name, most in (("sample_rate_hz", 2**31), ("samples_per_motion", 10_000)):
         value = getattr(fmt, name)
         _demand(
-            isinstance(value, int) and 2 <= value <= most, name, value, f"a whole number from 2 to {most}"
+            isinstance(value, int) and 2 <= value <= most,
+            name,
+            value,
+            f"a whole number from 2 to {most}",
         )
     for name in ("reference_hz", "cycles_per_mm", "level"):
         value = getattr(fmt, name)
@@ -219,8 +229,17 @@ def _check_axes(fmt: TapeFormat) -> None:
 def _check_place(fmt: TapeFormat, name: str) -> None:
     """Raise ValueError unless a place has a finite number of mm for each axis."""
     place = getattr(fmt, name)
-    good = isinstance(place, tuple) and len(place) == len(fmt.axes) and all(_is_number(mm) for mm in place)
-    _demand(good or (place is None and name == "end_mm"), name, place, f"{len(fmt.axes)} numbers of mm")
+    good = (
+        isinstance(place, tuple)
+        and len(place) == len(fmt.axes)
+        and all(_is_number(mm) for mm in place)
+    )
+    _demand(
+        good or (place is None and name == "end_mm"),
+        name,
+        place,
+        f"{len(fmt.axes)} numbers of mm",
+    )
 
 
 def _is_number(value: object) -> TypeGuard[float]:

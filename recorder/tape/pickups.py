@@ -34,7 +34,9 @@ from numpy.typing import NDArray
 from morfax.motion.axis import LeadScrew
 
 GAP_SHARE = 0.25  # air gap over the pitch of the teeth
-DECAY = math.exp(-2 * math.pi * GAP_SHARE)  # r: how much weaker the field of each further harmonic is
+DECAY = math.exp(
+    -2 * math.pi * GAP_SHARE
+)  # r: how much weaker the field of each further harmonic is
 SCALE_PITCH_MM = 0.1
 
 _SCREW = LeadScrew(pitch_mm=5.0, sectors=100)
@@ -75,9 +77,15 @@ class Sensor:
 
 _WHEEL = "screw of 5 mm over 100"
 PICK_UPS: dict[str, Sensor] = {
-    "resolver": Sensor("resolver", f"{_WHEEL} pole pairs", _SCREW.cycles_per_mm, lambda n, k: float(n == 1)),
+    "resolver": Sensor(
+        "resolver", f"{_WHEEL} pole pairs", _SCREW.cycles_per_mm, lambda n, k: float(n == 1)
+    ),
     "photocell": Sensor(
-        "sector wheel and photocell", f"{_WHEEL} sectors", _SCREW.cycles_per_mm, lambda n, k: 1 / n, flat=True
+        "sector wheel and photocell",
+        f"{_WHEEL} sectors",
+        _SCREW.cycles_per_mm,
+        lambda n, k: 1 / n,
+        flat=True,
     ),
     "coil": Sensor(
         "toothed magnetic wheel and coil",

@@ -56,7 +56,9 @@ class Samples:
             padded[:, 1:] = np.frombuffer(data, np.uint8).reshape(-1, 3)
             values = padded.view("<i4")[:, 0] * np.float32(2.0**-31)
         else:
-            values = np.frombuffer(data, f"<i{self.bits // 8}") * np.float32(2.0 ** (1 - self.bits))
+            values = np.frombuffer(data, f"<i{self.bits // 8}") * np.float32(
+                2.0 ** (1 - self.bits)
+            )
         return np.asarray(values.reshape(-1, self.tracks), np.float32)
 
 
@@ -99,14 +101,19 @@ class Pipe:
         samples = samples or Samples()
         fmt = _format(text, samples, reference_hz, cycles_per_mm)
         if start_mm is not None:
-            fmt = replace(fmt, start_mm=tuple(start_mm) + fmt.start_mm[len(start_mm) :], end_mm=None)
+            fmt = replace(
+                fmt, start_mm=tuple(start_mm) + fmt.start_mm[len(start_mm) :], end_mm=None
+            )
         return cls(stream, samples, fmt, begun, columns_of(order, fmt.tracks))
 
     def __enter__(self) -> Pipe:
         return self
 
     def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        at: TracebackType | None,
     ) -> None:
         return None
 
@@ -201,7 +208,9 @@ def _format(
 ) -> TapeFormat:
     """The format, from the text or by hand."""
     given = {"reference_hz": reference_hz, "cycles_per_mm": cycles_per_mm}
-    by_hand: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
+    by_hand: dict[str, Any] = {
+        name: value for name, value in given.items() if value is not None
+    }
     rate_hz = samples.sample_rate_hz
     try:
         if is_format_text(text):
@@ -217,7 +226,11 @@ def _format(
             )
         axes, per_motion = _AXES[: samples.tracks - 1], max(2, round(rate_hz / 6000))
         return TapeFormat(
-            sample_rate_hz=rate_hz, axes=axes, dwell_s=0.0, samples_per_motion=per_motion, **by_hand
+            sample_rate_hz=rate_hz,
+            axes=axes,
+            dwell_s=0.0,
+            samples_per_motion=per_motion,
+            **by_hand,
         )
     except TapeFault:
         raise

@@ -89,7 +89,12 @@ def record(
     with written_beside(file) as beside:
         try:
             spool = Spool(
-                beside, fmt.sample_rate_hz, fmt.tracks, kind, _placeholder(fmt), name=FilePath(file)
+                beside,
+                fmt.sample_rate_hz,
+                fmt.tracks,
+                kind,
+                _placeholder(fmt),
+                name=FilePath(file),
             )
             with spool as out:
                 for frames in tape.frames(chain([first], blocks)):
@@ -145,7 +150,9 @@ class _Take:
         )  # a motion at the very limit is let through
         if fast.any():
             at, axis = np.argwhere(fast)[0].tolist()
-            raise _too_fast(fmt, axis, (self._samples + at) / fmt.motion_rate_hz, float(speed[at, axis]))
+            raise _too_fast(
+                fmt, axis, (self._samples + at) / fmt.motion_rate_hz, float(speed[at, axis])
+            )
         self.largest_speed_mm_s = np.maximum(self.largest_speed_mm_s, np.abs(speed).max(axis=0))
         self._samples += len(positions)
         self.last_mm = positions[-1]

@@ -26,8 +26,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
-LARGEST_RIFF_BYTES = 2**32 - 2**16  # a margin below 4 GiB for programs that count frames in whole pages
-_UNKNOWN = 0xFFFFFFFF  # in an RF64: see ds64; in a plain WAV written through a pipe: up to the end
+LARGEST_RIFF_BYTES = (
+    2**32 - 2**16
+)  # a margin below 4 GiB for programs that count frames in whole pages
+# in an RF64: see ds64; in a plain WAV written through a pipe: up to the end
+_UNKNOWN = 0xFFFFFFFF
 _EXTENSIBLE = b"\xfe\xff"
 _SEARCHED_BYTES = 65536
 
@@ -68,7 +71,12 @@ def make_plain(file: str | os.PathLike[str]) -> bool:
     """Make an RF64 that is small enough a plain WAV, in place; whether it was."""
     sizes = read_sizes(file)
     end = Path(file).stat().st_size
-    if sizes is None or sizes.kind != b"RF64" or sizes.stated is None or end > LARGEST_RIFF_BYTES:
+    if (
+        sizes is None
+        or sizes.kind != b"RF64"
+        or sizes.stated is None
+        or end > LARGEST_RIFF_BYTES
+    ):
         return False
     with Path(file).open("r+b") as opened:
         opened.write(struct.pack("<4sI4s4s", b"RIFF", end - 8, b"WAVE", b"JUNK"))
@@ -105,7 +113,9 @@ def _name_samples_plainly(opened: BinaryIO, format_at: int) -> None:
 def _whole_file(head: bytes, held: int) -> Sizes:
     """Sizes of an AIFF or a W64, whose outermost chunk says how long the whole file is."""
     stated = (
-        struct.unpack(">I", head[4:8])[0] + 8 if head[:4] == b"FORM" else struct.unpack("<Q", head[16:24])[0]
+        struct.unpack(">I", head[4:8])[0] + 8
+        if head[:4] == b"FORM"
+        else struct.unpack("<Q", head[16:24])[0]
     )
     return Sizes(head[:4], 0, 0, stated, held)
 

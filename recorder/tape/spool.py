@@ -49,7 +49,9 @@ def medium(file: FilePath, sample: str) -> tuple[str, str]:
             f"cannot write {file}: a tape's name ends in {', '.join(CONTAINERS)}; give it one of these"
         )
     if suffix == ".flac" and sample not in ("16", "24"):
-        raise TapeFault(f"a FLAC has no samples of {sample}; it takes 16 or 24 bit: write a .wav for more")
+        raise TapeFault(
+            f"a FLAC has no samples of {sample}; it takes 16 or 24 bit: write a .wav for more"
+        )
     return CONTAINERS[suffix], SUBTYPES[sample]
 
 
@@ -90,7 +92,10 @@ class Spool:
         return self
 
     def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        at: TracebackType | None,
     ) -> None:
         self._sound.close()
         if error is None:
@@ -131,6 +136,11 @@ def _to_16_bit(frames):  # type: ignore[no-untyped-def]
     for i in range(frames.shape[0]):
         for j in range(frames.shape[1]):
             out[i, j] = np.int16(
-                np.rint(min(max(frames[i, j] * np.float32(32767), np.float32(-32768)), np.float32(32767)))
+                np.rint(
+                    min(
+                        max(frames[i, j] * np.float32(32767), np.float32(-32768)),
+                        np.float32(32767),
+                    )
+                )
             )
     return out

@@ -26,7 +26,12 @@ from numpy.typing import NDArray
 
 from morfax.motion.faults import FileFault, TapeFault
 from morfax.recorder.tape.carrier import Frames
-from morfax.recorder.tape.format import LARGEST_TEXT_BYTES, TapeFormat, columns_of, is_format_text
+from morfax.recorder.tape.format import (
+    LARGEST_TEXT_BYTES,
+    TapeFormat,
+    columns_of,
+    is_format_text,
+)
 from morfax.recorder.tape.recording import Recording, record
 from morfax.recorder.tape.riff import read_sizes
 from morfax.recorder.tape.spool import sidecar
@@ -35,7 +40,8 @@ __all__ = ["Recording", "Tape", "TapeFormat", "record"]
 
 BLOCK_FRAMES = 65536
 _UNNAMED_AXES = ("x", "y", "z", "a", "b", "c", "u", "v", "w")
-_MOTION_RATE_HZ = 6000.0  # of a tape without a format, as nearly as a whole number of frames allows
+# of a tape without a format, as nearly as a whole number of frames allows
+_MOTION_RATE_HZ = 6000.0
 _FEWEST_TRACKS = 3
 _INT16_STEP = np.float32(1 / 32768)  # full scale 1
 Stored = NDArray[np.float32 | np.int16]
@@ -46,7 +52,11 @@ class Tape:
     """An open tape; a context manager."""
 
     def __init__(
-        self, file: FilePath, sound: soundfile.SoundFile, fmt: TapeFormat, columns: list[int] | None = None
+        self,
+        file: FilePath,
+        sound: soundfile.SoundFile,
+        fmt: TapeFormat,
+        columns: list[int] | None = None,
     ) -> None:
         self.file, self.format, self._sound, self._columns = file, fmt, sound, columns
 
@@ -72,9 +82,13 @@ class Tape:
         try:
             _check_whole(FilePath(file), sound)
             fmt = _format(
-                FilePath(file), sound, {"reference_hz": reference_hz, "cycles_per_mm": cycles_per_mm}
+                FilePath(file),
+                sound,
+                {"reference_hz": reference_hz, "cycles_per_mm": cycles_per_mm},
             )
-            return cls(FilePath(file), sound, _started(fmt, start_mm), columns_of(order, fmt.tracks))
+            return cls(
+                FilePath(file), sound, _started(fmt, start_mm), columns_of(order, fmt.tracks)
+            )
         except BaseException:
             sound.close()
             raise
@@ -83,7 +97,10 @@ class Tape:
         return self
 
     def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        at: TracebackType | None,
     ) -> None:
         self.close()
 
@@ -144,7 +161,9 @@ class Tape:
         try:
             block: Stored = self._sound.read(frames, dtype=kind, always_2d=True)
         except soundfile.SoundFileError as error:
-            raise _cut_short(self.file, done / self.format.sample_rate_hz, self.duration_s) from error
+            raise _cut_short(
+                self.file, done / self.format.sample_rate_hz, self.duration_s
+            ) from error
         if not len(block):
             raise _cut_short(self.file, done / self.format.sample_rate_hz, self.duration_s)
         return block if self._columns is None else block[:, self._columns]
@@ -179,7 +198,9 @@ def _check_whole(file: FilePath, sound: soundfile.SoundFile) -> None:
     """Raise TapeFault for a file that is empty, cut short or has too few tracks."""
     if sound.channels < _FEWEST_TRACKS:
         tracks = "one track" if sound.channels == 1 else f"{sound.channels} tracks"
-        raise TapeFault(f"{file} has {tracks}; a tape has at least {_FEWEST_TRACKS}: reference, X, Y")
+        raise TapeFault(
+            f"{file} has {tracks}; a tape has at least {_FEWEST_TRACKS}: reference, X, Y"
+        )
     sizes = read_sizes(file)
     if sizes is not None and sizes.stated is not None and sizes.cut_short:
         frame_s = 1 / sound.samplerate
@@ -210,9 +231,13 @@ def _cut_short(file: FilePath, held_s: float, stated_s: float) -> TapeFault:
     return TapeFault(message, time_s=held_s)
 
 
-def _format(file: FilePath, sound: soundfile.SoundFile, by_hand: dict[str, float | None]) -> TapeFormat:
+def _format(
+    file: FilePath, sound: soundfile.SoundFile, by_hand: dict[str, float | None]
+) -> TapeFormat:
     """The tape's format, from its text chunk or by hand; raises TapeFault."""
-    given: dict[str, Any] = {name: value for name, value in by_hand.items() if value is not None}
+    given: dict[str, Any] = {
+        name: value for name, value in by_hand.items() if value is not None
+    }
     stated = _stated(file, sound)
     if stated is None and len(given) < len(by_hand):
         lacks = " ".join(example for name, example in _EXAMPLES.items() if name not in given)
@@ -223,7 +248,9 @@ def _format(file: FilePath, sound: soundfile.SoundFile, by_hand: dict[str, float
         if stated is None:
             return _unnamed(sound, given)
         if given.get("cycles_per_mm", stated.cycles_per_mm) != stated.cycles_per_mm:
-            stated = replace(stated, end_mm=None)  # another travel for the same phase ends elsewhere
+            stated = replace(
+                stated, end_mm=None
+            )  # another travel for the same phase ends elsewhere
         return replace(stated, sample_rate_hz=sound.samplerate, **given)
     except ValueError as error:
         raise TapeFault(f"{file} cannot be played so: {error}") from None
@@ -276,8 +303,14 @@ def _started(fmt: TapeFormat, start_mm: Sequence[float] | None) -> TapeFormat:
     if start_mm is None:
         return fmt
     if len(start_mm) > len(fmt.axes):
-        raise TapeFault(f"the start was given {len(start_mm)} places; the tape has {len(fmt.axes)} axes")
+        raise TapeFault(
+            f"the start was given {len(start_mm)} places; the tape has {len(fmt.axes)} axes"
+        )
     start = tuple(float(mm) for mm in start_mm) + fmt.start_mm[len(start_mm) :]
     shifts = [new - old for new, old in zip(start, fmt.start_mm, strict=True)]
-    end = None if fmt.end_mm is None else tuple(mm + by for mm, by in zip(fmt.end_mm, shifts, strict=True))
+    end = (
+        None
+        if fmt.end_mm is None
+        else tuple(mm + by for mm, by in zip(fmt.end_mm, shifts, strict=True))
+    )
     return replace(fmt, start_mm=start, end_mm=end)

@@ -51,7 +51,9 @@ class PrintThrough:
         self._held = held[-2 * self._delay :]
         count = max(len(held) - 2 * self._delay, 0)
         middle = held[self._delay : self._delay + count]
-        return middle + self._level * (held[:count] + held[2 * self._delay : 2 * self._delay + count])
+        return middle + self._level * (
+            held[:count] + held[2 * self._delay : 2 * self._delay + count]
+        )
 
     def rest(self) -> Frames:
         """The last turn, after which there is blank tape."""
@@ -85,7 +87,12 @@ class Dropouts:
     """Dropouts at random places, made in the order of the tape; `met` are those so far."""
 
     def __init__(
-        self, per_minute: float, length_s: float, left: float, all_tracks: bool, seed: tuple[int, int]
+        self,
+        per_minute: float,
+        length_s: float,
+        left: float,
+        all_tracks: bool,
+        seed: tuple[int, int],
     ) -> None:
         self._every_s, self._length_s, self._left = 60 / per_minute, length_s, left
         self._all, self._random = all_tracks, np.random.default_rng(seed)
@@ -110,7 +117,10 @@ class Dropouts:
             return None
         gains, t_s = np.ones((count, tracks)), first_s + np.arange(count) / rate_hz
         for dropout in near:
-            inside = np.minimum(t_s - dropout.start_s, dropout.start_s + dropout.length_s - t_s) / FLANK_S
+            inside = (
+                np.minimum(t_s - dropout.start_s, dropout.start_s + dropout.length_s - t_s)
+                / FLANK_S
+            )
             curve = 1 - (1 - dropout.left) * np.clip(inside + 0.5, 0, 1)
             columns = slice(None) if dropout.track < 0 else [dropout.track % tracks]
             gains[:, columns] *= curve[:, None]

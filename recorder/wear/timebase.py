@@ -49,15 +49,23 @@ class Tones:
     phase_rad: Array
 
     @classmethod
-    def drawn(cls, rms: float, band_hz: tuple[float, float], random: np.random.Generator) -> Tones:
+    def drawn(
+        cls, rms: float, band_hz: tuple[float, float], random: np.random.Generator
+    ) -> Tones:
         """Tones of a band that have this root mean square together."""
         hz = np.geomspace(*band_hz, TONES) * random.uniform(0.95, 1.05, TONES)
         share = random.uniform(0.5, 1.5, TONES)
-        return cls(hz, rms * np.sqrt(2) * share / np.linalg.norm(share), random.uniform(0, 2 * np.pi, TONES))
+        return cls(
+            hz,
+            rms * np.sqrt(2) * share / np.linalg.norm(share),
+            random.uniform(0, 2 * np.pi, TONES),
+        )
 
     def value(self, t_s: Array) -> Array:
         """The sum at moments in s."""
-        return self.amplitude @ np.sin(2 * np.pi * self.hz[:, None] * t_s + self.phase_rad[:, None])
+        return self.amplitude @ np.sin(
+            2 * np.pi * self.hz[:, None] * t_s + self.phase_rad[:, None]
+        )
 
     def integral_s(self, t_s: Array) -> Array:
         """The sum's integral from 0 to moments in s."""
@@ -91,7 +99,9 @@ class Timebase:
 
     def places(self, first: int, count: int, rate_hz: float, tracks: int) -> Array:
         """Frames of the programme, with fractions, at frames of play (count, tracks)."""
-        knots = np.arange(first // KNOT_FRAMES, (first + count) // KNOT_FRAMES + 2) * KNOT_FRAMES
+        knots = (
+            np.arange(first // KNOT_FRAMES, (first + count) // KNOT_FRAMES + 2) * KNOT_FRAMES
+        )
         frame = np.arange(first, first + count)
         place = np.interp(frame, knots, self.programme_s(knots / rate_hz))
         lag = np.interp(frame, knots, self.lag_s(knots / rate_hz))
@@ -129,7 +139,9 @@ def _taps() -> Frames:
     """The windowed sinc at each part of a sample (parts + 1, taps)."""
     shift = np.arange(PARTS + 1)[:, None] / PARTS
     n = np.arange(-HALF_TAPS + 1, HALF_TAPS + 1) - shift
-    window = np.i0(KAISER_BETA * np.sqrt(np.clip(1 - (n / HALF_TAPS) ** 2, 0, None))) / np.i0(KAISER_BETA)
+    window = np.i0(KAISER_BETA * np.sqrt(np.clip(1 - (n / HALF_TAPS) ** 2, 0, None))) / np.i0(
+        KAISER_BETA
+    )
     taps = np.sinc(n) * window
     return np.asarray(taps / taps.sum(axis=1, keepdims=True), np.float32)
 
@@ -148,5 +160,7 @@ def _read(held, places, taps, out):  # type: ignore[no-untyped-def]
             for n in range(2 * half):
                 at = whole + n - half + 1
                 if 0 <= at < len(held):
-                    total += held[at, track] * (taps[row, n] + share * (taps[row + 1, n] - taps[row, n]))
+                    total += held[at, track] * (
+                        taps[row, n] + share * (taps[row + 1, n] - taps[row, n])
+                    )
             out[i, track] = total

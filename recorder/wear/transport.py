@@ -43,7 +43,15 @@ from morfax.recorder.wear.signal import (
     gain,
     hum,
 )
-from morfax.recorder.wear.timebase import FLUTTER_HZ, SCRAPE_HZ, WEAVE_HZ, WOW_HZ, Head, Timebase, Tones
+from morfax.recorder.wear.timebase import (
+    FLUTTER_HZ,
+    SCRAPE_HZ,
+    WEAVE_HZ,
+    WOW_HZ,
+    Head,
+    Timebase,
+    Tones,
+)
 
 BLOCK_FRAMES = 32768
 END_FRAMES = 1e-3  # rounding of a place at the very end
@@ -135,10 +143,14 @@ def age(
         with soundfile.SoundFile(source) as sound:
             return _aged(sound, source, target, wear, seed, sample, progress)
     except FileNotFoundError:
-        raise FileFault(f"cannot read {source}: there is no such file; check the name") from None
+        raise FileFault(
+            f"cannot read {source}: there is no such file; check the name"
+        ) from None
     except soundfile.SoundFileError as error:
         if not source.is_file():
-            raise FileFault(f"cannot read {source}: it is no file that is there; check the name") from error
+            raise FileFault(
+                f"cannot read {source}: it is no file that is there; check the name"
+            ) from error
         raise TapeFault(
             f"{source} is no tape: it is not a sound file that can be read; give a WAV or FLAC"
         ) from error
@@ -158,7 +170,10 @@ def _aged(
     rate_hz, total_s = wear.stamped_hz or sound.samplerate, sound.frames / sound.samplerate
     text = str(sound.comment) or _sidecar_text(source)
     with written_beside(target) as beside:
-        with _written(target), Spool(beside, rate_hz, sound.channels, kind, text, name=target) as out:
+        with (
+            _written(target),
+            Spool(beside, rate_hz, sound.channels, kind, text, name=target) as out,
+        ):
             for frames in deck.frames(_cut(sound, wear)):
                 out.put(frames)
                 if progress is not None:
@@ -179,7 +194,8 @@ class Deck:
         self._wear, self._rate_hz, self._tracks = wear, rate_hz, tracks
         bands = ((wear.wow, WOW_HZ), (wear.flutter, FLUTTER_HZ), (wear.scrape, SCRAPE_HZ))
         tones = [
-            Tones.drawn(rms, band, np.random.default_rng((seed, i))) for i, (rms, band) in enumerate(bands)
+            Tones.drawn(rms, band, np.random.default_rng((seed, i)))
+            for i, (rms, band) in enumerate(bands)
         ]
         weave = Tones.drawn(wear.weave_s, WEAVE_HZ, np.random.default_rng((seed, 3)))
         self.timebase = Timebase(wear.speed, tuple(tones), wear.skew_s, weave)
@@ -187,11 +203,23 @@ class Deck:
             np.random.default_rng((seed, 4)),
             Unevenness(wear.uneven_db, tracks, (seed, 5)),
         )
-        holes = wear.dropouts_per_min, wear.dropout_s, gain(-wear.dropout_db), wear.dropout_all, (seed, 6)
+        holes = (
+            wear.dropouts_per_min,
+            wear.dropout_s,
+            gain(-wear.dropout_db),
+            wear.dropout_all,
+            (seed, 6),
+        )
         self._dropouts = Dropouts(*holes) if wear.dropouts_per_min > 0 else None
         turn = max(round(wear.print_s * rate_hz), 1)
-        self._print = PrintThrough(gain(-wear.print_db), turn, tracks) if wear.print_db is not None else None
-        self._band = Bandwidth(wear.bandwidth_hz, rate_hz, tracks) if wear.bandwidth_hz else None
+        self._print = (
+            PrintThrough(gain(-wear.print_db), turn, tracks)
+            if wear.print_db is not None
+            else None
+        )
+        self._band = (
+            Bandwidth(wear.bandwidth_hz, rate_hz, tracks) if wear.bandwidth_hz else None
+        )
         self._head, self._came, self._went, self._peak = Head(tracks), 0, 0, 0.0
 
     @property
@@ -235,7 +263,9 @@ class Deck:
         reach, slow = (
             (self._came, 0.99) if last else (self._head.reach, 1.01)
         )  # flutter may be 1 % either way
-        gone = self.timebase.programme_s(np.array([self._went / self._rate_hz]))[0] * self._rate_hz
+        gone = (
+            self.timebase.programme_s(np.array([self._went / self._rate_hz]))[0] * self._rate_hz
+        )
         count = max(int((reach - gone) / (slow + self._wear.speed)), 0)
         if last:
             places = self.timebase.places(self._went, count + 2, self._rate_hz, self._tracks)
@@ -254,15 +284,21 @@ class Deck:
         wear, first, count = self._wear, self._went, len(frames)
         frames = frames * np.float32(gain(wear.level_db))
         if wear.uneven_db:
-            frames = (frames * self._uneven.gains(first, count, self._rate_hz)).astype(np.float32)
+            frames = (frames * self._uneven.gains(first, count, self._rate_hz)).astype(
+                np.float32
+            )
         if self._band is not None:
             frames = self._band.feed(frames)
         if wear.hum_db is not None:
-            buzz = hum(first, count, self._rate_hz, wear.hum_hz, self._peak * gain(-wear.hum_db))
+            buzz = hum(
+                first, count, self._rate_hz, wear.hum_hz, self._peak * gain(-wear.hum_db)
+            )
             frames = frames + buzz[:, None].astype(np.float32)
         if wear.noise_db is not None:
             sigma = self._peak / np.sqrt(2) * gain(-wear.noise_db)
-            frames = frames + np.float32(sigma) * self._noise.standard_normal(frames.shape, np.float32)
+            frames = frames + np.float32(sigma) * self._noise.standard_normal(
+                frames.shape, np.float32
+            )
         return self._wired(frames + np.float32(wear.dc))
 
     def _wired(self, frames: Frames) -> Frames:
@@ -320,7 +356,9 @@ def _check(wear: Wear, tracks: int) -> None:
     if not -0.9 < wear.speed < 9:
         raise ValueError(f"speed error is {wear.speed:g}; it must lie between -0.9 and 9")
     if wear.order and sorted(wear.order) != list(range(1, tracks + 1)):
-        raise ValueError(f"order is {wear.order}; it must name each of the tracks 1 to {tracks} once")
+        raise ValueError(
+            f"order is {wear.order}; it must name each of the tracks 1 to {tracks} once"
+        )
     if any(not 1 <= track <= tracks for track in wear.inverted):
         raise ValueError(f"inverted is {wear.inverted}; the tracks are 1 to {tracks}")
     if wear.stamped_hz is not None and not 0 < wear.stamped_hz < 2**31:

@@ -30,7 +30,12 @@ def test_every_loop_and_width_has_its_row(tmp_path: Path) -> None:
     ]
     for row in rows:
         rms_um, p95_um, max_um, hausdorff_um, missed = (float(word) for word in row[5:10])
-        assert 0 < rms_um < 4 and rms_um < p95_um < max_um + 1 and hausdorff_um < 20 and missed == 0
+        assert (
+            0 < rms_um < 4
+            and rms_um < p95_um < max_um + 1
+            and hausdorff_um < 20
+            and missed == 0
+        )
 
 
 def test_a_folder_without_truth_is_told(tmp_path: Path) -> None:
@@ -44,7 +49,9 @@ def test_a_drawing_on_which_no_line_can_be_begun_is_told_in_its_row(tmp_path: Pa
     truth(tmp_path / "b.csv", arc((0, 0), 5, 0, 90), arc((3, 3), 0.5))
     answer = CliRunner().invoke(table, [str(tmp_path), "--size", "1.8mm"])
     assert answer.exit_code == 0, (answer.output, answer.exception)
-    assert any("can be begun" in line or "no line" in line for line in answer.stdout.splitlines())
+    assert any(
+        "can be begun" in line or "no line" in line for line in answer.stdout.splitlines()
+    )
 
 
 def test_a_benchmark_that_there_is_not_is_one_line_with_those_that_there_are() -> None:

@@ -69,7 +69,11 @@ def test_a_flac_holds_seven_axes_and_no_more(tmp_path: FilePath) -> None:
 def test_three_axes_stay_as_they_were(tmp_path: FilePath) -> None:
     path = five_axes(("x", "y", "z"))
     write_path(path, tmp_path / "a.csv")
-    assert (tmp_path / "a.csv").read_text().startswith("t_s,x_mm,y_mm,z_mm,tool\n0.0000000,0.00000,")
+    assert (
+        (tmp_path / "a.csv")
+        .read_text()
+        .startswith("t_s,x_mm,y_mm,z_mm,tool\n0.0000000,0.00000,")
+    )
     assert read_path(tmp_path / "a.csv").axes == ("x", "y", "z")
 
 
@@ -78,7 +82,12 @@ def test_further_axes_without_times_or_z(tmp_path: FilePath) -> None:
     path = read_path(tmp_path / "a.csv", feed_mm_s=10)
     assert path.axes == ("x", "y", "z", "v")
     assert path.t_s[1] == pytest.approx(3.0)  # a move of V alone takes its time at the feed
-    assert path.positions_mm[2].tolist() == [0, 0, 2, 30]  # the tool goes up where it is, V stays
+    assert path.positions_mm[2].tolist() == [
+        0,
+        0,
+        2,
+        30,
+    ]  # the tool goes up where it is, V stays
 
 
 def test_time_must_pass_while_a_further_axis_moves(tmp_path: FilePath) -> None:
@@ -89,18 +98,27 @@ def test_time_must_pass_while_a_further_axis_moves(tmp_path: FilePath) -> None:
 
 @pytest.mark.parametrize("suffix", [".ngc", ".steps", ".cubic"])
 def test_other_media_refuse_what_they_would_lose(tmp_path: FilePath, suffix: str) -> None:
-    with pytest.raises(MotionFault, match="the motion has A, U beside X, Y, Z, which only a tape takes"):
+    with pytest.raises(
+        MotionFault, match="the motion has A, U beside X, Y, Z, which only a tape takes"
+    ):
         record_any(five_axes(), tmp_path / f"a{suffix}")
     assert not list(tmp_path.iterdir())
 
 
 def test_the_command_line_records_and_plays_them(morfax: Morfax, here: FilePath) -> None:
     write_path(five_axes(), "a.csv")
-    assert morfax("record", "a.csv", "-o", "a.wav", "--mirror", "y", "--pickup", "hall", "-q").exit_code == 0
+    assert (
+        morfax(
+            "record", "a.csv", "-o", "a.wav", "--mirror", "y", "--pickup", "hall", "-q"
+        ).exit_code
+        == 0
+    )
     answer = morfax("play", "a.wav", "-o", "b.csv", "--json", "--zero", "0,0,0,0,0.5")
     assert answer.exit_code == 0
     end = read_path("a.csv").positions_mm[-1] * [1, 1, 1, 1, 1]
-    assert answer.figures["end_place_mm"] == pytest.approx([*end[:4], end[4] + 0.5], abs=0.05 * UM)
+    assert answer.figures["end_place_mm"] == pytest.approx(
+        [*end[:4], end[4] + 0.5], abs=0.05 * UM
+    )
     assert "track_6_u" in morfax("inspect", "a.wav", "--json").figures
     assert "A, U beside X, Y, Z" in morfax("record", "a.csv", "-o", "a.ngc").fault
 

@@ -36,7 +36,9 @@ PLAYED_RMS_MM, PLAYED_MAX_MM = (
     1.5 * UM,
 )  # issue 0.5/3 um (0.07/0.8, the following error where it stops)
 CLOSED_WITHIN_MM = 20 * UM
-SKIPPED = "no folder ../shared beside the repository: its drawings and vectors are not part of it"
+SKIPPED = (
+    "no folder ../shared beside the repository: its drawings and vectors are not part of it"
+)
 
 
 @dataclass(frozen=True)
@@ -55,7 +57,9 @@ class Case:
     seed: int = 1
 
     def __str__(self) -> str:
-        return f"{self.name}-{self.dpi:g}dpi" + (f"-{self.skew_deg:g}deg" if self.skew_deg else "")
+        return f"{self.name}-{self.dpi:g}dpi" + (
+            f"-{self.skew_deg:g}deg" if self.skew_deg else ""
+        )
 
 
 def hold(found: Distances, rms_mm: float, max_mm: float) -> None:
@@ -91,12 +95,16 @@ def test_a_sample_comes_off_the_machine_as_it_was_drawn(tmp_path: FilePath, case
     assert run.ending == case.ending
     hold(distance(played, truth), case.rms_mm, case.max_mm)
     hold(distance(played, thin(run)), PLAYED_RMS_MM, PLAYED_MAX_MM)
-    assert length_mm(played) == pytest.approx(length_mm(truth), rel=0.002)  # once, nothing doubled
+    assert length_mm(played) == pytest.approx(
+        length_mm(truth), rel=0.002
+    )  # once, nothing doubled
     if case.ending == "closed":
         assert closure_mm(played) < CLOSED_WITHIN_MM
     found = deviation(drawing, played)
     assert found.rms_mm < 5 * UM  # the other measure, of the ink and not of the truth, agrees
-    assert np.ptp(played.positions_mm[:, 2]) == pytest.approx(7.0, abs=1 * UM)  # 2 above to 5 below
+    assert np.ptp(played.positions_mm[:, 2]) == pytest.approx(
+        7.0, abs=1 * UM
+    )  # 2 above to 5 below
 
 
 def test_a_drawn_program_comes_off_the_machine_in_order(tmp_path: FilePath) -> None:
@@ -109,7 +117,9 @@ def test_a_drawn_program_comes_off_the_machine_in_order(tmp_path: FilePath) -> N
     played = taped(run, tmp_path / "tape.wav")
     hold(distance(played, thin(run)), PLAYED_RMS_MM, PLAYED_MAX_MM)
     way = np.vstack([lead, plate, lead[::-1]])
-    assert length_mm(played.xy_mm) == pytest.approx(2 * length_mm(lead) + length_mm(plate), rel=0.005)  # once
+    assert length_mm(played.xy_mm) == pytest.approx(
+        2 * length_mm(lead) + length_mm(plate), rel=0.005
+    )  # once
     hold(distance(played.xy_mm, way), 15 * UM, 60 * UM)  # largest at the join, in its ink
     steps_mm, steps_s = np.hypot(*np.diff(played.xy_mm, axis=0).T), np.diff(played.t_s)
     slow = steps_mm / steps_s < 0.05  # mm/s
@@ -128,14 +138,18 @@ PARTS = [
     Case("v01_scroll_fixed.ngc", 4 * UM, 40 * UM),  # issue 4/40 um (3.1/16)
     Case("v07_wrench_plasma.ngc", 4 * UM, 40 * UM, "", (0,)),  # issue 25/250 um (2.3/22)
     Case("v13_fork_part.dxf", 4 * UM, 25 * UM, loops=(0,)),  # issue 25/250 um (2.2/12)
-    Case("v21_voron_deck.dxf", 4 * UM, 40 * UM, size_mm=100.0),  # issue 25/250 um at 200 mm (2.1/11)
+    Case(
+        "v21_voron_deck.dxf", 4 * UM, 40 * UM, size_mm=100.0
+    ),  # issue 25/250 um at 200 mm (2.1/11)
     Case("v06_dolphin.ngc", 5 * UM, 70 * UM),  # issue 60/700 um, sharp tips (2.8/22)
     Case("v11_stretching_cat.dxf", 7 * UM, 150 * UM),  # issue 60/700 um, sharp tips (3.7/93)
     Case("v04_star.ngc", 1.6 * UM, 10 * UM, dpi=600.0, scan=False),  # issue 2.5 um RMS (1.0/6)
     Case(
         "v16_spiral_open.dxf", 2.5 * UM, 15 * UM, "ended", dpi=600.0, scan=False
     ),  # issue 2.5 um RMS (2.1/6)
-    Case("v01_scroll_fixed.ngc", 2.5 * UM, 15 * UM, dpi=600.0, scan=False),  # issue 2.5 um RMS (2.3/10)
+    Case(
+        "v01_scroll_fixed.ngc", 2.5 * UM, 15 * UM, dpi=600.0, scan=False
+    ),  # issue 2.5 um RMS (2.3/10)
     Case(
         "v04_star.ngc", 4 * UM, 25 * UM, skew_deg=7.0, seed=2
     ),  # turned on the sheet, other noise: issue 4/25 um
@@ -185,7 +199,9 @@ def test_a_part_is_one_path_nothing_missed_nothing_doubled(
 
 
 @pytest.mark.parametrize("case", [PARTS[0], PARTS[3], PARTS[6]], ids=str)
-def test_a_part_is_played_as_it_was_traced(tmp_path: FilePath, render: ModuleType, case: Case) -> None:
+def test_a_part_is_played_as_it_was_traced(
+    tmp_path: FilePath, render: ModuleType, case: Case
+) -> None:
     drawing, truth = drawn(case, render, tmp_path)
     run = trace(drawing)
     playback_file = tmp_path / "part.wav"
@@ -211,7 +227,9 @@ def test_all_fifteen_lines_of_a_panel_are_one_program(
     tmp_path: FilePath, render: ModuleType, line_mm: float
 ) -> None:
     """Issue 15/200 um (4.0/26 at 0.3 mm; 3.7/22; 3.9/22), with holes of 3.2 and 4 mm."""
-    drawing, truth = drawn(Case("v18_front_panel.dxf", 6 * UM, 40 * UM), render, tmp_path, line_mm)
+    drawing, truth = drawn(
+        Case("v18_front_panel.dxf", 6 * UM, 40 * UM), render, tmp_path, line_mm
+    )
     run = trace_lines(drawing)
     assert (
         run.fault is None
@@ -232,7 +250,9 @@ def star() -> Trace:
     radius = np.where(np.arange(11) % 2, 4.5, 9.0)
     return trace(
         inked(
-            np.array([14.0, 14.0]) + radius[:, None] * np.column_stack([np.cos(angle), np.sin(angle)]), seed=1
+            np.array([14.0, 14.0])
+            + radius[:, None] * np.column_stack([np.cos(angle), np.sin(angle)]),
+            seed=1,
         )
     )
 
@@ -247,7 +267,9 @@ def worn(file: FilePath, flutter: float, noise_db: float) -> FilePath:
     t_s = np.arange(len(frames)) / rate_hz
     fluttered = interpolated(frames, (t_s + flutter * (1 - np.cos(w * t_s)) / w) * rate_hz)
     level = np.sqrt(np.mean(frames[:, 0] ** 2))
-    fluttered += np.random.default_rng(1969).normal(0, level * 10 ** (-noise_db / 20), fluttered.shape)
+    fluttered += np.random.default_rng(1969).normal(
+        0, level * 10 ** (-noise_db / 20), fluttered.shape
+    )
     out = file.with_name("worn.wav")
     with soundfile.SoundFile(out, "w", rate_hz, frames.shape[1], "PCM_16") as sound:
         sound.comment = text
@@ -273,7 +295,9 @@ def test_a_worn_tape_loses_no_cycle(tmp_path: FilePath, star: Trace) -> None:
     playback = play(worn(file, 0.005, 40.0))
     played = thin(playback)
     hold(distance(played, thin(star)), 0.3 * UM, 1.5 * UM)  # issue 1 um RMS (0.1/0.5)
-    assert playback.end_error_mm == pytest.approx((0, 0, 0), abs=1 * UM)  # a cycle lost would be 50 um
+    assert playback.end_error_mm == pytest.approx(
+        (0, 0, 0), abs=1 * UM
+    )  # a cycle lost would be 50 um
 
 
 def test_the_machine_ends_where_the_head_did(tmp_path: FilePath, star: Trace) -> None:

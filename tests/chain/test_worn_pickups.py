@@ -28,7 +28,9 @@ WORN = {
 def circle(speed_mm_s: float) -> Motion:
     """Once round at a speed: a coil's tracks grow and fall by a quarter at 75 mm/s."""
     way = (
-        positions_mm([0.0], [4 * np.pi * RADIUS_MM], speed_mm_s, Ramp(acceleration_mm_s2=500))[:, 0]
+        positions_mm([0.0], [4 * np.pi * RADIUS_MM], speed_mm_s, Ramp(acceleration_mm_s2=500))[
+            :, 0
+        ]
         / RADIUS_MM
     )
     return Motion(RADIUS_MM * np.column_stack([np.sin(way), 1 - np.cos(way), 0 * way]))

@@ -36,7 +36,9 @@ class Answer:
         """The one line of a fault, after what else was told on stderr; no traceback, ever."""
         assert self.exit_code != 0 and "Traceback" not in self.err
         lines = self.err.splitlines()
-        assert [line.startswith("morfax: ") for line in lines] == [False] * (len(lines) - 1) + [True]
+        assert [line.startswith("morfax: ") for line in lines] == [False] * (len(lines) - 1) + [
+            True
+        ]
         return lines[-1]
 
 

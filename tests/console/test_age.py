@@ -17,7 +17,17 @@ def test_a_worn_tape_is_written_and_the_same_seed_gives_the_same(
 ) -> None:
     for name in ("one.wav", "two.wav"):
         answer = morfax(
-            "age", tape_file, "-o", name, "--as", "cassette", "--speed", "-1%", "--seed", 7, "--json"
+            "age",
+            tape_file,
+            "-o",
+            name,
+            "--as",
+            "cassette",
+            "--speed",
+            "-1%",
+            "--seed",
+            7,
+            "--json",
         )
         assert answer.exit_code == 0
         assert answer.figures["duration_s"] == pytest.approx(
@@ -60,11 +70,17 @@ def test_a_fault_is_gone_on_from_by_hand(morfax: Morfax, here: Path, tape_file: 
     )
     assert morfax("age", tape_file, "-o", "holes.wav", *words).exit_code == 0
     told = morfax("play", "holes.wav", "-o", "a.csv")
-    assert told.exit_code == 6 and "last certain position" in told.fault and "--resume-at" in told.fault
+    assert (
+        told.exit_code == 6
+        and "last certain position" in told.fault
+        and "--resume-at" in told.fault
+    )
     assert morfax("play", tape_file, "--resume-at", "2s").exit_code == 2
     assert morfax("play", tape_file, "--resume-at", "99s", "--from", "1,2,3").exit_code == 2
     whole = morfax("play", tape_file, "--json").figures
-    rest = morfax("play", tape_file, "--resume-at", "0.5s", "--from", "40,30,2", "--json").figures
+    rest = morfax(
+        "play", tape_file, "--resume-at", "0.5s", "--from", "40,30,2", "--json"
+    ).figures
     assert rest["end_place_mm"] == pytest.approx(whole["end_place_mm"], abs=1e-3)
     assert rest["duration_s"] == pytest.approx(whole["duration_s"] - 0.5, abs=0.01)
 
@@ -74,7 +90,11 @@ def test_a_tape_through_a_pipe(here: Path, tape_file: Path) -> None:
         words = ["play", "-", "-o", "piped.csv", "--json"]
         code = "import sys; from morfax.console.cli import main; sys.exit(main(sys.argv[1:]))"
         answer = subprocess.run(
-            [sys.executable, "-c", code, *words], stdin=tape, capture_output=True, text=True, check=False
+            [sys.executable, "-c", code, *words],
+            stdin=tape,
+            capture_output=True,
+            text=True,
+            check=False,
         )
     assert answer.returncode == 0, answer.stderr
     assert '"end_place_mm"' in answer.stdout and (here / "piped.csv").exists()
@@ -94,10 +114,16 @@ def test_a_tape_is_mended_or_told_why_not(morfax: Morfax, here: Path, tape_file:
     assert answer.figures["mends"][0]["time_s"] == pytest.approx(2.5, abs=0.002)
     assert morfax("play", "mended.wav", "-o", "mended.csv").exit_code == 0
     told = morfax("mend", "two.wav", "-o", "other.wav")
-    assert told.exit_code == 5 and "cannot be known" in told.fault and not (here / "other.wav").exists()
+    assert (
+        told.exit_code == 5
+        and "cannot be known" in told.fault
+        and not (here / "other.wav").exists()
+    )
 
 
-def test_tracks_in_another_order_are_put_right_by_hand(morfax: Morfax, here: Path, tape_file: Path) -> None:
+def test_tracks_in_another_order_are_put_right_by_hand(
+    morfax: Morfax, here: Path, tape_file: Path
+) -> None:
     assert morfax("age", tape_file, "-o", "mixed.wav", "--order", "2,1,4,3").exit_code == 0
     answer = morfax("play", "mixed.wav", "--tracks", "2,1,4,3", "--json")
     assert answer.exit_code == 0

@@ -41,7 +41,9 @@ def music(seconds: float = 4.0, tracks: int = 4) -> np.ndarray:
             since = t_s - beat
             for note_hz in 110 * 2 ** (random.integers(0, 30, 3) / 12):
                 waves = sum(np.sin(2 * np.pi * n * note_hz * since) / n for n in range(1, 8))
-                heard[:, track] += np.where(since >= 0, np.exp(-4 * np.clip(since, 0, None)), 0) * waves
+                heard[:, track] += (
+                    np.where(since >= 0, np.exp(-4 * np.clip(since, 0, None)), 0) * waves
+                )
     return np.asarray(0.5 * heard / np.abs(heard).max(), np.float32)
 
 
@@ -65,11 +67,15 @@ def test_a_mono_tape_has_no_reference(morfax: Morfax, here: Path, frames: np.nda
     assert "has one track; a tape has at least 3: reference, X, Y" in said
 
 
-def test_a_tape_without_its_reference_cannot_be_known(morfax: Morfax, here: Path, frames: np.ndarray) -> None:
+def test_a_tape_without_its_reference_cannot_be_known(
+    morfax: Morfax, here: Path, frames: np.ndarray
+) -> None:
     said = refused(
         morfax, written(frames[:, 1:]), *BY_HAND
     )  # X, Y, Z: the first of them is taken for the reference
-    assert "the reference is on track 3" in said and "--tracks" in said  # Z, which stands longest
+    assert (
+        "the reference is on track 3" in said and "--tracks" in said
+    )  # Z, which stands longest
     stated = tape_text(here, frames)
     said = refused(morfax, written(frames[:, 1:], stated))
     assert "has 3 tracks, but its text chunk speaks of 4" in said
@@ -97,7 +103,9 @@ def test_a_tape_at_another_speed_says_which_reference_it_has(
     morfax: Morfax, here: Path, frames: np.ndarray, share: float
 ) -> None:
     at_s = np.arange(0, len(frames), share)
-    slow = np.column_stack([np.interp(at_s, np.arange(len(frames)), track) for track in frames.T])
+    slow = np.column_stack(
+        [np.interp(at_s, np.arange(len(frames)), track) for track in frames.T]
+    )
     said = refused(morfax, written(slow.astype(np.float32), tape_text(here, frames)))
     assert f"carries {6000 * share:.0f} Hz where the reference of 6000 Hz should be" in said
     assert f"--reference {6000 * share:.0f}Hz" in said
@@ -109,9 +117,14 @@ def test_a_tape_backwards_is_no_other_tape_but_the_tool_goes_up(
     """Backwards every track turns the other way, so it ends where it should: only Z, which rises, is to be
     seen.
     """
-    answer = morfax("play", written(frames[::-1].copy(), tape_text(here, frames)), "-o", "bad.csv")
+    answer = morfax(
+        "play", written(frames[::-1].copy(), tape_text(here, frames)), "-o", "bad.csv"
+    )
     assert answer.exit_code == 0 and "backwards" in answer.err
-    assert "backwards" not in morfax("play", written(frames, tape_text(here, frames)), "-o", "good.csv").err
+    assert (
+        "backwards"
+        not in morfax("play", written(frames, tape_text(here, frames)), "-o", "good.csv").err
+    )
 
 
 def refused_after_motion(morfax: Morfax, name: str) -> str:
@@ -143,21 +156,27 @@ def test_a_text_chunk_of_ten_megabytes(morfax: Morfax, here: Path, frames: np.nd
     data = Path("bad.wav").read_bytes()
     at = data.index(b"LIST")
     comment = b'{"a": "' + b"x" * 10_000_000 + b'"}'
-    info = b"INFOICMT" + len(comment).to_bytes(4, "little") + comment + b"\0" * (len(comment) % 2)
+    info = (
+        b"INFOICMT" + len(comment).to_bytes(4, "little") + comment + b"\0" * (len(comment) % 2)
+    )
     size = int.from_bytes(data[at + 4 : at + 8], "little")
     data = data[:at] + b"LIST" + len(info).to_bytes(4, "little") + info + data[at + 8 + size :]
     Path("bad.wav").write_bytes(data[:4] + (len(data) - 8).to_bytes(4, "little") + data[8:])
     assert "--reference" in refused(morfax, "bad.wav")  # libsndfile leaves such a chunk out
 
 
-def test_two_tracks_with_one_signal_are_told(morfax: Morfax, here: Path, frames: np.ndarray) -> None:
+def test_two_tracks_with_one_signal_are_told(
+    morfax: Morfax, here: Path, frames: np.ndarray
+) -> None:
     noisy = frames + np.random.default_rng(1).normal(0, 1e-3, frames.shape).astype(np.float32)
     noisy[:, 2] = noisy[:, 1]
     said = refused(morfax, written(noisy, tape_text(here, frames)))
     assert "tracks 2 (X) and 3 (Y) carry the same signal, noise and all" in said
 
 
-def test_a_track_that_becomes_noise_stops_the_machine(morfax: Morfax, here: Path, frames: np.ndarray) -> None:
+def test_a_track_that_becomes_noise_stops_the_machine(
+    morfax: Morfax, here: Path, frames: np.ndarray
+) -> None:
     from_s = round(2.0 * RATE_HZ)
     frames[from_s:, 3] = np.random.default_rng(2).normal(0, 0.35, len(frames) - from_s)
     said = refused_after_motion(morfax, written(frames, tape_text(here, frames)))
@@ -165,14 +184,17 @@ def test_a_track_that_becomes_noise_stops_the_machine(morfax: Morfax, here: Path
     assert "2.0" in said or "1.99" in said  # s
 
 
-def test_a_dropout_before_anything_is_known_says_so(morfax: Morfax, here: Path, frames: np.ndarray) -> None:
+def test_a_dropout_before_anything_is_known_says_so(
+    morfax: Morfax, here: Path, frames: np.ndarray
+) -> None:
     frames[500:1500, 1] = 0  # from 10 ms on, for 21 ms, within the 50 ms that tell the levels
     said = refused(morfax, written(frames, tape_text(here, frames)))
     assert "track 2 (X)" in said and "dropout" in said
 
 
 @pytest.mark.parametrize(
-    ("rate_hz", "reference_hz"), [(22050, 2756.25), (44100, 5512.5), (96000, 6000.0), (192000, 6000.0)]
+    ("rate_hz", "reference_hz"),
+    [(22050, 2756.25), (44100, 5512.5), (96000, 6000.0), (192000, 6000.0)],
 )
 @pytest.mark.parametrize("sample", ["16", "24", "32", "float"])
 def test_every_rate_and_kind_of_sample_is_played(
@@ -184,7 +206,9 @@ def test_every_rate_and_kind_of_sample_is_played(
     from tests.player.carriers import circle
 
     fmt = TapeFormat(
-        sample_rate_hz=rate_hz, reference_hz=reference_hz, samples_per_motion=max(8, rate_hz // 6000)
+        sample_rate_hz=rate_hz,
+        reference_hz=reference_hz,
+        samples_per_motion=max(8, rate_hz // 6000),
     )
     told = circle(3, 10)(np.arange(round(2.6 * fmt.motion_rate_hz)) / fmt.motion_rate_hz)
     record(Motion(told, fmt.motion_rate_hz), "a.wav", fmt, sample=sample)

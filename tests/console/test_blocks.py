@@ -33,13 +33,20 @@ def test_the_norm_and_the_override_change_the_time(bracket: Path, morfax: Morfax
         words: morfax("play", bracket, *words, "--json").figures["duration_s"]
         for words in [(), ("--norm", "true"), ("--override", "0.5")]
     }
-    assert took["--norm", "true"] < took[()] < took["--override", "0.5"]  # the weights make it up to 7 % slow
+    assert (
+        took["--norm", "true"] < took[()] < took["--override", "0.5"]
+    )  # the weights make it up to 7 % slow
 
 
 def test_what_is_for_another_control_is_refused(bracket: Path, morfax: Morfax) -> None:
     assert "is for tapes" in morfax("play", bracket, "--acceleration", "3000").fault
-    assert morfax("record", bracket, "-o", "bracket.wav").exit_code == 0  # played on its own control first
-    assert "is for programs of lines and arcs" in morfax("play", "bracket.wav", "--norm", "true").fault
+    assert (
+        morfax("record", bracket, "-o", "bracket.wav").exit_code == 0
+    )  # played on its own control first
+    assert (
+        "is for programs of lines and arcs"
+        in morfax("play", "bracket.wav", "--norm", "true").fault
+    )
     assert "an override of 3 is none" in morfax("play", bracket, "--override", "3").fault
 
 
@@ -50,7 +57,10 @@ def test_what_is_for_another_control_is_refused(bracket: Path, morfax: Morfax) -
         ("G1 X5 F600\nG41 X6\nM2\n", "line 2: G41 is not played"),
         ("G1 X5 F0\nM2\n", "line 1: F0 moves nothing"),
         ("G0 X0 Y0\nG2 X5 Y0 I2 F60\nM2\n", "line 2: I2 J0 is no centre of both ends"),
-        ("G0 X0\nG1 X99999 F60\nM2\n", "line 2: X goes to 99999.000 mm; the machine has ±2000.000 mm"),
+        (
+            "G0 X0\nG1 X99999 F60\nM2\n",
+            "line 2: X goes to 99999.000 mm; the machine has ±2000.000 mm",
+        ),
     ],
 )
 def test_bad_programs_move_nothing_and_leave_nothing(

@@ -47,7 +47,9 @@ def test_the_card_sets_start_passes_and_speeds(morfax: Morfax, here: Path) -> No
     assert down.max() == pytest.approx(10, rel=0.01)  # the feed
 
 
-@pytest.mark.parametrize(("depth", "levels"), [("3mm", [-2.0, -3.0]), ("5mm", [-2.0, -4.25, -5.0])])
+@pytest.mark.parametrize(
+    ("depth", "levels"), [("3mm", [-2.0, -3.0]), ("5mm", [-2.0, -4.25, -5.0])]
+)
 def test_an_option_on_the_command_line_goes_before_the_card(
     morfax: Morfax, here: Path, depth: str, levels: list[float]
 ) -> None:
@@ -71,7 +73,9 @@ def test_a_mistake_on_the_card_is_one_line_and_nothing_is_written(
 
 def test_a_card_that_is_not_there_says_so(morfax: Morfax, here: Path) -> None:
     answer = morfax("trace", CAM, "--card", "part.toml")
-    assert answer.exit_code == 8 and "cannot read the card part.toml: No such file" in answer.fault
+    assert (
+        answer.exit_code == 8 and "cannot read the card part.toml: No such file" in answer.fault
+    )
 
 
 def test_run_takes_a_card(morfax: Morfax, here: Path) -> None:
@@ -81,17 +85,24 @@ def test_run_takes_a_card(morfax: Morfax, here: Path) -> None:
     assert read_path(here / "cam" / "cam.traced.csv").positions_mm[:, 2].min() == -1.0
 
 
-def test_passes_at_a_stop_are_the_depths_of_the_line_that_begins_there(morfax: Morfax, here: Path) -> None:
+def test_passes_at_a_stop_are_the_depths_of_the_line_that_begins_there(
+    morfax: Morfax, here: Path
+) -> None:
     """The lead line's tick is stop 1: the plate is run at 1 mm and then at 2.5 mm, whatever the card asks for
     elsewhere.
     """
-    Path("part.toml").write_text('depth = "4mm"\n[[stop]]\nnumber = 1\npasses = ["1mm", "2.5mm"]\n')
-    answer = morfax("trace", SAMPLES / "program.png", "--card", "part.toml", "-o", "part.csv", "--quiet")
+    Path("part.toml").write_text(
+        'depth = "4mm"\n[[stop]]\nnumber = 1\npasses = ["1mm", "2.5mm"]\n'
+    )
+    answer = morfax(
+        "trace", SAMPLES / "program.png", "--card", "part.toml", "-o", "part.csv", "--quiet"
+    )
     assert answer.exit_code == 0, answer.err
     path = read_path("part.csv")
     assert [z_mm for z_mm in levels_mm(path.positions_mm[:, 2]) if z_mm < 0] == [-1.0, -2.5]
     first, second = (
-        path.xy_mm[np.abs(path.positions_mm[:, 2] + depth_mm) < 0.001] for depth_mm in (1.0, 2.5)
+        path.xy_mm[np.abs(path.positions_mm[:, 2] + depth_mm) < 0.001]
+        for depth_mm in (1.0, 2.5)
     )
     assert first[:, 0].min() == pytest.approx(21.5, abs=0.05)  # from the tick on
     assert second[:, 0].min() > 25  # the plate alone
@@ -101,4 +112,6 @@ def test_passes_at_a_stop_are_the_depths_of_the_line_that_begins_there(morfax: M
 def test_passes_at_a_stop_that_do_not_go_deeper_are_refused(morfax: Morfax, here: Path) -> None:
     Path("part.toml").write_text('[[stop]]\nnumber = 1\npasses = ["2mm", "1mm"]\n')
     answer = morfax("trace", SAMPLES / "program.png", "--card", "part.toml", "-o", "part.csv")
-    assert answer.exit_code == 9 and "passes[2]" in answer.fault and not Path("part.csv").exists()
+    assert (
+        answer.exit_code == 9 and "passes[2]" in answer.fault and not Path("part.csv").exists()
+    )

@@ -18,7 +18,11 @@ from morfax.console import cli
 from morfax.motion import faults
 from tests.console.conftest import Morfax
 
-MORFAX = [sys.executable, "-c", "import sys; from morfax.console.cli import main; sys.exit(main())"]
+MORFAX = [
+    sys.executable,
+    "-c",
+    "import sys; from morfax.console.cli import main; sys.exit(main())",
+]
 
 
 @pytest.mark.parametrize("verb", cli.VERBS)
@@ -44,17 +48,25 @@ def test_help_lists_the_verbs_and_every_exit_code(morfax: Morfax) -> None:
     answer = morfax("--help")
     assert all(verb in answer.out for verb in cli.VERBS)
     kinds = [
-        kind for kind in vars(faults).values() if isinstance(kind, type) and issubclass(kind, faults.Fault)
+        kind
+        for kind in vars(faults).values()
+        if isinstance(kind, type) and issubclass(kind, faults.Fault)
     ]
     codes = {kind.exit_code for kind in kinds} | {0, 2, 70, 130}
-    listed = {int(line.split()[0]) for line in cli.EXIT_CODES.splitlines() if line.strip()[:1].isdigit()}
+    listed = {
+        int(line.split()[0])
+        for line in cli.EXIT_CODES.splitlines()
+        if line.strip()[:1].isdigit()
+    }
     assert listed == codes
 
 
 def test_help_is_quick_because_it_loads_none_of_the_machines() -> None:
     check = "import sys; from morfax.console.cli import main; main(['--help']); print([m for m in sys.modules if m in %r])"
     heavy = ["numpy", "numba", "scipy", "cv2", "soundfile", "matplotlib", "rich", "PIL"]
-    done = subprocess.run([sys.executable, "-c", check % heavy], capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", check % heavy], capture_output=True, text=True, check=True
+    )
     assert done.stdout.splitlines()[-1] == "[]"
 
 
@@ -74,20 +86,29 @@ def test_help_is_quick_because_it_loads_none_of_the_machines() -> None:
         ["trace", "a.png", "--clearance", "0.05mm"],  # in the work, as a path file has it
         ["trace", "a.png", "--dpi", "-300"],
         ["trace", "a.png", "--start", "1e300,1"],
-        ["trace", "a.png", "--cutter", "40m"],  # whose corners would be arcs of billions of places
+        [
+            "trace",
+            "a.png",
+            "--cutter",
+            "40m",
+        ],  # whose corners would be arcs of billions of places
         ["record", "a.csv", "--scale", "inf"],
         ["record", "a.csv", "--feed", "1e-9mm/s"],  # for which no disk is large enough
         ["compare", "a.csv"],
         ["compare", "a.csv", "b.csv", "--tolerance", "soon"],
     ],
 )
-def test_wrong_use_ends_with_2_and_one_line_that_says_where_help_is(morfax: Morfax, words: list[str]) -> None:
+def test_wrong_use_ends_with_2_and_one_line_that_says_where_help_is(
+    morfax: Morfax, words: list[str]
+) -> None:
     answer = morfax(*words)
     assert answer.exit_code == 2 and answer.out == ""
     assert answer.fault.endswith("--help") and len(answer.err.splitlines()) == 1
 
 
-def test_a_mistake_in_morfax_is_one_line_too(morfax: Morfax, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_mistake_in_morfax_is_one_line_too(
+    morfax: Morfax, monkeypatch: pytest.MonkeyPatch
+) -> None:
     def broken(ctx: click.Context, name: str) -> None:
         raise RuntimeError("two\nlines")
 
@@ -97,7 +118,9 @@ def test_a_mistake_in_morfax_is_one_line_too(morfax: Morfax, monkeypatch: pytest
     assert "RuntimeError: two lines" in answer.fault
 
 
-def test_a_lack_of_memory_says_what_to_do(morfax: Morfax, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_lack_of_memory_says_what_to_do(
+    morfax: Morfax, monkeypatch: pytest.MonkeyPatch
+) -> None:
     def too_large(ctx: click.Context, name: str) -> None:
         raise MemoryError
 
@@ -113,10 +136,17 @@ def test_ctrl_c_or_being_asked_to_end_stops_the_work_and_leaves_no_half_file(
     """A pipe that nobody writes to holds the command at the reading of its path file."""
     os.mkfifo(tmp_path / "never.csv")
     command = [*MORFAX, "record", "never.csv", "-o", "half.wav"]
-    heeded = partial(signal.signal, number, signal.SIG_DFL)  # a shell has its background jobs ignore Ctrl-C
+    heeded = partial(
+        signal.signal, number, signal.SIG_DFL
+    )  # a shell has its background jobs ignore Ctrl-C
     with (
         subprocess.Popen(
-            command, cwd=tmp_path, stderr=subprocess.PIPE, text=True, env=_with_house(), preexec_fn=heeded
+            command,
+            cwd=tmp_path,
+            stderr=subprocess.PIPE,
+            text=True,
+            env=_with_house(),
+            preexec_fn=heeded,
         ) as process,
         (tmp_path / "never.csv").open("w"),  # opens when the command does
     ):

@@ -19,7 +19,9 @@ def aside(here: Path, path_file: Path) -> Path:
     """The path, 0.1 mm further right, in the current folder."""
     rows = np.loadtxt(path_file, delimiter=",", skiprows=1)
     rows[:, 1] += 0.1
-    np.savetxt("aside.csv", rows, delimiter=",", header="t_s,x_mm,y_mm,z_mm", comments="", fmt="%.6f")
+    np.savetxt(
+        "aside.csv", rows, delimiter=",", header="t_s,x_mm,y_mm,z_mm", comments="", fmt="%.6f"
+    )
     return here / "aside.csv"
 
 
@@ -49,7 +51,9 @@ def test_beyond_the_tolerance_the_exit_code_is_1(
     assert "largest" in answer.out and answer.err == ""
 
 
-def test_a_tape_is_played_for_the_comparison(morfax: Morfax, path_file: Path, tape_file: Path) -> None:
+def test_a_tape_is_played_for_the_comparison(
+    morfax: Morfax, path_file: Path, tape_file: Path
+) -> None:
     answer = morfax("compare", tape_file, path_file, "--tolerance", "3um", "--json")
     assert answer.exit_code == 0
     assert answer.figures["a"] == str(tape_file)
@@ -65,12 +69,16 @@ def test_two_drawings_are_wrong_use(morfax: Morfax) -> None:
     assert answer.exit_code == 2 and "both drawings" in answer.fault
 
 
-def test_a_kind_is_read_off_the_content_before_the_name(morfax: Morfax, here: Path, tape_file: Path) -> None:
+def test_a_kind_is_read_off_the_content_before_the_name(
+    morfax: Morfax, here: Path, tape_file: Path
+) -> None:
     (here / "tape.csv").write_bytes(tape_file.read_bytes())
     assert morfax("compare", "tape.csv", tape_file, "--tolerance", "1um").exit_code == 0
 
 
-def test_a_path_that_only_crosses_the_ink_is_no_path_of_that_drawing(morfax: Morfax, here: Path) -> None:
+def test_a_path_that_only_crosses_the_ink_is_no_path_of_that_drawing(
+    morfax: Morfax, here: Path
+) -> None:
     (here / "across.csv").write_text("x,y\n5,60\n85,61\n")
     answer = morfax("compare", SAMPLES / "cam.png", "across.csv", "--tolerance", "1mm")
     assert answer.exit_code == 7 and "scale" in answer.fault
@@ -84,7 +92,14 @@ def test_a_path_from_another_zero_is_compared_where_it_was_drawn(
     path = read_path(here / "cam.csv")
     write_path(Placement(origin_mm=(10.0, 0.0)).path(path), here / "moved.csv")
     answer = morfax(
-        "compare", SAMPLES / "cam.png", "moved.csv", "--origin", origin, "--tolerance", "50um", "--json"
+        "compare",
+        SAMPLES / "cam.png",
+        "moved.csv",
+        "--origin",
+        origin,
+        "--tolerance",
+        "50um",
+        "--json",
     )
     assert answer.exit_code == exit_code
 
@@ -94,6 +109,11 @@ def test_an_origin_without_a_drawing_is_refused(morfax: Morfax, path_file: Path)
     assert answer.exit_code == 2 and "--origin is a place on a drawing" in answer.fault
 
 
-def test_a_reference_point_that_is_not_drawn_is_a_fault(morfax: Morfax, path_file: Path) -> None:
+def test_a_reference_point_that_is_not_drawn_is_a_fault(
+    morfax: Morfax, path_file: Path
+) -> None:
     answer = morfax("compare", SAMPLES / "cam.png", path_file, "--origin", "reference")
-    assert answer.exit_code == 4 and "there is no small cross or ring; give its place" in answer.fault
+    assert (
+        answer.exit_code == 4
+        and "there is no small cross or ring; give its place" in answer.fault
+    )

@@ -13,7 +13,15 @@ def test_what_the_cutter_leaves_is_listed_and_the_edge_is_compared_with_the_draw
     morfax: Morfax, here: Path
 ) -> None:
     answer = morfax(
-        "trace", SAMPLES / "gear.png", "--cutter", "3mm", "-o", "gear.csv", "--picture", "gear.png", "--json"
+        "trace",
+        SAMPLES / "gear.png",
+        "--cutter",
+        "3mm",
+        "-o",
+        "gear.csv",
+        "--picture",
+        "gear.png",
+        "--json",
     )
     assert answer.exit_code == 0 and (here / "gear.png").exists()
     assert answer.figures["cutter_diameter_mm"] == 3 and answer.figures["side"] == "outside"
@@ -33,12 +41,23 @@ def test_the_table_of_what_is_left_has_places(morfax: Morfax, here: Path) -> Non
     assert len(row.split(" mm")) == 4  # place, what is left, stretch
 
 
-def test_a_line_too_small_for_the_cutter_is_told_of_and_listed(morfax: Morfax, here: Path) -> None:
-    options = (SAMPLES / "bracket.png", "--lines", "all", "-o", "bracket.csv", "--json", "--cutter")
+def test_a_line_too_small_for_the_cutter_is_told_of_and_listed(
+    morfax: Morfax, here: Path
+) -> None:
+    options = (
+        SAMPLES / "bracket.png",
+        "--lines",
+        "all",
+        "-o",
+        "bracket.csv",
+        "--json",
+        "--cutter",
+    )
     answer = morfax("trace", *options, "12mm", "--picture", "bracket.png")
     assert answer.exit_code == 0 and (here / "bracket.png").exists()
     assert (
-        "line 2 is left out: a cutter of 12 mm has no room beside it, one of up to 7.95 mm has" in answer.err
+        "line 2 is left out: a cutter of 12 mm has no room beside it, one of up to 7.95 mm has"
+        in answer.err
     )
     assert [line["line"] for line in answer.figures["lines"]] == [1]
     (out,) = answer.figures["lines_left_out"]
@@ -48,7 +67,10 @@ def test_a_line_too_small_for_the_cutter_is_told_of_and_listed(morfax: Morfax, h
         and out["room_mm"] == pytest.approx(8, abs=0.02)
     )
     smaller = morfax("trace", *options, "7.95mm")
-    assert smaller.exit_code == 0 and [line["line"] for line in smaller.figures["lines"]] == [2, 1]
+    assert smaller.exit_code == 0 and [line["line"] for line in smaller.figures["lines"]] == [
+        2,
+        1,
+    ]
     assert "lines_left_out" not in smaller.figures and "left out" not in smaller.err
 
 
@@ -65,23 +87,31 @@ def test_a_drawn_program_is_traced_with_a_cutter_and_begins_and_ends_on_its_refe
         "-o",
         "beside.wav",
     )
-    answer = morfax("trace", SAMPLES / "program.png", *options, "--path", "beside.csv", "--json")
+    answer = morfax(
+        "trace", SAMPLES / "program.png", *options, "--path", "beside.csv", "--json"
+    )
     assert answer.exit_code == 0
     places = [stop["stop_place_mm"] for stop in answer.figures["stops"]]
-    assert places == [pytest.approx(place, abs=0.05) for place in ((21.5, 23), (48.5, 27), (73.5, 21))]
+    assert places == [
+        pytest.approx(place, abs=0.05) for place in ((21.5, 23), (48.5, 27), (73.5, 21))
+    ]
     played = morfax("play", "beside.wav", "-o", "played.csv", "--json")
     compared = morfax("compare", "played.csv", "beside.csv", "--json").figures
     assert played.exit_code == 0 and compared["a_to_b"]["max_mm"] < 0.003
     rows = (here / "beside.csv").read_text().splitlines()
     for row in (rows[-1], next(row for row in rows if row[:1].isdigit())):
-        assert [float(number) for number in row.split(",")[1:3]] == pytest.approx([0, 0], abs=1e-4)
+        assert [float(number) for number in row.split(",")[1:3]] == pytest.approx(
+            [0, 0], abs=1e-4
+        )
 
 
 def test_run_of_a_drawn_program_with_a_cutter_covers_its_lead_and_guide_lines(
     morfax: Morfax, here: Path
 ) -> None:
     options = ("--card", SAMPLES / "program.toml", "--cutter", "6mm", "--side", "inside")
-    figures = morfax("run", SAMPLES / "program.png", *options, "-o", "program", "--json").figures
+    figures = morfax(
+        "run", SAMPLES / "program.png", *options, "-o", "program", "--json"
+    ).figures
     assert figures["played_to_ink"]["rms_mm"] < 0.004
     assert (
         figures["missed_ink_mm"] < 14
@@ -89,14 +119,20 @@ def test_run_of_a_drawn_program_with_a_cutter_covers_its_lead_and_guide_lines(
 
 
 def test_run_takes_a_cutter(morfax: Morfax, here: Path) -> None:
-    figures = morfax("run", SAMPLES / "cam.png", "--cutter", "6mm", "-o", "cam", "--json").figures
+    figures = morfax(
+        "run", SAMPLES / "cam.png", "--cutter", "6mm", "-o", "cam", "--json"
+    ).figures
     assert figures["played_to_ink"]["rms_mm"] < 0.004 and figures["missed_ink_mm"] == 0
 
 
 @pytest.mark.parametrize(
     ("options", "exit_code", "said"),
     [
-        (("--side", "left"), 2, "--side is the side of the cutter; give its diameter with --cutter"),
+        (
+            ("--side", "left"),
+            2,
+            "--side is the side of the cutter; give its diameter with --cutter",
+        ),
         (
             ("--cutter", "300mm", "--side", "inside"),
             7,

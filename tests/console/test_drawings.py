@@ -41,17 +41,27 @@ def small() -> np.ndarray:
     return grey
 
 
-def test_a_drawing_becomes_a_tape_and_the_tape_the_drawn_contour(morfax: Morfax, here: Path) -> None:
+def test_a_drawing_becomes_a_tape_and_the_tape_the_drawn_contour(
+    morfax: Morfax, here: Path
+) -> None:
     traced = morfax("trace", CAM, "--path", "traced.csv", "--json")
     assert (
-        traced.exit_code == 0 and traced.figures["ending"] == "closed" and traced.figures["tape"] == "cam.wav"
+        traced.exit_code == 0
+        and traced.figures["ending"] == "closed"
+        and traced.figures["tape"] == "cam.wav"
     )
     assert morfax("play", "cam.wav", "-o", "played.csv").exit_code == 0
-    path, played, truth = read_path("traced.csv"), read_path("played.csv"), read_path(SAMPLES / "cam.csv")
+    path, played, truth = (
+        read_path("traced.csv"),
+        read_path("played.csv"),
+        read_path(SAMPLES / "cam.csv"),
+    )
     assert distance(path, truth).hausdorff_mm < TRACED_WITHIN_MM
     assert distance(played, path).hausdorff_mm < PLAYED_WITHIN_MM
     assert closure_mm(path) < CLOSED_WITHIN_MM
-    answer = morfax("compare", CAM, "cam.wav", "--tolerance", "25um", "-o", "error.png", "--json")
+    answer = morfax(
+        "compare", CAM, "cam.wav", "--tolerance", "25um", "-o", "error.png", "--json"
+    )
     assert answer.exit_code == 0 and answer.figures["missed_ink_share"] < 0.01
     assert answer.figures["path_to_ink"]["rms_mm"] < 4 * UM
     assert (here / "error.png").exists()
@@ -65,7 +75,9 @@ def test_a_gap_too_wide_to_cross_is_told_with_the_option_that_crosses_it(
     Image.fromarray(grey).save("ring.png", dpi=DPI)
     answer = morfax("trace", "ring.png", "-o", "ring.csv", "--json")
     assert answer.exit_code == 0 and answer.figures["ending"] == "ended"
-    said = re.search(r"the line is open, but ends .* --gap ([0-9.]+mm) takes the head across", answer.err)
+    said = re.search(
+        r"the line is open, but ends .* --gap ([0-9.]+mm) takes the head across", answer.err
+    )
     assert said is not None
     closed = morfax("trace", "ring.png", "-o", "ring.csv", "--json", "--gap", said[1])
     assert closed.figures["ending"] == "closed" and "is open" not in closed.err
@@ -80,35 +92,49 @@ def test_the_first_dash_of_a_dashed_line_is_told_to_be_one_with_the_option_that_
     Image.fromarray(grey).save("dashes.png", dpi=DPI)
     answer = morfax("trace", "dashes.png", "-o", "dashes.csv", "--json")
     said = re.search(
-        r"the line ends at .* goes on straight ahead .* --gap ([0-9.]+mm) takes the head across", answer.err
+        r"the line ends at .* goes on straight ahead .* --gap ([0-9.]+mm) takes the head across",
+        answer.err,
     )
     assert answer.exit_code == 0 and said is not None and answer.figures["length_mm"] < 4
     whole = morfax("trace", "dashes.png", "-o", "dashes.csv", "--json", "--gap", said[1])
-    assert whole.figures["length_mm"] == pytest.approx((584 - 7) * 25.4 / 300, abs=0.1) and whole.err == ""
+    assert (
+        whole.figures["length_mm"] == pytest.approx((584 - 7) * 25.4 / 300, abs=0.1)
+        and whole.err == ""
+    )
 
 
-def test_no_gap_is_gone_across_if_none_is_allowed(morfax: Morfax, here: Path, small: np.ndarray) -> None:
+def test_no_gap_is_gone_across_if_none_is_allowed(
+    morfax: Morfax, here: Path, small: np.ndarray
+) -> None:
     grey = small.copy()
     grey[:120, 150:157] = 240  # 0.6 mm
     Image.fromarray(grey).save("ring.png", dpi=DPI)
     for gap, ending in (("0.7mm", "closed"), ("0", "ended")):
         assert (
-            morfax("trace", "ring.png", "-o", "ring.csv", "--json", "--gap", gap).figures["ending"] == ending
+            morfax("trace", "ring.png", "-o", "ring.csv", "--json", "--gap", gap).figures[
+                "ending"
+            ]
+            == ending
         )
 
 
-def test_one_line_of_several_that_cross_is_told_to_be_one_of_several(morfax: Morfax, here: Path) -> None:
+def test_one_line_of_several_that_cross_is_told_to_be_one_of_several(
+    morfax: Morfax, here: Path
+) -> None:
     grey = np.full((400, 700), 240, np.uint8)
     for x in (200, 350, 500):
         cv2.circle(grey, (x, 200), 120, 30, 6, cv2.LINE_AA)
     Image.fromarray(grey).save("rings.png", dpi=DPI)
     one = morfax("trace", "rings.png", "-o", "rings.csv")
     said = re.search(
-        r"about (\d+) mm of ink that is joined to the line was not followed: --lines all", one.err
+        r"about (\d+) mm of ink that is joined to the line was not followed: --lines all",
+        one.err,
     )
     assert said is not None and int(said[1]) == pytest.approx(2 * 2 * np.pi * 10.2, rel=0.1)
     every = morfax("trace", "rings.png", "-o", "rings.csv", "--lines", "all", "--json")
-    assert [line["ending"] for line in every.figures["lines"]] == ["closed"] * 3 and every.err == ""
+    assert [line["ending"] for line in every.figures["lines"]] == [
+        "closed"
+    ] * 3 and every.err == ""
 
 
 def test_run_goes_the_whole_way_and_tells_all_three(morfax: Morfax, here: Path) -> None:
@@ -123,7 +149,9 @@ def test_run_goes_the_whole_way_and_tells_all_three(morfax: Morfax, here: Path) 
 
 def test_another_line_is_traced_from_its_start(morfax: Morfax, here: Path) -> None:
     """The bracket's slot, 8 x 30 mm, instead of its outline."""
-    answer = morfax("trace", SAMPLES / "bracket.png", "--start", "48,26", "-o", "slot.csv", "--json")
+    answer = morfax(
+        "trace", SAMPLES / "bracket.png", "--start", "48,26", "-o", "slot.csv", "--json"
+    )
     assert answer.exit_code == 0 and answer.figures["ending"] == "closed"
     assert answer.figures["length_mm"] == pytest.approx(2 * 22 + 8 * np.pi, rel=0.005)
 
@@ -134,15 +162,22 @@ def test_all_lines_are_one_program_listed_and_numbered(morfax: Morfax, here: Pat
     answer = morfax(*call, "--picture", "lines.svg", "--json")
     assert answer.exit_code == 0 and answer.figures["patches_left_out"] == 0
     slot, outline = answer.figures["lines"]
-    assert (slot["line"], outline["line"]) == (2, 1) and slot["ending"] == outline["ending"] == "closed"
-    assert answer.figures["length_mm"] == pytest.approx(slot["length_mm"] + outline["length_mm"], abs=1e-3)
+    assert (slot["line"], outline["line"]) == (2, 1) and slot["ending"] == outline[
+        "ending"
+    ] == "closed"
+    assert answer.figures["length_mm"] == pytest.approx(
+        slot["length_mm"] + outline["length_mm"], abs=1e-3
+    )
     assert len(read_path("bracket.csv").runs()) == 2
     from_slot = np.subtract(slot["start_place_mm"], outline["start_place_mm"])
     assert answer.figures["idle_mm"] == pytest.approx(np.hypot(*from_slot), abs=0.1)
     assert Path("lines.svg").read_text().count("<!-- 2 -->") == 1  # the axes count in tens
     rows = morfax(*call).out.splitlines()[-3:]
     assert rows[0].split() == ["ending", "length", "line", "width", "start"]
-    assert [row.split()[:3] for row in rows[1:]] == [["line", "2", "closed"], ["line", "1", "closed"]]
+    assert [row.split()[:3] for row in rows[1:]] == [
+        ["line", "2", "closed"],
+        ["line", "1", "closed"],
+    ]
 
 
 def test_run_plays_all_lines_off_one_tape(morfax: Morfax, here: Path) -> None:
@@ -169,16 +204,23 @@ def test_a_lost_line_among_several_leaves_the_others_cut(morfax: Morfax, here: P
     cv2.rectangle(grey, (600, 330), (1190, 370), 0, -1)
     cv2.circle(grey, (200, 150), 100, 0, 6, cv2.LINE_AA)
     Image.fromarray(grey).save("bar.png", dpi=DPI)
-    answer = morfax("trace", "bar.png", "--lines", "all", "--line-width", "0.5mm", "-o", "bar.csv", "--json")
+    answer = morfax(
+        "trace", "bar.png", "--lines", "all", "--line-width", "0.5mm", "-o", "bar.csv", "--json"
+    )
     assert answer.exit_code == 4 and answer.figures["incomplete"] is True
     endings = {line["line"]: line["ending"] for line in answer.figures["lines"]}
     (lost,) = (number for number, ending in endings.items() if ending == "lost")
     assert sorted(endings.values()) == ["closed", "lost"]
-    assert f"line {lost} of 2 is incomplete, the others are cut" in answer.fault and "heading" in answer.fault
+    assert (
+        f"line {lost} of 2 is incomplete, the others are cut" in answer.fault
+        and "heading" in answer.fault
+    )
     assert len(read_path("bar.incomplete.csv").runs()) == 2
 
 
-def test_a_start_with_no_line_near_it_says_how_far_the_nearest_is(morfax: Morfax, here: Path) -> None:
+def test_a_start_with_no_line_near_it_says_how_far_the_nearest_is(
+    morfax: Morfax, here: Path
+) -> None:
     answer = morfax("trace", CAM, "--start", "45,45")
     assert answer.exit_code == 4 and "mm" in answer.fault
     assert list(here.iterdir()) == []
@@ -188,14 +230,18 @@ def test_a_start_with_no_line_near_it_says_how_far_the_nearest_is(morfax: Morfax
     assert [file.name for file in (here / "results").iterdir()] == ["cam.incomplete.png"]
 
 
-def test_a_lost_line_keeps_what_was_traced_marked_incomplete(morfax: Morfax, here: Path) -> None:
+def test_a_lost_line_keeps_what_was_traced_marked_incomplete(
+    morfax: Morfax, here: Path
+) -> None:
     """A line into a bar as broad as ten lines, which is no line to follow."""
     grey = np.full((500, 1200), 255, np.uint8)
     cv2.line(grey, (50, 250), (1100, 250), 0, 6)
     cv2.rectangle(grey, (600, 230), (1190, 270), 0, -1)
     Image.fromarray(grey).save("bar.png", dpi=DPI)
     head = ("--start", "20,21", "--line-width", "0.5mm")
-    answer = morfax("trace", "bar.png", *head, "--path", "bar.csv", "--picture", "seen.png", "--json")
+    answer = morfax(
+        "trace", "bar.png", *head, "--path", "bar.csv", "--picture", "seen.png", "--json"
+    )
     assert answer.exit_code == 4 and "heading" in answer.fault
     assert answer.figures["ending"] == "lost" and answer.figures["incomplete"] is True
     kept = {"bar.incomplete.wav", "bar.incomplete.csv", "seen.incomplete.png"}
@@ -204,7 +250,9 @@ def test_a_lost_line_keeps_what_was_traced_marked_incomplete(morfax: Morfax, her
     assert morfax("play", "bar.incomplete.wav").exit_code == 0
 
 
-def test_the_drawing_s_name_is_never_written_over(morfax: Morfax, here: Path, small: np.ndarray) -> None:
+def test_the_drawing_s_name_is_never_written_over(
+    morfax: Morfax, here: Path, small: np.ndarray
+) -> None:
     Image.fromarray(small).save("part.png", dpi=DPI)
     before = (here / "part.png").read_bytes()
     assert morfax("run", "part.png", "-o", ".").exit_code == 8
@@ -214,15 +262,21 @@ def test_the_drawing_s_name_is_never_written_over(morfax: Morfax, here: Path, sm
 
 
 @pytest.mark.parametrize("kind", ["1", "I;16", "LA", "RGBA", "CMYK", "P"])
-def test_every_kind_of_image_can_be_traced(morfax: Morfax, here: Path, small: np.ndarray, kind: str) -> None:
+def test_every_kind_of_image_can_be_traced(
+    morfax: Morfax, here: Path, small: np.ndarray, kind: str
+) -> None:
     grey = Image.fromarray(small)
-    image = Image.fromarray(small.astype(np.uint16) * 257) if kind == "I;16" else grey.convert(kind)
+    image = (
+        Image.fromarray(small.astype(np.uint16) * 257) if kind == "I;16" else grey.convert(kind)
+    )
     image.save("part.tif", dpi=DPI)
     answer = morfax("trace", "part.tif", "-o", "part.csv", "--json")
     assert answer.exit_code == 0 and answer.figures["ending"] == "closed"
 
 
-def test_an_image_without_a_resolution_asks_for_one(morfax: Morfax, here: Path, small: np.ndarray) -> None:
+def test_an_image_without_a_resolution_asks_for_one(
+    morfax: Morfax, here: Path, small: np.ndarray
+) -> None:
     Image.fromarray(small).save("photo.png")
     answer = morfax("trace", "photo.png")
     assert answer.exit_code == 3 and "--dpi" in answer.fault and "--width" in answer.fault
@@ -292,7 +346,9 @@ def test_the_defaults_of_the_command_line_are_those_of_the_tracer() -> None:
     """They are stated twice, since --help shall not wait for the tracer."""
     given = command.make_context("trace", ["a.png"]).params
     settings, work = Settings(), Work()
-    assert Head(**{name: given[name] for name in Head.__dataclass_fields__ if name in given}) == Head(
+    assert Head(
+        **{name: given[name] for name in Head.__dataclass_fields__ if name in given}
+    ) == Head(
         start_mm=None,
         speed_mm_s=settings.speed_mm_s,
         depth_mm=work.depth_mm,

@@ -60,7 +60,8 @@ def test_a_filled_shape_without_edge_is_told(morfax: Morfax, here: Path) -> None
     radii = np.where(np.arange(10) % 2, 6.0, 14.0)
     angles = np.arange(10) * np.pi / 5
     star = filled(
-        here / "star.png", 16.5 + radii[:, None] * np.column_stack([np.cos(angles), np.sin(angles)])
+        here / "star.png",
+        16.5 + radii[:, None] * np.column_stack([np.cos(angles), np.sin(angles)]),
     )
     followed = morfax("trace", star, "-o", "rim.csv")
     assert followed.exit_code == 0 and "--edge follows its outline" in followed.err

@@ -22,7 +22,9 @@ from tests.console.conftest import SAMPLES, Morfax
         ["run", "missing.png", "-o", "results"],
     ],
 )
-def test_a_missing_file_is_told_by_its_name(morfax: Morfax, here: Path, words: list[str]) -> None:
+def test_a_missing_file_is_told_by_its_name(
+    morfax: Morfax, here: Path, words: list[str]
+) -> None:
     answer = morfax(*words)
     assert answer.exit_code == 8 and "missing." in answer.fault
     assert list(here.iterdir()) == []
@@ -37,7 +39,9 @@ def test_an_output_that_cannot_be_written_is_told_before_the_work(
     assert answer.exit_code == 8 and output in answer.fault
 
 
-def test_a_result_never_goes_over_what_it_is_made_from(morfax: Morfax, here: Path, path_file: Path) -> None:
+def test_a_result_never_goes_over_what_it_is_made_from(
+    morfax: Morfax, here: Path, path_file: Path
+) -> None:
     shutil.copy(path_file, here / "a.wav")  # a path file under the name of a tape
     before = (here / "a.wav").read_bytes()
     answer = morfax("record", "a.wav", "-o", "a.wav")
@@ -83,14 +87,18 @@ def small_disk(tmp_path: Path) -> Path:
     disk.mkdir()
     try:
         subprocess.run(
-            ["mount", "-t", "tmpfs", "-o", "size=64k", "tmpfs", disk], check=True, capture_output=True
+            ["mount", "-t", "tmpfs", "-o", "size=64k", "tmpfs", disk],
+            check=True,
+            capture_output=True,
         )
     except (OSError, subprocess.CalledProcessError):
         pytest.skip("no disk can be mounted here")
     return disk
 
 
-def test_a_full_disk_is_told_and_leaves_nothing(morfax: Morfax, small_disk: Path, path_file: Path) -> None:
+def test_a_full_disk_is_told_and_leaves_nothing(
+    morfax: Morfax, small_disk: Path, path_file: Path
+) -> None:
     try:
         answer = morfax("record", path_file, "-o", small_disk / "a.wav")
         assert answer.exit_code == 8 and "full" in answer.fault

@@ -32,7 +32,13 @@ def test_every_control_tells_and_writes_how_its_axes_followed(
     assert answer.figures["following"] == ["a.csv", "a.png"]
     assert (here / "a.png").read_bytes().startswith(b"\x89PNG")
     header, *_ = (here / "a.csv").read_text().splitlines()
-    assert header.split(",")[:5] == ["t_s", "x_demand_mm", "x_actual_mm", "x_error_mm", "x_limit_mm"]
+    assert header.split(",")[:5] == [
+        "t_s",
+        "x_demand_mm",
+        "x_actual_mm",
+        "x_error_mm",
+        "x_limit_mm",
+    ]
     rows = np.loadtxt(here / "a.csv", delimiter=",", skiprows=1)
     assert rows[-1, 0] == pytest.approx(answer.figures["duration_s"], abs=0.03)
     for axis, first in (("x", 1), ("y", 5), ("z", 9)):
@@ -70,7 +76,9 @@ def test_a_fault_leaves_the_errors_up_to_it_under_a_name_that_says_so(
     morfax: Morfax, here: Path, hasty_file: Path
 ) -> None:
     assert morfax("record", hasty_file, "-o", "hasty.wav").exit_code == 0
-    answer = morfax("play", "hasty.wav", "--following", "errors.csv.png", "--following", "errors.csv")
+    answer = morfax(
+        "play", "hasty.wav", "--following", "errors.csv.png", "--following", "errors.csv"
+    )
     assert answer.exit_code == 6
     assert sorted(file.name for file in here.glob("*.incomplete*")) == [
         "errors.csv.incomplete.png",

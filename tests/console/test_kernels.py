@@ -17,7 +17,9 @@ def house(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     for package in kernels.PACKAGES:
         (tmp_path / package).mkdir()
     (tmp_path / "player" / "loop.py").write_text("@njit(cache=True)\ndef _loop(): ...\n")
-    (tmp_path / "player" / "part.py").write_text('@njit(cache=True, inline="always")\ndef _part(): ...\n')
+    (tmp_path / "player" / "part.py").write_text(
+        '@njit(cache=True, inline="always")\ndef _part(): ...\n'
+    )
     (tmp_path / "motion" / "units.py").write_text("x = 1\n")
     monkeypatch.setattr(kernels, "HOUSE", tmp_path)
     monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
@@ -40,7 +42,9 @@ def test_a_package_is_cold_until_its_kernels_are_compiled(house: Path) -> None:
 
 
 def test_a_package_is_cold_again_when_a_source_is_changed(house: Path) -> None:
-    compiled(house / "player" / "__pycache__", (house / "player" / "loop.py").stat().st_mtime - 1)
+    compiled(
+        house / "player" / "__pycache__", (house / "player" / "loop.py").stat().st_mtime - 1
+    )
     assert kernels.are_cold(("player",))
 
 
@@ -61,12 +65,16 @@ def test_the_user_s_cache_folder_serves_where_the_house_cannot_be_written(
     house: Path, tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     caches = tmp_path_factory.mktemp("caches")
-    monkeypatch.setenv("NUMBA_CACHE_DIR", "x")  # so that monkeypatch takes away what is set below
+    monkeypatch.setenv(
+        "NUMBA_CACHE_DIR", "x"
+    )  # so that monkeypatch takes away what is set below
     monkeypatch.delenv("NUMBA_CACHE_DIR")
     monkeypatch.setenv("XDG_CACHE_HOME", str(caches))
     monkeypatch.setattr(kernels, "_writable", lambda folder: house not in folder.parents)
     kernels.choose_cache()
     assert os.environ["NUMBA_CACHE_DIR"] == str(caches / "morfax")
     assert kernels.are_cold(("player",))
-    compiled(caches / "morfax" / "player_0a1b", (house / "player" / "loop.py").stat().st_mtime + 1)
+    compiled(
+        caches / "morfax" / "player_0a1b", (house / "player" / "loop.py").stat().st_mtime + 1
+    )
     assert not kernels.are_cold(("player",))

@@ -44,11 +44,17 @@ def started(words: list[str], folder: Path) -> subprocess.Popen[bytes]:
 
 def results(folder: Path) -> dict[str, bytes]:
     """What stands under a final name."""
-    return {file.name: file.read_bytes() for file in folder.iterdir() if not file.name.startswith(".")}
+    return {
+        file.name: file.read_bytes()
+        for file in folder.iterdir()
+        if not file.name.startswith(".")
+    }
 
 
 @pytest.mark.parametrize("verb", ["trace", "play", "record", "age", "mend"])
-def test_kill_9_leaves_no_half_file(tmp_path: Path, tape_file: Path, path_file: Path, verb: str) -> None:
+def test_kill_9_leaves_no_half_file(
+    tmp_path: Path, tape_file: Path, path_file: Path, verb: str
+) -> None:
     words, folder = words_of(verb, tape_file, path_file), tmp_path / "work"
     folder.mkdir()
     assert started(words, folder).wait() == 0  # kernels are compiled by now

@@ -20,16 +20,22 @@ def test_the_motors_offered_are_those_there_are() -> None:
     assert tuple(MOTORS) == play.MOTORS
 
 
-def test_an_override_runs_the_same_path_in_another_time(morfax: Morfax, here: Path, tape_file: Path) -> None:
+def test_an_override_runs_the_same_path_in_another_time(
+    morfax: Morfax, here: Path, tape_file: Path
+) -> None:
     plain = morfax("play", tape_file, "-o", "a.csv", "--json").figures
-    faster = morfax("play", tape_file, "-o", "b.csv", "--feed-override", "120%", "--json").figures
+    faster = morfax(
+        "play", tape_file, "-o", "b.csv", "--feed-override", "120%", "--json"
+    ).figures
     assert faster["duration_s"] == pytest.approx(plain["duration_s"] / 1.2, rel=1e-3)
     assert distance(read_path("a.csv"), read_path("b.csv")).hausdorff_mm < 1 * UM
 
 
 def test_a_zero_shifts_the_path(morfax: Morfax, here: Path, tape_file: Path) -> None:
     assert morfax("play", tape_file, "-o", "a.csv", "-q").exit_code == 0
-    assert morfax("play", tape_file, "-o", "b.csv", "-q", "--zero", "0.5mm,-1,20um").exit_code == 0
+    assert (
+        morfax("play", tape_file, "-o", "b.csv", "-q", "--zero", "0.5mm,-1,20um").exit_code == 0
+    )
     ends = [read_path(file).positions_mm[[0, -1]] for file in ("a.csv", "b.csv")]
     assert np.abs(ends[1] - ends[0] - [0.5, -1, 0.02]).max() < 0.1 * UM
 

@@ -27,7 +27,9 @@ THINNED_MM = 0.0005  # a path file holds 0.2 um
 
 
 def traced(morfax: Morfax, *options: object) -> Answer:
-    answer = morfax("trace", PROGRAM, "-o", "program.csv", "--force", "--json", "--quiet", *options)
+    answer = morfax(
+        "trace", PROGRAM, "-o", "program.csv", "--force", "--json", "--quiet", *options
+    )
     assert answer.exit_code == 0, answer.err
     return answer
 
@@ -47,7 +49,9 @@ def test_the_sample_program_is_one_path_with_its_stops(morfax: Morfax, here: Pat
     assert path.xy_mm[-1] == pytest.approx(path.xy_mm[0], abs=0.001)
     assert path.positions_mm[:, 2].min() == pytest.approx(-8.0, abs=THINNED_MM)  # the hole
     moving_z = np.diff(path.positions_mm[:, 2]) != 0
-    assert np.abs(np.diff(path.xy_mm, axis=0)[moving_z]).max() < THINNED_MM  # X and Y stand while Z moves
+    assert (
+        np.abs(np.diff(path.xy_mm, axis=0)[moving_z]).max() < THINNED_MM
+    )  # X and Y stand while Z moves
 
 
 def test_where_z_goes_at_a_stop_is_told_in_numbers(morfax: Morfax, here: Path) -> None:
@@ -73,11 +77,16 @@ def test_a_stop_that_is_not_there_is_told_of(morfax: Morfax, here: Path) -> None
 
 
 def test_a_turn_at_a_junction_that_is_not_there_is_told_of(morfax: Morfax, here: Path) -> None:
-    Path("card.toml").write_text('turns = ["left", "right", "straight", "left", "straight", "right"]\n')
+    Path("card.toml").write_text(
+        'turns = ["left", "right", "straight", "left", "straight", "right"]\n'
+    )
     answer = morfax("trace", PROGRAM, "-o", "program.csv", "--card", "card.toml")
     junctions = answer.out.count("junction ")
     assert answer.exit_code == 0 and junctions < 4
-    assert f"there is no junction 4 (left), 6 (right) to turn at: the head came to {junctions}" in answer.err
+    assert (
+        f"there is no junction 4 (left), 6 (right) to turn at: the head came to {junctions}"
+        in answer.err
+    )
 
 
 @pytest.mark.parametrize("round_about", ["left", "right"])
@@ -89,7 +98,10 @@ def test_a_turn_to_a_side_to_which_no_line_leads_is_told_of(
     """
     inward = "left" if round_about == "right" else "right"
     Path("in.toml").write_text(f'turns = ["{round_about}", "{inward}"]\n')
-    assert "no line leads off" not in morfax("trace", PROGRAM, "-o", "in.csv", "--card", "in.toml").err
+    assert (
+        "no line leads off"
+        not in morfax("trace", PROGRAM, "-o", "in.csv", "--card", "in.toml").err
+    )
     Path("out.toml").write_text(f'turns = ["{round_about}", "{round_about}"]\n')
     answer = morfax("trace", PROGRAM, "-o", "out.csv", "--card", "out.toml")
     assert (
@@ -109,10 +121,21 @@ def test_junctions_of_several_lines_are_counted_on_each_as_the_card_turns(
 ) -> None:
     """The head takes the card's turns on each line from the first on."""
     xy_mm, places_mm = np.zeros((6000, 2)), ((1.0, 2.0), (3.0, 4.0))
-    lines = tuple(Line(xy_mm, "closed", 0.5, 9.0, number=n, junctions_mm=places_mm) for n in (2, 1))
-    monkeypatch.setattr("morfax.tracer.program.trace_lines.trace_lines", lambda *_, **__: Trace(lines))
-    rows = morfax("trace", PROGRAM, "-o", "program.csv", "--lines", "all", "--json").figures["junctions"]
-    assert [(row["of_line"], row["junction"]) for row in rows] == [(2, 1), (2, 2), (1, 1), (1, 2)]
+    lines = tuple(
+        Line(xy_mm, "closed", 0.5, 9.0, number=n, junctions_mm=places_mm) for n in (2, 1)
+    )
+    monkeypatch.setattr(
+        "morfax.tracer.program.trace_lines.trace_lines", lambda *_, **__: Trace(lines)
+    )
+    rows = morfax("trace", PROGRAM, "-o", "program.csv", "--lines", "all", "--json").figures[
+        "junctions"
+    ]
+    assert [(row["of_line"], row["junction"]) for row in rows] == [
+        (2, 1),
+        (2, 2),
+        (1, 1),
+        (1, 2),
+    ]
 
 
 def test_origin_reference_puts_the_zero_there(morfax: Morfax, here: Path) -> None:
@@ -125,7 +148,9 @@ def test_a_reference_point_may_be_named(morfax: Morfax, here: Path) -> None:
     assert answer.figures["reference_place_mm"] == pytest.approx((8.0, 23.5))
 
 
-def test_a_named_reference_point_that_no_line_begins_at_is_told_of(morfax: Morfax, here: Path) -> None:
+def test_a_named_reference_point_that_no_line_begins_at_is_told_of(
+    morfax: Morfax, here: Path
+) -> None:
     """The drawn one is taken then, and never a guide line for the lead line."""
     answer = morfax("trace", PROGRAM, "-o", "program.csv", "--json", "--reference", "5,55")
     assert answer.figures["reference_place_mm"] == pytest.approx(REFERENCE_MM, abs=WITHIN_MM)
@@ -135,13 +160,17 @@ def test_a_named_reference_point_that_no_line_begins_at_is_told_of(morfax: Morfa
     )
 
 
-def test_a_stem_that_nothing_makes_a_lead_line_is_told_to_be_cut(morfax: Morfax, here: Path) -> None:
+def test_a_stem_that_nothing_makes_a_lead_line_is_told_to_be_cut(
+    morfax: Morfax, here: Path
+) -> None:
     grey = np.full((300, 600), 240, np.uint8)
     cv2.circle(grey, (430, 150), 100, 30, 6, cv2.LINE_AA)
     cv2.line(grey, (60, 150), (330, 150), 30, 6, cv2.LINE_AA)
     Image.fromarray(grey).save("stem.png", dpi=(300, 300))
     answer = morfax("trace", "stem.png", "-o", "stem.csv", "--json")
-    assert re.search(r"the line from 5.1,12.7 to the contour at 2[78][.0-9]+,12.7 mm is cut too", answer.err)
+    assert re.search(
+        r"the line from 5.1,12.7 to the contour at 2[78][.0-9]+,12.7 mm is cut too", answer.err
+    )
     told = morfax("trace", "stem.png", "-o", "stem.csv", "--json", "--reference", "3,12.7")
     assert "is cut too" not in told.err and told.figures["reference_place_mm"] == [3.0, 12.7]
 
@@ -165,7 +194,9 @@ def test_a_lead_line_that_goes_on_beyond_the_contour_is_told_to_be_a_guide_line(
 @pytest.mark.parametrize(
     ("direction", "positive"), [("cw", False), ("ccw", True), ("left", False), ("right", True)]
 )
-def test_the_loop_is_taken_as_asked(morfax: Morfax, here: Path, direction: str, positive: bool) -> None:
+def test_the_loop_is_taken_as_asked(
+    morfax: Morfax, here: Path, direction: str, positive: bool
+) -> None:
     traced(morfax, "--direction", direction)
     path = read_path("program.csv")
     x, y = path.xy_mm[path.tool].T
@@ -174,7 +205,11 @@ def test_the_loop_is_taken_as_asked(morfax: Morfax, here: Path, direction: str, 
 
 def test_ask_needs_a_terminal(morfax: Morfax, here: Path) -> None:
     answer = morfax("trace", PROGRAM, "-o", "program.csv", "--ask")
-    assert answer.exit_code == 2 and "--ask needs a terminal" in answer.err and not list(here.iterdir())
+    assert (
+        answer.exit_code == 2
+        and "--ask needs a terminal" in answer.err
+        and not list(here.iterdir())
+    )
 
 
 def test_at_a_terminal_every_stop_is_asked_for(
@@ -193,7 +228,9 @@ def test_at_a_terminal_every_stop_is_asked_for(
         "or nothing: to Z -5 mm" in answer.err and "or nothing: dwell 500 ms" in answer.err
     )  # at the lead line's tick
     path = read_path("program.csv")
-    assert path.positions_mm[:, 2].min() == pytest.approx(-1.0, abs=THINNED_MM)  # 3 mm down from 2 mm above
+    assert path.positions_mm[:, 2].min() == pytest.approx(
+        -1.0, abs=THINNED_MM
+    )  # 3 mm down from 2 mm above
     assert next(answers, None) is None  # and no more was asked
 
 
@@ -205,10 +242,15 @@ def test_an_answer_that_the_counters_cannot_show_is_asked_for_again(
     monkeypatch.setattr("click.prompt", lambda *words, **options: next(answers))
     answer = morfax("trace", PROGRAM, "-o", "program.csv", "--ask")
     assert answer.exit_code == 0 and next(answers, None) is None
-    assert "'up 999.99mm' cannot be set" in answer.err and "the counters cannot show 1001.99 mm" in answer.err
+    assert (
+        "'up 999.99mm' cannot be set" in answer.err
+        and "the counters cannot show 1001.99 mm" in answer.err
+    )
 
 
-def test_a_card_may_wait_for_the_button(morfax: Morfax, here: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_card_may_wait_for_the_button(
+    morfax: Morfax, here: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     Path("part.toml").write_text('restart = "manual"\n')
     refused = morfax("trace", PROGRAM, "-o", "program.csv", "--card", "part.toml")
     assert refused.exit_code == 9 and "there is no terminal" in refused.fault

@@ -39,16 +39,24 @@ def test_a_path_recorded_and_played_is_the_same_path(
     assert compared.exit_code == 0
 
 
-def test_any_program_becomes_any_other(morfax: Morfax, here: Path, path_file: Path, tape_file: Path) -> None:
-    for source, program in ((tape_file, "a.steps"), ("a.steps", "b.cubic"), ("b.cubic", "c.wav")):
-        assert morfax("record", source, "-o", program, "--tolerance", "12.5um", "--quiet").exit_code == (
-            2 if program.endswith(".wav") else 0
-        )
+def test_any_program_becomes_any_other(
+    morfax: Morfax, here: Path, path_file: Path, tape_file: Path
+) -> None:
+    for source, program in (
+        (tape_file, "a.steps"),
+        ("a.steps", "b.cubic"),
+        ("b.cubic", "c.wav"),
+    ):
+        assert morfax(
+            "record", source, "-o", program, "--tolerance", "12.5um", "--quiet"
+        ).exit_code == (2 if program.endswith(".wav") else 0)
     assert morfax("record", "b.cubic", "-o", "c.wav").exit_code == 0
     assert morfax("compare", "c.wav", path_file, "--tolerance", "50um").exit_code == 0
 
 
-def test_the_stairs_of_stepping_motors_are_no_tape(morfax: Morfax, here: Path, path_file: Path) -> None:
+def test_the_stairs_of_stepping_motors_are_no_tape(
+    morfax: Morfax, here: Path, path_file: Path
+) -> None:
     assert morfax("record", path_file, "-o", "a.steps").exit_code == 0
     answer = morfax("record", "a.steps", "-o", "a.wav")
     assert (
@@ -60,9 +68,16 @@ def test_the_stairs_of_stepping_motors_are_no_tape(morfax: Morfax, here: Path, p
 
 @pytest.mark.parametrize("suffix", WITHIN_MM)
 def test_a_drawing_is_traced_into_any_medium(morfax: Morfax, here: Path, suffix: str) -> None:
-    traced = morfax("trace", SAMPLES / "curve.png", "-o", f"part{suffix}", "--path", "part.csv", "--json")
+    traced = morfax(
+        "trace", SAMPLES / "curve.png", "-o", f"part{suffix}", "--path", "part.csv", "--json"
+    )
     assert traced.exit_code == 0 and traced.figures["program"] == f"part{suffix}"
-    assert morfax("compare", f"part{suffix}", "part.csv", "--tolerance", WITHIN_MM[suffix]).exit_code == 0
+    assert (
+        morfax(
+            "compare", f"part{suffix}", "part.csv", "--tolerance", WITHIN_MM[suffix]
+        ).exit_code
+        == 0
+    )
 
 
 def test_what_is_for_tapes_only_is_wrong_use(
@@ -102,7 +117,11 @@ def test_inspect_tells_what_is_on_a_punched_tape_and_draws_it(
 ) -> None:
     assert morfax("record", path_file, "-o", "a.steps").exit_code == 0
     figures = morfax("inspect", "a.steps", "-o", "tape.png", "--json").figures
-    assert figures["oscillator_hz"] == 10240 and figures["tool_changes"] == 2 and figures["channels"] == 8
+    assert (
+        figures["oscillator_hz"] == 10240
+        and figures["tool_changes"] == 2
+        and figures["channels"] == 8
+    )
     assert figures["x_axis"]["from_mm"] == pytest.approx(20, abs=0.01)
     with Image.open(here / "tape.png") as image:
         assert image.info["dpi"][0] == pytest.approx(6 * 25.4, rel=1e-3)
@@ -112,7 +131,9 @@ def test_inspect_tells_what_is_on_a_punched_tape_and_draws_it(
     )
 
 
-def test_inspect_tells_what_is_in_a_cubic_program(morfax: Morfax, here: Path, path_file: Path) -> None:
+def test_inspect_tells_what_is_in_a_cubic_program(
+    morfax: Morfax, here: Path, path_file: Path
+) -> None:
     assert morfax("record", path_file, "-o", "a.cubic").exit_code == 0
     figures = morfax("inspect", "a.cubic", "--json").figures
     assert figures["counts_per_mm"] == 2000 and figures["start_place_mm"][:2] == pytest.approx(
@@ -125,9 +146,9 @@ def test_holes_stand_where_their_bits_are() -> None:
     found = list(punched.holes(Program(StepFormat(), np.array([0b1000_0001, 0b100], np.uint8))))
     assert [hole.diameter_mm for hole in found] == [1.17, 1.83, 1.83, 1.17, 1.83]
     feed, first, eighth = found[:3]
-    assert first.x_mm - feed.x_mm == pytest.approx(3 * 2.54) and feed.x_mm - eighth.x_mm == pytest.approx(
-        5 * 2.54
-    )
+    assert first.x_mm - feed.x_mm == pytest.approx(
+        3 * 2.54
+    ) and feed.x_mm - eighth.x_mm == pytest.approx(5 * 2.54)
     assert found[4].x_mm - found[3].x_mm == pytest.approx(2.54) and found[
         3
     ].y_mm - feed.y_mm == pytest.approx(2.54)

@@ -23,19 +23,25 @@ FURTHEST_MM = {"wav": 3 * UM, "steps": 15 * UM, "cubic": 4 * UM, "ngc": 14 * UM}
 
 
 def test_all_systems_side_by_side(morfax: Morfax, here: Path) -> None:
-    answer = morfax("compare", SAMPLES / "curve.png", "--systems", "all", "-o", "report.html", "--json")
+    answer = morfax(
+        "compare", SAMPLES / "curve.png", "--systems", "all", "-o", "report.html", "--json"
+    )
     assert answer.exit_code == 0
     figures = answer.figures
     for suffix, furthest_mm in FURTHEST_MM.items():
         row = figures[suffix]
         assert 0 < row["from_traced_rms_mm"] < row["from_traced_max_mm"] < furthest_mm
         assert row["from_ink_rms_mm"] < figures["traced"]["from_ink_rms_mm"] + furthest_mm
-        assert row["duration_s"] > figures["length_mm"] / 12 and 0 <= row["speed_held_share"] <= 1
+        assert (
+            row["duration_s"] > figures["length_mm"] / 12 and 0 <= row["speed_held_share"] <= 1
+        )
         assert 5 < row["mean_speed_mm_s"] < 10.5
         assert systems.NAMES[suffix] in answer.err  # progress
     sizes = [figures[suffix]["bytes_per_mm"] for suffix in ("wav", "cubic", "steps", "ngc")]
     assert sizes == sorted(sizes, reverse=True)
-    assert figures["steps"]["bits_per_mm"] < 8 * figures["steps"]["bytes_per_mm"]  # the punched ones
+    assert (
+        figures["steps"]["bits_per_mm"] < 8 * figures["steps"]["bytes_per_mm"]
+    )  # the punched ones
     assert figures["steps"]["following_error_mm"] == 0 < figures["wav"]["following_error_mm"]
     report = (here / "report.html").read_text()
     assert (
@@ -46,7 +52,15 @@ def test_all_systems_side_by_side(morfax: Morfax, here: Path) -> None:
 
 
 def test_some_systems_and_the_picture_alone(morfax: Morfax, here: Path) -> None:
-    words = ("compare", SAMPLES / "curve.png", "--systems", "wav,.ngc", "-o", "all.png", "--tolerance")
+    words = (
+        "compare",
+        SAMPLES / "curve.png",
+        "--systems",
+        "wav,.ngc",
+        "-o",
+        "all.png",
+        "--tolerance",
+    )
     answer = morfax(*words, "40um")
     assert answer.exit_code == 0
     assert "Morfax 1969 (.wav)" in answer.out and "Pratt & Whitney 1967 (.ngc)" in answer.out
@@ -66,32 +80,56 @@ def test_a_system_that_refuses_says_why_and_the_others_go_on(
         return record(stream, file, **settings)
 
     monkeypatch.setattr(media, "record", refusing)
-    answer = morfax("compare", SAMPLES / "curve.png", "--systems", "steps,wav", "-o", "report.html", "--json")
-    assert answer.exit_code == MotionFault.exit_code and "the motor has come loose" in answer.fault
+    answer = morfax(
+        "compare",
+        SAMPLES / "curve.png",
+        "--systems",
+        "steps,wav",
+        "-o",
+        "report.html",
+        "--json",
+    )
+    assert (
+        answer.exit_code == MotionFault.exit_code and "the motor has come loose" in answer.fault
+    )
     assert answer.figures["steps"] == {"fault": "the motor has come loose"}
     assert answer.figures["wav"]["from_traced_max_mm"] < 3 * UM
     report = (here / "report.html").read_text()
-    assert "Superior Electric 1975 (.steps): the motor has come loose" in report and report.count("<img") == 3
+    assert (
+        "Superior Electric 1975 (.steps): the motor has come loose" in report
+        and report.count("<img") == 3
+    )
 
 
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (("cam.png", "--systems", "tape"), "there is no system 'tape'; give all, or some of wav"),
+        (
+            ("cam.png", "--systems", "tape"),
+            "there is no system 'tape'; give all, or some of wav",
+        ),
         (("cam.png", "cam.csv", "--systems", "all"), "leave B out"),
         (("cam.png",), "nothing to compare with"),
         (("cam.csv", "--systems", "all"), "no drawing"),
         (("cam.csv", "cam.csv", "--speed", "5mm/s"), "are for --systems; without it"),
         (("cam.png", "--systems", "all", "--cutter", "6mm"), "with --systems leave them out"),
-        (("cam.png", "--systems", "all", "--reference", "6kHz"), "with --systems leave them out"),
-        (("cam.csv", "cam.csv", "--cutter", "6mm"), "--cutter is for a path beside a drawing's line"),
+        (
+            ("cam.png", "--systems", "all", "--reference", "6kHz"),
+            "with --systems leave them out",
+        ),
+        (
+            ("cam.csv", "cam.csv", "--cutter", "6mm"),
+            "--cutter is for a path beside a drawing's line",
+        ),
         (("cam.png", "--systems", "all", "-o", "a.csv"), "must end in .html"),
     ],
 )
 def test_what_does_not_go_together_is_wrong_use(
     morfax: Morfax, here: Path, words: tuple[str, ...], told: str
 ) -> None:
-    answer = morfax("compare", *(SAMPLES / word if word.startswith("cam") else word for word in words))
+    answer = morfax(
+        "compare", *(SAMPLES / word if word.startswith("cam") else word for word in words)
+    )
     assert answer.exit_code == 2 and told in answer.fault and not list(here.iterdir())
 
 
@@ -106,7 +144,9 @@ def test_corners_are_found_and_a_path_that_cuts_one_is_as_far_off_as_it_cuts() -
     square = path([(0, 0), (10, 0), (10, 10), (0, 10)], [10.0] * 3)
     assert systems.corner_places(square).tolist() == [[10, 0], [10, 10]]
     cut = path([(0, 0), (9.9, 0), (10, 0.1), (10, 10), (0, 10)], [10.0] * 4)
-    assert systems._corner_error_mm(systems.corner_places(square), cut) == pytest.approx(0.1 / np.sqrt(2))
+    assert systems._corner_error_mm(systems.corner_places(square), cut) == pytest.approx(
+        0.1 / np.sqrt(2)
+    )
     straight = path([(0, 0), (5, 0), (10, 0.5)], [10.0] * 2)
     assert systems._corner_error_mm(systems.corner_places(straight), straight) is None
 

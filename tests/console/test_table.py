@@ -53,7 +53,11 @@ def test_dictionaries_inside_become_one_table() -> None:
 def test_a_place_and_a_list_of_lengths_in_a_table_read_as_such() -> None:
     """What a cutter cannot reach has a place, and a stop a list of positions of Z."""
     text = as_text(
-        {"unreached": [{"unreached": 1, "place_mm": (30.0, 12.5), "left_mm": 1.5, "z_mm": [-5.0, 2.0]}]}
+        {
+            "unreached": [
+                {"unreached": 1, "place_mm": (30.0, 12.5), "left_mm": 1.5, "z_mm": [-5.0, 2.0]}
+            ]
+        }
     )
     head, row = (line.split("  ") for line in text.splitlines())
     assert [word.strip() for word in head if word] == ["place", "left", "z"]
@@ -69,4 +73,7 @@ def test_a_line_that_is_cut_in_two_pieces_has_two_rows() -> None:
     _, *rows = as_text(
         {"lines": [{"line": 1, "length_mm": 40.0}, {"line": 1, "length_mm": 30.0}]}
     ).splitlines()
-    assert [row.split() for row in rows] == [["line", "1", "40", "mm"], ["line", "1", "30", "mm"]]
+    assert [row.split() for row in rows] == [
+        ["line", "1", "40", "mm"],
+        ["line", "1", "30", "mm"],
+    ]

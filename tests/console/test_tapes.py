@@ -75,7 +75,9 @@ def test_path_names_the_machine_s_path_as_trace_names_the_head_s(
 def test_raw_keeps_every_sample(morfax: Morfax, here: Path, tape_file: Path) -> None:
     assert morfax("play", tape_file, "-o", "raw.csv", "--raw").exit_code == 0
     seconds = soundfile.info(tape_file).duration
-    assert len((here / "raw.csv").read_text().splitlines()) - 1 == pytest.approx(seconds * 6000, abs=2)
+    assert len((here / "raw.csv").read_text().splitlines()) - 1 == pytest.approx(
+        seconds * 6000, abs=2
+    )
 
 
 def test_a_tape_without_text_plays_with_what_is_given_by_hand(
@@ -98,7 +100,9 @@ def test_inspect_tells_tracks_carriers_levels_and_travel(
     figures = morfax("inspect", tape_file, "--json").figures
     assert figures["tracks"] == 4 and figures["sample_rate_hz"] == RATE_HZ
     assert figures["reference_hz"] == 6000 and figures["cycles_per_mm"] == 20
-    reference, x, y, z = (figures[f"track_{name}"] for name in ("1_reference", "2_x", "3_y", "4_z"))
+    reference, x, y, z = (
+        figures[f"track_{name}"] for name in ("1_reference", "2_x", "3_y", "4_z")
+    )
     assert [reference["from_hz"], reference["to_hz"]] == pytest.approx(
         [6000, 6000], abs=1
     )  # a tenth of a bin
@@ -151,7 +155,15 @@ def test_a_silent_track_is_told_and_what_was_played_before_is_kept(
     frames[2 * RATE_HZ :, 1] = 0
     broken = rewritten(tape_file, frames, "broken.wav")
     answer = morfax(
-        "play", broken, "--reference", "6kHz", "--cycles-per-mm", "20", "-o", "broken.csv", "--json"
+        "play",
+        broken,
+        "--reference",
+        "6kHz",
+        "--cycles-per-mm",
+        "20",
+        "-o",
+        "broken.csv",
+        "--json",
     )
     assert answer.exit_code == 5 and "X" in answer.fault
     assert answer.figures["incomplete"] is True
@@ -166,14 +178,24 @@ def test_a_motion_too_fast_for_the_tape_is_refused(morfax: Morfax, here: Path) -
     assert [file.name for file in here.iterdir()] == ["fast.csv"]
 
 
-def test_a_jump_that_no_tape_is_read_across_is_refused_with_its_place(morfax: Morfax, here: Path) -> None:
+def test_a_jump_that_no_tape_is_read_across_is_refused_with_its_place(
+    morfax: Morfax, here: Path
+) -> None:
     (here / "jump.csv").write_text("t_s,x_mm,y_mm\n0,0,0\n1,10,0\n1.1,20,0\n2.1,30,0\n")
     answer = morfax("record", "jump.csv", "-o", "jump.wav")
-    assert answer.exit_code == 7 and "X, at 10.0" in answer.fault and "100 mm/s at once" in answer.fault
-    assert "up to 33.9 mm/s" in answer.fault and [file.name for file in here.iterdir()] == ["jump.csv"]
+    assert (
+        answer.exit_code == 7
+        and "X, at 10.0" in answer.fault
+        and "100 mm/s at once" in answer.fault
+    )
+    assert "up to 33.9 mm/s" in answer.fault and [file.name for file in here.iterdir()] == [
+        "jump.csv"
+    ]
 
 
-def test_a_start_that_the_drives_do_not_follow_is_recorded_and_told(morfax: Morfax, hasty_file: Path) -> None:
+def test_a_start_that_the_drives_do_not_follow_is_recorded_and_told(
+    morfax: Morfax, hasty_file: Path
+) -> None:
     answer = morfax("record", hasty_file, "-o", "hasty.wav")
     assert answer.exit_code == 0 and "the drive of X would lose its lock at" in answer.err
     assert morfax("play", "hasty.wav").exit_code == 6
@@ -190,7 +212,9 @@ def test_record_takes_a_path_without_times_at_the_feed(morfax: Morfax, here: Pat
     assert (here / "line.wav").exists()
 
 
-def test_a_tape_that_cannot_be_is_wrong_use(morfax: Morfax, here: Path, path_file: Path) -> None:
+def test_a_tape_that_cannot_be_is_wrong_use(
+    morfax: Morfax, here: Path, path_file: Path
+) -> None:
     """A carrier of 30 kHz has no place on a tape of 48 kHz."""
     answer = morfax("record", path_file, "-o", "high.wav", "--reference", "30kHz")
     assert answer.exit_code == 2 and "sample rate" in answer.fault

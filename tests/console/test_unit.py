@@ -17,10 +17,14 @@ def test_the_names_offered_are_those_there_are() -> None:
     assert tuple(PICK_UPS) == unit.PICK_UPS and unit.PICK_UPS[0] == DEFAULT_PICK_UP
 
 
-def test_the_default_tape_is_the_same_byte_for_byte(morfax: Morfax, here: Path, path_file: Path) -> None:
+def test_the_default_tape_is_the_same_byte_for_byte(
+    morfax: Morfax, here: Path, path_file: Path
+) -> None:
     assert morfax("record", path_file, "-o", "a.wav", "-q").exit_code == 0
     assert (
-        morfax("record", path_file, "-o", "b.wav", "-q", "--pickup", "resolver", "--turn", "360").exit_code
+        morfax(
+            "record", path_file, "-o", "b.wav", "-q", "--pickup", "resolver", "--turn", "360"
+        ).exit_code
         == 0
     )
     assert Path("a.wav").read_bytes() == Path("b.wav").read_bytes()
@@ -37,9 +41,22 @@ def test_a_pick_up_is_on_the_tape_with_its_travel_per_cycle(
 
 
 def test_mirror_turn_and_scale_of_a_path(morfax: Morfax, here: Path) -> None:
-    write_path(MotionPath(np.array([0.0, 1, 2]), np.array([[10.0, 5, 2], [14, 5, 0], [14, 7, 0]])), "l.csv")
+    write_path(
+        MotionPath(np.array([0.0, 1, 2]), np.array([[10.0, 5, 2], [14, 5, 0], [14, 7, 0]])),
+        "l.csv",
+    )
     answer = morfax(
-        "record", "l.csv", "-o", "l.wav", "--mirror", "x", "--scale", "2", "--turn", "90deg", "--json"
+        "record",
+        "l.csv",
+        "-o",
+        "l.wav",
+        "--mirror",
+        "x",
+        "--scale",
+        "2",
+        "--turn",
+        "90deg",
+        "--json",
     )
     assert "cutter must be 2 times as thick" in answer.err
     assert answer.figures["end_place_mm"] == pytest.approx([6, -3, 0], abs=1e-9)
@@ -51,12 +68,23 @@ def test_mirror_turn_and_scale_of_a_path(morfax: Morfax, here: Path) -> None:
 
 def test_a_mirrored_drawing_is_compared_as_the_head_saw_it(morfax: Morfax, here: Path) -> None:
     answer = morfax(
-        "run", SAMPLES / "cam.png", "-o", "out", "--mirror", "y", "--turn", "30deg", "-q", "--json"
+        "run",
+        SAMPLES / "cam.png",
+        "-o",
+        "out",
+        "--mirror",
+        "y",
+        "--turn",
+        "30deg",
+        "-q",
+        "--json",
     )
     assert answer.exit_code == 0
     assert answer.figures["played_to_ink"]["max_mm"] < 0.02  # as without: 0.0065
     traced, played = read_path("out/cam.traced.csv"), read_path("out/cam.played.csv")
-    assert np.abs(traced.xy_mm.min(axis=0) - played.xy_mm.min(axis=0)).max() < 0.01  # both as the machine ran
+    assert (
+        np.abs(traced.xy_mm.min(axis=0) - played.xy_mm.min(axis=0)).max() < 0.01
+    )  # both as the machine ran
     assert answer.figures["mirrored"] == "Y"
 
 
@@ -64,7 +92,10 @@ def test_a_mirrored_drawing_is_compared_as_the_head_saw_it(morfax: Morfax, here:
     ("words", "says"),
     [
         (("-o", "a.ngc", "--pickup", "coil"), "--pickup is for tapes"),
-        (("-o", "a.wav", "--pickup", "gramophone"), "'gramophone' is not one of 'resolver', 'photocell'"),
+        (
+            ("-o", "a.wav", "--pickup", "gramophone"),
+            "'gramophone' is not one of 'resolver', 'photocell'",
+        ),
         (("-o", "a.wav", "--mirror", "z"), "'z' is not one of 'x', 'y'"),
         (("-o", "a.wav", "--scale", "0"), "must be above zero"),
         (("-o", "a.wav", "--turn", "north"), "'north' is no angle; give 90deg"),

@@ -23,5 +23,9 @@ def test_the_historic_screw_as_worked_out(vectors: Callable[[str], Any]) -> None
     assert screw.mm_per_cycle == given["mm_per_cycle"]
     for row in worked["rows"]:
         speed_mm_s = row["axis_speed_mm_s"]
-        assert screw.track_hz(given["f_ref_hz"], speed_mm_s) == pytest.approx(row["tape_hz"], abs=1e-9)
-        assert speed_mm_s * screw.cycles_per_mm == pytest.approx(row["phase_rate_cycles_s"], abs=1e-9)
+        assert screw.track_hz(given["f_ref_hz"], speed_mm_s) == pytest.approx(
+            row["tape_hz"], abs=1e-9
+        )
+        assert speed_mm_s * screw.cycles_per_mm == pytest.approx(
+            row["phase_rate_cycles_s"], abs=1e-9
+        )

@@ -14,7 +14,9 @@ SAMPLE_MM = 0.01  # of both polylines
 ROUNDING_MM = 1e-9
 
 
-def circle(radius_mm: float, points: int, x_mm: float = 0.0, turn_rad: float = 0.0) -> np.ndarray:
+def circle(
+    radius_mm: float, points: int, x_mm: float = 0.0, turn_rad: float = 0.0
+) -> np.ndarray:
     angle = turn_rad + np.linspace(0, 2 * np.pi, points)
     return np.column_stack([x_mm + radius_mm * np.cos(angle), radius_mm * np.sin(angle)])
 
@@ -27,7 +29,9 @@ def resampled(run: np.ndarray, points: int) -> np.ndarray:
 
 
 def as_path(run: np.ndarray, z_mm: float = 0.0) -> Path:
-    return Path(np.arange(len(run), dtype=float), np.column_stack([run, np.full(len(run), z_mm)]))
+    return Path(
+        np.arange(len(run), dtype=float), np.column_stack([run, np.full(len(run), z_mm)])
+    )
 
 
 @settings(max_examples=30)
@@ -56,7 +60,9 @@ def test_a_shifted_circle_is_off_by_a_cosine() -> None:
     second_order_mm = shift_mm**2 / 20
     assert apart.max_mm == pytest.approx(shift_mm, abs=second_order_mm)
     assert apart.rms_mm == pytest.approx(shift_mm / np.sqrt(2), abs=second_order_mm)
-    assert apart.p95_mm == pytest.approx(shift_mm * np.sin(0.95 * np.pi / 2), abs=second_order_mm)
+    assert apart.p95_mm == pytest.approx(
+        shift_mm * np.sin(0.95 * np.pi / 2), abs=second_order_mm
+    )
 
 
 def test_what_the_path_misses_shows_on_the_way_back_only() -> None:
@@ -72,7 +78,9 @@ def test_what_the_path_misses_shows_on_the_way_back_only() -> None:
 
 def test_many_points_in_one_place_weigh_no_more_than_their_length() -> None:
     line = np.array([[0.0, 0.0], [100.0, 0.0]])
-    crowded = np.vstack([np.column_stack([np.linspace(0, 0.001, 50_000), np.full(50_000, 1.0)]), line])
+    crowded = np.vstack(
+        [np.column_stack([np.linspace(0, 0.001, 50_000), np.full(50_000, 1.0)]), line]
+    )
     assert distance(crowded, line).path_to_reference.rms_mm < 0.1 * MM
 
 
@@ -87,12 +95,16 @@ def test_a_corner_cut_is_found_at_its_apex() -> None:
 def test_nothing_bridges_two_runs() -> None:
     runs = [np.array([[0.0, 0.0], [1.0, 0.0]]), np.array([[9.0, 0.0], [10.0, 0.0]])]
     whole = np.array([[0.0, 0.0], [10.0, 0.0]])
-    assert distance(runs, whole).reference_to_path.max_mm == pytest.approx(4 * MM, abs=SAMPLE_MM)
+    assert distance(runs, whole).reference_to_path.max_mm == pytest.approx(
+        4 * MM, abs=SAMPLE_MM
+    )
     assert length_mm(runs) == pytest.approx(2 * MM)
 
 
 def test_only_what_is_in_the_work_counts() -> None:
-    path = Path(np.arange(4.0), np.array([[0, 5, 2.0], [0, 0, 2.0], [0, 0, -3.0], [10, 0, -3.0]]))
+    path = Path(
+        np.arange(4.0), np.array([[0, 5, 2.0], [0, 0, 2.0], [0, 0, -3.0], [10, 0, -3.0]])
+    )
     line = np.array([[0.0, 0.0], [10.0, 0.0]])
     assert distance(path, line).hausdorff_mm <= ROUNDING_MM
     assert length_mm(path) == pytest.approx(10 * MM)
@@ -103,7 +115,9 @@ def test_the_error_at_each_point() -> None:
     points, error_mm = pointwise(circle(20, 5001, x_mm=0.1), circle(20, 5001))
     assert points.shape == (len(error_mm), 2)
     expected_mm = np.abs(np.hypot(*points.T) - 20)
-    assert np.abs(error_mm - expected_mm).max() < 20 * (np.pi / 5000) ** 2  # twice the polyline's sagitta
+    assert (
+        np.abs(error_mm - expected_mm).max() < 20 * (np.pi / 5000) ** 2
+    )  # twice the polyline's sagitta
 
 
 def test_length_and_closure_of_a_circle() -> None:
@@ -119,14 +133,21 @@ def test_length_and_closure_of_a_circle() -> None:
 def test_a_distance_does_not_depend_on_where_the_sheet_lies(
     x_mm: float, y_mm: float, turn_rad: float
 ) -> None:
-    path, reference = circle(5, 200), resampled(np.array([[-5.0, -5.0], [5.0, -5.0], [5.0, 5.0]]), 10)
-    turn = np.array([[np.cos(turn_rad), -np.sin(turn_rad)], [np.sin(turn_rad), np.cos(turn_rad)]])
+    path, reference = (
+        circle(5, 200),
+        resampled(np.array([[-5.0, -5.0], [5.0, -5.0], [5.0, 5.0]]), 10),
+    )
+    turn = np.array(
+        [[np.cos(turn_rad), -np.sin(turn_rad)], [np.sin(turn_rad), np.cos(turn_rad)]]
+    )
     here, there = (
         distance(path, reference),
         distance(path @ turn + [x_mm, y_mm], reference @ turn + [x_mm, y_mm]),
     )
     assert there.hausdorff_mm == pytest.approx(here.hausdorff_mm, abs=1e-6 * MM)
-    assert there.path_to_reference.rms_mm == pytest.approx(here.path_to_reference.rms_mm, abs=1e-6 * MM)
+    assert there.path_to_reference.rms_mm == pytest.approx(
+        here.path_to_reference.rms_mm, abs=1e-6 * MM
+    )
 
 
 def test_a_very_long_path_is_sampled_further_apart(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -33,7 +33,9 @@ def test_a_large_step_is_answered_by_the_limit_and_then_the_lag() -> None:
     # then
     drive, demand = Drive(lag_s=0.01, acceleration_mm_s2=1000.0), 50.0
     speed, t_s = speeds_mm_s(drive, demand, 600), DT_S * np.arange(1, 601)
-    straight = t_s <= (demand - drive.acceleration_mm_s2 * drive.lag_s) / drive.acceleration_mm_s2
+    straight = (
+        t_s <= (demand - drive.acceleration_mm_s2 * drive.lag_s) / drive.acceleration_mm_s2
+    )
     assert np.abs(speed - 1000.0 * t_s)[straight].max() < 1e-9 * demand
     left = demand - speed[~straight]
     assert left[1:] / left[:-1] == pytest.approx(math.exp(-DT_S / drive.lag_s), rel=1e-9)

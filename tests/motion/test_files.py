@@ -42,7 +42,10 @@ def test_two_at_once_do_not_meet(tmp_path: Path) -> None:
 
 
 def test_a_full_disk_is_a_fault_and_leaves_nothing(tmp_path: Path) -> None:
-    with pytest.raises(FileFault, match="disk is full; no half file is left"), written_beside(tmp_path / "a"):
+    with (
+        pytest.raises(FileFault, match="disk is full; no half file is left"),
+        written_beside(tmp_path / "a"),
+    ):
         raise OSError(errno.ENOSPC, "No space left on device")
     assert names_in(tmp_path) == []
 
@@ -67,7 +70,10 @@ def test_a_folder_is_no_file(tmp_path: Path) -> None:
 
 def test_a_file_is_no_folder(tmp_path: Path) -> None:
     (tmp_path / "a").write_text("")
-    with pytest.raises(FileFault, match="is not a folder"), written_beside(tmp_path / "a" / "b"):
+    with (
+        pytest.raises(FileFault, match="is not a folder"),
+        written_beside(tmp_path / "a" / "b"),
+    ):
         pass
 
 

@@ -8,7 +8,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from morfax.motion.motion import MOTION_RATE_HZ, THINNING_TOLERANCE_MM, Motion, Path, join, thin, thinned
+from morfax.motion.motion import (
+    MOTION_RATE_HZ,
+    THINNING_TOLERANCE_MM,
+    Motion,
+    Path,
+    join,
+    thin,
+    thinned,
+)
 
 ROUNDING_MM = 1e-9  # of float64 slopes over some 10 000 samples and some 100 mm
 
@@ -24,7 +32,10 @@ def wander(seed: int, samples: int, largest_mm_s: float = 30.0) -> np.ndarray:
 
 def in_blocks(positions: np.ndarray, sizes: list[int], start_s: float = 0.0) -> list[Motion]:
     cuts = np.clip(np.cumsum([0, *sizes, len(positions)]), 0, len(positions))
-    return [Motion(positions[a:b], MOTION_RATE_HZ, start_s + a / MOTION_RATE_HZ) for a, b in pairwise(cuts)]
+    return [
+        Motion(positions[a:b], MOTION_RATE_HZ, start_s + a / MOTION_RATE_HZ)
+        for a, b in pairwise(cuts)
+    ]
 
 
 @given(st.integers(0, 10_000), st.integers(1, 3000), st.lists(st.integers(0, 1500), max_size=4))
@@ -32,7 +43,9 @@ def test_thinning_gives_every_sample_back(seed: int, samples: int, sizes: list[i
     positions = wander(seed, samples)
     path = thin(in_blocks(positions, sizes))
     t_s = np.arange(samples) / MOTION_RATE_HZ
-    again = np.column_stack([np.interp(t_s, path.t_s, column) for column in path.positions_mm.T])
+    again = np.column_stack(
+        [np.interp(t_s, path.t_s, column) for column in path.positions_mm.T]
+    )
     assert np.abs(again - positions).max() <= THINNING_TOLERANCE_MM + ROUNDING_MM
 
 

@@ -39,7 +39,9 @@ def circle(radius_mm: float, noise_mm: float = 0.0, seed: int = 0) -> Array:
 def polygon(*vertices: tuple[float, float]) -> Array:
     """A closed line that begins in the middle of its first side."""
     points = np.array(vertices, float)
-    return np.vstack([(points[0] + points[1]) / 2, points[1:], points[:1], (points[0] + points[1]) / 2])
+    return np.vstack(
+        [(points[0] + points[1]) / 2, points[1:], points[:1], (points[0] + points[1]) / 2]
+    )
 
 
 def star(seed: int) -> Array:
@@ -72,7 +74,10 @@ def test_round_a_square_the_corners_are_rolled_round_and_inside_they_stay_sharp(
     length_mm = np.hypot(*np.diff(outside.points_mm, axis=0).T).sum()
     assert length_mm == pytest.approx(80 + math.tau * 3, abs=2 * UM)
     (inside,) = offset([Guide(SQUARE, True, True)], 3)
-    assert distance(inside.points_mm, polygon((3, 3), (17, 3), (17, 17), (3, 17))).hausdorff_mm < 0.1 * UM
+    assert (
+        distance(inside.points_mm, polygon((3, 3), (17, 3), (17, 17), (3, 17))).hausdorff_mm
+        < 0.1 * UM
+    )
 
 
 def test_two_rooms_joined_by_a_passage_too_narrow_are_two_ways() -> None:
@@ -110,8 +115,14 @@ def test_the_ways_are_the_edges_of_the_buffer(seed: int, radius_mm: float, left:
     part = shapely.Polygon(line)
     assume(part.is_valid)
     ways = offset([Guide(line, True, left)], radius_mm)
-    buffer = part.buffer(-radius_mm if left == part.exterior.is_ccw else radius_mm, quad_segs=500)
-    rings = [ring for each in getattr(buffer, "geoms", [buffer]) for ring in (each.exterior, *each.interiors)]
+    buffer = part.buffer(
+        -radius_mm if left == part.exterior.is_ccw else radius_mm, quad_segs=500
+    )
+    rings = [
+        ring
+        for each in getattr(buffer, "geoms", [buffer])
+        for ring in (each.exterior, *each.interiors)
+    ]
     edges = [np.array(ring.coords) for ring in rings if ring.length > 0.2]
     ours = [way.points_mm for way in ways if shapely.LineString(way.points_mm).length > 0.2]
     assert len(ours) == len(edges) and all(way.closed for way in ways)
@@ -134,10 +145,15 @@ def test_the_noise_of_a_scan_makes_no_gouge_and_no_gap(seed: int, radius_mm: flo
 
 
 def test_the_line_may_be_run_either_way_and_the_cutter_goes_with_it() -> None:
-    there, back = offset([Guide(SQUARE, True, True)], 3)[0], offset([Guide(SQUARE[::-1], True, False)], 3)[0]
+    there, back = (
+        offset([Guide(SQUARE, True, True)], 3)[0],
+        offset([Guide(SQUARE[::-1], True, False)], 3)[0],
+    )
     assert distance(there.points_mm, back.points_mm).hausdorff_mm < 0.1 * UM
     areas = [
-        np.sum(w.points_mm[:-1, 0] * w.points_mm[1:, 1] - w.points_mm[1:, 0] * w.points_mm[:-1, 1])
+        np.sum(
+            w.points_mm[:-1, 0] * w.points_mm[1:, 1] - w.points_mm[1:, 0] * w.points_mm[:-1, 1]
+        )
         for w in (there, back)
     ]
     assert areas[0] > 0 > areas[1]
@@ -157,7 +173,9 @@ def test_a_way_is_run_at_its_feed_and_within_its_acceleration(
     assert (
         np.hypot(*np.diff(velocity, axis=0).T).max() * MOTION_RATE_HZ < 1.05 * 500
     )  # along and across together
-    assert xy_mm[0] == pytest.approx(way.points_mm[0]) and xy_mm[-1] == pytest.approx(way.points_mm[-1])
+    assert xy_mm[0] == pytest.approx(way.points_mm[0]) and xy_mm[-1] == pytest.approx(
+        way.points_mm[-1]
+    )
     assert distance(xy_mm, way.points_mm).hausdorff_mm < 0.3 * UM
 
 
@@ -166,7 +184,8 @@ def test_an_open_line_has_a_way_on_either_side() -> None:
     (left,), (right,) = (offset([Guide(line, False, side)], 2) for side in (True, False))
     assert (
         not left.closed
-        and distance(left.points_mm, np.array([[0.0, 2], [8, 2], [8, 10]])).hausdorff_mm < 0.1 * UM
+        and distance(left.points_mm, np.array([[0.0, 2], [8, 2], [8, 10]])).hausdorff_mm
+        < 0.1 * UM
     )
     length_mm = np.hypot(*np.diff(right.points_mm, axis=0).T).sum()
     assert length_mm == pytest.approx(20 + math.pi, abs=2 * UM)
@@ -187,7 +206,10 @@ def test_a_kink_of_some_um_does_not_part_the_way() -> None:
     (way,) = offset(
         [Guide(line, False, True)], 5.0
     )  # in two pieces, when a curl within the tolerance led back
-    assert distance(way.points_mm, np.array([way.points_mm[0], way.points_mm[-1]])).hausdorff_mm < 0.2
+    assert (
+        distance(way.points_mm, np.array([way.points_mm[0], way.points_mm[-1]])).hausdorff_mm
+        < 0.2
+    )
     assert np.abs(Nearest([line], 5.0).distances_mm(way.points_mm) - 5.0).max() < 1 * UM
 
 
@@ -196,40 +218,57 @@ def test_a_kink_among_short_steps_is_no_end_of_the_way(radius_mm: float) -> None
     """Six degrees towards the tool, and 0.03 mm of line beside them: the ways beside the vertex do not meet
     where it would have them.
     """
-    half = np.r_[np.full(620, 186.3 / 620), -6.3]  # degrees that each step turns; twice that closes
+    half = np.r_[
+        np.full(620, 186.3 / 620), -6.3
+    ]  # degrees that each step turns; twice that closes
     heading = np.radians(np.cumsum(np.r_[half, half]))
     line = np.cumsum(0.03 * np.column_stack([np.cos(heading), np.sin(heading)]), axis=0)
     ways = offset([Guide(np.vstack([line, line[:1]]), True, False)], radius_mm)
     assert [way.closed for way in ways] == [True]
     true = shapely.Polygon(line).buffer(radius_mm, quad_segs=512).exterior
     assert max(true.distance(shapely.Point(point)) for point in ways[0].points_mm) < 2 * UM
-    assert np.hypot(*np.diff(ways[0].points_mm, axis=0).T).sum() == pytest.approx(true.length, rel=1e-3)
+    assert np.hypot(*np.diff(ways[0].points_mm, axis=0).T).sum() == pytest.approx(
+        true.length, rel=1e-3
+    )
 
 
 def scanned(line: Array, seed: int) -> Array:
     """A closed line as a head would run it, with waves of 0.3 to 3 mm as a scan's noise makes them."""
-    rng, along = np.random.default_rng(seed), np.r_[0, np.cumsum(np.hypot(*np.diff(line, axis=0).T))]
+    rng, along = (
+        np.random.default_rng(seed),
+        np.r_[0, np.cumsum(np.hypot(*np.diff(line, axis=0).T))],
+    )
     at = np.linspace(0, along[-1], round(along[-1] / 0.005), endpoint=False)
     points = np.column_stack([np.interp(at, along, column) for column in line.T])
     for column in points.T:
         for waves in rng.integers(along[-1] / 3, along[-1] / 0.3, 12):
             column += (
-                0.3 * UM * rng.normal() * np.cos(math.tau * waves * at / along[-1] + rng.uniform(0, math.tau))
+                0.3
+                * UM
+                * rng.normal()
+                * np.cos(math.tau * waves * at / along[-1] + rng.uniform(0, math.tau))
             )
     return np.vstack([points, points[:1]])
 
 
 @pytest.mark.parametrize(("seed", "radius_mm"), [(1, 20.0), (2, 50.0), (3, 150.0), (5, 80.0)])
-def test_round_a_part_much_smaller_than_the_tool_goes_one_way(seed: int, radius_mm: float) -> None:
+def test_round_a_part_much_smaller_than_the_tool_goes_one_way(
+    seed: int, radius_mm: float
+) -> None:
     line = scanned(star(seed), seed)
     ways = offset([Guide(line, True, not shapely.Polygon(line).exterior.is_ccw)], radius_mm)
     assert [way.closed for way in ways] == [
         True
     ]  # of noise alone up to 27 pieces, when arms swung back through each vertex
-    off_mm = shapely.distance(shapely.points(ways[0].points_mm), shapely.LineString(line)) - radius_mm
+    off_mm = (
+        shapely.distance(shapely.points(ways[0].points_mm), shapely.LineString(line))
+        - radius_mm
+    )
     assert np.abs(off_mm).max() < EXACT_MM
     true = shapely.Polygon(line).buffer(radius_mm, quad_segs=8000).exterior
-    assert np.hypot(*np.diff(ways[0].points_mm, axis=0).T).sum() == pytest.approx(true.length, rel=1e-3)
+    assert np.hypot(*np.diff(ways[0].points_mm, axis=0).T).sum() == pytest.approx(
+        true.length, rel=1e-3
+    )
 
 
 def test_in_a_hole_much_narrower_than_the_tool_the_arm_swings_no_further_than_round() -> None:

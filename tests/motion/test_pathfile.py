@@ -27,7 +27,11 @@ def read(folder: FilePath, text: str, **options: float) -> Path:
 
 
 @IN_ONE_FOLDER
-@given(arrays(np.float64, (20, 3), elements=st.floats(-1e4, 1e4)), st.floats(0, 1e4), st.floats(1e-4, 10))
+@given(
+    arrays(np.float64, (20, 3), elements=st.floats(-1e4, 1e4)),
+    st.floats(0, 1e4),
+    st.floats(1e-4, 10),
+)
 def test_a_written_path_reads_back(
     tmp_path: FilePath, positions: np.ndarray, start_s: float, step_s: float
 ) -> None:
@@ -40,7 +44,8 @@ def test_a_written_path_reads_back(
 
 def test_the_written_file_is_as_documented(tmp_path: FilePath) -> None:
     write_path(
-        Path(np.array([0.0, 0.5]), np.array([[1.0, -0.0, 2.0], [1.0, -1e-9, -5.0]])), tmp_path / "p.csv"
+        Path(np.array([0.0, 0.5]), np.array([[1.0, -0.0, 2.0], [1.0, -1e-9, -5.0]])),
+        tmp_path / "p.csv",
     )
     assert (tmp_path / "p.csv").read_text().splitlines() == [
         "t_s,x_mm,y_mm,z_mm,tool",
@@ -84,8 +89,17 @@ def test_loops_become_contours_with_the_tool_up_in_between(tmp_path: FilePath) -
 
 
 @pytest.mark.parametrize("header", ["x,y,tool", "t_s,x,y,tool"])
-def test_tool_becomes_moves_of_z_at_the_feed_while_x_and_y_stand(tmp_path: FilePath, header: str) -> None:
-    rows = [(0, 0, 0, 0), (1, 10, 0, 1), (2, 20, 0, 1), (3, 20, 10, 0), (4, 30, 10, 1), (5, 40, 10, 1)]
+def test_tool_becomes_moves_of_z_at_the_feed_while_x_and_y_stand(
+    tmp_path: FilePath, header: str
+) -> None:
+    rows = [
+        (0, 0, 0, 0),
+        (1, 10, 0, 1),
+        (2, 20, 0, 1),
+        (3, 20, 10, 0),
+        (4, 30, 10, 1),
+        (5, 40, 10, 1),
+    ]
     lines = [",".join(map(str, row if header.startswith("t") else row[1:])) for row in rows]
     path = read(tmp_path, "\n".join([header, *lines]))
     assert [run[:, 0].tolist() for run in path.runs()] == [[10, 20], [30, 40]]
@@ -93,7 +107,9 @@ def test_tool_becomes_moves_of_z_at_the_feed_while_x_and_y_stand(tmp_path: FileP
     step_mm = np.abs(np.diff(motion.positions_mm, axis=0))
     assert step_mm.max() * motion.rate_hz <= FEED_MM_S * (1 + 1e-6)
     in_z = step_mm[:, 2] > 1e-9
-    stray_mm = FEED_MM_S / motion.rate_hz  # one sample may hold the end of one move and the start of the next
+    stray_mm = (
+        FEED_MM_S / motion.rate_hz
+    )  # one sample may hold the end of one move and the start of the next
     assert np.count_nonzero(in_z & (step_mm[:, :2].max(axis=1) > 1e-9)) <= 6
     assert step_mm[in_z, :2].max() <= stray_mm
 
@@ -125,7 +141,10 @@ def test_a_point_that_stands_twice_is_taken_once(tmp_path: FilePath) -> None:
             "x,y,a_deg\n1,2,3\n4,5,6\n",
             "line 1: column a_deg cannot be read; give a_mm, in mm, or take the column out",
         ),
-        ("x,y,t_ms\n1,2,3\n4,5,6\n", "line 1: column t_ms cannot be read; give t_s, in seconds"),
+        (
+            "x,y,t_ms\n1,2,3\n4,5,6\n",
+            "line 1: column t_ms cannot be read; give t_s, in seconds",
+        ),
         ("x,x_mm,y\n1,2,3\n4,5,6\n", "line 1: column x_mm stands there 2 times"),
         ("x,y\n1,2\n# remark\n3,four\n", "line 4: y_mm is 'four'; it must be a finite number"),
         ("x,y\n1,2\n3\n", "line 3: no value for y_mm in '3'"),
@@ -140,7 +159,9 @@ def test_a_point_that_stands_twice_is_taken_once(tmp_path: FilePath) -> None:
         ("x,y\n1,2\n1,2\n", "stands still at one place"),
     ],
 )
-def test_what_is_no_path_is_refused_with_its_line(tmp_path: FilePath, text: str, fault: str) -> None:
+def test_what_is_no_path_is_refused_with_its_line(
+    tmp_path: FilePath, text: str, fault: str
+) -> None:
     with pytest.raises(MotionFault, match=fault) as caught:
         read(tmp_path, text)
     assert "\n" not in str(caught.value)

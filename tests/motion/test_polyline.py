@@ -9,7 +9,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from morfax.motion.polyline import APART_MM, WITHIN_MM, Nearest, crossings, lengths_mm, plain, with_places
+from morfax.motion.polyline import (
+    APART_MM,
+    WITHIN_MM,
+    Nearest,
+    crossings,
+    lengths_mm,
+    plain,
+    with_places,
+)
 
 ROUNDING_MM = 1e-12
 
@@ -18,7 +26,10 @@ def wave(seed: int, mm: float = 4.0, apart_mm: float = 0.03) -> np.ndarray:
     """A line that wanders at random."""
     turns = np.cumsum(np.random.default_rng(seed).normal(0, 0.7, 12))
     nodes = np.vstack(
-        [np.zeros(2), np.cumsum(mm / 12 * np.column_stack([np.cos(turns), np.sin(turns)]), axis=0)]
+        [
+            np.zeros(2),
+            np.cumsum(mm / 12 * np.column_stack([np.cos(turns), np.sin(turns)]), axis=0),
+        ]
     )
     return with_places(nodes, apart_mm)
 
@@ -83,4 +94,6 @@ def test_distances_are_true_a_radius_away() -> None:
 def test_places_that_are_too_near_are_set_back_straight_and_no_others() -> None:
     near = Nearest([np.array([[0.0, 0.0], [10.0, 0.0]])], 2.0)
     back = near.set_back(np.array([[5.0, 1.99], [6.0, 2.5], [7.0, -1.999]]), 2.0)
-    assert back == pytest.approx(np.array([[5.0, 2.0], [6.0, 2.5], [7.0, -2.0]]), abs=0.1 * 1e-3)
+    assert back == pytest.approx(
+        np.array([[5.0, 2.0], [6.0, 2.5], [7.0, -2.0]]), abs=0.1 * 1e-3
+    )

@@ -8,7 +8,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from morfax.motion.motion import MOTION_RATE_HZ
-from morfax.motion.ramp import CONSTANT, DOWN, UP, Profile, Ramp, _count, count_ramp, positions_mm
+from morfax.motion.ramp import (
+    CONSTANT,
+    DOWN,
+    UP,
+    Profile,
+    Ramp,
+    _count,
+    count_ramp,
+    positions_mm,
+)
 
 MOVES = 100_000  # the figure asked for
 ROUNDING = 1e-6  # of second differences of mm at 6 kHz, in mm/s²: 1e-14 mm · (6 kHz)² · 3
@@ -41,7 +50,10 @@ def test_a_short_move_turns_from_up_to_down() -> None:
 def test_the_odd_increment_of_a_short_move_is_half_up_and_half_down() -> None:
     profile = count_ramp(301, [200])
     assert pieces(profile) == [(UP, 150.5), (DOWN, 150.5)]
-    assert (profile.down_from, profile.count_then) == (151, 1)  # from -1 to +1: it is never zero
+    assert (profile.down_from, profile.count_then) == (
+        151,
+        1,
+    )  # from -1 to +1: it is never zero
 
 
 def test_one_increment_is_a_move() -> None:
@@ -55,14 +67,17 @@ def test_a_change_of_speed_while_the_ramp_down_is_near_loses_nothing() -> None:
 
 
 @given(st.integers(0, 500), st.integers(0, 3000), st.integers(1, 700))
-def test_a_new_demand_on_the_way_ends_exactly_too(moving: int, further: int, speed: int) -> None:
+def test_a_new_demand_on_the_way_ends_exactly_too(
+    moving: int, further: int, speed: int
+) -> None:
     increments = moving + further  # at least what the braking takes
     assert count_ramp(increments, [speed], moving=moving).at_rest() == (2 * increments, 0)
 
 
 def test_a_new_demand_too_near_to_stop_is_refused() -> None:
     with pytest.raises(
-        ValueError, match="9 increments are too few to stop in from a speed that needs 10; give 10"
+        ValueError,
+        match="9 increments are too few to stop in from a speed that needs 10; give 10",
     ):
         count_ramp(9, [20], moving=10)
 
@@ -103,7 +118,9 @@ def test_axes_keep_the_ratio_of_their_distances_all_along() -> None:
 def test_feed_and_time_are_those_of_the_trapezium() -> None:
     way = positions_mm([0], [30], 10.0, Ramp(acceleration_mm_s2=500))
     assert np.diff(way[:, 0]).max() * MOTION_RATE_HZ == pytest.approx(10, abs=1e-6)
-    assert (len(way) - 1) / MOTION_RATE_HZ == pytest.approx(30 / 10 + 10 / 500, abs=1 / MOTION_RATE_HZ)
+    assert (len(way) - 1) / MOTION_RATE_HZ == pytest.approx(
+        30 / 10 + 10 / 500, abs=1 / MOTION_RATE_HZ
+    )
 
 
 def test_the_feed_is_reached_exactly_though_its_ramp_is_no_whole_number_of_increments() -> None:
@@ -132,7 +149,11 @@ def test_places_that_are_none_are_refused() -> None:
 
 
 def test_the_compiled_counter_is_the_plain_one() -> None:
-    for increments, speeds, at in [(1001, [90, 200, 3], [300, 600]), (7, [2], []), (11, [90], [])]:
+    for increments, speeds, at in [
+        (1001, [90, 200, 3], [300, 600]),
+        (7, [2], []),
+        (11, [90], []),
+    ]:
         plain = np.empty((40, 2), np.int64)
         arrays = np.array(at, np.int64), np.array(speeds, np.int64)
         rows, down_from, count = _count.py_func(increments, 0, *arrays, plain)

@@ -54,7 +54,8 @@ def test_frequencies(text: str, hz: float) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "time_s"), [("2s", 2.0), ("300ms", 0.3), ("0", 0.0), ("1min", 60.0), ("1h", 3600.0)]
+    ("text", "time_s"),
+    [("2s", 2.0), ("300ms", 0.3), ("0", 0.0), ("1min", 60.0), ("1h", 3600.0)],
 )
 def test_times(text: str, time_s: float) -> None:
     assert units.parse_time_s(text) == pytest.approx(time_s, rel=1e-15)
@@ -62,7 +63,13 @@ def test_times(text: str, time_s: float) -> None:
 
 @pytest.mark.parametrize(
     ("text", "angle_deg"),
-    [("90deg", 90.0), ("-45", -45.0), ("30°", 30.0), ("0.25turn", 90.0), ("3.141592653589793rad", 180.0)],
+    [
+        ("90deg", 90.0),
+        ("-45", -45.0),
+        ("30°", 30.0),
+        ("0.25turn", 90.0),
+        ("3.141592653589793rad", 180.0),
+    ],
 )
 def test_angles(text: str, angle_deg: float) -> None:
     assert math.degrees(units.parse_angle_rad(text)) == pytest.approx(angle_deg, rel=1e-15)
@@ -171,7 +178,9 @@ def test_a_printed_length_reads_back(length_mm: float) -> None:
 
 @given(st.floats(1e-3, 1e6))
 def test_a_printed_speed_and_frequency_read_back(value: float) -> None:
-    assert units.parse_speed_mm_s(units.format_speed_mm_s(value)) == pytest.approx(value, rel=FOUR_FIGURES)
+    assert units.parse_speed_mm_s(units.format_speed_mm_s(value)) == pytest.approx(
+        value, rel=FOUR_FIGURES
+    )
     assert units.parse_frequency_hz(units.format_frequency_hz(value)) == pytest.approx(
         value, rel=FOUR_FIGURES
     )

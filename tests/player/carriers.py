@@ -38,7 +38,9 @@ class Transport:
         return self.speed * (tape_s + self.flutter * (1 - np.cos(w * tape_s)) / w)
 
 
-def tracks(course: Course, seconds: float, transport: Transport | None = None) -> NDArray[np.float32]:
+def tracks(
+    course: Course, seconds: float, transport: Transport | None = None
+) -> NDArray[np.float32]:
     """Frames (n, 4) of a course: reference, X, Y, Z."""
     how = transport or Transport()
     t_s = how.programme_s(np.arange(round(seconds * RATE_HZ)) / RATE_HZ)
@@ -61,7 +63,11 @@ def swing(t_s: Array) -> Array:
 
 
 def along(
-    t_s: Array, length_mm: float, speed_mm_s: float, acceleration_mm_s2: float, start_s: float = 0.0
+    t_s: Array,
+    length_mm: float,
+    speed_mm_s: float,
+    acceleration_mm_s2: float,
+    start_s: float = 0.0,
 ) -> Array:
     """Way in mm along a path started and stopped with a constant acceleration: 0 before, the whole length
     after.
@@ -80,8 +86,13 @@ def circle(
     """Once round a circle from rest to rest."""
 
     def course(t_s: Array) -> Array:
-        angle = along(t_s, 2 * np.pi * radius_mm, speed_mm_s, acceleration_mm_s2, start_s) / radius_mm
-        return np.column_stack([radius_mm * np.sin(angle), radius_mm * (1 - np.cos(angle)), 0 * angle])
+        angle = (
+            along(t_s, 2 * np.pi * radius_mm, speed_mm_s, acceleration_mm_s2, start_s)
+            / radius_mm
+        )
+        return np.column_stack(
+            [radius_mm * np.sin(angle), radius_mm * (1 - np.cos(angle)), 0 * angle]
+        )
 
     return course
 
@@ -94,7 +105,8 @@ def square(
 
     def course(t_s: Array) -> Array:
         there_x, up, back, down = (
-            along(t_s, side_mm, speed_mm_s, acceleration_mm_s2, start_s + i * leg_s) for i in range(4)
+            along(t_s, side_mm, speed_mm_s, acceleration_mm_s2, start_s + i * leg_s)
+            for i in range(4)
         )
         return np.column_stack([there_x - back, up - down, 0 * up])
 

@@ -91,7 +91,9 @@ CASES = [(name, what) for name, rig in RIGS.items() for what in rig.breaks]
 def programs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     """A short slow move of X in each medium, from 10, 20, -1."""
     folder = tmp_path_factory.mktemp("slow")
-    way = positions_mm([10.0], [10.0 + LENGTH_MM], SPEED_MM_S, Ramp(acceleration_mm_s2=50.0))[:, 0]
+    way = positions_mm([10.0], [10.0 + LENGTH_MM], SPEED_MM_S, Ramp(acceleration_mm_s2=50.0))[
+        :, 0
+    ]
     rest = round(REST_S * MOTION_RATE_HZ)
     x = np.r_[np.full(rest, 10.0), way, np.full(rest, 10.0 + LENGTH_MM)]
     motion = Motion(np.column_stack([x, np.full(len(x), 20.0), np.full(len(x), -1.0)]))
@@ -132,7 +134,9 @@ def test_a_broken_drive_is_found_in_time_with_its_state(
     assert abs(fault.demand_mm - fault.actual_mm) > fault.limit_mm
     assert fault.limit_mm < RIGS[name].wide_mm
     assert "X does not follow" in str(fault)
-    told_s = sum(block.duration_s for block in blocks)  # what was sound was given out, and no more
+    told_s = sum(
+        block.duration_s for block in blocks
+    )  # what was sound was given out, and no more
     assert told_s == pytest.approx(fault.time_s, abs=0.002)
 
 

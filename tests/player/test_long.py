@@ -12,7 +12,9 @@ from pathlib import Path
 import pytest
 import soundfile
 
-pytestmark = pytest.mark.skipif(not os.environ.get("MORFAX_SOAK"), reason="12 GB and some minutes; make soak")
+pytestmark = pytest.mark.skipif(
+    not os.environ.get("MORFAX_SOAK"), reason="12 GB and some minutes; make soak"
+)
 
 MOST_MB = 300.0
 RUN = """
@@ -37,11 +39,16 @@ print(f"{hours:g} h: {recording.bytes / 2**30:.2f} GiB written in {written - beg
 @pytest.mark.parametrize(
     ("name", "hours", "kind"), [("a.wav", 3, "WAV"), ("b.wav", 6, "RF64"), ("c.w64", 6, "W64")]
 )
-def test_a_tape_of_hours_is_written_and_played(tmp_path: Path, name: str, hours: float, kind: str) -> None:
+def test_a_tape_of_hours_is_written_and_played(
+    tmp_path: Path, name: str, hours: float, kind: str
+) -> None:
     file = tmp_path / name
     try:
         told = subprocess.run(
-            [sys.executable, "-c", RUN, str(file), str(hours)], stdout=subprocess.PIPE, text=True, check=True
+            [sys.executable, "-c", RUN, str(file), str(hours)],
+            stdout=subprocess.PIPE,
+            text=True,
+            check=True,
         ).stdout
         assert soundfile.info(file).format == kind
     finally:

@@ -50,7 +50,9 @@ def test_every_kind_of_wear_alone(bench: Bench, fast: Bench, kind: str) -> None:
         {"inverted": (2, 3), "bandwidth_hz": 12500, "stamped_hz": 44100},
     ],
 )
-def test_what_a_good_machine_does_is_played_to_the_end(bench: Bench, mild: dict[str, float]) -> None:
+def test_what_a_good_machine_does_is_played_to_the_end(
+    bench: Bench, mild: dict[str, float]
+) -> None:
     error, fault = bench.trial(4, **mild)
     assert fault is None
     assert error < RIGHT_CYCLES
@@ -65,24 +67,36 @@ def test_noise_on_a_fast_bend_does_not_push_the_screws_off(fast: Bench) -> None:
 
 def test_pairs_of_wear(bench: Bench, fast: Bench) -> None:
     random = np.random.default_rng(1969)
-    chosen = PAIRS if SOAK else [PAIRS[i] for i in random.choice(len(PAIRS), SHORT, replace=False)]
+    chosen = (
+        PAIRS if SOAK else [PAIRS[i] for i in random.choice(len(PAIRS), SHORT, replace=False)]
+    )
     for one, other in chosen:
         for strengths in random.integers(5, size=(25 if SOAK else 1, 2)):
             parts = {**STRENGTHS[one][strengths[0]], **STRENGTHS[other][strengths[1]]}
             if parts.get("cut_start_s", 0) + parts.get("cut_end_s", 0) > 3:
                 continue
-            error, fault = random.choice([bench, fast]).trial(int(random.integers(1000)), **parts)
+            error, fault = random.choice([bench, fast]).trial(
+                int(random.integers(1000)), **parts
+            )
             assert fault is not None or error < RIGHT_CYCLES, (parts, error)
 
 
-@pytest.mark.parametrize("positions", [program(20, 100), corners()], ids=["100 mm/s", "corners at 40 mm/s"])
-def test_dropouts_anywhere_are_ridden_over_or_a_fault(tmp_path: Path, positions: np.ndarray) -> None:
+@pytest.mark.parametrize(
+    "positions", [program(20, 100), corners()], ids=["100 mm/s", "corners at 40 mm/s"]
+)
+def test_dropouts_anywhere_are_ridden_over_or_a_fault(
+    tmp_path: Path, positions: np.ndarray
+) -> None:
     bench = Bench(tmp_path, positions)
     random, told, met = np.random.default_rng(7), {ms: [0, 0] for ms in LENGTHS_MS}, 0
     for _ in range(5000 if SOAK else 25):
         length_ms = float(np.exp(random.uniform(np.log(0.1), np.log(50))))
         hole = {"dropout_s": length_ms / 1e3, "dropout_db": float(random.choice([8, 20, 60]))}
-        every = {"dropouts_per_min": 40, "dropout_all": bool(random.random() < 0.4), "noise_db": 46}
+        every = {
+            "dropouts_per_min": 40,
+            "dropout_all": bool(random.random() < 0.4),
+            "noise_db": 46,
+        }
         error, fault = bench.trial(int(random.integers(2**31)), **hole, **every)
         assert fault is not None or error < RIGHT_CYCLES, (hole, error)
         if bench.dropouts_s:

@@ -33,7 +33,8 @@ STRENGTHS: dict[str, list[dict[str, Any]]] = {
     "print": [{"print_db": x, "print_s": 0.4} for x in (60, 50, 40, 30, 15)],
     "dropouts": [{"dropouts_per_min": 60, "dropout_s": x, "dropout_db": y} for x, y in HOLES],
     "dropouts of all": [
-        {"dropouts_per_min": 60, "dropout_s": x, "dropout_db": y, "dropout_all": True} for x, y in HOLES
+        {"dropouts_per_min": 60, "dropout_s": x, "dropout_db": y, "dropout_all": True}
+        for x, y in HOLES
     ],
     "hum": [{"hum_db": x} for x in (60, 40, 30, 20, 6)],
     "dc": [{"dc": x} for x in (0.01, 0.03, 0.1, 0.2, 0.4)],
@@ -41,7 +42,10 @@ STRENGTHS: dict[str, list[dict[str, Any]]] = {
     "bandwidth": [{"bandwidth_hz": x} for x in (20000, 12500, 9000, 7000, 5000)],
     "clipping": [{"clip": x} for x in (0.49, 0.45, 0.4, 0.3, 0.1)],
     "sample rate": [{"stamped_hz": x} for x in (47000, 44100, 50000, 96000, 22050)],
-    "order": [{"order": x} for x in ((2, 1, 3, 4), (3, 2, 1, 4), (4, 2, 3, 1), (2, 3, 4, 1), (4, 3, 2, 1))],
+    "order": [
+        {"order": x}
+        for x in ((2, 1, 3, 4), (3, 2, 1, 4), (4, 2, 3, 1), (2, 3, 4, 1), (4, 3, 2, 1))
+    ],
     "polarity": [{"inverted": x} for x in ((1,), (2,), (2, 3), (1, 2, 3, 4), (4,))],
     "start": [{"cut_start_s": x} for x in (0.1, 0.5, 0.9, 1.5, 3)],
     "end": [{"cut_end_s": x} for x in (0.1, 0.5, 0.9, 1.5, 3)],
@@ -51,7 +55,9 @@ STRENGTHS: dict[str, list[dict[str, Any]]] = {
 def program(radius_mm: float = 10.0, speed_mm_s: float = 10.0) -> np.ndarray:
     """Once round a circle, Z going down by the way; positions in mm."""
     seconds = 2 * np.pi * radius_mm / speed_mm_s + 0.8
-    positions = circle(radius_mm, speed_mm_s)(np.arange(round(seconds * MOTION_RATE_HZ)) / MOTION_RATE_HZ)
+    positions = circle(radius_mm, speed_mm_s)(
+        np.arange(round(seconds * MOTION_RATE_HZ)) / MOTION_RATE_HZ
+    )
     positions[:, 2] = -positions[:, 1] / radius_mm
     return positions
 
@@ -59,7 +65,9 @@ def program(radius_mm: float = 10.0, speed_mm_s: float = 10.0) -> np.ndarray:
 def corners(side_mm: float = 10.0, speed_mm_s: float = 40.0) -> np.ndarray:
     """Once round a square, stopping at each corner."""
     seconds = 4 * (side_mm / speed_mm_s + speed_mm_s / 500) + 0.8
-    return square(side_mm, speed_mm_s)(np.arange(round(seconds * MOTION_RATE_HZ)) / MOTION_RATE_HZ)
+    return square(side_mm, speed_mm_s)(
+        np.arange(round(seconds * MOTION_RATE_HZ)) / MOTION_RATE_HZ
+    )
 
 
 class Bench:
@@ -77,7 +85,9 @@ class Bench:
         A delay that all axes have alike (0.1 ms: that of a low-pass) changes nothing but the time.
         """
         aged = age(self.tape, self._worn, replace(Wear(), **parts), seed=seed)
-        self.dropouts_s = [hole.length_s for hole in aged.dropouts if hole.start_s < aged.duration_s]
+        self.dropouts_s = [
+            hole.length_s for hole in aged.dropouts if hole.start_s < aged.duration_s
+        ]
         blocks, fault = [], None
         try:
             for block in play(self._worn):
@@ -87,12 +97,18 @@ class Bench:
         went = join(blocks).positions_mm if blocks else np.zeros((0, 3))
         if len(went) < 2 * ENDS:
             return 0.0, fault
-        rows = (aged.timebase.programme_s(np.arange(len(went)) / 6000) + parts.get("cut_start_s", 0.0)) * 6000
+        rows = (
+            aged.timebase.programme_s(np.arange(len(went)) / 6000)
+            + parts.get("cut_start_s", 0.0)
+        ) * 6000
         wanted = np.column_stack(
             [np.interp(rows, np.arange(len(self.clean)), column) for column in self.clean.T]
         )
         ends = slice(ENDS, len(went) - ENDS + 1)
-        error, speed = (went - wanted)[ends], np.gradient(wanted, axis=0)[ends]  # mm, and mm per row
+        error, speed = (
+            (went - wanted)[ends],
+            np.gradient(wanted, axis=0)[ends],
+        )  # mm, and mm per row
         late = np.clip(
             (error * speed).sum() / max((speed**2).sum(), 1e-12), -0.6, 0.6
         )  # of all axes: the tape's clock

@@ -42,7 +42,9 @@ def test_a_broken_file_is_taken_or_told(
     data = bytearray(short_tape(tmp_path, name))
     for at, byte in changes:
         data[int(at * min(len(data) - 1, 600))] = byte
-    (tmp_path / name).write_bytes(bytes(data[: max(1, int(len(data) * (1 if kept > 0.5 else 2 * kept)))]))
+    (tmp_path / name).write_bytes(
+        bytes(data[: max(1, int(len(data) * (1 if kept > 0.5 else 2 * kept)))])
+    )
     try:
         with Tape.open(tmp_path / name, **BY_HAND) as tape:
             list(islice(tape.blocks(1000), 20))
@@ -58,7 +60,9 @@ def test_a_broken_file_is_taken_or_told(
 @settings(max_examples=300)
 @given(
     st.recursive(
-        st.none() | st.booleans() | st.floats() | st.text(), lambda inner: st.lists(inner), max_leaves=5
+        st.none() | st.booleans() | st.floats() | st.text(),
+        lambda inner: st.lists(inner),
+        max_leaves=5,
     )
 )
 def test_nonsense_in_an_entry_is_told(value: object) -> None:
@@ -101,7 +105,9 @@ while True:
 @pytest.mark.parametrize("after_s", [0.05, 0.4, 0.9])
 def test_kill_9_leaves_no_half_file(tmp_path: Path, after_s: float) -> None:
     names = tmp_path / "a.wav", tmp_path / "b.wav"
-    with subprocess.Popen([sys.executable, "-c", KILLED, *map(str, names)], stdout=subprocess.PIPE) as run:
+    with subprocess.Popen(
+        [sys.executable, "-c", KILLED, *map(str, names)], stdout=subprocess.PIPE
+    ) as run:
         assert run.stdout is not None
         run.stdout.readline()
         time.sleep(after_s)
@@ -110,16 +116,22 @@ def test_kill_9_leaves_no_half_file(tmp_path: Path, after_s: float) -> None:
         if file.exists():
             with Tape.open(file) as tape:
                 assert tape.frames > 62 * 48000 * 0.98  # whole, whichever run it is from
-    record(Motion(np.zeros((60, 3))), names[0], TapeFormat(dwell_s=0.01))  # the next run is not disturbed
+    record(
+        Motion(np.zeros((60, 3))), names[0], TapeFormat(dwell_s=0.01)
+    )  # the next run is not disturbed
     assert soundfile.info(names[0]).frames == (60 + 120) * 8
 
 
-def test_a_tape_that_cannot_be_wound_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_tape_that_cannot_be_wound_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Found by atheris: of a broken FLAC libsndfile opens the file, and then cannot seek to its first frame."""
     short_tape(tmp_path, "a.flac")
     with Tape.open(tmp_path / "a.flac") as tape:
         monkeypatch.setattr(
-            soundfile.SoundFile, "seek", lambda *_: (_ for _ in ()).throw(soundfile.LibsndfileError(39))
+            soundfile.SoundFile,
+            "seek",
+            lambda *_: (_ for _ in ()).throw(soundfile.LibsndfileError(39)),
         )
         with pytest.raises(TapeFault, match="cannot be wound to frame 0"):
             list(tape.blocks())

@@ -27,7 +27,9 @@ def darkness(file: Path) -> NDArray[np.float64]:
         return 255.0 - np.asarray(image, float)
 
 
-def ink_offset_mm(dark: NDArray[np.float64], truth_mm: NDArray[np.float64]) -> NDArray[np.float64]:
+def ink_offset_mm(
+    dark: NDArray[np.float64], truth_mm: NDArray[np.float64]
+) -> NDArray[np.float64]:
     """Centre of mass of the ink across the truth, at the truth's points without both ends, mm."""
     along = truth_mm[2:] - truth_mm[:-2]
     across = np.column_stack([-along[:, 1], along[:, 0]]) / np.hypot(*along.T)[:, None]
@@ -55,7 +57,9 @@ def test_the_script_draws_what_is_committed(name: str, tmp_path: Path) -> None:
 def test_the_file_carries_its_resolution_and_is_small(name: str) -> None:
     with Image.open(SAMPLES / f"{name}.png") as image:
         assert image.mode == "L"
-        assert image.info["dpi"] == pytest.approx((300, 300), abs=0.01)  # PNG keeps whole pixels per metre
+        assert image.info["dpi"] == pytest.approx(
+            (300, 300), abs=0.01
+        )  # PNG keeps whole pixels per metre
     assert (SAMPLES / f"{name}.png").stat().st_size < 250_000
 
 
@@ -64,5 +68,7 @@ def test_the_ink_lies_on_the_truth(name: str) -> None:
     truth_mm = np.loadtxt(SAMPLES / f"{name}.csv", delimiter=",", skiprows=1)[:, 1:]
     offset_mm = ink_offset_mm(darkness(SAMPLES / f"{name}.png"), truth_mm)
     assert abs(offset_mm.mean()) < 1 * UM  # the noise is 6 um at each of some thousand points
-    aside_mm = ink_offset_mm(darkness(SAMPLES / f"{name}.png"), truth_mm + np.array([0.005, 0.005]))
+    aside_mm = ink_offset_mm(
+        darkness(SAMPLES / f"{name}.png"), truth_mm + np.array([0.005, 0.005])
+    )
     assert np.abs(aside_mm - offset_mm).mean() > 2 * UM  # the measure sees a shift of 7 um

@@ -65,12 +65,14 @@ def test_claim_1_a_servo_in_a_closed_loop_stepped_by_a_program() -> None:
     assert abs(pushed[-1, 0] - 8.0) <= PositionServo().increment_mm
     assert (np.diff(np.abs(8.0 - pushed[:, 0])) <= 1e-12).all()
     # and it is watched, by figures 1 and 2
-    assert Monitor("x", MOTION_RATE_HZ, FollowingLimit.linear(settle_s=0.06)).watch(demand, actual) == len(
-        demand
-    )
+    assert Monitor("x", MOTION_RATE_HZ, FollowingLimit.linear(settle_s=0.06)).watch(
+        demand, actual
+    ) == len(demand)
 
 
-def test_claim_2_each_increment_counts_two_while_the_speed_grows_and_one_while_it_holds() -> None:
+def test_claim_2_each_increment_counts_two_while_the_speed_grows_and_one_while_it_holds() -> (
+    None
+):
     profile = count_ramp(1_000, [150])
     (up, rising), (constant, holding), (down, falling) = profile.pieces.tolist()
     assert (up, constant, down) == (UP, CONSTANT, DOWN)
@@ -110,6 +112,9 @@ def test_claim_4_a_digital_counter_preset_by_the_initial_error() -> None:
             )
             / 2
         )
-        assert -increments + counted in (0, 0.0)  # with the odd increment half and half: 2 · ½ + 0 · ½
+        assert -increments + counted in (
+            0,
+            0.0,
+        )  # with the odd increment half and half: 2 · ½ + 0 · ½
         assert profile.count_then in (0, 1)  # as the counter saw it: whole increments
         assert positions_mm([0.0], [error_mm], 10.0)[-1, 0] == error_mm

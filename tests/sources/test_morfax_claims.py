@@ -58,13 +58,19 @@ AT_REST_CYCLES = 2e-5
 def sheet() -> Drawing:
     cross = [polyline((10.8, 30), (13.2, 30)), polyline((12, 28.8), (12, 31.2))]
     ticks = [polyline((25, 28.5), (25, 31.5)), polyline((40, 38.5), (40, 41.5))]
-    return inked(arc(CENTRE_MM, RADIUS_MM), polyline((12, 30), (30, 30)), *cross, *ticks, seed=1969)
+    return inked(
+        arc(CENTRE_MM, RADIUS_MM), polyline((12, 30), (30, 30)), *cross, *ticks, seed=1969
+    )
 
 
 @pytest.fixture(scope="module")
 def run(sheet: Drawing) -> Trace:
     """The follower's run over the whole sheet."""
-    return trace(sheet, settings=Settings(speed_mm_s=SPEED_MM_S), operator=Operator(Work(depth_mm=DEPTH_MM)))
+    return trace(
+        sheet,
+        settings=Settings(speed_mm_s=SPEED_MM_S),
+        operator=Operator(Work(depth_mm=DEPTH_MM)),
+    )
 
 
 @dataclass(frozen=True)
@@ -99,7 +105,9 @@ def counted_hz(samples: Array) -> float:
     return float((len(at) - 1) / (at[-1] - at[0]) * RATE_HZ)
 
 
-def phase_apart(tape: Taped, number: int, from_s: float, to_s: float, window_s: float = 0.01) -> float:
+def phase_apart(
+    tape: Taped, number: int, from_s: float, to_s: float, window_s: float = 0.01
+) -> float:
     """How far the phase of a track goes against the reference's within a time of the motion, cycles; of means
     over a window.
     """
@@ -126,7 +134,9 @@ def tape(run: Trace, tmp_path_factory: pytest.TempPathFactory) -> Taped:
 
 def round_the_contour(tape: Taped) -> Iterator[float]:
     """Times at which the head is under way, by the motion itself."""
-    speed = np.hypot(*np.gradient(tape.motion.positions_mm[:, :2], 1 / MOTION_RATE_HZ, axis=0).T)
+    speed = np.hypot(
+        *np.gradient(tape.motion.positions_mm[:, :2], 1 / MOTION_RATE_HZ, axis=0).T
+    )
     steady = np.convolve(np.abs(speed - SPEED_MM_S) < 0.5, np.ones(601), "same") == 601
     moments = np.flatnonzero(steady)
     return iter((moments[:: len(moments) // 40] / MOTION_RATE_HZ).tolist())
@@ -134,7 +144,9 @@ def round_the_contour(tape: Taped) -> Iterator[float]:
 
 def standing_s(run: Trace, number: int) -> tuple[float, float]:
     """From when to when X and Y stand at a stop, s of the motion."""
-    place = next(action.halt.place_mm for action in run.actions[0] if action.halt.number == number)
+    place = next(
+        action.halt.place_mm for action in run.actions[0] if action.halt.number == number
+    )
     positions = join(run).positions_mm
     still = np.r_[False, (np.diff(positions[:, :2], axis=0) == 0).all(axis=1)]
     there = np.flatnonzero(still & (np.hypot(*(positions[:, :2] - place).T) < 0.01))
@@ -149,8 +161,12 @@ def test_claim_1_the_follower_goes_round_the_drawing_and_its_signal_tells_direct
 ) -> None:
     loop = run.lines[0].xy_mm[run.lines[0].loop_from :]
     turned = np.unwrap(np.arctan2(*(loop - CENTRE_MM).T[::-1]))
-    assert abs(turned[-1] - turned[0]) == pytest.approx(2 * math.pi, abs=0.01)  # progressively round, once
-    assert np.abs(np.hypot(*(loop - CENTRE_MM).T) - RADIUS_MM).max() < 0.02  # on the line of 0.5 mm
+    assert abs(turned[-1] - turned[0]) == pytest.approx(
+        2 * math.pi, abs=0.01
+    )  # progressively round, once
+    assert (
+        np.abs(np.hypot(*(loop - CENTRE_MM).T) - RADIUS_MM).max() < 0.02
+    )  # on the line of 0.5 mm
     hz = [(tape.hz(X, at_s), tape.speed_mm_s(X, at_s)) for at_s in round_the_contour(tape)]
     assert max(speed for _, speed in hz) > 9 and min(speed for _, speed in hz) < -9
     for found, speed in hz:
@@ -162,7 +178,15 @@ def test_claim_2_an_oscillating_cell_steers_and_the_tracks_lie_about_a_recorded_
 ) -> None:
     cells = behind_aperture(sheet, HISTORIC.aperture_mm)
     sides = [
-        sweep(cells, sheet.pitch_mm, np.array([20.0, 30.0]), 0.0, aside_mm, HISTORIC.amplitude_mm, 400)[0]
+        sweep(
+            cells,
+            sheet.pitch_mm,
+            np.array([20.0, 30.0]),
+            0.0,
+            aside_mm,
+            HISTORIC.amplitude_mm,
+            400,
+        )[0]
         for aside_mm in (-0.3, -0.1, 0.1, 0.3)
     ]
     assert (
@@ -174,14 +198,21 @@ def test_claim_2_an_oscillating_cell_steers_and_the_tracks_lie_about_a_recorded_
         carriage.state[1] += aside_mm
         while carriage.travel_mm < 4:
             carriage.follow(stance.view, (0.0, 0.0, 0.0, 1e9))
-        assert abs(carriage.positions_mm[1, 1] - 30) > 0.15 and abs(carriage.positions_mm[-1, 1] - 30) < 0.05
+        assert (
+            abs(carriage.positions_mm[1, 1] - 30) > 0.15
+            and abs(carriage.positions_mm[-1, 1] - 30) < 0.05
+        )
     for number in (X, Y):
         heard = [tape.hz(number, at_s) for at_s in round_the_contour(tape)]
-        assert min(heard) < REFERENCE_HZ - 180 and max(heard) > REFERENCE_HZ + 180  # 10 mm/s is 200 Hz
+        assert (
+            min(heard) < REFERENCE_HZ - 180 and max(heard) > REFERENCE_HZ + 180
+        )  # 10 mm/s is 200 Hz
     assert {round(tape.hz(REFERENCE, at_s)) for at_s in round_the_contour(tape)} == {6000}
 
 
-def test_claim_3_the_panel_s_switches_put_the_tool_s_movements_on_a_z_track(run: Trace, tape: Taped) -> None:
+def test_claim_3_the_panel_s_switches_put_the_tool_s_movements_on_a_z_track(
+    run: Trace, tape: Taped
+) -> None:
     down = run.actions[0][0]
     assert (down.halt.number, [move.to_mm for move in down.moves]) == (1, [-DEPTH_MM])
     from_s, to_s = standing_s(run, 1)
@@ -207,17 +238,23 @@ def test_claim_4_a_member_on_the_screw_and_one_on_the_reference_motor_make_the_s
     fmt = TapeFormat(cycles_per_mm=screw.cycles_per_mm, pickup=pickup, dwell_s=0.0)
     for sense in (1, -1):
         places = sense * turns_per_s * screw.pitch_mm * np.arange(6000) / MOTION_RATE_HZ
-        tape = taped(Motion(np.column_stack([places, 0 * places, 0 * places])), tmp_path / "a.wav", fmt)
+        tape = taped(
+            Motion(np.column_stack([places, 0 * places, 0 * places])), tmp_path / "a.wav", fmt
+        )
         middle = slice(4800, 43_200)
         heard = counted_hz(tape.track(X)[middle])
-        assert heard == pytest.approx(REFERENCE_HZ + sense * turns_per_s * screw.sectors, abs=0.05)
+        assert heard == pytest.approx(
+            REFERENCE_HZ + sense * turns_per_s * screw.sectors, abs=0.05
+        )
         assert counted_hz(tape.track(Y)[middle]) == pytest.approx(REFERENCE_HZ, abs=0.05)
 
 
 # playing
 
 
-def test_claim_5_recorded_signals_are_compared_with_the_reference_and_move_the_machine(tape: Taped) -> None:
+def test_claim_5_recorded_signals_are_compared_with_the_reference_and_move_the_machine(
+    tape: Taped,
+) -> None:
     played = thin(play(tape.file))
     assert distance(played, thin([tape.motion])).hausdorff_mm < 3 * UM
     assert np.abs(played.positions_mm[:, 2].min() + DEPTH_MM) < 3 * UM
@@ -233,11 +270,12 @@ def test_claim_6_the_reference_on_the_tape_drives_the_wheel_that_each_drive_is_f
         slow.comment = told.to_json()
         slow.write(frames)
     as_recorded, slower = thin(play(tape.file)), thin(play(tmp_path / "slow.wav"))
-    assert distance(slower, as_recorded).hausdorff_mm < 1 * UM  # carriers and reference are both 4 % lower
+    assert (
+        distance(slower, as_recorded).hausdorff_mm < 1 * UM
+    )  # carriers and reference are both 4 % lower
     assert slower.t_s[-1] == pytest.approx(as_recorded.t_s[-1] * 48 / 46, rel=1e-4)
-    warped = (
-        frames.copy()
-    )  # the reference alone runs 0.1 % fast for two seconds: a wheel that turns so turns the screws
+    # the reference alone runs 0.1 % fast for two seconds: a wheel that turns so turns the screws
+    warped = frames.copy()
     t_s = np.arange(len(frames)) / RATE_HZ
     ahead = 0.001 * REFERENCE_HZ * np.clip(t_s - 2, 0, 2)
     warped[:, 0] = 0.5 * np.sin(2 * np.pi * (REFERENCE_HZ * t_s + ahead))
@@ -250,7 +288,9 @@ def test_claim_6_the_reference_on_the_tape_drives_the_wheel_that_each_drive_is_f
     assert moved == pytest.approx(-12 * Q_MM, abs=3 * UM)  # 12 cycles on every axis
 
 
-def test_claim_7_the_contour_that_was_drawn_is_the_contour_that_is_cut(sheet: Drawing, tape: Taped) -> None:
+def test_claim_7_the_contour_that_was_drawn_is_the_contour_that_is_cut(
+    sheet: Drawing, tape: Taped
+) -> None:
     found = deviation(sheet, thin(play(tape.file)))
     assert found.rms_mm < 4 * UM
     (cut,) = thin(play(tape.file)).runs()
@@ -294,22 +334,34 @@ def test_claim_9_each_drive_turns_a_member_beside_one_of_constant_speed(tmp_path
         screw = LeadScrew(pitch_mm=5.0, sectors=sectors)
         places = 5.0 * np.arange(12_000) / MOTION_RATE_HZ  # one turn a second
         fmt = TapeFormat(cycles_per_mm=screw.cycles_per_mm, dwell_s=0.0)
-        tape = taped(Motion(np.column_stack([places, -places, 0 * places])), tmp_path / "a.wav", fmt)
-        heard = [counted_hz(tape.track(track)[4800:91_200]) - REFERENCE_HZ for track in (X, Y, Z)]
+        tape = taped(
+            Motion(np.column_stack([places, -places, 0 * places])), tmp_path / "a.wav", fmt
+        )
+        heard = [
+            counted_hz(tape.track(track)[4800:91_200]) - REFERENCE_HZ for track in (X, Y, Z)
+        ]
         assert heard == pytest.approx([sectors, -sectors, 0], abs=0.02)
 
 
-def test_claim_10_one_steering_movement_makes_both_tracks_beside_a_constant_third(tape: Taped) -> None:
+def test_claim_10_one_steering_movement_makes_both_tracks_beside_a_constant_third(
+    tape: Taped,
+) -> None:
     """In every direction the two shifts make the one tracing speed: sine and cosine of one heading."""
     for at_s in round_the_contour(tape):
         shifts = [(tape.hz(track, at_s) - REFERENCE_HZ) * Q_MM for track in (X, Y)]
-        chord = math.sin(SPEED_MM_S * COUNTED_S / 2 / RADIUS_MM) / (SPEED_MM_S * COUNTED_S / 2 / RADIUS_MM)
+        chord = math.sin(SPEED_MM_S * COUNTED_S / 2 / RADIUS_MM) / (
+            SPEED_MM_S * COUNTED_S / 2 / RADIUS_MM
+        )
         # mm/s: two counts, and the waver of a head on a noisy scan
-        assert math.hypot(*shifts) == pytest.approx(SPEED_MM_S * chord, abs=2 * COUNTED_HZ * Q_MM + 0.2)
+        assert math.hypot(*shifts) == pytest.approx(
+            SPEED_MM_S * chord, abs=2 * COUNTED_HZ * Q_MM + 0.2
+        )
         assert tape.hz(REFERENCE, at_s) == pytest.approx(REFERENCE_HZ, abs=COUNTED_HZ)
 
 
-def test_claim_11_a_member_that_stands_gives_the_reference_frequency(run: Trace, tape: Taped) -> None:
+def test_claim_11_a_member_that_stands_gives_the_reference_frequency(
+    run: Trace, tape: Taped
+) -> None:
     for number in (1, 2):
         from_s, to_s = standing_s(run, number)
         assert to_s - from_s > 0.4  # the tape runs on
@@ -317,7 +369,9 @@ def test_claim_11_a_member_that_stands_gives_the_reference_frequency(run: Trace,
             assert phase_apart(tape, track, from_s + 0.02, to_s - 0.02) < AT_REST_CYCLES
     from_s, to_s = standing_s(run, 1)
     travel = phase_apart(tape, Z, from_s - 0.1, to_s + 0.1, 0.001)
-    assert travel == pytest.approx((DEPTH_MM + run.work.clearance_mm) / Q_MM, abs=1e-3)  # 7 mm are 140 cycles
+    assert travel == pytest.approx(
+        (DEPTH_MM + run.work.clearance_mm) / Q_MM, abs=1e-3
+    )  # 7 mm are 140 cycles
 
 
 def test_claim_12_a_sector_wheel_passes_a_lamp_and_a_photocell(
@@ -336,13 +390,19 @@ def test_claim_12_a_sector_wheel_passes_a_lamp_and_a_photocell(
     assert distance(thin(play(lit.file)), thin(play(tape.file))).hausdorff_mm < 1 * UM
 
 
-def test_claim_13_the_operator_sets_the_tool_s_movement_by_hand(sheet: Drawing, tmp_path: Path) -> None:
+def test_claim_13_the_operator_sets_the_tool_s_movement_by_hand(
+    sheet: Drawing, tmp_path: Path
+) -> None:
     asked: list[int | None] = []
 
     class AtThePanel:
         def ask(self, halt: Halt, z_mm: float, usual: Sequence[Move]) -> Stop | None:
             asked.append(halt.number)
-            return Stop(moves=(Preset(counts_of(z_mm) + 325, "down", 4.0),)) if halt.number == 1 else None
+            return (
+                Stop(moves=(Preset(counts_of(z_mm) + 325, "down", 4.0),))
+                if halt.number == 1
+                else None
+            )
 
         def wait(self, halt: Halt) -> float:
             return 0.0
@@ -372,7 +432,9 @@ def test_claim_14_switches_a_motor_of_variable_speed_and_counters_make_a_sequenc
     assert [z[0], z[lowest], z[lowest:].max(), z[-1]] == pytest.approx(
         [2.0, -2.0, -0.5, -3.75], abs=1e-9
     )  # to the count
-    assert np.count_nonzero(z[lowest:] == -2.0) / MOTION_RATE_HZ == pytest.approx(0.3, abs=0.001)  # the dwell
+    assert np.count_nonzero(z[lowest:] == -2.0) / MOTION_RATE_HZ == pytest.approx(
+        0.3, abs=0.001
+    )  # the dwell
     shown = Counters(counts_of(2.0))
     for preset in card.stop(1).moves:
         shown = shown.after(preset)
@@ -425,13 +487,17 @@ def test_claim_15_each_axis_moves_as_its_frequency_is_above_or_below(tmp_path: P
         )  # in one second
 
 
-def test_claim_16_the_reference_from_the_tape_turns_the_wheel_of_every_axis(tmp_path: Path) -> None:
+def test_claim_16_the_reference_from_the_tape_turns_the_wheel_of_every_axis(
+    tmp_path: Path,
+) -> None:
     """A tape on which everything is 2 % high means the same motion; one whose reference alone is 20 Hz off
     moves all axes.
     """
     high = tones(tmp_path / "a.wav", 6120, 6120 + 204, 6120 - 102, 6120)
     played = join(play(high, reference_hz=6000, cycles_per_mm=20)).positions_mm
-    assert (played[11_000] - played[5_000]).tolist() == pytest.approx([10.2, -5.1, 0], abs=1 * UM)
+    assert (played[11_000] - played[5_000]).tolist() == pytest.approx(
+        [10.2, -5.1, 0], abs=1 * UM
+    )
     off = tones(tmp_path / "b.wav", 5980, 6000, 6000, 6000)
     played = join(play(off, reference_hz=6000, cycles_per_mm=20)).positions_mm
     assert (played[11_000] - played[5_000]).tolist() == pytest.approx([1, 1, 1], abs=1 * UM)
@@ -457,7 +523,11 @@ def test_claim_17_the_motor_turns_a_member_whose_signal_is_fed_back(tmp_path: Pa
 
 
 def test_every_claim_stands_in_the_table() -> None:
-    lines = (Path(__file__).parents[2] / "docs" / "claims-morfax.md").read_text(encoding="utf-8").splitlines()
+    lines = (
+        (Path(__file__).parents[2] / "docs" / "claims-morfax.md")
+        .read_text(encoding="utf-8")
+        .splitlines()
+    )
     rows = [line.split("|") for line in lines if line.startswith("| ") and line[2].isdigit()]
     assert [int(row[1]) for row in rows] == list(range(1, 18))
     for row in rows:

@@ -43,7 +43,10 @@ ALWAYS = Feed(gate_period=1)
 
 def ways(pulses: np.ndarray, start: tuple[int, ...] = (0, 0, 0)) -> np.ndarray:
     """Places after each recirculation, the start first."""
-    return np.vstack([np.zeros((1, 3), np.int64), np.cumsum(pulses, axis=0, dtype=np.int64)]) + start
+    return (
+        np.vstack([np.zeros((1, 3), np.int64), np.cumsum(pulses, axis=0, dtype=np.int64)])
+        + start
+    )
 
 
 def step(residue: int, error: int, total: int, gate_open: bool) -> tuple[int, int]:
@@ -75,7 +78,9 @@ def residues(
 
 def test_table_1_row_by_row(vectors: Vectors) -> None:
     for row in vectors("pw_table1")["printed_rows"]:
-        end, pulse = step(row["RR_start"], row["error"], row["addend_magnitude"], row["gate_open"])
+        end, pulse = step(
+            row["RR_start"], row["error"], row["addend_magnitude"], row["gate_open"]
+        )
         assert (end, pulse or None) == (row["RR_end"], row["pulse"]), row["cycle"]
 
 
@@ -98,7 +103,9 @@ def test_one_axis_never_pulses_the_wrong_way_and_always_arrives() -> None:
                     residue, left, cycle = at, error, 0
                     while left and cycle < 4_000:
                         cycle += 1
-                        residue, pulse = step(residue, left, constant + left, cycle % period == 0)
+                        residue, pulse = step(
+                            residue, left, constant + left, cycle % period == 0
+                        )
                         assert pulse >= 0
                         left -= pulse
                     assert left == 0
@@ -122,7 +129,9 @@ def test_linear_runs(vectors: Vectors) -> None:
 def test_circular_runs(vectors: Vectors) -> None:
     for case in vectors("pw_circular")["cases"]:
         start, sense = (*case["start"], 0), COUNTER_CLOCKWISE if case["ccw"] else CLOCKWISE
-        pulses = Interpolator(start, case["L"]).arc((*case["end"], 0), tuple(case["centre"]), sense, ALWAYS)
+        pulses = Interpolator(start, case["L"]).arc(
+            (*case["end"], 0), tuple(case["centre"]), sense, ALWAYS
+        )
         way = ways(pulses[pulses.any(axis=1)], start)[:, :2]
         assert len(pulses) == case["cycles"] and way[-1].tolist() == case["end"]
         expected = case["path_every_50"]
@@ -141,7 +150,9 @@ def test_the_weights_and_what_they_make_of_the_speed(vectors: Vectors) -> None:
     }
     for sample in norms["samples"]:
         direction = np.array(sample["vector"])
-        approximate = direction @ resultant_weights(direction, true_norm=False) / (GREATEST * EIGHTH)
+        approximate = (
+            direction @ resultant_weights(direction, true_norm=False) / (GREATEST * EIGHTH)
+        )
         true = direction @ resultant_weights(direction, true_norm=True) / (GREATEST * EIGHTH)
         assert approximate == pytest.approx(sample["approx"]) and true == pytest.approx(
             sample["true"], rel=1e-4
@@ -170,7 +181,9 @@ def rates(end: tuple[int, int, int], constant: int = 16) -> np.ndarray:
 def test_claim_1_pulse_frequencies_from_each_error_and_the_largest() -> None:
     largest = 40_000
     found = rates((largest, -25_000, 10_000), constant=10_000)
-    assert found == pytest.approx(np.array([40, 25, 10]) / (40 + 10), rel=0.02)  # 2 %: the errors fall by 4 %
+    assert found == pytest.approx(
+        np.array([40, 25, 10]) / (40 + 10), rel=0.02
+    )  # 2 %: the errors fall by 4 %
 
 
 def test_claim_2_the_frequencies_are_in_the_ratio_of_the_errors() -> None:
@@ -182,12 +195,17 @@ def test_claim_2_the_frequencies_are_in_the_ratio_of_the_errors() -> None:
 
 
 def test_claim_3_the_sum_is_added_against_the_sign_and_a_sign_that_stays_is_a_pulse() -> None:
-    assert step(5, 0, 10, False) == (-5, 0) and step(-5, 0, 10, False) == (5, 0)  # left alone it alternates
+    assert step(5, 0, 10, False) == (-5, 0) and step(-5, 0, 10, False) == (
+        5,
+        0,
+    )  # left alone it alternates
     assert step(5, -6, 10, True) == (-11, 0) and step(-11, 0, 10, False) == (-1, -1)
     residues((50, 0, 0), 16, Feed(gate_period=3), 33, 200)  # the compiled loop does the same
 
 
-def test_claim_4_feed_pulses_count_up_command_pulses_down_and_the_count_opens_the_gates() -> None:
+def test_claim_4_feed_pulses_count_up_command_pulses_down_and_the_count_opens_the_gates() -> (
+    None
+):
     feed = Feed(feed_number(9_000, RECIRCULATIONS_HZ))
     interpolator = Interpolator()
     weights = resultant_weights(np.array([8_000, 3_000, 0]), true_norm=False)
@@ -195,14 +213,18 @@ def test_claim_4_feed_pulses_count_up_command_pulses_down_and_the_count_opens_th
     taken = int(np.abs(pulses).sum(axis=0) @ weights) // EIGHTH
     fed = count_feed(len(pulses), feed.number, feed.override) * FEED_EIGHTHS
     assert 0 <= fed - taken < BLOCKED // EIGHTH  # what is left is the counter, of 8 stages
-    assert [gate_opens(count * EIGHTH, 1) for count in (0, 31, 32, 63, 64, 255)] == [False] * 4 + [True] * 2
+    assert [gate_opens(count * EIGHTH, 1) for count in (0, 31, 32, 63, 64, 255)] == [
+        False
+    ] * 4 + [True] * 2
     assert gate_opens(FOURTH, 4) and not gate_opens(FOURTH - 1, 4) and gate_opens(EVERY, 3)
 
 
 def held(end: tuple[int, int, int], **how: Any) -> float:
     """The speed along a line over what was programmed, off the approach."""
     override = override_number(how.pop("override", 1.0))
-    pulses = Interpolator().line(end, Feed(feed_number(9_000, RECIRCULATIONS_HZ), override, **how))
+    pulses = Interpolator().line(
+        end, Feed(feed_number(9_000, RECIRCULATIONS_HZ), override, **how)
+    )
     half = len(pulses) // 2
     return float(np.linalg.norm(ways(pulses)[half]) / half * RECIRCULATIONS_HZ / 9_000)
 
@@ -221,17 +243,23 @@ def test_claim_5_three_axes_weigh_two_and_a_half_to_one_to_three_quarters(
 def test_claim_6_two_axes_weigh_two_and_a_half_to_one(direction: tuple[int, int]) -> None:
     size = np.array([*direction, 0], float)
     end = tuple((size / np.linalg.norm(size) * 20_000).astype(int))
-    assert held(end) == pytest.approx(np.linalg.norm(size) / (size[0] + size[1] / 2.5), rel=0.005)
+    assert held(end) == pytest.approx(
+        np.linalg.norm(size) / (size[0] + size[1] / 2.5), rel=0.005
+    )
 
 
-def test_claims_7_and_8_the_speed_of_each_part_is_its_error_over_the_largest_and_a_constant() -> None:
+def test_claims_7_and_8_the_speed_of_each_part_is_its_error_over_the_largest_and_a_constant() -> (
+    None
+):
     for constant in (16, 400, 4_000):
         pulses = Interpolator(servo_constant=constant).line((9_000, 4_500, 0), ALWAYS)
         left = np.array([9_000, 4_500, 0]) - ways(pulses)
         for first in range(0, len(pulses) - 400, 300):
             error = left[first : first + 200].mean(axis=0)
             speed = pulses[first : first + 200].mean(axis=0)
-            assert speed == pytest.approx(error / (constant + error.max()), abs=0.02)  # 4 pulses in 200
+            assert speed == pytest.approx(
+                error / (constant + error.max()), abs=0.02
+            )  # 4 pulses in 200
 
 
 def test_claim_9_the_largest_error_is_found_whichever_axis_has_it() -> None:
@@ -244,7 +272,9 @@ def test_claim_10_the_constant_is_added_to_the_largest_error() -> None:
     # one axis from a residue that alternates evenly: a pulse needs RR + E - (L + E_m) >= 0 after so many
     # openings
     for constant in (1, 7, 60):
-        pulses = Interpolator(servo_constant=constant, guard=False).line((100, 0, 0), ALWAYS, residue=0)
+        pulses = Interpolator(servo_constant=constant, guard=False).line(
+            (100, 0, 0), ALWAYS, residue=0
+        )
         residue, cycle = 0, 0
         while True:
             cycle += 1
@@ -254,11 +284,15 @@ def test_claim_10_the_constant_is_added_to_the_largest_error() -> None:
         assert int(np.flatnonzero(pulses[:, 0])[0]) + 1 == cycle
 
 
-def test_claim_11_errors_enter_in_selected_recirculations_and_a_sign_that_stays_is_found() -> None:
+def test_claim_11_errors_enter_in_selected_recirculations_and_a_sign_that_stays_is_found() -> (
+    None
+):
     for period in (1, 2, 3, 4):
         found = residues((40, 0, 0), 16, Feed(gate_period=period), 28, 100)
         signs = [28, *(residue for residue, _ in found)]
-        assert [pulse != 0 for _, pulse in found] == [(a < 0) == (b < 0) for a, b in pairwise(signs)]
+        assert [pulse != 0 for _, pulse in found] == [
+            (a < 0) == (b < 0) for a, b in pairwise(signs)
+        ]
 
 
 def test_claim_12_a_train_of_pulses_for_each_axis() -> None:
@@ -268,7 +302,9 @@ def test_claim_12_a_train_of_pulses_for_each_axis() -> None:
 
 
 def test_claim_13_each_train_drives_the_motor_of_its_axis() -> None:
-    motion = join(PulsePlayback(parse_rs274(["G1 X0 Y0 Z0 F600", "G1 X3 Y-2 Z1", "M2"]), PulseControl()))
+    motion = join(
+        PulsePlayback(parse_rs274(["G1 X0 Y0 Z0 F600", "G1 X3 Y-2 Z1", "M2"]), PulseControl())
+    )
     assert motion.positions_mm[-1] == pytest.approx([3, -2, 1], abs=0.001)  # a pulse
 
 
@@ -286,17 +322,24 @@ def test_claim_15_a_count_of_feed_pulses_lets_the_interpolators_run() -> None:
     pulses = Interpolator().line((4_000, 0, 0), Feed(feed_number(6_000, RECIRCULATIONS_HZ)))
     first = int(np.flatnonzero(pulses[:, 0])[0])
     fed = count_feed(first + 1, feed_number(6_000, RECIRCULATIONS_HZ), override_number(1.0))
-    assert fed * FEED_EIGHTHS >= FOURTH // EIGHTH  # nothing moves before the count has reached stage 6
+    assert (
+        fed * FEED_EIGHTHS >= FOURTH // EIGHTH
+    )  # nothing moves before the count has reached stage 6
     assert held((20_000, 0, 0)) == pytest.approx(1.0, rel=0.005)
     assert held((20_000, 0, 0), override=0.5) == pytest.approx(0.5, rel=0.005)
 
 
 def test_claim_16_the_count_sets_how_often_the_gates_open() -> None:
-    opened = {count: sum(gate_opens(count * EIGHTH, r) for r in range(64)) for count in (31, 32, 64, 255)}
+    opened = {
+        count: sum(gate_opens(count * EIGHTH, r) for r in range(64))
+        for count in (31, 32, 64, 255)
+    }
     assert opened == {31: 0, 32: 16, 64: 64, 255: 64}
 
 
-def test_claim_17_pulses_at_the_frequency_of_the_difference_between_command_and_position() -> None:
+def test_claim_17_pulses_at_the_frequency_of_the_difference_between_command_and_position() -> (
+    None
+):
     # the axis is told to stand 12 counts further, and its motor is as good as stuck: only lag pulses come
     servo = PulseServo(gain_per_s=1e-9, lag_stages=10)
     servos = PulseServos(np.zeros(1, np.int64), RECIRCULATIONS_HZ, servo)
@@ -307,7 +350,9 @@ def test_claim_17_pulses_at_the_frequency_of_the_difference_between_command_and_
 
 
 def test_claims_18_21_and_22_the_lag_is_added_to_itself_and_its_overflow_is_a_pulse() -> None:
-    servos = PulseServos(np.zeros(1, np.int64), RECIRCULATIONS_HZ, PulseServo(gain_per_s=1e-9, lag_stages=5))
+    servos = PulseServos(
+        np.zeros(1, np.int64), RECIRCULATIONS_HZ, PulseServo(gain_per_s=1e-9, lag_stages=5)
+    )
     servos.follow(np.ones((10, 1), np.int8))
     count = servos.count[0]
     seen = []
@@ -334,8 +379,14 @@ def test_claim_23_the_tangent_is_the_chord_and_twice_the_perpendicular() -> None
     # in equations: V = E + A with A = E · E/2h turned by a right angle is the tangent at T, for any chord
     random = np.random.default_rng(23)
     for _ in range(200):
-        radius, first, turn = random.uniform(50, 4_000), random.uniform(0, 6.28), random.uniform(0.1, 3.0)
-        here, end = (radius * np.array([math.cos(a), math.sin(a)]) for a in (first, first + turn))
+        radius, first, turn = (
+            random.uniform(50, 4_000),
+            random.uniform(0, 6.28),
+            random.uniform(0.1, 3.0),
+        )
+        here, end = (
+            radius * np.array([math.cos(a), math.sin(a)]) for a in (first, first + turn)
+        )
         chord = end - here
         h = math.sqrt(radius**2 - chord @ chord / 4)
         ratio = math.hypot(*chord) / (2 * h)
@@ -346,7 +397,9 @@ def test_claim_23_the_tangent_is_the_chord_and_twice_the_perpendicular() -> None
     way = ways(pulses, (2_000, 0, 0))
     for first in range(0, len(way) - 300, 100):
         (x, y, _), step_by = way[first + 50], way[first + 100] - way[first]
-        assert abs(step_by[0] * x + step_by[1] * y) <= 0.08 * np.hypot(x, y) * np.hypot(*step_by[:2])
+        assert abs(step_by[0] * x + step_by[1] * y) <= 0.08 * np.hypot(x, y) * np.hypot(
+            *step_by[:2]
+        )
 
 
 @pytest.mark.parametrize("sense", [COUNTER_CLOCKWISE, CLOCKWISE])
@@ -390,16 +443,22 @@ def test_claim_25_larger_error_and_smaller_perpendicular_choose_how_the_errors_g
 
 def test_claim_26_one_more_loop_takes_the_larger_and_adds_the_smaller() -> None:
     _, taken, added = parts_of_an_arc()
-    assert sum(taken) == pytest.approx(sum(added), abs=max(taken) + max(added))  # the loop stays about zero
+    assert sum(taken) == pytest.approx(
+        sum(added), abs=max(taken) + max(added)
+    )  # the loop stays about zero
 
 
-def test_claims_27_and_28_straight_where_it_is_positive_crossed_and_one_negative_where_not() -> None:
+def test_claims_27_and_28_straight_where_it_is_positive_crossed_and_one_negative_where_not() -> (
+    None
+):
     # E = (-1000, 1000) at the start of a quarter turn: Q = 0 is positive, so both go to their own axes
     straight, _, _ = parts_of_an_arc()
     assert straight[:2] == [True, False]
     # straight (-1000, 1000), then crossed (1000, 1000): X has none left, Y twice as much, the tangent at
     # (1000, 0)
-    pulses = Interpolator((1_000, 0, 0)).arc((0, 1_000, 0), (0, 0), COUNTER_CLOCKWISE, ALWAYS)[:40]
+    pulses = Interpolator((1_000, 0, 0)).arc((0, 1_000, 0), (0, 0), COUNTER_CLOCKWISE, ALWAYS)[
+        :40
+    ]
     assert abs(int(pulses[:, 0].sum())) <= 2 and int(pulses[:, 1].sum()) >= 35
     # the other way round the other one is negative
     other = Interpolator((1_000, 0, 0)).arc((0, -1_000, 0), (0, 0), CLOCKWISE, ALWAYS)[:40]

@@ -73,7 +73,9 @@ def test_relation_vi_is_the_table(vectors: Vectors) -> None:
 
 
 @pytest.mark.parametrize("case", range(8))
-def test_the_differences_of_a_cubic_are_exact_in_3_log2_p_digits(vectors: Vectors, case: int) -> None:
+def test_the_differences_of_a_cubic_are_exact_in_3_log2_p_digits(
+    vectors: Vectors, case: int
+) -> None:
     told = vectors("sea_hermite")["cases"][case]
     sample = np.array([[[told["x1"], told["tangent1"]]], [[told["x2"], told["tangent2"]]]])
     words = differences(sample, told["steps"])
@@ -93,9 +95,13 @@ def test_registers_with_fewer_digits_end_beside_it(vectors: Vectors) -> None:
     rng = np.random.default_rng(1957)
     for name, worst in told.items():
         steps, *digits = (
-            int("".join(filter(str.isdigit, part))) for part in name.split("_") if part != "frac"
+            int("".join(filter(str.isdigit, part)))
+            for part in name.split("_")
+            if part != "frac"
         )
-        cubics = np.stack([rng.integers(-2000, 2001, (400, 2)), rng.integers(-4000, 4001, (400, 2))], axis=-1)
+        cubics = np.stack(
+            [rng.integers(-2000, 2001, (400, 2)), rng.integers(-4000, 4001, (400, 2))], axis=-1
+        )
         off = []
         for sample in cubics:
             words = differences(sample[:, None], steps)[0, 0].tolist()
@@ -147,7 +153,10 @@ def test_claim_1_program_interpolator_measurement_comparison_and_drive(orbit: Pa
 
 
 def test_claim_2_a_switch_makes_all_steps_cubic_or_one_in_q(tmp_path: Path) -> None:
-    files = {q: record_cubics(ORBIT, tmp_path / f"{q}.cubic", fmt=CubicFormat(linear=q)).file for q in (1, 4)}
+    files = {
+        q: record_cubics(ORBIT, tmp_path / f"{q}.cubic", fmt=CubicFormat(linear=q)).file
+        for q in (1, 4)
+    }
     bends = {}
     for q, file in files.items():
         program = read_program(file)
@@ -165,8 +174,16 @@ def test_claim_3_a_coarse_and_a_fine_encoder_make_one_code() -> None:
 
 
 def test_claim_4_one_is_added_to_the_coarse_code_where_the_digits_differ() -> None:
-    assert joined(np.array([32]), np.array([20]), 64) == joined(np.array([32]), np.array([21]), 64) == 672
-    assert joined(np.array([31]), np.array([19]), 64) == joined(np.array([31]), np.array([20]), 64) == 671
+    assert (
+        joined(np.array([32]), np.array([20]), 64)
+        == joined(np.array([32]), np.array([21]), 64)
+        == 672
+    )
+    assert (
+        joined(np.array([31]), np.array([19]), 64)
+        == joined(np.array([31]), np.array([20]), 64)
+        == 671
+    )
 
 
 def test_claim_5_a_gate_passes_fast_pulses_as_long_as_the_phase_is() -> None:
@@ -193,7 +210,9 @@ def test_claim_7_the_decoder_s_ratio_is_set_apart_from_the_difference(orbit: Pat
 
 def test_claim_8_the_program_holds_the_ratio(tmp_path: Path) -> None:
     for modulus in (80.0, 160.0):
-        record_cubics(ORBIT, tmp_path / "a.cubic", fmt=CubicFormat(points=256, modulus_per_s=modulus))
+        record_cubics(
+            ORBIT, tmp_path / "a.cubic", fmt=CubicFormat(points=256, modulus_per_s=modulus)
+        )
         playback = play_cubic(tmp_path / "a.cubic")
         join(playback)
         assert max(playback.following_error_mm) == pytest.approx(10 / modulus, rel=0.05)
@@ -202,7 +221,9 @@ def test_claim_8_the_program_holds_the_ratio(tmp_path: Path) -> None:
 def test_claim_9_each_store_needs_fewer_digits_than_the_one_before(orbit: Path) -> None:
     program = read_program(orbit)
     largest = [
-        np.abs(Interpolator(np.array(program.checks[0]), program.format.points).run(program.words)).max()
+        np.abs(
+            Interpolator(np.array(program.checks[0]), program.format.points).run(program.words)
+        ).max()
     ]
     largest += np.abs(program.words).max(axis=(0, 1)).tolist()
     digits = [int(word).bit_length() for word in largest]
@@ -223,7 +244,11 @@ def test_claim_10_the_stores_recirculate(words: tuple[int, int, int, int], steps
 
 
 def test_every_claim_stands_in_the_table() -> None:
-    lines = (Path(__file__).parents[2] / "docs" / "claims-sea.md").read_text(encoding="utf-8").splitlines()
+    lines = (
+        (Path(__file__).parents[2] / "docs" / "claims-sea.md")
+        .read_text(encoding="utf-8")
+        .splitlines()
+    )
     rows = [line.split("|") for line in lines if line.startswith("| ") and line[2].isdigit()]
     assert [int(row[1]) for row in rows] == list(range(1, 11))
     for row in rows:

@@ -14,7 +14,14 @@ import numpy as np
 import pytest
 
 from morfax.motion.motion import join
-from morfax.player.steps.stepping import decode, play_steps, pulse_ticks, pulses_of, ring_memory, tick_table
+from morfax.player.steps.stepping import (
+    decode,
+    play_steps,
+    pulse_ticks,
+    pulses_of,
+    ring_memory,
+    tick_table,
+)
 from morfax.recorder.steps.file import Program, StepFormat, write_program
 from morfax.recorder.steps.rings import RINGS
 from morfax.recorder.steps.steps import encode
@@ -52,10 +59,14 @@ def test_figures_7_and_8_give_the_printed_counts_in_all_15_intervals(vectors: Ve
     assert len(orders) == 15
     assert counts(rows) == [[order["count_x"], order["count_y"]] for order in orders]
     assert pulses(rows) == [[order["steps_x"], order["steps_y"]] for order in orders]
-    assert np.cumsum(pulses(rows), axis=0).tolist() == [[order["sum_x"], order["sum_y"]] for order in orders]
+    assert np.cumsum(pulses(rows), axis=0).tolist() == [
+        [order["sum_x"], order["sum_y"]] for order in orders
+    ]
 
 
-def test_figure_8_ends_at_53_and_minus_9_after_93_75_ms(vectors: Vectors, tmp_path: Path) -> None:
+def test_figure_8_ends_at_53_and_minus_9_after_93_75_ms(
+    vectors: Vectors, tmp_path: Path
+) -> None:
     rows = [int(order["tape5"], 2) for order in vectors("se_fig8")["orders"]]
     write_program(program(rows, end_mm=(0.53, -0.09, 0)), tmp_path / "fig8.steps")
     playback = play_steps(tmp_path / "fig8.steps")
@@ -89,7 +100,9 @@ def test_the_rings_are_those_of_figures_5_and_10(vectors: Vectors) -> None:
         along = np.cumsum(ours, axis=0)
         assert np.ptp(along[:, 0]) / 2 == ring["radius_half_extent"]
         lengths = np.hypot(*np.array(ours).T)
-        assert [lengths.min(), lengths.max()] == pytest.approx([ring["len_min"], ring["len_max"]], abs=1e-4)
+        assert [lengths.min(), lengths.max()] == pytest.approx(
+            [ring["len_min"], ring["len_max"]], abs=1e-4
+        )
     assert sum(map(len, RINGS.values())) == told["total_vectors"]
 
 
@@ -97,7 +110,9 @@ def test_the_clock_and_the_printed_pulses(vectors: Vectors) -> None:
     told = vectors("se_clock")
     for case in told["cases"]:
         fmt = StepFormat(oscillator_hz=case["oscillator_hz"])
-        assert fmt.interval_s == pytest.approx(case["interval_s"]) and fmt.rate_hz == case["K_hz"]
+        assert (
+            fmt.interval_s == pytest.approx(case["interval_s"]) and fmt.rate_hz == case["K_hz"]
+        )
         assert fmt.acceleration_steps_s2 == case["accel_steps_s2"]
     for rate, ticks in told["pulse_counts_printed"].items():
         assert list(pulse_ticks(int(rate[0]))) == ticks
@@ -117,14 +132,21 @@ def test_the_guards_of_figure_4(vectors: Vectors) -> None:
 
 def test_claim_1_pulses_at_the_rate_that_the_order_names_until_the_next_order() -> None:
     assert pulses([X_UP, X_UP, X_DOWN]) == [[1, 0], [2, 0], [1, 0]]
-    assert len({pulses_of(np.array([[count]], np.int8), LINEAR)[0, 0] for count in range(1, 16)}) == 15
+    assert (
+        len({pulses_of(np.array([[count]], np.int8), LINEAR)[0, 0] for count in range(1, 16)})
+        == 15
+    )
 
 
 def test_claim_2_the_next_rate_begins_with_its_order(tmp_path: Path) -> None:
-    write_program(program([X_UP, X_UP, X_DOWN, X_DOWN], end_mm=(0.04, 0, 0)), tmp_path / "a.steps")
+    write_program(
+        program([X_UP, X_UP, X_DOWN, X_DOWN], end_mm=(0.04, 0, 0)), tmp_path / "a.steps"
+    )
     playback = play_steps(tmp_path / "a.steps")
     x = join(playback).positions_mm[:, 0]
-    assert x[[0, 8, 16, 24, 32]] == pytest.approx([0, 0.01, 0.03, 0.04, 0.04])  # at the ends of the intervals
+    assert x[[0, 8, 16, 24, 32]] == pytest.approx(
+        [0, 0.01, 0.03, 0.04, 0.04]
+    )  # at the ends of the intervals
 
 
 def test_claim_3_an_order_is_the_difference_between_two_representations() -> None:
@@ -184,9 +206,13 @@ def test_claim_12_orders_of_both_axes_are_stored_together_and_taken_at_the_end_o
 
 
 @pytest.mark.parametrize("oscillator_hz", [10240, 7680])
-def test_claim_13_the_interval_is_the_same_for_every_order(tmp_path: Path, oscillator_hz: float) -> None:
+def test_claim_13_the_interval_is_the_same_for_every_order(
+    tmp_path: Path, oscillator_hz: float
+) -> None:
     rows = [X_UP, X_UP, SAME, X_DOWN, X_DOWN]
-    write_program(program(rows, end_mm=(0.06, 0, 0), oscillator_hz=oscillator_hz), tmp_path / "a.steps")
+    write_program(
+        program(rows, end_mm=(0.06, 0, 0), oscillator_hz=oscillator_hz), tmp_path / "a.steps"
+    )
     playback = play_steps(tmp_path / "a.steps")
     assert playback.duration_s == pytest.approx(len(rows) * 64 / oscillator_hz)
 
@@ -208,7 +234,9 @@ def test_claim_16_an_order_of_a_vector_gives_its_extents_on_both_axes() -> None:
 def test_claim_17_an_order_is_a_difference_of_places_in_the_endless_series() -> None:
     ring = RINGS[6]
     run = pulses([*INTO_RING_OF_SIX, *[NEXT] * 40])[6:]
-    assert run == [list(ring[(k + 1) % len(ring)]) for k in range(40)]  # past the end it begins again
+    assert run == [
+        list(ring[(k + 1) % len(ring)]) for k in range(40)
+    ]  # past the end it begins again
 
 
 def test_claim_18_the_same_vector_the_one_before_or_the_one_after() -> None:
@@ -257,7 +285,11 @@ def test_claim_25_two_bits_for_the_same_a_lower_and_a_higher_speed() -> None:
 
 def test_claim_28_the_difference_is_a_whole_number_of_increments() -> None:
     steps = np.array(pulses([X_UP, X_UP, X_UP, 0b11001, X_DOWN, 0b10110]))
-    assert steps.dtype.kind == "i" and set(np.diff(steps, axis=0).ravel().tolist()) <= {-1, 0, 1}
+    assert steps.dtype.kind == "i" and set(np.diff(steps, axis=0).ravel().tolist()) <= {
+        -1,
+        0,
+        1,
+    }
 
 
 def test_claims_29_and_32_the_difference_is_one_of_places_in_the_order_of_the_rates() -> None:
@@ -266,7 +298,15 @@ def test_claims_29_and_32_the_difference_is_one_of_places_in_the_order_of_the_ra
 
 
 def test_claim_30_the_rates_may_differ_by_a_constant_number() -> None:
-    assert [x for x, _ in pulses([X_UP] * 7, rates=(2, 4, 6, 8, 10, 12, 14))] == [2, 4, 6, 8, 10, 12, 14]
+    assert [x for x, _ in pulses([X_UP] * 7, rates=(2, 4, 6, 8, 10, 12, 14))] == [
+        2,
+        4,
+        6,
+        8,
+        10,
+        12,
+        14,
+    ]
 
 
 def test_claim_33_the_rates_are_in_the_order_of_their_speed() -> None:
@@ -281,8 +321,14 @@ def test_claims_38_and_39_neighbours_in_a_ring_differ_by_one_on_an_axis_at_most(
 
 
 def test_every_claim_stands_in_the_table() -> None:
-    table = (Path(__file__).parents[2] / "docs" / "claims-superior-electric.md").read_text(encoding="utf-8")
-    rows = [line.split("|") for line in table.splitlines() if line.startswith("| ") and line[2].isdigit()]
+    table = (Path(__file__).parents[2] / "docs" / "claims-superior-electric.md").read_text(
+        encoding="utf-8"
+    )
+    rows = [
+        line.split("|")
+        for line in table.splitlines()
+        if line.startswith("| ") and line[2].isdigit()
+    ]
     assert [int(row[1]) for row in rows] == list(range(1, 40))
     for row in rows:
         assert row[3].strip().strip("`") in globals()

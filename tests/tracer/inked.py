@@ -45,7 +45,13 @@ def inked(
     scale = dpi / MM_PER_INCH * OVERSAMPLE
     for line in lines:
         cv2.polylines(
-            fine, [_fixed(line, len(fine), scale)], False, 255, round(width_mm * scale), cv2.LINE_AA, 8
+            fine,
+            [_fixed(line, len(fine), scale)],
+            False,
+            255,
+            round(width_mm * scale),
+            cv2.LINE_AA,
+            8,
         )
     for speck in specks:
         cv2.fillPoly(fine, [_fixed(speck, len(fine), scale)], 255, cv2.LINE_AA, 8)
@@ -60,7 +66,13 @@ def together(*drawn: tuple[Points, float], seed: int | None = None) -> Drawing:
     scale = DPI / MM_PER_INCH * OVERSAMPLE
     for line, width_mm in drawn:
         cv2.polylines(
-            fine, [_fixed(line, len(fine), scale)], False, 255, round(width_mm * scale), cv2.LINE_AA, 8
+            fine,
+            [_fixed(line, len(fine), scale)],
+            False,
+            255,
+            round(width_mm * scale),
+            cv2.LINE_AA,
+            8,
         )
     return Drawing(_seen(fine, pixels, DPI, seed), MM_PER_INCH / DPI)
 
@@ -94,9 +106,12 @@ def arc(
     """An arc, or the whole circle, its ends included."""
     step = 2 * math.acos(1 - min(SAGITTA_MM / radius_mm, 1.0))
     angle = np.linspace(
-        *np.radians([from_deg, to_deg]), 2 + math.ceil(abs(math.radians(to_deg - from_deg)) / step)
+        *np.radians([from_deg, to_deg]),
+        2 + math.ceil(abs(math.radians(to_deg - from_deg)) / step),
     )
-    return np.asarray(np.array(centre) + radius_mm * np.column_stack([np.cos(angle), np.sin(angle)]))
+    return np.asarray(
+        np.array(centre) + radius_mm * np.column_stack([np.cos(angle), np.sin(angle)])
+    )
 
 
 def corner(deflection_deg: float, radius_mm: float = 0.0, leg_mm: float = 10.0) -> Points:
@@ -107,7 +122,12 @@ def corner(deflection_deg: float, radius_mm: float = 0.0, leg_mm: float = 10.0) 
     way = np.array([math.cos(turn), math.sin(turn)])
     touch = radius_mm * math.tan(turn / 2)
     vertex = np.array([MARGIN_MM + leg_mm * max(1.0, 1.0 - math.cos(turn)), MARGIN_MM])
-    legs = [vertex - [leg_mm, 0], vertex - [touch, 0], vertex + touch * way, vertex + leg_mm * way]
+    legs = [
+        vertex - [leg_mm, 0],
+        vertex - [touch, 0],
+        vertex + touch * way,
+        vertex + leg_mm * way,
+    ]
     if radius_mm == 0:
         return np.array([legs[0], vertex, legs[3]])
     bend = arc((legs[1][0], legs[1][1] + radius_mm), radius_mm, -90, -90 + deflection_deg)
@@ -130,9 +150,13 @@ def tick(
     return np.asarray(place) + np.array([-before_mm * way, beyond_mm * way])
 
 
-def cross(place: tuple[float, float], size_mm: float = 3.0, turn_deg: float = 0.0) -> list[Points]:
+def cross(
+    place: tuple[float, float], size_mm: float = 3.0, turn_deg: float = 0.0
+) -> list[Points]:
     """The two strokes of a reference point."""
-    return [tick(place, turn_deg + k, before_mm=size_mm / 2, beyond_mm=size_mm / 2) for k in (0, 90)]
+    return [
+        tick(place, turn_deg + k, before_mm=size_mm / 2, beyond_mm=size_mm / 2) for k in (0, 90)
+    ]
 
 
 def dot(place: tuple[float, float], across_mm: float) -> Points:

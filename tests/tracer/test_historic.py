@@ -80,9 +80,15 @@ def test_a_stiff_pursuit_runs_inside_a_circle_by_the_price_of_its_lead(
     """The axis stands where the circle's radius and the lead make a right angle; with k = 2v/a² it stands on
     the circle.
     """
-    row = next(r for r in vectors("mf_steering")["circle_cut_in"] if r["R"] == radius_mm and r["a"] == 2)
+    row = next(
+        r
+        for r in vectors("mf_steering")["circle_cut_in"]
+        if r["R"] == radius_mm and r["a"] == 2
+    )
     t = np.linspace(0, 2 * math.pi, 721)
-    circle = np.column_stack([radius_mm + 3 + radius_mm * np.cos(t), radius_mm + 3 + radius_mm * np.sin(t)])
+    circle = np.column_stack(
+        [radius_mm + 3 + radius_mm * np.cos(t), radius_mm + 3 + radius_mm * np.sin(t)]
+    )
     drawing = inked(circle, width_mm=0.7)
     for gain, inward_mm in ((20.0, row["inward_error"]), (2 * 2.0 / 2.0**2, 0.0)):
         run = trace(drawing, (2 * radius_mm + 3, radius_mm + 3), direct(2.0, gain, 0.0, 2.0))
@@ -100,7 +106,8 @@ def test_the_historic_head_goes_round_a_gentle_cam() -> None:
     t = np.linspace(0, 2 * math.pi, 721)
     r = 16 + 0.5 * np.cos(2 * t)
     run = trace(
-        inked(np.column_stack([19 + r * np.cos(t), 19 + r * np.sin(t)]), width_mm=0.7), settings=HISTORIC
+        inked(np.column_stack([19 + r * np.cos(t), 19 + r * np.sin(t)]), width_mm=0.7),
+        settings=HISTORIC,
     )
     assert run.ending == "closed"
     polar = run.xy_mm - 19
@@ -114,7 +121,9 @@ def test_the_historic_head_loses_the_line_where_it_cannot_turn() -> None:
     """
     run = trace(inked(polyline((4, 6), (30, 6), (6, 12)), width_mm=0.7), (10, 6), HISTORIC)
     assert run.ending == "lost" and run.fault is not None
-    assert str(run.fault).endswith("go slower there with --speed, or follow with --head precise")
+    assert str(run.fault).endswith(
+        "go slower there with --speed, or follow with --head precise"
+    )
     assert (
         run.fault.x_mm is not None and min(abs(run.fault.x_mm - x) for x in (4, 30)) < 4
     )  # two leads from the place

@@ -78,7 +78,13 @@ class Cut:
         down_at = operator.down_at(line, number)
         if len(line.xy_mm) < 2 or line.is_dot or (line.is_guide and down_at is None):
             return None
-        first = math.ceil(down_at or 0) if line.is_guide else (line.loop_from or 0) if line.is_lead else 0
+        first = (
+            math.ceil(down_at or 0)
+            if line.is_guide
+            else (line.loop_from or 0)
+            if line.is_lead
+            else 0
+        )
         closed, places_mm = line.is_lead or line.ending == "closed", _places(line, first)
         if closed:
             places_mm = _closed(places_mm)
@@ -105,7 +111,10 @@ def _bridge(before: Array, after: Array) -> Array:
     """A cubic from the end of some places (n, 2) mm to the beginning of others, on their headings; nothing
     where those are a corner's.
     """
-    ways = [before[-1] - before[max(0, len(before) - FELT)], after[min(FELT, len(after)) - 1] - after[0]]
+    ways = [
+        before[-1] - before[max(0, len(before) - FELT)],
+        after[min(FELT, len(after)) - 1] - after[0],
+    ]
     headings = [math.atan2(way[1], way[0]) for way in ways]
     if abs(turn(*headings)) > CORNER:
         return np.empty((0, 2))
@@ -118,7 +127,9 @@ def _closed(places_mm: Array) -> Array:
     """
     lengths = lengths_mm(places_mm)
     gap_mm = 0.5 * (places_mm[-1] - places_mm[0])
-    after, before = (np.clip(1 - mm / MET_MM, 0.0, 1.0) for mm in (lengths, lengths[-1] - lengths))
+    after, before = (
+        np.clip(1 - mm / MET_MM, 0.0, 1.0) for mm in (lengths, lengths[-1] - lengths)
+    )
     return np.asarray(places_mm + (after - before)[:, None] * gap_mm)
 
 
@@ -181,7 +192,9 @@ class Beside:
         """Places of the contour about one of them, (n, 2) mm, and how far along it they are from that, mm."""
         index = np.arange(here - reach, here + reach + 1)
         if self.cut.closed:
-            return self._every[index % len(self._every)], APART_MM * (index - here).astype(float)
+            return self._every[index % len(self._every)], APART_MM * (index - here).astype(
+                float
+            )
         index = index[(index >= 0) & (index < len(self._every))]
         return self._every[index], APART_MM * (index - here).astype(float)
 

@@ -122,7 +122,9 @@ def with_cutter(trace: Trace, cutter: Cutter, feed_mm_s: float) -> tuple[Trace, 
         k = next(k for k, other in enumerate(cuts) if other is cut)
         own = [way for way in ways if way.guide == k]
         if all(line.number != out.line for out in left.lines) and _has_ways(cut, own, cutter):
-            made += carried(Beside(cut, guides[k].left, cutter.radius_mm, own), near.distances_mm, feed)
+            made += carried(
+                Beside(cut, guides[k].left, cutter.radius_mm, own), near.distances_mm, feed
+            )
     beside = replace(trace, lines=tuple(made))
     _refuse_gouges(beside, near, cutter)
     return beside, left
@@ -130,9 +132,13 @@ def with_cutter(trace: Trace, cutter: Cutter, feed_mm_s: float) -> tuple[Trace, 
 
 def _goes_nowhere(guides: Sequence[Guide], cutter: Cutter) -> MotionFault:
     """The fault of a cutter that has room beside no line, with the widest that has."""
-    rooms = [room for room in (edges.room(guides, k) for k in range(len(guides))) if room is not None]
+    rooms = [
+        room for room in (edges.room(guides, k) for k in range(len(guides))) if room is not None
+    ]
     most_mm = max((room.passes_mm for room in rooms), default=0.0)
-    smaller = f"a smaller --cutter, up to {most_mm:g} mm," if most_mm > 0 else "a smaller --cutter,"
+    smaller = (
+        f"a smaller --cutter, up to {most_mm:g} mm," if most_mm > 0 else "a smaller --cutter,"
+    )
     return MotionFault(
         f"a cutter of {cutter.diameter_mm:g} mm goes nowhere {cutter.side} of the lines; give {smaller} or another --side"
     )
@@ -167,7 +173,9 @@ def _not_cut(line: Line, side: Side) -> Line:
         y_mm=fault.y_mm if fault else None,
         heading_rad=fault.heading_rad if fault else None,
     )
-    return replace(line, xy_mm=line.xy_mm[:1], loop_from=None, marks=(), guides=(), numbers=(), fault=told)
+    return replace(
+        line, xy_mm=line.xy_mm[:1], loop_from=None, marks=(), guides=(), numbers=(), fault=told
+    )
 
 
 def _has_ways(cut: Cut, ways: Sequence[Way], cutter: Cutter) -> bool:
@@ -214,10 +222,14 @@ def _guides(cuts: Sequence[Cut], side: Side) -> list[Guide]:
         if own or not cut.closed
     }
     if wrong:
-        raise _without_side(wrong, [cut.line.number for cut in cuts if cut.line.number not in wrong], side)
+        raise _without_side(
+            wrong, [cut.line.number for cut in cuts if cut.line.number not in wrong], side
+        )
     return [
         Guide(
-            cut.places_mm, True, edges.is_counterclockwise(line) == ((side == "inside") == (depth % 2 == 0))
+            cut.places_mm,
+            True,
+            edges.is_counterclockwise(line) == ((side == "inside") == (depth % 2 == 0)),
         )
         for cut, line, depth in zip(cuts, places, edges.depths(places, crossed), strict=True)
     ]
@@ -227,14 +239,18 @@ def _without_side(wrong: dict[int, str], others: Sequence[int], side: Side) -> M
     """The fault of lines that have no outside and no inside, with the numbers of those that have."""
     number = min(wrong)
     alone = (
-        f", or {side} of the others alone by --lines {','.join(map(str, sorted(others)))}" if others else ""
+        f", or {side} of the others alone by --lines {','.join(map(str, sorted(others)))}"
+        if others
+        else ""
     )
     return MotionFault(
         f"line {number} {wrong[number]}: it has no {side}; give --side left or right, by its travel{alone}"
     )
 
 
-def _left(cuts: Sequence[Cut], guides: Sequence[Guide], ways: Sequence[Way], radius_mm: float) -> Left:
+def _left(
+    cuts: Sequence[Cut], guides: Sequence[Guide], ways: Sequence[Way], radius_mm: float
+) -> Left:
     """The stretches of the lines that are further from every way than the cutter reaches, and the lines that
     are so all along.
     """
@@ -244,7 +260,9 @@ def _left(cuts: Sequence[Cut], guides: Sequence[Guide], ways: Sequence[Way], rad
         left_mm = near.distances_mm(places) - radius_mm
         if left_mm.min() > LEFT_MM:
             stops = tuple(stop.number for stop in cut.stops if stop.number is not None)
-            left.lines.append(LeftOut(cut.line.number, cut.length_mm, stops, edges.room(guides, k)))
+            left.lines.append(
+                LeftOut(cut.line.number, cut.length_mm, stops, edges.room(guides, k))
+            )
         else:
             left.stretches.extend(_stretches(cut, places, left_mm))
     left.stretches.sort(key=lambda stretch: -stretch.left_mm)
@@ -257,10 +275,14 @@ def _stretches(cut: Cut, places: Array, left_mm: Array) -> Iterator[Unreached]:
     if cut.closed:
         first = int(np.argmin(left_mm))  # no stretch is parted where the line begins
         places, left_mm = np.roll(places, -first, axis=0), np.roll(left_mm, -first)
-    ends = np.flatnonzero(np.diff(np.r_[False, left_mm > LEFT_MM, False].astype(np.int8))).reshape(-1, 2)
+    ends = np.flatnonzero(
+        np.diff(np.r_[False, left_mm > LEFT_MM, False].astype(np.int8))
+    ).reshape(-1, 2)
     for a, b in ends:
         at = a + int(np.argmax(left_mm[a:b]))
         if left_mm[at] > LISTED_MM:
             length_mm = float(np.hypot(*np.diff(places[a:b], axis=0).T).sum())
             place_mm = float(places[at, 0]), float(places[at, 1])
-            yield Unreached(cut.line.number, place_mm, float(left_mm[at]), length_mm, cut.length_mm)
+            yield Unreached(
+                cut.line.number, place_mm, float(left_mm[at]), length_mm, cut.length_mm
+            )

@@ -48,7 +48,9 @@ class Room:
 
 def closed_up(guide: Guide) -> Array:
     """The places of a guide, the first once more at the end of a closed one."""
-    return np.vstack([guide.points_mm, guide.points_mm[:1]]) if guide.closed else guide.points_mm
+    return (
+        np.vstack([guide.points_mm, guide.points_mm[:1]]) if guide.closed else guide.points_mm
+    )
 
 
 def is_counterclockwise(places: Array) -> bool:
@@ -59,7 +61,11 @@ def is_counterclockwise(places: Array) -> bool:
 
 def thinned(line_mm: Array) -> Array:
     """Places of a closed line by which it is known where it is, (n, 2) mm."""
-    return line_mm[::THINNED] if len(line_mm) >= 4 * THINNED else with_places(line_mm, LOOP_MM)[:-1]
+    return (
+        line_mm[::THINNED]
+        if len(line_mm) >= 4 * THINNED
+        else with_places(line_mm, LOOP_MM)[:-1]
+    )
 
 
 def crossing(lines_mm: Sequence[Array]) -> NDArray[np.bool_]:
@@ -77,7 +83,11 @@ def crossing(lines_mm: Sequence[Array]) -> NDArray[np.bool_]:
         i, j = owner[int(a)], owner[int(b)]
         if i == j:
             loop_mm = float(
-                abs(np.diff(np.interp([a, b], firsts[i] + np.arange(len(lengths[i])), lengths[i]))[0])
+                abs(
+                    np.diff(
+                        np.interp([a, b], firsts[i] + np.arange(len(lengths[i])), lengths[i])
+                    )[0]
+                )
             )
             crossed[i, i] |= min(loop_mm, lengths[i][-1] - loop_mm) > LOOP_MM
         else:
@@ -87,7 +97,10 @@ def crossing(lines_mm: Sequence[Array]) -> NDArray[np.bool_]:
 
 def depths(lines_mm: Sequence[Array], crossed: NDArray[np.bool_]) -> list[int]:
     """In how many of the others each closed line lies."""
-    return [int(n) for n in (nesting.nested(lines_mm, [True] * len(lines_mm)) & ~crossed).sum(axis=1)]
+    return [
+        int(n)
+        for n in (nesting.nested(lines_mm, [True] * len(lines_mm)) & ~crossed).sum(axis=1)
+    ]
 
 
 def room(guides: Sequence[Guide], number: int) -> Room | None:
@@ -128,9 +141,15 @@ def _free(
     side without crossing any.
     """
     columns, rows = (np.ceil(size / cell_mm).astype(int) + 5).tolist()
-    free, filled, beside = np.ones((rows, columns), np.uint8), *np.zeros((2, rows, columns), np.uint8)
+    free, filled, beside = (
+        np.ones((rows, columns), np.uint8),
+        *np.zeros((2, rows, columns), np.uint8),
+    )
     cv2.polylines(
-        free, [np.round((line - low) / cell_mm + 2).astype(np.int32) for line in lines_mm], False, 0
+        free,
+        [np.round((line - low) / cell_mm + 2).astype(np.int32) for line in lines_mm],
+        False,
+        0,
     )
     line = np.round((own.points_mm - low) / cell_mm + 2).astype(np.int32)
     cv2.fillPoly(filled, [line], 1)

@@ -59,7 +59,9 @@ class Feed:
             return way_mm[-1:]
         return run_along(way_mm, self.mm_s, BRAKE_MM_S2, self.rate_hz)
 
-    def resting(self, rows_mm: Array, at: Sequence[float]) -> tuple[Array, Callable[[float], float]]:
+    def resting(
+        self, rows_mm: Array, at: Sequence[float]
+    ) -> tuple[Array, Callable[[float], float]]:
         """Positions (n, 2) mm that come to rest at some of them, fractions included, the last of which ends
         them; and where each is then.
         """
@@ -67,7 +69,10 @@ class Feed:
         rested = np.vstack([pieces[0], *(piece[1:] for piece in pieces[1:])])
         rests = [len(pieces[0]) - 1, *(len(piece) - 1 for piece in pieces[1:])]
         was, now = lengths_mm(rows_mm), lengths_mm(rested)
-        knots = [np.r_[0.0, np.interp(at, np.arange(len(was)), was)], np.r_[0.0, now[np.cumsum(rests)]]]
+        knots = [
+            np.r_[0.0, np.interp(at, np.arange(len(was)), was)],
+            np.r_[0.0, now[np.cumsum(rests)]],
+        ]
         return rested, lambda old: _position(
             rested, float(np.interp(np.interp(old, np.arange(len(was)), was), *knots))
         )
@@ -102,9 +107,15 @@ class _Run:
         """Run a way; a closed one from and to a place between its points."""
         k = int(begin)
         place = way_mm[k] + (begin - k) * (way_mm[min(k + 1, len(way_mm) - 1)] - way_mm[k])
-        points = np.vstack([place, way_mm[k + 1 :], way_mm[1 : k + 1], place]) if begin > 0 else way_mm
+        points = (
+            np.vstack([place, way_mm[k + 1 :], way_mm[1 : k + 1], place])
+            if begin > 0
+            else way_mm
+        )
         return cls(
-            feed.run(points), way_mm, float(np.interp(begin, np.arange(len(way_mm)), lengths_mm(way_mm)))
+            feed.run(points),
+            way_mm,
+            float(np.interp(begin, np.arange(len(way_mm)), lengths_mm(way_mm))),
         )
 
     def position(self, place: Place) -> float:
@@ -120,7 +131,9 @@ class _Run:
             shift = len(detour.xy_mm) + 1
             self.at = {drawn: at + shift * (at > detour.leave) for drawn, at in self.at.items()}
             self.guides = [_shifted(guide, shift) for guide in self.guides]
-            self.xy_mm = np.vstack([self.xy_mm[: detour.leave + 1], detour.xy_mm, self.xy_mm[detour.leave :]])
+            self.xy_mm = np.vstack(
+                [self.xy_mm[: detour.leave + 1], detour.xy_mm, self.xy_mm[detour.leave :]]
+            )
             self.at |= {drawn: at + detour.leave + 1 for drawn, at in detour.at.items()}
             tip = round(self.at[detour.tip])
             self.guides.insert(0, Guide(detour.leave, tip, detour.leave + shift))
@@ -153,7 +166,9 @@ def carried(beside: Beside, away_mm: Distances, feed: Feed) -> list[Line]:
     cut = beside.cut
     lead = _lead(beside, away_mm, feed) if cut.first > 0 else None
     begins = {lead.place.way: lead.place.at} if lead is not None else {}
-    runs = [_Run.along(way.points_mm, begins.get(k, 0.0), feed) for k, way in enumerate(beside.ways)]
+    runs = [
+        _Run.along(way.points_mm, begins.get(k, 0.0), feed) for k, way in enumerate(beside.ways)
+    ]
     for mark in cut.line.marks:
         if (mark.at > cut.first or lead is None) and _guide_at(cut.line, mark.at) is None:
             place = beside.foot(np.array(mark.place_mm))
@@ -175,15 +190,23 @@ def _lead(beside: Beside, away_mm: Distances, feed: Feed) -> _Lead:
     end, place = _joins(beside, rows)
     guides = [guide for guide in line.guides if guide.back <= cut.first]
     xy_mm, moved = feed.resting(rows, [*(guide.tip for guide in guides), end])
-    guides = [Guide(*(round(moved(at)) for at in (guide.leave, guide.tip, guide.back))) for guide in guides]
+    guides = [
+        Guide(*(round(moved(at)) for at in (guide.leave, guide.tip, guide.back)))
+        for guide in guides
+    ]
     if end == cut.first:
         xy_mm = np.vstack([xy_mm, feed.run(np.vstack([rows[-1], beside.mm(place)]))])
     last = len(xy_mm) - 1
-    at = {mark.at: last if mark.at >= end else moved(mark.at) for mark in line.marks if mark.at <= cut.first}
+    at = {
+        mark.at: last if mark.at >= end else moved(mark.at)
+        for mark in line.marks
+        if mark.at <= cut.first
+    }
     if cut.down_at is not None:
         clear = (
             cut.down_at <= end < cut.first
-            and away_mm(rows[int(cut.down_at) : int(end) + 1]).min() > beside.radius_mm - CLEAR_MM
+            and away_mm(rows[int(cut.down_at) : int(end) + 1]).min()
+            > beside.radius_mm - CLEAR_MM
         )
         at[cut.down_at] = at[cut.down_at] if clear else last
     at |= {guide.tip: moved(guide.tip) for guide in line.guides if guide.back <= cut.first}
@@ -198,11 +221,15 @@ def _joins(beside: Beside, rows: Array) -> tuple[float, Place]:
     last = float(len(rows) - 1)
     if not cut.closed:
         begins = [Place(k, 0.0) for k in range(len(beside.ways))]
-        return last, min(begins, key=lambda place: float(np.hypot(*(beside.mm(place) - rows[-1]))))
+        return last, min(
+            begins, key=lambda place: float(np.hypot(*(beside.mm(place) - rows[-1])))
+        )
     met = [(at, place) for at, place in beside.met(rows) if _guide_at(line, at) is None]
     after = [(at, place) for at, place in met if cut.down_at is not None and at >= cut.down_at]
     end, place = (after[:1] or met[-1:] or [(last, Place(0, 0.0))])[0]
-    drilled = [mark.at for mark in line.marks if mark.kind == "dot"] + [guide.back for guide in line.guides]
+    drilled = [mark.at for mark in line.marks if mark.kind == "dot"] + [
+        guide.back for guide in line.guides
+    ]
     if end == last or any(end < at <= cut.first for at in drilled):
         return last, beside.foot(rows[-1])
     return end, place
@@ -217,17 +244,24 @@ def _detour(beside: Beside, guide: Guide, runs: list[_Run], feed: Feed) -> tuple
     drilled = [mark.at for mark in line.marks if mark.at in at and mark.kind == "dot"]
     out = xy_mm[guide.leave : round(min([*drilled, guide.tip])) + 1]
     crossed = [
-        (at, place) for at, place in beside.met(out) if lengths_mm(out)[int(at)] < OBLIQUE * beside.radius_mm
+        (at, place)
+        for at, place in beside.met(out)
+        if lengths_mm(out)[int(at)] < OBLIQUE * beside.radius_mm
     ]
     place = crossed[0][1] if crossed else beside.foot(xy_mm[guide.leave])
     row = round(runs[place.way].position(place))
     begin, end = guide.leave, guide.back
     if crossed:
         begin += int(crossed[0][0]) + 1
-        end = guide.tip + int(np.argmin(np.hypot(*(xy_mm[guide.tip : guide.back + 1] - xy_mm[begin]).T)))
+        end = guide.tip + int(
+            np.argmin(np.hypot(*(xy_mm[guide.tip : guide.back + 1] - xy_mm[begin]).T))
+        )
     here = runs[place.way].xy_mm[row]
     drawn, moved = feed.resting(xy_mm[begin : end + 1], [0, guide.tip - begin, end - begin])
-    to_it, from_it = feed.run(np.vstack([here, drawn[0]])), feed.run(np.vstack([drawn[-1], here]))
+    to_it, from_it = (
+        feed.run(np.vstack([here, drawn[0]])),
+        feed.run(np.vstack([drawn[-1], here])),
+    )
     at = {old: len(to_it) + moved(min(max(old, begin), end) - begin) for old in at}
     return place.way, _Detour(row, np.vstack([to_it, drawn, from_it]), guide.tip, at)
 
@@ -242,22 +276,34 @@ def _lines(beside: Beside, runs: list[_Run], lead: _Lead | None) -> list[Line]:
         ending = "closed" if beside.ways[k].closed else "ended"
         plain = replace(line, fault=None, loop_from=None, guides=(), ending=ending)
         if k == main:
-            plain = replace(plain, ending=line.ending if lead or line.fault else ending, fault=line.fault)
+            plain = replace(
+                plain, ending=line.ending if lead or line.fault else ending, fault=line.fault
+            )
         elif not cut.closed:
             plain = replace(plain, reference_mm=None)
         if lead is not None and k == main:
             run.put_after(lead)
             plain = replace(
-                plain, guides=tuple(lead.guides), loop_from=len(lead.xy_mm) if line.is_lead else None
+                plain,
+                guides=tuple(lead.guides),
+                loop_from=len(lead.xy_mm) if line.is_lead else None,
             )
             if not cut.closed:
                 run.at[len(line.xy_mm) - 1] = len(run.xy_mm) - 1
         marks = [replace(mark, at=run.at[mark.at]) for mark in line.marks if mark.at in run.at]
         made = replace(plain, xy_mm=run.xy_mm, guides=(*plain.guides, *run.guides))
-        made = replace(made, marks=tuple(replace(mark, place_mm=made.place(mark.at)) for mark in marks))
-        ours = sorted((run.at[stop.at], stop.number or 0) for stop in cut.stops if stop.at in run.at)
+        made = replace(
+            made, marks=tuple(replace(mark, place_mm=made.place(mark.at)) for mark in marks)
+        )
+        ours = sorted(
+            (run.at[stop.at], stop.number or 0) for stop in cut.stops if stop.at in run.at
+        )
         lines.append(
-            replace(made, length_mm=float(lengths_mm(run.xy_mm)[-1]), numbers=tuple(n for _, n in ours))
+            replace(
+                made,
+                length_mm=float(lengths_mm(run.xy_mm)[-1]),
+                numbers=tuple(n for _, n in ours),
+            )
         )
     return lines
 

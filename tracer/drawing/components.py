@@ -66,9 +66,16 @@ class Patches:
         """First row, last row + 1, first column, last column + 1 of the chosen patches."""
         own = chosen[self.patch]
         row = self.row[own]
-        return int(row.min()), int(row.max()) + 1, int(self.begin[own].min()), int(self.end[own].max())
+        return (
+            int(row.min()),
+            int(row.max()) + 1,
+            int(self.begin[own].min()),
+            int(self.end[own].max()),
+        )
 
-    def painted(self, chosen: NDArray[np.bool_], top: int, bottom: int, left: int, right: int) -> Mask:
+    def painted(
+        self, chosen: NDArray[np.bool_], top: int, bottom: int, left: int, right: int
+    ) -> Mask:
         """Mask (rows, columns) of the chosen patches in a part of the sheet."""
         mask = np.zeros((bottom - top, right - left), np.uint8)
         first, last = np.searchsorted(self.row, (top, bottom))
@@ -95,7 +102,11 @@ def runs_of(mask: Mask | NDArray[np.bool_], top: int) -> tuple[Numbers, Numbers,
     padded[:, 1:-1] = mask
     edges = np.flatnonzero(padded[:, 1:] != padded[:, :-1])
     row, column = np.divmod(edges, columns + 1)
-    return (row[::2] + top).astype(np.int32), column[::2].astype(np.int32), column[1::2].astype(np.int32)
+    return (
+        (row[::2] + top).astype(np.int32),
+        column[::2].astype(np.int32),
+        column[1::2].astype(np.int32),
+    )
 
 
 @njit(cache=True)
@@ -113,7 +124,9 @@ def _joined(row, begin, end):  # type: ignore[no-untyped-def]
     parent = np.arange(runs)
     above = 0
     for k in range(runs):
-        while above < k and (row[above] < row[k] - 1 or (row[above] == row[k] - 1 and end[above] < begin[k])):
+        while above < k and (
+            row[above] < row[k] - 1 or (row[above] == row[k] - 1 and end[above] < begin[k])
+        ):
             above += 1
         other = above
         while other < k and row[other] == row[k] - 1 and begin[other] <= end[k]:

@@ -78,7 +78,9 @@ class Deviation:
         return self.missed_mm / self.ink_mm if self.ink_mm else 0.0
 
 
-def deviation(drawing: Drawing, path: Path | Sequence[Array], over: Sequence[Array] = ()) -> Deviation:
+def deviation(
+    drawing: Drawing, path: Path | Sequence[Array], over: Sequence[Array] = ()
+) -> Deviation:
     """Measure a path, or its runs as (n, 2) polylines in sheet mm, against the drawing; MotionFault if it
     nowhere follows the ink.
 
@@ -93,13 +95,19 @@ def deviation(drawing: Drawing, path: Path | Sequence[Array], over: Sequence[Arr
             "the path has no run with the tool in the work; nothing to compare with the drawing"
         )
     width_mm = _line_width(drawing, places)
-    errors = [_averaged(_across(drawing, points, headings, width_mm)) for points, headings in places]
+    errors = [
+        _averaged(_across(drawing, points, headings, width_mm)) for points, headings in places
+    ]
     if not any(np.isfinite(error).any() for error in errors):
         raise MotionFault(
             "the path nowhere follows the drawing's ink, it only crosses it; check that both have the same scale and origin"
         )
-    missed, ink = _missed(drawing, [path.xy_mm] if isinstance(path, Path) else [*runs, *over], width_mm)
-    return Deviation(np.vstack([p for p, _ in places]), np.concatenate(errors), width_mm, missed, ink)
+    missed, ink = _missed(
+        drawing, [path.xy_mm] if isinstance(path, Path) else [*runs, *over], width_mm
+    )
+    return Deviation(
+        np.vstack([p for p, _ in places]), np.concatenate(errors), width_mm, missed, ink
+    )
 
 
 def touched(drawing: Drawing, path: Path, radius_mm: float) -> list[Array]:
@@ -111,12 +119,16 @@ def touched(drawing: Drawing, path: Path, radius_mm: float) -> list[Array]:
         points, headings = _places(run, TOUCH_MM)
         if not len(points):
             continue  # a hole
-        seen = _profile(drawing, points, headings, np.array([radius_mm, -radius_mm])).mean(axis=0)
+        seen = _profile(drawing, points, headings, np.array([radius_mm, -radius_mm])).mean(
+            axis=0
+        )
         arm_mm = radius_mm if seen[0] >= seen[1] else -radius_mm
         edge = points + arm_mm * np.column_stack([-np.sin(headings), np.cos(headings)])
         steps = np.hypot(*np.diff(edge, axis=0).T) / TOUCH_MM
         on_line = (steps > STANDS) & (steps < LEAP)
-        ends = np.flatnonzero(np.diff(np.r_[False, on_line, False].astype(np.int8))).reshape(-1, 2)
+        ends = np.flatnonzero(np.diff(np.r_[False, on_line, False].astype(np.int8))).reshape(
+            -1, 2
+        )
         polylines += [edge[a : b + 1] for a, b in ends]
     return polylines
 
@@ -168,7 +180,9 @@ def _line_width(drawing: Drawing, places: list[tuple[Array, Array]]) -> float:
     return float(np.median(found))
 
 
-def _edges(drawing: Drawing, points: Array, headings: Array, reach_mm: float) -> tuple[Array, Array]:
+def _edges(
+    drawing: Drawing, points: Array, headings: Array, reach_mm: float
+) -> tuple[Array, Array]:
     """Edges of the ink nearest to a path, mm to its left; NaN where there is no ink under it or no edge
     within reach.
     """
@@ -193,7 +207,9 @@ def _edges(drawing: Drawing, points: Array, headings: Array, reach_mm: float) ->
         found = across[outside] + share * (across[inside] - across[outside])
         return np.asarray(np.where(ok, found, np.nan), float)
 
-    return crossing(right, np.minimum(right + 1, len(across) - 1)), crossing(left, np.maximum(left - 1, 0))
+    return crossing(right, np.minimum(right + 1, len(across) - 1)), crossing(
+        left, np.maximum(left - 1, 0)
+    )
 
 
 def _across(drawing: Drawing, points: Array, headings: Array, width_mm: float) -> Array:
@@ -217,7 +233,9 @@ def _missed(drawing: Drawing, runs: Sequence[Array], width_mm: float) -> tuple[f
     """Length of ink that no path covers, and of all ink, mm: area over the line's width; specks do not count."""
     patches = Patches.of(
         runs_of(
-            (cv2.GaussianBlur(drawing.darkness[rows], (0, 0), 0.7) > 0.5)[top - rows.start :][: bottom - top],
+            (cv2.GaussianBlur(drawing.darkness[rows], (0, 0), 0.7) > 0.5)[top - rows.start :][
+                : bottom - top
+            ],
             top,
         )
         for top, bottom, rows in strips(drawing.darkness.shape, halo=8)
@@ -241,5 +259,13 @@ def _covered(drawing: Drawing, runs: Sequence[Array], width_mm: float) -> Mask:
         pixels = np.column_stack(
             [run[:, 0] / drawing.pitch_mm - 0.5, rows - run[:, 1] / drawing.pitch_mm - 0.5]
         )
-        cv2.polylines(covered, [np.round(pixels * 16).astype(np.int32)], False, 1, thickness, cv2.LINE_8, 4)
+        cv2.polylines(
+            covered,
+            [np.round(pixels * 16).astype(np.int32)],
+            False,
+            1,
+            thickness,
+            cv2.LINE_8,
+            4,
+        )
     return covered

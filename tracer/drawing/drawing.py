@@ -89,7 +89,9 @@ class Drawing:
         """
         file, wanted = Path(file), None if ink is None else inks.parsed(ink)
         if dpi is not None and width_mm is not None:
-            raise DrawingFault("both a resolution and a width were given; give one of --dpi and --width")
+            raise DrawingFault(
+                "both a resolution and a width were given; give one of --dpi and --width"
+            )
         picture, stated = _read(file, coloured=ink is not None)
         pitch = _pitches_mm(file, picture.shape[1], stated, dpi, width_mm)
         grey = (
@@ -100,7 +102,8 @@ class Drawing:
         if abs(pitch[0] / pitch[1] - 1) > 1e-3:  # a fax has oblong pixels
             size = grey.shape[1], round(grey.shape[0] * pitch[1] / pitch[0])
             grey = np.asarray(
-                cv2.resize(grey.astype(np.float32), size, interpolation=cv2.INTER_LINEAR), np.float32
+                cv2.resize(grey.astype(np.float32), size, interpolation=cv2.INTER_LINEAR),
+                np.float32,
             )
         if edge:
             line = outlined(grey, pitch[0])
@@ -119,7 +122,9 @@ def levelled(grey: Grey, pitch_mm: float) -> tuple[Darkness, Shapes]:
     contrast = np.empty(grey.shape, np.float32)
     for top, bottom, _ in strips(grey.shape):
         behind = level.rows(top, bottom)
-        first, second = (behind, grey[top:bottom]) if level.is_light else (grey[top:bottom], behind)
+        first, second = (
+            (behind, grey[top:bottom]) if level.is_light else (grey[top:bottom], behind)
+        )
         np.subtract(first, second, out=contrast[top:bottom], dtype=np.float32)
     ink = _ink_contrast(contrast, pitch_mm)
     contrast /= np.float32(ink)
@@ -144,7 +149,9 @@ def _ink_contrast(contrast: Darkness, pitch_mm: float) -> float:
         )
     every = max(1, int(patches.areas[strokes].sum()) // (4 * FEWEST_SAMPLES))
     inked = [
-        contrast[top:bottom][patches.painted(strokes, top, bottom, 0, contrast.shape[1]).view(bool)][::every]
+        contrast[top:bottom][
+            patches.painted(strokes, top, bottom, 0, contrast.shape[1]).view(bool)
+        ][::every]
         for top, bottom, _ in strips(contrast.shape)
     ]
     return float(np.percentile(np.concatenate(inked), 80))

@@ -61,7 +61,9 @@ def parsed(text: str) -> Colour:
         ) from None
 
 
-def covered(picture: Picture, wanted: Colour, pitch_mm: float | None = None) -> NDArray[np.float32]:
+def covered(
+    picture: Picture, wanted: Colour, pitch_mm: float | None = None
+) -> NDArray[np.float32]:
     """Grey levels of the ink that is nearest to a colour; raises DrawingFault if there is none like it.
 
     With a pitch uneven paper is levelled first, in place: on a sheet with broad areas of ink it cannot be
@@ -79,10 +81,14 @@ def covered(picture: Picture, wanted: Colour, pitch_mm: float | None = None) -> 
         )
     own = int(np.argmin(angles))
     apart = [_angle(paper - ink, paper - inks[own]) for k, ink in enumerate(inks) if k != own]
-    weights = _weights(picture, paper, inks[own] - paper, min([NEAR, *(angle / 2 for angle in apart)]))
+    weights = _weights(
+        picture, paper, inks[own] - paper, min([NEAR, *(angle / 2 for angle in apart)])
+    )
     grey = np.empty(picture.shape[:2], np.float32)
     for top, bottom, _ in strips(grey.shape):
-        grey[top:bottom] = 255 - 255 * (picture[top:bottom].astype(np.float32) @ weights - paper @ weights)
+        grey[top:bottom] = 255 - 255 * (
+            picture[top:bottom].astype(np.float32) @ weights - paper @ weights
+        )
     return grey
 
 
@@ -97,7 +103,9 @@ def _level(picture: Picture, pitch_mm: float) -> None:
         if not paper.is_light or (is_even and usual > GREY):
             continue
         for top, bottom, _ in strips(channel.shape):
-            level = channel[top:bottom] * (max(usual, WHITE) / np.maximum(paper.rows(top, bottom), 1.0))
+            level = channel[top:bottom] * (
+                max(usual, WHITE) / np.maximum(paper.rows(top, bottom), 1.0)
+            )
             channel[top:bottom] = np.clip(np.round(level), 0, 255)
 
 
@@ -110,7 +118,9 @@ def _weights(picture: Picture, paper: Array, own: Array, near: float) -> Array:
     for top, bottom, rows in strips(picture.shape[:2], halo=FRINGE_PX):
         part = picture[rows].astype(np.float32) - paper.astype(np.float32)
         far = np.sqrt(np.einsum("ijk,ijk->ij", part, part))
-        like = (far > LEAST) & (part @ own.astype(np.float32) > math.cos(near) * np.hypot.reduce(own) * far)
+        like = (far > LEAST) & (
+            part @ own.astype(np.float32) > math.cos(near) * np.hypot.reduce(own) * far
+        )
         other = (far > LEAST) & (cv2.dilate(like.view(np.uint8), about) == 0)
         inner = slice(top - rows.start, bottom - rows.start)
         seen = part[inner][other[inner]].astype(float)

@@ -56,19 +56,33 @@ class Paper:
 
     def rows(self, top: int, bottom: int) -> Levels:
         """The paper of some rows of the picture."""
-        first, last = max(0, top // self.by - 1), min(len(self.reduced), -(-bottom // self.by) + 1)
-        large = cv2.resize(
-            self.reduced[first:last], None, fx=self.by, fy=self.by, interpolation=cv2.INTER_LINEAR
+        first, last = (
+            max(0, top // self.by - 1),
+            min(len(self.reduced), -(-bottom // self.by) + 1),
         )
-        return np.asarray(large[top - first * self.by : bottom - first * self.by, : self.columns], np.float32)
+        large = cv2.resize(
+            self.reduced[first:last],
+            None,
+            fx=self.by,
+            fy=self.by,
+            interpolation=cv2.INTER_LINEAR,
+        )
+        return np.asarray(
+            large[top - first * self.by : bottom - first * self.by, : self.columns], np.float32
+        )
 
     def shapes(self, contrast: float) -> NDArray[np.bool_]:
         """Where the paper is as dark as ink of a contrast, or nearly, on the reduced picture: filled shapes
         that are broader than a stroke, and about them.
         """
-        away = self.reduced.max() - self.reduced if self.is_light else self.reduced - self.reduced.min()
+        away = (
+            self.reduced.max() - self.reduced
+            if self.is_light
+            else self.reduced - self.reduced.min()
+        )
         grown = cv2.dilate(
-            (away > SHAPE * contrast).view(np.uint8), _disc(round(WIDEST_STROKE_MM / 2 / self.pitch_mm))
+            (away > SHAPE * contrast).view(np.uint8),
+            _disc(round(WIDEST_STROKE_MM / 2 / self.pitch_mm)),
         )
         return np.asarray(grown, bool)
 
@@ -87,5 +101,7 @@ def _reduced(grey: Grey, by: int) -> Levels:
         part = grey[top * by : bottom * by].astype(np.float32)
         below, beside = (bottom - top) * by - part.shape[0], columns * by - part.shape[1]
         whole = cv2.copyMakeBorder(part, 0, below, 0, beside, cv2.BORDER_REPLICATE)
-        small[top:bottom] = cv2.resize(whole, (columns, bottom - top), interpolation=cv2.INTER_AREA)
+        small[top:bottom] = cv2.resize(
+            whole, (columns, bottom - top), interpolation=cv2.INTER_AREA
+        )
     return small

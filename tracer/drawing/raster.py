@@ -55,7 +55,9 @@ def _read(file: Path, *, coloured: bool) -> tuple[Grey, tuple[float, float] | No
     except (OSError, SyntaxError, ValueError) as error:
         if isinstance(error, OSError) and error.errno is not None:
             raise FileFault(f"{file} cannot be read: {error.strerror}") from None
-        raise DrawingFault(f"{file} is a damaged image ({error}); scan or save it again") from None
+        raise DrawingFault(
+            f"{file} is a damaged image ({error}); scan or save it again"
+        ) from None
 
 
 def _states_resolution(image: Image) -> bool:
@@ -115,7 +117,11 @@ def _stated_dpi(image: Image) -> tuple[float, float] | None:
 
 
 def _pitches_mm(
-    file: Path, columns: int, stated: tuple[float, float] | None, dpi: float | None, width_mm: float | None
+    file: Path,
+    columns: int,
+    stated: tuple[float, float] | None,
+    dpi: float | None,
+    width_mm: float | None,
 ) -> tuple[float, float]:
     """Pixel pitch in X and Y, mm."""
     for name, value, pitch_mm in (

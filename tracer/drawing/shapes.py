@@ -68,7 +68,9 @@ def outlined(grey: NDArray[Any], pitch_mm: float) -> Outlined:
 
     soft = cv2.GaussianBlur(grey.astype(np.float32), (0, 0), SOFT_PX)
     share = _share(np.asarray(soft, np.float32), pitch_mm)
-    edges = [edge for edge in find_contours(share, 0.5) if _length_mm(edge, pitch_mm) > LEAST_MM]
+    edges = [
+        edge for edge in find_contours(share, 0.5) if _length_mm(edge, pitch_mm) > LEAST_MM
+    ]
     if not edges:
         raise _none()
     _refuse_lines(share, pitch_mm)
@@ -77,8 +79,12 @@ def outlined(grey: NDArray[Any], pitch_mm: float) -> Outlined:
     sharp = [sharpened(edge, softness_px) for edge in _refined(edges, share)]
     times = finer(sharp, share.shape, pitch_mm, softness_px)
     fine = [(edge.outline + 0.5) * times - 0.5 for edge in sharp]
-    darkness = _inked(fine, (share.shape[0] * times, share.shape[1] * times), EDGE_MM / pitch_mm)
-    return Outlined(darkness, times, tuple(_mm(edge.outline, share.shape, pitch_mm) for edge in sharp))
+    darkness = _inked(
+        fine, (share.shape[0] * times, share.shape[1] * times), EDGE_MM / pitch_mm
+    )
+    return Outlined(
+        darkness, times, tuple(_mm(edge.outline, share.shape, pitch_mm) for edge in sharp)
+    )
 
 
 def _mm(outline: Array, shape: tuple[int, ...], pitch_mm: float) -> Array:
@@ -128,7 +134,8 @@ def _level(soft: Grey, part: NDArray[np.uint8], pitch_mm: float) -> Grey:
         for each in ((soft - whole) * inner, inner)
     )
     return np.asarray(
-        whole + cv2.resize(total / (count + 1e-3), size, interpolation=cv2.INTER_LINEAR), np.float32
+        whole + cv2.resize(total / (count + 1e-3), size, interpolation=cv2.INTER_LINEAR),
+        np.float32,
     )
 
 
@@ -136,7 +143,9 @@ def _refuse_lines(share: Grey, pitch_mm: float) -> None:
     """Raise DrawingFault if nothing on the sheet is as broad as a shape."""
     border = np.concatenate([share[0], share[-1], share[:, 0], share[:, -1]])
     shapes = (share < 0.5) if float(np.median(border)) > 0.5 else (share > 0.5)
-    broadest_mm = 2 * pitch_mm * float(cv2.distanceTransform(shapes.view(np.uint8), cv2.DIST_L2, 5).max())
+    broadest_mm = (
+        2 * pitch_mm * float(cv2.distanceTransform(shapes.view(np.uint8), cv2.DIST_L2, 5).max())
+    )
     if broadest_mm < LEAST_SHAPE_MM:
         raise DrawingFault(
             f"no filled shape on the drawing: what is on it is {broadest_mm:.2g} mm broad at most, and a shape is {LEAST_SHAPE_MM:g} mm or more;"
@@ -159,7 +168,8 @@ def _softness_px(share: Grey, edges: list[Array]) -> float:
     """Standard deviation of the lens, pixels, by how steep the edges are: 1/(√(2π) · steepness)."""
     rows, columns = np.round(np.vstack(edges)).astype(int).T
     steep = np.hypot(
-        cv2.Sobel(share, cv2.CV_32F, 1, 0, scale=1 / 8), cv2.Sobel(share, cv2.CV_32F, 0, 1, scale=1 / 8)
+        cv2.Sobel(share, cv2.CV_32F, 1, 0, scale=1 / 8),
+        cv2.Sobel(share, cv2.CV_32F, 0, 1, scale=1 / 8),
     )
     steepness = float(np.percentile(steep[rows, columns], 60))
     # the Sobel cells are themselves as soft as (1, 2, 1)/4 along and across, and the pixel as a twelfth
@@ -176,16 +186,17 @@ def _refined(edges: list[Array], share: Grey) -> list[Array]:
 
     def height(places: Array) -> Array:
         return np.asarray(
-            map_coordinates(surface, places.T, order=3, prefilter=False, mode="nearest"), np.float64
+            map_coordinates(surface, places.T, order=3, prefilter=False, mode="nearest"),
+            np.float64,
         )
 
     refined, nearby = list[Array](), SLOPE_PX * np.eye(2)
     for edge in edges:
         places = with_places(edge, APART_PX)
         for _ in range(2):  # steps of Newton's
-            slope = np.column_stack([height(places + way) - height(places - way) for way in nearby]) / (
-                2 * SLOPE_PX
-            )
+            slope = np.column_stack(
+                [height(places + way) - height(places - way) for way in nearby]
+            ) / (2 * SLOPE_PX)
             step = (height(places) - 0.5) / np.maximum((slope**2).sum(axis=1), LEAST_SLOPE**2)
             places = places - np.clip(step, -0.5, 0.5)[:, None] * slope
         refined.append(np.vstack([places[:-1], places[:1]]))
@@ -198,7 +209,9 @@ def _inked(edges: list[Array], shape: tuple[int, ...], reach_px: float) -> Grey:
 
     near = np.zeros(shape, np.uint8)
     for edge in edges:
-        cv2.polylines(near, [np.round(edge[:, ::-1]).astype(np.int32)], False, 1, 2 * round(reach_px) + 3)
+        cv2.polylines(
+            near, [np.round(edge[:, ::-1]).astype(np.int32)], False, 1, 2 * round(reach_px) + 3
+        )
     rows, columns = np.nonzero(near)
     tree = cKDTree(np.vstack([with_places(edge, 0.1) for edge in edges]))
     away_px = tree.query(np.column_stack([rows, columns]))[0]

@@ -88,7 +88,11 @@ def _turned(places: Array, reach: int) -> Array:
     """By how much the outline turns within so many places of each, rad, without sign."""
     back, on = places - np.roll(places, reach, axis=0), np.roll(places, -reach, axis=0) - places
     return np.asarray(
-        np.abs(np.arctan2(back[:, 0] * on[:, 1] - back[:, 1] * on[:, 0], np.einsum("ij,ij->i", back, on)))
+        np.abs(
+            np.arctan2(
+                back[:, 0] * on[:, 1] - back[:, 1] * on[:, 0], np.einsum("ij,ij->i", back, on)
+            )
+        )
     )
 
 
@@ -100,12 +104,16 @@ def _corners(places: Array, softness_px: float) -> list[int]:
     for k in np.argsort(-turned):
         if turned[k] < LEAST_TURN:
             break
-        if all(min(abs(k - other), len(places) - abs(k - other)) > 2 * reach for other in found):
+        if all(
+            min(abs(k - other), len(places) - abs(k - other)) > 2 * reach for other in found
+        ):
             found.append(int(k))
     return sorted(found)
 
 
-def _corner(places: Array, corners: list[int], k: int, softness_px: float) -> tuple[int, int, Array] | None:
+def _corner(
+    places: Array, corners: list[int], k: int, softness_px: float
+) -> tuple[int, int, Array] | None:
     """What stands in the place of a corner, and the places between which; None if the corner is none, or the
     lens does not explain it.
     """
@@ -115,14 +123,21 @@ def _corner(places: Array, corners: list[int], k: int, softness_px: float) -> tu
     angle, radius, taken_off, found = math.pi / 2, 0.0, 0.0, None
     for _ in range(TRIES):
         away = (
-            max(CLEAR / max(math.sin(min(angle, math.pi / 2)), 0.2), _touch(angle, radius) + CLEAR_OF_ROUND)
+            max(
+                CLEAR / max(math.sin(min(angle, math.pi / 2)), 0.2),
+                _touch(angle, radius) + CLEAR_OF_ROUND,
+            )
             * dense
         )
-        spans = [min(away + LEG * dense, gap - CLEAR * dense, len(places) / 2) for gap in (before, after)]
+        spans = [
+            min(away + LEG * dense, gap - CLEAR * dense, len(places) / 2)
+            for gap in (before, after)
+        ]
         if min(spans) - away < SHORTEST_LEG * dense:
             break
         legs = [
-            _felt(places, at, sign * away, sign * span) for sign, span in zip((-1, 1), spans, strict=True)
+            _felt(places, at, sign * away, sign * span)
+            for sign, span in zip((-1, 1), spans, strict=True)
         ]
         met = _met(*legs)
         if met is None:
@@ -134,10 +149,18 @@ def _corner(places: Array, corners: list[int], k: int, softness_px: float) -> tu
         first, last = max(0, round(at - away)), min(len(places) - 1, round(at + away))
         way = float(np.hypot(*(places[first : last + 1] - vertex).T).min()) / softness_px
         sharp = _way(round(angle, 3))
-        radius = _radius(round(angle, 3), round(way, 3)) if way > (1 + FURTHER) * sharp + NOISE else 0.0
+        radius = (
+            _radius(round(angle, 3), round(way, 3))
+            if way > (1 + FURTHER) * sharp + NOISE
+            else 0.0
+        )
         found = first, last, _rounded(vertex, (t, w), radius * softness_px)
         taken_off = way - radius * (1 / math.sin(angle / 2) - 1)
-    if found is None or _touch(angle, radius) * dense > away or way < (1 - SHORT) * sharp - LEGS:
+    if (
+        found is None
+        or _touch(angle, radius) * dense > away
+        or way < (1 - SHORT) * sharp - LEGS
+    ):
         return None
     first, last, corner = found
     if (corner[0] - places[first]) @ t < 0 or (corner[-1] - places[last]) @ w < 0:
@@ -188,11 +211,16 @@ def _felt(places: Array, at: int, near: float, far: float) -> tuple[Array, Array
     along = chord / np.hypot(*chord)
     u, v = (leg - origin) @ along, (leg - origin) @ np.array([-along[1], along[0]])
     straight, bent = (np.polynomial.polynomial.polyfit(u, v, degree) for degree in (1, 2))
-    off = [float(np.std(v - np.polynomial.polynomial.polyval(u, each))) for each in (straight, bent)]
+    off = [
+        float(np.std(v - np.polynomial.polynomial.polyval(u, each)))
+        for each in (straight, bent)
+    ]
     return origin, along, bent if off[1] < BENT * off[0] else straight
 
 
-def _met(a: tuple[Array, Array, Array], b: tuple[Array, Array, Array]) -> tuple[Array, Array, Array] | None:
+def _met(
+    a: tuple[Array, Array, Array], b: tuple[Array, Array, Array]
+) -> tuple[Array, Array, Array] | None:
     """Where two legs meet, and their directions there, towards the corner."""
     place = 0.5 * (a[0] + b[0])
     for _ in range(6):
@@ -220,7 +248,9 @@ def _at(leg: tuple[Array, Array, Array], place: Array) -> tuple[Array, Array]:
     powers = np.arange(len(across))
     slope = float(np.sum(powers[1:] * across[1:] * u ** powers[:-1]))
     direction = along + slope * left
-    return origin + u * along + float(np.sum(across * u**powers)) * left, direction / np.hypot(*direction)
+    return origin + u * along + float(np.sum(across * u**powers)) * left, direction / np.hypot(
+        *direction
+    )
 
 
 @lru_cache(maxsize=4096)
@@ -258,6 +288,6 @@ def _seen(angle: float, radius: float, way: float) -> float:
         np.where(x < radius / math.sin(half) - radius, 0, arc),
         np.maximum(x, 0) * math.tan(half),
     )
-    return float(np.trapezoid(erf(across / math.sqrt(2)) * np.exp(-0.5 * (x - way) ** 2), x)) / math.sqrt(
-        2 * math.pi
-    )
+    return float(
+        np.trapezoid(erf(across / math.sqrt(2)) * np.exp(-0.5 * (x - way) ** 2), x)
+    ) / math.sqrt(2 * math.pi)

@@ -29,12 +29,16 @@ APART_MM = 1.2  # three widths of the line along the edges: it is drawn as much 
 FINEST = 4
 LEAST_APART_MM = 0.25
 CLEAR = 3.0  # standard deviations of the lens: edges that are nearer move one another
-BACK = 1.5  # times as far along the edge as straight across: it comes back, as round a hole (1.57)
+# times as far along the edge as straight across: it comes back, as round a hole (1.57)
+BACK = 1.5
 LEG = 0.95  # of the way along the edge is straight to a corner and straight on from it: legs of one corner
-ROUND_ABOUT = 8  # times as far along, and it is another edge, and no corner that the lens has blurred
+# times as far along, and it is another edge, and no corner that the lens has blurred
+ROUND_ABOUT = 8
 
 
-def finer(edges: list[Edge], shape: tuple[int, ...], pitch_mm: float, softness_px: float) -> int:
+def finer(
+    edges: list[Edge], shape: tuple[int, ...], pitch_mm: float, softness_px: float
+) -> int:
     """By how much finer the line has to be drawn for edges that are near one another; raises DrawingFault if
     they are nearer than told apart.
     """
@@ -77,7 +81,10 @@ class _Pairs:
     @classmethod
     def of(cls, edges: list[Edge], within_px: float) -> _Pairs:
         lines = [with_places(edge.outline, 1.0)[:-1] for edge in edges]
-        places, edge = np.vstack(lines), np.repeat(np.arange(len(lines)), [len(line) for line in lines])
+        places, edge = (
+            np.vstack(lines),
+            np.repeat(np.arange(len(lines)), [len(line) for line in lines]),
+        )
         along = np.concatenate([lengths_px(line) for line in lines])
         pairs = cKDTree(places).query_pairs(within_px, output_type="ndarray")
         between = _between(along[pairs], _lengths(edges)[edge[pairs[:, 0]]])
@@ -114,12 +121,20 @@ def _legs_of_corners(edges: list[Edge], pairs: _Pairs) -> NDArray[np.bool_]:
             continue
         along = np.sort(pairs.along[own], axis=1)
         forward = along[:, 1] - along[:, 0] <= 0.5 * lengths[number]
-        middle = (along.mean(axis=1) + np.where(forward, 0.0, 0.5 * lengths[number])) % lengths[number]
+        middle = (along.mean(axis=1) + np.where(forward, 0.0, 0.5 * lengths[number])) % lengths[
+            number
+        ]
         corners = lengths_px(edge.outline)[edge.corners]
         apart = np.abs(middle[:, None] - corners)
-        corner = edge.outline[edge.corners[np.minimum(apart, lengths[number] - apart).argmin(axis=1)]]
-        straight = np.hypot(*(pairs.places[own] - corner[:, None]).transpose(2, 0, 1)).sum(axis=1)
-        legs[own] = straight > LEG * _between(pairs.along[own], np.full(len(own), lengths[number]))
+        corner = edge.outline[
+            edge.corners[np.minimum(apart, lengths[number] - apart).argmin(axis=1)]
+        ]
+        straight = np.hypot(*(pairs.places[own] - corner[:, None]).transpose(2, 0, 1)).sum(
+            axis=1
+        )
+        legs[own] = straight > LEG * _between(
+            pairs.along[own], np.full(len(own), lengths[number])
+        )
     return legs
 
 

@@ -91,7 +91,9 @@ class Sheet:
         patches = Patches.of(runs)
         areas = patches.areas
         deep = np.bincount(patches.patch, np.concatenate(depths), patches.count) / areas
-        widths = np.maximum(4 * deep - 2, 1.0)  # a line of w pixels has depths 1, 2 … w/2 … 2, 1
+        widths = np.maximum(
+            4 * deep - 2, 1.0
+        )  # a line of w pixels has depths 1, 2 … w/2 … 2, 1
         sheet = cls(
             drawing,
             patches,
@@ -126,7 +128,9 @@ class Sheet:
 
     def is_solid_at(self, place_mm: Array) -> bool:
         """Whether the ink nearest to a place is the rim of a filled shape."""
-        return bool(self.are_solid[self._nearest_ink((float(place_mm[0]), float(place_mm[1])))[2]])
+        return bool(
+            self.are_solid[self._nearest_ink((float(place_mm[0]), float(place_mm[1])))[2]]
+        )
 
     def _long_enough(self) -> NDArray[np.bool_]:
         """Which patches are long enough to be lines."""
@@ -137,7 +141,9 @@ class Sheet:
         to.
         """
         runs = self.patches
-        column = np.clip(round(place_mm[0] / self.drawing.pitch_mm - 0.5), runs.begin, runs.end - 1)
+        column = np.clip(
+            round(place_mm[0] / self.drawing.pitch_mm - 0.5), runs.begin, runs.end - 1
+        )
         places = self._mm(runs.row, column)
         distances = np.hypot(*(places - np.asarray(place_mm)).T)
         distances[~self._long_enough()[runs.patch]] = np.inf
@@ -157,7 +163,10 @@ class Sheet:
         top, bottom, left, right = self.patches.box(chosen)
         tiles = [
             self._middles(
-                chosen, disc_px, (row, min(row + TILE_PX, bottom)), (column, min(column + TILE_PX, right))
+                chosen,
+                disc_px,
+                (row, min(row + TILE_PX, bottom)),
+                (column, min(column + TILE_PX, right)),
             )
             for row in range(top, bottom, TILE_PX)
             for column in range(left, right, TILE_PX)
@@ -172,7 +181,11 @@ class Sheet:
         )
 
     def _middles(
-        self, chosen: NDArray[np.bool_], disc_px: int, rows: tuple[int, int], columns: tuple[int, int]
+        self,
+        chosen: NDArray[np.bool_],
+        disc_px: int,
+        rows: tuple[int, int],
+        columns: tuple[int, int],
     ) -> tuple[Pixels, Pixels, Array]:
         """Row, column and ink about it of the pixels in a tile no neighbour of which is deeper in the patch's
         ink.
@@ -183,14 +196,21 @@ class Sheet:
             for edge in (max(0, a - halo), min(size, b + halo))
         ]  # fmt: skip
         ink = self.patches.painted(chosen, *part)
-        inner = slice(rows[0] - part[0], rows[1] - part[0]), slice(columns[0] - part[2], columns[1] - part[2])
+        inner = (
+            slice(rows[0] - part[0], rows[1] - part[0]),
+            slice(columns[0] - part[2], columns[1] - part[2]),
+        )
         if not ink[inner].any():
             return np.empty(0, int), np.empty(0, int), np.empty(0)
         depth = _depth(ink)
         middle = (depth > 0) & (depth >= cv2.dilate(depth, np.ones((3, 3), np.uint8)) - 0.3)
         i, j = np.nonzero(middle[inner])
         disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * disc_px + 1,) * 2)
-        return i + rows[0], j + columns[0], _ink_about(ink, i + inner[0].start, j + inner[1].start, disc)
+        return (
+            i + rows[0],
+            j + columns[0],
+            _ink_about(ink, i + inner[0].start, j + inner[1].start, disc),
+        )
 
 
 def _are_solid(drawing: Drawing, patches: Patches) -> NDArray[np.bool_]:
@@ -213,21 +233,29 @@ def _ink_about(ink, rows, columns, disc):  # type: ignore[no-untyped-def]
     filled = np.zeros(len(rows))
     for k in range(len(rows)):
         for i in range(max(0, half - rows[k]), min(len(disc), ink.shape[0] + half - rows[k])):
-            for j in range(max(0, half - columns[k]), min(len(disc), ink.shape[1] + half - columns[k])):
+            for j in range(
+                max(0, half - columns[k]), min(len(disc), ink.shape[1] + half - columns[k])
+            ):
                 filled[k] += ink[rows[k] - half + i, columns[k] - half + j] * disc[i, j]
     return filled
 
 
 def _depth(ink: Mask) -> NDArray[np.float32]:
     """How far each pixel of ink is from the paper, pixels."""
-    return np.asarray(cv2.distanceTransform(ink, cv2.DIST_L2, cv2.DIST_MASK_PRECISE), np.float32)
+    return np.asarray(
+        cv2.distanceTransform(ink, cv2.DIST_L2, cv2.DIST_MASK_PRECISE), np.float32
+    )
 
 
-def _run_sums(values: NDArray[np.float32], ink: Mask, runs: tuple[Pixels, Pixels, Pixels]) -> Array:
+def _run_sums(
+    values: NDArray[np.float32], ink: Mask, runs: tuple[Pixels, Pixels, Pixels]
+) -> Array:
     """Sum of the values over each run of a strip."""
     _, begin, end = runs
     if not len(begin):
         return np.empty(0)
     return np.asarray(
-        np.add.reduceat(values[ink.view(bool)].astype(float), np.r_[0, np.cumsum(end - begin)[:-1]])
+        np.add.reduceat(
+            values[ink.view(bool)].astype(float), np.r_[0, np.cumsum(end - begin)[:-1]]
+        )
     )

@@ -70,7 +70,12 @@ def asked_for(
         else:
             stance = _turned_to(stance, start_mm, direction)
     attempts = Attempts(
-        drawing, settings, sides, longest_mm(drawing, stance.view.width_mm), told, other_turns=other_turns
+        drawing,
+        settings,
+        sides,
+        longest_mm(drawing, stance.view.width_mm),
+        told,
+        other_turns=other_turns,
     )
     if direction is None:
         return attempts.all_of_it(stance)
@@ -79,7 +84,10 @@ def asked_for(
 
 def longest_mm(drawing: Drawing, width_mm: float) -> float:
     """How far a run may go before it is going round in circles: four times all the ink."""
-    return 4 * float(np.count_nonzero(drawing.darkness > INK)) * drawing.pitch_mm**2 / width_mm + 20
+    return (
+        4 * float(np.count_nonzero(drawing.darkness > INK)) * drawing.pitch_mm**2 / width_mm
+        + 20
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,7 +143,11 @@ class Attempts:
             return max(run, back, key=lambda r: r.travel_mm)
         if other.ending == "closed":
             return other
-        return self._with_other_turns(stance, run) if run.ending == "joined" and self.other_turns else run
+        return (
+            self._with_other_turns(stance, run)
+            if run.ending == "joined" and self.other_turns
+            else run
+        )
 
     def _through_tips(self, stance: Stance, run: Followed) -> Followed | None:
         """The run from a stance that goes back from tips in which two lines end, if the one that does not
@@ -157,14 +169,20 @@ class Attempts:
         best, tried = run, 0
         open_runs: list[tuple[Followed, tuple[int, ...]]] = [(run, ())]
         while open_runs and best.doubts:
-            run, turns = open_runs.pop(int(np.argmax([some.travel_mm for some, _ in open_runs])))
+            run, turns = open_runs.pop(
+                int(np.argmax([some.travel_mm for some, _ in open_runs]))
+            )
             for number, rank in run.doubts if run.ending == "closed" else ():
                 if number in turns or tried == DOUBTS:
                     continue
                 more = (*turns, *(number,) * rank)
                 other, tried = self.run(stance, more), tried + 1
                 open_runs.append((other, more))
-                best = other if other.ending == "closed" and other.travel_mm > best.travel_mm else best
+                best = (
+                    other
+                    if other.ending == "closed" and other.travel_mm > best.travel_mm
+                    else best
+                )
         return best
 
     def _with_other_turns(self, stance: Stance, run: Followed) -> Followed:
@@ -193,17 +211,29 @@ class Attempts:
         if direction in ("left", "right") or goes(run, direction):
             return run
         sided = [replace(self, sides=(side,)) for side in SIDES]
-        tries = [other.run(stance) for other in sided] if stance.at_end else [self.run(turned_about(stance))]
+        tries = (
+            [other.run(stance) for other in sided]
+            if stance.at_end
+            else [self.run(turned_about(stance))]
+        )
         for other in tries:
             if other.ending == run.ending and goes(other, direction):
                 return other
-        what = "the line is open" if run.ending == "ended" else "the line does not come back that way round"
-        raise LineFault(f"direction {direction}: {what}; leave --direction out, or look at the drawing")
+        what = (
+            "the line is open"
+            if run.ending == "ended"
+            else "the line does not come back that way round"
+        )
+        raise LineFault(
+            f"direction {direction}: {what}; leave --direction out, or look at the drawing"
+        )
 
 
 def goes(run: Followed, direction: Direction) -> bool:
     """Whether a run goes round in a direction."""
-    if run.ending not in ("closed", "joined") or (run.ending == "joined" and run.loop_from is None):
+    if run.ending not in ("closed", "joined") or (
+        run.ending == "joined" and run.loop_from is None
+    ):
         return False
     x, y = run.positions_mm[run.loop_from or 0 :].T
     area = float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))

@@ -38,7 +38,9 @@ def kept_to(edges_mm: tuple[Array, ...], run: Followed) -> Followed:
     away_mm, nearest = cKDTree(np.vstack(lines)).query(positions)
     off = np.flatnonzero(away_mm > OFF_MM)
     if len(off):
-        return _lost(run, THINNED * int(off[0]), f"it goes {away_mm.max():.2f} mm away from the edge")
+        return _lost(
+            run, THINNED * int(off[0]), f"it goes {away_mm.max():.2f} mm away from the edge"
+        )
     if run.ending == "closed":
         own = lines[int(np.bincount(edge[nearest]).argmax())]
         missed_mm, passed = cKDTree(positions).query(own)
@@ -64,4 +66,6 @@ def _lost(run: Followed, at: int, why: str) -> Followed:
         y_mm=float(y),
         heading_rad=run.heading_rad,
     )
-    return replace(run, positions_mm=kept, travel_mm=travel_mm, ending="lost", fault=fault, loop_from=None)
+    return replace(
+        run, positions_mm=kept, travel_mm=travel_mm, ending="lost", fault=fault, loop_from=None
+    )

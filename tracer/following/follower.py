@@ -105,7 +105,9 @@ class Follower:
         self._away_mm = max(4 * self.carriage.tuning.lead_mm, 3.0 * self.view.width_mm)
         self._aim(self._first_leg(stance))
 
-    def follow(self, longest_mm: float, told: Callable[[float], None] | None = None) -> Followed:
+    def follow(
+        self, longest_mm: float, told: Callable[[float], None] | None = None
+    ) -> Followed:
         """Follow until the line closes, ends or is lost; `told` hears the travel in mm. `longest_mm` bounds a
         run in circles.
         """
@@ -118,16 +120,18 @@ class Follower:
                 self.carriage.run([self._way_home()])
                 return self._done("closed")
             if self.carriage.trail.comes_again(self.view.width_mm):
-                return self._done("joined")  # before the next junction, whose other legs have been followed
+                return self._done(
+                    "joined"
+                )  # before the next junction, whose other legs have been followed
             if why == head.CHANGED:
                 self.view = self.view.like(*self.carriage.stands(), follows=SWELLS)
                 self.carriage.retune(self.view)
                 continue
             if why != head.MORE and self.settings.direct_rad_s_mm > 0:
-                why_lost = (
-                    "the swinging cell sees no more ink, and this head has no guard cells to find on by"
+                why_lost = "the swinging cell sees no more ink, and this head has no guard cells to find on by"
+                return self._lost(
+                    why_lost, "go slower there with --speed, or follow with --head precise"
                 )
-                return self._lost(why_lost, "go slower there with --speed, or follow with --head precise")
             if why != head.MORE:
                 ending = self._through_knot()
                 if ending is not None:
@@ -138,7 +142,9 @@ class Follower:
         """Take the head through the knot ahead; what it did in all, if that was the end."""
         seen = self._feel_ahead()
         if len(seen) < 4 or self.carriage.ahead(seen[-1, :2]) < 0:
-            seen = self._trail_behind()  # not clean even behind the axis, but that has been on the line
+            seen = (
+                self._trail_behind()
+            )  # not clean even behind the axis, but that has been on the line
         here = int(np.argmin(np.hypot(*(seen[:, :2] - self.carriage.stands()[0]).T)))
         if (len(seen) - here) * self.view.step_mm > self.view.leg_mm:
             fork = fork_in(self.view, seen, here)
@@ -169,9 +175,18 @@ class Follower:
         plan, choices = self._pilot().along_legs(incoming, way)
         explained = self._is_dot(incoming, way[0])
         if not asked and not explained:
-            number, way_in = self._junctions.next(self.carriage.travel_mm), self.carriage.stands()
+            number, way_in = (
+                self._junctions.next(self.carriage.travel_mm),
+                self.carriage.stands(),
+            )
             plan, explained = self._tangles.way_out(
-                self.view, incoming, self.carriage.trail, way_in, plan, number, self._turns.count(number)
+                self.view,
+                incoming,
+                self.carriage.trail,
+                way_in,
+                plan,
+                number,
+                self._turns.count(number),
             )
         if plan is None and not choices:
             other = of_another_pen(self.view, incoming, self.carriage.trail)
@@ -208,7 +223,9 @@ class Follower:
             else:
                 (place, heading, _), back_mm = self._anchor, come_mm
             self.view = self.view.like(place, heading)
-            seen = self.view.feel(place, heading, back_mm + self.carriage.tuning.guard_lead_mm + leg_mm)
+            seen = self.view.feel(
+                place, heading, back_mm + self.carriage.tuning.guard_lead_mm + leg_mm
+            )
             if len(seen) >= 4:
                 break
         return seen
@@ -238,7 +255,11 @@ class Follower:
         if choices > 1:
             place = self._place_of(incoming, found)
             self._junctions.come_to(place, self.carriage.travel_mm)
-            if side is not None and not goes_straight(incoming, outgoing) and self._goes_on(incoming):
+            if (
+                side is not None
+                and not goes_straight(incoming, outgoing)
+                and self._goes_on(incoming)
+            ):
                 self._junctions.take(place, went)
         return found, side is not None
 
@@ -251,7 +272,11 @@ class Follower:
         station = here + round(self.carriage.tuning.guard_lead_mm / self.view.step_mm) - 3
         incoming = leg_of(seen[: station + 1], True, self.view.leg_mm)
         number = self._junctions.next(self.carriage.travel_mm)
-        if number in self._turns or any(self._sides[number : number + 1]) or self._comes_back(incoming):
+        if (
+            number in self._turns
+            or any(self._sides[number : number + 1])
+            or self._comes_back(incoming)
+        ):
             return station
         found = survey(self.view, incoming, self.carriage.trail)
         if found[2] > 1:
@@ -264,7 +289,10 @@ class Follower:
 
     def _place_of(self, incoming: Leg, found: Way) -> Array:
         """Where a junction is: where the way out, or else a line that turns off from it, meets the way in."""
-        ways = [found, *(survey(self.view, incoming, self.carriage.trail, side=side) for side in SIDES)]
+        ways = [
+            found,
+            *(survey(self.view, incoming, self.carriage.trail, side=side) for side in SIDES),
+        ]
         met = [
             legs_mm
             for leg, legs_mm, _ in ways
@@ -292,13 +320,16 @@ class Follower:
         if not self.stance.at_end or np.hypot(*way) > self.settings.recatch_mm:
             return False
         on = incoming.heading_at(end_mm)
-        return all(abs(turn(on, ahead)) < AHEAD for ahead in (math.atan2(way[1], way[0]), heading))
+        return all(
+            abs(turn(on, ahead)) < AHEAD for ahead in (math.atan2(way[1], way[0]), heading)
+        )
 
     def _across_to_home(self, incoming: Leg, end_mm: float) -> Followed:
         """Run to the end of the line, and across the paper to the end at which the head began."""
         way, along = course.onto(*self.carriage.stands(), incoming, end_mm)
         self.carriage.run(
-            [np.vstack([way, course.along_leg(incoming, along, end_mm)])], self.settings.speed_mm_s
+            [np.vstack([way, course.along_leg(incoming, along, end_mm)])],
+            self.settings.speed_mm_s,
         )
         self.carriage.run([self._way_home()])
         return self._done("closed")
@@ -325,9 +356,13 @@ class Follower:
 
     def _way_home(self) -> Array:
         """The way onto the place where the head began."""
-        return curves.hermite(*self.carriage.stands(), self.stance.place_mm, self.stance.heading_rad)
+        return curves.hermite(
+            *self.carriage.stands(), self.stance.place_mm, self.stance.heading_rad
+        )
 
-    def _pass(self, stretches: list[Array], outgoing: Leg, seen: Array | None = None) -> Followed | None:
+    def _pass(
+        self, stretches: list[Array], outgoing: Leg, seen: Array | None = None
+    ) -> Followed | None:
         """Run a course and go on following at its end; or stop at home if the course passes there. `seen` is
         what was clean on the way.
         """
@@ -356,7 +391,9 @@ class Follower:
         if self.carriage.travel_mm < self._away_mm:
             return None
         home, heading = self.stance.place_mm, self.stance.heading_rad
-        stretches = [curves.distinct(way) for way in stretches]  # a step of no length has no heading
+        stretches = [
+            curves.distinct(way) for way in stretches
+        ]  # a step of no length has no heading
         for k, way in enumerate(stretches):
             near = int(np.argmin(np.hypot(*(way - home).T)))
             step = way[min(near + 1, len(way) - 1)] - way[min(near, len(way) - 2)]

@@ -51,14 +51,19 @@ class Line:
     marks: tuple[Mark, ...] = ()
     guides: tuple[Guide, ...] = ()
     reference_mm: tuple[float, float] | None = None  # the reference point from which it begins
-    junctions_mm: tuple[tuple[float, float], ...] = ()  # in the order in which the head came to them
+    junctions_mm: tuple[
+        tuple[float, float], ...
+    ] = ()  # in the order in which the head came to them
     ink_mm: float = 0.0  # length of the ink that is joined to it, its own included, by its area
     is_solid: bool = False  # that ink is the rim of a filled shape
-    numbers: tuple[int, ...] | None = None  # of its stops; None: counted on from those of the line before
+    # of its stops; None: counted on from those of the line before
+    numbers: tuple[int, ...] | None = None
     breaks: tuple[Break, ...] = ()  # where it ends, and ink goes on
 
     @classmethod
-    def of(cls, run: Followed, number: int = 1, reference_mm: tuple[float, float] | None = None) -> Line:
+    def of(
+        cls, run: Followed, number: int = 1, reference_mm: tuple[float, float] | None = None
+    ) -> Line:
         """What the head did, as a line of the drawing, with the marks along it; those at the reference point
         are that point's.
         """
@@ -196,15 +201,22 @@ class Line:
             [first, *(guide.back for guide in left_for)],
             [*(guide.leave for guide in left_for), last + 1],
         )
-        return [self.xy_mm[begin:end] for begin, end in zip(begins, ends, strict=True) if begin < end]
+        return [
+            self.xy_mm[begin:end]
+            for begin, end in zip(begins, ends, strict=True)
+            if begin < end
+        ]
 
     def place(self, at: float) -> tuple[float, float]:
         """Where the axis is at a position, fractions included, mm."""
         rows = np.arange(len(self.xy_mm))
-        return float(np.interp(at, rows, self.xy_mm[:, 0])), float(np.interp(at, rows, self.xy_mm[:, 1]))
+        return float(np.interp(at, rows, self.xy_mm[:, 0])), float(
+            np.interp(at, rows, self.xy_mm[:, 1])
+        )
 
 
 def _near(mark: Mark, reference_mm: tuple[float, float]) -> bool:
     return (
-        float(np.hypot(mark.place_mm[0] - reference_mm[0], mark.place_mm[1] - reference_mm[1])) < REFERENCE_MM
+        float(np.hypot(mark.place_mm[0] - reference_mm[0], mark.place_mm[1] - reference_mm[1]))
+        < REFERENCE_MM
     )

@@ -36,8 +36,10 @@ CATCH_MM = 3.0  # how far from a given place the line may be
 APERTURE = 0.3  # of the line's width, within bounds that a scan's noise and a corner set
 LEAST_APERTURE_MM, LARGEST_APERTURE_MM = 0.1, 0.24
 AT_END_MM = 1.5  # a start nearer to an open end is that end
-LEAD_MM = 11.0  # at most, from the middle of a reference point to the lead line that comes from it
-NAMED_MM = 5.0  # a cross or ring nearer to the reference point that is named is that point, drawn
+# at most, from the middle of a reference point to the lead line that comes from it
+LEAD_MM = 11.0
+# a cross or ring nearer to the reference point that is named is that point, drawn
+NAMED_MM = 5.0
 LEADS_AWAY = math.radians(45)
 SPUR = 2.7  # a line that ends sooner, in widths, is a burr
 GROWS, GROWS_PX = (
@@ -72,8 +74,12 @@ def put_down(
         at_ends = _at_ends(view, sheet, stroke, gap_mm, reference_mm)
     else:
         ends = stroke.ends_mm()
-        near = ends[np.hypot(*(ends - np.asarray(start_mm)).T) < max(AT_END_MM, 3 * view.width_mm)]
-        at_ends = [stance for place in near if (stance := _at_end(view, place, gap_mm)) is not None]
+        near = ends[
+            np.hypot(*(ends - np.asarray(start_mm)).T) < max(AT_END_MM, 3 * view.width_mm)
+        ]
+        at_ends = [
+            stance for place in near if (stance := _at_end(view, place, gap_mm)) is not None
+        ]
     for stance in at_ends[:ENDS]:
         yield stance, stroke.length_mm
     stances = _stances(view, _tried(stroke, start_mm, 2 * stroke.width_mm))
@@ -83,7 +89,11 @@ def put_down(
     for _, stance in stances if start_mm is None else stances[:1]:
         yield stance, stroke.length_mm
     if not stances and not at_ends:
-        solid = "follow the edges of a filled shape with --edge, " if sheet.are_solid[stroke.patch] else ""
+        solid = (
+            "follow the edges of a filled shape with --edge, "
+            if sheet.are_solid[stroke.patch]
+            else ""
+        )
         raise LineFault(
             f"no clean stretch of line {view.width_mm:.2f} mm wide to start on;"
             f" {solid}{'give' if line_width_mm is None else 'give another'} --line-width, or --start X,Y at a plain stretch"
@@ -117,9 +127,13 @@ def reference_on(drawing: Drawing) -> tuple[float, float]:
     found = list(references(sheet, view_of(sheet, None, line.width_mm), line))
     if len(found) == 1:
         return found[0].place_mm
-    places = "; ".join(f"{x:.1f},{y:.1f}" for x, y in (reference.place_mm for reference in found[:8]))
+    places = "; ".join(
+        f"{x:.1f},{y:.1f}" for x, y in (reference.place_mm for reference in found[:8])
+    )
     what = f"{len(found)} crosses and rings, at {places}" if found else "no small cross or ring"
-    raise LineFault(f"no reference point is certain: there is {what}; give its place, X,Y in mm, instead")
+    raise LineFault(
+        f"no reference point is certain: there is {what}; give its place, X,Y in mm, instead"
+    )
 
 
 def view_of(sheet: Sheet, aperture_mm: float | None, width_mm: float) -> View:
@@ -127,15 +141,26 @@ def view_of(sheet: Sheet, aperture_mm: float | None, width_mm: float) -> View:
     least_mm = LEAST_APERTURE_MM / sheet.drawing.enlarged
     aperture_mm = aperture_mm or min(max(APERTURE * width_mm, least_mm), LARGEST_APERTURE_MM)
     return View(
-        photocell.behind_aperture(sheet.drawing, aperture_mm), sheet.drawing.pitch_mm, width_mm, LEVEL
+        photocell.behind_aperture(sheet.drawing, aperture_mm),
+        sheet.drawing.pitch_mm,
+        width_mm,
+        LEVEL,
     )
 
 
 def _at_ends(
-    view: View, sheet: Sheet, stroke: Stroke, gap_mm: float, reference_mm: tuple[float, float] | None
+    view: View,
+    sheet: Sheet,
+    stroke: Stroke,
+    gap_mm: float,
+    reference_mm: tuple[float, float] | None,
 ) -> list[Stance]:
     """Stances at the open ends of a line, that which comes from a reference point first."""
-    ends = [stance for place in stroke.ends_mm() if (stance := _at_end(view, place, gap_mm)) is not None]
+    ends = [
+        stance
+        for place in stroke.ends_mm()
+        if (stance := _at_end(view, place, gap_mm)) is not None
+    ]
     named = [] if reference_mm is None else _from_reference(reference_mm, ends)
     if named:
         return named
@@ -152,7 +177,9 @@ def _at_ends(
     return ends
 
 
-def _leading_away(view: View, stroke: Stroke, reference_mm: tuple[float, float]) -> Stance | None:
+def _leading_away(
+    view: View, stroke: Stroke, reference_mm: tuple[float, float]
+) -> Stance | None:
     """The stance on the only line that leads away from what is drawn about a reference point, whatever that
     is; None if there is no such line.
     """
@@ -168,7 +195,11 @@ def _leading_away(view: View, stroke: Stroke, reference_mm: tuple[float, float])
         if stroke.is_at(start) and (len(seen) - 1) * local.step_mm > 1.5 * local.leg_mm:
             leg = leg_of(seen, False, local.leg_mm)
             return Stance(
-                leg.end_mm, leg.heading_rad, replace(local, width_mm=leg.width_mm), True, reference_mm
+                leg.end_mm,
+                leg.heading_rad,
+                replace(local, width_mm=leg.width_mm),
+                True,
+                reference_mm,
             )
     return None
 
@@ -180,10 +211,15 @@ def _named_first(
     place, and before the others.
     """
     for reference in (
-        found if named_mm is None else sorted(found, key=lambda r: math.dist(named_mm, r.place_mm))
+        found
+        if named_mm is None
+        else sorted(found, key=lambda r: math.dist(named_mm, r.place_mm))
     ):
         is_named = named_mm is not None and math.dist(named_mm, reference.place_mm) < NAMED_MM
-        yield named_mm if named_mm is not None and is_named else reference.place_mm, reference.lead
+        yield (
+            named_mm if named_mm is not None and is_named else reference.place_mm,
+            reference.lead,
+        )
 
 
 def _from_reference(place_mm: tuple[float, float], ends: list[Stance]) -> list[Stance]:
@@ -220,7 +256,12 @@ def _stances(view: View, places: Array) -> list[tuple[tuple[float, float], Stanc
             continue
         middle, length = felt
         local = replace(local, width_mm=middle.width_mm)
-        out.append(((length, -abs(middle.bend_per_mm)), Stance(middle.end_mm, middle.heading_rad, local)))
+        out.append(
+            (
+                (length, -abs(middle.bend_per_mm)),
+                Stance(middle.end_mm, middle.heading_rad, local),
+            )
+        )
     return out
 
 
@@ -255,7 +296,10 @@ def _both_ways(view: View, place: Array, heading: float) -> tuple[Leg, float] | 
         return None
     view = replace(view, width_mm=left - right)
     length = 1.5 * view.leg_mm
-    ahead, behind = view.feel(place, heading, length), view.feel(place, heading + math.pi, length)
+    ahead, behind = (
+        view.feel(place, heading, length),
+        view.feel(place, heading + math.pi, length),
+    )
     shorter = min(len(ahead), len(behind))
     if shorter < 6:
         return None
@@ -276,7 +320,13 @@ def _at_end(view: View, place: Array, gap_mm: float) -> Stance | None:
     heading = float(arcs.mean())
     inward = place + radius * np.array([math.cos(heading), math.sin(heading)])
     right, left = photocell.edges(
-        local.cells, local.pitch_mm, inward[0], inward[1], heading, 2 * local.width_mm, local.level
+        local.cells,
+        local.pitch_mm,
+        inward[0],
+        inward[1],
+        heading,
+        2 * local.width_mm,
+        local.level,
     )
     if not abs(left - right - view.width_mm) < 0.25 * view.width_mm + 0.5 * view.pitch_mm:
         return None
@@ -288,7 +338,12 @@ def _at_end(view: View, place: Array, gap_mm: float) -> Stance | None:
     if end is None or straight_on(local, outward, gap_mm) is not None:
         return None  # the edge of a gap
     local = replace(local, width_mm=outward.width_mm)
-    return Stance(outward.at(end), math.remainder(outward.heading_at(end) + math.pi, math.tau), local, True)
+    return Stance(
+        outward.at(end),
+        math.remainder(outward.heading_at(end) + math.pi, math.tau),
+        local,
+        True,
+    )
 
 
 def _is_end(view: View, inward: Array, heading: float, radius: float) -> bool:
@@ -299,7 +354,9 @@ def _is_end(view: View, inward: Array, heading: float, radius: float) -> bool:
     if len(seen) * view.step_mm < SPUR * view.width_mm - radius:
         return False
     middle = seen[len(seen) // 4 : -len(seen) // 4, 2]
-    if np.median(middle[-4:]) - np.median(middle[:4]) > max(GROWS * view.width_mm, GROWS_PX * view.pitch_mm):
+    if np.median(middle[-4:]) - np.median(middle[:4]) > max(
+        GROWS * view.width_mm, GROWS_PX * view.pitch_mm
+    ):
         return False
     return not _is_mark(view, inward, heading, radius)
 

@@ -66,7 +66,9 @@ class Carriage:
         """Where the drives' demand stands, and the heading."""
         owed = head.owed_s(self.tuning.drive_gain, self.tuning.period_s)
         s = self.state
-        return np.array([s[head.X] + owed * s[head.VX], s[head.Y] + owed * s[head.VY]]), self.heading_rad
+        return np.array(
+            [s[head.X] + owed * s[head.VX], s[head.Y] + owed * s[head.VY]]
+        ), self.heading_rad
 
     def ahead(self, place: Array) -> float:
         """How far ahead of the axis a place is, mm along the heading."""
@@ -76,7 +78,9 @@ class Carriage:
     def follow(self, view: View, home: tuple[float, float, float, float]) -> int:
         """Follow the line until something happens, or for a while; why it stopped (see `head`)."""
         out = np.empty((CHUNK, 2))
-        n, why = head.follow(view.cells, view.pitch_mm, self.state, self._drum, self.tuning, home, out)
+        n, why = head.follow(
+            view.cells, view.pitch_mm, self.state, self._drum, self.tuning, home, out
+        )
         self._keep(out[:n])
         return int(why)
 
@@ -91,7 +95,10 @@ class Carriage:
                 self.swivel(math.atan2(step[1], step[0]))
             last = k == len(stretches) - 1
             limits = curves.speeds(
-                way, self.settings.speed_mm_s, self.settings.acceleration_mm_s2, end_mm_s if last else 0.0
+                way,
+                self.settings.speed_mm_s,
+                self.settings.acceleration_mm_s2,
+                end_mm_s if last else 0.0,
             )
             self._run(way, limits)
             step = way[-1] - way[-2]
@@ -109,7 +116,9 @@ class Carriage:
 
     def swivel(self, heading: float) -> None:
         """Turn the standing head to a heading."""
-        self._stand(abs(turn(float(self.state[head.HEADING]), heading)) / self.settings.swivel_rad_s)
+        self._stand(
+            abs(turn(float(self.state[head.HEADING]), heading)) / self.settings.swivel_rad_s
+        )
         self.state[head.HEADING] = heading
 
     def _stand(self, time_s: float) -> None:
@@ -123,18 +132,24 @@ class Carriage:
 
         The drum takes what was felt of the leg up to where the swinging cell takes over.
         """
-        self.tuning = tune(Stance(leg.end_mm, leg.heading_rad, view), self.settings, self.rate_hz)
+        self.tuning = tune(
+            Stance(leg.end_mm, leg.heading_rad, view), self.settings, self.rate_hz
+        )
         s, lead = self.state, self.tuning.lead_mm
         felt = leg.seen[np.hypot(*(leg.seen[:, :2] - leg.end_mm).T) < lead, :2]
         c, n = math.cos(leg.heading_rad), math.sin(leg.heading_rad)
-        along, aside = (felt[-1] - leg.end_mm) @ np.array([[c, -n], [n, c]]) if len(felt) else (0.0, 0.0)
+        along, aside = (
+            (felt[-1] - leg.end_mm) @ np.array([[c, -n], [n, c]]) if len(felt) else (0.0, 0.0)
+        )
         s[head.HEADING], s[head.BEND], s[head.TURN] = (
             leg.heading_rad,
             leg.bend_per_mm,
             s[head.SPEED] * leg.bend_per_mm,
         )
         s[head.MIDDLE] = (
-            aside * (lead / along) ** 2 if along > 0.5 * lead else 0.5 * leg.bend_per_mm * lead * lead
+            aside * (lead / along) ** 2
+            if along > 0.5 * lead
+            else 0.5 * leg.bend_per_mm * lead * lead
         )
         s[head.POINT_X], s[head.POINT_Y] = leg.at(self.tuning.point_mm)
         s[head.SWEEP] = s[head.FIRST] = s[head.MEAN] = s[head.LEFT] = s[head.RIGHT] = 0.0

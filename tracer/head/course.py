@@ -26,7 +26,8 @@ from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.leg import Leg, centre_at
 from morfax.tracer.sensing.view import View
 
-FELT_LEGS = 0.3  # of a leg's length, to both sides: what a place on a felt line is averaged over
+# of a leg's length, to both sides: what a place on a felt line is averaged over
+FELT_LEGS = 0.3
 
 
 def onto(place: Array, heading: float, leg: Leg, limit_mm: float) -> tuple[Array, float]:
@@ -43,7 +44,11 @@ def onto(place: Array, heading: float, leg: Leg, limit_mm: float) -> tuple[Array
 
 def along_leg(leg: Leg, start_mm: float, end_mm: float) -> Array:
     """Places on a leg's line from one distance to another (from its clean end)."""
-    return leg.at(np.linspace(start_mm, end_mm, max(2, math.ceil(abs(end_mm - start_mm) / SPACING_MM) + 1)))
+    return leg.at(
+        np.linspace(
+            start_mm, end_mm, max(2, math.ceil(abs(end_mm - start_mm) / SPACING_MM) + 1)
+        )
+    )
 
 
 def nodes_along(
@@ -58,7 +63,10 @@ def nodes_along(
     nodes, leg = [start], None
     here = int(np.argmin(np.hypot(*(seen[:, :2] - start[0]).T)))
     for i in range(here, len(seen)):
-        if i < here + half_mm / view.step_mm or np.hypot(*(seen[i, :2] - nodes[-1][0])) < half_mm / 3:
+        if (
+            i < here + half_mm / view.step_mm
+            or np.hypot(*(seen[i, :2] - nodes[-1][0])) < half_mm / 3
+        ):
             continue
         if np.hypot(*(seen[i, :2] - seen[-1, :2])) < left_mm:
             break
@@ -74,7 +82,9 @@ def through_nodes(nodes: list[tuple[Array, float]]) -> Array:
 
 def ahead_mm(place: Array, leg: Leg) -> float:
     """How far ahead of a place a leg's clean end is, mm along the leg."""
-    return float((leg.end_mm - place) @ np.array([math.cos(leg.heading_rad), math.sin(leg.heading_rad)]))
+    return float(
+        (leg.end_mm - place) @ np.array([math.cos(leg.heading_rad), math.sin(leg.heading_rad)])
+    )
 
 
 def on_ink(view: View, stretches: list[Array]) -> bool:

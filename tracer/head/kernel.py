@@ -45,7 +45,9 @@ from morfax.tracer.sensing.photocell import TWO_PI, darkness_at
 # State of the head, one float each: screws, speeds of the screws, heading, its rate, speed along, the sweep,
 # the ink, guard cells, relay, travel, the point that is steered for, the bend there, how many places are on
 # the drum, and how far aside the cell of a head without a drum sees the line
-X, Y, VX, VY, HEADING, TURN, SPEED, SWEEP, FIRST, MEAN, MIDDLE, SWEPT_X, SWEPT_Y, INK = range(14)
+X, Y, VX, VY, HEADING, TURN, SPEED, SWEEP, FIRST, MEAN, MIDDLE, SWEPT_X, SWEPT_Y, INK = range(
+    14
+)
 LEFT, AHEAD, RIGHT, SLOW, TRAVEL, POINT_X, POINT_Y, BEND, PLACES, ASIDE = range(14, 24)
 STATES = 24
 DRUM = 256  # places remembered
@@ -80,7 +82,9 @@ class Tuning(NamedTuple):
     drive_gain: float
     drive_change_mm_s: float
     steering_gain: float
-    direct_rad_s_mm: float  # turn rate per mm that the cell sees the line aside; 0 for a head with a drum
+    direct_rad_s_mm: (
+        float  # turn rate per mm that the cell sees the line aside; 0 for a head with a drum
+    )
 
 
 def owed_s(tuning_gain: float, period_s: float) -> float:
@@ -135,7 +139,9 @@ def _detect(state, drum, t):  # type: ignore[no-untyped-def]
     if t.direct_rad_s_mm > 0:
         state[ASIDE] = aside
         state[AHEAD] = mean / t.mean
-        state[MIDDLE] = state[SWEEP] = state[FIRST] = state[MEAN] = 0.0  # the mount turns with the head only
+        state[MIDDLE] = state[SWEEP] = state[FIRST] = state[MEAN] = (
+            0.0  # the mount turns with the head only
+        )
         return
     limit = 0.5 * t.amplitude_mm
     state[MIDDLE] += min(max(aside, -limit), limit)
@@ -168,7 +174,13 @@ def _fit(state, drum, t):  # type: ignore[no-untyped-def]
         if abs(x) < t.half_window_mm and abs(y) < t.half_window_mm:
             w = 1.0 - (x / t.half_window_mm) ** 2
             xx = x * x
-            s0, s1, s2, s3, s4 = s0 + w, s1 + w * x, s2 + w * xx, s3 + w * xx * x, s4 + w * xx * xx
+            s0, s1, s2, s3, s4 = (
+                s0 + w,
+                s1 + w * x,
+                s2 + w * xx,
+                s3 + w * xx * x,
+                s4 + w * xx * xx,
+            )
             b0, b1, b2 = b0 + w * y, b1 + w * x * y, b2 + w * xx * y
     d0, d1, d2 = s2 * s4 - s3 * s3, s2 * s3 - s1 * s4, s1 * s3 - s2 * s2
     det = s0 * d0 + s1 * d1 + s2 * d2
@@ -192,7 +204,9 @@ def _look(cells, pitch_mm, state, t):  # type: ignore[no-untyped-def]
     slant = math.hypot(1.0, 2.0 * curve * ahead)
     for k in range(3 if t.direct_rad_s_mm == 0 else 0):
         u = curve * ahead * ahead + (1 - k) * t.guard_mm * slant
-        d = darkness_at(cells, pitch_mm, state[X] + ahead * c - u * s, state[Y] + ahead * s + u * c)
+        d = darkness_at(
+            cells, pitch_mm, state[X] + ahead * c - u * s, state[Y] + ahead * s + u * c
+        )
         state[LEFT + k] += 0.5 * (d / state[INK] - state[LEFT + k])
     far = t.look_ahead_mm
     u = curve * far * far
@@ -219,7 +233,9 @@ def _at_home(state, t, home):  # type: ignore[no-untyped-def]
     c, s = math.cos(state[HEADING]), math.sin(state[HEADING])
     along, aside = dx * c + dy * s, dy * c - dx * s
     return (
-        0.0 < along < t.lead_mm and abs(aside) < 0.3 * t.lead_mm and math.cos(home[2] - state[HEADING]) > 0.8
+        0.0 < along < t.lead_mm
+        and abs(aside) < 0.3 * t.lead_mm
+        and math.cos(home[2] - state[HEADING]) > 0.8
     )
 
 
@@ -241,7 +257,12 @@ def _steer(state, t):  # type: ignore[no-untyped-def]
         demand = t.direct_rad_s_mm * state[ASIDE]
     state[TURN] += t.steering_gain * (demand - state[TURN])
     state[HEADING] += state[TURN] * t.period_s
-    move(state, t, state[SPEED] * math.cos(state[HEADING]), state[SPEED] * math.sin(state[HEADING]))
+    move(
+        state,
+        t,
+        state[SPEED] * math.cos(state[HEADING]),
+        state[SPEED] * math.sin(state[HEADING]),
+    )
 
 
 @njit(cache=True)
@@ -272,7 +293,9 @@ def run(state, t, points, speeds, out):  # type: ignore[no-untyped-def]
         braking = math.sqrt(speeds[leg + 1] ** 2 + 2 * t.acceleration_mm_s2 * gap)
         held = t.speed_mm_s * (t.slowed if state[SLOW] > 0 else 1.0)
         state[SLOW] = max(state[SLOW] - 1, 0)
-        allowed = min(braking, max(speeds[leg], speeds[leg + 1]), max(held, state[SPEED] - change))
+        allowed = min(
+            braking, max(speeds[leg], speeds[leg + 1]), max(held, state[SPEED] - change)
+        )
         state[SPEED] = max(min(state[SPEED] + change, allowed), slowest)
         step = state[SPEED] * t.period_s
         old_x, old_y = x, y

@@ -63,7 +63,9 @@ def loop_in(positions: Array, width_mm: float) -> tuple[int, int] | None:
     return int(index[j - back]), int(index[m - back])
 
 
-def _crossed(places: Array, index: NDArray[np.int64], j: int, reach: int) -> tuple[int, int] | None:
+def _crossed(
+    places: Array, index: NDArray[np.int64], j: int, reach: int
+) -> tuple[int, int] | None:
     """The positions at which the end of a run crosses the earlier way about place j, so many places about
     either; None if it does not come so far.
     """

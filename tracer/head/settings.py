@@ -45,11 +45,15 @@ class Settings:
     """Settings of the head: by default the precise set. What is None follows from the line."""
 
     speed_mm_s: float = _within(10.0, 0.01, 1000, "tracing speed (WC)")
-    slowed: float = _within(0.3, 0.01, 1, "share of the speed while the look-ahead relay holds (SR)")
+    slowed: float = _within(
+        0.3, 0.01, 1, "share of the speed while the look-ahead relay holds (SR)"
+    )
     slow_s: float = _within(0.1, 0, 10, "how long the relay holds (DL)")
     acceleration_mm_s2: float = _within(500.0, 1, 100_000, "of the tracing speed")
     sweep_hz: float = _within(250.0, 1, 750, "how often the cell swings (motor 45)")
-    aperture_mm: float | None = _within(None, 0, 10, "spot through which a cell sees the drawing")
+    aperture_mm: float | None = _within(
+        None, 0, 10, "spot through which a cell sees the drawing"
+    )
     steering_lag_s: float = _within(0.001, 0, 1, "lag of the steering servo (M, T)")
     swivel_rad_s: float = _within(20.0, 0.1, 1000, "turn rate of the swivel at a sharp corner")
     gap_mm: float = _within(0.5, 0, 20, "widest gap that the head goes across")
@@ -57,11 +61,18 @@ class Settings:
         0.0, 0, 50, "how far ahead a line that is lost is looked for; 0: it stays lost"
     )
     line_width_mm: float | None = _within(None, 0.01, 20, "width of the line")
-    lead_mm: float | None = _within(None, 0.01, 20, "how far the cell is ahead of the steering axis")
+    lead_mm: float | None = _within(
+        None, 0.01, 20, "how far the cell is ahead of the steering axis"
+    )
     amplitude_mm: float | None = _within(None, 0.01, 20, "of the swing to either side")
-    look_ahead_mm: float | None = _within(None, 0.01, 100, "how far cell 102 is ahead of the steering axis")
+    look_ahead_mm: float | None = _within(
+        None, 0.01, 100, "how far cell 102 is ahead of the steering axis"
+    )
     direct_rad_s_mm: float = _within(
-        0.0, 0, 10_000, "steer straight by the swinging cell, turn rate per mm aside; 0: by the drum"
+        0.0,
+        0,
+        10_000,
+        "steer straight by the swinging cell, turn rate per mm aside; 0: by the drum",
     )
     drive: Drive = field(default_factory=Drive)
 
@@ -113,9 +124,7 @@ def value_of(settings: Settings, name: str) -> float | None:
 
 def allowed(name: str) -> str:
     """What a setting may hold, in words."""
-    return (
-        f"a number from {BOUNDS[name].least:g} to {BOUNDS[name].most:g}, in the unit that its name ends with"
-    )
+    return f"a number from {BOUNDS[name].least:g} to {BOUNDS[name].most:g}, in the unit that its name ends with"
 
 
 def _number(name: str, value: object) -> float:
@@ -132,7 +141,9 @@ def _number(name: str, value: object) -> float:
 def _changed(settings: Settings, name: str, number: float) -> Settings:
     """Settings with one of them set."""
     if name.startswith(OF_DRIVE):
-        return replace(settings, drive=replace(settings.drive, **{name.removeprefix(OF_DRIVE): number}))
+        return replace(
+            settings, drive=replace(settings.drive, **{name.removeprefix(OF_DRIVE): number})
+        )
     return replace(settings, **{name: number})  # type: ignore[arg-type]
 
 
@@ -183,8 +194,12 @@ def _calibrate(stance: Stance, amplitude_mm: float) -> tuple[float, float]:
     stations = 8
     for k in range(stations):
         place = stance.place_mm + view.step_mm * k * np.array([c, s])
-        left = sweep(view.cells, view.pitch_mm, place, stance.heading_rad, -aside, amplitude_mm, 24)
-        right = sweep(view.cells, view.pitch_mm, place, stance.heading_rad, aside, amplitude_mm, 24)
+        left = sweep(
+            view.cells, view.pitch_mm, place, stance.heading_rad, -aside, amplitude_mm, 24
+        )
+        right = sweep(
+            view.cells, view.pitch_mm, place, stance.heading_rad, aside, amplitude_mm, 24
+        )
         slopes += (left[0] - right[0]) / (2 * aside) / stations
         means += (left[1] + right[1]) / 2 / stations
     return max(slopes, 0.2), means

@@ -31,7 +31,9 @@ class Trail:
         """Remember positions (n, 2) in the order of travel."""
         if not len(positions):
             return
-        steps = np.hypot(*np.diff(np.vstack([self._places[self._count - 1], positions]), axis=0).T)
+        steps = np.hypot(
+            *np.diff(np.vstack([self._places[self._count - 1], positions]), axis=0).T
+        )
         marks = np.floor(np.cumsum(steps) / self.step_mm)
         kept = positions[np.flatnonzero(np.diff(marks, prepend=0.0) > 0)]
         while self._count + len(kept) > len(self._places):

@@ -25,7 +25,16 @@ from morfax.tracer.head.trail import Trail
 from morfax.tracer.junctions.rings import legs_around
 from morfax.tracer.marks.marks import longest_mm
 from morfax.tracer.sensing import photocell
-from morfax.tracer.sensing.leg import STRAIGHT, Leg, Meeting, goes_straight, leg_of, meet, turn, turns_off
+from morfax.tracer.sensing.leg import (
+    STRAIGHT,
+    Leg,
+    Meeting,
+    goes_straight,
+    leg_of,
+    meet,
+    turn,
+    turns_off,
+)
 from morfax.tracer.sensing.probe import reach_of_ink, stroke_end
 from morfax.tracer.sensing.side import Side
 from morfax.tracer.sensing.view import View
@@ -34,13 +43,18 @@ AHEAD = math.radians(75)  # a lost line is looked for within this of its heading
 SQUARE = math.radians(
     20
 )  # two legs that turn off to both sides alike, within this, are a line that the head comes to
-PASSES = math.radians(12)  # two legs in line with each other within this are one line that passes
+PASSES = math.radians(
+    12
+)  # two legs in line with each other within this are one line that passes
 SIDEWAYS_WIDTHS = (
     0.0,
     1.0,
     2.0,
 )  # ahead a line that turns back to a side is looked for: its ink runs along with the way in at first
-OVERRUN_MM, OVERRUN_WIDTHS = 1.5, 2.0  # a lead line may be drawn so far beyond the contour's edge
+OVERRUN_MM, OVERRUN_WIDTHS = (
+    1.5,
+    2.0,
+)  # a lead line may be drawn so far beyond the contour's edge
 FARTHEST_WIDTHS = 6.0  # how far the heading is held through a blot, in widths of the line
 
 
@@ -48,7 +62,13 @@ Way = tuple[Leg | None, Meeting | None, int]
 
 
 def survey(
-    view: View, incoming: Leg, trail: Trail, rank: int = 0, side: Side | None = None, *, leads: bool = False
+    view: View,
+    incoming: Leg,
+    trail: Trail,
+    rank: int = 0,
+    side: Side | None = None,
+    *,
+    leads: bool = False,
 ) -> Way:
     """The outgoing leg (None if there is none), the distances (mm) beyond the incoming and before the
     outgoing clean end where they meet, and how many legs there were, counting 1 more where one was left out
@@ -62,7 +82,10 @@ def survey(
     ink = reach_of_ink(view, incoming, 6 * view.width_mm + 2.0)
     half = 0.5 * view.width_mm
     near = half + view.step_mm
-    choose, look = partial(_chosen, incoming, rank, side), partial(_look, view, incoming, trail, leads)
+    choose, look = (
+        partial(_chosen, incoming, rank, side),
+        partial(_look, view, incoming, trail, leads),
+    )
     found = look(incoming.at(near if ink is None else max(0.0, min(near, ink - half))), choose)
     for widths in SIDEWAYS_WIDTHS if side is not None else ():
         aside = look(incoming.at(near + widths * view.width_mm), choose)
@@ -131,12 +154,17 @@ def _chosen(
 
 def _is_aside(incoming: Leg, leg: Leg, side: Side) -> bool:
     """Whether a leg turns off to a side."""
-    return (turn(incoming.heading_rad, leg.heading_rad) > 0) == (side == "left") and turns_off(incoming, leg)
+    return (turn(incoming.heading_rad, leg.heading_rad) > 0) == (side == "left") and turns_off(
+        incoming, leg
+    )
 
 
 def _without_marks(view: View, incoming: Leg, legs: list[Leg]) -> list[Leg]:
     """The legs but for those that are marks and not straight on, if others are left."""
-    reach = [math.inf if goes_straight(incoming, leg) else _reach_mm(view, incoming, leg) for leg in legs]
+    reach = [
+        math.inf if goes_straight(incoming, leg) else _reach_mm(view, incoming, leg)
+        for leg in legs
+    ]
     kept = [
         leg
         for leg, mm in zip(legs, reach, strict=True)
@@ -151,12 +179,15 @@ def _without_overrun(view: View, incoming: Leg, legs: list[Leg]) -> list[Leg]:
     """
     passing = [leg for leg in legs if not goes_straight(incoming, leg)]
     if not any(
-        abs(turn(a.heading_rad + math.pi, b.heading_rad)) < SQUARE for a, b in combinations(passing, 2)
+        abs(turn(a.heading_rad + math.pi, b.heading_rad)) < SQUARE
+        for a, b in combinations(passing, 2)
     ):
         return legs
     overrun_mm = max(OVERRUN_MM, OVERRUN_WIDTHS * view.width_mm)
     return [
-        leg for leg in legs if any(leg is u for u in passing) or _reach_mm(view, incoming, leg) > overrun_mm
+        leg
+        for leg in legs
+        if any(leg is u for u in passing) or _reach_mm(view, incoming, leg) > overrun_mm
     ]
 
 
@@ -168,7 +199,8 @@ def _without_stubs(view: View, incoming: Leg, legs: list[Leg], every: list[Leg])
     """
     held = [leg for leg in every if not any(leg is other for other in legs)]
     passing = any(
-        abs(turn(a.heading_rad + math.pi, b.heading_rad)) < SQUARE for a, b in combinations(held, 2)
+        abs(turn(a.heading_rad + math.pi, b.heading_rad)) < SQUARE
+        for a, b in combinations(held, 2)
     )
     if not held or passing:
         return legs
@@ -189,7 +221,9 @@ def _reach_mm(view: View, incoming: Leg, leg: Leg) -> float:
     """
     end = stroke_end(view, leg, longest_mm(view))
     way = leg.end_mm - incoming.end_mm
-    aside = abs(way[1] * math.cos(incoming.heading_rad) - way[0] * math.sin(incoming.heading_rad))
+    aside = abs(
+        way[1] * math.cos(incoming.heading_rad) - way[0] * math.sin(incoming.heading_rad)
+    )
     return math.inf if end is None else end + aside - 0.5 * view.width_mm
 
 
@@ -215,7 +249,9 @@ def straight_on(view: View, incoming: Leg, gap_mm: float) -> Leg | None:
 
     The bend of a dash two or three millimetres long is uncertain.
     """
-    return _met(view, incoming, gap_mm) or _met(view, replace(incoming, bend_per_mm=0.0), gap_mm)
+    return _met(view, incoming, gap_mm) or _met(
+        view, replace(incoming, bend_per_mm=0.0), gap_mm
+    )
 
 
 def _met(view: View, incoming: Leg, gap_mm: float) -> Leg | None:
@@ -259,7 +295,9 @@ def caught_again(view: View, incoming: Leg, trail: Trail, within_mm: float) -> L
 def _from(view: View, place: Array) -> list[Leg]:
     """The clean legs that leave a place on ink."""
     found = []
-    for arc in photocell.ring(view.cells, view.pitch_mm, place, 1.5 * view.width_mm, view.level):
+    for arc in photocell.ring(
+        view.cells, view.pitch_mm, place, 1.5 * view.width_mm, view.level
+    ):
         heading = float(arc.mean())
         start = place + 1.5 * view.width_mm * np.array([math.cos(heading), math.sin(heading)])
         seen = view.feel(start, heading, view.leg_mm)

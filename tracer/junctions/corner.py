@@ -20,21 +20,35 @@ SHARP = 0.08  # of the line's width: a corner whose ink misses less than this on
 
 
 def through_corner(
-    view: View, stands: tuple[Array, float], incoming: Leg, outgoing: Leg, legs_mm: Meeting, end_mm: float
+    view: View,
+    stands: tuple[Array, float],
+    incoming: Leg,
+    outgoing: Leg,
+    legs_mm: Meeting,
+    end_mm: float,
 ) -> list[Array]:
     """Stretches from where the head stands (place, heading) through a corner to `end_mm` beyond the outgoing
     leg's first station.
     """
     s, u = legs_mm
     missing, touch = rounding(view, incoming, outgoing, legs_mm)
-    bent = touch > 0 and (missing > 0.3 * view.width_mm or deflection(incoming, outgoing, legs_mm) < SLIGHT)
+    bent = touch > 0 and (
+        missing > 0.3 * view.width_mm or deflection(incoming, outgoing, legs_mm) < SLIGHT
+    )
     if touch > 0 and touch < u + end_mm and touch < s + ahead_mm(stands[0], incoming):
         return [rounded_corner(stands, incoming, outgoing, legs_mm, touch, end_mm)]
     if bent:
         way, along = onto(*stands, incoming, min(s, 0.0))
         start, end = incoming.at(along), outgoing.at(end_mm)
         return [
-            np.vstack([way, hermite(start, incoming.heading_at(along), end, outgoing.heading_at(end_mm))])
+            np.vstack(
+                [
+                    way,
+                    hermite(
+                        start, incoming.heading_at(along), end, outgoing.heading_at(end_mm)
+                    ),
+                ]
+            )
         ]
     return sharp_corner(stands, incoming, outgoing, legs_mm, end_mm)
 
@@ -88,7 +102,8 @@ def is_sharp(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> bool
     """
     turned = deflection(incoming, outgoing, legs_mm)
     return (
-        missing_ink_mm(view, incoming, outgoing, legs_mm) <= HIDDEN * view.step_mm * math.tan(turned / 4) / 3
+        missing_ink_mm(view, incoming, outgoing, legs_mm)
+        <= HIDDEN * view.step_mm * math.tan(turned / 4) / 3
     )
 
 
@@ -117,7 +132,10 @@ def hides_outside(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) ->
     edges tell nothing of it.
     """
     found = _edge_mm(view, incoming, outgoing, legs_mm, 1)
-    return deflection(incoming, outgoing, legs_mm) < SLIGHT and not found < HIDES * incoming.width_mm
+    return (
+        deflection(incoming, outgoing, legs_mm) < SLIGHT
+        and not found < HIDES * incoming.width_mm
+    )
 
 
 def deflection(incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> float:
@@ -131,27 +149,42 @@ def _edge_mm(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting, side: i
     """
     vertex, width_mm = incoming.at(legs_mm[0]), 0.5 * (incoming.width_mm + outgoing.width_mm)
     before, after = incoming.heading_at(legs_mm[0]), outgoing.heading_at(-legs_mm[1])
-    out = side * np.array([math.cos(before) - math.cos(after), math.sin(before) - math.sin(after)])
+    out = side * np.array(
+        [math.cos(before) - math.cos(after), math.sin(before) - math.sin(after)]
+    )
     outward = math.atan2(out[1], out[0])
     reach = 2.0 * width_mm + 3 * view.pitch_mm
     aside = np.array([math.sin(outward), -math.cos(outward)])
     edges_mm = []
-    for off in np.linspace(-0.15, 0.15, 5) * width_mm:  # the pen's round leaves the tangent by off²/width
+    for off in (
+        np.linspace(-0.15, 0.15, 5) * width_mm
+    ):  # the pen's round leaves the tangent by off²/width
         edge = _edge_outward(view, vertex + off * aside, outward, width_mm, reach)
         edges_mm.append(edge + (off * off / width_mm if side > 0 else 0.0))
     return float(np.median(edges_mm))
 
 
-def _edge_outward(view: View, place: Array, outward: float, width_mm: float, reach_mm: float) -> float:
+def _edge_outward(
+    view: View, place: Array, outward: float, width_mm: float, reach_mm: float
+) -> float:
     """Where the ink about a place ends outward, mm; NaN if there is none. A light speck in the ink does not
     end it.
     """
     _, edge = photocell.edges(
-        view.cells, view.pitch_mm, place[0], place[1], outward - math.pi / 2, reach_mm, view.level
+        view.cells,
+        view.pitch_mm,
+        place[0],
+        place[1],
+        outward - math.pi / 2,
+        reach_mm,
+        view.level,
     )
     within_mm = 0.5 * width_mm
     x, y = place - within_mm * np.array([math.cos(outward), math.sin(outward)])
-    beyond = photocell.edge_along(view.cells, view.pitch_mm, x, y, outward, reach_mm, view.level) - within_mm
+    beyond = (
+        photocell.edge_along(view.cells, view.pitch_mm, x, y, outward, reach_mm, view.level)
+        - within_mm
+    )
     return float(np.fmax(edge, beyond))
 
 
@@ -165,4 +198,6 @@ def _arc(start: Array, heading: float, end: Array, end_heading: float) -> Array:
     headings = heading + angle * np.arange(pieces + 1) / pieces
     nodes = centre + side * radius * np.column_stack([np.sin(headings), -np.cos(headings)])
     nodes[-1] = end
-    return np.vstack([hermite(nodes[i], headings[i], nodes[i + 1], headings[i + 1]) for i in range(pieces)])
+    return np.vstack(
+        [hermite(nodes[i], headings[i], nodes[i + 1], headings[i + 1]) for i in range(pieces)]
+    )

@@ -35,7 +35,9 @@ TIP = math.radians(150)  # a corner that turns by more is a tip
 REGAINED_MM = 1.5  # this much of both edges, and the line is by itself again
 BESIDE = 4.0  # widths; ink that is beside the line for less is a corner or a crossing
 JUMP = 0.25  # of the width, from station to station: the far edge is no longer the same
-PASSED = np.array([0.4, 0.6, 0.8, 1.0])  # places beyond a vertex at which a line that passes is seen
+PASSED = np.array(
+    [0.4, 0.6, 0.8, 1.0]
+)  # places beyond a vertex at which a line that passes is seen
 WIDE = 0.62  # of the width, from the middle to the far edge: ink beside the line
 
 
@@ -58,7 +60,9 @@ def ride_past(view: View, incoming: Leg) -> Ride | None:
     return max(found, key=lambda r: len(r.seen)) if found else None
 
 
-def to_vertex(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> tuple[Leg, Leg, Meeting]:
+def to_vertex(
+    view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting
+) -> tuple[Leg, Leg, Meeting]:
     """The legs of a corner felt on along their outer edges, which stay clean up to the vertex, and where they
     meet then.
 
@@ -75,10 +79,18 @@ def to_vertex(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> tup
     ):
         return incoming, outgoing, _within_ink(view, incoming, outgoing, legs_mm)
     round_mm = rounding(view, incoming, outgoing, legs_mm)[1]
-    arriving = _along_outside(view, incoming.seen[::-1], side, legs_mm[0] - round_mm, True) or incoming
-    leaving = _along_outside(view, outgoing.seen, -side, legs_mm[1] - round_mm, False) or outgoing
+    arriving = (
+        _along_outside(view, incoming.seen[::-1], side, legs_mm[0] - round_mm, True) or incoming
+    )
+    leaving = (
+        _along_outside(view, outgoing.seen, -side, legs_mm[1] - round_mm, False) or outgoing
+    )
     met = meet(arriving, leaving)
-    if met is None or min(met) < -0.5 * view.width_mm or max(met) > max(legs_mm) + view.width_mm:
+    if (
+        met is None
+        or min(met) < -0.5 * view.width_mm
+        or max(met) > max(legs_mm) + view.width_mm
+    ):
         arriving, leaving, met = incoming, outgoing, legs_mm
     return arriving, leaving, _within_ink(view, arriving, leaving, met)
 
@@ -94,7 +106,10 @@ def _passes(view: View, leg: Leg, vertex_mm: float, deflection: float) -> bool:
         return False
     (x, y), heading = leg.at(vertex_mm + clear_mm), leg.heading_at(vertex_mm + clear_mm)
     right, left = edges(view.cells, view.pitch_mm, x, y, heading, 2 * view.width_mm, view.level)
-    return abs(left - right - leg.width_mm) < 0.2 * leg.width_mm and abs(left + right) < 0.8 * leg.width_mm
+    return (
+        abs(left - right - leg.width_mm) < 0.2 * leg.width_mm
+        and abs(left + right) < 0.8 * leg.width_mm
+    )
 
 
 def _within_ink(view: View, arriving: Leg, leaving: Leg, met: Meeting) -> Meeting:
@@ -104,12 +119,18 @@ def _within_ink(view: View, arriving: Leg, leaving: Leg, met: Meeting) -> Meetin
     if abs(turn(arriving.heading_rad, leaving.heading_rad)) < TIP:
         return met
     (x, y), reach_mm = arriving.end_mm, max(0.0, met[0]) + 2 * view.width_mm
-    ink_mm = edge_along(view.cells, view.pitch_mm, x, y, arriving.heading_rad, reach_mm, view.level)
-    beyond = max(0.0, met[0] - (ink_mm - 0.5 * arriving.width_mm)) if math.isfinite(ink_mm) else 0.0
+    ink_mm = edge_along(
+        view.cells, view.pitch_mm, x, y, arriving.heading_rad, reach_mm, view.level
+    )
+    beyond = (
+        max(0.0, met[0] - (ink_mm - 0.5 * arriving.width_mm)) if math.isfinite(ink_mm) else 0.0
+    )
     return met[0] - beyond, met[1] - beyond
 
 
-def _along_outside(view: View, seen: Array, side: float, beyond_mm: float, last: bool) -> Leg | None:
+def _along_outside(
+    view: View, seen: Array, side: float, beyond_mm: float, last: bool
+) -> Leg | None:
     """A leg felt along one edge to `beyond_mm` past its clean end: from well within it, where the knot's ink
     has not yet reached the other edge.
 
@@ -207,12 +228,18 @@ def _from_tip(excess: Array, first: int, tip: int, jump_mm: float) -> list[int]:
     is another line's.
     """
     measured = [i for i in range(tip, first - 1, -1) if math.isfinite(excess[i])]
-    jumps = [k + 1 for k, (i, j) in enumerate(pairwise(measured)) if abs(excess[i] - excess[j]) > jump_mm]
+    jumps = [
+        k + 1
+        for k, (i, j) in enumerate(pairwise(measured))
+        if abs(excess[i] - excess[j]) > jump_mm
+    ]
     return measured[: jumps[0]] if jumps else measured
 
 
 @njit(cache=True)
-def _along_edge(cells, pitch_mm, start, heading, side, step_mm, stations, width_mm, level, regained):  # type: ignore[no-untyped-def]
+def _along_edge(
+    cells, pitch_mm, start, heading, side, step_mm, stations, width_mm, level, regained
+):  # type: ignore[no-untyped-def]
     """Stations (n, 3): middle half a width within the edge on one side, and distance to the first light on
     the other (NaN beyond three widths).
 
@@ -227,13 +254,17 @@ def _along_edge(cells, pitch_mm, start, heading, side, step_mm, stations, width_
         nx, ny = -side * math.sin(heading), side * math.cos(heading)
         if darkness_at(cells, pitch_mm, x, y) < level:
             return out[:n].copy()
-        edge = _first_light(cells, pitch_mm, x, y, nx, ny, 0.2 * width_mm, 0.85 * width_mm, fine, level)
+        edge = _first_light(
+            cells, pitch_mm, x, y, nx, ny, 0.2 * width_mm, 0.85 * width_mm, fine, level
+        )
         aside = edge - 0.5 * width_mm
         if not abs(aside) < width_mm / 6 + 0.2 * pitch_mm:
             return out[:n].copy()
         x, y = x + aside * nx, y + aside * ny
         out[n, 0], out[n, 1] = x, y
-        out[n, 2] = _first_light(cells, pitch_mm, x, y, -nx, -ny, 0.0, 3.0 * width_mm, fine, level)
+        out[n, 2] = _first_light(
+            cells, pitch_mm, x, y, -nx, -ny, 0.0, 3.0 * width_mm, fine, level
+        )
         wide = not out[n, 2] < WIDE * width_mm
         been_wide = been_wide or wide
         alone = 0 if wide else alone + 1

@@ -40,7 +40,9 @@ def breaks(view: View, way_mm: Array, at_start: bool) -> tuple[Break, ...]:
     """The breaks at the end of a way (n, 2) mm, and at its start if that is an end too."""
     ends = [way_mm, way_mm[::-1]] if at_start else [way_mm]
     found = [(end[-1], _gap_mm(view, end)) for end in ends]
-    return tuple(Break((float(x), float(y)), gap_mm) for (x, y), gap_mm in found if gap_mm is not None)
+    return tuple(
+        Break((float(x), float(y)), gap_mm) for (x, y), gap_mm in found if gap_mm is not None
+    )
 
 
 def _gap_mm(view: View, way_mm: Array) -> float | None:
@@ -59,4 +61,6 @@ def _gap_mm(view: View, way_mm: Array) -> float | None:
     if straight_on(view, leg, most_mm) is None:
         return None
     gaps = np.arange(EVERY_MM, most_mm, EVERY_MM)
-    return next((round(float(gap), 1) for gap in gaps if straight_on(view, leg, gap) is not None), None)
+    return next(
+        (round(float(gap), 1) for gap in gaps if straight_on(view, leg, gap) is not None), None
+    )

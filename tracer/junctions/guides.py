@@ -57,7 +57,9 @@ class Junctions:
         """The number, from 0, of a junction that the head comes to now: it may not have left the last one
         yet.
         """
-        return len(self.places_mm) - (travel_mm - self._travel_mm < AGAIN_MM and bool(self.places_mm))
+        return len(self.places_mm) - (
+            travel_mm - self._travel_mm < AGAIN_MM and bool(self.places_mm)
+        )
 
     def come_to(self, place_mm: Array, travel_mm: float) -> None:
         """Count a junction, unless it is the last one still."""
@@ -78,7 +80,9 @@ class Junctions:
 
     def comes_back(self, place_mm: Array, within_mm: float) -> bool:
         """Whether the head comes back on a guide line to where it took it."""
-        return any(np.hypot(*(guide.place_mm - place_mm)) < within_mm for guide in self._out_on())
+        return any(
+            np.hypot(*(guide.place_mm - place_mm)) < within_mm for guide in self._out_on()
+        )
 
     def is_back(self, positions: int, travel_mm: float) -> None:
         """The head is back from the guide line that it is on: at that junction still."""
@@ -96,7 +100,9 @@ class Junctions:
             Guide(
                 _nearest(positions, guide.left, guide.tip, guide.place_mm),
                 guide.tip,
-                _nearest(positions, guide.tip, len(positions), guide.place_mm, first_within_mm=0.05),
+                _nearest(
+                    positions, guide.tip, len(positions), guide.place_mm, first_within_mm=0.05
+                ),
             )
             for guide in self._taken
             if guide.tip is not None and guide.back is not None
@@ -104,7 +110,11 @@ class Junctions:
 
 
 def _nearest(
-    positions: Array, first: int, last: int, place_mm: Array, first_within_mm: float | None = None
+    positions: Array,
+    first: int,
+    last: int,
+    place_mm: Array,
+    first_within_mm: float | None = None,
 ) -> int:
     """The position from first to last that is nearest to a place, or of those that are near enough the first
     run of them.

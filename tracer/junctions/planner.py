@@ -56,7 +56,9 @@ class Pilot:
         if outgoing is not None:
             planned = self._course(incoming, outgoing, legs_mm)
             if course.on_ink(self.view, planned.stretches):
-                is_sharp = len(planned.stretches) > 1 and not self._is_round(incoming, outgoing, legs_mm)
+                is_sharp = len(planned.stretches) > 1 and not self._is_round(
+                    incoming, outgoing, legs_mm
+                )
                 return planned if is_sharp else self._past_speck(
                     planned, incoming, outgoing
                 ) or planned, choices
@@ -64,7 +66,9 @@ class Pilot:
         gap_mm = max(self.settings.gap_mm, LEAST_GAP_PX * self.view.pitch_mm)
         outgoing = straight_on(self.view, incoming, gap_mm)
         if outgoing is None and not choices:
-            outgoing = straight_on(replace(self.view, level=FAINTER * self.view.level), incoming, gap_mm)
+            outgoing = straight_on(
+                replace(self.view, level=FAINTER * self.view.level), incoming, gap_mm
+            )
         if outgoing is None and not choices:
             outgoing = straight_on(
                 self.view.through_larger(incoming.seen, incoming.heading_rad), incoming, gap_mm
@@ -98,7 +102,9 @@ class Pilot:
         lighter = replace(view, level=FAINTER * view.level)
         blank = longest = 0.0
         for place in incoming.at(along):
-            blank = 0.0 if any(lighter.dark(place + u * aside) for u in across) else blank + step
+            blank = (
+                0.0 if any(lighter.dark(place + u * aside) for u in across) else blank + step
+            )
             longest = max(longest, blank)
         return longest
 
@@ -108,8 +114,16 @@ class Pilot:
         """
         outgoing, _, choices = way
         straight = goes_straight(incoming, outgoing)
-        ride = None if straight and not self._far(incoming, outgoing) else ride_past(self.view, incoming)
-        if ride is None or (straight and ride.back is None) or (choices and self._goes_back(ride.seen)):
+        ride = (
+            None
+            if straight and not self._far(incoming, outgoing)
+            else ride_past(self.view, incoming)
+        )
+        if (
+            ride is None
+            or (straight and ride.back is None)
+            or (choices and self._goes_back(ride.seen))
+        ):
             return None
         return self._ride(incoming, ride)
 
@@ -118,7 +132,9 @@ class Pilot:
         if legs_mm is not None and self._is_corner(incoming, outgoing, legs_mm):
             arriving, leaving, met = to_vertex(self.view, incoming, outgoing, legs_mm)
             end_mm = max(0.05 - met[1], course.ahead_mm(leaving.end_mm, outgoing))
-            stretches = corner.through_corner(self.view, self.stands, arriving, leaving, met, end_mm)
+            stretches = corner.through_corner(
+                self.view, self.stands, arriving, leaving, met, end_mm
+            )
             return Planned(stretches, leaving.shifted(end_mm, leaving.seen))
         limit = float(np.hypot(*(outgoing.end_mm - incoming.end_mm)))
         way, along = course.onto(*self.stands, incoming, 0.5 * limit)
@@ -139,7 +155,8 @@ class Pilot:
         """
         way = curves.distinct(np.vstack(planned.stretches))
         beyond = [
-            course.ahead_mm(place, outgoing) > 0 and course.ahead_mm(place, incoming) < 0 for place in way
+            course.ahead_mm(place, outgoing) > 0 and course.ahead_mm(place, incoming) < 0
+            for place in way
         ]
         seen = self.view.feel_along(way[beyond])
         there = np.vstack([incoming.seen, seen, outgoing.seen])
@@ -195,7 +212,9 @@ class Pilot:
         incoming = leg_of(seen[: i - 2], True, self.view.leg_mm)
         outgoing = leg_of(seen[i + 3 :], False, self.view.leg_mm)
         legs_mm = meet(incoming, outgoing)
-        if legs_mm is None or min(legs_mm) < self.view.step_mm:  # the bend is not between the legs
+        if (
+            legs_mm is None or min(legs_mm) < self.view.step_mm
+        ):  # the bend is not between the legs
             return None
         if self._bend_on(incoming, outgoing, legs_mm):
             return None
@@ -204,7 +223,9 @@ class Pilot:
         planned = self._course(incoming, outgoing, legs_mm)
         return (
             planned
-            if self._as_felt(planned, seen, abs(turn(incoming.heading_rad, outgoing.heading_rad)))
+            if self._as_felt(
+                planned, seen, abs(turn(incoming.heading_rad, outgoing.heading_rad))
+            )
             else None
         )
 
@@ -229,11 +250,17 @@ class Pilot:
             if not back and not on:
                 planned = self._by_arc(incoming, outgoing, legs_mm, touch_mm)
                 turned = corner.deflection(incoming, outgoing, legs_mm)
-                return planned if planned is not None and self._as_felt(planned, seen, turned) else None
+                return (
+                    planned
+                    if planned is not None and self._as_felt(planned, seen, turned)
+                    else None
+                )
             last, first = last - back, first + on
         return None
 
-    def _by_arc(self, incoming: Leg, outgoing: Leg, legs_mm: Meeting, touch_mm: float) -> Planned | None:
+    def _by_arc(
+        self, incoming: Leg, outgoing: Leg, legs_mm: Meeting, touch_mm: float
+    ) -> Planned | None:
         """The way by the arc that touches two straight legs so far from their vertex; None if it is sharp,
         slight or wide, or if the head is in it.
         """
@@ -254,7 +281,9 @@ class Pilot:
         and the outer one w/2 before the lens rounds it.
         """
         inside_mm = 0.5 * self.view.width_mm * (1 / max(math.cos(deflection / 2), 0.5) - 1)
-        away_mm = cKDTree(with_places(seen[:, :2], curves.SPACING_MM)).query(np.vstack(planned.stretches))[0]
+        away_mm = cKDTree(with_places(seen[:, :2], curves.SPACING_MM)).query(
+            np.vstack(planned.stretches)
+        )[0]
         return bool(away_mm.max() < inside_mm + AS_FELT * self.view.pitch_mm)
 
     def _ride(self, incoming: Leg, ride: Ride) -> Planned | None:
@@ -264,10 +293,14 @@ class Pilot:
         there = np.vstack([incoming.seen, ride.seen])
         if ride.back is None:
             nodes, leg = course.nodes_along(self.view, self.stands, there)
-            return None if leg is None else Planned([course.through_nodes(nodes)], leg, ride.seen)
+            return (
+                None if leg is None else Planned([course.through_nodes(nodes)], leg, ride.seen)
+            )
         to_tip, felt = course.nodes_along(self.view, self.stands, there, 0.0)
         tip = ride.back[0, :2]
-        from_tip, leg = course.nodes_along(self.view, (tip, to_tip[-1][1] + math.pi), ride.back, 0.0)
+        from_tip, leg = course.nodes_along(
+            self.view, (tip, to_tip[-1][1] + math.pi), ride.back, 0.0
+        )
         if leg is None or felt is None:
             return None
         onto_tip = [*to_tip[:-1], (tip, to_tip[-1][1])]

@@ -72,7 +72,8 @@ def fork_in(view: View, seen: Array, first: int) -> int | None:
             break
         along = float(d[away[0]] @ t)
         if all(
-            view.dark(seen[i, :2] + share * t) for share in np.linspace(0, along + 0.8 * view.width_mm, 12)
+            view.dark(seen[i, :2] + share * t)
+            for share in np.linspace(0, along + 0.8 * view.width_mm, 12)
         ):
             return i
     return None
@@ -91,7 +92,9 @@ def legs_around(view: View, centre: Array, trail: Array) -> list[Leg]:
         if radius > found_at + 0.5 * view.leg_mm:
             break
         arcs = photocell.ring(view.cells, view.pitch_mm, centre, radius, view.level)
-        joined = _join(arcs, joined, radius, view.width_mm, _crossing(trail, trail_mm, centre, radius))
+        joined = _join(
+            arcs, joined, radius, view.width_mm, _crossing(trail, trail_mm, centre, radius)
+        )
         if not joined:
             break
         for arc in joined:
@@ -125,7 +128,9 @@ class _Arc:
         return 0.5 * (self.begin + self.end)
 
     def overlaps(self, begin: float, end: float) -> bool:
-        return abs(turn(self.middle, 0.5 * (begin + end))) < 0.5 * (self.end - self.begin + end - begin)
+        return abs(turn(self.middle, 0.5 * (begin + end))) < 0.5 * (
+            self.end - self.begin + end - begin
+        )
 
 
 def _up_to(trail: Array, centre: Array) -> Array:
@@ -148,7 +153,9 @@ def _crossing(trail: Array, trail_mm: Array, centre: Array, radius: float) -> fl
     return math.atan2(place[1], place[0])
 
 
-def _join(arcs: Array, inner: list[_Arc], radius: float, width_mm: float, back: float | None) -> list[_Arc]:
+def _join(
+    arcs: Array, inner: list[_Arc], radius: float, width_mm: float, back: float | None
+) -> list[_Arc]:
     """The arcs of a ring that are joined by ink to those of the ring within it."""
     out = []
     for begin, end in arcs:

@@ -70,7 +70,11 @@ def of_another_pen(view: View, incoming: Leg, trail: Trail) -> Onward | None:
     for times in PENS:
         other = replace(view, width_mm=times * view.width_mm, usual_mm=None)
         leg, legs_mm, _ = survey(other, incoming, trail)
-        if leg is not None and legs_mm is not None and abs(leg.width_mm / view.width_mm - 1) > STEP:
+        if (
+            leg is not None
+            and legs_mm is not None
+            and abs(leg.width_mm / view.width_mm - 1) > STEP
+        ):
             found = replace(view, width_mm=leg.width_mm, usual_mm=None)
             far = _felt(found, leg.end_mm, leg.heading_rad, FAR_LEGS) or leg
             return Onward(found, far, meet(incoming, far))
@@ -88,7 +92,10 @@ def another_pen(view: View, leg: Leg) -> bool:
     if len(seen) * view.step_mm < STEADY_WIDTHS * leg.width_mm:
         return False
     near, far = (float(np.median(part[:, 2])) for part in np.array_split(seen, 2))
-    return abs(far - near) < STEADY * leg.width_mm and float(np.std(seen[:, 2])) < STEADY * leg.width_mm
+    return (
+        abs(far - near) < STEADY * leg.width_mm
+        and float(np.std(seen[:, 2])) < STEADY * leg.width_mm
+    )
 
 
 def _straight_ahead(view: View, incoming: Leg) -> Iterator[Onward]:

@@ -36,7 +36,9 @@ def disc(view: View, place: Array, along: Array) -> Array | None:
     if found is None:
         return None
     heading = math.atan2(along[1], along[0])
-    on_line = [min(abs(turn(heading + k * math.pi, angle)) for k in (0, 1)) for angle in found[1]]
+    on_line = [
+        min(abs(turn(heading + k * math.pi, angle)) for k in (0, 1)) for angle in found[1]
+    ]
     return found[0] if not on_line or max(on_line) < ALONG else None
 
 
@@ -71,12 +73,17 @@ def alone(sheet: Sheet, view: View) -> Iterator[Array]:
     """Centres of the dots that stand alone on the paper, mm: round patches of ink that no line leaves."""
     pitch, patches = sheet.drawing.pitch_mm, sheet.patches
     sides = patches.longer_sides * pitch
-    small = (sides > 2 * LEAST_WIDTHS * view.width_mm) & (sides < 2 * LARGEST_WIDTHS * view.width_mm)
+    small = (sides > 2 * LEAST_WIDTHS * view.width_mm) & (
+        sides < 2 * LARGEST_WIDTHS * view.width_mm
+    )
     full = patches.areas * pitch**2 > LEAST_FULL * sides**2
     for patch in np.flatnonzero(small & full):
         top, bottom, left, right = patches.box(np.arange(patches.count) == patch)
         middle = (
-            np.array([0.5 * (left + right), sheet.drawing.darkness.shape[0] - 0.5 * (top + bottom)]) * pitch
+            np.array(
+                [0.5 * (left + right), sheet.drawing.darkness.shape[0] - 0.5 * (top + bottom)]
+            )
+            * pitch
         )
         found = _disc(view, middle)
         if found is not None and not len(found[1]):

@@ -33,7 +33,10 @@ from morfax.tracer.marks.ticks import Stroke
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.view import View
 
-LONGEST_MM, LONGEST_WIDTHS = 5.0, 10.0  # of a mark across the line, beyond its edge on each side
+LONGEST_MM, LONGEST_WIDTHS = (
+    5.0,
+    10.0,
+)  # of a mark across the line, beyond its edge on each side
 BESIDE_MM, BESIDE_WIDTHS = (
     3.5,
     7.0,
@@ -63,8 +66,14 @@ class Way:
         moving = np.r_[True, np.diff(lengths) > 0]
         self.at_mm = np.arange(0.0, lengths[-1], step_mm)
         self.position = np.interp(self.at_mm, lengths[moving], np.flatnonzero(moving))
-        self.places = np.column_stack([np.interp(self.at_mm, lengths, positions[:, k]) for k in (0, 1)])
-        steps = np.gradient(self.places, axis=0) if len(self.places) > 1 else np.ones((len(self.places), 2))
+        self.places = np.column_stack(
+            [np.interp(self.at_mm, lengths, positions[:, k]) for k in (0, 1)]
+        )
+        steps = (
+            np.gradient(self.places, axis=0)
+            if len(self.places) > 1
+            else np.ones((len(self.places), 2))
+        )
         self.along = steps / np.maximum(np.hypot(*steps.T), 1e-12)[:, None]
 
     def place(self, mm: float) -> tuple[float, float]:
@@ -104,7 +113,9 @@ def marks_along(view: View, positions: Array) -> list[Mark]:
         return []
     found = _dots(view, way)
     dots_mm = [
-        way.at_mm[np.searchsorted(way.position, dot.at)] if dot.at < way.position[-1] else way.at_mm[-1]
+        way.at_mm[np.searchsorted(way.position, dot.at)]
+        if dot.at < way.position[-1]
+        else way.at_mm[-1]
         for dot in found
     ]
     for foot_mm in _ticks(view, way):
@@ -123,7 +134,11 @@ def _ticks(view: View, way: Way) -> list[float]:
             abs(foot - other) < view.width_mm for other in feet
         ):
             continue
-        opposite = [o for o in every if o.side != stroke.side and abs(o.foot_mm - foot) < 0.6 * view.width_mm]
+        opposite = [
+            o
+            for o in every
+            if o.side != stroke.side and abs(o.foot_mm - foot) < 0.6 * view.width_mm
+        ]
         if any(not (stroke.touches and o.ends) for o in opposite):
             continue  # it is a line that crosses and goes on on the other side, in dashes perhaps
         if not way.goes_straight(foot, max(1.2 * view.width_mm, 0.5), 0.25 * view.width_mm):
@@ -138,7 +153,9 @@ def _ticks(view: View, way: Way) -> list[float]:
         station = int(np.clip(round(foot / way.step_mm), 0, len(way.places) - 1))
         feet.append(
             way.at_mm[station]
-            + strokes.crossing_mm(view, way.places[station], way.along[station], [stroke, *across])
+            + strokes.crossing_mm(
+                view, way.places[station], way.along[station], [stroke, *across]
+            )
         )
     return feet
 
@@ -161,7 +178,10 @@ def _is_same(view: View, stroke: Stroke, other: Stroke) -> bool:
 def _mostly_on(view: View, stroke: Stroke, others: Array) -> bool:
     """Whether a stroke lies on other places (n, 2) for the most part."""
     places = stroke.places[:: max(1, len(stroke.places) // 8)]
-    near = [len(others) > 0 and np.hypot(*(others - place).T).min() < 0.5 * view.width_mm for place in places]
+    near = [
+        len(others) > 0 and np.hypot(*(others - place).T).min() < 0.5 * view.width_mm
+        for place in places
+    ]
     return bool(np.mean(near) > 0.5)
 
 
@@ -206,18 +226,25 @@ def _dots(view: View, way: Way) -> list[Mark]:
     """Dots on the way and at its ends (see `dots`)."""
     least = dots.LEAST_WIDTHS * view.width_mm
     inked = np.minimum(
-        *(_row(view.cells, view.pitch_mm, way.places, way.along, side * 0.75 * least) for side in (1, -1))
+        *(
+            _row(view.cells, view.pitch_mm, way.places, way.along, side * 0.75 * least)
+            for side in (1, -1)
+        )
     )
     edges = np.flatnonzero(np.diff(np.r_[False, inked > view.level, False].astype(np.int8)))
     found: list[Mark] = []
     for begin, end in zip(edges[::2], edges[1::2], strict=True):
         middle = (begin + end - 1) // 2
-        centre = dots.disc(_beside_dot(view, way, begin, end), way.places[middle], way.along[middle])
+        centre = dots.disc(
+            _beside_dot(view, way, begin, end), way.places[middle], way.along[middle]
+        )
         if centre is None:
             continue
         nearest = int(np.argmin(np.hypot(*(way.places - centre).T)))
         if all(abs(way.position_at(way.at_mm[nearest]) - o.at) > 1 for o in found):
-            found.append(Mark("dot", way.place(way.at_mm[nearest]), way.position_at(way.at_mm[nearest])))
+            found.append(
+                Mark("dot", way.place(way.at_mm[nearest]), way.position_at(way.at_mm[nearest]))
+            )
     return found
 
 

@@ -82,11 +82,15 @@ def _apart(a: Reference, b: Reference) -> float:
 def _small_patches(sheet: Sheet) -> Iterator[tuple[int, Array]]:
     """The patches of a reference point's size, about as high as wide, and their middles."""
     pitch, patches = sheet.drawing.pitch_mm, sheet.patches
-    small = (patches.longer_sides * pitch >= LEAST_MM) & (patches.longer_sides * pitch <= LARGEST_MM)
+    small = (patches.longer_sides * pitch >= LEAST_MM) & (
+        patches.longer_sides * pitch <= LARGEST_MM
+    )
     for patch in np.flatnonzero(small):
         top, bottom, left, right = patches.box(np.arange(patches.count) == patch)
         if min(bottom - top, right - left) > 0.7 * max(bottom - top, right - left):
-            middle = np.array([0.5 * (left + right), sheet.drawing.darkness.shape[0] - 0.5 * (top + bottom)])
+            middle = np.array(
+                [0.5 * (left + right), sheet.drawing.darkness.shape[0] - 0.5 * (top + bottom)]
+            )
             yield int(patch), middle * pitch
 
 
@@ -98,13 +102,22 @@ def _holes(sheet: Sheet, patch: int) -> Iterator[Array]:
         return
     pitch = sheet.drawing.pitch_mm
     contours, _ = cv2.findContours(
-        sheet.patches.painted(chosen, top, bottom, left, right), cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE
+        sheet.patches.painted(chosen, top, bottom, left, right),
+        cv2.RETR_CCOMP,
+        cv2.CHAIN_APPROX_NONE,
     )
     for contour in contours:
         x, y, wide, high = cv2.boundingRect(contour)
-        if LEAST_MM <= max(wide, high) * pitch <= LARGEST_MM and min(wide, high) > 0.7 * max(wide, high):
+        if LEAST_MM <= max(wide, high) * pitch <= LARGEST_MM and min(wide, high) > 0.7 * max(
+            wide, high
+        ):
             yield (
-                np.array([left + x + 0.5 * wide, sheet.drawing.darkness.shape[0] - top - y - 0.5 * high])
+                np.array(
+                    [
+                        left + x + 0.5 * wide,
+                        sheet.drawing.darkness.shape[0] - top - y - 0.5 * high,
+                    ]
+                )
                 * pitch
             )
 
@@ -113,7 +126,11 @@ def _crosses(view: View, tips_mm: Array) -> Iterator[Reference]:
     """The crosses whose arms end at some places."""
     tips = [tip for tip in tips_mm if is_tip(view, tip)]
     for i, a in enumerate(tips):
-        near = [tip for tip in tips[i + 1 :] if LEAST_MM < math.dist(a, tip) + view.width_mm < LARGEST_MM]
+        near = [
+            tip
+            for tip in tips[i + 1 :]
+            if LEAST_MM < math.dist(a, tip) + view.width_mm < LARGEST_MM
+        ]
         for b in near:
             for c in tips:
                 if c is not a and c is not b and (found := _cross(view, a, b, c)) is not None:
@@ -131,7 +148,8 @@ def _cross(view: View, a: Array, b: Array, c: Array) -> Reference | None:
     if not abs(length - reach) < ALIKE * reach or abs(arm @ half) > SQUARE * length * reach:
         return None
     if not all(
-        _inked(view, middle, middle + way) for way in (-half, half, arm, -arm * min(1.0, reach / length))
+        _inked(view, middle, middle + way)
+        for way in (-half, half, arm, -arm * min(1.0, reach / length))
     ):
         return None
     arms = [_felt_inward(view, tip, middle) for tip in (a, b, c)]
@@ -143,7 +161,9 @@ def _cross(view: View, a: Array, b: Array, c: Array) -> Reference | None:
         return None
     if lines_on(view, centre, float(reaches.max()) + 1.2 * view.width_mm) > 1:
         return None  # lines pass or cross here
-    return Reference((float(centre[0]), float(centre[1])), "cross", _lead(view, centre, float(reaches.max())))
+    return Reference(
+        (float(centre[0]), float(centre[1])), "cross", _lead(view, centre, float(reaches.max()))
+    )
 
 
 def _inked(view: View, a: Array, b: Array) -> bool:
@@ -164,11 +184,15 @@ def _lead(view: View, centre: Array, reach_mm: float) -> Leg | None:
     """The clean beginning of the line that leaves a cross or ring which reaches so far from its centre, felt
     back to it as far as it is clean.
     """
-    for arc in photocell.ring(view.cells, view.pitch_mm, centre, reach_mm + 1.5 * view.width_mm, view.level):
+    for arc in photocell.ring(
+        view.cells, view.pitch_mm, centre, reach_mm + 1.5 * view.width_mm, view.level
+    ):
         for outside in (1.5, 1.9, 2.3):
             way = _unit(float(arc.mean()))
             seen = view.feel(
-                centre + (reach_mm + outside * view.width_mm) * way, float(arc.mean()), view.leg_mm
+                centre + (reach_mm + outside * view.width_mm) * way,
+                float(arc.mean()),
+                view.leg_mm,
             )
             if len(seen) < 4:
                 continue

@@ -34,7 +34,8 @@ SEEN = (
     # the same, of a stroke that is none of the line's pen, but is seen: what crosses the line may be one half
     # by half
 )
-CLEAR_OF_LINE = 0.9  # widths from the line's middle: nearer, a stroke's ink and the line's run together
+# widths from the line's middle: nearer, a stroke's ink and the line's run together
+CLEAR_OF_LINE = 0.9
 TURNS = 3  # the cells are turned so often until they look square to a stroke
 CLEAR_WIDTHS = 1.5  # of paper to both sides of a stroke that touches the line
 APART_MM, APART_WIDTHS = 1.5, 3.0  # of one that does not: lettering stands beside lines
@@ -85,14 +86,28 @@ class Stroke:
 
 
 def felt(
-    view: View, place: Array, along: Array, at_mm: float, side: int, away_mm: float, longest_mm: float
+    view: View,
+    place: Array,
+    along: Array,
+    at_mm: float,
+    side: int,
+    away_mm: float,
+    longest_mm: float,
 ) -> Stroke | None:
     """The stroke that a cell is on beside a place of the way, which is `at_mm` along it; None if it is not
     nearly as wide as the line, or too short.
     """
     width = view.width_mm
     seen = _stroke_at(
-        view.cells, view.pitch_mm, place, along, side, away_mm, longest_mm + width, width, view.level
+        view.cells,
+        view.pitch_mm,
+        place,
+        along,
+        side,
+        away_mm,
+        longest_mm + width,
+        width,
+        view.level,
     )
     inner = seen[:, 1] > CLEAR_OF_LINE * width
     wide = float(np.median(seen[inner, 2])) / width if inner.sum() > 2 else 0.0
@@ -105,19 +120,30 @@ def felt(
         return None
     where = view.cells, view.pitch_mm, place, along, side
     middles, others = seen[inner], max(DASH_MM, DASH_WIDTHS * width)
-    is_like = LIKE[0] < wide < LIKE[1] and INK[0] < _darkness(*where, middles) * LEVEL / view.level < INK[1]
+    is_like = (
+        LIKE[0] < wide < LIKE[1]
+        and INK[0] < _darkness(*where, middles) * LEVEL / view.level < INK[1]
+    )
     across = side * np.array([-along[1], along[0]])
     tips = [
         seen[np.argmax(seen[:, 1]), :2] - [0, 0.5 * width],
         seen[np.argmin(seen[:, 1]), :2] + [0, 0.5 * width],
     ]
-    at_tips = [is_tip(view, place + u * along + v * across) for u, v in tips[: 1 if touches else 2]]
-    ends = reach < longest_mm and all(at_tips) and not _goes_on(*where, middles, others, width, view.level)
+    at_tips = [
+        is_tip(view, place + u * along + v * across) for u, v in tips[: 1 if touches else 2]
+    ]
+    ends = (
+        reach < longest_mm
+        and all(at_tips)
+        and not _goes_on(*where, middles, others, width, view.level)
+    )
     clear_mm = CLEAR_WIDTHS * width if touches else max(APART_MM, APART_WIDTHS * width)
     soiled = _soiled(*where, middles, 0.4 * width, clear_mm, view.level)
     is_clear = soiled < (SOILED if touches else APART_SOILED)
     places = place + middles[:, :1] * along + middles[:, 1:2] * across
-    return Stroke(side, middles[:, :2] + [at_mm, 0.0], places, touches, ends, reach, is_clear, is_like)
+    return Stroke(
+        side, middles[:, :2] + [at_mm, 0.0], places, touches, ends, reach, is_clear, is_like
+    )
 
 
 def crossing_mm(view: View, place: Array, along: Array, mark: Sequence[Stroke]) -> float:
@@ -131,7 +157,10 @@ def crossing_mm(view: View, place: Array, along: Array, mark: Sequence[Stroke]) 
     slant, foot_mm = mark[0].side * mark[0].slant, 0.0
     for _ in range(TURNS):
         square = (along - slant * left) / math.hypot(1.0, slant)
-        found = np.vstack([_square_to(view, place, square, slant, stroke) for stroke in mark]) - place
+        found = (
+            np.vstack([_square_to(view, place, square, slant, stroke) for stroke in mark])
+            - place
+        )
         slant, foot_mm = _robust_line(found @ left, found @ along)
     return foot_mm
 
@@ -206,8 +235,13 @@ def _goes_on(cells, pitch_mm, place, along, side, middles, beyond_mm, width_mm, 
     step, run = 0.5 * pitch_mm, 0.0
     for k in range(1, int(beyond_mm / step)):
         there = u + slant * k * step
-        right, left = _across(cells, pitch_mm, place, along, side, there, v + k * step, 1.2 * width_mm, level)
-        like = left - right < 1.6 * width_mm and abs(0.5 * (left + right) - there) < 0.25 * width_mm
+        right, left = _across(
+            cells, pitch_mm, place, along, side, there, v + k * step, 1.2 * width_mm, level
+        )
+        like = (
+            left - right < 1.6 * width_mm
+            and abs(0.5 * (left + right) - there) < 0.25 * width_mm
+        )
         run = run + step if like else 0.0
         if run > 1.5 * width_mm:
             return True
@@ -229,7 +263,9 @@ def _stroke_at(cells, pitch_mm, place, along, side, away_mm, farthest_mm, width_
             u = seen[0, 0]
         last = v
         while 0.4 * width_mm < v <= farthest_mm:
-            right, left = _across(cells, pitch_mm, place, along, side, u, v, 1.2 * width_mm, level)
+            right, left = _across(
+                cells, pitch_mm, place, along, side, u, v, 1.2 * width_mm, level
+            )
             if math.isnan(left - right):
                 if abs(v - last) > speck_mm:
                     break

@@ -60,7 +60,9 @@ class Drill:
         """
         made, bottom = list[Preset](), max(0, -at.count)
         while bottom < self.depth_counts:
-            near = min(self.clear_counts - bottom, at.count)  # counters where the drill goes on at its feed
+            near = min(
+                self.clear_counts - bottom, at.count
+            )  # counters where the drill goes on at its feed
             bottom = min(bottom + self.peck_counts, self.depth_counts)
             dwell_s = self.dwell_s if bottom == self.depth_counts else 0.0
             made.append(Preset(at.count - near, "down", rapid_mm_s))
@@ -118,9 +120,12 @@ class Card:
     trace_mm_s: float | None = None
     feed_mm_s: float | None = None
     rapid_mm_s: float | None = None
-    entry_mm: float | None = None  # of the line along which the tool goes down from the surface to its depth
+    # of the line along which the tool goes down from the surface to its depth
+    entry_mm: float | None = None
     restart: Restart = "automatic"
-    turns: tuple[Turn, ...] = ()  # at the junctions, in the order in which the head comes to them
+    turns: tuple[
+        Turn, ...
+    ] = ()  # at the junctions, in the order in which the head comes to them
     override: Override = "none"  # stop marks that do not stop the head
     stops: tuple[Stop, ...] = ()
 
@@ -144,10 +149,17 @@ class Card:
 def _card(whole: Field) -> Card:
     """The card as a whole."""
     fields = whole.table(*_KEYS)
-    speeds = read(fields, "speeds", lambda field: field.table("trace", "feed", "rapid"), dict[str, Field]())
+    speeds = read(
+        fields,
+        "speeds",
+        lambda field: field.table("trace", "feed", "rapid"),
+        dict[str, Field](),
+    )
     feed_mm_s = read(speeds, "feed", Field.speed_mm_s, None)
     if "depth" in fields and "passes" in fields:
-        fields["depth"].refuse("beside passes there may be no depth: the last pass is the depth")
+        fields["depth"].refuse(
+            "beside passes there may be no depth: the last pass is the depth"
+        )
     depth = read(fields, "depth", lambda field: (field.counts() / COUNTS_PER_MM,), ())
     return Card(
         start_mm=read(
@@ -168,10 +180,14 @@ def _card(whole: Field) -> Card:
 def _passes(field: Field) -> tuple[float, ...]:
     """Depths in mm, each deeper than the one before."""
     depths: list[int] = []
-    for element in field.elements('depths, each deeper than the one before, such as ["2mm", "4mm"]'):
+    for element in field.elements(
+        'depths, each deeper than the one before, such as ["2mm", "4mm"]'
+    ):
         counts = element.counts()
         if depths and counts <= depths[-1]:
-            element.refuse(f"it may hold more than the pass before, {depths[-1] / COUNTS_PER_MM:g} mm")
+            element.refuse(
+                f"it may hold more than the pass before, {depths[-1] / COUNTS_PER_MM:g} mm"
+            )
         depths.append(counts)
     return tuple(counts / COUNTS_PER_MM for counts in depths)
 
@@ -183,7 +199,9 @@ def _restart(field: Field) -> Restart:
 def _turns(field: Field) -> tuple[Turn, ...]:
     """Turns at the junctions."""
     allowed = 'a list of "straight", "left" and "right", one for each junction'
-    return tuple(cast(Turn, turn.choice("straight", "left", "right")) for turn in field.elements(allowed))
+    return tuple(
+        cast(Turn, turn.choice("straight", "left", "right")) for turn in field.elements(allowed)
+    )
 
 
 def _override(field: Field) -> Override:
@@ -191,7 +209,8 @@ def _override(field: Field) -> Override:
     if field.value in ("none", "all"):
         return cast(Literal["none", "all"], field.value)
     return tuple(
-        number.number() for number in field.elements('"none", "all" or a list of stops, such as [1, 3]')
+        number.number()
+        for number in field.elements('"none", "all" or a list of stops, such as [1, 3]')
     )
 
 
@@ -236,7 +255,9 @@ def _move(field: Field, feed_mm_s: float) -> Preset:
     dwell_s = read(fields, "dwell", Field.time_s, 0.0)
     feed_mm_s = read(fields, "feed", Field.speed_mm_s, feed_mm_s)
     if ("down" in fields) == ("up" in fields) and (len(fields) != 1 or "dwell" not in fields):
-        field.refuse("it may hold down or up, one of them, with feed and dwell; or a dwell alone")
+        field.refuse(
+            "it may hold down or up, one of them, with feed and dwell; or a dwell alone"
+        )
     if "up" in fields:
         return Preset(fields["up"].counts(), "up", feed_mm_s, dwell_s)
     return Preset(read(fields, "down", Field.counts, 0), "down", feed_mm_s, dwell_s)

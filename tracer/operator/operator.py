@@ -43,8 +43,11 @@ class Work:
     clearance_mm: float = 2.0
     feed_mm_s: float = 5.0
     acceleration_mm_s2: float = zunit.ACCELERATION_MM_S2
-    rapid_mm_s: float = 50.0  # from line to line, half of what a tape of 6 kHz and 20 cycles per mm carries
-    passes_mm: tuple[float, ...] = ()  # depths at which each line is run before it is run at its depth
+    # from line to line, half of what a tape of 6 kHz and 20 cycles per mm carries
+    rapid_mm_s: float = 50.0
+    passes_mm: tuple[
+        float, ...
+    ] = ()  # depths at which each line is run before it is run at its depth
 
     @property
     def depths_mm(self) -> tuple[float, ...]:
@@ -122,30 +125,46 @@ class Operator:
         for line in lines:
             halts = self._halts(line, first)
             first += sum(1 for halt in halts if halt.number is not None)
-            made.append(self._along([halt for halt in halts if not self._overridden(halt)], line))
+            made.append(
+                self._along([halt for halt in halts if not self._overridden(halt)], line)
+            )
         return made
 
     def not_there(self, lines: Sequence[Line]) -> tuple[list[int], int]:
         """Numbers of stops that the card names and that the lines do not have, and how many stops they have."""
         override = () if isinstance(self.card.override, str) else self.card.override
-        named = {*override, *(stop.number for stop in self.card.stops if stop.number is not None)}
-        stops = sum(1 for line in lines for halt in self._halts(line, 1) if halt.number is not None)
+        named = {
+            *override,
+            *(stop.number for stop in self.card.stops if stop.number is not None),
+        }
+        stops = sum(
+            1 for line in lines for halt in self._halts(line, 1) if halt.number is not None
+        )
         return sorted(number for number in named if number > stops), stops
 
     def stops(self, line: Line, first: int) -> list[Halt]:
         """The stops of a line in order, with the numbers that it has for them, or numbered from `first`."""
         stops = [
-            Halt(mark.at, "tick" if mark.kind == "tick" else "dot", mark.place_mm) for mark in line.marks
+            Halt(mark.at, "tick" if mark.kind == "tick" else "dot", mark.place_mm)
+            for mark in line.marks
         ]
-        tips = [guide.tip for guide in line.guides] + ([len(line.xy_mm) - 1] if line.is_guide else [])
+        tips = [guide.tip for guide in line.guides] + (
+            [len(line.xy_mm) - 1] if line.is_guide else []
+        )
         for tip in tips:
             place, near = line.place(tip), NEAR_WIDTHS * line.width_mm
-            dots = [stop for stop in stops if stop.kind == "dot" and _apart(stop.place_mm, place) < near]
+            dots = [
+                stop
+                for stop in stops
+                if stop.kind == "dot" and _apart(stop.place_mm, place) < near
+            ]
             stops = [stop for stop in stops if stop not in dots]
             stops.append(replace(dots[0], kind="hole") if dots else Halt(tip, "hole", place))
         stops.sort(key=lambda halt: halt.at)
         numbers = range(first, first + len(stops)) if line.numbers is None else line.numbers
-        return [replace(stop, number=number) for stop, number in zip(stops, numbers, strict=True)]
+        return [
+            replace(stop, number=number) for stop, number in zip(stops, numbers, strict=True)
+        ]
 
     def _halts(self, line: Line, first: int) -> list[Halt]:
         """Every place of a line where something may be done, in order, its stops numbered from `first`."""
@@ -172,13 +191,17 @@ class Operator:
         """Depths at which a line is run: the passes of the stop where the tool goes down, or those of the
         work.
         """
-        return next((action.depths_mm for action in actions if action.depths_mm), self.work.depths_mm)
+        return next(
+            (action.depths_mm for action in actions if action.depths_mm), self.work.depths_mm
+        )
 
     def down_at(self, line: Line, first: int) -> float | None:
         """Which position of a line, its stops numbered from `first`, has the tick at which the tool goes
         down; None if that is at no tick.
         """
-        down = self._down([halt for halt in self._halts(line, first) if not self._overridden(halt)], line)
+        down = self._down(
+            [halt for halt in self._halts(line, first) if not self._overridden(halt)], line
+        )
         return down.at if down is not None and down.kind == "tick" else None
 
     def _depths(self, halt: Halt) -> tuple[float, ...]:
@@ -188,7 +211,11 @@ class Operator:
     def _down(self, halts: Sequence[Halt], line: Line) -> Halt | None:
         """Where the tool goes down into the line."""
         if line.is_lead:
-            before = [halt for halt in halts if halt.kind == "tick" and halt.at < (line.loop_from or 0)]
+            before = [
+                halt
+                for halt in halts
+                if halt.kind == "tick" and halt.at < (line.loop_from or 0)
+            ]
             return before[-1] if before else next(halt for halt in halts if halt.kind == "loop")
         if line.is_guide:
             return next((halt for halt in halts if halt.kind == "tick"), None)
@@ -228,7 +255,10 @@ class Operator:
         depths_mm = self.depths_mm(actions)
         if any(action.depths_mm for action in actions) and len(depths_mm) > 1:
             last = next(action for action in reversed(actions) if action.moves[-1].to_mm >= 0)
-            (x, y), which = last.halt.place_mm, ", ".join(f"{depth:g}" for depth in depths_mm[1:])
+            (x, y), which = (
+                last.halt.place_mm,
+                ", ".join(f"{depth:g}" for depth in depths_mm[1:]),
+            )
             raise CardFault(
                 f"at stop {last.halt.number}, {x:.2f},{y:.2f} mm, the tool goes up for the rest of the line, and further passes, at {which} mm, have no stops:"
                 " give one depth instead of passes, or lower the tool again before the line ends"
@@ -241,7 +271,9 @@ class Operator:
         to_mm, length_mm = action.moves[-1].to_mm, self.card.entry_mm
         if length_mm is None or to_mm >= 0 or len(action.moves) > 1:
             return action
-        return replace(action, moves=(replace(action.moves[0], to_mm=0.0),), entry=Entry(-to_mm, length_mm))
+        return replace(
+            action, moves=(replace(action.moves[0], to_mm=0.0),), entry=Entry(-to_mm, length_mm)
+        )
 
     def _to(self, z_mm: float) -> tuple[Move, ...]:
         return (Move(z_mm, self.work.feed_mm_s),)
@@ -276,7 +308,9 @@ class Operator:
         if not stop.moves and stop.drill is None:
             return []  # a dwell alone belongs to what is usual there
         x, y = halt.place_mm
-        return stop.motor_moves(z_mm, self.work.rapid_mm_s, f"at stop {halt.number}, {x:.2f},{y:.2f} mm")
+        return stop.motor_moves(
+            z_mm, self.work.rapid_mm_s, f"at stop {halt.number}, {x:.2f},{y:.2f} mm"
+        )
 
     def _restarted(self, halt: Halt, stop: Stop, moves: list[Move]) -> list[Move]:
         """The moves, the last with the time that the operator takes to press the button."""

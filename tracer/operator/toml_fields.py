@@ -54,7 +54,9 @@ class Field:
     @property
     def name(self) -> str:
         """The field as one would name it: stop[2].moves[1].down."""
-        return "".join(f"[{key + 1}]" if isinstance(key, int) else f".{key}" for key in self.path).lstrip(".")
+        return "".join(
+            f"[{key + 1}]" if isinstance(key, int) else f".{key}" for key in self.path
+        ).lstrip(".")
 
     def refuse(self, allowed: str, held: str | None = None) -> NoReturn:
         """Raise the CardFault of this field."""
@@ -75,7 +77,11 @@ class Field:
         )
         try:
             length_mm = parse_length_mm(self._quantity(allowed))
-            counts = counts_of(length_mm) if abs(length_mm) * COUNTS_PER_MM <= LARGEST_COUNT + 1 else -1
+            counts = (
+                counts_of(length_mm)
+                if abs(length_mm) * COUNTS_PER_MM <= LARGEST_COUNT + 1
+                else -1
+            )
         except ValueError:
             self.refuse(allowed)
         if not least <= counts <= LARGEST_COUNT:
@@ -114,7 +120,9 @@ class Field:
         """The fields of a table; a key that is none of these is refused."""
         if not isinstance(self.value, dict):
             self.refuse(f"it may hold a table with {', '.join(keys)}")
-        fields = {key: Field(value, (*self.path, key), self.page) for key, value in self.value.items()}
+        fields = {
+            key: Field(value, (*self.path, key), self.page) for key, value in self.value.items()
+        }
         for key, field in fields.items():
             if key not in keys:
                 field.refuse(
@@ -128,7 +136,9 @@ class Field:
             self.refuse(allowed)
         return str(self.value)
 
-    def _within(self, parse: Callable[[str], float], least: float, most: float, allowed: str) -> float:
+    def _within(
+        self, parse: Callable[[str], float], least: float, most: float, allowed: str
+    ) -> float:
         """A quantity that lies between two."""
         try:
             value = parse(self._quantity(allowed))
@@ -152,7 +162,9 @@ def opened(file: FilePath, called: str = "the card", option: str = "--card") -> 
     except UnicodeDecodeError as error:
         line = raw.count(b"\n", 0, error.start) + 1
         allowed = "it may hold text in UTF-8"
-        return Field(None, (), Page(file.name, {(): line}, called)).refuse(allowed, "bytes that are no UTF-8")
+        return Field(None, (), Page(file.name, {(): line}, called)).refuse(
+            allowed, "bytes that are no UTF-8"
+        )
 
 
 def parsed(text: str, name: str = "card", called: str = "the card") -> Field:
@@ -173,7 +185,9 @@ def parsed(text: str, name: str = "card", called: str = "the card") -> Field:
     return Field(held, (), Page(name, {(): line}, called)).refuse(allowed)
 
 
-def read(fields: Mapping[str, Field], key: str, how: Callable[[Field], T], otherwise: D) -> T | D:
+def read(
+    fields: Mapping[str, Field], key: str, how: Callable[[Field], T], otherwise: D
+) -> T | D:
     """What a field holds, or something else where there is no such field."""
     return how(fields[key]) if key in fields else otherwise
 

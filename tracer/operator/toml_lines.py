@@ -91,7 +91,9 @@ class _Reader:
         while self._peek()[0] in ("bare", "string", "dot"):
             kind, text, _ = self._take()
             if kind != "dot":
-                parts.append(str(tomllib.loads(f"key = {text}")["key"]) if kind == "string" else text)
+                parts.append(
+                    str(tomllib.loads(f"key = {text}")["key"]) if kind == "string" else text
+                )
         return parts
 
     def _pair(self, table: Path) -> None:

@@ -42,7 +42,8 @@ COUNTS_PER_MM = 100
 LARGEST_COUNT = 99_999  # five decades
 ACCELERATION_MM_S2 = 200.0
 _OFF_COUNT = 1e-6  # of a count: what arithmetic with inches leaves
-_PULSE = 1e-9  # of a count: what rounding takes off a pulse that has passed, 1e5 counts in 53 bits
+# of a count: what rounding takes off a pulse that has passed, 1e5 counts in 53 bits
+_PULSE = 1e-9
 
 
 Sense = Literal["up", "down"]
@@ -61,7 +62,9 @@ class Preset:
 
     def __post_init__(self) -> None:
         if not 0 <= self.counts <= LARGEST_COUNT:
-            raise ValueError(f"{self.counts} counts cannot be set on five decades; give 0 to {LARGEST_COUNT}")
+            raise ValueError(
+                f"{self.counts} counts cannot be set on five decades; give 0 to {LARGEST_COUNT}"
+            )
         if self.sense not in ("up", "down"):
             raise ValueError(f"the sense switch has no {self.sense!r}; give up or down")
         if not 0 < self.feed_mm_s < math.inf or not 0 <= self.dwell_s < math.inf:
@@ -122,7 +125,9 @@ def counts_of(length_mm: float) -> int:
     """Whole counts of a length; raises ValueError if it has parts of a count."""
     counts = round(length_mm * COUNTS_PER_MM)
     if abs(length_mm * COUNTS_PER_MM - counts) > _OFF_COUNT:
-        raise ValueError(f"{length_mm:g} mm is no whole number of counts; give steps of {COUNT_MM:g} mm")
+        raise ValueError(
+            f"{length_mm:g} mm is no whole number of counts; give steps of {COUNT_MM:g} mm"
+        )
     return counts
 
 
@@ -167,5 +172,7 @@ def coincidence(z_mm: Array, start: Counters, preset: Preset) -> int | None:
 def _one(start_mm: float, move: Move, acceleration_mm_s2: float, rate_hz: float) -> Array:
     """Z of one move and of the dwell after it, mm."""
     how = ramp.Ramp(acceleration_mm_s2, COUNT_MM)
-    way = ramp.positions_mm([start_mm], [move.to_mm], move.feed_mm_s, how, rate_hz=rate_hz)[:, 0]
+    way = ramp.positions_mm([start_mm], [move.to_mm], move.feed_mm_s, how, rate_hz=rate_hz)[
+        :, 0
+    ]
     return np.concatenate([way, np.full(round(move.dwell_s * rate_hz), move.to_mm)])

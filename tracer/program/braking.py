@@ -30,7 +30,9 @@ RUN_MM = 0.1  # nodes of a way that is run from memory
 SLOWEST_MM_S = 0.02  # where the head swivels it stands: its time there is kept
 
 
-def pieces(xy_mm: Array, halts: Sequence[float], acceleration_mm_s2: float, rate_hz: float) -> list[Array]:
+def pieces(
+    xy_mm: Array, halts: Sequence[float], acceleration_mm_s2: float, rate_hz: float
+) -> list[Array]:
     """The way cut where it is to stand, in order: one piece more than `halts`, each at rest at the cuts;
     positions before the first are row 0.
     """
@@ -56,22 +58,32 @@ def run(way_mm: Array, speed_mm_s: float, acceleration_mm_s2: float, rate_hz: fl
     """
     steps_mm = np.hypot(*np.diff(way_mm, axis=0).T)
     lengths = np.r_[0.0, np.cumsum(steps_mm)]
-    stood = np.unique(np.round(lengths[1:][steps_mm < _NOTHING_MM], 6))  # where the head swivelled
+    stood = np.unique(
+        np.round(lengths[1:][steps_mm < _NOTHING_MM], 6)
+    )  # where the head swivelled
     even = np.arange(0.0, lengths[-1], RUN_MM)
-    even = even[[not np.any(np.abs(stood - mm) < 0.5 * RUN_MM) for mm in even]] if len(stood) else even
+    even = (
+        even[[not np.any(np.abs(stood - mm) < 0.5 * RUN_MM) for mm in even]]
+        if len(stood)
+        else even
+    )
     some = np.unique(np.r_[0.0, even, stood, lengths[-1]])
     places = np.column_stack([np.interp(some, lengths, way_mm[:, k]) for k in (0, 1)])
     corners = [0, *_corners(places), len(places) - 1]
     speeds = np.zeros(len(places))
     for a, b in pairwise(corners):
         there = curves.speeds(places[a : b + 1], speed_mm_s, acceleration_mm_s2, 0.0)
-        back = curves.speeds(places[b : (a - 1 if a else None) : -1], speed_mm_s, acceleration_mm_s2, 0.0)[
-            ::-1
-        ]
+        back = curves.speeds(
+            places[b : (a - 1 if a else None) : -1], speed_mm_s, acceleration_mm_s2, 0.0
+        )[::-1]
         speeds[a : b + 1] = np.minimum(there, back)
     steps_mm = np.hypot(*np.diff(places, axis=0).T)
-    from_rest_mm_s = 0.5 * np.sqrt(acceleration_mm_s2 * steps_mm)  # mean of a step from rest to rest
-    took_s = steps_mm / np.maximum(0.5 * (speeds[1:] + speeds[:-1]), from_rest_mm_s + SLOWEST_MM_S)
+    from_rest_mm_s = 0.5 * np.sqrt(
+        acceleration_mm_s2 * steps_mm
+    )  # mean of a step from rest to rest
+    took_s = steps_mm / np.maximum(
+        0.5 * (speeds[1:] + speeds[:-1]), from_rest_mm_s + SLOWEST_MM_S
+    )
     return _timed(places, took_s, steps_mm, speeds, rate_hz)
 
 
@@ -80,7 +92,10 @@ def _corners(places: Array) -> list[int]:
     steps = np.diff(places, axis=0)
     turned = np.diff(np.arctan2(steps[:, 1], steps[:, 0]))
     return [
-        int(i) + 1 for i in np.flatnonzero(np.abs(np.remainder(turned + np.pi, 2 * np.pi) - np.pi) > CORNER)
+        int(i) + 1
+        for i in np.flatnonzero(
+            np.abs(np.remainder(turned + np.pi, 2 * np.pi) - np.pi) > CORNER
+        )
     ]
 
 
@@ -91,11 +106,15 @@ def _speeds(steps_mm: Array, steps_s: Array, cuts: Array, acceleration_mm_s2: fl
     lengths = np.r_[0.0, np.cumsum(steps_mm)]
     allowed = np.full(len(was), np.inf)
     for cut in cuts:
-        allowed = np.minimum(allowed, np.sqrt(2 * acceleration_mm_s2 * np.abs(lengths - lengths[cut])))
+        allowed = np.minimum(
+            allowed, np.sqrt(2 * acceleration_mm_s2 * np.abs(lengths - lengths[cut]))
+        )
     return np.minimum(was, allowed)
 
 
-def _timed(places: Array, took_s: Array, steps_mm: Array, speeds: Array, rate_hz: float) -> Array:
+def _timed(
+    places: Array, took_s: Array, steps_mm: Array, speeds: Array, rate_hz: float
+) -> Array:
     """Nodes with the times that their steps take, as positions at a uniform rate: first and last exactly, the
     last one perhaps a part of a period late.
     """
@@ -107,7 +126,9 @@ def _timed(places: Array, took_s: Array, steps_mm: Array, speeds: Array, rate_hz
     tau = uniform - times[i]
     share = tau / np.maximum(took_s[i], 1e-12)
     mean = 0.5 * (speeds[i] + speeds[i + 1])
-    even = (speeds[i] * share + 0.5 * (speeds[i + 1] - speeds[i]) * share**2) / np.maximum(mean, 1e-12)
+    even = (speeds[i] * share + 0.5 * (speeds[i + 1] - speeds[i]) * share**2) / np.maximum(
+        mean, 1e-12
+    )
     from_rest = np.where(share < 0.5, 2 * share**2, 1 - 2 * (1 - share) ** 2)
     share = np.where(mean * took_s[i] > 0.5 * steps_mm[i], even, from_rest)
     between = places[i] + share[:, None] * (places[i + 1] - places[i])

@@ -47,7 +47,12 @@ def joined_to(
     """Further lines of the patch that a contour is, besides the line followed on it, and the length of the
     ink that is left, mm.
     """
-    stroke, found, tried, in_vain = contour.stroke, list[Line](), [line.places_mm], list[Array]()
+    stroke, found, tried, in_vain = (
+        contour.stroke,
+        list[Line](),
+        [line.places_mm],
+        list[Array](),
+    )
     left = _left(stroke, tried)
     if left.length_mm < _least_mm(stroke):
         return [], 0.0
@@ -76,16 +81,22 @@ def joined_to(
 
 def _is_line(line: Line, others: list[Line]) -> bool:
     """Whether a run is a line of its own: from end to end or round about, no mark, and most of it new."""
-    least_mm = max(LEAST_MM, LEAST_WIDTHS * line.width_mm) if line.ending == "closed" else LETTER_MM
+    least_mm = (
+        max(LEAST_MM, LEAST_WIDTHS * line.width_mm) if line.ending == "closed" else LETTER_MM
+    )
     if line.ending not in ("closed", "ended") or line.length_mm < least_mm:
         return False
-    near = [_nearest_mm(line.places_mm, other.places_mm) < 0.7 * line.width_mm for other in others]
+    near = [
+        _nearest_mm(line.places_mm, other.places_mm) < 0.7 * line.width_mm for other in others
+    ]
     return bool(np.mean(~np.any(near, axis=0)) > NEW)
 
 
 def _left(stroke: Stroke, ways: list[Array]) -> Stroke:
     """The part of a stroke that none of some ways comes by."""
-    near = np.any([_nearest_mm(stroke.middles_mm, way) < BESIDE * stroke.width_mm for way in ways], axis=0)
+    near = np.any(
+        [_nearest_mm(stroke.middles_mm, way) < BESIDE * stroke.width_mm for way in ways], axis=0
+    )
     return replace(
         stroke,
         middles_mm=stroke.middles_mm[~near],
@@ -99,7 +110,9 @@ def _crowded(stroke: Stroke) -> Array:
     and a sloping one has one.
     """
     tree = cKDTree(stroke.middles_mm)
-    return np.asarray(tree.query_ball_point(stroke.middles_mm, stroke.width_mm, return_length=True), float)
+    return np.asarray(
+        tree.query_ball_point(stroke.middles_mm, stroke.width_mm, return_length=True), float
+    )
 
 
 def _least_mm(stroke: Stroke) -> float:

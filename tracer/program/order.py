@@ -21,7 +21,9 @@ def in_order(starts_mm: Array, ends_mm: Array, before: NDArray[np.bool_]) -> lis
     """The order of lines that keeps the idle way from each end to the next start short; `before[i, j]`: i is
     cut before j.
     """
-    idle_mm = np.hypot(*(np.asarray(ends_mm)[:, None] - np.asarray(starts_mm)[None]).transpose(2, 0, 1))
+    idle_mm = np.hypot(
+        *(np.asarray(ends_mm)[:, None] - np.asarray(starts_mm)[None]).transpose(2, 0, 1)
+    )
     ways = [_improved(way, idle_mm, before) for way in _from_firsts(idle_mm, before)]
     ways += [
         _improved(way[::-1].copy(), idle_mm, before)
@@ -40,10 +42,14 @@ def in_order_and_turned(
     turned = np.zeros(len(may_turn), bool)
     best: tuple[float, list[int], NDArray[np.bool_]] | None = None
     for _ in range(TURNINGS):
-        begin, finish = (ends[np.where(turned, 1 - k, k), np.arange(len(turned))] for k in (0, 1))
+        begin, finish = (
+            ends[np.where(turned, 1 - k, k), np.arange(len(turned))] for k in (0, 1)
+        )
         order = in_order(begin, finish, before)
         turned = turned ^ _to_turn(begin, finish, order, may_turn)
-        begin, finish = (ends[np.where(turned, 1 - k, k), np.arange(len(turned))] for k in (0, 1))
+        begin, finish = (
+            ends[np.where(turned, 1 - k, k), np.arange(len(turned))] for k in (0, 1)
+        )
         idle_mm = float(np.hypot(*(begin[order[1:]] - finish[order[:-1]]).T).sum())
         if best is not None and idle_mm >= best[0] - 1e-9:
             break
@@ -88,7 +94,10 @@ def _from_firsts(idle_mm: Array, before: NDArray[np.bool_]) -> list[NDArray[np.i
     """
     firsts = np.flatnonzero(~before.any(axis=0))
     tried = min(FIRSTS, max(1, SOME // len(idle_mm)))
-    return [_on_to_nearest(int(first), idle_mm, before) for first in firsts[:: -(-len(firsts) // tried)]]
+    return [
+        _on_to_nearest(int(first), idle_mm, before)
+        for first in firsts[:: -(-len(firsts) // tried)]
+    ]
 
 
 @njit(cache=True)
@@ -140,12 +149,18 @@ def _move_lines(way, idle_mm, before):  # type: ignore[no-untyped-def]
     for i in range(len(way)):
         for j in range(i, min(i + MOVED, len(way))):
             out = (
-                _leg(way, idle_mm, i - 1, i) + _leg(way, idle_mm, j, j + 1) - _leg(way, idle_mm, i - 1, j + 1)
+                _leg(way, idle_mm, i - 1, i)
+                + _leg(way, idle_mm, j, j + 1)
+                - _leg(way, idle_mm, i - 1, j + 1)
             )
             for k in range(-1, len(way)):
                 if i - 1 <= k <= j:
                     continue
-                into = _leg(way, idle_mm, k, i) + _leg(way, idle_mm, j, k + 1) - _leg(way, idle_mm, k, k + 1)
+                into = (
+                    _leg(way, idle_mm, k, i)
+                    + _leg(way, idle_mm, j, k + 1)
+                    - _leg(way, idle_mm, k, k + 1)
+                )
                 if out - into > 1e-9:
                     moved = _moved(way, i, j, k)
                     if _allowed(moved, before):

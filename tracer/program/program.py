@@ -61,7 +61,11 @@ class Trace:
     @property
     def xy_mm(self) -> Array:
         """Positions along the lines, one behind the other, (n, 2) mm."""
-        return self.lines[0].xy_mm if len(self.lines) == 1 else np.vstack([line.xy_mm for line in self.lines])
+        return (
+            self.lines[0].xy_mm
+            if len(self.lines) == 1
+            else np.vstack([line.xy_mm for line in self.lines])
+        )
 
     @property
     def ending(self) -> str:
@@ -75,7 +79,9 @@ class Trace:
         """
         lost = [line for line in self.lines if line.fault is not None]
         lines = len({line.number for line in self.lines})  # a cutter may run one in pieces
-        return _incomplete(lost, lines) if lost and lines > 1 else lost[0].fault if lost else None
+        return (
+            _incomplete(lost, lines) if lost and lines > 1 else lost[0].fault if lost else None
+        )
 
     @property
     def start_mm(self) -> tuple[float, float]:
@@ -85,7 +91,9 @@ class Trace:
     @property
     def reference_mm(self) -> tuple[float, float] | None:
         """The reference point from which a line begins, mm; None if none does."""
-        return next((line.reference_mm for line in self.lines if line.reference_mm is not None), None)
+        return next(
+            (line.reference_mm for line in self.lines if line.reference_mm is not None), None
+        )
 
     @property
     def line_width_mm(self) -> float:
@@ -100,7 +108,9 @@ class Trace:
     @property
     def idle_mm(self) -> float:
         """How far the tool goes from line to line, mm."""
-        return float(sum(np.hypot(*np.subtract(b.begin_mm, a.end_mm)) for a, b in pairwise(self.lines)))
+        return float(
+            sum(np.hypot(*np.subtract(b.begin_mm, a.end_mm)) for a, b in pairwise(self.lines))
+        )
 
     @property
     def duration_s(self) -> float:
@@ -131,7 +141,10 @@ class Trace:
         """From where a line's program begins to where it ends, at each depth, in blocks (n, 3) mm."""
         if line.begin_mm != line.start_mm:
             yield self._rapid(line.begin_mm, line.start_mm)
-        depths_mm, at = self.operator.depths_mm(actions), np.array([*line.start_mm, self.work.clearance_mm])
+        depths_mm, at = (
+            self.operator.depths_mm(actions),
+            np.array([*line.start_mm, self.work.clearance_mm]),
+        )
         for block in self._first_pass(line, actions):
             yield block
             at = block[-1]
@@ -156,13 +169,16 @@ class Trace:
             for first in range(0, len(piece), BLOCK_SAMPLES):
                 block = piece[first : first + BLOCK_SAMPLES]
                 along_mm, come_mm = (
-                    (np.full(len(block), z_mm), 0.0) if entry is None else _entered(block, entry, come_mm)
+                    (np.full(len(block), z_mm), 0.0)
+                    if entry is None
+                    else _entered(block, entry, come_mm)
                 )
                 z_mm = float(along_mm[-1])
                 yield _at(block, along_mm)
             if action is not None:
                 yield _standing(
-                    piece[-1], z_moves(z_mm, action.moves, self.work.acceleration_mm_s2, self.rate_hz)
+                    piece[-1],
+                    z_moves(z_mm, action.moves, self.work.acceleration_mm_s2, self.rate_hz),
                 )
                 z_mm, entry, come_mm = action.moves[-1].to_mm, action.entry, 0.0
 
@@ -175,19 +191,24 @@ class Trace:
         lengths = lengths_mm(line.xy_mm)
         last = int(
             np.searchsorted(
-                lengths, np.interp(down.halt.at, range(len(lengths)), lengths) + down.entry.length_mm
+                lengths,
+                np.interp(down.halt.at, range(len(lengths)), lengths) + down.entry.length_mm,
             )
         )
         if last <= first:
             return
         yield _at(self._feed(line.xy_mm[-1], line.xy_mm[first]), -down.entry.depth_mm)
-        yield _at(self._from_rest(line, first, min(last, len(line.xy_mm) - 1)), -down.entry.depth_mm)
+        yield _at(
+            self._from_rest(line, first, min(last, len(line.xy_mm) - 1)), -down.entry.depth_mm
+        )
 
     def _again(self, line: Line, z_mm: float, depth_mm: float) -> Iterator[Array]:
         """Along a line, or the loop that it leads to, once more at another depth, (n, 3) mm: straight on
         where it closes, else up and over.
         """
-        xy_mm = self._from_rest(line, (line.loop_from or 0) if line.is_lead else 0, len(line.xy_mm) - 1)
+        xy_mm = self._from_rest(
+            line, (line.loop_from or 0) if line.is_lead else 0, len(line.xy_mm) - 1
+        )
         if line.ending == "closed" or line.is_lead:
             yield _at(self._feed(xy_mm[-1], xy_mm[0]), z_mm)
         else:
@@ -208,7 +229,12 @@ class Trace:
         ]
         between = [self._feed(a[-1], b[0]) for a, b in pairwise(stretches)]
         return np.vstack(
-            [part for pair in zip_longest(stretches, between) for part in pair if part is not None]
+            [
+                part
+                for pair in zip_longest(stretches, between)
+                for part in pair
+                if part is not None
+            ]
         )
 
     def _feed(self, start_mm: Array, end_mm: Array) -> Array:
@@ -226,11 +252,16 @@ class Trace:
         last = len(line.xy_mm) - 1 if line.loop_from is None else line.loop_from
         back = np.vstack(line.without_guides(0, last))[::-1]
         yield self._rapid(at_mm, back[0])  # a loop does not end just where it began
-        yield _at(stops.run(back, self.work.rapid_mm_s, BRAKE_MM_S2, self.rate_hz), self.work.clearance_mm)
+        yield _at(
+            stops.run(back, self.work.rapid_mm_s, BRAKE_MM_S2, self.rate_hz),
+            self.work.clearance_mm,
+        )
         if line.begin_mm != line.start_mm:
             yield self._rapid(line.start_mm, line.begin_mm)
 
-    def _rapid(self, start_mm: Array | tuple[float, float], end_mm: Array | tuple[float, float]) -> Array:
+    def _rapid(
+        self, start_mm: Array | tuple[float, float], end_mm: Array | tuple[float, float]
+    ) -> Array:
         """Straight from a place to another at clearance, (n, 3) mm."""
         way = ramp.positions_mm(start_mm, end_mm, self.work.rapid_mm_s, rate_hz=self.rate_hz)
         return _at(way, self.work.clearance_mm)
@@ -238,7 +269,10 @@ class Trace:
     def _z(self, from_mm: float, to_mm: float) -> Array:
         """Z of a move that the Z unit makes, (n,) mm at the motion rate."""
         return z_moves(
-            from_mm, [Move(to_mm, self.work.feed_mm_s)], self.work.acceleration_mm_s2, self.rate_hz
+            from_mm,
+            [Move(to_mm, self.work.feed_mm_s)],
+            self.work.acceleration_mm_s2,
+            self.rate_hz,
         )
 
 
@@ -247,7 +281,9 @@ def _incomplete(lost: list[Line], lines: int) -> LineFault:
     numbers = ", ".join(str(line.number) for line in lost)
     first = lost[0].fault
     assert first is not None
-    which = f"line {numbers} of {lines} is" if len(lost) == 1 else f"lines {numbers} of {lines} are"
+    which = (
+        f"line {numbers} of {lines} is" if len(lost) == 1 else f"lines {numbers} of {lines} are"
+    )
     return LineFault(
         f"{which} incomplete, the others are cut; line {lost[0].number}: {first}",
         x_mm=first.x_mm,

@@ -67,7 +67,9 @@ class Contour:
         clear_mm = _nearest_mm(places, odd) if len(odd) else np.zeros(len(places))
         kept: list[Array] = []
         for place in places[np.argsort(-clear_mm, kind="stable")]:
-            if len(kept) < STARTS and all(np.hypot(*(place - k)) > 4 * stroke.width_mm for k in kept):
+            if len(kept) < STARTS and all(
+                np.hypot(*(place - k)) > 4 * stroke.width_mm for k in kept
+            ):
                 kept.append(place)
         return [(float(x), float(y)) for x, y in kept]
 
@@ -96,14 +98,22 @@ def plan(sheet: Sheet, which: Which) -> tuple[list[Contour], int]:
     reach_mm, patches = _reach_mm(sheet), lines_of(sheet)
     numbers = _numbers(which, len(patches))
     asked = [int(patches[number - 1]) for number in numbers]
-    contours = [Contour(n, sheet.stroke(p), float(reach_mm[p])) for n, p in zip(numbers, asked, strict=True)]
-    spread = [float(np.prod(np.ptp(c.stroke.middles_mm, axis=0) + c.stroke.width_mm)) for c in contours]
+    contours = [
+        Contour(n, sheet.stroke(p), float(reach_mm[p]))
+        for n, p in zip(numbers, asked, strict=True)
+    ]
+    spread = [
+        float(np.prod(np.ptp(c.stroke.middles_mm, axis=0) + c.stroke.width_mm))
+        for c in contours
+    ]
     return [contours[i] for i in np.argsort(spread)[::-1]], sheet.patches.count - len(patches)
 
 
 def lines_of(sheet: Sheet) -> NDArray[np.int64]:
     """The patches that are lines, the longest first: of those along edges all."""
-    least_mm = 0.0 if sheet.drawing.edges_mm else np.maximum(LEAST_MM, LEAST_WIDTHS * sheet.widths_mm)
+    least_mm = (
+        0.0 if sheet.drawing.edges_mm else np.maximum(LEAST_MM, LEAST_WIDTHS * sheet.widths_mm)
+    )
     long_enough = sheet.lengths_mm >= least_mm
     patches = np.flatnonzero(long_enough | (_reach_mm(sheet) >= LETTER_MM))
     return patches[np.argsort(-sheet.lengths_mm[patches], kind="stable")]
@@ -139,9 +149,12 @@ def no_line(number: int, have: Sequence[int]) -> LineFault:
 def _told(numbers: Sequence[int]) -> str:
     """Numbers as people read them, "1 to 3, 5"."""
     runs = [
-        [n for _, n in run] for _, run in groupby(enumerate(sorted(numbers)), key=lambda at: at[1] - at[0])
+        [n for _, n in run]
+        for _, run in groupby(enumerate(sorted(numbers)), key=lambda at: at[1] - at[0])
     ]
-    return ", ".join(f"{run[0]} to {run[-1]}" if len(run) > 2 else ", ".join(map(str, run)) for run in runs)
+    return ", ".join(
+        f"{run[0]} to {run[-1]}" if len(run) > 2 else ", ".join(map(str, run)) for run in runs
+    )
 
 
 def _nearest_mm(places_mm: Array, others_mm: Array) -> Array:

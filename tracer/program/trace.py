@@ -53,7 +53,8 @@ def trace(
     """
     operator = operator or Operator()
     return Trace(
-        (followed(Sheet.of(drawing), start_mm, settings or Settings(), operator, progress),), operator
+        (followed(Sheet.of(drawing), start_mm, settings or Settings(), operator, progress),),
+        operator,
     )
 
 
@@ -70,9 +71,16 @@ def followed(
     if that does not come back, unless left out.
     """
     stances = put_down(
-        sheet, start_mm, settings.aperture_mm, settings.line_width_mm, settings.gap_mm, operator.reference_mm
+        sheet,
+        start_mm,
+        settings.aperture_mm,
+        settings.line_width_mm,
+        settings.gap_mm,
+        operator.reference_mm,
     )
-    best, others = _best(sheet, stances, start_mm, settings, operator, progress, number, other_turns)
+    best, others = _best(
+        sheet, stances, start_mm, settings, operator, progress, number, other_turns
+    )
     assert best is not None  # put_down gives a stance, or raises
     if others:
         raise _several_lead([best, *others])
@@ -91,20 +99,33 @@ def followed_from_an_end(
     is lost from each.
     """
     stances = ends_of(
-        sheet, stroke, settings.aperture_mm, settings.line_width_mm, settings.gap_mm, operator.reference_mm
+        sheet,
+        stroke,
+        settings.aperture_mm,
+        settings.line_width_mm,
+        settings.gap_mm,
+        operator.reference_mm,
     )
     best, _ = _best(sheet, iter(stances), None, settings, operator, progress, number)
     return best if best is not None and best.ending != "lost" else None
 
 
-def followed_through(sheet: Sheet, stance: Stance, settings: Settings, operator: Operator) -> list[Line]:
+def followed_through(
+    sheet: Sheet, stance: Stance, settings: Settings, operator: Operator
+) -> list[Line]:
     """The head's runs straight on through a stance, the last one round about in the direction asked for, or
     from end to end; no other turns are tried.
     """
-    attempts = Attempts(sheet.drawing, settings, (), longest_mm(sheet.drawing, stance.view.width_mm), None)
+    attempts = Attempts(
+        sheet.drawing, settings, (), longest_mm(sheet.drawing, stance.view.width_mm), None
+    )
     runs = [attempts.run(stance)]
     if runs[0].ending == "ended":
-        runs.append(attempts.run(turned_round(runs[0].positions_mm[-1], runs[0].heading_rad, runs[0].view)))
+        runs.append(
+            attempts.run(
+                turned_round(runs[0].positions_mm[-1], runs[0].heading_rad, runs[0].view)
+            )
+        )
     elif runs[0].ending != "closed" or (
         operator.direction in ("cw", "ccw") and not goes(runs[0], operator.direction)
     ):
@@ -148,12 +169,16 @@ def _best(
         if line.is_lead and _is_open(stance):
             leads.append(run)
         best = run if best is None or _goes_before(run, best) else best
-        plain = not (stance.at_end and line.junctions_mm)  # at a junction a lead line may come in
+        plain = not (
+            stance.at_end and line.junctions_mm
+        )  # at a junction a lead line may come in
         if plain and (line.ending == "closed" or (far and line.ending != "joined")):
             break
         if not stance.at_end:
             smooth.append(run)
-            if not _ran_in(best) and (best[0].ending == "closed" or best[0].length_mm > SHORT * length_mm):
+            if not _ran_in(best) and (
+                best[0].ending == "closed" or best[0].length_mm > SHORT * length_mm
+            ):
                 break
     if best is None:
         return None, []
@@ -187,7 +212,9 @@ def _with_other_turns(best: Run, smooth: list[Run], follow: Callable[..., Line])
     """The first run that closes with other turns than straight on, in place of the best if that ran into
     itself, or is shorter and a small part of the ink.
     """
-    if not _ran_in(best) and not (best[0].ending == "closed" and best[0].length_mm < SHORT * best[2]):
+    if not _ran_in(best) and not (
+        best[0].ending == "closed" and best[0].length_mm < SHORT * best[2]
+    ):
         return best
     for _, stance, length_mm in filter(_ran_in, smooth):
         line = follow(stance, length_mm, other_turns=True)
@@ -224,7 +251,9 @@ def _line(
     """
     told = None if progress is None else partial(_tell, progress, length_mm)
     try:
-        run = asked_for(sheet.drawing, stance, start_mm, operator.route, settings, told, other_turns)
+        run = asked_for(
+            sheet.drawing, stance, start_mm, operator.route, settings, told, other_turns
+        )
     except LineFault:
         if other_turns:
             raise

@@ -60,7 +60,11 @@ def trace_lines(
     `progress` hears how far the head has come and the length of all the lines, mm. Raises LineFault if there
     is no line to start on, or none of a number.
     """
-    sheet, settings, operator = Sheet.of(drawing), settings or Settings(), operator or Operator()
+    sheet, settings, operator = (
+        Sheet.of(drawing),
+        settings or Settings(),
+        operator or Operator(),
+    )
     patches = len(contours.lines_of(sheet))
     beyond = (
         not isinstance(which, str) and max(which) > patches
@@ -77,14 +81,18 @@ def trace_lines(
             if which != "outer" or not _is_in(line, lines)
         ]
     if beyond or which == "all":
-        holes = _dots(sheet, asked, settings, max((line.number for line in lines), default=patches))
+        holes = _dots(
+            sheet, asked, settings, max((line.number for line in lines), default=patches)
+        )
         lines, left_out = lines + holes, left_out - len(holes)
     if beyond:
         lines = _numbered(lines, which)
     again = partial(_turned_round, sheet, settings=settings, operator=operator)
     if not any(len(line.xy_mm) > 1 for line in lines):
         raise _none_begun(lines)
-    return Trace(tuple(_in_order(lines, again)), operator, left_out=left_out, left_out_mm=left_mm)
+    return Trace(
+        tuple(_in_order(lines, again)), operator, left_out=left_out, left_out_mm=left_mm
+    )
 
 
 def _follow_each(
@@ -96,7 +104,11 @@ def _follow_each(
     progress: Told | None,
 ) -> tuple[list[Line], int]:
     """One line of each patch that is asked for, and how many patches are letters."""
-    total_mm, lines, refused = sum(contour.stroke.length_mm for contour in asked), list[Line](), 0
+    total_mm, lines, refused = (
+        sum(contour.stroke.length_mm for contour in asked),
+        list[Line](),
+        0,
+    )
     for contour in asked:
         if (
             _is_reference(contour, lines)
@@ -115,7 +127,11 @@ def _follow_each(
 
 
 def _joined(
-    sheet: Sheet, asked: list[Contour], lines: list[Line], settings: Settings, operator: Operator
+    sheet: Sheet,
+    asked: list[Contour],
+    lines: list[Line],
+    settings: Settings,
+    operator: Operator,
 ) -> tuple[list[Line], float]:
     """Further lines of the patches of which one line was followed each, and the length of the ink that is
     left of them, mm.
@@ -147,12 +163,18 @@ def _follow(
     From an end that leads round less than half of the ink, the line has to be longer than round about from
     such a place.
     """
-    from_end = followed_from_an_end(sheet, contour.stroke, settings, operator, told, contour.number)
-    if from_end is not None and (from_end.ending != "joined" or from_end.length_mm > SHORT * from_end.ink_mm):
+    from_end = followed_from_an_end(
+        sheet, contour.stroke, settings, operator, told, contour.number
+    )
+    if from_end is not None and (
+        from_end.ending != "joined" or from_end.length_mm > SHORT * from_end.ink_mm
+    ):
         return from_end
     about = _follow_from_plain_places(sheet, contour, settings, operator, told)
     if isinstance(about, Line):
-        closes = from_end is None or (about.ending == "closed" and about.length_mm > from_end.length_mm)
+        closes = from_end is None or (
+            about.ending == "closed" and about.length_mm > from_end.length_mm
+        )
         return about if closes else from_end
     if from_end is not None:
         return from_end
@@ -177,17 +199,26 @@ def _follow_from_plain_places(
         LineFault("no place to put the head down"),
     )
     for start_mm in contour.starts_mm():
-        if any(np.hypot(*(places_mm - start_mm).T).min() < contour.stroke.width_mm for places_mm in tried):
+        if any(
+            np.hypot(*(places_mm - start_mm).T).min() < contour.stroke.width_mm
+            for places_mm in tried
+        ):
             continue
         try:
-            line = followed(sheet, start_mm, settings, operator, told, contour.number, other_turns=False)
+            line = followed(
+                sheet, start_mm, settings, operator, told, contour.number, other_turns=False
+            )
         except LineFault as refused:
             fault = refused
             continue
         if line.ending != "joined" and (not in_vain or line.length_mm > SHORT * line.ink_mm):
             return line
         in_vain, tried = [*in_vain, start_mm], [*tried, line.own_mm]
-    return followed(sheet, in_vain[0], settings, operator, told, contour.number) if in_vain else fault
+    return (
+        followed(sheet, in_vain[0], settings, operator, told, contour.number)
+        if in_vain
+        else fault
+    )
 
 
 def _dots(sheet: Sheet, asked: list[Contour], settings: Settings, last: int) -> list[Line]:
@@ -196,9 +227,13 @@ def _dots(sheet: Sheet, asked: list[Contour], settings: Settings, last: int) -> 
     """
     if settings.line_width_mm is None and not asked:
         return []
-    width_mm = settings.line_width_mm or float(np.median([contour.stroke.width_mm for contour in asked]))
+    width_mm = settings.line_width_mm or float(
+        np.median([contour.stroke.width_mm for contour in asked])
+    )
     centres = dots.alone(sheet, view_of(sheet, settings.aperture_mm, width_mm))
-    return [Line.of_dot(centre, width_mm, number) for number, centre in enumerate(centres, last + 1)]
+    return [
+        Line.of_dot(centre, width_mm, number) for number, centre in enumerate(centres, last + 1)
+    ]
 
 
 def _none_begun(lines: list[Line]) -> LineFault:
@@ -235,9 +270,12 @@ def _are_reference(places: Array, lines: list[Line]) -> bool:
     """Whether some places (n, 2) mm are those of the reference point from which one of the lines, or a lead
     line, begins.
     """
-    references_mm = [line.begin_mm for line in lines if line.is_lead or line.reference_mm is not None]
+    references_mm = [
+        line.begin_mm for line in lines if line.is_lead or line.reference_mm is not None
+    ]
     return any(
-        np.hypot(*(places - reference_mm).T).max() < 0.5 * LARGEST_MM + 1 for reference_mm in references_mm
+        np.hypot(*(places - reference_mm).T).max() < 0.5 * LARGEST_MM + 1
+        for reference_mm in references_mm
     )
 
 
@@ -248,15 +286,22 @@ def _is_inner(contour: Contour, lines: list[Line]) -> bool:
 
 def _is_in(line: Line, lines: list[Line]) -> bool:
     """Whether a line lies inside one of some others."""
-    return any(_goes_round(other) and nesting.lies_inside(line.places_mm, _loop(other)) for other in lines)
+    return any(
+        _goes_round(other) and nesting.lies_inside(line.places_mm, _loop(other))
+        for other in lines
+    )
 
 
 def _in_order(lines: list[Line], again: Callable[[Line], Line]) -> list[Line]:
     """The lines in the order in which they are cut; open ones are followed once more from their other end
     where that is nearer.
     """
-    inner = nesting.nested([_loop(line) for line in lines], [_goes_round(line) for line in lines])
-    starts, ends = (np.array([getattr(line, end) for line in lines]) for end in ("begin_mm", "end_mm"))
+    inner = nesting.nested(
+        [_loop(line) for line in lines], [_goes_round(line) for line in lines]
+    )
+    starts, ends = (
+        np.array([getattr(line, end) for line in lines]) for end in ("begin_mm", "end_mm")
+    )
     may_turn = np.array([line.ending == "ended" and not line.goes_back for line in lines])
     sequence, turned = order.in_order_and_turned(starts, ends, inner, may_turn)
     return [again(lines[i]) if turned[i] else lines[i] for i in sequence]
@@ -265,7 +310,9 @@ def _in_order(lines: list[Line], again: Callable[[Line], Line]) -> list[Line]:
 def _turned_round(sheet: Sheet, line: Line, settings: Settings, operator: Operator) -> Line:
     """An open line followed from its other end; as it was, if the head goes another way from there."""
     try:
-        other = followed(sheet, line.place(len(line.xy_mm) - 1), settings, operator, number=line.number)
+        other = followed(
+            sheet, line.place(len(line.xy_mm) - 1), settings, operator, number=line.number
+        )
     except LineFault:
         return line
     there = np.hypot(*(other.xy_mm[-1] - line.xy_mm[0])) < line.width_mm
@@ -282,6 +329,8 @@ def _loop(line: Line) -> Array:
     return line.xy_mm[line.loop_from or 0 :: THINNED]
 
 
-def _tell_on(progress: Told, before_mm: float, total_mm: float, come_mm: float, length_mm: float) -> None:
+def _tell_on(
+    progress: Told, before_mm: float, total_mm: float, come_mm: float, length_mm: float
+) -> None:
     """Tell how far the head has come in all, within a line of a known length."""
     progress(min(before_mm + come_mm, total_mm), total_mm)

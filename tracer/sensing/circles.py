@@ -38,7 +38,9 @@ def _changes(cells, pitch_mm, place, ways, reach_mm, level):  # type: ignore[no-
         before = photocell.darkness_at(cells, pitch_mm, place[0], place[1])
         found, r = 0, step
         while r <= reach_mm and found < 2:
-            now = photocell.darkness_at(cells, pitch_mm, place[0] + r * ways[k, 0], place[1] + r * ways[k, 1])
+            now = photocell.darkness_at(
+                cells, pitch_mm, place[0] + r * ways[k, 0], place[1] + r * ways[k, 1]
+            )
             if (now >= level) != (before >= level):
                 out[k, found] = r - step * (level - now) / (before - now)
                 found += 1

@@ -22,7 +22,9 @@ STRAIGHT = math.radians(40)  # straight on is within this
 TURNS_OFF = math.radians(20)  # a leg turns off to a side by more than this
 
 
-Meeting = tuple[float, float]  # how far two legs meet beyond the one's clean end and before the other's, mm
+Meeting = tuple[
+    float, float
+]  # how far two legs meet beyond the one's clean end and before the other's, mm
 
 FARTHEST_MM = 10.0  # legs that meet further away do not meet
 
@@ -49,7 +51,9 @@ class Leg:
 
     def shifted(self, along_mm: float, seen: Array) -> Leg:
         """The same line from a place further along it, with what was felt from there."""
-        return Leg(self.at(along_mm), self.heading_at(along_mm), self.bend_per_mm, self.width_mm, seen)
+        return Leg(
+            self.at(along_mm), self.heading_at(along_mm), self.bend_per_mm, self.width_mm, seen
+        )
 
     def turned_round(self) -> Leg:
         """The same leg, to go back along it."""
@@ -102,7 +106,9 @@ def _leg(near: Array, end: Array, seen: Array) -> tuple[Leg, float]:
     d = near[:, :2] - end[:2]
     (slope, offset, bend), misfit = _fit(d @ t, d @ n)
     place, width = end[:2] + offset * n, float(np.median(near[:, 2]))
-    return Leg(place, heading + math.atan(slope), bend / (1 + slope * slope) ** 1.5, width, seen), misfit
+    return Leg(
+        place, heading + math.atan(slope), bend / (1 + slope * slope) ** 1.5, width, seen
+    ), misfit
 
 
 @njit(cache=True)
@@ -123,7 +129,9 @@ def _fit(x, y):  # type: ignore[no-untyped-def]
         x, y = x[good], y[good]
         found, unsure = _parabola(x, y, np.ones(len(x)), degree)
     rest = y - found[0] - found[1] * x - found[2] * x * x
-    if degree == 2 and abs(found[2]) < 5 * unsure * math.sqrt(max(np.sum(rest * rest) / (len(x) - 3), 1e-7)):
+    if degree == 2 and abs(found[2]) < 5 * unsure * math.sqrt(
+        max(np.sum(rest * rest) / (len(x) - 3), 1e-7)
+    ):
         found, _ = _parabola(x, y, np.ones(len(x)), 1)
         rest = y - found[0] - found[1] * x
     return (found[1], found[0], 2 * found[2]), math.sqrt(np.mean(rest * rest))
@@ -204,4 +212,7 @@ def turns_off(incoming: Leg, leg: Leg) -> bool:
 
 def goes_straight(incoming: Leg, outgoing: Leg | None) -> bool:
     """Whether a leg goes on straight from another."""
-    return outgoing is not None and abs(turn(incoming.heading_rad, outgoing.heading_rad)) < STRAIGHT
+    return (
+        outgoing is not None
+        and abs(turn(incoming.heading_rad, outgoing.heading_rad)) < STRAIGHT
+    )

@@ -31,7 +31,10 @@ from morfax.tracer.drawing.drawing import Drawing
 
 TWO_PI = 2.0 * math.pi
 SPECK_PX, SPECK_MM = 2.2, 0.25  # no wider is a speck: one pixel seen through the aperture
-REACH, REACH_PX = 0.8, 3.0  # widths and pixels from where a line is expected, within which its edges are
+REACH, REACH_PX = (
+    0.8,
+    3.0,
+)  # widths and pixels from where a line is expected, within which its edges are
 CLEAN = 0.2  # of the width, by which a clean line's may differ
 # a line that is felt may swell: its width follows what was felt, by so much of the difference
 FOLLOWS_PER_MM = 0.2
@@ -88,14 +91,18 @@ def edges(cells, pitch_mm, x_mm, y_mm, heading, reach_mm, level):  # type: ignor
     half = math.ceil(reach_mm / step)
     best, start = -1.0, 0
     for k in range(-half // 2, half // 2 + 1):
-        d = darkness_at(cells, pitch_mm, x_mm + k * step * nx, y_mm + k * step * ny) - 1e-3 * abs(k * step)
+        d = darkness_at(
+            cells, pitch_mm, x_mm + k * step * nx, y_mm + k * step * ny
+        ) - 1e-3 * abs(k * step)
         if d > best:
             best, start = d, k
     right, left = math.nan, math.nan
     if best < level:
         return right, left
     for side in (-1, 1):
-        before = darkness_at(cells, pitch_mm, x_mm + start * step * nx, y_mm + start * step * ny)
+        before = darkness_at(
+            cells, pitch_mm, x_mm + start * step * nx, y_mm + start * step * ny
+        )
         k = start
         while -half <= k <= half:
             k += side
@@ -144,7 +151,10 @@ def ring(cells, pitch_mm, centre, radius_mm, level):  # type: ignore[no-untyped-
     for k in range(samples):
         a = TWO_PI * k / samples
         seen[k] = darkness_at(
-            cells, pitch_mm, centre[0] + radius_mm * math.cos(a), centre[1] + radius_mm * math.sin(a)
+            cells,
+            pitch_mm,
+            centre[0] + radius_mm * math.cos(a),
+            centre[1] + radius_mm * math.sin(a),
         )
     arcs = np.empty((samples // 2 + 1, 2))
     first_light = -1
@@ -188,8 +198,13 @@ def scout(cells, pitch_mm, start, heading, step_mm, stations, width_mm, level): 
         right, left = edges(cells, pitch_mm, x, y, heading, reach, level)
         width, aside = left - right, 0.5 * (left + right)
         slack = CLEAN * width_mm + 0.5 * pitch_mm
-        if abs(width - width_mm) < slack and (count == 0 or abs(aside) < width_mm / 6 + 0.4 * pitch_mm):
-            seen[count, 0], seen[count, 1] = x - aside * math.sin(heading), y + aside * math.cos(heading)
+        if abs(width - width_mm) < slack and (
+            count == 0 or abs(aside) < width_mm / 6 + 0.4 * pitch_mm
+        ):
+            seen[count, 0], seen[count, 1] = (
+                x - aside * math.sin(heading),
+                y + aside * math.cos(heading),
+            )
             seen[count, 2] = width
             width_mm += FOLLOWS_PER_MM * step_mm * (width - width_mm)
             count += 1

@@ -20,13 +20,18 @@ SPECK_PX = 4.0  # a speck of two pixels of paper, seen through an aperture
 SPECK_WIDTHS = 0.4  # ink narrower than this is no stroke
 
 
-def reach_of_ink(view: View, incoming: Leg, farthest_mm: float, aside_mm: float = 0.0) -> float | None:
+def reach_of_ink(
+    view: View, incoming: Leg, farthest_mm: float, aside_mm: float = 0.0
+) -> float | None:
     """How far the ink goes on from the incoming leg's end along its line, or beside it (left positive), mm;
     None if farther than asked.
     """
     step = 0.35 * view.pitch_mm
     left = np.array([-math.sin(incoming.heading_rad), math.cos(incoming.heading_rad)])
-    places = incoming.at(np.asarray(np.arange(int(farthest_mm / step)) * step, float)) + aside_mm * left
+    places = (
+        incoming.at(np.asarray(np.arange(int(farthest_mm / step)) * step, float))
+        + aside_mm * left
+    )
     steps = _steps_of_ink(view.cells, view.pitch_mm, places, view.level)
     return max(0.0, steps * step) if steps < len(places) else None
 
@@ -69,7 +74,8 @@ def _inks(view: View, leg: Leg, farthest_mm: float) -> list[float]:
     speck of paper; none if farther.
     """
     middle, *beside = (
-        reach_of_ink(view, leg, farthest_mm, share * view.width_mm) for share in (0.0, -0.25, 0.25)
+        reach_of_ink(view, leg, farthest_mm, share * view.width_mm)
+        for share in (0.0, -0.25, 0.25)
     )
     if middle is None:
         return []
@@ -100,7 +106,8 @@ def lines_from(view: View, centre: Array, radius_mm: float) -> int:
         way = np.array([math.cos(heading), math.sin(heading)])
         beside = np.outer(BESIDE * view.width_mm, [-way[1], way[0]])
         joined += any(
-            all(lighter.dark(centre + off + share * radius_mm * way) for share in SPOKE) for off in beside
+            all(lighter.dark(centre + off + share * radius_mm * way) for share in SPOKE)
+            for off in beside
         )
     return joined
 
@@ -113,7 +120,9 @@ def lines_on(view: View, centre: Array, radius_mm: float) -> int:
 def strokes_on(view: View, centre: Array, radius_mm: float) -> Array:
     """The arcs that a ring sees which are no specks, (n, 2) rad."""
     arcs = photocell.ring(view.cells, view.pitch_mm, centre, radius_mm, view.level)
-    return np.asarray(arcs[(arcs[:, 1] - arcs[:, 0]) * radius_mm > SPECK_WIDTHS * view.width_mm])
+    return np.asarray(
+        arcs[(arcs[:, 1] - arcs[:, 0]) * radius_mm > SPECK_WIDTHS * view.width_mm]
+    )
 
 
 def end_of(view: View, incoming: Leg) -> float | None:

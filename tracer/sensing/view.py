@@ -36,7 +36,8 @@ class View:
     width_mm: float
     level: float
     usual_mm: float | None = None  # the line's width as a rule, where the width here differs
-    enlarged: float = 1.0  # times: what the head sees is so many times as large as on the drawing
+    # times: what the head sees is so many times as large as on the drawing
+    enlarged: float = 1.0
 
     @property
     def step_mm(self) -> float:
@@ -52,7 +53,14 @@ class View:
         """Centres and widths (n, 3) of the line from a place on it along a heading, while it is clean."""
         stations = max(4, round(length_mm / self.step_mm) + 1)
         return photocell.scout(
-            self.cells, self.pitch_mm, place, heading, self.step_mm, stations, self.width_mm, self.level
+            self.cells,
+            self.pitch_mm,
+            place,
+            heading,
+            self.step_mm,
+            stations,
+            self.width_mm,
+            self.level,
         )
 
     def feel_along(self, way: Array) -> Array:
@@ -75,7 +83,11 @@ class View:
             aside = 0.5 * (left + right)
             if abs(left - right - self.width_mm) < photocell.CLEAN * self.width_mm:
                 seen.append(
-                    (place[0] - aside * math.sin(heading), place[1] + aside * math.cos(heading), left - right)
+                    (
+                        place[0] - aside * math.sin(heading),
+                        place[1] + aside * math.cos(heading),
+                        left - right,
+                    )
                 )
         return np.array(seen).reshape(-1, 3)
 
@@ -86,18 +98,29 @@ class View:
         The usual width follows by a share of how far the width differs from it.
         """
         way = np.array([math.cos(heading), math.sin(heading)])
-        places = [place + 2 * k * self.step_mm * way for k in range(5)]  # more of them than a speck spoils
-        ink = float(np.median([photocell.darkness_at(self.cells, self.pitch_mm, p[0], p[1]) for p in places]))
+        places = [
+            place + 2 * k * self.step_mm * way for k in range(5)
+        ]  # more of them than a speck spoils
+        ink = float(
+            np.median(
+                [photocell.darkness_at(self.cells, self.pitch_mm, p[0], p[1]) for p in places]
+            )
+        )
         level = LEVEL * min(max(ink, self.level), 4 * self.level)
         reach = 1.5 * self.width_mm + 2 * self.pitch_mm
         found = [
-            photocell.edges(self.cells, self.pitch_mm, p[0], p[1], heading, reach, level) for p in places
+            photocell.edges(self.cells, self.pitch_mm, p[0], p[1], heading, reach, level)
+            for p in places
         ]
-        width = float(np.median([left - right for right, left in found]))  # NaN if any has no edge
+        width = float(
+            np.median([left - right for right, left in found])
+        )  # NaN if any has no edge
         usual = self.usual_mm or self.width_mm
         if not 0.5 < width / usual < 1.6:
             return self
-        return replace(self, width_mm=width, level=level, usual_mm=usual + follows * (width - usual))
+        return replace(
+            self, width_mm=width, level=level, usual_mm=usual + follows * (width - usual)
+        )
 
     def through_larger(self, stations: Array, heading: float) -> View:
         """The line through cells as large as it is wide, which average its grain; its width and its darkness
@@ -110,10 +133,19 @@ class View:
             np.median([photocell.darkness_at(cells, self.pitch_mm, x, y) for x, y in places])
         )
         reach = 3 * self.width_mm
-        found = [photocell.edges(cells, self.pitch_mm, x, y, heading, reach, level) for x, y in places]
+        found = [
+            photocell.edges(cells, self.pitch_mm, x, y, heading, reach, level)
+            for x, y in places
+        ]
         widths = [left - right for right, left in found if math.isfinite(left - right)]
-        return replace(self, cells=cells, level=level, width_mm=float(np.median(widths))) if widths else self
+        return (
+            replace(self, cells=cells, level=level, width_mm=float(np.median(widths)))
+            if widths
+            else self
+        )
 
     def dark(self, place: Array) -> bool:
         """Whether there is ink at a place."""
-        return bool(photocell.darkness_at(self.cells, self.pitch_mm, place[0], place[1]) > self.level)
+        return bool(
+            photocell.darkness_at(self.cells, self.pitch_mm, place[0], place[1]) > self.level
+        )

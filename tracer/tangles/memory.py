@@ -68,9 +68,15 @@ class Tangles:
         )  # one line ends on another: that is a junction, which the legs tell better
         if odd:
             self._beside += [leg for leg in tangle.legs[1:] if _runs_back(view, incoming, leg)]
-        if not tangle.whole or not 2 <= len(tangle.legs) <= MOST_LEGS or (odd and plan is not None):
+        if (
+            not tangle.whole
+            or not 2 <= len(tangle.legs) <= MOST_LEGS
+            or (odd and plan is not None)
+        ):
             return plan, False
-        found, way, others = unravelled(Sketch.of(view, tangle), incoming, trail, way_in, plan, rank)
+        found, way, others = unravelled(
+            Sketch.of(view, tangle), incoming, trail, way_in, plan, rank
+        )
         if way is not None:
             self._known.append((tangle, way))
         if rank == 0:
@@ -89,7 +95,9 @@ class Tangles:
         """Numbers of the junctions where another way out would have done as well and leads to ink that has
         not been followed, and its rank.
         """
-        return tuple((number, rank) for number, rank, leg in self._left if not trail.holds(leg, width_mm))
+        return tuple(
+            (number, rank) for number, rank, leg in self._left if not trail.holds(leg, width_mm)
+        )
 
     def _strand_left(
         self, incoming: Leg, trail: Trail, place: Array, width_mm: float
@@ -104,7 +112,9 @@ class Tangles:
                     continue  # the one that was taken
                 for a, b, between in ((*pair, vertices), (*pair[::-1], vertices[::-1])):
                     first = legs[a].turned_round()
-                    if same_line(first, incoming, width_mm) and not trail.holds(legs[b], width_mm):
+                    if same_line(first, incoming, width_mm) and not trail.holds(
+                        legs[b], width_mm
+                    ):
                         return (
                             first if ahead_mm(place, first) > LEAST_AHEAD_MM else incoming,
                             between,

@@ -68,7 +68,9 @@ def pieces(ends, counts, strokes, vertices, out):  # type: ignore[no-untyped-def
                 n, x, y = n + 1, to_x, to_y
             continue
         for i in range(1, PIECES + 1):
-            to_x, to_y = bend(first[0], first[1], first[2], vertices[at, 0], vertices[at, 1], i / PIECES)
+            to_x, to_y = bend(
+                first[0], first[1], first[2], vertices[at, 0], vertices[at, 1], i / PIECES
+            )
             out[0, n], out[1, n], out[2, n], out[3, n] = x, y, to_x, to_y
             n, x, y = n + 1, to_x, to_y
         for i in range(at, at + counts[k] - 1):
@@ -78,7 +80,9 @@ def pieces(ends, counts, strokes, vertices, out):  # type: ignore[no-untyped-def
         at += counts[k]
         x, y = last[0], last[1]
         for i in range(1, PIECES + 1):
-            to_x, to_y = bend(last[0], last[1], last[2], vertices[at - 1, 0], vertices[at - 1, 1], i / PIECES)
+            to_x, to_y = bend(
+                last[0], last[1], last[2], vertices[at - 1, 0], vertices[at - 1, 1], i / PIECES
+            )
             out[0, n], out[1, n], out[2, n], out[3, n] = x, y, to_x, to_y
             n, x, y = n + 1, to_x, to_y
     for _ in range(strokes):
@@ -138,7 +142,9 @@ def ink(distance_mm, half_mm, softness_mm, out):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _wrong(places, darkness, known_mm, pen, ends, counts, strokes, vertices, lines, distance, out):  # type: ignore[no-untyped-def]
+def _wrong(
+    places, darkness, known_mm, pen, ends, counts, strokes, vertices, lines, distance, out
+):  # type: ignore[no-untyped-def]
     """What is drawn too dark at each place, into `out`; the sum of its squares."""
     distance[:] = known_mm
     away(places, lines, pieces(ends, counts, strokes, vertices, lines), distance)
@@ -160,7 +166,9 @@ def settle(places, darkness, known_mm, pen, ends, counts, strokes, vertices, rou
     n, p = len(places), 2 * len(vertices)
     lines = np.empty((4, 2 * PIECES * len(ends) + p + 1))
     now, trial, distance = np.empty(n), np.empty(n), np.empty(n)
-    best = _wrong(places, darkness, known_mm, pen, ends, counts, strokes, vertices, lines, distance, now)
+    best = _wrong(
+        places, darkness, known_mm, pen, ends, counts, strokes, vertices, lines, distance, now
+    )
     change = np.empty((p, n))
     damping = 1e-2
     for _ in range(rounds if p > 0 else 0):
@@ -168,7 +176,17 @@ def settle(places, darkness, known_mm, pen, ends, counts, strokes, vertices, rou
             old = vertices[i // 2, i % 2]
             vertices[i // 2, i % 2] = old + NUDGE_MM
             _wrong(
-                places, darkness, known_mm, pen, ends, counts, strokes, vertices, lines, distance, change[i]
+                places,
+                darkness,
+                known_mm,
+                pen,
+                ends,
+                counts,
+                strokes,
+                vertices,
+                lines,
+                distance,
+                change[i],
             )
             vertices[i // 2, i % 2] = old
             change[i] = (change[i] - now) / NUDGE_MM
@@ -179,7 +197,17 @@ def settle(places, darkness, known_mm, pen, ends, counts, strokes, vertices, rou
             step *= min(1.0, FARTHEST_MM / (np.max(np.abs(step)) + 1e-12))
             moved = vertices - step.reshape(-1, 2)
             total = _wrong(
-                places, darkness, known_mm, pen, ends, counts, strokes, moved, lines, distance, trial
+                places,
+                darkness,
+                known_mm,
+                pen,
+                ends,
+                counts,
+                strokes,
+                moved,
+                lines,
+                distance,
+                trial,
             )
             if total < best:
                 best, damping = total, max(0.3 * damping, 1e-4)

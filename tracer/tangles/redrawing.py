@@ -75,23 +75,41 @@ class Sketch:
     @classmethod
     def of(cls, view: View, tangle: Tangle) -> Sketch:
         """Set the pen to the width and softness of the legs, and draw these."""
-        facing = [leg.heading_rad + (math.pi if k else 0.0) for k, leg in enumerate(tangle.legs)]
-        poses = np.array([(*leg.end_mm, heading) for leg, heading in zip(tangle.legs, facing, strict=True)])
+        facing = [
+            leg.heading_rad + (math.pi if k else 0.0) for k, leg in enumerate(tangle.legs)
+        ]
+        poses = np.array(
+            [(*leg.end_mm, heading) for leg, heading in zip(tangle.legs, facing, strict=True)]
+        )
         width = float(np.median([leg.width_mm for leg in tangle.legs]))
         known = np.full(len(tangle.darkness), 1e3)
         for k, leg in enumerate(tangle.legs):
             way = leg.at(np.linspace(0, 1.2 if k else -1.2, 7))
-            pen.away(tangle.places_mm, np.hstack([way[:-1], way[1:]]).T.copy(), len(way) - 1, known)
+            pen.away(
+                tangle.places_mm, np.hstack([way[:-1], way[1:]]).T.copy(), len(way) - 1, known
+            )
         softness = _softness(view, tangle.legs[0])
         return cls(
-            view, tangle, poses, (0.5 * width, softness), known, tangle.area_mm2 / len(known) / width**2
+            view,
+            tangle,
+            poses,
+            (0.5 * width, softness),
+            known,
+            tangle.area_mm2 / len(known) / width**2,
         )
 
     def _drawn(self, way: Way) -> tuple[Array, NDArray[np.int64], int, Array]:
         """A way as the pen takes it."""
-        ends = np.array([[self.poses[a], self.poses[b]] for a, b in way.pairs]).reshape(-1, 2, 3)
+        ends = np.array([[self.poses[a], self.poses[b]] for a, b in way.pairs]).reshape(
+            -1, 2, 3
+        )
         counts = np.array([len(v) for v in way.vertices], np.int64)
-        return ends, counts, len(way.strokes), np.asarray(np.vstack([NONE, *way.vertices, *way.strokes]))
+        return (
+            ends,
+            counts,
+            len(way.strokes),
+            np.asarray(np.vstack([NONE, *way.vertices, *way.strokes])),
+        )
 
     def settled(self, way: Way, rounds: int = 12) -> Way:
         """The way with its vertices moved to where they explain the ink best."""
@@ -108,7 +126,9 @@ class Sketch:
             rounds,
         )
         parts = np.split(vertices, np.cumsum([*counts, *[2] * strokes]))
-        moved = replace(way, vertices=tuple(parts[: len(counts)]), strokes=tuple(parts[len(counts) : -1]))
+        moved = replace(
+            way, vertices=tuple(parts[: len(counts)]), strokes=tuple(parts[len(counts) : -1])
+        )
         misfit = float(left) * self.unit + self._on_paper(moved)
         return replace(moved, misfit=misfit, cost=misfit + VERTEX * self._effort(moved))
 
@@ -118,11 +138,15 @@ class Sketch:
         lines = np.empty((4, 2 * pen.PIECES * len(ends) + 2 * len(vertices) + 1))
         count = pen.pieces(ends, counts, strokes, vertices, lines)
         view = self.view
-        return float(pen.on_paper_mm(view.cells, view.pitch_mm, view.level, lines, count)) / (2 * self.pen[0])
+        return float(pen.on_paper_mm(view.cells, view.pitch_mm, view.level, lines, count)) / (
+            2 * self.pen[0]
+        )
 
     def _effort(self, way: Way) -> float:
         """What a way costs by its vertices and strokes, in vertices."""
-        effort = STROKE * (len(way.strokes) - len(self.poses) % 2)  # a leg that is left over has its stroke
+        effort = STROKE * (
+            len(way.strokes) - len(self.poses) % 2
+        )  # a leg that is left over has its stroke
         for (a, b), vertices in zip(way.pairs, way.vertices, strict=True):
             effort += len(vertices) + DOUBLED * _doubled(
                 np.vstack([self.poses[a, :2], vertices, self.poses[b, :2]])
@@ -137,9 +161,12 @@ class Sketch:
         spare = set(range(len(self.poses))) - {leg for pair in pairs for leg in pair}
         ends = tuple(self._end(leg) for leg in spare)
         rough = sorted(
-            (self.settled(Way(pairs, v, ends), 0) for v in product(*joints)), key=lambda way: way.cost
+            (self.settled(Way(pairs, v, ends), 0) for v in product(*joints)),
+            key=lambda way: way.cost,
         )
-        return min((self.settled(way, 4) for way in rough[:MOST_SETTLED]), key=lambda way: way.cost)
+        return min(
+            (self.settled(way, 4) for way in rough[:MOST_SETTLED]), key=lambda way: way.cost
+        )
 
     def _joints(self, a: int, b: int) -> list[Array]:
         """Vertices (n, 2) by which two legs may be joined."""
@@ -179,7 +206,10 @@ class Sketch:
         for stretch in stretches:
             some = np.vstack([stretch[:-1:PLAN_EVERY], stretch[-1:]])
             pen.away(
-                self.tangle.places_mm, np.hstack([some[:-1], some[1:]]).T.copy(), len(some) - 1, distance
+                self.tangle.places_mm,
+                np.hstack([some[:-1], some[1:]]).T.copy(),
+                len(some) - 1,
+                distance,
             )
         drawn = np.empty(len(distance))
         pen.ink(distance, *self.pen, drawn)
@@ -199,7 +229,11 @@ class Sketch:
         feet = lines[:, :2] + np.clip(t, 0, 1)[:, None] * along
         piece = int(np.argmin(np.hypot(*(feet - place).T)))
         foot = feet[piece]
-        return place + (foot - place) * self.pen[0] / max(float(np.hypot(*(foot - place))), 1e-9), foot, piece
+        return (
+            place + (foot - place) * self.pen[0] / max(float(np.hypot(*(foot - place))), 1e-9),
+            foot,
+            piece,
+        )
 
     def improved(self, way: Way, *, marks_only: bool = False) -> Way:
         """The way with vertices and strokes added while they explain more ink than they cost; `marks_only`:
@@ -222,7 +256,14 @@ class Sketch:
         """The way without the vertices that explain less ink than they cost."""
         while True:
             fewer = [
-                replace(way, vertices=(*way.vertices[:k], np.delete(v, i, axis=0), *way.vertices[k + 1 :]))
+                replace(
+                    way,
+                    vertices=(
+                        *way.vertices[:k],
+                        np.delete(v, i, axis=0),
+                        *way.vertices[k + 1 :],
+                    ),
+                )
                 for k, v in enumerate(way.vertices)
                 for i in range(len(v))
             ]
@@ -234,7 +275,9 @@ class Sketch:
 
 def ways(sketch: Sketch) -> list[Way]:
     """Ways to draw a tangle, the best first."""
-    plain = sorted((sketch.plainest(pairs) for pairs in matchings(len(sketch.poses))), key=lambda w: w.cost)
+    plain = sorted(
+        (sketch.plainest(pairs) for pairs in matchings(len(sketch.poses))), key=lambda w: w.cost
+    )
     return sorted((sketch.improved(way) for way in plain[:MOST_IMPROVED]), key=lambda w: w.cost)
 
 
@@ -266,10 +309,14 @@ def _with_more(way: Way, tip: Array, foot: Array, piece: int) -> list[Way]:
             continue
         gap = min(max(piece - pen.PIECES + 1, 0), len(v))
         spikes = [[tip], [foot, tip], [tip, foot], [foot, tip, foot]]
-        added = [(gap, spike) for spike in spikes] + [(at, [tip]) for at in range(len(v) + 1) if at != gap]
+        added = [(gap, spike) for spike in spikes] + [
+            (at, [tip]) for at in range(len(v) + 1) if at != gap
+        ]
         for at, vertices in added:
             longer = np.vstack([v[:at], *vertices, v[at:]])
-            more.append(replace(way, vertices=(*way.vertices[:k], longer, *way.vertices[k + 1 :])))
+            more.append(
+                replace(way, vertices=(*way.vertices[:k], longer, *way.vertices[k + 1 :]))
+            )
         break
     return more
 

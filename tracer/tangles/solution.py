@@ -23,7 +23,10 @@ from morfax.tracer.tangles.redrawing import NONE, VERTEX, Sketch, Way, ways
 from morfax.tracer.tangles.strands import as_drawn, aside_mm, same_line, stretches_over
 
 CLEAR = 0.25  # misfit up to which a way explains the ink
-LEAST_CLEAR, BETTER = 1.0, 0.25  # up to this for two legs far apart, if it is so much better than the plan
+LEAST_CLEAR, BETTER = (
+    1.0,
+    0.25,
+)  # up to this for two legs far apart, if it is so much better than the plan
 FEW = 2.5  # vertices: no more for that, if the plan leads there too
 TWICE, LEAST_MISFIT = (
     2.0,
@@ -42,7 +45,12 @@ CROSSES_RAD = math.radians(25)  # a line that bends less goes straight on
 
 
 def unravelled(
-    sketch: Sketch, incoming: Leg, trail: Trail, way_in: tuple[Array, float], plan: Planned | None, rank: int
+    sketch: Sketch,
+    incoming: Leg,
+    trail: Trail,
+    way_in: tuple[Array, float],
+    plan: Planned | None,
+    rank: int,
 ) -> tuple[Planned | None, Way | None, list[Leg]]:
     """The way out of a tangle, the way in which its ink is drawn then, None if no way explains it, and the
     legs of others that would do as well.
@@ -51,7 +59,12 @@ def unravelled(
     drawn = [] if plan is None else as_drawn(plan, tangle, view.width_mm)
     planned = math.inf if plan is None else sketch.misfit_with(Way((), ()), drawn)
     two = len(tangle.legs) == 2
-    if plan is not None and two and planned < AS_GOOD and same_line(plan.leg, tangle.legs[1], view.width_mm):
+    if (
+        plan is not None
+        and two
+        and planned < AS_GOOD
+        and same_line(plan.leg, tangle.legs[1], view.width_mm)
+    ):
         return plan, Way(((0, 1),), (NONE,)), []
     every = ways(sketch)
     if _partner(every[0]) is None:
@@ -70,7 +83,11 @@ def unravelled(
     if rank and others:
         leg, straight = others[min(rank, len(others)) - 1], False
     way = best[leg]
-    as_good = [tangle.legs[k] for k in others if _as_good(best[k], way)] if _bends(sketch, way) else []
+    as_good = (
+        [tangle.legs[k] for k in others if _as_good(best[k], way)]
+        if _bends(sketch, way)
+        else []
+    )
     direct = Planned(stretches_over(way_in, incoming, NONE, tangle.legs[leg]), tangle.legs[leg])
     if any(_is_rough(way, line, view.width_mm) for line in (plan, direct)):
         return plan or direct, way, as_good
@@ -81,7 +98,9 @@ def unravelled(
     ):
         return plan, way, as_good
     return (
-        Planned(stretches_over(way_in, incoming, _own(way), tangle.legs[leg]), tangle.legs[leg]),
+        Planned(
+            stretches_over(way_in, incoming, _own(way), tangle.legs[leg]), tangle.legs[leg]
+        ),
         way,
         as_good,
     )
@@ -126,7 +145,9 @@ def _bends(sketch: Sketch, way: Way) -> bool:
     touches.
     """
     headings = sketch.poses[:, 2]
-    return all(abs(turn(headings[a], headings[b] + math.pi)) > CROSSES_RAD for a, b in way.pairs)
+    return all(
+        abs(turn(headings[a], headings[b] + math.pi)) > CROSSES_RAD for a, b in way.pairs
+    )
 
 
 def _as_good(way: Way, other: Way) -> bool:
@@ -144,14 +165,19 @@ def _is_mark(sketch: Sketch, way: Way, plan: Planned) -> bool:
         return False
     if way.misfit > CLEAR:
         return True
-    scribble = way.misfit > WELL_MM2 / width_mm**2 and way.cost - way.misfit > BLOT_VERTICES * VERTEX
+    scribble = (
+        way.misfit > WELL_MM2 / width_mm**2 and way.cost - way.misfit > BLOT_VERTICES * VERTEX
+    )
     if scribble and beside_mm < BLOT_WIDTHS * width_mm:
         return True
     bare = Way(way.pairs, tuple(NONE for _ in way.pairs))
     marked = sketch.improved(bare, marks_only=True)
     tips = [*_own(way), *(stroke[1] for stroke in marked.strokes)]
     ticks = [np.array(two) for two in combinations(tips, 2)] + list(marked.strokes[:1])
-    ticked = min((sketch.settled(replace(bare, strokes=(tick,))).misfit for tick in ticks), default=math.inf)
+    ticked = min(
+        (sketch.settled(replace(bare, strokes=(tick,))).misfit for tick in ticks),
+        default=math.inf,
+    )
     if ticked < MARK_AS_GOOD * way.misfit + LEAST_MISFIT:
         return True
     if beside_mm < width_mm:
@@ -161,7 +187,9 @@ def _is_mark(sketch: Sketch, way: Way, plan: Planned) -> bool:
 
 def _without_own(way: Way) -> Way:
     """The way without the strand of the incoming leg."""
-    others = [(pair, v) for pair, v in zip(way.pairs, way.vertices, strict=True) if pair[0] != 0]
+    others = [
+        (pair, v) for pair, v in zip(way.pairs, way.vertices, strict=True) if pair[0] != 0
+    ]
     return Way(tuple(pair for pair, _ in others), tuple(v for _, v in others), way.strokes)
 
 

@@ -26,7 +26,9 @@ NEAR_MM = 3.0
 KINK_RAD = math.radians(14)  # a smaller change of heading is run through
 
 
-def stretches_over(way_in: tuple[Array, float], incoming: Leg, vertices: Array, outgoing: Leg) -> list[Array]:
+def stretches_over(
+    way_in: tuple[Array, float], incoming: Leg, vertices: Array, outgoing: Leg
+) -> list[Array]:
     """Stretches from where the head is over the vertices to the outgoing leg's clean end, one ending at each
     vertex where the head swivels.
     """
@@ -35,7 +37,15 @@ def stretches_over(way_in: tuple[Array, float], incoming: Leg, vertices: Array, 
     if not len(vertices):
         return [
             np.vstack(
-                [start, hermite(incoming.end_mm, incoming.heading_rad, outgoing.end_mm, outgoing.heading_rad)]
+                [
+                    start,
+                    hermite(
+                        incoming.end_mm,
+                        incoming.heading_rad,
+                        outgoing.end_mm,
+                        outgoing.heading_rad,
+                    ),
+                ]
             )
         ]
     first = np.vstack([start, _bend(incoming.end_mm, incoming.heading_rad, vertices[0])])
@@ -43,7 +53,10 @@ def stretches_over(way_in: tuple[Array, float], incoming: Leg, vertices: Array, 
     out = [first]
     for part in [*(_straight(a, b) for a, b in pairwise(vertices)), last]:
         before, after = out[-1][-1] - out[-1][-2], part[1] - part[0]
-        if abs(turn(math.atan2(before[1], before[0]), math.atan2(after[1], after[0]))) > KINK_RAD:
+        if (
+            abs(turn(math.atan2(before[1], before[0]), math.atan2(after[1], after[0])))
+            > KINK_RAD
+        ):
             out.append(part)
         else:
             out[-1] = np.vstack([out[-1], part[1:]])
@@ -76,15 +89,23 @@ def same_line(leg: Leg, other: Leg, width_mm: float) -> bool:
 def aside_mm(vertices: Array, stretches: list[Array]) -> float:
     """How far vertices reach from some stretches, mm."""
     places = np.vstack(stretches)
-    return max((float(np.min(np.hypot(*(places - vertex).T))) for vertex in vertices), default=0.0)
+    return max(
+        (float(np.min(np.hypot(*(places - vertex).T))) for vertex in vertices), default=0.0
+    )
 
 
 def _bend(place: Array, heading: float, vertex: Array) -> Array:
     """Places (n, 2) along the bend from a leg's end to a vertex."""
-    shares = np.linspace(0, 1, max(2, math.ceil(float(np.hypot(*(vertex - place))) / SPACING_MM) + 1))
-    return np.array([pen.bend(place[0], place[1], heading, vertex[0], vertex[1], t) for t in shares])
+    shares = np.linspace(
+        0, 1, max(2, math.ceil(float(np.hypot(*(vertex - place))) / SPACING_MM) + 1)
+    )
+    return np.array(
+        [pen.bend(place[0], place[1], heading, vertex[0], vertex[1], t) for t in shares]
+    )
 
 
 def _straight(start: Array, end: Array) -> Array:
     """Places (n, 2) along a straight line."""
-    return np.linspace(start, end, max(2, math.ceil(float(np.hypot(*(end - start))) / SPACING_MM) + 1))
+    return np.linspace(
+        start, end, max(2, math.ceil(float(np.hypot(*(end - start))) / SPACING_MM) + 1)
+    )

@@ -137,11 +137,19 @@ def _ink(view: View, fronts: Fronts, ended: Flags) -> tuple[Array, Array, float]
     """
     (inside, cells), (top, left) = _inside(view, fronts, ended), fronts.corner
     square = np.ones((3, 3), np.uint8)
-    about = cv2.dilate(inside.view(np.uint8), square, iterations=max(2, round(ABOUT_MM / view.pitch_mm)))
+    about = cv2.dilate(
+        inside.view(np.uint8), square, iterations=max(2, round(ABOUT_MM / view.pitch_mm))
+    )
     others = cv2.dilate(((cells > view.level) & ~inside).view(np.uint8), square, iterations=2)
     i, j = np.nonzero(inside | ((about > 0) & (others == 0)))
-    x, y = (j + left + 0.5) * view.pitch_mm, (view.cells.shape[0] - i - top - 0.5) * view.pitch_mm
-    places, darkness = np.column_stack([x, y]), np.minimum(cells[i, j] / (2 * view.level), 1.05).astype(float)
+    x, y = (
+        (j + left + 0.5) * view.pitch_mm,
+        (view.cells.shape[0] - i - top - 0.5) * view.pitch_mm,
+    )
+    places, darkness = (
+        np.column_stack([x, y]),
+        np.minimum(cells[i, j] / (2 * view.level), 1.05).astype(float),
+    )
     if len(places) > MOST_PLACES:
         some = np.random.default_rng(0).permutation(len(places))[:MOST_PLACES]
         places, darkness = places[some], darkness[some]

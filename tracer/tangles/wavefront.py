@@ -40,7 +40,9 @@ class Fronts:
     breadth_mm: Array
     parents: list[list[int]]
     children: list[list[int]]
-    label: NDArray[np.int32]  # of each pixel of the window, -1 on paper and where the wave did not come
+    label: NDArray[
+        np.int32
+    ]  # of each pixel of the window, -1 on paper and where the wave did not come
     corner: tuple[int, int]  # row and column of the window's first pixel on the sheet
 
     def beyond_mm(self) -> Array:
@@ -61,7 +63,9 @@ def fronts_from(view: View, place: Array, heading: float, reach_mm: float) -> Fr
     top, left = max(0, row - half), max(0, column - half)
     window = view.cells[top : row + half + 1, left : column + half + 1]
     local = place[0] / pitch - 0.5 - left, rows - place[1] / pitch - 0.5 - top
-    distance = _wave(window, view.level, local, heading, view.width_mm / pitch, reach_mm / pitch)
+    distance = _wave(
+        window, view.level, local, heading, view.width_mm / pitch, reach_mm / pitch
+    )
     step_px = max(STEP_MM / pitch, STEP_PX)
     label, table, links = _split(distance, step_px)
     order = np.argsort(table[:, 0], kind="stable")
@@ -72,7 +76,9 @@ def fronts_from(view: View, place: Array, heading: float, reach_mm: float) -> Fr
         parents[b].append(int(a))
         children[a].append(int(b))
     table = table[order]
-    places = np.column_stack([(table[:, 3] + left + 0.5) * pitch, (rows - table[:, 2] - top - 0.5) * pitch])
+    places = np.column_stack(
+        [(table[:, 3] + left + 0.5) * pitch, (rows - table[:, 2] - top - 0.5) * pitch]
+    )
     if len(number):
         label = np.where(label >= 0, number[label], np.int32(-1))
     at, breadth = table[:, 0].astype(np.int64), table[:, 1] * pitch / step_px
@@ -111,9 +117,17 @@ def _wave(cells, level, start, heading, width_px, reach_px):  # type: ignore[no-
             for dj in range(-2, 3):
                 y, x = i + di, j + dj
                 knight = abs(di * dj) == 2
-                if not (knight or max(abs(di), abs(dj)) == 1) or y < 0 or x < 0 or y >= rows or x >= columns:
+                if (
+                    not (knight or max(abs(di), abs(dj)) == 1)
+                    or y < 0
+                    or x < 0
+                    or y >= rows
+                    or x >= columns
+                ):
                     continue
-                if not open_to[y, x] or (knight and not open_to[i + int(di / 2), j + int(dj / 2)]):
+                if not open_to[y, x] or (
+                    knight and not open_to[i + int(di / 2), j + int(dj / 2)]
+                ):
                     continue
                 there = out[i, j] + math.sqrt(di * di + dj * dj)
                 if there < out[y, x] - 1e-6 and there < reach_px:
@@ -151,7 +165,11 @@ def _split(distance, step_px):  # type: ignore[no-untyped-def]
                 pixels, at_row, at_column = pixels + 1, at_row + i, at_column + j
                 for y in range(max(0, i - 1), min(rows, i + 2)):
                     for x in range(max(0, j - 1), min(columns, j + 2)):
-                        if label[y, x] < 0 and distance[y, x] < FAR and int(distance[y, x] / step_px) == step:
+                        if (
+                            label[y, x] < 0
+                            and distance[y, x] < FAR
+                            and int(distance[y, x] / step_px) == step
+                        ):
                             label[y, x] = count
                             stack[waiting, 0], stack[waiting, 1] = y, x
                             waiting += 1

@@ -80,7 +80,9 @@ def test_noise_is_harmless_in_the_middle_of_the_margin_and_not_at_its_edge() -> 
     position = np.linspace(-5000, 5000, 20001)
     wrong = {}
     for misaligned in (-0.5, 0.0, 0.45):
-        scale = Scales(64, misaligned_digits=misaligned, fine_noise_counts=2, coarse_noise_digits=0.3)
+        scale = Scales(
+            64, misaligned_digits=misaligned, fine_noise_counts=2, coarse_noise_digits=0.3
+        )
         off = joined(*read_scales(position, scale), 64) - np.floor(position)
         wrong[misaligned] = np.abs(off).max()
     assert wrong[0.0] <= 3 and wrong[-0.5] >= 32 and wrong[0.45] >= 32  # counts: a pitch is 64
@@ -93,13 +95,21 @@ def test_a_pitch_without_a_highest_digit_is_refused() -> None:
 
 def test_noisy_scales_shake_the_machine_no_more_than_their_noise(round_file: Path) -> None:
     shaken = Servo(scales=Scales(fine_noise_counts=4, coarse_noise_digits=0.3))  # 2 um
-    off = [distance(thin(play_cubic(round_file, servo=servo)), circle(5, 10)) for servo in (Servo(), shaken)]
+    off = [
+        distance(thin(play_cubic(round_file, servo=servo)), circle(5, 10))
+        for servo in (Servo(), shaken)
+    ]
     assert off[0].path_to_reference.max_mm < off[1].path_to_reference.max_mm < 4 * UM
 
 
 def test_a_misaligned_scale_is_met_by_the_register(round_file: Path) -> None:
     with pytest.raises(LockFault, match="lags") as met:
-        join(play_cubic(round_file, servo=Servo(scales=Scales(misaligned_digits=0.8), register_digits=10)))
+        join(
+            play_cubic(
+                round_file,
+                servo=Servo(scales=Scales(misaligned_digits=0.8), register_digits=10),
+            )
+        )
     assert met.value.axis in ("x", "y") and met.value.time_s >= 0
 
 
@@ -107,7 +117,9 @@ def test_the_lag_is_the_speed_over_the_modulus(round_file: Path) -> None:
     for modulus in (100.0, 200.0):
         playback = play_cubic(round_file, servo=Servo(modulus_per_s=modulus))
         join(playback)
-        assert max(playback.following_error_mm) == pytest.approx(10 / modulus, rel=0.05)  # 10 mm/s
+        assert max(playback.following_error_mm) == pytest.approx(
+            10 / modulus, rel=0.05
+        )  # 10 mm/s
         assert playback.end_error_mm == pytest.approx([0, 0, 0], abs=1 * UM)
 
 
@@ -132,7 +144,9 @@ def test_a_register_that_is_full_stops_the_machine(round_file: Path) -> None:
     with pytest.raises(LockFault, match="larger speed modulus") as met:
         blocks.extend(playback)
     assert np.abs(playback.following_error_mm).max() < 4096 / 2000
-    assert met.value.time_s == pytest.approx(sum(len(b.positions_mm) for b in blocks) / 4000, abs=2)
+    assert met.value.time_s == pytest.approx(
+        sum(len(b.positions_mm) for b in blocks) / 4000, abs=2
+    )
 
 
 def test_a_modulus_too_large_for_the_points_is_refused(round_file: Path) -> None:
@@ -145,15 +159,21 @@ def test_the_times_of_the_blocks_join(round_file: Path) -> None:
     blocks = list(playback)
     ends_s = [block.start_s + block.duration_s for block in blocks[:-1]]
     assert ends_s == pytest.approx([block.start_s for block in blocks[1:]])
-    assert ends_s[-1] + blocks[-1].duration_s == pytest.approx(playback.duration_s, abs=1 / 1000)
+    assert ends_s[-1] + blocks[-1].duration_s == pytest.approx(
+        playback.duration_s, abs=1 / 1000
+    )
 
 
 def test_the_kernels_do_as_plain_python_what_they_do_compiled(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    short = record_cubics(SQUARE, tmp_path / "a.cubic", fmt=CubicFormat(points=64, linear=2)).file
+    short = record_cubics(
+        SQUARE, tmp_path / "a.cubic", fmt=CubicFormat(points=64, linear=2)
+    ).file
     shaken = Servo(scales=Scales(fine_noise_counts=1), dropped_digits=1)
     compiled = join(play_cubic(short, servo=shaken)).positions_mm
     monkeypatch.setattr(interpolator, "_interpolate", interpolator._interpolate.py_func)
     monkeypatch.setattr(cubic, "_servo", cubic._servo.py_func)
-    assert join(play_cubic(short, servo=shaken)).positions_mm == pytest.approx(compiled, abs=1e-9)
+    assert join(play_cubic(short, servo=shaken)).positions_mm == pytest.approx(
+        compiled, abs=1e-9
+    )

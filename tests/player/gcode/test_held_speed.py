@@ -11,7 +11,9 @@ from morfax.player.gcode.held_speed import held_speed
 from morfax.player.gcode.pulses import PulsePlayback, play_pulses
 
 
-def line(folder: Path, x_mm: float, y_mm: float, override: float | None = None) -> PulsePlayback:
+def line(
+    folder: Path, x_mm: float, y_mm: float, override: float | None = None
+) -> PulsePlayback:
     """A line of 30 mm at 10 mm/s, after a dwell."""
     file = folder / "line.ngc"
     file.write_text(f"G21 G90 G94\nG0 X0 Y0 Z0\nG4 P0.1\nG1 X{x_mm} Y{y_mm} F600\nM2\n")

@@ -34,7 +34,10 @@ LINE_PULSES, ARC_PULSES = 1.8, 4.0  # measured 1.6 and 3.3; 3 and 4 are asked fo
 
 def ways(pulses: np.ndarray, start: tuple[int, int, int]) -> np.ndarray:
     """Places after each recirculation, the start first."""
-    return np.vstack([np.zeros((1, 3), np.int64), np.cumsum(pulses, axis=0, dtype=np.int64)]) + start
+    return (
+        np.vstack([np.zeros((1, 3), np.int64), np.cumsum(pulses, axis=0, dtype=np.int64)])
+        + start
+    )
 
 
 def playback(*lines: str, control: PulseControl | None = None) -> PulsePlayback:
@@ -46,22 +49,31 @@ def test_10_000_random_moves_end_exactly_and_keep_to_their_line_or_arc() -> None
     deviation = np.zeros((MOVES, 2))
     feed = Feed(feed_number(15000, RECIRCULATIONS_HZ))
     for i in range(MOVES // 2):
-        end = tuple(int(v) for v in random.integers(-1, 2, 3) * np.exp(random.uniform(0, 8.5, 3)))
+        end = tuple(
+            int(v) for v in random.integers(-1, 2, 3) * np.exp(random.uniform(0, 8.5, 3))
+        )
         interpolator = Interpolator(servo_constant=int(random.choice([16, 240])))
         way = ways(interpolator.line(end, feed), (0, 0, 0))
         assert tuple(way[-1]) == end
         along = np.array(end) / max(math.hypot(*end), 1.0)
         deviation[i, 0] = np.linalg.norm(way - np.outer(way @ along, along), axis=1).max()
     for i in range(MOVES // 2):
-        radius, sense = math.exp(random.uniform(math.log(50), math.log(4000))), int(random.choice([-1, 1]))
-        angles = random.uniform(0, 7) + np.array([0.0, sense * random.uniform(0.01, math.radians(170))])
+        radius, sense = (
+            math.exp(random.uniform(math.log(50), math.log(4000))),
+            int(random.choice([-1, 1])),
+        )
+        angles = random.uniform(0, 7) + np.array(
+            [0.0, sense * random.uniform(0.01, math.radians(170))]
+        )
         centre = random.integers(-900, 900, 2)
         (x0, y0), (x1, y1) = np.rint(
             centre + radius * np.column_stack([np.cos(angles), np.sin(angles)])
         ).astype(int)
         interpolator = Interpolator((x0, y0, 7))
         pulses = (
-            interpolator.arc((x1, y1, 7), centre, sense, feed) if (x0, y0) != (x1, y1) else np.zeros((0, 3))
+            interpolator.arc((x1, y1, 7), centre, sense, feed)
+            if (x0, y0) != (x1, y1)
+            else np.zeros((0, 3))
         )
         way = ways(pulses, (x0, y0, 7))
         assert tuple(way[-1]) == (x1, y1, 7)
@@ -87,7 +99,9 @@ def test_a_whole_turn_of_the_multiplier_passes_exactly_its_number() -> None:
 def measured(end: tuple[int, int, int], speed: float, **how: float | bool) -> float:
     """Speed along a line over the programmed one, off the approach."""
     override = override_number(float(how.get("override", 1.0)))
-    feed = Feed(feed_number(speed, RECIRCULATIONS_HZ), override, bool(how.get("true_norm", False)))
+    feed = Feed(
+        feed_number(speed, RECIRCULATIONS_HZ), override, bool(how.get("true_norm", False))
+    )
     way = ways(Interpolator(servo_constant=16).line(end, feed), (0, 0, 0))
     half = len(way) // 2
     return float(np.linalg.norm(way[half]) / half * RECIRCULATIONS_HZ / speed)
@@ -109,12 +123,17 @@ def test_the_speed_is_held_within_what_the_weights_allow(axes: int) -> None:
 
 def test_the_override_lowers_the_speed() -> None:
     full = measured((30_000, 10_000, 0), 10_000)
-    assert measured((30_000, 10_000, 0), 10_000, override=0.25) == pytest.approx(0.25 * full, rel=0.01)
+    assert measured((30_000, 10_000, 0), 10_000, override=0.25) == pytest.approx(
+        0.25 * full, rel=0.01
+    )
 
 
 def test_the_approach_depends_on_the_error_alone() -> None:
     interpolator = Interpolator(servo_constant=240)
-    way = ways(interpolator.line((20_000, 0, 0), Feed(feed_number(10_000, RECIRCULATIONS_HZ))), (0, 0, 0))
+    way = ways(
+        interpolator.line((20_000, 0, 0), Feed(feed_number(10_000, RECIRCULATIONS_HZ))),
+        (0, 0, 0),
+    )
     assert interpolator.counter > 27  # of 32: saturated, so the gates stay open
     left = 20_000 - way[-3000:, 0].astype(float)
     rate = -np.gradient(left, 100)[::100]
@@ -136,7 +155,9 @@ def test_residues_stay_within_one_bit_more_than_the_sum() -> None:
 
 
 @given(st.integers(-30_000, 30_000), st.integers(-15, 16))
-def test_the_unit_circuit_is_right_for_every_lag_of_its_range(position: int, behind: int) -> None:
+def test_the_unit_circuit_is_right_for_every_lag_of_its_range(
+    position: int, behind: int
+) -> None:
     command = position + behind
     assert unit_circuit(position, command & 31) == command
     assert lag(position, command & 31) == behind
@@ -158,8 +179,12 @@ def test_a_lag_out_of_range_is_a_fault_and_not_a_wrong_position() -> None:
 
 
 def test_the_historic_control_has_pulses_of_half_a_thousandth() -> None:
-    slow = PulseServo(HISTORIC.pulse_mm, HISTORIC.register_bits, HISTORIC.icr_bits, lag_stages=10)
-    run = playback("G20 G1 X0 Y0 F24", "G1 X1 Y0.5", control=PulseControl(servo=slow, servo_constant=60))
+    slow = PulseServo(
+        HISTORIC.pulse_mm, HISTORIC.register_bits, HISTORIC.icr_bits, lag_stages=10
+    )
+    run = playback(
+        "G20 G1 X0 Y0 F24", "G1 X1 Y0.5", control=PulseControl(servo=slow, servo_constant=60)
+    )
     join(run)
     assert np.abs(run.end_error_mm).max() <= 0.0127
     assert HISTORIC.travel_mm == pytest.approx(32.767 * 25.4, rel=1e-3)
@@ -183,8 +208,12 @@ def test_a_program_is_played_to_its_pulse() -> None:
     assert motion.duration_s == pytest.approx(run.duration_s, rel=0.15)
     assert (run.following_error_mm > 0).all()
     circle = motion.positions_mm[motion.positions_mm[:, 0] > 40.01, :2]
-    assert np.abs(np.hypot(*(circle - [45, 20]).T) - 5).max() < 5 * PULSE_MM  # 4 of the arc, 1 of the servo
-    assert circle.max(axis=0) == pytest.approx([50, 25], abs=5 * PULSE_MM)  # a whole turn, in three arcs
+    assert (
+        np.abs(np.hypot(*(circle - [45, 20]).T) - 5).max() < 5 * PULSE_MM
+    )  # 4 of the arc, 1 of the servo
+    assert circle.max(axis=0) == pytest.approx(
+        [50, 25], abs=5 * PULSE_MM
+    )  # a whole turn, in three arcs
 
 
 def test_it_plays_again_as_before() -> None:
@@ -193,14 +222,17 @@ def test_it_plays_again_as_before() -> None:
 
 
 def test_what_cannot_be_run_is_refused_before_anything_moves() -> None:
-    with pytest.raises(ProgramFault, match=r"line 2: X goes to 2000.100 mm; the machine has ±2000.000 mm"):
+    with pytest.raises(
+        ProgramFault, match=r"line 2: X goes to 2000.100 mm; the machine has ±2000.000 mm"
+    ):
         playback("G1 X0 F600", "G1 X2000.1")
     with pytest.raises(
         ProgramFault, match=r"line 2: X goes to 900.000 mm; the registers of 16 bits hold ±832"
     ):
         playback("G1 X0 F600", "G1 X900", control=PulseControl(servo=HISTORIC))
     with pytest.raises(
-        ProgramFault, match=r"line 1: F9000: a speed of 150000 pulses/s has no feed number; give 0.256 to"
+        ProgramFault,
+        match=r"line 1: F9000: a speed of 150000 pulses/s has no feed number; give 0.256 to",
     ):
         playback("G1 X5 F9000")
     with pytest.raises(ValueError, match="an override of 2 is none"):
@@ -238,20 +270,33 @@ def test_the_compiled_kernels_are_the_plain_ones(monkeypatch: pytest.MonkeyPatch
             monkeypatch.setattr(residues, "AT_ONCE", 4096)
         interpolator = Interpolator()
         pulses = np.vstack(
-            [interpolator.line((120, -30, 4), feed), interpolator.arc((80, 10, 4), (100, -30), 1, feed)]
+            [
+                interpolator.line((120, -30, 4), feed),
+                interpolator.arc((80, 10, 4), (100, -30), 1, feed),
+            ]
         )
-        commands, places, done = PulseServos(np.zeros(3, np.int64), RECIRCULATIONS_HZ).follow(pulses)
+        commands, places, done = PulseServos(np.zeros(3, np.int64), RECIRCULATIONS_HZ).follow(
+            pulses
+        )
         results.append((pulses, commands, places, done))
     for compiled, interpreted in zip(*results, strict=True):
         assert np.abs(np.asarray(compiled) - interpreted).max() < 1e-12
-    assert count_feed.py_func(64, feed.number, feed.override) == count_feed(64, feed.number, feed.override)
-    assert sum(feed_control.passes.py_func(count, 0b1101, 4) for count in range(1, 17)) == 0b1101
+    assert count_feed.py_func(64, feed.number, feed.override) == count_feed(
+        64, feed.number, feed.override
+    )
+    assert (
+        sum(feed_control.passes.py_func(count, 0b1101, 4) for count in range(1, 17)) == 0b1101
+    )
 
 
 @pytest.mark.parametrize("speed_mm_s", [5, 20, 30, 40])
-def test_a_start_at_once_at_any_feed_passes_the_monitor(tmp_path: Path, speed_mm_s: float) -> None:
+def test_a_start_at_once_at_any_feed_passes_the_monitor(
+    tmp_path: Path, speed_mm_s: float
+) -> None:
     file = tmp_path / "fast.ngc"
-    file.write_text(f"G21 G90 G94\nG0 X0 Y0 Z0\nG1 X20 F{60 * speed_mm_s}\nG1 X20 Y20\nG1 X0\nM2\n")
+    file.write_text(
+        f"G21 G90 G94\nG0 X0 Y0 Z0\nG1 X20 F{60 * speed_mm_s}\nG1 X20 Y20\nG1 X0\nM2\n"
+    )
     run = play_pulses(file)
     assert list(run) and run.end_error_mm == pytest.approx([0, 0, 0], abs=0.002)
     assert run.monitor.largest_share.max() < 0.9

@@ -85,7 +85,9 @@ def test_a_program_without_an_end_is_cut_short(lines: list[str]) -> None:
 
 def test_arcs_have_their_centre_and_their_angle() -> None:
     (quarter,) = moves("G3 X-5 Y5 J5 F60".replace("J5", "I-5"))[-1:]
-    assert quarter.centre_mm == pytest.approx((-5, 0)) and quarter.turned_rad == pytest.approx(math.pi / 2)
+    assert quarter.centre_mm == pytest.approx((-5, 0)) and quarter.turned_rad == pytest.approx(
+        math.pi / 2
+    )
     (back,) = moves("G2 X-5 Y5 I-5 F60")
     assert back.turned_rad == pytest.approx(-1.5 * math.pi)
     (whole,) = moves("G2 I5 F60")
@@ -98,14 +100,18 @@ def test_arcs_have_their_centre_and_their_angle() -> None:
     st.floats(0.1, 6.2).filter(lambda turn: abs(turn - math.pi) > 0.05),
     st.booleans(),
 )
-def test_an_arc_by_radius_is_the_arc_by_centre(radius: float, first: float, turn: float, left: bool) -> None:
+def test_an_arc_by_radius_is_the_arc_by_centre(
+    radius: float, first: float, turn: float, left: bool
+) -> None:
     sense, code = (1, "G3") if left else (-1, "G2")
-    (x0, y0), (x1, y1) = [(radius * math.cos(a), radius * math.sin(a)) for a in (first, first + sense * turn)]
+    (x0, y0), (x1, y1) = [
+        (radius * math.cos(a), radius * math.sin(a)) for a in (first, first + sense * turn)
+    ]
     begin = f"G0 X{x0:.9f} Y{y0:.9f}"
     by_centre = moves(begin, f"{code} X{x1:.9f} Y{y1:.9f} I{-x0:.9f} J{-y0:.9f} F60")[-1]
-    by_radius = moves(begin, f"{code} X{x1:.9f} Y{y1:.9f} R{radius if turn < math.pi else -radius:.9f} F60")[
-        -1
-    ]
+    by_radius = moves(
+        begin, f"{code} X{x1:.9f} Y{y1:.9f} R{radius if turn < math.pi else -radius:.9f} F60"
+    )[-1]
     for arc in (by_centre, by_radius):
         assert arc.centre_mm == pytest.approx((0, 0), abs=WRITTEN_MM)
         assert arc.turned_rad == pytest.approx(sense * turn, abs=1e-5)

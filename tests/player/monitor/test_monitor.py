@@ -24,7 +24,9 @@ WIDE_MM = 6.1  # the single limit that a rapid of 100 mm/s wants
 
 def move(speed_mm_s: float, seconds: float = 3.0) -> np.ndarray:
     """Demand (n, 1) of a move with gentle ramps."""
-    return positions_mm([0.0], [speed_mm_s * seconds], speed_mm_s, Ramp(acceleration_mm_s2=10 * speed_mm_s))
+    return positions_mm(
+        [0.0], [speed_mm_s * seconds], speed_mm_s, Ramp(acceleration_mm_s2=10 * speed_mm_s)
+    )
 
 
 def run(demand: np.ndarray, breaks_at: int, condition: Condition) -> np.ndarray:
@@ -88,10 +90,12 @@ def test_a_fault_carries_its_state() -> None:
     assert (fault.axis, fault.time_s, fault.exit_code) == ("x", rows / MOTION_RATE_HZ, 6)
     assert fault.demand_mm == demand[rows, 0]
     assert fault.limit_mm == pytest.approx(0.06 * 1.0 + 0.1, abs=1e-6)
-    assert fault.demand_mm - fault.actual_mm == pytest.approx(fault.limit_mm, abs=2 * INCREMENT_MM)
-    assert "the drive of X does not follow at 1." in str(fault) and "allowed ±0.160 mm at 1 mm/s" in str(
-        fault
+    assert fault.demand_mm - fault.actual_mm == pytest.approx(
+        fault.limit_mm, abs=2 * INCREMENT_MM
     )
+    assert "the drive of X does not follow at 1." in str(
+        fault
+    ) and "allowed ±0.160 mm at 1 mm/s" in str(fault)
 
 
 def test_a_warning_does_not_stop_and_comes_again_after_it_was_over() -> None:
@@ -125,9 +129,13 @@ def test_blocks_are_as_the_whole() -> None:
 def test_a_chart_of_every_row_holds_demand_actual_and_limit() -> None:
     demand, chart = move(10.0, 0.5), Chart(every_s=0)
     actual = PositionServos(demand[0]).follow(demand)
-    Monitor("x", MOTION_RATE_HZ, FollowingLimit.linear(settle_s=0.06), chart=chart).watch(demand, actual)
+    Monitor("x", MOTION_RATE_HZ, FollowingLimit.linear(settle_s=0.06), chart=chart).watch(
+        demand, actual
+    )
     assert (chart.demand_mm == demand).all() and (chart.actual_mm == actual).all()
-    assert chart.limit_mm[0, 0] == pytest.approx(0.1) and chart.limit_mm.max() == pytest.approx(0.7, abs=1e-3)
+    assert chart.limit_mm[0, 0] == pytest.approx(0.1) and chart.limit_mm.max() == pytest.approx(
+        0.7, abs=1e-3
+    )
     assert chart.t_s == pytest.approx(np.arange(len(demand)) / MOTION_RATE_HZ)
 
 
@@ -137,7 +145,9 @@ def test_a_chart_keeps_of_each_stretch_and_axis_the_row_nearest_to_its_limit(
 ) -> None:
     rng, chart = np.random.default_rng(block), Chart(every_s=stretch / 1000)
     actual = rng.normal(size=(500, 2))
-    watch = Monitor("xy", 1000.0, FollowingLimit.linear(tolerance_mm=9.0), stop=False, chart=chart)
+    watch = Monitor(
+        "xy", 1000.0, FollowingLimit.linear(tolerance_mm=9.0), stop=False, chart=chart
+    )
     for first in range(0, 500, block):
         watch.watch(np.zeros_like(actual[first : first + block]), actual[first : first + block])
     assert np.abs(chart.error_mm).max(axis=0) == pytest.approx(watch.largest_error_mm)
@@ -170,7 +180,9 @@ def test_a_table_learnt_from_a_sound_run_passes_that_run() -> None:
     assert Monitor("x", MOTION_RATE_HZ, limit).watch(demand, actual) == len(demand)
 
 
-@pytest.mark.parametrize("points", [[], [(1, 0)], [(0, 0), (0, 1)], [(0, -1)], [(0, 0), (float("inf"), 1)]])
+@pytest.mark.parametrize(
+    "points", [[], [(1, 0)], [(0, 0), (0, 1)], [(0, -1)], [(0, 0), (float("inf"), 1)]]
+)
 def test_what_is_no_table_is_refused(points: list[tuple[float, float]]) -> None:
     with pytest.raises(ValueError, match=r"give finite ones|are 0 or more"):
         FollowingLimit.table(points, 0.1)
@@ -195,7 +207,9 @@ def test_the_servo_is_behind_by_its_lag_and_arrives() -> None:
 def test_the_compiled_kernels_are_the_plain_ones(monkeypatch: pytest.MonkeyPatch) -> None:
     demand = np.column_stack([move(5.0, 0.1), -move(5.0, 0.1)])
     broken = Condition(gain_share=0.4, friction_mm_s=0.1, runaway_mm_s=0.2)
-    limit = FollowingLimit.table([(0, 0), (3, 0.02), (4, 0.1)], 0.01, settle_s=0.01, hold_s=0.002)
+    limit = FollowingLimit.table(
+        [(0, 0), (3, 0.02), (4, 0.1)], 0.01, settle_s=0.01, hold_s=0.002
+    )
     results = []
     for plain in (False, True):
         if plain:
@@ -207,4 +221,6 @@ def test_the_compiled_kernels_are_the_plain_ones(monkeypatch: pytest.MonkeyPatch
         results.append((actual, [(fault.axis, fault.time_s) for fault in watch.warnings]))
     assert np.abs(results[0][0] - results[1][0]).max() < 1e-9
     assert results[0][1] == results[1][1] != []
-    assert allowed_mm(3.5, limit.rows, 0.0, 0.01) == allowed_mm.py_func(3.5, limit.rows, 0.0, 0.01)
+    assert allowed_mm(3.5, limit.rows, 0.0, 0.01) == allowed_mm.py_func(
+        3.5, limit.rows, 0.0, 0.01
+    )

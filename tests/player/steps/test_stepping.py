@@ -28,7 +28,9 @@ from morfax.recorder.steps.file import TICKS, Program, StepFormat, write_program
 from morfax.recorder.steps.rings import RINGS
 
 INTERVAL_S = 1 / 160
-FORMATS = st.builds(StepFormat, vectors=st.sampled_from([1, 2]), channels=st.sampled_from([5, 8]))
+FORMATS = st.builds(
+    StepFormat, vectors=st.sampled_from([1, 2]), channels=st.sampled_from([5, 8])
+)
 
 
 @pytest.mark.parametrize("pulses", range(1, TICKS + 1))
@@ -54,12 +56,16 @@ def test_the_ring_memory_has_512_entries_and_answers_for_vectors_only() -> None:
 
 
 @given(st.binary(max_size=300), FORMATS)
-def test_no_tape_of_any_content_asks_for_more_than_the_motor_can_do(content: bytes, fmt: StepFormat) -> None:
+def test_no_tape_of_any_content_asks_for_more_than_the_motor_can_do(
+    content: bytes, fmt: StepFormat
+) -> None:
     rows = np.frombuffer(content, np.uint8) & (2**fmt.channels - 1)
     counts, _ = decode(Program(fmt, rows))
     assert ((counts >= 1) & (counts <= 15)).all()
     pulses = pulses_of(counts, fmt.rates)
-    assert np.abs(np.diff(pulses, axis=0, prepend=np.zeros((1, 3), np.int64))).max(initial=0) <= 1
+    assert (
+        np.abs(np.diff(pulses, axis=0, prepend=np.zeros((1, 3), np.int64))).max(initial=0) <= 1
+    )
     motors = Motors(3, fmt.interval_s)
     told, made = motors.run(pulses, tick_table(), 8)
     assert not motors.lost.any() and (told == made).all()
@@ -110,7 +116,8 @@ def test_rates_need_not_be_linear(tmp_path: Path) -> None:
 def test_the_oscillator_sets_the_interval(tmp_path: Path, oscillator_hz: float) -> None:
     fmt = StepFormat(oscillator_hz=oscillator_hz, end_mm=(0.04, 0, 0))
     write_program(
-        Program(fmt, np.array([0b10001, 0b10001, 0b10010, 0b10010], np.uint8)), tmp_path / "a.steps"
+        Program(fmt, np.array([0b10001, 0b10001, 0b10010, 0b10010], np.uint8)),
+        tmp_path / "a.steps",
     )
     playback = play_steps(tmp_path / "a.steps")
     assert playback.duration_s == pytest.approx(4 * 64 / oscillator_hz)
@@ -137,7 +144,9 @@ def test_motors_of_another_number_are_refused() -> None:
         Motors(3, INTERVAL_S).run(np.zeros((2, 2), np.int64), tick_table(), 8)
 
 
-def test_the_kernels_do_as_plain_python_what_they_do_compiled(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_kernels_do_as_plain_python_what_they_do_compiled(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     rows = np.random.default_rng(1).integers(0, 256, 500).astype(np.uint8)
     compiled = decode(Program(StepFormat(), rows))
     monkeypatch.setattr(stepping, "_counted", stepping._counted.py_func)

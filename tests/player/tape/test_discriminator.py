@@ -12,7 +12,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from morfax.player.tape import discriminator as organ
-from morfax.player.tape.discriminator import Discriminator, Phases, discriminate, translating_taps
+from morfax.player.tape.discriminator import (
+    Discriminator,
+    Phases,
+    discriminate,
+    translating_taps,
+)
 from tests.player.carriers import (
     CYCLES_PER_MM,
     MOTION_RATE_HZ,
@@ -32,7 +37,11 @@ def decode(frames: np.ndarray, block_frames: int = 10_000) -> Phases:
     blocks = (frames[i : i + block_frames] for i in range(0, len(frames), block_frames))
     parts = list(discriminate(blocks, Discriminator(RATE_HZ, REFERENCE_HZ, 8, frames.shape[1])))
     return Phases(
-        0, *(np.vstack([getattr(p, name) for p in parts]) for name in ("cycles", "surprise", "levels"))
+        0,
+        *(
+            np.vstack([getattr(p, name) for p in parts])
+            for name in ("cycles", "surprise", "levels")
+        ),
     )
 
 
@@ -86,7 +95,9 @@ def test_flutter_of_half_a_percent_adds_nothing() -> None:
 def test_gain_start_phase_and_speed_do_not_change_what_a_tape_means(
     level: float, start_cycles: float, offsets: tuple[float, ...], speed: float
 ) -> None:
-    how = Transport(level=level, start_cycles=start_cycles, track_cycles=(0.0, *offsets), speed=speed)
+    how = Transport(
+        level=level, start_cycles=start_cycles, track_cycles=(0.0, *offsets), speed=speed
+    )
     assert np.abs(error_cycles(how)).max() < 5e-5
 
 
@@ -109,7 +120,9 @@ def test_samples_as_stored_mean_the_same() -> None:
 
 def test_level_is_the_amplitude_of_the_carrier() -> None:
     phases = decode(tracks(swing, 0.2, Transport(level=0.3)))
-    assert phases.levels == pytest.approx(0.3, abs=1e-4)  # the mirror of the carrier, 80 dB down
+    assert phases.levels == pytest.approx(
+        0.3, abs=1e-4
+    )  # the mirror of the carrier, 80 dB down
 
 
 def test_dc_and_second_harmonic_are_kept_out() -> None:
@@ -123,7 +136,12 @@ def test_dc_and_second_harmonic_are_kept_out() -> None:
 
 @pytest.mark.parametrize(
     ("rate_hz", "reference_hz", "decimation", "speed_mm_s"),
-    [(48000, 6000.0, 8, 90.0), (44100, 5512.5, 8, 80.0), (96000, 6000.0, 16, 90.0), (48000, 400.0, 8, 2.0)],
+    [
+        (48000, 6000.0, 8, 90.0),
+        (44100, 5512.5, 8, 80.0),
+        (96000, 6000.0, 16, 90.0),
+        (48000, 400.0, 8, 2.0),
+    ],
 )
 def test_other_rates_and_references(
     rate_hz: int, reference_hz: float, decimation: int, speed_mm_s: float
@@ -134,7 +152,10 @@ def test_other_rates_and_references(
     cycles = reference_hz * t_s[:, None] + np.column_stack([0 * t_s, way_mm * CYCLES_PER_MM])
     organ_ = Discriminator(rate_hz, reference_hz, decimation, 2)
     rows = np.vstack(
-        [p.cycles for p in discriminate([np.sin(2 * np.pi * cycles).astype(np.float32)], organ_)]
+        [
+            p.cycles
+            for p in discriminate([np.sin(2 * np.pi * cycles).astype(np.float32)], organ_)
+        ]
     )
     ends = organ_.filter_frames // decimation + 1
     expected = way_mm[::decimation, None] * CYCLES_PER_MM
@@ -144,7 +165,9 @@ def test_other_rates_and_references(
 
 def test_a_jump_is_a_surprise_of_its_size() -> None:
     def splice(t_s: np.ndarray) -> np.ndarray:
-        return np.column_stack([np.where(t_s > 0.5, 0.4 / CYCLES_PER_MM, 0.0), 0 * t_s, 0 * t_s])
+        return np.column_stack(
+            [np.where(t_s > 0.5, 0.4 / CYCLES_PER_MM, 0.0), 0 * t_s, 0 * t_s]
+        )
 
     surprise = np.abs(decode(tracks(splice, 1.0)).surprise)
     assert surprise[:, 0].max() > 0.25
@@ -163,7 +186,15 @@ def test_taps_have_no_denormals_and_pass_the_reference_whole() -> None:
 def test_stages_agree_with_themselves_as_plain_python(monkeypatch: pytest.MonkeyPatch) -> None:
     frames = tracks(swing, 0.3)[-600:]
     fast = Discriminator(RATE_HZ, REFERENCE_HZ, 8, 4).feed(frames)
-    for name in ("_wrap", "_unlace", "_translate", "_group", "_amplitude", "_turn", "count_turns"):
+    for name in (
+        "_wrap",
+        "_unlace",
+        "_translate",
+        "_group",
+        "_amplitude",
+        "_turn",
+        "count_turns",
+    ):
         monkeypatch.setattr(organ, name, getattr(organ, name).py_func)
     slow = Discriminator(RATE_HZ, REFERENCE_HZ, 8, 4).feed(frames)
     assert np.abs(fast.cycles - slow.cycles).max() < 1e-6
@@ -173,11 +204,16 @@ def test_stages_agree_with_themselves_as_plain_python(monkeypatch: pytest.Monkey
 @pytest.mark.parametrize("kernel", [organ._turn, organ._turn.py_func])
 def test_the_arc_tangent_goes_all_the_way_round(kernel: Callable[..., None]) -> None:
     cycles = np.r_[np.linspace(-0.499, 0.499, 997), 0.25, -0.25, 0.0]
-    axis, ref = 0.3 * np.exp(2j * np.pi * (cycles + 0.1)), np.full(len(cycles), 0.5 * np.exp(0.2j * np.pi))
+    axis, ref = (
+        0.3 * np.exp(2j * np.pi * (cycles + 0.1)),
+        np.full(len(cycles), 0.5 * np.exp(0.2j * np.pi)),
+    )
     parts = [part.astype(np.float32) for part in (axis.real, axis.imag, ref.real, ref.imag)]
     phase = np.empty(len(cycles))
     kernel(*parts, phase)
-    assert np.abs(phase - cycles).max() < 5e-8  # cycles: float32 parts, and 1e-8 of the polynomial
+    assert (
+        np.abs(phase - cycles).max() < 5e-8
+    )  # cycles: float32 parts, and 1e-8 of the polynomial
 
 
 def test_the_arc_tangent_of_nothing_is_nothing_and_of_no_number_is_none() -> None:
@@ -194,4 +230,8 @@ def test_impossible_settings_are_refused(reference_hz: float, tracks_: int) -> N
 
 
 def test_a_tape_shorter_than_the_filter_has_no_rows() -> None:
-    assert not list(discriminate([np.zeros((50, 4), np.float32)], Discriminator(RATE_HZ, REFERENCE_HZ, 8, 4)))
+    assert not list(
+        discriminate(
+            [np.zeros((50, 4), np.float32)], Discriminator(RATE_HZ, REFERENCE_HZ, 8, 4)
+        )
+    )

@@ -31,7 +31,10 @@ def test_a_side_is_the_motion_at_its_edge() -> None:
 
 
 def test_an_even_motion_is_bridged_exactly() -> None:
-    before, after = side(parabola(np.arange(-35, 1)), 35), side(parabola(np.arange(30, 66)) - 3, 0)
+    before, after = (
+        side(parabola(np.arange(-35, 1)), 35),
+        side(parabola(np.arange(30, 66)) - 3, 0),
+    )
     found = bridge(before, after, 30, 0.0)
     assert found.travel == pytest.approx(
         parabola(np.array(30.0)) - 5, abs=1e-9
@@ -56,7 +59,9 @@ def test_the_bound_is_where_another_count_could_be_meant() -> None:
 def test_sides_that_do_not_agree_are_not_certain(bad: str) -> None:
     parts = {"travel": 1.0, "off": 0.01, "reach": 0.2, "between": 0.01, "misfit": 0.01}
     assert Bridge(**parts).certain
-    assert not Bridge(**{**parts, bad: {"off": 0.8, "between": 0.06, "misfit": 0.05}[bad]}).certain
+    assert not Bridge(
+        **{**parts, bad: {"off": 0.8, "between": 0.06, "misfit": 0.05}[bad]}
+    ).certain
 
 
 @pytest.fixture
@@ -78,18 +83,31 @@ def holed(tape: Path, length_ms: float, tracks: slice = slice(1, 2)) -> Path:
     return file
 
 
-@pytest.mark.parametrize("tracks", [slice(1, 2), slice(0, 1), slice(0, 4)], ids=["X", "reference", "all"])
+@pytest.mark.parametrize(
+    "tracks", [slice(1, 2), slice(0, 1), slice(0, 4)], ids=["X", "reference", "all"]
+)
 @pytest.mark.parametrize(("acceleration_mm_s2", "limit_ms"), [(None, 6.0), (500.0, 18.9)])
 def test_dropouts_from_both_sides_of_the_bound(
     tape: Path, tracks: slice, acceleration_mm_s2: float | None, limit_ms: float
 ) -> None:
     whole = join(play(tape)).positions_mm
-    playback = play(holed(tape, limit_ms - FILTER_MS - 1.0, tracks), acceleration_mm_s2=acceleration_mm_s2)
+    playback = play(
+        holed(tape, limit_ms - FILTER_MS - 1.0, tracks), acceleration_mm_s2=acceleration_mm_s2
+    )
     went = join(playback).positions_mm
     assert np.abs(went - whole).max() * 20 < 0.01  # cycles: a smooth motion
-    assert {name for _, name in playback.bridged} == ({"x"} if tracks == slice(1, 2) else {"x", "y", "z"})
-    with pytest.raises(LockFault, match="how many cycles passed there is not certain") as caught:
-        join(play(holed(tape, limit_ms - FILTER_MS + 1.0, tracks), acceleration_mm_s2=acceleration_mm_s2))
+    assert {name for _, name in playback.bridged} == (
+        {"x"} if tracks == slice(1, 2) else {"x", "y", "z"}
+    )
+    with pytest.raises(
+        LockFault, match="how many cycles passed there is not certain"
+    ) as caught:
+        join(
+            play(
+                holed(tape, limit_ms - FILTER_MS + 1.0, tracks),
+                acceleration_mm_s2=acceleration_mm_s2,
+            )
+        )
     fault = caught.value
     assert fault.time_s == pytest.approx(3, abs=0.002)
     row = round(fault.time_s * 6000)

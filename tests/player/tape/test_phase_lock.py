@@ -13,7 +13,15 @@ from morfax.motion.drive import Drive
 from morfax.player.monitor.monitor import Monitor
 from morfax.player.tape import phase_lock as organ
 from morfax.player.tape.phase_lock import Drives, PhaseLock, following_limit, place
-from tests.player.carriers import CYCLES_PER_MM, MOTION_RATE_HZ, UM, Course, along, circle, square
+from tests.player.carriers import (
+    CYCLES_PER_MM,
+    MOTION_RATE_HZ,
+    UM,
+    Course,
+    along,
+    circle,
+    square,
+)
 
 DT_S = 1 / MOTION_RATE_HZ
 Q_MM = 1 / CYCLES_PER_MM
@@ -21,7 +29,9 @@ Q_MM = 1 / CYCLES_PER_MM
 
 def follow(positions_mm: np.ndarray, lock: PhaseLock | None = None) -> np.ndarray:
     """Where the screws went for a course given in mm."""
-    return Drives(positions_mm.shape[1], Q_MM, MOTION_RATE_HZ, lock).follow(positions_mm * CYCLES_PER_MM)
+    return Drives(positions_mm.shape[1], Q_MM, MOTION_RATE_HZ, lock).follow(
+        positions_mm * CYCLES_PER_MM
+    )
 
 
 def open_loop(lock: PhaseLock, z: np.ndarray) -> np.ndarray:
@@ -31,7 +41,9 @@ def open_loop(lock: PhaseLock, z: np.ndarray) -> np.ndarray:
     return networks * g * DT_S / 2 * (z + 1) / ((z - 1) * (z - 1 + g))
 
 
-@pytest.mark.parametrize("lock", [PhaseLock(), PhaseLock(150, 0.707, 2), PhaseLock(drive=Drive(lag_s=0.0))])
+@pytest.mark.parametrize(
+    "lock", [PhaseLock(), PhaseLock(150, 0.707, 2), PhaseLock(drive=Drive(lag_s=0.0))]
+)
 def test_a_step_is_answered_by_the_three_poles_asked_for(lock: PhaseLock) -> None:
     # 0.2 um at once: small enough for the motor's acceleration, so the loop is linear.
     step_mm = np.r_[0.0, np.full(400, 0.2 * UM)][:, None]
@@ -49,7 +61,9 @@ def test_a_step_is_answered_by_the_three_poles_asked_for(lock: PhaseLock) -> Non
     lag_s=st.floats(0.0002, 0.005),
 )
 @settings(max_examples=60, deadline=None)
-def test_placing_is_exact(natural_hz: float, damping: float, third: float, lag_s: float) -> None:
+def test_placing_is_exact(
+    natural_hz: float, damping: float, third: float, lag_s: float
+) -> None:
     lock = PhaseLock(natural_hz, damping, third, drive=Drive(lag_s))
     back = 1 + open_loop(lock, lock.poles(DT_S))
     # Relative to the slope there; double poles make the solution as exact as the root of rounding.
@@ -86,7 +100,12 @@ def test_constant_acceleration_leaves_the_error_of_the_loop_equation() -> None:
 
 @pytest.mark.parametrize(
     ("course", "seconds"),
-    [(circle(3, 10), 2.5), (circle(50, 100), 4.0), (square(10, 10), 5.0), (square(50, 100), 4.0)],
+    [
+        (circle(3, 10), 2.5),
+        (circle(50, 100), 4.0),
+        (square(10, 10), 5.0),
+        (square(50, 100), 4.0),
+    ],
 )
 def test_the_screws_follow_the_path(course: Course, seconds: float) -> None:
     told = course(np.arange(round(seconds * MOTION_RATE_HZ)) * DT_S)
@@ -107,7 +126,11 @@ def test_a_stop_at_once_is_followed() -> None:
     )  # 3.2 cycles: what 5 m/s² needs, hardly more
 
 
-LOCKS = (PhaseLock(), PhaseLock(150, 0.707), PhaseLock(drive=Drive(lag_s=0.004, acceleration_mm_s2=800.0)))
+LOCKS = (
+    PhaseLock(),
+    PhaseLock(150, 0.707),
+    PhaseLock(drive=Drive(lag_s=0.004, acceleration_mm_s2=800.0)),
+)
 
 
 @pytest.mark.parametrize("lock", LOCKS)
@@ -127,16 +150,24 @@ def test_a_sound_drive_passes_the_monitor_at_any_start_stop_and_turn_at_once(
     told = speed * (np.clip(t_s - 0.1, 0, 0.3) + onto * np.clip(t_s - 0.4, 0, None))[:, None]
     told = told + np.random.default_rng(7).normal(0, noise_um * UM, told.shape)
     watch = Monitor("x", MOTION_RATE_HZ, following_limit(lock, Q_MM, MOTION_RATE_HZ))
-    moved = follow(told, lock)  # near the range the slower loop leaves it: that is the fault circuit's to say
-    assert watch.watch(told[: len(moved)], moved) == len(moved) and (len(moved) == len(told) or share > 0.9)
+    moved = follow(
+        told, lock
+    )  # near the range the slower loop leaves it: that is the fault circuit's to say
+    assert watch.watch(told[: len(moved)], moved) == len(moved) and (
+        len(moved) == len(told) or share > 0.9
+    )
 
 
-def test_the_limit_of_a_tape_drive_is_its_own_error_at_low_speed_and_its_range_at_high() -> None:
+def test_the_limit_of_a_tape_drive_is_its_own_error_at_low_speed_and_its_range_at_high() -> (
+    None
+):
     limit = following_limit(PhaseLock(), Q_MM, MOTION_RATE_HZ)
     assert (
         limit.limit_mm(1.0) < 17 * UM
     )  # a twelfth of the range: a quarter of a cycle, and 4 um of turning round
-    braked_mm = 2 * 10.0**2 / 5000.0  # from 10 mm/s to as fast the other way, at the limit of the current
+    braked_mm = (
+        2 * 10.0**2 / 5000.0
+    )  # from 10 mm/s to as fast the other way, at the limit of the current
     assert braked_mm < limit.limit_mm(10.0) - limit.tolerance_mm < 1.6 * braked_mm
     assert limit.limit_mm(100.0) == pytest.approx(4.25 * Q_MM)
 
@@ -144,10 +175,14 @@ def test_the_limit_of_a_tape_drive_is_its_own_error_at_low_speed_and_its_range_a
 def test_noise_of_40_db_stays_below_a_tenth_of_a_micrometre() -> None:
     cycles = np.random.default_rng(3).normal(0, 7.6e-4, (60_000, 3))
     moved = Drives(3, Q_MM, MOTION_RATE_HZ).follow(cycles)
-    assert np.sqrt(np.mean(moved**2)) < 0.05 * UM  # 0.038 um in, the loop's band of some 800 of 3000 Hz out
+    assert (
+        np.sqrt(np.mean(moved**2)) < 0.05 * UM
+    )  # 0.038 um in, the loop's band of some 800 of 3000 Hz out
 
 
-def test_noise_that_meets_the_limit_of_the_current_on_one_side_does_not_push_the_screw_off() -> None:
+def test_noise_that_meets_the_limit_of_the_current_on_one_side_does_not_push_the_screw_off() -> (
+    None
+):
     told = circle(10, 90)(np.arange(9000) * DT_S)  # 0.8 m/s² of 5, to and fro; 25 dB of noise
     noise = np.random.default_rng(1).normal(0, 4.4e-3, told.shape) * Q_MM
     off_cycles = np.abs(follow(told + noise) - follow(told)).max() * CYCLES_PER_MM

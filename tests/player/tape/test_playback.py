@@ -46,7 +46,10 @@ def by_hand(file: Path, start_mm: tuple[float, ...] | None = None) -> Playback:
 
 
 def played(
-    file: Path, transport: Transport | None = None, course: Course = swing, seconds: float = SECONDS
+    file: Path,
+    transport: Transport | None = None,
+    course: Course = swing,
+    seconds: float = SECONDS,
 ) -> np.ndarray:
     """The machine's motion for a course, shifted to the course's own start."""
     start = tuple(course(np.zeros(1))[0].tolist())
@@ -67,10 +70,18 @@ def test_the_machine_goes_where_the_tape_says(tmp_path: Path) -> None:
 )
 @pytest.mark.parametrize(
     ("transport", "rms_mm", "max_mm"),
-    [(Transport(), 0.2 * UM, 0.6 * UM), (Transport(noise_db=40, flutter=0.005), 0.2 * UM, 0.7 * UM)],
+    [
+        (Transport(), 0.2 * UM, 0.6 * UM),
+        (Transport(noise_db=40, flutter=0.005), 0.2 * UM, 0.7 * UM),
+    ],
 )
 def test_path_played_against_path_recorded(
-    tmp_path: Path, course: Course, seconds: float, transport: Transport, rms_mm: float, max_mm: float
+    tmp_path: Path,
+    course: Course,
+    seconds: float,
+    transport: Transport,
+    rms_mm: float,
+    max_mm: float,
 ) -> None:
     told = course(np.arange(round(seconds * MOTION_RATE_HZ)) / MOTION_RATE_HZ)
     went = played(tmp_path / "t.wav", transport, course, seconds)
@@ -81,7 +92,9 @@ def test_path_played_against_path_recorded(
     assert np.abs(went[-1] - told[-1]).max() < 0.1 * UM  # at rest: noise of the loop's band
 
 
-@settings(max_examples=8, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(
+    max_examples=8, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
 @given(
     level=st.floats(0.02, 0.99),
     start_cycles=st.floats(0, 1),
@@ -91,7 +104,9 @@ def test_path_played_against_path_recorded(
 def test_gain_start_phase_and_speed_do_not_change_where_it_goes(
     tmp_path: Path, level: float, start_cycles: float, offsets: tuple[float, ...], speed: float
 ) -> None:
-    how = Transport(level=level, start_cycles=start_cycles, track_cycles=(0.0, *offsets), speed=speed)
+    how = Transport(
+        level=level, start_cycles=start_cycles, track_cycles=(0.0, *offsets), speed=speed
+    )
     positions = played(tmp_path / "t.wav", how)
     told = swing(how.programme_s(np.arange(len(positions)) / MOTION_RATE_HZ))
     # 0.6 um as above, 16 bit of a carrier 34 dB down, and 10 % more acceleration at the higher speed.
@@ -104,7 +119,9 @@ def test_blocks_follow_one_another_and_time_begins_with_the_tape(tmp_path: Path)
     assert blocks[0].start_s == 0
     for one, after in pairwise(blocks):
         assert after.start_s == pytest.approx(one.start_s + one.duration_s)
-        assert np.abs(after.positions_mm[0] - one.positions_mm[-1]).max() < 60.0 / MOTION_RATE_HZ  # 60 mm/s
+        assert (
+            np.abs(after.positions_mm[0] - one.positions_mm[-1]).max() < 60.0 / MOTION_RATE_HZ
+        )  # 60 mm/s
 
 
 def test_it_can_be_played_again(tmp_path: Path) -> None:
@@ -115,7 +132,9 @@ def test_it_can_be_played_again(tmp_path: Path) -> None:
 @pytest.fixture
 def recorded(tmp_path: Path) -> Path:
     """A square as the recorder writes it, from 40, 12, 2."""
-    positions = np.array([40.0, 12.0, 2.0]) + square(5, 10)(np.arange(3 * 6000) / MOTION_RATE_HZ)
+    positions = np.array([40.0, 12.0, 2.0]) + square(5, 10)(
+        np.arange(3 * 6000) / MOTION_RATE_HZ
+    )
     file = tmp_path / "square.wav"
     record([Motion(positions)], file, TapeFormat())
     return file
@@ -134,7 +153,10 @@ def test_a_recorded_tape_brings_the_machine_from_its_start_to_its_end(recorded: 
 
 
 def test_a_start_by_hand_moves_the_whole_motion(recorded: Path) -> None:
-    own, moved = join(play(recorded)).positions_mm, join(play(recorded, start_mm=(0.0, 0.0))).positions_mm
+    own, moved = (
+        join(play(recorded)).positions_mm,
+        join(play(recorded, start_mm=(0.0, 0.0))).positions_mm,
+    )
     assert np.abs(own - moved - np.array([40, 12, 0])).max() < 1e-9 * UM
 
 
@@ -145,7 +167,9 @@ def test_a_wrong_end_is_a_fault(tmp_path: Path) -> None:
     with soundfile.SoundFile(file, "w", RATE_HZ, 4, "PCM_16") as sound:
         sound.comment = fmt.to_json()
         sound.write(frames[: RATE_HZ // 10])
-    with pytest.raises(LockFault, match=r"Y ends at .* -0.050 mm from the end that the tape states"):
+    with pytest.raises(
+        LockFault, match=r"Y ends at .* -0.050 mm from the end that the tape states"
+    ):
         join(play(file))
 
 
@@ -177,7 +201,9 @@ def test_a_jump_stops_the_machine_before_it(tmp_path: Path) -> None:
     frames = tracks(swing, SECONDS)
     frames[RATE_HZ:, 1] *= -1  # half a cycle, at 1 s
     seen: list[Motion] = []
-    with pytest.raises(LockFault, match=r"the phase of X jumps|X was lost for 1\.. ms") as caught:
+    with pytest.raises(
+        LockFault, match=r"the phase of X jumps|X was lost for 1\.. ms"
+    ) as caught:
         for motion in by_hand(tape(tmp_path / "t.wav", frames)):
             seen.append(motion)
     assert caught.value.time_s == pytest.approx(1.0, abs=0.0015)
@@ -192,7 +218,9 @@ def test_a_lost_carrier_stops_the_machine(tmp_path: Path) -> None:
     assert caught.value.time_s == pytest.approx(1.0, abs=0.0015)
 
 
-@settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(
+    max_examples=15, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
 @given(seed=st.integers(0, 10_000), silence_ms=st.floats(0.5, 40))
 def test_a_dropout_is_ridden_out_or_a_fault_but_never_a_wrong_position(
     tmp_path: Path, seed: int, silence_ms: float

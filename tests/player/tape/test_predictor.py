@@ -13,7 +13,9 @@ from tests.player.carriers import MOTION_RATE_HZ
 def surprises(cycles: np.ndarray) -> np.ndarray:
     """What surprises the predictor, cycles, of an axis that stood at the first of these."""
     told = np.zeros(len(cycles), np.float32)
-    recount(cycles.copy(), predictor_gains(MOTION_RATE_HZ), np.array([cycles[0], 0.0, 0.0]), told)
+    recount(
+        cycles.copy(), predictor_gains(MOTION_RATE_HZ), np.array([cycles[0], 0.0, 0.0]), told
+    )
     return told
 
 
@@ -27,7 +29,9 @@ def test_predictor_has_three_equal_poles() -> None:
 
 def test_a_motion_of_constant_acceleration_holds_no_surprise_for_long() -> None:
     told = surprises(5e-5 * np.arange(600.0) ** 2)  # 180 m/s² of a usual tape
-    assert np.abs(told[300:]).max() < 1e-6 < np.abs(told[:300]).max()  # 120 Hz: settled within 50 ms
+    assert (
+        np.abs(told[300:]).max() < 1e-6 < np.abs(told[:300]).max()
+    )  # 120 Hz: settled within 50 ms
 
 
 def test_a_jump_of_speed_surprises_by_its_size_and_is_counted_all_the_same() -> None:

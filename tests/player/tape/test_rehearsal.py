@@ -20,14 +20,20 @@ T_S = np.arange(0, 0.6, 1 / MOTION_RATE_HZ)
 def jump(speed_mm_s: float) -> np.ndarray:
     """X runs at a speed at once, stops at once, and Y goes on."""
     way_mm = speed_mm_s * T_S
-    return np.column_stack([np.minimum(way_mm, way_mm[-1] / 2), np.maximum(way_mm - way_mm[-1] / 2, 0)])
+    return np.column_stack(
+        [np.minimum(way_mm, way_mm[-1] / 2), np.maximum(way_mm - way_mm[-1] / 2, 0)]
+    )
 
 
 def turn(speed_mm_s: float) -> np.ndarray:
     """X runs there and back, from a speed to as much the other way, after a start and before an end without a
     jump.
     """
-    speed = speed_mm_s * np.clip(np.minimum(T_S, T_S[::-1]) / 0.1, 0, 1) * np.where(T_S < 0.3, 1, -1)
+    speed = (
+        speed_mm_s
+        * np.clip(np.minimum(T_S, T_S[::-1]) / 0.1, 0, 1)
+        * np.where(T_S < 0.3, 1, -1)
+    )
     return np.column_stack([np.cumsum(speed) / MOTION_RATE_HZ, 0 * T_S])
 
 
@@ -71,14 +77,19 @@ def test_a_jump_is_told_with_its_axis_its_place_and_its_size_wherever_a_block_en
     positions[:, 0] = turn(10.0)[:, 0]  # only Y jumps, half-way
     told = []
     for rows in (len(T_S), 100):
-        blocks = (Motion(positions[k : k + rows], MOTION_RATE_HZ) for k in range(0, len(T_S), rows))
+        blocks = (
+            Motion(positions[k : k + rows], MOTION_RATE_HZ) for k in range(0, len(T_S), rows)
+        )
         with pytest.raises(
-            MotionFault, match=r"^Y, at [0-9.]+,0.0[0-9] mm and 0.30[0-9] s, changes its speed by 80 mm/s"
+            MotionFault,
+            match=r"^Y, at [0-9.]+,0.0[0-9] mm and 0.30[0-9] s, changes its speed by 80 mm/s",
         ) as caught:
             list(Rehearsal(TapeFormat()).of(blocks))
         told.append((caught.value.axis, caught.value.time_s, caught.value.speed_mm_s))
     assert told[0] == told[1] and told[0][0] == "y"
-    assert told[0][1] == pytest.approx(0.3, abs=1e-3) and told[0][2] == pytest.approx(80, rel=1e-6)
+    assert told[0][1] == pytest.approx(0.3, abs=1e-3) and told[0][2] == pytest.approx(
+        80, rel=1e-6
+    )
 
 
 def test_the_limit_goes_with_the_cycles_per_mm() -> None:

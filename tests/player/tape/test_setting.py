@@ -40,7 +40,9 @@ def tape(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_the_phase_changer_moves_the_whole_path(tape: Path) -> None:
     plain = join(play(tape)).positions_mm
-    playback = play(tape, zero_mm=(0.013, -7.0, 0.4))  # a quarter of a cycle, 140 cycles, 8 cycles
+    playback = play(
+        tape, zero_mm=(0.013, -7.0, 0.4)
+    )  # a quarter of a cycle, 140 cycles, 8 cycles
     moved = join(playback).positions_mm
     assert np.abs(moved - plain - [0.013, -7.0, 0.4]).max() < REST_MM
     assert playback.start_mm == pytest.approx([0.013, -7.0, 0.4], abs=1e-9)
@@ -57,7 +59,9 @@ def test_the_drives_turn_there_under_the_comparators_eye() -> None:
 
 
 def test_a_zero_that_is_not_given_is_none(tape: Path) -> None:
-    assert np.array_equal(join(play(tape)).positions_mm, join(play(tape, zero_mm=(0, 0))).positions_mm)
+    assert np.array_equal(
+        join(play(tape)).positions_mm, join(play(tape, zero_mm=(0, 0))).positions_mm
+    )
 
 
 @pytest.mark.parametrize("override", [0.1, 0.25, 0.8, 1.2, 2.0])
@@ -73,16 +77,18 @@ def test_an_override_changes_the_time_and_not_the_path(tape: Path, override: flo
 
 
 def test_the_following_error_grows_with_the_square_of_the_override(tmp_path: Path) -> None:
-    record(Motion(circle(20.0, 90.0)), tmp_path / "a.wav")  # 405 mm/s², far above the noise of 16 bit
+    record(
+        Motion(circle(20.0, 90.0)), tmp_path / "a.wav"
+    )  # 405 mm/s², far above the noise of 16 bit
     errors = []
     for override in (0.5, 1.0, 2.0):
         playback = play(tmp_path / "a.wav", override=override)
         join(playback)
         errors.append(playback.following_error_mm[:2].max())
     # e = acceleration / (K a): the loop is the same at all three, the acceleration is not
-    assert errors[1] / errors[0] == pytest.approx(4, rel=0.15) and errors[2] / errors[1] == pytest.approx(
-        4, rel=0.15
-    )
+    assert errors[1] / errors[0] == pytest.approx(4, rel=0.15) and errors[2] / errors[
+        1
+    ] == pytest.approx(4, rel=0.15)
 
 
 def fast_turn(tmp_path: Path) -> Path:
@@ -122,7 +128,9 @@ def test_a_motor_that_is_too_slow_faults(tmp_path: Path) -> None:
 def test_both_motors_make_a_loop_of_type_2(motor: str) -> None:
     """Errors at rest and at constant speed are zero, and at constant acceleration acceleration / (K a)."""
     t_s = np.arange(24_000) / MOTION_RATE_HZ
-    speed = np.clip(100 * (t_s - 0.5), 0, 50)  # at rest, 100 mm/s² for half a second, then 50 mm/s
+    speed = np.clip(
+        100 * (t_s - 0.5), 0, 50
+    )  # at rest, 100 mm/s² for half a second, then 50 mm/s
     x = np.cumsum(speed)[:, None] / MOTION_RATE_HZ
     drives = Drives(1, 0.05, MOTION_RATE_HZ, MOTORS[motor])
     error = (x - drives.follow(x / 0.05))[:, 0]
@@ -146,7 +154,9 @@ def test_motors_stop_at_their_top_speed() -> None:
     lock = replace(MOTORS["hydraulic"], range_cycles=np.inf)
     drives = Drives(1, 0.05, MOTION_RATE_HZ, lock)
     moved = drives.follow(np.arange(3000)[:, None] * 400 / MOTION_RATE_HZ / 0.05)
-    assert np.diff(moved[:, 0]).max() * MOTION_RATE_HZ == pytest.approx(lock.drive.top_speed_mm_s, rel=1e-9)
+    assert np.diff(moved[:, 0]).max() * MOTION_RATE_HZ == pytest.approx(
+        lock.drive.top_speed_mm_s, rel=1e-9
+    )
 
 
 @pytest.mark.parametrize(
@@ -165,5 +175,7 @@ def test_what_cannot_be_set(setting: dict[str, object], says: str) -> None:
 
 
 def test_more_zeros_than_axes(tape: Path) -> None:
-    with pytest.raises(ValueError, match="a zero of 4 places does not fit; the tape has 3 axes"):
+    with pytest.raises(
+        ValueError, match="a zero of 4 places does not fit; the tape has 3 axes"
+    ):
         play(tape, zero_mm=(0, 0, 0, 1))

@@ -11,25 +11,36 @@ from morfax.motion.faults import LockFault, TapeFault
 from morfax.player.tape.discriminator import Discriminator, Phases
 from morfax.player.tape.standstill import Bearings, decibels, strongest_hz, take_bearings
 from morfax.recorder.tape.format import TapeFormat
-from tests.player.carriers import MOTION_RATE_HZ, RATE_HZ, REFERENCE_HZ, Transport, swing, tracks
+from tests.player.carriers import (
+    MOTION_RATE_HZ,
+    RATE_HZ,
+    REFERENCE_HZ,
+    Transport,
+    swing,
+    tracks,
+)
 
 FORMAT = TapeFormat()
 
 
 def bearings(frames: np.ndarray, fmt: TapeFormat = FORMAT) -> Bearings:
     """Bearings taken from a tape."""
-    phases = Discriminator(fmt.sample_rate_hz, fmt.reference_hz, fmt.samples_per_motion, fmt.tracks).feed(
-        frames
-    )
+    phases = Discriminator(
+        fmt.sample_rate_hz, fmt.reference_hz, fmt.samples_per_motion, fmt.tracks
+    ).feed(frames)
     return take_bearings(frames, phases, fmt)
 
 
 def test_level_zero_and_reference_are_found() -> None:
-    found = bearings(tracks(swing, 0.3, Transport(level=0.4, track_cycles=(0.0, 0.1, -0.2, 0.3), speed=1.02)))
+    found = bearings(
+        tracks(swing, 0.3, Transport(level=0.4, track_cycles=(0.0, 0.1, -0.2, 0.3), speed=1.02))
+    )
     assert found.levels == pytest.approx(0.4, abs=1e-3)
     zero = swing(np.zeros(1))[0] * FORMAT.cycles_per_mm + [0.1, -0.2, 0.3]
     turns = found.zero_cycles - zero
-    assert turns - np.round(turns) == pytest.approx(0, abs=1e-5)  # clean tape: see the discriminator
+    assert turns - np.round(turns) == pytest.approx(
+        0, abs=1e-5
+    )  # clean tape: see the discriminator
     assert found.reference_hz == pytest.approx(1.02 * REFERENCE_HZ, abs=0.5)
 
 
@@ -45,7 +56,9 @@ def test_noise_of_the_zero_is_averaged_away() -> None:
 def test_the_strongest_tone_is_found(hz: float, phase: float, level: float) -> None:
     t_s = np.arange(16384) / RATE_HZ
     samples = (level * np.sin(2 * np.pi * hz * t_s + phase)).astype(np.float32)
-    assert strongest_hz(samples, RATE_HZ) == pytest.approx(hz, abs=0.3)  # a tenth of a line, 2.9 Hz
+    assert strongest_hz(samples, RATE_HZ) == pytest.approx(
+        hz, abs=0.3
+    )  # a tenth of a line, 2.9 Hz
 
 
 @pytest.mark.parametrize(("track", "name"), [(0, "reference"), (2, "Y"), (3, "Z")])
@@ -59,7 +72,9 @@ def test_a_silent_track_is_named(track: int, name: str) -> None:
 
 
 def test_a_whisper_is_silence_but_forty_db_down_is_not() -> None:
-    assert bearings(tracks(swing, 0.3, Transport(level=0.005))).levels[1] == pytest.approx(0.005, rel=0.01)
+    assert bearings(tracks(swing, 0.3, Transport(level=0.005))).levels[1] == pytest.approx(
+        0.005, rel=0.01
+    )
     with pytest.raises(TapeFault, match="silent: level -66 dB"):
         bearings(tracks(swing, 0.3, Transport(level=0.0005)))
 
@@ -81,14 +96,19 @@ def test_a_tape_without_a_standstill_starts_at_its_first_row() -> None:
     first = Discriminator(RATE_HZ, REFERENCE_HZ, 8, 4).feed(frames).cycles[0]
     by_hand = TapeFormat(dwell_s=0.0)
     assert np.array_equal(bearings(frames, by_hand).zero_cycles[:2], first[:2])
-    with pytest.raises(TapeFault, match=r"the tape starts while . moves, and states a standstill"):
+    with pytest.raises(
+        TapeFault, match=r"the tape starts while . moves, and states a standstill"
+    ):
         bearings(frames)
 
 
 def block(rows: int = 100) -> Phases:
     """Rows without anything wrong, from row 6000 of the tape."""
     return Phases(
-        6000, np.zeros((rows, 3)), np.zeros((rows, 3), np.float32), np.full((rows, 4), 0.5, np.float32)
+        6000,
+        np.zeros((rows, 3)),
+        np.zeros((rows, 3), np.float32),
+        np.full((rows, 4), 0.5, np.float32),
     )
 
 

@@ -18,24 +18,34 @@ from tests.player.worn import program
 ORDERS = [(2, 1, 3, 4), (3, 2, 1, 4), (4, 2, 3, 1), (2, 3, 4, 1), (4, 3, 2, 1)]
 
 
-def mixed(folder: Path, end_mm: tuple[float, float, float], order: tuple[int, ...]) -> tuple[Path, Path]:
+def mixed(
+    folder: Path, end_mm: tuple[float, float, float], order: tuple[int, ...]
+) -> tuple[Path, Path]:
     """A tape that ends there, as it was recorded and with its tracks in another order."""
     positions = program(2.0, 20.0)
     record(
         Motion(positions + np.linspace(0, 1, len(positions))[:, None] ** 3 * np.array(end_mm)),
         folder / "a.wav",
     )
-    age(folder / "a.wav", folder / "b.wav", replace(Wear(), order=order, speed=0.002, noise_db=46))
+    age(
+        folder / "a.wav",
+        folder / "b.wav",
+        replace(Wear(), order=order, speed=0.002, noise_db=46),
+    )
     return folder / "a.wav", folder / "b.wav"
 
 
 @pytest.mark.parametrize("order", ORDERS)
-def test_an_end_that_tells_the_axes_apart_puts_them_in_order(tmp_path: Path, order: tuple[int, ...]) -> None:
+def test_an_end_that_tells_the_axes_apart_puts_them_in_order(
+    tmp_path: Path, order: tuple[int, ...]
+) -> None:
     right, wrong = mixed(tmp_path, (1.0, 2.0, -1.0), order)
     playback = play(wrong)
     ended = join(playback).positions_mm[-1]
     assert playback.found_order == tuple(order.index(track) + 1 for track in (1, 2, 3, 4))
-    assert ended == pytest.approx(join(play(right)).positions_mm[-1], abs=1e-3)  # mm: noise of 46 dB at rest
+    assert ended == pytest.approx(
+        join(play(right)).positions_mm[-1], abs=1e-3
+    )  # mm: noise of 46 dB at rest
 
 
 @pytest.mark.parametrize("order", ORDERS)
@@ -43,7 +53,9 @@ def test_an_end_that_tells_the_axes_apart_puts_them_in_order(tmp_path: Path, ord
 def test_an_end_that_does_not_is_a_fault_before_anything_moves(
     tmp_path: Path, order: tuple[int, ...], end_mm: tuple[float, float, float]
 ) -> None:
-    with pytest.raises(TapeFault, match=rf"the reference is on track {order.index(1) + 1}.*--tracks"):
+    with pytest.raises(
+        TapeFault, match=rf"the reference is on track {order.index(1) + 1}.*--tracks"
+    ):
         play(mixed(tmp_path, end_mm, order)[1])
 
 

@@ -28,7 +28,9 @@ SAMPLES = st.lists(
 
 
 @pytest.mark.parametrize(
-    "path", [circle(10, 10), circle(1, 10), SQUARE, STAR], ids=["10 mm", "1 mm", "square", "star"]
+    "path",
+    [circle(10, 10), circle(1, 10), SQUARE, STAR],
+    ids=["10 mm", "1 mm", "square", "star"],
 )
 def test_the_machine_runs_what_was_recorded(tmp_path: FilePath, path: Path) -> None:
     report = record_cubics(path, tmp_path / "a.cubic")
@@ -39,7 +41,8 @@ def test_the_machine_runs_what_was_recorded(tmp_path: FilePath, path: Path) -> N
 
 def test_a_tolerance_sets_the_interval(tmp_path: FilePath) -> None:
     reports = [
-        record_cubics(circle(10, 10), tmp_path / "a.cubic", tolerance_mm=um * UM) for um in (50, 2, 0.6)
+        record_cubics(circle(10, 10), tmp_path / "a.cubic", tolerance_mm=um * UM)
+        for um in (50, 2, 0.6)
     ]
     intervals_s = [report.format.interval_s for report in reports]
     assert sorted(intervals_s, reverse=True) == intervals_s and intervals_s[0] > intervals_s[-1]
@@ -58,7 +61,9 @@ def test_corners_are_stops(tmp_path: FilePath) -> None:
     places = np.cumsum(program.words[..., 0], axis=0)
     assert len(places) == report.intervals
     corner = distance(thin(play_cubic(tmp_path / "a.cubic")), SQUARE).reference_to_path
-    assert corner.max_mm < 2.5 * UM  # the corner itself is reached, but for what is left of the lag
+    assert (
+        corner.max_mm < 2.5 * UM
+    )  # the corner itself is reached, but for what is left of the lag
 
 
 def test_the_tool_goes_down_and_up(tmp_path: FilePath) -> None:
@@ -79,7 +84,9 @@ def test_ends_and_slopes_meet_to_the_digit(rows: list, steps: tuple[int, int]) -
     interpolator = Interpolator(samples[0, :, 0], points, linear)
     ran = interpolator.run(words)[points - 1 :: points]
     assert (ran == samples[1:, :, 0] * points**3).all()
-    assert (np.cumsum(ends(words, points, linear), axis=0) + samples[0, :, 0] * points**3 == ran).all()
+    assert (
+        np.cumsum(ends(words, points, linear), axis=0) + samples[0, :, 0] * points**3 == ran
+    ).all()
     start, end = slopes(words, points, linear)
     assert (end[:-1] == start[1:]).all()
     assert (start == 6 * samples[:-1, :, 1] * points**2).all()
@@ -93,15 +100,21 @@ def test_the_registers_run_along_the_closed_form(rows: list) -> None:  # type: i
     assert ran == pytest.approx(hermite(samples, at), rel=1e-12, abs=1e-6)
 
 
-def test_a_program_whose_steps_are_partly_linear_ends_exactly_and_runs_coarser(tmp_path: FilePath) -> None:
-    path, wide = circle(1, 5), Limits(100, 500, spacing_mm=0.005, window_mm=0.02, corner_rad=0.2)
+def test_a_program_whose_steps_are_partly_linear_ends_exactly_and_runs_coarser(
+    tmp_path: FilePath,
+) -> None:
+    path, wide = (
+        circle(1, 5),
+        Limits(100, 500, spacing_mm=0.005, window_mm=0.02, corner_rad=0.2),
+    )
     fine = record_cubics(path, tmp_path / "fine.cubic", fmt=CubicFormat(points=64), limits=wide)
     coarse = record_cubics(
         path, tmp_path / "coarse.cubic", fmt=CubicFormat(points=64, linear=16), limits=wide
     )
     assert coarse.format.linear == 16 and fine.format.interval_s == coarse.format.interval_s
     off = [
-        distance(thin(play_cubic(report.file)), path).path_to_reference.rms_mm for report in (fine, coarse)
+        distance(thin(play_cubic(report.file)), path).path_to_reference.rms_mm
+        for report in (fine, coarse)
     ]
     assert off[0] < off[1] < 20 * UM
 
@@ -127,7 +140,10 @@ def test_a_motion_that_stands_is_a_program_without_words(tmp_path: FilePath) -> 
 def test_a_program_comes_back_from_its_file(tmp_path: FilePath) -> None:
     fmt = CubicFormat(0.05, 32, 4, 1000, 150)
     words = np.random.default_rng(1).integers(-(10**12), 10**12, (5, 3, 3))
-    write_program(CubicProgram(fmt, words, {0: (1, -2, 3), 3: (4, 5, 6), 5: (7, 8, 9)}), tmp_path / "a.cubic")
+    write_program(
+        CubicProgram(fmt, words, {0: (1, -2, 3), 3: (4, 5, 6), 5: (7, 8, 9)}),
+        tmp_path / "a.cubic",
+    )
     read = read_program(tmp_path / "a.cubic")
     assert read.format == fmt and (read.words == words).all()
     assert read.checks == {0: (1, -2, 3), 3: (4, 5, 6), 5: (7, 8, 9)}
@@ -158,7 +174,11 @@ BAD = [
     (GOOD.replace("46000", "46001"), "comes to 1000", 11),
     (GOOD.replace("at 1000", "at 999"), "the program states 999 0 0", 11),
     (GOOD.replace("46000 84000 -12000", "256000 0 0"), "a corner there", 11),
-    (GOOD.replace("at 0 0 0", "at 4000000 0 0").replace("at 1000", "at 4001000"), "X goes to 2000.50 mm", 11),
+    (
+        GOOD.replace("at 0 0 0", "at 4000000 0 0").replace("at 1000", "at 4001000"),
+        "X goes to 2000.50 mm",
+        11,
+    ),
     (GOOD.replace("-12000", str(2**60)), "too large for the registers", 11),
     ("\xff", "no ASCII text", None),
 ]
@@ -177,7 +197,9 @@ def test_a_garbled_file_is_one_line_with_its_place(
 
 def test_the_good_file_is_good(tmp_path: FilePath) -> None:
     (tmp_path / "a.cubic").write_text(GOOD.replace("\nat 1000", "\n# a remark\n\nat 1000"))
-    assert thin(play_cubic(tmp_path / "a.cubic")).positions_mm[-1] == pytest.approx([0.5, 0, 0], abs=1 * UM)
+    assert thin(play_cubic(tmp_path / "a.cubic")).positions_mm[-1] == pytest.approx(
+        [0.5, 0, 0], abs=1 * UM
+    )
 
 
 @given(st.binary(max_size=200), st.integers(0, len(GOOD)), st.integers(0, 60))
@@ -203,5 +225,7 @@ def test_a_loop_that_ends_where_it_began_is_no_further_off_there(tmp_path: FileP
     assert report.deviation_mm <= 1 * UM
     assert (
         report.format.interval_s
-        == record_cubics(circle(10, 10, 0.9), tmp_path / "b.cubic", tolerance_mm=1 * UM).format.interval_s
+        == record_cubics(
+            circle(10, 10, 0.9), tmp_path / "b.cubic", tolerance_mm=1 * UM
+        ).format.interval_s
     )

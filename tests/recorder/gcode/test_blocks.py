@@ -23,7 +23,13 @@ from morfax.motion.pathfile import read_path
 from morfax.player.gcode.rs274 import Move, Program, read_rs274
 from morfax.recorder.gcode.arcs import BREAK_RAD, Segment, fit
 from morfax.recorder.gcode.blocks import TOLERANCE_MM, WRITTEN_MM, record_blocks
-from morfax.recorder.gcode.pieces import corners, longest_pieces, off_circle_mm, off_line_mm, resample
+from morfax.recorder.gcode.pieces import (
+    corners,
+    longest_pieces,
+    off_circle_mm,
+    off_line_mm,
+    resample,
+)
 from morfax.recorder.media import record
 
 SAMPLES = Path(__file__).parents[3] / "samples"
@@ -40,7 +46,9 @@ def bend(points: list[tuple[float, float]]) -> np.ndarray:
     return np.array(points, np.float64)
 
 
-def arc(radius: float, first: float, last: float, centre: tuple[float, float] = (0, 0)) -> np.ndarray:
+def arc(
+    radius: float, first: float, last: float, centre: tuple[float, float] = (0, 0)
+) -> np.ndarray:
     """Points of an arc, 1 um of sagitta or less apart."""
     t = np.linspace(first, last, 2 + int(abs(last - first) * math.sqrt(radius / 0.008)))
     return np.array(centre) + radius * np.column_stack([np.cos(t), np.sin(t)])
@@ -80,7 +88,9 @@ def segments(points: np.ndarray, tolerance_mm: float = TOLERANCE_MM) -> list[lis
 
 
 @pytest.mark.parametrize("name", list(FEWEST))
-def test_the_samples_need_hardly_more_than_the_fewest_segments(name: str, tmp_path: Path) -> None:
+def test_the_samples_need_hardly_more_than_the_fewest_segments(
+    name: str, tmp_path: Path
+) -> None:
     path = read_path(SAMPLES / f"{name}.csv")
     chains = [chain for run in path.runs() for chain in fit(run, TOLERANCE_MM)]
     assert sum(len(chain.segments) for chain in chains) <= ASKED * FEWEST[name]
@@ -95,14 +105,16 @@ def test_the_samples_need_hardly_more_than_the_fewest_segments(name: str, tmp_pa
 def test_a_rounded_square_is_four_lines_and_four_arcs() -> None:
     sides = [
         arc(3, a, a + math.pi / 2, c)
-        for a, c in zip(np.arange(4) * math.pi / 2, [(7, 7), (3, 7), (3, 3), (7, 3)], strict=True)
+        for a, c in zip(
+            np.arange(4) * math.pi / 2, [(7, 7), (3, 7), (3, 3), (7, 3)], strict=True
+        )
     ]
     points = np.vstack([[[10.0, 5.0]], *sides, [[10.0, 5.0]]])
     (chain,) = segments(points)
     assert len(chain) == 9  # the side on which it starts is in two
-    assert sorted(round(1 / s.curvature_per_mm, 2) for s in chain if s.curvature_per_mm) == pytest.approx(
-        [3.0] * 4, abs=0.02
-    )
+    assert sorted(
+        round(1 / s.curvature_per_mm, 2) for s in chain if s.curvature_per_mm
+    ) == pytest.approx([3.0] * 4, abs=0.02)
 
 
 def test_a_circle_is_two_arcs() -> None:
@@ -153,14 +165,17 @@ def test_a_smooth_line_is_run_tangent_at_every_joint_within_the_tolerance(seed: 
     random = np.random.default_rng(seed)
     t = np.linspace(0, 1, 900)
     waves = sum(
-        random.uniform(0.1, 4) * np.sin(2 * math.pi * random.uniform(0.2, 2) * t + random.uniform(0, 6))
+        random.uniform(0.1, 4)
+        * np.sin(2 * math.pi * random.uniform(0.2, 2) * t + random.uniform(0, 6))
         for _ in range(3)
     )
     points = np.column_stack([50 * t, waves])
     (chain,) = fit(points, TOLERANCE_MM)
     for before, after in pairwise(chain.segments):
         assert before.end_mm == pytest.approx(after.begin_mm, abs=1e-9)
-        jump = math.remainder(after.heading_rad - before.heading_rad - before.turned_rad, 2 * math.pi)
+        jump = math.remainder(
+            after.heading_rad - before.heading_rad - before.turned_rad, 2 * math.pi
+        )
         assert abs(jump) <= 10 * BREAK_RAD
     assert chain.deviation_mm <= TOLERANCE_MM
     drawn = np.vstack([_drawn_segment(segment) for segment in chain.segments])
@@ -177,7 +192,10 @@ def _drawn_segment(segment: Segment) -> np.ndarray:
             segment.begin_mm,
             *(
                 Segment(
-                    segment.begin_mm, segment.heading_rad, share * segment.length_mm, segment.curvature_per_mm
+                    segment.begin_mm,
+                    segment.heading_rad,
+                    share * segment.length_mm,
+                    segment.curvature_per_mm,
                 ).end_mm
                 for share in np.linspace(0, 1, 60)[1:]
             ),
@@ -199,8 +217,13 @@ def test_the_fits_of_line_and_circle_leave_nothing_of_a_line_and_a_circle(
     assert np.abs(off_line_mm(np.linspace([0, 0], [radius, first], 9))).max() < 1e-9
 
 
-def test_the_tool_goes_up_and_down_by_z_and_feeds_are_those_of_the_motion(tmp_path: Path) -> None:
-    path = path_of(np.vstack([np.linspace([1, 2], [21, 2], 50), arc(5, -math.pi / 2, 0, (21, 7))]), z_mm=-1.5)
+def test_the_tool_goes_up_and_down_by_z_and_feeds_are_those_of_the_motion(
+    tmp_path: Path,
+) -> None:
+    path = path_of(
+        np.vstack([np.linspace([1, 2], [21, 2], 50), arc(5, -math.pi / 2, 0, (21, 7))]),
+        z_mm=-1.5,
+    )
     report = record_blocks(path, tmp_path / "part.ngc")
     assert report.file.read_text().split("\n") == [
         "G17 G21 G90 G94",
@@ -212,7 +235,9 @@ def test_the_tool_goes_up_and_down_by_z_and_feeds_are_those_of_the_motion(tmp_pa
         "",
     ]
     line, turn = read_rs274(report.file).moves[2:4]
-    assert line.end_mm == pytest.approx((21, 2, -1.5), abs=0.1) and line.feed_mm_s == pytest.approx(10)
+    assert line.end_mm == pytest.approx(
+        (21, 2, -1.5), abs=0.1
+    ) and line.feed_mm_s == pytest.approx(10)
     assert turn.centre_mm == pytest.approx((21, 7), abs=0.1) and turn.end_mm == pytest.approx(
         (26, 7, -1.5), abs=2 * WRITTEN_MM
     )
@@ -246,7 +271,9 @@ def test_what_cannot_be_recorded_leaves_no_file(tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.skipif(shutil.which("rs274") is None, reason="rs274 of linuxcnc-uspace is not installed")
+@pytest.mark.skipif(
+    shutil.which("rs274") is None, reason="rs274 of linuxcnc-uspace is not installed"
+)
 @pytest.mark.parametrize("name", list(FEWEST))
 def test_linuxcnc_takes_every_program(name: str, tmp_path: Path) -> None:
     file = tmp_path / "part.ngc"

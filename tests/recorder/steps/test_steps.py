@@ -21,7 +21,8 @@ from morfax.recorder.steps.rings import RINGS, command, commands
 from morfax.recorder.steps.steps import encode, record_steps
 
 STEP_MM = 0.01
-STAIR = 1.25  # steps: within an interval the axes step one after the other, half a step each way
+# steps: within an interval the axes step one after the other, half a step each way
+STAIR = 1.25
 
 
 def circle(radius_mm: float, speed_mm_s: float, turns: float = 1.0) -> Path:
@@ -44,7 +45,9 @@ TOOL = polyline((3, 3, 2), (3, 3, -1), (9, 7, -1), (9, 7, 2))
 
 
 @pytest.mark.parametrize(
-    "path", [circle(10, 10), circle(0.5, 10), SQUARE, STAR], ids=["10 mm", "0.5 mm", "square", "star"]
+    "path",
+    [circle(10, 10), circle(0.5, 10), SQUARE, STAR],
+    ids=["10 mm", "0.5 mm", "square", "star"],
 )
 def test_the_machine_stays_within_a_step_of_the_motion(tmp_path: FilePath, path: Path) -> None:
     report = record_steps(path, tmp_path / "a.steps")
@@ -57,9 +60,9 @@ def test_the_tool_goes_down_and_up_over_its_places(tmp_path: FilePath) -> None:
     record_steps(TOOL, tmp_path / "a.steps")
     playback = play_steps(tmp_path / "a.steps")
     played = thin(playback)
-    assert played.positions_mm[0] == pytest.approx([3, 3, 2]) and played.positions_mm[-1] == pytest.approx(
-        [9, 7, 2]
-    )
+    assert played.positions_mm[0] == pytest.approx([3, 3, 2]) and played.positions_mm[
+        -1
+    ] == pytest.approx([9, 7, 2])
     assert played.positions_mm[:, 2].min() == pytest.approx(-1, abs=STEP_MM)
     assert [change.down for change in playback.tool_changes] == [True, False]
     down_s = playback.tool_changes[0].time_s
@@ -83,14 +86,19 @@ def test_the_speed_is_held_in_rings_and_taken_back_before_corners(tmp_path: File
     playback = play_steps(tmp_path / "s.steps")
     at = playback.start_mm + np.cumsum(playback.pulses, axis=0) * STEP_MM
     corner = np.hypot(at[:, 0] - 10, at[:, 1]) < STEP_MM
-    assert np.abs(playback.pulses[corner]).max() <= 2 and not playback.pulses[corner].any(axis=1).all()
+    assert (
+        np.abs(playback.pulses[corner]).max() <= 2
+        and not playback.pulses[corner].any(axis=1).all()
+    )
 
 
 def test_two_vectors_in_a_row_take_fewer_rows_for_the_same_path(tmp_path: FilePath) -> None:
     one = record_steps(circle(10, 9), tmp_path / "one.steps", fmt=StepFormat(vectors=1))
     two = record_steps(circle(10, 9), tmp_path / "two.steps", fmt=StepFormat(vectors=2))
     assert one.rows == one.intervals and two.rows < 0.6 * one.rows
-    assert (play_steps(tmp_path / "one.steps").counts == play_steps(tmp_path / "two.steps").counts).all()
+    assert (
+        play_steps(tmp_path / "one.steps").counts == play_steps(tmp_path / "two.steps").counts
+    ).all()
 
 
 @given(st.lists(st.tuples(*[st.integers(-1, 1)] * 3), max_size=40), st.sampled_from([1, 2]))
@@ -99,7 +107,9 @@ def test_what_is_encoded_is_decoded(changes: list[tuple[int, int, int]], vectors
 
     lengths = np.clip(np.cumsum(np.array(changes, np.int64).reshape(-1, 3), axis=0), -7, 7)
     lengths = (
-        lengths[np.r_[True, np.abs(np.diff(lengths, axis=0)).max(axis=1) <= 1]] if len(lengths) else lengths
+        lengths[np.r_[True, np.abs(np.diff(lengths, axis=0)).max(axis=1) <= 1]]
+        if len(lengths)
+        else lengths
     )
     fmt = StepFormat(vectors=vectors)
     counts, _ = decode(Program(fmt, encode(lengths, np.zeros(len(lengths), bool), fmt)))
@@ -117,21 +127,30 @@ def test_a_motion_that_is_none_is_refused(tmp_path: FilePath) -> None:
     with pytest.raises(MotionFault, match="empty"):
         record_steps([], tmp_path / "a.steps")
     with pytest.raises(MotionFault, match=r"0\.500 s"):
-        record_steps(Path(np.array([0, 0.5]), np.array([[0, 0, 0], [np.nan, 0, 0]])), tmp_path / "a.steps")
+        record_steps(
+            Path(np.array([0, 0.5]), np.array([[0, 0, 0], [np.nan, 0, 0]])),
+            tmp_path / "a.steps",
+        )
     with pytest.raises(ValueError, match="above zero"):
         record_steps(SQUARE, tmp_path / "a.steps", tolerance_mm=0)
     assert not list(tmp_path.iterdir())
 
 
 def test_a_motion_that_stands_is_a_tape_without_rows(tmp_path: FilePath) -> None:
-    report = record_steps(Path(np.array([0.0, 1]), np.array([[1.0, 2, 3]] * 2)), tmp_path / "a.steps")
-    assert report.rows == 0 and thin(play_steps(tmp_path / "a.steps")).positions_mm[-1].tolist() == [1, 2, 3]
+    report = record_steps(
+        Path(np.array([0.0, 1]), np.array([[1.0, 2, 3]] * 2)), tmp_path / "a.steps"
+    )
+    assert report.rows == 0 and thin(play_steps(tmp_path / "a.steps")).positions_mm[
+        -1
+    ].tolist() == [1, 2, 3]
 
 
 def test_a_rest_is_kept(tmp_path: FilePath) -> None:
     moved = polyline((0, 0, 0), (2, 0, 0), (4, 0, 0))
     rested = Path(np.array([0, 0.2, 1.2, 1.4]), moved.positions_mm[[0, 1, 1, 2]])
-    gained_s = [record_steps(path, tmp_path / "a.steps").duration_s for path in (rested, SQUARE, moved)]
+    gained_s = [
+        record_steps(path, tmp_path / "a.steps").duration_s for path in (rested, SQUARE, moved)
+    ]
     assert gained_s[0] - gained_s[2] > 1.0
 
 
@@ -203,7 +222,9 @@ def test_every_vector_command_stands_in_the_table() -> None:
     table = commands()
     assert np.count_nonzero(table >= 0) == 3 * sum(map(len, RINGS.values()))
     assert (
-        command((6, 0), (6, -1)) == 0b10 and command((6, -1), (6, 0)) == 0b01 and command((6, 0), (6, 0)) == 0
+        command((6, 0), (6, -1)) == 0b10
+        and command((6, -1), (6, 0)) == 0b01
+        and command((6, 0), (6, 0)) == 0
     )
     assert command((6, 0), (6, -2)) is None and command((0, 0), (1, 0)) is None
     assert table[6 + 7, 7, 1, 0] == 0b10
@@ -213,7 +234,9 @@ def test_legs_part_at_corners_and_rests_and_run_from_stop_to_stop() -> None:
     found = legs(SQUARE, Limits(10, 256))
     assert [round(leg.length_mm, 3) for leg in found] == [10] * 4
     for leg in found:
-        assert leg.speed_mm_s[0] == leg.speed_mm_s[-1] == 0 and leg.speed_mm_s.max() == pytest.approx(10)
+        assert leg.speed_mm_s[0] == leg.speed_mm_s[
+            -1
+        ] == 0 and leg.speed_mm_s.max() == pytest.approx(10)
         pull = np.diff(leg.speed_mm_s**2) / 2 / leg.spacing_mm
         assert np.abs(pull).max() <= 0.7 * 256 * 1.001  # mm/s²
     assert found[0].times_s[-1] == pytest.approx(10 / 10 + 10 / (0.7 * 256), rel=1e-3)
@@ -232,7 +255,9 @@ def test_the_kernels_do_as_plain_python_what_they_do_compiled() -> None:
     legs_module._passes.py_func(squared, 1.0)
     assert squared.tolist() == [0, 1, 2, 3, 4, 3, 2, 1, 0]
     places, speeds = leg.places_mm / STEP_MM, leg.speed_mm_s / STEP_MM / 160
-    compiled = lengths_module.cut(places, speeds, leg.spacing_mm / STEP_MM, np.zeros(3, np.int64))
+    compiled = lengths_module.cut(
+        places, speeds, leg.spacing_mm / STEP_MM, np.zeros(3, np.int64)
+    )
     plain = pytest.MonkeyPatch()
     for name in ("_search", "_keep", "_nearest"):
         plain.setattr(lengths_module, name, getattr(lengths_module, name).py_func)

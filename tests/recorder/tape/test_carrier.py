@@ -17,7 +17,9 @@ SINE = 1.1e-7 + 6e-8  # of full scale: the polynomial's error, and half a step o
 TABLE_S = 1 / 6000
 
 
-def all_frames(pick_up: PickUp, positions: np.ndarray, sizes: list[int] | None = None) -> np.ndarray:
+def all_frames(
+    pick_up: PickUp, positions: np.ndarray, sizes: list[int] | None = None
+) -> np.ndarray:
     made = Carrier(pick_up, positions[0])
     cuts = np.clip(np.cumsum([0, *(sizes or [])]), 0, len(positions)).tolist()
     blocks = np.split(positions, cuts[1:])
@@ -92,7 +94,9 @@ def test_a_vibration_leaves_no_images_of_the_motion_rate() -> None:
     )  # dB below the carrier; 16 bit noise is at -98 in all
 
 
-def test_the_historic_tracks_have_the_frequencies_worked_out(vectors: Callable[[str], Any]) -> None:
+def test_the_historic_tracks_have_the_frequencies_worked_out(
+    vectors: Callable[[str], Any],
+) -> None:
     worked = vectors("mf_tape")
     screw = LeadScrew(worked["params"]["pitch_mm"], worked["params"]["sectors"])
     pick_up = PickUp(worked["params"]["f_ref_hz"], screw.cycles_per_mm, level=1.0)

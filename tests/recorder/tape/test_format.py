@@ -30,7 +30,11 @@ def test_a_format_reads_back(
     of_axis = {name: (start, end) for name, start, end in axes}
     names, starts, ends = tuple(of_axis), *zip(*of_axis.values(), strict=True)
     fmt = TapeFormat(
-        reference_hz=reference_hz, cycles_per_mm=cycles_per_mm, axes=names, start_mm=starts, end_mm=ends
+        reference_hz=reference_hz,
+        cycles_per_mm=cycles_per_mm,
+        axes=names,
+        start_mm=starts,
+        end_mm=ends,
     )
     text = fmt.to_json()
     assert TapeFormat.from_json(text) == fmt
@@ -83,7 +87,9 @@ def test_entries_too_many_or_too_few_are_refused() -> None:
         TapeFormat.from_json(json.dumps({**GOOD, "waveform": "square"}))
     for entry in GOOD:
         with pytest.raises(TapeFault, match=f"lacks {entry}"):
-            TapeFormat.from_json(json.dumps({name: value for name, value in GOOD.items() if name != entry}))
+            TapeFormat.from_json(
+                json.dumps({name: value for name, value in GOOD.items() if name != entry})
+            )
 
 
 @pytest.mark.parametrize(

@@ -24,11 +24,15 @@ CLOSED: dict[str, Callable[[np.ndarray], np.ndarray]] = {
     "photocell": lambda phi: np.pi / 4 * np.sign(np.sin(phi)),
     "scale": lambda phi: np.pi / 4 * np.arcsin(np.sin(phi)),
     "hall": lambda phi: np.arctan(2 * DECAY * np.sin(phi) / (1 - DECAY**2)) / (2 * DECAY),
-    "coil": lambda phi: (1 - DECAY**2) * np.sin(phi) / (1 + 2 * DECAY**2 * np.cos(2 * phi) + DECAY**4),
+    "coil": lambda phi: (
+        (1 - DECAY**2) * np.sin(phi) / (1 + 2 * DECAY**2 * np.cos(2 * phi) + DECAY**4)
+    ),
 }
 
 
-def track(name: str, speed_mm_s: float, seconds: float = 1.0, reference_hz: float = 6000.0) -> np.ndarray:
+def track(
+    name: str, speed_mm_s: float, seconds: float = 1.0, reference_hz: float = 6000.0
+) -> np.ndarray:
     """Frames of a track at an even speed, level 1 (of the fundamental), from the second period on."""
     pick_up = PickUp(reference_hz, 20.0, level=1.0, sensor=PICK_UPS[name])
     positions = speed_mm_s * np.arange(int(seconds * RATE_HZ) + 3)[:, None] / RATE_HZ
@@ -56,7 +60,9 @@ def test_a_slow_carrier_holds_the_whole_wave(name: str) -> None:
     # reference 100 Hz: 227 harmonics, of which those left out are below the last one's share
     frames = track(name, 0.0, reference_hz=100.0)
     phi = 2 * np.pi * 100 * np.arange(8, 8 + len(frames)) / 48_000
-    left_out = 1 / (2 * 200) if name == "scale" else 0.0  # sum of 1/n² from n = 200 on, every second
+    left_out = (
+        1 / (2 * 200) if name == "scale" else 0.0
+    )  # sum of 1/n² from n = 200 on, every second
     # the harmonics of a coil are so steep in the fundamental that they make 1.4 of its polynomial's error
     assert np.abs(frames - CLOSED[name](phi)).max() <= left_out + 1.5 * ROUNDING
 
@@ -65,7 +71,9 @@ def test_a_slow_carrier_holds_the_whole_wave(name: str) -> None:
 @pytest.mark.parametrize("speed_mm_s", [-90.0, -37.0, 0.0, 55.0, 95.0])
 def test_nothing_aliases(name: str, speed_mm_s: float) -> None:
     frames = track(name, speed_mm_s)
-    hz = 6000 + 20 * speed_mm_s  # a whole number: every harmonic falls upon one line of the spectrum
+    hz = (
+        6000 + 20 * speed_mm_s
+    )  # a whole number: every harmonic falls upon one line of the spectrum
     lines = 2 * np.abs(np.fft.rfft(frames)) / len(frames)
     own = [int(n * hz) for n in range(1, 9, 2) if n * hz < 24_000]
     assert lines[own[0]] == pytest.approx(hz / 6000 if name == "coil" else 1.0, abs=ROUNDING)
@@ -97,7 +105,9 @@ def test_no_sample_is_larger_than_said(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", OTHERS)
-def test_the_plain_kernel_is_the_compiled_one(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_plain_kernel_is_the_compiled_one(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     compiled = track(name, 30.0, 0.01)
     monkeypatch.setattr(carrier, "_write_wave", carrier._write_wave.py_func)
     assert np.abs(track(name, 30.0, 0.01) - compiled).max() <= ROUNDING

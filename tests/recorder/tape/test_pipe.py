@@ -50,7 +50,9 @@ def test_raw_samples_play_with_what_is_given_by_hand(tape: Path) -> None:
     went = join(play_pipe(io.BytesIO(frames.tobytes() + b"\0\0\0"), **BY_HAND)).positions_mm
     whole = join(play(tape)).positions_mm
     assert len(went) == len(whole)
-    assert np.abs(went - whole).max() < 1e-6  # mm: the zero is taken from less of the standstill
+    assert (
+        np.abs(went - whole).max() < 1e-6
+    )  # mm: the zero is taken from less of the standstill
 
 
 @pytest.mark.parametrize(
@@ -61,7 +63,10 @@ def test_raw_samples_play_with_what_is_given_by_hand(tape: Path) -> None:
         (b"RIFF\0\0\0\0WAVEdata\0\0\0\0", "no format before"),
         (b"RIFF\0\0\0\0WAVEjunk\xff\xff\xff\x7f", "header chunk"),
         (b"RIFF\0\0\0\0WAVEfmt \x04\0\0\0abcd", "broken format"),
-        (b"RIFF\0\0\0\0WAVEfmt \x10\0\0\0" + struct.pack("<HHIIHH", 1, 1, 48000, 0, 0, 16), "3 or more"),
+        (
+            b"RIFF\0\0\0\0WAVEfmt \x10\0\0\0" + struct.pack("<HHIIHH", 1, 1, 48000, 0, 0, 16),
+            "3 or more",
+        ),
         (b"0123456789abcdef" * 9, "does not say its format"),
     ],
 )

@@ -39,7 +39,9 @@ def test_a_file_that_ends_early_is_cut_short(tmp_path: Path, container: str) -> 
 def test_a_wav_from_a_pipe_does_not_say_its_length(tmp_path: Path) -> None:
     file = written(tmp_path / "a", "WAV")
     whole = file.read_bytes()
-    file.write_bytes(whole.replace(b"data" + (8000).to_bytes(4, "little"), b"data\xff\xff\xff\xff"))
+    file.write_bytes(
+        whole.replace(b"data" + (8000).to_bytes(4, "little"), b"data\xff\xff\xff\xff")
+    )
     sizes = riff.read_sizes(file)
     assert sizes is not None
     assert sizes.stated is None
@@ -69,10 +71,16 @@ def test_a_plain_wav_is_what_python_s_own_module_reads(tmp_path: Path) -> None:
     file = written(tmp_path / "a", "RF64")
     riff.make_plain(file)
     with wave.open(str(file)) as plain:
-        assert (plain.getnchannels(), plain.getframerate(), plain.getnframes()) == (4, 48_000, 1000)
+        assert (plain.getnchannels(), plain.getframerate(), plain.getnframes()) == (
+            4,
+            48_000,
+            1000,
+        )
 
 
-def test_what_is_too_large_or_no_rf64_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_is_too_large_or_no_rf64_stays(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     assert not riff.make_plain(written(tmp_path / "a", "WAV"))
     monkeypatch.setattr(riff, "LARGEST_RIFF_BYTES", 8000)
     assert not riff.make_plain(written(tmp_path / "a", "RF64"))

@@ -28,7 +28,9 @@ def circle(turns: float = 0.2, z_mm: float = -2.0, blocks: int = 1) -> list[Moti
     samples = round(2 * np.pi * turns * RATE_HZ)
     share = np.linspace(0, 1, samples)
     angle = 2 * np.pi * turns * (10 * share**3 - 15 * share**4 + 6 * share**5)
-    positions = np.column_stack([40 + 10 * np.cos(angle), 20 + 10 * np.sin(angle), np.full(samples, z_mm)])
+    positions = np.column_stack(
+        [40 + 10 * np.cos(angle), 20 + 10 * np.sin(angle), np.full(samples, z_mm)]
+    )
     return [Motion(part, RATE_HZ) for part in np.array_split(positions, blocks)]
 
 
@@ -52,8 +54,12 @@ def test_the_motion_comes_back_between_two_standstills(tmp_path: Path, name: str
     recording = record([Motion(motion)], tmp_path / name)
     cycles = displacement_cycles(read_frames(tmp_path / name))
     assert len(cycles) == len(motion) + 2 * RATE_HZ
-    wanted = np.vstack([np.tile(motion[0], (RATE_HZ, 1)), motion, np.tile(motion[-1], (RATE_HZ, 1))])
-    error = (cycles - 20 * (wanted - motion[0]))[1000:-1000]  # the transform rings at the tape's two ends
+    wanted = np.vstack(
+        [np.tile(motion[0], (RATE_HZ, 1)), motion, np.tile(motion[-1], (RATE_HZ, 1))]
+    )
+    error = (cycles - 20 * (wanted - motion[0]))[
+        1000:-1000
+    ]  # the transform rings at the tape's two ends
     assert np.abs(error).max() < QUANTISED_CYCLES
     assert recording.frames == 8 * len(cycles)
     assert recording.duration_s == pytest.approx(len(motion) / RATE_HZ + 2.0)
@@ -69,21 +75,37 @@ def test_the_motion_comes_back_between_two_standstills(tmp_path: Path, name: str
     st.integers(0, 1000),
 )
 def test_any_format_carries_the_motion(
-    tmp_path: Path, reference_hz: float, cycles: float, rate_hz: int, per_motion: int, level: float, seed: int
+    tmp_path: Path,
+    reference_hz: float,
+    cycles: float,
+    rate_hz: int,
+    per_motion: int,
+    level: float,
+    seed: int,
 ) -> None:
     fmt = TapeFormat(
-        1, rate_hz, reference_hz, cycles, ("x", "y"), dwell_s=0.1, level=level, samples_per_motion=per_motion
+        1,
+        rate_hz,
+        reference_hz,
+        cycles,
+        ("x", "y"),
+        dwell_s=0.1,
+        level=level,
+        samples_per_motion=per_motion,
     )
     random, samples = np.random.default_rng(seed), round(0.5 * fmt.motion_rate_hz)
     bend = np.sin(np.pi * np.arange(samples) / samples) ** 2
     positions = (
-        random.uniform(-100, 100, 2) + bend[:, None] * random.uniform(-0.05, 0.05, 2) * fmt.largest_speed_mm_s
+        random.uniform(-100, 100, 2)
+        + bend[:, None] * random.uniform(-0.05, 0.05, 2) * fmt.largest_speed_mm_s
     )
     record([Motion(positions, fmt.motion_rate_hz)], tmp_path / "a.wav", fmt, sample="float")
     turned = displacement_cycles(read_frames(tmp_path / "a.wav"), per_motion)
     dwell = round(0.1 * fmt.motion_rate_hz)
     error = turned[dwell:-dwell] - cycles * (positions - positions[0])
-    assert np.abs(error).max() < 2e-3  # the transform's ringing on a tape of under a second, not the tape
+    assert (
+        np.abs(error).max() < 2e-3
+    )  # the transform's ringing on a tape of under a second, not the tape
 
 
 def test_blocks_do_not_show(tmp_path: Path) -> None:
@@ -96,7 +118,9 @@ def test_a_path_is_recorded_as_it_is(tmp_path: Path) -> None:
     path = ThinnedPath(np.array([0.0, 0.5]), np.array([[0.0, 0.0, 2.0], [5.0, 0.0, 2.0]]))
     done: list[tuple[float, float | None]] = []
     recording = record(
-        path, tmp_path / "a.wav", progress=lambda done_s, total_s: done.append((done_s, total_s))
+        path,
+        tmp_path / "a.wav",
+        progress=lambda done_s, total_s: done.append((done_s, total_s)),
     )
     assert recording.format.end_mm == (5.0, 0.0, 2.0)
     assert recording.largest_speed_mm_s == pytest.approx((10.0, 0.0, 0.0), abs=1e-9)
@@ -127,7 +151,9 @@ def test_the_text_chunk_says_the_format_with_start_and_end(tmp_path: Path, name:
         ("a.flac", "24", ("FLAC", "PCM_24")),
     ],
 )
-def test_kinds_of_file_and_sample(tmp_path: Path, name: str, sample: str, kinds: tuple[str, str]) -> None:
+def test_kinds_of_file_and_sample(
+    tmp_path: Path, name: str, sample: str, kinds: tuple[str, str]
+) -> None:
     record(circle(), tmp_path / name, sample=sample)
     with Tape.open(tmp_path / name) as tape:
         assert (tape.container, tape.sample) == kinds
@@ -135,7 +161,9 @@ def test_kinds_of_file_and_sample(tmp_path: Path, name: str, sample: str, kinds:
     assert peak == pytest.approx(0.5, abs=1 / 32768)
 
 
-def test_a_wav_too_large_for_its_header_is_an_rf64(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_wav_too_large_for_its_header_is_an_rf64(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     # stands for 4 GiB, where soundfile's own WAV loses the rest without an error
     monkeypatch.setattr(riff, "LARGEST_RIFF_BYTES", 500_000)
     record(circle(), tmp_path / "a.wav")
@@ -152,12 +180,17 @@ def test_a_wav_too_large_for_its_header_is_an_rf64(tmp_path: Path, monkeypatch: 
     [
         ([], "motion is empty"),
         ([Motion(np.zeros((0, 3)))], "motion is empty"),
-        ([Motion(np.zeros((9, 3)), 5000.0)], r"runs at 5000 Hz; a tape of 48000 Hz takes 6000 Hz"),
+        (
+            [Motion(np.zeros((9, 3)), 5000.0)],
+            r"runs at 5000 Hz; a tape of 48000 Hz takes 6000 Hz",
+        ),
         ([Motion(np.zeros((9, 2)))], "has 2 axes; this tape takes 3: x, y, z"),
         ([Motion(np.full((9, 3), np.nan))], r"axis x is at nan mm at 0.0000 s"),
     ],
 )
-def test_what_no_tape_can_take_leaves_nothing(tmp_path: Path, motion: list[Motion], fault: str) -> None:
+def test_what_no_tape_can_take_leaves_nothing(
+    tmp_path: Path, motion: list[Motion], fault: str
+) -> None:
     with pytest.raises(MotionFault, match=fault):
         record(motion, tmp_path / "a.wav")
     assert list(tmp_path.iterdir()) == []
@@ -165,9 +198,12 @@ def test_what_no_tape_can_take_leaves_nothing(tmp_path: Path, motion: list[Motio
 
 def test_too_fast_is_refused_with_axis_time_and_speed(tmp_path: Path) -> None:
     positions = np.zeros((12_000, 3))
-    positions[9000:, 1] = -(100.5 / RATE_HZ) * np.arange(3000)  # from 1.5 s on, over a block's end
+    positions[9000:, 1] = -(100.5 / RATE_HZ) * np.arange(
+        3000
+    )  # from 1.5 s on, over a block's end
     with pytest.raises(
-        MotionFault, match=r"axis y moves at 100.5 mm/s at 1.5002 s; .* at most 100 mm/s \(2000 Hz"
+        MotionFault,
+        match=r"axis y moves at 100.5 mm/s at 1.5002 s; .* at most 100 mm/s \(2000 Hz",
     ) as caught:
         record([Motion(part) for part in np.array_split(positions, 5)], tmp_path / "a.wav")
     assert caught.value.axis == "y"
@@ -183,7 +219,9 @@ def test_the_largest_speed_itself_is_taken(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("error", [KeyboardInterrupt, RuntimeError])
-def test_a_broken_run_leaves_the_tape_before_it(tmp_path: Path, error: type[BaseException]) -> None:
+def test_a_broken_run_leaves_the_tape_before_it(
+    tmp_path: Path, error: type[BaseException]
+) -> None:
     def breaking() -> Iterator[Motion]:
         yield from circle(blocks=4)[:2]
         raise error
@@ -245,7 +283,9 @@ def test_a_tape_without_text_needs_two_figures(tmp_path: Path) -> None:
         Tape.open(tmp_path / "a.wav")
     with pytest.raises(TapeFault, match="give --cycles-per-mm 20"):
         Tape.open(tmp_path / "a.wav", reference_hz=6000)
-    with Tape.open(tmp_path / "a.wav", reference_hz=6000, cycles_per_mm=20, start_mm=(1, 2)) as tape:
+    with Tape.open(
+        tmp_path / "a.wav", reference_hz=6000, cycles_per_mm=20, start_mm=(1, 2)
+    ) as tape:
         assert tape.format.axes == ("x", "y", "z", "a")
         assert tape.format.start_mm == (1.0, 2.0, 0.0, 0.0)
         assert tape.format.sample_rate_hz == 44_100

@@ -21,7 +21,9 @@ HZ = 6000.0
 def tones(tracks: int = 4) -> np.ndarray:
     """Four seconds of the reference on all tracks."""
     t_s = np.arange(SECONDS * RATE_HZ) / RATE_HZ
-    return np.tile((0.5 * np.sin(2 * np.pi * HZ * t_s)).astype(np.float32)[:, None], (1, tracks))
+    return np.tile(
+        (0.5 * np.sin(2 * np.pi * HZ * t_s)).astype(np.float32)[:, None], (1, tracks)
+    )
 
 
 def worn(
@@ -59,7 +61,9 @@ def test_the_time_base_is_what_it_says() -> None:
         # most
         assert np.abs(out[RATE_HZ : 3 * RATE_HZ, track] - expected).max() < 0.01
     speed = np.diff(deck.timebase.programme_s(np.arange(10 * RATE_HZ) / RATE_HZ)) * RATE_HZ
-    assert speed.mean() == pytest.approx(1.015, abs=3e-4)  # ten seconds hold few periods of the slowest tone
+    assert speed.mean() == pytest.approx(
+        1.015, abs=3e-4
+    )  # ten seconds hold few periods of the slowest tone
     assert speed.std() == pytest.approx(np.sqrt(3) * 1e-3, rel=0.15)
 
 
@@ -92,7 +96,9 @@ def test_dropouts_are_where_they_say() -> None:
     levels = np.abs(out[middle - 8 : middle + 8]).max(axis=0)
     assert levels[hole.track % 4] == pytest.approx(0.005, rel=0.1)
     assert np.delete(levels, hole.track % 4) == pytest.approx(0.5, rel=0.05)
-    everywhere, deck = worn(Wear(dropouts_per_min=120, dropout_s=0.01, dropout_db=40, dropout_all=True))
+    everywhere, deck = worn(
+        Wear(dropouts_per_min=120, dropout_s=0.01, dropout_db=40, dropout_all=True)
+    )
     middle = round((deck.dropouts[0].start_s + deck.dropouts[0].length_s / 2) * RATE_HZ)
     assert np.abs(everywhere[middle - 8 : middle + 8]).max() < 0.006
 
@@ -125,7 +131,11 @@ def test_a_worn_tape_keeps_its_text(tmp_path: Path, name: str) -> None:
     with soundfile.SoundFile(tmp_path / "a.wav", "w", RATE_HZ, 4) as out:
         out.comment = '{"version": 1}'
         out.write(tones())
-    aged = age(tmp_path / "a.wav", tmp_path / name, Wear(cut_start_s=0.5, cut_end_s=1.5, stamped_hz=44_100))
+    aged = age(
+        tmp_path / "a.wav",
+        tmp_path / name,
+        Wear(cut_start_s=0.5, cut_end_s=1.5, stamped_hz=44_100),
+    )
     with soundfile.SoundFile(tmp_path / name) as sound:
         assert sound.samplerate == 44_100 == aged.sample_rate_hz
         assert sound.frames == aged.frames == pytest.approx(2 * RATE_HZ, abs=2)

@@ -54,7 +54,9 @@ def test_inside_a_square_four_corners_are_left_and_listed() -> None:
         )  # from where the cutter touches one leg to the other
         assert min(np.hypot(*(SQUARE - stretch.place_mm).T)) < FOLLOWED_MM
     assert (
-        distance(thin(beside), np.array([[11, 11], [17, 11], [17, 21], [11, 21], [11.0, 11]])).hausdorff_mm
+        distance(
+            thin(beside), np.array([[11, 11], [17, 11], [17, 21], [11, 21], [11.0, 11]])
+        ).hausdorff_mm
         < FOLLOWED_MM
     )
     _, outside = with_cutter(trace(inked(SQUARE, seed=2)), Cutter(6), FEED_MM_S)
@@ -76,21 +78,29 @@ def test_outside_of_a_part_is_the_inside_of_its_holes() -> None:
 
 def test_a_cutter_wider_than_the_hole_is_refused_in_one_line() -> None:
     with pytest.raises(
-        MotionFault, match="a cutter of 12 mm goes nowhere inside of the lines; give a smaller --cutter"
+        MotionFault,
+        match="a cutter of 12 mm goes nowhere inside of the lines; give a smaller --cutter",
     ):
         with_cutter(trace(inked(arc((9, 9), 5))), Cutter(12, "inside"), FEED_MM_S)
 
 
 def test_an_open_line_has_a_left_and_a_right_and_no_outside() -> None:
     line = trace(inked(polyline((4, 6), (24, 9)), seed=1))
-    with pytest.raises(MotionFault, match="line 1 is open: it has no outside; give --side left or right"):
+    with pytest.raises(
+        MotionFault, match="line 1 is open: it has no outside; give --side left or right"
+    ):
         with_cutter(line, Cutter(4), FEED_MM_S)
     plate = closed(run_through((0, 0), (20, 0), (20, 20), (0, 20), (0, 0)))
     both = Trace((replace(plate, number=4), replace(line.lines[0], number=7)))
-    with pytest.raises(MotionFault, match=r"line 7 is open.*, or outside of the others alone by --lines 4$"):
+    with pytest.raises(
+        MotionFault, match=r"line 7 is open.*, or outside of the others alone by --lines 4$"
+    ):
         with_cutter(both, Cutter(4), FEED_MM_S)
     # type: ignore[arg-type]
-    ways = {side: thin(with_cutter(line, Cutter(4, side), FEED_MM_S)[0]) for side in ("left", "right")}
+    ways = {
+        side: thin(with_cutter(line, Cutter(4, side), FEED_MM_S)[0])
+        for side in ("left", "right")
+    }
     middle = 0.5 * (ways["left"].runs()[0].mean(axis=0) + ways["right"].runs()[0].mean(axis=0))
     assert middle == pytest.approx([14, 7.5], abs=0.3)
     assert distance(ways["left"], ways["right"]).hausdorff_mm == pytest.approx(4, abs=0.05)
@@ -98,7 +108,10 @@ def test_an_open_line_has_a_left_and_a_right_and_no_outside() -> None:
 
 def test_a_hole_too_small_is_left_out_and_listed_with_the_cutter_that_would_go_in() -> None:
     plate = inked(
-        polyline((8, 8), (44, 8), (44, 28), (8, 28), (8, 8)), arc((18, 18), 4), arc((34, 18), 1.6), seed=4
+        polyline((8, 8), (44, 8), (44, 28), (8, 28), (8, 8)),
+        arc((18, 18), 4),
+        arc((34, 18), 1.6),
+        seed=4,
     )
     beside, left = with_cutter(trace_lines(plate), Cutter(4), FEED_MM_S)
     assert [line.number for line in beside.lines] == [2, 1] and not left.stretches
@@ -115,7 +128,9 @@ def test_a_hole_too_small_is_left_out_and_listed_with_the_cutter_that_would_go_i
     assert not left.lines and sorted(line.number for line in whole.lines) == [1, 2, 3]
 
 
-def test_a_line_that_is_left_out_takes_its_stops_along_and_the_others_keep_their_numbers() -> None:
+def test_a_line_that_is_left_out_takes_its_stops_along_and_the_others_keep_their_numbers() -> (
+    None
+):
     rings = [
         closed(run_through((0, 0), (6, 0), (6, 6), (0, 6), (0, 0))),
         closed(run_through((20, 0), (60, 0), (60, 40), (20, 40), (20, 0))),
@@ -124,7 +139,9 @@ def test_a_line_that_is_left_out_takes_its_stops_along_and_the_others_keep_their
         replace(line, number=k, marks=(Mark("tick", line.place(900), 900.0),))
         for k, line in enumerate(rings, 1)
     ]
-    beside, left = with_cutter(Trace(tuple(lines), Operator(WORK)), Cutter(8.0, "inside"), FEED_MM_S)
+    beside, left = with_cutter(
+        Trace(tuple(lines), Operator(WORK)), Cutter(8.0, "inside"), FEED_MM_S
+    )
     assert [line.number for line in beside.lines] == [2] and beside.lines[0].numbers == (2,)
     assert [(out.line, out.stops) for out in left.lines] == [(1, (1,))]
 
@@ -174,15 +191,24 @@ def test_on_a_side_of_a_line_that_crosses_itself_nothing_is_gouged_and_what_is_n
     )
     assert true.distance(ways) > 1 - 1 * UM
     touched_mm = true.intersection(ways.buffer(1 + 2 * UM, quad_segs=500)).length
-    assert sum(u.length_mm for u in left.stretches) == pytest.approx(true.length - touched_mm, abs=0.5)
+    assert sum(u.length_mm for u in left.stretches) == pytest.approx(
+        true.length - touched_mm, abs=0.5
+    )
 
 
 @pytest.mark.parametrize("begin", [0, math.pi])  # begun inside of the other circle, and outside
 @pytest.mark.parametrize("side", ["outside", "inside"])
-def test_lines_that_cross_each_other_are_cut_round_both_or_within_both(begin: float, side: Side) -> None:
+def test_lines_that_cross_each_other_are_cut_round_both_or_within_both(
+    begin: float, side: Side
+) -> None:
     circles = [
         arc((30, 30), 25),
-        (arc((0, 0), 8) @ np.array([[math.cos(begin), math.sin(begin)], [-math.sin(begin), math.cos(begin)]]))
+        (
+            arc((0, 0), 8)
+            @ np.array(
+                [[math.cos(begin), math.sin(begin)], [-math.sin(begin), math.cos(begin)]]
+            )
+        )
         + (52, 30),
     ]
     lines = [replace(closed(circle), number=k) for k, circle in enumerate(circles, 1)]

@@ -32,9 +32,21 @@ FOLLOWED_MM = 25 * UM  # as the head follows a circle or a corner on a scan
 STANDS_WITHIN_MM = 50 * UM  # the issue's, of a stop
 SAMPLE_MM = FEED_MM_S / 6000  # from one position to the next
 
-LEFT_TO = (14.0, 8.0)  # where the guide line leaves the square's upper side, for a drill point inside
+LEFT_TO = (
+    14.0,
+    8.0,
+)  # where the guide line leaves the square's upper side, for a drill point inside
 WAY = run_through(
-    (0, 4), (10, 4), (10, 8), LEFT_TO, (14, 5), LEFT_TO, (18, 8), (18, 0), (10, 0), (10, 4 - SAMPLE_MM)
+    (0, 4),
+    (10, 4),
+    (10, 8),
+    LEFT_TO,
+    (14, 5),
+    LEFT_TO,
+    (18, 8),
+    (18, 0),
+    (10, 0),
+    (10, 4 - SAMPLE_MM),
 )  # a lead line, and a square of 8 mm, clockwise
 FROM = at(WAY, (10, 4))
 OUT = at(WAY, (14, 5))
@@ -54,19 +66,35 @@ def marked(tick_mm: float = 5.0, *, guide: bool = False, way: Array = WAY) -> Li
     marks[1] = replace(marks[1], at=float(FROM + at(way[FROM:], (18, 3))))
     guides = (Guide(at(way[:OUT], LEFT_TO), OUT, BACK),) if guide else ()
     return Line(
-        way, "joined", 0.5, 50.0, loop_from=FROM, marks=tuple(marks), guides=guides, reference_mm=(-3.0, 4.0)
+        way,
+        "joined",
+        0.5,
+        50.0,
+        loop_from=FROM,
+        marks=tuple(marks),
+        guides=guides,
+        reference_mm=(-3.0, 4.0),
     )
 
 
 def beside(
-    line: Line, side: Side, diameter_mm: float = 4.0, card: str = "", passes_mm: tuple[float, ...] = ()
+    line: Line,
+    side: Side,
+    diameter_mm: float = 4.0,
+    card: str = "",
+    passes_mm: tuple[float, ...] = (),
 ) -> tuple[Array, dict[int | None, Halt], Trace]:
     """The motion of a cutter beside a line, (n, 3) mm, its stops by number, and the program."""
     work = replace(WORK, passes_mm=passes_mm)
     made, _ = with_cutter(
         Trace((line,), Operator(work, Card.parse(card))), Cutter(diameter_mm, side), FEED_MM_S
     )
-    stops = {a.halt.number: a.halt for actions in made.actions for a in actions if a.halt.number is not None}
+    stops = {
+        a.halt.number: a.halt
+        for actions in made.actions
+        for a in actions
+        if a.halt.number is not None
+    }
     return join(made).positions_mm, stops, made
 
 
@@ -79,7 +107,8 @@ def least_mm(positions: Array, contour_mm: Array, radius_mm: float) -> float:
 
 
 @pytest.mark.parametrize(
-    ("side", "begin"), [("outside", (8, 4)), ("inside", (12, 4)), ("left", (8, 4)), ("right", (12, 4))]
+    ("side", "begin"),
+    [("outside", (8, 4)), ("inside", (12, 4)), ("left", (8, 4)), ("right", (12, 4))],
 )
 def test_the_lead_line_comes_to_the_way_and_goes_back_to_the_reference_point(
     side: Side, begin: tuple[float, float]
@@ -92,14 +121,17 @@ def test_the_lead_line_comes_to_the_way_and_goes_back_to_the_reference_point(
     assert line.xy_mm[line.loop_from] == pytest.approx(begin, abs=1 * UM)
     assert line.xy_mm[-1] == pytest.approx(begin, abs=1 * UM)
     assert least_mm(positions, marked().xy_mm[FROM:], 2.0) > -NEARER_MM
-    assert stops[2].place_mm == pytest.approx((20 if begin == (8, 4) else 16, 3), abs=2 * SAMPLE_MM)
+    assert stops[2].place_mm == pytest.approx(
+        (20 if begin == (8, 4) else 16, 3), abs=2 * SAMPLE_MM
+    )
     steps = np.diff(positions, axis=0)
     assert not np.any((steps[:, 2] != 0) & np.any(steps[:, :2] != 0, axis=1))
     assert np.abs(steps).max() * 6000 < WORK.rapid_mm_s * 1.01
 
 
 @pytest.mark.parametrize(
-    ("tick_mm", "side", "down"), [(5.0, "outside", 5.0), (9.0, "outside", 8.0), (5.0, "inside", 12.0)]
+    ("tick_mm", "side", "down"),
+    [(5.0, "outside", 5.0), (9.0, "outside", 8.0), (5.0, "inside", 12.0)],
 )
 def test_the_tool_goes_down_at_the_tick_if_it_is_clear_there_and_else_on_the_way(
     tick_mm: float, side: Side, down: float
@@ -110,7 +142,9 @@ def test_the_tool_goes_down_at_the_tick_if_it_is_clear_there_and_else_on_the_way
 
 
 @pytest.mark.parametrize("side", ["outside", "inside"])
-def test_a_guide_line_is_run_raised_as_drawn_and_its_hole_is_where_it_was_drawn(side: Side) -> None:
+def test_a_guide_line_is_run_raised_as_drawn_and_its_hole_is_where_it_was_drawn(
+    side: Side,
+) -> None:
     positions, stops, made = beside(marked(guide=True), side, passes_mm=(1.0,))
     assert [stops[k].kind for k in (1, 2, 3)] == ["tick", "hole", "tick"]
     assert stops[2].place_mm == tuple(WAY[OUT])
@@ -129,10 +163,14 @@ def test_a_guide_line_is_run_raised_as_drawn_and_its_hole_is_where_it_was_drawn(
 
 def test_stops_keep_their_numbers_where_the_cutter_comes_to_them_in_another_order() -> None:
     way = run_through((4, -8), (10, 4), (10, 8), (18, 8), (18, 0), (10, 0), (10, 4 - SAMPLE_MM))
-    from_ = at(way, (10, 4))  # the lead line meets the cutter's way below the corner, on the lower side's
+    from_ = at(
+        way, (10, 4)
+    )  # the lead line meets the cutter's way below the corner, on the lower side's
     near, far = (float(from_ + at(way[from_:], place)) for place in ((10, 7), (10, 1)))
     ticks = (Mark("tick", (10.0, 7.0), near), Mark("tick", (10.0, 1.0), far))
-    line = Line(way, "joined", 0.5, 40.0, loop_from=from_, marks=ticks, reference_mm=(3.0, -10.0))
+    line = Line(
+        way, "joined", 0.5, 40.0, loop_from=from_, marks=ticks, reference_mm=(3.0, -10.0)
+    )
     _, stops, made = beside(line, "outside", 8.0, "[[stop]]\nnumber = 2\ndwell = 3\n")
     assert made.lines[0].numbers == (2, 1)
     assert stops[2].place_mm == pytest.approx((6, 1), abs=2 * SAMPLE_MM)
@@ -141,7 +179,9 @@ def test_stops_keep_their_numbers_where_the_cutter_comes_to_them_in_another_orde
 
 def test_a_tick_where_the_cutter_cannot_come_stands_at_the_nearest_place() -> None:
     line = marked()
-    line = replace(line, marks=(line.marks[0], Mark("tick", (18.0, 1.0), float(at(line.xy_mm, (18, 1))))))
+    line = replace(
+        line, marks=(line.marks[0], Mark("tick", (18.0, 1.0), float(at(line.xy_mm, (18, 1)))))
+    )
     _, stops, _ = beside(line, "inside")
     assert stops[2].place_mm == pytest.approx((16, 2), abs=2 * SAMPLE_MM)
 
@@ -154,15 +194,23 @@ def test_a_card_that_has_the_tool_down_on_its_way_over_the_contour_is_refused() 
     with pytest.raises(MotionFault, match="would cut into the part at"):
         beside(line, "inside", card=card)
     assert (
-        least_mm(beside(line, "outside", card=card)[0], line.xy_mm[int(line.loop_from or 0) + 1 :], 2.0)
+        least_mm(
+            beside(line, "outside", card=card)[0],
+            line.xy_mm[int(line.loop_from or 0) + 1 :],
+            2.0,
+        )
         > -NEARER_MM
     )
 
 
-def test_a_guide_line_from_the_reference_point_is_run_as_drawn_and_one_with_a_tick_is_cut_beside() -> None:
+def test_a_guide_line_from_the_reference_point_is_run_as_drawn_and_one_with_a_tick_is_cut_beside() -> (
+    None
+):
     way = run_through((0, 0), (20, 0))
     guide = Line(way, "ended", 0.5, 20.0, reference_mm=(-3.0, 0.0), number=2)
-    made, _ = with_cutter(Trace((marked(), guide), Operator(WORK)), Cutter(2.0, "left"), FEED_MM_S)
+    made, _ = with_cutter(
+        Trace((marked(), guide), Operator(WORK)), Cutter(2.0, "left"), FEED_MM_S
+    )
     assert np.array_equal(made.lines[1].xy_mm, way) and made.lines[1].numbers == (3,)
     cut = replace(guide, marks=(Mark("tick", (5.0, 0.0), float(at(way, (5, 0)))),))
     positions, stops, _ = beside(cut, "left", 2.0)
@@ -193,12 +241,15 @@ def test_of_a_lost_line_what_was_traced_is_cut_on_a_side_of_its_travel() -> None
         assert in_work(positions)[:, 1] == pytest.approx(y_mm, abs=1 * UM)
         assert in_work(positions)[:, 0].max() == pytest.approx(10, abs=SAMPLE_MM)
     with pytest.raises(
-        LineFault, match=r"line lost at .* has no outside, so it is not cut: --side left or right would"
+        LineFault,
+        match=r"line lost at .* has no outside, so it is not cut: --side left or right would",
     ):
         beside(line, "outside", 2.0)
     both = Trace((marked(), replace(line, number=2)), Operator(WORK))
     made, _ = with_cutter(both, Cutter(2.0, "outside"), FEED_MM_S)
-    assert str(made.fault).startswith("line 2 of 2 is incomplete") and "has no outside" in str(made.fault)
+    assert str(made.fault).startswith("line 2 of 2 is incomplete") and "has no outside" in str(
+        made.fault
+    )
     in_pieces = replace(made, lines=(replace(made.lines[0], number=2), made.lines[1]))
     assert str(in_pieces.fault).startswith("line lost at")
 
@@ -211,11 +262,19 @@ def program(angle_deg: float, radius_mm: float = 12.0) -> tuple[list[Array], lis
     a = math.radians(angle_deg)
     on_circle = (x + radius_mm * math.cos(a), y + radius_mm * math.sin(a))
     lead = polyline((6, y), (x - radius_mm, y))
-    lines = [arc((x, y), radius_mm), lead, *cross((6, y)), tick((13, y)), tick(on_circle, angle_deg + 90)]
+    lines = [
+        arc((x, y), radius_mm),
+        lead,
+        *cross((6, y)),
+        tick((13, y)),
+        tick(on_circle, angle_deg + 90),
+    ]
     return [*lines, polyline((x, y + radius_mm), (x, y + 2))], [dot((x, y + 2), 1.6)]
 
 
-@pytest.mark.parametrize(("angle_deg", "diameter_mm", "seed"), [(0, 2.0, 0), (-47.3, 5.0, 1), (31.9, 2.0, 2)])
+@pytest.mark.parametrize(
+    ("angle_deg", "diameter_mm", "seed"), [(0, 2.0, 0), (-47.3, 5.0, 1), (31.9, 2.0, 2)]
+)
 def test_beside_a_drawn_circle_runs_the_circle_and_all_that_is_drawn_on_it(
     angle_deg: float, diameter_mm: float, seed: int
 ) -> None:
@@ -237,7 +296,9 @@ def test_beside_a_drawn_circle_runs_the_circle_and_all_that_is_drawn_on_it(
         off_mm = np.hypot(*(way - (30, 20)).T) - radius_mm
         assert np.abs(off_mm).max() < FOLLOWED_MM and left == Left()
         assert np.sqrt(np.mean(off_mm**2)) < 6 * UM  # the head's own, with lead and guide line
-        beside_mm = Nearest([cut.places_mm], diameter_mm / 2).distances_mm(way) - diameter_mm / 2
+        beside_mm = (
+            Nearest([cut.places_mm], diameter_mm / 2).distances_mm(way) - diameter_mm / 2
+        )
         assert np.abs(beside_mm).max() < 5 * UM  # where the head wavers about the lead line
         assert least_mm(positions, cut.places_mm, diameter_mm / 2) > -NEARER_MM
         halts = {a.halt.number: a.halt for a in made.actions[0] if a.halt.number is not None}
@@ -248,17 +309,30 @@ def test_beside_a_drawn_circle_runs_the_circle_and_all_that_is_drawn_on_it(
             20 + radius_mm * math.sin(math.radians(angle_deg)),
         )
         ticked = next(
-            halts[stop.number].place_mm for stop in cut.stops if stop.kind == "tick" and stop.number != 1
+            halts[stop.number].place_mm
+            for stop in cut.stops
+            if stop.kind == "tick" and stop.number != 1
         )
         assert math.dist(ticked, foot) < STANDS_WITHIN_MM
         for end in (positions[0], positions[-1]):
-            assert end == pytest.approx([*(followed.reference_mm or ()), WORK.clearance_mm], abs=EXACT_MM)
+            assert end == pytest.approx(
+                [*(followed.reference_mm or ()), WORK.clearance_mm], abs=EXACT_MM
+            )
 
 
-def test_beside_a_part_with_inner_corners_the_tool_gouges_nothing_and_lists_what_it_leaves() -> None:
-    part = polyline((16, 20), (16, 36), (28, 36), (28, 26), (40, 26), (40, 8), (16, 8), (16, 20))
+def test_beside_a_part_with_inner_corners_the_tool_gouges_nothing_and_lists_what_it_leaves() -> (
+    None
+):
+    part = polyline(
+        (16, 20), (16, 36), (28, 36), (28, 26), (40, 26), (40, 8), (16, 8), (16, 20)
+    )
     drawing = inked(
-        part, polyline((4, 20), (16, 20)), tick((10, 20)), tick((34, 26)), *cross((4, 20)), seed=5
+        part,
+        polyline((4, 20), (16, 20)),
+        tick((10, 20)),
+        tick((34, 26)),
+        *cross((4, 20)),
+        seed=5,
     )
     followed = trace(drawing, None, None, Operator(WORK))
     cut = Cut.of(followed.lines[0], followed.operator, 1)
@@ -271,7 +345,9 @@ def test_beside_a_part_with_inner_corners_the_tool_gouges_nothing_and_lists_what
         assert least_mm(join(made).positions_mm, cut.places_mm, 3.0) > -NEARER_MM
         assert len(left.stretches) == len(corners)
         for corner_mm in corners:
-            (there,) = (u for u in left.stretches if math.dist(u.place_mm, corner_mm) < 2 * FOLLOWED_MM)
+            (there,) = (
+                u for u in left.stretches if math.dist(u.place_mm, corner_mm) < 2 * FOLLOWED_MM
+            )
             assert there.left_mm == pytest.approx(3 * (math.sqrt(2) - 1), abs=2 * FOLLOWED_MM)
         places = [a.halt.place_mm for a in made.actions[0] if a.halt.number is not None]
         assert math.dist(places[1], (34, 29 if side == "outside" else 23)) < STANDS_WITHIN_MM

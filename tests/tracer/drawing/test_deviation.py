@@ -35,7 +35,9 @@ def drawing():  # type: ignore[no-untyped-def]
 @pytest.mark.parametrize("seed", [None, 4])
 def test_the_line_itself_does_not_deviate(seed: int | None) -> None:
     found = deviation(inked(CIRCLE, seed=seed), [CIRCLE])
-    assert found.rms_mm < (1.5 * UM if seed is None else 4 * UM)  # 4 % noise, averaged over 0.5 mm
+    assert found.rms_mm < (
+        1.5 * UM if seed is None else 4 * UM
+    )  # 4 % noise, averaged over 0.5 mm
     assert abs(np.nanmean(found.error_mm)) < 0.7 * UM
     assert found.measured_share == 1
     assert found.missed_share == 0
@@ -67,7 +69,9 @@ def test_a_bump_is_found_where_it_is(drawing) -> None:  # type: ignore[no-untype
     bump = 0.1 * np.exp(-((angle * RADIUS_MM / 1.5) ** 2))
     path = MIDDLE + (CIRCLE - MIDDLE) * (1 + bump / RADIUS_MM)[:, None]
     found = deviation(drawing, [path])
-    assert found.max_mm == pytest.approx(0.1, abs=0.1 * (AVERAGED_MM / 1.5) ** 2 / 6 + PIXELS_MM)
+    assert found.max_mm == pytest.approx(
+        0.1, abs=0.1 * (AVERAGED_MM / 1.5) ** 2 / 6 + PIXELS_MM
+    )
     worst = found.points_mm[np.nanargmax(np.abs(found.error_mm))]
     assert worst == pytest.approx([MIDDLE + RADIUS_MM + 0.1, MIDDLE], abs=0.3)
     assert found.rms_mm < 0.025
@@ -106,12 +110,16 @@ def test_a_crossing_is_not_measured_but_the_rest_is() -> None:
 
 def test_a_path_off_the_drawing_is_a_fault(drawing) -> None:  # type: ignore[no-untyped-def]
     for path in (CIRCLE + 200, CIRCLE - 200, polyline((100, 100), (101, 101))):
-        with pytest.raises(MotionFault, match=r"lies nowhere on the drawing's ink; .* same scale and origin"):
+        with pytest.raises(
+            MotionFault, match=r"lies nowhere on the drawing's ink; .* same scale and origin"
+        ):
             deviation(drawing, [path])
 
 
 def test_a_path_that_never_has_its_tool_down_is_a_fault(drawing) -> None:  # type: ignore[no-untyped-def]
-    up = Path(np.arange(len(CIRCLE)) * 0.1, np.column_stack([CIRCLE, np.full(len(CIRCLE), 2.0)]))
+    up = Path(
+        np.arange(len(CIRCLE)) * 0.1, np.column_stack([CIRCLE, np.full(len(CIRCLE), 2.0)])
+    )
     with pytest.raises(MotionFault, match="no run with the tool in the work"):
         deviation(drawing, up)
 

@@ -30,7 +30,9 @@ def grey() -> Grey:
 def off_the_line_mm(drawing: Drawing) -> NDArray[np.float64]:
     """How far above the drawn line the middle of its ink is, column by column, its ends left out, mm."""
     x = (np.arange(drawing.darkness.shape[1]) + 0.5) * drawing.pitch_mm
-    y = (drawing.darkness.shape[0] - np.arange(drawing.darkness.shape[0]) - 0.5) * drawing.pitch_mm
+    y = (
+        drawing.darkness.shape[0] - np.arange(drawing.darkness.shape[0]) - 0.5
+    ) * drawing.pitch_mm
     told = np.interp(x, *LINE.T)
     dark = np.where(np.abs(y[:, None] - told) < 1.0, np.clip(drawing.darkness, 0, None), 0.0)
     inner = (x > LINE[0, 0] + 1) & (x < LINE[1, 0] - 1)
@@ -69,7 +71,9 @@ KINDS: dict[str, Callable[[Grey], Image.Image]] = {
 
 
 @pytest.mark.parametrize("name", KINDS)
-def test_every_kind_of_image_has_its_line_where_it_was_drawn(tmp_path: Path, grey: Grey, name: str) -> None:
+def test_every_kind_of_image_has_its_line_where_it_was_drawn(
+    tmp_path: Path, grey: Grey, name: str
+) -> None:
     drawing = opened(KINDS[name](grey), tmp_path / name, dpi=DPI)
     off_mm = off_the_line_mm(drawing)
     assert abs(off_mm.mean()) < PEN_MM
@@ -107,7 +111,9 @@ def test_the_sheet_is_as_large_as_its_pixels(tmp_path: Path, grey: Grey) -> None
 
 
 @pytest.mark.parametrize("dpi", [72, 96, 150, 200, 300, 400, 600, 1200])
-def test_a_png_s_dots_per_metre_mean_a_whole_number_per_inch(tmp_path: Path, grey: Grey, dpi: int) -> None:
+def test_a_png_s_dots_per_metre_mean_a_whole_number_per_inch(
+    tmp_path: Path, grey: Grey, dpi: int
+) -> None:
     """PNG keeps whole pixels per metre: 300 dpi is 11811, which reads back as 299.9994."""
     drawing = opened(Image.fromarray(grey), tmp_path / "a.png", dpi=(dpi, dpi))
     assert drawing.pitch_mm == MM_PER_INCH / dpi
@@ -132,7 +138,8 @@ def test_both_resolution_and_width_are_refused(tmp_path: Path, grey: Grey) -> No
 
 @pytest.mark.parametrize(
     "scale",
-    [{"dpi": v} for v in (0.0, -300.0, np.nan, np.inf, 1e-300)] + [{"width_mm": v} for v in (0.0, 1e-3, 1e6)],
+    [{"dpi": v} for v in (0.0, -300.0, np.nan, np.inf, 1e-300)]
+    + [{"width_mm": v} for v in (0.0, 1e-3, 1e6)],
 )
 def test_a_nonsense_scale_is_told(tmp_path: Path, grey: Grey, scale: dict[str, float]) -> None:
     Image.fromarray(grey).save(tmp_path / "a.png", dpi=DPI)
@@ -153,22 +160,32 @@ def test_no_resolution_asks_for_one(tmp_path: Path, grey: Grey, name: str) -> No
         opened(Image.fromarray(grey), tmp_path / name, **stated)
 
 
-def test_a_photograph_s_exif_without_resolution_is_no_72_dpi(tmp_path: Path, grey: Grey) -> None:
+def test_a_photograph_s_exif_without_resolution_is_no_72_dpi(
+    tmp_path: Path, grey: Grey
+) -> None:
     """Pillow answers 72 dpi for it."""
     exif = Image.Exif()
     exif[0x010F] = "a camera's maker"
     Image.fromarray(grey).save(tmp_path / "a.jpg", exif=exif)
     jfif = (tmp_path / "a.jpg").read_bytes()
     first = 4 + int.from_bytes(jfif[4:6], "big")
-    (tmp_path / "b.jpg").write_bytes(jfif[:2] + jfif[first:])  # as cameras write it: no JFIF segment at all
+    (tmp_path / "b.jpg").write_bytes(
+        jfif[:2] + jfif[first:]
+    )  # as cameras write it: no JFIF segment at all
     for name in ("a.jpg", "b.jpg"):
         with pytest.raises(DrawingFault, match=ASKS):
             Drawing.open(tmp_path / name)
 
 
 def test_a_jpeg_s_own_resolution_counts(tmp_path: Path, grey: Grey) -> None:
-    assert opened(Image.fromarray(grey), tmp_path / "a.jpg", dpi=(300, 300)).pitch_mm == MM_PER_INCH / 300
-    assert opened(Image.fromarray(grey), tmp_path / "b.jpg", dpi=(72, 72)).pitch_mm == MM_PER_INCH / 72
+    assert (
+        opened(Image.fromarray(grey), tmp_path / "a.jpg", dpi=(300, 300)).pitch_mm
+        == MM_PER_INCH / 300
+    )
+    assert (
+        opened(Image.fromarray(grey), tmp_path / "b.jpg", dpi=(72, 72)).pitch_mm
+        == MM_PER_INCH / 72
+    )
 
 
 @pytest.mark.parametrize("stated", [(1.0, 1.0), (0.001, 0.001)])
@@ -189,12 +206,16 @@ def test_oblong_pixels_are_made_square(tmp_path: Path) -> None:
     drawing = opened(every_other, tmp_path / "fax.tif", dpi=(204, 98))
     assert drawing.width_mm == pytest.approx(drawing.height_mm, abs=MM_PER_INCH / 98)
     rows, columns = np.nonzero(drawing.darkness > 0.5)
-    assert np.ptp(rows) == pytest.approx(np.ptp(columns), abs=204 / 98 + 1)  # one pixel of the fax
+    assert np.ptp(rows) == pytest.approx(
+        np.ptp(columns), abs=204 / 98 + 1
+    )  # one pixel of the fax
     assert np.ptp(columns) * drawing.pitch_mm == pytest.approx(20.5, abs=2 * drawing.pitch_mm)
 
 
 @pytest.mark.parametrize("orientation", range(1, 9))
-def test_a_turned_photograph_is_set_upright(tmp_path: Path, grey: Grey, orientation: int) -> None:
+def test_a_turned_photograph_is_set_upright(
+    tmp_path: Path, grey: Grey, orientation: int
+) -> None:
     """Exif says how the camera was held: the pixels are stored turned or mirrored."""
     upright = Image.fromarray(grey)
     turns = Image.Transpose
@@ -227,9 +248,13 @@ def test_uneven_paper_is_levelled(tmp_path: Path, grey: Grey) -> None:
     there.
     """
     light = np.linspace(1.0, 0.5, grey.shape[1])[None, :]
-    drawing = opened(Image.fromarray(np.round(grey * light).astype(np.uint8)), tmp_path / "a.png", dpi=DPI)
+    drawing = opened(
+        Image.fromarray(np.round(grey * light).astype(np.uint8)), tmp_path / "a.png", dpi=DPI
+    )
     assert np.abs(off_the_line_mm(drawing)).max() < 3 * UM
-    assert np.abs(np.median(drawing.darkness, axis=0)).max() < 0.1  # paper that falls by 0.08 in 6 mm
+    assert (
+        np.abs(np.median(drawing.darkness, axis=0)).max() < 0.1
+    )  # paper that falls by 0.08 in 6 mm
     ridge = drawing.darkness.max(axis=0)[60:-60]  # the ends left out
     assert (
         ridge.min() > 0.7 and ridge.max() < 1.4
@@ -239,7 +264,9 @@ def test_uneven_paper_is_levelled(tmp_path: Path, grey: Grey) -> None:
 @pytest.mark.parametrize("level", [255, 0, 128])
 def test_a_blank_sheet_holds_no_line(tmp_path: Path, level: int) -> None:
     with pytest.raises(DrawingFault, match=r"no line on the drawing: .*; check the file"):
-        opened(Image.fromarray(np.full((400, 600), level, np.uint8)), tmp_path / "a.png", dpi=DPI)
+        opened(
+            Image.fromarray(np.full((400, 600), level, np.uint8)), tmp_path / "a.png", dpi=DPI
+        )
 
 
 def test_dirt_is_no_line(tmp_path: Path) -> None:
@@ -249,7 +276,11 @@ def test_dirt_is_no_line(tmp_path: Path) -> None:
     for row, column in random.integers(10, 480, (60, 2)):
         sheet[row : row + 6, column : column + 6] = 60
     with pytest.raises(DrawingFault, match="no line on the drawing"):
-        opened(Image.fromarray(np.clip(sheet, 0, 255).astype(np.uint8)), tmp_path / "a.png", dpi=DPI)
+        opened(
+            Image.fromarray(np.clip(sheet, 0, 255).astype(np.uint8)),
+            tmp_path / "a.png",
+            dpi=DPI,
+        )
 
 
 # files
@@ -261,11 +292,15 @@ def test_dirt_is_no_line(tmp_path: Path) -> None:
 @pytest.mark.filterwarnings("ignore::ResourceWarning")
 def test_what_is_no_image_is_told(tmp_path: Path, grey: Grey) -> None:
     (tmp_path / "words.png").write_text("these are words")
-    with pytest.raises(DrawingFault, match=r"words\.png is not an image .* give a PNG, JPEG or TIFF"):
+    with pytest.raises(
+        DrawingFault, match=r"words\.png is not an image .* give a PNG, JPEG or TIFF"
+    ):
         Drawing.open(tmp_path / "words.png")
     Image.fromarray(grey).save(tmp_path / "whole.png", dpi=DPI)
     (tmp_path / "cut.png").write_bytes((tmp_path / "whole.png").read_bytes()[:700])
-    with pytest.raises(DrawingFault, match=r"cut\.png is a damaged image .* scan or save it again"):
+    with pytest.raises(
+        DrawingFault, match=r"cut\.png is a damaged image .* scan or save it again"
+    ):
         Drawing.open(tmp_path / "cut.png")
 
 

@@ -18,13 +18,21 @@ from morfax.tracer.drawing.inks import parsed
 from morfax.tracer.program.trace import trace
 from tests.tracer.inked import UM, Points, arc, inked, polyline
 
-BLUE, ORANGE, GREY, PAPER = (0x20, 0x30, 0xC0), (0xF0, 0xA0, 0x50), (0xB0, 0xB0, 0xB0), (0xF6, 0xF4, 0xEC)
+BLUE, ORANGE, GREY, PAPER = (
+    (0x20, 0x30, 0xC0),
+    (0xF0, 0xA0, 0x50),
+    (0xB0, 0xB0, 0xB0),
+    (0xF6, 0xF4, 0xEC),
+)
 CIRCLE = arc((16, 16), 10)
 NOISE = 6.0  # levels in each channel, 4 % of the line's contrast
 
 
 def drawn(
-    file: Path, grid: tuple[int, int, int] | None, line: tuple[int, int, int] = BLUE, seed: int = 1
+    file: Path,
+    grid: tuple[int, int, int] | None,
+    line: tuple[int, int, int] = BLUE,
+    seed: int = 1,
 ) -> Path:
     """A coloured circle on a sheet of 30 x 30 mm, on squared paper of 5 mm printed in another colour; a scan
     with noise.
@@ -52,14 +60,22 @@ def _alike(drawing: Drawing, shape: tuple[int, ...]) -> NDArray[np.float32]:
     own = drawing.darkness[-shape[0] :, : shape[1]]
     return np.asarray(
         cv2.copyMakeBorder(
-            own, shape[0] - own.shape[0], 0, 0, shape[1] - own.shape[1], cv2.BORDER_CONSTANT, value=0.0
+            own,
+            shape[0] - own.shape[0],
+            0,
+            0,
+            shape[1] - own.shape[1],
+            cv2.BORDER_CONSTANT,
+            value=0.0,
         )
     )
 
 
 def rms_mm(file: Path, ink: str | None) -> float:
     """How far the path is from the true circle, mm RMS."""
-    return distance(thin(trace(Drawing.open(file, ink=ink), (26, 16))), CIRCLE).path_to_reference.rms_mm
+    return distance(
+        thin(trace(Drawing.open(file, ink=ink), (26, 16))), CIRCLE
+    ).path_to_reference.rms_mm
 
 
 @pytest.mark.parametrize("darkest", [0.85, 0.5])
@@ -72,7 +88,9 @@ def test_an_ink_is_told_on_a_photograph_lit_from_one_side_with_a_shadow_across(
     light = 1 - (1 - darkest) * x / x.max() - 0.1 / (1 + np.exp(-(y - 0.6 * x - 100) / 15))
     lit = picture * light[..., None] * [1, 0.97, 0.9]
     photo = tmp_path / "photo.jpg"
-    Image.fromarray(np.clip(np.round(lit), 0, 255).astype(np.uint8)).save(photo, dpi=(300, 300), quality=90)
+    Image.fromarray(np.clip(np.round(lit), 0, 255).astype(np.uint8)).save(
+        photo, dpi=(300, 300), quality=90
+    )
     assert rms_mm(photo, "blue") < 4 * UM  # 2.5 and 2.7; the same as a scan 1.0
 
 
@@ -88,7 +106,10 @@ def among(file: Path, second: tuple[int, int, int], lines: list[Points], *, over
     share = inked(CIRCLE, *grid).darkness.shape
     own, other = (BLUE, [CIRCLE], 0.5), (second, lines, 0.35)
     picture = np.ones((*share, 3)) * PAPER
-    for colour, strokes, width_mm in ((ORANGE, grid, 0.25), *((own, other) if over else (other, own))):
+    for colour, strokes, width_mm in (
+        (ORANGE, grid, 0.25),
+        *((own, other) if over else (other, own)),
+    ):
         ink = _alike(inked(*strokes, width_mm=width_mm), share)
         picture += ink[..., None] * (np.array(colour) - picture)
     picture += np.random.default_rng(1).normal(0, NOISE, picture.shape)
@@ -107,7 +128,10 @@ def test_two_other_inks_are_passed_over(
     tmp_path: Path, second: tuple[int, int, int], lines: list[Points], over: bool, suffix: str
 ) -> None:
     run = trace(
-        Drawing.open(among(tmp_path / f"sheet{suffix}", second, lines, over=over), ink="#0000c0"), (26, 16)
+        Drawing.open(
+            among(tmp_path / f"sheet{suffix}", second, lines, over=over), ink="#0000c0"
+        ),
+        (26, 16),
     )
     found = distance(thin(run), CIRCLE)
     assert run.ending == "closed"

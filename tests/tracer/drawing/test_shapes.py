@@ -36,7 +36,9 @@ def star(turned_deg: float = 7) -> Points:
         np.radians(turned_deg + 36 * np.arange(11)),
         np.where(np.arange(11) % 2, 12 * 0.381966, 12),
     )
-    return np.asarray(np.array([17, 17]) + np.column_stack([radius * np.cos(angle), radius * np.sin(angle)]))
+    return np.asarray(
+        np.array([17, 17]) + np.column_stack([radius * np.cos(angle), radius * np.sin(angle)])
+    )
 
 
 def filled(
@@ -55,8 +57,13 @@ def filled(
     rows, columns = (round(side * DPI / MM_PER_INCH) for side in (34, 36))
     fine = np.zeros((8 * rows, 8 * columns), np.float32)
     scale = 8 * DPI / MM_PER_INCH
-    for outline, level in (*((outline, 1.0) for outline in outlines), *((hole, 0.0) for hole in holes)):
-        i, j = polygon(8 * rows - outline[:, 1] * scale - 0.5, outline[:, 0] * scale - 0.5, fine.shape)
+    for outline, level in (
+        *((outline, 1.0) for outline in outlines),
+        *((hole, 0.0) for hole in holes),
+    ):
+        i, j = polygon(
+            8 * rows - outline[:, 1] * scale - 0.5, outline[:, 0] * scale - 0.5, fine.shape
+        )
         fine[i, j] = level
     dark = cv2.GaussianBlur(
         cv2.resize(fine, (columns, rows), interpolation=cv2.INTER_AREA),
@@ -105,12 +112,18 @@ def test_a_round_corner_stays_round(tmp_path: Path) -> None:
     outline = np.array(slot.exterior.coords)
     run = trace(Drawing.open(filled(tmp_path / "slot.png", outline), edge=True))
     found = distance(thin(run), outline)
-    assert run.ending == "closed" and found.hausdorff_mm < 30 * UM, found  # sharp corners would be 207 um out
+    assert run.ending == "closed" and found.hausdorff_mm < 30 * UM, (
+        found
+    )  # sharp corners would be 207 um out
 
 
 @pytest.mark.parametrize(("shade", "light"), [(100, False), (0, True), (100, True)])
 def test_on_uneven_paper_and_light_on_dark(tmp_path: Path, shade: float, light: bool) -> None:
-    run = trace(Drawing.open(filled(tmp_path / "plate.png", STEPPED, shade=shade, light=light), edge=True))
+    run = trace(
+        Drawing.open(
+            filled(tmp_path / "plate.png", STEPPED, shade=shade, light=light), edge=True
+        )
+    )
     found = distance(thin(run), STEPPED)
     assert run.ending == "closed" and found.path_to_reference.rms_mm < 6 * UM, (
         found
@@ -125,7 +138,9 @@ def test_a_slight_round_is_no_corner(tmp_path: Path) -> None:
     vertices = np.array([17, 17]) + 11 * np.array(
         [[np.cos(a), np.sin(a)] for a in np.radians(10 + 45 * np.arange(8))]
     )
-    outline = np.array(shapely.Polygon(vertices).buffer(-0.6).buffer(0.6, quad_segs=64).exterior.coords)
+    outline = np.array(
+        shapely.Polygon(vertices).buffer(-0.6).buffer(0.6, quad_segs=64).exterior.coords
+    )
     run = trace(Drawing.open(filled(tmp_path / "octagon.png", outline), edge=True))
     found = distance(thin(run), outline)
     assert run.ending == "closed" and found.hausdorff_mm < 25 * UM, found
@@ -170,7 +185,9 @@ def teeth(top_mm: float, number: int = 9) -> Points:
         ]
     turn, middle = np.radians(8), np.array([18, 14])
     bar = polyline((8, 10), *row, (28, 16), (28, 10), (8, 10)) - middle
-    return np.asarray(middle + bar @ [[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
+    return np.asarray(
+        middle + bar @ [[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]]
+    )
 
 
 @pytest.mark.parametrize("top_mm", [0.4, 0.7])
@@ -188,17 +205,24 @@ def test_narrow_teeth_are_all_followed(tmp_path: Path, top_mm: float) -> None:
 @pytest.mark.parametrize("radius_mm", [0.4, 0.6])
 def test_small_holes_are_round(tmp_path: Path, radius_mm: float) -> None:
     hole = arc((15, 16), radius_mm)
-    run = trace_lines(Drawing.open(filled(tmp_path / "hole.png", CIRCLE, holes=(hole,)), edge=True))
+    run = trace_lines(
+        Drawing.open(filled(tmp_path / "hole.png", CIRCLE, holes=(hole,)), edge=True)
+    )
     assert [line.ending for line in run.lines] == ["closed", "closed"]
     found = distance(thin(run), [CIRCLE, hole])
-    assert found.hausdorff_mm < 45 * UM, found  # the hole is five to seven softnesses of the lens in radius
+    assert found.hausdorff_mm < 45 * UM, (
+        found
+    )  # the hole is five to seven softnesses of the lens in radius
 
 
 @pytest.mark.parametrize("apart_mm", [0.15, 0.2])
 def test_edges_that_run_together_are_refused(tmp_path: Path, apart_mm: float) -> None:
-    bars = [polyline((8, y), (28, y), (28, y + 8), (8, y + 8), (8, y)) for y in (8.0, 16 + apart_mm)]
+    bars = [
+        polyline((8, y), (28, y), (28, y + 8), (8, y + 8), (8, y)) for y in (8.0, 16 + apart_mm)
+    ]
     with pytest.raises(
-        DrawingFault, match=r"two edges are 0\.[012]\d mm apart at \d+\.\d,1[56]\.\d mm, .*--scale"
+        DrawingFault,
+        match=r"two edges are 0\.[012]\d mm apart at \d+\.\d,1[56]\.\d mm, .*--scale",
     ):
         Drawing.open(filled(tmp_path / "bars.png", *bars), edge=True)
 
@@ -206,20 +230,25 @@ def test_edges_that_run_together_are_refused(tmp_path: Path, apart_mm: float) ->
 def test_a_shape_cut_by_the_border_is_refused(tmp_path: Path) -> None:
     file = filled(tmp_path / "cut.png", polyline((20, 8), (40, 8), (40, 20), (20, 20), (20, 8)))
     with pytest.raises(
-        DrawingFault, match=r"a filled shape is cut by the border of the sheet at 3\d\.\d,(8|20|19)\.\d mm"
+        DrawingFault,
+        match=r"a filled shape is cut by the border of the sheet at 3\d\.\d,(8|20|19)\.\d mm",
     ):
         Drawing.open(file, edge=True)
 
 
 def test_lines_are_no_shapes(tmp_path: Path) -> None:
     file = filled(tmp_path / "line.png", arc((16, 16), 10), holes=(arc((16, 16), 9.5),))
-    with pytest.raises(DrawingFault, match=r"0\.\d+ mm broad at most.*leave --edge out to follow lines"):
+    with pytest.raises(
+        DrawingFault, match=r"0\.\d+ mm broad at most.*leave --edge out to follow lines"
+    ):
         Drawing.open(file, edge=True)
 
 
 def test_a_hole_is_a_line_of_its_own(tmp_path: Path) -> None:
     hole = arc((15, 16), 4)
-    run = trace_lines(Drawing.open(filled(tmp_path / "ring.png", CIRCLE, holes=(hole,)), edge=True))
+    run = trace_lines(
+        Drawing.open(filled(tmp_path / "ring.png", CIRCLE, holes=(hole,)), edge=True)
+    )
     assert [line.ending for line in run.lines] == ["closed", "closed"]
     assert distance(thin(run), [CIRCLE, hole]).hausdorff_mm < 25 * UM
 
@@ -237,5 +266,11 @@ def test_without_edge_the_rim_of_a_filled_shape_is_known(tmp_path: Path, light: 
     disc = Sheet.of(Drawing.open(filled(tmp_path / "disc.png", CIRCLE, light=light)))
     assert disc.are_solid[np.argmax(disc.lengths_mm)]
     assert disc.is_solid_at(CIRCLE[0])
-    ring = filled(tmp_path / "ring.png", arc((16, 16), 12), holes=(arc((16, 16), 10),), shade=80, light=light)
+    ring = filled(
+        tmp_path / "ring.png",
+        arc((16, 16), 12),
+        holes=(arc((16, 16), 10),),
+        shade=80,
+        light=light,
+    )
     assert not Sheet.of(Drawing.open(ring)).are_solid.any()

@@ -57,7 +57,10 @@ def test_a_line_that_closes_only_back_from_a_tip_is_tried_so_either_way_round(
 
 
 def test_a_line_that_closes_has_no_need_of_tips(monkeypatch: pytest.MonkeyPatch) -> None:
-    runs: Runs = {(True, False): run("closed", 100), (False, False): run("joined", 65, at_tip=True)}
+    runs: Runs = {
+        (True, False): run("closed", 100),
+        (False, False): run("joined", 65, at_tip=True),
+    }
     assert chosen(monkeypatch, runs) is runs[True, False]
 
 
@@ -69,12 +72,16 @@ def test_a_run_that_goes_back_along_the_line_that_it_came_by_has_not_gone_back_f
     runs: Runs = {
         (True, False): run("joined", 90),
         (False, False): run("joined", 65, at_tip=True),
-        (False, True): replace(run("closed", 250), positions_mm=np.vstack([there, there[:-1500:-1]])),
+        (False, True): replace(
+            run("closed", 250), positions_mm=np.vstack([there, there[:-1500:-1]])
+        ),
     }
     assert chosen(monkeypatch, runs) is runs[True, False]
 
 
-def test_a_tip_that_leads_nowhere_leaves_the_longest_run(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_tip_that_leads_nowhere_leaves_the_longest_run(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     runs: Runs = {
         (True, False): run("ended", 40),
         (False, False): run("joined", 65, at_tip=True),

@@ -38,11 +38,19 @@ def test_lines_have_no_edges_to_keep_to() -> None:
 
 
 def test_a_run_that_leaves_the_edge_is_lost_where_it_does() -> None:
-    run = along(polyline((10, 10), (20, 10), (20.5, 10.9), (21, 10), (30, 10), (30, 30), (10, 30), (10, 10)))
+    run = along(
+        polyline(
+            (10, 10), (20, 10), (20.5, 10.9), (21, 10), (30, 10), (30, 30), (10, 30), (10, 10)
+        )
+    )
     kept = kept_to(EDGES, run)
     assert kept.ending == "lost" and kept.fault is not None
-    assert abs(kept.travel_mm - 10) < 0.3 and np.allclose(kept.positions_mm[-1], [20, 10], atol=0.3)
-    assert kept.fault.x_mm == pytest.approx(kept.positions_mm[-1, 0]) and kept.fault.exit_code == 4
+    assert abs(kept.travel_mm - 10) < 0.3 and np.allclose(
+        kept.positions_mm[-1], [20, 10], atol=0.3
+    )
+    assert (
+        kept.fault.x_mm == pytest.approx(kept.positions_mm[-1, 0]) and kept.fault.exit_code == 4
+    )
     assert "edge lost at 20" in str(kept.fault) and "it goes 0.89 mm away" in str(kept.fault)
 
 
@@ -51,7 +59,15 @@ def test_a_closed_run_that_leaves_some_of_its_edge_out_is_lost() -> None:
     missed.
     """
     tooth = polyline(
-        (10, 10), (20, 10), (20, 12), (20.3, 12), (20.3, 10), (30, 10), (30, 30), (10, 30), (10, 10)
+        (10, 10),
+        (20, 10),
+        (20, 12),
+        (20.3, 12),
+        (20.3, 10),
+        (30, 10),
+        (30, 30),
+        (10, 30),
+        (10, 10),
     )
     kept = kept_to((tooth, HOLE), along(SQUARE))
     assert kept.ending == "lost" and "leaves the edge out 2.0" in str(kept.fault)

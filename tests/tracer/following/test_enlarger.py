@@ -59,6 +59,8 @@ def test_a_line_lost_on_the_enlarged_drawing_says_the_place_on_the_drawing() -> 
     stance = small(stance if abs(stance.heading_rad) < 1 else replace(stance, heading_rad=0.0))
     run = reduced(follow(enlarged(stance, TIMES)))
     assert run.ending == "lost" and run.fault is not None
-    assert (run.fault.x_mm, run.fault.y_mm) == pytest.approx((23.0 / TIMES, 10.0 / TIMES), abs=0.7 / TIMES)
+    assert (run.fault.x_mm, run.fault.y_mm) == pytest.approx(
+        (23.0 / TIMES, 10.0 / TIMES), abs=0.7 / TIMES
+    )
     assert f"line lost at {run.fault.x_mm:.2f},{run.fault.y_mm:.2f} mm" in str(run.fault)
     assert f"after {run.travel_mm:.1f} mm" in str(run.fault)

@@ -31,7 +31,10 @@ STEM = polyline((14, 10), (14, 17))
 
 
 def followed(
-    line: Array, drawing: Drawing, start_mm: tuple[float, float] | None = None, within_mm: float = LINE_MM
+    line: Array,
+    drawing: Drawing,
+    start_mm: tuple[float, float] | None = None,
+    within_mm: float = LINE_MM,
 ) -> Trace:
     """Trace a drawing, and hold the path to a line: on it everywhere, and all of it, once."""
     run = trace(drawing, start_mm)
@@ -60,7 +63,10 @@ def test_a_white_speck_on_the_vertex_does_not_round_it(
 @SEEDS
 @pytest.mark.parametrize("deflection_deg", [30.0, 60.0, 90.0, 120.0])
 def test_a_sharp_corner(deflection_deg: float, seed: int | None) -> None:
-    assert followed(corner(deflection_deg), inked(corner(deflection_deg), seed=seed)).ending == "ended"
+    assert (
+        followed(corner(deflection_deg), inked(corner(deflection_deg), seed=seed)).ending
+        == "ended"
+    )
 
 
 @SEEDS
@@ -97,7 +103,9 @@ def test_a_white_speck_in_the_edge_of_a_round_does_not_move_the_line_aside(
     """
     line = corner(90, radius_mm)
     drawing = inked(line, seed=1)
-    half_way = line[len(line) // 2] + (0.25 - inside_mm) * np.array([math.sqrt(0.5), -math.sqrt(0.5)])
+    half_way = line[len(line) // 2] + (0.25 - inside_mm) * np.array(
+        [math.sqrt(0.5), -math.sqrt(0.5)]
+    )
     column, row = (half_way / drawing.pitch_mm).astype(int)
     drawing.darkness[len(drawing.darkness) - 1 - row, column] = 0
     followed(line, drawing)
@@ -111,7 +119,9 @@ def test_a_line_goes_on_past_one_that_ends_on_it(seed: int | None) -> None:
 @SEEDS
 @pytest.mark.parametrize("crossing_deg", [45, 60, 90, 120])
 def test_a_line_goes_straight_on_at_a_crossing(crossing_deg: float, seed: int | None) -> None:
-    way = 6 * np.array([math.cos(math.radians(crossing_deg)), math.sin(math.radians(crossing_deg))])
+    way = 6 * np.array(
+        [math.cos(math.radians(crossing_deg)), math.sin(math.radians(crossing_deg))]
+    )
     other = np.array([14.0, 10.0]) + np.array([-way, way])
     assert followed(ACROSS, inked(ACROSS, other, seed=seed), (6.0, 10.0)).ending == "ended"
 
@@ -120,7 +130,9 @@ def test_a_line_goes_straight_on_at_a_crossing(crossing_deg: float, seed: int | 
 @pytest.mark.parametrize("paper_mm", [0.1, 0.3])
 def test_a_gap_is_carried(paper_mm: float, seed: int | None) -> None:
     """Between the rounds of the pen, which are half a width each."""
-    drawing = inked(polyline((4, 8), (14, 8)), polyline((14.5 + paper_mm, 8), (26, 8)), seed=seed)
+    drawing = inked(
+        polyline((4, 8), (14, 8)), polyline((14.5 + paper_mm, 8), (26, 8)), seed=seed
+    )
     followed(polyline((4, 8), (26, 8)), drawing)
 
 
@@ -145,7 +157,9 @@ def test_a_speck_beside_the_line_hardly_moves_it(seed: int | None) -> None:
 
 @SEEDS
 @pytest.mark.parametrize("radius_mm", [0.5, 1.0])
-def test_a_blot_is_gone_through_with_the_heading_held(radius_mm: float, seed: int | None) -> None:
+def test_a_blot_is_gone_through_with_the_heading_held(
+    radius_mm: float, seed: int | None
+) -> None:
     drawing = inked(ACROSS, specks=[arc((15, 10.1), radius_mm)], seed=seed)
     followed(ACROSS, drawing)
 
@@ -193,8 +207,14 @@ def test_a_line_into_a_black_patch_is_lost_and_says_where(seed: int | None) -> N
         (23.0, 10.0), abs=0.7
     )  # the guards see it 1 mm ahead
     assert run.fault.heading_rad == pytest.approx(0, abs=0.02)
-    assert "line lost at" in str(run.fault) and "heading" in str(run.fault) and "--gap" in str(run.fault)
-    assert distance(run.xy_mm[::4], ACROSS).path_to_reference.max_mm < LINE_MM  # what was traced is kept
+    assert (
+        "line lost at" in str(run.fault)
+        and "heading" in str(run.fault)
+        and "--gap" in str(run.fault)
+    )
+    assert (
+        distance(run.xy_mm[::4], ACROSS).path_to_reference.max_mm < LINE_MM
+    )  # what was traced is kept
 
 
 # lead lines, directions, guide lines, and lines that are lost
@@ -210,22 +230,33 @@ def enclosed_mm2(loop: Array) -> float:
 
 
 @SEEDS
-def test_a_lead_line_and_the_loop_that_it_runs_into_are_one_path_once_round(seed: int | None) -> None:
+def test_a_lead_line_and_the_loop_that_it_runs_into_are_one_path_once_round(
+    seed: int | None,
+) -> None:
     """The end is where the loop began: at a vertex, within what a corner is right to."""
     (line,) = trace(inked(LEAD, CIRCLE, seed=seed)).lines
     assert line.ending == "joined" and line.loop_from is not None
     assert line.length_mm == pytest.approx(length_mm(LEAD) + length_mm(CIRCLE), abs=4 * LINE_MM)
     assert np.hypot(*(line.xy_mm[-1] - line.xy_mm[line.loop_from])) < LINE_MM
-    assert distance(line.xy_mm[::4], np.vstack([LEAD, arc((16, 14), 6, 180, 540)])).hausdorff_mm < 2 * LINE_MM
+    assert (
+        distance(line.xy_mm[::4], np.vstack([LEAD, arc((16, 14), 6, 180, 540)])).hausdorff_mm
+        < 2 * LINE_MM
+    )
 
 
-@pytest.mark.parametrize(("direction", "sign"), [("cw", -1), ("ccw", 1), ("left", -1), ("right", 1)])
-def test_the_head_takes_a_loop_in_the_direction_that_is_asked_for(direction: Direction, sign: int) -> None:
+@pytest.mark.parametrize(
+    ("direction", "sign"), [("cw", -1), ("ccw", 1), ("left", -1), ("right", 1)]
+)
+def test_the_head_takes_a_loop_in_the_direction_that_is_asked_for(
+    direction: Direction, sign: int
+) -> None:
     (line,) = trace(inked(LEAD, CIRCLE), operator=Operator(direction=direction)).lines
     assert math.copysign(1, enclosed_mm2(line.xy_mm[line.loop_from :])) == sign
 
 
-@pytest.mark.parametrize(("direction", "sign"), [("cw", -1), ("ccw", 1), ("left", -1), ("right", 1)])
+@pytest.mark.parametrize(
+    ("direction", "sign"), [("cw", -1), ("ccw", 1), ("left", -1), ("right", 1)]
+)
 def test_so_it_does_on_a_line_without_a_lead_that_it_comes_to_from_below(
     direction: Direction, sign: int
 ) -> None:
@@ -239,7 +270,9 @@ def test_an_open_line_has_no_direction_round() -> None:
 
 
 @SEEDS
-def test_a_guide_line_is_taken_where_the_card_says_so_and_come_back_from(seed: int | None) -> None:
+def test_a_guide_line_is_taken_where_the_card_says_so_and_come_back_from(
+    seed: int | None,
+) -> None:
     """The loop is gone round all the same; the guide line has been left for and come back from at one place."""
     guide = polyline((22, 14), (17.5, 14))
     operator = Operator(card=Card.parse('turns = ["right", "left"]'))
@@ -249,7 +282,9 @@ def test_a_guide_line_is_taken_where_the_card_says_so_and_come_back_from(seed: i
     assert np.hypot(*(line.xy_mm[taken.tip] - guide[1])) < END_MM
     for at in (taken.leave, taken.back):
         assert np.hypot(*(line.xy_mm[at] - guide[0])) < 2 * LINE_MM
-    assert line.length_mm == pytest.approx(6 + length_mm(CIRCLE) + 2 * length_mm(guide), abs=8 * LINE_MM)
+    assert line.length_mm == pytest.approx(
+        6 + length_mm(CIRCLE) + 2 * length_mm(guide), abs=8 * LINE_MM
+    )
 
 
 def test_a_ring_with_a_gap_closes_by_catching_it_again_wherever_the_head_begins() -> None:
@@ -268,7 +303,9 @@ def test_a_dashed_circle_is_followed_all_the_way_round(radius_mm: float, seed: i
     step = 360 / dashes
     pieces = [arc((24, 24), radius_mm, k * step, (k + 2.5 / 4) * step) for k in range(dashes)]
     run = trace(inked(*pieces, seed=seed), settings=Settings(gap_mm=1.3))
-    assert run.ending == "closed" and run.length_mm == pytest.approx(2 * math.pi * radius_mm, rel=0.003)
+    assert run.ending == "closed" and run.length_mm == pytest.approx(
+        2 * math.pi * radius_mm, rel=0.003
+    )
 
 
 def test_a_lost_line_is_caught_again_within_the_limit_only() -> None:
@@ -277,4 +314,6 @@ def test_a_lost_line_is_caught_again_within_the_limit_only() -> None:
     caught = trace(broken, (8.0, 10.0), Settings(recatch_mm=4.0))
     assert (kept.ending, caught.ending) == ("ended", "ended")
     assert kept.length_mm == pytest.approx(10, abs=2 * END_MM)
-    assert caught.length_mm == pytest.approx(10 + math.hypot(2.5, 0.8) + math.hypot(11.5, 3.2), abs=0.1)
+    assert caught.length_mm == pytest.approx(
+        10 + math.hypot(2.5, 0.8) + math.hypot(11.5, 3.2), abs=0.1
+    )

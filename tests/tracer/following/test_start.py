@@ -18,7 +18,9 @@ from morfax.tracer.head.trail import Trail
 from morfax.tracer.sensing.leg import Leg
 from tests.tracer.inked import UM, WIDTH_MM, arc, corner, dot, inked, polyline
 
-ON_IT_MM = 8 * UM  # on clean ink, as a parabola through what was felt has it; 5 um on a line along the pixels
+ON_IT_MM = (
+    8 * UM
+)  # on clean ink, as a parabola through what was felt has it; 5 um on a line along the pixels
 
 
 # lines
@@ -76,7 +78,9 @@ def test_the_head_is_put_down_on_the_line_near_the_place_asked_for(angle: float)
     assert abs(np.hypot(*(stance.place_mm - 12)) - 8) < ON_IT_MM
     assert np.hypot(*(stance.place_mm - asked)) < 3.2
     tangent = math.atan2(*(stance.place_mm - 12)[::-1]) + math.pi / 2
-    assert abs(math.sin(stance.heading_rad - tangent)) < 0.01  # along the line, one way or the other
+    assert (
+        abs(math.sin(stance.heading_rad - tangent)) < 0.01
+    )  # along the line, one way or the other
     assert stance.view.width_mm == pytest.approx(WIDTH_MM, abs=40 * UM)
     assert length_mm == pytest.approx(math.tau * 8, rel=0.15)
 
@@ -104,7 +108,9 @@ def test_an_open_line_is_begun_at_an_end_heading_inward(seed: int | None) -> Non
 def test_a_speck_beside_an_end_does_not_hide_it() -> None:
     for k in range(8):
         a = math.radians(80 + 30 * k)  # about the end, but for the line itself
-        speck = dot((6 + 0.5 * math.cos(a), 8 + 0.5 * math.sin(a)), 0.15)  # where the ring of cells runs
+        speck = dot(
+            (6 + 0.5 * math.cos(a), 8 + 0.5 * math.sin(a)), 0.15
+        )  # where the ring of cells runs
         drawing = inked(polyline((6, 8), (26, 10)), width_mm=0.3, specks=(speck,))
         stance, _ = next(put_down(drawing, (6, 8), None, None))
         assert stance.at_end and math.dist(stance.place_mm, (6, 8)) < 50 * UM
@@ -116,10 +122,14 @@ def test_a_wavering_line_of_three_pixels_has_ends_and_no_tips(seed: int) -> None
     a tip grows.
     """
     rng, x_mm = np.random.default_rng(seed), np.linspace(-10, 10, 400)
-    wave = np.column_stack([x_mm, 0.1 * np.sin(rng.uniform(0.5, 1.2) * x_mm + rng.uniform(0, 6))])
+    wave = np.column_stack(
+        [x_mm, 0.1 * np.sin(rng.uniform(0.5, 1.2) * x_mm + rng.uniform(0, 6))]
+    )
     a = rng.uniform(0, math.tau)
     line = wave @ np.array([[math.cos(a), math.sin(a)], [-math.sin(a), math.cos(a)]]) + [16, 16]
-    stance, _ = next(put_down(inked(line, dpi=150.0, seed=seed), (line[0, 0], line[0, 1]), None, None))
+    stance, _ = next(
+        put_down(inked(line, dpi=150.0, seed=seed), (line[0, 0], line[0, 1]), None, None)
+    )
     assert stance.at_end and math.dist(stance.place_mm, line[0]) < 100 * UM  # 0.6 of a pixel
 
 
@@ -137,14 +147,21 @@ def leg(*points: tuple[float, float]) -> Leg:
 
 
 @settings(max_examples=30)
-@given(parts=st.lists(st.integers(1, 3000), min_size=1, max_size=6), step_mm=st.floats(0.02, 0.1))
-def test_the_trail_keeps_a_place_every_step_however_it_is_told(parts: list[int], step_mm: float) -> None:
+@given(
+    parts=st.lists(st.integers(1, 3000), min_size=1, max_size=6), step_mm=st.floats(0.02, 0.1)
+)
+def test_the_trail_keeps_a_place_every_step_however_it_is_told(
+    parts: list[int], step_mm: float
+) -> None:
     trail = Trail(np.zeros(2), step_mm)
     x = np.arange(1, sum(parts) + 1) * 0.00167  # a sample at 10 mm/s
     for first, count in zip(np.cumsum([0, *parts]), parts, strict=False):
         trail.add(np.column_stack([x[first : first + count], np.zeros(count)]))
     places = trail.recent()
-    assert np.all(np.diff(places[:, 0]) > 0) and np.diff(places[:, 0]).max(initial=0) < 2 * step_mm + 0.002
+    assert (
+        np.all(np.diff(places[:, 0]) > 0)
+        and np.diff(places[:, 0]).max(initial=0) < 2 * step_mm + 0.002
+    )
     assert places[-1, 0] > x[-1] - (len(parts) + 1) * step_mm - 0.002
 
 

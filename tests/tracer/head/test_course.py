@@ -36,13 +36,20 @@ def heading(way: Array, at: int) -> float:
 def test_a_cubic_leaves_and_arrives_on_its_headings(
     start: tuple[float, float], way: float, length_mm: float, headings: tuple[float, float]
 ) -> None:
-    a, b = np.array(start), np.array(start) + length_mm * np.array([math.cos(way), math.sin(way)])
+    a, b = (
+        np.array(start),
+        np.array(start) + length_mm * np.array([math.cos(way), math.sin(way)]),
+    )
     line = curves.hermite(a, way + headings[0], b, way + headings[1])
     assert line[0] == pytest.approx(a) and line[-1] == pytest.approx(b)
     assert np.hypot(*np.diff(line, axis=0).T).max() < 2 * curves.SPACING_MM
-    step = curves.SPACING_MM / length_mm  # the first chord has turned by half of what the cubic turns on it
+    step = (
+        curves.SPACING_MM / length_mm
+    )  # the first chord has turned by half of what the cubic turns on it
     assert abs(math.remainder(heading(line, 0) - way - headings[0], math.tau)) < 4 * step + 1e-6
-    assert abs(math.remainder(heading(line, -1) - way - headings[1], math.tau)) < 4 * step + 1e-6
+    assert (
+        abs(math.remainder(heading(line, -1) - way - headings[1], math.tau)) < 4 * step + 1e-6
+    )
 
 
 @pytest.mark.parametrize("radius_mm", [2.0, 5.0])
@@ -61,7 +68,9 @@ def test_speeds_obey_bends_and_braking() -> None:
     way = np.vstack([np.column_stack([np.linspace(-3, 0, 150)[:-1], np.zeros(149)]), quarter])
     allowed = curves.speeds(way, 50.0, 500.0, 0.0)
     assert allowed[-1] == 0 and allowed.max() <= 50
-    assert allowed[200:300].max() <= math.sqrt(500 * 2) * 1.001  # v² / R = a on a radius of 2 mm
+    assert (
+        allowed[200:300].max() <= math.sqrt(500 * 2) * 1.001
+    )  # v² / R = a on a radius of 2 mm
     steps = np.hypot(*np.diff(way, axis=0).T)
     assert np.all(
         allowed[:-1] ** 2 - allowed[1:] ** 2 <= 2 * 500 * steps + 1e-9
@@ -82,14 +91,18 @@ def at_corner(
     vertex = drawn_corner(deflection_deg)[1]
     out = math.radians(deflection_deg)
     incoming = Leg(vertex - [1.2, 0], 0.0, 0.0, WIDTH_MM, NO_STATIONS)
-    outgoing = Leg(vertex + 1.2 * np.array([math.cos(out), math.sin(out)]), out, 0.0, WIDTH_MM, NO_STATIONS)
+    outgoing = Leg(
+        vertex + 1.2 * np.array([math.cos(out), math.sin(out)]), out, 0.0, WIDTH_MM, NO_STATIONS
+    )
     eyes = View(photocell.behind_aperture(drawing, 0.15), drawing.pitch_mm, WIDTH_MM, LEVEL)
     legs_mm = meet(incoming, outgoing)
     assert legs_mm == pytest.approx((1.2, 1.2), abs=1e-9)
     return eyes, incoming, outgoing, legs_mm
 
 
-def through(eyes: View, incoming: Leg, outgoing: Leg, legs_mm: tuple[float, float]) -> list[Array]:
+def through(
+    eyes: View, incoming: Leg, outgoing: Leg, legs_mm: tuple[float, float]
+) -> list[Array]:
     """The course of a head that stands 0.5 mm before the incoming leg's clean end."""
     stands = incoming.at(-0.5), incoming.heading_rad
     return corner.through_corner(eyes, stands, incoming, outgoing, legs_mm, 0.0)
@@ -101,21 +114,27 @@ def test_a_sharp_corner_goes_through_its_vertex(deflection_deg: float) -> None:
     stretches = through(eyes, incoming, outgoing, legs_mm)
     assert len(stretches) == 2  # the head stops and swivels between them
     vertex = drawn_corner(deflection_deg)[1]
-    assert stretches[0][-1] == pytest.approx(vertex, abs=1e-9) and stretches[1][0] == pytest.approx(
-        vertex, abs=1e-9
-    )
+    assert stretches[0][-1] == pytest.approx(vertex, abs=1e-9) and stretches[1][
+        0
+    ] == pytest.approx(vertex, abs=1e-9)
 
 
 @pytest.mark.parametrize(
     ("deflection_deg", "radius_mm"), [(60.0, 1.0), (90.0, 0.3), (90.0, 0.5), (120.0, 0.3)]
 )
-def test_a_rounded_corner_goes_round_on_its_radius(deflection_deg: float, radius_mm: float) -> None:
+def test_a_rounded_corner_goes_round_on_its_radius(
+    deflection_deg: float, radius_mm: float
+) -> None:
     eyes, incoming, outgoing, legs_mm = at_corner(deflection_deg, radius_mm)
     missed = radius_mm * (1 / math.cos(math.radians(deflection_deg) / 2) - 1)
-    assert corner.missing_ink_mm(eyes, incoming, outgoing, legs_mm) == pytest.approx(missed, abs=20 * UM)
+    assert corner.missing_ink_mm(eyes, incoming, outgoing, legs_mm) == pytest.approx(
+        missed, abs=20 * UM
+    )
     (way,) = through(eyes, incoming, outgoing, legs_mm)
     nearest = np.hypot(*(way - drawn_corner(deflection_deg)[1]).T).min()
-    assert nearest == pytest.approx(missed, abs=25 * UM)  # the ink's edge is a round, seen by an aperture
+    assert nearest == pytest.approx(
+        missed, abs=25 * UM
+    )  # the ink's edge is a round, seen by an aperture
 
 
 def test_a_sharp_corner_misses_no_ink() -> None:

@@ -98,13 +98,17 @@ def test_a_line_whose_bend_changes_is_followed_along_its_middle() -> None:
         apart.path_to_reference.rms_mm < 4 * UM
     )  # the issue's figure for smooth lines, with a scanner's noise
     assert apart.path_to_reference.max_mm < 12 * UM
-    assert np.sort(run.xy_mm[[0, -1], 0]) == pytest.approx([4, 44], abs=30 * UM)  # from end to end
+    assert np.sort(run.xy_mm[[0, -1], 0]) == pytest.approx(
+        [4, 44], abs=30 * UM
+    )  # from end to end
 
 
 def test_noise_of_the_paper_is_averaged_along_the_line() -> None:
     """4 % noise on each pixel of 85 um: an edge found in one row of pixels would be off by 5 um RMS."""
     middle = 14.0
-    clean, noisy = (trace(inked(arc((middle, middle), 10), seed=seed)).xy_mm for seed in (None, 5))
+    clean, noisy = (
+        trace(inked(arc((middle, middle), 10), seed=seed)).xy_mm for seed in (None, 5)
+    )
     added = np.interp(np.linspace(-3, 3, 2000), *_by_angle(noisy - middle)) - np.interp(
         np.linspace(-3, 3, 2000), *_by_angle(clean - middle)
     )
@@ -126,7 +130,9 @@ def test_the_path_does_not_depend_on_where_the_head_is_put_down(radius_mm: float
     middle = radius_mm + 4
     drawing = inked(arc((middle, middle), radius_mm))
     paths = [
-        trace(drawing, (middle + radius_mm * math.cos(a), middle + radius_mm * math.sin(a))).xy_mm[::4]
+        trace(
+            drawing, (middle + radius_mm * math.cos(a), middle + radius_mm * math.sin(a))
+        ).xy_mm[::4]
         for a in np.arange(8) * math.pi / 4
     ]
     for path in paths[1:]:
@@ -143,9 +149,12 @@ def test_the_drives_lag_turns_no_corner(lag_s: float, corner: bool) -> None:
     line = polyline((4, 4), (16, 4), (16, 16)) if corner else wave(20.0)
     drawing = inked(line)
     as_usual, lagging = (
-        trace(drawing, settings=Settings(drive=Drive(lag_s=lag))).xy_mm for lag in (0.001, lag_s)
+        trace(drawing, settings=Settings(drive=Drive(lag_s=lag))).xy_mm
+        for lag in (0.001, lag_s)
     )
-    assert distance(lagging[::4], as_usual[::4]).hausdorff_mm < 4 * UM  # a tenth of what the screws owe
+    assert (
+        distance(lagging[::4], as_usual[::4]).hausdorff_mm < 4 * UM
+    )  # a tenth of what the screws owe
 
 
 def test_the_lengthwise_part_of_the_sweep_makes_no_false_offset() -> None:
@@ -234,9 +243,15 @@ def _some_steps(drawing: Drawing) -> tuple[Any, Any]:
         out[:240],
     )
     assert (n, why) == (240, head.MORE)
-    way = follower.carriage.state[[head.X, head.Y]] + np.array([[0.0, 0.0], [0.2, 0.0], [0.2, 0.2]])
+    way = follower.carriage.state[[head.X, head.Y]] + np.array(
+        [[0.0, 0.0], [0.2, 0.0], [0.2, 0.2]]
+    )
     n += head.run(
-        follower.carriage.state, follower.carriage.tuning, way, np.array([10.0, 2.0, 0.0]), out[240:360]
+        follower.carriage.state,
+        follower.carriage.tuning,
+        way,
+        np.array([10.0, 2.0, 0.0]),
+        out[240:360],
     )
     head.stand(follower.carriage.state, follower.carriage.tuning, out[360:])
     return follower.carriage.state.copy(), out
@@ -247,5 +262,7 @@ def test_compiled_and_plain_head_do_the_same(request: pytest.FixtureRequest) -> 
     state, positions = _some_steps(drawing)
     request.getfixturevalue("plain_head")
     plain_state, plain_positions = _some_steps(drawing)
-    assert plain_positions == pytest.approx(positions, abs=1e-6 * UM)  # the order of floating-point sums
+    assert plain_positions == pytest.approx(
+        positions, abs=1e-6 * UM
+    )  # the order of floating-point sums
     assert plain_state == pytest.approx(state, abs=1e-6)

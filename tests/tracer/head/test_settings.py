@@ -31,10 +31,16 @@ def test_every_setting_can_be_changed_by_name() -> None:
         ("precise", {"lead_mm": "two"}, "lead_mm is 'two'; it must be a number"),
         ("precise", {"lead_mm": -1}, "lead_mm is -1; it must be a number from 0.01 to 20"),
         ("precise", {"lead_mm": "nan"}, "lead_mm is 'nan'"),
-        ("precise", {"sweep_hz": 0}, "sweep_hz is 0; it must be a number from 1 to 750, in the unit"),
+        (
+            "precise",
+            {"sweep_hz": 0},
+            "sweep_hz is 0; it must be a number from 1 to 750, in the unit",
+        ),
     ],
 )
-def test_a_mistake_is_said_in_one_line(head: str, changes: dict[str, object], said: str) -> None:
+def test_a_mistake_is_said_in_one_line(
+    head: str, changes: dict[str, object], said: str
+) -> None:
     with pytest.raises(ValueError, match=said) as caught:
         choose(head, changes)
     assert "\n" not in str(caught.value)

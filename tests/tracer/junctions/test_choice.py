@@ -16,7 +16,9 @@ from morfax.tracer.sensing.leg import Leg, goes_straight, leg_of
 from morfax.tracer.sensing.view import LEVEL, View
 from tests.tracer.inked import UM, WIDTH_MM, inked, polyline
 
-VERTEX_MM = 10 * UM  # to which straight legs, 5 um aside on clean ink, meet at 45 degrees and more
+VERTEX_MM = (
+    10 * UM
+)  # to which straight legs, 5 um aside on clean ink, meet at 45 degrees and more
 X_MM = 14.0
 WAY_IN = polyline((4, 10), (X_MM, 10))
 Seen = tuple[View, Leg, Trail]
@@ -24,10 +26,16 @@ Seen = tuple[View, Leg, Trail]
 
 def come_along(drawing: Drawing, to_mm: float = X_MM) -> Seen:
     """A head that has come along y = 10 mm, and feels the line ahead up to a knot, at most to x = `to_mm`."""
-    eyes = View(photocell.behind_aperture(drawing, 0.15), drawing.pitch_mm, WIDTH_MM + 25 * UM, LEVEL)
+    eyes = View(
+        photocell.behind_aperture(drawing, 0.15), drawing.pitch_mm, WIDTH_MM + 25 * UM, LEVEL
+    )
     start = np.array([to_mm - 3.0, 10.0])
     trail = Trail(np.array([4.0, 10.0]), eyes.step_mm)
-    trail.add(np.column_stack([np.arange(4, to_mm - 2, 0.01), np.full(round((to_mm - 6) * 100), 10.0)]))
+    trail.add(
+        np.column_stack(
+            [np.arange(4, to_mm - 2, 0.01), np.full(round((to_mm - 6) * 100), 10.0)]
+        )
+    )
     return eyes, leg_of(eyes.feel(start, 0.0, 3.0 + 1.0), True, eyes.leg_mm), trail
 
 
@@ -44,7 +52,9 @@ def test_a_corner_has_one_way_on_and_a_vertex(out_deg: float) -> None:
     outgoing, legs_mm, choices = survey(eyes, incoming, trail)
     assert choices == 1 and degrees(outgoing) == pytest.approx(out_deg, abs=1)
     assert legs_mm is not None
-    within_mm = VERTEX_MM / math.sin(a) ** 2  # legs that meet at a smaller angle say less of where
+    within_mm = (
+        VERTEX_MM / math.sin(a) ** 2
+    )  # legs that meet at a smaller angle say less of where
     assert incoming.at(legs_mm[0]) == pytest.approx(np.array([X_MM, 10]), abs=abs(within_mm))
 
 
@@ -59,13 +69,19 @@ def test_a_crossing_is_gone_straight_over(other_deg: float) -> None:
     assert degrees(outgoing) == pytest.approx(0, abs=0.5)
 
 
-def test_at_a_fork_without_a_straight_leg_the_straightest_is_taken_and_the_next_can_be() -> None:
-    drawing = inked(WAY_IN, polyline((X_MM, 10), (X_MM + 4, 16)), polyline((X_MM, 10), (X_MM, 4)))
+def test_at_a_fork_without_a_straight_leg_the_straightest_is_taken_and_the_next_can_be() -> (
+    None
+):
+    drawing = inked(
+        WAY_IN, polyline((X_MM, 10), (X_MM + 4, 16)), polyline((X_MM, 10), (X_MM, 4))
+    )
     eyes, incoming, trail = come_along(drawing)
     first, _, choices = survey(eyes, incoming, trail)
     second, _, _ = survey(eyes, incoming, trail, rank=1)
     assert choices == 2
-    assert degrees(first) == pytest.approx(56.3, abs=1) and degrees(second) == pytest.approx(-90, abs=1)
+    assert degrees(first) == pytest.approx(56.3, abs=1) and degrees(second) == pytest.approx(
+        -90, abs=1
+    )
 
 
 def test_what_has_been_followed_already_is_not_taken_again() -> None:
@@ -85,13 +101,21 @@ def test_at_an_end_there_is_no_way_on() -> None:
     assert straight_on(eyes, incoming, 0.5) is None
 
 
-@pytest.mark.parametrize(("paper_mm", "carried"), [(0.2, True), (0.4, True), (0.7, False), (1.5, False)])
-def test_a_gap_is_carried_if_it_is_no_wider_than_allowed(paper_mm: float, carried: bool) -> None:
-    eyes, incoming, _ = come_along(inked(WAY_IN, polyline((X_MM + WIDTH_MM + paper_mm, 10), (24, 10))))
+@pytest.mark.parametrize(
+    ("paper_mm", "carried"), [(0.2, True), (0.4, True), (0.7, False), (1.5, False)]
+)
+def test_a_gap_is_carried_if_it_is_no_wider_than_allowed(
+    paper_mm: float, carried: bool
+) -> None:
+    eyes, incoming, _ = come_along(
+        inked(WAY_IN, polyline((X_MM + WIDTH_MM + paper_mm, 10), (24, 10)))
+    )
     leg = straight_on(eyes, incoming, 0.5)
     assert (leg is not None) == carried
     if leg is not None:
-        assert leg.end_mm[1] == pytest.approx(10, abs=6 * UM) and degrees(leg) == pytest.approx(0, abs=0.5)
+        assert leg.end_mm[1] == pytest.approx(10, abs=6 * UM) and degrees(leg) == pytest.approx(
+            0, abs=0.5
+        )
 
 
 def test_a_gap_is_not_carried_to_a_line_aside() -> None:

@@ -33,11 +33,15 @@ def test_a_junction_counts_once_while_the_head_is_at_it() -> None:
 def test_a_guide_line_is_left_for_ends_and_is_come_back_from() -> None:
     junctions = Junctions()
     out, back = np.linspace([10, 0], [10, 5], 51), np.linspace([10, 5], [10, 0], 51)
-    way = np.vstack([np.linspace([0, 0], [10, 0], 101), out, back, np.linspace([10, 0], [20, 0], 101)])
+    way = np.vstack(
+        [np.linspace([0, 0], [10, 0], 101), out, back, np.linspace([10, 0], [20, 0], 101)]
+    )
     junctions.take(HERE, 95)
     assert not junctions.comes_back(HERE, 1.0)  # not before it has been to the end
     assert (
-        junctions.turn_round(152) and junctions.comes_back(HERE, 1.0) and not junctions.comes_back(THERE, 1.0)
+        junctions.turn_round(152)
+        and junctions.comes_back(HERE, 1.0)
+        and not junctions.comes_back(THERE, 1.0)
     )
     junctions.is_back(200, 30.0)
     assert junctions.next(31.0) == -1 + len(junctions.places_mm) or not junctions.places_mm
@@ -55,11 +59,16 @@ def test_the_end_of_a_line_that_is_no_guide_is_the_end() -> None:
 
 
 def traced(
-    *lines: np.ndarray, turns: str = "[]", width_mm: float = 0.5, dots: tuple[np.ndarray, ...] = ()
+    *lines: np.ndarray,
+    turns: str = "[]",
+    width_mm: float = 0.5,
+    dots: tuple[np.ndarray, ...] = (),
 ) -> Line:
     operator = Operator(card=Card.parse(f"turns = {turns}\n"))
     return trace(
-        inked(LEAD, PLATE, *lines, width_mm=width_mm, seed=11, specks=dots), (4, 20), operator=operator
+        inked(LEAD, PLATE, *lines, width_mm=width_mm, seed=11, specks=dots),
+        (4, 20),
+        operator=operator,
     ).lines[0]
 
 
@@ -78,7 +87,9 @@ def test_a_junction_is_where_its_lines_meet_whether_it_is_taken_or_passed(
 ) -> None:
     off = guide(60, slant_deg)
     for turns, guides in (('["left"]', 0), ('["left", "right"]', 1)):
-        line = traced(off, turns=turns, width_mm=width_mm)  # clockwise: what lies inside is on the right
+        line = traced(
+            off, turns=turns, width_mm=width_mm
+        )  # clockwise: what lies inside is on the right
         assert len(line.junctions_mm) == 2 and len(line.guides) == guides
         assert math.dist(line.junctions_mm[0], LEAD[1]) < width_mm
         assert math.dist(line.junctions_mm[1], off[0]) < 0.5 * width_mm
@@ -89,7 +100,9 @@ def test_coming_back_from_a_guide_line_counts_no_junction_and_takes_no_turn() ->
     line = traced(first, second, turns='["left", "right", "right"]')
     assert line.is_lead is False and line.ending == "joined" and len(line.junctions_mm) == 3
     tips = [line.xy_mm[taken.tip] for taken in line.guides]
-    assert [math.dist(a, b) < WITHIN_MM for a, b in zip(tips, (first[1], second[1]), strict=True)] == [
+    assert [
+        math.dist(a, b) < WITHIN_MM for a, b in zip(tips, (first[1], second[1]), strict=True)
+    ] == [
         True,
         True,
     ]
@@ -112,7 +125,9 @@ def test_where_a_lead_line_joins_aslant_is_where_it_meets_the_contour(
     """
     a = math.radians(slant_deg)
     lead = polyline((18 - 14 * math.cos(a), 28 - 14 * math.sin(a)), (18, 28))
-    line = trace(inked(arc((30, 28), 12), lead, width_mm=width_mm, seed=5), (lead[0, 0], lead[0, 1])).lines[0]
+    line = trace(
+        inked(arc((30, 28), 12), lead, width_mm=width_mm, seed=5), (lead[0, 0], lead[0, 1])
+    ).lines[0]
     assert len(line.junctions_mm) == 1 and math.dist(line.junctions_mm[0], (18, 28)) < 0.3
 
 
@@ -122,11 +137,17 @@ def test_a_guide_line_on_the_outside_of_a_bend_makes_no_corner_of_it(seed: int) 
     on the second of these.
     """
     rng = np.random.default_rng(seed)
-    radius_mm, width_mm, angle = rng.uniform(4, 10), rng.choice([0.3, 0.5, 0.8]), rng.uniform(0, math.tau)
+    radius_mm, width_mm, angle = (
+        rng.uniform(4, 10),
+        rng.choice([0.3, 0.5, 0.8]),
+        rng.uniform(0, math.tau),
+    )
     out = angle + math.radians(rng.uniform(-45, 45))
     foot = (20 + radius_mm * math.cos(angle), 20 + radius_mm * math.sin(angle))
     guide = polyline(foot, (foot[0] + 8 * math.cos(out), foot[1] + 8 * math.sin(out)))
     start = (40 - foot[0], 40 - foot[1])
-    line = trace(inked(arc((20, 20), radius_mm), guide, width_mm=float(width_mm), seed=seed), start).lines[0]
+    line = trace(
+        inked(arc((20, 20), radius_mm), guide, width_mm=float(width_mm), seed=seed), start
+    ).lines[0]
     assert line.ending == "closed"
     assert np.abs(np.hypot(*(line.xy_mm - [20, 20]).T) - radius_mm).max() < 30 * UM

@@ -42,7 +42,9 @@ def felt(radius_mm: float) -> tuple[View, Array]:
     return view, seen
 
 
-@pytest.mark.parametrize(("radius_mm", "is_felt"), [(0.0, True), (0.3, True), (0.9, False), (1.3, False)])
+@pytest.mark.parametrize(
+    ("radius_mm", "is_felt"), [(0.0, True), (0.3, True), (0.9, False), (1.3, False)]
+)
 def test_a_way_by_the_vertex_is_taken_only_where_the_line_was_felt_there(
     radius_mm: float, is_felt: bool
 ) -> None:
@@ -54,7 +56,9 @@ def test_a_way_by_the_vertex_is_taken_only_where_the_line_was_felt_there(
     view, seen = felt(radius_mm)
     pilot = Pilot(view, (seen[0, :2], 0.0), Trail(seen[0, :2], view.step_mm), Settings())
     legs = leg_of(seen[:16], True, view.leg_mm), leg_of(seen[-16:], False, view.leg_mm)
-    way = polyline((6.5, 5), (8, 5), (8 + 0.7 * math.cos(DEFLECTION), 5 + 0.7 * math.sin(DEFLECTION)))
+    way = polyline(
+        (6.5, 5), (8, 5), (8 + 0.7 * math.cos(DEFLECTION), 5 + 0.7 * math.sin(DEFLECTION))
+    )
     stretches = [np.linspace(a, b, 40) for a, b in pairwise(way)]
     deflection = abs(turn(legs[0].heading_rad, legs[1].heading_rad))
     assert deflection == pytest.approx(DEFLECTION, abs=math.radians(2))

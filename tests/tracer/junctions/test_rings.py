@@ -25,7 +25,9 @@ NO_STATIONS = np.empty((0, 3))
 
 def view(drawing: Drawing) -> View:
     """As a head sees the drawing that stands on a line of 0.5 mm."""
-    return View(photocell.behind_aperture(drawing, 0.15), drawing.pitch_mm, WIDTH_MM + 25 * UM, LEVEL)
+    return View(
+        photocell.behind_aperture(drawing, 0.15), drawing.pitch_mm, WIDTH_MM + 25 * UM, LEVEL
+    )
 
 
 def stations(curve: Array, width_mm: float = WIDTH_MM) -> Array:
@@ -48,7 +50,9 @@ def test_a_turn_is_the_short_way_round(a: float, b: float) -> None:
 
 
 @given(heading=st.floats(-3, 3), along_mm=st.floats(-1, 1))
-def test_a_leg_that_bends_is_a_circle_to_the_third_order(heading: float, along_mm: float) -> None:
+def test_a_leg_that_bends_is_a_circle_to_the_third_order(
+    heading: float, along_mm: float
+) -> None:
     bend = 0.2
     leg = Leg(np.array([3.0, 4.0]), heading, bend, WIDTH_MM, NO_STATIONS)
     centre = leg.end_mm + np.array([-math.sin(heading), math.cos(heading)]) / bend
@@ -69,7 +73,9 @@ def test_a_leg_is_fitted_to_what_was_felt(bend_per_mm: float, last: bool) -> Non
     assert at_end > 0.8 if last else at_end < 0.4
     assert leg.end_mm == pytest.approx(told.at(at_end), abs=1 * UM)
     # 2 um over a leg of 1 mm, and a parabola for a circle
-    assert leg.heading_rad == pytest.approx(told.heading_at(at_end), abs=2e-3 + 0.2 * abs(bend_per_mm) ** 3)
+    assert leg.heading_rad == pytest.approx(
+        told.heading_at(at_end), abs=2e-3 + 0.2 * abs(bend_per_mm) ** 3
+    )
     assert leg.bend_per_mm == pytest.approx(bend_per_mm, abs=0.02 + 0.05 * abs(bend_per_mm))
 
 
@@ -77,7 +83,9 @@ def test_noise_bends_no_straight_leg() -> None:
     random = np.random.default_rng(3)
     bends = []
     for _ in range(20):
-        seen = stations(np.column_stack([np.arange(0, 1.2, 0.05), random.normal(5, 4 * UM, 24)]))
+        seen = stations(
+            np.column_stack([np.arange(0, 1.2, 0.05), random.normal(5, 4 * UM, 24)])
+        )
         bends.append(leg_of(seen, True, 1.2).bend_per_mm)
     assert np.mean(np.array(bends) == 0) > 0.9  # a bend must stand out fivefold
 
@@ -105,9 +113,15 @@ def test_legs_meet_at_their_vertex(deflection_deg: float) -> None:
 
 def test_legs_that_bend_meet_where_their_curves_cross() -> None:
     """Two circles of 5 mm about (0, 5) and (5, 0), both through the origin, at right angles."""
-    incoming = Leg(5 * np.array([-math.sin(0.1), 1 - math.cos(0.1)]), -0.1, 0.2, WIDTH_MM, NO_STATIONS)
+    incoming = Leg(
+        5 * np.array([-math.sin(0.1), 1 - math.cos(0.1)]), -0.1, 0.2, WIDTH_MM, NO_STATIONS
+    )
     outgoing = Leg(
-        5 * np.array([1 - math.cos(0.1), math.sin(0.1)]), math.pi / 2 - 0.1, -0.2, WIDTH_MM, NO_STATIONS
+        5 * np.array([1 - math.cos(0.1), math.sin(0.1)]),
+        math.pi / 2 - 0.1,
+        -0.2,
+        WIDTH_MM,
+        NO_STATIONS,
     )
     met = meet(incoming, outgoing)
     assert met is not None
@@ -143,7 +157,9 @@ def test_of_two_corners_close_together_the_first_is_found() -> None:
 
 def test_a_smooth_bend_is_no_corner() -> None:
     for radius_mm in (3.0, 10.0):
-        assert corner_in(stations(radius_mm * _unit(np.arange(60) * 0.05 / radius_mm)), 0) is None
+        assert (
+            corner_in(stations(radius_mm * _unit(np.arange(60) * 0.05 / radius_mm)), 0) is None
+        )
 
 
 def _unit(angle: Array) -> Array:
@@ -158,12 +174,16 @@ def test_the_ink_ahead_is_measured_to_its_end() -> None:
     eyes = view(inked(polyline((4, 5), (10, 5))))
     incoming = straight((9, 5), 0)
     ink = reach_of_ink(eyes, incoming, 5.0)
-    assert ink == pytest.approx(1.25, abs=20 * UM)  # a round's edge seen by an aperture of 0.15 mm
+    assert ink == pytest.approx(
+        1.25, abs=20 * UM
+    )  # a round's edge seen by an aperture of 0.15 mm
     assert end_of(eyes, incoming) == pytest.approx(1.0, abs=20 * UM)
 
 
 def test_ink_beyond_reach_has_no_end() -> None:
-    assert reach_of_ink(view(inked(polyline((4, 5), (30, 5)))), straight((9, 5), 0), 5.0) is None
+    assert (
+        reach_of_ink(view(inked(polyline((4, 5), (30, 5)))), straight((9, 5), 0), 5.0) is None
+    )
 
 
 def test_a_centre_on_the_way_in_has_the_legs_ahead_of_it_only() -> None:
@@ -173,7 +193,10 @@ def test_a_centre_on_the_way_in_has_the_legs_ahead_of_it_only() -> None:
     drawing = inked(polyline((4, 10), (24, 10)), polyline((16, 10), (16, 20)))
     trail = np.column_stack([np.arange(4, 15.6, 0.05), np.full(232, 10.0)])
     for behind_mm in (0.2, 0.5, 1.0):
-        headings = [leg.heading_rad for leg in legs_around(view(drawing), trail[-1] - [behind_mm, 0], trail)]
+        headings = [
+            leg.heading_rad
+            for leg in legs_around(view(drawing), trail[-1] - [behind_mm, 0], trail)
+        ]
         assert headings and max(abs(heading) for heading in headings) < math.radians(95)
 
 
@@ -189,7 +212,9 @@ def test_a_speck_of_paper_on_a_thin_line_is_not_its_end(pixels: int) -> None:
         row, column = len(darkness) - 1 - int(y / drawing.pitch_mm), int(x / drawing.pitch_mm)
         darkness[row, column : column + pixels] = 0.0
         eyes = replace(view(Drawing(darkness, drawing.pitch_mm)), width_mm=0.325)
-        leg = leg_of(eyes.feel(np.array([10.0, 7.0]), math.atan2(1, 2), 1.2), False, eyes.leg_mm)
+        leg = leg_of(
+            eyes.feel(np.array([10.0, 7.0]), math.atan2(1, 2), 1.2), False, eyes.leg_mm
+        )
         assert stroke_end(eyes, leg, 5.0) is None
 
 
@@ -203,23 +228,34 @@ def legs_seen(drawing: Drawing, centre: tuple[float, float], trail: Array) -> li
     return sorted((math.degrees(leg.heading_rad) + 1) % 360 - 1 for leg in legs)
 
 
-WEST = np.column_stack([np.arange(4, 9.5, 0.05), np.full(110, 10.0)])  # the way in, along X to the middle
+WEST = np.column_stack(
+    [np.arange(4, 9.5, 0.05), np.full(110, 10.0)]
+)  # the way in, along X to the middle
 CENTRE = (10.0, 10.0)
 
 
 @pytest.mark.parametrize(
-    "out_deg", [[90], [30], [-45], [144], [90, 270], [0, 90], [0, 90, 270], [0, 60, 240], [120, 240]]
+    "out_deg",
+    [[90], [30], [-45], [144], [90, 270], [0, 90], [0, 90, 270], [0, 60, 240], [120, 240]],
 )
 def test_the_legs_of_a_knot_are_found_with_their_headings(out_deg: list[float]) -> None:
     """Corner, acute tip, junctions, crossings and a Y; the way in is none of them."""
-    ends = [(10 + 6 * math.cos(math.radians(d)), 10 + 6 * math.sin(math.radians(d))) for d in out_deg]
+    ends = [
+        (10 + 6 * math.cos(math.radians(d)), 10 + 6 * math.sin(math.radians(d)))
+        for d in out_deg
+    ]
     drawing = inked(polyline((4, 10), CENTRE), *[polyline(CENTRE, end) for end in ends])
     found = legs_seen(drawing, CENTRE, WEST)
-    assert found == pytest.approx(sorted(d % 360 for d in out_deg), abs=0.5)  # 9 um over a leg of 1 mm
+    assert found == pytest.approx(
+        sorted(d % 360 for d in out_deg), abs=0.5
+    )  # 9 um over a leg of 1 mm
 
 
 def test_the_end_of_a_line_has_no_legs() -> None:
-    assert legs_seen(inked(polyline((4, 10), CENTRE), polyline((16, 16), (16, 18))), CENTRE, WEST) == []
+    assert (
+        legs_seen(inked(polyline((4, 10), CENTRE), polyline((16, 16), (16, 18))), CENTRE, WEST)
+        == []
+    )
 
 
 def test_a_line_close_by_is_no_leg() -> None:

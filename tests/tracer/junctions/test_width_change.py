@@ -40,7 +40,10 @@ def held_to(drawing: Drawing, line: Array, rms_um: float, most_um: float) -> Non
 def parts(widths_mm: list[float]) -> list[tuple[Array, float]]:
     """A circle in as many arcs, each with its width."""
     ends = np.linspace(0, 360, len(widths_mm) + 1)
-    return [(arc(CENTRE, RADIUS_MM, a, b), w) for a, b, w in zip(ends, ends[1:], widths_mm, strict=False)]
+    return [
+        (arc(CENTRE, RADIUS_MM, a, b), w)
+        for a, b, w in zip(ends, ends[1:], widths_mm, strict=False)
+    ]
 
 
 @SEEDS
@@ -87,7 +90,9 @@ def test_the_grain_of_faint_pencil_is_no_end(seed: int) -> None:
     inky = inked(line, width_mm=0.4).darkness
     random = np.random.default_rng(seed)
     grain = cv2.GaussianBlur(random.normal(size=inky.shape).astype(np.float32), (0, 0), 1.2)
-    faint = inky * np.clip(1 + 0.25 * grain / grain.std(), 0, 2) + random.normal(0, 0.04 / 0.35, inky.shape)
+    faint = inky * np.clip(1 + 0.25 * grain / grain.std(), 0, 2) + random.normal(
+        0, 0.04 / 0.35, inky.shape
+    )
     run = trace(Drawing(np.asarray(faint, np.float32), MM_PER_INCH / DPI)).lines[0]
     apart = distance(run.xy_mm[::4], line)
     assert run.ending == "closed"
@@ -100,7 +105,8 @@ def test_a_gap_wider_than_allowed_ends_a_line_for_the_larger_cell_too() -> None:
     agree.
     """
     run = trace(
-        inked(polyline((4, 10), (30, 10)), polyline((31.2, 10), (50, 10)), seed=1), start_mm=(6, 10)
+        inked(polyline((4, 10), (30, 10)), polyline((31.2, 10), (50, 10)), seed=1),
+        start_mm=(6, 10),
     ).lines[0]
     assert run.ending == "ended"
     assert run.xy_mm[:, 0].max() == pytest.approx(30, abs=0.05)

@@ -26,9 +26,13 @@ def seen(drawing: Drawing, width_mm: float = 0.5) -> View:
     return view_of(Sheet.of(drawing), None, width_mm)
 
 
-def at_end(across_mm: float, width_mm: float = 0.5, centre: tuple[float, float] = AT) -> float | None:
+def at_end(
+    across_mm: float, width_mm: float = 0.5, centre: tuple[float, float] = AT
+) -> float | None:
     """How far from a dot's middle it is found at the end of a line, mm; None if it is not."""
-    view = seen(inked(LINE, width_mm=width_mm, seed=5, specks=[dot(centre, across_mm)]), width_mm)
+    view = seen(
+        inked(LINE, width_mm=width_mm, seed=5, specks=[dot(centre, across_mm)]), width_mm
+    )
     leg = leg_of(view.feel(np.array([20.0, 12.0]), 0.0, 5.0), True, view.leg_mm)
     found = dots.dot_at_end(view, leg)
     return None if found is None else math.dist(found, centre)
@@ -53,7 +57,10 @@ def test_the_pen_s_own_end_and_a_patch_are_no_dots(across_mm: float) -> None:
 
 def test_a_speck_of_paper_in_a_dot_is_no_line_that_leaves_it() -> None:
     drawing = inked(LINE, seed=5, specks=[dot(AT, 1.8)])
-    row, column = int(drawing.darkness.shape[0] - 12.6 / drawing.pitch_mm), int(24.4 / drawing.pitch_mm)
+    row, column = (
+        int(drawing.darkness.shape[0] - 12.6 / drawing.pitch_mm),
+        int(24.4 / drawing.pitch_mm),
+    )
     drawing.darkness[row - 1 : row + 1, column - 1 : column + 1] = 0.0
     view = seen(drawing)
     leg = leg_of(view.feel(np.array([20.0, 12.0]), 0.0, 5.0), True, view.leg_mm)
@@ -72,10 +79,14 @@ def test_a_line_goes_on_from_a_dot_only_along_its_heading() -> None:
 
 def test_dots_alone_on_the_paper_are_found_and_rings_squares_and_blots_are_not() -> None:
     square = np.array([[30.0, 5], [32, 5], [32, 7], [30, 7]])
-    drawing = inked(LINE, arc((10, 5), 1.2), seed=5, specks=[dot((16, 6), 1.6), dot((22, 5), 3.0), square])
+    drawing = inked(
+        LINE, arc((10, 5), 1.2), seed=5, specks=[dot((16, 6), 1.6), dot((22, 5), 3.0), square]
+    )
     found = sorted(tuple(centre) for centre in dots.alone(Sheet.of(drawing), seen(drawing)))
     assert len(found) == 2
-    assert [math.dist(a, b) < WITHIN_MM for a, b in zip(found, [(16, 6), (22, 5)], strict=True)] == [
+    assert [
+        math.dist(a, b) < WITHIN_MM for a, b in zip(found, [(16, 6), (22, 5)], strict=True)
+    ] == [
         True,
         True,
     ]
@@ -84,7 +95,9 @@ def test_dots_alone_on_the_paper_are_found_and_rings_squares_and_blots_are_not()
 def test_a_line_goes_on_through_a_dot_where_it_came_in() -> None:
     """The dot is no spike to be gone round: the way through it is as straight as elsewhere."""
     for width_mm in (0.3, 0.8):
-        drawing = inked(arc((16, 16), 10), width_mm=width_mm, seed=5, specks=[dot((26, 16), 2.4 * width_mm)])
+        drawing = inked(
+            arc((16, 16), 10), width_mm=width_mm, seed=5, specks=[dot((26, 16), 2.4 * width_mm)]
+        )
         line = trace(drawing).lines[0]
         away_mm = np.abs(np.hypot(*(line.xy_mm - 16).T) - 10)
         assert [mark.kind for mark in line.marks] == ["dot"] and away_mm.max() < 4 * WITHIN_MM
@@ -102,7 +115,10 @@ def test_a_dot_soon_after_a_corner_is_no_tangle_with_it(seed: int) -> None:
     centre = vertex + (radius_mm + gap_mm) * way
     corner = np.array([[4.0, 12.0], vertex, vertex + 16 * way])
     drawing = inked(
-        corner, width_mm=float(width_mm), seed=seed, specks=[dot((centre[0], centre[1]), 2 * radius_mm)]
+        corner,
+        width_mm=float(width_mm),
+        seed=seed,
+        specks=[dot((centre[0], centre[1]), 2 * radius_mm)],
     )
     line = trace(drawing).lines[0]
     assert distance(line.xy_mm[::4], corner).path_to_reference.max_mm < 100 * UM

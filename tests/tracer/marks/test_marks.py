@@ -25,7 +25,10 @@ CIRCLE = arc((16, 16), 10)
 
 
 def marks(
-    *lines: np.ndarray, width_mm: float = 0.5, dpi: float = 300.0, specks: tuple[np.ndarray, ...] = ()
+    *lines: np.ndarray,
+    width_mm: float = 0.5,
+    dpi: float = 300.0,
+    specks: tuple[np.ndarray, ...] = (),
 ) -> Line:
     """The line of a scanned drawing, with its marks."""
     return trace(inked(*lines, width_mm=width_mm, dpi=dpi, seed=7, specks=specks)).lines[0]
@@ -48,7 +51,9 @@ def off_mm(line: Line, *places: tuple[float, float]) -> list[float]:
 def test_the_axis_stands_where_a_tick_crosses(
     x_mm: float, slant_deg: float, length_mm: float, width_mm: float
 ) -> None:
-    stroke = tick((x_mm, 12), before_mm=length_mm / 2, beyond_mm=length_mm / 2, slant_deg=slant_deg)
+    stroke = tick(
+        (x_mm, 12), before_mm=length_mm / 2, beyond_mm=length_mm / 2, slant_deg=slant_deg
+    )
     assert off_mm(marks(LINE, stroke, width_mm=width_mm), (x_mm, 12))[0] < STANDS_WITHIN_MM
 
 
@@ -62,7 +67,9 @@ def test_a_tick_beside_the_line_stops_it_too(from_mm: float, side: int) -> None:
 @pytest.mark.parametrize("slant_deg", [-20, -12, 12, 20])
 def test_a_short_slanting_tick_of_a_wide_pen_is_felt_square_to_itself(slant_deg: float) -> None:
     stroke = tick((20, 12), before_mm=0.0, beyond_mm=1.5, slant_deg=slant_deg)
-    assert off_mm(marks(LINE, stroke, width_mm=0.8), (20, 12))[0] < 25 * UM  # 85 um by slices along the line
+    assert (
+        off_mm(marks(LINE, stroke, width_mm=0.8), (20, 12))[0] < 25 * UM
+    )  # 85 um by slices along the line
 
 
 def test_a_long_tick_apart_from_the_line_is_no_line_that_begins_there() -> None:
@@ -71,7 +78,9 @@ def test_a_long_tick_apart_from_the_line_is_no_line_that_begins_there() -> None:
 
 def test_ticks_on_a_circle_are_found_in_the_order_of_the_run() -> None:
     places = [(16 + 10 * math.cos(a), 16 + 10 * math.sin(a)) for a in (0.4, 2.0, 4.1)]
-    strokes = [tick(p, math.degrees(a) + 90) for p, a in zip(places, (0.4, 2.0, 4.1), strict=True)]
+    strokes = [
+        tick(p, math.degrees(a) + 90) for p, a in zip(places, (0.4, 2.0, 4.1), strict=True)
+    ]
     line = marks(CIRCLE, *strokes)
     assert max(off_mm(line, *places)) < STANDS_WITHIN_MM
     assert [mark.at for mark in line.marks] == sorted(mark.at for mark in line.marks)
@@ -79,7 +88,9 @@ def test_ticks_on_a_circle_are_found_in_the_order_of_the_run() -> None:
         assert math.dist(line.place(mark.at), mark.place_mm) < 1 * UM  # the place is on the way
 
 
-@pytest.mark.parametrize(("dpi", "within_mm"), [(150.0, 50 * UM), (300.0, 30 * UM), (600.0, 15 * UM)])
+@pytest.mark.parametrize(
+    ("dpi", "within_mm"), [(150.0, 50 * UM), (300.0, 30 * UM), (600.0, 15 * UM)]
+)
 def test_other_resolutions(dpi: float, within_mm: float) -> None:
     assert off_mm(marks(LINE, tick((20, 12), slant_deg=15), dpi=dpi), (20, 12))[0] < within_mm
 
@@ -117,7 +128,9 @@ def test_what_another_pen_drew_is_no_mark() -> None:
     drawing = inked(LINE, tick((20, 12)), width_mm=0.5, seed=7)
     x_mm, y_mm = ((np.arange(n) + 0.5) * drawing.pitch_mm for n in drawing.darkness.shape[::-1])
     on_tick = (np.abs(x_mm - 20) < 0.5)[None, :] & (np.abs(y_mm[::-1] - 12) > 0.3)[:, None]
-    pencil = replace(drawing, darkness=np.where(on_tick, 1.0, 0.6).astype(np.float32) * drawing.darkness)
+    pencil = replace(
+        drawing, darkness=np.where(on_tick, 1.0, 0.6).astype(np.float32) * drawing.darkness
+    )
     assert len(trace(drawing).lines[0].marks) == 1 and trace(pencil).lines[0].marks == ()
 
 
@@ -125,7 +138,9 @@ def test_what_another_pen_drew_is_no_mark() -> None:
 def test_a_dash_half_as_wide_that_crosses_the_line_is_no_mark(seed: int) -> None:
     """Noise may have the one end of it as wide as a mark, and the other, longer one not."""
     for out_mm in (6.0, 8.0):
-        dash = np.array([(24, 15.875), (26 + out_mm, 15.875), (26 + out_mm, 16.125), (24, 16.125)])
+        dash = np.array(
+            [(24, 15.875), (26 + out_mm, 15.875), (26 + out_mm, 16.125), (24, 16.125)]
+        )
         assert not trace(inked(CIRCLE, specks=[dash], seed=seed), (16, 6)).lines[0].marks
 
 
@@ -135,23 +150,41 @@ def test_a_tick_with_a_speck_of_paper_in_its_tip_is_no_junction(y_mm: float) -> 
     drawing.darkness[-1 - int(y_mm / drawing.pitch_mm), int(12 / drawing.pitch_mm)] = 0
     (line,) = trace(drawing).lines
     assert line.is_lead and [mark.kind for mark in line.marks] == ["tick"]
-    assert len(line.junctions_mm) == 1 and math.dist(line.junctions_mm[0], (18, 12)) < STANDS_WITHIN_MM
+    assert (
+        len(line.junctions_mm) == 1
+        and math.dist(line.junctions_mm[0], (18, 12)) < STANDS_WITHIN_MM
+    )
 
 
 @pytest.mark.parametrize("seed", [6, 27, 33, 47, 68, 106, 115, 168])
-def test_a_speck_of_paper_anywhere_on_a_tick_hides_neither_its_tip_nor_the_way_straight_on(seed: int) -> None:
+def test_a_speck_of_paper_anywhere_on_a_tick_hides_neither_its_tip_nor_the_way_straight_on(
+    seed: int,
+) -> None:
     """Of 240 such drawings the head went up the tick on six, and the tick was no mark on eighteen, before it
     knew better; these are eight of them.
     """
     rng = np.random.default_rng(seed)
-    width_mm, pixels, angle = rng.choice([0.3, 0.5]), int(rng.integers(1, 3)), rng.uniform(0, math.pi)
+    width_mm, pixels, angle = (
+        rng.choice([0.3, 0.5]),
+        int(rng.integers(1, 3)),
+        rng.uniform(0, math.pi),
+    )
     slant_deg, half_mm = rng.uniform(-20, 20), rng.uniform(1.2, 2.2)
     way = np.array([math.cos(angle), math.sin(angle)])
-    stroke = tick((18, 18), math.degrees(angle), before_mm=half_mm, beyond_mm=half_mm, slant_deg=slant_deg)
+    stroke = tick(
+        (18, 18), math.degrees(angle), before_mm=half_mm, beyond_mm=half_mm, slant_deg=slant_deg
+    )
     ends = polyline((18 - 13 * way[0], 18 - 13 * way[1]), (18 + 13 * way[0], 18 + 13 * way[1]))
     drawing = inked(ends, stroke, width_mm=float(width_mm), seed=seed)
-    x, y = stroke[0] + (stroke[1] - stroke[0]) * rng.uniform(0.05, 0.95) + rng.normal(0, 0.1, 2) * width_mm
-    row, column = len(drawing.darkness) - 1 - int(y / drawing.pitch_mm), int(x / drawing.pitch_mm)
+    x, y = (
+        stroke[0]
+        + (stroke[1] - stroke[0]) * rng.uniform(0.05, 0.95)
+        + rng.normal(0, 0.1, 2) * width_mm
+    )
+    row, column = (
+        len(drawing.darkness) - 1 - int(y / drawing.pitch_mm),
+        int(x / drawing.pitch_mm),
+    )
     if rng.random() < 0.5:
         drawing.darkness[row, column : column + pixels] = 0
     else:
@@ -171,10 +204,21 @@ def test_a_tick_with_a_speck_of_paper_is_no_line_of_its_own(seed: int) -> None:
     a, half_mm = rng.uniform(0, math.tau), rng.uniform(1.2, 2.4)
     foot = (18 + 9 * math.cos(a), 18 + 9 * math.sin(a))
     slant_deg = rng.uniform(-20, 20)
-    stroke = tick(foot, math.degrees(a) + 90, before_mm=half_mm, beyond_mm=half_mm, slant_deg=slant_deg)
-    drawing = inked(arc((18, 18), 9), arc((38, 18), 7), stroke, width_mm=float(width_mm), seed=seed)
-    x, y = stroke[0] + (stroke[1] - stroke[0]) * rng.uniform(0.05, 0.95) + rng.normal(0, 0.1, 2) * width_mm
-    row, column = len(drawing.darkness) - 1 - int(y / drawing.pitch_mm), int(x / drawing.pitch_mm)
+    stroke = tick(
+        foot, math.degrees(a) + 90, before_mm=half_mm, beyond_mm=half_mm, slant_deg=slant_deg
+    )
+    drawing = inked(
+        arc((18, 18), 9), arc((38, 18), 7), stroke, width_mm=float(width_mm), seed=seed
+    )
+    x, y = (
+        stroke[0]
+        + (stroke[1] - stroke[0]) * rng.uniform(0.05, 0.95)
+        + rng.normal(0, 0.1, 2) * width_mm
+    )
+    row, column = (
+        len(drawing.darkness) - 1 - int(y / drawing.pitch_mm),
+        int(x / drawing.pitch_mm),
+    )
     drawing.darkness[row, column : column + pixels] = 0
     lines = trace_lines(drawing).lines
     assert [line.ending for line in lines] == ["closed", "closed"]
@@ -189,7 +233,10 @@ def test_a_tick_that_nearly_touches_another_line_ends_all_the_same() -> None:
     for width_mm in (0.3, 0.5, 0.8):
         other = polyline((4, 14.2 + width_mm), (34, 14.2 + width_mm))  # 0.2 mm of paper between
         line = trace(
-            inked(LINE, tick((20, 12), before_mm=2, beyond_mm=2), other, width_mm=width_mm, seed=7), (5, 12)
+            inked(
+                LINE, tick((20, 12), before_mm=2, beyond_mm=2), other, width_mm=width_mm, seed=7
+            ),
+            (5, 12),
         )
         assert off_mm(line.lines[0], (20, 12))[0] < STANDS_WITHIN_MM
 

@@ -36,7 +36,9 @@ def stands_at(line: Line, place_mm: tuple[float, float]) -> None:
 @pytest.mark.parametrize("width_mm", [0.3, 0.5, 0.8])
 @pytest.mark.parametrize("size_mm", [2.8, 5.0, 8.0])
 @pytest.mark.parametrize("apart_mm", [0.8, 6.0])
-def test_a_cross_apart_from_its_lead_line(size_mm: float, apart_mm: float, width_mm: float) -> None:
+def test_a_cross_apart_from_its_lead_line(
+    size_mm: float, apart_mm: float, width_mm: float
+) -> None:
     start = (AT[0] + size_mm / 2 + apart_mm + width_mm / 2, AT[1])
     stands_at(lead_line(polyline(start, JOIN), *cross(AT, size_mm), width_mm=width_mm), AT)
 
@@ -62,7 +64,10 @@ def test_a_lead_line_drawn_a_little_beyond_the_contour_ends_at_it(
     place = (float(lead[0][0]), float(lead[0][1]))
     mark = join - 8 * way
     line = lead_line(
-        lead, *cross(place, 4.0), tick((float(mark[0]), float(mark[1])), slant_deg), width_mm=width_mm
+        lead,
+        *cross(place, 4.0),
+        tick((float(mark[0]), float(mark[1])), slant_deg),
+        width_mm=width_mm,
     )
     assert line.is_lead and line.loop_from is not None and len(line.marks) == 1
     assert np.hypot(*(line.xy_mm - (36, 14)).T).min() > 9 - WITHIN_MM
@@ -93,7 +98,9 @@ def test_a_thin_lead_line_from_a_large_ring_between_two_spokes() -> None:
 
 def test_specks_at_the_tips_of_a_cross_leave_it_a_cross() -> None:
     tips = [(AT[0] + 2.6, 14.2), (AT[0] - 0.3, 16.6)]
-    specks = [np.array([[x - 0.04, y - 0.04], [x + 0.04, y - 0.04], [x, y + 0.04]]) for x, y in tips]
+    specks = [
+        np.array([[x - 0.04, y - 0.04], [x + 0.04, y - 0.04], [x, y + 0.04]]) for x, y in tips
+    ]
     drawing = inked(CIRCLE, polyline((12, 14), JOIN), *cross(AT, 4.5), seed=3, specks=specks)
     stands_at(trace(drawing).lines[0], AT)
 
@@ -108,7 +115,8 @@ def test_from_a_named_reference_point_the_lead_line_is_found_whatever_is_drawn_t
     strokes = [tick(AT, a, before_mm=2.0, beyond_mm=2.0) for a in (0, 50, 110)]
     guide = polyline((36, 5), (36, 12))
     run = trace(
-        inked(CIRCLE, polyline(AT, JOIN), guide, *strokes, seed=3), operator=Operator(reference_mm=named)
+        inked(CIRCLE, polyline(AT, JOIN), guide, *strokes, seed=3),
+        operator=Operator(reference_mm=named),
     )
     assert run.lines[0].is_lead and run.lines[0].begin_mm == named
     assert run.lines[0].start_mm[0] < 12 and abs(run.lines[0].start_mm[1] - 14) < WITHIN_MM

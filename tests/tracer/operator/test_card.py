@@ -107,10 +107,28 @@ MISTAKES = [
     ("depth = 5mm", 1, "the card", '"depth = 5mm"', TOML),
     ("start = 2\ndepth", 2, "the card", '"depth"', TOML),
     ("depth = 1\ndepth = 2", 2, "the card", '"depth = 2"', TOML),
-    ("x = " + "[" * 9999, 1, "the card", "too many brackets in one another", "it may hold a few"),
+    (
+        "x = " + "[" * 9999,
+        1,
+        "the card",
+        "too many brackets in one another",
+        "it may hold a few",
+    ),
     ("a = " + "9" * 5000, 1, "the card", '"a = ' + "9" * 35 + "…", TOML),
-    ("\n\ndeep = 5", 3, "deep", "5", "no such field; the card may hold start, depth, passes, entry, restart"),
-    ("[speeds]\nfede = 5", 2, "speeds.fede", "5", "no such field; speeds may hold trace, feed, rapid"),
+    (
+        "\n\ndeep = 5",
+        3,
+        "deep",
+        "5",
+        "no such field; the card may hold start, depth, passes, entry, restart",
+    ),
+    (
+        "[speeds]\nfede = 5",
+        2,
+        "speeds.fede",
+        "5",
+        "no such field; speeds may hold trace, feed, rapid",
+    ),
     ('depth = "5kg"', 1, "depth", '"5kg"', LENGTH),
     ('depth = "0.015mm"', 1, "depth", '"0.015mm"', LENGTH),
     ("depth = 0", 1, "depth", "0", LENGTH),
@@ -122,14 +140,32 @@ MISTAKES = [
     ("depth = [1]", 1, "depth", "[1]", LENGTH),
     ("depth = 2026-01-01", 1, "depth", '"2026-01-01"', LENGTH),
     ("depth = 0x" + "f" * 5000, 1, "depth", "a number too long", LENGTH),
-    ('start = "50um"', 1, "start", '"50um"', "it may hold 0.06 to 999.99 mm"),  # that is in the work
+    (
+        'start = "50um"',
+        1,
+        "start",
+        '"50um"',
+        "it may hold 0.06 to 999.99 mm",
+    ),  # that is in the work
     ("passes = 3", 1, "passes", "3", "it may hold depths, each deeper than the one before"),
     ("passes = []", 1, "passes", "[]", "it may hold depths, each deeper than the one before"),
-    ("passes = [\n1,\n  2,\n2]", 4, "passes[3]", "2", "it may hold more than the pass before, 2 mm"),
+    (
+        "passes = [\n1,\n  2,\n2]",
+        4,
+        "passes[3]",
+        "2",
+        "it may hold more than the pass before, 2 mm",
+    ),
     ("passes = [1]\ndepth = 2", 2, "depth", "2", "beside passes there may be no depth"),
     ('restart = "by hand"', 1, "restart", '"by hand"', 'it may hold "automatic" or "manual"'),
     ('turns = "left"', 1, "turns", '"left"', 'a list of "straight", "left" and "right"'),
-    ('turns = ["left",\n"back"]', 2, "turns[2]", '"back"', 'it may hold "straight" or "left" or "right"'),
+    (
+        'turns = ["left",\n"back"]',
+        2,
+        "turns[2]",
+        '"back"',
+        'it may hold "straight" or "left" or "right"',
+    ),
     (
         'override = "some"',
         1,
@@ -153,7 +189,13 @@ MISTAKES = [
         "{}",
         "an entry before it is for the same stops; it may hold a number",
     ),
-    ("[[stop]]\nnumber=2\n[[stop]]\nnumber=2", 3, "stop[2]", '{"number": 2}', "it may hold another number"),
+    (
+        "[[stop]]\nnumber=2\n[[stop]]\nnumber=2",
+        3,
+        "stop[2]",
+        '{"number": 2}',
+        "it may hold another number",
+    ),
     (
         "[[stop]]\npasses = [1]\ndrill.depth = 1",
         2,
@@ -163,9 +205,27 @@ MISTAKES = [
     ),
     ("[[stop]]\ndwell = -1", 2, "stop[1].dwell", "-1", TIME),
     ("[[stop]]\ndwell = '1h'", 2, "stop[1].dwell", '"1h"', TIME),
-    ("[[stop]]\nmoves = {}", 2, "stop[1].moves", "{}", 'it may hold moves such as [{ down = "7mm"'),
-    ("[[stop]]\nmoves = [\n{},\n]", 3, "stop[1].moves[1]", "{}", "it may hold down or up, one of them"),
-    ("[[stop]]\nmoves = [{up=1,down=1}]", 2, "stop[1].moves[1]", '{"up": 1, "down": 1}', "one of them"),
+    (
+        "[[stop]]\nmoves = {}",
+        2,
+        "stop[1].moves",
+        "{}",
+        'it may hold moves such as [{ down = "7mm"',
+    ),
+    (
+        "[[stop]]\nmoves = [\n{},\n]",
+        3,
+        "stop[1].moves[1]",
+        "{}",
+        "it may hold down or up, one of them",
+    ),
+    (
+        "[[stop]]\nmoves = [{up=1,down=1}]",
+        2,
+        "stop[1].moves[1]",
+        '{"up": 1, "down": 1}',
+        "one of them",
+    ),
     (
         "[[stop]]\nmoves = [{dwell=1,feed=1}]",
         2,
@@ -180,7 +240,13 @@ MISTAKES = [
         "2",
         "may hold down, up, feed, dwell",
     ),
-    ("[[stop]]\n[stop.drill]\npeck = 1", 2, "stop[1].drill", '{"peck": 1}', "it must hold a depth"),
+    (
+        "[[stop]]\n[stop.drill]\npeck = 1",
+        2,
+        "stop[1].drill",
+        '{"peck": 1}',
+        "it must hold a depth",
+    ),
     (
         "[[stop]]\n[stop.drill]\ndepth = 1\npeck = 2",
         4,
@@ -199,7 +265,9 @@ def test_a_mistake_is_refused_with_its_line_field_contents_and_what_may_stand_th
         Card.parse(text, "part.toml")
     fault = caught.value
     assert (fault.line, fault.field, fault.holds) == (line, field, holds)
-    assert str(fault).startswith(f"part.toml, line {line}: {field} holds {holds}; ") and allowed in str(fault)
+    assert str(fault).startswith(
+        f"part.toml, line {line}: {field} holds {holds}; "
+    ) and allowed in str(fault)
     assert "\n" not in str(fault) and len(str(fault)) < 400
 
 
@@ -216,7 +284,9 @@ def test_a_file_that_is_no_card_is_refused(tmp_path: Path) -> None:
     with pytest.raises(FileFault, match=r"cannot read the card .*part.toml: No such file"):
         Card.open(file)
     file.write_bytes(b"# part\ndepth = '\xff'")
-    with pytest.raises(CardFault, match=r"part.toml, line 2: the card holds bytes that are no UTF-8; "):
+    with pytest.raises(
+        CardFault, match=r"part.toml, line 2: the card holds bytes that are no UTF-8; "
+    ):
         Card.open(file)
     file.write_bytes(b"\xef\xbb\xbfdepth = 3\r\n")  # as some editors write it
     assert Card.open(file).depths_mm == (3.0,)
@@ -235,7 +305,9 @@ RESTARTS = st.sampled_from(["automatic", "manual"])
 PASSES = st.lists(st.integers(1, 99_999), min_size=1, max_size=4, unique=True).map(
     lambda counts: tuple(c / 100 for c in sorted(counts))
 )
-PRESETS = st.builds(Preset, st.integers(1, 99_999), st.sampled_from(["up", "down"]), SPEEDS, DWELLS)
+PRESETS = st.builds(
+    Preset, st.integers(1, 99_999), st.sampled_from(["up", "down"]), SPEEDS, DWELLS
+)
 DRILLS = st.builds(
     lambda pecks, **rest: Drill(max(pecks), min(pecks), **rest),
     st.tuples(st.integers(1, 99_999), st.integers(1, 99_999)),
@@ -250,7 +322,9 @@ WHAT = st.one_of(
     st.fixed_dictionaries({"passes_mm": PASSES}),
 )
 STOPS = st.builds(
-    lambda number, what, dwell_s, restart: Stop(number, dwell_s=dwell_s, restart=restart, **what),
+    lambda number, what, dwell_s, restart: Stop(
+        number, dwell_s=dwell_s, restart=restart, **what
+    ),
     st.none() | st.integers(1, 99),
     WHAT,
     DWELLS,
@@ -266,7 +340,8 @@ CARDS = st.builds(
     st.none() | decades(1),
     RESTARTS,
     st.lists(st.sampled_from(["straight", "left", "right"]), max_size=3).map(tuple),
-    st.sampled_from(["none", "all"]) | st.lists(st.integers(1, 9), min_size=1, max_size=3).map(tuple),
+    st.sampled_from(["none", "all"])
+    | st.lists(st.integers(1, 9), min_size=1, max_size=3).map(tuple),
     st.lists(STOPS, max_size=3, unique_by=lambda stop: stop.number).map(tuple),
 )
 
@@ -276,7 +351,9 @@ def in_toml(value: Any) -> str:
     if isinstance(value, dict):
         return (
             "{ "
-            + ", ".join(f"{key} = {in_toml(held)}" for key, held in value.items() if held is not None)
+            + ", ".join(
+                f"{key} = {in_toml(held)}" for key, held in value.items() if held is not None
+            )
             + " }"
         )
     if isinstance(value, list | tuple):
@@ -285,7 +362,11 @@ def in_toml(value: Any) -> str:
 
 
 def move_row(preset: Preset) -> dict[str, Any]:
-    return {preset.sense: preset.counts / 100, "feed": preset.feed_mm_s, "dwell": preset.dwell_s}
+    return {
+        preset.sense: preset.counts / 100,
+        "feed": preset.feed_mm_s,
+        "dwell": preset.dwell_s,
+    }
 
 
 def stop_row(stop: Stop) -> dict[str, Any]:
@@ -297,7 +378,12 @@ def stop_row(stop: Stop) -> dict[str, Any]:
         "dwell": stop.drill.dwell_s,
     }
     moves, passes = [move_row(preset) for preset in stop.moves], list(stop.passes_mm)
-    row = {"number": stop.number, "moves": moves or None, "drill": drill, "passes": passes or None}
+    row = {
+        "number": stop.number,
+        "moves": moves or None,
+        "drill": drill,
+        "passes": passes or None,
+    }
     return {**row, "dwell": stop.dwell_s, "restart": stop.restart}
 
 
@@ -316,7 +402,9 @@ def written(card: Card) -> str:
     }
     speeds = {"trace": card.trace_mm_s, "feed": card.feed_mm_s, "rapid": card.rapid_mm_s}
     rows |= {f"speeds.{name}": speed for name, speed in speeds.items()}
-    return "\n".join(f"{key} = {in_toml(value)}" for key, value in rows.items() if value is not None)
+    return "\n".join(
+        f"{key} = {in_toml(value)}" for key, value in rows.items() if value is not None
+    )
 
 
 @given(CARDS)
@@ -337,7 +425,11 @@ VALUES = st.recursive(
 def quoted(value: Any) -> str:
     """Any value in TOML, an element of an array on each line."""
     if isinstance(value, dict):
-        return "{" + ", ".join(f"{json.dumps(key)} = {quoted(held)}" for key, held in value.items()) + "}"
+        return (
+            "{"
+            + ", ".join(f"{json.dumps(key)} = {quoted(held)}" for key, held in value.items())
+            + "}"
+        )
     if isinstance(value, list):
         return "[ # of\n" + ",\n\n".join(quoted(held) for held in value) + "]"
     return json.dumps(value) if isinstance(value, str) else str(value)
@@ -345,7 +437,13 @@ def quoted(value: Any) -> str:
 
 def paths_of(value: Any, path: tuple[str | int, ...] = ()) -> set[tuple[str | int, ...]]:
     """The paths of all fields."""
-    inside = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    inside = (
+        value.items()
+        if isinstance(value, dict)
+        else enumerate(value)
+        if isinstance(value, list)
+        else ()
+    )
     return {path}.union(*(paths_of(held, (*path, key)) for key, held in inside))
 
 
@@ -353,7 +451,9 @@ def paths_of(value: Any, path: tuple[str | int, ...] = ()) -> set[tuple[str | in
     st.dictionaries(TEXTS, VALUES, max_size=3),
     st.lists(st.dictionaries(TEXTS, VALUES, max_size=3), max_size=3),
 )
-def test_every_field_of_a_card_has_a_line(top: dict[str, Any], rows: list[dict[str, Any]]) -> None:
+def test_every_field_of_a_card_has_a_line(
+    top: dict[str, Any], rows: list[dict[str, Any]]
+) -> None:
     lines = [f"{json.dumps(key)} = {quoted(value)}" for key, value in top.items()]
     for row in rows:
         lines += [

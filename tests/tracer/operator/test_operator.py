@@ -29,14 +29,22 @@ def line(*marks: Mark, guides: tuple[Guide, ...] = (), ending: str = "joined") -
     """A lead line of 30 mm from a reference point, and its loop; or a guide line that ends."""
     loop_from = 300 if ending == "joined" else None
     return Line(
-        WAY, ending, 0.5, 100.0, loop_from=loop_from, marks=marks, guides=guides, reference_mm=(0.0, 0.0)
+        WAY,
+        ending,
+        0.5,
+        100.0,
+        loop_from=loop_from,
+        marks=marks,
+        guides=guides,
+        reference_mm=(0.0, 0.0),
     )
 
 
 def done(operator: Operator, *lines: Line) -> list[list[tuple[str, list[float]]]]:
     """Kind of each halt where something is done, and where Z goes."""
     return [
-        [(a.halt.kind, [m.to_mm for m in a.moves]) for a in actions] for actions in operator.actions(lines)
+        [(a.halt.kind, [m.to_mm for m in a.moves]) for a in actions]
+        for actions in operator.actions(lines)
     ]
 
 
@@ -65,7 +73,9 @@ def test_without_a_tick_it_goes_down_where_the_loop_begins() -> None:
 def test_a_guide_line_is_run_raised_and_a_hole_is_drilled_at_its_end() -> None:
     guide = Guide(500, 600, 700)
     made = done(PLAIN, line(tick(250), guides=(guide,)))
-    assert made == [[("tick", [-4.0]), ("leave", [2.0]), ("hole", [-4.0, 2.0]), ("back", [-4.0])]]
+    assert made == [
+        [("tick", [-4.0]), ("leave", [2.0]), ("hole", [-4.0, 2.0]), ("back", [-4.0])]
+    ]
 
 
 def test_a_guide_line_from_the_reference_point_is_drilled_at_its_end() -> None:
@@ -94,14 +104,19 @@ def test_overridden_marks_are_passed_by(override: object, left: list[int]) -> No
 
 def test_the_card_says_what_is_done_at_a_stop() -> None:
     card = Card.parse('[[stop]]\nnumber = 2\nmoves = [{ down = "1mm" }, { up = "3mm" }]\n')
-    assert done(Operator(WORK, card), line(tick(250), tick(600)))[0][1] == ("tick", [-5.0, -2.0])
+    assert done(Operator(WORK, card), line(tick(250), tick(600)))[0][1] == (
+        "tick",
+        [-5.0, -2.0],
+    )
 
 
 def test_passes_of_the_stop_where_the_tool_goes_down_are_the_lines() -> None:
     operator = Operator(WORK, Card.parse('[[stop]]\nnumber = 1\npasses = ["1mm", "3mm"]\n'))
     assert done(operator, line(tick(250)))[0][0] == ("tick", [-1.0])
     first, second = operator.actions([line(tick(250)), line(tick(250))])
-    assert operator.depths_mm(first) == (1.0, 3.0) and operator.depths_mm(second) == (4.0,)  # which is stop 2
+    assert operator.depths_mm(first) == (1.0, 3.0) and operator.depths_mm(second) == (
+        4.0,
+    )  # which is stop 2
 
 
 def test_passes_below_a_tool_that_has_gone_up_are_refused() -> None:
@@ -110,18 +125,28 @@ def test_passes_below_a_tool_that_has_gone_up_are_refused() -> None:
     card = 'passes = ["1mm", "3mm"]\n' + up
     operator = Operator(replace(WORK, passes_mm=(1.0,), depth_mm=3.0), Card.parse(card))
     with pytest.raises(
-        CardFault, match=r"at stop 2, .* the tool goes up .* further passes, at 3 mm, have no stops"
+        CardFault,
+        match=r"at stop 2, .* the tool goes up .* further passes, at 3 mm, have no stops",
     ):
         operator.actions([line(tick(250), tick(600))])
     again = Card.parse(card + '[[stop]]\nnumber = 3\nmoves = [{ down = "9mm" }]\n')
-    assert len(replace(operator, card=again).actions([line(tick(250), tick(600), tick(700))])[0]) == 3
-    assert len(Operator(WORK, Card.parse(up)).actions([line(tick(250), tick(600))])[0]) == 2  # one depth
+    assert (
+        len(replace(operator, card=again).actions([line(tick(250), tick(600), tick(700))])[0])
+        == 3
+    )
+    assert (
+        len(Operator(WORK, Card.parse(up)).actions([line(tick(250), tick(600))])[0]) == 2
+    )  # one depth
 
 
 @pytest.mark.parametrize(
     ("entry", "number", "said"),
     [
-        ('moves = [{ up = "1mm" },\n{ up = "999.99mm" }]', 3, 'stop[1].moves[2] holds {"up": "999.99mm"}'),
+        (
+            'moves = [{ up = "1mm" },\n{ up = "999.99mm" }]',
+            3,
+            'stop[1].moves[2] holds {"up": "999.99mm"}',
+        ),
         (
             'drill = { depth = "999.99mm", peck = "1mm" }\ndwell = 1',
             2,
@@ -135,8 +160,13 @@ def test_a_move_that_five_digits_cannot_show_names_its_line_its_field_and_its_st
     card = Card.parse(f"[[stop]]\n{entry}\n", "part.toml")
     with pytest.raises(CardFault) as caught:
         Operator(WORK, card).actions([line(tick(250))])
-    assert str(caught.value).startswith(f"part.toml, line {number}: {said}") and caught.value.line == number
-    assert re.search(r"; at stop 1, 25\.00,0\.00 mm: .* (cannot show|cannot be set on) ", str(caught.value))
+    assert (
+        str(caught.value).startswith(f"part.toml, line {number}: {said}")
+        and caught.value.line == number
+    )
+    assert re.search(
+        r"; at stop 1, 25\.00,0\.00 mm: .* (cannot show|cannot be set on) ", str(caught.value)
+    )
 
 
 @dataclass
@@ -171,6 +201,8 @@ def test_the_button_takes_its_time_and_needs_somebody() -> None:
 
 
 def test_stops_that_the_card_names_and_the_drawing_lacks_are_known() -> None:
-    card = Card.parse("override = [1, 5]\n[[stop]]\nnumber = 3\ndwell = 1\n[[stop]]\nnumber = 2\ndwell = 1\n")
+    card = Card.parse(
+        "override = [1, 5]\n[[stop]]\nnumber = 3\ndwell = 1\n[[stop]]\nnumber = 2\ndwell = 1\n"
+    )
     assert Operator(WORK, card).not_there([line(tick(250)), line(tick(600))]) == ([3, 5], 2)
     assert PLAIN.not_there([line(tick(250))]) == ([], 1)

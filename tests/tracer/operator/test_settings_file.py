@@ -18,7 +18,11 @@ def test_what_is_written_is_read_as_the_same_head(head: str) -> None:
     assert choose(head, parse_changes(as_toml(HEADS[head]))) == HEADS[head]
 
 
-@given(st.fixed_dictionaries({}, optional={n: st.floats(b.least, b.most) for n, b in BOUNDS.items()}))
+@given(
+    st.fixed_dictionaries(
+        {}, optional={n: st.floats(b.least, b.most) for n, b in BOUNDS.items()}
+    )
+)
 def test_any_settings_go_round_to_the_last_digit(changes: dict[str, float]) -> None:
     settings = choose(changes=changes)
     assert choose(changes=parse_changes(as_toml(settings))) == settings
@@ -38,8 +42,14 @@ def test_every_setting_is_written_with_what_it_may_hold() -> None:
             '\nsweep_hz = "fast"',
             'head.toml, line 2: sweep_hz holds "fast"; it may hold a number from 1 to 750, in',
         ),
-        ("lead_mm = -1", "head.toml, line 1: lead_mm holds -1; it may hold a number from 0.01 to 20"),
-        ("gap_mm = true", "head.toml, line 1: gap_mm holds true; it may hold a number from 0 to 20"),
+        (
+            "lead_mm = -1",
+            "head.toml, line 1: lead_mm holds -1; it may hold a number from 0.01 to 20",
+        ),
+        (
+            "gap_mm = true",
+            "head.toml, line 1: gap_mm holds true; it may hold a number from 0 to 20",
+        ),
         ("gap_mm = nan", "head.toml, line 1: gap_mm holds NaN; it may hold"),
         (
             "colour = 1",

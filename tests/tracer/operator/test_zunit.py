@@ -36,25 +36,33 @@ def run(start: Counters, *presets: Preset) -> np.ndarray:
 
 def test_the_switches_and_the_counters_show_five_digits() -> None:
     assert Preset(705).digits == "00705" and Preset(LARGEST_COUNT).digits == "99999"
-    assert Counters(200).digits == "+00200" and Counters(200).after(Preset(705)).digits == "-00505"
-    assert Counters(200).after(Preset(705)).after(Preset(705, "up")) == Counters(200)  # they count both ways
+    assert (
+        Counters(200).digits == "+00200" and Counters(200).after(Preset(705)).digits == "-00505"
+    )
+    assert Counters(200).after(Preset(705)).after(Preset(705, "up")) == Counters(
+        200
+    )  # they count both ways
 
 
 @pytest.mark.parametrize("counts", [-1, LARGEST_COUNT + 1])
 def test_more_than_five_decades_cannot_be_set(counts: int) -> None:
-    with pytest.raises(ValueError, match=f"{counts} counts cannot be set on five decades; give 0 to 99999"):
+    with pytest.raises(
+        ValueError, match=f"{counts} counts cannot be set on five decades; give 0 to 99999"
+    ):
         Preset(counts)
 
 
 def test_the_counters_go_no_further_than_five_digits() -> None:
     with pytest.raises(
-        ValueError, match=r"the counters cannot show -1000.00 mm; they go from -999.99 to 999.99 mm"
+        ValueError,
+        match=r"the counters cannot show -1000.00 mm; they go from -999.99 to 999.99 mm",
     ):
         moves(Counters(-1), [Preset(LARGEST_COUNT)])
 
 
 @pytest.mark.parametrize(
-    "wrong", [{"sense": "left"}, {"feed_mm_s": 0.0}, {"feed_mm_s": float("inf")}, {"dwell_s": -1}]
+    "wrong",
+    [{"sense": "left"}, {"feed_mm_s": 0.0}, {"feed_mm_s": float("inf")}, {"dwell_s": -1}],
 )
 def test_what_never_ends_or_has_no_sense_is_refused(wrong: dict[str, object]) -> None:
     with pytest.raises(ValueError, match="give"):
@@ -68,7 +76,9 @@ def test_counts_and_mm_are_the_same_length(counts: int) -> None:
 
 
 def test_parts_of_a_count_are_none() -> None:
-    with pytest.raises(ValueError, match=r"0.015 mm is no whole number of counts; give steps of 0.01 mm"):
+    with pytest.raises(
+        ValueError, match=r"0.015 mm is no whole number of counts; give steps of 0.01 mm"
+    ):
         counts_of(0.015)
 
 
@@ -102,16 +112,23 @@ def test_a_move_that_falls_short_has_no_coincidence() -> None:
 
 
 @given(st.lists(st.tuples(st.integers(0, 500), SENSES, FEEDS), min_size=1, max_size=6))
-def test_what_goes_down_and_up_again_ends_where_it_began(rows: list[tuple[int, str, float]]) -> None:
+def test_what_goes_down_and_up_again_ends_where_it_began(
+    rows: list[tuple[int, str, float]],
+) -> None:
     there = [Preset(counts, sense, feed) for counts, sense, feed in rows]  # type: ignore[arg-type]
-    back = [Preset(p.counts, "down" if p.sense == "up" else "up", p.feed_mm_s) for p in reversed(there)]
+    back = [
+        Preset(p.counts, "down" if p.sense == "up" else "up", p.feed_mm_s)
+        for p in reversed(there)
+    ]
     assert run(Counters(200), *there, *back)[-1] == 2.0
 
 
 def test_a_dwell_stands_for_its_time() -> None:
     still = run(Counters(-500), Preset(0, dwell_s=0.25))
     assert np.all(still == -5.0) and len(still) == 1 + 0.25 * MOTION_RATE_HZ
-    with_dwell, without = (run(Counters(200), Preset(700, dwell_s=dwell_s)) for dwell_s in (0.5, 0.0))
+    with_dwell, without = (
+        run(Counters(200), Preset(700, dwell_s=dwell_s)) for dwell_s in (0.5, 0.0)
+    )
     assert np.array_equal(with_dwell, np.r_[without, np.full(3000, -5.0)])
 
 

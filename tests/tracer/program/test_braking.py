@@ -41,12 +41,16 @@ def test_the_brake_is_the_closed_form() -> None:
         near = (half_way < BRAKING_MM) & (half_way > 3 * STEP_MM)
         # nodes are a period's travel apart, 1.7 um: the law is stepped by that much
         assert v[near] == pytest.approx(allowed[near], rel=0.03)
-        assert v[(half_way > 2 * BRAKING_MM) & (half_way < 2.5)] == pytest.approx(SPEED_MM_S, rel=1e-6)
+        assert v[(half_way > 2 * BRAKING_MM) & (half_way < 2.5)] == pytest.approx(
+            SPEED_MM_S, rel=1e-6
+        )
 
 
 @settings(max_examples=60)
 @given(at=st.lists(st.floats(5, 3500), min_size=1, max_size=6).map(sorted))
-def test_each_piece_ends_exactly_on_its_place_and_the_next_begins_there(at: list[float]) -> None:
+def test_each_piece_ends_exactly_on_its_place_and_the_next_begins_there(
+    at: list[float],
+) -> None:
     way = straight()
     pieces = stops.pieces(way, at, BRAKE_MM_S2, RATE_HZ)
     assert len(pieces) == len(at) + 1
@@ -74,10 +78,14 @@ def test_a_stop_changes_the_timing_and_not_the_way(radius_mm: float, at: float) 
 
 
 def test_the_way_back_goes_from_rest_to_rest_within_speed_and_acceleration() -> None:
-    way = np.vstack([polyline((0, 0), (20, 0)), arc((20, 5), 5, -90, 0)[1:], polyline((25, 25))])
+    way = np.vstack(
+        [polyline((0, 0), (20, 0)), arc((20, 5), 5, -90, 0)[1:], polyline((25, 25))]
+    )
     run = stops.run(way, 50.0, BRAKE_MM_S2, RATE_HZ)
     assert run[0] == pytest.approx(way[0]) and run[-1] == pytest.approx(way[-1])
-    assert distance(run, way).hausdorff_mm < 1 * UM  # nodes every 0.1 mm on a radius of 5 mm: 0.25 um
+    assert (
+        distance(run, way).hausdorff_mm < 1 * UM
+    )  # nodes every 0.1 mm on a radius of 5 mm: 0.25 um
     v = np.r_[0.0, speeds(run), 0.0]
     assert 45 < v.max() <= 50 * (1 + 1e-6)
     assert np.abs(np.diff(v)).max() * RATE_HZ <= 2.1 * BRAKE_MM_S2
@@ -93,15 +101,23 @@ def test_the_way_back_stands_where_it_turns_sharply() -> None:
 
 
 def test_a_way_that_begins_with_a_swivel_begins_without_a_leap() -> None:
-    stood = np.tile([4.0, 4.0], (50, 1)) + 1e-11 * np.arange(50)[:, None]  # a swivel, with its rounding
-    way = np.vstack([stood, np.column_stack([np.arange(4.0, 8.0, STEP_MM), np.full(2400, 4.0)])])
+    stood = (
+        np.tile([4.0, 4.0], (50, 1)) + 1e-11 * np.arange(50)[:, None]
+    )  # a swivel, with its rounding
+    way = np.vstack(
+        [stood, np.column_stack([np.arange(4.0, 8.0, STEP_MM), np.full(2400, 4.0)])]
+    )
     v = np.r_[0.0, speeds(stops.run(way, 50.0, BRAKE_MM_S2, RATE_HZ))]
     assert np.abs(np.diff(v)).max() * RATE_HZ <= 2.1 * BRAKE_MM_S2
 
 
 @pytest.mark.parametrize("length_mm", [0.005, 0.1, 1.0])
 def test_a_short_way_back_is_made_from_rest_to_rest(length_mm: float) -> None:
-    v = np.r_[0.0, speeds(stops.run(polyline((0, 0), (length_mm, 0)), 50.0, BRAKE_MM_S2, RATE_HZ)), 0.0]
+    v = np.r_[
+        0.0,
+        speeds(stops.run(polyline((0, 0), (length_mm, 0)), 50.0, BRAKE_MM_S2, RATE_HZ)),
+        0.0,
+    ]
     assert np.abs(np.diff(v)).max() * RATE_HZ <= 2.1 * BRAKE_MM_S2
     assert v.max() == pytest.approx(
         np.sqrt(BRAKE_MM_S2 * length_mm), rel=0.1

@@ -42,7 +42,13 @@ def at(way: Array, place: tuple[float, float]) -> int:
 LEAD = run_through((0, 0), (10, 0), (10, 8), (18, 8), (18, 0), (10.01, 0))
 TICK = Mark("tick", (6.0, 0.0), float(at(LEAD, (6, 0))))
 LINE = Line(
-    LEAD, "joined", 0.5, 42.0, loop_from=at(LEAD, (10, 0)), marks=(TICK,), reference_mm=(-3.0, 0.0)
+    LEAD,
+    "joined",
+    0.5,
+    42.0,
+    loop_from=at(LEAD, (10, 0)),
+    marks=(TICK,),
+    reference_mm=(-3.0, 0.0),
 )  # a reference point 3 mm before the lead line, a tick on that, and a square
 OPEN = Line(run_through((30, 0), (40, 0)), "ended", 0.5, 10.0, number=2)
 
@@ -56,7 +62,9 @@ def in_work(positions: Array) -> Array:
     return positions[positions[:, 2] < 0, :2]
 
 
-def test_a_lead_line_s_program_begins_and_ends_at_the_reference_point_with_the_tool_raised() -> None:
+def test_a_lead_line_s_program_begins_and_ends_at_the_reference_point_with_the_tool_raised() -> (
+    None
+):
     positions = moved(LINE)
     for end in (positions[0], positions[-1]):
         assert end == pytest.approx([-3.0, 0.0, WORK.clearance_mm], abs=EXACT_MM)
@@ -65,9 +73,9 @@ def test_a_lead_line_s_program_begins_and_ends_at_the_reference_point_with_the_t
 def test_the_tool_is_in_the_work_from_the_tick_on_and_round_the_loop_only() -> None:
     cut = in_work(moved(LINE))
     assert cut[:, 0].min() == pytest.approx(6.0, abs=EXACT_MM)
-    assert cut[:, 0].max() == pytest.approx(18.0, abs=STEP_MM) and cut[:, 1].max() == pytest.approx(
-        8.0, abs=STEP_MM
-    )
+    assert cut[:, 0].max() == pytest.approx(18.0, abs=STEP_MM) and cut[
+        :, 1
+    ].max() == pytest.approx(8.0, abs=STEP_MM)
     assert cut[-1] == pytest.approx([10.0, 0.0], abs=0.02)
 
 
@@ -76,7 +84,9 @@ def test_the_tool_goes_back_along_the_lead_line() -> None:
     line = Line(bent, "joined", 0.5, 46.0, loop_from=at(bent, (10, 0)), reference_mm=(0.0, 0.0))
     positions = moved(line)
     back = positions[np.flatnonzero(positions[:, 2] < 0)[-1] :, :2]
-    assert back[:, 1].max() == pytest.approx(5.0, abs=WITHIN_MM)  # round the bend, not straight to the end
+    assert back[:, 1].max() == pytest.approx(
+        5.0, abs=WITHIN_MM
+    )  # round the bend, not straight to the end
 
 
 def test_x_and_y_never_move_with_z_nor_leap() -> None:
@@ -90,20 +100,29 @@ def test_x_and_y_come_to_rest_where_the_tool_goes_down() -> None:
     positions = moved(LINE)
     down = int(np.flatnonzero(np.diff(positions[:, 2]) < 0)[0])
     speeds = np.hypot(*np.diff(positions[:down, :2], axis=0).T) * MOTION_RATE_HZ
-    assert speeds[speeds > 0][-1] < np.sqrt(2 * BRAKE_MM_S2 * STEP_MM)  # the last step is one of braking
+    assert speeds[speeds > 0][-1] < np.sqrt(
+        2 * BRAKE_MM_S2 * STEP_MM
+    )  # the last step is one of braking
 
 
 def test_from_line_to_line_the_tool_goes_straight_at_clearance() -> None:
     positions = moved(LINE, OPEN)
     over = positions[(positions[:, 0] > 18.1) & (positions[:, 0] < 29.9)]
-    assert len(over) and np.all(over[:, 2] == WORK.clearance_mm) and np.abs(over[:, 1]).max() < EXACT_MM
+    assert (
+        len(over)
+        and np.all(over[:, 2] == WORK.clearance_mm)
+        and np.abs(over[:, 1]).max() < EXACT_MM
+    )
     assert Trace((LINE, OPEN)).idle_mm == pytest.approx(33.0)
 
 
-def test_each_pass_of_a_loop_is_run_on_at_the_next_depth_and_the_tick_stops_the_first_only() -> None:
+def test_each_pass_of_a_loop_is_run_on_at_the_next_depth_and_the_tick_stops_the_first_only() -> (
+    None
+):
     positions = moved(LINE, operator=Operator(replace(WORK, passes_mm=(1.0, 2.0))))
     levels = positions[
-        np.r_[True, np.diff(positions[:, 2]) != 0] & np.r_[np.diff(positions[:, 2]) == 0, True], 2
+        np.r_[True, np.diff(positions[:, 2]) != 0] & np.r_[np.diff(positions[:, 2]) == 0, True],
+        2,
     ]
     assert levels.tolist() == [2.0, -1.0, -2.0, -4.0, 2.0]
     assert in_work(positions)[:, 0].min() == pytest.approx(6.0, abs=EXACT_MM)
@@ -112,28 +131,42 @@ def test_each_pass_of_a_loop_is_run_on_at_the_next_depth_and_the_tick_stops_the_
 
 
 def test_a_guide_line_is_left_for_on_the_first_pass_only_and_never_in_the_work() -> None:
-    way = run_through((0, 0), (10, 0), (10, 8), (14, 8), (14, 4), (14, 8), (18, 8), (18, 0), (10.01, 0))
+    way = run_through(
+        (0, 0), (10, 0), (10, 8), (14, 8), (14, 4), (14, 8), (18, 8), (18, 0), (10.01, 0)
+    )
     tip = at(way, (14, 4))
     guide = Guide(at(way[:tip], (14, 8)), tip, tip + at(way[tip:], (14, 8)))
     line = Line(
-        way, "joined", 0.5, 50.0, loop_from=at(way, (10, 0)), guides=(guide,), reference_mm=(-3.0, 0.0)
+        way,
+        "joined",
+        0.5,
+        50.0,
+        loop_from=at(way, (10, 0)),
+        guides=(guide,),
+        reference_mm=(-3.0, 0.0),
     )
     positions = moved(line, operator=Operator(replace(WORK, passes_mm=(2.0,))))
     on_guide = positions[
-        (positions[:, 1] > 4.1) & (positions[:, 1] < 7.9) & (np.abs(positions[:, 0] - 14) < EXACT_MM)
+        (positions[:, 1] > 4.1)
+        & (positions[:, 1] < 7.9)
+        & (np.abs(positions[:, 0] - 14) < EXACT_MM)
     ]
     assert len(on_guide) and np.all(on_guide[:, 2] == WORK.clearance_mm)
     assert np.count_nonzero(np.diff(np.sign(on_guide[:, 1] - 6)) != 0) == 2  # out and back once
 
 
 def test_where_the_head_came_back_aside_from_a_guide_line_no_pass_leaps() -> None:
-    way = run_through((0, 0), (10, 0), (10, 8), (18, 8), (18, 12), (18.004, 8.003), (18, 0), (10.01, 0))
+    way = run_through(
+        (0, 0), (10, 0), (10, 8), (18, 8), (18, 12), (18.004, 8.003), (18, 0), (10.01, 0)
+    )
     leave, tip = at(way, (18, 8)), at(way, (18, 12))
     guide = Guide(leave, tip, tip + at(way[tip:], (18.004, 8.003)))
     line = replace(LINE, xy_mm=way, loop_from=at(way, (10, 0)), guides=(guide,))
     cut = join(Trace((line,), Operator(replace(WORK, passes_mm=(2.0,))))).positions_mm
     speeds = np.hypot(*np.diff(cut[:, :2], axis=0).T)[cut[1:, 2] < 0] * MOTION_RATE_HZ
-    assert speeds.max() < 10.0 * (1 + 1e-6)  # a step of 5 um at the motion rate would be 30 mm/s
+    assert speeds.max() < 10.0 * (
+        1 + 1e-6
+    )  # a step of 5 um at the motion rate would be 30 mm/s
 
 
 def test_passes_asked_for_at_the_stop_where_the_tool_goes_down_are_that_line_s() -> None:
@@ -155,5 +188,7 @@ def test_duration_length_and_reference_are_those_of_the_lines() -> None:
     program = Trace((LINE, OPEN), Operator(WORK))
     assert program.duration_s == pytest.approx(len(join(program).positions_mm) / MOTION_RATE_HZ)
     assert (
-        program.length_mm == 52.0 and program.reference_mm == (-3.0, 0.0) and program.start_mm == (0.0, 0.0)
+        program.length_mm == 52.0
+        and program.reference_mm == (-3.0, 0.0)
+        and program.start_mm == (0.0, 0.0)
     )

@@ -99,7 +99,11 @@ def test_lines_are_turned_round_as_is_best_in_their_order(seed: int) -> None:
     them makes no way longer.
     """
     rng = np.random.default_rng(seed)
-    ends, may_turn, none = rng.uniform(0, 100, (2, 6, 2)), np.arange(6) < 4, np.zeros((6, 6), bool)
+    ends, may_turn, none = (
+        rng.uniform(0, 100, (2, 6, 2)),
+        np.arange(6) < 4,
+        np.zeros((6, 6), bool),
+    )
 
     def idle(order: list[int], turned: NDArray[np.bool_]) -> float:
         starts, finish = np.where(turned[:, None], ends[::-1], ends)
@@ -108,7 +112,9 @@ def test_lines_are_turned_round_as_is_best_in_their_order(seed: int) -> None:
     order, turned = in_order_and_turned(*ends, none, may_turn)
     every = [np.array([*some, False, False]) for some in product([False, True], repeat=4)]
     assert not turned[4:].any()
-    assert idle(order, turned) == pytest.approx(min(idle(order, some) for some in every), abs=1 * UM)
+    assert idle(order, turned) == pytest.approx(
+        min(idle(order, some) for some in every), abs=1 * UM
+    )
     assert idle(order, turned) <= idle(in_order(*ends, none), np.zeros(6, bool)) + 1 * UM
 
 
@@ -149,7 +155,9 @@ def test_the_lines_asked_for_are_followed_and_no_others(all_lines: Trace) -> Non
     drawing = inked(*LINES)
     assert [line.number for line in trace_lines(drawing, "outer").lines] == [1]
     assert sorted(line.number for line in trace_lines(drawing, (4, 2, 4)).lines) == [2, 4]
-    with pytest.raises(LineFault, match="no line 5: the drawing has lines 1 to 4, numbered from the longest"):
+    with pytest.raises(
+        LineFault, match="no line 5: the drawing has lines 1 to 4, numbered from the longest"
+    ):
         trace_lines(drawing, (2, 5))
     with pytest.raises(ValueError, match="'inner' names no lines"):
         trace_lines(drawing, "inner")
@@ -168,7 +176,9 @@ def test_a_letter_that_is_asked_for_by_its_number_is_refused_by_it() -> None:
     drawing = inked(polyline((6, 6), (50, 6), (50, 30), (6, 30), (6, 6)), scribble, seed=1)
     assert [line.number for line in trace_lines(drawing).lines] == [1]
     for asked in ((1, 2), (2,)):
-        with pytest.raises(LineFault, match=r"line 2, about \d+\.\d,\d+\.\d mm, is taken for a letter"):
+        with pytest.raises(
+            LineFault, match=r"line 2, about \d+\.\d,\d+\.\d mm, is taken for a letter"
+        ):
             trace_lines(drawing, asked)
 
 
@@ -192,14 +202,18 @@ def test_lines_that_cross_or_touch_are_all_followed_though_they_are_one_patch_of
     assert sorted(line.number for line in run.lines) == [1, 2, 3, 4]
     assert sorted(line.ending for line in run.lines) == ["closed", "closed", "closed", "ended"]
     for drawn in (*rings, across):
-        assert min(distance(line.places_mm, drawn).hausdorff_mm for line in run.lines) < 120 * UM
+        assert (
+            min(distance(line.places_mm, drawn).hausdorff_mm for line in run.lines) < 120 * UM
+        )
     assert 15 < run.left_out_mm < 22
     assert sorted(line.number for line in trace_lines(drawing, (1, 4)).lines) == [1, 4]
     with pytest.raises(LineFault, match="no line 5: the drawing has lines 1 to 4,"):
         trace_lines(drawing, (5,))
 
 
-OUTLINE = polyline((8, 37), (20, 39), (32, 37), (32, 26), (29, 14), (20, 6), (11, 14), (8, 26), (8, 37))
+OUTLINE = polyline(
+    (8, 37), (20, 39), (32, 37), (32, 26), (29, 14), (20, 6), (11, 14), (8, 26), (8, 37)
+)
 UPRIGHT, BAR = polyline((20, 6), (20, 39)), polyline((8, 28), (32, 28))
 
 
@@ -210,8 +224,12 @@ def test_a_head_put_down_on_a_chord_is_put_down_elsewhere_before_it_tries_other_
     drawing = inked(OUTLINE, UPRIGHT, BAR, width_mm=0.3, seed=2)
     for run in (trace(drawing), trace_lines(drawing)):
         (line,) = run.lines
-        assert line.ending == "closed" and distance(line.places_mm, OUTLINE).hausdorff_mm < 40 * UM
-    assert run.left_out_mm == pytest.approx(33 + 24, rel=0.1)  # the upright and the bar, up to the outline
+        assert (
+            line.ending == "closed" and distance(line.places_mm, OUTLINE).hausdorff_mm < 40 * UM
+        )
+    assert run.left_out_mm == pytest.approx(
+        33 + 24, rel=0.1
+    )  # the upright and the bar, up to the outline
 
 
 def test_a_run_from_a_chord_does_not_hide_the_contour_that_it_went_along() -> None:
@@ -226,10 +244,14 @@ def test_a_run_from_a_chord_does_not_hide_the_contour_that_it_went_along() -> No
     assert left_mm == pytest.approx(33, rel=0.1)
 
 
-def test_marks_guide_lines_and_the_ring_of_the_reference_point_are_no_lines_joined_to_the_contour() -> None:
+def test_marks_guide_lines_and_the_ring_of_the_reference_point_are_no_lines_joined_to_the_contour() -> (
+    None
+):
     ring, lead = arc((7, 14), 2), polyline((7, 14), (18, 14))
     ticks = [polyline((14, 12.5), (14, 15.5)), polyline((26, 4.5), (26, 7.5))]
-    program = trace_lines(inked(ring, lead, *ticks, arc((26, 14), 8), polyline((26, 22), (26, 30))))
+    program = trace_lines(
+        inked(ring, lead, *ticks, arc((26, 14), 8), polyline((26, 22), (26, 30)))
+    )
     assert [(line.number, line.is_lead) for line in program.lines] == [(1, True)]
 
 
@@ -272,7 +294,9 @@ def test_figures_of_several_lines(all_lines: Trace) -> None:
 
 def test_progress_is_told_over_all_lines() -> None:
     told: list[tuple[float, float]] = []
-    trace_lines(inked(*LINES), progress=lambda come_mm, length_mm: told.append((come_mm, length_mm)))
+    trace_lines(
+        inked(*LINES), progress=lambda come_mm, length_mm: told.append((come_mm, length_mm))
+    )
     come = [come_mm for come_mm, _ in told]
     assert all(0 <= come_mm <= length_mm for come_mm, length_mm in told)
     assert len({length_mm for _, length_mm in told}) == 1 and max(come) > 0.9 * told[0][1]
@@ -284,7 +308,9 @@ def test_progress_is_told_over_all_lines() -> None:
 def test_a_lost_line_is_cut_as_far_as_it_was_followed_and_the_others_all_the_same() -> None:
     """5 mm of solid ink ahead: neither an end nor a leg can be seen from where the line enters it."""
     patch = np.array([[24.0, 5], [30, 5], [30, 15], [24, 15]])
-    drawing = inked(polyline((4, 10), (44, 10)), arc((12, 20), 5), arc((36, 20), 4), specks=[patch])
+    drawing = inked(
+        polyline((4, 10), (44, 10)), arc((12, 20), 5), arc((36, 20), 4), specks=[patch]
+    )
     run = trace_lines(drawing, settings=Settings(line_width_mm=0.5))
     (lost,) = (line for line in run.lines if line.ending == "lost")
     assert [line.ending for line in run.lines].count("closed") == 2 and run.ending == "lost"
@@ -292,7 +318,9 @@ def test_a_lost_line_is_cut_as_far_as_it_was_followed_and_the_others_all_the_sam
         f"line {lost.number} of 3 is incomplete, the others are cut; line {lost.number}: line lost at"
         in str(run.fault)
     )
-    assert run.fault is not None and lost.fault is not None and run.fault.x_mm == lost.fault.x_mm
+    assert (
+        run.fault is not None and lost.fault is not None and run.fault.x_mm == lost.fault.x_mm
+    )
     assert len(thin(run).runs()) == 3
 
 
@@ -310,7 +338,10 @@ def test_a_large_line_that_cannot_be_begun_is_told_and_the_tool_stays_up(
 
     monkeypatch.setattr(tour, "followed", not_the_hole)
     run = trace_lines(inked(ISLAND, arc((28, 14), 6.5)))
-    assert [line.ending for line in sorted(run.lines, key=lambda line: line.number)] == ["lost", "closed"]
+    assert [line.ending for line in sorted(run.lines, key=lambda line: line.number)] == [
+        "lost",
+        "closed",
+    ]
     assert "line 1 of 2 is incomplete" in str(run.fault) and len(thin(run).runs()) == 1
     assert join(run).duration_s == pytest.approx(run.duration_s, abs=1e-9)
 
@@ -344,7 +375,9 @@ def test_a_dot_alone_is_drilled_on_the_way() -> None:
         assert place == pytest.approx(middle, abs=10 * UM)
     assert program.left_out == 0
     down = join(program).positions_mm
-    assert down[down[:, 2] == -program.work.depth_mm][:, 0].max() == pytest.approx(34, abs=10 * UM)
+    assert down[down[:, 2] == -program.work.depth_mm][:, 0].max() == pytest.approx(
+        34, abs=10 * UM
+    )
 
 
 def test_a_sheet_of_dots_is_drilled_if_the_pen_s_width_is_given_and_else_says_so() -> None:
@@ -352,7 +385,9 @@ def test_a_sheet_of_dots_is_drilled_if_the_pen_s_width_is_given_and_else_says_so
     drawing = inked(specks=[arc(middle, 0.9) for middle in middles])
     program = trace_lines(drawing, settings=Settings(line_width_mm=0.5))
     drilled = sorted(actions[0].halt.place_mm for actions in program.actions)
-    assert np.array(drilled) == pytest.approx(np.array(middles), abs=10 * UM)  # a tenth of a pixel
+    assert np.array(drilled) == pytest.approx(
+        np.array(middles), abs=10 * UM
+    )  # a tenth of a pixel
     with pytest.raises(LineFault, match=r"no line can be begun.*--line-width"):
         trace_lines(drawing)
     with pytest.raises(LineFault, match="no line 1: the drawing has none"):

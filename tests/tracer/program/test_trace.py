@@ -50,8 +50,12 @@ def test_z_goes_down_to_depth_and_up_to_clearance_within_feed_and_acceleration(
 ) -> None:
     work = Work(depth_mm, clearance_mm, feed_mm_s, acceleration_mm_s2)
     x, y, z = join(over_the_line(work)).positions_mm.T
-    assert z[0] == pytest.approx(clearance_mm, abs=1e-9) and z[-1] == pytest.approx(clearance_mm, abs=1e-9)
-    assert z.min() == pytest.approx(-depth_mm, abs=1e-9) and z.max() == pytest.approx(clearance_mm, abs=1e-9)
+    assert z[0] == pytest.approx(clearance_mm, abs=1e-9) and z[-1] == pytest.approx(
+        clearance_mm, abs=1e-9
+    )
+    assert z.min() == pytest.approx(-depth_mm, abs=1e-9) and z.max() == pytest.approx(
+        clearance_mm, abs=1e-9
+    )
     assert np.all(x == 3) and np.all(y == 4)
     speed = np.diff(z) * MOTION_RATE_HZ
     assert np.abs(speed).max() <= feed_mm_s * (1 + 1e-6)
@@ -76,8 +80,12 @@ def test_a_closed_line_of_several_passes_is_run_on_at_each_depth(run: Trace) -> 
     x, y, z = join(passes).positions_mm.T
     for depth_mm in PASSES.depths_mm:
         assert distance(np.column_stack([x, y])[z == -depth_mm], CIRCLE).hausdorff_mm < 25 * UM
-    assert np.all(np.diff(z[: np.argmin(z) + 1]) <= 0)  # from depth to depth, and never up in between
-    assert np.hypot(np.diff(x), np.diff(y)).max() * MOTION_RATE_HZ < 10.1  # no leap from the end to the start
+    assert np.all(
+        np.diff(z[: np.argmin(z) + 1]) <= 0
+    )  # from depth to depth, and never up in between
+    assert (
+        np.hypot(np.diff(x), np.diff(y)).max() * MOTION_RATE_HZ < 10.1
+    )  # no leap from the end to the start
     assert passes.duration_s == pytest.approx(len(z) / MOTION_RATE_HZ)
 
 
@@ -88,7 +96,9 @@ def test_an_open_line_of_several_passes_is_begun_again_with_the_tool_up() -> Non
     assert [tuple(in_work[0]) for in_work in path.runs()] == [(0, 0)] * 3
     assert [tuple(in_work[-1]) for in_work in path.runs()] == [(10, 0)] * 3
     moved = np.diff(join(passes).positions_mm, axis=0)
-    assert not np.any(moved[:, :2].any(axis=1) & (moved[:, 2] != 0))  # X and Y stand while Z moves
+    assert not np.any(
+        moved[:, :2].any(axis=1) & (moved[:, 2] != 0)
+    )  # X and Y stand while Z moves
 
 
 def test_x_and_y_stand_while_z_moves(run: Trace) -> None:
@@ -118,7 +128,9 @@ def test_the_stream_can_be_read_twice_and_joins_without_a_seam(run: Trace) -> No
         assert after.start_s == pytest.approx(one.start_s + one.duration_s, abs=1e-9)
         assert after.rate_hz == one.rate_hz == MOTION_RATE_HZ
     steps = np.hypot(*np.diff(join(run).positions_mm[:, :2], axis=0).T)
-    assert steps.max() * MOTION_RATE_HZ < 10.1  # never faster than the tracing speed, not at a seam either
+    assert (
+        steps.max() * MOTION_RATE_HZ < 10.1
+    )  # never faster than the tracing speed, not at a seam either
     assert np.array_equal(join(run).positions_mm, join(blocks).positions_mm)
 
 
@@ -178,14 +190,21 @@ def test_a_sheet_without_a_line_is_a_fault() -> None:
 
 def test_progress_is_told_up_to_the_line_s_length() -> None:
     told: list[tuple[float, float]] = []
-    trace(inked(arc((14, 14), 10)), progress=lambda come_mm, length_mm: told.append((come_mm, length_mm)))
+    trace(
+        inked(arc((14, 14), 10)),
+        progress=lambda come_mm, length_mm: told.append((come_mm, length_mm)),
+    )
     come = [come_mm for come_mm, _ in told]
     assert come == sorted(come) and len(come) > 3
     assert all(0 <= come_mm <= length_mm for come_mm, length_mm in told)
-    assert told[-1][1] == pytest.approx(20 * np.pi, rel=0.1)  # a plan: area of ink over its width
+    assert told[-1][1] == pytest.approx(
+        20 * np.pi, rel=0.1
+    )  # a plan: area of ink over its width
 
 
-def test_a_ramped_entry_goes_down_along_the_line_and_leaves_none_of_it_above_depth(run: Trace) -> None:
+def test_a_ramped_entry_goes_down_along_the_line_and_leaves_none_of_it_above_depth(
+    run: Trace,
+) -> None:
     """Z goes from the surface to depth over 6 mm of the line; what was run above depth is run again, and the
     tool comes back to the line's end.
     """
@@ -193,7 +212,9 @@ def test_a_ramped_entry_goes_down_along_the_line_and_leaves_none_of_it_above_dep
     positions = join(ramped).positions_mm
     moving = np.hypot(*np.diff(positions[:, :2], axis=0).T) > 1e-9
     both = moving & (np.abs(np.diff(positions[:, 2])) > 1e-9)
-    assert np.hypot(*np.diff(positions[:-1, :2][both], axis=0).T).sum() == pytest.approx(6, abs=0.05)
+    assert np.hypot(*np.diff(positions[:-1, :2][both], axis=0).T).sum() == pytest.approx(
+        6, abs=0.05
+    )
     z = positions[:-1, 2][both]
     assert (
         np.all(np.diff(z) <= 0)
@@ -204,5 +225,6 @@ def test_a_ramped_entry_goes_down_along_the_line_and_leaves_none_of_it_above_dep
     assert distance(CIRCLE, at_depth[::4]).path_to_reference.max_mm < 25 * UM
     assert positions[-1] == pytest.approx([*run.lines[0].xy_mm[-1], 2.0], abs=1 * UM)
     assert (
-        np.abs(np.diff(positions[:, 2], 2)).max() * MOTION_RATE_HZ**2 <= 2.01 * ramped.work.acceleration_mm_s2
+        np.abs(np.diff(positions[:, 2], 2)).max() * MOTION_RATE_HZ**2
+        <= 2.01 * ramped.work.acceleration_mm_s2
     )

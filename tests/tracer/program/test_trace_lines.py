@@ -16,17 +16,29 @@ DRAWING = inked(arc((16, 16), 10))
 
 def line(ending: str, length_mm: float, ink_mm: float = 100.0) -> Line:
     return Line(
-        np.column_stack([np.linspace(0, length_mm, 50), np.zeros(50)]), ending, 0.5, length_mm, ink_mm=ink_mm
+        np.column_stack([np.linspace(0, length_mm, 50), np.zeros(50)]),
+        ending,
+        0.5,
+        length_mm,
+        ink_mm=ink_mm,
     )
 
 
 @pytest.mark.parametrize(
     ("from_end", "round_about", "taken"),
     [
-        (line("joined", 40), line("closed", 95), "round"),  # an end that is none led round a part of the ink
+        (
+            line("joined", 40),
+            line("closed", 95),
+            "round",
+        ),  # an end that is none led round a part of the ink
         (line("joined", 40), line("closed", 30), "end"),  # a stem that leads to a small loop
         (line("joined", 40), line("joined", 95), "end"),
-        (line("joined", 70), line("closed", 95), "end"),  # a stem, and the loop that it leads to
+        (
+            line("joined", 70),
+            line("closed", 95),
+            "end",
+        ),  # a stem, and the loop that it leads to
         (line("ended", 40), line("closed", 95), "end"),
         (None, line("closed", 95), "round"),
     ],
@@ -39,4 +51,6 @@ def test_a_line_from_an_end_that_leads_round_little_of_the_ink_gives_way(
     monkeypatch.setattr(tour, "_joined", lambda *_: ([], 0.0))
     found = tour.trace_lines(DRAWING, (1,), Settings(), Operator()).lines
     # type: ignore[union-attr]
-    assert [each.length_mm for each in found] == [(from_end if taken == "end" else round_about).length_mm]
+    assert [each.length_mm for each in found] == [
+        (from_end if taken == "end" else round_about).length_mm
+    ]

@@ -32,7 +32,9 @@ def kernel(function: Any, plain: bool) -> Callable[..., Any]:
 def strip() -> Drawing:
     """A line of 0.7 mm along X through the middle of a strip of 6 mm, in pixels of 5 um."""
     y = (np.arange(1200) + 0.5) * FINE_MM - 3.0
-    return Drawing(np.repeat((np.abs(y) < WIDE_MM / 2)[:, None], 240, axis=1).astype(np.float32), FINE_MM)
+    return Drawing(
+        np.repeat((np.abs(y) < WIDE_MM / 2)[:, None], 240, axis=1).astype(np.float32), FINE_MM
+    )
 
 
 @pytest.fixture(scope="module")
@@ -45,12 +47,17 @@ def swept(
 ) -> tuple[float, float]:
     """Fundamental and mean of a sweep centred so far to the left of the line."""
     middle = np.array([0.6, 3.0])
-    return kernel(photocell.sweep, plain)(cells, FINE_MM, middle, 0.0, offset_mm, AMPLITUDE_MM, samples)
+    return kernel(photocell.sweep, plain)(
+        cells, FINE_MM, middle, 0.0, offset_mm, AMPLITUDE_MM, samples
+    )
 
 
 def point_cell(offset_mm: float) -> float:
     """b1 = (2/pi)(sqrt(1-s1²) - sqrt(1-s2²)), s = (±w/2 - e)/A clipped to ±1: the vectors' closed form."""
-    s1, s2 = (min(max((edge - offset_mm) / AMPLITUDE_MM, -1), 1) for edge in (-WIDE_MM / 2, WIDE_MM / 2))
+    s1, s2 = (
+        min(max((edge - offset_mm) / AMPLITUDE_MM, -1), 1)
+        for edge in (-WIDE_MM / 2, WIDE_MM / 2)
+    )
     return 2 / math.pi * (math.sqrt(1 - s1 * s1) - math.sqrt(1 - s2 * s2))
 
 
@@ -105,9 +112,9 @@ def test_the_signal_is_linear_then_monotonic_then_gone(behind: photocell.Cells) 
     assert np.all(np.diff(rising) > 0)
     # amplitude + half the line + half the aperture = 1.5 mm; the Gaussian's skirt there is 1/40 of a cell's
     # light
-    assert swept(behind, 1.5)[0] == pytest.approx(0, abs=0.005) and swept(behind, 1.6)[0] == pytest.approx(
-        0, abs=3e-4
-    )
+    assert swept(behind, 1.5)[0] == pytest.approx(0, abs=0.005) and swept(behind, 1.6)[
+        0
+    ] == pytest.approx(0, abs=3e-4)
     assert swept(behind, 1.7)[1] < 3e-4
 
 
@@ -156,8 +163,12 @@ def analytic(offset_mm: float, heading: float) -> NDArray[np.float32]:
     at = (np.arange(round(6 / pitch)) + 0.5) * pitch
     x, y = np.meshgrid(at, at[::-1] + (6 - at[-1] - at[0]))
     aside = -(x - 3) * math.sin(heading) + (y - 3) * math.cos(heading) - offset_mm
-    sigma = math.hypot(0.05, 0.0375, pitch / math.sqrt(12)) * math.sqrt(2)  # lens, aperture and pixel
-    return np.asarray((erf((aside + 0.25) / sigma) - erf((aside - 0.25) / sigma)) / 2, np.float32)
+    sigma = math.hypot(0.05, 0.0375, pitch / math.sqrt(12)) * math.sqrt(
+        2
+    )  # lens, aperture and pixel
+    return np.asarray(
+        (erf((aside + 0.25) / sigma) - erf((aside - 0.25) / sigma)) / 2, np.float32
+    )
 
 
 @COMPILED_AND_PLAIN
@@ -205,7 +216,10 @@ def test_a_ring_on_a_line_sees_two_arcs(
         math.asin((WIDE_MM / 2 - aside_mm) / radius_mm),
     )
     told = sorted(
-        [(low % math.tau, high % math.tau), ((math.pi - high) % math.tau, (math.pi - low) % math.tau)]
+        [
+            (low % math.tau, high % math.tau),
+            ((math.pi - high) % math.tau, (math.pi - low) % math.tau),
+        ]
     )
     found = sorted((begin % math.tau, end % math.tau) for begin, end in arcs)
     assert np.array(found) == pytest.approx(np.array(told), abs=2 * FINE_MM / radius_mm)
@@ -246,11 +260,17 @@ def test_feeling_stops_at_the_end_of_a_line_and_before_a_crossing(plain: bool) -
     drawing = inked(polyline((2, 4), (10, 4)), polyline((6, 2), (6, 6)))
     cells = photocell.behind_aperture(drawing, 0.15)
     feel = kernel(photocell.scout, plain)
-    to_crossing = feel(cells, drawing.pitch_mm, np.array([4.0, 4.0]), 0.0, 0.05, 200, WIDTH_MM, 0.5)
-    assert to_crossing[-1, 0] == pytest.approx(5.7, abs=0.1)  # the other line's ink begins at 5.75
+    to_crossing = feel(
+        cells, drawing.pitch_mm, np.array([4.0, 4.0]), 0.0, 0.05, 200, WIDTH_MM, 0.5
+    )
+    assert to_crossing[-1, 0] == pytest.approx(
+        5.7, abs=0.1
+    )  # the other line's ink begins at 5.75
     to_end = feel(cells, drawing.pitch_mm, np.array([7.0, 4.0]), 0.0, 0.05, 200, WIDTH_MM, 0.5)
     assert to_end[-1, 0] == pytest.approx(10.15, abs=0.1)  # the round of the pen ends at 10.25
-    assert np.abs(to_end[:-4, 1] - 4).max() < 6 * UM  # a line along the pixels: they do not average out
+    assert (
+        np.abs(to_end[:-4, 1] - 4).max() < 6 * UM
+    )  # a line along the pixels: they do not average out
     nowhere = feel(cells, drawing.pitch_mm, np.array([3.0, 6.0]), 0.0, 0.05, 200, WIDTH_MM, 0.5)
     assert len(nowhere) == 0
 
@@ -262,17 +282,26 @@ def test_a_speck_is_passed_over() -> None:
         cells, drawing.pitch_mm, np.array([4.0, 4.0]), 0.0, 0.05, 80, WIDTH_MM + 25 * UM, 0.5
     )
     assert seen[-1, 0] > 7.5
-    assert np.abs(seen[:, 1] - 4).max() < 0.08  # what is taken of the speck's edge stays below its half width
+    assert (
+        np.abs(seen[:, 1] - 4).max() < 0.08
+    )  # what is taken of the speck's edge stays below its half width
 
 
 @settings(max_examples=15)
-@given(heading=st.floats(-math.pi, math.pi), shift=st.tuples(st.floats(0, 0.0847), st.floats(0, 0.0847)))
-def test_what_is_felt_moves_and_turns_with_the_line(heading: float, shift: tuple[float, float]) -> None:
+@given(
+    heading=st.floats(-math.pi, math.pi),
+    shift=st.tuples(st.floats(0, 0.0847), st.floats(0, 0.0847)),
+)
+def test_what_is_felt_moves_and_turns_with_the_line(
+    heading: float, shift: tuple[float, float]
+) -> None:
     way = np.array([math.cos(heading), math.sin(heading)])
     middle = np.array([8.0, 8.0]) + shift
     drawing = inked(np.array([middle - 4 * way, middle + 4 * way]))
     cells = photocell.behind_aperture(drawing, 0.15)
-    seen = photocell.scout(cells, drawing.pitch_mm, middle - way, heading, 0.05, 40, WIDTH_MM + 25 * UM, 0.5)
+    seen = photocell.scout(
+        cells, drawing.pitch_mm, middle - way, heading, 0.05, 40, WIDTH_MM + 25 * UM, 0.5
+    )
     assert len(seen) == 40
     aside = (seen[:, :2] - middle) @ np.array([-way[1], way[0]])
     assert np.abs(aside).max() < 5 * UM  # between pixels of 85 um

@@ -40,7 +40,9 @@ def tangle(
 ) -> tuple[View, Tangle]:
     """The tangle ahead of the line that goes right from a place on it."""
     view = seen(inked(*lines, seed=seed))
-    return view, tangle_ahead(view, leg_of(view.feel(np.array(start), 0.0, 4.0), True, view.leg_mm))
+    return view, tangle_ahead(
+        view, leg_of(view.feel(np.array(start), 0.0, 4.0), True, view.leg_mm)
+    )
 
 
 def best(view: View, found: Tangle) -> Way:
@@ -68,14 +70,19 @@ def test_a_crossing_has_four_legs_and_joins_those_that_are_straight(seed: int | 
     view, found = tangle(ACROSS, polyline((10, 4), (18, 16)), seed=seed)
     assert found.whole and len(found.legs) == 4
     way = best(view, found)
-    headings = [math.cos(found.legs[a].heading_rad - found.legs[b].heading_rad) for a, b in way.pairs]
+    headings = [
+        math.cos(found.legs[a].heading_rad - found.legs[b].heading_rad) for a, b in way.pairs
+    ]
     assert abs(headings[0]) > 0.99 and way.strokes == ()
 
 
 @SEEDS
 def test_two_corners_that_touch_are_not_taken_for_a_crossing(seed: int | None) -> None:
     """Their vertices are half a width apart: what a crossing would leave beside itself is 60 um broad."""
-    left, right = polyline((8, 10), (13.6, 10), (8, 14)), polyline((20, 10), (14.1, 10), (20, 14))
+    left, right = (
+        polyline((8, 10), (13.6, 10), (8, 14)),
+        polyline((20, 10), (14.1, 10), (20, 14)),
+    )
     view, found = tangle(left, right, start=(9.5, 10.0), seed=seed)
     assert len(found.legs) == 4
     way = best(view, found)
@@ -85,8 +92,12 @@ def test_two_corners_that_touch_are_not_taken_for_a_crossing(seed: int | None) -
 
 @SEEDS
 @pytest.mark.parametrize("half_mm", [0.5, 0.8, 1.2])
-def test_the_head_goes_into_no_tick_that_crosses_its_line(half_mm: float, seed: int | None) -> None:
-    run = trace(inked(ACROSS, polyline((14, 10 - half_mm), (14, 10 + half_mm)), seed=seed), (8.0, 10.0))
+def test_the_head_goes_into_no_tick_that_crosses_its_line(
+    half_mm: float, seed: int | None
+) -> None:
+    run = trace(
+        inked(ACROSS, polyline((14, 10 - half_mm), (14, 10 + half_mm)), seed=seed), (8.0, 10.0)
+    )
     assert distance(run.xy_mm[::4], ACROSS).path_to_reference.max_mm < 30 * UM
 
 
@@ -100,7 +111,9 @@ def test_a_vertex_settles_where_the_pen_turned(seed: int | None) -> None:
 
 @SEEDS
 @pytest.mark.parametrize("width_mm", [0.3, 0.5, 0.8])
-def test_a_line_goes_into_a_blunt_tip_where_its_inks_run_together(width_mm: float, seed: int | None) -> None:
+def test_a_line_goes_into_a_blunt_tip_where_its_inks_run_together(
+    width_mm: float, seed: int | None
+) -> None:
     """Two legs 13 degrees apart and a short edge between their ends: one path, all of it."""
     run = trace(inked(BLUNT, width_mm=width_mm, seed=seed))
     assert run.ending == "ended"

@@ -23,7 +23,10 @@ MOST_RUN_TOGETHER_MM = WIDTH_MM
 
 
 def followed_whole(
-    line: Array, *others: Array, seed: int | None = None, start_mm: tuple[float, float] | None = None
+    line: Array,
+    *others: Array,
+    seed: int | None = None,
+    start_mm: tuple[float, float] | None = None,
 ) -> Line:
     """The line as followed, held to what was drawn: on it, and all of it, and no longer."""
     run = trace(inked(line, *others, seed=seed), start_mm).lines[0]
@@ -104,7 +107,10 @@ def test_a_bay_with_a_mouth_narrower_than_the_line_is_followed(seed: int | None)
 
 def test_a_line_with_a_tip_that_touches_it_is_left_alone() -> None:
     """Two lines touch at the tip of the one: each is followed by itself, straight on."""
-    line, other = polyline((4, 10), (34, 10)), polyline((19, 10.3), (25, 18), (13, 18), (19, 10.3))
+    line, other = (
+        polyline((4, 10), (34, 10)),
+        polyline((19, 10.3), (25, 18), (13, 18), (19, 10.3)),
+    )
     followed_whole(line, other, start_mm=(6, 10))
     assert followed_whole(other, line, start_mm=(19, 18)).ending == "closed"
 
