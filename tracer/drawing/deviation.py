@@ -77,6 +77,10 @@ class Deviation:
         """Share of the ink that no path covers."""
         return self.missed_mm / self.ink_mm if self.ink_mm else 0.0
 
+    def __str__(self) -> str:
+        figures = f"RMS {self.rms_mm:.4f}, 95 % {self.p95_mm:.4f}, max {self.max_mm:.4f} mm"
+        return f"path to ink {figures}; {self.missed_mm:.2f} of {self.ink_mm:.2f} mm of the ink missed"
+
 
 def deviation(
     drawing: Drawing, path: Path | Sequence[Array], over: Sequence[Array] = ()
