@@ -9,8 +9,8 @@ import numpy as np
 from morfax.motion.contour import distance
 from morfax.motion.pathfile import read_path
 from tests.console.conftest import SAMPLES, Morfax
-from tests.tracer.inked import UM, arc, polyline
 from tests.tracer.drawing.test_shapes import CIRCLE, STEPPED, filled
+from tests.tracer.inked import UM, arc, polyline
 
 
 def test_the_edge_is_traced_and_compared(morfax: Morfax, here: Path) -> None:
