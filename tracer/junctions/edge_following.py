@@ -237,9 +237,9 @@ def _from_tip(excess: Array, first: int, tip: int, jump_mm: float) -> list[int]:
 
 
 @njit(cache=True)
-def _along_edge(
+def _along_edge(  # type: ignore[no-untyped-def]
     cells, pitch_mm, start, heading, side, step_mm, stations, width_mm, level, regained
-):  # type: ignore[no-untyped-def]
+):
     """Stations (n, 3): middle half a width within the edge on one side, and distance to the first light on
     the other (NaN beyond three widths).
 

@@ -142,9 +142,9 @@ def ink(distance_mm, half_mm, softness_mm, out):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _wrong(
+def _wrong(  # type: ignore[no-untyped-def]
     places, darkness, known_mm, pen, ends, counts, strokes, vertices, lines, distance, out
-):  # type: ignore[no-untyped-def]
+):
     """What is drawn too dark at each place, into `out`; the sum of its squares."""
     distance[:] = known_mm
     away(places, lines, pieces(ends, counts, strokes, vertices, lines), distance)
