@@ -10,7 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from morfax.motion.contour import distance
-from morfax.motion.faults import LockFault, ProgramFault
+from morfax.motion.drive import Condition
+from morfax.motion.faults import FollowingFault, LockFault, ProgramFault
 from morfax.motion.motion import join, thin
 from morfax.player.cubics import cubic, interpolator, scales
 from morfax.player.cubics.cubic import Servo, play_cubic
@@ -121,6 +122,22 @@ def test_the_lag_is_the_speed_over_the_modulus(round_file: Path) -> None:
             10 / modulus, rel=0.05
         )  # 10 mm/s
         assert playback.end_error_mm == pytest.approx([0, 0, 0], abs=1 * UM)
+
+
+@pytest.mark.parametrize(("speed_mm_s", "limit_mm"), [(0, 0.0055), (10, 0.068), (40, 0.2555)])
+def test_the_limit_is_the_lag_and_5_um(speed_mm_s: float, limit_mm: float) -> None:
+    """5 ms of modulus, 1 ms of motor and a point of 0.25 ms at speed; 5 um and one count of half a um."""
+    allowed = Servo().limit(200.0, 2000.0, 4000.0)
+    assert allowed.limit_mm(speed_mm_s) == pytest.approx(limit_mm, abs=0.1 * UM)
+
+
+def test_a_sound_drive_takes_most_of_its_limit_and_a_weak_one_more(round_file: Path) -> None:
+    playback = play_cubic(round_file)
+    list(playback)
+    assert 0.65 < playback.monitor.largest_share[0] < 0.85  # measured 0.75
+    playback.conditions[0] = Condition(gain_share=0.6)  # 1.67 times the lag
+    with pytest.raises(FollowingFault, match="X does not follow"):
+        list(playback)
 
 
 def test_a_small_modulus_cuts_the_circle_as_it_should(round_file: Path) -> None:

@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from morfax.motion.drive import Condition
 from morfax.motion.faults import FollowingFault, ProgramFault
 from morfax.motion.motion import MOTION_RATE_HZ, join
 from morfax.player.gcode import feed_control, pulse_servo, residues
@@ -119,6 +120,26 @@ def test_the_speed_is_held_within_what_the_weights_allow(axes: int) -> None:
             low - 0.005 < measured(end, speed) < high + 0.005
         )  # half of 1 %: the counter fills at the start
         assert measured(end, speed, true_norm=True) == pytest.approx(1.0, abs=0.005)
+
+
+@pytest.mark.parametrize("true_norm", [False, True])
+def test_the_speed_is_held_all_round_a_circle(true_norm: bool) -> None:
+    """With the weights of the wrong axes the speed is up to 1.99 times the programmed one."""
+    low, high = (
+        (0.95, 1.005) if true_norm else (0.89, 0.99)
+    )  # measured 0.952 to 1.001, 0.891 to 0.984
+    feed = Feed(feed_number(9_000, RECIRCULATIONS_HZ), true_norm=true_norm)
+    for middle_deg in range(5, 360, 10):
+        angles = np.radians([middle_deg - 4, middle_deg + 4])
+        first, last = np.rint(8_000 * np.column_stack([np.cos(angles), np.sin(angles)])).astype(
+            int
+        )
+        for (x, y), (end_x, end_y), sense in ((first, last, 1), (last, first, -1)):
+            pulses = Interpolator((x, y, 0)).arc((end_x, end_y, 0), (0, 0), sense, feed)
+            way = ways(pulses, (x, y, 0))
+            quarter, half = len(way) // 4, len(way) // 2  # off the start and the approach
+            speed = math.dist(way[quarter], way[half]) / (half - quarter) * RECIRCULATIONS_HZ
+            assert low < speed / 9_000 < high, (middle_deg, sense)
 
 
 def test_the_override_lowers_the_speed() -> None:
@@ -287,6 +308,23 @@ def test_the_compiled_kernels_are_the_plain_ones(monkeypatch: pytest.MonkeyPatch
     assert (
         sum(feed_control.passes.py_func(count, 0b1101, 4) for count in range(1, 17)) == 0b1101
     )
+
+
+@pytest.mark.parametrize(("speed_mm_s", "limit_mm"), [(0, 0.054), (10, 0.084), (40, 0.294)])
+def test_the_limit_is_the_lag_the_start_and_54_um(speed_mm_s: float, limit_mm: float) -> None:
+    """v / 500 per s, v² / 2 · 5 m/s², and 50 um with four pulses of 1 um."""
+    assert PulseControl().limit.limit_mm(speed_mm_s) == pytest.approx(limit_mm, abs=PULSE_MM)
+
+
+@pytest.mark.parametrize("speed_mm_s", [20, 40])
+def test_a_sound_drive_takes_more_than_a_third_of_its_limit(speed_mm_s: float) -> None:
+    """A limit three times too wide leaves a drive alone that is three times as far behind as a sound one."""
+    run = playback(f"G1 X0 Y0 F{60 * speed_mm_s}", "G1 X20 Y12")
+    list(run)
+    assert 0.36 < run.monitor.largest_share[0] < 0.9  # measured 0.40 and 0.68
+    run.conditions[0] = Condition(gain_share=0.2)
+    with pytest.raises(FollowingFault, match="X does not follow"):
+        list(run)
 
 
 @pytest.mark.parametrize("speed_mm_s", [5, 20, 30, 40])

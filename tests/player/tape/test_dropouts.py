@@ -71,11 +71,13 @@ def tape(tmp_path: Path) -> Path:
     return tmp_path / "a.wav"
 
 
-def holed(tape: Path, length_ms: float, tracks: slice = slice(1, 2)) -> Path:
-    """The tape with a dropout at 3 s."""
+def holed(
+    tape: Path, length_ms: float, tracks: slice = slice(1, 2), left: float = 0.01
+) -> Path:
+    """The tape with a dropout at 3 s, in which a share of the level is left."""
     with soundfile.SoundFile(tape) as sound:
         frames, text = sound.read(dtype="float32"), sound.comment
-    frames[3 * RATE_HZ : 3 * RATE_HZ + round(length_ms * 48), tracks] *= 0.01
+    frames[3 * RATE_HZ : 3 * RATE_HZ + round(length_ms * 48), tracks] *= left
     file = tape.with_name("holed.wav")
     with soundfile.SoundFile(file, "w", RATE_HZ, 4, "PCM_16") as out:
         out.comment = text
@@ -112,6 +114,14 @@ def test_dropouts_from_both_sides_of_the_bound(
     assert fault.time_s == pytest.approx(3, abs=0.002)
     row = round(fault.time_s * 6000)
     assert fault.position_mm == pytest.approx(whole[row, "xyz".index(fault.axis)], abs=0.002)
+
+
+@pytest.mark.parametrize(("left", "bridged"), [(0.35, True), (0.7, True), (0.85, False)])
+def test_a_level_a_fifth_off_is_a_dropout(tape: Path, left: float, bridged: bool) -> None:
+    """Another signal of a fifth of the level turns the phase by 0.03 cycle; less is let pass."""
+    playback = play(holed(tape, 2.0, left=left))
+    join(playback)
+    assert {name for _, name in playback.bridged} == ({"x"} if bridged else set())
 
 
 def test_from_a_fault_one_goes_on_by_hand(tape: Path) -> None:

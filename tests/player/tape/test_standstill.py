@@ -79,6 +79,15 @@ def test_a_whisper_is_silence_but_forty_db_down_is_not() -> None:
         bearings(tracks(swing, 0.3, Transport(level=0.0005)))
 
 
+@pytest.mark.parametrize("left", [0.0, 0.2, 0.4])
+def test_a_dropout_in_the_first_50_ms_is_told_from_a_missing_carrier(left: float) -> None:
+    """20 ms at less than half of the level; the rows that are left are steady and full of carrier."""
+    frames = tracks(swing, 0.3)
+    frames[round(0.02 * RATE_HZ) : round(0.04 * RATE_HZ), 1] *= left
+    with pytest.raises(TapeFault, match=r"track 2 \(X\) has a dropout at 0\.02\d s"):
+        bearings(frames)
+
+
 def test_another_reference_is_told() -> None:
     with pytest.raises(TapeFault, match="carries 6000 Hz where the reference of 4000 Hz"):
         bearings(tracks(swing, 0.3), TapeFormat(reference_hz=4000.0))
