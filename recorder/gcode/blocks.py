@@ -1,28 +1,30 @@
-"""The block recorder: a motion becomes a program of lines and arcs with feeds, in RS-274.
+"""The block recorder: a motion becomes a program of lines, arcs and dwells with feeds, in RS-274.
 
-Signals: a stream of Motion or a Path in, a `.ngc` file out, in mm and mm/min:
+Signals: a stream of Motion or a Path in, a `.ngc` file out, in mm, mm/min and s:
 
     G17 G21 G90 G94
-    G0 X7 Y18.0593 Z2            where the motion starts
+    G0 Z2                        up to the clearance, Z alone
+    G0 X7 Y18.0593               where the motion starts
     G1 Z-1 F600                  the tool goes down
-    G1 X12.4 Y18.0612 F598.2     lines
+    G1 X12.4 Y18.0612 F598       lines
     G3 X13.1 Y19.2 I0.2 J1.1     arcs, by the centre from where they begin
+    G4 P1                        a dwell
     G0 Z2                        the tool goes up; M2 ends the program
 
-The path is cut where Z begins or ends to move. What lies in a plane is fitted with lines and arcs
-(`recorder.arcs`), what does not with lines alone. The feed of a stretch is the speed at which most of its
-length is run; what is run with the tool above the work, or upwards, is a rapid.
+The path is cut into stretches (`recorder.gcode.stretches`). A stretch in a plane is fitted with lines and arcs
+(`recorder.gcode.arcs`), a slope with lines alone; an upright one is one line. The feed of a stretch is the speed
+at which most of its length is run; a stretch above the work, or straight up, is a rapid.
 
 Source: RS-274-D, in the words that LinuxCNC and Grbl both take: no %, no G64, F before the first G1, M2 at
-the end. Questions: a motion has a speed at every place and a program a feed for each block; its slowing down
-before corners is left to the control. Rests are left out. Places are written to 0.1 um.
+the end. Questions: a motion has a speed at every place and a program a feed for each block; the control slows
+down before corners by its own rules. A motion that starts at or below the surface goes to its place first and
+then down. Places are written to 0.1 um, depths that are whole counts of the Z unit as such.
 """
 
 from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path as FilePath
 from typing import Any
@@ -32,49 +34,40 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.faults import MotionFault
 from morfax.motion.files import written_beside
-from morfax.motion.motion import IN_WORK_BELOW_MM, Path
+from morfax.motion.motion import IN_WORK_BELOW_MM
 from morfax.motion.segments import Source, as_path
 from morfax.recorder.gcode.arcs import Segment, fit
+from morfax.recorder.gcode.stretches import Stretch, stretches
 from morfax.recorder.report import Written
 
 TOLERANCE_MM = 0.01
 WRITTEN_MM = 1e-4  # the last digit
 _LARGEST_RADIUS_MM = 10_000.0  # a way of 300 mm is 1.1 um off its chord
-_LEVEL = 0.02  # Z that changes less than this share of the way stands
-_NOISE_MM = 2e-4  # of a thinned path
-_SLOWEST_MM_S, _FASTEST_MM_S = 0.01, 1000.0
+COUNT_MM = 0.01  # the step of the Z unit's decades
+COUNT_SHARE = 0.25  # of the tolerance, at most 2 um: a depth as near to a whole count is written as that count
+COUNT_REACH_MM = 0.002  # three times what thinning takes off the place where one move of Z ends and one begins
+WHOLE_FEED_MM_MIN = 10.0  # a feed from here on is written without decimals
 
 
 @dataclass(frozen=True, slots=True)
 class BlockReport(Written):
-    """What was recorded: file, lines and arcs (rapids are lines), running time, largest distance from the
-    motion.
-    """
+    """What was recorded: lines (rapids too), arcs, dwells, running time, largest distance from the motion."""
 
     lines: int
     arcs: int
+    dwells: int
     duration_s: float
     deviation_mm: float
 
     @property
     def figures(self) -> dict[str, Any]:
         """What else is worth telling."""
-        return {"lines": self.lines, "arcs": self.arcs, "deviation_mm": self.deviation_mm}
-
-
-@dataclass(frozen=True, slots=True)
-class _Stretch:
-    """A part of the path in one plane, or not (`level` false), and the speed at which most of it is run."""
-
-    points_mm: Array
-    level: bool
-    speed_mm_s: float
-
-    @property
-    def rapid(self) -> bool:
-        """Whether it is run above the work, or only upwards."""
-        across, z = np.ptp(self.points_mm[:, :2], axis=0).max(), self.points_mm[:, 2]
-        return bool(z.min() > IN_WORK_BELOW_MM or (across <= _NOISE_MM and z[-1] > z[0]))
+        return {
+            "lines": self.lines,
+            "arcs": self.arcs,
+            "dwells": self.dwells,
+            "deviation_mm": self.deviation_mm,
+        }
 
 
 def record_blocks(
@@ -88,74 +81,56 @@ def record_blocks(
             f"a tolerance of {tolerance_mm} mm cannot be written; give {2 * WRITTEN_MM} mm or more"
         )
     path = as_path(stream)
-    stretches = list(_stretches(path, tolerance_mm))
-    if not stretches:
+    parts = list(stretches(path, tolerance_mm))
+    if not parts:
         raise MotionFault(
             "the motion stands still at one place; a program needs at least two different places"
         )
-    writer = _Writer(path.positions_mm[0])
-    for stretch in stretches:
-        writer.stretch(stretch, tolerance_mm - WRITTEN_MM)
+    writer = _Writer(path.positions_mm[0], parts[0].speed_mm_s, tolerance_mm)
+    for part in parts:
+        writer.stretch(part, tolerance_mm - WRITTEN_MM)
     with written_beside(file) as beside:
         beside.write_text("\n".join([*writer.text, "M2", ""]), encoding="ascii")
     return BlockReport(
-        FilePath(file), writer.lines, writer.arcs, writer.duration_s, writer.deviation_mm
+        FilePath(file),
+        writer.lines,
+        writer.arcs,
+        writer.dwells,
+        writer.duration_s,
+        writer.deviation_mm,
     )
-
-
-def _stretches(path: Path, tolerance_mm: float) -> Iterator[_Stretch]:
-    """The path cut where Z begins or ends to move; what stands is left out."""
-    step = np.diff(path.positions_mm, axis=0)
-    across, up, took_s = np.hypot(step[:, 0], step[:, 1]), np.abs(step[:, 2]), np.diff(path.t_s)
-    climbs = (up > _LEVEL * across) & (up > _NOISE_MM)
-    moves = climbs | (across > _NOISE_MM / 10)
-    kind = np.where(climbs, 2, 1)[moves]
-    kept = np.flatnonzero(moves)
-    for group in np.split(np.arange(len(kept)), np.flatnonzero(np.diff(kind)) + 1):
-        if not len(group):
-            continue
-        steps = kept[group]
-        points = path.positions_mm[np.r_[steps, steps[-1] + 1]]
-        lengths, seconds = np.sqrt((step[steps] ** 2).sum(axis=1)), took_s[steps]
-        if kind[group[0]] == 2 and np.ptp(points[:, :2], axis=0).max() <= tolerance_mm / 4:
-            points[:, :2] = points[
-                0, :2
-            ]  # a sample that was taken in the corner where the tool turns upwards
-        level = kind[group[0]] == 1 and float(np.ptp(points[:, 2])) <= tolerance_mm / 2
-        yield _Stretch(points, level, _speed_mm_s(lengths, seconds))
-
-
-def _speed_mm_s(lengths_mm: Array, seconds: Array) -> float:
-    """The speed at which most of the length is run: its median by length."""
-    speeds = lengths_mm / np.maximum(seconds, 1e-9)
-    order = np.argsort(speeds)
-    share = np.cumsum(lengths_mm[order])
-    median = speeds[order[np.searchsorted(share, share[-1] / 2)]]
-    return float(np.clip(median, _SLOWEST_MM_S, _FASTEST_MM_S))
 
 
 class _Writer:
     """The text of a program so far, and where it has come to."""
 
-    def __init__(self, start_mm: Array) -> None:
-        self.place = np.round(start_mm, 4)
-        self.text = ["G17 G21 G90 G94", "G0" + self._words("XYZ", self.place)]
-        self.feed, self.lines, self.arcs, self.duration_s, self.deviation_mm = (
-            "",
-            0,
-            0,
-            0.0,
-            0.0,
-        )
+    def __init__(self, start_mm: Array, feed_mm_s: float, tolerance_mm: float) -> None:
+        self.count_reach_mm = min(COUNT_REACH_MM, COUNT_SHARE * tolerance_mm)
+        self.text = ["G17 G21 G90 G94"]
+        self.feed = ""
+        self.lines = self.arcs = self.dwells = 0
+        self.duration_s = self.deviation_mm = 0.0
+        self.place = self._written(start_mm)
+        self._begin(feed_mm_s)
 
-    def stretch(self, stretch: _Stretch, tolerance_mm: float) -> None:
-        """Write a stretch."""
+    def _begin(self, feed_mm_s: float) -> None:
+        """Write the way to the start: Z alone first where that is up, last where it is down."""
+        x_y, z = self._words("XY", self.place[:2]), self._words("Z", self.place[2:])
+        if self.place[2] > IN_WORK_BELOW_MM:
+            self.text += ["G0" + z, "G0" + x_y]
+        else:
+            self.text.append("G0" + x_y)
+            self._write("G1", z, feed_mm_s)
+
+    def stretch(self, stretch: Stretch, tolerance_mm: float) -> None:
+        """Write a stretch, and the dwell before it."""
+        if stretch.dwell_s:
+            self.text.append(f"G4 P{_digits(stretch.dwell_s, 2)}")
+            self.dwells += 1
         points = np.vstack([self.place, stretch.points_mm[1:]])
-        self.duration_s += (
-            float(np.sqrt((np.diff(points, axis=0) ** 2).sum(axis=1)).sum())
-            / stretch.speed_mm_s
-        )
-        if stretch.rapid or not stretch.level:
+        length_mm = float(np.sqrt((np.diff(points, axis=0) ** 2).sum(axis=1)).sum())
+        self.duration_s += length_mm / stretch.speed_mm_s + stretch.dwell_s
+        if stretch.rapid or stretch.kind != "plane":
             kept, off_mm = _straightest(points, tolerance_mm)
             self.deviation_mm = max(self.deviation_mm, off_mm)
             for place in points[kept[1:]]:
@@ -166,10 +141,8 @@ class _Writer:
             for segment in chain.segments:
                 self._segment(segment, stretch, chain.deviation_mm)
 
-    def _segment(self, segment: Segment, stretch: _Stretch, off_mm: float) -> None:
-        """Write a line or an arc; an arc is a line where no digit tells it from its chord, or its centre is
-        in the next street.
-        """
+    def _segment(self, segment: Segment, stretch: Stretch, off_mm: float) -> None:
+        """Write a line or an arc; an arc that its chord stands for, or of a huge radius, becomes a line."""
         place: Array = np.array([*np.round(segment.end_mm, 4), self.place[2]])
         half = segment.turned_rad / 2
         (dx, dy), bulge = (place - self.place)[:2], segment.length_mm / 2 * math.tan(half / 2)
@@ -183,9 +156,9 @@ class _Writer:
         self._write(code, self._words("XYIJ", [*place[:2], *centre]), stretch.speed_mm_s)
         self.place, self.arcs = place, self.arcs + 1
 
-    def _line(self, place_mm: Array, stretch: _Stretch) -> None:
+    def _line(self, place_mm: Array, stretch: Stretch) -> None:
         """Write a line or a rapid with the axes that move."""
-        place: Array = np.round(place_mm, 4)
+        place = self._written(place_mm)
         moving = [axis for axis in range(3) if place[axis] != self.place[axis]]
         if not moving:
             return
@@ -198,9 +171,20 @@ class _Writer:
 
     def _write(self, code: str, words: str, speed_mm_s: float) -> None:
         """A line of the program, with the feed where it changes."""
-        feed = f" F{_digits(speed_mm_s * 60, 1)}"
+        feed_mm_min = speed_mm_s * 60
+        feed = f" F{_digits(feed_mm_min, 0 if feed_mm_min >= WHOLE_FEED_MM_MIN else 3)}"
         self.text.append(code + words + ("" if feed == self.feed else feed))
         self.feed = feed
+
+    def _written(self, place_mm: Array) -> Array:
+        """A place (x, y, z) as it is written: to the last digit, a depth as the whole count that it nearly is."""
+        place: Array = np.round(place_mm, 4)
+        count_mm = round(place_mm[2] / COUNT_MM) * COUNT_MM
+        off_mm = abs(float(place_mm[2]) - count_mm)
+        if off_mm <= self.count_reach_mm:
+            place[2] = round(count_mm, 4)
+            self.deviation_mm = max(self.deviation_mm, off_mm)
+        return place
 
     @staticmethod
     def _words(letters: str, values: Any) -> str:
@@ -213,14 +197,14 @@ class _Writer:
 
 def _digits(value: float, places: int) -> str:
     """A number without needless digits, never minus nothing."""
-    text = f"{value:.{places}f}".rstrip("0").rstrip(".")
+    text = f"{value:.{places}f}"
+    if places:
+        text = text.rstrip("0").rstrip(".")
     return "0" if text in ("-0", "") else text
 
 
 def _straightest(points: Array, tolerance_mm: float) -> tuple[list[int], float]:
-    """Points between which lines stay within the tolerance of all others (Douglas and Peucker), and the
-    largest gap.
-    """
+    """Points between which lines stay within a tolerance of all others (Douglas, Peucker); the largest gap."""
     kept, worst_mm, waiting = {0, len(points) - 1}, 0.0, [(0, len(points) - 1)]
     while waiting:
         first, last = waiting.pop()

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 
 from morfax.motion.contour import distance
 from morfax.motion.faults import MotionFault
-from morfax.motion.motion import Motion
+from morfax.motion.motion import MOTION_RATE_HZ, Motion, thin
 from morfax.motion.motion import Path as MotionPath
 from morfax.motion.pathfile import read_path
 from morfax.player.gcode.rs274 import Move, Program, read_rs274
@@ -30,7 +30,10 @@ from morfax.recorder.gcode.pieces import (
     off_line_mm,
     resample,
 )
+from morfax.recorder.gcode.stretches import DWELL_S
 from morfax.recorder.media import record
+from morfax.tracer.operator.zunit import Move as ZMove
+from morfax.tracer.operator.zunit import z_moves
 
 SAMPLES = Path(__file__).parents[3] / "samples"
 FEWEST = {
@@ -227,14 +230,15 @@ def test_the_tool_goes_up_and_down_by_z_and_feeds_are_those_of_the_motion(
     report = record_blocks(path, tmp_path / "part.ngc")
     assert report.file.read_text().split("\n") == [
         "G17 G21 G90 G94",
-        "G0 X1 Y2 Z2",
+        "G0 Z2",
+        "G0 X1 Y2",
         "G1 Z-1.5 F600",
-        *report.file.read_text().split("\n")[3:5],
+        *report.file.read_text().split("\n")[4:6],
         "G0 Z2",
         "M2",
         "",
     ]
-    line, turn = read_rs274(report.file).moves[2:4]
+    line, turn = read_rs274(report.file).moves[3:5]
     assert line.end_mm == pytest.approx(
         (21, 2, -1.5), abs=0.1
     ) and line.feed_mm_s == pytest.approx(10)
@@ -245,10 +249,76 @@ def test_the_tool_goes_up_and_down_by_z_and_feeds_are_those_of_the_motion(
     assert report.duration_s == pytest.approx(path.t_s[-1], rel=1e-3)
 
 
+def z_program(*moves: tuple[float, float, float]) -> MotionPath:
+    """The tool at one place, Z from 2 mm on: each move to a depth, mm, at a feed, mm/s, from rest to rest with a
+    motor's acceleration, and a dwell after it, s.
+    """
+    t_s, z_mm = [0.0], [2.0]
+    for to_mm, feed_mm_s, dwell_s in moves:
+        motion = z_moves(z_mm[-1], [ZMove(to_mm, feed_mm_s, dwell_s)])
+        t_s += (t_s[-1] + np.arange(1, len(motion) + 1) / MOTION_RATE_HZ).tolist()
+        z_mm += motion.tolist()
+    points = np.column_stack([np.full(len(z_mm), 10.0), np.full(len(z_mm), 20.0), z_mm])
+    return thin([Motion(points)])
+
+
+def test_every_move_of_z_keeps_its_depth_its_feed_and_its_dwell(tmp_path: Path) -> None:
+    # a hole of 8 mm in pecks of 4, a dwell at its bottom, and a plunge slower than the way down to the work
+    path = z_program(
+        (0.5, 10, 0),
+        (-4, 5, 0),
+        (1, 20, 0),
+        (-3.5, 20, 0),
+        (-8, 5, 1.5),
+        (2, 50, 0),
+        (-1, 2, 0),
+        (2, 9, 0),
+    )
+    report = record_blocks(path, tmp_path / "drill.ngc")
+    assert report.file.read_text().split("\n")[3:] == [
+        "G0 Z0.5",
+        "G1 Z-4 F300",
+        "G0 Z1",
+        "G1 Z-3.5 F1200",
+        "G1 Z-8 F300",
+        "G4 P1.5",
+        "G0 Z2",
+        "G1 Z-1 F120",
+        "G0 Z2",
+        "M2",
+        "",
+    ]
+    assert report.dwells == 1
+    # rapids and ramps aside it takes as long as the motion
+    assert report.duration_s == pytest.approx(path.t_s[-1], rel=0.1)
+
+
+def test_a_stand_as_short_as_a_swivel_is_no_dwell(tmp_path: Path) -> None:
+    t_s = np.array([0, 1, 1.16, 2.16, 2.16 + DWELL_S, 4])
+    x_mm = np.array([0, 10, 10, 20, 20, 30])
+    path = MotionPath(t_s, np.column_stack([x_mm, [0, 0, 0, 5, 5, 5], np.zeros(6)]))
+    text = record_blocks(path, tmp_path / "part.ngc").file.read_text()
+    assert text.count("G4") == 1 and f"G4 P{DWELL_S:g}" in text
+
+
+@pytest.mark.parametrize(
+    ("z_mm", "first"),
+    [
+        (2.0, ["G0 Z2", "G0 X1 Y2"]),
+        (0.0, ["G0 X1 Y2", "G1 Z0 F600"]),
+        (-3.0, ["G0 X1 Y2", "G1 Z-3 F600"]),
+    ],
+)
+def test_no_way_to_the_start_is_diagonal(z_mm: float, first: list[str], tmp_path: Path) -> None:
+    points = np.array([[1, 2, z_mm], [11, 2, z_mm]])
+    report = record_blocks(MotionPath(np.arange(2.0), points), tmp_path / "part.ngc")
+    assert report.file.read_text().split("\n")[1:3] == first
+
+
 def test_a_slope_is_run_with_lines(tmp_path: Path) -> None:
     points = np.array([[0, 0, 0], [10, 0, -1], [20, 5, -1.5], [20, 5, 2]], np.float64)
     report = record_blocks(MotionPath(np.arange(4.0), points), tmp_path / "part.ngc")
-    assert [move.end_mm for move in read_rs274(report.file).moves[1:]] == [
+    assert [move.end_mm for move in read_rs274(report.file).moves[2:]] == [
         tuple(row) for row in points[1:].tolist()
     ]
 
