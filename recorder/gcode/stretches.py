@@ -36,7 +36,9 @@ LEVEL = 0.02  # Z that changes less than this share of the way across stands
 NOISE_MM = 2e-4  # of a thinned path
 STAND = 0.25  # of the speed before and after it: a slower place parts two moves of Z
 HALF = 0.5  # of the length: its median speed is the feed of a stretch
-UPRIGHT_SHARE = 0.9  # of an upright move, which has hardly left its ramp up when the ramp down begins
+UPRIGHT_SHARE = (
+    0.9  # of an upright move, which has hardly left its ramp up when the ramp down begins
+)
 SLOWEST_MM_S, FASTEST_MM_S = 0.01, 1000.0
 
 Kind = Literal["plane", "slope", "upright"]
