@@ -1,10 +1,18 @@
-"""TODO."""
+"""Raster: an image file becomes grey levels, or colours, and the scale that the file states.
+
+Signals in: an image file that Pillow reads. Signals out: levels 0..255 (float32 beyond 8 bits) of the first
+page, upright, rows from the top; the stated resolution in dots per inch, and whether it is to be believed.
+
+Source: the patent takes the drawing and its scale for granted. Questions: a wrong scale makes a wrong part, and
+nothing later can tell. So 72 and 96 dpi, which programs write when they know none, and whatever a camera states
+are refused like a missing resolution.
+"""
 
 from __future__ import annotations
 
 import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,11 +25,25 @@ if TYPE_CHECKING:
     from PIL.Image import Image
 
 MM_PER_INCH = 25.4
+# what programs write into a file when they know no resolution: screens' dots, and Pillow's and Exif's default
+PLACEHOLDERS_DPI = (72.0, 96.0)
+# Exif tags that only a camera writes (a scanner has a maker and a model, too)
+EXIF_IFD, CAMERA_TAGS = (
+    0x8769,
+    (0x829A, 0x829D, 0x920A),
+)  # exposure time, aperture, focal length
 LEAST_PITCH_MM, LARGEST_PITCH_MM = 0.001, 10.0
 Grey = NDArray[np.uint8] | NDArray[np.float32]  # levels 0..255
 
 
-def _read(file: Path, *, coloured: bool) -> tuple[Grey, tuple[float, float] | None]:
+class Stated(NamedTuple):
+    """The resolution that a file states, dots per inch in X and Y, and why it is no scale (None: it is one)."""
+
+    dpi: tuple[float, float]
+    doubt: str | None = None
+
+
+def _read(file: Path, *, coloured: bool) -> tuple[Grey, Stated | None]:
     """Grey levels, or colours, of the first page of an image file, upright, and the resolution that the file
     states.
     """
@@ -37,7 +59,7 @@ def _read(file: Path, *, coloured: bool) -> tuple[Grey, tuple[float, float] | No
             ):  # a stream is never mapped: Pillow turns maps wrongly
                 room.make_sure(file, *image.size)
                 image.load()
-                stated = _stated_dpi(image)
+                stated = _stated(image)
                 ImageOps.exif_transpose(image, in_place=True)
                 return np.array(image.convert("RGB")) if coloured else _grey(image), stated
     except UnidentifiedImageError:
@@ -104,22 +126,30 @@ def _darkest_channel(image: Image) -> NDArray[np.uint8]:
     return np.asarray(np.asarray(image.convert("RGB")).min(axis=2))
 
 
-def _stated_dpi(image: Image) -> tuple[float, float] | None:
-    """Resolution that the file states, dots per inch in X and Y; whole numbers where the file rounds to dots
-    per metre.
-    """
+def _stated(image: Image) -> Stated | None:
+    """The resolution that the file states; whole numbers where the file rounds to dots per metre."""
     if not _states_resolution(image):
         return None
     x, y = (float(v) for v in image.info["dpi"])
     if not (np.isfinite(x) and np.isfinite(y) and x > 1 and y > 1):
         return None
-    return tuple(round(v) if abs(v - round(v)) < 0.02 else v for v in (x, y))  # type: ignore[return-value]
+    x, y = (round(v) if abs(v - round(v)) < 0.02 else v for v in (x, y))
+    return Stated((x, y), _doubt(image, x, y))
+
+
+def _doubt(image: Image, x_dpi: float, y_dpi: float) -> str | None:
+    """Why a stated resolution is not the paper's; None where it may be."""
+    if any(tag in image.getexif().get_ifd(EXIF_IFD) for tag in CAMERA_TAGS):
+        return "but a camera took it, and a camera does not know how far the paper was"
+    if x_dpi == y_dpi and x_dpi in PLACEHOLDERS_DPI:
+        return "which is what programs write when they know no scale"
+    return None
 
 
 def _pitches_mm(
     file: Path,
     columns: int,
-    stated: tuple[float, float] | None,
+    stated: Stated | None,
     dpi: float | None,
     width_mm: float | None,
 ) -> tuple[float, float]:
@@ -141,4 +171,9 @@ def _pitches_mm(
         raise DrawingFault(
             f"{file} states no resolution; give --dpi 300, or the sheet's width with --width 120mm"
         )
-    return MM_PER_INCH / stated[0], MM_PER_INCH / stated[1]
+    if stated.doubt is not None:
+        raise DrawingFault(
+            f"{file} states {stated.dpi[0]:g} dpi, {stated.doubt}; "
+            f"give the sheet's width with --width 120mm, or --dpi {stated.dpi[0]:g} if that is true"
+        )
+    return MM_PER_INCH / stated.dpi[0], MM_PER_INCH / stated.dpi[1]

@@ -110,7 +110,7 @@ def test_the_sheet_is_as_large_as_its_pixels(tmp_path: Path, grey: Grey) -> None
 # scale
 
 
-@pytest.mark.parametrize("dpi", [72, 96, 150, 200, 300, 400, 600, 1200])
+@pytest.mark.parametrize("dpi", [75, 100, 150, 200, 300, 400, 600, 1200])
 def test_a_png_s_dots_per_metre_mean_a_whole_number_per_inch(
     tmp_path: Path, grey: Grey, dpi: int
 ) -> None:
@@ -183,9 +183,38 @@ def test_a_jpeg_s_own_resolution_counts(tmp_path: Path, grey: Grey) -> None:
         == MM_PER_INCH / 300
     )
     assert (
-        opened(Image.fromarray(grey), tmp_path / "b.jpg", dpi=(72, 72)).pitch_mm
-        == MM_PER_INCH / 72
+        opened(Image.fromarray(grey), tmp_path / "b.jpg", dpi=(75, 75)).pitch_mm
+        == MM_PER_INCH / 75
     )
+
+
+@pytest.mark.parametrize("dpi", [72, 96])
+@pytest.mark.parametrize("name", ["a.png", "a.tif", "a.jpg"])
+def test_a_placeholder_is_no_resolution(
+    tmp_path: Path, grey: Grey, name: str, dpi: int
+) -> None:
+    asks = rf"states {dpi} dpi, which is what programs write when they know no scale; .*--dpi {dpi} if"
+    with pytest.raises(DrawingFault, match=asks):
+        opened(Image.fromarray(grey), tmp_path / name, dpi=(dpi, dpi))
+    assert (
+        Drawing.open(tmp_path / name, dpi=dpi).pitch_mm == MM_PER_INCH / dpi
+    )  # the advice works
+
+
+def test_what_a_camera_states_is_no_resolution_and_what_a_scanner_states_is_one(
+    tmp_path: Path, grey: Grey
+) -> None:
+    exif = Image.Exif()
+    exif[0x010F], exif[0x0110] = "a maker", "a model"
+    Image.fromarray(grey).save(tmp_path / "scan.jpg", exif=exif, dpi=(240, 240))
+    assert Drawing.open(tmp_path / "scan.jpg").pitch_mm == MM_PER_INCH / 240
+    exif.get_ifd(0x8769)[0x920A] = 4.25  # the focal length, mm
+    Image.fromarray(grey).save(tmp_path / "photo.jpg", exif=exif, dpi=(240, 240))
+    with pytest.raises(
+        DrawingFault, match="states 240 dpi, but a camera took it, .*--width 120mm"
+    ):
+        Drawing.open(tmp_path / "photo.jpg")
+    assert Drawing.open(tmp_path / "photo.jpg", width_mm=120).width_mm == pytest.approx(120)
 
 
 @pytest.mark.parametrize("stated", [(1.0, 1.0), (0.001, 0.001)])
