@@ -211,7 +211,7 @@ def test_what_a_camera_states_is_no_resolution_and_what_a_scanner_states_is_one(
     exif.get_ifd(0x8769)[0x920A] = 4.25  # the focal length, mm
     Image.fromarray(grey).save(tmp_path / "photo.jpg", exif=exif, dpi=(240, 240))
     with pytest.raises(
-        DrawingFault, match="states 240 dpi, but a camera took it, .*--width 120mm"
+        DrawingFault, match=r"states 240 dpi, but a camera took it, .*--width 120mm"
     ):
         Drawing.open(tmp_path / "photo.jpg")
     assert Drawing.open(tmp_path / "photo.jpg", width_mm=120).width_mm == pytest.approx(120)
