@@ -27,8 +27,9 @@ from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.tracer.drawing.drawing import Drawing, levelled
 from morfax.tracer.following import follower
 from morfax.tracer.following.start import put_down
-from morfax.tracer.head import kernel as head
+from morfax.tracer.head import kernel
 from morfax.tracer.head.settings import Settings
+from morfax.tracer.head.state import DRUM, Home
 from morfax.tracer.junctions import planner as pilot
 from morfax.tracer.sensing import photocell
 from morfax.tracer.tangles import memory as tangles
@@ -162,27 +163,23 @@ def seen_from_axis(run: follower.Follower) -> dict[str, Array]:
     left of it.
     """
     s, t = run.carriage.state, run.carriage.tuning
-    heading = s[head.HEADING]
+    heading, axis = s.heading_rad, np.array([s.x_mm, s.y_mm])
     turn = np.array([[np.cos(heading), -np.sin(heading)], [np.sin(heading), np.cos(heading)]])
-    places = (
-        run.carriage._drum[: min(int(s[head.PLACES]), head.DRUM)] - s[[head.X, head.Y]]
-    ) @ turn
+    places = (s.drum_mm[: min(s.places, DRUM)] - axis) @ turn
     x, y = places[np.abs(places[:, 0] - t.point_mm) < t.half_window_mm].T
     fitted = np.polyfit(x, y, 2, w=np.sqrt(1 - ((x - t.point_mm) / t.half_window_mm) ** 2))
     window = t.point_mm + np.linspace(-1, 1, 60) * t.half_window_mm
-    phase, curve = np.linspace(0, 2 * np.pi, 100), s[head.MIDDLE] / t.lead_mm**2
+    phase, curve = np.linspace(0, 2 * np.pi, 100), s.middle_mm / t.lead_mm**2
     ellipse = [
         t.lead_mm + t.along_mm * np.cos(phase),
-        s[head.MIDDLE] + t.amplitude_mm * np.sin(phase),
+        s.middle_mm + t.amplitude_mm * np.sin(phase),
     ]
     beside = t.guard_mm * np.hypot(1, 2 * curve * t.guard_lead_mm) * np.array([1, 0, -1])
     return {
         "drum: the line's places, one a sweep": places,
         "parabola about the point": np.column_stack([window, np.polyval(fitted, window)]),
         "steering axis": np.zeros((1, 2)),
-        "point steered for": ((s[[head.POINT_X, head.POINT_Y]] - s[[head.X, head.Y]]) @ turn)[
-            None
-        ],
+        "point steered for": (np.array([[s.point_x_mm, s.point_y_mm]]) - axis) @ turn,
         "sweep of cell 101": np.column_stack(ellipse),
         "guard cells": np.column_stack(
             [np.full(3, t.guard_lead_mm), curve * t.guard_lead_mm**2 + beside]
@@ -195,17 +192,10 @@ def drum_figure() -> plt.Figure:
     """The head on an arc: axis, drum of places, parabola, point, cells."""
     drawing, by = inked(draw.arc((0, 0), 6, 0, 340))
     run = put_head(drawing, by + np.array([0, 6]))
-    home = (*run.stance.place_mm, run.stance.heading_rad, 1e9)
-    head.follow(
-        run.view.cells,
-        PITCH_MM,
-        run.carriage.state,
-        run.carriage._drum,
-        run.carriage.tuning,
-        home,
-        np.empty((3000, 2)),
-    )
-    axis, heading = run.carriage.state[[head.X, head.Y]], run.carriage.state[head.HEADING]
+    home = Home(*run.stance.place_mm, run.stance.heading_rad, 1e9)
+    state, tuning = run.carriage.state, run.carriage.tuning
+    kernel.follow(run.view.cells, PITCH_MM, state, tuning, home, np.empty((3000, 2)))
+    axis, heading = np.array([state.x_mm, state.y_mm]), state.heading_rad
     to_sheet = np.array(
         [[np.cos(heading), np.sin(heading)], [-np.sin(heading), np.cos(heading)]]
     )

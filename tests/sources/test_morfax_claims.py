@@ -34,6 +34,7 @@ from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.start import put_down
 from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.settings import HISTORIC, Settings
+from morfax.tracer.head.state import Home
 from morfax.tracer.operator.card import Card, Stop
 from morfax.tracer.operator.operator import Halt, Operator, Work
 from morfax.tracer.operator.zunit import Counters, Move, Preset, counts_of
@@ -195,9 +196,9 @@ def test_claim_2_an_oscillating_cell_steers_and_the_tracks_lie_about_a_recorded_
     for aside_mm in (-0.2, 0.2):  # and turns the head back upon the line
         stance, _ = next(put_down(sheet, (15.0, 30.0), HISTORIC.aperture_mm, None))
         carriage = Carriage(stance, HISTORIC, MOTION_RATE_HZ)
-        carriage.state[1] += aside_mm
+        carriage.state.y_mm += aside_mm
         while carriage.travel_mm < 4:
-            carriage.follow(stance.view, (0.0, 0.0, 0.0, 1e9))
+            carriage.follow(stance.view, Home(0.0, 0.0, 0.0, from_travel_mm=1e9))
         assert (
             abs(carriage.positions_mm[1, 1] - 30) > 0.15
             and abs(carriage.positions_mm[-1, 1] - 30) < 0.05

@@ -13,16 +13,16 @@ import pytest
 
 from morfax.motion.drive import Drive
 from morfax.tracer.following.start import put_down
-from morfax.tracer.head import kernel as head
 from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.settings import HISTORIC, Settings
 from morfax.tracer.head.stance import Stance
+from morfax.tracer.head.state import MORE, Home
 from morfax.tracer.program.trace import trace
 from tests.tracer.inked import inked, polyline
 
 RATE_HZ = 6000.0
 QUICK = Drive(1e-5, 1e9)  # the theory has no lag in the drives
-NOWHERE = (0.0, 0.0, 0.0, 1e9)
+NOWHERE = Home(0.0, 0.0, 0.0, from_travel_mm=1e9)
 
 
 def direct(lead_mm: float, gain: float, lag_s: float, speed_mm_s: float) -> Settings:
@@ -50,10 +50,10 @@ def offsets_on_a_straight(settings: Settings, aside_mm: float, way_mm: float) ->
     east = 0.0 if abs(stance.heading_rad) < 1 else math.pi
     assert math.cos(east - stance.heading_rad) > 0.99
     carriage = Carriage(Stance(np.array([4.0, 6.0]), 0.0, stance.view), settings, RATE_HZ)
-    carriage.state[head.Y] += aside_mm
+    carriage.state.y_mm += aside_mm
     while (
         carriage.travel_mm < way_mm - 4 * settings.lead_mm
-        and carriage.follow(stance.view, NOWHERE) == head.MORE
+        and carriage.follow(stance.view, NOWHERE) == MORE
     ):
         pass
     return carriage.positions_mm[1:, 1] - 6.0

@@ -28,11 +28,11 @@ from morfax.motion import curves
 from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault
 from morfax.tracer.head import course
-from morfax.tracer.head import kernel as head
 from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.loop import loop_in
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance
+from morfax.tracer.head.state import CHANGED, HOME, MORE, Home
 from morfax.tracer.junctions.choice import AHEAD, Way, survey
 from morfax.tracer.junctions.guides import Guide, Junctions
 from morfax.tracer.junctions.planner import Pilot
@@ -111,28 +111,28 @@ class Follower:
         """Follow until the line closes, ends or is lost; `told` hears the travel in mm. `longest_mm` bounds a
         run in circles.
         """
-        home = (*self.stance.place_mm, self.stance.heading_rad, self._away_mm)
+        home = Home(*self.stance.place_mm, self.stance.heading_rad, self._away_mm)
         while self.carriage.travel_mm < longest_mm:
             why = self.carriage.follow(self.view, home)
             if told is not None:
                 told(self.carriage.travel_mm)
-            if why == head.HOME:
+            if why == HOME:
                 self.carriage.run([self._way_home()])
                 return self._done("closed")
             if self.carriage.trail.comes_again(self.view.width_mm):
                 return self._done(
                     "joined"
                 )  # before the next junction, whose other legs have been followed
-            if why == head.CHANGED:
+            if why == CHANGED:
                 self.view = self.view.like(*self.carriage.stands(), follows=SWELLS)
                 self.carriage.retune(self.view)
                 continue
-            if why != head.MORE and self.settings.direct_rad_s_mm > 0:
+            if why != MORE and self.settings.direct_rad_s_mm > 0:
                 why_lost = "the swinging cell sees no more ink, and this head has no guard cells to find on by"
                 return self._lost(
                     why_lost, "go slower there with --speed, or follow with --head precise"
                 )
-            if why != head.MORE:
+            if why != MORE:
                 ending = self._through_knot()
                 if ending is not None:
                     return ending

@@ -3,12 +3,12 @@
 Signals: the drawing behind the aperture in; positions of the X and Y lead screws out, mm, at the motion rate.
 
 The cell swings across the line one lead ahead of the steering axis. Once a sweep, synchronous detection gives
-the side and distance of the line from the middle of the sweep, and the sweep is centred on it for the next
-time, so that the measure is a null. The place of the line on the sheet is remembered (a drum of places), and
-when the axis comes to a place, as much of the line has been seen ahead of it as behind it: a parabola through
-the remembered places about a point just ahead of the axis averages the noise of the paper away, and leaves a
-line whose bend changes where it is. For that point the axis steers, on the circle that touches its heading
-(pure pursuit), which is the steering law k = 2v/a² of the linear theory and has no error on a circle:
+the side and distance of the line from the middle of the sweep, and the next sweep is centred on the line, so
+that the measure is a null. A drum remembers the place of the line on the sheet. When the axis comes to a
+place, the drum holds as much of the line ahead of it as behind it: a parabola through the remembered places
+about a point just ahead of the axis averages the noise of the paper away, and leaves a line whose bend changes
+where it is. The axis steers for that point, on the circle that touches its heading (pure pursuit). This is
+the steering law k = 2v/a² of the linear theory, and it has no error on a circle:
 
     turn rate = v · 2e / (l² + e²)          l, e: the point along and across the heading, as seen from the axis now
 
@@ -19,13 +19,16 @@ steers, so that their lag turns no corner.
                       drum of places                  cell
       . . . . . . . . .  o-> .  x  . . . . . . . . .  )|(      guards
                        axis   point                         ||
-    guard cells    beside the line's edges and on it, a little further ahead: when they see ink beside the line, or none on it, the head cannot trust the
-                   swinging cell there; the kernel returns, and `knot` and `course` take the head through
-    mean           of a sweep against what it was when the head was tuned: when the line swells or fades, the kernel returns to be tuned anew
-    look-ahead     cell 102, a mm ahead of the swinging cell: when the line is not where the sweep's curve leads, the relay slows the head and holds it slow
+    guard cells    beside the line's edges and on it, a little further ahead: when they see ink beside the line,
+                   or no ink on it, the head cannot trust the swinging cell there; the kernel returns, and the
+                   rooms `junctions` and `tangles` plan the way through
+    mean           of a sweep against what it was when the head was tuned: when the line swells or fades, the
+                   kernel returns to be tuned anew
+    look-ahead     cell 102, ahead of the swinging cell: when the line is not where the sweep's curve leads,
+                   the relay slows the head and holds it slow
 
 A head without a drum, as in 1969, steers straight by what the cell sees aside, turn rate = k·e, and has
-neither guard cells nor a way through knots.
+neither guard cells nor a way through junctions.
 
 Source: patent ES 361967, figure 1: cell 101, mount 42, pin 48, motor 45, amplifier FSA, servo M and tacho T,
 potentiometer 59, drives DCX and DCY with tachos TX and TY, forward cell 102, relay RL, delay DL, resistor SR,
@@ -35,289 +38,212 @@ speed control WC. Questions: the patent gives no figures, no drum and no guard c
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 from numba import njit
 
-from morfax.motion.drive import drive_step
+from morfax.tracer.head.screws import move, owed_s
+from morfax.tracer.head.state import CHANGED, DRUM, HOME, JUNCTION, MORE, TIGHT
 from morfax.tracer.sensing.photocell import TWO_PI, darkness_at
 
-# State of the head, one float each: screws, speeds of the screws, heading, its rate, speed along, the sweep,
-# the ink, guard cells, relay, travel, the point that is steered for, the bend there, how many places are on
-# the drum, and how far aside the cell of a head without a drum sees the line
-X, Y, VX, VY, HEADING, TURN, SPEED, SWEEP, FIRST, MEAN, MIDDLE, SWEPT_X, SWEPT_Y, INK = range(
-    14
+# Shares of the line's ink; all chosen by trial on the test drawings.
+LOST = 0.2  # less over a sweep: the line has gone from under a head without guard cells
+BESIDE = 0.4  # more under a guard cell at the side: there is ink beside the line
+BLANK = 0.5  # less under a cell on the line: there is paper
+ALTERED = (
+    0.2  # over a sweep: the line has swollen or faded by this since the head was tuned to it
 )
-LEFT, AHEAD, RIGHT, SLOW, TRAVEL, POINT_X, POINT_Y, BEND, PLACES, ASIDE = range(14, 24)
-STATES = 24
-DRUM = 256  # places remembered
-LOST = 0.2  # of the ink, over a sweep: the line has gone from under a head without guard cells
-BESIDE = 0.4  # of the ink, averaged by the guard cells: there is ink beside the line
-# of the ink over a sweep: the line has swollen or faded by so much since the head was tuned to it
-ALTERED = 0.2
 
-MORE, KNOT, TIGHT, HOME, CHANGED = range(5)  # why the kernel returned
-
-
-class Tuning(NamedTuple):
-    """Settings of the head as its kernel takes them; mm, s, rad."""
-
-    period_s: float  # of the motion rate
-    speed_mm_s: float
-    slowed: float  # share of the speed
-    slow_periods: float  # how long the relay holds
-    acceleration_mm_s2: float
-    sweep_periods: int
-    lead_mm: float
-    point_mm: float  # from the axis to the point that is steered for
-    half_window_mm: float  # of the parabola about that point
-    tightest_per_mm: float  # a bend beyond this is a knot
-    amplitude_mm: float
-    along_mm: float  # lengthwise half-axis of the sweep's ellipse
-    guard_mm: float  # beside the middle of the line
-    guard_lead_mm: float
-    look_ahead_mm: float
-    slope_per_mm: float  # of the sweep's fundamental at the middle of the line
-    mean: float  # darkness over a centred sweep
-    drive_gain: float
-    drive_change_mm_s: float
-    steering_gain: float
-    direct_rad_s_mm: (
-        float  # turn rate per mm that the cell sees the line aside; 0 for a head with a drum
-    )
-
-
-def owed_s(tuning_gain: float, period_s: float) -> float:
-    """Time by which a drive of this gain per period lags its demand, s."""
-    return period_s * (1.0 - tuning_gain) / tuning_gain
+INK_FOLLOWS = 0.1  # share of a sweep's difference by which the ink is corrected
+PALEST, DARKEST = 0.3, 2.0  # a sweep counts as no less and no more of the ink than this
+GUARD_FOLLOWS = 0.5  # share by which a guard cell follows what it sees, sweep by sweep
+FARTHEST_ASIDE = 0.5  # of the amplitude: a sweep that is further off is not on the line
+SINGULAR = 1e-9  # of the moments' product: too few places on the drum for a parabola
+HOME_ASIDE = 0.3  # of the lead: home is on the line
+HOME_COSINE = 0.8  # of the angle between the heading and home's
+SHORTEST = 0.2  # of the distance to the point: the axis may have come so near to it
 
 
 @njit(cache=True)
-def follow(cells, pitch_mm, state, drum, t, home, out):  # type: ignore[no-untyped-def]
-    """Follow the line until something happens or `out` (n, 2) is full; (positions written, why).
-
-    `drum` (DRUM, 2) holds the places seen last; `home` is (x, y, heading, travel from which on the head may
-    close there).
-    """
+def follow(cells, pitch_mm, state, t, home, out):  # type: ignore[no-untyped-def]
+    """Follow the line until something happens or `out` (n, 2) is full; (positions written, why)."""
     for n in range(len(out)):
         _swing(cells, pitch_mm, state, t)
-        if state[SWEEP] >= t.sweep_periods:
-            _detect(state, drum, t)
+        if state.sweep_periods >= t.sweep_periods:
+            _detect(state, t)
             if t.direct_rad_s_mm == 0:
-                _fit(state, drum, t)
+                _fit(state, t)
             why = _look(cells, pitch_mm, state, t)
             if why == MORE and _at_home(state, t, home):
                 why = HOME
             if why != MORE:
                 return n, why
         _steer(state, t)
-        out[n, 0], out[n, 1] = state[X], state[Y]
+        out[n, 0], out[n, 1] = state.x_mm, state.y_mm
     return len(out), MORE
+
+
+@njit(cache=True, inline="always")
+def _way(state):  # type: ignore[no-untyped-def]
+    """Unit vector (x, y) along the heading."""
+    return math.cos(state.heading_rad), math.sin(state.heading_rad)
+
+
+@njit(cache=True, inline="always")
+def _seen(cells, pitch_mm, state, way, ahead, aside):  # type: ignore[no-untyped-def]
+    """Darkness under a cell so far ahead of the axis and to the left of its way, mm."""
+    x = state.x_mm + ahead * way[0] - aside * way[1]
+    y = state.y_mm + ahead * way[1] + aside * way[0]
+    return darkness_at(cells, pitch_mm, x, y)
 
 
 @njit(cache=True)
 def _swing(cells, pitch_mm, state, t):  # type: ignore[no-untyped-def]
-    """One period of the swinging cell: its current into the synchronous detector."""
-    phase = TWO_PI * (state[SWEEP] + 0.5) / t.sweep_periods
+    """One period of the swinging cell: its current goes into the synchronous detector."""
+    phase = TWO_PI * (state.sweep_periods + 0.5) / t.sweep_periods
     swing = math.sin(phase)
-    u, ahead = state[MIDDLE] + t.amplitude_mm * swing, t.lead_mm + t.along_mm * math.cos(phase)
-    c, s = math.cos(state[HEADING]), math.sin(state[HEADING])
-    d = darkness_at(cells, pitch_mm, state[X] + ahead * c - u * s, state[Y] + ahead * s + u * c)
-    state[FIRST] += d * swing
-    state[MEAN] += d
-    state[SWEEP] += 1
-    if state[SWEEP] == t.sweep_periods // 2:
-        state[SWEPT_X], state[SWEPT_Y] = state[X], state[Y]
+    aside = state.middle_mm + t.amplitude_mm * swing
+    ahead = t.lead_mm + t.along_mm * math.cos(phase)
+    darkness = _seen(cells, pitch_mm, state, _way(state), ahead, aside)
+    state.first_sum += darkness * swing
+    state.mean_sum += darkness
+    state.sweep_periods += 1
+    if state.sweep_periods == t.sweep_periods // 2:
+        state.swept_x_mm, state.swept_y_mm = state.x_mm, state.y_mm
 
 
 @njit(cache=True)
-def _detect(state, drum, t):  # type: ignore[no-untyped-def]
+def _detect(state, t):  # type: ignore[no-untyped-def]
     """End of a sweep: the line's place goes onto the drum, and the next sweep is centred on it."""
-    mean = state[MEAN] / t.sweep_periods
-    state[INK] += 0.1 * (min(max(mean / t.mean, 0.3), 2.0) - state[INK])
-    aside = 2.0 * state[FIRST] / t.sweep_periods / (t.slope_per_mm * state[INK])
+    # 1. what the sweep tells
+    mean = state.mean_sum / t.sweep_periods
+    state.ink += INK_FOLLOWS * (min(max(mean / t.mean, PALEST), DARKEST) - state.ink)
+    aside = 2.0 * state.first_sum / t.sweep_periods / (t.slope_per_mm * state.ink)
+    state.sweep_periods = 0
+    state.first_sum = state.mean_sum = 0.0
+    # 2. without a drum, the mount turns with the head only
     if t.direct_rad_s_mm > 0:
-        state[ASIDE] = aside
-        state[AHEAD] = mean / t.mean
-        state[MIDDLE] = state[SWEEP] = state[FIRST] = state[MEAN] = (
-            0.0  # the mount turns with the head only
-        )
+        state.aside_mm = aside
+        state.guard_ahead = mean / t.mean
+        state.middle_mm = 0.0
         return
-    limit = 0.5 * t.amplitude_mm
-    state[MIDDLE] += min(max(aside, -limit), limit)
-    middle = (
-        state[HEADING] - 0.5 * t.sweep_periods * t.period_s * state[TURN]
-    )  # as it was in the middle of the sweep
+    # 3. the line's place, by the heading as it was in the middle of the sweep
+    limit = FARTHEST_ASIDE * t.amplitude_mm
+    state.middle_mm += min(max(aside, -limit), limit)
+    middle = state.heading_rad - 0.5 * t.sweep_periods * t.period_s * state.turn_rad_s
     c, s = math.cos(middle), math.sin(middle)
-    if abs(aside) < limit:  # or else the sweep was not on the line
-        place = int(state[PLACES]) % DRUM
-        drum[place, 0] = state[SWEPT_X] + t.lead_mm * c - state[MIDDLE] * s
-        drum[place, 1] = state[SWEPT_Y] + t.lead_mm * s + state[MIDDLE] * c
-        state[PLACES] += 1
-    state[SWEEP] = state[FIRST] = state[MEAN] = 0.0
+    if abs(aside) < limit:
+        place = state.places % DRUM
+        state.drum_mm[place, 0] = state.swept_x_mm + t.lead_mm * c - state.middle_mm * s
+        state.drum_mm[place, 1] = state.swept_y_mm + t.lead_mm * s + state.middle_mm * c
+        state.places += 1
 
 
 @njit(cache=True)
-def _fit(state, drum, t):  # type: ignore[no-untyped-def]
-    """Parabola through the drum's places about the point ahead of the axis: where the line is there, and its
-    bend.
+def _fit(state, t):  # type: ignore[no-untyped-def]
+    """Lay a parabola through the drum's places about the point ahead of the axis: where the line is there,
+    and its bend.
 
-    Weights fall to nothing at the window's ends (1 - (x/h)²). The sums solve for y = p0 + p1·x + p2·x² from
-    the point.
+    Weights fall to nothing at the window's ends: 1 - (x/h)². The sums solve for y = p0 + p1·x + p2·x².
     """
-    c, s = math.cos(state[HEADING]), math.sin(state[HEADING])
-    x0, y0 = state[X] + t.point_mm * c, state[Y] + t.point_mm * s
-    s0 = s1 = s2 = s3 = s4 = b0 = b1 = b2 = 0.0
-    for k in range(min(int(state[PLACES]), DRUM)):
-        dx, dy = drum[k, 0] - x0, drum[k, 1] - y0
+    # 1. the moments of the places, x along the heading and y across it, from the point
+    c, s = _way(state)
+    x0, y0 = state.x_mm + t.point_mm * c, state.y_mm + t.point_mm * s
+    half = t.half_window_mm
+    s0 = s1 = s2 = s3 = s4 = 0.0
+    b0 = b1 = b2 = 0.0
+    for k in range(min(state.places, DRUM)):
+        dx, dy = state.drum_mm[k, 0] - x0, state.drum_mm[k, 1] - y0
         x, y = dx * c + dy * s, dy * c - dx * s
-        if abs(x) < t.half_window_mm and abs(y) < t.half_window_mm:
-            w = 1.0 - (x / t.half_window_mm) ** 2
+        if abs(x) < half and abs(y) < half:
+            w = 1.0 - (x / half) ** 2
             xx = x * x
-            s0, s1, s2, s3, s4 = (
-                s0 + w,
-                s1 + w * x,
-                s2 + w * xx,
-                s3 + w * xx * x,
-                s4 + w * xx * xx,
-            )
-            b0, b1, b2 = b0 + w * y, b1 + w * x * y, b2 + w * xx * y
+            s0 += w
+            s1 += w * x
+            s2 += w * xx
+            s3 += w * xx * x
+            s4 += w * xx * xx
+            b0 += w * y
+            b1 += w * x * y
+            b2 += w * xx * y
+    # 2. the parabola, by Cramer's rule
     d0, d1, d2 = s2 * s4 - s3 * s3, s2 * s3 - s1 * s4, s1 * s3 - s2 * s2
     det = s0 * d0 + s1 * d1 + s2 * d2
-    if det < 1e-9 * s0 * s2 * s4 or s0 == 0.0:
+    if det < SINGULAR * s0 * s2 * s4 or s0 == 0.0:
         return
+    d11, d12, d22 = s0 * s4 - s2 * s2, s1 * s2 - s0 * s3, s0 * s2 - s1 * s1
     p0 = (d0 * b0 + d1 * b1 + d2 * b2) / det
-    p1 = (d1 * b0 + (s0 * s4 - s2 * s2) * b1 + (s1 * s2 - s0 * s3) * b2) / det
-    p2 = (d2 * b0 + (s1 * s2 - s0 * s3) * b1 + (s0 * s2 - s1 * s1) * b2) / det
-    state[POINT_X], state[POINT_Y] = x0 - p0 * s, y0 + p0 * c
-    state[BEND] = 2.0 * p2 / (1.0 + p1 * p1) ** 1.5
+    p1 = (d1 * b0 + d11 * b1 + d12 * b2) / det
+    p2 = (d2 * b0 + d12 * b1 + d22 * b2) / det
+    # 3. the point on it, and the bend there
+    state.point_x_mm, state.point_y_mm = x0 - p0 * s, y0 + p0 * c
+    state.bend_per_mm = 2.0 * p2 / (1.0 + p1 * p1) ** 1.5
 
 
 @njit(cache=True)
 def _look(cells, pitch_mm, state, t):  # type: ignore[no-untyped-def]
-    """The guard cells and the look-ahead cell, read once a sweep; why the head must stop following, if it
-    must.
-    """
-    c, s = math.cos(state[HEADING]), math.sin(state[HEADING])
-    ahead = t.guard_lead_mm
-    curve = state[MIDDLE] / (t.lead_mm * t.lead_mm)
-    slant = math.hypot(1.0, 2.0 * curve * ahead)
-    for k in range(3 if t.direct_rad_s_mm == 0 else 0):
-        u = curve * ahead * ahead + (1 - k) * t.guard_mm * slant
-        d = darkness_at(
-            cells, pitch_mm, state[X] + ahead * c - u * s, state[Y] + ahead * s + u * c
-        )
-        state[LEFT + k] += 0.5 * (d / state[INK] - state[LEFT + k])
+    """Read the guard cells and the look-ahead cell, once a sweep; why the head must stop following."""
+    way, curve = (
+        _way(state),
+        state.middle_mm / (t.lead_mm * t.lead_mm),
+    )  # aside = curve · ahead²
+    # 1. cell 102 and its relay
     far = t.look_ahead_mm
-    u = curve * far * far
-    if (
-        darkness_at(cells, pitch_mm, state[X] + far * c - u * s, state[Y] + far * s + u * c)
-        < 0.5 * state[INK]
-    ):
-        state[SLOW] = t.slow_periods
+    if _seen(cells, pitch_mm, state, way, far, curve * far * far) < BLANK * state.ink:
+        state.slow_periods = t.slow_periods
     if t.direct_rad_s_mm > 0:
-        return KNOT if state[AHEAD] < LOST else MORE
-    if max(state[LEFT], state[RIGHT]) > BESIDE or state[AHEAD] < 0.5:
-        return KNOT
-    if max(abs(state[BEND]), 2 * abs(curve)) > t.tightest_per_mm:
+        return JUNCTION if state.guard_ahead < LOST else MORE
+    # 2. the guard cells
+    ahead = t.guard_lead_mm
+    on_line = curve * ahead * ahead
+    beside = t.guard_mm * math.hypot(1.0, 2.0 * curve * ahead)
+    left = _seen(cells, pitch_mm, state, way, ahead, on_line + beside) / state.ink
+    on = _seen(cells, pitch_mm, state, way, ahead, on_line) / state.ink
+    right = _seen(cells, pitch_mm, state, way, ahead, on_line - beside) / state.ink
+    state.guard_left += GUARD_FOLLOWS * (left - state.guard_left)
+    state.guard_ahead += GUARD_FOLLOWS * (on - state.guard_ahead)
+    state.guard_right += GUARD_FOLLOWS * (right - state.guard_right)
+    # 3. what they say
+    if max(state.guard_left, state.guard_right) > BESIDE or state.guard_ahead < BLANK:
+        return JUNCTION
+    if max(abs(state.bend_per_mm), 2 * abs(curve)) > t.tightest_per_mm:
         return TIGHT
-    return CHANGED if abs(state[INK] - 1.0) > ALTERED else MORE
+    return CHANGED if abs(state.ink - 1.0) > ALTERED else MORE
 
 
 @njit(cache=True)
 def _at_home(state, t, home):  # type: ignore[no-untyped-def]
     """Whether home lies just ahead on the line."""
-    if state[TRAVEL] < home[3]:
+    x_mm, y_mm, heading_rad, from_travel_mm = home
+    if state.travel_mm < from_travel_mm:
         return False
-    dx, dy = home[0] - state[X], home[1] - state[Y]
-    c, s = math.cos(state[HEADING]), math.sin(state[HEADING])
+    dx, dy = x_mm - state.x_mm, y_mm - state.y_mm
+    c, s = _way(state)
     along, aside = dx * c + dy * s, dy * c - dx * s
-    return (
-        0.0 < along < t.lead_mm
-        and abs(aside) < 0.3 * t.lead_mm
-        and math.cos(home[2] - state[HEADING]) > 0.8
-    )
+    on_it = 0.0 < along < t.lead_mm and abs(aside) < HOME_ASIDE * t.lead_mm
+    return on_it and math.cos(heading_rad - state.heading_rad) > HOME_COSINE
 
 
 @njit(cache=True)
 def _steer(state, t):  # type: ignore[no-untyped-def]
-    """One period of steering servo, sine and cosine, and the two drives."""
-    if state[SLOW] > 0:
-        state[SLOW] -= 1
-    wanted = t.speed_mm_s * (t.slowed if state[SLOW] > 0 else 1.0)
+    """One period of relay, steering servo, sine and cosine, and the two drives."""
+    # 1. speed, as the relay has it
+    if state.slow_periods > 0:
+        state.slow_periods -= 1
+    wanted = t.speed_mm_s * (t.slowed if state.slow_periods > 0 else 1.0)
     change = t.acceleration_mm_s2 * t.period_s
-    state[SPEED] += min(max(wanted - state[SPEED], -change), change)
-    owed = t.period_s * (1.0 - t.drive_gain) / t.drive_gain
-    dx = state[POINT_X] - state[X] - owed * state[VX]
-    dy = state[POINT_Y] - state[Y] - owed * state[VY]
-    c, s = math.cos(state[HEADING]), math.sin(state[HEADING])
-    along, aside = max(dx * c + dy * s, 0.2 * t.point_mm), dy * c - dx * s
-    demand = state[SPEED] * 2.0 * aside / (along * along + aside * aside)
+    state.speed_mm_s += min(max(wanted - state.speed_mm_s, -change), change)
+    # 2. turn rate, from where the screws will be when the drives have made good what they owe
+    owed = owed_s(t.drive_gain, t.period_s)
+    dx = state.point_x_mm - state.x_mm - owed * state.vx_mm_s
+    dy = state.point_y_mm - state.y_mm - owed * state.vy_mm_s
+    c, s = _way(state)
+    along, aside = max(dx * c + dy * s, SHORTEST * t.point_mm), dy * c - dx * s
+    demand = state.speed_mm_s * 2.0 * aside / (along * along + aside * aside)
     if t.direct_rad_s_mm > 0:
-        demand = t.direct_rad_s_mm * state[ASIDE]
-    state[TURN] += t.steering_gain * (demand - state[TURN])
-    state[HEADING] += state[TURN] * t.period_s
-    move(
-        state,
-        t,
-        state[SPEED] * math.cos(state[HEADING]),
-        state[SPEED] * math.sin(state[HEADING]),
-    )
-
-
-@njit(cache=True)
-def move(state, t, demand_x_mm_s, demand_y_mm_s):  # type: ignore[no-untyped-def]
-    """One period of the two drives: their screws turn, and the head with them."""
-    x, y = state[X], state[Y]
-    state[VX] = drive_step(state[VX], demand_x_mm_s, t.drive_gain, t.drive_change_mm_s)
-    state[VY] = drive_step(state[VY], demand_y_mm_s, t.drive_gain, t.drive_change_mm_s)
-    state[X] += state[VX] * t.period_s
-    state[Y] += state[VY] * t.period_s
-    state[TRAVEL] += math.hypot(state[X] - x, state[Y] - y)
-
-
-@njit(cache=True)
-def run(state, t, points, speeds, out):  # type: ignore[no-untyped-def]
-    """Run along a course (n, 2) mm, at each point at most at its speed (n,) mm/s; positions written.
-
-    The demand moves on the course exactly, and the screws follow by their lag.
-    """
-    owed = t.period_s * (1.0 - t.drive_gain) / t.drive_gain
-    x, y = state[X] + owed * state[VX], state[Y] + owed * state[VY]  # where the demand stands
-    change, slowest = t.acceleration_mm_s2 * t.period_s, 0.02 * t.speed_mm_s
-    leg, last = 0, len(points) - 1
-    for n in range(len(out)):
-        if leg >= last:
-            return n
-        gap = math.hypot(points[leg + 1, 0] - x, points[leg + 1, 1] - y)
-        braking = math.sqrt(speeds[leg + 1] ** 2 + 2 * t.acceleration_mm_s2 * gap)
-        held = t.speed_mm_s * (t.slowed if state[SLOW] > 0 else 1.0)
-        state[SLOW] = max(state[SLOW] - 1, 0)
-        allowed = min(
-            braking, max(speeds[leg], speeds[leg + 1]), max(held, state[SPEED] - change)
-        )
-        state[SPEED] = max(min(state[SPEED] + change, allowed), slowest)
-        step = state[SPEED] * t.period_s
-        old_x, old_y = x, y
-        while leg < last and step >= gap:
-            x, y = points[leg + 1, 0], points[leg + 1, 1]
-            step -= gap
-            leg += 1
-            if leg < last:
-                gap = math.hypot(points[leg + 1, 0] - x, points[leg + 1, 1] - y)
-        if leg < last:
-            x += (points[leg + 1, 0] - x) * step / gap
-            y += (points[leg + 1, 1] - y) * step / gap
-        move(state, t, (x - old_x) / t.period_s, (y - old_y) / t.period_s)
-        out[n, 0], out[n, 1] = state[X], state[Y]
-    return len(out)
-
-
-@njit(cache=True)
-def stand(state, t, out):  # type: ignore[no-untyped-def]
-    """Stand for the length of `out` while the drives come to rest."""
-    state[SPEED] = 0.0
-    for n in range(len(out)):
-        move(state, t, 0.0, 0.0)
-        out[n, 0], out[n, 1] = state[X], state[Y]
-    return len(out)
+        demand = t.direct_rad_s_mm * state.aside_mm
+    state.turn_rad_s += t.steering_gain * (demand - state.turn_rad_s)
+    state.heading_rad += state.turn_rad_s * t.period_s
+    # 3. potentiometer 59 resolves the speed for the drives
+    vx = state.speed_mm_s * math.cos(state.heading_rad)
+    vy = state.speed_mm_s * math.sin(state.heading_rad)
+    move(state, t, vx, vy)

@@ -1,4 +1,4 @@
-"""TODO."""
+"""A plan: the course that `junctions` or `tangles` hand to the head, and the leg that it follows from there."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from morfax.tracer.sensing.leg import Leg
 
 
 class Planned(NamedTuple):
-    """Stretches from where the head is, the leg that they lead to, and what of the line was felt clean on the
-    way.
+    """Stretches (n, 2) mm from where the head is, the leg that they lead to, and the stations (n, 3) that were
+    felt clean on the way.
     """
 
     stretches: list[Array]

@@ -19,8 +19,8 @@ from typing import Any
 import numpy as np
 
 from morfax.motion.drive import Drive
-from morfax.tracer.head.kernel import Tuning
 from morfax.tracer.head.stance import Stance
+from morfax.tracer.head.state import Tuning
 from morfax.tracer.sensing.photocell import sweep
 
 OF_DRIVE = "drive_"  # what the name of a setting of the drives begins with

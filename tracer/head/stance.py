@@ -1,4 +1,4 @@
-"""TODO."""
+"""The stance: how the head is put down on a line, before it follows."""
 
 from __future__ import annotations
 
@@ -16,8 +16,10 @@ class Stance:
     place_mm: Array
     heading_rad: float
     view: View
-    at_end: bool = False
-    reference_mm: tuple[float, float] | None = None  # the reference point from which it goes
+    at_end: bool = False  # of a line
+    reference_mm: tuple[float, float] | None = (
+        None  # the reference point that the line starts from
+    )
 
 
 def turned_round(end_mm: Array, heading_rad: float, view: View) -> Stance:

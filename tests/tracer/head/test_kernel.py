@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 import pytest
@@ -21,8 +20,9 @@ from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.follower import Followed, Follower
 from morfax.tracer.following.start import put_down
-from morfax.tracer.head import kernel as head
+from morfax.tracer.head import kernel, screws
 from morfax.tracer.head.settings import Settings
+from morfax.tracer.head.state import FLOATS, MORE, Home
 from morfax.tracer.program.trace import Trace, trace
 from tests.tracer.inked import UM, arc, inked, polyline
 
@@ -219,42 +219,33 @@ def test_no_drive_is_asked_for_more_than_its_acceleration() -> None:
 @pytest.fixture
 def plain_head(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """All kernels of the head as plain Python."""
-    for name, function in vars(head).copy().items():
-        if hasattr(function, "py_func"):
-            monkeypatch.setattr(head, name, function.py_func)
+    for module in (kernel, screws):
+        for name, function in vars(module).copy().items():
+            if hasattr(function, "py_func"):
+                monkeypatch.setattr(module, name, function.py_func)
     yield
 
 
-def _some_steps(drawing: Drawing) -> tuple[Any, Any]:
+def _some_steps(drawing: Drawing) -> tuple[Array, Array]:
     """A head's state and positions after following for 40 ms, running round a corner from memory and
     standing.
     """
     stance, _ = next(iter(put_down(drawing, None, 0.15, None)))
     follower = Follower(stance, Settings(), MOTION_RATE_HZ)
     out = np.zeros((400, 2))
-    drum, home = follower.carriage._drum, (0.0, 0.0, 0.0, 1e9)
-    n, why = head.follow(
+    cells, tuning, state = (
         follower.view.cells,
-        drawing.pitch_mm,
-        follower.carriage.state,
-        drum,
         follower.carriage.tuning,
-        home,
-        out[:240],
-    )
-    assert (n, why) == (240, head.MORE)
-    way = follower.carriage.state[[head.X, head.Y]] + np.array(
-        [[0.0, 0.0], [0.2, 0.0], [0.2, 0.2]]
-    )
-    n += head.run(
         follower.carriage.state,
-        follower.carriage.tuning,
-        way,
-        np.array([10.0, 2.0, 0.0]),
-        out[240:360],
     )
-    head.stand(follower.carriage.state, follower.carriage.tuning, out[360:])
-    return follower.carriage.state.copy(), out
+    home = Home(0.0, 0.0, 0.0, from_travel_mm=1e9)
+    n, why = kernel.follow(cells, drawing.pitch_mm, state, tuning, home, out[:240])
+    assert (n, why) == (240, MORE)
+    begin = np.array([state.x_mm, state.y_mm])
+    way = begin + np.array([[0.0, 0.0], [0.2, 0.0], [0.2, 0.2]])
+    n += screws.run(state, tuning, way, np.array([10.0, 2.0, 0.0]), out[240:360])
+    screws.stand(state, tuning, out[360:])
+    return np.array([state[name] for name in (*FLOATS, "sweep_periods", "places")]), out
 
 
 def test_compiled_and_plain_head_do_the_same(request: pytest.FixtureRequest) -> None:

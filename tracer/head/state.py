@@ -1,0 +1,90 @@
+"""What the head's kernels work on: the state of the head, its tuning, and why a kernel returns.
+
+The state is one record that numba and numpy take alike. Its fields hold float64, the two counts int64.
+
+Source: our own layout; the parts are those of patent ES 361967, figure 1.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from morfax.motion.arrays import Array
+
+DRUM = 256  # places that the drum remembers: 10 mm of line at 250 sweeps/s and 10 mm/s
+
+FLOATS = (
+    *("x_mm", "y_mm", "vx_mm_s", "vy_mm_s"),  # the two screws, and their speeds
+    *("heading_rad", "turn_rad_s", "speed_mm_s"),  # of the steering, and the speed along it
+    *("first_sum", "mean_sum"),  # the sweep so far: sum of darkness·sin(phase), sum of darkness
+    "middle_mm",  # of the sweep, to the left of the heading
+    *("swept_x_mm", "swept_y_mm"),  # where the axis stood in the middle of the sweep
+    "ink",  # the line's darkness, as a share of what it was when the head was tuned
+    *(
+        "guard_left",
+        "guard_ahead",
+        "guard_right",
+    ),  # what the guard cells see, as a share of the ink
+    "slow_periods",  # for which the relay still holds
+    "travel_mm",
+    *("point_x_mm", "point_y_mm"),  # the point that the axis steers for
+    "bend_per_mm",  # of the line at that point
+    "aside_mm",  # how far to the left the cell of a head without a drum sees the line
+)
+STATE = np.dtype(
+    [(name, np.float64) for name in FLOATS]
+    + [
+        ("sweep_periods", np.int64),
+        ("places", np.int64),
+    ]  # into the sweep; put on the drum so far
+    + [("drum_mm", np.float64, (DRUM, 2))],  # the places of the line seen last, round and round
+)
+
+MORE, JUNCTION, TIGHT, HOME, CHANGED = range(5)  # why the kernel returned
+
+
+class Home(NamedTuple):
+    """Where a closed line began, and the travel from which on the head may close there."""
+
+    x_mm: float
+    y_mm: float
+    heading_rad: float
+    from_travel_mm: float
+
+
+class Tuning(NamedTuple):
+    """Settings of the head as its kernels take them."""
+
+    period_s: float  # of the motion rate
+    speed_mm_s: float
+    slowed: float  # share of the speed while the relay holds
+    slow_periods: float  # how long the relay holds
+    acceleration_mm_s2: float
+    sweep_periods: int
+    lead_mm: float
+    point_mm: float  # from the axis to the point that it steers for
+    half_window_mm: float  # of the parabola about that point
+    tightest_per_mm: float  # a line that bends more is a junction's
+    amplitude_mm: float
+    along_mm: float  # lengthwise half-axis of the sweep's ellipse
+    guard_mm: float  # from the middle of the line to the guard cells beside it
+    guard_lead_mm: float
+    look_ahead_mm: float
+    slope_per_mm: float  # of the sweep's fundamental at the middle of the line
+    mean: float  # darkness over a centred sweep
+    drive_gain: float  # share of the speed error that a drive makes good in one period
+    drive_change_mm_s: float  # largest change of a drive's speed in one period
+    steering_gain: (
+        float  # share of the turn rate's error that the servo makes good in one period
+    )
+    direct_rad_s_mm: float  # turn rate per mm that the cell sees the line aside; 0: by the drum
+
+
+def at_rest(place_mm: Array) -> Any:
+    """The state of a head that stands at a place (x, y): a record, which the kernels change."""
+    state = np.zeros(1, STATE).view(np.recarray)[0]
+    state.x_mm, state.y_mm = place_mm
+    state.ink = 1.0
+    return state
