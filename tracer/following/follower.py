@@ -111,7 +111,8 @@ class Follower:
         """Follow until the line closes, ends or is lost; `told` hears the travel in mm. `longest_mm` bounds a
         run in circles.
         """
-        home = Home(*self.stance.place_mm, self.stance.heading_rad, self._away_mm)
+        x_mm, y_mm = self.stance.place_mm
+        home = Home(x_mm, y_mm, self.stance.heading_rad, self._away_mm)
         while self.carriage.travel_mm < longest_mm:
             why = self.carriage.follow(self.view, home)
             if told is not None:
