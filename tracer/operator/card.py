@@ -28,7 +28,7 @@ from pathlib import Path as FilePath
 from typing import Literal, cast
 
 from morfax.motion.faults import CardFault
-from morfax.tracer.operator.toml_fields import Field, opened, parsed, read
+from morfax.motion.toml_fields import Field, opened, parsed, read
 from morfax.tracer.operator.zunit import COUNTS_PER_MM, Counters, Move, Preset, counts_of, moves
 
 Restart = Literal["automatic", "manual"]

@@ -16,8 +16,8 @@ from __future__ import annotations
 
 from pathlib import Path as FilePath
 
+from morfax.motion.toml_fields import Field, opened, parsed
 from morfax.tracer.head.settings import BOUNDS, Settings, allowed, value_of
-from morfax.tracer.operator.toml_fields import Field, opened, parsed
 
 CALLED = "the file of settings"
 

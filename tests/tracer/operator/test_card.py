@@ -14,8 +14,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from morfax.motion.faults import CardFault, FileFault
+from morfax.motion.toml_lines import lines_of
 from morfax.tracer.operator.card import Card, Drill, Stop
-from morfax.tracer.operator.toml_lines import lines_of
 from morfax.tracer.operator.zunit import Counters, Preset, moves, z_moves
 
 WHOLE = """\

@@ -21,8 +21,8 @@ from pathlib import Path as FilePath
 from typing import Any, NoReturn, TypeVar
 
 from morfax.motion.faults import CardFault, FileFault
+from morfax.motion.toml_lines import Path, lines_of
 from morfax.motion.units import parse_length_mm, parse_speed_mm_s, parse_time_s
-from morfax.tracer.operator.toml_lines import Path, lines_of
 from morfax.tracer.operator.zunit import COUNT_MM, COUNTS_PER_MM, LARGEST_COUNT, counts_of
 
 SLOWEST_MM_S, FASTEST_MM_S = 0.01, 100.0
