@@ -1,11 +1,11 @@
-"""A field of a card: what it holds, what it may hold, and the fault that says so with its line.
+"""A field of a TOML file: what it holds, what it may hold, and the fault that says so with its line.
 
-Signals in: the text of a card (TOML). Signals out: quantities in counts of 0.01 mm, mm/s and s, choices,
-whole numbers; or a CardFault:
+Signals in: the text of a file (TOML): the operator's card, the head's settings, a machine. Signals out: quantities
+in mm/s and s, choices, whole numbers; or a CardFault:
 
     part.toml, line 7: speeds.feed holds "5kg"; it may hold a speed of 0.01 to 100 mm/s, such as "5mm/s"
 
-Fields are named as in the card, elements of arrays by their number from 1: `stop[2].moves[1].down`.
+Fields are named as in the file, elements of arrays by their number from 1: `stop[2].moves[1].down`.
 
 Questions: the feeds end at 100 mm/s, what a tape of 6 kHz and 20 cycles per mm carries (see `motion.axis`).
 """
@@ -22,8 +22,7 @@ from typing import Any, NoReturn, TypeVar
 
 from morfax.motion.faults import CardFault, FileFault
 from morfax.motion.toml_lines import Path, lines_of
-from morfax.motion.units import parse_length_mm, parse_speed_mm_s, parse_time_s
-from morfax.tracer.operator.zunit import COUNT_MM, COUNTS_PER_MM, LARGEST_COUNT, counts_of
+from morfax.motion.units import parse_speed_mm_s, parse_time_s
 
 SLOWEST_MM_S, FASTEST_MM_S = 0.01, 100.0
 LONGEST_DWELL_S = 600.0
@@ -69,25 +68,6 @@ class Field:
             holds=holds,
         )
 
-    def counts(self, least: int = 1) -> int:
-        """Counts of a length that can be set on five decades."""
-        allowed = (
-            f"it may hold {least * COUNT_MM:.2f} to {LARGEST_COUNT * COUNT_MM:.2f} mm in steps of {COUNT_MM:g} mm, "
-            'such as "2.5mm"'
-        )
-        try:
-            length_mm = parse_length_mm(self._quantity(allowed))
-            counts = (
-                counts_of(length_mm)
-                if abs(length_mm) * COUNTS_PER_MM <= LARGEST_COUNT + 1
-                else -1
-            )
-        except ValueError:
-            self.refuse(allowed)
-        if not least <= counts <= LARGEST_COUNT:
-            self.refuse(allowed)
-        return counts
-
     def speed_mm_s(self) -> float:
         """A speed, mm/s."""
         allowed = f'it may hold a speed of {SLOWEST_MM_S:g} to {FASTEST_MM_S:g} mm/s, such as "5mm/s" or "300mm/min"'
@@ -130,7 +110,7 @@ class Field:
                 )
         return fields
 
-    def _quantity(self, allowed: str) -> str:
+    def quantity(self, allowed: str) -> str:
         """A quantity as text: a string, or a bare number."""
         if isinstance(self.value, bool) or not isinstance(self.value, str | int | float):
             self.refuse(allowed)
@@ -141,7 +121,7 @@ class Field:
     ) -> float:
         """A quantity that lies between two."""
         try:
-            value = parse(self._quantity(allowed))
+            value = parse(self.quantity(allowed))
         except ValueError:
             self.refuse(allowed)
         if not least <= value <= most:

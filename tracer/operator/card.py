@@ -29,6 +29,7 @@ from typing import Literal, cast
 
 from morfax.motion.faults import CardFault
 from morfax.motion.toml_fields import Field, opened, parsed, read
+from morfax.tracer.operator.counts_field import counts_in
 from morfax.tracer.operator.zunit import COUNTS_PER_MM, Counters, Move, Preset, counts_of, moves
 
 Restart = Literal["automatic", "manual"]
@@ -160,13 +161,13 @@ def _card(whole: Field) -> Card:
         fields["depth"].refuse(
             "beside passes there may be no depth: the last pass is the depth"
         )
-    depth = read(fields, "depth", lambda field: (field.counts() / COUNTS_PER_MM,), ())
+    depth = read(fields, "depth", lambda field: (counts_in(field) / COUNTS_PER_MM,), ())
     return Card(
         start_mm=read(
-            fields, "start", lambda field: field.counts(least=6) / COUNTS_PER_MM, None
+            fields, "start", lambda field: counts_in(field, least=6) / COUNTS_PER_MM, None
         ),  # see IN_WORK_BELOW_MM
         depths_mm=read(fields, "passes", _passes, depth),
-        entry_mm=read(fields, "entry", lambda field: field.counts() / COUNTS_PER_MM, None),
+        entry_mm=read(fields, "entry", lambda field: counts_in(field) / COUNTS_PER_MM, None),
         trace_mm_s=read(speeds, "trace", Field.speed_mm_s, None),
         feed_mm_s=feed_mm_s,
         rapid_mm_s=read(speeds, "rapid", Field.speed_mm_s, None),
@@ -183,7 +184,7 @@ def _passes(field: Field) -> tuple[float, ...]:
     for element in field.elements(
         'depths, each deeper than the one before, such as ["2mm", "4mm"]'
     ):
-        counts = element.counts()
+        counts = counts_in(element)
         if depths and counts <= depths[-1]:
             element.refuse(
                 f"it may hold more than the pass before, {depths[-1] / COUNTS_PER_MM:g} mm"
@@ -259,8 +260,8 @@ def _move(field: Field, feed_mm_s: float) -> Preset:
             "it may hold down or up, one of them, with feed and dwell; or a dwell alone"
         )
     if "up" in fields:
-        return Preset(fields["up"].counts(), "up", feed_mm_s, dwell_s)
-    return Preset(read(fields, "down", Field.counts, 0), "down", feed_mm_s, dwell_s)
+        return Preset(counts_in(fields["up"]), "up", feed_mm_s, dwell_s)
+    return Preset(read(fields, "down", counts_in, 0), "down", feed_mm_s, dwell_s)
 
 
 def _drill(field: Field, feed_mm_s: float) -> Drill:
@@ -268,14 +269,14 @@ def _drill(field: Field, feed_mm_s: float) -> Drill:
     fields = field.table(*_DRILL_KEYS)
     if "depth" not in fields:
         field.refuse('it must hold a depth, such as { depth = "8mm" }')
-    depth = fields["depth"].counts()
-    peck = read(fields, "peck", Field.counts, depth)
+    depth = counts_in(fields["depth"])
+    peck = read(fields, "peck", counts_in, depth)
     if peck > depth:
         fields["peck"].refuse(f"it may hold the depth at most, {depth / COUNTS_PER_MM:g} mm")
     return Drill(
         depth_counts=depth,
         peck_counts=peck,
-        clear_counts=read(fields, "clear", Field.counts, CLEAR_COUNTS),
+        clear_counts=read(fields, "clear", counts_in, CLEAR_COUNTS),
         feed_mm_s=read(fields, "feed", Field.speed_mm_s, feed_mm_s),
         dwell_s=read(fields, "dwell", Field.time_s, 0.0),
     )
