@@ -26,9 +26,6 @@ bench: $(VENV)/installed
 
 figures: $(VENV)/installed
 	$(BIN)/python -m docs.figures
-	$(BIN)/python -m docs.pulse_figures
-	$(BIN)/python -m docs.tape_figures
-	$(BIN)/python -m docs.command_figures
 
 # the tests of trust at full length: every pair of wear, ten thousand dropouts, tapes of three and six hours; 12 GB, about an hour
 soak: $(VENV)/installed

@@ -118,7 +118,7 @@ def unit_options(verb: Callable[..., Any]) -> Callable[..., Any]:
     @click.option(
         "--pickup",
         type=click.Choice(PICK_UPS),
-        help=f"What makes the tracks of a tape: its wave and its travel per cycle, see docs/tape-format.md.  "
+        help=f"What makes the tracks of a tape: its wave and its travel per cycle, see docs/reference/tape-format.md.  "
         f"[default: {PICK_UPS[0]}]",
     )
     @click.option(

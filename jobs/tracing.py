@@ -198,7 +198,7 @@ class Head:
             return Attended(asking=self.marks.ask)
         if self.marks.ask:
             raise click.UsageError(
-                "--ask needs a terminal to ask at; write a card instead, see docs/card.md"
+                "--ask needs a terminal to ask at; write a card instead, see docs/reference/card.md"
             )
         raise CardFault(
             'restart = "manual" waits for the operator\'s button, and there is no terminal; run it at one, or set "automatic"',

@@ -124,7 +124,7 @@ def command(
 ) -> None:
     """Wear a tape as a real recorder and the years do.
 
-    Each part stands by itself; without any the tape is only copied. docs/transport.md has the figures of the
+    Each part stands by itself; without any the tape is only copied. docs/background/transport.md has the figures of the
     sets.
     """
     from morfax.recorder.wear.transport import SETS as WEAR

@@ -22,7 +22,7 @@ and the way between where it lies within a twentieth of a cycle:   |r| / 2 + |dv
                  \\ ................. /  what may have been            \\/     ends with the same speed: A T² / 4 of travel
                      gap, T           p1 _______
 
-Source: patent ES 361967, figure 5 (fault circuit 162) asks for it; the bounds are derived in docs/player.md.
+Source: patent ES 361967, figure 5 (fault circuit 162) asks for it; the bounds are derived in docs/background/player.md.
 Questions: A is not on the tape: it is taken as what the machine's own motors can do, 5 m/s², and may be given
 where the program is known to be smoother.
 """

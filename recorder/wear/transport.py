@@ -11,7 +11,7 @@ The worn tape starts at `cut_start_s` of the programme and ends `cut_end_s` befo
 from one seed, part by part, so that a part is the same whatever the others are, and however long the blocks.
 
 Source: patent ES 361967 (the tape goes from one machine to another); figures and their sources:
-docs/transport.md. Questions: wow and flutter are given unweighted, root mean square. A head's azimuth makes
+docs/background/transport.md. Questions: wow and flutter are given unweighted, root mean square. A head's azimuth makes
 skew that grows evenly from track to track; weave is the tape wandering in its guides, in the same proportion.
 """
 

@@ -67,7 +67,7 @@ def test_a_cubic_program_keeps_its_tolerance(
 ) -> None:
     asked_mm = None if tolerance_um is None else tolerance_um * UM
     record_cubics(waves(), tmp_path / "a.cubic", tolerance_mm=asked_mm)
-    stated_um = tolerance_um or 2.0  # docs/sea.md
+    stated_um = tolerance_um or 2.0  # docs/background/sea.md
     assert off_um(interpolated_mm(tmp_path / "a.cubic")) <= stated_um + COUNTED_UM
 
 

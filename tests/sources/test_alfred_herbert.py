@@ -1,6 +1,6 @@
 """Patent ES 414458 (Alfred Herbert, 1973): its worked cases, and one test for each claim.
 
-`docs/claims-alfred-herbert.md` has the table from claim to test.
+`docs/background/claims-alfred-herbert.md` has the table from claim to test.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Patent ES 361967 (Morfax, 1969): one test for each of its 17 claims, on the running system.
 
-`docs/claims-morfax.md` has the table from claim to test. The sheet is what the patent's draughtsman draws: a
+`docs/background/claims-morfax.md` has the table from claim to test. The sheet is what the patent's draughtsman draws: a
 reference point, a lead line with a stop mark just before the contour, the contour, a stop mark on it.
 
        ┼──────┼──── contour ──┼── and back          drawn with 0.5 mm, scanned at 300 dpi with noise
@@ -525,7 +525,7 @@ def test_claim_17_the_motor_turns_a_member_whose_signal_is_fed_back(tmp_path: Pa
 
 def test_every_claim_stands_in_the_table() -> None:
     lines = (
-        (Path(__file__).parents[2] / "docs" / "claims-morfax.md")
+        (Path(__file__).parents[2] / "docs" / "background" / "claims-morfax.md")
         .read_text(encoding="utf-8")
         .splitlines()
     )

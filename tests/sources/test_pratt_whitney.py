@@ -1,7 +1,7 @@
 """Patent from US application 631 214 (Pratt & Whitney, 1967): its worked examples, and one test for each
 claim.
 
-`docs/claims-pratt-whitney.md` has the table from claim to test. Pulses are of 0.0005 in, position counts of
+`docs/background/claims-pratt-whitney.md` has the table from claim to test. Pulses are of 0.0005 in, position counts of
 0.001 in.
 """
 

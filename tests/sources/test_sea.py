@@ -1,6 +1,6 @@
 """Patent US 3062995 (SEA, Raymond and Jeudon, 1957): its tables and figures, and one test for each claim.
 
-`docs/claims-sea.md` has the table from claim to test.
+`docs/background/claims-sea.md` has the table from claim to test.
 """
 
 from __future__ import annotations
@@ -245,7 +245,7 @@ def test_claim_10_the_stores_recirculate(words: tuple[int, int, int, int], steps
 
 def test_every_claim_stands_in_the_table() -> None:
     lines = (
-        (Path(__file__).parents[2] / "docs" / "claims-sea.md")
+        (Path(__file__).parents[2] / "docs" / "background" / "claims-sea.md")
         .read_text(encoding="utf-8")
         .splitlines()
     )

@@ -1,6 +1,6 @@
 """Patent ES 443122 (Superior Electric, 1975): its worked examples, and one test for each claim.
 
-`docs/claims-superior-electric.md` has the table from claim to test.
+`docs/background/claims-superior-electric.md` has the table from claim to test.
 """
 
 from __future__ import annotations
@@ -321,7 +321,7 @@ def test_claims_38_and_39_neighbours_in_a_ring_differ_by_one_on_an_axis_at_most(
 
 
 def test_every_claim_stands_in_the_table() -> None:
-    table = (Path(__file__).parents[2] / "docs" / "claims-superior-electric.md").read_text(
+    table = (Path(__file__).parents[2] / "docs" / "background" / "claims-superior-electric.md").read_text(
         encoding="utf-8"
     )
     rows = [

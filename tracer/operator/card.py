@@ -1,6 +1,6 @@
 """The operator's card: what the operator would set on the panel during a run, written down before it.
 
-Signals in: a text in TOML (`docs/card.md` has the whole format). Signals out: a Card: start position and
+Signals in: a text in TOML (`docs/reference/card.md` has the whole format). Signals out: a Card: start position and
 depths in mm, speeds in mm/s, and for each stop the presets of the Z unit. What a card does not say is None,
 and stays as it is without a card.
 

@@ -1,11 +1,7 @@
-"""Draw the figure of `tape-format.md` with the recorder itself: what each pick-up puts on a track.
-
-python -m docs.tape_figures [FOLDER]
-"""
+"""Draw the figure of `tape-format.md` with the recorder itself: what each pick-up puts on a track."""
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
 import matplotlib
@@ -68,7 +64,3 @@ def draw_waves(file: Path) -> None:
 def main(folder: Path) -> None:
     """Draw it into a folder."""
     draw_waves(folder / "pickups.png")
-
-
-if __name__ == "__main__":
-    main(Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).parent)

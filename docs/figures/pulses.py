@@ -1,11 +1,7 @@
-"""Draw the figures of `pratt-whitney.md` and `alfred-herbert.md` with the controls themselves.
-
-python -m docs.pulse_figures [FOLDER]
-"""
+"""Draw the figures of `pratt-whitney.md` and `alfred-herbert.md` with the controls themselves."""
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
 import matplotlib
@@ -104,7 +100,3 @@ def main(folder: Path) -> None:
     """Draw both into a folder."""
     draw_speed(folder / "pulse-speed.png")
     draw_following(folder / "following-error.png")
-
-
-if __name__ == "__main__":
-    main(Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).parent)

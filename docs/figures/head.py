@@ -1,15 +1,11 @@
-"""Draw the figures of `how-the-head-works.md`: the head itself, at work on small drawings, with what it sees
-and decides drawn over them.
+"""Draw the figures of `how-the-head-works.md`: the head at work on small drawings.
 
-    make figures        (python -m docs.figures [FOLDER])
-
-Nothing is sketched: the drawings are made and scanned as the samples are, the head is the one that `morfax
-trace` runs, and what it asks of its rings and surveys is listened to while it runs.
+Nothing is sketched. The drawings are made and scanned as the samples are, and the head is the one that
+`morfax trace` runs. The figures show what its functions are asked and what they answer while it runs.
 """
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -30,9 +26,9 @@ from morfax.tracer.following.start import put_down
 from morfax.tracer.head import kernel
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.state import DRUM, Home
-from morfax.tracer.junctions import planner as pilot
+from morfax.tracer.junctions import planner
 from morfax.tracer.sensing import photocell
-from morfax.tracer.tangles import memory as tangles
+from morfax.tracer.tangles import memory
 from samples import draw
 
 PITCH_MM = 1 / draw.PIXELS_PER_MM
@@ -75,8 +71,8 @@ def listening(place: Any, name: str) -> Iterator[list[tuple[tuple[Any, ...], Any
     heard: list[tuple[tuple[Any, ...], Any]] = []
     asked = getattr(place, name)
 
-    def noting(*words: Any) -> Any:
-        answer = asked(*words)
+    def noting(*words: Any, **named: Any) -> Any:
+        answer = asked(*words, **named)
         heard.append((words, answer))
         return answer
 
@@ -279,7 +275,7 @@ def ride_figure() -> plt.Figure:
     other = np.column_stack([x, 0.3 + 1.6 * np.clip(np.abs(x - 12) - 2.5, 0, None) ** 2 / 12])
     drawing, by = inked(own, other)
     run = put_head(drawing, by + np.array([1.5, 0]))
-    with listening(pilot, "ride_past") as rides:
+    with listening(planner, "ride_past") as rides:
         done = run.follow(40.0)
     incoming, ride = next((words[1], ride) for words, ride in rides if ride is not None)
     figure, axes = plt.subplots(figsize=(13, 4.2))
@@ -315,7 +311,7 @@ def tangle_figure() -> plt.Figure:
     )
     drawing, by = inked(own)
     run = put_head(drawing, by + np.array([1.5, 0]))
-    with listening(tangles, "unravelled") as unravelled:
+    with listening(memory, "unravelled") as unravelled:
         done = run.follow(40.0)
     sketch, way = next(
         (words[0], answer[1]) for words, answer in unravelled if answer[1] is not None
@@ -348,7 +344,7 @@ def tangle_figure() -> plt.Figure:
     axes.plot(*done.positions_mm.T, color=RED, lw=1.2, label="motion of the axis")
     axes.plot(*(own + by).T, ":", color="black", lw=0.9, label="the line as drawn")
     axes.set_title(
-        f"a tangle redrawn: what is left unexplained is {way.misfit:.3f} of a stretch as long as the line is wide"
+        f"a tangle redrawn: unexplained ink {way.misfit:.3f} of a stretch as long as the line is wide"
     )
     axes.legend(fontsize=7, loc="upper left")
     figure.tight_layout()
@@ -370,7 +366,3 @@ def main(folder: Path) -> None:
         figure = make()
         figure.savefig(folder / f"head-{name}.png", dpi=DPI)
         plt.close(figure)
-
-
-if __name__ == "__main__":
-    main(Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).parent)

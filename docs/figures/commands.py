@@ -1,17 +1,13 @@
-"""Make the pictures of `marks.md` by the commands that it shows.
-
-make figures        (python -m docs.command_figures [FOLDER])
-"""
+"""Make the pictures of `drawn-program.md` with the commands that the page shows."""
 
 from __future__ import annotations
 
-import sys
 import tempfile
 from pathlib import Path
 
 from morfax.console.cli import main as morfax
 
-SAMPLES = Path(__file__).parents[1] / "samples"
+SAMPLES = Path(__file__).parents[2] / "samples"
 PROGRAM = ("trace", str(SAMPLES / "program.png"), "--card", str(SAMPLES / "program.toml"))
 PICTURES = {
     "marks.png": PROGRAM,
@@ -27,7 +23,3 @@ def main(folder: Path) -> None:
             code = morfax([*words, "-o", tape, "--picture", str(folder / name), "--quiet"])
             if code:
                 raise SystemExit(code)
-
-
-if __name__ == "__main__":
-    main(Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).parent)
