@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo test check bench figures soak fuzz clean
+.PHONY: demo test check bench figures docs soak fuzz clean
 
 $(VENV)/installed: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -27,6 +27,11 @@ bench: $(VENV)/installed
 figures: $(VENV)/installed
 	$(BIN)/python -m docs.figures
 
+# the site of the documentation, in site/; any warning is an error
+docs: $(VENV)/installed
+	$(BIN)/pip install --quiet --disable-pip-version-check -e '.[docs]'
+	$(BIN)/mkdocs build --strict --quiet
+
 # the tests of trust at full length: every pair of wear, ten thousand dropouts, tapes of three and six hours; 12 GB, about an hour
 soak: $(VENV)/installed
 	MORFAX_SOAK=1 $(BIN)/pytest tests/player/test_worn.py tests/player/test_long.py tests/console/test_killed.py -s
@@ -38,4 +43,4 @@ fuzz: $(VENV)/installed
 	$(BIN)/python -m fuzz.tapes -runs=$(RUNS) -timeout=2 -rss_limit_mb=1024 -max_len=4096
 
 clean:
-	rm -rf $(VENV) demo
+	rm -rf $(VENV) demo site dist
