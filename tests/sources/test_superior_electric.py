@@ -321,9 +321,9 @@ def test_claims_38_and_39_neighbours_in_a_ring_differ_by_one_on_an_axis_at_most(
 
 
 def test_every_claim_stands_in_the_table() -> None:
-    table = (Path(__file__).parents[2] / "docs" / "background" / "claims-superior-electric.md").read_text(
-        encoding="utf-8"
-    )
+    table = (
+        Path(__file__).parents[2] / "docs" / "background" / "claims-superior-electric.md"
+    ).read_text(encoding="utf-8")
     rows = [
         line.split("|")
         for line in table.splitlines()

@@ -70,7 +70,9 @@ def test_a_card_says_what_is_set() -> None:
 
 
 def test_the_card_of_the_documentation_is_one() -> None:
-    text = (Path(__file__).parents[3] / "docs" / "reference" / "card.md").read_text(encoding="utf-8")
+    text = (Path(__file__).parents[3] / "docs" / "reference" / "card.md").read_text(
+        encoding="utf-8"
+    )
     card = Card.parse(text.split("```toml\n")[1].split("```")[0])
     assert (
         card.depths_mm == (2.0, 4.0)
