@@ -10,7 +10,7 @@ A way is made of straight pieces, so at each of its places the velocity would ju
 over `SMOOTHED_S`, in which the jump is made good at a third of the acceleration, and which moves the way
 inward by no more than a · SMOOTHED_S² / 24: 0.1 um. Across and along together stay within a.
 
-Source: the two passes that are usual in controls (see `recorder.legs`, which has them for a machine's axes);
+Source: the two passes that are usual in controls (see `motion.speed_limits`);
 our own.
 """
 
@@ -19,10 +19,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from morfax.motion.arrays import Array
 from morfax.motion.motion import MOTION_RATE_HZ
+from morfax.motion.speed_limits import reachable
 
 SHARP = math.radians(10)
 ALONG, ACROSS = (
@@ -40,11 +40,8 @@ def run_along(
     """Positions (m, 2) mm along a way, from rest at its first place to rest at its last."""
     way_mm = _with_halves(way_mm)
     steps = np.hypot(*np.diff(way_mm, axis=0).T)
-    speeds = _slowed(
-        _allowed(way_mm, steps, feed_mm_s, acceleration_mm_s2),
-        steps,
-        ALONG * acceleration_mm_s2,
-    )
+    allowed = _allowed(way_mm, steps, feed_mm_s, acceleration_mm_s2)
+    speeds = reachable(allowed, 2 * ALONG * acceleration_mm_s2 * steps)
     t_s = np.r_[0.0, np.cumsum(2 * steps / (speeds[1:] + speeds[:-1]))]
     s_mm = np.r_[0.0, np.cumsum(steps)]
     at_s = np.arange(0.0, t_s[-1], 1 / rate_hz)
@@ -93,21 +90,6 @@ def _allowed(way_mm: Array, steps: Array, feed_mm_s: float, acceleration_mm_s2: 
     by_bend = np.sqrt(ACROSS * acceleration_mm_s2 / np.maximum(bend, 1e-9))
     by_turn = ACROSS * acceleration_mm_s2 * SMOOTHED_S / np.maximum(turns, 1e-9)
     return np.where(turns > SHARP, 0.0, np.minimum(feed_mm_s, np.minimum(by_bend, by_turn)))
-
-
-@njit(cache=True)
-def _slowed(allowed, steps, acceleration_mm_s2):  # type: ignore[no-untyped-def]
-    """The speeds that one acceleration can reach from place to place, mm/s."""
-    speeds = allowed.copy()
-    for k in range(len(steps) - 1, -1, -1):
-        speeds[k] = min(
-            speeds[k], math.sqrt(speeds[k + 1] ** 2 + 2 * acceleration_mm_s2 * steps[k])
-        )
-    for k in range(len(steps)):
-        speeds[k + 1] = min(
-            speeds[k + 1], math.sqrt(speeds[k] ** 2 + 2 * acceleration_mm_s2 * steps[k])
-        )
-    return speeds
 
 
 def _averaged(positions_mm: Array, rate_hz: float) -> Array:

@@ -29,12 +29,12 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import Motion, Path, thin
+from morfax.motion.speed_limits import reachable
 
 Source = Iterable[Motion] | Motion | Path
 
@@ -42,6 +42,7 @@ SHARE = 0.7  # of the acceleration, along the path and across it
 STANDING_MM_S = 0.05  # slower is standing: 0.2 um of thinning in 4 ms
 REST_S = 0.02  # a shorter stand is the turn of a corner, and no rest
 SAME_PLACE_MM = 1e-6
+FASTEST_MM_S = 1e6  # stands for no limit: its square is still a number
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,9 +181,10 @@ def _leg(
         np.clip(np.searchsorted(along_mm, at_mm, "right") - 1, 0, len(speeds_mm_s) - 1)
     ]
     allowed = np.minimum(own, _allowed_mm_s(places, length_mm / pieces, limits))
-    squared = np.minimum(allowed, 1e6) ** 2
-    _passes(squared, 2 * SHARE * limits.acceleration_mm_s2 * length_mm / pieces)
-    return Leg(places, np.sqrt(squared), length_mm / pieces, rest_s)
+    allowed = np.minimum(allowed, FASTEST_MM_S)
+    allowed[[0, -1]] = 0.0
+    gain = 2 * SHARE * limits.acceleration_mm_s2 * length_mm / pieces
+    return Leg(places, reachable(allowed, gain), length_mm / pieces, rest_s)
 
 
 def _allowed_mm_s(places: Array, spacing_mm: float, limits: Limits) -> Array:
@@ -209,13 +211,3 @@ def _angle_rad(a: Array, b: Array) -> Array:
     lengths = np.sqrt((a**2).sum(axis=1) * (b**2).sum(axis=1))
     cosine = np.einsum("ij,ij->i", a, b) / np.maximum(lengths, 1e-30)
     return np.arccos(np.clip(cosine, -1.0, 1.0))
-
-
-@njit(cache=True)
-def _passes(squared, gain):  # type: ignore[no-untyped-def]
-    """Bound the squares of the speeds by what is gained from place to place, from rest to rest."""
-    squared[0] = squared[-1] = 0.0
-    for i in range(1, len(squared)):
-        squared[i] = min(squared[i], squared[i - 1] + gain)
-    for i in range(len(squared) - 2, -1, -1):
-        squared[i] = min(squared[i], squared[i + 1] + gain)

@@ -23,6 +23,7 @@ import numpy as np
 
 from morfax.motion import curves
 from morfax.motion.arrays import Array
+from morfax.motion.speed_limits import reachable
 
 _NOTHING_MM = 1e-9
 CORNER = np.radians(20)
@@ -72,11 +73,11 @@ def run(way_mm: Array, speed_mm_s: float, acceleration_mm_s2: float, rate_hz: fl
     corners = [0, *_corners(places), len(places) - 1]
     speeds = np.zeros(len(places))
     for a, b in pairwise(corners):
-        there = curves.speeds(places[a : b + 1], speed_mm_s, acceleration_mm_s2, 0.0)
-        back = curves.speeds(
-            places[b : (a - 1 if a else None) : -1], speed_mm_s, acceleration_mm_s2, 0.0
-        )[::-1]
-        speeds[a : b + 1] = np.minimum(there, back)
+        part = places[a : b + 1]
+        allowed = curves.speeds_in_bends(part, speed_mm_s, acceleration_mm_s2)
+        allowed[[0, -1]] = 0.0
+        gains = 2 * acceleration_mm_s2 * np.hypot(*np.diff(part, axis=0).T)
+        speeds[a : b + 1] = reachable(allowed, gains)
     steps_mm = np.hypot(*np.diff(places, axis=0).T)
     from_rest_mm_s = 0.5 * np.sqrt(
         acceleration_mm_s2 * steps_mm
@@ -103,13 +104,9 @@ def _speeds(steps_mm: Array, steps_s: Array, cuts: Array, acceleration_mm_s2: fl
     """Speed at each node: what it was, or what braking for the nearest cut allows, mm/s."""
     was = np.r_[steps_mm / np.maximum(steps_s, 1e-12), 0.0]
     was[1:-1] = 0.5 * (was[1:-1] + was[:-2])
-    lengths = np.r_[0.0, np.cumsum(steps_mm)]
-    allowed = np.full(len(was), np.inf)
-    for cut in cuts:
-        allowed = np.minimum(
-            allowed, np.sqrt(2 * acceleration_mm_s2 * np.abs(lengths - lengths[cut]))
-        )
-    return np.minimum(was, allowed)
+    braking = np.full(len(was), np.inf)
+    braking[cuts] = 0.0
+    return np.minimum(was, reachable(braking, 2 * acceleration_mm_s2 * steps_mm))
 
 
 def _timed(
