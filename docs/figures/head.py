@@ -113,8 +113,8 @@ def sweep_figure() -> plt.Figure:
         along = 0.1 * amplitude * np.cos(phase)
         shift = 0.45 * (offsets.index(offset) - 1)
         across.plot(place[0] + along + shift, place[1] + u, color=colour)
-        seen = [photocell.darkness_at(cells, PITCH_MM, place[0], place[1] + y) for y in u]
-        first, mean = photocell.sweep(cells, PITCH_MM, place, 0.0, -offset, amplitude, 24)
+        seen = [photocell.darkness_at(cells, place[0], place[1] + y) for y in u]
+        first, mean = photocell.sweep(cells, place, 0.0, (-offset, amplitude), 24)
         axes.plot(phase / 2 / np.pi, seen, color=colour, label="darkness seen")
         axes.plot(
             phase / 2 / np.pi,
@@ -130,9 +130,7 @@ def sweep_figure() -> plt.Figure:
         )
         axes.legend(fontsize=7, loc="lower center")
     every = np.linspace(-1.0, 1.0, 201)
-    both = np.array(
-        [photocell.sweep(cells, PITCH_MM, place, 0.0, -e, amplitude, 24) for e in every]
-    )
+    both = np.array([photocell.sweep(cells, place, 0.0, (-e, amplitude), 24) for e in every])
     slope.plot(every, both[:, 0], color=BLUE, label="fundamental")
     slope.plot(every, both[:, 1], color=ORANGE, label="mean")
     slope.plot(
@@ -190,7 +188,7 @@ def drum_figure() -> plt.Figure:
     run = put_head(drawing, by + np.array([0, 6]))
     home = Home(*run.stance.place_mm, run.stance.heading_rad, 1e9)
     state, tuning = run.carriage.state, run.carriage.tuning
-    kernel.follow(run.view.cells, PITCH_MM, state, tuning, home, np.empty((3000, 2)))
+    kernel.follow(run.view.cells, state, tuning, home, np.empty((3000, 2)))
     axis, heading = np.array([state.x_mm, state.y_mm]), state.heading_rad
     to_sheet = np.array(
         [[np.cos(heading), np.sin(heading)], [-np.sin(heading), np.cos(heading)]]

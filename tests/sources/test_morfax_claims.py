@@ -181,11 +181,9 @@ def test_claim_2_an_oscillating_cell_steers_and_the_tracks_lie_about_a_recorded_
     sides = [
         sweep(
             cells,
-            sheet.pitch_mm,
             np.array([20.0, 30.0]),
             0.0,
-            aside_mm,
-            HISTORIC.amplitude_mm,
+            (aside_mm, HISTORIC.amplitude_mm),
             400,
         )[0]
         for aside_mm in (-0.3, -0.1, 0.1, 0.3)

@@ -41,7 +41,7 @@ def _scaled(view: View, times: float) -> View:
     usual_mm = None if view.usual_mm is None else view.usual_mm * times
     return replace(
         view,
-        pitch_mm=view.pitch_mm * times,
+        cells=view.cells._replace(pitch_mm=view.pitch_mm * times),
         width_mm=view.width_mm * times,
         usual_mm=usual_mm,
         enlarged=view.enlarged * times,

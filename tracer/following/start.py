@@ -142,9 +142,7 @@ def view_of(sheet: Sheet, aperture_mm: float | None, width_mm: float) -> View:
     aperture_mm = aperture_mm or min(max(APERTURE * width_mm, least_mm), LARGEST_APERTURE_MM)
     return View(
         photocell.behind_aperture(sheet.drawing, aperture_mm),
-        sheet.drawing.pitch_mm,
         width_mm,
-        LEVEL,
     )
 
 
@@ -186,7 +184,7 @@ def _leading_away(
     place = np.asarray(reference_mm)
     local = _local(view, stroke.middles_mm[np.argmin(np.hypot(*(stroke.middles_mm - place).T))])
     for radius in np.arange(view.width_mm, LEAD_MM, 0.5 * view.width_mm):
-        arcs = photocell.ring(local.cells, local.pitch_mm, place, radius, local.level)
+        arcs = local.ring(place, radius)
         if len(arcs) != 1:
             continue
         heading = float(arcs.mean())
@@ -267,8 +265,7 @@ def _stances(view: View, places: Array) -> list[tuple[tuple[float, float], Stanc
 
 def _local(view: View, place: Array) -> View:
     """The view with the level at half the darkness of this place."""
-    ink = photocell.darkness_at(view.cells, view.pitch_mm, place[0], place[1])
-    return replace(view, level=LEVEL * max(ink, 0.2))
+    return view.at_level(LEVEL * max(view.darkness_at(place), 0.2))
 
 
 def _heading(view: View, place: Array) -> float | None:
@@ -276,7 +273,7 @@ def _heading(view: View, place: Array) -> float | None:
     opposite.
     """
     radius = max(0.9 * view.width_mm, 4.5 * view.pitch_mm)
-    arcs = photocell.ring(view.cells, view.pitch_mm, place, radius, view.level)
+    arcs = view.ring(place, radius)
     if len(arcs) != 2:
         return None
     there, back = arcs.mean(axis=1)
@@ -289,9 +286,7 @@ def _both_ways(view: View, place: Array, heading: float) -> tuple[Leg, float] | 
     """The line felt forward and backward from a place as one leg about it, and the length felt on the shorter
     side, mm.
     """
-    right, left = photocell.edges(
-        view.cells, view.pitch_mm, place[0], place[1], heading, 2 * view.width_mm, view.level
-    )
+    right, left = view.edges(place, heading, 2 * view.width_mm)
     if not math.isfinite(left - right) or not 0.4 < (left - right) / view.width_mm < 2.5:
         return None
     view = replace(view, width_mm=left - right)
@@ -319,15 +314,7 @@ def _at_end(view: View, place: Array, gap_mm: float) -> Stance | None:
         return None
     heading = float(arcs.mean())
     inward = place + radius * np.array([math.cos(heading), math.sin(heading)])
-    right, left = photocell.edges(
-        local.cells,
-        local.pitch_mm,
-        inward[0],
-        inward[1],
-        heading,
-        2 * local.width_mm,
-        local.level,
-    )
+    right, left = local.edges(inward, heading, 2 * local.width_mm)
     if not abs(left - right - view.width_mm) < 0.25 * view.width_mm + 0.5 * view.pitch_mm:
         return None
     local = replace(local, width_mm=left - right)

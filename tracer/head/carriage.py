@@ -79,7 +79,7 @@ class Carriage:
     def follow(self, view: View, home: Home) -> int:
         """Follow the line until something happens, or for a while; why it stopped (see `state`)."""
         out = np.empty((CHUNK, 2))
-        n, why = kernel.follow(view.cells, view.pitch_mm, self.state, self.tuning, home, out)
+        n, why = kernel.follow(view.cells, self.state, self.tuning, home, out)
         self._keep(out[:n])
         return int(why)
 

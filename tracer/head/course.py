@@ -22,7 +22,6 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.curves import SPACING_MM, hermite
-from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.leg import Leg, centre_at
 from morfax.tracer.sensing.view import View
 
@@ -90,5 +89,5 @@ def ahead_mm(place: Array, leg: Leg) -> float:
 def on_ink(view: View, stretches: list[Array]) -> bool:
     """Whether a course lies on ink, faint or not, for the most part: it may cross a gap."""
     places = np.vstack(stretches)[::5]
-    seen = [photocell.darkness_at(view.cells, view.pitch_mm, x, y) for x, y in places]
-    return float(np.mean(np.array(seen) > 0.5 * view.level)) > 0.8
+    fainter = view.at_level(0.5 * view.level)
+    return float(np.mean([fainter.dark(place) for place in places])) > 0.8

@@ -64,15 +64,15 @@ SHORTEST = 0.2  # of the distance to the point: the axis may have come so near t
 
 
 @njit(cache=True)
-def follow(cells, pitch_mm, state, t, home, out):  # type: ignore[no-untyped-def]
+def follow(cells, state, t, home, out):  # type: ignore[no-untyped-def]
     """Follow the line until something happens or `out` (n, 2) is full; (positions written, why)."""
     for n in range(len(out)):
-        _swing(cells, pitch_mm, state, t)
+        _swing(cells, state, t)
         if state.sweep_periods >= t.sweep_periods:
             _detect(state, t)
             if t.direct_rad_s_mm == 0:
                 _fit(state, t)
-            why = _look(cells, pitch_mm, state, t)
+            why = _look(cells, state, t)
             if why == MORE and _at_home(state, t, home):
                 why = HOME
             if why != MORE:
@@ -89,21 +89,21 @@ def _way(state):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, inline="always")
-def _seen(cells, pitch_mm, state, way, ahead, aside):  # type: ignore[no-untyped-def]
+def _seen(cells, state, way, ahead, aside):  # type: ignore[no-untyped-def]
     """Darkness under a cell so far ahead of the axis and to the left of its way, mm."""
     x = state.x_mm + ahead * way[0] - aside * way[1]
     y = state.y_mm + ahead * way[1] + aside * way[0]
-    return darkness_at(cells, pitch_mm, x, y)
+    return darkness_at(cells, x, y)
 
 
 @njit(cache=True)
-def _swing(cells, pitch_mm, state, t):  # type: ignore[no-untyped-def]
+def _swing(cells, state, t):  # type: ignore[no-untyped-def]
     """One period of the swinging cell: its current goes into the synchronous detector."""
     phase = TWO_PI * (state.sweep_periods + 0.5) / t.sweep_periods
     swing = math.sin(phase)
     aside = state.middle_mm + t.amplitude_mm * swing
     ahead = t.lead_mm + t.along_mm * math.cos(phase)
-    darkness = _seen(cells, pitch_mm, state, _way(state), ahead, aside)
+    darkness = _seen(cells, state, _way(state), ahead, aside)
     state.first_sum += darkness * swing
     state.mean_sum += darkness
     state.sweep_periods += 1
@@ -180,7 +180,7 @@ def _fit(state, t):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _look(cells, pitch_mm, state, t):  # type: ignore[no-untyped-def]
+def _look(cells, state, t):  # type: ignore[no-untyped-def]
     """Read the guard cells and the look-ahead cell, once a sweep; why the head must stop following."""
     way, curve = (
         _way(state),
@@ -188,7 +188,7 @@ def _look(cells, pitch_mm, state, t):  # type: ignore[no-untyped-def]
     )  # aside = curve · ahead²
     # 1. cell 102 and its relay
     far = t.look_ahead_mm
-    if _seen(cells, pitch_mm, state, way, far, curve * far * far) < BLANK * state.ink:
+    if _seen(cells, state, way, far, curve * far * far) < BLANK * state.ink:
         state.slow_periods = t.slow_periods
     if t.direct_rad_s_mm > 0:
         return JUNCTION if state.guard_ahead < LOST else MORE
@@ -196,9 +196,9 @@ def _look(cells, pitch_mm, state, t):  # type: ignore[no-untyped-def]
     ahead = t.guard_lead_mm
     on_line = curve * ahead * ahead
     beside = t.guard_mm * math.hypot(1.0, 2.0 * curve * ahead)
-    left = _seen(cells, pitch_mm, state, way, ahead, on_line + beside) / state.ink
-    on = _seen(cells, pitch_mm, state, way, ahead, on_line) / state.ink
-    right = _seen(cells, pitch_mm, state, way, ahead, on_line - beside) / state.ink
+    left = _seen(cells, state, way, ahead, on_line + beside) / state.ink
+    on = _seen(cells, state, way, ahead, on_line) / state.ink
+    right = _seen(cells, state, way, ahead, on_line - beside) / state.ink
     state.guard_left += GUARD_FOLLOWS * (left - state.guard_left)
     state.guard_ahead += GUARD_FOLLOWS * (on - state.guard_ahead)
     state.guard_right += GUARD_FOLLOWS * (right - state.guard_right)

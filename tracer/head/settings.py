@@ -194,12 +194,8 @@ def _calibrate(stance: Stance, amplitude_mm: float) -> tuple[float, float]:
     stations = 8
     for k in range(stations):
         place = stance.place_mm + view.step_mm * k * np.array([c, s])
-        left = sweep(
-            view.cells, view.pitch_mm, place, stance.heading_rad, -aside, amplitude_mm, 24
-        )
-        right = sweep(
-            view.cells, view.pitch_mm, place, stance.heading_rad, aside, amplitude_mm, 24
-        )
+        left = sweep(view.cells, place, stance.heading_rad, (-aside, amplitude_mm), 24)
+        right = sweep(view.cells, place, stance.heading_rad, (aside, amplitude_mm), 24)
         slopes += (left[0] - right[0]) / (2 * aside) / stations
         means += (left[1] + right[1]) / 2 / stations
     return max(slopes, 0.2), means

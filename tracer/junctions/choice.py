@@ -24,7 +24,6 @@ from morfax.motion.arrays import Array
 from morfax.tracer.head.trail import Trail
 from morfax.tracer.junctions.rings import legs_around
 from morfax.tracer.marks.marks import longest_mm
-from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.leg import (
     STRAIGHT,
     Leg,
@@ -282,7 +281,7 @@ def caught_again(view: View, incoming: Leg, trail: Trail, within_mm: float) -> L
     end = incoming.at(reach_of_ink(view, incoming, view.width_mm) or 0.0)
     for radius in np.arange(view.width_mm, within_mm, 0.5 * view.width_mm):
         legs = []
-        for arc in photocell.ring(view.cells, view.pitch_mm, end, radius, view.level):
+        for arc in view.ring(end, radius):
             if abs(turn(incoming.heading_rad, float(arc.mean()))) < AHEAD:
                 met = end + radius * np.array([math.cos(arc.mean()), math.sin(arc.mean())])
                 legs += [leg for leg in _from(view, met) if not trail.holds(leg, view.width_mm)]
@@ -295,9 +294,7 @@ def caught_again(view: View, incoming: Leg, trail: Trail, within_mm: float) -> L
 def _from(view: View, place: Array) -> list[Leg]:
     """The clean legs that leave a place on ink."""
     found = []
-    for arc in photocell.ring(
-        view.cells, view.pitch_mm, place, 1.5 * view.width_mm, view.level
-    ):
+    for arc in view.ring(place, 1.5 * view.width_mm):
         heading = float(arc.mean())
         start = place + 1.5 * view.width_mm * np.array([math.cos(heading), math.sin(heading)])
         seen = view.feel(start, heading, view.leg_mm)

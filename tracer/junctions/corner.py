@@ -9,7 +9,6 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.curves import hermite
 from morfax.tracer.head.course import ahead_mm, along_leg, onto
-from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.leg import Leg, Meeting, turn
 from morfax.tracer.sensing.view import View
 
@@ -170,21 +169,10 @@ def _edge_outward(
     """Where the ink about a place ends outward, mm; NaN if there is none. A light speck in the ink does not
     end it.
     """
-    _, edge = photocell.edges(
-        view.cells,
-        view.pitch_mm,
-        place[0],
-        place[1],
-        outward - math.pi / 2,
-        reach_mm,
-        view.level,
-    )
+    _, edge = view.edges(place, outward - math.pi / 2, reach_mm)
     within_mm = 0.5 * width_mm
-    x, y = place - within_mm * np.array([math.cos(outward), math.sin(outward)])
-    beyond = (
-        photocell.edge_along(view.cells, view.pitch_mm, x, y, outward, reach_mm, view.level)
-        - within_mm
-    )
+    within = place - within_mm * np.array([math.cos(outward), math.sin(outward)])
+    beyond = view.ink_along(within, outward, reach_mm) - within_mm
     return float(np.fmax(edge, beyond))
 
 

@@ -19,6 +19,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -26,7 +27,9 @@ from numba import njit
 from morfax.motion.arrays import Array
 from morfax.tracer.junctions.corner import hides_outside, rounding
 from morfax.tracer.sensing.leg import Leg, Meeting, leg_of, meet, turn
-from morfax.tracer.sensing.photocell import darkness_at, edge_along, edges, onward
+from morfax.tracer.sensing.photocell import darkness_at
+from morfax.tracer.sensing.ray import Ray, end_of_ink
+from morfax.tracer.sensing.scout import onward
 from morfax.tracer.sensing.view import View
 
 FARTHEST_MM = 40.0
@@ -39,6 +42,15 @@ PASSED = np.array(
     [0.4, 0.6, 0.8, 1.0]
 )  # places beyond a vertex at which a line that passes is seen
 WIDE = 0.62  # of the width, from the middle to the far edge: ink beside the line
+
+
+class Walk(NamedTuple):
+    """How a line is felt along its edge: the step, how many stations at most, and how many that show both
+    edges end the walk."""
+
+    step_mm: float
+    stations: int
+    regained: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,8 +116,8 @@ def _passes(view: View, leg: Leg, vertex_mm: float, deflection: float) -> bool:
         view.dark(place) for place in leg.at(vertex_mm + clear_mm * PASSED)
     ):
         return False
-    (x, y), heading = leg.at(vertex_mm + clear_mm), leg.heading_at(vertex_mm + clear_mm)
-    right, left = edges(view.cells, view.pitch_mm, x, y, heading, 2 * view.width_mm, view.level)
+    place, heading = leg.at(vertex_mm + clear_mm), leg.heading_at(vertex_mm + clear_mm)
+    right, left = view.edges(place, heading, 2 * view.width_mm)
     return (
         abs(left - right - leg.width_mm) < 0.2 * leg.width_mm
         and abs(left + right) < 0.8 * leg.width_mm
@@ -118,10 +130,8 @@ def _within_ink(view: View, arriving: Leg, leaving: Leg, met: Meeting) -> Meetin
     """
     if abs(turn(arriving.heading_rad, leaving.heading_rad)) < TIP:
         return met
-    (x, y), reach_mm = arriving.end_mm, max(0.0, met[0]) + 2 * view.width_mm
-    ink_mm = edge_along(
-        view.cells, view.pitch_mm, x, y, arriving.heading_rad, reach_mm, view.level
-    )
+    reach_mm = max(0.0, met[0]) + 2 * view.width_mm
+    ink_mm = view.ink_along(arriving.end_mm, arriving.heading_rad, reach_mm)
     beyond = (
         max(0.0, met[0] - (ink_mm - 0.5 * arriving.width_mm)) if math.isfinite(ink_mm) else 0.0
     )
@@ -144,19 +154,8 @@ def _along_outside(
     if count < 4 or base < 2:
         return None
     width = float(np.median(seen[base:, 2]))
-    heading = math.atan2(way[1], way[0])
-    felt = _along_edge(
-        view.cells,
-        view.pitch_mm,
-        seen[base, :2],
-        heading,
-        side,
-        view.step_mm,
-        count,
-        width,
-        view.level,
-        count,
-    )
+    pose = float(seen[base, 0]), float(seen[base, 1]), math.atan2(way[1], way[0])
+    felt = _along_edge(view.cells, pose, side, width, Walk(view.step_mm, count, count))
     if len(felt) < 4:
         return None
     outside = np.column_stack([felt[:, :2], np.full(len(felt), width)])[:0:-1]
@@ -168,10 +167,10 @@ def _ride(view: View, incoming: Leg, side: float) -> Ride | None:
     """Feel on along the edge on one side (1 left, -1 right)."""
     step, width = view.step_mm, incoming.width_mm
     regained = max(6, round(REGAINED_MM / step))
-    stations = _along_edge(
-        view.cells, view.pitch_mm, incoming.end_mm, incoming.heading_rad, side, step, round(FARTHEST_MM / step),
-        width, view.level, regained,
-    )  # fmt: skip
+    x, y = incoming.end_mm
+    pose = float(x), float(y), float(incoming.heading_rad)
+    walk = Walk(step, round(FARTHEST_MM / step), regained)
+    stations = _along_edge(view.cells, pose, side, width, walk)
     stations = stations[:-2]  # the last stand on the round of a tip, if there is one
     wide = np.flatnonzero(~(stations[:, 2] < WIDE * width))
     if not len(wide) or (wide[-1] - wide[0]) * step < BESIDE * width:
@@ -187,19 +186,8 @@ def _ends_ahead(view: View, seen: Array, width_mm: float) -> bool:
     """Whether the ink ends within a width ahead of the last of some stations."""
     way = seen[-1, :2] - seen[max(0, len(seen) - 6), :2]
     t = way / np.hypot(*way)
-    end = _first_light(
-        view.cells,
-        view.pitch_mm,
-        seen[-1, 0],
-        seen[-1, 1],
-        t[0],
-        t[1],
-        0.0,
-        width_mm,
-        0.35 * view.pitch_mm,
-        view.level,
-    )
-    return math.isfinite(end)
+    ray = Ray(seen[-1, 0], seen[-1, 1], t[0], t[1])
+    return math.isfinite(end_of_ink(view.cells, ray, 0.0, width_mm))
 
 
 def _turned_back(
@@ -237,58 +225,35 @@ def _from_tip(excess: Array, first: int, tip: int, jump_mm: float) -> list[int]:
 
 
 @njit(cache=True)
-def _along_edge(  # type: ignore[no-untyped-def]
-    cells, pitch_mm, start, heading, side, step_mm, stations, width_mm, level, regained
-):
-    """Stations (n, 3): middle half a width within the edge on one side, and distance to the first light on
-    the other (NaN beyond three widths).
+def _along_edge(cells, pose, side, width_mm, walk):  # type: ignore[no-untyped-def]
+    """Stations (n, 3) from a pose (x mm, y mm, heading rad) on: middle half a width within the edge on one
+    side, and distance to the first light on the other (NaN beyond three widths).
 
     It stops where that edge or the ink under the middle is lost, or when the line has been by itself for
     `regained` stations after ink beside it.
     """
-    out = np.empty((stations, 3))
-    fine = 0.35 * pitch_mm
-    x, y = start[0], start[1]
+    out = np.empty((walk.stations, 3))
+    x, y, heading = pose
     alone, been_wide = 0, False
-    for n in range(stations):
+    for n in range(walk.stations):
         nx, ny = -side * math.sin(heading), side * math.cos(heading)
-        if darkness_at(cells, pitch_mm, x, y) < level:
+        if darkness_at(cells, x, y) < cells.level:
             return out[:n].copy()
-        edge = _first_light(
-            cells, pitch_mm, x, y, nx, ny, 0.2 * width_mm, 0.85 * width_mm, fine, level
-        )
-        aside = edge - 0.5 * width_mm
-        if not abs(aside) < width_mm / 6 + 0.2 * pitch_mm:
+        towards = Ray(x, y, nx, ny, 0.0)
+        aside = end_of_ink(cells, towards, 0.2 * width_mm, 0.85 * width_mm) - 0.5 * width_mm
+        if not abs(aside) < width_mm / 6 + 0.2 * cells.pitch_mm:
             return out[:n].copy()
         x, y = x + aside * nx, y + aside * ny
         out[n, 0], out[n, 1] = x, y
-        out[n, 2] = _first_light(
-            cells, pitch_mm, x, y, -nx, -ny, 0.0, 3.0 * width_mm, fine, level
-        )
+        out[n, 2] = end_of_ink(cells, Ray(x, y, -nx, -ny, 0.0), 0.0, 3.0 * width_mm)
         wide = not out[n, 2] < WIDE * width_mm
         been_wide = been_wide or wide
         alone = 0 if wide else alone + 1
-        if (been_wide and alone > regained) or (not been_wide and alone > 2 * regained):
+        if (been_wide and alone > walk.regained) or (
+            not been_wide and alone > 2 * walk.regained
+        ):
             return out[: n + 1].copy()
         if n >= 2:
             heading = onward(out, n + 1)
-        x, y = x + step_mm * math.cos(heading), y + step_mm * math.sin(heading)
+        x, y = x + walk.step_mm * math.cos(heading), y + walk.step_mm * math.sin(heading)
     return out
-
-
-@njit(cache=True)
-def _first_light(cells, pitch_mm, x, y, nx, ny, begin_mm, end_mm, step_mm, level):  # type: ignore[no-untyped-def]
-    """Distance along a direction at which the darkness falls through the level; NaN if it does not, or is
-    light at the beginning.
-    """
-    u = begin_mm
-    before = darkness_at(cells, pitch_mm, x + u * nx, y + u * ny)
-    if before < level:
-        return math.nan
-    while u < end_mm:
-        u += step_mm
-        now = darkness_at(cells, pitch_mm, x + u * nx, y + u * ny)
-        if now < level:
-            return u - step_mm * (level - now) / (before - now)
-        before = now
-    return math.nan

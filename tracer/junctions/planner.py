@@ -9,7 +9,7 @@ Source: our own (see `knot`, `course` and `riding`).
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -67,7 +67,7 @@ class Pilot:
         outgoing = straight_on(self.view, incoming, gap_mm)
         if outgoing is None and not choices:
             outgoing = straight_on(
-                replace(self.view, level=FAINTER * self.view.level), incoming, gap_mm
+                self.view.at_level(FAINTER * self.view.level), incoming, gap_mm
             )
         if outgoing is None and not choices:
             outgoing = straight_on(
@@ -99,7 +99,7 @@ class Pilot:
         along = np.arange(0.0, course.ahead_mm(incoming.end_mm, outgoing), step)
         across = np.linspace(-0.5, 0.5, 7) * view.width_mm
         aside = np.array([-math.sin(incoming.heading_rad), math.cos(incoming.heading_rad)])
-        lighter = replace(view, level=FAINTER * view.level)
+        lighter = view.at_level(FAINTER * view.level)
         blank = longest = 0.0
         for place in incoming.at(along):
             blank = (

@@ -26,7 +26,6 @@ import numpy as np
 from scipy.ndimage import maximum_filter1d
 
 from morfax.motion.arrays import Array
-from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.leg import Leg, leg_of, turn
 from morfax.tracer.sensing.view import View
 
@@ -91,7 +90,7 @@ def legs_around(view: View, centre: Array, trail: Array) -> list[Leg]:
     for radius in rings:
         if radius > found_at + 0.5 * view.leg_mm:
             break
-        arcs = photocell.ring(view.cells, view.pitch_mm, centre, radius, view.level)
+        arcs = view.ring(centre, radius)
         joined = _join(
             arcs, joined, radius, view.width_mm, _crossing(trail, trail_mm, centre, radius)
         )

@@ -29,7 +29,6 @@ from morfax.motion.arrays import Array
 from morfax.tracer.head.course import ahead_mm
 from morfax.tracer.head.trail import Trail
 from morfax.tracer.junctions.choice import survey
-from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.leg import Leg, Meeting, leg_of, meet, turn
 from morfax.tracer.sensing.view import View
 
@@ -104,9 +103,7 @@ def _straight_ahead(view: View, incoming: Leg) -> Iterator[Onward]:
     for along in np.arange(step, AHEAD_WIDTHS * view.width_mm, step):
         place, heading = incoming.at(along), incoming.heading_at(along)
         reach_mm = WIDEST * view.width_mm
-        right, left = photocell.edges(
-            view.cells, view.pitch_mm, place[0], place[1], heading, reach_mm, view.level
-        )
+        right, left = view.edges(place, heading, reach_mm)
         times = (left - right) / view.width_mm
         if not NARROWEST < times < WIDEST or abs(times - 1) < ALIKE:
             continue

@@ -192,7 +192,7 @@ def _strokes(view: View, way: Way, side: int) -> list[Stroke]:
     )
     found: list[Stroke] = []
     for away in rows:
-        dark = _row(view.cells, view.pitch_mm, way.places, way.along, side * away) > view.level
+        dark = _row(view.cells, way.places, way.along, side * away) > view.level
         edges = np.flatnonzero(np.diff(np.r_[False, dark, False].astype(np.int8)))
         for begin, end in zip(edges[::2], edges[1::2], strict=True):
             if (
@@ -202,9 +202,8 @@ def _strokes(view: View, way: Way, side: int) -> list[Stroke]:
             ):
                 continue
             i = (begin + end) // 2
-            stroke = strokes.felt(
-                view, way.places[i], way.along[i], way.at_mm[i], side, away, longest_mm(view)
-            )
+            base = strokes.Base(way.places[i], way.along[i], side)
+            stroke = strokes.felt(view, base, way.at_mm[i], away, longest_mm(view))
             if stroke is not None and all(
                 abs(stroke.foot_mm - o.foot_mm) > 0.6 * view.width_mm for o in found
             ):
@@ -213,12 +212,12 @@ def _strokes(view: View, way: Way, side: int) -> list[Stroke]:
 
 
 @njit(cache=True)
-def _row(cells, pitch_mm, places, along, away_mm):  # type: ignore[no-untyped-def]
+def _row(cells, places, along, away_mm):  # type: ignore[no-untyped-def]
     """Darkness that a cell sees riding beside a way, `away_mm` to its left."""
     out = np.empty(len(places))
     for k in range(len(places)):
         x, y = places[k, 0] - away_mm * along[k, 1], places[k, 1] + away_mm * along[k, 0]
-        out[k] = photocell.darkness_at(cells, pitch_mm, x, y)
+        out[k] = photocell.darkness_at(cells, x, y)
     return out
 
 
@@ -226,10 +225,7 @@ def _dots(view: View, way: Way) -> list[Mark]:
     """Dots on the way and at its ends (see `dots`)."""
     least = dots.LEAST_WIDTHS * view.width_mm
     inked = np.minimum(
-        *(
-            _row(view.cells, view.pitch_mm, way.places, way.along, side * 0.75 * least)
-            for side in (1, -1)
-        )
+        *(_row(view.cells, way.places, way.along, side * 0.75 * least) for side in (1, -1))
     )
     edges = np.flatnonzero(np.diff(np.r_[False, inked > view.level, False].astype(np.int8)))
     found: list[Mark] = []
@@ -257,10 +253,8 @@ def _beside_dot(view: View, way: Way, begin: int, end: int) -> View:
     found = []
     for k in near[::2]:
         if 0 <= k < len(way.places):
-            (x, y), heading = way.places[k], float(np.arctan2(way.along[k, 1], way.along[k, 0]))
-            right, left = photocell.edges(
-                view.cells, view.pitch_mm, x, y, heading, 2 * view.width_mm, view.level
-            )
+            heading = float(np.arctan2(way.along[k, 1], way.along[k, 0]))
+            right, left = view.edges(way.places[k], heading, 2 * view.width_mm)
             found.append(left - right)
     width_mm = float(np.nanmedian(found)) if np.isfinite(found).any() else view.width_mm
     return replace(view, width_mm=max(width_mm, view.width_mm))

@@ -27,7 +27,6 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.tracer.drawing.strokes import Sheet, Stroke
-from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.circles import WAYS, circle_through, spokes
 from morfax.tracer.sensing.leg import Leg, leg_of
 from morfax.tracer.sensing.probe import SPECK_WIDTHS, is_tip, lines_on
@@ -184,9 +183,7 @@ def _lead(view: View, centre: Array, reach_mm: float) -> Leg | None:
     """The clean beginning of the line that leaves a cross or ring which reaches so far from its centre, felt
     back to it as far as it is clean.
     """
-    for arc in photocell.ring(
-        view.cells, view.pitch_mm, centre, reach_mm + 1.5 * view.width_mm, view.level
-    ):
+    for arc in view.ring(centre, reach_mm + 1.5 * view.width_mm):
         for outside in (1.5, 1.9, 2.3):
             way = _unit(float(arc.mean()))
             seen = view.feel(

@@ -15,13 +15,15 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
 from morfax.motion.arrays import Array
-from morfax.tracer.sensing import photocell
+from morfax.tracer.sensing.photocell import STEP_PX
 from morfax.tracer.sensing.probe import is_tip
+from morfax.tracer.sensing.ray import Ray, end_of_ink, seen_on
 from morfax.tracer.sensing.view import LEVEL, View
 
 LEAST_MM, LEAST_WIDTHS = 0.6, 1.2  # of a stroke, beyond the line's edge
@@ -42,6 +44,15 @@ APART_MM, APART_WIDTHS = 1.5, 3.0  # of one that does not: lettering stands besi
 SOILED, APART_SOILED = 0.15, 0.03  # of that may be ink
 INK = (0.65, 1.4)  # a stroke's darkness, of the line's: one pen draws both
 DASH_MM, DASH_WIDTHS = 2.0, 4.0  # dashes of one line are no further apart
+
+
+class Base(NamedTuple):
+    """Where and to which side a stroke is felt: a place of the way (mm), the way's direction there (unit
+    vector), and the side, 1 left or -1 right."""
+
+    place: Array
+    along: Array
+    side: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,29 +97,13 @@ class Stroke:
 
 
 def felt(
-    view: View,
-    place: Array,
-    along: Array,
-    at_mm: float,
-    side: int,
-    away_mm: float,
-    longest_mm: float,
+    view: View, base: Base, at_mm: float, away_mm: float, longest_mm: float
 ) -> Stroke | None:
     """The stroke that a cell is on beside a place of the way, which is `at_mm` along it; None if it is not
     nearly as wide as the line, or too short.
     """
-    width = view.width_mm
-    seen = _stroke_at(
-        view.cells,
-        view.pitch_mm,
-        place,
-        along,
-        side,
-        away_mm,
-        longest_mm + width,
-        width,
-        view.level,
-    )
+    width, (place, along, side) = view.width_mm, base
+    seen = _stroke_at(view.cells, base, away_mm, longest_mm + width, width)
     inner = seen[:, 1] > CLEAR_OF_LINE * width
     wide = float(np.median(seen[inner, 2])) / width if inner.sum() > 2 else 0.0
     if not SEEN[0] < wide < SEEN[1]:
@@ -118,11 +113,10 @@ def felt(
     long_enough = reach - max(0.0, nearest - 0.5 * width) > max(LEAST_MM, LEAST_WIDTHS * width)
     if not long_enough or nearest - 0.5 * width > FARTHEST_MM:
         return None
-    where = view.cells, view.pitch_mm, place, along, side
     middles, others = seen[inner], max(DASH_MM, DASH_WIDTHS * width)
     is_like = (
         LIKE[0] < wide < LIKE[1]
-        and INK[0] < _darkness(*where, middles) * LEVEL / view.level < INK[1]
+        and INK[0] < _darkness(view.cells, base, middles) * LEVEL / view.level < INK[1]
     )
     across = side * np.array([-along[1], along[0]])
     tips = [
@@ -135,10 +129,10 @@ def felt(
     ends = (
         reach < longest_mm
         and all(at_tips)
-        and not _goes_on(*where, middles, others, width, view.level)
+        and not _goes_on(view.cells, base, middles, others, width)
     )
     clear_mm = CLEAR_WIDTHS * width if touches else max(APART_MM, APART_WIDTHS * width)
-    soiled = _soiled(*where, middles, 0.4 * width, clear_mm, view.level)
+    soiled = _soiled(view.cells, base, middles, (0.4 * width, clear_mm))
     is_clear = soiled < (SOILED if touches else APART_SOILED)
     places = place + middles[:, :1] * along + middles[:, 1:2] * across
     return Stroke(
@@ -170,17 +164,9 @@ def _square_to(view: View, place: Array, square: Array, slant: float, stroke: St
     as they were, if there are too few.
     """
     width, lean, away = view.width_mm, math.hypot(1.0, slant), stroke.middles[:, 1]
-    seen = _stroke_at(
-        view.cells,
-        view.pitch_mm,
-        place,
-        square,
-        stroke.side,
-        float(np.median(away)) * lean,
-        float(away.max()) * lean + width,
-        width,
-        view.level,
-    )
+    base = Base(place, square, stroke.side)
+    away_mm, farthest_mm = float(np.median(away)) * lean, float(away.max()) * lean + width
+    seen = _stroke_at(view.cells, base, away_mm, farthest_mm, width)
     seen = seen[seen[:, 1] > CLEAR_OF_LINE * width * lean + 0.5 * width * abs(slant)]
     out = stroke.side * np.array([-square[1], square[0]])
     return place + seen[:, :1] * square + seen[:, 1:2] * out if len(seen) > 3 else stroke.places
@@ -197,47 +183,46 @@ def _robust_line(x: Array, y: Array) -> tuple[float, float]:
 
 
 @njit(cache=True)
-def _seen(cells, pitch_mm, place, along, side, u_mm, v_mm):  # type: ignore[no-untyped-def]
-    """Darkness at a place along and away from the way."""
+def _row(base, v_mm):  # type: ignore[no-untyped-def]
+    """The ray along the way at a distance away from it."""
+    place, along, side = base
     x, y = place[0] - side * v_mm * along[1], place[1] + side * v_mm * along[0]
-    return photocell.darkness_at(cells, pitch_mm, x + u_mm * along[0], y + u_mm * along[1])
+    return Ray(x, y, along[0], along[1], 0.0)
 
 
 @njit(cache=True)
-def _darkness(cells, pitch_mm, place, along, side, middles):  # type: ignore[no-untyped-def]
+def _darkness(cells, base, middles):  # type: ignore[no-untyped-def]
     """The darkness of a stroke along its middle."""
     seen = np.empty(len(middles))
     for k in range(len(middles)):
-        seen[k] = _seen(cells, pitch_mm, place, along, side, middles[k, 0], middles[k, 1])
+        seen[k] = seen_on(cells, _row(base, middles[k, 1]), middles[k, 0])
     return np.median(seen)
 
 
 @njit(cache=True)
-def _soiled(cells, pitch_mm, place, along, side, middles, from_mm, to_mm, level):  # type: ignore[no-untyped-def]
+def _soiled(cells, base, middles, beside_mm):  # type: ignore[no-untyped-def]
     """The share of ink to both sides of a stroke, between two distances from its edges."""
     dark = count = 0
     for k in range(len(middles)):
-        for out in np.arange(from_mm, to_mm, pitch_mm):
+        for out in np.arange(beside_mm[0], beside_mm[1], cells.pitch_mm):
             for to in (-1, 1):
                 u = middles[k, 0] + to * (0.5 * middles[k, 2] + out)
-                dark += _seen(cells, pitch_mm, place, along, side, u, middles[k, 1]) > level
+                dark += seen_on(cells, _row(base, middles[k, 1]), u) > cells.level
                 count += 1
     return dark / max(count, 1)
 
 
 @njit(cache=True)
-def _goes_on(cells, pitch_mm, place, along, side, middles, beyond_mm, width_mm, level):  # type: ignore[no-untyped-def]
+def _goes_on(cells, base, middles, beyond_mm, width_mm):  # type: ignore[no-untyped-def]
     """Whether a stroke goes on in its own line after a gap, for one and a half widths or more."""
     last = np.argmax(middles[:, 1])
     first = np.argmin(middles[:, 1])
     u, v = middles[last, 0], middles[last, 1]
     slant = (u - middles[first, 0]) / max(v - middles[first, 1], 0.5 * width_mm)
-    step, run = 0.5 * pitch_mm, 0.0
+    step, run = 0.5 * cells.pitch_mm, 0.0
     for k in range(1, int(beyond_mm / step)):
         there = u + slant * k * step
-        right, left = _across(
-            cells, pitch_mm, place, along, side, there, v + k * step, 1.2 * width_mm, level
-        )
+        right, left = _across(cells, base, there, v + k * step, 1.2 * width_mm)
         like = (
             left - right < 1.6 * width_mm
             and abs(0.5 * (left + right) - there) < 0.25 * width_mm
@@ -249,12 +234,12 @@ def _goes_on(cells, pitch_mm, place, along, side, middles, beyond_mm, width_mm, 
 
 
 @njit(cache=True)
-def _stroke_at(cells, pitch_mm, place, along, side, away_mm, farthest_mm, width_mm, level):  # type: ignore[no-untyped-def]
+def _stroke_at(cells, base, away_mm, farthest_mm, width_mm):  # type: ignore[no-untyped-def]
     """Middles (along, away) and widths of a stroke, (n, 3) mm, felt inward and outward from a place beside
     the way until there is no ink, specks apart.
     """
-    step = 0.5 * pitch_mm
-    speck_mm = min(max(0.16, 2.5 * pitch_mm), 0.6 * width_mm)
+    step = 0.5 * cells.pitch_mm
+    speck_mm = min(max(0.16, 2.5 * cells.pitch_mm), 0.6 * width_mm)
     seen = np.empty((2 * int(farthest_mm / step) + 4, 3))
     count = 0
     for way in (-1, 1):
@@ -263,9 +248,7 @@ def _stroke_at(cells, pitch_mm, place, along, side, away_mm, farthest_mm, width_
             u = seen[0, 0]
         last = v
         while 0.4 * width_mm < v <= farthest_mm:
-            right, left = _across(
-                cells, pitch_mm, place, along, side, u, v, 1.2 * width_mm, level
-            )
+            right, left = _across(cells, base, u, v, 1.2 * width_mm)
             if math.isnan(left - right):
                 if abs(v - last) > speck_mm:
                     break
@@ -280,22 +263,15 @@ def _stroke_at(cells, pitch_mm, place, along, side, away_mm, farthest_mm, width_
 
 
 @njit(cache=True)
-def _across(cells, pitch_mm, place, along, side, u_mm, v_mm, reach_mm, level):  # type: ignore[no-untyped-def]
+def _across(cells, base, u_mm, v_mm, reach_mm):  # type: ignore[no-untyped-def]
     """Where ink about u ends, back and forth along the way, at a distance v from it; NaN without ink, or
     without an end in reach.
     """
-    step = 0.35 * pitch_mm
-    if _seen(cells, pitch_mm, place, along, side, u_mm, v_mm) < level:
-        return math.nan, math.nan
-    found = (math.nan, math.nan)
-    for way in (-1, 1):
-        before, u = 1.0, u_mm
-        while abs(u - u_mm) <= reach_mm:
-            now = _seen(cells, pitch_mm, place, along, side, u, v_mm)
-            if now < level:
-                edge = u - way * step * (level - now) / max(before - now, 1e-9)
-                found = (edge, found[1]) if way < 0 else (found[0], edge)
-                break
-            before = now
-            u += way * step
-    return found
+    ahead = _row(base, v_mm)
+    x, y = ahead.x_mm + u_mm * ahead.cosine, ahead.y_mm + u_mm * ahead.sine
+    ahead = Ray(x, y, ahead.cosine, ahead.sine, 0.0)
+    back = Ray(x, y, -ahead.cosine, -ahead.sine, 0.0)
+    last_mm = reach_mm - STEP_PX * cells.pitch_mm  # no sample beyond the reach
+    behind = end_of_ink(cells, back, 0.0, last_mm)
+    before = end_of_ink(cells, ahead, 0.0, last_mm)
+    return u_mm - behind, u_mm + before

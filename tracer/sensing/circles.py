@@ -14,7 +14,8 @@ import numpy as np
 from numba import njit
 
 from morfax.motion.arrays import Array
-from morfax.tracer.sensing import photocell
+from morfax.tracer.sensing.photocell import STEP_PX
+from morfax.tracer.sensing.ray import Ray, crossing_mm
 from morfax.tracer.sensing.view import View
 
 SPOKES = 72
@@ -26,26 +27,22 @@ def spokes(view: View, place: Array, reach_mm: float) -> Array:
     """Where ink and paper change first and second along each spoke, (SPOKES, 2) mm from the place; NaN beyond
     reach.
     """
-    return np.asarray(_changes(view.cells, view.pitch_mm, place, WAYS, reach_mm, view.level))
+    return np.asarray(_changes(view.cells, place, WAYS, reach_mm))
 
 
 @njit(cache=True)
-def _changes(cells, pitch_mm, place, ways, reach_mm, level):  # type: ignore[no-untyped-def]
+def _changes(cells, place, ways, reach_mm):  # type: ignore[no-untyped-def]
     """The first two changes along each of some ways from a place, mm."""
     out = np.full((len(ways), 2), math.nan)
-    step = 0.35 * pitch_mm
+    step = STEP_PX * cells.pitch_mm
     for k in range(len(ways)):
-        before = photocell.darkness_at(cells, pitch_mm, place[0], place[1])
-        found, r = 0, step
-        while r <= reach_mm and found < 2:
-            now = photocell.darkness_at(
-                cells, pitch_mm, place[0] + r * ways[k, 0], place[1] + r * ways[k, 1]
-            )
-            if (now >= level) != (before >= level):
-                out[k, found] = r - step * (level - now) / (before - now)
-                found += 1
-            before = now
-            r += step
+        spoke = Ray(place[0], place[1], ways[k, 0], ways[k, 1], 0.0)
+        first = crossing_mm(cells, spoke, 0.0, reach_mm - step, 0.0)
+        if math.isnan(first):
+            continue
+        behind = step * (math.floor(first / step) + 1)  # the sample that is past the change
+        out[k, 0] = first
+        out[k, 1] = crossing_mm(cells, spoke, behind, reach_mm - step, 0.0)
     return out
 
 

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
-from numba import njit
 
 from morfax.motion.arrays import Array
-from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.leg import Leg, leg_of
+from morfax.tracer.sensing.photocell import STEP_PX
+from morfax.tracer.sensing.ray import Ray, end_of_ink
 from morfax.tracer.sensing.view import View
 
 SPOKE = np.linspace(0.2, 1.0, 17)
@@ -26,28 +25,17 @@ def reach_of_ink(
     """How far the ink goes on from the incoming leg's end along its line, or beside it (left positive), mm;
     None if farther than asked.
     """
-    step = 0.35 * view.pitch_mm
-    left = np.array([-math.sin(incoming.heading_rad), math.cos(incoming.heading_rad)])
-    places = (
-        incoming.at(np.asarray(np.arange(int(farthest_mm / step)) * step, float))
-        + aside_mm * left
-    )
-    steps = _steps_of_ink(view.cells, view.pitch_mm, places, view.level)
-    return max(0.0, steps * step) if steps < len(places) else None
-
-
-@njit(cache=True)
-def _steps_of_ink(cells, pitch_mm, places, level):  # type: ignore[no-untyped-def]
-    """How many of some places (n, 2) are on ink, one after the other, and the share of a step to where it
-    ends; n if all are.
-    """
-    before = 1.0
-    for k in range(len(places)):
-        now = photocell.darkness_at(cells, pitch_mm, places[k, 0], places[k, 1])
-        if now < level:
-            return k - (level - now) / max(before - now, 1e-9)
-        before = now
-    return float(len(places))
+    step = STEP_PX * view.pitch_mm
+    last_mm = (int(farthest_mm / step) - 1) * step  # the last sample
+    if last_mm < 0:
+        return None
+    t = np.array([math.cos(incoming.heading_rad), math.sin(incoming.heading_rad)])
+    place = incoming.end_mm + aside_mm * np.array([-t[1], t[0]])
+    if view.darkness_at(place) < view.level:
+        return 0.0
+    ray = Ray(place[0], place[1], t[0], t[1], incoming.bend_per_mm)
+    end_mm = end_of_ink(view.cells, ray, 0.0, last_mm - 0.5 * step)
+    return end_mm if math.isfinite(end_mm) else None
 
 
 def stroke_end(view: View, leg: Leg, farthest_mm: float) -> float | None:
@@ -100,7 +88,7 @@ def lines_from(view: View, centre: Array, radius_mm: float) -> int:
     Paper on the way to a stroke is lighter than where the way grazes an edge; a speck of it is not on all of
     the ways side by side.
     """
-    lighter = replace(view, level=PAPER * view.level)
+    lighter = view.at_level(PAPER * view.level)
     joined = 0
     for heading in strokes_on(view, centre, radius_mm).mean(axis=1):
         way = np.array([math.cos(heading), math.sin(heading)])
@@ -119,7 +107,7 @@ def lines_on(view: View, centre: Array, radius_mm: float) -> int:
 
 def strokes_on(view: View, centre: Array, radius_mm: float) -> Array:
     """The arcs that a ring sees which are no specks, (n, 2) rad."""
-    arcs = photocell.ring(view.cells, view.pitch_mm, centre, radius_mm, view.level)
+    arcs = view.ring(centre, radius_mm)
     return np.asarray(
         arcs[(arcs[:, 1] - arcs[:, 0]) * radius_mm > SPECK_WIDTHS * view.width_mm]
     )

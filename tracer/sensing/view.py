@@ -1,8 +1,9 @@
-"""How the head sees the line that it is on: through which cells, how wide, and how dark at its edges.
+"""How the head sees the line that it follows: through which cells, how wide, and how dark at its edges.
 
 Signals: the darkness behind the aperture; places and headings in sheet mm in, clean stations of the line out.
+Other rooms see through a `View`; its methods call the kernels of this room.
 
-Source: our own (see `knot`).
+Source: our own (see `rings`).
 """
 
 from __future__ import annotations
@@ -15,10 +16,10 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import lengths_mm
-from morfax.tracer.sensing import photocell
-from morfax.tracer.sensing.photocell import Cells
+from morfax.tracer.sensing import photocell, ray
+from morfax.tracer.sensing.photocell import LEVEL, Cells
+from morfax.tracer.sensing.scout import CLEAN, REACH, REACH_PX, scout
 
-LEVEL = 0.5  # an edge is at this share of the line's darkness
 LEG_MM = 1.2  # how much of a leg is felt for its direction, at a line of 0.5 mm
 GRAIN = 0.4  # of the line's width: standard deviation of a cell that averages its grain
 GRAIN_LEVEL = 0.3  # an edge is at this share of the darkness then
@@ -27,17 +28,26 @@ GRAIN_STATIONS = 20
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """What the head knows of the line it is on: the cells' picture, the line's width, and the darkness at an
-    edge.
+    """What the head knows of the line it is on: what the cells see, and the line's width.
+
+    `usual_mm` is the line's width as a rule, where the width here differs. What the head sees is `enlarged`
+    times as large as on the drawing.
     """
 
     cells: Cells
-    pitch_mm: float
     width_mm: float
-    level: float
-    usual_mm: float | None = None  # the line's width as a rule, where the width here differs
-    # times: what the head sees is so many times as large as on the drawing
+    usual_mm: float | None = None
     enlarged: float = 1.0
+
+    @property
+    def pitch_mm(self) -> float:
+        """Distance of the drawing's pixels."""
+        return self.cells.pitch_mm
+
+    @property
+    def level(self) -> float:
+        """Darkness at an edge."""
+        return self.cells.level
 
     @property
     def step_mm(self) -> float:
@@ -49,103 +59,87 @@ class View:
         """How much of a leg is felt for its direction."""
         return max(LEG_MM, 12 * self.pitch_mm, 1.5 * self.width_mm)
 
+    def at_level(self, level: float) -> View:
+        """The view with another darkness at an edge."""
+        return replace(self, cells=self.cells._replace(level=float(level)))
+
+    def darkness_at(self, place: Array) -> float:
+        """Darkness at a place."""
+        return float(photocell.darkness_at(self.cells, place[0], place[1]))
+
+    def dark(self, place: Array) -> bool:
+        """Whether there is ink at a place."""
+        return self.darkness_at(place) > self.level
+
+    def edges(self, place: Array, heading: float, reach_mm: float) -> tuple[float, float]:
+        """Where the line under a place ends to the right and to the left of a heading, mm (see `ray`)."""
+        found: tuple[float, float] = ray.edges(
+            self.cells, place[0], place[1], heading, reach_mm
+        )
+        return found
+
+    def ink_along(self, place: Array, heading: float, reach_mm: float) -> float:
+        """How far the ink under a place goes on along a heading, past specks of paper, mm (see `ray`)."""
+        return float(ray.edge_along(self.cells, place[0], place[1], heading, reach_mm))
+
+    def ring(self, centre: Array, radius_mm: float) -> Array:
+        """The arcs of ink round a centre, (n, 2) rad (see `photocell`)."""
+        return np.asarray(photocell.ring(self.cells, centre, radius_mm))
+
     def feel(self, place: Array, heading: float, length_mm: float) -> Array:
         """Centres and widths (n, 3) of the line from a place on it along a heading, while it is clean."""
         stations = max(4, round(length_mm / self.step_mm) + 1)
-        return photocell.scout(
-            self.cells,
-            self.pitch_mm,
-            place,
-            heading,
-            self.step_mm,
-            stations,
-            self.width_mm,
-            self.level,
-        )
+        pose = float(place[0]), float(place[1]), float(heading)
+        return np.asarray(scout(self.cells, pose, self.width_mm, self.step_mm, stations))
 
     def feel_along(self, way: Array) -> Array:
-        """Centres and widths (n, 3) of the line across a way (n, 2) mm, a station's distance apart, wherever
-        it is clean.
-        """
+        """Centres and widths (n, 3) of the line across a way (n, 2) mm, a step apart, wherever it is clean."""
         if len(way) < 3:
             return np.empty((0, 3))
         come_mm = lengths_mm(way)
         every = way[np.searchsorted(come_mm, np.arange(0.0, come_mm[-1], self.step_mm))]
-        reach, seen = (
-            photocell.REACH * self.width_mm + photocell.REACH_PX * self.pitch_mm,
-            list[tuple[float, ...]](),
-        )
+        reach = REACH * self.width_mm + REACH_PX * self.pitch_mm
+        seen: list[tuple[float, float, float]] = []
         for place, before, after in zip(every[1:-1], every[:-2], every[2:], strict=True):
             heading = math.atan2(*(after - before)[::-1])
-            right, left = photocell.edges(
-                self.cells, self.pitch_mm, place[0], place[1], heading, reach, self.level
-            )
-            aside = 0.5 * (left + right)
-            if abs(left - right - self.width_mm) < photocell.CLEAN * self.width_mm:
-                seen.append(
-                    (
-                        place[0] - aside * math.sin(heading),
-                        place[1] + aside * math.cos(heading),
-                        left - right,
-                    )
-                )
+            right, left = self.edges(place, heading, reach)
+            aside, width = 0.5 * (left + right), left - right
+            if abs(width - self.width_mm) < CLEAN * self.width_mm:
+                x = place[0] - aside * math.sin(heading)
+                y = place[1] + aside * math.cos(heading)
+                seen.append((x, y, width))
         return np.array(seen).reshape(-1, 3)
 
     def like(self, place: Array, heading: float, follows: float = 0.1) -> View:
-        """The view with the width and the darkness that the line has about a place, if they are like what
-        they were: lines swell and fade.
+        """The view with the line's width and darkness about a place, if they are like those before.
 
-        The usual width follows by a share of how far the width differs from it.
+        Lines swell and fade. The usual width follows by a share of how far the width differs from it.
         """
         way = np.array([math.cos(heading), math.sin(heading)])
-        places = [
-            place + 2 * k * self.step_mm * way for k in range(5)
-        ]  # more of them than a speck spoils
-        ink = float(
-            np.median(
-                [photocell.darkness_at(self.cells, self.pitch_mm, p[0], p[1]) for p in places]
-            )
-        )
-        level = LEVEL * min(max(ink, self.level), 4 * self.level)
+        # more places than a speck spoils
+        places = [place + 2 * k * self.step_mm * way for k in range(5)]
+        ink = float(np.median([self.darkness_at(p) for p in places]))
+        here = self.at_level(LEVEL * min(max(ink, self.level), 4 * self.level))
         reach = 1.5 * self.width_mm + 2 * self.pitch_mm
-        found = [
-            photocell.edges(self.cells, self.pitch_mm, p[0], p[1], heading, reach, level)
-            for p in places
-        ]
-        width = float(
-            np.median([left - right for right, left in found])
-        )  # NaN if any has no edge
+        found = [here.edges(p, heading, reach) for p in places]
+        # NaN if any has no edge
+        width = float(np.median([left - right for right, left in found]))
         usual = self.usual_mm or self.width_mm
         if not 0.5 < width / usual < 1.6:
             return self
-        return replace(
-            self, width_mm=width, level=level, usual_mm=usual + follows * (width - usual)
-        )
+        return replace(here, width_mm=width, usual_mm=usual + follows * (width - usual))
 
     def through_larger(self, stations: Array, heading: float) -> View:
-        """The line through cells as large as it is wide, which average its grain; its width and its darkness
-        as seen so at some stations (n, 3) of it.
+        """The line through cells as large as it is wide, which average its grain.
+
+        Its width and its darkness are those that these cells see at some stations (n, 3) of it.
         """
         sigma_px = GRAIN * self.width_mm / self.pitch_mm
-        cells = np.asarray(cv2.GaussianBlur(self.cells, (0, 0), sigma_px), np.float32)
+        soft = np.asarray(cv2.GaussianBlur(self.cells.darkness, (0, 0), sigma_px), np.float32)
+        larger = replace(self, cells=self.cells._replace(darkness=soft))
         places = stations[-GRAIN_STATIONS:, :2]
-        level = GRAIN_LEVEL * float(
-            np.median([photocell.darkness_at(cells, self.pitch_mm, x, y) for x, y in places])
-        )
-        reach = 3 * self.width_mm
-        found = [
-            photocell.edges(cells, self.pitch_mm, x, y, heading, reach, level)
-            for x, y in places
-        ]
+        darkness = float(np.median([larger.darkness_at(place) for place in places]))
+        larger = larger.at_level(GRAIN_LEVEL * darkness)
+        found = [larger.edges(place, heading, 3 * self.width_mm) for place in places]
         widths = [left - right for right, left in found if math.isfinite(left - right)]
-        return (
-            replace(self, cells=cells, level=level, width_mm=float(np.median(widths)))
-            if widths
-            else self
-        )
-
-    def dark(self, place: Array) -> bool:
-        """Whether there is ink at a place."""
-        return bool(
-            photocell.darkness_at(self.cells, self.pitch_mm, place[0], place[1]) > self.level
-        )
+        return replace(larger, width_mm=float(np.median(widths))) if widths else self

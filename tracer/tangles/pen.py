@@ -112,11 +112,11 @@ def away(places, lines, count, out):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def on_paper_mm(cells, pitch_mm, level, lines, count):  # type: ignore[no-untyped-def]
+def on_paper_mm(cells, lines, count):  # type: ignore[no-untyped-def]
     """Length of the first pieces of some lines (4, k) that lies on paper, mm; a speck of it with ink on both
     sides is none.
     """
-    total = 0.0
+    total, pitch_mm, level = 0.0, cells.pitch_mm, cells.level
     for i in range(count):
         vx, vy = lines[2, i] - lines[0, i], lines[3, i] - lines[1, i]
         length = math.hypot(vx, vy)
@@ -125,9 +125,9 @@ def on_paper_mm(cells, pitch_mm, level, lines, count):  # type: ignore[no-untype
         for k in range(steps):
             t = (k + 0.5) / steps
             x, y = lines[0, i] + t * vx, lines[1, i] + t * vy
-            if darkness_at(cells, pitch_mm, x, y) < level and (
-                darkness_at(cells, pitch_mm, x - aside * vy, y + aside * vx) < level
-                or darkness_at(cells, pitch_mm, x + aside * vy, y - aside * vx) < level
+            if darkness_at(cells, x, y) < level and (
+                darkness_at(cells, x - aside * vy, y + aside * vx) < level
+                or darkness_at(cells, x + aside * vy, y - aside * vx) < level
             ):
                 total += length / steps
     return total

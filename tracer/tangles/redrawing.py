@@ -137,10 +137,8 @@ class Sketch:
         ends, counts, strokes, vertices = self._drawn(way)
         lines = np.empty((4, 2 * pen.PIECES * len(ends) + 2 * len(vertices) + 1))
         count = pen.pieces(ends, counts, strokes, vertices, lines)
-        view = self.view
-        return float(pen.on_paper_mm(view.cells, view.pitch_mm, view.level, lines, count)) / (
-            2 * self.pen[0]
-        )
+        on_paper_mm = float(pen.on_paper_mm(self.view.cells, lines, count))
+        return on_paper_mm / (2 * self.pen[0])
 
     def _effort(self, way: Way) -> float:
         """What a way costs by its vertices and strokes, in vertices."""
@@ -336,7 +334,7 @@ def _softness(view: View, leg: Leg) -> float:
     u = np.linspace(-0.5, 0.5, 25) * (leg.width_mm + 0.6)
     seen = np.median(
         [
-            [darkness_at(view.cells, view.pitch_mm, p[0] - a * d[1], p[1] + a * d[0]) for a in u]
+            [darkness_at(view.cells, p[0] - a * d[1], p[1] + a * d[0]) for a in u]
             for p, d in zip(stations, t, strict=True)
         ],
         axis=0,

@@ -21,8 +21,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.tracer.drawing.drawing import Darkness
 from morfax.tracer.sensing.leg import Leg, leg_of
-from morfax.tracer.sensing.photocell import Cells
 from morfax.tracer.sensing.view import View
 from morfax.tracer.tangles.wavefront import Fronts, fronts_from
 
@@ -63,11 +63,12 @@ def tangle_ahead(view: View, incoming: Leg) -> Tangle:
     return Tangle([incoming, *legs], *ink, not np.any(running & ~ended))
 
 
-def _inside(view: View, fronts: Fronts, ended: Flags) -> tuple[Flags, Cells]:
+def _inside(view: View, fronts: Fronts, ended: Flags) -> tuple[Flags, Darkness]:
     """Which pixels of the fronts' window are the tangle's ink, and the darkness there."""
     inside = (fronts.label >= 0) & ~ended[np.maximum(fronts.label, 0)]
     top, left = fronts.corner
-    return inside, view.cells[top : top + inside.shape[0], left : left + inside.shape[1]]
+    rows, columns = inside.shape
+    return inside, view.cells.darkness[top : top + rows, left : left + columns]
 
 
 def _legs(view: View, fronts: Fronts, reach_mm: float) -> tuple[list[Leg], Flags]:
@@ -135,20 +136,20 @@ def _ink(view: View, fronts: Fronts, ended: Flags) -> tuple[Array, Array, float]
     """Places and darkness, and the area, of the tangle's ink and the paper about it, without what is near ink
     that is not the tangle's.
     """
-    (inside, cells), (top, left) = _inside(view, fronts, ended), fronts.corner
+    (inside, seen), (top, left) = _inside(view, fronts, ended), fronts.corner
     square = np.ones((3, 3), np.uint8)
     about = cv2.dilate(
         inside.view(np.uint8), square, iterations=max(2, round(ABOUT_MM / view.pitch_mm))
     )
-    others = cv2.dilate(((cells > view.level) & ~inside).view(np.uint8), square, iterations=2)
+    others = cv2.dilate(((seen > view.level) & ~inside).view(np.uint8), square, iterations=2)
     i, j = np.nonzero(inside | ((about > 0) & (others == 0)))
     x, y = (
         (j + left + 0.5) * view.pitch_mm,
-        (view.cells.shape[0] - i - top - 0.5) * view.pitch_mm,
+        (view.cells.darkness.shape[0] - i - top - 0.5) * view.pitch_mm,
     )
     places, darkness = (
         np.column_stack([x, y]),
-        np.minimum(cells[i, j] / (2 * view.level), 1.05).astype(float),
+        np.minimum(seen[i, j] / (2 * view.level), 1.05).astype(float),
     )
     if len(places) > MOST_PLACES:
         some = np.random.default_rng(0).permutation(len(places))[:MOST_PLACES]

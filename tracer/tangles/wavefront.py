@@ -57,11 +57,11 @@ def fronts_from(view: View, place: Array, heading: float, reach_mm: float) -> Fr
     """The fronts of a wave that starts across the line at a place and runs ahead as far as `reach_mm`; the
     ink behind is shut off.
     """
-    rows, pitch = view.cells.shape[0], view.pitch_mm
+    rows, pitch = view.cells.darkness.shape[0], view.pitch_mm
     half = math.ceil(reach_mm / pitch) + 4
     row, column = round(rows - place[1] / pitch - 0.5), round(place[0] / pitch - 0.5)
     top, left = max(0, row - half), max(0, column - half)
-    window = view.cells[top : row + half + 1, left : column + half + 1]
+    window = view.cells.darkness[top : row + half + 1, left : column + half + 1]
     local = place[0] / pitch - 0.5 - left, rows - place[1] / pitch - 0.5 - top
     distance = _wave(
         window, view.level, local, heading, view.width_mm / pitch, reach_mm / pitch
@@ -86,11 +86,11 @@ def fronts_from(view: View, place: Array, heading: float, reach_mm: float) -> Fr
 
 
 @njit(cache=True)
-def _wave(cells, level, start, heading, width_px, reach_px):  # type: ignore[no-untyped-def]
+def _wave(darkness, level, start, heading, width_px, reach_px):  # type: ignore[no-untyped-def]
     """How far each pixel of ink is from the start, within the ink, pixels; FAR on paper, behind the start and
     out of reach.
     """
-    rows, columns = cells.shape
+    rows, columns = darkness.shape
     out = np.full((rows, columns), FAR)
     queue = np.empty((rows * columns, 2), np.int32)
     waiting = np.zeros((rows, columns), np.bool_)
@@ -102,7 +102,7 @@ def _wave(cells, level, start, heading, width_px, reach_px):  # type: ignore[no-
             along = (j - start[0]) * c + (i - start[1]) * s
             aside = abs((i - start[1]) * c - (j - start[0]) * s)
             behind = aside < 0.9 * width_px and -2.0 * width_px - 2.0 < along < 0
-            open_to[i, j] = cells[i, j] > level and not behind
+            open_to[i, j] = darkness[i, j] > level and not behind
             if open_to[i, j] and 0 <= along < 1.5 and aside < 0.4 * width_px:
                 out[i, j] = 0.0
                 queue[count, 0], queue[count, 1] = i, j

@@ -12,11 +12,12 @@ from morfax.tracer.following.attempts import Attempts
 from morfax.tracer.following.follower import Followed
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance
+from morfax.tracer.sensing.photocell import Cells
 from morfax.tracer.sensing.view import View
 from tests.tracer.inked import inked, polyline
 
 DRAWING = inked(polyline((4, 4), (14, 4)))
-VIEW = View(DRAWING.darkness, DRAWING.pitch_mm, 0.5, 0.5)
+VIEW = View(Cells(DRAWING.darkness, DRAWING.pitch_mm, 0.5), 0.5)
 STANCE = Stance(np.array([9.0, 4.0]), 0.0, VIEW)
 Runs = dict[
     tuple[bool, bool], Followed

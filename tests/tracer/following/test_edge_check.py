@@ -9,13 +9,14 @@ import pytest
 
 from morfax.tracer.following.edge_check import OFF_MM, kept_to
 from morfax.tracer.following.follower import Followed
+from morfax.tracer.sensing.photocell import Cells
 from morfax.tracer.sensing.view import View
 from tests.tracer.inked import Points, arc, polyline
 
 SQUARE = polyline((10, 10), (30, 10), (30, 30), (10, 30), (10, 10))
 HOLE = arc((20, 20), 4)
 EDGES = (SQUARE, HOLE)
-VIEW = View(np.zeros((4, 4), np.float32), 0.1, 0.4, 0.5)
+VIEW = View(Cells(np.zeros((4, 4), np.float32), 0.1, 0.5), 0.4)
 
 
 def along(line: Points, ending: str = "closed") -> Followed:

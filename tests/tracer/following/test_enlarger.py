@@ -30,7 +30,7 @@ def small(stance: Stance) -> Stance:
     """The same drawing so many times smaller."""
     view = replace(
         stance.view,
-        pitch_mm=stance.view.pitch_mm / TIMES,
+        cells=stance.view.cells._replace(pitch_mm=stance.view.pitch_mm / TIMES),
         width_mm=stance.view.width_mm / TIMES,
         usual_mm=None,
     )

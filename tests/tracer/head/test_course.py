@@ -14,7 +14,7 @@ from morfax.motion.arrays import Array
 from morfax.tracer.junctions import corner
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.leg import Leg, meet
-from morfax.tracer.sensing.view import LEVEL, View
+from morfax.tracer.sensing.view import View
 from tests.tracer.inked import UM, WIDTH_MM, inked
 from tests.tracer.inked import corner as drawn_corner
 
@@ -94,7 +94,7 @@ def at_corner(
     outgoing = Leg(
         vertex + 1.2 * np.array([math.cos(out), math.sin(out)]), out, 0.0, WIDTH_MM, NO_STATIONS
     )
-    eyes = View(photocell.behind_aperture(drawing, 0.15), drawing.pitch_mm, WIDTH_MM, LEVEL)
+    eyes = View(photocell.behind_aperture(drawing, 0.15), WIDTH_MM)
     legs_mm = meet(incoming, outgoing)
     assert legs_mm == pytest.approx((1.2, 1.2), abs=1e-9)
     return eyes, incoming, outgoing, legs_mm

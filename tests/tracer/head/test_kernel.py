@@ -239,7 +239,7 @@ def _some_steps(drawing: Drawing) -> tuple[Array, Array]:
         follower.carriage.state,
     )
     home = Home(0.0, 0.0, 0.0, from_travel_mm=1e9)
-    n, why = kernel.follow(cells, drawing.pitch_mm, state, tuning, home, out[:240])
+    n, why = kernel.follow(cells, state, tuning, home, out[:240])
     assert (n, why) == (240, MORE)
     begin = np.array([state.x_mm, state.y_mm])
     way = begin + np.array([[0.0, 0.0], [0.2, 0.0], [0.2, 0.2]])

@@ -13,7 +13,7 @@ from morfax.tracer.junctions.choice import straight_on, survey
 from morfax.tracer.junctions.edge_following import ride_past
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.leg import Leg, goes_straight, leg_of
-from morfax.tracer.sensing.view import LEVEL, View
+from morfax.tracer.sensing.view import View
 from tests.tracer.inked import UM, WIDTH_MM, inked, polyline
 
 VERTEX_MM = (
@@ -26,9 +26,7 @@ Seen = tuple[View, Leg, Trail]
 
 def come_along(drawing: Drawing, to_mm: float = X_MM) -> Seen:
     """A head that has come along y = 10 mm, and feels the line ahead up to a knot, at most to x = `to_mm`."""
-    eyes = View(
-        photocell.behind_aperture(drawing, 0.15), drawing.pitch_mm, WIDTH_MM + 25 * UM, LEVEL
-    )
+    eyes = View(photocell.behind_aperture(drawing, 0.15), WIDTH_MM + 25 * UM)
     start = np.array([to_mm - 3.0, 10.0])
     trail = Trail(np.array([4.0, 10.0]), eyes.step_mm)
     trail.add(

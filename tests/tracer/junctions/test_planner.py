@@ -36,7 +36,7 @@ def line(radius_mm: float) -> Array:
 def felt(radius_mm: float) -> tuple[View, Array]:
     """The view of that line, and its stations from 1.5 mm before the vertex on."""
     drawing = inked(line(radius_mm), width_mm=WIDTH_MM, seed=1)
-    view = View(photocell.behind_aperture(drawing, 0.1), drawing.pitch_mm, WIDTH_MM, 0.5)
+    view = View(photocell.behind_aperture(drawing, 0.1), WIDTH_MM)
     seen = view.feel(np.array([6.5, 5.0]), 0.0, 3.0)
     assert len(seen) > 55  # clean all the way round
     return view, seen

@@ -25,9 +25,7 @@ NO_STATIONS = np.empty((0, 3))
 
 def view(drawing: Drawing) -> View:
     """As a head sees the drawing that stands on a line of 0.5 mm."""
-    return View(
-        photocell.behind_aperture(drawing, 0.15), drawing.pitch_mm, WIDTH_MM + 25 * UM, LEVEL
-    )
+    return View(photocell.behind_aperture(drawing, 0.15), WIDTH_MM + 25 * UM)
 
 
 def stations(curve: Array, width_mm: float = WIDTH_MM) -> Array:

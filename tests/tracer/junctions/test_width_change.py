@@ -19,6 +19,7 @@ from morfax.motion.contour import distance, length_mm
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.raster import MM_PER_INCH
 from morfax.tracer.program.trace import trace
+from morfax.tracer.sensing.photocell import Cells
 from morfax.tracer.sensing.view import View
 from tests.tracer.inked import DPI, UM, arc, inked, polyline, together
 
@@ -115,6 +116,6 @@ def test_a_gap_wider_than_allowed_ends_a_line_for_the_larger_cell_too() -> None:
 def test_a_larger_cell_that_sees_no_edges_changes_nothing() -> None:
     """On solid ink no station has an edge: the view is as it was."""
     solid = inked(polyline((4, 10), (30, 10)), width_mm=8.0)
-    view = View(solid.darkness, solid.pitch_mm, 0.5, 0.5)
+    view = View(Cells(solid.darkness, solid.pitch_mm, 0.5), 0.5)
     stations = np.column_stack([np.linspace(10, 12, 30), np.full(30, 10.0), np.full(30, 0.5)])
     assert view.through_larger(stations, 0.0) is view

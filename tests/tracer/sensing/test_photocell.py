@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.sensing import photocell
+from morfax.tracer.sensing import photocell, ray, scout
 from tests.tracer.inked import UM, WIDTH_MM, arc, inked, polyline
 
 WIDE_MM, AMPLITUDE_MM, APERTURE_MM = 0.7, 1.0, 0.3  # the line, sweep and cell of the vectors
@@ -48,7 +48,7 @@ def swept(
     """Fundamental and mean of a sweep centred so far to the left of the line."""
     middle = np.array([0.6, 3.0])
     return kernel(photocell.sweep, plain)(
-        cells, FINE_MM, middle, 0.0, offset_mm, AMPLITUDE_MM, samples
+        cells, middle, 0.0, (offset_mm, AMPLITUDE_MM), samples
     )
 
 
@@ -133,21 +133,22 @@ def test_the_mean_falls_when_the_line_goes(behind: photocell.Cells) -> None:
 def test_a_cell_reads_pixels_in_sheet_coordinates(plain: bool) -> None:
     """Pixel i covers [i, i+1) pitches; rows run down from the top, Y up; straight in between; paper outside."""
     read = kernel(photocell.darkness_at, plain)
-    cells = np.arange(12, dtype=np.float32).reshape(3, 4) / 12
-    assert read(cells, 0.1, 0.05, 0.25) == 0.0
-    assert read(cells, 0.1, 0.15, 0.15) == pytest.approx(5 / 12)  # second of the second row
-    assert read(cells, 0.1, 0.20, 0.15) == pytest.approx(5.5 / 12)
-    assert read(cells, 0.1, 0.15, 0.10) == pytest.approx(7 / 12)
+    ramp = np.arange(12, dtype=np.float32).reshape(3, 4) / 12
+    cells = photocell.Cells(ramp, 0.1, 0.5)
+    assert read(cells, 0.05, 0.25) == 0.0
+    assert read(cells, 0.15, 0.15) == pytest.approx(5 / 12)  # second of the second row
+    assert read(cells, 0.20, 0.15) == pytest.approx(5.5 / 12)
+    assert read(cells, 0.15, 0.10) == pytest.approx(7 / 12)
     for x_mm, y_mm in ((-1, 0.1), (5, 0.1), (0.1, -1), (0.1, 5), (1e9, -1e9)):
-        assert read(np.ones((3, 4), np.float32), 0.1, x_mm, y_mm) == 0.0
+        assert read(cells._replace(darkness=np.ones_like(ramp)), x_mm, y_mm) == 0.0
 
 
 def test_an_aperture_narrower_than_a_pixel_changes_nothing(strip: Drawing) -> None:
-    assert photocell.behind_aperture(strip, 0.003) is strip.darkness
+    assert photocell.behind_aperture(strip, 0.003).darkness is strip.darkness
 
 
 def test_an_aperture_keeps_the_ink(strip: Drawing, behind: photocell.Cells) -> None:
-    assert behind.sum() == pytest.approx(strip.darkness.sum(), rel=1e-4)
+    assert behind.darkness.sum() == pytest.approx(strip.darkness.sum(), rel=1e-4)
 
 
 # edges
@@ -179,8 +180,9 @@ def test_a_straight_line_s_edges_are_where_they_are_at_any_heading_and_place(
 ) -> None:
     height = analytic(0, 0).shape[0] * 25.4 / 300
     place = 3.0, 3.0 - (6 - height)
-    find = kernel(photocell.edges, plain)
-    right, left = find(analytic(offset_mm, heading), 25.4 / 300, *place, heading, 1.0, 0.5)
+    find = kernel(ray.edges, plain)
+    cells = photocell.Cells(analytic(offset_mm, heading), 25.4 / 300, 0.5)
+    right, left = find(cells, *place, heading, 1.0)
     # straight between pixels of 85 um, an edge 0.1 mm soft is off by up to 3 um; both are off alike, away
     # from the ink
     assert left - right == pytest.approx(0.5, abs=8 * UM)
@@ -189,11 +191,10 @@ def test_a_straight_line_s_edges_are_where_they_are_at_any_heading_and_place(
 
 @COMPILED_AND_PLAIN
 def test_edges_that_are_not_there_are_nan(strip: Drawing, plain: bool) -> None:
-    find = kernel(photocell.edges, plain)
-    assert np.isnan(
-        find(strip.darkness, FINE_MM, 0.6, 5.0, 0.0, 0.8, 0.5)
-    ).all()  # no ink within half the reach
-    right, left = find(strip.darkness, FINE_MM, 0.6, 3.1, 0.0, 0.3, 0.5)
+    find = kernel(ray.edges, plain)
+    cells = photocell.Cells(strip.darkness, FINE_MM, 0.5)
+    assert np.isnan(find(cells, 0.6, 5.0, 0.0, 0.8)).all()  # no ink within half the reach
+    right, left = find(cells, 0.6, 3.1, 0.0, 0.3)
     assert math.isnan(right) and left == pytest.approx(
         0.25, abs=FINE_MM
     )  # 0.45 mm to the right is out of reach
@@ -210,7 +211,8 @@ def test_a_ring_on_a_line_sees_two_arcs(
 ) -> None:
     long = Drawing(np.repeat(strip.darkness[:, :1], 1200, axis=1), FINE_MM)
     centre = np.array([3.0, 3.0 + aside_mm])
-    arcs = kernel(photocell.ring, plain)(long.darkness, FINE_MM, centre, radius_mm, 0.5)
+    cells = photocell.Cells(long.darkness, FINE_MM, 0.5)
+    arcs = kernel(photocell.ring, plain)(cells, centre, radius_mm)
     low, high = (
         math.asin((-WIDE_MM / 2 - aside_mm) / radius_mm),
         math.asin((WIDE_MM / 2 - aside_mm) / radius_mm),
@@ -230,8 +232,9 @@ def test_a_ring_on_a_line_sees_two_arcs(
 def test_a_ring_all_dark_or_all_light(plain: bool) -> None:
     go_round = kernel(photocell.ring, plain)
     centre, black = np.array([2.0, 2.0]), np.ones((400, 400), np.float32)
-    assert go_round(black, 0.01, centre, 1.0, 0.5).tolist() == [[-math.pi, math.pi]]
-    assert len(go_round(0 * black, 0.01, centre, 1.0, 0.5)) == 0
+    all_dark, all_light = (photocell.Cells(share * black, 0.01, 0.5) for share in (1, 0))
+    assert go_round(all_dark, centre, 1.0).tolist() == [[-math.pi, math.pi]]
+    assert len(go_round(all_light, centre, 1.0)) == 0
 
 
 # scouting
@@ -242,9 +245,9 @@ def test_a_ring_all_dark_or_all_light(plain: bool) -> None:
 def test_a_circle_is_felt_along_its_middle(radius_mm: float, plain: bool) -> None:
     middle = radius_mm + 2
     cells = photocell.behind_aperture(inked(arc((middle, middle), radius_mm)), 0.15)
-    start = np.array([middle + radius_mm, middle])
-    feel = kernel(photocell.scout, plain)
-    seen = feel(cells, 25.4 / 300, start, math.pi / 2, 0.05, 40, WIDTH_MM + 25 * UM, 0.5)
+    pose = middle + radius_mm, middle, math.pi / 2
+    feel = kernel(scout.scout, plain)
+    seen = feel(cells, pose, WIDTH_MM + 25 * UM, 0.05, 40)
     assert len(seen) == 40
     radial = np.hypot(*(seen[:, :2] - middle).T) - radius_mm
     assert np.abs(radial).max() < 6 * UM  # between pixels of 85 um, on a clean drawing
@@ -259,28 +262,24 @@ def test_a_circle_is_felt_along_its_middle(radius_mm: float, plain: bool) -> Non
 def test_feeling_stops_at_the_end_of_a_line_and_before_a_crossing(plain: bool) -> None:
     drawing = inked(polyline((2, 4), (10, 4)), polyline((6, 2), (6, 6)))
     cells = photocell.behind_aperture(drawing, 0.15)
-    feel = kernel(photocell.scout, plain)
-    to_crossing = feel(
-        cells, drawing.pitch_mm, np.array([4.0, 4.0]), 0.0, 0.05, 200, WIDTH_MM, 0.5
-    )
+    feel = kernel(scout.scout, plain)
+    to_crossing = feel(cells, (4.0, 4.0, 0.0), WIDTH_MM, 0.05, 200)
     assert to_crossing[-1, 0] == pytest.approx(
         5.7, abs=0.1
     )  # the other line's ink begins at 5.75
-    to_end = feel(cells, drawing.pitch_mm, np.array([7.0, 4.0]), 0.0, 0.05, 200, WIDTH_MM, 0.5)
+    to_end = feel(cells, (7.0, 4.0, 0.0), WIDTH_MM, 0.05, 200)
     assert to_end[-1, 0] == pytest.approx(10.15, abs=0.1)  # the round of the pen ends at 10.25
     assert (
         np.abs(to_end[:-4, 1] - 4).max() < 6 * UM
     )  # a line along the pixels: they do not average out
-    nowhere = feel(cells, drawing.pitch_mm, np.array([3.0, 6.0]), 0.0, 0.05, 200, WIDTH_MM, 0.5)
+    nowhere = feel(cells, (3.0, 6.0, 0.0), WIDTH_MM, 0.05, 200)
     assert len(nowhere) == 0
 
 
 def test_a_speck_is_passed_over() -> None:
     drawing = inked(polyline((2, 4), (10, 4)), specks=[arc((6, 4.3), 0.08)])
     cells = photocell.behind_aperture(drawing, 0.15)
-    seen = photocell.scout(
-        cells, drawing.pitch_mm, np.array([4.0, 4.0]), 0.0, 0.05, 80, WIDTH_MM + 25 * UM, 0.5
-    )
+    seen = scout.scout(cells, (4.0, 4.0, 0.0), WIDTH_MM + 25 * UM, 0.05, 80)
     assert seen[-1, 0] > 7.5
     assert (
         np.abs(seen[:, 1] - 4).max() < 0.08
@@ -299,9 +298,8 @@ def test_what_is_felt_moves_and_turns_with_the_line(
     middle = np.array([8.0, 8.0]) + shift
     drawing = inked(np.array([middle - 4 * way, middle + 4 * way]))
     cells = photocell.behind_aperture(drawing, 0.15)
-    seen = photocell.scout(
-        cells, drawing.pitch_mm, middle - way, heading, 0.05, 40, WIDTH_MM + 25 * UM, 0.5
-    )
+    x, y = middle - way
+    seen = scout.scout(cells, (x, y, heading), WIDTH_MM + 25 * UM, 0.05, 40)
     assert len(seen) == 40
     aside = (seen[:, :2] - middle) @ np.array([-way[1], way[0]])
     assert np.abs(aside).max() < 5 * UM  # between pixels of 85 um

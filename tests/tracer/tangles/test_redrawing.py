@@ -19,7 +19,7 @@ from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.program.trace import trace
 from morfax.tracer.sensing.leg import leg_of
 from morfax.tracer.sensing.photocell import behind_aperture
-from morfax.tracer.sensing.view import LEVEL, View
+from morfax.tracer.sensing.view import View
 from morfax.tracer.tangles import pen
 from morfax.tracer.tangles.redrawing import Sketch, Way, matchings, ways
 from morfax.tracer.tangles.tangle import Tangle, tangle_ahead
@@ -32,7 +32,7 @@ BLUNT = polyline((4, 8), (14, 10), (14.3, 10.4), (14.1, 10.6), (4, 10.6))
 
 
 def seen(drawing: Drawing) -> View:
-    return View(behind_aperture(drawing, 0.15), drawing.pitch_mm, WIDTH_MM, LEVEL)
+    return View(behind_aperture(drawing, 0.15), WIDTH_MM)
 
 
 def tangle(

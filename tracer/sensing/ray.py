@@ -1,0 +1,109 @@
+"""The ray: a cell moved from a place along a line or a parabola until the darkness crosses the level.
+
+Signals: the cells, a ray (place in sheet mm, direction, bend in 1/mm) and a stretch of it in mm in; the
+distance to the crossing in mm out, interpolated between two samples that are `STEP_PX` apart.
+
+    place(u) = start + u·t + bend/2·u²·n            t, n: along the ray and to its left
+
+Every search for an edge in the tracer goes through `crossing_mm`.
+
+Source: our own.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from numba import njit
+
+from morfax.tracer.sensing.photocell import STEP_PX, darkness_at
+
+SPECK_PX, SPECK_MM = 2.2, 0.25  # no wider is a speck: one pixel seen through the aperture
+
+
+class Ray(NamedTuple):
+    """Where a ray begins (sheet mm), its direction there (cosine, sine), and how it bends to the left (1/mm)."""
+
+    x_mm: float
+    y_mm: float
+    cosine: float
+    sine: float
+    bend_per_mm: float = 0.0
+
+
+@njit(cache=True, inline="always")
+def seen_on(cells, ray, u_mm):  # type: ignore[no-untyped-def]
+    """Darkness on a ray at a distance from its beginning."""
+    aside = 0.5 * ray.bend_per_mm * u_mm * u_mm
+    x = ray.x_mm + u_mm * ray.cosine - aside * ray.sine
+    y = ray.y_mm + u_mm * ray.sine + aside * ray.cosine
+    return darkness_at(cells, x, y)
+
+
+@njit(cache=True)
+def crossing_mm(cells, ray, begin_mm, end_mm, speck_mm):  # type: ignore[no-untyped-def]
+    """Distance along a ray at which ink changes to paper, or paper to ink; NaN if neither happens.
+
+    The search runs from `begin_mm` to the first sample at or beyond `end_mm`. A change that is undone within
+    `speck_mm` is a speck, and the search goes on.
+    """
+    level, step = cells.level, STEP_PX * cells.pitch_mm
+    before = seen_on(cells, ray, begin_mm)
+    begins_dark, found = before >= level, math.nan
+    k, u = 0, begin_mm
+    while u < end_mm:
+        k += 1
+        u = begin_mm + k * step
+        now = seen_on(cells, ray, u)
+        if (now >= level) != (before >= level):
+            undone = (now >= level) == begins_dark
+            found = math.nan if undone else u - step * (level - now) / (before - now)
+        if u - found >= speck_mm:
+            return found
+        before = now
+    return math.nan
+
+
+@njit(cache=True)
+def end_of_ink(cells, ray, begin_mm, end_mm):  # type: ignore[no-untyped-def]
+    """Distance along a ray at which the ink ends; NaN if the ray begins on paper, or the ink goes on."""
+    if seen_on(cells, ray, begin_mm) < cells.level:
+        return math.nan
+    return crossing_mm(cells, ray, begin_mm, end_mm, 0.0)
+
+
+@njit(cache=True)
+def edge_along(cells, x_mm, y_mm, direction, reach_mm):  # type: ignore[no-untyped-def]
+    """How far the ink under (x, y) goes on in a direction, mm, past specks of paper; NaN if there is no ink,
+    or if it reaches farther.
+    """
+    ray = Ray(x_mm, y_mm, math.cos(direction), math.sin(direction), 0.0)
+    if seen_on(cells, ray, 0.0) < cells.level:
+        return math.nan
+    return crossing_mm(cells, ray, 0.0, reach_mm, min(SPECK_PX * cells.pitch_mm, SPECK_MM))
+
+
+@njit(cache=True)
+def edges(cells, x_mm, y_mm, heading, reach_mm):  # type: ignore[no-untyped-def]
+    """Where the line under (x, y) ends to the right and to the left of a heading, mm; NaN for an edge out of
+    reach or no ink.
+
+    The search starts at the darkest place within half the reach.
+    """
+    left = Ray(x_mm, y_mm, -math.sin(heading), math.cos(heading), 0.0)
+    step = STEP_PX * cells.pitch_mm
+    half = math.ceil(reach_mm / step)
+    best, start_mm = -1.0, 0.0
+    for k in range(-half // 2, half // 2 + 1):
+        d = seen_on(cells, left, k * step) - 1e-3 * abs(k * step)
+        if d > best:
+            best, start_mm = d, k * step
+    if best < cells.level:
+        return math.nan, math.nan
+    right = Ray(x_mm, y_mm, -left.cosine, -left.sine, 0.0)
+    end_mm = (half + 0.5) * step  # one sample beyond the reach
+    return (
+        -crossing_mm(cells, right, -start_mm, end_mm, 0.0),
+        crossing_mm(cells, left, start_mm, end_mm, 0.0),
+    )
