@@ -30,7 +30,7 @@ figures: $(VENV)/installed
 # the site of the documentation, in site/; any warning is an error
 docs: $(VENV)/installed
 	$(BIN)/pip install --quiet --disable-pip-version-check -e '.[docs]'
-	$(BIN)/mkdocs build --strict --quiet
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
 
 # the tests of trust at full length: every pair of wear, ten thousand dropouts, tapes of three and six hours; 12 GB, about an hour
 soak: $(VENV)/installed
