@@ -11,4 +11,6 @@ def on_page_content(html: str, page: Any, **_: Any) -> str:
     """Show a dash where an option has no default; mkdocs-click prints click's own marker there."""
     if page.file.src_uri != OPTIONS:
         return html
-    return html.replace("<code>Sentinel.UNSET</code>", "–").replace("<td>None</td>", "<td>–</td>")
+    return html.replace("<code>Sentinel.UNSET</code>", "–").replace(
+        "<td>None</td>", "<td>–</td>"
+    )
