@@ -139,7 +139,7 @@ class Carriage:
         s.places = len(felt)
 
     def _middle_mm(self, leg: Leg, felt: Array) -> float:
-        """Where the swinging cell will see a leg, mm aside: by what was felt ahead, else by the leg's bend."""
+        """Where the swinging cell will see a leg, mm aside: by what was felt ahead, else by its bend."""
         lead = self.tuning.lead_mm
         c, n = math.cos(leg.heading_rad), math.sin(leg.heading_rad)
         along = aside = 0.0

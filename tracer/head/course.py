@@ -1,4 +1,4 @@
-"""Courses: the short ways that the head runs from memory through a knot.
+"""Courses: the short ways that the head runs from memory through a junction.
 
 A course is a list of stretches, each a polyline (n, 2) in sheet mm with a place every few hundredths; between
 stretches the head stops and swivels.
@@ -7,8 +7,9 @@ stretches the head stops and swivels.
     corner     along the incoming leg's line to the vertex, stop, swivel, along the outgoing leg's line
     rounding   where the ink shows that the corner is rounded: an arc that touches both legs
 
-Whether a corner is sharp is seen on the outside of its ink: a pen of width w that turns on the vertex inks
-w/2 beyond it on the bisector; what is missing there is by how much the line passes the vertex.
+The last two are `junctions.corner`'s.
+
+Signals: where the head stands, legs and stations in sheet mm in; polylines (n, 2) mm out.
 
 Source: our own, from first principles (the patent's head swivels on its axis; how sharply is left open).
 """
@@ -25,49 +26,51 @@ from morfax.motion.curves import SPACING_MM, hermite
 from morfax.tracer.sensing.leg import Leg, centre_at
 from morfax.tracer.sensing.view import View
 
-# of a leg's length, to both sides: what a place on a felt line is averaged over
-FELT_LEGS = 0.3
+FELT_LEGS = (
+    0.3  # of a leg's length, to both sides: what a place on a felt line is averaged over
+)
+NODES = 3  # within that length
+LEFT_LEGS = 0.55  # of a leg's length: less of a felt line is too little to tell a corner by
+ONTO_MM = 0.2  # the shortest way onto the incoming leg's line, unless half the way to the limit is less
+ON_INK = 0.8  # share of a course's places on ink: it may cross a gap
+FAINT = 0.5  # of the level: ink, faint or not
+ON_INK_EVERY = 5  # of a course's places, 0.02 mm apart, one is looked at
 
 
 def onto(place: Array, heading: float, leg: Leg, limit_mm: float) -> tuple[Array, float]:
-    """From where the head is onto the incoming leg's line; the way, and how far along the leg (mm from its
-    end) it arrives.
+    """The way from where the head is onto a leg's line, and how far beyond the leg's end it arrives, mm.
 
     It arrives at the leg's clean end, or beyond it if that is too near, but never beyond half the way to
     `limit_mm`.
     """
-    ahead = ahead_mm(place, leg)
-    along = min(0.0 if ahead > 0.2 else min(0.2 - ahead, 0.5 * (limit_mm - ahead)), limit_mm)
+    ahead, along = ahead_mm(place, leg), 0.0
+    if ahead <= ONTO_MM:
+        along = min(ONTO_MM - ahead, 0.5 * (limit_mm - ahead))
+    along = min(along, limit_mm)
     return hermite(place, heading, leg.at(along), leg.heading_at(along)), along
 
 
 def along_leg(leg: Leg, start_mm: float, end_mm: float) -> Array:
     """Places on a leg's line from one distance to another (from its clean end)."""
-    return leg.at(
-        np.linspace(
-            start_mm, end_mm, max(2, math.ceil(abs(end_mm - start_mm) / SPACING_MM) + 1)
-        )
-    )
+    count = max(2, math.ceil(abs(end_mm - start_mm) / SPACING_MM) + 1)
+    return leg.at(np.linspace(start_mm, end_mm, count))
 
 
 def nodes_along(
-    view: View, start: tuple[Array, float], seen: Array, left: float = 0.55
+    view: View, start: tuple[Array, float], seen: Array, left: float = LEFT_LEGS
 ) -> tuple[list[tuple[Array, float]], Leg | None]:
     """Places and headings along a line that was felt throughout (n, 3), from where the head stands; the last
-    also as a leg, None if there is too little.
-
-    A share of a leg is `left` over: too little to tell a corner by.
+    one also as a leg, None if the line is too short. `left` of a leg's length stays over at the end.
     """
     half_mm, left_mm = FELT_LEGS * view.leg_mm, left * view.leg_mm
     nodes, leg = [start], None
     here = int(np.argmin(np.hypot(*(seen[:, :2] - start[0]).T)))
     for i in range(here, len(seen)):
-        if (
-            i < here + half_mm / view.step_mm
-            or np.hypot(*(seen[i, :2] - nodes[-1][0])) < half_mm / 3
-        ):
+        place = seen[i, :2]
+        too_near = i < here + half_mm / view.step_mm
+        if too_near or np.hypot(*(place - nodes[-1][0])) < half_mm / NODES:
             continue
-        if np.hypot(*(seen[i, :2] - seen[-1, :2])) < left_mm:
+        if np.hypot(*(place - seen[-1, :2])) < left_mm:
             break
         leg = centre_at(seen, i, half_mm)
         nodes.append((leg.end_mm, leg.heading_rad))
@@ -81,13 +84,12 @@ def through_nodes(nodes: list[tuple[Array, float]]) -> Array:
 
 def ahead_mm(place: Array, leg: Leg) -> float:
     """How far ahead of a place a leg's clean end is, mm along the leg."""
-    return float(
-        (leg.end_mm - place) @ np.array([math.cos(leg.heading_rad), math.sin(leg.heading_rad)])
-    )
+    way = np.array([math.cos(leg.heading_rad), math.sin(leg.heading_rad)])
+    return float((leg.end_mm - place) @ way)
 
 
 def on_ink(view: View, stretches: list[Array]) -> bool:
-    """Whether a course lies on ink, faint or not, for the most part: it may cross a gap."""
-    places = np.vstack(stretches)[::5]
-    fainter = view.at_level(0.5 * view.level)
-    return float(np.mean([fainter.dark(place) for place in places])) > 0.8
+    """Whether a course lies on ink, faint or not, for the most part."""
+    places = np.vstack(stretches)[::ON_INK_EVERY]
+    fainter = view.at_level(FAINT * view.level)
+    return float(np.mean([fainter.dark(place) for place in places])) > ON_INK

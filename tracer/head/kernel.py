@@ -6,11 +6,11 @@ The cell swings across the line one lead ahead of the steering axis. Once a swee
 the side and distance of the line from the middle of the sweep, and the next sweep is centred on the line, so
 that the measure is a null. A drum remembers the place of the line on the sheet. When the axis comes to a
 place, the drum holds as much of the line ahead of it as behind it: a parabola through the remembered places
-about a point just ahead of the axis averages the noise of the paper away, and leaves a line whose bend changes
-where it is. The axis steers for that point, on the circle that touches its heading (pure pursuit). This is
-the steering law k = 2v/a² of the linear theory, and it has no error on a circle:
+about a point just ahead of the axis averages the noise of the paper away, and leaves a line whose bend
+changes where it is. The axis steers for that point, on the circle that touches its heading (pure pursuit).
+This is the steering law k = 2v/a² of the linear theory, and it has no error on a circle:
 
-    turn rate = v · 2e / (l² + e²)          l, e: the point along and across the heading, as seen from the axis now
+    turn rate = v · 2e / (l² + e²)          l, e: the point along and across the heading, from the axis now
 
 The speed is resolved by sine and cosine of the heading into demands on the two drives; the axis is where
 their screws have gone. What the drives owe (lag times speed, from the tachos) is added to the place that
@@ -19,9 +19,9 @@ steers, so that their lag turns no corner.
                       drum of places                  cell
       . . . . . . . . .  o-> .  x  . . . . . . . . .  )|(      guards
                        axis   point                         ||
-    guard cells    beside the line's edges and on it, a little further ahead: when they see ink beside the line,
-                   or no ink on it, the head cannot trust the swinging cell there; the kernel returns, and the
-                   rooms `junctions` and `tangles` plan the way through
+    guard cells    beside the line's edges and on it, a little further ahead: when they see ink beside the
+                   line, or no ink on it, the head cannot trust the swinging cell there; the kernel returns,
+                   and the rooms `junctions` and `tangles` plan the way through
     mean           of a sweep against what it was when the head was tuned: when the line swells or fades, the
                    kernel returns to be tuned anew
     look-ahead     cell 102, ahead of the swinging cell: when the line is not where the sweep's curve leads,

@@ -1,14 +1,14 @@
 """Where a run comes back onto its own way: a lead line, and the loop that it leads to.
 
-Signals: positions of the head (n, 2) mm in; out the positions between which the run is a loop.
+Signals: positions of the head (n, 2) mm in; the positions between which the run is a loop out.
 
                      ╭──────╮         first    where the loop begins: the head came here from the lead line,
     start ───────────┤ loop │         last     and came back here at the end
                      ╰──────╯
 
-The end of a run that has come onto its own way again may lie some way beyond that place, on what was followed
-already: the way is then gone back, on the run and on what it repeats together, for as long as they are one. A
-run that ends square to it, and a little beyond, is cut off where it crosses it.
+A run that has come onto its own way again may end some way beyond the join, on what was followed already.
+Then the run and the earlier way are gone back together for as long as they are one line. A run that ends
+square to its earlier way, and a little beyond it, is cut off where the two cross.
 
 Source: patent ES 361967, section on use: a lead line from the reference point to the contour, and round that
 to where it was joined.
@@ -22,21 +22,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
-from morfax.motion.polyline import crossings
+from morfax.motion.polyline import crossings, lengths_mm
 
-STEP_MM = 0.03
-FRESH_MM = 3.0  # the newest stretch is no earlier one
+# Chosen by trial on the test drawings.
+STEP_MM = 0.03  # between the places that are compared
+FRESH_MM = 3.0  # the newest stretch of a way does not count as followed before
 TOGETHER = 0.25  # of the line's width: two ways nearer than this, on about one heading, are one
 ON_IT = 0.05  # of the line's width: two ways nearer than this are the same line, as felt twice
-AT_ALL = 1.0  # of the line's width: further away the run has not come back to its own way
-ALIKE = math.cos(math.radians(30))
+AT_ALL = 1.0  # of the line's width: a run that stays further away has not come back
+ALIKE = math.cos(math.radians(30))  # cosine between headings that are about one
 
 
 def loop_in(positions: Array, width_mm: float) -> tuple[int, int] | None:
-    """The first and the last position of the loop with which a run ends; None if its end does not lie on its
-    own way.
-    """
-    lengths = np.r_[0.0, np.cumsum(np.hypot(*np.diff(positions, axis=0).T))]
+    """First and last position of the loop with which a run ends; None if its end is not on its own way."""
+    # 1. places of the run at equal distances, and the earlier one that is nearest to the run's end
+    lengths = lengths_mm(positions)
     at_mm = np.arange(0.0, lengths[-1], STEP_MM)
     if not len(at_mm):
         return None
@@ -50,24 +50,24 @@ def loop_in(positions: Array, width_mm: float) -> tuple[int, int] | None:
     j = int(np.argmin(away))
     if away[j] > AT_ALL * width_mm:
         return None
+    # 2. a run that is square to its earlier way is cut off where it crosses that
     apart, alike = _apart(places[m::-1], places[j::-1])
     back = _first_not((apart < TOGETHER * width_mm) & alike)
     if back == 0:
-        return _crossed(places, index, j, round(2 * AT_ALL * width_mm / STEP_MM)) or (
-            int(index[j]),
-            len(positions) - 1,
-        )
-    back = int(
-        np.flatnonzero(apart[:back] < ON_IT * width_mm)[-1:].sum()
-    )  # where the corner onto the loop has been left
+        crossed = _crossed(places, index, j, round(2 * AT_ALL * width_mm / STEP_MM))
+        return crossed or (int(index[j]), len(positions) - 1)
+    # 3. else it is gone back for as long as both are one line: there it had left the corner onto the loop
+    same = np.flatnonzero(apart[:back] < ON_IT * width_mm)
+    back = int(same[-1]) if len(same) else 0
     return int(index[j - back]), int(index[m - back])
 
 
 def _crossed(
     places: Array, index: NDArray[np.int64], j: int, reach: int
 ) -> tuple[int, int] | None:
-    """The positions at which the end of a run crosses the earlier way about place j, so many places about
-    either; None if it does not come so far.
+    """The positions at which the end of a run crosses the earlier way about place j; None if it does not.
+
+    `reach` places about either are looked at.
     """
     first, last = max(0, j - reach), max(0, len(places) - 1 - reach)
     met = crossings(places[last:], places[first : min(j + reach, last)])
@@ -94,14 +94,12 @@ def comes_again(places: Array, step_mm: float, width_mm: float) -> bool:
 
 
 def _first_not(good: NDArray[np.bool_]) -> int:
-    """The last of the places that are good without a break, from the first on."""
+    """The last of the places, from the first on, up to which all are good."""
     return len(good) - 1 if good.all() else max(0, int(np.argmin(good)) - 1)
 
 
 def _apart(run: Array, old: Array) -> tuple[Array, NDArray[np.bool_]]:
-    """Two ways, both given from their newest place back: how far they are apart, mm, and whether they have
-    about one heading.
-    """
+    """How far two ways are apart, mm, and whether their headings are alike, from the newest place back."""
     n = min(len(run), len(old))
     apart = np.full(n, math.inf)
     for shift in (-1, 0, 1):  # the places of one need not fall on the other's

@@ -1,4 +1,4 @@
-"""A plan: the course that `junctions` or `tangles` hand to the head, and the leg that it follows from there."""
+"""A plan: the course that `junctions` or `tangles` hand to the head, and the leg to follow from there."""
 
 from __future__ import annotations
 
@@ -9,9 +9,7 @@ from morfax.tracer.sensing.leg import Leg
 
 
 class Planned(NamedTuple):
-    """Stretches (n, 2) mm from where the head is, the leg that they lead to, and the stations (n, 3) that were
-    felt clean on the way.
-    """
+    """Stretches (n, 2) mm from where the head is, the leg they lead to, and the stations (n, 3) felt."""
 
     stretches: list[Array]
     leg: Leg

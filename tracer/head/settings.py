@@ -1,12 +1,14 @@
 """Settings of the head, and the tuning that follows from them and from the line that it stands on.
 
-The sweep's amplitude is 0.6 of the line's width, so that its ends stand just outside the edges; the slope of
+Signals: settings by name, a stance and the motion rate in; the tuning that the kernels take out.
+
+The sweep's amplitude is 0.6 of the line's width, so that its ends stand just outside the edges. The slope of
 the fundamental and the mean darkness are measured on the line itself, with the sweep set a little to one side
 and to the other.
 
-Source: patent ES 361967 gives no figures. Chosen for the precise head: a lead of 0.5 mm on a line of 0.5 mm;
-averaging along two leads is what beats the noise of a scan, and the error on a changing bend grows with the
-cube of the lead.
+Source: patent ES 361967 gives no figures. Chosen for the precise head: half a window of 0.65 mm on a line of
+0.5 mm. Averaging along the line is what beats the noise of a scan, and the error on a changing bend grows
+with the cube of the window. The historic set is our own, within what the patent says.
 """
 
 from __future__ import annotations
@@ -18,17 +20,36 @@ from typing import Any
 
 import numpy as np
 
+from morfax.motion.arrays import Array
 from morfax.motion.drive import Drive
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.state import Tuning
 from morfax.tracer.sensing.photocell import sweep
 
-OF_DRIVE = "drive_"  # what the name of a setting of the drives begins with
+OF_DRIVE = "drive_"  # the names of the drives' settings begin so
+
+# The head's own sizes: so many mm, widths of the line and pixels. Chosen by trial on the test drawings.
+WINDOW_MM, WINDOW_WIDTHS, WINDOW_PX = 0.35, 0.6, 7  # half the window of the parabola
+POINT_MM, POINT_PX = 0.12, 1.2  # from the axis to the point that it steers for
+LEAD_SWEEPS = 2  # beyond window and point: a place is on the drum before the window needs it
+SWING_WIDTHS, SWING_PX = 0.6, 1.5  # amplitude of the sweep
+SWING_ALONG = 0.1  # of the amplitude: lengthwise half-axis of the eccentric pin's ellipse
+GUARD_MM, GUARD_PX = 0.17, 2  # from the line's edge to a guard cell beside it
+GUARD_AHEAD_MM, GUARD_AHEAD_PX = 0.15, 1.5  # from the swinging cell to the guard cells
+LOOK_AHEAD_MM = 1.0  # from the swinging cell to cell 102
+TIGHTEST_RAD = (
+    0.23  # that a line may turn within half the window: a parabola still follows that
+)
+LEAST_SWEEP_PERIODS = 8  # fewer tell no fundamental
+
+CALIBRATED_ASIDE = 0.1  # of the line's width: the fundamental's slope is measured between these
+CALIBRATED_SAMPLES, CALIBRATED_STATIONS = 24, 8
+LEAST_SLOPE_PER_MM = 0.2  # so that a pale line does not make the head wild
 
 
 @dataclass(frozen=True, slots=True)
 class Bounds:
-    """What a setting may hold, in the unit that its name ends with, and what it is."""
+    """The values that a setting may hold, in the unit that its name ends with, and what the setting is."""
 
     least: float
     most: float
@@ -36,13 +57,13 @@ class Bounds:
 
 
 def _within(usual: float | None, least: float, most: float, what: str) -> Any:
-    """A setting with its usual value; what is None follows from the line."""
+    """A setting with its usual value; None follows from the line."""
     return field(default=usual, metadata={"bounds": Bounds(least, most, what)})
 
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """Settings of the head: by default the precise set. What is None follows from the line."""
+    """Settings of the head, by default the precise set; a setting that is None follows from the line."""
 
     speed_mm_s: float = _within(10.0, 0.01, 1000, "tracing speed (WC)")
     slowed: float = _within(
@@ -58,7 +79,7 @@ class Settings:
     swivel_rad_s: float = _within(20.0, 0.1, 1000, "turn rate of the swivel at a sharp corner")
     gap_mm: float = _within(0.5, 0, 20, "widest gap that the head goes across")
     recatch_mm: float = _within(
-        0.0, 0, 50, "how far ahead a line that is lost is looked for; 0: it stays lost"
+        0.0, 0, 50, "how far ahead the head looks for a line that it lost; 0: not at all"
     )
     line_width_mm: float | None = _within(None, 0.01, 20, "width of the line")
     lead_mm: float | None = _within(
@@ -86,23 +107,21 @@ HISTORIC = Settings(
     amplitude_mm=1.0,
     look_ahead_mm=6.0,
     direct_rad_s_mm=5.0,  # 2v/a²: damped to 0.71
-)  # our own figures within what the patent says
+)
 HEADS = {"precise": Settings(), "historic": HISTORIC}
 
 
 BOUNDS: dict[str, Bounds] = {
     **{f.name: f.metadata["bounds"] for f in fields(Settings) if f.name != "drive"},
     "drive_lag_s": Bounds(0, 1, "lag of the X and Y drives (DCX, DCY)"),
-    "drive_acceleration_mm_s2": Bounds(1, 1_000_000, "what the drives' amplifiers allow"),
+    "drive_acceleration_mm_s2": Bounds(1, 1_000_000, "that the drives' amplifiers allow"),
 }
 
 
 def choose(head: str = "precise", changes: Mapping[str, object] | None = None) -> Settings:
-    """A named set of settings with changes by name; `drive_lag_s` and `drive_acceleration_mm_s2` reach the
-    drives.
+    """A named set of settings with changes by name.
 
-    Raises ValueError for a head or a setting that there is not, and for a value that is no number or out of
-    bounds.
+    Raises ValueError for an unknown head or setting, and for a value that is no number or out of bounds.
     """
     if head not in HEADS:
         raise ValueError(f"there is no head {head!r}; give one of {', '.join(HEADS)}")
@@ -115,7 +134,7 @@ def choose(head: str = "precise", changes: Mapping[str, object] | None = None) -
 
 
 def value_of(settings: Settings, name: str) -> float | None:
-    """What a setting holds, by its name; None if it follows from the line."""
+    """Value of a setting by its name; None if it follows from the line."""
     if name.startswith(OF_DRIVE):
         return float(getattr(settings.drive, name.removeprefix(OF_DRIVE)))
     value = getattr(settings, name)
@@ -123,12 +142,13 @@ def value_of(settings: Settings, name: str) -> float | None:
 
 
 def allowed(name: str) -> str:
-    """What a setting may hold, in words."""
-    return f"a number from {BOUNDS[name].least:g} to {BOUNDS[name].most:g}, in the unit that its name ends with"
+    """The values that a setting may hold, in words."""
+    bounds = BOUNDS[name]
+    return f"a number from {bounds.least:g} to {bounds.most:g}, in the unit that its name ends with"
 
 
 def _number(name: str, value: object) -> float:
-    """A value of a setting; raises ValueError if it is none."""
+    """A setting's value as a number; raises ValueError if it is none, or out of bounds."""
     try:
         number = float(str(value))
     except ValueError:
@@ -141,61 +161,62 @@ def _number(name: str, value: object) -> float:
 def _changed(settings: Settings, name: str, number: float) -> Settings:
     """Settings with one of them set."""
     if name.startswith(OF_DRIVE):
-        return replace(
-            settings, drive=replace(settings.drive, **{name.removeprefix(OF_DRIVE): number})
-        )
+        drive = replace(settings.drive, **{name.removeprefix(OF_DRIVE): number})
+        return replace(settings, drive=drive)
     return replace(settings, **{name: number})  # type: ignore[arg-type]
 
 
 def tune(stance: Stance, settings: Settings, rate_hz: float) -> Tuning:
-    """What the kernel needs to follow the line under a stance."""
+    """What the kernels need to follow the line under a stance."""
     width, pitch = stance.view.width_mm, stance.view.pitch_mm
-    half_window = max(0.35 + 0.6 * width, 7 * pitch)
-    point = max(0.12, 1.2 * pitch)
-    lead = settings.lead_mm or half_window + point + 2 * settings.speed_mm_s / settings.sweep_hz
-    amplitude = settings.amplitude_mm or max(0.6 * width, 1.5 * pitch)
+    # 1. sizes, where the settings leave them to the line
+    half_window = max(WINDOW_MM + WINDOW_WIDTHS * width, WINDOW_PX * pitch)
+    point = max(POINT_MM, POINT_PX * pitch)
+    sweeps_mm = LEAD_SWEEPS * settings.speed_mm_s / settings.sweep_hz
+    lead = settings.lead_mm or half_window + point + sweeps_mm
+    amplitude = settings.amplitude_mm or max(SWING_WIDTHS * width, SWING_PX * pitch)
+    # 2. the detector's characteristic, as measured on the line
     slope, mean = _calibrate(stance, amplitude)
-    guard = 0.5 * width + max(0.17, 2 * pitch)
+    # 3. gains per period
+    steering_gain = 1.0
+    if settings.steering_lag_s > 0:
+        steering_gain = 1 - math.exp(-1 / rate_hz / settings.steering_lag_s)
     return Tuning(
         period_s=1 / rate_hz,
         speed_mm_s=settings.speed_mm_s,
         slowed=settings.slowed,
         slow_periods=settings.slow_s * rate_hz,
         acceleration_mm_s2=settings.acceleration_mm_s2,
-        sweep_periods=max(8, round(rate_hz / settings.sweep_hz)),
+        sweep_periods=max(LEAST_SWEEP_PERIODS, round(rate_hz / settings.sweep_hz)),
         lead_mm=lead,
         point_mm=point,
         half_window_mm=half_window,
-        tightest_per_mm=0.23
-        / half_window,  # the window then turns by a quarter of a radian, which a parabola still follows
+        tightest_per_mm=TIGHTEST_RAD / half_window,
         amplitude_mm=amplitude,
-        along_mm=0.1 * amplitude,
-        guard_mm=guard,
-        guard_lead_mm=lead + max(0.15, 1.5 * pitch),
-        look_ahead_mm=settings.look_ahead_mm or lead + 1.0,
+        along_mm=SWING_ALONG * amplitude,
+        guard_mm=0.5 * width + max(GUARD_MM, GUARD_PX * pitch),
+        guard_lead_mm=lead + max(GUARD_AHEAD_MM, GUARD_AHEAD_PX * pitch),
+        look_ahead_mm=settings.look_ahead_mm or lead + LOOK_AHEAD_MM,
         slope_per_mm=slope,
         mean=mean,
         drive_gain=settings.drive.gain(1 / rate_hz),
         drive_change_mm_s=settings.drive.acceleration_mm_s2 / rate_hz,
-        steering_gain=1 - math.exp(-1 / rate_hz / settings.steering_lag_s)
-        if settings.steering_lag_s > 0
-        else 1.0,
+        steering_gain=steering_gain,
         direct_rad_s_mm=settings.direct_rad_s_mm,
     )
 
 
 def _calibrate(stance: Stance, amplitude_mm: float) -> tuple[float, float]:
-    """Slope of the sweep's fundamental (per mm) and mean darkness, over a few stations of the line under the
-    stance.
-    """
-    view, aside = stance.view, 0.1 * stance.view.width_mm
-    c, s = math.cos(stance.heading_rad), math.sin(stance.heading_rad)
-    slopes, means = 0.0, 0.0
-    stations = 8
-    for k in range(stations):
-        place = stance.place_mm + view.step_mm * k * np.array([c, s])
-        left = sweep(view.cells, place, stance.heading_rad, (-aside, amplitude_mm), 24)
-        right = sweep(view.cells, place, stance.heading_rad, (aside, amplitude_mm), 24)
-        slopes += (left[0] - right[0]) / (2 * aside) / stations
-        means += (left[1] + right[1]) / 2 / stations
-    return max(slopes, 0.2), means
+    """Slope of the sweep's fundamental (per mm) and mean darkness, over a few stations ahead of a stance."""
+    view, heading = stance.view, stance.heading_rad
+    aside = CALIBRATED_ASIDE * view.width_mm
+    to_left, to_right = (-aside, amplitude_mm), (aside, amplitude_mm)
+    way = np.array([math.cos(heading), math.sin(heading)])
+    slopes = means = 0.0
+    for k in range(CALIBRATED_STATIONS):
+        place = stance.place_mm + view.step_mm * k * way
+        left = sweep(view.cells, place, heading, to_left, CALIBRATED_SAMPLES)
+        right = sweep(view.cells, place, heading, to_right, CALIBRATED_SAMPLES)
+        slopes += (left[0] - right[0]) / (2 * aside) / CALIBRATED_STATIONS
+        means += (left[1] + right[1]) / 2 / CALIBRATED_STATIONS
+    return max(slopes, LEAST_SLOPE_PER_MM), means

@@ -1,7 +1,9 @@
 """The trail: where the axis has been, as the head remembers it.
 
-Signals: screw positions in, thinned to a place every step; places behind the head, and whether a leg has been
-followed already, out. mm.
+Signals: positions of the screws (n, 2) mm in, of which a place every step is kept; places behind the head,
+and whether a leg has been followed already, out.
+
+Source: our own.
 """
 
 from __future__ import annotations
@@ -11,11 +13,16 @@ import math
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.polyline import lengths_mm
 from morfax.tracer.head import loop
 from morfax.tracer.sensing.leg import Leg
 
-MEMORY_MM = 8.0  # how far back the way in is remembered for the rings
-FRESH_MM = 3.0  # the newest stretch does not count as followed before
+# Chosen by trial on the test drawings.
+MEMORY_MM = 8.0  # how far back the rings know the way in: more than they grow
+ROOM = 1024  # places to begin with
+CHORD = 4  # places on either side, that a heading is taken over
+NEAR = 0.3  # of the line's width: a place of a leg this near to the trail has been followed
+MOSTLY = 0.5  # of a leg's first third: so many of its places
 
 
 class Trail:
@@ -23,7 +30,7 @@ class Trail:
 
     def __init__(self, place: Array, step_mm: float) -> None:
         self.step_mm = step_mm
-        self._places = np.empty((1024, 2))
+        self._places = np.empty((ROOM, 2))
         self._places[0] = place
         self._count = 1
 
@@ -31,10 +38,8 @@ class Trail:
         """Remember positions (n, 2) in the order of travel."""
         if not len(positions):
             return
-        steps = np.hypot(
-            *np.diff(np.vstack([self._places[self._count - 1], positions]), axis=0).T
-        )
-        marks = np.floor(np.cumsum(steps) / self.step_mm)
+        come_mm = lengths_mm(np.vstack([self._places[self._count - 1], positions]))[1:]
+        marks = np.floor(come_mm / self.step_mm)
         kept = positions[np.flatnonzero(np.diff(marks, prepend=0.0) > 0)]
         while self._count + len(kept) > len(self._places):
             self._places = np.vstack([self._places, np.empty_like(self._places)])
@@ -49,8 +54,8 @@ class Trail:
         """Place and heading of the axis a distance ago."""
         places = self.recent()
         i = max(0, len(places) - 1 - round(distance_mm / self.step_mm))
-        j = min(i + 4, len(places) - 1)
-        way = places[j] - places[max(0, j - 4)]
+        j = min(i + CHORD, len(places) - 1)
+        way = places[j] - places[max(0, j - CHORD)]
         return places[i], math.atan2(way[1], way[0])
 
     def comes_again(self, width_mm: float) -> bool:
@@ -58,20 +63,20 @@ class Trail:
         return loop.comes_again(self._places[: self._count], self.step_mm, width_mm)
 
     def comes_back(self, leg: Leg) -> bool:
-        """Whether a leg that has been followed already was followed in the other sense."""
+        """Whether the head followed a leg, which it has followed already, in the other sense."""
         i = int(np.argmin(np.hypot(*(self._places[: self._count - 1] - leg.end_mm).T)))
         way = self._places[i + 1] - self._places[i]
         return bool(way @ [math.cos(leg.heading_rad), math.sin(leg.heading_rad)] < 0)
 
     def holds(self, leg: Leg, width_mm: float) -> bool:
         """Whether the beginning of a leg has been followed already, in either sense."""
-        old = self._places[: max(0, self._count - round(FRESH_MM / self.step_mm))]
-        if not len(old):
-            return False
+        # 1. the places of the trail about the leg's first third
+        old = self._places[: max(0, self._count - round(loop.FRESH_MM / self.step_mm))]
         first = leg.seen[: max(3, len(leg.seen) // 3), :2]
         low, high = first.min(axis=0) - width_mm, first.max(axis=0) + width_mm
         old = old[np.all((old > low) & (old < high), axis=1)]
         if not len(old):
             return False
-        near = [np.min(np.hypot(*(old - place).T)) < 0.3 * width_mm for place in first]
-        return bool(np.mean(near) > 0.5)
+        # 2. how many of the leg's places are on them
+        near = [np.min(np.hypot(*(old - place).T)) < NEAR * width_mm for place in first]
+        return bool(np.mean(near) > MOSTLY)
