@@ -49,9 +49,7 @@ from morfax.tracer.sensing.photocell import TWO_PI, darkness_at
 LOST = 0.2  # less over a sweep: the line has gone from under a head without guard cells
 BESIDE = 0.4  # more under a guard cell at the side: there is ink beside the line
 BLANK = 0.5  # less under a cell on the line: there is paper
-ALTERED = (
-    0.2  # over a sweep: the line has swollen or faded by this since the head was tuned to it
-)
+ALTERED = 0.2  # over a sweep: the line has swollen or faded since the head was tuned to it
 
 INK_FOLLOWS = 0.1  # share of a sweep's difference by which the ink is corrected
 PALEST, DARKEST = 0.3, 2.0  # a sweep counts as no less and no more of the ink than this

@@ -20,7 +20,6 @@ from typing import Any
 
 import numpy as np
 
-from morfax.motion.arrays import Array
 from morfax.motion.drive import Drive
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.state import Tuning
