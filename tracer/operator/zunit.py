@@ -63,7 +63,8 @@ class Preset:
     def __post_init__(self) -> None:
         if not 0 <= self.counts <= LARGEST_COUNT:
             raise ValueError(
-                f"{self.counts} counts cannot be set on five decades; give 0 to {LARGEST_COUNT}"
+                f"a move of {self.counts * COUNT_MM:.2f} mm cannot be set on five decades; "
+                f"give 0 to {LARGEST_COUNT * COUNT_MM:.2f} mm"
             )
         if self.sense not in ("up", "down"):
             raise ValueError(f"the sense switch has no {self.sense!r}; give up or down")

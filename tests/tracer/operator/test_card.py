@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from morfax.motion.faults import CardFault, FileFault
 from morfax.motion.toml_lines import lines_of
 from morfax.tracer.operator.card import Card, Drill, Stop
-from morfax.tracer.operator.zunit import Counters, Preset, moves, z_moves
+from morfax.tracer.operator.zunit import LARGEST_COUNT, Counters, Preset, moves, z_moves
 
 WHOLE = """\
 # a plate with two holes
@@ -497,6 +497,10 @@ def test_a_drill_goes_down_to_depth_peck_by_peck_and_comes_back(
 ) -> None:
     if drill.depth_counts / drill.peck_counts > 500:
         return
+    if at + drill.depth_counts > LARGEST_COUNT:  # the way out of the hole is longer
+        with pytest.raises(ValueError, match="cannot be set on five decades"):
+            drill.presets(Counters(at), rapid_mm_s)
+        return
     presets = drill.presets(Counters(at), rapid_mm_s)
     bottom, here = max(0, -at), at
     for preset in presets:
@@ -508,6 +512,31 @@ def test_a_drill_goes_down_to_depth_peck_by_peck_and_comes_back(
         assert here >= -bottom - drill.peck_counts
         bottom = max(bottom, -here)
     assert bottom == max(-at, drill.depth_counts, 0) and here == at
+
+
+def test_a_hole_too_deep_to_come_out_of_in_one_move_is_refused_in_the_field_s_words() -> None:
+    (stop,) = Card.parse('[[stop]]\ndrill = { depth = "999.99mm" }', "part.toml").stops
+    assert stop.motor_moves(0.0, 50.0, "at stop 1")[-1].to_mm == 0.0
+    with pytest.raises(
+        CardFault, match="at stop 1: a move of 1000.49 mm cannot be set"
+    ) as told:
+        stop.motor_moves(2.0, 50.0, "at stop 1")
+    assert str(told.value).startswith("part.toml, line 2: stop[1].drill holds ")
+    assert (told.value.line, told.value.field) == (2, "stop[1].drill")
+
+
+@given(STOPS, st.integers(-LARGEST_COUNT, LARGEST_COUNT), SPEEDS)
+def test_whatever_a_stop_asks_for_is_made_or_refused_as_a_mistake_of_the_card(
+    stop: Stop, at: int, rapid_mm_s: float
+) -> None:
+    if stop.drill is not None and stop.drill.depth_counts / stop.drill.peck_counts > 500:
+        return
+    try:
+        made = stop.motor_moves(at / 100, rapid_mm_s, "at stop 1")
+    except CardFault as fault:
+        assert "cannot" in str(fault)
+    else:
+        assert all(abs(move.to_mm) <= LARGEST_COUNT / 100 for move in made)
 
 
 def test_a_stop_s_moves_are_made_by_the_z_unit_exactly() -> None:

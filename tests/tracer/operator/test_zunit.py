@@ -47,7 +47,8 @@ def test_the_switches_and_the_counters_show_five_digits() -> None:
 @pytest.mark.parametrize("counts", [-1, LARGEST_COUNT + 1])
 def test_more_than_five_decades_cannot_be_set(counts: int) -> None:
     with pytest.raises(
-        ValueError, match=f"{counts} counts cannot be set on five decades; give 0 to 99999"
+        ValueError,
+        match=f"a move of {counts / 100:.2f} mm cannot be set on five decades; give 0 to 999.99 mm",
     ):
         Preset(counts)
 
