@@ -518,7 +518,7 @@ def test_a_hole_too_deep_to_come_out_of_in_one_move_is_refused_in_the_field_s_wo
     (stop,) = Card.parse('[[stop]]\ndrill = { depth = "999.99mm" }', "part.toml").stops
     assert stop.motor_moves(0.0, 50.0, "at stop 1")[-1].to_mm == 0.0
     with pytest.raises(
-        CardFault, match="at stop 1: a move of 1000.49 mm cannot be set"
+        CardFault, match=r"at stop 1: a move of 1000\.49 mm cannot be set"
     ) as told:
         stop.motor_moves(2.0, 50.0, "at stop 1")
     assert str(told.value).startswith("part.toml, line 2: stop[1].drill holds ")
