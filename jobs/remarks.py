@@ -123,7 +123,7 @@ def _of_turns(trace: Trace) -> Iterator[str]:
 
 def _of_reference(trace: Trace, marks: Marks) -> Iterator[str]:
     """Of a reference point that was named and from which no line begins."""
-    from morfax.tracer.following.start import LEAD_MM
+    from morfax.tracer.following.open_ends import LEAD_MM
 
     named = marks.reference_mm
     if named is None or any(line.reference_mm == named for line in trace.lines):

@@ -1,8 +1,8 @@
-"""Polylines: how long they are, where they cross, how far places are from them, and with fewer or more places
-on them.
+"""Polylines: how long they are, where they cross, how far places are from them, and the same polyline with
+fewer or more places.
 
-Signals: polylines (n, 2) mm in; lengths, distances and polylines in mm out, crossings as numbers of places
-with their share on.
+Signals: polylines (n, 2) mm in; lengths, distances and polylines in mm out. A crossing is given as the number
+of a place, with the share of the piece after that place: 3.25 is a quarter of the way from place 3 to place 4.
 
 Source: our own; fewer places as by Douglas and Peucker, The Canadian Cartographer 10 (1973).
 """
@@ -27,14 +27,61 @@ CELL_MM = 0.05  # at least, of the grid in which crossings are sought
 Ints = NDArray[np.int64]
 
 
+def steps_mm(line_mm: Array) -> Array:
+    """Lengths of the straight pieces of a polyline, (n - 1,) mm."""
+    return np.hypot(*np.diff(line_mm, axis=0).T)
+
+
 def lengths_mm(line_mm: Array) -> Array:
-    """Length of a polyline up to each of its places, mm."""
-    return np.r_[0.0, np.cumsum(np.hypot(*np.diff(line_mm, axis=0).T))]
+    """Length of a polyline up to each of its places, (n,) mm."""
+    return np.r_[0.0, np.cumsum(steps_mm(line_mm))]
+
+
+def length_mm(line_mm: Array) -> float:
+    """Length of a polyline, mm."""
+    return float(steps_mm(line_mm).sum())
+
+
+def area_mm2(line_mm: Array) -> float:
+    """Area inside a line whose end is joined to its start, mm²: positive if it goes round
+    counter-clockwise.
+    """
+    x, y = (line_mm - line_mm[0]).T
+    return 0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
+
+
+def closed_up(line_mm: Array) -> Array:
+    """A polyline with its first place once more at its end."""
+    return np.vstack([line_mm, line_mm[:1]])
+
+
+def nearest_mm(places_mm: Array, others_mm: Array) -> Array:
+    """Distance of each place (n, 2) from the nearest of other places (m, 2), mm."""
+    from scipy.spatial import cKDTree
+
+    return np.asarray(cKDTree(others_mm).query(places_mm)[0])
 
 
 def plain(line_mm: Array, within_mm: float) -> Array:
-    """A polyline with only so many of its places that none left out is further than this from it."""
+    """A polyline with the fewest of its places from which no place left out is further than this."""
     return line_mm[_kept(np.ascontiguousarray(line_mm, float), within_mm)]
+
+
+def at_places(line_mm: Array, at: Array) -> Array:
+    """Where a polyline is at places between its own, numbered with shares, (n, 2) mm."""
+    index = np.arange(len(line_mm))
+    return np.column_stack([np.interp(at, index, column) for column in line_mm.T])
+
+
+def at_lengths(line_mm: Array, at_mm: Array) -> Array:
+    """Where a polyline is at some lengths from its start, (n, 2) mm."""
+    s = lengths_mm(line_mm)
+    return np.column_stack([np.interp(at_mm, s, column) for column in line_mm.T])
+
+
+def evenly(line_mm: Array, apart_mm: float) -> Array:
+    """Places of a polyline from its start on, this far from each to the next along it, (n, 2) mm."""
+    return at_lengths(line_mm, np.arange(0.0, lengths_mm(line_mm)[-1], apart_mm))
 
 
 def with_places(line_mm: Array, apart_mm: float) -> Array:
@@ -49,13 +96,12 @@ def with_places(line_mm: Array, apart_mm: float) -> Array:
 
 
 class Nearest:
-    """Finds how far places are from lines, true to `WITHIN_MM` for places that are a radius away."""
+    """Finds how far places are from lines, true to `WITHIN_MM` for places a radius away."""
 
     def __init__(self, lines_mm: Sequence[Array], radius_mm: float) -> None:
         from scipy.spatial import cKDTree
 
-        # half is for the places that are left out, and half for the sagitta between those that stand for the
-        # line
+        # half for the places left out, and half for the sagitta between those that stand for the line
         share_mm = 0.5 * WITHIN_MM
         apart_mm = math.sqrt(8 * radius_mm * share_mm)
         self._tree = cKDTree(
@@ -67,21 +113,15 @@ class Nearest:
         return np.asarray(self._tree.query(places_mm)[0])
 
     def set_back(self, places_mm: Array, distance_mm: float) -> Array:
-        """The places (n, 2), those that are nearer than a distance moved straight away from the nearest place
-        of a line to it.
-        """
+        """The places (n, 2), those nearer than a distance moved out to it, straight away from the line."""
         away, index = self._tree.query(places_mm)
         lines = np.asarray(self._tree.data)[index]
-        return np.asarray(
-            lines
-            + (places_mm - lines) * np.maximum(1.0, distance_mm / np.maximum(away, UM))[:, None]
-        )
+        out = np.maximum(1.0, distance_mm / np.maximum(away, UM))
+        return np.asarray(lines + (places_mm - lines) * out[:, None])
 
 
 def crossings(one_mm: Array, other_mm: Array) -> Array:
-    """Where two polylines cross: (n, 2) places of each, as numbers of points with their share on, along the
-    first; quick if all their pieces are short.
-    """
+    """Where two polylines cross: places of each, (n, 2), along the first; quick if all pieces are short."""
     pieces = np.delete(np.arange(len(one_mm) + len(other_mm) - 1), len(one_mm) - 1)
     found = crossings_of(np.ascontiguousarray(np.vstack([one_mm, other_mm])), pieces)
     found = found[(found[:, 0] < len(one_mm)) & (found[:, 1] >= len(one_mm))] - [0, len(one_mm)]
@@ -89,9 +129,7 @@ def crossings(one_mm: Array, other_mm: Array) -> Array:
 
 
 def crossings_of(points: Array, pieces: Ints) -> Array:
-    """Where straight pieces (numbers of their first points) cross each other: (n, 2) places as numbers of
-    points with their share on.
-    """
+    """Where straight pieces, given by the numbers of their first points, cross: places of both, (n, 2)."""
     if not len(pieces):
         return np.empty((0, 2))
     longest_mm = float(np.hypot(*(points[pieces + 1] - points[pieces]).T).max())
@@ -137,9 +175,7 @@ def _crossings_in(points, pieces, keys, wide):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def _kept(points, tolerance):  # type: ignore[no-untyped-def]
-    """Which points of a polyline to keep so that none is further than this from the straight pieces (Douglas
-    and Peucker).
-    """
+    """Which points of a polyline to keep so that none is further than this from the straight pieces."""
     kept = np.zeros(len(points), np.bool_)
     kept[0] = kept[-1] = True
     stack = np.empty((len(points) + 1, 2), np.int64)

@@ -57,9 +57,7 @@ def inked(*lines: Array) -> tuple[Drawing, Array]:
 
 def put_head(drawing: Drawing, start_mm: Array) -> follower.Follower:
     """A head put down on the line at a place, heading to the right."""
-    stance, _ = next(
-        put_down(drawing, (float(start_mm[0]), float(start_mm[1])), SETTINGS.aperture_mm, None)
-    )
+    stance, _ = next(put_down(drawing, (float(start_mm[0]), float(start_mm[1])), SETTINGS))
     if np.cos(stance.heading_rad) < 0:
         stance = type(stance)(stance.place_mm, stance.heading_rad - np.pi, stance.view)
     return follower.Follower(stance, SETTINGS, MOTION_RATE_HZ)

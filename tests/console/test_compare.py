@@ -115,5 +115,5 @@ def test_a_reference_point_that_is_not_drawn_is_a_fault(
     answer = morfax("compare", SAMPLES / "cam.png", path_file, "--origin", "reference")
     assert (
         answer.exit_code == 4
-        and "there is no small cross or ring; give its place" in answer.fault
+        and "the drawing has no small cross or ring; give its place" in answer.fault
     )

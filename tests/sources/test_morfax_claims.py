@@ -192,7 +192,7 @@ def test_claim_2_an_oscillating_cell_steers_and_the_tracks_lie_about_a_recorded_
         sides[0] > sides[1] > 0.02 and sides[3] < sides[2] < -0.02
     )  # the fundamental of its swing tells the side
     for aside_mm in (-0.2, 0.2):  # and turns the head back upon the line
-        stance, _ = next(put_down(sheet, (15.0, 30.0), HISTORIC.aperture_mm, None))
+        stance, _ = next(put_down(sheet, (15.0, 30.0), HISTORIC))
         carriage = Carriage(stance, HISTORIC, MOTION_RATE_HZ)
         carriage.state.y_mm += aside_mm
         while carriage.travel_mm < 4:

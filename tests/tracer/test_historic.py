@@ -46,7 +46,7 @@ def direct(lead_mm: float, gain: float, lag_s: float, speed_mm_s: float) -> Sett
 def offsets_on_a_straight(settings: Settings, aside_mm: float, way_mm: float) -> np.ndarray:
     """How far off a straight line the head is, put down aside of it; mm, one a period."""
     drawing = inked(polyline((2, 6), (6 + way_mm, 6)), width_mm=0.7)
-    stance, _ = next(put_down(drawing, (4, 6), settings.aperture_mm, None))
+    stance, _ = next(put_down(drawing, (4, 6), settings))
     east = 0.0 if abs(stance.heading_rad) < 1 else math.pi
     assert math.cos(east - stance.heading_rad) > 0.99
     carriage = Carriage(Stance(np.array([4.0, 6.0]), 0.0, stance.view), settings, RATE_HZ)

@@ -24,7 +24,7 @@ from morfax.motion import nesting
 from morfax.motion.arrays import Array
 from morfax.motion.offset import Guide
 from morfax.motion.polyline import Nearest, crossings_of, lengths_mm, with_places
-from morfax.tracer.following.thinning import THINNED
+from morfax.tracer.following.followed import THINNED
 
 LOOP_MM = 1.0  # a shorter loop is the head's swivel, and not drawn
 CELLS = 500  # of the grid, along the longer side of what is looked at

@@ -1,32 +1,32 @@
-"""The enlarger: a drawing too fine for the head is followed enlarged, and the path reduced again, as by a
-pantograph between the head and the screws.
+"""The enlarger: a drawing too fine for the head is followed at a larger scale, and the path is reduced again,
+as by a pantograph between the head and the screws.
 
-Signals: a stance on the drawing in, the same on the enlarged one out; what the head did there in, the same on
-the drawing out.
+Signals: a stance on the drawing in, the same on the enlarged drawing out; what the head did there in, the
+same on the drawing out.
 
-The head works in mm: so much of a leg it feels, so far ahead it looks. What is finer than that stays so in a
-finer picture, but not in a larger one. The head goes as fast on the enlarged drawing, and so the machine as
-many times slower.
+The head works in mm: it feels a leg of fixed length, and looks a fixed distance ahead. A detail finer than
+that stays too fine at a higher resolution, but not at a larger scale. The head goes as fast on the enlarged
+drawing, so the path takes longer by the same factor.
 
-Source: our own; photographic enlargement and pantographs were what a drawing office had for this.
+Source: our own; photographic enlargement and pantographs were a drawing office's means for this.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
 
-from morfax.tracer.following.follower import Followed
+from morfax.tracer.following.followed import Followed
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.sensing.view import View
 
 
 def enlarged(stance: Stance, times: float) -> Stance:
-    """The same stance on the drawing enlarged."""
+    """The same stance on the enlarged drawing."""
     return replace(stance, place_mm=stance.place_mm * times, view=_scaled(stance.view, times))
 
 
 def reduced(run: Followed) -> Followed:
-    """What the head did on an enlarged drawing, in the measure of the drawing itself."""
+    """What the head did on an enlarged drawing, in the drawing's own mm."""
     by = run.view.enlarged
     return replace(
         run,
@@ -38,6 +38,7 @@ def reduced(run: Followed) -> Followed:
 
 
 def _scaled(view: View, times: float) -> View:
+    """The view of a drawing at another scale."""
     usual_mm = None if view.usual_mm is None else view.usual_mm * times
     return replace(
         view,

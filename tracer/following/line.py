@@ -1,11 +1,10 @@
-"""One line as it was followed: the head's way along it, how it ended, and what the drawing says on the way.
+"""One line as it was followed: the head's way along it, the ending, and the marks that the drawing has on it.
 
-Signals: what a Follower did, and the marks along it, in; out the line as the operator and the program need
-it: mm at the motion rate.
+Signals: what a Follower did in; out the line as the operator and the program need it, mm at the motion rate.
 
     lead line    ├───────●───────┐loop       begins at a reference point, or bears a tick, and runs into its loop
     guide line   ├───────────────●           begins at a reference point and ends
-    guides of a line                         left for a guide line, to its end and back
+    guides of a line                         guide lines that the head took off it, to their end and back
 
 Source: patent ES 361967, section on use: reference point, lead line, guide lines to drill points and back.
 """
@@ -20,19 +19,21 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault
 from morfax.motion.polyline import lengths_mm
-from morfax.tracer.following.follower import Followed
-from morfax.tracer.following.thinning import THINNED
+from morfax.tracer.following.followed import THINNED, Followed
 from morfax.tracer.junctions.gaps import Break, breaks
 from morfax.tracer.junctions.guides import Guide
 from morfax.tracer.marks.marks import Mark, marks_along
 from morfax.tracer.sensing.leg import TURNS_OFF, turn
 from morfax.tracer.sensing.side import Side
 
-HEADING = 300  # positions that tell the heading at an end: half a mm at 10 mm/s
-NEARLY_MM = 5.0  # a line that ends so near to its beginning may be a closed one
-AT_JUNCTION = 1.5  # widths: as near to a junction a line is come to it
-TURN_MM = 1.5  # to both sides of a junction, that tell whether the way turns there
-REFERENCE_MM = 3.0  # a stroke nearer to a reference point is one of its own
+# All limits below were chosen by trial on the test drawings.
+HEADING = 300  # positions that show the heading at an end: half a mm at 10 mm/s
+NEARLY_MM = 5.0  # a line that ends so near to its beginning may be a closed one, ...
+NEARLY = 0.1  # ... if that is no more than this share of its length, ...
+AHEAD = 0.7  # ... and lies ahead: the cosine of 46 degrees
+AT_JUNCTION = 1.5  # widths: within this distance the line passes the junction
+TURN_MM = 1.5  # before and after a junction: shows whether the line turns there
+REFERENCE_MM = 3.0  # a mark nearer to a reference point is a stroke of that point
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,27 +52,23 @@ class Line:
     marks: tuple[Mark, ...] = ()
     guides: tuple[Guide, ...] = ()
     reference_mm: tuple[float, float] | None = None  # the reference point from which it begins
-    junctions_mm: tuple[
-        tuple[float, float], ...
-    ] = ()  # in the order in which the head came to them
-    ink_mm: float = 0.0  # length of the ink that is joined to it, its own included, by its area
-    is_solid: bool = False  # that ink is the rim of a filled shape
-    # of its stops; None: counted on from those of the line before
-    numbers: tuple[int, ...] | None = None
+    junctions_mm: tuple[tuple[float, float], ...] = ()  # in the order the head came to them
+    ink_mm: float = 0.0  # length of its patch of ink, by the patch's area
+    is_solid: bool = False  # the patch is the rim of a filled shape
+    numbers: tuple[int, ...] | None = None  # of its stops; None: on from the line before
     breaks: tuple[Break, ...] = ()  # where it ends, and ink goes on
 
     @classmethod
     def of(
         cls, run: Followed, number: int = 1, reference_mm: tuple[float, float] | None = None
     ) -> Line:
-        """What the head did, as a line of the drawing, with the marks along it; those at the reference point
-        are that point's.
-        """
-        marks = [
-            mark
-            for mark in marks_along(run.view, run.positions_mm)
-            if reference_mm is None or not _near(mark, reference_mm)
-        ]
+        """What the head did, as a line of the drawing, with its marks but for those of the reference point."""
+        marks = marks_along(run.view, run.positions_mm)
+        if reference_mm is not None:
+            marks = [m for m in marks if math.dist(m.place_mm, reference_mm) >= REFERENCE_MM]
+        found = tuple[Break, ...]()
+        if run.ending in ("ended", "lost"):
+            found = breaks(run.view, run.positions_mm, run.ending == "ended")
         return cls(
             run.positions_mm,
             run.ending,
@@ -84,24 +81,15 @@ class Line:
             run.guides,
             reference_mm,
             run.junctions_mm,
-            breaks=breaks(run.view, run.positions_mm, run.ending == "ended")
-            if run.ending in ("ended", "lost")
-            else (),
+            breaks=found,
         )
 
     @classmethod
     def of_dot(cls, centre_mm: Array, width_mm: float, number: int) -> Line:
         """A dot that stands alone, a drill point without a guide line."""
-        place_mm = (float(centre_mm[0]), float(centre_mm[1]))
-        return cls(
-            np.tile(centre_mm, (2, 1)),
-            "ended",
-            width_mm,
-            0.0,
-            None,
-            number,
-            marks=(Mark("dot", place_mm, 0.0),),
-        )
+        dot = Mark("dot", (float(centre_mm[0]), float(centre_mm[1])), 0.0)
+        twice_mm = np.tile(centre_mm, (2, 1))
+        return cls(twice_mm, "ended", width_mm, 0.0, number=number, marks=(dot,))
 
     @property
     def start_mm(self) -> tuple[float, float]:
@@ -114,9 +102,14 @@ class Line:
         return self.xy_mm[::THINNED]
 
     @property
+    def loop_mm(self) -> Array:
+        """Places along its loop, without the lead line before that, (n, 2) mm."""
+        return self.xy_mm[self.loop_from or 0 :: THINNED]
+
+    @property
     def own_mm(self) -> Array:
-        """Places that are its own, (n, 2) mm: all of them, or up to the first junction if it did not come
-        back; beyond that it may have been another's.
+        """Places that are certainly its own, (n, 2) mm: all, or up to the first junction of a line that did
+        not come back.
         """
         places = self.places_mm
         if self.ending in ("closed", "ended") or not self.junctions_mm:
@@ -126,24 +119,24 @@ class Line:
 
     @property
     def gap_mm(self) -> float | None:
-        """How far the end of an open line is from its beginning, if it leads there within `NEARLY_MM`: a gap
-        in a closed line, perhaps; else None.
-        """
+        """How far the end of an open line is from its beginning, if that may be a gap in a closed line."""
         across = self.xy_mm[0] - self.xy_mm[-1]
         gap_mm = float(np.hypot(*across))
-        if self.ending != "ended" or not 0 < gap_mm < min(NEARLY_MM, 0.1 * self.length_mm):
+        widest_mm = min(NEARLY_MM, NEARLY * self.length_mm)
+        if self.ending != "ended" or not 0 < gap_mm < widest_mm:
             return None
         moving = self.xy_mm[np.r_[True, np.any(np.diff(self.xy_mm, axis=0) != 0, axis=1)]]
-        ends = (
-            moving[min(HEADING, len(moving) - 1)] - moving[0],
-            moving[-1] - moving[max(-HEADING, -len(moving))],
-        )
-        ahead = [float(way @ across) > 0.7 * gap_mm * float(np.hypot(*way)) for way in ends]
-        return gap_mm if all(ahead) else None
+        reach = min(HEADING, len(moving) - 1)
+        begins = moving[reach] - moving[0]
+        ends = moving[-1] - moving[max(-HEADING, -len(moving))]
+        for way in (begins, ends):
+            if way @ across <= AHEAD * gap_mm * float(np.hypot(*way)):
+                return None
+        return gap_mm
 
     @property
     def is_lead(self) -> bool:
-        """Whether it is a lead line and the loop that it leads to."""
+        """Whether it is a lead line and the loop to which that leads."""
         if self.loop_from is None:
             return False
         return self.reference_mm is not None or any(
@@ -161,6 +154,11 @@ class Line:
         return self.ending == "ended" and len(self.xy_mm) == 2 and self.length_mm == 0
 
     @property
+    def is_open(self) -> bool:
+        """Whether it is known to be open, so that nothing can lie inside it."""
+        return self.ending == "ended"
+
+    @property
     def goes_back(self) -> bool:
         """Whether the tool goes back along it to where it began."""
         return self.is_lead or (self.is_guide and not self.is_dot)
@@ -176,47 +174,35 @@ class Line:
         return self.begin_mm if self.goes_back else self.place(len(self.xy_mm) - 1)
 
     def turns_at(self, place_mm: tuple[float, float], side: Side) -> bool:
-        """Whether the way turns to a side at a junction, to go on there or along a guide line and back."""
+        """Whether the line turns to a side at a junction, to go on there or along a guide line and back."""
         away = np.hypot(*(self.xy_mm - place_mm).T)
         near = np.flatnonzero(away < AT_JUNCTION * self.width_mm)
+        if not len(near):
+            return False
         come_mm = lengths_mm(self.xy_mm)
-        for visit in np.split(near, np.flatnonzero(np.diff(near) > 1) + 1) if len(near) else ():
-            i = visit[np.argmin(away[visit])]
-            before, after = np.searchsorted(come_mm, come_mm[i] + np.array([-TURN_MM, TURN_MM]))
-            there, on = (
-                self.xy_mm[i] - self.xy_mm[before],
-                self.xy_mm[min(after, len(come_mm) - 1)] - self.xy_mm[i],
-            )
-            turned = turn(math.atan2(there[1], there[0]), math.atan2(on[1], on[0]))
+        for visit in np.split(near, np.flatnonzero(np.diff(near) > 1) + 1):
+            turned = self._turned_at(int(visit[np.argmin(away[visit])]), come_mm)
             if abs(turned) > TURNS_OFF and (turned > 0) == (side == "left"):
                 return True
         return False
 
+    def _turned_at(self, at: int, come_mm: Array) -> float:
+        """By how much the line turns at a position, rad; `come_mm` is its length up to each position."""
+        around_mm = come_mm[at] + np.array([-TURN_MM, TURN_MM])
+        before, after = np.searchsorted(come_mm, around_mm)
+        arrives = self.xy_mm[at] - self.xy_mm[before]
+        leaves = self.xy_mm[min(after, len(come_mm) - 1)] - self.xy_mm[at]
+        return turn(math.atan2(arrives[1], arrives[0]), math.atan2(leaves[1], leaves[0]))
+
     def without_guides(self, first: int, last: int) -> list[Array]:
-        """Stretches (n, 2) mm from one position to another, between the guide lines that are left for on the
-        way.
-        """
-        left_for = [guide for guide in self.guides if first < guide.leave <= last]
-        begins, ends = (
-            [first, *(guide.back for guide in left_for)],
-            [*(guide.leave for guide in left_for), last + 1],
-        )
-        return [
-            self.xy_mm[begin:end]
-            for begin, end in zip(begins, ends, strict=True)
-            if begin < end
-        ]
+        """Stretches (n, 2) mm from one position to another, between the guide lines taken on the way."""
+        taken = [guide for guide in self.guides if first < guide.leave <= last]
+        begins = [first, *(guide.back for guide in taken)]
+        ends = [*(guide.leave for guide in taken), last + 1]
+        return [self.xy_mm[a:b] for a, b in zip(begins, ends, strict=True) if a < b]
 
     def place(self, at: float) -> tuple[float, float]:
         """Where the axis is at a position, fractions included, mm."""
         rows = np.arange(len(self.xy_mm))
-        return float(np.interp(at, rows, self.xy_mm[:, 0])), float(
-            np.interp(at, rows, self.xy_mm[:, 1])
-        )
-
-
-def _near(mark: Mark, reference_mm: tuple[float, float]) -> bool:
-    return (
-        float(np.hypot(mark.place_mm[0] - reference_mm[0], mark.place_mm[1] - reference_mm[1]))
-        < REFERENCE_MM
-    )
+        x, y = (float(np.interp(at, rows, column)) for column in self.xy_mm.T)
+        return x, y

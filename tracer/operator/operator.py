@@ -24,7 +24,7 @@ from dataclasses import dataclass, field, replace
 from typing import Literal, NamedTuple, Protocol
 
 from morfax.motion.faults import CardFault
-from morfax.tracer.following.direction import Direction, Route
+from morfax.tracer.following.direction import Direction
 from morfax.tracer.following.line import Line
 from morfax.tracer.operator import zunit
 from morfax.tracer.operator.card import Card, Stop
@@ -106,11 +106,6 @@ class Operator:
     # where the reference point is, if it is not to be looked for
     reference_mm: tuple[float, float] | None = None
     direction: Direction | None = None  # in which the head takes the line
-
-    @property
-    def route(self) -> Route:
-        """Which way the head takes the line, and where it turns off."""
-        return Route(self.direction, self.sides)
 
     @property
     def sides(self) -> tuple[Side | None, ...]:

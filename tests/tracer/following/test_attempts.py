@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from morfax.tracer.following.attempts import Attempts
-from morfax.tracer.following.follower import Followed
+from morfax.tracer.following.followed import Followed
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.sensing.photocell import Cells
@@ -37,7 +37,7 @@ def chosen(monkeypatch: pytest.MonkeyPatch, runs: Runs) -> Followed:
         return runs[math.cos(stance.heading_rad) > 0, self.tips]
 
     monkeypatch.setattr(Attempts, "run", known)
-    return Attempts(DRAWING, Settings(), (), 100.0, None).all_of_it(STANCE)
+    return Attempts(DRAWING, Settings(), 100.0).all_of_it(STANCE)
 
 
 def test_a_line_that_closes_only_back_from_a_tip_is_tried_so_either_way_round(

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from morfax.tracer.following.edge_check import OFF_MM, kept_to
-from morfax.tracer.following.follower import Followed
+from morfax.tracer.following.followed import Followed
 from morfax.tracer.sensing.photocell import Cells
 from morfax.tracer.sensing.view import View
 from tests.tracer.inked import Points, arc, polyline
@@ -71,7 +71,7 @@ def test_a_closed_run_that_leaves_some_of_its_edge_out_is_lost() -> None:
         (10, 10),
     )
     kept = kept_to((tooth, HOLE), along(SQUARE))
-    assert kept.ending == "lost" and "leaves the edge out 2.0" in str(kept.fault)
+    assert kept.ending == "lost" and "it passes some of the edge 2.0" in str(kept.fault)
     assert 9.5 < kept.travel_mm < 10.8
 
 

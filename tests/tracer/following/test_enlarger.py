@@ -13,7 +13,8 @@ from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.enlarger import enlarged, reduced
-from morfax.tracer.following.follower import Followed, Follower
+from morfax.tracer.following.followed import Followed
+from morfax.tracer.following.follower import Follower
 from morfax.tracer.following.start import put_down
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance
@@ -23,7 +24,9 @@ TIMES = 4
 
 
 def stance_on(drawing: Drawing) -> Stance:
-    return next(iter(put_down(Sheet.of(drawing), (8.0, 10.0), None, 0.5, 0.0, None)))[0]
+    return next(
+        iter(put_down(Sheet.of(drawing), (8.0, 10.0), Settings(line_width_mm=0.5, gap_mm=0.0)))
+    )[0]
 
 
 def small(stance: Stance) -> Stance:

@@ -13,6 +13,7 @@ from morfax.motion.faults import DrawingFault, LineFault
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.start import put_down
+from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.trail import Trail
 from morfax.tracer.sensing.leg import Leg
@@ -67,7 +68,9 @@ def first(
     drawing: Drawing, start_mm: tuple[float, float] | None = None, width_mm: float | None = None
 ) -> tuple[Stance, float]:
     """The stance that is tried first, and the line's length, mm."""
-    return next(iter(put_down(drawing, start_mm, 0.15, width_mm)))
+    return next(
+        iter(put_down(drawing, start_mm, Settings(aperture_mm=0.15, line_width_mm=width_mm)))
+    )
 
 
 @settings(max_examples=15)
@@ -112,7 +115,7 @@ def test_a_speck_beside_an_end_does_not_hide_it() -> None:
             (6 + 0.5 * math.cos(a), 8 + 0.5 * math.sin(a)), 0.15
         )  # where the ring of cells runs
         drawing = inked(polyline((6, 8), (26, 10)), width_mm=0.3, specks=(speck,))
-        stance, _ = next(put_down(drawing, (6, 8), None, None))
+        stance, _ = next(put_down(drawing, (6, 8)))
         assert stance.at_end and math.dist(stance.place_mm, (6, 8)) < 50 * UM
 
 
@@ -127,9 +130,7 @@ def test_a_wavering_line_of_three_pixels_has_ends_and_no_tips(seed: int) -> None
     )
     a = rng.uniform(0, math.tau)
     line = wave @ np.array([[math.cos(a), math.sin(a)], [-math.sin(a), math.cos(a)]]) + [16, 16]
-    stance, _ = next(
-        put_down(inked(line, dpi=150.0, seed=seed), (line[0, 0], line[0, 1]), None, None)
-    )
+    stance, _ = next(put_down(inked(line, dpi=150.0, seed=seed), (line[0, 0], line[0, 1])))
     assert stance.at_end and math.dist(stance.place_mm, line[0]) < 100 * UM  # 0.6 of a pixel
 
 

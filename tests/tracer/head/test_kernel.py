@@ -18,7 +18,8 @@ from morfax.motion.contour import distance
 from morfax.motion.drive import Drive
 from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.following.follower import Followed, Follower
+from morfax.tracer.following.followed import Followed
+from morfax.tracer.following.follower import Follower
 from morfax.tracer.following.start import put_down
 from morfax.tracer.head import kernel, screws
 from morfax.tracer.head.settings import Settings
@@ -50,7 +51,7 @@ def speeds_mm_s(positions_mm: Array) -> Array:
 def followed(drawing: Drawing, settings: Settings | None = None, **tuning: float) -> Followed:
     """Put a head down by itself and follow, with its tuning changed by hand."""
     settings = settings or Settings()
-    stance, length_mm = next(iter(put_down(drawing, None, settings.aperture_mm, None)))
+    stance, length_mm = next(iter(put_down(drawing, settings=settings)))
     follower = Follower(stance, settings, MOTION_RATE_HZ)
     follower.carriage.tuning = follower.carriage.tuning._replace(**tuning)
     return follower.follow(2 * length_mm)
@@ -230,7 +231,7 @@ def _some_steps(drawing: Drawing) -> tuple[Array, Array]:
     """A head's state and positions after following for 40 ms, running round a corner from memory and
     standing.
     """
-    stance, _ = next(iter(put_down(drawing, None, 0.15, None)))
+    stance, _ = next(iter(put_down(drawing, settings=Settings(aperture_mm=0.15))))
     follower = Follower(stance, Settings(), MOTION_RATE_HZ)
     out = np.zeros((400, 2))
     cells, tuning, state = (

@@ -10,7 +10,7 @@ import pytest
 from morfax.motion.contour import distance
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Sheet
-from morfax.tracer.following.start import view_of
+from morfax.tracer.following.plain_places import view_of
 from morfax.tracer.marks import dots
 from morfax.tracer.program.trace import trace
 from morfax.tracer.sensing.leg import leg_of

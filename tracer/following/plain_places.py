@@ -1,0 +1,128 @@
+"""Plain places: where on a line the head can be put down, and what it sees there.
+
+Signals: places near the middle of a line in (mm); stances out: place on the line's middle, heading, the
+line's width and darkness.
+
+A ring of cells about a place sees two arcs opposite each other where the line is clean; the heading lies
+between them. The line is then felt both ways: a place is the plainer, the further the line can be felt from
+it, and the straighter it is.
+
+Source: patent ES 361967, section on use: the operator brings the head over the drawing.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from morfax.motion.arrays import Array
+from morfax.tracer.drawing.strokes import Sheet, Stroke
+from morfax.tracer.head.course import FELT_LEGS
+from morfax.tracer.head.stance import Stance
+from morfax.tracer.sensing import photocell
+from morfax.tracer.sensing.leg import Leg, centre_at, turn
+from morfax.tracer.sensing.view import LEVEL, View
+
+# All limits below were chosen by trial on the test drawings.
+APERTURE = 0.3  # of the line's width, within bounds that a scan's noise and a corner set
+LEAST_APERTURE_MM, LARGEST_APERTURE_MM = 0.1, 0.24
+PLACES = 80  # tried along a line
+ABOUT_WIDTHS = 2.0  # to either side of a place that was asked for, places are tried
+FAINTEST = 0.2  # darkness: fainter ink is taken for this dark
+RING_WIDTHS, RING_PX = 0.9, 4.5  # radius of the ring of cells about a place: the larger
+OPPOSITE = math.radians(35)  # the ring's two arcs are opposite each other within this
+NARROWEST, WIDEST = 0.4, 2.5  # times the line's width: a line of another width is another line
+FEWEST_STATIONS = 6  # felt to either side
+FELT = 1.5  # leg's lengths are felt to either side
+CENTRED = 0.6  # of a leg's length to either side makes the leg about the place
+BENT = 0.8  # rad in a leg's length: a line that bends by more is no parabola over that length
+
+
+class Scored(NamedTuple):
+    """A stance, and how plain its place is: the length felt to the shorter side (mm), less bend after that."""
+
+    length_mm: float
+    straightness: float
+    stance: Stance
+
+
+def view_of(sheet: Sheet, aperture_mm: float | None, width_mm: float) -> View:
+    """The sheet through cells for a line of a width."""
+    least_mm = LEAST_APERTURE_MM / sheet.drawing.enlarged
+    aperture_mm = aperture_mm or min(max(APERTURE * width_mm, least_mm), LARGEST_APERTURE_MM)
+    return View(photocell.behind_aperture(sheet.drawing, aperture_mm), width_mm)
+
+
+def local_view(view: View, place: Array) -> View:
+    """The view with the level at half the darkness of this place."""
+    return view.at_level(LEVEL * max(view.darkness_at(place), FAINTEST))
+
+
+def stance_near(view: View, stroke: Stroke, place_mm: tuple[float, float]) -> Stance | None:
+    """The plainest stance near a place of a line; None if the line is clean nowhere there."""
+    found = stances(view, places_of(stroke, place_mm, ABOUT_WIDTHS * stroke.width_mm))
+    return max(found, key=plainness).stance if found else None
+
+
+def plainness(scored: Scored) -> tuple[float, float]:
+    """By what stances are sorted, the plainest last."""
+    return scored.length_mm, scored.straightness
+
+
+def places_of(
+    stroke: Stroke, start_mm: tuple[float, float] | None, about_mm: float = 0.0
+) -> Array:
+    """Places of a line to try: all along it, or about the place nearest to a start."""
+    places = stroke.middles_mm
+    if start_mm is not None:
+        away = np.hypot(*(places - np.asarray(start_mm)).T)
+        places = places[away <= away.min() + about_mm]
+    return places[:: max(1, len(places) // PLACES)]
+
+
+def stances(view: View, places: Array) -> list[Scored]:
+    """Stances at those places where the line is clean."""
+    found = []
+    for place in places:
+        local = local_view(view, place)
+        heading = _heading(local, place)
+        felt = None if heading is None else _both_ways(local, place, heading)
+        if felt is not None:
+            middle, length_mm = felt
+            local = replace(local, width_mm=middle.width_mm)
+            stance = Stance(middle.end_mm, middle.heading_rad, local)
+            found.append(Scored(length_mm, -abs(middle.bend_per_mm), stance))
+    return found
+
+
+def _heading(view: View, place: Array) -> float | None:
+    """Heading of the line through a place; None if the ring there does not see two arcs opposite each other."""
+    radius = max(RING_WIDTHS * view.width_mm, RING_PX * view.pitch_mm)
+    arcs = view.ring(place, radius)
+    if len(arcs) != 2:
+        return None
+    there, back = arcs.mean(axis=1)
+    bend = turn(there, back + math.pi)
+    return None if abs(bend) > OPPOSITE else float(there + 0.5 * bend)
+
+
+def _both_ways(view: View, place: Array, heading: float) -> tuple[Leg, float] | None:
+    """The line felt both ways from a place as one leg about it, and the length felt on the shorter side, mm."""
+    right, left = view.edges(place, heading, 2 * view.width_mm)
+    width_mm = left - right
+    if not math.isfinite(width_mm) or not NARROWEST < width_mm / view.width_mm < WIDEST:
+        return None
+    view = replace(view, width_mm=width_mm)
+    ahead = view.feel(place, heading, FELT * view.leg_mm)
+    behind = view.feel(place, heading + math.pi, FELT * view.leg_mm)
+    shorter = min(len(ahead), len(behind))
+    if shorter < FEWEST_STATIONS:
+        return None
+    both = np.vstack([behind[shorter - 1 : 0 : -1], ahead[:shorter]])
+    middle = centre_at(both, shorter - 1, CENTRED * view.leg_mm)
+    if abs(middle.bend_per_mm) * view.leg_mm > BENT:
+        middle = centre_at(both, shorter - 1, FELT_LEGS * view.leg_mm)
+    return middle, round((shorter - 1) * view.step_mm, 1)

@@ -1,0 +1,109 @@
+"""Ways out: by which leg the head leaves a junction, and which turns the operator asks for.
+
+Signals: the legs around a junction, the head's travel (mm) and count of positions in; the leg to leave by
+out, and whether the operator chose it. The junctions are counted here, and the guide lines taken there.
+
+Source: patent ES 361967, section on use: guide lines to drill points, taken at the operator's wish.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+from morfax.motion.arrays import Array
+from morfax.tracer.head.carriage import Carriage
+from morfax.tracer.junctions.choice import Way, survey
+from morfax.tracer.junctions.guides import Junctions
+from morfax.tracer.sensing.leg import Leg, goes_straight, leg_of, turns_off
+from morfax.tracer.sensing.side import SIDES, Side
+from morfax.tracer.sensing.view import View
+
+# a junction that the head comes back to is no further ahead: a speck may end the clean line before it
+BACK_MM = 4.0
+
+
+class Turns(NamedTuple):
+    """How the head is to leave the junctions, numbered from 0.
+
+    At the junctions in `other` it takes the second straightest leg, the third where a number stands twice. At
+    the first, the second … it turns off to its side in `sides`, where there is one, and comes back if the
+    line that it takes ends; with `back_from_tips` also from where two lines end together.
+    """
+
+    other: tuple[int, ...] = ()
+    sides: tuple[Side | None, ...] = ()
+    back_from_tips: bool = False
+
+
+STRAIGHT_ON = Turns()
+
+
+@dataclass(slots=True)
+class WaysOut:
+    """Chooses the leg by which the head leaves a junction."""
+
+    turns: Turns
+    from_reference: bool  # the head sets out from a reference point
+    junctions: Junctions = field(default_factory=Junctions)
+
+    def chosen(self, view: View, incoming: Leg, carriage: Carriage) -> tuple[Way, bool]:
+        """The way out of a junction, and whether the operator asked for it."""
+        trail, travel_mm = carriage.trail, carriage.travel_mm
+        if self.comes_back(view, incoming):
+            self.junctions.is_back(carriage.count, travel_mm)
+            return survey(view, incoming, trail), True
+        number = self.junctions.next(travel_mm)
+        side = self.turns.sides[number] if number < len(self.turns.sides) else None
+        leads = number == 0 and self.from_reference
+        rank = self.turns.other.count(number)
+        found = outgoing, _, choices = survey(view, incoming, trail, rank, side, leads=leads)
+        if choices > 1:
+            place = self._place_of(view, incoming, found, carriage)
+            self.junctions.come_to(place, travel_mm)
+            turns_aside = side is not None and not goes_straight(incoming, outgoing)
+            if turns_aside and _goes_on(view, incoming, carriage):
+                self.junctions.take(place, carriage.count)
+        return found, side is not None
+
+    def leaves_beside(self, view: View, incoming: Leg, carriage: Carriage) -> bool:
+        """Whether the head is to leave a clean line where ink turns off beside it; else it is only counted."""
+        number = self.junctions.next(carriage.travel_mm)
+        asked = number in self.turns.other or any(self.turns.sides[number : number + 1])
+        if asked or self.comes_back(view, incoming):
+            return True
+        found = survey(view, incoming, carriage.trail)
+        if found[2] > 1:
+            place = self._place_of(view, incoming, found, carriage)
+            self.junctions.come_to(place, carriage.travel_mm)
+        return False
+
+    def comes_back(self, view: View, incoming: Leg) -> bool:
+        """Whether the head is back at the junction where it took a guide line."""
+        return self.junctions.comes_back(incoming.end_mm, 2 * view.width_mm + BACK_MM)
+
+    def _place_of(self, view: View, incoming: Leg, found: Way, carriage: Carriage) -> Array:
+        """Where a junction is: where the way in meets the way out, or else a line that turns off."""
+        turned = [survey(view, incoming, carriage.trail, side=side) for side in SIDES]
+        for leg, legs_mm, _ in (found, *turned):
+            if legs_mm is not None and leg is not None and turns_off(incoming, leg):
+                return incoming.at(legs_mm[0])
+        return incoming.end_mm
+
+
+def _goes_on(view: View, incoming: Leg, carriage: Carriage) -> bool:
+    """Whether a line goes straight on at a junction."""
+    return goes_straight(incoming, survey(view, incoming, carriage.trail)[0])
+
+
+def station_before(view: View, seen: Array, here: int, guard_mm: float) -> tuple[int, Leg]:
+    """The station before ink beside a clean line, the guard cells' lead ahead, and the leg up to there."""
+    station = here + round(guard_mm / view.step_mm) - 3
+    return station, leg_of(seen[: station + 1], True, view.leg_mm)
+
+
+def nearest_station(seen: Array, place_mm: Array) -> int:
+    """Which station of a felt line (n, 3) is nearest to a place."""
+    return int(np.argmin(np.hypot(*(seen[:, :2] - place_mm).T)))

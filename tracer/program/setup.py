@@ -1,0 +1,49 @@
+"""The set-up: what is the same for every line of one job.
+
+Signals: the sheet, the head's settings, the operator and a listener in; out the set-up that the program's
+functions take as one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+from morfax.tracer.drawing.strokes import Sheet
+from morfax.tracer.head.settings import Settings
+from morfax.tracer.operator.operator import Operator
+
+Progress = Callable[[float, float], None]  # how far the head has come, of what length, mm
+
+
+@dataclass(frozen=True, slots=True)
+class Setup:
+    """The sheet on the table, the head's settings, the operator, and who hears how far the head has come."""
+
+    sheet: Sheet
+    settings: Settings = field(default_factory=Settings)
+    operator: Operator = field(default_factory=Operator)
+    progress: Progress | None = None
+
+    def after(self, before_mm: float, total_mm: float) -> Setup:
+        """The set-up for one of several lines: its progress counts on from those before, of their total."""
+        progress = self.progress
+        if progress is None:
+            return self
+
+        def counted_on(come_mm: float, _: float) -> None:
+            progress(min(before_mm + come_mm, total_mm), total_mm)
+
+        return replace(self, progress=counted_on)
+
+    def without_turns(self) -> Setup:
+        """The set-up with a card that asks for no turns at junctions."""
+        card = replace(self.operator.card, turns=())
+        return replace(self, operator=replace(self.operator, card=card))
+
+    def told(self, length_mm: float) -> Callable[[float], None] | None:
+        """Who hears how far the head has come along a line of a length; None if nobody listens."""
+        progress = self.progress
+        if progress is None:
+            return None
+        return lambda come_mm: progress(min(come_mm, length_mm), length_mm)
