@@ -20,12 +20,12 @@ from morfax.motion.nesting import nested
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.settings import Settings
-from morfax.tracer.operator.operator import Operator
-from morfax.tracer.program import trace_lines as tour
+from morfax.tracer.program import one_of_each
 from morfax.tracer.program.joined_lines import joined_to
 from morfax.tracer.program.order import idle_way_mm, in_order, in_order_and_turned
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.selection import plan
+from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace import trace
 from morfax.tracer.program.trace_lines import trace_lines
 from tests.tracer.inked import UM, Points, arc, inked, polyline
@@ -239,7 +239,7 @@ def test_a_run_from_a_chord_does_not_hide_the_contour_that_it_went_along() -> No
     sheet = Sheet.of(inked(OUTLINE, UPRIGHT, BAR, width_mm=0.3, seed=2))
     (contour,), _ = plan(sheet, "all")
     bar = Line(np.linspace(*BAR, 6000), "ended", 0.3, 24.0)
-    (outline,), left_mm = joined_to(bar, contour, sheet, Settings(), Operator())
+    (outline,), left_mm = joined_to(bar, contour, Setup(sheet))
     assert distance(outline.places_mm, OUTLINE).hausdorff_mm < 40 * UM
     assert left_mm == pytest.approx(33, rel=0.1)
 
@@ -327,7 +327,7 @@ def test_a_lost_line_is_cut_as_far_as_it_was_followed_and_the_others_all_the_sam
 def test_a_large_line_that_cannot_be_begun_is_told_and_the_tool_stays_up(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    followed = tour.followed
+    followed = one_of_each.followed
 
     def not_the_hole(
         drawing: object, start_mm: tuple[float, float], *others: object, **more: object
@@ -336,7 +336,7 @@ def test_a_large_line_that_cannot_be_begun_is_told_and_the_tool_stays_up(
             raise LineFault("no clean stretch of line to start on")
         return followed(drawing, start_mm, *others, **more)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(tour, "followed", not_the_hole)
+    monkeypatch.setattr(one_of_each, "followed", not_the_hole)
     run = trace_lines(inked(ISLAND, arc((28, 14), 6.5)))
     assert [line.ending for line in sorted(run.lines, key=lambda line: line.number)] == [
         "lost",
