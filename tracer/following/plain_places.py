@@ -24,7 +24,8 @@ from morfax.tracer.head.course import FELT_LEGS
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.leg import Leg, centre_at, turn
-from morfax.tracer.sensing.view import LEVEL, View
+from morfax.tracer.sensing.photocell import LEVEL
+from morfax.tracer.sensing.view import View
 
 # All limits below were chosen by trial on the test drawings.
 APERTURE = 0.3  # of the line's width, within bounds that a scan's noise and a corner set
