@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.motion.circle import circle_through
 from morfax.motion.polyline import lengths_mm
 
 SPACING_MM = 0.05
@@ -93,7 +94,9 @@ def longest_pieces(places: Array, tolerance_mm: float) -> list[Piece]:
 
 def _turned_rad(places: Array) -> float:
     """About how much a row of places on a circle turns."""
-    return float(np.hypot(*np.diff(places, axis=0).T).sum()) / max(_circle(places)[2], SAME_MM)
+    return float(np.hypot(*np.diff(places, axis=0).T).sum()) / max(
+        circle_through(places)[1], SAME_MM
+    )
 
 
 def _fits(places: Array, tolerance_mm: float) -> bool:
@@ -112,19 +115,8 @@ def off_line_mm(points: Array) -> Array:
 
 def off_circle_mm(points: Array) -> Array:
     """Distance of each point from the circle that fits them best, mm."""
-    x, y, radius = _circle(points)
-    return np.hypot(points[:, 0] - x, points[:, 1] - y) - radius
-
-
-def _circle(points: Array) -> tuple[float, float, float]:
-    """Centre and radius of the circle that fits best, by Kasa's linear least squares; short arcs have little
-    noise.
-    """
-    middle = points.mean(axis=0)
-    u, v = (points - middle).T
-    matrix = np.column_stack([u, v, np.ones_like(u)])
-    a, b, c = np.linalg.lstsq(matrix, u * u + v * v, rcond=None)[0]
-    return middle[0] + a / 2, middle[1] + b / 2, math.sqrt(max(c + (a * a + b * b) / 4, 0.0))
+    centre, radius, _ = circle_through(points)
+    return np.hypot(*(points - centre).T) - radius
 
 
 def curvature_per_mm(places: Array) -> float:
@@ -138,7 +130,9 @@ def curvature_per_mm(places: Array) -> float:
     if np.abs(v).max() > 0.2 * chord:  # more than a third of a turn: a chord says little
         side = places[len(places) // 2] - places.mean(axis=0)
         across = dx[len(dx) // 4] * dy[len(dy) // 2] - dy[len(dy) // 4] * dx[len(dx) // 2]
-        return math.copysign(1 / max(_circle(places)[2], float(np.hypot(*side)) / 10), across)
+        return math.copysign(
+            1 / max(circle_through(places)[1], float(np.hypot(*side)) / 10), across
+        )
     weight = u * u - chord * u + v * v
     return 2 * float(v @ weight) / max(float(weight @ weight), 1e-30)
 

@@ -28,6 +28,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault
+from morfax.motion.polyline import lengths_mm as lengths_px
 from morfax.motion.polyline import with_places
 from morfax.tracer.drawing.sharpening import APART_PX, sharpened
 from morfax.tracer.drawing.spacing import finer
@@ -221,4 +222,4 @@ def _inked(edges: list[Array], shape: tuple[int, ...], reach_px: float) -> Grey:
 
 
 def _length_mm(edge: Array, pitch_mm: float) -> float:
-    return float(np.hypot(*np.diff(edge, axis=0).T).sum()) * pitch_mm
+    return float(lengths_px(edge)[-1]) * pitch_mm

@@ -28,6 +28,7 @@ from scipy.ndimage import uniform_filter1d
 from scipy.spatial import cKDTree
 
 from morfax.motion.arrays import Array
+from morfax.motion.polyline import lengths_mm as lengths_px
 from morfax.motion.polyline import with_places
 
 APART_PX = 0.25  # between the places of an outline
@@ -77,7 +78,7 @@ def _evenly(outline: Array) -> Array:
     """Places at equal distances, the first not once more at the end, begun furthest from where the outline
     turns.
     """
-    s = np.r_[0.0, np.cumsum(np.hypot(*np.diff(outline, axis=0).T))]
+    s = lengths_px(outline)
     at = np.linspace(0, s[-1], max(8, round(s[-1] / APART_PX)), endpoint=False)
     places = np.column_stack([np.interp(at, s, column) for column in outline.T])
     reach = min(len(places) // 4, 40)

@@ -16,9 +16,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.circle import circle_through
 from morfax.tracer.drawing.strokes import Sheet
-from morfax.tracer.sensing.circles import ANGLES, WAYS, circle_through, spokes
 from morfax.tracer.sensing.leg import Leg, turn
+from morfax.tracer.sensing.spokes import ANGLES, WAYS, spokes
 from morfax.tracer.sensing.view import View
 
 LEAST_WIDTHS = 0.85  # radius of a dot

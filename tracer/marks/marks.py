@@ -27,6 +27,7 @@ import numpy as np
 from numba import njit
 
 from morfax.motion.arrays import Array
+from morfax.motion.polyline import lengths_mm
 from morfax.tracer.marks import dots
 from morfax.tracer.marks import ticks as strokes
 from morfax.tracer.marks.ticks import Stroke
@@ -61,7 +62,7 @@ class Way:
     """The way of the head by its length: places and headings every `step_mm`, and which position each one is."""
 
     def __init__(self, positions: Array, step_mm: float) -> None:
-        lengths = np.r_[0.0, np.cumsum(np.hypot(*np.diff(positions, axis=0).T))]
+        lengths = lengths_mm(positions)
         self.step_mm = step_mm
         moving = np.r_[True, np.diff(lengths) > 0]
         self.at_mm = np.arange(0.0, lengths[-1], step_mm)

@@ -26,10 +26,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.motion.circle import circle_through
 from morfax.tracer.drawing.strokes import Sheet, Stroke
-from morfax.tracer.sensing.circles import WAYS, circle_through, spokes
 from morfax.tracer.sensing.leg import Leg, leg_of
 from morfax.tracer.sensing.probe import SPECK_WIDTHS, is_tip, lines_on
+from morfax.tracer.sensing.spokes import WAYS, spokes
 from morfax.tracer.sensing.view import View
 
 LEAST_MM, LARGEST_MM = 1.5, 10.0  # across
