@@ -31,7 +31,7 @@ class Playback(Protocol):
     `following_error_mm` is the largest, `end_mm` where the machine stands, `end_error_mm` the same against
     the end that the program states (None before the end, or if it states none). The `monitor` (Herbert's)
     watches every drive by the `limit`; a `chart` put in takes the run down; `conditions` are what is wrong
-    with the drives, and may be changed while it runs.
+    with the drives, and may be changed while it runs; `notes` on the program are for the operator.
     """
 
     start_mm: Array
@@ -41,6 +41,7 @@ class Playback(Protocol):
     monitor: Monitor
     chart: Chart | None
     conditions: list[Any]
+    notes: tuple[str, ...]
 
     @property
     def duration_s(self) -> float: ...

@@ -25,7 +25,7 @@ Source = Iterable[Motion] | Motion | Path
 
 
 class Report(Protocol):
-    """What every recorder tells of its program: size of the file in bytes, and how long it runs, s."""
+    """What every recorder reports: size of the program file in bytes, and running time in s."""
 
     @property
     def bytes(self) -> int: ...
@@ -36,7 +36,7 @@ class Report(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Medium:
-    """A medium: what it is, and the recorder that writes it."""
+    """A medium: its description, and the recorder that writes it."""
 
     what: str
     module: str

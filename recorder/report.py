@@ -19,7 +19,7 @@ Format = TypeVar("Format", bound=Clocked)
 
 @dataclass(frozen=True, slots=True)
 class Written:
-    """A program file."""
+    """A program file that was written."""
 
     file: Path
 
@@ -31,9 +31,7 @@ class Written:
 
 @dataclass(frozen=True, slots=True)
 class WrittenIntervals(Written, Generic[Format]):
-    """A program of equal intervals: its format, how many there are, and how far they lead off the motion at
-    most.
-    """
+    """A program of equal intervals: format, number of intervals, and largest distance from the motion."""
 
     format: Format
     intervals: int
@@ -41,5 +39,5 @@ class WrittenIntervals(Written, Generic[Format]):
 
     @property
     def duration_s(self) -> float:
-        """How long the program runs, s."""
+        """Running time of the program, s."""
         return self.intervals * self.format.interval_s

@@ -41,6 +41,7 @@ from morfax.player.cubics.interpolator import Interpolator, ends, slopes
 from morfax.player.cubics.scales import Scales, measured
 from morfax.player.monitor.monitor import FollowingLimit, Supervised
 from morfax.recorder.cubics.file import STEPS_PER_CONSTANT, CubicProgram, read_program
+from morfax.recorder.textfile import note_of_no_sum
 
 REGISTER_DIGITS = 12  # of register 34, sign apart
 _SETTLING = 15.0  # time constants of the servo: the lag falls to 3e-7 of itself
@@ -97,6 +98,7 @@ class CubicPlayback(Supervised):
         self, program: CubicProgram, servo: Servo, travel_mm: float, name: str
     ) -> None:
         self.program, self.servo, self._name, self.format = program, servo, name, program.format
+        self.notes = () if program.summed else (note_of_no_sum(name),)
         self._modulus_per_s = servo.modulus_per_s or program.format.modulus_per_s
         self.start_mm: Array = np.array(program.checks[0]) / self.format.counts_per_mm
         self.end_mm: Array = self.start_mm.copy()

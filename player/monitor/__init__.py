@@ -1,1 +1,4 @@
-"""TODO: what lives in this room, and its door."""
+"""The following-error monitor that watches every control (Alfred Herbert 1972, patent ES 414458).
+
+It asks motion/ only. All controls ask `monitor`; jobs and reports ask `chart`.
+"""

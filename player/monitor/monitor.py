@@ -236,6 +236,7 @@ class Supervised:
     limit: FollowingLimit
     monitor: Monitor
     chart: Chart | None = None
+    notes: tuple[str, ...] = ()  # on the program, for the operator
 
     def supervise(self, axes: Sequence[str], rate_hz: float) -> Monitor:
         """Begin to watch a run."""

@@ -1,1 +1,4 @@
-"""TODO: what lives in this room, and its door."""
+"""The step control: a punched tape drives stepping motors (Superior Electric 1975, patent ES 443122).
+
+It asks motion/, recorder/steps and player/monitor. Jobs ask `stepping.play_steps`.
+"""

@@ -40,6 +40,7 @@ from morfax.player.monitor.monitor import FollowingLimit, Supervised
 from morfax.player.steps.motor import SOUND, Motor, Motors
 from morfax.recorder.steps.file import TICKS, Program, StepFormat, read_program
 from morfax.recorder.steps.rings import RINGS
+from morfax.recorder.textfile import note_of_no_sum
 
 STANDSTILL, LOWEST, HIGHEST = 8, 1, 15  # counts
 UP_X, DOWN_X, UP_Y, DOWN_Y = 1, 2, 4, 8  # outputs of the ring memory
@@ -119,6 +120,7 @@ class StepPlayback(Supervised):
             program,
             name,
         )
+        self.notes = () if program.summed else (note_of_no_sum(name),)
         _check_motor(name, program.format, motor)
         self.counts, self._rows = decode(program)
         self.pulses = pulses_of(self.counts, program.format.rates)

@@ -58,13 +58,13 @@ CORNER_SHARES = (1.0, 0.5, 0.25)  # of that angle
 
 @dataclass(frozen=True, slots=True)
 class CubicReport(WrittenIntervals[CubicFormat]):
-    """What was recorded, and at how many places the machine stands; the joined cubics are what may lie off."""
+    """What was recorded, the stops of the machine, and the largest distance of the cubics from the motion."""
 
     stops: int
 
     @property
     def figures(self) -> dict[str, Any]:
-        """What else is worth telling."""
+        """Further figures for the report."""
         return {
             "intervals": self.intervals,
             "interval_s": self.format.interval_s,
@@ -75,7 +75,7 @@ class CubicReport(WrittenIntervals[CubicFormat]):
 
 @dataclass(frozen=True, slots=True)
 class _Fit:
-    """Samples (k + 1, axes, 2) in whole counts at an interval, and how far they are off the path."""
+    """Samples (k + 1, axes, 2) in whole counts, their interval, and their distance from the path."""
 
     interval_s: float
     samples: Words
@@ -91,8 +91,7 @@ def record_cubics(
     fmt: CubicFormat | None = None,
     limits: Limits | None = None,
 ) -> CubicReport:
-    """Record a motion as cubics within a tolerance of it; the interval and the places in `fmt` are the
-    recorder's.
+    """Record a motion as cubics within a tolerance of it; the recorder sets interval and places in `fmt`.
 
     Raises MotionFault for a motion that is empty, or cannot be had within the tolerance.
     """
@@ -116,8 +115,7 @@ def record_cubics(
 
 
 def differences(samples: Words, points: int, linear: int = 1) -> Words:
-    """Differences A, A², A³ (k, axes, 3) for samples (k + 1, axes, 2) of whole counts and counts per
-    interval.
+    """Differences A, A², A³ (k, axes, 3) of samples (k + 1, axes, 2), counts and counts per interval.
 
     The unit of the words is the count divided by points³, in which they are exact; points is a power of two.
     For an interpolator of which only every `linear`-th step is cubic they are those of so many fewer steps,
@@ -140,12 +138,12 @@ def differences(samples: Words, points: int, linear: int = 1) -> Words:
 
 
 def _points(interval_s: float) -> int:
-    """Points in an interval, a power of two, that come near to the usual rate."""
+    """Points in an interval: the power of two that comes nearest to the usual rate."""
     return int(2 ** round(math.log2(interval_s * POINT_RATE_HZ)))
 
 
 def hermite(samples: Words, at: Array) -> Array:
-    """Places (axes) of the cubics at times in intervals from the start, counts; the closed form."""
+    """Places (n, axes) in counts of the cubics at times in intervals from the start; the closed form."""
     k = np.clip(at.astype(np.int64), 0, len(samples) - 2)
     u = (at - k)[:, None]
     x1, m1, x2, m2 = (
@@ -159,7 +157,7 @@ def hermite(samples: Words, at: Array) -> Array:
 
 
 def _best_fit(path: Path, tolerance_mm: float, limits: Limits, counts_per_mm: float) -> _Fit:
-    """The fit with the fewest intervals; raises MotionFault where none is within the tolerance."""
+    """The fit with the fewest intervals; raises MotionFault if none stays within the tolerance."""
     fits = [
         _fitted(
             legs(path, replace(limits, corner_rad=share * limits.corner_rad)),
@@ -181,7 +179,7 @@ def _best_fit(path: Path, tolerance_mm: float, limits: Limits, counts_per_mm: fl
 def _fitted(
     parts: list[Leg], start_mm: Array, counts_per_mm: float, tolerance_mm: float
 ) -> _Fit:
-    """The fit with the longest interval that will do, or with the shortest if none will."""
+    """The fit with the longest interval that stays within the tolerance, or else with the shortest."""
     interval_s = LONGEST_S
     longest_s = STRETCH * sum(float(leg.times_s[-1]) + leg.rest_s for leg in parts)
     while True:
@@ -241,16 +239,14 @@ def _spline(at: Array, places: Array, intervals: int) -> tuple[Array, Array]:
 
 
 def _off_mm(leg: Leg, samples: Words, counts_per_mm: float) -> float:
-    """The largest distance of the cubics from the leg's path, mm: across it, as time may run a little
-    differently.
-    """
+    """The largest distance of the cubics from the leg's path, measured across the path, mm."""
     at = np.linspace(0, len(samples) - 1, max(64, 4 * len(leg.places_mm) // 3))
     run_mm = hermite(samples, at) / counts_per_mm
     return float(_nearest_mm(leg.places_mm, run_mm).max())
 
 
 def _nearest_mm(places: Array, run_mm: Array) -> Array:
-    """Distance of each point of a run from the leg's places, straight in between.
+    """Distance of each point of a run from the leg's polyline, mm.
 
     The piece that leads to the nearest place or on from it may be the wrong one where a closed leg ends
     beside its start.
@@ -271,5 +267,5 @@ def _nearest_mm(places: Array, run_mm: Array) -> Array:
 
 
 def _counts(mm: Array, counts_per_mm: float) -> Words:
-    """Whole counts."""
+    """A place in whole counts."""
     return np.rint(mm * counts_per_mm).astype(np.int64)

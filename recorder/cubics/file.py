@@ -13,7 +13,7 @@
     0 0 0  0 0 0  -11206656 …       A A² A³ of X, of Y, of Z, in counts / points³
     …
     at 90173 53256 4000
-    end
+    end crc32 8f3a09c1              check sum of all lines before (see textfile.py)
 
 The first `at` loads register I; each other is a check of what the interpolator has come to there, and the
 last stands at the end. Blank lines and lines that begin with # are passed over.
@@ -29,22 +29,20 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from pathlib import Path as FilePath
 
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.faults import FileFault, ProgramFault
-from morfax.motion.files import written_beside
+from morfax.motion.faults import ProgramFault
+from morfax.recorder.textfile import AGAIN, Lines, demand, write_lines
 
 VERSION = 1
-HEADER = "morfax cubic"
+KIND = "cubic"
 AXES_LINE = "axes x y z"
-MOST_POINTS = 4096
-MOST_INTERVALS = 10_000_000
-STEPS_PER_CONSTANT = 4.0  # points in a time constant of the servo, below which it would swing
-WORD_BITS = 63  # of the registers, sign apart
-_AGAIN = "record it again"
+MOST_POINTS = 4096  # of an interval: their cube with the places of a machine fits a register
+MOST_INTERVALS = 10_000_000  # 11 hours of the shortest intervals
+STEPS_PER_CONSTANT = 4.0  # points in a time constant of the servo; with fewer the servo swings
+WORD_BITS = 63  # of a register, sign apart
 
 Words = NDArray[np.int64]
 Place = tuple[int, ...]
@@ -52,7 +50,7 @@ Place = tuple[int, ...]
 
 @dataclass(frozen=True, slots=True)
 class CubicFormat:
-    """Format of a cubic program; raises ValueError if it cannot be."""
+    """Format of a cubic program; raises ValueError for a value out of its range."""
 
     interval_s: float = 0.064
     points: int = 64
@@ -61,20 +59,20 @@ class CubicFormat:
     modulus_per_s: float = 200.0
 
     def __post_init__(self) -> None:
-        _demand(
+        demand(
             1e-4 <= self.interval_s <= 3600,
             "interval_s",
             self.interval_s,
             "from 0.0001 s to 3600 s",
         )
         power = 2 <= self.points <= MOST_POINTS and self.points & (self.points - 1) == 0
-        _demand(power, "points", self.points, f"a power of two from 2 to {MOST_POINTS}")
+        demand(power, "points", self.points, f"a power of two from 2 to {MOST_POINTS}")
         divides = 1 <= self.linear <= self.points and self.points % max(1, self.linear) == 0
-        _demand(divides, "linear", self.linear, f"a divisor of the {self.points} points")
-        _demand(
+        demand(divides, "linear", self.linear, f"a divisor of the {self.points} points")
+        demand(
             1 <= self.counts_per_mm <= 1e6, "counts_per_mm", self.counts_per_mm, "from 1 to 1e6"
         )
-        _demand(
+        demand(
             0 < self.modulus_per_s <= 1e5,
             "modulus_per_s",
             self.modulus_per_s,
@@ -94,182 +92,114 @@ class CubicFormat:
 
 @dataclass(frozen=True, slots=True)
 class CubicProgram:
-    """A cubic program: format, words (k, axes, 3), positions in counts by the interval before which they
-    stand.
+    """A cubic program: format, words (k, axes, 3), and checked positions in counts by their interval.
 
-    `checks[0]` is the start; `lines` holds the line in the file of each interval.
+    `checks[0]` is the start; `lines` holds the line in the file of each interval; `summed` says whether the
+    file has a check sum.
     """
 
     format: CubicFormat
     words: Words
     checks: dict[int, Place]
     lines: list[int] = field(default_factory=list)
+    summed: bool = True
 
 
 def write_program(program: CubicProgram, file: str | os.PathLike[str]) -> None:
     """Write a program."""
-    fmt = program.format
-    with (
-        written_beside(file) as beside,
-        beside.open("w", encoding="ascii", newline="\n") as out,
-    ):
-        out.write(
-            f"{HEADER} {VERSION}\ninterval_s {fmt.interval_s:.12g}\npoints {fmt.points}\nlinear {fmt.linear}\n"
-        )
-        out.write(
-            f"counts_per_mm {fmt.counts_per_mm:.12g}\nmodulus_per_s {fmt.modulus_per_s:.12g}\n{AXES_LINE}\n"
-        )
-        out.write(f"intervals {len(program.words)}\n\n")
-        for k in range(len(program.words) + 1):
-            if k in program.checks:
-                out.write("at " + " ".join(map(str, program.checks[k])) + "\n")
-            if k < len(program.words):
-                out.write(
-                    "  ".join(" ".join(map(str, axis)) for axis in program.words[k].tolist())
-                    + "\n"
-                )
-        out.write("end\n")
+    write_lines(file, _lines(program))
 
 
 def read_program(file: str | os.PathLike[str]) -> CubicProgram:
-    """Read a program; raises ProgramFault with the line where it is none, FileFault if it cannot be read."""
-    lines = _numbered(FilePath(file))
-    _, version = next(lines, (1, ""))
-    if version.split()[:2] != HEADER.split():
-        raise ProgramFault(
-            f"{file} is no cubic program: it must begin with '{HEADER} {VERSION}'; give another",
-            line=1,
-        )
-    if version != f"{HEADER} {VERSION}":
-        found = version.split()[-1][:20]
-        raise ProgramFault(
-            f"{file}: the format is version {found}; this program reads {VERSION}: use a later one",
-            line=1,
-        )
-    fmt, intervals = _read_header(file, lines)
-    return _read_words(file, lines, fmt, intervals)
+    """Read a program; raises ProgramFault with the line that is wrong, FileFault for an unreadable file."""
+    lines = Lines(file, KIND, VERSION)
+    fmt, intervals = _read_header(lines)
+    return _read_words(lines, fmt, intervals)
 
 
-def _numbered(file: FilePath) -> Iterator[tuple[int, str]]:
-    """The lines that count, with their numbers."""
-    try:
-        text = file.read_bytes().decode("ascii")
-    except UnicodeDecodeError as error:
-        raise ProgramFault(
-            f"{file} is no cubic program: byte {error.start} is no ASCII text; give another"
-        ) from None
-    except OSError as error:
-        raise FileFault(f"cannot read {file}: {error.strerror}; check the name") from error
-    for number, line in enumerate(text.splitlines(), 1):
-        if line.strip() and not line.startswith("#"):
-            yield number, line.strip()
+def _lines(program: CubicProgram) -> Iterator[str]:
+    """The lines of a program but the last."""
+    fmt, words = program.format, program.words
+    yield f"morfax {KIND} {VERSION}"
+    yield f"interval_s {fmt.interval_s:.12g}"
+    yield f"points {fmt.points}"
+    yield f"linear {fmt.linear}"
+    yield f"counts_per_mm {fmt.counts_per_mm:.12g}"
+    yield f"modulus_per_s {fmt.modulus_per_s:.12g}"
+    yield AXES_LINE
+    yield f"intervals {len(words)}"
+    yield ""
+    for k in range(len(words) + 1):
+        if k in program.checks:
+            yield "at " + " ".join(map(str, program.checks[k]))
+        if k < len(words):
+            yield "  ".join(" ".join(map(str, axis)) for axis in words[k].tolist())
 
 
-def _read_header(
-    file: str | os.PathLike[str], lines: Iterator[tuple[int, str]]
-) -> tuple[CubicFormat, int]:
+def _read_header(lines: Lines) -> tuple[CubicFormat, int]:
     """The format and the number of intervals."""
     values: dict[str, float] = {}
-    number = 1
-    for name in (
-        "interval_s",
-        "points",
-        "linear",
-        "counts_per_mm",
-        "modulus_per_s",
-        "axes",
-        "intervals",
-    ):
-        number, line = next(lines, (number, ""))
-        words = line.split()
-        if len(words) < 2 or words[0] != name or (name == "axes" and line != AXES_LINE):
-            wanted = AXES_LINE if name == "axes" else name
-            raise ProgramFault(
-                f"{file}, line {number}: {line[:40]!r} instead of {wanted}; {_AGAIN}",
-                line=number,
-            )
-        if name != "axes":
-            values[name] = _number(file, number, words)
+    for name in ("interval_s", "points", "linear", "counts_per_mm", "modulus_per_s"):
+        values[name] = _single(lines, name)
+    if ["axes", *lines.entry("axes")] != AXES_LINE.split():
+        raise lines.fault(f"the axes instead of {AXES_LINE}")
+    intervals = _single(lines, "intervals")
     try:
-        for name, most in (
-            ("points", MOST_POINTS),
-            ("linear", MOST_POINTS),
-            ("intervals", MOST_INTERVALS),
-        ):
-            whole = 0 <= values[name] <= most and values[name] == int(values[name])
-            _demand(whole, name, values[name], f"a whole number up to {most}")
-        intervals, points, linear = (
-            int(values.pop(name)) for name in ("intervals", "points", "linear")
-        )
-        return CubicFormat(points=points, linear=linear, **values), intervals
+        points = _whole("points", values.pop("points"), MOST_POINTS)
+        linear = _whole("linear", values.pop("linear"), MOST_POINTS)
+        count = _whole("intervals", intervals, MOST_INTERVALS)
+        return CubicFormat(points=points, linear=linear, **values), count
     except ValueError as error:
-        raise ProgramFault(f"{file}, header: {error}; {_AGAIN}") from None
+        raise lines.header_fault(error) from None
 
 
-def _number(file: str | os.PathLike[str], number: int, words: list[str]) -> float:
+def _single(lines: Lines, name: str) -> float:
     """The one number of an entry."""
-    try:
-        (value,) = (float(word) for word in words[1:])
-    except ValueError:
-        got = " ".join(words)[:40]
-        raise ProgramFault(
-            f"{file}, line {number}: {got!r} is not one number; {_AGAIN}", line=number
-        ) from None
-    return value
+    found = lines.numbers(name)
+    if len(found) != 1:
+        raise lines.fault(f"{name} has {len(found)} numbers; it must have one")
+    return found[0]
 
 
-def _read_words(
-    file: str | os.PathLike[str],
-    lines: Iterator[tuple[int, str]],
-    fmt: CubicFormat,
-    intervals: int,
-) -> CubicProgram:
-    """The words up to `end`, as many intervals as the header says."""
+def _whole(name: str, value: float, most: int) -> int:
+    """A whole number of the header; raises ValueError."""
+    demand(
+        0 <= value <= most and value == int(value), name, value, f"a whole number up to {most}"
+    )
+    return int(value)
+
+
+def _read_words(lines: Lines, fmt: CubicFormat, intervals: int) -> CubicProgram:
+    """The words up to the last line, as many intervals as the header states."""
     words: list[list[int]] = []
     checks: dict[int, Place] = {}
     places: list[int] = []
-    for number, line in lines:
-        if line == "end":
-            break
+    for line in lines:
         if line.startswith("at "):
-            checks[len(words)] = tuple(_whole(file, number, line[3:], 3))
+            checks[len(words)] = tuple(_words(lines, line[3:], 3))
         else:
-            words.append(_whole(file, number, line, 9))
-            places.append(number)
-        if len(words) > intervals or 0 not in checks:
-            what = (
-                f"more than the {intervals} intervals stated"
-                if checks
-                else "no 'at' with a start before the words"
-            )
-            raise ProgramFault(f"{file}, line {number}: {what}; {_AGAIN}", line=number)
-    else:
-        raise ProgramFault(
-            f"{file} is cut short: {len(words)} of {intervals} intervals and no end; copy it again"
-        )
-    if len(words) != intervals or intervals not in checks:
-        raise ProgramFault(
-            f"{file}: {len(words)} intervals where {intervals} and 'at' must stand; copy it again"
-        )
-    return CubicProgram(fmt, np.array(words, np.int64).reshape(-1, 3, 3), checks, places)
+            words.append(_words(lines, line, 9))
+            places.append(lines.number)
+        if 0 not in checks:
+            raise lines.fault("no 'at' with a start before the words")
+        if len(words) > intervals:
+            raise lines.fault(f"more than the {intervals} intervals stated")
+    lines.check_whole(len(words), intervals, "intervals")
+    if intervals not in checks:
+        raise ProgramFault(f"{lines.file}: 'at' must stand behind the last interval; {AGAIN}")
+    found = np.array(words, np.int64).reshape(-1, 3, 3)
+    return CubicProgram(fmt, found, checks, places, lines.summed)
 
 
-def _whole(file: str | os.PathLike[str], number: int, text: str, count: int) -> list[int]:
-    """So many whole numbers that fit a register."""
+def _words(lines: Lines, text: str, count: int) -> list[int]:
+    """The whole numbers of a line; raises ProgramFault for a wrong count, or a number beyond a register."""
     try:
         found = [int(word) for word in text.split()]
         if len(found) == count and all(abs(word) < 2**WORD_BITS for word in found):
             return found
     except ValueError:
         pass
-    raise ProgramFault(
-        f"{file}, line {number}: {text[:40]!r} is no line of words; it must be {count} whole numbers below "
-        f"2^{WORD_BITS}, 'at' with 3, or end; {_AGAIN}",
-        line=number,
+    raise lines.fault(
+        f"{text[:40]!r} is no line of words; it must be {count} whole numbers below 2^{WORD_BITS}, "
+        "'at' with 3, or end"
     )
-
-
-def _demand(good: bool, name: str, value: object, allowed: str) -> None:
-    """Raise ValueError with the entry, the value got and the values allowed."""
-    if not good:
-        raise ValueError(f"{name} is {str(value)[:60]}; it must be {allowed}")

@@ -59,9 +59,7 @@ _STEP = 1e-7  # mm and rad, of the slopes by differences
 
 @dataclass(frozen=True, slots=True)
 class Segment:
-    """A line or arc of a chain: where it begins, its heading there, length, and curvature (0 for a line, +
-    left).
-    """
+    """A line or an arc: begin, heading there, length, and curvature (0 for a line, positive to the left)."""
 
     begin_mm: tuple[float, float]
     heading_rad: float
@@ -75,7 +73,7 @@ class Segment:
 
     @property
     def end_mm(self) -> tuple[float, float]:
-        """Where it ends."""
+        """The end point, mm."""
         half = self.turned_rad / 2
         chord = self.length_mm * float(np.sinc(half / math.pi))
         along = self.heading_rad + half
@@ -100,9 +98,7 @@ def fit(points_mm: Array, tolerance_mm: float) -> list[Chain]:
 
 
 def _chain(points_mm: Array, tolerance_mm: float) -> Chain:
-    """The chain of one stretch without corners: of the longest pieces first, then of shorter ones until it is
-    within.
-    """
+    """The chain of a stretch without corners: from the longest pieces, then from shorter ones."""
     s = lengths_mm(points_mm)
     if s[-1] < SAME_MM:
         return Chain([], 0.0)
@@ -124,7 +120,7 @@ def _chain(points_mm: Array, tolerance_mm: float) -> Chain:
 def _straightened(
     chain: Chain, places: Array, pieces: list[Piece], tolerance_mm: float
 ) -> Chain:
-    """The chain with lines for what bends by less than half the tolerance, if that stays within it."""
+    """The chain with lines in place of arcs that bend by less than half the tolerance, if that still fits."""
     curved = np.array(
         [abs(s.turned_rad) * s.length_mm / 8 > tolerance_mm / 2 for s in chain.segments]
     )
@@ -164,9 +160,7 @@ class _Spline:
         )  # of each segment's five numbers
 
     def laid(self, tolerance_mm: float) -> Chain | None:
-        """The chain by least squares, and where that leaves the tolerance with more weight on the worst; or
-        none.
-        """
+        """The chain by least squares, with more weight on the worst places where needed; None if none fits."""
         weights = np.ones(len(self.few))
         for _ in range(4):
             self._settle(weights, tolerance_mm)
@@ -181,7 +175,7 @@ class _Spline:
         return None
 
     def _settle(self, weights: Array, tolerance_mm: float) -> None:
-        """Levenberg's and Marquardt's steps until they no longer help."""
+        """Take steps by Levenberg and Marquardt until they no longer help."""
         from scipy.sparse import identity  # half a second that `--help` need not wait for
         from scipy.sparse.linalg import spsolve
 
@@ -218,7 +212,7 @@ class _Spline:
         return np.r_[weights * off / tolerance_mm, self._breaks() / BREAK_RAD]
 
     def _breaks(self) -> Array:
-        """How much the direction jumps at each joint, and at the seam of a closed line, rad."""
+        """The jump of the direction at each joint, and at the seam of a closed line, rad."""
         chords = np.diff(self.joints, axis=0)
         direction = np.arctan2(chords[:, 1], chords[:, 0])
         jumps = np.roll(direction - self.halves, -1) - direction - self.halves
@@ -262,7 +256,7 @@ class _Spline:
         return residuals, coo_matrix((value[free], (row[free], column[free])), shape).tocsr()
 
     def _owner(self, which: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Which segment each place belongs to: by how far along it is."""
+        """The segment of each place, by its distance along the path."""
         until = np.cumsum(self._rows()[:, 3])
         return np.searchsorted(until[:-1], self.s[which] * (until[-1] / self.s[-1]))
 
@@ -294,7 +288,7 @@ def _off_table(table: Array, points: Array, owner: NDArray[np.int64]) -> Array:
 
 
 def _off_rows(rows: Array, points: Array) -> Array:
-    """Distance of each point from the circle or line of its own row, + left."""
+    """Distance of each point from the circle or line of its own row, positive to the left."""
     x, y, heading, _, bend = rows.T
     dx, dy = points[:, 0] - x, points[:, 1] - y
     square = 2 * (dy * np.cos(heading) - dx * np.sin(heading)) - bend * (dx * dx + dy * dy)
@@ -302,7 +296,7 @@ def _off_rows(rows: Array, points: Array) -> Array:
 
 
 def _chords(places: Array, tolerance_mm: float) -> Chain:
-    """Lines from place to place, as long as they stay within the tolerance: what is left where no chain does."""
+    """Lines from place to place, each as long as it stays within the tolerance; for where no chain fits."""
     kept, worst_mm, first = [0], 0.0, 0
     while first < len(places) - 1:
         last, off_mm = first + 1, 0.0

@@ -61,7 +61,7 @@ class BlockReport(Written):
 
     @property
     def figures(self) -> dict[str, Any]:
-        """What else is worth telling."""
+        """Further figures for the report."""
         return {
             "lines": self.lines,
             "arcs": self.arcs,
@@ -73,9 +73,7 @@ class BlockReport(Written):
 def record_blocks(
     stream: Source, file: str | os.PathLike[str], *, tolerance_mm: float = TOLERANCE_MM
 ) -> BlockReport:
-    """Record a motion as a program of lines and arcs that stay within the tolerance of it; raises
-    MotionFault, FileFault.
-    """
+    """Record a motion as lines and arcs within a tolerance; raises MotionFault, FileFault, ValueError."""
     if not 2 * WRITTEN_MM <= tolerance_mm < math.inf:
         raise ValueError(
             f"a tolerance of {tolerance_mm} mm cannot be written; give {2 * WRITTEN_MM} mm or more"
@@ -102,7 +100,7 @@ def record_blocks(
 
 
 class _Writer:
-    """The text of a program so far, and where it has come to."""
+    """The text of a program so far, and the place that it has reached."""
 
     def __init__(self, start_mm: Array, feed_mm_s: float, tolerance_mm: float) -> None:
         self.count_reach_mm = min(COUNT_REACH_MM, COUNT_SHARE * tolerance_mm)

@@ -35,7 +35,7 @@ Piece = tuple[int, int, bool]  # first place, last place, whether it is straight
 
 
 def resample(points_mm: Array, spacing_mm: float = SPACING_MM) -> Array:
-    """Points at about equal distances along a polyline; its first and last are kept."""
+    """Points at about equal distances along a polyline, its first and last included."""
     s = lengths_mm(points_mm)
     at = np.linspace(0.0, s[-1], max(2, round(s[-1] / spacing_mm) + 1))
     return np.column_stack(
@@ -44,7 +44,7 @@ def resample(points_mm: Array, spacing_mm: float = SPACING_MM) -> Array:
 
 
 def corners(points_mm: Array) -> NDArray[np.int64]:
-    """Indices of the points of a polyline at which it has a corner; never its first or last."""
+    """Indices of the corners of a polyline; its first and last points are none."""
     s = lengths_mm(points_mm)
     wide, narrow = (_turn_rad(points_mm, s, reach) for reach in (WINDOW_MM, WINDOW_MM / 4))
     sharp = np.flatnonzero((np.abs(wide) > CORNER_RAD) & (np.abs(narrow) > 0.6 * np.abs(wide)))
@@ -55,7 +55,7 @@ def corners(points_mm: Array) -> NDArray[np.int64]:
 
 
 def _turn_rad(points: Array, s: Array, reach_mm: float) -> Array:
-    """How much the direction turns within a reach to either side of each point; 0 near the ends."""
+    """The turn of the direction within a reach to either side of each point, rad; 0 near the ends."""
     before, after = (
         np.column_stack([np.interp(s + r, s, c) for c in points.T])
         for r in (-reach_mm, reach_mm)
@@ -67,9 +67,7 @@ def _turn_rad(points: Array, s: Array, reach_mm: float) -> Array:
 
 
 def longest_pieces(places: Array, tolerance_mm: float) -> list[Piece]:
-    """Pieces (first, last, straight) of a row of places, each as long as a line or circle stays within the
-    tolerance.
-    """
+    """Pieces (first, last, straight) of a row of places, each as long as a line or circle fits it."""
     pieces, first, last = [], 0, len(places) - 1
     while first < last:
         low, step = first + 1, 1  # low is known to fit
@@ -93,7 +91,7 @@ def longest_pieces(places: Array, tolerance_mm: float) -> list[Piece]:
 
 
 def _turned_rad(places: Array) -> float:
-    """About how much a row of places on a circle turns."""
+    """The approximate turn of a row of places on a circle, rad."""
     return float(np.hypot(*np.diff(places, axis=0).T).sum()) / max(
         circle_through(places)[1], SAME_MM
     )
@@ -120,7 +118,7 @@ def off_circle_mm(points: Array) -> Array:
 
 
 def curvature_per_mm(places: Array) -> float:
-    """Curvature of the arc that is nearest to a row of places, + left."""
+    """Curvature of the arc that is nearest to a row of places, positive to the left."""
     chord, heading = math.dist(places[0], places[-1]), heading_rad(places)
     dx, dy = (places - places[0]).T
     u, v = (
@@ -138,5 +136,5 @@ def curvature_per_mm(places: Array) -> float:
 
 
 def heading_rad(places: Array) -> float:
-    """Direction of the chord."""
+    """Direction of the chord, rad."""
     return math.atan2(*(places[-1] - places[0])[::-1])

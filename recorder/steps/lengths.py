@@ -45,7 +45,7 @@ _PX, _NX, _AT = (
 def cut(
     places_steps: Array, speeds: Array, spacing_steps: float, start_steps: Steps
 ) -> tuple[Steps, Array]:
-    """Steps (k, 3) of the intervals of a leg, and how far off its path each interval ends, steps.
+    """Steps (k, 3) of the intervals of a leg, and the distance of each interval's end from the path, steps.
 
     The leg starts at the whole steps given and ends at those nearest to its end. Raises ValueError where no
     course arrives: the leg is too fast for its bends.
@@ -86,7 +86,7 @@ def _traced_back(
     taken: NDArray[np.int8],
     off: NDArray[np.float32],
 ) -> tuple[Steps, Array]:
-    """The winning course from its start."""
+    """The steps and distances of the winning course, from its start."""
     steps, distances = np.zeros((last + 1, 3), np.int64), np.zeros(last + 1)
     for level in range(last, -1, -1):
         steps[level], distances[level] = taken[level, winner], off[level, winner]
@@ -96,9 +96,7 @@ def _traced_back(
 
 @njit(cache=True)
 def _nearest(places, first, guess, x, y, z):  # type: ignore[no-untyped-def]
-    """The place of the leg nearest to a point, not before `first`, downhill from a guess; and the squared
-    distance.
-    """
+    """The leg's place nearest to a point, searched downhill from a guess, and the squared distance."""
     n = len(places)
     at = min(max(guess, first), n - 1)
     best = (places[at, 0] - x) ** 2 + (places[at, 1] - y) ** 2 + (places[at, 2] - z) ** 2
@@ -114,7 +112,7 @@ def _nearest(places, first, guess, x, y, z):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def _keep(beam, costs, origin, count, course, cost, parent):  # type: ignore[no-untyped-def]
-    """Put a course among the kept ones, best first; of two that stand and run alike the better stays."""
+    """Put a course among the best ones; of two at one place and speed the cheaper stays."""
     width = len(costs)
     if count == width and cost >= costs[width - 1]:
         return count
@@ -142,7 +140,7 @@ def _keep(beam, costs, origin, count, course, cost, parent):  # type: ignore[no-
 
 @njit(cache=True)
 def _search(places, speeds, left, settings, start, end, moves, table, parents, taken, off):  # type: ignore[no-untyped-def]
-    """Carry the beam on until a course stands at the end; the last level and the winner, or -1."""
+    """Carry the beam on until a course stands at the end; its last level and its row, or -1."""
     spacing, width = settings[0], int(settings[1])
     beam, new = np.zeros((width, 7), np.int64), np.zeros((width, 7), np.int64)
     costs, new_costs, origin = np.zeros(width), np.zeros(width), np.zeros(width, np.int64)

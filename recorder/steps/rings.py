@@ -56,9 +56,7 @@ RINGS: dict[int, tuple[Vector, ...]] = {
 
 
 def command(present: Vector, wanted: Vector) -> int | None:
-    """The vector command that leads from one vector to another: SAME, PREVIOUS or NEXT; None if there is
-    none.
-    """
+    """The vector command from one vector to another: SAME, PREVIOUS or NEXT; None where no command leads."""
     for ring in RINGS.values():
         if present in ring and wanted in ring:
             places = (ring.index(wanted) - ring.index(present)) % len(ring)
@@ -67,9 +65,7 @@ def command(present: Vector, wanted: Vector) -> int | None:
 
 
 def commands() -> NDArray[np.int8]:
-    """All commands: [x, y, wanted x - x + 1, wanted y - y + 1], each axis from 0 for -7; -1 where there is
-    none.
-    """
+    """All commands: [x + 7, y + 7, wanted x - x + 1, wanted y - y + 1]; -1 where no command leads."""
     size = 2 * LARGEST + 1
     table = np.full((size, size, 3, 3), NOT_IN_A_RING, np.int8)
     for ring in RINGS.values():

@@ -48,9 +48,7 @@ Steps = NDArray[np.int64]
 
 @dataclass(frozen=True, slots=True)
 class StepReport(WrittenIntervals[StepFormat]):
-    """What was punched: rows, how many intervals are vectors, and steps; the intervals' ends are what may lie
-    off.
-    """
+    """What was punched: rows, vector intervals, steps, and the largest distance of an interval's end."""
 
     rows: int
     vector_intervals: int
@@ -58,7 +56,7 @@ class StepReport(WrittenIntervals[StepFormat]):
 
     @property
     def figures(self) -> dict[str, Any]:
-        """What else is worth telling."""
+        """Further figures for the report."""
         share = self.vector_intervals / max(1, self.intervals)
         punched = self.rows * self.format.channels
         return {
@@ -106,8 +104,7 @@ def record_steps(
 
 
 def encode(lengths: Steps, down: NDArray[np.bool_], fmt: StepFormat) -> NDArray[np.uint8]:
-    """The rows for steps (k, 3) of the intervals, the first after standstill; raises ValueError for what none
-    can say.
+    """The rows for steps (k, 3) of the intervals, the first after standstill; raises ValueError.
 
     A program of five channels holds X and Y only.
     """
@@ -124,7 +121,7 @@ def encode(lengths: Steps, down: NDArray[np.bool_], fmt: StepFormat) -> NDArray[
 def _rows(
     lengths: Steps, changes: Steps, down: NDArray[np.bool_], fmt: StepFormat
 ) -> Iterator[int]:
-    """Row by row; with two vector commands in a row, runs of vectors are taken in pairs."""
+    """The rows one by one; with two vector commands in a row, runs of vectors are taken in pairs."""
     vectors = _vector_commands(lengths, changes).tolist()
     z_moves, tool = (changes[:, 2] != 0).tolist(), (down * TOOL_DOWN).tolist()
     axis = _axis_codes(changes).tolist()
@@ -149,7 +146,7 @@ def _rows(
 
 
 def _vector_commands(lengths: Steps, changes: Steps) -> NDArray[np.int8]:
-    """The vector command that gives each interval after the one before; -1 where there is none."""
+    """The vector command from each interval to the next; -1 where no command leads."""
     x, y = (lengths[:, :2] - changes[:, :2]).T + LARGEST
     return np.asarray(commands()[x, y, changes[:, 0] + 1, changes[:, 1] + 1])
 
@@ -165,9 +162,7 @@ def _axis_codes(changes: Steps) -> NDArray[np.int64]:
 def _within(
     tolerance_mm: float, path: Source, fmt: StepFormat
 ) -> tuple[Steps, NDArray[np.bool_], float]:
-    """The lengths of the whole motion, the tool in each, and the deviation; slower where it would be too
-    large.
-    """
+    """The lengths of the motion, the tool in each, and the deviation; slower where it would be too large."""
     off_mm = np.inf
     for share in _SLOWER:
         try:
@@ -183,7 +178,7 @@ def _within(
 
 
 def _limits(fmt: StepFormat, share: float) -> Limits:
-    """What the motors can do, in mm: one step more or less per interval."""
+    """The limits of the motors, in mm: one step more or less per interval."""
     step = fmt.step_mm
     speed = share * _MARGIN * LARGEST * step * fmt.rate_hz
     return Limits(

@@ -47,9 +47,7 @@ Frames = NDArray[np.float32]
 
 @dataclass(frozen=True, slots=True)
 class PickUp:
-    """What a carrier needs to know of wheel and screw; `level` is the amplitude of the fundamental, full
-    scale 1.
-    """
+    """The figures of wheel and screw; `level` is the amplitude of the fundamental, full scale 1."""
 
     reference_hz: float = 6000.0
     cycles_per_mm: float = 20.0
@@ -65,9 +63,7 @@ class PickUp:
 
 
 class Carrier:
-    """The carriers of one tape, block by block; `start_mm` is where the screws have no phase against the
-    reference.
-    """
+    """The carriers of one tape, block by block; at `start_mm` the tracks have the phase of the reference."""
 
     def __init__(self, pick_up: PickUp, start_mm: ArrayLike) -> None:
         self._pick_up = pick_up
@@ -80,9 +76,7 @@ class Carrier:
         self._harmonics = int((FADE_TO / lowest + 1) / 2)
 
     def frames(self, positions_mm: ArrayLike) -> Frames:
-        """Frames (n, 1 + axes) of what a block of positions (n, axes) in mm completes; two samples stay
-        behind.
-        """
+        """Frames (n, 1 + axes) from positions (n, axes) in mm; the last two samples are held back."""
         positions = np.asarray(positions_mm, np.float64)
         if positions.ndim != 2 or positions.shape[1] != len(self._start_mm):
             raise ValueError(
@@ -102,7 +96,7 @@ class Carrier:
         return self._synthesise(np.vstack([self._held, self._held[-1:], self._held[-1:]]))
 
     def _synthesise(self, cycles: NDArray[np.float64]) -> Frames:
-        """Frames of all periods but the first and the last two samples, which are kept."""
+        """Frames of all periods but the first and the last two samples, which are held."""
         pick_up, tracks = self._pick_up, 1 + len(self._start_mm)
         periods = max(0, len(cycles) - _HELD_BACK)
         frames = np.empty((periods * pick_up.samples_per_motion, tracks), np.float32)
@@ -169,7 +163,7 @@ def _write_wave(cycles, first_period, reference_cycles, amplitudes, by_speed, fr
 
 @njit(cache=True, inline="always")
 def _wave(cycles, frequency, amplitudes):  # type: ignore[no-untyped-def]
-    """Sum of the odd harmonics of a phase; the frequency over the sample rate tells which of them there are."""
+    """Sum of the odd harmonics at a phase; the frequency (over the sample rate) fades the high ones out."""
     fundamental = _sine(cycles)
     before, now = -fundamental, fundamental
     twice_cosine = (

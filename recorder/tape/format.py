@@ -36,8 +36,7 @@ _AGAIN = "record the tape again"
 
 @dataclass(frozen=True, slots=True)
 class TapeFormat:
-    """Format of a tape; raises ValueError if it cannot be. `level` is the amplitude of a carrier, full scale
-    1.
+    """Format of a tape; raises ValueError if it cannot be. `level`: amplitude of a carrier, full scale 1.
 
     Without `start_mm` the start is zero on all axes; `end_mm` is None where it is not known. The version is
     the lowest that can say it.
@@ -110,7 +109,7 @@ class TapeFormat:
 
     @property
     def carrier(self) -> PickUp:
-        """What the carrier needs of the format."""
+        """The figures that the carrier needs."""
         hz, rate = self.reference_hz, self.sample_rate_hz
         return PickUp(
             hz, self.cycles_per_mm, rate, self.samples_per_motion, self.level, self.sensor
@@ -126,7 +125,7 @@ class TapeFormat:
 
     @classmethod
     def from_json(cls, text: str) -> TapeFormat:
-        """Read a format; raises TapeFault if it is not one, or one of a later version."""
+        """Read a format; raises TapeFault for a text that is no format, or one of a later version."""
         values = _object(text)
         version = values.get("version")
         if _is_number(version) and version > VERSION:
@@ -144,9 +143,7 @@ class TapeFormat:
 
 
 def columns_of(order: Sequence[int] | None, tracks: int) -> list[int] | None:
-    """Columns of a file whose tracks are given in this order; None: as they are. Raises TapeFault for what is
-    no order.
-    """
+    """Columns of a file whose tracks have this order (None: as they are); raises TapeFault for no order."""
     if order is None:
         return None
     if sorted(order) != list(range(1, tracks + 1)):
@@ -157,7 +154,7 @@ def columns_of(order: Sequence[int] | None, tracks: int) -> list[int] | None:
 
 
 def is_format_text(text: str) -> bool:
-    """Whether a text chunk means to be a tape format, and is not somebody's remark."""
+    """Whether a text chunk is meant as a tape format, and is not somebody's remark."""
     return text.lstrip().startswith("{")
 
 
@@ -243,7 +240,7 @@ def _check_place(fmt: TapeFormat, name: str) -> None:
 
 
 def _is_number(value: object) -> TypeGuard[float]:
-    """Whether a value is a finite number; True and False are none."""
+    """Whether a value is a finite number; True and False are not."""
     return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < 1e12
 
 

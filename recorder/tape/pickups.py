@@ -44,8 +44,7 @@ _SCREW = LeadScrew(pitch_mm=5.0, sectors=100)
 
 @dataclass(frozen=True, slots=True)
 class Sensor:
-    """A kind of pick-up; `harmonic` is the amplitude of harmonic n = 2 k + 1 against the fundamental, by n
-    and k.
+    """A kind of pick-up; `harmonic(n, k)`: amplitude of harmonic n = 2 k + 1 against the fundamental.
 
     `largest`: the most that a sample can be where the fundamental is 1. `by_speed`: whether the amplitude
     grows with the frequency of the track. `flat`: whether the top is flat, so that clipping cannot be told
@@ -66,11 +65,11 @@ class Sensor:
         return not self.by_speed and self.harmonic(3, 1) == 0
 
     def amplitudes(self, count: int) -> NDArray[np.float64]:
-        """Amplitudes of so many odd harmonics, 1, 3, 5 …, against the fundamental."""
+        """Amplitudes of the first odd harmonics, 1, 3, 5 …, against the fundamental."""
         return np.array([self.harmonic(2 * k + 1, k) for k in range(max(count, 1))])
 
     def fundamental_share(self, reference_hz: float, sample_rate_hz: float) -> float:
-        """Share of the power that the fundamental has at standstill, of what a tape of this rate can hold."""
+        """Share of the fundamental in the power at standstill, on a tape of this sample rate."""
         amplitudes = self.amplitudes(int((sample_rate_hz / 2 / reference_hz + 1) / 2))
         return float(1 / np.square(amplitudes).sum())
 

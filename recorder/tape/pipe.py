@@ -35,7 +35,7 @@ _AXES = ("x", "y", "z", "a", "b", "c", "u", "v", "w")
 
 @dataclass(frozen=True, slots=True)
 class Samples:
-    """How samples lie in the pipe: tracks, rate, bits, whether they are floats."""
+    """Layout of the samples in the pipe: tracks, rate, bits, and whether they are floats."""
 
     tracks: int = 4
     sample_rate_hz: int = 48000
@@ -48,7 +48,7 @@ class Samples:
         return self.tracks * self.bits // 8
 
     def frames(self, data: bytes) -> Frames:
-        """Whole frames out of bytes."""
+        """The whole frames in some bytes."""
         if self.is_float:
             values = np.frombuffer(data, f"<f{self.bits // 8}").astype(np.float32)
         elif self.bits == 24:
@@ -63,7 +63,7 @@ class Samples:
 
 
 class Pipe:
-    """A tape in a pipe, with the same face as a Tape; can be read once."""
+    """A tape in a pipe, with the interface of a Tape; it can be read once."""
 
     def __init__(
         self,
@@ -88,9 +88,7 @@ class Pipe:
         order: Sequence[int] | None = None,
         samples: Samples | None = None,
     ) -> Pipe:
-        """Read the header, if there is one; raises TapeFault for what is no tape, or one whose format is not
-        known.
-        """
+        """Read the header, if there is one; raises TapeFault for no tape, or for an unknown format."""
         begun = _whole(stream, 12)
         if not begun:
             raise TapeFault("nothing came through the pipe; give a WAV or raw 16-bit samples")
@@ -118,9 +116,7 @@ class Pipe:
         return None
 
     def blocks(self, frames: int = PIPE_FRAMES, first: int = 0) -> Iterator[Frames]:
-        """The tape in blocks as it comes, from frame `first` on; what is left of a frame at the end is
-        dropped.
-        """
+        """The tape in blocks from frame `first` on; an incomplete frame at the end is dropped."""
         step, held = self._samples.frame_bytes, self._begun
         skip = first * step
         while True:
@@ -137,12 +133,12 @@ class Pipe:
                 yield block if self._columns is None else block[:, self._columns]
 
     def stored_blocks(self, frames: int = PIPE_FRAMES, first: int = 0) -> Iterator[Frames]:
-        """As `blocks`: what comes through a pipe is made full scale at once."""
+        """The same as `blocks`: a pipe converts its samples to full scale at once."""
         return self.blocks(frames, first)
 
 
 def _whole(stream: BinaryIO, size: int) -> bytes:
-    """So many bytes; fewer only where the pipe ends."""
+    """The next bytes; fewer than `size` only where the pipe ends."""
     parts, left = [], size
     while left > 0:
         part = stream.read(left)
@@ -154,7 +150,7 @@ def _whole(stream: BinaryIO, size: int) -> bytes:
 
 
 def _header(stream: BinaryIO) -> tuple[Samples, str]:
-    """Chunks up to the data: how the samples lie, and the text."""
+    """Read the chunks up to the data: layout of the samples, and the text."""
     samples, text = None, ""
     while len(head := _whole(stream, 8)) == 8:
         name, size = struct.unpack("<4sI", head)
@@ -177,7 +173,7 @@ def _header(stream: BinaryIO) -> tuple[Samples, str]:
 
 
 def _samples(body: bytes) -> Samples:
-    """How the samples lie, by a format chunk; raises TapeFault for what is not read here."""
+    """The layout of the samples from a format chunk; raises TapeFault for a kind that cannot be read."""
     if len(body) < 16:
         raise TapeFault("the WAV in the pipe has a broken format chunk; record it again")
     kind, tracks, rate_hz, _, _, bits = struct.unpack("<HHIIHH", body[:16])
@@ -206,7 +202,7 @@ def _comment(body: bytes) -> str:
 def _format(
     text: str, samples: Samples, reference_hz: float | None, cycles_per_mm: float | None
 ) -> TapeFormat:
-    """The format, from the text or by hand."""
+    """The format from the text, or from the figures given by hand."""
     given = {"reference_hz": reference_hz, "cycles_per_mm": cycles_per_mm}
     by_hand: dict[str, Any] = {
         name: value for name, value in given.items() if value is not None

@@ -44,7 +44,7 @@ Progress = Callable[[float, float | None], None]
 
 @dataclass(frozen=True, slots=True)
 class Recording(Written):
-    """What was recorded: its format with start and end, its length, and the largest speed of each axis."""
+    """What was recorded: format with start and end, length, and the largest speed of each axis."""
 
     format: TapeFormat
     frames: int
@@ -57,7 +57,7 @@ class Recording(Written):
 
     @property
     def figures(self) -> dict[str, Any]:
-        """What else is worth telling."""
+        """Further figures for the report."""
         return {"largest_speed_mm_s": max(self.largest_speed_mm_s)}
 
 
@@ -68,8 +68,7 @@ def record(
     progress: Progress | None = None,
     sample: str = "16",
 ) -> Recording:
-    """Record a motion as a tape: .wav (RF64 inside from 4 GiB on), .rf64, .w64, .flac or .aiff, samples as in
-    SUBTYPES.
+    """Record a motion as a tape: .wav (RF64 inside from 4 GiB on), .rf64, .w64, .flac or .aiff.
 
     Start and end in `fmt` are those of the motion, whatever is given; without `fmt` it is the usual one for
     its axes. `progress(done_s, total_s)` is called after each block; the total is None where a stream does
@@ -107,7 +106,7 @@ def record(
 
 
 class _Take:
-    """One run of the tape: the carriers, the speed gauge and the count of frames."""
+    """One run of the tape: carriers, speed gauge and count of frames."""
 
     def __init__(
         self, fmt: TapeFormat, first_mm: Array, progress: Progress | None, total_s: float | None
@@ -166,7 +165,7 @@ class _Take:
 def _axes_of(
     stream: Iterable[Motion] | Motion | Path,
 ) -> tuple[Iterable[Motion] | Motion | Path, tuple[str, ...]]:
-    """The axes of a motion, and the motion with nothing taken off it."""
+    """The axes of a motion, and the whole motion."""
     if isinstance(stream, Motion | Path):
         return stream, stream.axes
     blocks = iter(stream)
@@ -207,7 +206,7 @@ def _check(positions: Array, rate_hz: float, done: int, fmt: TapeFormat) -> None
 
 
 def _too_fast(fmt: TapeFormat, axis: int, time_s: float, speed_mm_s: float) -> MotionFault:
-    """The fault of a speed for which the track would leave its band."""
+    """The fault of a speed at which the track would leave its band."""
     message = (
         f"axis {fmt.axes[axis]} moves at {abs(speed_mm_s):.4g} mm/s at {time_s:.4f} s; this tape takes at most "
         f"{fmt.largest_speed_mm_s:.4g} mm/s ({fmt.largest_deviation_hz:.4g} Hz of deviation): move slower there"
@@ -216,7 +215,7 @@ def _too_fast(fmt: TapeFormat, axis: int, time_s: float, speed_mm_s: float) -> M
 
 
 def _finish(beside: FilePath, fmt: TapeFormat, file: FilePath) -> None:
-    """Put the end position in, and make an RF64 that is small enough and not asked for a plain WAV."""
+    """Write the end position; turn an RF64 that is small enough into a plain WAV where a .wav is asked."""
     if file.suffix.lower() == ".w64":
         with written_beside(sidecar(file)) as text:
             text.write_text(fmt.to_json() + "\n", encoding="utf-8")
@@ -227,7 +226,7 @@ def _finish(beside: FilePath, fmt: TapeFormat, file: FilePath) -> None:
 
 
 def _placeholder(fmt: TapeFormat) -> str:
-    """The text chunk before the end is known, with room for it."""
+    """The text chunk with room for the end position, which is not known yet."""
     text = replace(fmt, end_mm=None).to_json()
     return text.ljust(len(text) + _PLACE_CHARACTERS * len(fmt.axes))
 
@@ -238,12 +237,12 @@ def _place(position: Array) -> tuple[float, ...]:
 
 
 def _dwell_samples(fmt: TapeFormat) -> int:
-    """Samples of standstill at each end."""
+    """Motion samples of the standstill at each end."""
     return round(fmt.dwell_s * fmt.motion_rate_hz)
 
 
 def _total_s(stream: Iterable[Motion] | Motion | Path) -> float | None:
-    """Length of a motion that is there as a whole, s."""
+    """Length of a motion in s; None for a stream of unknown length."""
     if isinstance(stream, Path):
         return float(stream.t_s[-1] - stream.t_s[0])
     return stream.duration_s if isinstance(stream, Motion) else None

@@ -37,9 +37,7 @@ _SEARCHED_BYTES = 65536
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """What the header says of the data chunk and what the file holds of it, bytes; where format and data
-    start.
-    """
+    """Size of the data chunk, stated and held, in bytes, and where format and data begin."""
 
     kind: bytes
     format_at: int
@@ -54,7 +52,7 @@ class Sizes:
 
 
 def read_sizes(file: str | os.PathLike[str]) -> Sizes | None:
-    """Sizes of a WAV, RF64, W64 or AIFF; None if it is none of them, or has no data chunk."""
+    """Sizes of a WAV, RF64, W64 or AIFF; None for another kind of file, or one without a data chunk."""
     with Path(file).open("rb") as opened:
         kind = opened.read(24)
         if kind[:4] in (b"FORM", b"riff") and len(kind) == 24:
@@ -68,7 +66,7 @@ def read_sizes(file: str | os.PathLike[str]) -> Sizes | None:
 
 
 def make_plain(file: str | os.PathLike[str]) -> bool:
-    """Make an RF64 that is small enough a plain WAV, in place; whether it was."""
+    """Turn an RF64 that is small enough into a plain WAV, in place; True if it was."""
     sizes = read_sizes(file)
     end = Path(file).stat().st_size
     if (
@@ -87,7 +85,7 @@ def make_plain(file: str | os.PathLike[str]) -> bool:
 
 
 def replace_text(file: str | os.PathLike[str], old: str, new: str) -> None:
-    """Put a text that is no longer in the place of one in the header; raises ValueError if it cannot be."""
+    """Replace a text in the header by one that is not longer; raises ValueError if that cannot be done."""
     before, after = old.encode(), new.encode().ljust(len(old.encode()))
     with Path(file).open("r+b") as opened:
         at = opened.read(_SEARCHED_BYTES).find(before)
@@ -100,9 +98,7 @@ def replace_text(file: str | os.PathLike[str], old: str, new: str) -> None:
 
 
 def _name_samples_plainly(opened: BinaryIO, format_at: int) -> None:
-    """Put the kind of sample of an extensible format, the first two bytes of its GUID, where a plain one has
-    it.
-    """
+    """Copy the kind of sample (first two bytes of its GUID) to where a plain format has it."""
     opened.seek(format_at)
     body = opened.read(40)
     if body[:2] == _EXTENSIBLE and len(body) == 40:
@@ -111,7 +107,7 @@ def _name_samples_plainly(opened: BinaryIO, format_at: int) -> None:
 
 
 def _whole_file(head: bytes, held: int) -> Sizes:
-    """Sizes of an AIFF or a W64, whose outermost chunk says how long the whole file is."""
+    """Sizes of an AIFF or a W64, whose outermost chunk states the length of the whole file."""
     stated = (
         struct.unpack(">I", head[4:8])[0] + 8
         if head[:4] == b"FORM"

@@ -38,9 +38,7 @@ Frames = NDArray[np.float32]
 
 
 def medium(file: FilePath, sample: str) -> tuple[str, str]:
-    """Container and kind of sample for libsndfile, by the file's name; raises FileFault, TapeFault,
-    ValueError.
-    """
+    """Container and kind of sample by the file's name; raises FileFault, TapeFault, ValueError."""
     if sample not in SUBTYPES:
         raise ValueError(f"sample is {sample!r}; it must be one of {', '.join(SUBTYPES)}")
     suffix = file.suffix.lower()
@@ -61,9 +59,7 @@ def sidecar(file: FilePath) -> FilePath:
 
 
 class Spool:
-    """A sound file that is being written; a context manager. Raises SoundFileError where the disk takes no
-    more.
-    """
+    """A sound file that is being written; a context manager. Raises SoundFileError when the disk is full."""
 
     def __init__(
         self,
@@ -102,9 +98,7 @@ class Spool:
             self._check_whole()
 
     def put(self, frames: Frames) -> None:
-        """Write frames; raises SoundFileRuntimeError when the disk takes only a part, TapeFault beyond an
-        AIFF's size.
-        """
+        """Write frames; raises SoundFileRuntimeError on a full disk, TapeFault beyond an AIFF's size."""
         self.frames += len(frames)
         if self._container == "AIFF" and self.frames * self._frame_bytes > LARGEST_AIFF_BYTES:
             raise TapeFault(
@@ -116,9 +110,7 @@ class Spool:
             raise soundfile.SoundFileRuntimeError("not all frames were written") from None
 
     def _check_whole(self) -> None:
-        """Raise SoundFileError unless the last frame is there: a FLAC meets the full disk only when it is
-        closed.
-        """
+        """Raise SoundFileError unless the last frame is there: a FLAC meets a full disk only on closing."""
         if not self.frames:
             return
         with soundfile.SoundFile(self._file) as written:
@@ -129,9 +121,7 @@ class Spool:
 
 @njit(cache=True)
 def _to_16_bit(frames):  # type: ignore[no-untyped-def]
-    """Frames (n, tracks) of full scale 1 as 16-bit samples, clipped; libsndfile takes six times as long over
-    it.
-    """
+    """Frames (n, tracks) of full scale 1 as clipped 16-bit samples; libsndfile takes six times as long."""
     out = np.empty(frames.shape, np.int16)
     for i in range(frames.shape[0]):
         for j in range(frames.shape[1]):

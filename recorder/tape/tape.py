@@ -70,8 +70,7 @@ class Tape:
         start_mm: Sequence[float] | None = None,
         order: Sequence[int] | None = None,
     ) -> Tape:
-        """Open a tape; what is given by hand goes before what its text chunk says; a start X, Y leaves Z
-        alone.
+        """Open a tape; values given by hand override its text chunk; a start X, Y leaves Z as it is.
 
         `order`: the tracks of the file, from 1, on which reference, X, Y … are, where it is not this order.
 
@@ -138,7 +137,7 @@ class Tape:
         return map(full_scale, self.stored_blocks(frames, first))
 
     def stored_blocks(self, frames: int = BLOCK_FRAMES, first: int = 0) -> Iterator[Stored]:
-        """The same with samples of 16 bit as they are stored, for who can take them so."""
+        """The same, but samples of 16 bit as they are stored."""
         if frames < 1:
             raise ValueError(f"a block of {frames} frames holds nothing; it must be at least 1")
         done = first
@@ -175,7 +174,7 @@ def full_scale(frames: Stored) -> Frames:
 
 
 def _open_sound(file: FilePath) -> soundfile.SoundFile:
-    """The sound file; raises FileFault if it cannot be read, TapeFault if it is none."""
+    """The sound file; raises FileFault if it cannot be read, TapeFault if it is no sound file."""
     try:
         with file.open("rb") as opened:
             empty = not opened.read(1)
@@ -213,7 +212,7 @@ def _check_whole(file: FilePath, sound: soundfile.SoundFile) -> None:
 
 
 def _check_last_frame(file: FilePath, sound: soundfile.SoundFile) -> None:
-    """Raise TapeFault unless the last frame can be read, where no header tells how long the file must be."""
+    """Raise TapeFault unless the last frame can be read; for files whose header states no length."""
     try:
         sound.seek(sound.frames - 1)
         there = len(sound.read(1)) == 1
@@ -226,7 +225,7 @@ def _check_last_frame(file: FilePath, sound: soundfile.SoundFile) -> None:
 
 
 def _cut_short(file: FilePath, held_s: float, stated_s: float) -> TapeFault:
-    """The fault of a file that ends before its header says."""
+    """The fault of a file that is shorter than its header states."""
     message = f"{file} is cut short: {held_s:.3f} s of {stated_s:.3f} s are there; copy the file again or record it again"
     return TapeFault(message, time_s=held_s)
 
@@ -257,7 +256,7 @@ def _format(
 
 
 def _stated(file: FilePath, sound: soundfile.SoundFile) -> TapeFormat | None:
-    """The format in the text chunk; None if there is none."""
+    """The format in the text chunk; None without one."""
     text = _text(file, sound)
     if not is_format_text(text):
         return None
@@ -274,7 +273,7 @@ def _stated(file: FilePath, sound: soundfile.SoundFile) -> TapeFormat | None:
 
 
 def _text(file: FilePath, sound: soundfile.SoundFile) -> str:
-    """The text chunk, or what a file beside the tape says in its place (a W64 has none)."""
+    """The text chunk, or the text of the file beside the tape (a W64 has no text chunk)."""
     text = str(sound.comment)
     if text.strip():
         return text
@@ -299,7 +298,7 @@ def _unnamed(sound: soundfile.SoundFile, given: dict[str, Any]) -> TapeFormat:
 
 
 def _started(fmt: TapeFormat, start_mm: Sequence[float] | None) -> TapeFormat:
-    """The format with the start that was given by hand, for the axes that were given; the end goes along."""
+    """The format with a start given by hand, for the axes given; the end moves by the same distance."""
     if start_mm is None:
         return fmt
     if len(start_mm) > len(fmt.axes):

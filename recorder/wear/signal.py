@@ -34,19 +34,19 @@ Frames = NDArray[np.float32]
 
 
 def gain(db: float) -> float:
-    """The amplitude of so many decibels."""
+    """The amplitude ratio of a level in decibels."""
     return float(10 ** (db / 20))
 
 
 class PrintThrough:
-    """The neighbouring layers of the reel, heard before and after; holds one turn back."""
+    """The neighbouring layers of the reel, heard before and after; one turn is held back."""
 
     def __init__(self, level: float, frames: int, tracks: int) -> None:
         self._level, self._delay = np.float32(level), frames
         self._held = np.zeros((frames, tracks), np.float32)
 
     def feed(self, frames: Frames) -> Frames:
-        """The frames whose next turn has come by now."""
+        """The next frames of the output."""
         held = np.concatenate([self._held, frames])
         self._held = held[-2 * self._delay :]
         count = max(len(held) - 2 * self._delay, 0)
@@ -68,14 +68,14 @@ class Bandwidth:
         self._state = np.zeros((len(self._sos), 2, tracks))
 
     def feed(self, frames: Frames) -> Frames:
-        """Filter the next frames."""
+        """The next frames of the output."""
         out, self._state = sosfilt(self._sos, frames, axis=0, zi=self._state)
         return np.asarray(out, np.float32)
 
 
 @dataclass(frozen=True, slots=True)
 class Dropout:
-    """A place where the tape has lost the head: s of programme time, gain left, track (-1: all)."""
+    """A dropout: start and length in s of programme time, gain left, track (-1: all)."""
 
     start_s: float
     length_s: float
@@ -84,7 +84,7 @@ class Dropout:
 
 
 class Dropouts:
-    """Dropouts at random places, made in the order of the tape; `met` are those so far."""
+    """Dropouts at random places, drawn in the order of the tape; `met` are those so far."""
 
     def __init__(
         self,
@@ -107,7 +107,7 @@ class Dropouts:
         return Dropout(start_s, length_s, self._left, -1 if self._all else int(track * 2**20))
 
     def gains(self, first_s: float, count: int, rate_hz: float, tracks: int) -> Array | None:
-        """Gains (count, tracks) of a block; None where there is no dropout in it."""
+        """Gains (count, tracks) of a block; None for a block without a dropout."""
         last_s = first_s + count / rate_hz
         while self._next.start_s < last_s:
             self.met.append(self._next)
@@ -128,7 +128,7 @@ class Dropouts:
 
 
 class Unevenness:
-    """The level of each track rising and falling slowly, by so many dB RMS."""
+    """The level of each track, rising and falling slowly by this many dB RMS."""
 
     def __init__(self, db: float, tracks: int, seed: tuple[int, int]) -> None:
         random = np.random.default_rng(seed)
@@ -152,7 +152,7 @@ def distorted(frames: Frames, share: float, peak: float) -> Frames:
 
 
 def crosstalk(level: float, tracks: int) -> Frames:
-    """Matrix of what each track hears of the others: `level` of its neighbours, its square of the next ones."""
+    """Crosstalk matrix: each track hears its neighbours at `level`, the next ones at its square."""
     apart = np.abs(np.subtract.outer(np.arange(tracks), np.arange(tracks)))
     return np.asarray(level**apart, np.float32)
 

@@ -42,7 +42,7 @@ Frames = NDArray[np.float32]
 
 @dataclass(frozen=True, slots=True)
 class Tones:
-    """A sum of tones; amplitudes in the unit of what they make up."""
+    """A sum of tones; amplitudes in the unit of the sum."""
 
     hz: Array
     amplitude: Array
@@ -52,7 +52,7 @@ class Tones:
     def drawn(
         cls, rms: float, band_hz: tuple[float, float], random: np.random.Generator
     ) -> Tones:
-        """Tones of a band that have this root mean square together."""
+        """Tones of a band, drawn by chance, with this root mean square in all."""
         hz = np.geomspace(*band_hz, TONES) * random.uniform(0.95, 1.05, TONES)
         share = random.uniform(0.5, 1.5, TONES)
         return cls(
@@ -94,7 +94,7 @@ class Timebase:
         )
 
     def lag_s(self, t_s: Array) -> Array:
-        """How much later each next track is, s."""
+        """The lag of each track behind the one before it, s."""
         return self.skew_s + self.weave.value(t_s)
 
     def places(self, first: int, count: int, rate_hz: float, tracks: int) -> Array:
@@ -109,7 +109,7 @@ class Timebase:
 
 
 class Head:
-    """Reads frames at fractional places that move on; holds only what the next places may need."""
+    """Reads frames at fractional places that move on; holds the frames that the next places may need."""
 
     def __init__(self, tracks: int) -> None:
         self._held = np.zeros((HALF_TAPS, tracks), np.float32)
@@ -118,7 +118,7 @@ class Head:
 
     @property
     def reach(self) -> int:
-        """Frames of the programme that have come in, as far as a place may go."""
+        """The furthest programme frame that a place may ask for now."""
         return self._first + len(self._held) - HALF_TAPS
 
     def take(self, frames: Frames) -> None:
@@ -126,7 +126,7 @@ class Head:
         self._held = np.concatenate([self._held, frames])
 
     def read(self, places: Array) -> Frames:
-        """Frames at places (n, tracks); what lies more than the skew behind them is let go."""
+        """Frames at places (n, tracks); frames further behind than the skew are dropped."""
         out = np.empty(places.shape, np.float32)
         _read(self._held, places - self._first, self._taps, out)
         done = int(places[-1].min()) - self._first - HALF_TAPS - 64 if len(places) else 0
@@ -148,7 +148,7 @@ def _taps() -> Frames:
 
 @njit(cache=True, nogil=True)
 def _read(held, places, taps, out):  # type: ignore[no-untyped-def]
-    """Interpolate each track at its places; beyond what is held the tape is blank."""
+    """Interpolate each track at its places; beyond the frames held the tape is blank."""
     parts, half = len(taps) - 1, taps.shape[1] // 2
     for i in range(len(places)):
         for track in range(places.shape[1]):

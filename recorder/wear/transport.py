@@ -62,7 +62,7 @@ Progress = Callable[[float, float | None], None]
 
 @dataclass(frozen=True, slots=True)
 class Wear:
-    """What is done to a tape; shares are of the speed, dB of the carrier's peak unless said otherwise."""
+    """The wear of a tape; shares are of the speed, dB of the carrier's peak unless stated otherwise."""
 
     speed: float = 0.0
     wow: float = 0.0
@@ -113,7 +113,7 @@ SETS = {
 
 @dataclass(frozen=True, slots=True)
 class Aged:
-    """What was made: the file, its length in frames, the time base it was read by, and the dropouts in it."""
+    """The worn tape: file, length in frames, the time base of the transport, and the dropouts in it."""
 
     file: FilePath
     frames: int
@@ -135,9 +135,7 @@ def age(
     sample: str = "16",
     progress: Progress | None = None,
 ) -> Aged:
-    """Wear a tape; raises FileFault and TapeFault where it cannot be read or written, ValueError for a bad
-    setting.
-    """
+    """Wear a tape; raises FileFault or TapeFault for a bad file, ValueError for bad settings."""
     source, target = FilePath(file), FilePath(worn)
     try:
         with soundfile.SoundFile(source) as sound:
@@ -187,7 +185,7 @@ def _aged(
 
 
 class Deck:
-    """A worn tape machine; frames of the programme in, frames as they are played out."""
+    """A worn tape machine: frames of the programme in, frames as played out."""
 
     def __init__(self, wear: Wear, rate_hz: float, tracks: int, seed: int) -> None:
         _check(wear, tracks)
@@ -224,7 +222,7 @@ class Deck:
 
     @property
     def dropouts(self) -> list[Dropout]:
-        """The dropouts that were met so far."""
+        """The dropouts met so far."""
         return self._dropouts.met if self._dropouts else []
 
     def frames(self, blocks: Iterator[Frames]) -> Iterator[Frames]:
@@ -240,7 +238,7 @@ class Deck:
         yield self._played(np.zeros((0, self._tracks), np.float32), last=True)
 
     def _recorded(self, frames: Frames) -> Frames:
-        """What the record head lays on the tape."""
+        """The frames as the record head lays them on the tape."""
         wear = self._wear
         if wear.third and self._peak:
             frames = distorted(frames, wear.third, self._peak)
@@ -249,7 +247,7 @@ class Deck:
         return self._laid(self._print.feed(frames) if self._print is not None else frames)
 
     def _laid(self, frames: Frames) -> Frames:
-        """The tape with its dropouts."""
+        """The frames with the tape's dropouts."""
         first_s = self._came / self._rate_hz
         self._came += len(frames)
         if self._dropouts is None or not len(frames):
@@ -258,7 +256,7 @@ class Deck:
         return frames if gains is None else (frames * gains).astype(np.float32)
 
     def _played(self, frames: Frames, last: bool = False) -> Frames:
-        """What the play head makes of all tape that has come by now."""
+        """The frames that the play head reads from the tape that has come by now."""
         self._head.take(frames)
         reach, slow = (
             (self._came, 0.99) if last else (self._head.reach, 1.01)
@@ -280,7 +278,7 @@ class Deck:
         return read
 
     def _amplified(self, frames: Frames) -> Frames:
-        """What the play amplifier gives of the head's signal."""
+        """The frames behind the play amplifier."""
         wear, first, count = self._wear, self._went, len(frames)
         frames = frames * np.float32(gain(wear.level_db))
         if wear.uneven_db:
@@ -302,7 +300,7 @@ class Deck:
         return self._wired(frames + np.float32(wear.dc))
 
     def _wired(self, frames: Frames) -> Frames:
-        """The cables and the sound card: order, polarity, clipping."""
+        """The frames behind the cables and the sound card: order, polarity, clipping."""
         wear = self._wear
         if wear.order:
             frames = frames[:, [track - 1 for track in wear.order]]
@@ -333,7 +331,7 @@ def _cut(sound: soundfile.SoundFile, wear: Wear) -> Iterator[Frames]:
 
 @contextmanager
 def _written(target: FilePath) -> Iterator[None]:
-    """Make a fault of what libsndfile says when the disk is full."""
+    """Turn libsndfile's error on a full disk into a fault."""
     try:
         yield
     except soundfile.SoundFileError as error:
@@ -341,7 +339,7 @@ def _written(target: FilePath) -> Iterator[None]:
 
 
 def _sidecar_text(source: FilePath) -> str:
-    """The text beside a tape that has none in it."""
+    """The text beside a tape without a text chunk."""
     try:
         return sidecar(source).read_text("utf-8")[:LARGEST_TEXT_BYTES]
     except (OSError, ValueError):
@@ -349,7 +347,7 @@ def _sidecar_text(source: FilePath) -> str:
 
 
 def _check(wear: Wear, tracks: int) -> None:
-    """Raise ValueError for what no transport does."""
+    """Raise ValueError for wear that no transport makes."""
     numbers = (getattr(wear, field.name) for field in fields(wear))
     if not all(np.isfinite(n) for n in numbers if isinstance(n, int | float)):
         raise ValueError("a part of the wear is no finite number; give finite numbers")

@@ -164,7 +164,7 @@ def test_a_program_comes_back_from_its_file(tmp_path: FilePath) -> None:
     read = read_program(tmp_path / "a.steps")
     assert read.format == fmt and (read.rows == written.rows).all()
     assert read.lines.tolist() == [11, 11, 12, 13]
-    assert "o...o  x2\n.....\nooooo\nend\n" in (tmp_path / "a.steps").read_text()
+    assert "o...o  x2\n.....\nooooo\nend crc32 " in (tmp_path / "a.steps").read_text()
     assert holes(0b10110, 5) == "o.oo."
 
 
@@ -184,7 +184,7 @@ BAD = [
     (GOOD.replace("start_mm 0 0 0", "start_mm 0 0"), "three numbers", None),
     (GOOD.replace("...o..o.", "...o..x."), "it must be 8 of o and", 12),
     (GOOD.replace("...o..o.", "...o..o"), "it must be 8 of o and", 12),
-    (GOOD.replace("...o..o.", "...o..o. x0"), "states 2", None),
+    (GOOD.replace("...o..o.", "...o..o. x0"), "holds 1 of the 2 rows", None),
     (GOOD.replace("...o..o.", "...o..o. x5"), "more than the 2 rows", 12),
     (GOOD.replace("end\n", ""), "cut short: 2 of 2 rows and no end", None),
     (GOOD[:130], "line|cut short", None),

@@ -1,0 +1,54 @@
+"""Mutants: every kind of change is found in the text, and is a program still."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+from tests.mutants import Mutant, mutants_of
+
+SOURCE = '''"""A module of 2 words."""
+LIMIT_MM: float = 0.3  # µm would be "3"
+
+@njit(cache=True)
+def kernel(a, b=0):
+    """Not 3 < 4."""
+    if a and (b < 2):
+        raise ValueError(f"{a + 1} is too small")
+    a[0] += max(a, b) * LIMIT_MM
+    b[1] = 5
+    return (a) - (b) if b is not None else a
+'''
+
+
+def changes() -> set[tuple[int, str, str]]:
+    """Line, old text, new text of every mutant."""
+    return {(m.line, SOURCE[m.start : m.end], m.new) for m in found()}
+
+
+def found() -> list[Mutant]:
+    return mutants_of(Path("a.py"), SOURCE)
+
+
+def test_each_kind_of_change_is_made_and_nothing_else() -> None:
+    assert changes() == {
+        (2, "0.3", "0.6"),
+        (2, "0.3", "0.1"),
+        (5, "0", "1"),
+        (7, "and", "or"),
+        (7, "<", ">="),
+        (7, "2", "4"),
+        (9, "a[0] += max(a, b) * LIMIT_MM", "pass"),
+        (9, "max", "min"),
+        (9, "*", "/"),
+        (10, "b[1] = 5", "pass"),
+        (10, "5", "10"),
+        (11, "-", "+"),
+        (11, "is not", "is"),
+    }
+
+
+def test_every_mutant_can_be_read() -> None:
+    for mutant in found():
+        ast.parse(mutant.text(SOURCE))
+        assert mutant.told(SOURCE).startswith(f"a.py:{mutant.line}: ")
