@@ -17,5 +17,7 @@ def test_each_patent_has_a_table() -> None:
 
 @pytest.mark.parametrize("table", TABLES)
 def test_every_file_that_a_table_names_is_there(table: str) -> None:
-    named = re.findall(r"`([\w/]+\.py)`", (ROOT / "docs" / "background" / table).read_text(encoding="utf-8"))
+    named = re.findall(
+        r"`([\w/]+\.py)`", (ROOT / "docs" / "background" / table).read_text(encoding="utf-8")
+    )
     assert named and [name for name in named if not (ROOT / name).is_file()] == []
