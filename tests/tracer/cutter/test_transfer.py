@@ -203,6 +203,26 @@ def test_a_card_that_has_the_tool_down_on_its_way_over_the_contour_is_refused() 
     )
 
 
+@pytest.mark.parametrize(
+    ("near_mm", "refused"), [(2.001, False), (1.999, False), (1.99, True), (1.9, True)]
+)
+def test_a_tool_down_on_the_lead_line_may_pass_another_contour_by_its_radius_and_no_nearer(
+    near_mm: float, refused: bool
+) -> None:
+    early = Mark("tick", (2.0, 4.0), float(at(WAY[:FROM], (2, 4))))
+    line = replace(marked(), marks=(early, *marked().marks))
+    low = 4 + near_mm  # the lead line runs along y = 4
+    beyond = run_through((1, low), (1, low + 4), (4, low + 4), (4, low), (1, low))
+    other = Line(beyond, "closed", 0.5, 14.0, number=2)
+    card = Card.parse('[[stop]]\nnumber = 1\nmoves = [{ down = "5mm" }]\n')
+    run = Trace((line, other), Operator(WORK, card))
+    if refused:
+        with pytest.raises(MotionFault, match="would cut into the part at"):
+            with_cutter(run, Cutter(4.0, "outside"), FEED_MM_S)
+    else:
+        with_cutter(run, Cutter(4.0, "outside"), FEED_MM_S)
+
+
 def test_a_guide_line_from_the_reference_point_is_run_as_drawn_and_one_with_a_tick_is_cut_beside() -> (
     None
 ):
