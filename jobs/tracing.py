@@ -171,7 +171,8 @@ class Head:
         deep than the depth), and the card.
         """
         from morfax.tracer.operator.card import Card
-        from morfax.tracer.operator.operator import Operator, Work
+        from morfax.tracer.operator.operator import Operator
+        from morfax.tracer.operator.work import Work
 
         work = Work(depth_mm=self.depth_mm, clearance_mm=self.clearance_mm)
         card = self.card or Card()

@@ -20,7 +20,7 @@ from morfax.motion.units import format_length_mm, format_time_s
 
 if TYPE_CHECKING:
     from morfax.tracer.operator.card import Card, Stop
-    from morfax.tracer.operator.operator import Halt
+    from morfax.tracer.operator.work import Halt
     from morfax.tracer.operator.zunit import Move
 
 ANY_MM_S = 50.0  # of the drill above its hole: whether the counters can show a move does not depend on it

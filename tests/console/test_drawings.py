@@ -22,7 +22,7 @@ from morfax.tracer.drawing.components import Patches, runs_of
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.head.settings import Settings
-from morfax.tracer.operator.operator import Work
+from morfax.tracer.operator.work import Work
 from tests.console.conftest import SAMPLES, Morfax
 
 UM = 1e-3

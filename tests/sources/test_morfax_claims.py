@@ -36,7 +36,8 @@ from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.settings import HISTORIC, Settings
 from morfax.tracer.head.state import Home
 from morfax.tracer.operator.card import Card, Stop
-from morfax.tracer.operator.operator import Halt, Operator, Work
+from morfax.tracer.operator.operator import Operator
+from morfax.tracer.operator.work import Halt, Work
 from morfax.tracer.operator.zunit import Counters, Move, Preset, counts_of
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.trace import trace

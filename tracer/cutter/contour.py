@@ -29,7 +29,8 @@ from morfax.motion.curves import hermite
 from morfax.motion.offset import Way
 from morfax.motion.polyline import APART_MM, crossings, lengths_mm, with_places
 from morfax.tracer.following.line import Line
-from morfax.tracer.operator.operator import Halt, Operator
+from morfax.tracer.operator.operator import Operator
+from morfax.tracer.operator.work import Halt
 from morfax.tracer.sensing.leg import turn
 
 ABOUT_MM = (

@@ -1,8 +1,8 @@
 """The operator's card: what the operator would set on the panel during a run, written down before it.
 
-Signals in: a text in TOML (`docs/reference/card.md` has the whole format). Signals out: a Card: start position and
-depths in mm, speeds in mm/s, and for each stop the presets of the Z unit. What a card does not say is None,
-and stays as it is without a card.
+Signals in: a text in TOML (`docs/reference/card.md` has the whole format). Signals out: a Card: start
+position and depths in mm, speeds in mm/s, and for each stop the presets of the Z unit. What a card leaves out
+is None, and stays as it is without a card.
 
     start = "2mm"                # where the tool stands above the work
     passes = ["2mm", "4mm"]      # or depth = "4mm"
@@ -11,8 +11,8 @@ and stays as it is without a card.
     [[stop]]
     drill = { depth = "8mm", peck = "2mm" }
 
-A card is read whole before anything moves; one with a mistake is refused with the line, the field, what it
-holds and what it may hold (see `cardfields`).
+A card is read whole before anything moves. A card with a mistake is refused with the line, the field, what it
+holds and what it may hold (see `toml_fields`).
 
 Source: patent ES 361967, figure 3 (switches 126: start position, each move, its feed; the start button) and
 the section on use; speed control WC, override button and stop marks of figure 1. The patent's operator sets
@@ -35,8 +35,11 @@ from morfax.tracer.operator.zunit import COUNTS_PER_MM, Counters, Move, Preset, 
 Restart = Literal["automatic", "manual"]
 Turn = Literal["straight", "left", "right"]
 Override = Literal["none", "all"] | tuple[int, ...]
-FEED_MM_S = 5.0  # of a move that names none on a card that names none
-CLEAR_COUNTS = 50  # 0.5 mm
+FEED_MM_S = 5.0  # of a move without a feed, on a card without a feed: our own figure
+CLEAR_COUNTS = 50  # 0.5 mm above the bottom of the hole the drill slows down: our own figure
+LEAST_START_COUNTS = (
+    6  # the first count above IN_WORK_BELOW_MM, where the tool is out of the work
+)
 _KEYS = ("start", "depth", "passes", "entry", "restart", "turns", "override", "speeds", "stop")
 _STOP_KEYS = ("number", "moves", "drill", "passes", "dwell", "restart")
 _MOVE_KEYS = ("down", "up", "feed", "dwell")
@@ -45,9 +48,7 @@ _DRILL_KEYS = ("depth", "peck", "clear", "feed", "dwell")
 
 @dataclass(frozen=True, slots=True)
 class Drill:
-    """A hole: its depth below the work, and how it is drilled, in counts of 0.01 mm; the dwell is at the
-    bottom.
-    """
+    """A hole: its depth below the work and how it is drilled, in counts of 0.01 mm, with a dwell at the bottom."""
 
     depth_counts: int
     peck_counts: int
@@ -56,14 +57,10 @@ class Drill:
     dwell_s: float = 0.0
 
     def presets(self, at: Counters, rapid_mm_s: float) -> tuple[Preset, ...]:
-        """Settings of the panel from a place down to depth and back to that place; none if it is as deep
-        already.
-        """
+        """Settings of the panel from a place down to depth and back up; none if the place is as deep already."""
         made, bottom = list[Preset](), max(0, -at.count)
         while bottom < self.depth_counts:
-            near = min(
-                self.clear_counts - bottom, at.count
-            )  # counters where the drill goes on at its feed
+            near = min(self.clear_counts - bottom, at.count)  # from here on at the drill's feed
             bottom = min(bottom + self.peck_counts, self.depth_counts)
             dwell_s = self.dwell_s if bottom == self.depth_counts else 0.0
             made.append(Preset(at.count - near, "down", rapid_mm_s))
@@ -82,21 +79,16 @@ class Stop:
     passes_mm: tuple[float, ...] = ()
     dwell_s: float = 0.0
     restart: Restart | None = None
-    written: Field | None = field(
-        default=None, compare=False, repr=False
-    )  # where a card has the moves, or the hole
+    # the field of a card that holds the moves, or the hole
+    written: Field | None = field(default=None, compare=False, repr=False)
 
     def presets(self, at: Counters, rapid_mm_s: float) -> tuple[Preset, ...]:
-        """Settings of the panel from a place, the dwell last; passes are no move of this stop, but of the
-        line.
-        """
+        """Settings of the panel from a place, the dwell last; passes belong to the line, not to the stop."""
         made = self.moves if self.drill is None else self.drill.presets(at, rapid_mm_s)
         return (*made, Preset(0, dwell_s=self.dwell_s)) if self.dwell_s > 0 else made
 
     def motor_moves(self, z_mm: float, rapid_mm_s: float, where: str) -> list[Move]:
-        """What the motor does from a height; raises CardFault, with the field, for a move that the counters
-        cannot show.
-        """
+        """What the motor does from a height; raises CardFault, with the field, for a move that cannot be set."""
         made = list[Move]()
         try:
             at = Counters(counts_of(z_mm))
@@ -106,23 +98,23 @@ class Stop:
         except ValueError as error:
             if self.written is None:
                 raise CardFault(f"{where}: {error}") from None
-            (self.written.elements("moves")[len(made)] if self.moves else self.written).refuse(
-                f"{where}: {error}"
-            )
+            at_fault = self.written.elements("moves")[len(made)] if self.moves else self.written
+            at_fault.refuse(f"{where}: {error}")
         return made
 
 
 @dataclass(frozen=True, slots=True)
 class Card:
-    """The operator's card; what it does not say is None or empty."""
+    """The operator's card; what it leaves out is None or empty."""
 
     start_mm: float | None = None
     depths_mm: tuple[float, ...] = ()  # of the passes along each line, the last the deepest
     trace_mm_s: float | None = None
     feed_mm_s: float | None = None
     rapid_mm_s: float | None = None
-    # of the line along which the tool goes down from the surface to its depth
-    entry_mm: float | None = None
+    entry_mm: float | None = (
+        None  # the tool goes down to its depth along this length of the line
+    )
     restart: Restart = "automatic"
     turns: tuple[
         Turn, ...
@@ -150,24 +142,15 @@ class Card:
 def _card(whole: Field) -> Card:
     """The card as a whole."""
     fields = whole.table(*_KEYS)
-    speeds = read(
-        fields,
-        "speeds",
-        lambda field: field.table("trace", "feed", "rapid"),
-        dict[str, Field](),
-    )
+    speeds = read(fields, "speeds", _speeds, dict[str, Field]())
     feed_mm_s = read(speeds, "feed", Field.speed_mm_s, None)
     if "depth" in fields and "passes" in fields:
-        fields["depth"].refuse(
-            "beside passes there may be no depth: the last pass is the depth"
-        )
-    depth = read(fields, "depth", lambda field: (counts_in(field) / COUNTS_PER_MM,), ())
+        fields["depth"].refuse("give passes or depth, not both: the last pass is the depth")
+    depth = read(fields, "depth", lambda field: (_length_mm(field),), ())
     return Card(
-        start_mm=read(
-            fields, "start", lambda field: counts_in(field, least=6) / COUNTS_PER_MM, None
-        ),  # see IN_WORK_BELOW_MM
+        start_mm=read(fields, "start", _start_mm, None),
         depths_mm=read(fields, "passes", _passes, depth),
-        entry_mm=read(fields, "entry", lambda field: counts_in(field) / COUNTS_PER_MM, None),
+        entry_mm=read(fields, "entry", _length_mm, None),
         trace_mm_s=read(speeds, "trace", Field.speed_mm_s, None),
         feed_mm_s=feed_mm_s,
         rapid_mm_s=read(speeds, "rapid", Field.speed_mm_s, None),
@@ -178,22 +161,36 @@ def _card(whole: Field) -> Card:
     )
 
 
+def _speeds(field: Field) -> dict[str, Field]:
+    """The speeds of the card."""
+    return field.table("trace", "feed", "rapid")
+
+
+def _start_mm(field: Field) -> float:
+    """Where the tool stands above the work, mm: out of the work."""
+    return counts_in(field, LEAST_START_COUNTS) / COUNTS_PER_MM
+
+
+def _length_mm(field: Field) -> float:
+    """A length that can be set on five decades, mm."""
+    return counts_in(field) / COUNTS_PER_MM
+
+
 def _passes(field: Field) -> tuple[float, ...]:
     """Depths in mm, each deeper than the one before."""
+    allowed = 'depths, each deeper than the one before, such as ["2mm", "4mm"]'
     depths: list[int] = []
-    for element in field.elements(
-        'depths, each deeper than the one before, such as ["2mm", "4mm"]'
-    ):
+    for element in field.elements(allowed):
         counts = counts_in(element)
         if depths and counts <= depths[-1]:
-            element.refuse(
-                f"it may hold more than the pass before, {depths[-1] / COUNTS_PER_MM:g} mm"
-            )
+            before_mm = depths[-1] / COUNTS_PER_MM
+            element.refuse(f"it may hold more than the pass before, {before_mm:g} mm")
         depths.append(counts)
     return tuple(counts / COUNTS_PER_MM for counts in depths)
 
 
 def _restart(field: Field) -> Restart:
+    """Whether the head goes on by itself after a stop."""
     return cast(Restart, field.choice("automatic", "manual"))
 
 
@@ -209,10 +206,8 @@ def _override(field: Field) -> Override:
     """Which stop marks do not stop the head."""
     if field.value in ("none", "all"):
         return cast(Literal["none", "all"], field.value)
-    return tuple(
-        number.number()
-        for number in field.elements('"none", "all" or a list of stops, such as [1, 3]')
-    )
+    allowed = '"none", "all" or a list of stops, such as [1, 3]'
+    return tuple(number.number() for number in field.elements(allowed))
 
 
 def _stops(field: Field, feed_mm_s: float) -> tuple[Stop, ...]:
@@ -232,7 +227,7 @@ def _stop(entry: Field, feed_mm_s: float) -> Stop:
     fields = entry.table(*_STOP_KEYS)
     both = [key for key in ("moves", "drill", "passes") if key in fields]
     if len(both) > 1:
-        fields[both[1]].refuse(f"beside {both[0]} there may be no {both[1]}")
+        fields[both[1]].refuse(f"give {both[0]} or {both[1]}, not both")
     return Stop(
         number=read(fields, "number", Field.number, None),
         moves=read(fields, "moves", lambda field: _moves(field, feed_mm_s), ()),
@@ -255,10 +250,9 @@ def _move(field: Field, feed_mm_s: float) -> Preset:
     fields = field.table(*_MOVE_KEYS)
     dwell_s = read(fields, "dwell", Field.time_s, 0.0)
     feed_mm_s = read(fields, "feed", Field.speed_mm_s, feed_mm_s)
-    if ("down" in fields) == ("up" in fields) and (len(fields) != 1 or "dwell" not in fields):
-        field.refuse(
-            "it may hold down or up, one of them, with feed and dwell; or a dwell alone"
-        )
+    is_dwell = len(fields) == 1 and "dwell" in fields
+    if ("down" in fields) == ("up" in fields) and not is_dwell:
+        field.refuse("it may hold either down or up, with feed and dwell; or a dwell alone")
     if "up" in fields:
         return Preset(counts_in(fields["up"]), "up", feed_mm_s, dwell_s)
     return Preset(read(fields, "down", counts_in, 0), "down", feed_mm_s, dwell_s)

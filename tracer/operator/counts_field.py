@@ -1,7 +1,7 @@
 """A length on the card, in counts of the Z unit.
 
-Signals in: a field of the card that holds a length. Signals out: counts of 0.01 mm, or a CardFault that says which
-lengths five decades can be set to.
+Signals in: a field of the card that holds a length. Signals out: counts of 0.01 mm, or a CardFault that names
+the lengths that five decades can be set to.
 
 Source: patent ES 361967, the five decade switches of the Z unit.
 """

@@ -1,15 +1,15 @@
 """A file of settings of the head (TOML): read with each mistake pointed at, and written as it is read.
 
 Signals in: a text with a line for each setting that is to differ from the head's own, by the names that
-`--set` takes; out: numbers by name, or a CardFault:
+`--set` takes. Signals out: numbers by name, or a CardFault:
 
     head.toml, line 3: sweep_hz holds "fast"; it may hold a number from 1 to 750, in the unit that its name
     ends with
 
-Written are all settings; one that follows from the line stands as a comment, so that what is written can be
-read again and means the same.
+All settings are written. A setting that follows from the line is written as a comment, so that the file can
+be read again and means the same.
 
-Source: our own; the patent's follower has a knob for its speed (WC), and screws for all else.
+Source: our own; the patent's follower has a knob for its speed (WC), and screws for all other settings.
 """
 
 from __future__ import annotations
@@ -33,16 +33,17 @@ def parse_changes(text: str, name: str = "settings") -> dict[str, float]:
 
 
 def as_toml(settings: Settings) -> str:
-    """All settings as a file that can be read again, each with what it is and what it may hold."""
+    """All settings as a file that can be read again, each with its meaning and bounds."""
     return "".join(_line(name, value_of(settings, name)) for name in BOUNDS)
 
 
 def _changes(whole: Field) -> dict[str, float]:
+    """The settings in the file, by name."""
     return {name: _number(name, held) for name, held in whole.table(*BOUNDS).items()}
 
 
 def _number(name: str, held: Field) -> float:
-    """What a setting holds; refused if it is no number within its bounds."""
+    """The value of a setting; refused if it is no number within its bounds."""
     value = held.value
     if isinstance(value, bool) or not isinstance(value, int | float):
         held.refuse(f"it may hold {allowed(name)}")

@@ -19,8 +19,8 @@ motor 125, amplifier 135, tacho 136), claims 3, 13 and 14; the ramp from patent 
 (see `motion.ramp`). Questions: the patent gives no figures. Chosen: five digits of 0.01 mm, the first preset
 being the start position above the work, and counters that show the sign and five digits too. The patent's
 motor is switched off at coincidence and would run on; the ramp counter brakes before it. Without a card the
-depth and clearance need not be whole counts: the move is then divided into increments as near to a count as
-make a whole number.
+depth and clearance need not be whole counts: the move is then divided into a whole number of increments, each
+as near to a count as possible.
 """
 
 from __future__ import annotations
@@ -40,10 +40,11 @@ from morfax.motion.motion import MOTION_RATE_HZ
 COUNT_MM = 0.01  # one pulse of disc 128
 COUNTS_PER_MM = 100
 LARGEST_COUNT = 99_999  # five decades
-ACCELERATION_MM_S2 = 200.0
-_OFF_COUNT = 1e-6  # of a count: what arithmetic with inches leaves
-# of a count: what rounding takes off a pulse that has passed, 1e5 counts in 53 bits
-_PULSE = 1e-9
+ACCELERATION_MM_S2 = 200.0  # of the Z motor: our own figure
+_OFF_COUNT = 1e-6  # of a count: what arithmetic with inches leaves over
+_PULSE = (
+    1e-9  # of a count: what rounding takes off a pulse that has passed, 1e5 counts in 53 bits
+)
 
 
 Sense = Literal["up", "down"]
@@ -51,9 +52,7 @@ Sense = Literal["up", "down"]
 
 @dataclass(frozen=True, slots=True)
 class Preset:
-    """One setting of the panel: so many counts up or down at a feed, then a dwell; of no counts it is the
-    dwell alone.
-    """
+    """One setting of the panel: counts up or down at a feed, then a dwell; 0 counts are a dwell alone."""
 
     counts: int
     sense: Sense = "down"
@@ -115,7 +114,7 @@ class Counters:
 
 @dataclass(frozen=True, slots=True)
 class Move:
-    """What the motor 125 does: to a place in mm at a feed, then stand."""
+    """What the motor 125 does: go to a place in mm at a feed, then stand."""
 
     to_mm: float
     feed_mm_s: float
@@ -123,11 +122,11 @@ class Move:
 
 
 def counts_of(length_mm: float) -> int:
-    """Whole counts of a length; raises ValueError if it has parts of a count."""
+    """Whole counts of a length; raises ValueError for parts of a count."""
     counts = round(length_mm * COUNTS_PER_MM)
     if abs(length_mm * COUNTS_PER_MM - counts) > _OFF_COUNT:
         raise ValueError(
-            f"{length_mm:g} mm is no whole number of counts; give steps of {COUNT_MM:g} mm"
+            f"{length_mm:g} mm cannot be counted; give whole steps of {COUNT_MM:g} mm"
         )
     return counts
 
@@ -147,9 +146,7 @@ def z_moves(
     acceleration_mm_s2: float = ACCELERATION_MM_S2,
     rate_hz: float = MOTION_RATE_HZ,
 ) -> Array:
-    """Z of moves made one after the other from a place, (n,) mm at the motion rate; each ends exactly where
-    it was sent.
-    """
+    """Z of moves one after the other from a place, (n,) mm at the motion rate; each ends exactly."""
     parts, at_mm = [np.empty(0)], start_mm
     for move in moves:
         parts.append(_one(at_mm, move, acceleration_mm_s2, rate_hz))
@@ -158,9 +155,7 @@ def z_moves(
 
 
 def counted(z_mm: Array) -> NDArray[np.int64]:
-    """What the counters show at each place of a move: the pulses of disc 128 that have passed, from the
-    surface.
-    """
+    """What the counters show at each place of a move: pulses of disc 128 since the surface."""
     return np.trunc(z_mm * COUNTS_PER_MM + np.copysign(_PULSE, z_mm)).astype(np.int64)
 
 
@@ -173,7 +168,6 @@ def coincidence(z_mm: Array, start: Counters, preset: Preset) -> int | None:
 def _one(start_mm: float, move: Move, acceleration_mm_s2: float, rate_hz: float) -> Array:
     """Z of one move and of the dwell after it, mm."""
     how = ramp.Ramp(acceleration_mm_s2, COUNT_MM)
-    way = ramp.positions_mm([start_mm], [move.to_mm], move.feed_mm_s, how, rate_hz=rate_hz)[
-        :, 0
-    ]
-    return np.concatenate([way, np.full(round(move.dwell_s * rate_hz), move.to_mm)])
+    way = ramp.positions_mm([start_mm], [move.to_mm], move.feed_mm_s, how, rate_hz=rate_hz)
+    stands = np.full(round(move.dwell_s * rate_hz), move.to_mm)
+    return np.concatenate([way[:, 0], stands])

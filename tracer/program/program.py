@@ -31,7 +31,8 @@ from morfax.motion.faults import LineFault
 from morfax.motion.motion import BLOCK_SAMPLES, MOTION_RATE_HZ, Motion
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.following.line import Line
-from morfax.tracer.operator.operator import Action, Entry, Operator, Work
+from morfax.tracer.operator.operator import Operator
+from morfax.tracer.operator.work import Action, Entry, Work
 from morfax.tracer.operator.zunit import Move, z_moves
 from morfax.tracer.program import braking as stops
 

@@ -20,7 +20,8 @@ from morfax.tracer.following.line import Line
 from morfax.tracer.junctions.guides import Guide
 from morfax.tracer.marks.marks import Mark
 from morfax.tracer.operator.card import Card
-from morfax.tracer.operator.operator import Halt, Operator
+from morfax.tracer.operator.operator import Operator
+from morfax.tracer.operator.work import Halt
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.trace import trace
 from tests.tracer.inked import UM, arc, cross, dot, inked, polyline, tick

@@ -14,7 +14,8 @@ from morfax.tracer.following.line import Line
 from morfax.tracer.junctions.guides import Guide
 from morfax.tracer.marks.marks import Mark
 from morfax.tracer.operator.card import Card, Stop
-from morfax.tracer.operator.operator import STAND_S, Halt, Operator, Work
+from morfax.tracer.operator.operator import STAND_S, Operator
+from morfax.tracer.operator.work import Halt, Work
 from morfax.tracer.operator.zunit import Move
 
 Z = list[tuple[float, ...]]

@@ -78,7 +78,7 @@ def test_counts_and_mm_are_the_same_length(counts: int) -> None:
 
 def test_parts_of_a_count_are_none() -> None:
     with pytest.raises(
-        ValueError, match=r"0.015 mm is no whole number of counts; give steps of 0.01 mm"
+        ValueError, match=r"0.015 mm cannot be counted; give whole steps of 0.01 mm"
     ):
         counts_of(0.015)
 

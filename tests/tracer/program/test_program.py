@@ -16,7 +16,8 @@ from morfax.tracer.following.line import Line
 from morfax.tracer.junctions.guides import Guide
 from morfax.tracer.marks.marks import Mark
 from morfax.tracer.operator.card import Card
-from morfax.tracer.operator.operator import Operator, Work
+from morfax.tracer.operator.operator import Operator
+from morfax.tracer.operator.work import Work
 from morfax.tracer.program.program import BRAKE_MM_S2, Trace
 
 WORK = Work(depth_mm=4.0, clearance_mm=2.0)

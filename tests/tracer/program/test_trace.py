@@ -16,7 +16,8 @@ from morfax.motion.faults import DrawingFault, LineFault
 from morfax.motion.motion import IN_WORK_BELOW_MM, MOTION_RATE_HZ, join, thin
 from morfax.tracer.following.line import Line
 from morfax.tracer.operator.card import Card
-from morfax.tracer.operator.operator import Operator, Work
+from morfax.tracer.operator.operator import Operator
+from morfax.tracer.operator.work import Work
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.trace import trace
 from tests.tracer.inked import UM, arc, inked, polyline
