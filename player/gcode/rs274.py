@@ -7,7 +7,9 @@ Signals in: the text of a program. Signals out: moves in mm, mm/s and s, in the 
     G17             plane X Y                    G20 G21     inches, millimetres
     G54             the one coordinate system    G90 G91     places, distances
     G94 F           feed per minute              S T         speed and tool, read and left to the machine
-    M0 M3 M5        stop for the operator, spindle on, off   M2 M30      end of the program; nothing after it is read
+    G40 G49 G80     no compensation, no tool length, no cycle: as this control always is
+    G61 G64 P       exact or rounded corners: this control rounds none
+    M0 M3 M4 M5     stop for the operator, spindle on, off   M2 M30      end; nothing after it is read
     N               line number                  ( ) ;       comments        %   begin and end
 
 Anything else is refused with its line and word: a word that is passed over may be the one that keeps the tool
@@ -40,7 +42,7 @@ TURN = 2 * math.pi
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)"
 _WORD = re.compile(f"([A-Z])({_NUMBER})")
 _COMMENT = re.compile(r"\([^()]*\)|;.*")
-_MOTION, _UNITS, _DISTANCE = "motion", "units", "distance mode"
+_MOTION, _UNITS, _DISTANCE, _BLENDING = "motion", "units", "distance mode", "blending"
 _GROUPS = {
     _MOTION: ("G0", "G1", "G2", "G3"),
     _UNITS: ("G20", "G21"),
@@ -49,15 +51,22 @@ _GROUPS = {
     "plane": ("G17",),
     "coordinate system": ("G54",),
     "feed mode": ("G94",),
+    "cutter compensation": ("G40",),
+    "tool length": ("G49",),
+    "canned cycle": ("G80",),
+    _BLENDING: ("G61", "G64"),
     "stop": ("M0", "M2", "M30"),
-    "spindle": ("M3", "M5"),
+    "spindle": ("M3", "M4", "M5"),
 }
 _CODES = {
     (code[0], float(code[1:])): group for group, codes in _GROUPS.items() for code in codes
 }
 _KINDS = {0.0: RAPID, 1.0: LINE, 2.0: CLOCKWISE, 3.0: COUNTER_CLOCKWISE}
 _PLAIN, _MOVING, _ARC_WORDS = frozenset("GXYZIJRFPSTN"), frozenset("XYZIJR"), frozenset("IJR")
-_READ = "G0 G1 G2 G3 G4 G17 G20 G21 G54 G90 G91 G94, X Y Z I J R F P S T N, M0 M2 M3 M5 M30"
+_READ = (
+    "G0 G1 G2 G3 G4 G17 G20 G21 G40 G49 G54 G61 G64 G80 G90 G91 G94, "
+    "X Y Z I J R F P S T N, M0 M2 M3 M4 M5 M30"
+)
 
 Place = tuple[float, float, float]
 
@@ -122,8 +131,8 @@ def parse_rs274(
             f"{name} {what}; a program ends with M2, M30 or %: get the whole of it",
             line=reader.number,
         )
-    start = tuple(0.0 if place is None else place for place in reader.start)
-    return Program((start[0], start[1], start[2]), reader.moves)
+    x_mm, y_mm, z_mm = (0.0 if place is None else place for place in reader.start)
+    return Program((x_mm, y_mm, z_mm), reader.moves_from((x_mm, y_mm, z_mm)))
 
 
 class _Reader:
@@ -138,6 +147,16 @@ class _Reader:
         self.place = [0.0, 0.0, 0.0] if start_mm is None else list(start_mm)
         self.kind, self.scale, self.relative, self.feed_mm_s = "", 1.0, False, 0.0
         self.begun = False  # whether there was a % or a word
+        self.unsent = [0, 0, 0]  # moves of each axis before the program first sends it
+
+    def moves_from(self, start_mm: Place) -> list[Move]:
+        """The moves of a machine that stands at the start: an axis stays there until it is first sent."""
+        moves = list(self.moves)
+        for k in range(max(self.unsent)):
+            axes = zip(self.unsent, start_mm, moves[k].end_mm, strict=True)
+            x_mm, y_mm, z_mm = (start if k < unsent else end for unsent, start, end in axes)
+            moves[k] = moves[k]._replace(end_mm=(x_mm, y_mm, z_mm))
+        return moves
 
     def read(self, text: str) -> None:
         """Read a line."""
@@ -176,6 +195,10 @@ class _Reader:
             groups = self._codes(letters, numbers)
             self._set_modes(groups)
             dwell, stop = "dwell" in groups, groups.get("stop", -1)
+            if _BLENDING in groups:
+                values.pop(
+                    "P", None
+                )  # how far a control may round corners; this one rounds none
         elif "G" in values:  # nearly all lines come here
             self.kind = _KINDS[values["G"]]
         self._move(values, dwell)
@@ -262,6 +285,7 @@ class _Reader:
             if letter in values:
                 place[axis] = values[letter] * scale + (place[axis] if self.relative else 0.0)
                 if self.start[axis] is None:
+                    self.unsent[axis] = len(self.moves)
                     self.start[axis] = (
                         begin[axis]
                         if self.relative or kind not in (RAPID, LINE)

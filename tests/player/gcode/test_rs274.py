@@ -40,7 +40,7 @@ def test_all_that_the_subset_holds_is_read() -> None:
     program = parse_rs274(
         """%
         (a part; with (one comment) N5
-        N10 G17 G21 G90 G94 G54 S12000 T1 M3 ; and another
+        N10 G17 G21 G40 G49 G80 G90 G94 G54 G64 P0.01 S12000 T1 M3 ; and another
         g0 x1 y2 z+5.
         G1 Z-.5 F300
         X 4
@@ -125,13 +125,16 @@ def test_ends_that_lie_a_little_off_their_circle_move_its_centre() -> None:
 def test_where_the_machine_stands_is_where_the_program_first_sends_each_axis() -> None:
     assert parse_rs274(["G0 Z2", "G0 X3 Y4", "M2"]).start_mm == (3, 4, 2)
     assert parse_rs274(["G91 G0 X3", "M2"]).start_mm == (0, 0, 0)
+    up_first = parse_rs274(["G4 P1", "G0 Z2", "G0 X3", "G0 Y4", "G0 X5", "M2"])
+    assert up_first.start_mm == (3, 4, 2)
+    assert [move.end_mm for move in up_first.moves] == [(3, 4, 2)] * 4 + [(5, 4, 2)]
     assert parse_rs274(["G0 X3", "M2"], start_mm=(1, 1, 1)).start_mm == (1, 1, 1)
 
 
 @pytest.mark.parametrize(
     ("line", "says"),
     [
-        ("G64 P0.1", "G64 is not played; this control reads G0"),
+        ("G43 H1", "G43 is not played; this control reads G0"),
         ("G1.5 X1 F60", "G1.5 is not played"),
         ("M6 T1", "M6 is not played"),
         ("G1 X1 A5 F60", "A5 is not played"),

@@ -1,0 +1,189 @@
+"""Machines as data: every built-in one, files of one's own, mistakes with their line, programs in their words."""
+
+from __future__ import annotations
+
+import math
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from morfax.motion.faults import CardFault, FileFault
+from morfax.motion.motion import Path as MotionPath
+from morfax.player.gcode.rs274 import read_rs274
+from morfax.recorder.gcode.blocks import Feeds, record_blocks
+from morfax.recorder.gcode.machine import as_toml, machine, names
+
+BUILT_IN = ["grbl-laser", "grbl-pen", "grbl-router", "linuxcnc", "marlin", "qtplasmac"]
+# words of Grbl 1.1 (its wiki, "G-code quick reference"); one letter may stand once in a line
+GRBL_WORDS = r"G(0|1|2|3|4|17|21|40|49|54|80|90|94)|M(2|3|4|5)|[XYZIJFSP]-?\d+(\.\d+)?"
+CORNERS_MM = [(10, 10), (40, 10), (40, 30), (10, 30), (10, 10)]
+
+
+def part() -> MotionPath:
+    """A square with one round corner and a hole drilled in two pecks, cut 3 mm deep at 10 mm/s, plunged at 4."""
+    turn = np.linspace(math.pi, math.pi / 2, 40)
+    rounded = np.column_stack([15 + 5 * np.cos(turn), 25 + 5 * np.sin(turn)])
+    around = np.vstack(
+        [CORNERS_MM[0], CORNERS_MM[1], CORNERS_MM[2], rounded[::-1], CORNERS_MM[0]]
+    )
+    cut = [(x, y, -3.0) for x, y in around]
+    hole = [(25.0, 20.0, z) for z in (2.0, -2.0, 2.0, -4.0, 2.0)]
+    points = np.array([(10, 10, 2.0), *cut, (10, 10, 2.0), *hole])
+    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    across = np.abs(np.diff(points[:, :2], axis=0)).max(axis=1) > 0
+    return MotionPath(np.r_[0.0, np.cumsum(steps / np.where(across, 10.0, 4.0))], points)
+
+
+def program(name: str, folder: Path, feeds: Feeds | None = None) -> list[str]:
+    """The lines of the part's program for a machine."""
+    file = folder / f"part{machine(name).suffix}"
+    record_blocks(part(), file, machine_name=name, feeds=feeds)
+    return file.read_text().split("\n")[:-1]
+
+
+def test_the_built_in_machines_are_these() -> None:
+    assert names() == BUILT_IN
+    assert machine().name == "linuxcnc"
+
+
+@pytest.mark.parametrize("name", BUILT_IN)
+def test_every_line_is_as_the_machine_wants_it(name: str, tmp_path: Path) -> None:
+    wanted, lines = machine(name), program(name, tmp_path)
+    assert max(map(len, lines)) <= wanted.longest_line
+    assert lines[-len(wanted.end) :] == list(wanted.end)
+    moves = [line for line in lines if re.match(r"G[0123] ", line)]
+    decimals = [len(digits) for line in moves for digits in re.findall(r"\.(\d+)", line)]
+    assert max(decimals, default=0) <= wanted.decimals
+    assert any(" Z" in line for line in moves) == wanted.z
+    assert any(" F" in line for line in moves) == wanted.feeds
+
+
+@pytest.mark.parametrize("name", [name for name in BUILT_IN if name.startswith("grbl")])
+def test_grbl_s_own_rules_hold(name: str, tmp_path: Path) -> None:
+    for line in program(name, tmp_path):
+        if line.startswith("("):
+            continue
+        words = line.split(" ")
+        assert all(re.fullmatch(GRBL_WORDS, word) for word in words), line
+        letters = [word[0] for word in words if word[0] != "G"]
+        assert len(letters) == len(set(letters)), line
+
+
+@pytest.mark.parametrize("name", ["grbl-router", "linuxcnc"])
+def test_a_program_reads_back_to_the_part(name: str, tmp_path: Path) -> None:
+    program(name, tmp_path)
+    read = read_rs274(tmp_path / f"part{machine(name).suffix}")
+    depths_mm = [move.end_mm[2] for move in read.moves]
+    assert min(depths_mm) == -4.0 and read.start_mm == (10, 10, 2)
+    places = {move.end_mm for move in read.moves}
+    last_digit_mm = 10.0 ** -machine(name).decimals
+    for x, y in CORNERS_MM[:3]:
+        nearest_mm = min(math.dist(place[:2], (x, y)) for place in places)
+        assert nearest_mm <= 2 * last_digit_mm
+
+
+def test_a_laser_is_off_on_every_rapid_and_on_on_every_cut(tmp_path: Path) -> None:
+    power = 0
+    for line in program("grbl-laser", tmp_path):
+        if line.startswith("S"):
+            power = int(line[1:])
+        if line.startswith("G0"):
+            assert power == 0
+        if re.match(r"G[123] ", line):
+            assert power == 1000
+    assert power == 0
+
+
+def test_a_pen_makes_one_dot_of_a_hole_in_pecks(tmp_path: Path) -> None:
+    lines = program("grbl-pen", tmp_path)
+    assert lines.count("M3 S90") == 2  # round the part, and the hole
+    assert lines.count("M5") == lines.count("M3 S90") + 2  # at the beginning and at the end
+
+
+def test_a_torch_takes_its_feed_from_its_panel(tmp_path: Path) -> None:
+    lines = program("qtplasmac", tmp_path)
+    assert "F#<_hal[plasmac.cut-feed-rate]>" in lines
+    assert lines.count("M3 $0 S1") == lines.count("M5 $0") == 2
+
+
+def test_feeds_are_the_motion_s_or_those_that_are_asked_for(tmp_path: Path) -> None:
+    assert {
+        word for line in program("linuxcnc", tmp_path) for word in re.findall(r"F\S+", line)
+    } == {
+        "F240",
+        "F600",
+    }
+    asked = program("linuxcnc", tmp_path, Feeds(cut_mm_s=40, plunge_mm_s=5))
+    assert {word for line in asked for word in re.findall(r"F\S+", line)} == {"F300", "F2400"}
+
+
+def test_a_machine_of_one_s_own_is_a_file(tmp_path: Path) -> None:
+    file = tmp_path / "mine.toml"
+    text = as_toml("grbl-router").replace("speed = 10000", "speed = 8000")
+    file.write_text(text.replace("arcs = true", "arcs = false"))
+    lines = program(str(file), tmp_path)
+    assert "M3 S8000" in lines and not any(line.startswith(("G2 ", "G3 ")) for line in lines)
+    assert machine(str(file)).name == "mine"
+
+
+@pytest.mark.parametrize(
+    ("line", "says"),
+    [
+        ("z = 1", r"mine.toml, line 1: z holds 1; it may hold true or false"),
+        ("decimals = 9", r"decimals holds 9; it may hold 2 to 6 decimals of a mm"),
+        (
+            'begin = ["G21", "S{rpm} M3"]',
+            r"begin\[2\] holds .*\{rpm\} stands in no line of \[values\]; add rpm = 0",
+        ),
+        ('suffix = ".txt"', r'suffix holds ".txt"; it may hold ".ngc" or'),
+        ("longest_line = 20", r"longest_line holds 20; it may hold 64 characters or more"),
+        ('end = ["M5\\nM2"]', r"end\[1\] holds .*one line of plain letters"),
+        (
+            "spindle = 3",
+            r"spindle holds 3; there is no such field; the machine may hold what, suffix",
+        ),
+        ("[values]\nspeed = true", r"line 2: values.speed holds true; it may hold a number"),
+        ("z = ", r"line 1: .* holds"),
+    ],
+)
+def test_a_mistake_is_told_with_its_line(line: str, says: str, tmp_path: Path) -> None:
+    file = tmp_path / "mine.toml"
+    file.write_text(line + "\n")
+    with pytest.raises(CardFault, match=says):
+        machine(str(file))
+
+
+def test_a_name_that_is_none_names_those_that_are(tmp_path: Path) -> None:
+    with pytest.raises(
+        ValueError,
+        match=r"no machine 'mach3'; there are grbl-laser, grbl-pen, .*or give a .toml",
+    ):
+        machine("mach3")
+    with pytest.raises(FileFault, match="--machine"):
+        machine(str(tmp_path / "none.toml"))
+
+
+def test_a_comment_cannot_end_itself_nor_hide_a_line() -> None:
+    assert machine("linuxcnc").comment("a) G0 X9\n(b") == "(a] G0 X9?[b)"
+    assert len(machine("grbl-pen").comment("x" * 500)) <= 79
+
+
+@pytest.mark.skipif(
+    shutil.which("rs274") is None, reason="rs274 of linuxcnc-uspace is not installed"
+)
+@pytest.mark.parametrize("name", ["linuxcnc", "grbl-router", "grbl-laser", "grbl-pen"])
+def test_linuxcnc_reads_every_program_to_its_end(name: str, tmp_path: Path) -> None:
+    lines = program(name, tmp_path)
+    (tmp_path / "tool.tbl").touch()  # else it looks for the example's of a whole installation
+    told = subprocess.run(
+        ["rs274", "-t", "tool.tbl", "-g", f"part{machine(name).suffix}"],
+        cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False,
+    )  # fmt: skip
+    assert told.returncode == 0, told.stderr
+    assert "PROGRAM_END" in told.stdout
+    cuts = [line for line in lines if re.match(r"G[123] ", line)]
+    assert told.stdout.count("STRAIGHT_FEED") + told.stdout.count("ARC_FEED") == len(cuts)
