@@ -1,10 +1,27 @@
-"""Hooks of mkdocs: what the plugins of the site leave to be put right."""
+"""Hooks of mkdocs: the page of all modules, and what the plugins of the site leave to be put right."""
 
 from __future__ import annotations
 
+import ast
+from pathlib import Path
 from typing import Any
 
-OPTIONS = "reference/options.md"
+ROOT = Path(__file__).parents[1]
+OPTIONS, MODULES = "reference/options.md", "reference/modules.md"
+# in the order in which they may ask each other, lowest first; a package that is not named comes last
+PACKAGES = ("motion", "tracer", "recorder", "player", "jobs", "reports", "console")
+TRACER = [
+    "drawing",
+    "sensing",
+    "marks",
+    "head",
+    "junctions",
+    "tangles",
+    "following",
+    "operator",
+    "program",
+    "cutter",
+]
 
 
 def on_page_content(html: str, page: Any, **_: Any) -> str:
@@ -14,3 +31,43 @@ def on_page_content(html: str, page: Any, **_: Any) -> str:
     return html.replace("<code>Sentinel.UNSET</code>", "–").replace(
         "<td>None</td>", "<td>–</td>"
     )
+
+
+def on_page_markdown(markdown: str, page: Any, **_: Any) -> str:
+    """Fill the page of all modules."""
+    return f"{markdown}\n{all_modules()}" if page.file.src_uri == MODULES else markdown
+
+
+def all_modules() -> str:
+    """A heading and a table for every room."""
+    return "\n".join(table for package in PACKAGES for table in rooms(ROOT / package))
+
+
+def rooms(package: Path) -> list[str]:
+    """The tables of a package and of its rooms."""
+    below = [file.parent for file in package.glob("*/__init__.py")]
+    order = {name: place for place, name in enumerate(TRACER)}
+    below.sort(key=lambda room: (order.get(room.name, 0), room.name))
+    return [table(room) for room in (package, *below)]
+
+
+def table(room: Path) -> str:
+    """A room: its own docstring, and its modules with the first sentence of each."""
+    name = room.relative_to(ROOT).as_posix()
+    lines = [f"## {name}/", "", paragraph(room / "__init__.py"), ""]
+    modules = sorted(file for file in room.glob("*.py") if file.name != "__init__.py")
+    if modules:
+        lines += ["| module | what it does |", "| --- | --- |"]
+        lines += [f"| `{file.name}` | {cell(paragraph(file))} |" for file in modules]
+    return "\n".join([*lines, ""])
+
+
+def paragraph(file: Path) -> str:
+    """The first paragraph of a module's docstring, on one line."""
+    docstring = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or ""
+    return " ".join(docstring.split("\n\n")[0].split())
+
+
+def cell(text: str) -> str:
+    """A text as it may stand in a table."""
+    return text.replace("|", "\\|").replace("<", "&lt;")
