@@ -70,6 +70,10 @@ class Control:
 
 TAPE = Control("phase-locked drives", "morfax.player.tape.playback", "play")
 
+PULSES = Control(
+    "pulse interpolator and pulse servos", "morfax.player.gcode.pulses", "play_pulses"
+)
+
 CONTROLS: dict[str, Control] = {
     ".wav": TAPE,
     ".rf64": TAPE,
@@ -80,9 +84,7 @@ CONTROLS: dict[str, Control] = {
     ".cubic": Control(
         "difference interpolator and servo", "morfax.player.cubics.cubic", "play_cubic"
     ),
-    ".ngc": Control(
-        "pulse interpolator and pulse servos", "morfax.player.gcode.pulses", "play_pulses"
-    ),
+    **dict.fromkeys((".ngc", ".nc", ".gcode", ".tap", ".cnc"), PULSES),
 }
 
 

@@ -52,6 +52,9 @@ class Medium:
 
 _TAPE = Medium("magnetic tape", "morfax.recorder.tape.tape", "record")
 
+_BLOCKS = Medium("lines and arcs in RS-274", "morfax.recorder.gcode.blocks", "record_blocks")
+_DRAWINGS = "morfax.recorder.drawings.drawings"
+
 MEDIA: dict[str, Medium] = {
     ".wav": _TAPE,
     ".rf64": _TAPE,
@@ -60,7 +63,15 @@ MEDIA: dict[str, Medium] = {
         "punched tape of step vectors", "morfax.recorder.steps.steps", "record_steps"
     ),
     ".cubic": Medium("differences of cubics", "morfax.recorder.cubics.cubics", "record_cubics"),
-    ".ngc": Medium("lines and arcs in RS-274", "morfax.recorder.gcode.blocks", "record_blocks"),
+    **dict.fromkeys((".ngc", ".nc", ".gcode", ".tap", ".cnc"), _BLOCKS),
+}
+
+# what other programs read; no control plays them
+DRAWINGS: dict[str, Medium] = {
+    ".dxf": Medium("drawing in DXF", _DRAWINGS, "record_dxf"),
+    ".svg": Medium("drawing in SVG, true to size", _DRAWINGS, "record_svg"),
+    ".plt": Medium("plotter file in HP-GL", _DRAWINGS, "record_hpgl"),
+    ".hpgl": Medium("plotter file in HP-GL", _DRAWINGS, "record_hpgl"),
 }
 
 
@@ -69,7 +80,8 @@ def record(stream: Source, file: str | os.PathLike[str], **settings: Any) -> Rep
 
     Raises FileFault for a suffix that names no medium, and whatever the recorder raises.
     """
-    medium = MEDIA.get(FilePath(file).suffix.lower())
+    every = MEDIA | DRAWINGS
+    medium = every.get(FilePath(file).suffix.lower())
     if medium is None:
-        raise FileFault(f"{file} names no medium; its name must end in {', '.join(MEDIA)}")
+        raise FileFault(f"{file} names no medium; its name must end in {', '.join(every)}")
     return medium.recorder()(stream, file, **settings)

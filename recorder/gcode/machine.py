@@ -1,10 +1,10 @@
 """A machine, as data: which words its control takes, and how a program begins and ends there.
 
-Signals in: the name of a built-in machine (`machines/*.toml`) or a file like these. Signals out: a Machine, or a
-CardFault that points at the line of a mistake, as for the operator's card.
+Signals in: the name of a built-in machine (`machines/*.toml`) or a file like these. Signals out: a Machine,
+or a CardFault that points at the line of a mistake, as for the operator's card.
 
-Source: LinuxCNC's and Grbl 1.1's lists of G-codes, Marlin's, and QtPlasmaC's manual. Questions: the
-spindle's speed and the times are the workshop's own; what stands here is a beginning, and is one file to change.
+Source: LinuxCNC's and Grbl 1.1's lists of G-codes, Marlin's, and QtPlasmaC's manual. Questions: the spindle's
+speed and the times are the workshop's own; what stands here is a beginning, and is one file to change.
 """
 
 from __future__ import annotations
@@ -70,8 +70,8 @@ def as_toml(name: str) -> str:
 def machine(name: str = DEFAULT) -> Machine:
     """A built-in machine, or the one that a .toml file describes.
 
-    Raises ValueError for a name that is neither, CardFault for a mistake in a file, FileFault if a file cannot be
-    read.
+    Raises ValueError for a name that is neither, CardFault for a mistake in a file, FileFault if a file
+    cannot be read.
     """
     if name.lower().endswith(".toml"):
         file = FilePath(name)

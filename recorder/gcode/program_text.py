@@ -1,10 +1,10 @@
 """The text of a program: blocks in the words of one machine.
 
-Signals in: where the program starts, its blocks (places in mm, feeds in mm/s), and the Machine. Signals out: lines
-of text, none longer than the machine takes.
+Signals in: where the program starts, its blocks (places in mm, feeds in mm/s), and the Machine. Signals out:
+lines of text, none longer than the machine takes.
 
-A machine with a Z axis gets every block. Where there is none, the tool's own words stand for Z: `tool_down` where Z
-goes into the work, `tool_up` before the next rapid, so that a hole drilled in pecks is one dot.
+A machine with a Z axis gets every block. Where there is none, the tool's own words stand for Z: `tool_down`
+where Z goes into the work, `tool_up` before the next rapid, so that a hole drilled in pecks is one dot.
 
 Source: RS-274-D. Questions: a letter that does not change is left out, as people and most programs do; an arc
 always bears its end and its centre.

@@ -1,11 +1,11 @@
 """Stretches: a path cut into the parts that one kind of block can say.
 
-Signals in: a path in mm over s. Signals out: stretches in the order of the path, each in a plane, upright or on
-a slope, with the speed at which most of its length is run, and the dwell before it.
+Signals in: a path in mm over s. Signals out: stretches in the order of the path, each in a plane, upright or
+on a slope, with the speed at which most of its length is run, and the dwell before it.
 
 The path is cut where Z begins or ends to move, and at every dwell. An upright stretch is cut again where Z
-turns round (a peck) and where Z comes to a stand between two moves (a new feed), so that each of the operator's
-moves keeps its depth and its feed:
+turns round (a peck) and where Z comes to a stand between two moves (a new feed), so that each of the
+operator's moves keeps its depth and its feed:
 
     Z    \\  clearance                   down | down slower | up | down to the next peck | up
           \\___ surface
@@ -36,9 +36,8 @@ LEVEL = 0.02  # Z that changes less than this share of the way across stands
 NOISE_MM = 2e-4  # of a thinned path
 STAND = 0.25  # of the speed before and after it: a slower place parts two moves of Z
 HALF = 0.5  # of the length: its median speed is the feed of a stretch
-UPRIGHT_SHARE = (
-    0.9  # of an upright move, which has hardly left its ramp up when the ramp down begins
-)
+# of an upright move, which has hardly left its ramp up when the ramp down begins
+UPRIGHT_SHARE = 0.9
 SLOWEST_MM_S, FASTEST_MM_S = 0.01, 1000.0
 
 Kind = Literal["plane", "slope", "upright"]
@@ -63,7 +62,9 @@ class Stretch:
 
 @dataclass(frozen=True, slots=True)
 class _Steps:
-    """The steps of a path that move: which, how far across and up (mm, signed), how long, and the stand before."""
+    """The steps of a path that move: which, how far across and up (mm, signed), how long, and the stand
+    before.
+    """
 
     index: NDArray[np.int64]
     across_mm: Array

@@ -250,8 +250,8 @@ def test_the_tool_goes_up_and_down_by_z_and_feeds_are_those_of_the_motion(
 
 
 def z_program(*moves: tuple[float, float, float]) -> MotionPath:
-    """The tool at one place, Z from 2 mm on: each move to a depth, mm, at a feed, mm/s, from rest to rest with a
-    motor's acceleration, and a dwell after it, s.
+    """The tool at one place, Z from 2 mm on: each move to a depth, mm, at a feed, mm/s, from rest to rest
+    with a motor's acceleration, and a dwell after it, s.
     """
     t_s, z_mm = [0.0], [2.0]
     for to_mm, feed_mm_s, dwell_s in moves:

@@ -1,4 +1,6 @@
-"""Machines as data: every built-in one, files of one's own, mistakes with their line, programs in their words."""
+"""Machines as data: every built-in one, files of one's own, mistakes with their line, programs in their
+words.
+"""
 
 from __future__ import annotations
 
@@ -14,8 +16,9 @@ import pytest
 from morfax.motion.faults import CardFault, FileFault
 from morfax.motion.motion import Path as MotionPath
 from morfax.player.gcode.rs274 import read_rs274
-from morfax.recorder.gcode.blocks import Feeds, record_blocks
+from morfax.recorder.gcode.blocks import record_blocks
 from morfax.recorder.gcode.machine import as_toml, machine, names
+from morfax.recorder.gcode.plan import Feeds
 
 BUILT_IN = ["grbl-laser", "grbl-pen", "grbl-router", "linuxcnc", "marlin", "qtplasmac"]
 # words of Grbl 1.1 (its wiki, "G-code quick reference"); one letter may stand once in a line

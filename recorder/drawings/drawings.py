@@ -1,0 +1,216 @@
+"""The drawing recorders: what a motion cuts, as a file of DXF, SVG or HPGL.
+
+    .dxf            one LWPOLYLINE for each line (arcs as bulges), one POINT for each hole; units mm
+    .svg            one path for each line (arcs as A), in true size: width and height in mm, one unit is 1 mm
+    .plt .hpgl      IN; SP1; PU and PD in steps of 0.025 mm, arcs as chords within half a step; SP0
+
+Signals: a stream of Motion or a Path in, the file and a report out. X and Y are those of the path; an SVG has
+Y down and begins at the upper left corner of what is cut.
+
+Source: Autodesk's DXF reference (LWPOLYLINE, bulge = tan of a quarter of the angle); SVG 1.1, paths;
+Hewlett-Packard, HP-GL reference (plotter units of 0.025 mm). Questions: a plotter takes whole steps, so that
+a place is off by up to 0.018 mm there; places left of or below zero are refused by many, and told here.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path as FilePath
+from typing import Any
+
+from morfax.motion.faults import MotionFault
+from morfax.motion.files import written_beside
+from morfax.motion.segments import Source
+from morfax.recorder.drawings.runs import Run, radius_mm, runs_of
+from morfax.recorder.gcode.program_text import digits
+from morfax.recorder.report import Written
+
+TOLERANCE_MM = 0.01
+STEP_MM = 0.025  # HP-GL's plotter unit
+LARGEST_STEP = 32767  # HP-GL's plotter units are numbers of 16 bit
+MARGIN_MM = 1.0  # round an SVG, so that its lines are not cut off by half
+LINE_MM = 0.1  # width of an SVG's lines
+
+
+@dataclass(frozen=True, slots=True)
+class DrawingReport(Written):
+    """What was written: runs, how many of them closed, running time of the motion, largest distance from it."""
+
+    runs: int
+    closed: int
+    duration_s: float
+    deviation_mm: float
+
+    @property
+    def figures(self) -> dict[str, Any]:
+        """Further figures for the report."""
+        return {"runs": self.runs, "closed": self.closed, "deviation_mm": self.deviation_mm}
+
+
+def record_dxf(
+    stream: Source, file: str | os.PathLike[str], *, tolerance_mm: float = TOLERANCE_MM
+) -> DrawingReport:
+    """Draw what a motion cuts as DXF; raises MotionFault, FileFault."""
+    return _record(stream, file, tolerance_mm, _dxf)
+
+
+def record_svg(
+    stream: Source, file: str | os.PathLike[str], *, tolerance_mm: float = TOLERANCE_MM
+) -> DrawingReport:
+    """Draw what a motion cuts as SVG; raises MotionFault, FileFault."""
+    return _record(stream, file, tolerance_mm, _svg)
+
+
+def record_hpgl(
+    stream: Source, file: str | os.PathLike[str], *, tolerance_mm: float = TOLERANCE_MM
+) -> DrawingReport:
+    """Draw what a motion cuts for a pen or cutting plotter; raises MotionFault, FileFault."""
+    return _record(stream, file, tolerance_mm, _hpgl)
+
+
+def _record(
+    stream: Source,
+    file: str | os.PathLike[str],
+    tolerance_mm: float,
+    text_of: Callable[[list[Run]], str],
+) -> DrawingReport:
+    """Write what is cut."""
+    runs, planned = runs_of(stream, tolerance_mm)
+    text = text_of(runs)
+    with written_beside(file) as beside:
+        beside.write_text(text, encoding="ascii")
+    closed = sum(run.closed for run in runs)
+    return DrawingReport(
+        FilePath(file), len(runs), closed, planned.duration_s, planned.deviation_mm
+    )
+
+
+def _dxf(runs: list[Run]) -> str:
+    """The text of a DXF."""
+    import io
+
+    import ezdxf
+    from ezdxf import units
+
+    document = ezdxf.new("R2010", units=units.MM)
+    space = document.modelspace()
+    for run in runs:
+        if not run.pieces:
+            space.add_point(run.begin_mm)
+            continue
+        bulges = [math.tan(piece.turned_rad / 4) for piece in run.pieces]
+        places = [run.begin_mm, *(piece.end_mm for piece in run.pieces)]
+        if run.closed:
+            places.pop()
+        else:
+            bulges.append(0.0)
+        corners = [(x, y, bulge) for (x, y), bulge in zip(places, bulges, strict=True)]
+        space.add_lwpolyline(corners, format="xyb", close=run.closed)
+    text = io.StringIO()
+    document.write(text)
+    return text.getvalue()
+
+
+def _svg(runs: list[Run]) -> str:
+    """The text of an SVG."""
+    (left, low), (right, high) = _box(runs)
+    left, low, right, high = (
+        left - MARGIN_MM,
+        low - MARGIN_MM,
+        right + MARGIN_MM,
+        high + MARGIN_MM,
+    )
+
+    def place(x_mm: float, y_mm: float) -> str:
+        return f"{digits(x_mm - left, 4)} {digits(high - y_mm, 4)}"
+
+    lines = []
+    for run in runs:
+        words = ["M " + place(*run.begin_mm)]
+        begin = run.begin_mm
+        for piece in run.pieces:
+            if piece.turned_rad:
+                radius = digits(radius_mm(begin, piece), 4)
+                large = int(abs(piece.turned_rad) > math.pi)
+                turns_left = int(piece.turned_rad < 0)  # Y down: the other way round
+                words.append(
+                    f"A {radius} {radius} 0 {large} {turns_left} {place(*piece.end_mm)}"
+                )
+            else:
+                words.append("L " + place(*piece.end_mm))
+            begin = piece.end_mm
+        words.append("Z" if run.closed else "" if run.pieces else "h 0")
+        lines.append(f'  <path d="{" ".join(words).rstrip()}"/>')
+    width, height = digits(right - left, 4), digits(high - low, 4)
+    return "\n".join(
+        [
+            f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}mm" height="{height}mm" '
+            f'viewBox="0 0 {width} {height}">',
+            f'<g fill="none" stroke="black" stroke-width="{LINE_MM:g}" stroke-linecap="round">',
+            *lines,
+            "</g>",
+            "</svg>",
+            "",
+        ]
+    )
+
+
+def _hpgl(runs: list[Run]) -> str:
+    """The text of a plotter file."""
+    (left, low), (right, high) = _box(runs)
+    if min(left, low) < -STEP_MM / 2:
+        raise MotionFault(
+            f"what is cut reaches to X {left:.2f}, Y {low:.2f} mm, and a plotter begins at 0, 0; "
+            "move the zero with --origin"
+        )
+    if max(right, high) > LARGEST_STEP * STEP_MM:
+        raise MotionFault(
+            f"what is cut reaches to X {right:.1f}, Y {high:.1f} mm, and a plotter file to "
+            f"{LARGEST_STEP * STEP_MM:.0f} mm; cut it in parts"
+        )
+    text = ["IN;SP1;"]
+    for run in runs:
+        places = [run.begin_mm, *_chords(run)]
+        steps = [f"{round(x / STEP_MM)},{round(y / STEP_MM)}" for x, y in places]
+        text += [f"PU{steps[0]};", f"PD{','.join(steps[1:])};"]
+    return "\n".join([*text, "PU;SP0;", ""])
+
+
+def _chords(run: Run) -> list[tuple[float, float]]:
+    """Places of a run, arcs as chords that stay within half a step of them."""
+    places, begin = [], run.begin_mm
+    for piece in run.pieces:
+        if piece.turned_rad:
+            radius = radius_mm(begin, piece)
+            widest_rad = 2 * math.acos(max(0.0, 1 - STEP_MM / 2 / radius))
+            count = math.ceil(abs(piece.turned_rad) / widest_rad)
+            places += [
+                _along(begin, piece.end_mm, piece.turned_rad, k / count)
+                for k in range(1, count)
+            ]
+        places.append(piece.end_mm)
+        begin = piece.end_mm
+    return places
+
+
+def _along(
+    begin_mm: tuple[float, float], end_mm: tuple[float, float], turned_rad: float, share: float
+) -> tuple[float, float]:
+    """The place on an arc after a share of its angle: a chord from its beginning, turned out of the whole
+    chord.
+    """
+    chord = complex(*end_mm) - complex(*begin_mm)
+    part = math.sin(share * turned_rad / 2) / math.sin(turned_rad / 2)
+    out_rad = -(1 - share) * turned_rad / 2
+    place = complex(*begin_mm) + chord * part * complex(math.cos(out_rad), math.sin(out_rad))
+    return place.real, place.imag
+
+
+def _box(runs: list[Run]) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Lower left and upper right corner of all that is cut, mm."""
+    places = [place for run in runs for place in (run.begin_mm, *_chords(run))]
+    x_mm, y_mm = zip(*places, strict=True)
+    return (min(x_mm), min(y_mm)), (max(x_mm), max(y_mm))

@@ -1,0 +1,91 @@
+"""Runs: what a motion cuts, as chains of lines and arcs without the ways between them.
+
+Signals in: a motion in mm. Signals out: runs in sheet coordinates, mm, each from where the tool goes into the
+work to where it comes out; a run that ends where it begins is closed, a hole is a run of one place.
+
+Source: our own. Questions: depth and passes are left to the program that reads the drawing; a line that is
+run on at several depths is one run, as long as the tool stays down.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from morfax.motion.faults import MotionFault
+from morfax.motion.motion import IN_WORK_BELOW_MM
+from morfax.motion.segments import Source
+from morfax.recorder.gcode.plan import Plan, Writing, plan
+from morfax.recorder.gcode.program_text import Block
+
+# a gap as wide as a fine line's noise on a scan; a closed trace ends within 0.01 mm of its start
+CLOSED_MM = 0.05
+
+Place = tuple[float, float]
+
+
+class Piece(NamedTuple):
+    """A line to a place, or an arc that turns by an angle, rad, + left (0: a line); mm."""
+
+    end_mm: Place
+    turned_rad: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """A chain of pieces from a place on, mm."""
+
+    begin_mm: Place
+    pieces: tuple[Piece, ...]
+
+    @property
+    def closed(self) -> bool:
+        """Whether the run ends where it begins."""
+        return (
+            len(self.pieces) > 1
+            and math.dist(self.begin_mm, self.pieces[-1].end_mm) <= CLOSED_MM
+        )
+
+
+def runs_of(source: Source, tolerance_mm: float) -> tuple[list[Run], Plan]:
+    """What a motion cuts, within a tolerance, and the plan; raises MotionFault if it cuts nothing."""
+    planned = plan(source, Writing(tolerance_mm))
+    found, begin_mm, pieces = [], None, list[Piece]()
+    place = (float(planned.start_mm[0]), float(planned.start_mm[1]), float(planned.start_mm[2]))
+    for block in planned.blocks:
+        cuts = block.code != "G0" and min(place[2], block.place_mm[2]) <= IN_WORK_BELOW_MM
+        if cuts and begin_mm is None:
+            begin_mm = place[:2]
+        if not cuts and begin_mm is not None:
+            found.append(Run(begin_mm, tuple(pieces)))
+            begin_mm, pieces = None, []
+        if cuts and block.place_mm[:2] != place[:2]:
+            pieces.append(_piece(place, block))
+        place = block.place_mm
+    if begin_mm is not None:
+        found.append(Run(begin_mm, tuple(pieces)))
+    runs = list(dict.fromkeys(found))  # the pecks of one hole are one place
+    if not runs:
+        raise MotionFault(
+            f"nothing is cut: Z stays above {IN_WORK_BELOW_MM:g} mm; a drawing shows what is cut"
+        )
+    return runs, planned
+
+
+def _piece(begin_mm: tuple[float, float, float], block: Block) -> Piece:
+    """The line or arc of a block."""
+    end_mm = block.place_mm[0], block.place_mm[1]
+    if block.code not in ("G2", "G3"):
+        return Piece(end_mm)
+    x, y = block.centre_mm
+    centre = begin_mm[0] + x, begin_mm[1] + y
+    first = math.atan2(-y, -x)
+    last = math.atan2(end_mm[1] - centre[1], end_mm[0] - centre[0])
+    sense = 1 if block.code == "G3" else -1
+    return Piece(end_mm, sense * (sense * (last - first) % math.tau))
+
+
+def radius_mm(begin_mm: Place, piece: Piece) -> float:
+    """Radius of an arc."""
+    return math.dist(begin_mm, piece.end_mm) / abs(2 * math.sin(piece.turned_rad / 2))

@@ -1,0 +1,199 @@
+"""The plan of a program: a motion as blocks, before any machine's words.
+
+Signals in: a motion, a tolerance in mm, and how finely places are written. Signals out: blocks (rapids,
+lines, arcs, dwells) with places in mm and feeds in mm/s. Programs (`recorder.gcode.blocks`) and drawings
+(`recorder.drawings`) are written from the same plan.
+
+The path is cut into stretches (`recorder.gcode.stretches`). A stretch in a plane is fitted with lines and
+arcs (`recorder.gcode.arcs`), a slope with lines alone; an upright one is one line. The feed of a stretch is
+the speed at which most of its length is run, unless the operator gives feeds; a stretch above the work, or
+straight up, is a rapid.
+
+Source: none of the patents says how the blocks of a program are found in a motion; chosen here. Questions: a
+motion has a speed at every place and a program a feed for each block; the control slows down before corners
+by its own rules. Depths that are whole counts of the Z unit are written as such.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from morfax.motion.arrays import Array
+from morfax.motion.faults import MotionFault
+from morfax.motion.segments import Source, as_path
+from morfax.recorder.gcode.arcs import Segment, fit
+from morfax.recorder.gcode.program_text import Block
+from morfax.recorder.gcode.stretches import Stretch, stretches
+
+_LARGEST_RADIUS_MM = 10_000.0  # a way of 300 mm is 1.1 um off its chord
+COUNT_MM = 0.01  # the step of the Z unit's decades
+# of the tolerance, at most 2 um: a depth as near to a whole count is written as that count
+COUNT_SHARE = 0.25
+# three times what thinning takes off the place where one move of Z ends and one begins
+COUNT_REACH_MM = 0.002
+
+
+@dataclass(frozen=True, slots=True)
+class Feeds:
+    """Feeds that the operator gives, mm/s; None: those of the motion."""
+
+    cut_mm_s: float | None = None
+    plunge_mm_s: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Writing:
+    """How finely a program is written: distance from the motion at most, mm, decimals of a mm, arcs or lines
+    only.
+    """
+
+    tolerance_mm: float = 0.01
+    decimals: int = 4
+    arcs: bool = True
+
+    @property
+    def last_digit_mm(self) -> float:
+        """The step of the last decimal, mm."""
+        return 10.0**-self.decimals
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """Where a program starts, its blocks, the stretches that they stand for, and how well."""
+
+    start_mm: Array
+    blocks: list[Block]
+    parts: list[Stretch]
+    duration_s: float
+    deviation_mm: float
+
+    def count(self, *codes: str) -> int:
+        """How many blocks bear one of some codes."""
+        return sum(block.code in codes for block in self.blocks)
+
+
+def plan(stream: Source, writing: Writing, feeds: Feeds | None = None) -> Plan:
+    """The blocks of a motion, which stay within the tolerance of it.
+
+    Raises MotionFault for a motion that stands still, ValueError for a tolerance that cannot be written.
+    """
+    if not 2 * writing.last_digit_mm <= writing.tolerance_mm < math.inf:
+        raise ValueError(
+            f"a tolerance of {writing.tolerance_mm} mm cannot be written with {writing.decimals} decimals; "
+            f"give {2 * writing.last_digit_mm:g} mm or more"
+        )
+    path = as_path(stream)
+    parts = list(stretches(path, writing.tolerance_mm))
+    if not parts:
+        raise MotionFault(
+            "the motion stands still at one place; a program needs at least two different places"
+        )
+    planner = _Planner(path.positions_mm[0], writing, feeds or Feeds())
+    for part in parts:
+        planner.stretch(part)
+    return Plan(
+        planner.start_mm, planner.blocks, parts, planner.duration_s, planner.deviation_mm
+    )
+
+
+class _Planner:
+    """The blocks of a program so far, and the place that they have reached."""
+
+    def __init__(self, start_mm: Array, writing: Writing, feeds: Feeds) -> None:
+        self.writing, self.feeds = writing, feeds
+        self.last_digit_mm = writing.last_digit_mm
+        self.tolerance_mm = writing.tolerance_mm - self.last_digit_mm
+        self.count_reach_mm = min(COUNT_REACH_MM, COUNT_SHARE * writing.tolerance_mm)
+        self.blocks: list[Block] = []
+        self.duration_s = self.deviation_mm = 0.0
+        self.start_mm = self.place = self._written(start_mm)
+
+    def stretch(self, stretch: Stretch) -> None:
+        """Plan a stretch, and the dwell before it."""
+        if stretch.dwell_s:
+            self.blocks.append(Block("G4", tuple(self.place), dwell_s=stretch.dwell_s))
+        points = np.vstack([self.place, stretch.points_mm[1:]])
+        length_mm = float(np.sqrt((np.diff(points, axis=0) ** 2).sum(axis=1)).sum())
+        feed_mm_s = self._feed_mm_s(stretch)
+        self.duration_s += length_mm / feed_mm_s + stretch.dwell_s
+        if stretch.rapid or stretch.kind != "plane" or not self.writing.arcs:
+            kept, off_mm = _straightest(points, self.tolerance_mm)
+            self.deviation_mm = max(self.deviation_mm, off_mm)
+            for place in points[kept[1:]]:
+                self._line(place, feed_mm_s, rapid=stretch.rapid)
+            return
+        for chain in fit(points[:, :2], self.tolerance_mm):
+            self.deviation_mm = max(self.deviation_mm, chain.deviation_mm + self.last_digit_mm)
+            for segment in chain.segments:
+                self._segment(segment, feed_mm_s, chain.deviation_mm)
+
+    def _feed_mm_s(self, stretch: Stretch) -> float:
+        """The feed of a stretch: the operator's, or the motion's."""
+        asked_mm_s = (
+            self.feeds.plunge_mm_s if stretch.kind == "upright" else self.feeds.cut_mm_s
+        )
+        return stretch.speed_mm_s if stretch.rapid or asked_mm_s is None else asked_mm_s
+
+    def _segment(self, segment: Segment, feed_mm_s: float, off_mm: float) -> None:
+        """Plan a line or an arc; an arc that its chord stands for, or of a huge radius, becomes a line."""
+        place: Array = np.array(
+            [*np.round(segment.end_mm, self.writing.decimals), self.place[2]]
+        )
+        half = segment.turned_rad / 2
+        (dx, dy), bulge = (place - self.place)[:2], segment.length_mm / 2 * math.tan(half / 2)
+        is_straight = abs(bulge) < self.last_digit_mm
+        if is_straight or abs(segment.curvature_per_mm) * _LARGEST_RADIUS_MM < 1:
+            self._line(place, feed_mm_s, rapid=False)
+            self.deviation_mm = max(self.deviation_mm, off_mm + abs(bulge))
+            return
+        out = 0.5 / math.tan(half)
+        centre = dx / 2 - out * dy, dy / 2 + out * dx
+        code = "G3" if half > 0 else "G2"
+        self.blocks.append(Block(code, tuple(place), centre, feed_mm_s))
+        self.place = place
+
+    def _line(self, place_mm: Array, feed_mm_s: float, *, rapid: bool) -> None:
+        """Plan a line or a rapid, if it goes anywhere."""
+        place = self._written(place_mm)
+        if (place == self.place).all():
+            return
+        self.blocks.append(Block("G0" if rapid else "G1", tuple(place), feed_mm_s=feed_mm_s))
+        self.place = place
+
+    def _written(self, place_mm: Array) -> Array:
+        """A place (x, y, z) as it is written: to the last digit, a depth as the whole count that it nearly
+        is.
+        """
+        place: Array = np.round(place_mm, self.writing.decimals)
+        count_mm = round(place_mm[2] / COUNT_MM) * COUNT_MM
+        off_mm = abs(float(place_mm[2]) - count_mm)
+        if off_mm <= self.count_reach_mm:
+            place[2] = round(count_mm, self.writing.decimals)
+            self.deviation_mm = max(self.deviation_mm, off_mm)
+        return place
+
+
+def _straightest(points: Array, tolerance_mm: float) -> tuple[list[int], float]:
+    """Points between which lines stay within a tolerance of all others (Douglas, Peucker); the largest gap."""
+    kept, worst_mm, waiting = {0, len(points) - 1}, 0.0, [(0, len(points) - 1)]
+    while waiting:
+        first, last = waiting.pop()
+        off_mm = _off_line_mm(points[first : last + 1])
+        worst = int(np.argmax(off_mm))
+        if off_mm[worst] > tolerance_mm:
+            kept.add(first + worst)
+            waiting += [(first, first + worst), (first + worst, last)]
+        else:
+            worst_mm = max(worst_mm, float(off_mm[worst]))
+    return sorted(kept), worst_mm
+
+
+def _off_line_mm(points: Array) -> Array:
+    """Distance of each point from the straight piece between first and last."""
+    along, off = points[-1] - points[0], points - points[0]
+    square = float(along @ along)
+    share = np.clip(off @ along / square, 0.0, 1.0) if square else np.zeros(len(points))
+    return np.sqrt(((off - np.multiply.outer(share, along)) ** 2).sum(axis=1))
