@@ -22,6 +22,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -36,7 +37,7 @@ from morfax.tracer.drawing.raster import Grey, _pitches_mm, _read
 from morfax.tracer.drawing.shapes import outlined
 
 if TYPE_CHECKING:
-    pass
+    from morfax.tracer.drawing.noise import Noise
 
 LEAST_CONTRAST = 10.0  # grey levels of 255 between paper and ink
 LEAST_STROKE_MM = 2.0  # shorter strokes are specks
@@ -46,7 +47,7 @@ Darkness = NDArray[np.float32]
 Shapes = NDArray[np.bool_]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Drawing:
     """A drawing as the cells see it: `darkness` (rows from the top, columns) on pixels of `pitch_mm`.
 
@@ -71,6 +72,13 @@ class Drawing:
     def height_mm(self) -> float:
         """Height of the sheet, mm."""
         return self.darkness.shape[0] * self.pitch_mm
+
+    @cached_property
+    def noise(self) -> Noise:
+        """What the picture is like: noise of paper and ink, softness of edges, width of the pen."""
+        from morfax.tracer.drawing import noise
+
+        return noise.measured(self.darkness, self.pitch_mm)
 
     @classmethod
     def open(

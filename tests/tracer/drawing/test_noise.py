@@ -1,0 +1,107 @@
+"""The noise of a drawing against drawings made with known noise, softness, grain and width."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+from scipy.special import erf
+
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.noise import measured
+from tests.tracer.inked import DPI, NOISE, SOFTNESS_MM, UM, WIDTH_MM, arc, inked, polyline
+
+PITCH_MM = 0.1
+SIDE_PX = 500
+APART_PX = 40.0  # of paper between the lines
+WAVE_PX = 60.0  # along the lines, of their grain
+
+Darkness = NDArray[np.float32]
+
+
+def ruled(width_px: float, softness_px: float, heading: float, grain: float = 0.0) -> Darkness:
+    """A sheet of straight lines by the closed form of their edges; their darkness waves along them."""
+    rows, columns = np.mgrid[:SIDE_PX, :SIDE_PX] - SIDE_PX / 2
+    across = rows * math.cos(heading) + columns * math.sin(heading)
+    along = columns * math.cos(heading) - rows * math.sin(heading)
+    every = width_px + APART_PX
+    u = (across + every / 2) % every - every / 2
+    spot = math.sqrt(2) * softness_px
+    ink = 0.5 * (erf((u + width_px / 2) / spot) - erf((u - width_px / 2) / spot))
+    wave = grain * math.sqrt(2) * np.sin(along * math.tau / WAVE_PX)
+    return np.asarray(ink * (1 + wave), np.float32)
+
+
+def noisy(darkness: Darkness, paper: float, ink: float) -> Darkness:
+    """The same with noise of these standard deviations on the pixels of paper and of ink."""
+    noise = np.random.default_rng(1).normal(0, 1, darkness.shape)
+    return np.asarray(darkness + noise * np.where(darkness > 0.5, ink, paper), np.float32)
+
+
+@settings(max_examples=25)
+@given(
+    softness_px=st.floats(0.6, 2.0),
+    widths=st.floats(6.0, 12.0),
+    heading=st.floats(-math.pi, math.pi),
+    paper=st.floats(0.0, 0.06),
+    ink=st.floats(0.0, 0.06),
+)
+def test_what_a_sheet_was_made_with_is_found_again(
+    softness_px: float, widths: float, heading: float, paper: float, ink: float
+) -> None:
+    width_px = widths * softness_px
+    found = measured(noisy(ruled(width_px, softness_px, heading), paper, ink), PITCH_MM)
+    # a line along the pixels lies at one phase of them: what is between them is not averaged
+    assert found.width_mm == pytest.approx(width_px * PITCH_MM, abs=0.2 * PITCH_MM)
+    assert found.softness_px == pytest.approx(softness_px, rel=0.1)
+    assert found.softness_mm == pytest.approx(found.softness_px * PITCH_MM)
+    assert found.paper == pytest.approx(
+        paper, abs=0.012
+    )  # the foot of a soft edge counts as paper
+    assert found.ink == pytest.approx(
+        ink, abs=0.012
+    )  # neighbours lie a little aside of the middle
+    assert found.grain < 0.03  # noise of 0.06, and what interpolation leaves of it
+
+
+@pytest.mark.parametrize("grain", [0.05, 0.1, 0.2])
+@pytest.mark.parametrize("heading", [0.0, 0.3, math.pi / 4])
+def test_grain_is_told_from_noise(grain: float, heading: float) -> None:
+    found = measured(noisy(ruled(8.0, 1.0, heading, grain), 0.03, 0.03), PITCH_MM)
+    assert found.grain == pytest.approx(grain, rel=0.1)  # over some forty waves
+    assert found.ink == pytest.approx(0.03, abs=0.012)  # the wave's slope adds to it
+
+
+def test_the_drawings_of_the_tests_are_as_they_say() -> None:
+    drawing = inked(
+        polyline((4, 4), (40, 12)), arc((20, 25), 8), polyline((30, 20), (38, 36)), seed=1
+    )
+    noise = drawing.noise
+    pixel_mm = drawing.pitch_mm / math.sqrt(12)
+    assert noise.width_mm == pytest.approx(WIDTH_MM, abs=15 * UM)
+    assert noise.softness_mm == pytest.approx(math.hypot(SOFTNESS_MM, pixel_mm), rel=0.1)
+    assert noise.paper == pytest.approx(NOISE, abs=0.003)
+    assert noise.ink == pytest.approx(NOISE, abs=0.006)
+    assert drawing.pitch_mm == pytest.approx(25.4 / DPI)
+
+
+def test_paper_whose_white_is_clipped_has_its_noise_on_the_dark_side() -> None:
+    darkness = noisy(ruled(8.0, 1.0, 0.3), 0.04, 0.04)
+    assert measured(np.maximum(darkness, 0.0), PITCH_MM).paper == pytest.approx(0.04, abs=0.004)
+
+
+def test_noise_is_measured_once() -> None:
+    drawing = Drawing(ruled(8.0, 1.0, 0.3), PITCH_MM)
+    assert drawing.noise is drawing.noise
+
+
+@pytest.mark.parametrize("darkness", [0.0, 1.0])
+def test_a_sheet_without_lines_has_paper_only(darkness: float) -> None:
+    found = measured(np.full((200, 300), darkness, np.float32), PITCH_MM)
+    assert (
+        math.isnan(found.width_mm) and math.isnan(found.softness_px) and math.isnan(found.ink)
+    )
