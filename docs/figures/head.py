@@ -271,7 +271,7 @@ def ride_figure() -> plt.Figure:
     other = np.column_stack([x, 0.3 + 1.6 * np.clip(np.abs(x - 12) - 2.5, 0, None) ** 2 / 12])
     drawing, by = inked(own, other)
     run = put_head(drawing, by + np.array([1.5, 0]))
-    with listening(planner, "ride_past") as rides:
+    with listening(planner, "follow_edge") as rides:
         done = run.follow(40.0)
     incoming, ride = next((words[1], ride) for words, ride in rides if ride is not None)
     figure, axes = plt.subplots(figsize=(13, 4.2))

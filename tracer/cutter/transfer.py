@@ -34,7 +34,7 @@ from morfax.motion.feed import run_along
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.cutter.contour import Beside, Place
 from morfax.tracer.following.line import Line
-from morfax.tracer.junctions.guides import Guide
+from morfax.tracer.junctions.guides import GuideLine
 from morfax.tracer.program import braking as stops
 from morfax.tracer.program.program import BRAKE_MM_S2
 
@@ -87,7 +87,7 @@ class _Lead:
     xy_mm: Array
     place: Place
     at: dict[float, float]
-    guides: list[Guide]
+    guides: list[GuideLine]
 
 
 @dataclass(slots=True)
@@ -100,7 +100,7 @@ class _Run:
     way_mm: Array
     begin_mm: float  # along the way
     at: dict[float, float] = field(default_factory=dict)
-    guides: list[Guide] = field(default_factory=list)
+    guides: list[GuideLine] = field(default_factory=list)
 
     @classmethod
     def along(cls, way_mm: Array, begin: float, feed: Feed) -> _Run:
@@ -136,7 +136,7 @@ class _Run:
             )
             self.at |= {drawn: at + detour.leave + 1 for drawn, at in detour.at.items()}
             tip = round(self.at[detour.tip])
-            self.guides.insert(0, Guide(detour.leave, tip, detour.leave + shift))
+            self.guides.insert(0, GuideLine(detour.leave, tip, detour.leave + shift))
 
     def put_after(self, lead: _Lead) -> None:
         """Come to the way by a lead line."""
@@ -191,7 +191,7 @@ def _lead(beside: Beside, away_mm: Distances, feed: Feed) -> _Lead:
     guides = [guide for guide in line.guides if guide.back <= cut.first]
     xy_mm, moved = feed.resting(rows, [*(guide.tip for guide in guides), end])
     guides = [
-        Guide(*(round(moved(at)) for at in (guide.leave, guide.tip, guide.back)))
+        GuideLine(*(round(moved(at)) for at in (guide.leave, guide.tip, guide.back)))
         for guide in guides
     ]
     if end == cut.first:
@@ -235,7 +235,9 @@ def _joins(beside: Beside, rows: Array) -> tuple[float, Place]:
     return end, place
 
 
-def _detour(beside: Beside, guide: Guide, runs: list[_Run], feed: Feed) -> tuple[int, _Detour]:
+def _detour(
+    beside: Beside, guide: GuideLine, runs: list[_Run], feed: Feed
+) -> tuple[int, _Detour]:
     """A guide line off the way of a cutter, and which way that is."""
     line, xy_mm = beside.cut.line, beside.cut.line.xy_mm
     at = {mark.at: mark.at for mark in line.marks if guide.leave < mark.at < guide.back} | {
@@ -308,13 +310,13 @@ def _lines(beside: Beside, runs: list[_Run], lead: _Lead | None) -> list[Line]:
     return lines
 
 
-def _guide_at(line: Line, at: float) -> Guide | None:
+def _guide_at(line: Line, at: float) -> GuideLine | None:
     """The guide line on which a position is."""
     return next((guide for guide in line.guides if guide.leave < at < guide.back), None)
 
 
-def _shifted(guide: Guide, positions: int) -> Guide:
-    return Guide(guide.leave + positions, guide.tip + positions, guide.back + positions)
+def _shifted(guide: GuideLine, positions: int) -> GuideLine:
+    return GuideLine(guide.leave + positions, guide.tip + positions, guide.back + positions)
 
 
 def _position(xy_mm: Array, mm: float) -> float:

@@ -17,7 +17,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.head.loop import loop_in
-from morfax.tracer.junctions.guides import Guide
+from morfax.tracer.junctions.guides import GuideLine
 from morfax.tracer.sensing.view import View
 
 THINNED = 30  # one position in 30 shows where a line runs: every 50 um at 10 mm/s
@@ -35,7 +35,7 @@ class Followed:
     junctions_mm: tuple[tuple[float, float], ...]  # in the order in which the head came to them
     fault: LineFault | None = None
     loop_from: int | None = None  # the position where the loop of a joined line begins
-    guides: tuple[Guide, ...] = ()
+    guides: tuple[GuideLine, ...] = ()
     at_tip: bool = False  # another line, not followed yet, ends in the same tip
     # junctions where another way out fits as well: the junction's number, and the rank of that way
     doubts: tuple[tuple[int, int], ...] = ()

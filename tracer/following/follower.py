@@ -32,11 +32,12 @@ from morfax.tracer.following.ways_out import (
 )
 from morfax.tracer.head import course
 from morfax.tracer.head.carriage import Carriage
-from morfax.tracer.head.planned import Planned
+from morfax.tracer.head.plan import Plan
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.state import CHANGED, HOME, MORE
-from morfax.tracer.junctions.planner import Pilot
+from morfax.tracer.junctions.felt_corner import round_corner
+from morfax.tracer.junctions.planner import Planner
 from morfax.tracer.junctions.rings import fork_in
 from morfax.tracer.junctions.width_change import Onward, another_pen, of_another_pen
 from morfax.tracer.marks.dots import disc, dot_ahead, dot_at_end
@@ -120,47 +121,45 @@ class Follower:
         if fork is not None:
             return self._through_legs(leg_of(seen[: fork + 1], True, self.view.leg_mm))
         # 3. a corner that can be felt round
-        corner = self._pilot().round_corner(seen, here)
+        corner = round_corner(self._planner(), seen, here)
         if corner is not None:
             return self._pass(corner)
         # 4. clean line
         nodes, leg = course.nodes_along(self.view, self.carriage.stands(), seen)
         if leg is not None:
-            return self._pass(Planned([course.through_nodes(nodes)], leg, seen))
+            return self._pass(Plan([course.through_nodes(nodes)], leg, seen))
         return self._through_legs(leg_of(seen, True, self.view.leg_mm))
 
     def _through_legs(self, incoming: Leg) -> Followed | None:
         """Take the head from an incoming leg out of the junction; returns what it did, if no leg leads on."""
-        way, asked = self._ways_out.chosen(self.view, incoming, self.carriage)
-        outgoing, meeting, _ = way
+        choice, asked = self._ways_out.chosen(self.view, incoming, self.carriage)
+        outgoing, corner, _ = choice
         # 1. a dot at the end of the line, and a line drawn with another pen
         dot = None if goes_straight(incoming, outgoing) else dot_at_end(self.view, incoming)
         if dot is not None:
             return self._end(_aimed_at(incoming, dot), math.dist(incoming.end_mm, dot))
         if outgoing is not None and another_pen(self.view, outgoing):
-            plan = self._pilot().onward(incoming, Onward(self.view, outgoing, meeting))
+            plan = self._planner().onward(incoming, Onward(self.view, outgoing, corner))
             if plan is not None:
                 return self._pass(plan)
         # 2. the way that the legs show, and a better one where they are a tangle
-        plan, choices = self._pilot().along_legs(incoming, way)
+        plan, choices = self._planner().along_legs(incoming, choice)
         explained = self._is_dot(incoming, outgoing)
         if not asked and not explained:
             plan, explained = self._out_of_tangle(incoming, plan)
         # 3. nothing leads on with this pen
         if plan is None and not choices:
             other = of_another_pen(self.view, incoming, self.carriage.trail)
-            plan = None if other is None else self._pilot().onward(incoming, other)
+            plan = None if other is None else self._planner().onward(incoming, other)
             if other is not None and plan is not None:
                 self.view = other.view
                 return self._pass(plan)
         # 4. past what nothing explains
         if not explained:
-            plan = self._pilot().past(incoming, way) or plan
+            plan = self._planner().past(incoming, choice) or plan
         return self._at_end(incoming, choices) if plan is None else self._pass(plan)
 
-    def _out_of_tangle(
-        self, incoming: Leg, plan: Planned | None
-    ) -> tuple[Planned | None, bool]:
+    def _out_of_tangle(self, incoming: Leg, plan: Plan | None) -> tuple[Plan | None, bool]:
         """The way out of a tangle, if the junction is one, else the plan; and whether the tangle explains it."""
         number = self._ways_out.junctions.next(self.carriage.travel_mm)
         way_in, rank = self.carriage.stands(), self._ways_out.turns.other.count(number)
@@ -179,9 +178,9 @@ class Follower:
         way = outgoing.end_mm - incoming.end_mm
         return disc(self.view, incoming.end_mm + 0.5 * way, way) is not None
 
-    def _pilot(self) -> Pilot:
-        """The pilot that plans the way on from where the head stands."""
-        return Pilot(self.view, self.carriage.stands(), self.carriage.trail, self.settings)
+    def _planner(self) -> Planner:
+        """What plans the way on from where the head stands."""
+        return Planner(self.view, self.carriage.stands(), self.carriage.trail, self.settings)
 
     def _feel_ahead(self) -> Array:
         """The line felt from behind the axis forward until it is no longer clean, (n, 3)."""
@@ -257,7 +256,7 @@ class Follower:
         self.carriage.run([self._home.way_from(self.carriage)])
         return self._done("closed")
 
-    def _pass(self, plan: Planned) -> Followed | None:
+    def _pass(self, plan: Plan) -> Followed | None:
         """Run a course and go on following at its end; or stop at home if the course passes home."""
         cut = self._home.on_course(plan.stretches, self.carriage.travel_mm, self.view.width_mm)
         if cut is not None:

@@ -21,7 +21,7 @@ from morfax.motion.faults import LineFault
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.following.followed import THINNED, Followed
 from morfax.tracer.junctions.gaps import Break, breaks
-from morfax.tracer.junctions.guides import Guide
+from morfax.tracer.junctions.guides import GuideLine
 from morfax.tracer.marks.marks import Mark, marks_along
 from morfax.tracer.sensing.leg import TURNS_OFF, turn
 from morfax.tracer.sensing.side import Side
@@ -50,7 +50,7 @@ class Line:
     number: int = 1
     loop_from: int | None = None
     marks: tuple[Mark, ...] = ()
-    guides: tuple[Guide, ...] = ()
+    guides: tuple[GuideLine, ...] = ()
     reference_mm: tuple[float, float] | None = None  # the reference point from which it begins
     junctions_mm: tuple[tuple[float, float], ...] = ()  # in the order the head came to them
     ink_mm: float = 0.0  # length of its patch of ink, by the patch's area

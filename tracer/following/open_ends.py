@@ -21,7 +21,7 @@ from morfax.motion.arrays import Array
 from morfax.tracer.drawing.strokes import Sheet, Stroke
 from morfax.tracer.following.plain_places import local_view
 from morfax.tracer.head.stance import Stance
-from morfax.tracer.junctions.choice import straight_on
+from morfax.tracer.junctions.line_ahead import straight_on
 from morfax.tracer.marks.marks import longest_mm
 from morfax.tracer.marks.reference import Reference, references
 from morfax.tracer.sensing.leg import Leg, leg_of, turn

@@ -17,7 +17,7 @@ from morfax.motion.arrays import Array
 from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.state import Home
-from morfax.tracer.junctions.choice import AHEAD
+from morfax.tracer.junctions.line_ahead import AHEAD
 from morfax.tracer.sensing.leg import Leg, turn
 
 ON_HOME = 0.3  # widths: a course that comes as near to home passes over it; by trial

@@ -15,7 +15,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.tracer.head.carriage import Carriage
-from morfax.tracer.junctions.choice import Way, survey
+from morfax.tracer.junctions.choice import Asked, Choice, survey
 from morfax.tracer.junctions.guides import Junctions
 from morfax.tracer.sensing.leg import Leg, goes_straight, leg_of, turns_off
 from morfax.tracer.sensing.side import SIDES, Side
@@ -49,7 +49,7 @@ class WaysOut:
     from_reference: bool  # the head sets out from a reference point
     junctions: Junctions = field(default_factory=Junctions)
 
-    def chosen(self, view: View, incoming: Leg, carriage: Carriage) -> tuple[Way, bool]:
+    def chosen(self, view: View, incoming: Leg, carriage: Carriage) -> tuple[Choice, bool]:
         """The way out of a junction, and whether the operator asked for it."""
         trail, travel_mm = carriage.trail, carriage.travel_mm
         if self.comes_back(view, incoming):
@@ -59,11 +59,11 @@ class WaysOut:
         side = self.turns.sides[number] if number < len(self.turns.sides) else None
         leads = number == 0 and self.from_reference
         rank = self.turns.other.count(number)
-        found = outgoing, _, choices = survey(view, incoming, trail, rank, side, leads=leads)
-        if choices > 1:
+        found = survey(view, incoming, trail, Asked(rank, side, leads))
+        if found.choices > 1:
             place = self._place_of(view, incoming, found, carriage)
             self.junctions.come_to(place, travel_mm)
-            turns_aside = side is not None and not goes_straight(incoming, outgoing)
+            turns_aside = side is not None and not goes_straight(incoming, found.leg)
             if turns_aside and _goes_on(view, incoming, carriage):
                 self.junctions.take(place, carriage.count)
         return found, side is not None
@@ -75,7 +75,7 @@ class WaysOut:
         if asked or self.comes_back(view, incoming):
             return True
         found = survey(view, incoming, carriage.trail)
-        if found[2] > 1:
+        if found.choices > 1:
             place = self._place_of(view, incoming, found, carriage)
             self.junctions.come_to(place, carriage.travel_mm)
         return False
@@ -84,18 +84,18 @@ class WaysOut:
         """Whether the head is back at the junction where it took a guide line."""
         return self.junctions.comes_back(incoming.end_mm, 2 * view.width_mm + BACK_MM)
 
-    def _place_of(self, view: View, incoming: Leg, found: Way, carriage: Carriage) -> Array:
+    def _place_of(self, view: View, incoming: Leg, found: Choice, carriage: Carriage) -> Array:
         """Where a junction is: where the way in meets the way out, or else a line that turns off."""
-        turned = [survey(view, incoming, carriage.trail, side=side) for side in SIDES]
-        for leg, legs_mm, _ in (found, *turned):
-            if legs_mm is not None and leg is not None and turns_off(incoming, leg):
-                return incoming.at(legs_mm[0])
+        turned = [survey(view, incoming, carriage.trail, Asked(side=side)) for side in SIDES]
+        for leg, corner, _ in (found, *turned):
+            if corner is not None and leg is not None and turns_off(incoming, leg):
+                return corner.vertex_mm
         return incoming.end_mm
 
 
 def _goes_on(view: View, incoming: Leg, carriage: Carriage) -> bool:
     """Whether a line goes straight on at a junction."""
-    return goes_straight(incoming, survey(view, incoming, carriage.trail)[0])
+    return goes_straight(incoming, survey(view, incoming, carriage.trail).leg)
 
 
 def station_before(view: View, seen: Array, here: int, guard_mm: float) -> tuple[int, Leg]:

@@ -1,303 +1,244 @@
-"""The survey of a knot: which leg the head takes out of it.
+"""The survey of a junction: which leg the head takes out of it.
 
-Signals: the incoming leg and the trail in; the outgoing leg out, and where the two meet.
+Straight on at a crossing; on along the only leg at a corner; never onto what has been followed already. A
+stroke that ends soon and is not straight on is a mark, and no leg. The operator may ask for a turn to the
+left or right. Where a lead line ends square on another line, the head turns left: that is clockwise round a
+contour that it comes to from outside.
 
-Straight on at a crossing; on along the only leg at a corner; never onto what has been followed already;
-across a gap no wider than allowed. A stroke that ends soon and is not straight on is a mark, no leg. At a
-junction the operator may turn left or right; where a lead line ends square on another the head turns left,
-which is clockwise round a contour that it comes to from outside.
+Signals: the incoming leg and the trail in; the outgoing leg, and the corner that the two make, out.
 
-Source: our own (see `knot`).
+Source: our own (see `rings`).
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import replace
-from functools import partial
+from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import combinations
+from typing import NamedTuple
 
 import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.tracer.head.trail import Trail
+from morfax.tracer.junctions.corner import Corner
 from morfax.tracer.junctions.rings import legs_around
 from morfax.tracer.marks.marks import longest_mm
-from morfax.tracer.sensing.leg import (
-    STRAIGHT,
-    Leg,
-    Meeting,
-    goes_straight,
-    leg_of,
-    meet,
-    turn,
-    turns_off,
-)
+from morfax.tracer.sensing.leg import STRAIGHT, Leg, goes_straight, turn, turns_off
 from morfax.tracer.sensing.probe import reach_of_ink, stroke_end
 from morfax.tracer.sensing.side import Side
 from morfax.tracer.sensing.view import View
 
-AHEAD = math.radians(75)  # a lost line is looked for within this of its heading
+# Chosen by trial on the test drawings.
 SQUARE = math.radians(
     20
-)  # two legs that turn off to both sides alike, within this, are a line that the head comes to
-PASSES = math.radians(
-    12
-)  # two legs in line with each other within this are one line that passes
-SIDEWAYS_WIDTHS = (
-    0.0,
-    1.0,
-    2.0,
-)  # ahead a line that turns back to a side is looked for: its ink runs along with the way in at first
+)  # two legs within this of one line are the line that the head comes to
+PASSES = math.radians(12)  # two legs within this of one line are a line that passes
+BESIDE = 0.35  # of the width: they lie on one line
+# widths ahead where a line is sought that turns back to a side: at first its ink runs along with the way in
+SIDEWAYS_WIDTHS = (0.0, 1.0, 2.0)
 OVERRUN_MM, OVERRUN_WIDTHS = (
     1.5,
     2.0,
 )  # a lead line may be drawn so far beyond the contour's edge
-FARTHEST_WIDTHS = 6.0  # how far the heading is held through a blot, in widths of the line
+REACH_MM, REACH_WIDTHS = 2.0, 6.0  # how far ahead the ink's end is sought
+LOOKS = 3  # about a place, and then about the vertex found there
+THERE = 0.3  # of the width: the rings stood about the vertex
 
 
-Way = tuple[Leg | None, Meeting | None, int]
+class Asked(NamedTuple):
+    """How the head is to leave a junction.
 
-
-def survey(
-    view: View,
-    incoming: Leg,
-    trail: Trail,
-    rank: int = 0,
-    side: Side | None = None,
-    *,
-    leads: bool = False,
-) -> Way:
-    """The outgoing leg (None if there is none), the distances (mm) beyond the incoming and before the
-    outgoing clean end where they meet, and how many legs there were, counting 1 more where one was left out
-    because it has been followed already.
-
-    Looked for where the line stops being clean, and, unless it goes straight on from there, where the ink
-    ahead ends: at the tip of a sharp corner. `rank` 1 takes the second straightest leg, `side` the
-    straightest that turns off to that side, if there is one. A line that `leads` ends at the line that it
-    comes to, though the pen ran on a little beyond that.
+    `rank` 1 asks for the second straightest leg, `side` for the straightest that turns off to that side, if
+    there is one. A line that `leads` ends at the line that it comes to, though the pen ran on a little.
     """
-    ink = reach_of_ink(view, incoming, 6 * view.width_mm + 2.0)
+
+    rank: int = 0
+    side: Side | None = None
+    leads: bool = False
+
+
+STRAIGHTEST = Asked()
+
+
+class Choice(NamedTuple):
+    """The leg by which the head leaves a junction, None if no leg leads on, and its corner with the way in.
+
+    `choices` says how many legs there were, and 1 more where one was left out because it had been followed.
+    """
+
+    leg: Leg | None
+    corner: Corner | None
+    choices: int
+
+
+def survey(view: View, incoming: Leg, trail: Trail, asked: Asked = STRAIGHTEST) -> Choice:
+    """Choose the leg by which the head leaves the junction ahead of a leg.
+
+    Rings stand where the line stops being clean. If it does not go straight on from there, they also stand
+    where the ink ahead ends: at the tip of a sharp corner.
+    """
     half = 0.5 * view.width_mm
     near = half + view.step_mm
-    choose, look = (
-        partial(_chosen, incoming, rank, side),
-        partial(_look, view, incoming, trail, leads),
-    )
-    found = look(incoming.at(near if ink is None else max(0.0, min(near, ink - half))), choose)
-    for widths in SIDEWAYS_WIDTHS if side is not None else ():
-        aside = look(incoming.at(near + widths * view.width_mm), choose)
-        if aside[0] is not None and side is not None and _is_aside(incoming, aside[0], side):
-            return aside
-    if ink is not None and ink - half > near and not goes_straight(incoming, found[0]):
-        at_tip = look(incoming.at(ink - half), choose)
-        found = found if at_tip[0] is None else (*at_tip[:2], max(found[2], at_tip[2]))
+    ink = reach_of_ink(view, incoming, REACH_WIDTHS * view.width_mm + REACH_MM)
+    around = _Survey(view, incoming, trail, asked)
+    # 1. where the line stops being clean
+    begin = near if ink is None else max(0.0, min(near, ink - half))
+    found = around.look(incoming.at(begin))
+    # 2. further ahead, for the side that is asked for
+    if asked.side is not None:
+        for widths in SIDEWAYS_WIDTHS:
+            aside = around.look(incoming.at(near + widths * view.width_mm))
+            if aside.leg is not None and _is_aside(incoming, aside.leg, asked.side):
+                return aside
+    # 3. at the tip
+    if ink is not None and ink - half > near and not goes_straight(incoming, found.leg):
+        at_tip = around.look(incoming.at(ink - half))
+        if at_tip.leg is not None:
+            return at_tip._replace(choices=max(found.choices, at_tip.choices))
     return found
 
 
-def _look(
-    view: View,
-    incoming: Leg,
-    trail: Trail,
-    leads: bool,
-    centre: Array,
-    choose: Callable[[list[Leg], list[Leg], View], Leg],
-) -> Way:
-    """Look for legs about a centre, and again about the place where incoming and outgoing meet, until that is
-    known.
-    """
-    way_in = np.vstack([trail.recent(), incoming.seen[:, :2]])
-    outgoing, legs_mm, choices = None, None, 0
-    for _ in range(3):
-        every = legs_around(view, centre, way_in)
-        every = _without_overrun(view, incoming, every) if leads else every
-        every = _without_marks(view, incoming, every)
-        legs = [leg for leg in every if not trail.holds(leg, view.width_mm)]
-        legs = _without_stubs(view, incoming, legs, every)
-        choices = max(choices, len(legs) + (len(legs) < len(every)))
-        if not legs:
-            break
-        outgoing = choose(legs, every, view)
-        legs_mm = meet(incoming, outgoing)
-        if legs_mm is None or legs_mm[0] < -view.width_mm:
-            break
-        vertex = incoming.at(legs_mm[0])
-        if np.hypot(*(vertex - centre)) < 0.3 * view.width_mm:
-            break
-        centre = vertex
-    return outgoing, legs_mm, choices
+@dataclass(frozen=True, slots=True)
+class _Survey:
+    """What a junction is surveyed by: how the line is seen, the way in, and how the head is to leave."""
+
+    view: View
+    incoming: Leg
+    trail: Trail
+    asked: Asked
+
+    def look(self, centre: Array) -> Choice:
+        """Choose among the legs about a centre, and then about the vertex, until that stays."""
+        view, incoming = self.view, self.incoming
+        way_in = np.vstack([self.trail.recent(), incoming.seen[:, :2]])
+        leg, corner, count = None, None, 0
+        for _ in range(LOOKS):
+            every = legs_around(view, centre, way_in)
+            every = self._without_overrun(every) if self.asked.leads else every
+            every = self._without_marks(every)
+            new = [leg for leg in every if not self.trail.holds(leg, view.width_mm)]
+            new = self._without_stubs(new, every)
+            count = max(count, len(new) + (len(new) < len(every)))
+            if not new:
+                break
+            leg = self._chosen(new, every)
+            corner = Corner.of(incoming, leg)
+            if corner is None or corner.beyond_mm < -view.width_mm:
+                break
+            if np.hypot(*(corner.vertex_mm - centre)) < THERE * view.width_mm:
+                break
+            centre = corner.vertex_mm
+        return Choice(leg, corner, count)
+
+    def _chosen(self, legs: list[Leg], every: list[Leg]) -> Leg:
+        """The leg to take: by side, if one turns off there; else by how straight it goes on."""
+        rank, side = self.asked.rank, self.asked.side
+        # 1. by side
+        if side is not None:
+            aside = [leg for leg in legs if _is_aside(self.incoming, leg, side)]
+            if aside:
+                return min(aside, key=lambda leg: abs(self._turn(leg)))
+        # 2. by how straight
+        if rank == 0:
+            legs = self._without_passing(legs, every) or legs
+        legs = sorted(legs, key=lambda leg: abs(self._turn(leg)))
+        # 3. left, where the line comes square to another
+        if rank == 0 and len(legs) > 1:
+            one, other = self._turn(legs[0]), self._turn(legs[1])
+            if abs(one) > STRAIGHT and abs(one + other) < SQUARE:
+                return max(legs[:2], key=self._turn)
+        return legs[min(rank, len(legs) - 1)]
+
+    def _turn(self, leg: Leg) -> float:
+        """Angle from the way in to a leg, rad, left positive."""
+        return turn(self.incoming.heading_rad, leg.heading_rad)
+
+    def _without_marks(self, legs: list[Leg]) -> list[Leg]:
+        """The legs but for marks that are not straight on, if others are left."""
+        reach_mm = [
+            math.inf if goes_straight(self.incoming, leg) else self._reach_mm(leg)
+            for leg in legs
+        ]
+        kept = []
+        for leg, mm in zip(legs, reach_mm, strict=True):
+            across = _is_across(leg, legs, reach_mm)
+            if mm > longest_mm(self.view, across=across):
+                kept.append(leg)
+        return kept or legs
+
+    def _without_overrun(self, legs: list[Leg]) -> list[Leg]:
+        """The legs but for the end of a lead line drawn beyond the contour.
+
+        That goes straight on and ends soon, and the other legs are a line that passes.
+        """
+        width_mm = self.view.width_mm
+        aside = [leg for leg in legs if not goes_straight(self.incoming, leg)]
+        if not _passing(aside):
+            return legs
+        overrun_mm = max(OVERRUN_MM, OVERRUN_WIDTHS * width_mm)
+        return [
+            leg for leg in legs if _is_among(leg, aside) or self._reach_mm(leg) > overrun_mm
+        ]
+
+    def _without_stubs(self, legs: list[Leg], every: list[Leg]) -> list[Leg]:
+        """The legs but for marks on what has been followed already, however straight on.
+
+        There the head has come back to its lead line. Where it crosses a line that it has followed, what lies
+        beyond is its own, and may end soon.
+        """
+        held = [leg for leg in every if not _is_among(leg, legs)]
+        if not held or _passing(held):
+            return legs
+        return [leg for leg in legs if self._reach_mm(leg) > longest_mm(self.view)]
+
+    def _reach_mm(self, leg: Leg) -> float:
+        """How far a leg reaches beyond the edge of the incoming line, mm; infinite if it is no mark."""
+        end = stroke_end(self.view, leg, longest_mm(self.view))
+        if end is None:
+            return math.inf
+        way, heading = leg.end_mm - self.incoming.end_mm, self.incoming.heading_rad
+        aside = abs(way[1] * math.cos(heading) - way[0] * math.sin(heading))
+        return float(end + aside - 0.5 * self.view.width_mm)
+
+    def _without_passing(self, legs: list[Leg], every: list[Leg]) -> list[Leg]:
+        """The legs that are no line that passes here, straighter than any leg goes on from the way in."""
+        taken: list[Leg] = []
+        for a, b in combinations(every, 2):
+            bent = _bent(a, b)
+            gap = b.end_mm - a.end_mm
+            aside = abs(gap[0] * math.sin(a.heading_rad) - gap[1] * math.cos(a.heading_rad))
+            own = min(abs(self._turn(leg)) for leg in (a, b))
+            if bent < PASSES and aside < BESIDE * self.view.width_mm and own > bent + PASSES:
+                taken += [a, b]
+        return [leg for leg in legs if not _is_among(leg, taken)]
 
 
-def _chosen(
-    incoming: Leg, rank: int, side: Side | None, legs: list[Leg], every: list[Leg], view: View
-) -> Leg:
-    """The leg to take: by side, if one turns off there; else by how straight it goes on."""
-    turns = {id(leg): turn(incoming.heading_rad, leg.heading_rad) for leg in legs}
-    if side is not None:
-        aside = [leg for leg in legs if _is_aside(incoming, leg, side)]
-        if aside:
-            return min(aside, key=lambda leg: abs(turns[id(leg)]))
-    if rank == 0:
-        legs = _without_pairs(view, incoming, legs, every) or legs
-    legs = sorted(legs, key=lambda leg: abs(turns[id(leg)]))
-    if (
-        rank == 0
-        and len(legs) > 1
-        and abs(turns[id(legs[0])]) > STRAIGHT
-        and abs(turns[id(legs[0])] + turns[id(legs[1])]) < SQUARE
-    ):
-        return max(legs[:2], key=lambda leg: turns[id(leg)])
-    return legs[min(rank, len(legs) - 1)]
+def _is_among(leg: Leg, legs: Sequence[Leg]) -> bool:
+    """Whether a leg is one of some, and not only like one of them."""
+    return any(leg is other for other in legs)
+
+
+def _bent(one: Leg, other: Leg) -> float:
+    """By how much two legs out of a junction are off one line, rad."""
+    return abs(turn(one.heading_rad + math.pi, other.heading_rad))
+
+
+def _passing(legs: Sequence[Leg]) -> bool:
+    """Whether any two legs are about one line."""
+    return any(_bent(a, b) < SQUARE for a, b in combinations(legs, 2))
 
 
 def _is_aside(incoming: Leg, leg: Leg, side: Side) -> bool:
     """Whether a leg turns off to a side."""
-    return (turn(incoming.heading_rad, leg.heading_rad) > 0) == (side == "left") and turns_off(
-        incoming, leg
-    )
-
-
-def _without_marks(view: View, incoming: Leg, legs: list[Leg]) -> list[Leg]:
-    """The legs but for those that are marks and not straight on, if others are left."""
-    reach = [
-        math.inf if goes_straight(incoming, leg) else _reach_mm(view, incoming, leg)
-        for leg in legs
-    ]
-    kept = [
-        leg
-        for leg, mm in zip(legs, reach, strict=True)
-        if mm > longest_mm(view, across=_is_across(leg, legs, reach))
-    ]
-    return kept or legs
-
-
-def _without_overrun(view: View, incoming: Leg, legs: list[Leg]) -> list[Leg]:
-    """The legs but for one straight on that ends soon, if the others are a line that passes: the end of a
-    lead line drawn beyond the contour.
-    """
-    passing = [leg for leg in legs if not goes_straight(incoming, leg)]
-    if not any(
-        abs(turn(a.heading_rad + math.pi, b.heading_rad)) < SQUARE
-        for a, b in combinations(passing, 2)
-    ):
-        return legs
-    overrun_mm = max(OVERRUN_MM, OVERRUN_WIDTHS * view.width_mm)
-    return [
-        leg
-        for leg in legs
-        if any(leg is u for u in passing) or _reach_mm(view, incoming, leg) > overrun_mm
-    ]
-
-
-def _without_stubs(view: View, incoming: Leg, legs: list[Leg], every: list[Leg]) -> list[Leg]:
-    """The legs but for marks on what has been followed already, however straight on: the head has come back
-    to its lead line.
-
-    Where it crosses a line that it has followed, what lies beyond is its own, and may end soon.
-    """
-    held = [leg for leg in every if not any(leg is other for other in legs)]
-    passing = any(
-        abs(turn(a.heading_rad + math.pi, b.heading_rad)) < SQUARE
-        for a, b in combinations(held, 2)
-    )
-    if not held or passing:
-        return legs
-    return [leg for leg in legs if _reach_mm(view, incoming, leg) > longest_mm(view)]
+    to_left = turn(incoming.heading_rad, leg.heading_rad) > 0
+    return to_left == (side == "left") and turns_off(incoming, leg)
 
 
 def _is_across(leg: Leg, legs: list[Leg], reach_mm: list[float]) -> bool:
     """Whether another stroke that ends soon lies in line with a leg, on the other side."""
     return any(
-        math.isfinite(mm) and abs(turn(leg.heading_rad + math.pi, other.heading_rad)) < SQUARE
+        math.isfinite(mm) and _bent(leg, other) < SQUARE
         for other, mm in zip(legs, reach_mm, strict=True)
     )
-
-
-def _reach_mm(view: View, incoming: Leg, leg: Leg) -> float:
-    """How far a leg reaches beyond the edge of the line that comes in, mm; infinite if it does not end within
-    a mark's length.
-    """
-    end = stroke_end(view, leg, longest_mm(view))
-    way = leg.end_mm - incoming.end_mm
-    aside = abs(
-        way[1] * math.cos(incoming.heading_rad) - way[0] * math.sin(incoming.heading_rad)
-    )
-    return math.inf if end is None else end + aside - 0.5 * view.width_mm
-
-
-def _without_pairs(view: View, incoming: Leg, legs: list[Leg], every: list[Leg]) -> list[Leg]:
-    """The legs that are not the two ends of a line that passes here, straighter than any leg goes on from the
-    incoming one.
-    """
-    taken: list[Leg] = []
-    for i, a in enumerate(every):
-        for b in every[i + 1 :]:
-            bent = abs(turn(a.heading_rad + math.pi, b.heading_rad))
-            gap = b.end_mm - a.end_mm
-            aside = abs(gap[0] * math.sin(a.heading_rad) - gap[1] * math.cos(a.heading_rad))
-            own = min(abs(turn(incoming.heading_rad, leg.heading_rad)) for leg in (a, b))
-            if bent < PASSES and aside < 0.35 * view.width_mm and own > bent + PASSES:
-                taken += [a, b]
-    return [leg for leg in legs if not any(leg is other for other in taken)]
-
-
-def straight_on(view: View, incoming: Leg, gap_mm: float) -> Leg | None:
-    """The clean line met by going straight on, through a blot, or across a gap no wider than allowed: along
-    the leg's bend, or else with the heading held.
-
-    The bend of a dash two or three millimetres long is uncertain.
-    """
-    return _met(view, incoming, gap_mm) or _met(
-        view, replace(incoming, bend_per_mm=0.0), gap_mm
-    )
-
-
-def _met(view: View, incoming: Leg, gap_mm: float) -> Leg | None:
-    """The clean line met by going on along a leg."""
-    light_mm, step = 0.0, 0.35 * view.pitch_mm
-    for along in np.arange(0.5 * view.width_mm, FARTHEST_WIDTHS * view.width_mm + gap_mm, step):
-        place = incoming.at(along)
-        light_mm = 0.0 if view.dark(place) else light_mm + step
-        if light_mm > gap_mm + step:
-            return None
-        if light_mm:
-            continue
-        seen = view.feel(place, incoming.heading_at(along), view.leg_mm)
-        if len(seen) < 8 or np.hypot(*(seen[0, :2] - place)) > 0.5 * view.width_mm:
-            continue
-        leg = leg_of(seen, False, view.leg_mm)
-        if goes_straight(incoming, leg):
-            return leg
-    return None
-
-
-def caught_again(view: View, incoming: Leg, trail: Trail, within_mm: float) -> Leg | None:
-    """The line that the head meets first in widening arcs ahead of where it lost it, no further than allowed;
-    None if there is none.
-
-    Only lines that have not been followed, and that lead on ahead.
-    """
-    end = incoming.at(reach_of_ink(view, incoming, view.width_mm) or 0.0)
-    for radius in np.arange(view.width_mm, within_mm, 0.5 * view.width_mm):
-        legs = []
-        for arc in view.ring(end, radius):
-            if abs(turn(incoming.heading_rad, float(arc.mean()))) < AHEAD:
-                met = end + radius * np.array([math.cos(arc.mean()), math.sin(arc.mean())])
-                legs += [leg for leg in _from(view, met) if not trail.holds(leg, view.width_mm)]
-        legs = [leg for leg in legs if abs(turn(incoming.heading_rad, leg.heading_rad)) < AHEAD]
-        if legs:
-            return min(legs, key=lambda leg: abs(turn(incoming.heading_rad, leg.heading_rad)))
-    return None
-
-
-def _from(view: View, place: Array) -> list[Leg]:
-    """The clean legs that leave a place on ink."""
-    found = []
-    for arc in view.ring(place, 1.5 * view.width_mm):
-        heading = float(arc.mean())
-        start = place + 1.5 * view.width_mm * np.array([math.cos(heading), math.sin(heading)])
-        seen = view.feel(start, heading, view.leg_mm)
-        if len(seen) >= 8:
-            found.append(leg_of(seen, False, view.leg_mm))
-    return found

@@ -1,174 +1,219 @@
-"""TODO."""
+"""Corners: two legs that meet, how sharp their ink is there, and the stretches that lead through.
+
+A pen of width w that turns on the vertex inks w/2 beyond it on the bisector. What is missing there is by how
+much a rounded line passes the vertex; an arc that touches both legs passes it by as much.
+
+    ____________ . vertex        missing = r · (1/cos(d/2) - 1)        d: by how much the way turns
+    __________  `\\ .            touch   = r · tan(d/2)                r: radius of the arc
+              `\\  \\            so touch follows from missing
+
+Signals: the view, the legs and where they meet in; stretches (n, 2) mm out.
+
+Source: our own, from first principles (see `course`). Other rooms find corners too: `rings.corner_in` in what
+was felt of a line, before there are legs; `program.braking` and `motion.segments` in a finished path.
+"""
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.curves import hermite
 from morfax.tracer.head.course import ahead_mm, along_leg, onto
-from morfax.tracer.sensing.leg import Leg, Meeting, turn
+from morfax.tracer.sensing.leg import Leg, meet, turn
 from morfax.tracer.sensing.view import View
 
 HIDDEN = 8  # stations at a corner between those that its legs are felt by
+SMOOTH = math.radians(14)  # a smaller change of heading is no corner
 SLIGHT = math.radians(40)  # a turn up to this goes straight on at a junction
 HIDES = 0.7  # of the width: a pen that turned on the vertex inks half of it on the outside
-SHARP = 0.08  # of the line's width: a corner whose ink misses less than this on the outside is sharp
+SHARP = 0.08  # of the line's width: a corner that misses less ink on the outside is sharp
+BENT = 0.3  # of the line's width: a corner that misses more ink is no corner, but a bend
+ACROSS = 0.15  # of the width: the edge is found on rays so far to either side of the bisector
+RAYS = 5  # of which the median counts
+REACH_WIDTHS, REACH_PX = 2.0, 3  # how far from the vertex the edge is sought
+PIECE_RAD = math.radians(30)  # a cubic is an arc within a micron over this
+
+
+@dataclass(frozen=True, slots=True)
+class Corner:
+    """Two legs, and where they meet: beyond the incoming leg's end, and before the outgoing leg's, mm."""
+
+    incoming: Leg
+    outgoing: Leg
+    beyond_mm: float
+    before_mm: float
+
+    @classmethod
+    def of(cls, incoming: Leg, outgoing: Leg) -> Corner | None:
+        """The corner of two legs; None if they do not meet."""
+        met = meet(incoming, outgoing)
+        return None if met is None else cls(incoming, outgoing, *met)
+
+    @property
+    def vertex_mm(self) -> Array:
+        """The vertex, on the incoming leg's line."""
+        return self.incoming.at(self.beyond_mm)
+
+    @property
+    def width_mm(self) -> float:
+        """Mean width of the legs."""
+        return 0.5 * (self.incoming.width_mm + self.outgoing.width_mm)
+
+    @property
+    def nearest_mm(self) -> float:
+        """How far the vertex is from the nearer of the clean ends; negative behind it."""
+        return min(self.beyond_mm, self.before_mm)
+
+    @property
+    def farthest_mm(self) -> float:
+        """How far the vertex is from the farther of the clean ends."""
+        return max(self.beyond_mm, self.before_mm)
+
+    def headings_rad(self) -> tuple[float, float]:
+        """Headings into the vertex and out of it."""
+        arriving = self.incoming.heading_at(self.beyond_mm)
+        return arriving, self.outgoing.heading_at(-self.before_mm)
+
+    @property
+    def turned_rad(self) -> float:
+        """The angle by which the way turns at the vertex, left positive."""
+        return turn(*self.headings_rad())
+
+    @property
+    def deflection_rad(self) -> float:
+        """By how much the way turns at the vertex."""
+        return abs(self.turned_rad)
 
 
 def through_corner(
-    view: View,
-    stands: tuple[Array, float],
-    incoming: Leg,
-    outgoing: Leg,
-    legs_mm: Meeting,
-    end_mm: float,
+    view: View, stands: tuple[Array, float], corner: Corner, end_mm: float
 ) -> list[Array]:
-    """Stretches from where the head stands (place, heading) through a corner to `end_mm` beyond the outgoing
-    leg's first station.
+    """Stretches from where the head stands (place, heading) through a corner.
+
+    They end `end_mm` beyond the outgoing leg's clean end.
     """
-    s, u = legs_mm
-    missing, touch = rounding(view, incoming, outgoing, legs_mm)
-    bent = touch > 0 and (
-        missing > 0.3 * view.width_mm or deflection(incoming, outgoing, legs_mm) < SLIGHT
-    )
-    if touch > 0 and touch < u + end_mm and touch < s + ahead_mm(stands[0], incoming):
-        return [rounded_corner(stands, incoming, outgoing, legs_mm, touch, end_mm)]
-    if bent:
-        way, along = onto(*stands, incoming, min(s, 0.0))
-        start, end = incoming.at(along), outgoing.at(end_mm)
-        return [
-            np.vstack(
-                [
-                    way,
-                    hermite(
-                        start, incoming.heading_at(along), end, outgoing.heading_at(end_mm)
-                    ),
-                ]
-            )
-        ]
-    return sharp_corner(stands, incoming, outgoing, legs_mm, end_mm)
+    incoming, outgoing = corner.incoming, corner.outgoing
+    missing, touch = rounding(view, corner)
+    # 1. an arc, where there is room for it
+    room_mm = corner.beyond_mm + ahead_mm(stands[0], incoming)
+    if 0 < touch < min(corner.before_mm + end_mm, room_mm):
+        return [rounded_corner(stands, corner, touch, end_mm)]
+    # 2. one bend from leg to leg
+    slight = missing > BENT * view.width_mm or corner.deflection_rad < SLIGHT
+    if touch > 0 and slight:
+        way, along = onto(*stands, incoming, min(corner.beyond_mm, 0.0))
+        start, heading = incoming.at(along), incoming.heading_at(along)
+        bend = hermite(start, heading, outgoing.at(end_mm), outgoing.heading_at(end_mm))
+        return [np.vstack([way, bend])]
+    # 3. the vertex
+    return sharp_corner(stands, corner, end_mm)
 
 
 def rounded_corner(
-    stands: tuple[Array, float],
-    incoming: Leg,
-    outgoing: Leg,
-    legs_mm: Meeting,
-    touch_mm: float,
-    end_mm: float,
+    stands: tuple[Array, float], corner: Corner, touch_mm: float, end_mm: float
 ) -> Array:
-    """The way (n, 2) from where the head stands by the arc that touches both legs so far from their vertex,
-    to beyond the outgoing leg's first station.
-    """
-    s, u = legs_mm
-    way, along = onto(*stands, incoming, s - touch_mm)
-    a, b = s - touch_mm, -u + touch_mm
+    """The way (n, 2) by the arc that touches both legs so far from their vertex (see `through_corner`)."""
+    incoming, outgoing = corner.incoming, corner.outgoing
+    a, b = corner.beyond_mm - touch_mm, -corner.before_mm + touch_mm
+    way, along = onto(*stands, incoming, a)
     bend = _arc(incoming.at(a), incoming.heading_at(a), outgoing.at(b), outgoing.heading_at(b))
     return np.vstack([way, along_leg(incoming, along, a), bend, along_leg(outgoing, b, end_mm)])
 
 
-def sharp_corner(
-    stands: tuple[Array, float], incoming: Leg, outgoing: Leg, legs_mm: Meeting, end_mm: float
-) -> list[Array]:
-    """Stretches from where the head stands to the vertex, and from there to `end_mm` beyond the outgoing
-    leg's first station.
-    """
-    s, u = legs_mm
-    way, along = onto(*stands, incoming, s)
-    vertex = 0.5 * (incoming.at(s) + outgoing.at(-u))
-    arriving, leaving = along_leg(incoming, along, s), along_leg(outgoing, -u, end_mm)
+def sharp_corner(stands: tuple[Array, float], corner: Corner, end_mm: float) -> list[Array]:
+    """Two stretches, to the vertex and from there (see `through_corner`)."""
+    incoming, outgoing = corner.incoming, corner.outgoing
+    way, along = onto(*stands, incoming, corner.beyond_mm)
+    arriving = along_leg(incoming, along, corner.beyond_mm)
+    leaving = along_leg(outgoing, -corner.before_mm, end_mm)
+    vertex = 0.5 * (corner.vertex_mm + outgoing.at(-corner.before_mm))
     arriving[-1] = leaving[0] = vertex
     return [np.vstack([way, arriving]), leaving]
 
 
-def rounding(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> tuple[float, float]:
-    """The ink missing on the outside of a corner, mm, and how far from the vertex its round touches the legs
-    (0: it is sharp), mm.
+def rounding(view: View, corner: Corner) -> tuple[float, float]:
+    """The ink missing on the outside of a corner, and how far from the vertex its round touches the legs, mm.
+
+    The second is 0 for a sharp corner.
     """
-    missing = missing_ink_mm(view, incoming, outgoing, legs_mm)
+    missing = missing_ink_mm(view, corner)
     if missing <= SHARP * view.width_mm:
         return missing, 0.0
-    turned = deflection(incoming, outgoing, legs_mm)
-    return missing, missing * math.tan(turned / 2) / (1 / math.cos(turned / 2) - 1)
+    half = corner.deflection_rad / 2
+    return missing, missing * math.tan(half) / (1 / math.cos(half) - 1)
 
 
-def is_sharp(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> bool:
-    """Whether the ink of an obtuse corner is that of a sharp one: it misses less than a third of what an arc
-    over the hidden stations would.
+def is_sharp(view: View, corner: Corner) -> bool:
+    """Whether the ink of an obtuse corner is that of a sharp one.
+
+    It misses less than a third of what an arc over the hidden stations would.
     """
-    turned = deflection(incoming, outgoing, legs_mm)
-    return (
-        missing_ink_mm(view, incoming, outgoing, legs_mm)
-        <= HIDDEN * view.step_mm * math.tan(turned / 4) / 3
-    )
+    by_arc_mm = HIDDEN * view.step_mm * math.tan(corner.deflection_rad / 4)
+    return missing_ink_mm(view, corner) <= by_arc_mm / 3
 
 
-def missing_ink_mm(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> float:
-    """By how much the ink falls short of a sharp corner's on the outside of the bisector, mm (0 if it does
-    not).
+def bends_on(view: View, corner: Corner) -> bool:
+    """Whether two legs meet at no greater angle than one of them makes by bending on.
 
-    Where another line leaves on the outside of a slight turn, it is by how much the ink is more than a sharp
+    It bends on over the stations that are hidden between the legs.
+    """
+    bend = max(abs(corner.incoming.bend_per_mm), abs(corner.outgoing.bend_per_mm))
+    return corner.deflection_rad < SMOOTH + bend * HIDDEN * view.step_mm
+
+
+def missing_ink_mm(view: View, corner: Corner) -> float:
+    """By how much the ink falls short of a sharp corner's on the outside of the bisector, mm; or 0.
+
+    Where another line leaves on the outside of a slight turn, it is by how much the ink exceeds a sharp
     corner's on the inside.
     """
-    found, width_mm = (
-        _edge_mm(view, incoming, outgoing, legs_mm, 1),
-        0.5 * (incoming.width_mm + outgoing.width_mm),
-    )
-    if not hides_outside(view, incoming, outgoing, legs_mm):
-        return max(0.0, 0.5 * width_mm - found) if math.isfinite(found) else 0.0
-    within, half = (
-        _edge_mm(view, incoming, outgoing, legs_mm, -1),
-        0.5 * deflection(incoming, outgoing, legs_mm),
-    )
-    return max(0.0, within - 0.5 * width_mm / math.cos(half)) if math.isfinite(within) else 0.0
+    half_mm = 0.5 * corner.width_mm
+    if not hides_outside(view, corner):
+        found = _edge_mm(view, corner, 1)
+        return max(0.0, half_mm - found) if math.isfinite(found) else 0.0
+    within = _edge_mm(view, corner, -1)
+    sharp = half_mm / math.cos(0.5 * corner.deflection_rad)
+    return max(0.0, within - sharp) if math.isfinite(within) else 0.0
 
 
-def hides_outside(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> bool:
-    """Whether another line leaves on the outside of a slight turn: there is more ink than a corner's, and its
-    edges tell nothing of it.
+def hides_outside(view: View, corner: Corner) -> bool:
+    """Whether another line leaves on the outside of a slight turn: there is more ink than a corner's."""
+    if corner.deflection_rad >= SLIGHT:
+        return False
+    return not _edge_mm(view, corner, 1) < HIDES * corner.incoming.width_mm
+
+
+def _edge_mm(view: View, corner: Corner, side: int) -> float:
+    """How far the ink reaches from the vertex along the bisector, outside (1) or inside (-1), mm.
+
+    NaN if it has no edge there.
     """
-    found = _edge_mm(view, incoming, outgoing, legs_mm, 1)
-    return (
-        deflection(incoming, outgoing, legs_mm) < SLIGHT
-        and not found < HIDES * incoming.width_mm
-    )
-
-
-def deflection(incoming: Leg, outgoing: Leg, legs_mm: Meeting) -> float:
-    """By how much the way turns where two legs meet, rad."""
-    return abs(turn(incoming.heading_at(legs_mm[0]), outgoing.heading_at(-legs_mm[1])))
-
-
-def _edge_mm(view: View, incoming: Leg, outgoing: Leg, legs_mm: Meeting, side: int) -> float:
-    """How far the ink of a corner reaches from the vertex along the bisector, to the outside (1) or the
-    inside (-1), mm; NaN if it has no edge there.
-    """
-    vertex, width_mm = incoming.at(legs_mm[0]), 0.5 * (incoming.width_mm + outgoing.width_mm)
-    before, after = incoming.heading_at(legs_mm[0]), outgoing.heading_at(-legs_mm[1])
-    out = side * np.array(
-        [math.cos(before) - math.cos(after), math.sin(before) - math.sin(after)]
-    )
-    outward = math.atan2(out[1], out[0])
-    reach = 2.0 * width_mm + 3 * view.pitch_mm
+    before, after = corner.headings_rad()
+    x, y = math.cos(before) - math.cos(after), math.sin(before) - math.sin(after)
+    outward = math.atan2(side * y, side * x)
+    reach = REACH_WIDTHS * corner.width_mm + REACH_PX * view.pitch_mm
     aside = np.array([math.sin(outward), -math.cos(outward)])
     edges_mm = []
-    for off in (
-        np.linspace(-0.15, 0.15, 5) * width_mm
-    ):  # the pen's round leaves the tangent by off²/width
-        edge = _edge_outward(view, vertex + off * aside, outward, width_mm, reach)
-        edges_mm.append(edge + (off * off / width_mm if side > 0 else 0.0))
+    for off in np.linspace(-ACROSS, ACROSS, RAYS) * corner.width_mm:
+        place = corner.vertex_mm + off * aside
+        edge = _edge_outward(view, place, outward, (corner.width_mm, reach))
+        # outside, the pen's round leaves the tangent by off²/width
+        edges_mm.append(edge + (off * off / corner.width_mm if side > 0 else 0.0))
     return float(np.median(edges_mm))
 
 
 def _edge_outward(
-    view: View, place: Array, outward: float, width_mm: float, reach_mm: float
+    view: View, place: Array, outward: float, width_reach_mm: tuple[float, float]
 ) -> float:
-    """Where the ink about a place ends outward, mm; NaN if there is none. A light speck in the ink does not
-    end it.
+    """Where the ink about a place ends outward, mm; NaN if there is no ink.
+
+    A light speck in the ink does not end it.
     """
+    width_mm, reach_mm = width_reach_mm
     _, edge = view.edges(place, outward - math.pi / 2, reach_mm)
     within_mm = 0.5 * width_mm
     within = place - within_mm * np.array([math.cos(outward), math.sin(outward)])
@@ -177,9 +222,9 @@ def _edge_outward(
 
 
 def _arc(start: Array, heading: float, end: Array, end_heading: float) -> Array:
-    """An arc that leaves along one heading and arrives along another: cubics of at most 30 degrees each."""
+    """An arc that leaves along one heading and arrives along another, in cubics of at most `PIECE_RAD`."""
     angle = turn(heading, end_heading)
-    pieces = max(1, math.ceil(abs(angle) / math.radians(30)))
+    pieces = max(1, math.ceil(abs(angle) / PIECE_RAD))
     radius = float(np.hypot(*(end - start))) / (2 * math.sin(abs(angle) / 2))
     side = math.copysign(1.0, angle)
     centre = start + side * radius * np.array([-math.sin(heading), math.cos(heading)])

@@ -1,13 +1,12 @@
-"""Breaks: where a line ends, or was lost, and ink goes on in line with it behind more paper than the head may
-go across.
+"""Gaps: where a line ends, or was lost, and ink goes on in line with it behind a wider gap than is allowed.
 
 Signals: the view of a line and the way of the head along it in; the ends of that way from which ink goes on
-straight ahead, and how wide a gap would have to be allowed to get there (mm) out.
+straight ahead, and how wide a gap must be allowed to get there (mm) out.
 
-    ━━━━━━━━━●   1.2 mm   ━━━━━━━━        as of a dashed line: the operator is told of `--gap`
+    ━━━━━━━━━●   1.2 mm   ━━━━━━━━        as of a dashed line: the operator may allow it with `--gap`
 
-Source: our own. What the head would make of a wider gap is what it makes of one that is allowed (see
-`survey.straight_on`).
+Source: our own. The head goes across a wider gap as it does across one that is allowed (see
+`line_ahead.straight_on`).
 """
 
 from __future__ import annotations
@@ -18,19 +17,16 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.tracer.junctions.choice import straight_on
+from morfax.tracer.junctions.line_ahead import FARTHEST_WIDTHS, FEWEST, straight_on
 from morfax.tracer.sensing.leg import leg_of
 from morfax.tracer.sensing.view import View
 
-FARTHEST_WIDTHS = 6.0  # ink further ahead is another line's
-EVERY_MM = 0.1  # gaps are tried in these steps
-FEWEST = 8  # stations of a leg
+EVERY_MM = 0.1  # gaps are tried in these steps: the option shows as many digits
+FELT_LEGS = 1.5  # of a leg's length, before the end
 
 
 class Break(NamedTuple):
-    """An end of a line from which ink goes on straight ahead: where it is, and how wide a gap takes the head
-    across, mm.
-    """
+    """An end of a line from which ink goes on straight ahead, and how wide the gap before that is, mm."""
 
     place_mm: tuple[float, float]
     gap_mm: float
@@ -46,15 +42,14 @@ def breaks(view: View, way_mm: Array, at_start: bool) -> tuple[Break, ...]:
 
 
 def _gap_mm(view: View, way_mm: Array) -> float | None:
-    """The gap that would have to be allowed to go on straight from the end of a way; None if no ink goes on
-    there.
-    """
-    before = np.hypot(*(way_mm - way_mm[-1]).T) > 1.5 * view.leg_mm
+    """The gap that must be allowed to go on straight from the end of a way; None if no ink goes on there."""
+    felt_mm = FELT_LEGS * view.leg_mm
+    before = np.hypot(*(way_mm - way_mm[-1]).T) > felt_mm
     if not before.any():
         return None
     place = way_mm[np.flatnonzero(before)[-1]]
     along = way_mm[-1] - place
-    seen = view.feel(place, math.atan2(along[1], along[0]), 1.5 * view.leg_mm)
+    seen = view.feel(place, math.atan2(along[1], along[0]), felt_mm)
     if len(seen) < FEWEST:
         return None
     leg, most_mm = leg_of(seen, True, view.leg_mm), FARTHEST_WIDTHS * view.width_mm

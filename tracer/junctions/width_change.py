@@ -1,24 +1,23 @@
-"""Pens: where a line goes on with another pen, which draws wider or narrower.
+"""Changes of width: where a line goes on with another pen, which draws wider or narrower.
 
 Engraved and inked drawings have shade lines: the sides of a part away from the light are drawn wider. A line
 that goes on with a step in its width ends the clean leg, and no leg of its own width leads on. So the head
-looks on for a line of another width: straight ahead, in line with its own; else about the knot, where it
+looks for a line of another width: straight ahead, in line with its own; else about the junction, where it
 takes the leg that goes on straightest.
 
     ________                          ________
-            |_________________                |     two lines that run together are wider too, but to one side of the head's own
-     . . . . . . . . . . . . .         . . . .|. . . . . . .
-     _______ _________________        ________|_____________
+            |_________________                |     two lines that run together are wider too,
+     . . . . . . . . . . . . .         . . . .|. .  but to one side of the head's own
+     _______ _________________        ________|___
             |
 
 Signals: the incoming leg and the trail in; the outgoing leg out, as it is seen there, and where the two meet.
 
-Source: our own (see `knot`).
+Source: our own (see `rings`).
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import NamedTuple
@@ -28,62 +27,54 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.tracer.head.course import ahead_mm
 from morfax.tracer.head.trail import Trail
-from morfax.tracer.junctions.choice import survey
-from morfax.tracer.sensing.leg import Leg, Meeting, leg_of, meet, turn
+from morfax.tracer.junctions.choice import PASSES, survey
+from morfax.tracer.junctions.corner import Corner
+from morfax.tracer.sensing.leg import Leg, leg_of, turn
 from morfax.tracer.sensing.view import View
 
-PENS = (
-    2.0,
-    0.45,
-)  # times the line's width: with a ring's tolerance each, from a quarter of it to three times
-WIDEST, NARROWEST = 3.5, 0.25  # times the line's width, straight ahead
-ALIKE = 0.1  # of the width: no other pen
-STEP = 0.2  # of the width: another pen, and no swelling of the line
-STEADY_WIDTHS, STEADY = 8.0, 0.06  # so long and so evenly
-AHEAD_WIDTHS = 4.0  # as far as the other line is looked for
+# Chosen by trial on the test drawings. Pens and edges are times the line's width.
+PENS = (2.0, 0.45)  # with a ring's tolerance each, from a quarter of the width to three times
+WIDEST, NARROWEST = 3.5, 0.25  # straight ahead
+ALIKE = 0.1  # no other pen
+STEP = 0.2  # another pen, and no swelling of the line
+STEADY_WIDTHS, STEADY = (
+    8.0,
+    0.06,
+)  # so long and so evenly: two lines that run together do not stay so
+AHEAD_WIDTHS, AHEAD_STEP = 4.0, 0.5  # as far, and in such steps, the other line is looked for
 FAR_LEGS = 2.0  # the vertex lies further off than at a corner of one width
-ASIDE, LEAST_ASIDE_MM = (
-    0.4,
-    0.015,
-)  # of what a line beside it would set it off; as well as the way ahead is known
-IN_LINE = math.radians(12)
+ASIDE = 0.4  # of what a line beside it would set the middle off: it is in line
+LEAST_ASIDE_MM = 0.015  # the way ahead is known as well as this
 
 
 class Onward(NamedTuple):
-    """A line of another width: how it is seen, its leg, and where it meets the way in; None if it lies in
-    line with it.
-    """
+    """A line of another width: how it is seen, its leg, and its corner with the way in; None if in line."""
 
     view: View
     leg: Leg
-    legs_mm: Meeting | None
+    corner: Corner | None
 
 
 def of_another_pen(view: View, incoming: Leg, trail: Trail) -> Onward | None:
-    """The line that goes on from a leg's clean end with another width; None if there is none that has not
-    been followed.
-    """
+    """The line that goes on from a leg's clean end with another width, and has not been followed; or None."""
+    # 1. straight ahead
     for onward in _straight_ahead(view, incoming):
         if not trail.holds(onward.leg, view.width_mm):
             return onward
+    # 2. about the junction
     for times in PENS:
         other = replace(view, width_mm=times * view.width_mm, usual_mm=None)
-        leg, legs_mm, _ = survey(other, incoming, trail)
-        if (
-            leg is not None
-            and legs_mm is not None
-            and abs(leg.width_mm / view.width_mm - 1) > STEP
-        ):
-            found = replace(view, width_mm=leg.width_mm, usual_mm=None)
-            far = _felt(found, leg.end_mm, leg.heading_rad, FAR_LEGS) or leg
-            return Onward(found, far, meet(incoming, far))
+        leg, corner, _ = survey(other, incoming, trail)
+        if leg is None or corner is None or abs(leg.width_mm / view.width_mm - 1) <= STEP:
+            continue
+        found = replace(view, width_mm=leg.width_mm, usual_mm=None)
+        far = _felt(found, leg.end_mm, leg.heading_rad, FAR_LEGS) or leg
+        return Onward(found, far, Corner.of(incoming, far))
     return None
 
 
 def another_pen(view: View, leg: Leg) -> bool:
-    """Whether a leg is wider or narrower than the line, and stays so: two lines that run together do not stay
-    as wide for long.
-    """
+    """Whether a leg is wider or narrower than the line, and stays so."""
     if abs(leg.width_mm / view.width_mm - 1) < STEP:
         return False
     other = replace(view, width_mm=leg.width_mm)
@@ -91,15 +82,13 @@ def another_pen(view: View, leg: Leg) -> bool:
     if len(seen) * view.step_mm < STEADY_WIDTHS * leg.width_mm:
         return False
     near, far = (float(np.median(part[:, 2])) for part in np.array_split(seen, 2))
-    return (
-        abs(far - near) < STEADY * leg.width_mm
-        and float(np.std(seen[:, 2])) < STEADY * leg.width_mm
-    )
+    within_mm = STEADY * leg.width_mm
+    return abs(far - near) < within_mm and float(np.std(seen[:, 2])) < within_mm
 
 
 def _straight_ahead(view: View, incoming: Leg) -> Iterator[Onward]:
     """Lines of another width in line with a leg."""
-    step = 0.5 * view.width_mm
+    step = AHEAD_STEP * view.width_mm
     for along in np.arange(step, AHEAD_WIDTHS * view.width_mm, step):
         place, heading = incoming.at(along), incoming.heading_at(along)
         reach_mm = WIDEST * view.width_mm
@@ -114,15 +103,16 @@ def _straight_ahead(view: View, incoming: Leg) -> Iterator[Onward]:
 
 
 def _felt(view: View, place: Array, heading: float, legs: float = 1.0) -> Leg | None:
-    """The line felt from a place on, clean for as long as so many legs; None if it is not."""
+    """The line felt from a place on, if it is clean for so many legs' lengths."""
     length_mm = legs * view.leg_mm
     seen = view.feel(place, heading, length_mm)
     return leg_of(seen, False, length_mm) if len(seen) > length_mm / view.step_mm else None
 
 
 def _in_line(incoming: Leg, leg: Leg) -> bool:
-    """Whether a wider or narrower line has the same middle: one that has another beside it has not."""
+    """Whether a wider or narrower line has the same middle: a line with another beside it has not."""
     along = -ahead_mm(leg.end_mm, incoming)
     aside = float(np.hypot(*(leg.end_mm - incoming.at(along))))
     allowed = max(ASIDE * 0.5 * abs(leg.width_mm - incoming.width_mm), LEAST_ASIDE_MM)
-    return aside < allowed and abs(turn(incoming.heading_at(along), leg.heading_rad)) < IN_LINE
+    turned = abs(turn(incoming.heading_at(along), leg.heading_rad))
+    return aside < allowed and turned < PASSES

@@ -13,7 +13,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.tracer.head.course import ahead_mm
-from morfax.tracer.head.planned import Planned
+from morfax.tracer.head.plan import Plan
 from morfax.tracer.head.trail import Trail
 from morfax.tracer.marks.marks import longest_mm
 from morfax.tracer.sensing.leg import Leg, turn
@@ -45,10 +45,10 @@ class Tangles:
         incoming: Leg,
         trail: Trail,
         way_in: tuple[Array, float],
-        plan: Planned | None,
+        plan: Plan | None,
         number: int = 0,
         rank: int = 0,
-    ) -> tuple[Planned | None, bool]:
+    ) -> tuple[Plan | None, bool]:
         """The way from where the head is (place, heading) out of the tangle ahead, and whether it explains
         the tangle's ink.
 
@@ -61,7 +61,7 @@ class Tangles:
         strand = self._strand_left(incoming, trail, way_in[0], view.width_mm)
         if strand is not None and rank == 0:
             first, vertices, last = strand
-            return Planned(stretches_over(way_in, first, vertices, last), last), True
+            return Plan(stretches_over(way_in, first, vertices, last), last), True
         tangle = tangle_ahead(view, incoming)
         odd = (
             len(tangle.legs) % 2 == 1

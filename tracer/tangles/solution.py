@@ -15,7 +15,7 @@ from itertools import combinations
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.tracer.head.planned import Planned
+from morfax.tracer.head.plan import Plan
 from morfax.tracer.head.trail import Trail
 from morfax.tracer.marks.marks import longest_mm
 from morfax.tracer.sensing.leg import Leg, goes_straight, turn
@@ -49,9 +49,9 @@ def unravelled(
     incoming: Leg,
     trail: Trail,
     way_in: tuple[Array, float],
-    plan: Planned | None,
+    plan: Plan | None,
     rank: int,
-) -> tuple[Planned | None, Way | None, list[Leg]]:
+) -> tuple[Plan | None, Way | None, list[Leg]]:
     """The way out of a tangle, the way in which its ink is drawn then, None if no way explains it, and the
     legs of others that would do as well.
     """
@@ -88,7 +88,7 @@ def unravelled(
         if _bends(sketch, way)
         else []
     )
-    direct = Planned(stretches_over(way_in, incoming, NONE, tangle.legs[leg]), tangle.legs[leg])
+    direct = Plan(stretches_over(way_in, incoming, NONE, tangle.legs[leg]), tangle.legs[leg])
     if any(_is_rough(way, line, view.width_mm) for line in (plan, direct)):
         return plan or direct, way, as_good
     if straight or (
@@ -98,16 +98,14 @@ def unravelled(
     ):
         return plan, way, as_good
     return (
-        Planned(
-            stretches_over(way_in, incoming, _own(way), tangle.legs[leg]), tangle.legs[leg]
-        ),
+        Plan(stretches_over(way_in, incoming, _own(way), tangle.legs[leg]), tangle.legs[leg]),
         way,
         as_good,
     )
 
 
 def _by_leg(
-    sketch: Sketch, every: list[Way], trail: Trail, plan: Planned | None, clear: float
+    sketch: Sketch, every: list[Way], trail: Trail, plan: Plan | None, clear: float
 ) -> dict[int, Way]:
     """The best way to each leg that has not been followed, the best first, of those that explain the ink."""
     view, legs = sketch.view, sketch.tangle.legs
@@ -122,7 +120,7 @@ def _by_leg(
     return best
 
 
-def _stands(sketch: Sketch, way: Way, plan: Planned, drawn: list[Array]) -> bool:
+def _stands(sketch: Sketch, way: Way, plan: Plan, drawn: list[Array]) -> bool:
     """Whether a plan that leads where the best way does explains the ink as well, but for a mark beside it."""
     planned = sketch.misfit_with(_without_own(way), drawn)
     if planned < way.misfit + VERTEX * (1 + len(_own(way))):
@@ -130,7 +128,7 @@ def _stands(sketch: Sketch, way: Way, plan: Planned, drawn: list[Array]) -> bool
     return goes_straight(sketch.tangle.legs[0], plan.leg) and _is_mark(sketch, way, plan)
 
 
-def _is_rough(way: Way, line: Planned | None, width_mm: float) -> bool:
+def _is_rough(way: Way, line: Plan | None, width_mm: float) -> bool:
     """Whether a way only goes to and fro within the ink of a line, and leaves some unexplained all the same:
     its edges are rough.
     """
@@ -155,7 +153,7 @@ def _as_good(way: Way, other: Way) -> bool:
     return way.cost < other.cost + DOUBTFUL and way.misfit < TWICE * other.misfit + LEAST_MISFIT
 
 
-def _is_mark(sketch: Sketch, way: Way, plan: Planned) -> bool:
+def _is_mark(sketch: Sketch, way: Way, plan: Plan) -> bool:
     """Whether what a way draws beside the straight one may be a mark or a blot: no longer than a mark, and no
     stroke of the line explains it better.
     """

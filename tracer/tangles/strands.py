@@ -16,7 +16,7 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.curves import SPACING_MM, hermite
 from morfax.tracer.head.course import ahead_mm, along_leg, onto
-from morfax.tracer.head.planned import Planned
+from morfax.tracer.head.plan import Plan
 from morfax.tracer.sensing.leg import Leg, turn
 from morfax.tracer.tangles import pen
 from morfax.tracer.tangles.tangle import Tangle
@@ -63,7 +63,7 @@ def stretches_over(
     return out
 
 
-def as_drawn(plan: Planned, tangle: Tangle, width_mm: float) -> list[Array]:
+def as_drawn(plan: Plan, tangle: Tangle, width_mm: float) -> list[Array]:
     """What a plan draws: its stretches, what was felt of its leg, and on to that leg's clean end in the
     tangle.
     """

@@ -17,7 +17,7 @@ from morfax.motion.polyline import Nearest
 from morfax.tracer.cutter.contour import Cut
 from morfax.tracer.cutter.cutter import Cutter, Left, Side, with_cutter
 from morfax.tracer.following.line import Line
-from morfax.tracer.junctions.guides import Guide
+from morfax.tracer.junctions.guides import GuideLine
 from morfax.tracer.marks.marks import Mark
 from morfax.tracer.operator.card import Card
 from morfax.tracer.operator.operator import Operator
@@ -65,7 +65,7 @@ def marked(tick_mm: float = 5.0, *, guide: bool = False, way: Array = WAY) -> Li
     if not guide:
         way = np.vstack([way[: at(way[:OUT], LEFT_TO)], way[BACK:]])
     marks[1] = replace(marks[1], at=float(FROM + at(way[FROM:], (18, 3))))
-    guides = (Guide(at(way[:OUT], LEFT_TO), OUT, BACK),) if guide else ()
+    guides = (GuideLine(at(way[:OUT], LEFT_TO), OUT, BACK),) if guide else ()
     return Line(
         way,
         "joined",

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 
 from morfax.motion import curves
 from morfax.motion.arrays import Array
-from morfax.tracer.junctions import corner
+from morfax.tracer.junctions.corner import SHARP, Corner, missing_ink_mm, through_corner
 from morfax.tracer.sensing import photocell
-from morfax.tracer.sensing.leg import Leg, meet
+from morfax.tracer.sensing.leg import Leg
 from morfax.tracer.sensing.view import View
 from tests.tracer.inked import UM, WIDTH_MM, inked
 from tests.tracer.inked import corner as drawn_corner
@@ -84,8 +84,8 @@ def test_places_that_repeat_are_left_out() -> None:
 
 def at_corner(
     deflection_deg: float, radius_mm: float, seed: int | None = None
-) -> tuple[View, Leg, Leg, tuple[float, float]]:
-    """A drawn corner, its legs as they are, 1.2 mm before and after the vertex, and where they meet."""
+) -> tuple[View, Corner]:
+    """A drawn corner, its legs as they are, 1.2 mm before and after the vertex."""
     line = drawn_corner(deflection_deg, radius_mm)
     drawing = inked(line, seed=seed)
     vertex = drawn_corner(deflection_deg)[1]
@@ -95,23 +95,22 @@ def at_corner(
         vertex + 1.2 * np.array([math.cos(out), math.sin(out)]), out, 0.0, WIDTH_MM, NO_STATIONS
     )
     eyes = View(photocell.behind_aperture(drawing, 0.15), WIDTH_MM)
-    legs_mm = meet(incoming, outgoing)
-    assert legs_mm == pytest.approx((1.2, 1.2), abs=1e-9)
-    return eyes, incoming, outgoing, legs_mm
+    corner = Corner.of(incoming, outgoing)
+    assert corner is not None
+    assert (corner.beyond_mm, corner.before_mm) == pytest.approx((1.2, 1.2), abs=1e-9)
+    return eyes, corner
 
 
-def through(
-    eyes: View, incoming: Leg, outgoing: Leg, legs_mm: tuple[float, float]
-) -> list[Array]:
+def through(eyes: View, corner: Corner) -> list[Array]:
     """The course of a head that stands 0.5 mm before the incoming leg's clean end."""
-    stands = incoming.at(-0.5), incoming.heading_rad
-    return corner.through_corner(eyes, stands, incoming, outgoing, legs_mm, 0.0)
+    stands = corner.incoming.at(-0.5), corner.incoming.heading_rad
+    return through_corner(eyes, stands, corner, 0.0)
 
 
 @pytest.mark.parametrize("deflection_deg", [60.0, 90.0, 120.0, 144.0])
 def test_a_sharp_corner_goes_through_its_vertex(deflection_deg: float) -> None:
-    eyes, incoming, outgoing, legs_mm = at_corner(deflection_deg, 0.0)
-    stretches = through(eyes, incoming, outgoing, legs_mm)
+    eyes, corner = at_corner(deflection_deg, 0.0)
+    stretches = through(eyes, corner)
     assert len(stretches) == 2  # the head stops and swivels between them
     vertex = drawn_corner(deflection_deg)[1]
     assert stretches[0][-1] == pytest.approx(vertex, abs=1e-9) and stretches[1][
@@ -125,12 +124,10 @@ def test_a_sharp_corner_goes_through_its_vertex(deflection_deg: float) -> None:
 def test_a_rounded_corner_goes_round_on_its_radius(
     deflection_deg: float, radius_mm: float
 ) -> None:
-    eyes, incoming, outgoing, legs_mm = at_corner(deflection_deg, radius_mm)
+    eyes, corner = at_corner(deflection_deg, radius_mm)
     missed = radius_mm * (1 / math.cos(math.radians(deflection_deg) / 2) - 1)
-    assert corner.missing_ink_mm(eyes, incoming, outgoing, legs_mm) == pytest.approx(
-        missed, abs=20 * UM
-    )
-    (way,) = through(eyes, incoming, outgoing, legs_mm)
+    assert missing_ink_mm(eyes, corner) == pytest.approx(missed, abs=20 * UM)
+    (way,) = through(eyes, corner)
     nearest = np.hypot(*(way - drawn_corner(deflection_deg)[1]).T).min()
     assert nearest == pytest.approx(
         missed, abs=25 * UM
@@ -139,5 +136,5 @@ def test_a_rounded_corner_goes_round_on_its_radius(
 
 def test_a_sharp_corner_misses_no_ink() -> None:
     for deflection_deg in (60.0, 90.0, 120.0):
-        eyes, *legs = at_corner(deflection_deg, 0.0)
-        assert corner.missing_ink_mm(eyes, *legs) < corner.SHARP * WIDTH_MM
+        eyes, corner = at_corner(deflection_deg, 0.0)
+        assert missing_ink_mm(eyes, corner) < SHARP * WIDTH_MM

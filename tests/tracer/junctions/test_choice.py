@@ -1,4 +1,4 @@
-"""The survey of a knot and the ride past ink beside the line: which way the head goes on."""
+"""The survey of a junction, gaps, and edge following past ink beside the line: which way the head goes on."""
 
 from __future__ import annotations
 
@@ -9,8 +9,9 @@ import pytest
 
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.head.trail import Trail
-from morfax.tracer.junctions.choice import straight_on, survey
-from morfax.tracer.junctions.edge_following import ride_past
+from morfax.tracer.junctions.choice import Asked, survey
+from morfax.tracer.junctions.edge_following import follow_edge
+from morfax.tracer.junctions.line_ahead import straight_on
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.leg import Leg, goes_straight, leg_of
 from morfax.tracer.sensing.view import View
@@ -25,7 +26,7 @@ Seen = tuple[View, Leg, Trail]
 
 
 def come_along(drawing: Drawing, to_mm: float = X_MM) -> Seen:
-    """A head that has come along y = 10 mm, and feels the line ahead up to a knot, at most to x = `to_mm`."""
+    """A head that has come along y = 10 mm, and feels the line ahead up to a junction, at most to x = `to_mm`."""
     eyes = View(photocell.behind_aperture(drawing, 0.15), WIDTH_MM + 25 * UM)
     start = np.array([to_mm - 3.0, 10.0])
     trail = Trail(np.array([4.0, 10.0]), eyes.step_mm)
@@ -47,13 +48,13 @@ def test_a_corner_has_one_way_on_and_a_vertex(out_deg: float) -> None:
     a = math.radians(out_deg)
     line = np.vstack([WAY_IN, [X_MM + 6 * math.cos(a), 10 + 6 * math.sin(a)]])
     eyes, incoming, trail = come_along(inked(line))
-    outgoing, legs_mm, choices = survey(eyes, incoming, trail)
+    outgoing, corner, choices = survey(eyes, incoming, trail)
     assert choices == 1 and degrees(outgoing) == pytest.approx(out_deg, abs=1)
-    assert legs_mm is not None
+    assert corner is not None
     within_mm = (
         VERTEX_MM / math.sin(a) ** 2
     )  # legs that meet at a smaller angle say less of where
-    assert incoming.at(legs_mm[0]) == pytest.approx(np.array([X_MM, 10]), abs=abs(within_mm))
+    assert corner.vertex_mm == pytest.approx(np.array([X_MM, 10]), abs=abs(within_mm))
 
 
 @pytest.mark.parametrize("other_deg", [45.0, 60.0, 90.0, 120.0])
@@ -75,7 +76,7 @@ def test_at_a_fork_without_a_straight_leg_the_straightest_is_taken_and_the_next_
     )
     eyes, incoming, trail = come_along(drawing)
     first, _, choices = survey(eyes, incoming, trail)
-    second, _, _ = survey(eyes, incoming, trail, rank=1)
+    second, _, _ = survey(eyes, incoming, trail, Asked(rank=1))
     assert choices == 2
     assert degrees(first) == pytest.approx(56.3, abs=1) and degrees(second) == pytest.approx(
         -90, abs=1
@@ -121,26 +122,26 @@ def test_a_gap_is_not_carried_to_a_line_aside() -> None:
     assert straight_on(eyes, incoming, 0.5) is None
 
 
-# riding on an edge
+# following one edge
 
 
 def test_two_lines_that_run_into_a_tip_are_one_that_turned_back() -> None:
     tip = (26.0, 10.0)
     eyes, incoming, _ = come_along(inked(polyline((4, 10), tip, (4, 12))), 19.0)
-    ride = ride_past(eyes, incoming)
-    assert ride is not None and ride.back is not None
-    assert np.hypot(*(ride.back[0, :2] - tip)) < 0.7  # the issue's bound for sharp tips
+    run = follow_edge(eyes, incoming)
+    assert run is not None and run.back is not None
+    assert np.hypot(*(run.back[0, :2] - tip)) < 0.7  # the issue's bound for sharp tips
     back = polyline(tip, (4, 12))
     aside = (
-        (ride.back[:, :2] - tip)
+        (run.back[:, :2] - tip)
         @ np.array([back[1, 1] - 10, tip[0] - back[1, 0]])
         / np.hypot(*(back[1] - tip))
     )
     assert (
-        np.abs(aside[ride.back[:, 0] < 24]).max() < 25 * UM
+        np.abs(aside[run.back[:, 0] < 24]).max() < 25 * UM
     )  # on the way back, where the ink is broader than the pen
 
 
 def test_a_clean_line_is_not_ridden() -> None:
     eyes, incoming, _ = come_along(inked(polyline((4, 10), (30, 10))))
-    assert ride_past(eyes, incoming) is None
+    assert follow_edge(eyes, incoming) is None

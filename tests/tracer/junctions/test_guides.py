@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from morfax.tracer.following.line import Line
-from morfax.tracer.junctions.guides import AGAIN_MM, Guide, Junctions
+from morfax.tracer.junctions.guides import AGAIN_MM, GuideLine, Junctions
 from morfax.tracer.operator.card import Card
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.trace import trace
@@ -47,7 +47,7 @@ def test_a_guide_line_is_left_for_ends_and_is_come_back_from() -> None:
     assert junctions.next(31.0) == -1 + len(junctions.places_mm) or not junctions.places_mm
     assert not junctions.comes_back(HERE, 1.0) and not junctions.turn_round(250)
     (guide,) = junctions.guides(way)
-    assert isinstance(guide, Guide) and guide.tip == 151
+    assert isinstance(guide, GuideLine) and guide.tip == 151
     assert way[guide.leave] == pytest.approx(HERE) and way[guide.back] == pytest.approx(HERE)
 
 

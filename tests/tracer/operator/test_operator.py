@@ -11,7 +11,7 @@ import pytest
 
 from morfax.motion.faults import CardFault
 from morfax.tracer.following.line import Line
-from morfax.tracer.junctions.guides import Guide
+from morfax.tracer.junctions.guides import GuideLine
 from morfax.tracer.marks.marks import Mark
 from morfax.tracer.operator.card import Card, Stop
 from morfax.tracer.operator.operator import STAND_S, Operator
@@ -26,7 +26,7 @@ def tick(at: float) -> Mark:
     return Mark("tick", (at / 10, 0.0), at)
 
 
-def line(*marks: Mark, guides: tuple[Guide, ...] = (), ending: str = "joined") -> Line:
+def line(*marks: Mark, guides: tuple[GuideLine, ...] = (), ending: str = "joined") -> Line:
     """A lead line of 30 mm from a reference point, and its loop; or a guide line that ends."""
     loop_from = 300 if ending == "joined" else None
     return Line(
@@ -72,7 +72,7 @@ def test_without_a_tick_it_goes_down_where_the_loop_begins() -> None:
 
 
 def test_a_guide_line_is_run_raised_and_a_hole_is_drilled_at_its_end() -> None:
-    guide = Guide(500, 600, 700)
+    guide = GuideLine(500, 600, 700)
     made = done(PLAIN, line(tick(250), guides=(guide,)))
     assert made == [
         [("tick", [-4.0]), ("leave", [2.0]), ("hole", [-4.0, 2.0]), ("back", [-4.0])]

@@ -13,7 +13,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault
 from morfax.motion.motion import MOTION_RATE_HZ, join
 from morfax.tracer.following.line import Line
-from morfax.tracer.junctions.guides import Guide
+from morfax.tracer.junctions.guides import GuideLine
 from morfax.tracer.marks.marks import Mark
 from morfax.tracer.operator.card import Card
 from morfax.tracer.operator.operator import Operator
@@ -136,7 +136,7 @@ def test_a_guide_line_is_left_for_on_the_first_pass_only_and_never_in_the_work()
         (0, 0), (10, 0), (10, 8), (14, 8), (14, 4), (14, 8), (18, 8), (18, 0), (10.01, 0)
     )
     tip = at(way, (14, 4))
-    guide = Guide(at(way[:tip], (14, 8)), tip, tip + at(way[tip:], (14, 8)))
+    guide = GuideLine(at(way[:tip], (14, 8)), tip, tip + at(way[tip:], (14, 8)))
     line = Line(
         way,
         "joined",
@@ -161,7 +161,7 @@ def test_where_the_head_came_back_aside_from_a_guide_line_no_pass_leaps() -> Non
         (0, 0), (10, 0), (10, 8), (18, 8), (18, 12), (18.004, 8.003), (18, 0), (10.01, 0)
     )
     leave, tip = at(way, (18, 8)), at(way, (18, 12))
-    guide = Guide(leave, tip, tip + at(way[tip:], (18.004, 8.003)))
+    guide = GuideLine(leave, tip, tip + at(way[tip:], (18.004, 8.003)))
     line = replace(LINE, xy_mm=way, loop_from=at(way, (10, 0)), guides=(guide,))
     cut = join(Trace((line,), Operator(replace(WORK, passes_mm=(2.0,))))).positions_mm
     speeds = np.hypot(*np.diff(cut[:, :2], axis=0).T)[cut[1:, 2] < 0] * MOTION_RATE_HZ

@@ -8,7 +8,7 @@ from morfax.motion.arrays import Array
 from morfax.tracer.sensing.leg import Leg
 
 
-class Planned(NamedTuple):
+class Plan(NamedTuple):
     """Stretches (n, 2) mm from where the head is, the leg they lead to, and the stations (n, 3) felt."""
 
     stretches: list[Array]

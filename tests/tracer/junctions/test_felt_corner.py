@@ -1,4 +1,4 @@
-"""The pilot: a way round a corner that the line was felt round is where it was felt."""
+"""Corners felt round: a way round a corner that the line was felt round is where it was felt."""
 
 from __future__ import annotations
 
@@ -10,10 +10,8 @@ import pytest
 
 from morfax.motion import curves
 from morfax.motion.arrays import Array
-from morfax.tracer.head.planned import Planned
-from morfax.tracer.head.settings import Settings
-from morfax.tracer.head.trail import Trail
-from morfax.tracer.junctions.planner import Pilot
+from morfax.tracer.head.plan import Plan
+from morfax.tracer.junctions.felt_corner import is_as_felt
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.leg import leg_of, turn
 from morfax.tracer.sensing.view import View
@@ -54,7 +52,6 @@ def test_a_way_by_the_vertex_is_taken_only_where_the_line_was_felt_there(
     stations.
     """
     view, seen = felt(radius_mm)
-    pilot = Pilot(view, (seen[0, :2], 0.0), Trail(seen[0, :2], view.step_mm), Settings())
     legs = leg_of(seen[:16], True, view.leg_mm), leg_of(seen[-16:], False, view.leg_mm)
     way = polyline(
         (6.5, 5), (8, 5), (8 + 0.7 * math.cos(DEFLECTION), 5 + 0.7 * math.sin(DEFLECTION))
@@ -62,5 +59,5 @@ def test_a_way_by_the_vertex_is_taken_only_where_the_line_was_felt_there(
     stretches = [np.linspace(a, b, 40) for a, b in pairwise(way)]
     deflection = abs(turn(legs[0].heading_rad, legs[1].heading_rad))
     assert deflection == pytest.approx(DEFLECTION, abs=math.radians(2))
-    assert pilot._as_felt(Planned(stretches, legs[1]), seen, deflection) is is_felt
-    assert pilot._as_felt(Planned([curves.distinct(seen[:, :2])], legs[1]), seen, deflection)
+    assert is_as_felt(view, Plan(stretches, legs[1]), seen, deflection) is is_felt
+    assert is_as_felt(view, Plan([curves.distinct(seen[:, :2])], legs[1]), seen, deflection)

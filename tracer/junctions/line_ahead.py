@@ -1,0 +1,96 @@
+"""Lines ahead: where the ink ends or is a blot, the head looks for the line that goes on from there.
+
+Straight on, through a blot or across a gap that is no wider than allowed; or, where the line is lost, in
+widening arcs ahead of its end.
+
+Signals: the view and the incoming leg in; the leg ahead, in sheet mm, out.
+
+Source: our own.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from morfax.motion.arrays import Array
+from morfax.tracer.head.trail import Trail
+from morfax.tracer.sensing.leg import Leg, goes_straight, leg_of, turn
+from morfax.tracer.sensing.photocell import STEP_PX
+from morfax.tracer.sensing.probe import reach_of_ink
+from morfax.tracer.sensing.view import View
+
+# Chosen by trial on the test drawings.
+AHEAD = math.radians(75)  # a lost line is looked for within this of its heading
+FARTHEST_WIDTHS = 6.0  # how far the heading is held through a blot, in widths of the line
+FEWEST = 8  # stations that make a leg here: a bend can be told by as many
+BEGIN = 0.5  # of the width: a leg begins no further from the place where it is sought
+ARCS_APART = 0.5  # widths
+OFF_PLACE = 1.5  # widths from a place on ink, beyond its own blot: legs leave it there
+
+
+def straight_on(view: View, incoming: Leg, gap_mm: float) -> Leg | None:
+    """The clean line straight ahead, through a blot or across a gap no wider than allowed; or None.
+
+    The head goes on along the leg's bend, or else with its heading held: the bend of a dash two or three
+    millimetres long is uncertain.
+    """
+    straight = replace(incoming, bend_per_mm=0.0)
+    return _met(view, incoming, gap_mm) or _met(view, straight, gap_mm)
+
+
+def _met(view: View, incoming: Leg, gap_mm: float) -> Leg | None:
+    """The clean line met by going on along a leg."""
+    paper_mm, step = 0.0, STEP_PX * view.pitch_mm
+    farthest_mm = FARTHEST_WIDTHS * view.width_mm + gap_mm
+    for along in np.arange(0.5 * view.width_mm, farthest_mm, step):
+        place = incoming.at(along)
+        paper_mm = 0.0 if view.dark(place) else paper_mm + step
+        if paper_mm > gap_mm + step:
+            return None
+        if paper_mm:
+            continue
+        seen = view.feel(place, incoming.heading_at(along), view.leg_mm)
+        if len(seen) < FEWEST or np.hypot(*(seen[0, :2] - place)) > BEGIN * view.width_mm:
+            continue
+        leg = leg_of(seen, False, view.leg_mm)
+        if goes_straight(incoming, leg):
+            return leg
+    return None
+
+
+def caught_again(view: View, incoming: Leg, trail: Trail, within_mm: float) -> Leg | None:
+    """The line that the head meets first in widening arcs ahead of where it lost its line; or None.
+
+    Only a line that has not been followed, and that leads on ahead.
+    """
+    end = incoming.at(reach_of_ink(view, incoming, view.width_mm) or 0.0)
+
+    def off_heading(heading: float) -> float:
+        """Angle between a heading and the incoming leg's, rad."""
+        return abs(turn(incoming.heading_rad, heading))
+
+    for radius in np.arange(view.width_mm, within_mm, ARCS_APART * view.width_mm):
+        legs = []
+        for middle in view.ring(end, radius).mean(axis=1):
+            if off_heading(float(middle)) < AHEAD:
+                met = end + radius * np.array([math.cos(middle), math.sin(middle)])
+                legs += [leg for leg in _from(view, met) if not trail.holds(leg, view.width_mm)]
+        legs = [leg for leg in legs if off_heading(leg.heading_rad) < AHEAD]
+        if legs:
+            return min(legs, key=lambda leg: off_heading(leg.heading_rad))
+    return None
+
+
+def _from(view: View, place: Array) -> list[Leg]:
+    """The clean legs that leave a place on ink."""
+    found, away_mm = [], OFF_PLACE * view.width_mm
+    for arc in view.ring(place, away_mm):
+        heading = float(arc.mean())
+        start = place + away_mm * np.array([math.cos(heading), math.sin(heading)])
+        seen = view.feel(start, heading, view.leg_mm)
+        if len(seen) >= FEWEST:
+            found.append(leg_of(seen, False, view.leg_mm))
+    return found
