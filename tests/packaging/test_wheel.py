@@ -94,10 +94,13 @@ def test_every_module_of_every_room_is_in_the_wheel(wheel: Path) -> None:
     assert {name for name in names if name.endswith(".py")} == in_checkout()
 
 
-def test_samples_and_type_hints_are_in_the_wheel(wheel: Path) -> None:
+def test_drawings_tables_and_type_hints_are_in_the_wheel(wheel: Path) -> None:
     names = set(zipfile.ZipFile(wheel).namelist())
-    drawings = {f"morfax/samples/{file.name}" for file in (ROOT / "samples").glob("*.png")}
-    assert drawings | {"morfax/py.typed", "morfax/samples/program.toml"} <= names
+    data = [*(ROOT / "samples").glob("*.png")]
+    data += [file for room in ROOMS for file in (ROOT / room).rglob("*.toml")]
+    assert "samples/program.toml" in {file.relative_to(ROOT).as_posix() for file in data}
+    assert {f"morfax/{file.relative_to(ROOT).as_posix()}" for file in data} <= names
+    assert "morfax/py.typed" in names
 
 
 def test_a_wheel_from_the_checkout_is_the_one_from_the_source_distribution(
