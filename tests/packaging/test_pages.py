@@ -1,0 +1,49 @@
+"""The pages: what they name is there. `make docs` checks the links between them."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from tests.packaging.test_door import lines
+
+ROOT = Path(__file__).parents[2]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+NAMES = [str(page.relative_to(ROOT)) for page in PAGES]
+FILE = re.compile(
+    r"`((?:motion|tracer|recorder|player|jobs|reports|console|samples|docs|tests)/[\w/-]+\.\w+)`"
+)
+
+
+def plain(line: str) -> str:
+    """A line with one blank between its words."""
+    return " ".join(line.split())
+
+
+@pytest.mark.parametrize("page", PAGES, ids=NAMES)
+def test_every_file_that_a_page_names_is_there(page: Path) -> None:
+    named = set(FILE.findall(page.read_text(encoding="utf-8")))
+    assert {name for name in named if not (ROOT / name).exists()} == set()
+
+
+def test_every_link_of_the_readme_leads_somewhere() -> None:
+    links = re.findall(r"\]\(([^)#]+)", (ROOT / "README.md").read_text(encoding="utf-8"))
+    assert links
+    assert [link for link in links if not (ROOT / link).exists()] == []
+
+
+def test_the_readme_s_pages_are_those_of_the_site() -> None:
+    said = (ROOT / "mkdocs.yml").read_text(encoding="utf-8")
+    in_nav = set(re.findall(r"[\w/-]+\.md", said))
+    on_disk = {str(page.relative_to(ROOT / "docs")) for page in PAGES[1:]}
+    assert in_nav == on_disk
+
+
+@pytest.mark.parametrize("page", ["docs/reference/python.md", "docs/design.md"])
+def test_the_lines_of_the_door_are_on_the_page(page: str) -> None:
+    shown = [plain(line) for line in (ROOT / page).read_text(encoding="utf-8").splitlines()]
+    wanted = [plain(line) for line in lines().splitlines()]
+    first = shown.index("import morfax")
+    assert shown[first : first + len(wanted)] == wanted
