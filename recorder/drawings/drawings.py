@@ -37,7 +37,7 @@ LINE_MM = 0.1  # width of an SVG's lines
 
 @dataclass(frozen=True, slots=True)
 class DrawingReport(Written):
-    """What was written: runs, how many of them closed, running time of the motion, largest distance from it."""
+    """What was written: runs, how many are closed, time of the motion, largest distance from it."""
 
     runs: int
     closed: int

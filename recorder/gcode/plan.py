@@ -177,7 +177,7 @@ class _Planner:
 
 
 def _straightest(points: Array, tolerance_mm: float) -> tuple[list[int], float]:
-    """Points between which lines stay within a tolerance of all others (Douglas, Peucker); the largest gap."""
+    """Points whose chords stay within a tolerance of all others (Douglas, Peucker), and the largest gap."""
     kept, worst_mm, waiting = {0, len(points) - 1}, 0.0, [(0, len(points) - 1)]
     while waiting:
         first, last = waiting.pop()

@@ -24,7 +24,7 @@ CUTS = ("G1", "G2", "G3")
 
 
 class Block(NamedTuple):
-    """One block: G0 to G3 to a place (x, y, z) mm, with the centre from where it begins, or G4 with its time."""
+    """One block: G0 to G3 to a place (x, y, z) mm, arcs with their centre, or G4 with its time."""
 
     code: str
     place_mm: tuple[float, float, float]

@@ -22,7 +22,7 @@ CENTRE_MM, RADIUS_MM, HOLE_MM = (30.0, 25.0), 12.5, (30.0, 25.0)
 
 
 def part() -> tuple[MotionPath, np.ndarray]:
-    """A wheel with a flat, cut 2 mm deep, with a hole in pecks at its middle; and the points of its outline."""
+    """A wheel with a flat, cut 2 mm deep, a hole in pecks at its middle; and its outline."""
     turn = np.linspace(0.4, math.tau - 0.4, 400)
     rim = np.array(CENTRE_MM) + RADIUS_MM * np.column_stack([np.cos(turn), np.sin(turn)])
     outline = np.vstack([rim, rim[:1]])
