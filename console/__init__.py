@@ -1,1 +1,1 @@
-"""Command line, pictures and reports: everything that prints, asks or draws."""
+"""The command line: parses words into jobs, asks the operator, and shows results. Nobody imports it."""

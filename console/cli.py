@@ -18,7 +18,7 @@ from contextlib import contextmanager
 
 import click
 
-from morfax.console.terminal import kernels
+from morfax.jobs import kernels
 from morfax.motion.faults import DrawingFault, Fault, FileFault
 
 VERBS = {
@@ -30,6 +30,7 @@ VERBS = {
     "record": "Record a path file, or another program, in the medium that the name after -o says.",
     "mend": "Record a tape anew whose end tells which dropout lost how many whole cycles.",
     "age": "Wear a tape as a real recorder and the years do.",
+    "demo": "Trace a sample drawing, play the tape, compare, and show what came out.",
 }
 
 EXIT_CODES = """\b
@@ -49,7 +50,7 @@ Exit codes:
 
 \b
 Examples:
-  morfax run samples/cam.png -o demo
+  morfax demo
   morfax trace scan.png --width 120mm --start 40,62 -o cam.wav
   morfax play cam.wav -o cam.csv -o cam.svg
   morfax compare scan.png cam.csv --tolerance 50um -o cam-error.png

@@ -1,10 +1,9 @@
-"""How far a path is from another path, or from the ink of a drawing: figures, and the error along the
-contour.
+"""How far a path is from another path, or from the ink of a drawing: figures, and the error along the path.
 
-A path from a path: the distance of each sample of the first from the nearest place of the second, and back. A
-path from a drawing: the distance of each point from the ink's own centre, measured across the path in the
-image, not a number where the ink has no centre that means anything (crossings, corners); and the ink that no
-path covers.
+A path from a path: the distance of each sample of the first from the nearest place of the second, and back.
+A path from a drawing: the distance of each point from the ink's own centre, measured across the path in the
+image; not a number at crossings and corners, where the ink has no single centre; and the ink that no path
+covers.
 """
 
 from __future__ import annotations
@@ -15,11 +14,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.motion import Path
-from morfax.reports.table import Figures
+from morfax.jobs.figures import Figures
 
 if TYPE_CHECKING:
     from morfax.motion.contour import Summary
+    from morfax.motion.motion import Path
     from morfax.tracer.drawing.drawing import Drawing
 
 SAMPLE_MM = 0.05  # between the points that a picture shows
@@ -42,7 +41,7 @@ class Comparison:
 
 
 def from_path(path: Path, reference: Path, names: tuple[str, str] = ("a", "b")) -> Comparison:
-    """Compare a path with another one; the names are those of the two in the figures."""
+    """Compare a path with another one; `names` are what the figures call the two."""
     from morfax.motion.contour import distance, pointwise
 
     found = distance(path, reference)

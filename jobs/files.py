@@ -1,14 +1,14 @@
-"""The files that lie on the desk: which kind each is, how it is opened, and where results may go.
+"""Files: which kind each is, and where results may go.
 
-A file's kind is read off its first bytes, and off its name where they say nothing:
+A file's kind is read off its first bytes, and off its name where the bytes say nothing:
 
     tape      RIFF, RF64, fLaC, FORM, riff  or  .wav .rf64 .flac .aiff .w64
     program   any other text              and .steps .cubic .ngc
     drawing   PNG, JPEG, TIFF, BMP, …     or  .png .jpg .tif …
     path      any other text              or  .csv
 
-A name that was given for a result is written over; a name that morfax made up is not, unless --force says so.
-A result never goes over the file that it is made from.
+A result is written over a file of a name that somebody gave; over a file of a name that morfax made up only
+with --force. A result never goes over the file that it is made from.
 """
 
 from __future__ import annotations
@@ -17,20 +17,18 @@ import os
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Literal
 
-import click
-
+from morfax.jobs.figures import Figures
 from morfax.motion.faults import FileFault
-from morfax.reports.table import Figures
 
 if TYPE_CHECKING:
     from morfax.recorder.media import Report
 
 Kind = Literal["tape", "program", "drawing", "path"]
 
-TAPES = (".wav", ".rf64", ".flac")
+TAPES = (".wav", ".rf64", ".flac")  # that can be recorded
+PATHS = (".csv",)
 
-FILE = click.Path(path_type=FilePath)
-
+_HEAD_BYTES = 1024  # of a file, in which a binary file has a zero
 _FIRST_BYTES: dict[bytes, Kind] = {
     b"RIFF": "tape",
     b"RF64": "tape",
@@ -55,27 +53,25 @@ _SUFFIXES: dict[str, Kind] = {
 
 
 def kind_of(file: FilePath) -> Kind:
-    """Tell which kind of file this is; raises FileFault if it cannot be read or is of no kind that is known."""
+    """Tell which kind of file this is; raises FileFault if it cannot be read or is of no known kind."""
     try:
         with file.open("rb") as opened:
-            first = opened.read(1024)
+            first = opened.read(_HEAD_BYTES)
     except OSError as error:
         raise FileFault(f"cannot read {file}: {error.strerror}; check the name") from error
     if first[:4] == b"RIFF" and first[8:12] == b"WEBP":
         return "drawing"
-    by_bytes = next(
-        (kind for magic, kind in _FIRST_BYTES.items() if first.startswith(magic)), None
-    )
-    kind = by_bytes or _SUFFIXES.get(file.suffix.lower())
+    of_bytes = (kind for magic, kind in _FIRST_BYTES.items() if first.startswith(magic))
+    kind = next(of_bytes, None) or _SUFFIXES.get(file.suffix.lower())
     if kind is None and b"\0" in first:
         raise FileFault(
-            f"{file} is no path file, no tape and no image that is known; give a .csv, a .wav or a .png"
+            f"{file} is no path file, no tape and no known image; give a .csv, a .wav or a .png"
         )
     return kind or "path"
 
 
 def outgoing(file: FilePath, *made_from: FilePath) -> FilePath:
-    """Make sure, before the work starts, that a result can go under this name; raises FileFault if not."""
+    """Check, before the work starts, that a result can go under this name; raises FileFault if not."""
     folder = file.parent
     if not folder.is_dir():
         raise FileFault(
@@ -85,18 +81,19 @@ def outgoing(file: FilePath, *made_from: FilePath) -> FilePath:
         raise FileFault(f"cannot write {file}: it is a folder; give the name of a file")
     if not os.access(folder, os.W_OK):
         raise FileFault(
-            f"cannot write {file}: the folder {folder} may not be written to; give another name"
+            f"cannot write {file}: you may not write to the folder {folder}; give another name"
         )
     if any(file.exists() and source.exists() and file.samefile(source) for source in made_from):
         raise FileFault(
-            f"cannot write {file}: the result would go over the file it is made from; give another name"
+            f"cannot write {file}: the result is made from this file and would replace it; "
+            "give another name"
         )
     return file
 
 
 def made_up(name: FilePath, *made_from: FilePath, force: bool) -> FilePath:
-    """A name that nobody gave, for a result in the current folder; raises FileFault if it is taken and not
-    `force`.
+    """A name that nobody gave, for a result in the current folder; raises FileFault if a file has it already
+    and `force` is not set.
     """
     if name.exists() and not force:
         raise FileFault(
@@ -105,13 +102,18 @@ def made_up(name: FilePath, *made_from: FilePath, force: bool) -> FilePath:
     return outgoing(name, *made_from)
 
 
+def is_tape(file: FilePath) -> bool:
+    """Whether a program of this name is recorded on a magnetic tape."""
+    return file.suffix.lower() in TAPES
+
+
 def called(file: FilePath) -> str:
     """What a program is called in the figures: a tape, or a program in another medium."""
     return "program" if _SUFFIXES.get(file.suffix.lower()) == "program" else "tape"
 
 
-def told(report: Report) -> Figures:
-    """What a recorder tells of its program beyond size and time, where it tells more."""
+def recorder_figures(report: Report) -> Figures:
+    """Figures of a recorder beyond size and time, where it has more."""
     figures: Figures = getattr(report, "figures", {})
     return figures
 
@@ -119,12 +121,3 @@ def told(report: Report) -> Figures:
 def incomplete(file: FilePath) -> FilePath:
     """The name for a result that a fault has cut short."""
     return file.with_name(f"{file.stem}.incomplete{file.suffix}")
-
-
-def with_suffix_in(file: FilePath, suffixes: tuple[str, ...], option: str = "-o") -> FilePath:
-    """The file itself if its name ends in one of the suffixes; else wrong use of the command line."""
-    if file.suffix.lower() not in suffixes:
-        raise click.BadParameter(
-            f"{str(file)!r} must end in {', '.join(suffixes)}", param_hint=f"'{option}'"
-        )
-    return file

@@ -1,21 +1,18 @@
-"""The recording unit: options of the pick-ups, and of how the motion is placed before it is recorded."""
+"""The recording unit: which pick-ups make the tracks, and how the motion is placed before it is recorded."""
 
 from __future__ import annotations
 
-import functools
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
-import click
-
-from morfax.console.options.types import ANGLE, NUMBER, PLACE
-from morfax.console.terminal.desk import Desk
 from morfax.jobs import files as medium
+from morfax.jobs.wrong_use import WrongUse
 
 if TYPE_CHECKING:
+    from morfax.jobs.listener import Listener
     from morfax.motion.motion import Motion
     from morfax.motion.placement import Placement
     from morfax.recorder.media import Report
@@ -27,77 +24,85 @@ PICK_UPS = (
     "coil",
     "hall",
     "scale",
-)  # recorder.pickups; the first is the default
+)  # recorder.tape.pickups; the first is the default
 
 
 @dataclass(frozen=True, slots=True)
-class Unit:
-    """What the operator sets for the recording: the pick-up (None: not given) and the placement."""
+class RecordingUnit:
+    """What somebody sets for the recording: the pick-up (None: not set), and how the motion is placed."""
 
-    pickup: str | None
-    placement: Placement
+    pickup: str | None = None
+    mirror: str = ""  # the axis that runs the other way, x or y
+    scale: float = 1.0
+    turn_rad: float = 0.0
+    about_mm: tuple[float, float] | None = None  # None: the start of the motion
+    origin_mm: tuple[float, float] = (0.0, 0.0)
 
-    def at(self, origin_mm: tuple[float, float]) -> Unit:
+    @property
+    def placement(self) -> Placement:
+        """How the motion is placed."""
+        from morfax.motion.placement import Placement
+
+        return Placement(self.mirror, self.scale, self.turn_rad, self.about_mm, self.origin_mm)
+
+    def at(self, origin_mm: tuple[float, float]) -> RecordingUnit:
         """The same with the machine's zero at a place."""
-        return replace(self, placement=replace(self.placement, origin_mm=origin_mm))
+        return replace(self, origin_mm=origin_mm)
 
     def check(self, program: FilePath | None) -> None:
-        """Raise UsageError where the pick-up is for another medium than the program's."""
-        if self.pickup is not None and (
-            program is None or program.suffix.lower() not in medium.TAPES
-        ):
-            raise click.UsageError(
+        """Raise WrongUse where a pick-up is set and the program is no tape."""
+        if self.pickup is not None and (program is None or not medium.is_tape(program)):
+            raise WrongUse(
                 f"--pickup is for tapes, {', '.join(medium.TAPES)}; give -o such a name, or leave it out"
             )
 
-    def warn(self, desk: Desk) -> None:
-        """Say what the placement does to the cutter and the speed."""
-        scale = self.placement.scale
+    def warn(self, listener: Listener) -> None:
+        """Say what a scale does to the cutter and the speed."""
+        scale = self.scale
         if scale != 1:
-            desk.note(
-                f"scaled by {scale:g}: the cutter's radius that the line allows for is scaled too, so the cutter must be "
-                f"{scale:g} times as thick; X and Y run {scale:g} times as fast; Z is not scaled"
+            listener.warning(
+                f"scaled by {scale:g}: the drawn contour allows for a cutter's radius, which is scaled too, "
+                f"so the cutter must be {scale:g} times as thick; X and Y run {scale:g} times as fast; "
+                "Z is not scaled"
             )
 
-    def record(self, stream: Iterable[Motion], file: FilePath, desk: Desk) -> Report:
-        """Record a motion, placed, in the medium that the name says; what a tape's player would refuse is
-        refused.
+    def record(self, stream: Iterable[Motion], file: FilePath, listener: Listener) -> Report:
+        """Record a motion, placed, in the medium that the name says; raises MotionFault for a tape that no
+        player could read.
         """
         from morfax.recorder.media import record
 
         placed = self.placement.stream(stream)
-        if file.suffix.lower() not in medium.TAPES:
+        if not medium.is_tape(file):
             return record(placed, file)
         fmt = self.tape_format()
-        return record(rehearsed(placed, fmt, desk), file, fmt=fmt)
+        return record(rehearsed(placed, fmt, listener), file, fmt=fmt)
 
     def tape_format(self, cycles_per_mm: float | None = None, **entries: Any) -> TapeFormat:
-        """The format of a tape with this pick-up; raises ValueError if there is none such."""
+        """The format of a tape with this pick-up; raises ValueError for one that cannot be."""
         from morfax.recorder.tape import pickups
         from morfax.recorder.tape.tape import TapeFormat
 
         pickup = self.pickup or pickups.DEFAULT_PICK_UP
         own = pickups.PICK_UPS[pickup].cycles_per_mm
-        return TapeFormat(
-            pickup=pickup,
-            cycles_per_mm=own if cycles_per_mm is None else cycles_per_mm,
-            **entries,
-        )
+        density = own if cycles_per_mm is None else cycles_per_mm
+        return TapeFormat(pickup=pickup, cycles_per_mm=density, **entries)
 
     def figures(self) -> dict[str, Any]:
-        """What was set, where it was."""
-        placement = self.placement
+        """What was set."""
         return {
             "pickup": self.pickup,
-            "mirrored": placement.mirror.upper() or None,
-            "scale": None if placement.scale == 1 else placement.scale,
-            "turned_deg": round(math.degrees(placement.turn_rad), 9) or None,
+            "mirrored": self.mirror.upper() or None,
+            "scale": None if self.scale == 1 else self.scale,
+            "turned_deg": round(math.degrees(self.turn_rad), 9) or None,
         }
 
 
-def rehearsed(stream: Iterable[Motion], fmt: TapeFormat, desk: Desk) -> Iterator[Motion]:
-    """Pass a motion on to its tape; raises MotionFault where no player could read that, and notes where a
-    drive could not follow.
+def rehearsed(
+    stream: Iterable[Motion], fmt: TapeFormat, listener: Listener
+) -> Iterator[Motion]:
+    """Pass a motion on to its tape; raises MotionFault where no player could read the tape, and warns where a
+    drive could not follow it.
     """
     from morfax.player.tape.rehearsal import Rehearsal
 
@@ -106,64 +111,7 @@ def rehearsed(stream: Iterable[Motion], fmt: TapeFormat, desk: Desk) -> Iterator
     lost = rehearsal.unfollowed
     if lost is not None:
         place = ",".join(f"{mm:.2f}" for mm in lost.place_mm[:2])
-        desk.note(
-            f"the drive of {lost.axis.upper()} would lose its lock at {place} mm, {lost.time_s:.3f} s into the motion: play the "
-            "tape slower (--feed-override 50%), or run the path slower"
+        listener.warning(
+            f"the drive of {lost.axis.upper()} would lose its lock at {place} mm, {lost.time_s:.3f} s into "
+            "the motion: play the tape slower (--feed-override 50%), or run the path slower"
         )
-
-
-def unit_options(verb: Callable[..., Any]) -> Callable[..., Any]:
-    """Give a verb the options of the recording unit, and hand it the `unit`."""
-
-    @click.option(
-        "--pickup",
-        type=click.Choice(PICK_UPS),
-        help=f"What makes the tracks of a tape: its wave and its travel per cycle, see docs/reference/tape-format.md.  "
-        f"[default: {PICK_UPS[0]}]",
-    )
-    @click.option(
-        "--mirror",
-        type=click.Choice(["x", "y"]),
-        default=None,
-        help="Have X, or Y, run the other way.",
-    )
-    @click.option(
-        "--scale",
-        type=NUMBER,
-        default=1.0,
-        show_default=True,
-        help="Make X and Y so many times as large; the cutter's radius goes along, Z does not.",
-    )
-    @click.option(
-        "--turn",
-        "turn_rad",
-        type=ANGLE,
-        default="0deg",
-        show_default=True,
-        help="Turn X and Y, counter-clockwise, such as 90deg.",
-    )
-    @click.option(
-        "--about",
-        "about_mm",
-        type=PLACE,
-        help="The place X,Y in mm that mirror, scale and turn leave where it is.  [default: the start of the program]",
-    )
-    @functools.wraps(verb)
-    def with_unit(
-        *args: Any,
-        pickup: str | None,
-        mirror: str | None,
-        scale: float,
-        turn_rad: float,
-        about_mm: tuple[float, float] | None,
-        **options: Any,
-    ) -> Any:
-        from morfax.motion.placement import Placement
-
-        return verb(
-            *args,
-            unit=Unit(pickup, Placement(mirror or "", scale, turn_rad, about_mm)),
-            **options,
-        )
-
-    return with_unit

@@ -13,7 +13,7 @@ from itertools import groupby
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from morfax.jobs.tracing import Head, Marks
+    from morfax.jobs.settings import TraceSettings
     from morfax.tracer.cutter.cutter import Cutter, Left, LeftOut
     from morfax.tracer.following.line import Line
     from morfax.tracer.program.program import Trace
@@ -23,7 +23,9 @@ UNCUT = 0.2  # of a line: corners are less
 FEW = 0.7  # of the ink that is joined to a line: what is left is worth a word
 
 
-def remarks(trace: Trace, head: Head, gap_mm: float, enlarged: int) -> Iterator[str]:
+def remarks(
+    trace: Trace, settings: TraceSettings, gap_mm: float, enlarged: int
+) -> Iterator[str]:
     """All that is worth a word of a trace, the head having gone across gaps up to this, on a drawing enlarged
     so many times.
     """
@@ -32,12 +34,12 @@ def remarks(trace: Trace, head: Head, gap_mm: float, enlarged: int) -> Iterator[
     yield from _of_solids(trace)
     yield from _of_stops(trace)
     yield from _of_turns(trace)
-    yield from _of_reference(trace, head.marks)
+    yield from _of_reference(trace, settings)
     yield from _of_gaps(trace)
     yield from _of_breaks(trace, gap_mm)
     yield from _of_stems(trace)
     yield from _of_crossing_guides(trace)
-    if head.lines is None and trace.fault is None:
+    if settings.line.lines is None and trace.fault is None:
         yield from _of_rest(trace.lines[0])
 
 
@@ -97,7 +99,7 @@ def _of_solids(trace: Trace) -> Iterator[str]:
 
 
 def _of_stops(trace: Trace) -> Iterator[str]:
-    """Of stops that the card or --override names and that are not on the drawing."""
+    """Of stops that the card or --stop-override names and that are not on the drawing."""
     missing, stops = trace.operator.not_there(trace.lines)
     if missing:
         numbers = ", ".join(map(str, missing))
@@ -121,16 +123,16 @@ def _of_turns(trace: Trace) -> Iterator[str]:
                 yield f"no line leads off to the {side} at junction {k} of {_named(line, trace)}, {x:.1f},{y:.1f} mm: the head went on"
 
 
-def _of_reference(trace: Trace, marks: Marks) -> Iterator[str]:
+def _of_reference(trace: Trace, settings: TraceSettings) -> Iterator[str]:
     """Of a reference point that was named and from which no line begins."""
     from morfax.tracer.following.open_ends import LEAD_MM
 
-    named = marks.reference_mm
+    named = settings.line.reference_mm
     if named is None or any(line.reference_mm == named for line in trace.lines):
         return
     use = (
         "it is the machine's zero only"
-        if marks.origin == "reference"
+        if settings.program.origin == "reference"
         else "the program does not begin there"
     )
     yield f"no line begins within {LEAD_MM:g} mm of the reference point {named[0]:g},{named[1]:g} mm: {use}"
@@ -175,7 +177,7 @@ def _of_stems(trace: Trace) -> Iterator[str]:
             (x, y), (u, v) = line.start_mm, line.place(line.loop_from)
             yield (
                 f"the line from {x:.1f},{y:.1f} to the contour at {u:.1f},{v:.1f} mm is cut too: a lead line is known "
-                "by a cross or ring at its beginning, by --reference X,Y there, or by a tick across it"
+                "by a cross or ring at its beginning, by --reference-point X,Y there, or by a tick across it"
             )
 
 

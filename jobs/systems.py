@@ -12,239 +12,182 @@ ran and its figures, or the fault that kept it from running; the others go on.
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
-import click
 import numpy as np
 
-from morfax.console.terminal.desk import Desk
-from morfax.jobs import comparison
+from morfax.jobs import comparison, following
 from morfax.jobs import files as medium
-from morfax.jobs.playing import Controls
-from morfax.motion.arrays import Array
+from morfax.jobs.listener import SILENT, Listener
+from morfax.jobs.playing import Playing
+from morfax.jobs.results import NAMES, SystemResult
+from morfax.jobs.settings import DrawingFile, TraceSettings
+from morfax.jobs.tracing import Tracing
+from morfax.jobs.wrong_use import WrongUse
 from morfax.motion.faults import Fault
-from morfax.motion.motion import IN_WORK_BELOW_MM, Path
-from morfax.reports import following
-from morfax.reports.table import Figures
 
 if TYPE_CHECKING:
-    from morfax.jobs.drawing import Sheet
+    from morfax.jobs.figures import Figures
     from morfax.jobs.traced import Traced
-    from morfax.jobs.tracing import Head
-    from morfax.player.monitor.chart import Chart
+    from morfax.motion.arrays import Array
+    from morfax.motion.motion import Path
     from morfax.tracer.drawing.drawing import Drawing
+    from morfax.tracer.operator.operator import Panel
 
-NAMES = {
-    "wav": "Morfax 1969",
-    "steps": "Superior Electric 1975",
-    "cubic": "SEA 1957",
-    "ngc": "Pratt & Whitney 1967",
-}
-OUTPUTS = (".html", ".png", ".svg", ".pdf")
 HELD_SHARE = 0.05  # of the tracing speed, either way
 HELD_OVER_S = 0.5  # a step of 10 um is a fivehundredth of the way at 10 mm/s
 CORNER_RAD = 0.5  # of turn within 50 um
-
-
-class Systems(click.ParamType):
-    """The systems asked for: all, or some by the suffixes of their programs."""
-
-    name = "systems"
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> Any:
-        """Read "all" or a list such as "wav,steps"."""
-        if not isinstance(value, str):
-            return value
-        asked = (
-            list(NAMES)
-            if value.strip().lower() == "all"
-            else [word.strip(" .").lower() for word in value.split(",")]
-        )
-        unknown = [word for word in asked if word not in NAMES]
-        if unknown:
-            self.fail(
-                f"there is no system {unknown[0]!r}; give all, or some of {','.join(NAMES)}",
-                param,
-                ctx,
-            )
-        return tuple(dict.fromkeys(asked))
+WINDOW_MM = 0.05
+SAME_PLACE_MM = (
+    1e-6  # points of a path that are nearer than this have no direction between them
+)
 
 
 @dataclass(frozen=True, slots=True)
-class Result:
-    """What became of one system: its path and comparisons, or its fault; the figures are there either way."""
+class SystemsResult:
+    """What the comparison gave: figures, the drawing and its traced path, and the result of each system.
 
-    suffix: str
+    `rows` are the table's: the head's own path, then each system, by name. `faults` are those of a lost line
+    and of systems that did not run. `within` the tolerance is None without one. A face draws the output.
+    """
+
     figures: Figures
-    path: Path | None = None
-    from_ink: comparison.Comparison | None = None
-    from_traced: comparison.Comparison | None = None
-    chart: Chart | None = None
-    speeds: following.Speeds | None = None
-    fault: Fault | None = None
-
-    @property
-    def name(self) -> str:
-        """Whose system it is, and what its programs are called."""
-        return f"{NAMES[self.suffix]} (.{self.suffix})"
+    rows: dict[str, Figures]
+    drawing: Drawing
+    traced: Traced
+    results: tuple[SystemResult, ...]
+    within: bool | None
+    faults: tuple[Fault, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Wanted:
-    """What is asked of a comparison: the drawing, the systems, a report or a picture, and how far a contour
-    may be off.
-    """
+class SystemsJob:
+    """Trace a drawing once, record it in the medium of each system, play it on its control, and compare."""
 
-    drawing: FilePath
-    asked: tuple[str, ...]
-    output: FilePath | None
-    tolerance_mm: float | None
+    drawing: DrawingFile
+    systems: tuple[str, ...] = tuple(NAMES)
+    tolerance_mm: float | None = None
+    output: FilePath | None = None  # a report (.html) or a picture
+    settings: TraceSettings = field(default_factory=TraceSettings)
 
-
-def compare(wanted: Wanted, sheet: Sheet, head: Head, desk: Desk) -> bool:
-    """Trace, measure, tell and draw; whether a contour is beyond the tolerance. Raises the first fault when
-    all is told.
-    """
-    if wanted.output is not None:
-        medium.outgoing(medium.with_suffix_in(wanted.output, OUTPUTS), wanted.drawing)
-    if medium.kind_of(wanted.drawing) != "drawing":
-        raise click.UsageError(
-            f"{wanted.drawing} is no drawing; --systems traces one and plays it on each system"
-        )
-    drawing = sheet.open(wanted.drawing)
-    traced = head.trace(drawing, desk)
-    results = measure(drawing, traced, head.speed_mm_s, wanted.asked, desk)
-    largest_mm = [
-        result.from_ink.largest_mm for result in results if result.from_ink is not None
-    ]
-    beyond = (
-        wanted.tolerance_mm is not None and max(largest_mm, default=0.0) > wanted.tolerance_mm
-    )
-    rows = {
-        "traced": traced_row(drawing, traced, head.speed_mm_s),
-        **{r.name: r.figures for r in results},
-    }
-    if wanted.output is not None:
-        _draw(wanted, drawing, traced, results, rows)
-    desk.figures(
-        {
-            "drawing": str(wanted.drawing),
-            "report": None if wanted.output is None else str(wanted.output),
-            "tolerance_mm": wanted.tolerance_mm,
-            "within_tolerance": None if wanted.tolerance_mm is None else not beyond,
+    def run(self, listener: Listener = SILENT, panel: Panel | None = None) -> SystemsResult:
+        """Trace, play and measure; a system's fault is in the result, and the others go on."""
+        # 1. what is asked for
+        file = self.drawing.file
+        tracing = Tracing.prepared(self.settings, panel)
+        if self.output is not None:
+            medium.outgoing(self.output, file)
+        if medium.kind_of(file) != "drawing":
+            raise WrongUse(
+                f"{file} is no drawing; --systems traces one and plays it on each system"
+            )
+        # 2. trace, record, play, measure
+        drawing = self.drawing.open()
+        traced = tracing.trace(drawing, listener)
+        measured = _Measuring(drawing, traced, tracing.of_head.speed_mm_s)
+        results = measured.systems(self.systems, listener)
+        # 3. judge
+        largest_mm = max((r.from_ink.largest_mm for r in results if r.from_ink), default=0.0)
+        within = None if self.tolerance_mm is None else largest_mm <= self.tolerance_mm
+        rows = {"traced": measured.traced_row(), **{r.name: r.figures for r in results}}
+        figures = {
+            "drawing": str(file),
+            "report": None if self.output is None else str(self.output),
+            "tolerance_mm": self.tolerance_mm,
+            "within_tolerance": within,
             "ending": traced.trace.ending,
             "length_mm": traced.trace.length_mm,
             "corners": len(corner_places(traced.path)),
-            **(
-                {"traced": rows["traced"], **{r.suffix: r.figures for r in results}}
-                if desk.json
-                else rows
-            ),
         }
-    )
-    for fault in (traced.fault, *(result.fault for result in results)):
-        if fault is not None:
-            raise fault
-    return beyond
+        every = (traced.fault, *(result.fault for result in results))
+        faults = tuple(fault for fault in every if fault is not None)
+        return SystemsResult(figures, rows, drawing, traced, tuple(results), within, faults)
 
 
-def _draw(
-    wanted: Wanted,
-    drawing: Drawing,
-    traced: Traced,
-    results: list[Result],
-    rows: dict[str, Figures],
-) -> None:
-    """Write the report, or the picture of all contours alone."""
-    from morfax.reports import report, side_by_side
-    from morfax.reports.overlay import save
+@dataclass(frozen=True, slots=True)
+class _Measuring:
+    """What every system is measured against: the drawing, the traced path and the tracing speed."""
 
-    assert wanted.output is not None
-    title = f"{wanted.drawing.name} on {len(wanted.asked)} systems"
-    contours = side_by_side.contours(
-        title, results, traced.path, drawing, corner_places(traced.path)
-    )
-    if wanted.output.suffix.lower() != ".html":
-        save(contours, wanted.output)
-        return
-    told = [
-        f"One drawing, traced once ({traced.trace.length_mm:.1f} mm), recorded in each medium and played on each control. "
-        "From ink: distance of the machine's contour from the middle of the ink; from traced: from the head's path. Corner "
-        "error: the largest distance of a traced corner from the contour. Bits per mm are the medium's own: of .steps the "
-        "punched ones. Speed held: share of the way run within 5 % of the tracing speed.",
-    ]
-    pictures = [
-        ("All contours; the numbered places enlarged, with axes in µm", contours),
-        ("Distance from the ink's centre along the contour", side_by_side.errors(results)),
-    ]
-    for result in results:
-        if result.chart is not None:
-            said = f"{result.name}: following error against its limit"
-            pictures.append((said, following.picture(result.chart, said, result.speeds)))
-    report.write(wanted.output, title, told, rows, pictures)
+    drawing: Drawing
+    traced: Traced
+    speed_mm_s: float
 
+    def systems(self, asked: tuple[str, ...], listener: Listener) -> list[SystemResult]:
+        """Record, play and measure each system that is asked for."""
+        from morfax.player.controls import CONTROLS
+        from morfax.recorder.media import MEDIA
 
-def measure(
-    drawing: Drawing, traced: Traced, speed_mm_s: float, asked: Sequence[str], desk: Desk
-) -> list[Result]:
-    """Record, play and measure each system that is asked for."""
-    from morfax.player.controls import CONTROLS
-    from morfax.recorder.media import MEDIA
+        packages = ("motion", "recorder", "player")
+        listener.compiling("recorders and controls", packages)
+        results = []
+        with (
+            tempfile.TemporaryDirectory(prefix="morfax-") as folder,
+            listener.progress("comparing", len(asked)) as advance,
+        ):
+            for done, suffix in enumerate(asked, 1):
+                what, by = MEDIA[f".{suffix}"].what, CONTROLS[f".{suffix}"].what
+                listener.note(f"{NAMES[suffix]}: {what}, played by {by}")
+                try:
+                    results.append(self._system(FilePath(folder) / f"part.{suffix}"))
+                except Fault as fault:
+                    said = " ".join(str(fault).split())
+                    results.append(SystemResult(suffix, {"fault": said}, fault=fault))
+                advance(done)
+        return results
 
-    desk.warn_of_compiling("recorders and controls", "motion", "recorder", "player")
-    corners_mm = corner_places(traced.path)
-    results = []
-    with (
-        tempfile.TemporaryDirectory(prefix="morfax-") as folder,
-        desk.bar("comparing", len(asked)) as advance,
-    ):
-        for done, suffix in enumerate(asked):
-            desk.note(
-                f"{NAMES[suffix]}: {MEDIA[f'.{suffix}'].what}, played by {CONTROLS[f'.{suffix}'].what}"
-            )
-            try:
-                results.append(
-                    _measured(
-                        drawing,
-                        traced,
-                        speed_mm_s,
-                        corners_mm,
-                        FilePath(folder) / f"part.{suffix}",
-                    )
-                )
-            except Fault as fault:
-                results.append(
-                    Result(suffix, {"fault": " ".join(str(fault).split())}, fault=fault)
-                )
-            advance(done + 1)
-    return results
+    def traced_row(self) -> Figures:
+        """The figures of the head's own path, to set the others against."""
+        path = self.traced.path
+        row = comparison.from_drawing(self.drawing, path).rows["path_to_ink"]
+        return {
+            **_from_ink(row),
+            "duration_s": _duration_s(path),
+            **held(path, self.speed_mm_s),
+        }
 
+    def _system(self, file: FilePath) -> SystemResult:
+        """One system; raises what its recorder or its control raises."""
+        from morfax.recorder.media import record
 
-def traced_row(drawing: Drawing, traced: Traced, speed_mm_s: float) -> Figures:
-    """The figures of the head's own path, to set the others against."""
-    row = comparison.from_drawing(drawing, traced.path).rows["path_to_ink"]
-    return {
-        **_from_ink(row),
-        "duration_s": _duration_s(traced.path),
-        **held(traced.path, speed_mm_s),
-    }
+        # 1. record and play
+        trace, chart = self.traced.trace, following.new_chart(raw=False)
+        recording = record(trace, file)
+        played = Playing(file, chart=chart).whole(SILENT)
+        if played.fault is not None:
+            raise played.fault
+        path = played.path
+        # 2. measure
+        from_ink = comparison.from_drawing(self.drawing, path)
+        from_traced = comparison.from_path(path, self.traced.path)
+        bits = medium.recorder_figures(recording).get("punched_bits", 8 * recording.bytes)
+        corners_mm = corner_places(self.traced.path)
+        figures = {
+            **_from_ink(from_ink.rows["path_to_ink"]),
+            "from_traced_rms_mm": from_traced.rows["a_to_b"]["rms_mm"],
+            "from_traced_max_mm": from_traced.largest_mm,
+            "corner_error_mm": corner_error_mm(corners_mm, path),
+            "duration_s": _duration_s(path),
+            "bytes_per_mm": round(recording.bytes / trace.length_mm, 1),
+            "bits_per_mm": round(bits / trace.length_mm, 1),
+            **held(path, self.speed_mm_s),
+            "following_error_mm": float(played.playback.following_error_mm.max()),
+        }
+        speeds = following.speeds_held(played.playback)
+        suffix = file.suffix[1:]
+        return SystemResult(suffix, figures, path, from_ink, from_traced, chart, speeds)
 
 
 def corner_places(path: Path) -> Array:
     """Where a path turns sharply with the tool in the work, (n, 2) mm."""
     from morfax.motion.segments import Limits, corners
 
-    limits = Limits(
-        1.0, 1.0, window_mm=0.05, corner_rad=CORNER_RAD
-    )  # speeds do not matter here
+    # speeds do not matter here
+    limits = Limits(1.0, 1.0, window_mm=WINDOW_MM, corner_rad=CORNER_RAD)
     found = [np.zeros((0, 2))]
     for run in path.runs():
-        points = run[np.r_[True, np.hypot(*np.diff(run, axis=0).T) > 1e-6]]
+        points = run[np.r_[True, np.hypot(*np.diff(run, axis=0).T) > SAME_PLACE_MM]]
         if len(points) > 2:
             found.append(points[corners(points, limits)])
     return np.vstack(found)
@@ -252,6 +195,8 @@ def corner_places(path: Path) -> Array:
 
 def held(path: Path, speed_mm_s: float) -> Figures:
     """The mean speed in the work, and the share of the way there that is run within 5 % of a speed."""
+    from morfax.motion.motion import IN_WORK_BELOW_MM
+
     t_s = np.arange(path.t_s[0], path.t_s[-1], HELD_OVER_S)
     places_mm = np.column_stack(
         [np.interp(t_s, path.t_s, column) for column in path.positions_mm.T]
@@ -267,40 +212,12 @@ def held(path: Path, speed_mm_s: float) -> Figures:
     }
 
 
-def _measured(
-    drawing: Drawing, traced: Traced, speed_mm_s: float, corners_mm: Array, file: FilePath
-) -> Result:
-    """One system; raises what its recorder or its control raises."""
-    from morfax.recorder.media import record
-
-    chart, recording = following.new_chart(raw=False), record(traced.trace, file)
-    played = Controls().play(file, Desk(quiet=True), chart=chart)
-    if played.fault is not None:
-        raise played.fault
-    from_ink = comparison.from_drawing(drawing, played.path)
-    from_traced = comparison.from_path(played.path, traced.path)
-    bits = medium.told(recording).get("punched_bits", 8 * recording.bytes)
-    figures = {
-        **_from_ink(from_ink.rows["path_to_ink"]),
-        "from_traced_rms_mm": from_traced.rows["a_to_b"]["rms_mm"],
-        "from_traced_max_mm": from_traced.largest_mm,
-        "corner_error_mm": _corner_error_mm(corners_mm, played.path),
-        "duration_s": _duration_s(played.path),
-        "bytes_per_mm": round(recording.bytes / traced.trace.length_mm, 1),
-        "bits_per_mm": round(bits / traced.trace.length_mm, 1),
-        **held(played.path, speed_mm_s),
-        "following_error_mm": float(played.playback.following_error_mm.max()),
-    }
-    speeds = following.speeds_held(played.playback)
-    return Result(file.suffix[1:], figures, played.path, from_ink, from_traced, chart, speeds)
-
-
 def _from_ink(row: Figures) -> dict[str, Any]:
     """The contour's error."""
     return {"from_ink_rms_mm": row["rms_mm"], "from_ink_max_mm": row["max_mm"]}
 
 
-def _corner_error_mm(corners_mm: Array, path: Path) -> float | None:
+def corner_error_mm(corners_mm: Array, path: Path) -> float | None:
     """The largest distance of a corner's vertex, as traced, from the path; None where there are no corners."""
     from morfax.motion.contour import distances_mm
 

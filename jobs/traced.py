@@ -10,12 +10,12 @@ from dataclasses import dataclass
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
-from morfax.console.terminal.desk import Desk
 from morfax.jobs import files as medium
 from morfax.motion.faults import Fault
 
 if TYPE_CHECKING:
-    from morfax.jobs.recording import Unit
+    from morfax.jobs.listener import Listener
+    from morfax.jobs.recording import RecordingUnit
     from morfax.motion.motion import Path
     from morfax.tracer.cutter.cutter import Cutter, Left
     from morfax.tracer.program.program import Trace
@@ -50,12 +50,12 @@ class Traced:
         """The name for a result: marked if the line was lost."""
         return medium.incomplete(file) if self.fault else file
 
-    def record(self, file: FilePath, unit: Unit, desk: Desk) -> FilePath:
+    def record(self, file: FilePath, unit: RecordingUnit, listener: Listener) -> FilePath:
         """Record the motion on a tape, or in the medium that the name says; the program's name."""
-        unit.record(self.trace, self.name(file), desk)
+        unit.record(self.trace, self.name(file), listener)
         return self.name(file)
 
-    def write(self, file: FilePath, unit: Unit) -> FilePath:
+    def write(self, file: FilePath, unit: RecordingUnit) -> FilePath:
         """Write the path file, placed as the tape is; its name."""
         from morfax.motion.pathfile import write_path
 

@@ -1,8 +1,8 @@
 """Following errors of a run: as a picture, error against limit for each axis, and as CSV.
 
 Signals in: the chart of a playing, mm; of a program of lines and arcs the speeds that it holds, mm/s. Out: a
-picture, or rows `t_s, x_demand_mm, x_actual_mm, x_error_mm, x_limit_mm, …`, each of 10 ms (with --raw of
-every sample): that in which the axis came nearest to its limit.
+picture, or rows `t_s, x_demand_mm, x_actual_mm, x_error_mm, x_limit_mm, …`. A row stands for 10 ms, and shows
+the sample in which the axis came nearest to its limit; with --raw every sample has a row.
 """
 
 from __future__ import annotations
@@ -20,8 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from morfax.player.controls import Playback
-    from morfax.player.gcode.held_speed import HeldSpeed
+    from morfax.jobs.following import Speeds
     from morfax.player.monitor.chart import Chart
 
 SUFFIXES = (".png", ".svg", ".pdf", ".csv")
@@ -29,37 +28,6 @@ ERROR, LIMIT, TRUE, PROGRAMMED = "#1f5fa8", "#c1121f", "#2a7f3f", "#555555"
 SMALLEST_UM = 0.01  # at the foot of the picture
 PANEL_IN = 1.9  # height
 _HEADINGS = ("demand", "actual", "error", "limit")
-
-Speeds = dict[str, "HeldSpeed"]
-
-
-def new_chart(raw: bool) -> Chart:
-    """What takes the following errors down: every sample, or the worst of each 10 ms."""
-    from morfax.player.monitor.chart import Chart
-
-    return Chart(0.0) if raw else Chart()
-
-
-def speeds_held(playback: Playback) -> Speeds | None:
-    """The speed that a program of lines and arcs holds, either way."""
-    from morfax.player.gcode.held_speed import held_speed
-    from morfax.player.gcode.pulses import PulsePlayback
-
-    if not isinstance(playback, PulsePlayback):
-        return None
-    return {"weights": held_speed(playback, False), "--norm true": held_speed(playback, True)}
-
-
-def figures(playback: Playback) -> dict[str, Any]:
-    """The largest following error of each axis, and the share of its limit."""
-    watch = playback.monitor
-    each = zip(
-        watch.axes, watch.largest_error_mm.tolist(), watch.largest_share.tolist(), strict=True
-    )
-    return {
-        f"{axis}_axis": {"following_error_mm": error_mm, "limit_share": share}
-        for axis, error_mm, share in each
-    }
 
 
 def write(chart: Chart, file: FilePath, title: str, speeds: Speeds | None = None) -> None:

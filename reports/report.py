@@ -1,6 +1,6 @@
 """The report of a comparison: one file of HTML, pictures inside, that prints on A4.
 
-Signals in: figures as `console.table` takes them, and figures of matplotlib with a caption each. Out: a file
+Signals in: rows of figures (see `table`), and pictures of matplotlib with a caption each. Out: a file
 that needs no other.
 """
 
@@ -14,10 +14,12 @@ from pathlib import Path as FilePath
 from typing import TYPE_CHECKING
 
 from morfax.motion.files import written_beside
-from morfax.reports.table import Figures, as_cells
+from morfax.reports.table import as_cells
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+    from morfax.jobs.figures import Figures
 
 STYLE = """
 body { font: 14px/1.45 Georgia, serif; max-width: 1080px; margin: 2em auto; padding: 0 1em; color: #111; }

@@ -1,9 +1,9 @@
 """Pictures of the systems side by side: all contours with the places where they differ enlarged, and errors
 along the way.
 
-Signals in: the results of `console.systems`, the traced path and the drawing, mm. Out: figures of matplotlib.
-Errors are micrometres, so the contours lie on each other on the sheet; the enlargements have axes in um from
-their place.
+Signals in: the results of `jobs.systems`, the traced path and the drawing, mm. Out: figures of matplotlib.
+Errors are some micrometres, so the contours lie on each other on the sheet; the enlargements have axes in µm
+from their place.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from morfax.jobs.systems import Result
+    from morfax.jobs.results import SystemResult
     from morfax.motion.motion import Path
     from morfax.tracer.drawing.drawing import Drawing
 
@@ -32,7 +32,11 @@ LEAST_REACH_UM = 5.0
 
 
 def contours(
-    title: str, results: Sequence[Result], traced: Path, drawing: Drawing, corners_mm: Array
+    title: str,
+    results: Sequence[SystemResult],
+    traced: Path,
+    drawing: Drawing,
+    corners_mm: Array,
 ) -> Figure:
     """All contours over the drawing, and where each is furthest from the traced path, and at corners,
     enlarged.
@@ -64,7 +68,7 @@ def contours(
     return figure
 
 
-def errors(results: Sequence[Result]) -> Figure:
+def errors(results: Sequence[SystemResult]) -> Figure:
     """The signed distance of each contour from the ink's centre along the way; all on one scale."""
     ran = [result for result in results if result.from_ink is not None]
     figure = _figure(11, 0.9 + 1.5 * max(1, len(ran)))
@@ -93,7 +97,7 @@ def _figure(width_in: float, height_in: float) -> Figure:
 
 
 def _lines(
-    axes: Axes, ran: Sequence[Result], traced: Path, origin_mm: Array, scale: float
+    axes: Axes, ran: Sequence[SystemResult], traced: Path, origin_mm: Array, scale: float
 ) -> None:
     """The traced path and those of the machines, from an origin, in mm or in um."""
     style: dict[str, Any] = {
@@ -117,7 +121,7 @@ def _lines(
             )
 
 
-def _places(ran: Sequence[Result], corners_mm: Array) -> list[tuple[Array, str]]:
+def _places(ran: Sequence[SystemResult], corners_mm: Array) -> list[tuple[Array, str]]:
     """Where each system is furthest from the traced path, then corners, apart from each other; and what it
     is.
     """
@@ -138,7 +142,7 @@ def _places(ran: Sequence[Result], corners_mm: Array) -> list[tuple[Array, str]]
 
 
 def _enlarge(
-    axes: Axes, ran: Sequence[Result], traced: Path, place_mm: Array, title: str
+    axes: Axes, ran: Sequence[SystemResult], traced: Path, place_mm: Array, title: str
 ) -> None:
     """One place, so large that the contours part."""
     reach_um = LEAST_REACH_UM

@@ -18,9 +18,9 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+from morfax.jobs.figures import Figures
 from morfax.motion import units
 
-Figures = Mapping[str, Any]
 Row = tuple[str, Figures]  # of a table: its name, and its figures
 
 _LABELS = {"rms": "RMS", "p95": "95 %", "max": "largest"}

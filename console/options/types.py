@@ -1,6 +1,4 @@
-"""Lengths, speeds, frequencies, places and lines as the command line takes them: text with a unit becomes mm,
-mm/s, Hz.
-"""
+"""Values of the command line: text with a unit becomes mm, mm/s, Hz; places, lines, stops become tuples."""
 
 from __future__ import annotations
 
@@ -87,7 +85,7 @@ def _parse_lines(text: str) -> str | tuple[int, ...]:
         ) from None
 
 
-def _parse_override(text: str) -> str | tuple[int, ...]:
+def _parse_stops(text: str) -> str | tuple[int, ...]:
     """Which stop marks do not stop the head: "none", "all", or their numbers."""
     word = text.strip().lower()
     if word in ("none", "all"):
@@ -109,8 +107,16 @@ def _tracks(text: str) -> tuple[int, ...]:
 
 
 def _parse_origin(text: str) -> Any:
-    """Where a machine's zero is on the sheet: "reference", or a place."""
-    return "reference" if text.strip().lower() == "reference" else parse_place_mm(text)
+    """Where a machine's zero is on the sheet: "sheet", "reference", or a place."""
+    word = text.strip().lower()
+    if word in ("sheet", "reference"):
+        return word
+    try:
+        return parse_place_mm(text)
+    except ValueError:
+        raise ValueError(
+            f"{text!r} is no origin; give sheet, reference, or a place X,Y such as 40,62"
+        ) from None
 
 
 def _decades(least_counts: int) -> Callable[[str], float]:
@@ -139,11 +145,10 @@ def _decades(least_counts: int) -> Callable[[str], float]:
 
 
 LENGTH = Quantity("length", parse_length_mm, above_zero=True)
-REACH = Quantity("length", parse_length_mm)  # of the head, which may be none
+REACH = Quantity("length", parse_length_mm)  # of the head; may be 0
 DEPTH = Quantity("length", _decades(1))
-CLEARANCE = Quantity(
-    "length", _decades(6)
-)  # up to 0.05 mm above the work the tool counts as in it
+# up to 0.05 mm above the work the tool counts as in it
+CLEARANCE = Quantity("length", _decades(6))
 CUTTER = Quantity("length", parse_length_mm, within="0.05mm to 500mm")
 SPEED = Quantity("speed", parse_speed_mm_s)
 FEED = Quantity("speed", parse_speed_mm_s, within="0.01mm/s to 1000mm/s")
@@ -155,6 +160,6 @@ PLACE = Quantity("x,y", parse_place_mm)
 PLACES = Quantity("x,y,z", _parse_places_mm)
 TIME = Quantity("time", parse_time_s)
 LINES = Quantity("lines", _parse_lines)
-OVERRIDE = Quantity("stops", _parse_override)
+STOPS = Quantity("stops", _parse_stops)
 TRACKS = Quantity("tracks", _tracks)
-ORIGIN = Quantity("x,y or reference", _parse_origin)
+ORIGIN = Quantity("sheet|reference|x,y", _parse_origin)

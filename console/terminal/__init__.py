@@ -1,1 +1,4 @@
-"""TODO: what lives in this room, and its door."""
+"""The terminal: the desk that shows what a job does, and the operator who answers its questions.
+
+The verbs and the options ask this room; it asks `jobs` and `reports`.
+"""

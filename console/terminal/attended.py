@@ -19,7 +19,7 @@ from morfax.motion.faults import CardFault
 from morfax.motion.units import format_length_mm, format_time_s
 
 if TYPE_CHECKING:
-    from morfax.tracer.operator.card import Card, Stop
+    from morfax.tracer.operator.card import Stop
     from morfax.tracer.operator.work import Halt
     from morfax.tracer.operator.zunit import Move
 
@@ -69,14 +69,20 @@ class Attended:
         return time.perf_counter() - began
 
 
+def panel(*, asking: bool) -> Attended | None:
+    """The operator at the terminal, None without a terminal; wrong use if he is to be asked there."""
+    if at_terminal():
+        return Attended(asking=asking)
+    if asking:
+        raise click.UsageError(
+            "--ask needs a terminal to ask at; write a card instead, see docs/card.md"
+        )
+    return None
+
+
 def at_terminal() -> bool:
     """Whether there is somebody to ask."""
     return sys.stdin.isatty()
-
-
-def waits(card: Card) -> bool:
-    """Whether a card has stops that wait for the operator's button."""
-    return "manual" in (card.restart, *(stop.restart for stop in card.stops))
 
 
 def _stop(halt: Halt) -> str:

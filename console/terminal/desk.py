@@ -1,4 +1,4 @@
-"""The operator's desk: what a verb tells while it works and when it has done.
+"""The operator's desk: the Listener of a terminal, which also prints the figures of a result.
 
 Figures go to stdout, as text or as JSON; notes, details and progress bars to stderr. A bar shows on a
 terminal only.
@@ -6,22 +6,17 @@ terminal only.
 
 from __future__ import annotations
 
-import functools
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
 
 import click
 
-from morfax.console.terminal import kernels
+from morfax.jobs import kernels
+from morfax.jobs.figures import Figures
+from morfax.jobs.listener import Advance
 from morfax.reports import table
-
-if TYPE_CHECKING:
-    from morfax.motion.motion import Motion
-
-Advance = Callable[[float], None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,18 +37,22 @@ class Desk:
         if self.verbose and not self.quiet:
             click.echo(text, err=True)
 
-    def figures(self, figures: table.Figures) -> None:
+    def figures(self, figures: Figures) -> None:
         """Print the result on stdout."""
         click.echo(table.as_json(figures) if self.json else table.as_text(figures))
 
-    def warn_of_compiling(self, what: str, *packages: str) -> None:
+    def warning(self, text: str) -> None:
+        """Say a line on stderr, unless quiet."""
+        self.note(text)
+
+    def compiling(self, what: str, packages: tuple[str, ...]) -> None:
         """Say that the first run takes longer, if it will."""
         if kernels.are_cold(packages) and not kernels.told(packages):
             self.note(f"compiling {what} (first run only, some ten seconds) ...")
 
     @contextmanager
-    def bar(self, what: str, total: float) -> Iterator[Advance]:
-        """Show how far a piece of work has come; gives the function to tell it, in the unit of `total`."""
+    def progress(self, what: str, total: float) -> Iterator[Advance]:
+        """Show how far a piece of work is; the function that it gives hears how much of `total` is done."""
         if self.quiet or not sys.stderr.isatty():
             yield lambda done: None
             return
@@ -64,40 +63,8 @@ class Desk:
             TextColumn("{task.description}"),
             BarColumn(),
             TextColumn("{task.percentage:3.0f} %"),
+            TimeElapsedColumn(),
         )
-        with Progress(
-            *columns, TimeElapsedColumn(), console=Console(stderr=True), transient=True
-        ) as progress:
+        with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
             task = progress.add_task(what, total=total)
             yield lambda done: progress.update(task, completed=done)
-
-    def watched(self, stream: Iterable[Motion], what: str, total_s: float) -> Iterator[Motion]:
-        """Pass a stream of motion on, with a bar for its time."""
-        done_s = 0.0
-        with self.bar(what, total_s) as advance:
-            for block in stream:
-                yield block
-                done_s += block.duration_s
-                advance(done_s)
-
-
-def desk_options(verb: Callable[..., Any]) -> Callable[..., Any]:
-    """Give a verb --quiet, --verbose and --json, and hand it the `desk`."""
-
-    @click.option(
-        "-q",
-        "--quiet",
-        is_flag=True,
-        help="No notes and no progress bar; faults are still told.",
-    )
-    @click.option("-v", "--verbose", is_flag=True, help="Tell more on stderr.")
-    @click.option(
-        "--json",
-        is_flag=True,
-        help="Print the figures on stdout as one JSON object, units in the keys.",
-    )
-    @functools.wraps(verb)
-    def with_desk(*args: Any, quiet: bool, verbose: bool, json: bool, **options: Any) -> Any:
-        return verb(*args, desk=Desk(quiet, verbose, json), **options)
-
-    return with_desk

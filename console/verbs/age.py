@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 from pathlib import Path as FilePath
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
+from morfax.console.options.desk import desk_options
+from morfax.console.options.files import FILE
+from morfax.console.options.groups import Verb, option, renamed
 from morfax.console.options.types import FREQUENCY, TIME, TRACKS, Quantity
-from morfax.console.terminal.desk import Desk, desk_options
-from morfax.jobs import files as medium
+from morfax.jobs.age import SETS, AgeJob
 
-SETS = ("studio-15ips", "instrumentation", "cassette")
+if TYPE_CHECKING:
+    from morfax.console.terminal.desk import Desk
 
 EXAMPLES = """\b
 Examples:
   morfax age cam.wav -o worn.wav --as cassette --seed 7
-  morfax age cam.wav -o fast.wav --speed 1.5% --flutter 0.2%
+  morfax age cam.wav -o fast.wav --speed-error 1.5% --flutter 0.2%
   morfax age cam.wav -o holes.wav --dropouts 60 --dropout-length 5ms --dropout-depth 40dB
   morfax age cam.wav -o mixed.wav --order 2,1,3,4 --inverted 3
 """
@@ -48,7 +50,7 @@ def _decibels(text: str) -> float:
 SHARE, DECIBELS = Quantity("share", _share), Quantity("dB", _decibels)
 
 PARTS: tuple[tuple[str, str, Any, str], ...] = (
-    ("--speed", "speed", SHARE, "Speed error, such as 1.5% or -1.5%."),
+    ("--speed-error", "speed", SHARE, "Speed error, such as 1.5% or -1.5%."),
     ("--wow", "wow", SHARE, "Unevenness of speed from 0.5 to 4 Hz, RMS."),
     ("--flutter", "flutter", SHARE, "Unevenness of speed from 4 to 100 Hz, RMS."),
     ("--scrape", "scrape", SHARE, "Unevenness of speed from 100 to 2000 Hz, RMS."),
@@ -84,33 +86,37 @@ PARTS: tuple[tuple[str, str, Any, str], ...] = (
 def part_options(verb: Any) -> Any:
     """Give a verb an option for each part of the wear."""
     for name, part, kind, said in reversed(PARTS):
-        verb = click.option(name, part, type=kind, default=None, help=said)(verb)
+        verb = option("Wear", name, part, type=kind, default=None, help=said)(verb)
     return verb
 
 
-@click.command("age", epilog=EXAMPLES)
-@click.argument("tape", type=medium.FILE)
-@click.option(
+@click.command("age", cls=Verb, epilog=EXAMPLES)
+@click.argument("tape", type=FILE)
+@option(
+    "Output",
     "-o",
     "output",
-    type=medium.FILE,
+    type=FILE,
     required=True,
     help="The worn tape (.wav, .rf64, .w64, .flac, .aiff).",
 )
-@click.option(
+@option(
+    "Wear",
     "--as",
     "machine",
     type=click.Choice(SETS),
-    help="All that a kind of machine does; parts go before it.",
+    help="All that a kind of machine does; single parts take precedence.",
 )
-@click.option(
+@option(
+    "Wear",
     "--seed",
     type=click.IntRange(min=0),
     default=0,
     show_default=True,
-    help="Another seed, another tape.",
+    help="Another seed gives another tape.",
 )
-@click.option(
+@option(
+    "Wear",
     "--all-tracks",
     "dropout_all",
     is_flag=True,
@@ -118,42 +124,18 @@ def part_options(verb: Any) -> Any:
     help="Dropouts on all tracks at once.",
 )
 @part_options
+@renamed("--speed", "--speed-error")
 @desk_options
 def command(
     tape: FilePath, output: FilePath, machine: str | None, seed: int, desk: Desk, **parts: Any
 ) -> None:
     """Wear a tape as a real recorder and the years do.
 
-    Each part stands by itself; without any the tape is only copied. docs/background/transport.md has the figures of the
-    sets.
+    Each part of the wear stands by itself; without any the tape is only copied. docs/background/transport.md has the
+    figures of the sets.
     """
-    from morfax.recorder.wear.transport import SETS as WEAR
-    from morfax.recorder.wear.transport import Wear, age
-
-    medium.outgoing(output, tape)
-    given = {name: value for name, value in parts.items() if value is not None}
-    if "stamped_hz" in given:
-        given["stamped_hz"] = round(given["stamped_hz"])
-    desk.warn_of_compiling("the transport", "recorder")
-    try:
-        with desk.bar(f"wearing {tape.name}", 1.0) as advance:
-            wear = replace(WEAR[machine] if machine else Wear(), **given)
-            aged = age(
-                tape,
-                output,
-                wear,
-                seed,
-                progress=lambda done_s, total_s: advance(done_s / (total_s or 1)),
-            )
-    except ValueError as refused:
-        if type(refused) is not ValueError:
-            raise
-        raise click.UsageError(str(refused)) from None
-    desk.figures(
-        {
-            "tape": str(output),
-            "duration_s": aged.duration_s,
-            "dropouts": len(aged.dropouts),
-            "seed": seed,
-        }
-    )
+    worn = {name: value for name, value in parts.items() if value is not None}
+    if "stamped_hz" in worn:
+        worn["stamped_hz"] = round(worn["stamped_hz"])
+    job = AgeJob(tape, output, machine, tuple(worn.items()), seed)
+    desk.figures(job.run(desk).figures)

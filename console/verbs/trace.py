@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING
 
 import click
 
-from morfax.console.options.head import head_options
-from morfax.console.terminal.desk import Desk, desk_options
-from morfax.jobs import files as medium
-from morfax.jobs.drawing import Sheet, sheet_options
-from morfax.jobs.recording import Unit, unit_options
-from morfax.jobs.traced import Traced
-from morfax.jobs.tracing import Head
+from morfax.console.options.desk import desk_options
+from morfax.console.options.drawing import drawing_options
+from morfax.console.options.files import FILE, PATHS, PICTURES, PROGRAMS, Result
+from morfax.console.options.groups import Verb, option
+from morfax.console.options.placement import unit_options
+from morfax.console.options.tracing import trace_options
+from morfax.console.terminal.sheet import sheet_shown
+from morfax.jobs.trace import TraceJob, TraceOutputs
 
 if TYPE_CHECKING:
-    from morfax.tracer.drawing.drawing import Drawing
+    from morfax.console.terminal.desk import Desk
+    from morfax.jobs.recording import RecordingUnit
+    from morfax.jobs.settings import DrawingFile, TraceSettings
+    from morfax.tracer.operator.operator import Panel
 
 EXAMPLES = """\b
 Examples:
@@ -28,116 +31,66 @@ Examples:
 """
 
 
-@dataclass(frozen=True, slots=True)
-class Outputs:
-    """Where the results go: the tape, the path, or both, and the picture."""
-
-    tape: FilePath | None
-    path: FilePath | None
-    picture: FilePath | None
-
-
-@click.command("trace", epilog=EXAMPLES)
-@click.argument("drawing", type=medium.FILE)
-@click.option(
+@click.command("trace", cls=Verb, epilog=EXAMPLES)
+@click.argument("drawing", type=FILE)
+@option(
+    "Output",
     "-o",
     "output",
-    type=medium.FILE,
+    type=Result(*PROGRAMS, *PATHS),
     help="The tape (.wav), another program (.steps, .cubic, .ngc), or a path file only (.csv).  [default: the "
     "drawing's name with .wav, in this folder]",
 )
-@click.option(
-    "--path", "path_file", type=medium.FILE, help="Write the head's path as well (.csv)."
+@option(
+    "Output",
+    "--path",
+    "path_file",
+    type=Result(*PATHS),
+    help="Write the head's path as well (.csv).",
 )
-@click.option(
-    "--picture", type=medium.FILE, help="Draw the path over the drawing (.png, .svg, .pdf)."
+@option(
+    "Output",
+    "--picture",
+    type=Result(*PICTURES),
+    help="Draw the path over the drawing (.png, .svg, .pdf).",
 )
-@click.option(
+@option(
+    "Output",
     "--force",
     is_flag=True,
-    help="Write over a tape that is there already under a name not given with -o.",
+    help="Without -o: write over a tape that is there already.",
 )
-@sheet_options
-@head_options
+@drawing_options("drawing")
+@trace_options
 @unit_options
 @desk_options
 def command(
-    drawing: FilePath,
+    drawing: DrawingFile,
     output: FilePath | None,
     path_file: FilePath | None,
     picture: FilePath | None,
     force: bool,
-    sheet: Sheet,
-    head: Head,
-    unit: Unit,
+    settings: TraceSettings,
+    panel: Panel | None,
+    unit: RecordingUnit,
     desk: Desk,
 ) -> None:
     """Follow the line of a drawing and record the head's motion on a tape.
 
     DRAWING is an image file (PNG, JPEG, TIFF) of known resolution. A closed line is followed until it closes,
-    an open one from end to end. If the line is lost, what was traced until then is kept, with `.incomplete`
-    in the names; of several lines (--lines) the others are cut all the same. The picture numbers them. If
-    there is no line to start on, --picture shows the sheet, so that a place for --start can be read off it.
-    The picture is the drawing's; tape and path are mirrored, scaled and turned as asked for.
+    an open one from end to end. If the line is lost, what was traced before is kept, with `.incomplete` in
+    the names; of several lines (--lines) the others are cut all the same. The picture numbers them. If the
+    head finds no line to start on, --picture shows the sheet, so that a place for --start can be read off it.
+    The picture shows the drawing as it is; tape and path are mirrored, scaled and turned as asked for.
     """
-    outputs = _outputs(drawing, output, path_file, picture, force)
-    unit.check(outputs.tape)
-    opened = sheet.open(drawing)
-    desk.detail(f"{drawing}: sheet of {opened.width_mm:.2f} x {opened.height_mm:.2f} mm")
-    traced = head.trace(opened, desk, outputs.picture)
-    unit = unit.at(traced.origin_mm)
-    written = _write(traced, outputs, opened, unit, desk)
-    unit.warn(desk)
-    desk.figures({"drawing": str(drawing), **written, **traced.figures(), **unit.figures()})
-    if traced.fault is not None:
-        raise traced.fault
+    outputs = TraceOutputs(output, path_file, picture, force)
+    job = TraceJob(drawing, outputs, settings, unit)
+    with sheet_shown(job, picture, desk):
+        result = job.run(desk, panel)
+    if result.picture is not None:
+        from morfax.reports.pictures import draw_traced
 
-
-def _outputs(
-    drawing: FilePath,
-    output: FilePath | None,
-    path_file: FilePath | None,
-    picture: FilePath | None,
-    force: bool,
-) -> Outputs:
-    """Names for the results, each of which can be written; raises FileFault if not."""
-    from morfax.recorder.media import MEDIA
-
-    pictures = (".png", ".svg", ".pdf")
-    for option, file, suffixes in (
-        ("-o", output, (*MEDIA, ".csv")),
-        ("--path", path_file, (".csv",)),
-        ("--picture", picture, pictures),
-    ):
-        if file is not None:
-            medium.outgoing(medium.with_suffix_in(file, suffixes, option), drawing)
-    if output is None:
-        output = medium.made_up(FilePath(f"{drawing.stem}.wav"), drawing, force=force)
-    if output.suffix.lower() == ".csv":
-        return Outputs(None, output, picture)
-    return Outputs(output, path_file, picture)
-
-
-def _write(
-    traced: Traced, outputs: Outputs, drawing: Drawing, unit: Unit, desk: Desk
-) -> dict[str, str]:
-    """Write what was asked for; the names under which it stands."""
-    written = {}
-    if outputs.tape is not None:
-        written[medium.called(outputs.tape)] = str(traced.record(outputs.tape, unit, desk))
-    if outputs.path is not None:
-        written["path"] = str(traced.write(outputs.path, unit))
-    if outputs.picture is not None:
-        from morfax.reports.overlay import Picture, draw
-
-        name = drawing.file.name if drawing.file else "drawing"
-        picture = Picture(
-            f"{name}, traced",
-            traced.path,
-            drawing,
-            numbers_mm=traced.places_mm,
-            stops_mm=traced.marked_mm,
-        )
-        draw(picture, traced.name(outputs.picture))
-        written["picture"] = str(traced.name(outputs.picture))
-    return written
+        draw_traced(result)
+    desk.figures(result.figures)
+    if result.fault is not None:
+        raise result.fault

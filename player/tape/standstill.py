@@ -103,7 +103,7 @@ def take_bearings(frames: Float32s, phases: Phases, fmt: TapeFormat) -> Bearings
     if not abs(found_hz / reference_hz - 1) <= REFERENCE_BAND:
         raise TapeFault(
             f"track 1 carries {found_hz:.0f} Hz where the reference of {reference_hz:g} Hz should be, within "
-            f"{REFERENCE_BAND:.0%}; give the tape's own (--reference {found_hz:.0f}Hz), or its tracks in order"
+            f"{REFERENCE_BAND:.0%}; give the tape's own (--reference-frequency {found_hz:.0f}Hz), or its tracks in order"
         )
     rows = max(round(STANDSTILL_S * fmt.motion_rate_hz), 1)
     levels = phases.levels[:rows].astype(np.float64).mean(axis=0)

@@ -45,7 +45,10 @@ _MOTION_RATE_HZ = 6000.0
 _FEWEST_TRACKS = 3
 _INT16_STEP = np.float32(1 / 32768)  # full scale 1
 Stored = NDArray[np.float32 | np.int16]
-_EXAMPLES = {"reference_hz": "--reference 6kHz", "cycles_per_mm": "--cycles-per-mm 20"}
+_EXAMPLES = {
+    "reference_hz": "--reference-frequency 6kHz",
+    "cycles_per_mm": "--cycles-per-mm 20",
+}
 
 
 class Tape:

@@ -23,7 +23,7 @@ def test_a_worn_tape_is_written_and_the_same_seed_gives_the_same(
             name,
             "--as",
             "cassette",
-            "--speed",
+            "--speed-error",
             "-1%",
             "--seed",
             7,
@@ -39,7 +39,7 @@ def test_a_worn_tape_is_written_and_the_same_seed_gives_the_same(
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["--speed", "fast"], "no share"),
+        (["--speed-error", "fast"], "no share"),
         (["--noise", "loud"], "no level"),
         (["--order", "1,2"], "each of the tracks"),
         (["--order", "x"], "names no tracks"),

@@ -14,7 +14,7 @@ import soundfile
 from tests.console.conftest import Morfax
 
 RATE_HZ = 48000
-BY_HAND = ("--reference", "6kHz", "--cycles-per-mm", "20")
+BY_HAND = ("--reference-frequency", "6kHz", "--cycles-per-mm", "20")
 
 
 @pytest.fixture
@@ -57,7 +57,10 @@ def refused(morfax: Morfax, name: str, *words: str, exit_code: int = 5) -> str:
 
 def test_music_is_no_tape(morfax: Morfax, here: Path) -> None:
     said = refused(morfax, written(music()))
-    assert "does not say its format" in said and "--reference 6kHz --cycles-per-mm 20" in said
+    assert (
+        "does not say its format" in said
+        and "--reference-frequency 6kHz --cycles-per-mm 20" in said
+    )
     said = refused(morfax, written(music()), *BY_HAND)
     assert "where the reference of 6000 Hz should be" in said
 
@@ -108,7 +111,7 @@ def test_a_tape_at_another_speed_says_which_reference_it_has(
     )
     said = refused(morfax, written(slow.astype(np.float32), tape_text(here, frames)))
     assert f"carries {6000 * share:.0f} Hz where the reference of 6000 Hz should be" in said
-    assert f"--reference {6000 * share:.0f}Hz" in said
+    assert f"--reference-frequency {6000 * share:.0f}Hz" in said
 
 
 def test_a_tape_backwards_is_no_other_tape_but_the_tool_goes_up(

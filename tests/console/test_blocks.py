@@ -31,10 +31,10 @@ def test_a_program_is_inspected_played_and_compared(bracket: Path, morfax: Morfa
 def test_the_norm_and_the_override_change_the_time(bracket: Path, morfax: Morfax) -> None:
     took = {
         words: morfax("play", bracket, *words, "--json").figures["duration_s"]
-        for words in [(), ("--norm", "true"), ("--override", "0.5")]
+        for words in [(), ("--norm", "true"), ("--feed-override", "0.5")]
     }
     assert (
-        took["--norm", "true"] < took[()] < took["--override", "0.5"]
+        took["--norm", "true"] < took[()] < took["--feed-override", "0.5"]
     )  # the weights make it up to 7 % slow
 
 
@@ -47,7 +47,7 @@ def test_what_is_for_another_control_is_refused(bracket: Path, morfax: Morfax) -
         "is for programs of lines and arcs"
         in morfax("play", "bracket.wav", "--norm", "true").fault
     )
-    assert "an override of 3 is none" in morfax("play", bracket, "--override", "3").fault
+    assert "an override of 3 is none" in morfax("play", bracket, "--feed-override", "3").fault
 
 
 @pytest.mark.parametrize(

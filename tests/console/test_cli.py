@@ -75,7 +75,7 @@ def test_help_is_quick_because_it_loads_none_of_the_machines() -> None:
     [
         ["dance"],
         ["play"],
-        ["play", "a.wav", "--reference", "3mm"],
+        ["play", "a.wav", "--reference-frequency", "3mm"],
         ["play", "a.wav", "--cycles-per-mm", "0"],
         ["play", "a.wav", "--cycles-per-mm", "many"],
         ["trace", "a.png", "--start", "4"],

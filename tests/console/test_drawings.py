@@ -12,8 +12,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from morfax.console.options.tracing import DEFAULTS
 from morfax.console.verbs.trace import command
-from morfax.jobs.tracing import Head
+from morfax.jobs.settings import TraceSettings
 from morfax.motion.contour import closure_mm, distance
 from morfax.motion.pathfile import read_path
 from morfax.tracer.drawing import components as patches
@@ -22,6 +23,7 @@ from morfax.tracer.drawing.components import Patches, runs_of
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.head.settings import Settings
+from morfax.tracer.operator.operator import Operator
 from morfax.tracer.operator.work import Work
 from tests.console.conftest import SAMPLES, Morfax
 
@@ -342,17 +344,20 @@ def test_patches_are_those_of_opencv() -> None:
     assert (found.painted(largest, 20, 250, 30, 190) == own[20:250, 30:190]).all()
 
 
-def test_the_defaults_of_the_command_line_are_those_of_the_tracer() -> None:
+def test_the_defaults_that_the_help_states_are_those_of_the_tracer() -> None:
     """They are stated twice, since --help shall not wait for the tracer."""
-    given = command.make_context("trace", ["a.png"]).params
+    types = {option.name: option.type for option in command.params}
+    stated = {name: types[name].convert(text, None, None) for name, text in DEFAULTS.items()}
     settings, work = Settings(), Work()
-    assert Head(
-        **{name: given[name] for name in Head.__dataclass_fields__ if name in given}
-    ) == Head(
-        start_mm=None,
-        speed_mm_s=settings.speed_mm_s,
-        depth_mm=work.depth_mm,
-        clearance_mm=work.clearance_mm,
-        line_width_mm=settings.line_width_mm,
-        gap_mm=settings.gap_mm,
-    )
+    assert stated == {
+        "speed_mm_s": settings.speed_mm_s,
+        "gap_mm": settings.gap_mm,
+        "depth_mm": work.depth_mm,
+        "clearance_mm": work.clearance_mm,
+    }
+
+
+def test_what_is_not_set_is_the_head_s_and_the_tool_s_own() -> None:
+    unset = TraceSettings()
+    assert unset.of_head() == Settings()
+    assert unset.operator(unset.card(), None) == Operator()

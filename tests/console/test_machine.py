@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from morfax.console.verbs import play
+from morfax.jobs import play
 from morfax.motion.contour import distance
 from morfax.motion.pathfile import read_path
 from morfax.player.tape.phase_lock import MOTORS
@@ -73,6 +73,6 @@ def test_other_controls_have_none_of_it(morfax: Morfax, here: Path, path_file: P
     )
     assert (
         "--feed-override is for tapes and for programs of"
-        in morfax("play", "a.steps", "--override", "50%").fault
+        in morfax("play", "a.steps", "--feed-override", "50%").fault
     )
     assert "--zero is for files, not for a pipe" in morfax("play", "-", "--zero", "1,1").fault

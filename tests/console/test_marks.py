@@ -67,12 +67,12 @@ def test_without_a_card_guide_lines_are_passed_by(morfax: Morfax, here: Path) ->
 
 
 def test_override_passes_marks_by(morfax: Morfax, here: Path) -> None:
-    assert len(places(traced(morfax, "--override", "2"))) == 1
-    assert places(traced(morfax, "--override", "all")) == []
+    assert len(places(traced(morfax, "--stop-override", "2"))) == 1
+    assert places(traced(morfax, "--stop-override", "all")) == []
 
 
 def test_a_stop_that_is_not_there_is_told_of(morfax: Morfax, here: Path) -> None:
-    answer = morfax("trace", PROGRAM, "-o", "program.csv", "--override", "2,7")
+    answer = morfax("trace", PROGRAM, "-o", "program.csv", "--stop-override", "2,7")
     assert answer.exit_code == 0 and "there is no stop 7: 2 were found" in answer.err
 
 
@@ -112,7 +112,7 @@ def test_a_turn_to_a_side_to_which_no_line_leads_is_told_of(
 
 @pytest.mark.parametrize("stops", ["0", "-1", "two", "1,", "1.5"])
 def test_stops_are_numbered_from_1(morfax: Morfax, here: Path, stops: str) -> None:
-    answer = morfax("trace", PROGRAM, "-o", "program.csv", f"--override={stops}")
+    answer = morfax("trace", PROGRAM, "-o", "program.csv", f"--stop-override={stops}")
     assert answer.exit_code == 2 and f"{stops!r} names no stops" in answer.err
 
 
@@ -144,7 +144,7 @@ def test_origin_reference_puts_the_zero_there(morfax: Morfax, here: Path) -> Non
 
 
 def test_a_reference_point_may_be_named(morfax: Morfax, here: Path) -> None:
-    answer = traced(morfax, "--reference", "8,23.5")
+    answer = traced(morfax, "--reference-point", "8,23.5")
     assert answer.figures["reference_place_mm"] == pytest.approx((8.0, 23.5))
 
 
@@ -152,7 +152,9 @@ def test_a_named_reference_point_that_no_line_begins_at_is_told_of(
     morfax: Morfax, here: Path
 ) -> None:
     """The drawn one is taken then, and never a guide line for the lead line."""
-    answer = morfax("trace", PROGRAM, "-o", "program.csv", "--json", "--reference", "5,55")
+    answer = morfax(
+        "trace", PROGRAM, "-o", "program.csv", "--json", "--reference-point", "5,55"
+    )
     assert answer.figures["reference_place_mm"] == pytest.approx(REFERENCE_MM, abs=WITHIN_MM)
     assert (
         "no line begins within 11 mm of the reference point 5,55 mm: the program does not begin there"
@@ -171,7 +173,9 @@ def test_a_stem_that_nothing_makes_a_lead_line_is_told_to_be_cut(
     assert re.search(
         r"the line from 5.1,12.7 to the contour at 2[78][.0-9]+,12.7 mm is cut too", answer.err
     )
-    told = morfax("trace", "stem.png", "-o", "stem.csv", "--json", "--reference", "3,12.7")
+    told = morfax(
+        "trace", "stem.png", "-o", "stem.csv", "--json", "--reference-point", "3,12.7"
+    )
     assert "is cut too" not in told.err and told.figures["reference_place_mm"] == [3.0, 12.7]
 
 

@@ -48,7 +48,7 @@ def test_any_program_becomes_any_other(
         ("b.cubic", "c.wav"),
     ):
         assert morfax(
-            "record", source, "-o", program, "--tolerance", "12.5um", "--quiet"
+            "record", source, "-o", program, "--fit-tolerance", "12.5um", "--quiet"
         ).exit_code == (2 if program.endswith(".wav") else 0)
     assert morfax("record", "b.cubic", "-o", "c.wav").exit_code == 0
     assert morfax("compare", "c.wav", path_file, "--tolerance", "50um").exit_code == 0
@@ -85,9 +85,9 @@ def test_what_is_for_tapes_only_is_wrong_use(
 ) -> None:
     assert morfax("record", path_file, "-o", "a.steps").exit_code == 0
     for words in (
-        ["play", "a.steps", "--reference", "6kHz"],
-        ["inspect", "a.steps", "--reference", "6kHz"],
-        ["record", path_file, "-o", "a.wav", "--tolerance", "1um"],
+        ["play", "a.steps", "--reference-frequency", "6kHz"],
+        ["inspect", "a.steps", "--reference-frequency", "6kHz"],
+        ["record", path_file, "-o", "a.wav", "--fit-tolerance", "1um"],
         ["inspect", tape_file, "-o", "tape.png"],
         ["record", path_file, "-o", "a.tape"],
         ["inspect", "a.steps", "-o", "tape.jpg"],

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from morfax.jobs import systems
+from morfax.jobs.results import NAMES
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import Path as MotionPath
 from morfax.recorder import media
@@ -36,7 +37,7 @@ def test_all_systems_side_by_side(morfax: Morfax, here: Path) -> None:
             row["duration_s"] > figures["length_mm"] / 12 and 0 <= row["speed_held_share"] <= 1
         )
         assert 5 < row["mean_speed_mm_s"] < 10.5
-        assert systems.NAMES[suffix] in answer.err  # progress
+        assert NAMES[suffix] in answer.err  # progress
     sizes = [figures[suffix]["bytes_per_mm"] for suffix in ("wav", "cubic", "steps", "ngc")]
     assert sizes == sorted(sizes, reverse=True)
     assert (
@@ -114,7 +115,7 @@ def test_a_system_that_refuses_says_why_and_the_others_go_on(
         (("cam.csv", "cam.csv", "--speed", "5mm/s"), "are for --systems; without it"),
         (("cam.png", "--systems", "all", "--cutter", "6mm"), "with --systems leave them out"),
         (
-            ("cam.png", "--systems", "all", "--reference", "6kHz"),
+            ("cam.png", "--systems", "all", "--reference-frequency", "6kHz"),
             "with --systems leave them out",
         ),
         (
@@ -144,11 +145,11 @@ def test_corners_are_found_and_a_path_that_cuts_one_is_as_far_off_as_it_cuts() -
     square = path([(0, 0), (10, 0), (10, 10), (0, 10)], [10.0] * 3)
     assert systems.corner_places(square).tolist() == [[10, 0], [10, 10]]
     cut = path([(0, 0), (9.9, 0), (10, 0.1), (10, 10), (0, 10)], [10.0] * 4)
-    assert systems._corner_error_mm(systems.corner_places(square), cut) == pytest.approx(
+    assert systems.corner_error_mm(systems.corner_places(square), cut) == pytest.approx(
         0.1 / np.sqrt(2)
     )
     straight = path([(0, 0), (5, 0), (10, 0.5)], [10.0] * 2)
-    assert systems._corner_error_mm(systems.corner_places(straight), straight) is None
+    assert systems.corner_error_mm(systems.corner_places(straight), straight) is None
 
 
 def test_the_speed_held_is_the_share_of_the_way_within_five_percent() -> None:

@@ -87,7 +87,7 @@ def test_a_tape_without_text_plays_with_what_is_given_by_hand(
     told = morfax("play", bare, "-o", "bare.csv")
     assert told.exit_code == 5
     assert "--reference" in told.fault and "--cycles-per-mm" in told.fault
-    given = ("--reference", "6kHz", "--cycles-per-mm", "20", "--from", "40,30")
+    given = ("--reference-frequency", "6kHz", "--cycles-per-mm", "20", "--from", "40,30")
     assert morfax("play", bare, *given, "-o", "bare.csv").exit_code == 0
     played, truth = read_path("bare.csv"), read_path(path_file)
     assert played.xy_mm[-1] == pytest.approx(truth.xy_mm[-1], abs=PLAYED_WITHIN_MM)
@@ -137,7 +137,7 @@ def test_too_few_tracks_are_no_tape(
     morfax: Morfax, here: Path, tape_file: Path, frames: np.ndarray, tracks: int
 ) -> None:
     few = rewritten(tape_file, frames[:, :tracks], "few.wav")
-    answer = morfax("play", few, "--reference", "6kHz", "--cycles-per-mm", "20")
+    answer = morfax("play", few, "--reference-frequency", "6kHz", "--cycles-per-mm", "20")
     assert answer.exit_code == 5 and "few.wav" in answer.fault
     assert ("one track", "2 tracks")[tracks - 1] in answer.fault
 
@@ -157,7 +157,7 @@ def test_a_silent_track_is_told_and_what_was_played_before_is_kept(
     answer = morfax(
         "play",
         broken,
-        "--reference",
+        "--reference-frequency",
         "6kHz",
         "--cycles-per-mm",
         "20",
@@ -216,6 +216,6 @@ def test_a_tape_that_cannot_be_is_wrong_use(
     morfax: Morfax, here: Path, path_file: Path
 ) -> None:
     """A carrier of 30 kHz has no place on a tape of 48 kHz."""
-    answer = morfax("record", path_file, "-o", "high.wav", "--reference", "30kHz")
+    answer = morfax("record", path_file, "-o", "high.wav", "--reference-frequency", "30kHz")
     assert answer.exit_code == 2 and "sample rate" in answer.fault
     assert list(here.iterdir()) == []

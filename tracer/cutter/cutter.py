@@ -206,7 +206,7 @@ def _refuse_gouges(beside: Trace, near: Nearest, cutter: Cutter) -> None:
             x, y = cutting[int(np.argmin(away_mm))]
             raise MotionFault(
                 f"a cutter of {cutter.diameter_mm:g} mm would cut into the part at {x:.1f},{y:.1f} mm, where a stop's moves leave it in the work;"
-                " have it up on the card there, or pass the stop by with --override"
+                " have it up on the card there, or pass the stop by with --stop-override"
             )
 
 

@@ -275,5 +275,5 @@ def _several_lead(lines: list[Line]) -> LineFault:
     return LineFault(
         f"{len(lines)} lines with a tick lead to the contour, from {places}, and no reference point shows"
         " which of them is the lead line; draw a cross or ring at its beginning, or give one of these places"
-        " with --start X,Y or --reference X,Y"
+        " with --start X,Y or --reference-point X,Y"
     )

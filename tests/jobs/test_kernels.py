@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from morfax.console.terminal import kernels
+from morfax.jobs import kernels
 
 
 @pytest.fixture

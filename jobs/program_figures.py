@@ -1,44 +1,17 @@
-"""What is in a program that is no tape, for the verb `inspect`: format, length, travel, and the picture of
-its holes.
-"""
+"""What is in a program that is no tape: format, length, travel."""
 
 from __future__ import annotations
 
 from pathlib import Path as FilePath
 from typing import Any
 
-import click
 import numpy as np
 
-from morfax.console.terminal.desk import Desk
-from morfax.jobs import files as medium
-from morfax.reports import punched
 
-
-def inspect(file: FilePath, picture: FilePath | None, desk: Desk) -> dict[str, Any]:
-    """The figures of a program; draws its punched tape if asked to. Raises ProgramFault, FileFault."""
-    if picture is not None:
-        medium.outgoing(medium.with_suffix_in(picture, punched.SUFFIXES), file)
-    told = {".steps": _of_steps, ".cubic": _of_cubic, ".ngc": _of_blocks}.get(
-        file.suffix.lower()
-    )
-    if picture is not None and told is not _of_steps:
-        raise click.UsageError(f"{file} has no punched tape to draw; -o is for .steps")
-    desk.warn_of_compiling("the controls", "motion", "player")
-    figures = _played(file) if told is None else told(file)
-    return {"program": str(file), **figures, **_drawn(file, picture)}
-
-
-def _drawn(file: FilePath, picture: FilePath | None) -> dict[str, Any]:
-    """Draw the tape, if asked to."""
-    if picture is None:
-        return {}
-    from morfax.recorder.steps.file import read_program
-
-    return {
-        "picture": str(picture),
-        "rows_shown": punched.draw_tape(read_program(file), picture),
-    }
+def of_program(file: FilePath) -> dict[str, Any]:
+    """The figures of a program; raises ProgramFault and FileFault."""
+    by_medium = {".steps": _of_steps, ".cubic": _of_cubic, ".ngc": _of_blocks}
+    return by_medium.get(file.suffix.lower(), _of_other)(file)
 
 
 def _of_steps(file: FilePath) -> dict[str, Any]:
@@ -106,7 +79,7 @@ def _of_blocks(file: FilePath) -> dict[str, Any]:
     }
 
 
-def _played(file: FilePath) -> dict[str, Any]:
+def _of_other(file: FilePath) -> dict[str, Any]:
     """Any other program: what its control tells before it plays."""
     from morfax.player.controls import play
 

@@ -11,7 +11,7 @@ import os
 import tempfile
 from pathlib import Path
 
-HOUSE = Path(__file__).parents[2]  # the package morfax
+HOUSE = Path(__file__).parents[1]  # the package morfax
 PACKAGES = ("motion", "tracer", "recorder", "player")
 
 

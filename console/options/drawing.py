@@ -1,0 +1,68 @@
+"""The options of a drawing: scale, ink, filled shapes."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from typing import Any
+
+import click
+
+from morfax.console.options.groups import Decorator, option
+from morfax.console.options.types import LENGTH
+from morfax.jobs.settings import DrawingFile
+
+
+def drawing_options(argument: str) -> Decorator:
+    """Give a verb the options of a drawing, and hand it the drawing of an argument as a DrawingFile."""
+
+    def with_options(verb: Callable[..., Any]) -> Callable[..., Any]:
+        @option(
+            "Drawing",
+            "--dpi",
+            type=click.FloatRange(min=0, min_open=True),
+            help="Resolution of the drawing, dots per inch.  [default: what the file states]",
+        )
+        @option(
+            "Drawing",
+            "--width",
+            "width_mm",
+            type=LENGTH,
+            help="Width of the whole sheet, such as 120mm; instead of --dpi.",
+        )
+        @option(
+            "Drawing",
+            "--ink",
+            callback=_colour,
+            metavar="COLOUR",
+            help="Colour of the line, such as blue or '#0000c0': other colours, such as a printed grid, count "
+            "as paper.  [default: all that is dark]",
+        )
+        @option(
+            "Drawing",
+            "--edge",
+            is_flag=True,
+            help="Filled shapes: the head follows their edges.",
+        )
+        @functools.wraps(verb)
+        def with_drawing(*args: Any, **options: Any) -> Any:
+            names = ("dpi", "width_mm", "ink", "edge")
+            how = {name: options.pop(name) for name in names}
+            options[argument] = DrawingFile(options[argument], **how)
+            return verb(*args, **options)
+
+        return with_drawing
+
+    return with_options
+
+
+def _colour(ctx: click.Context, param: click.Parameter, value: str | None) -> str | None:
+    """A colour as it was given; wrong use if it is none."""
+    if value is not None:
+        from morfax.tracer.drawing.inks import parsed
+
+        try:
+            parsed(value)
+        except ValueError as error:
+            raise click.BadParameter(str(error)) from None
+    return value

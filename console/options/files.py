@@ -1,0 +1,40 @@
+"""Files on the command line: those put in, and names for results, whose suffix says what is written."""
+
+from __future__ import annotations
+
+from pathlib import Path as FilePath
+from typing import Any
+
+import click
+
+FILE = click.Path(path_type=FilePath)
+
+PICTURES = (".png", ".svg", ".pdf")
+PATHS = (".csv",)
+PROGRAMS = (".wav", ".rf64", ".flac", ".steps", ".cubic", ".ngc")  # recorder.media.MEDIA
+
+
+class Result(click.ParamType):
+    """The name for a result, which ends in one of some suffixes."""
+
+    name = "file"
+
+    def __init__(self, *suffixes: str) -> None:
+        self.suffixes = suffixes
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> FilePath:
+        """The name as a path; wrong use if its suffix is another one."""
+        file = FilePath(value)
+        if file.suffix.lower() not in self.suffixes:
+            self.fail(f"{str(file)!r} must end in {', '.join(self.suffixes)}", param, ctx)
+        return file
+
+    def shell_complete(
+        self, ctx: click.Context, param: click.Parameter, incomplete: str
+    ) -> list[click.shell_completion.CompletionItem]:
+        """Have the shell complete names of files."""
+        from click.shell_completion import CompletionItem
+
+        return [CompletionItem(incomplete, type="file")]

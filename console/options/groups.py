@@ -1,0 +1,90 @@
+"""Options under headings: a verb lists its options in groups, in the order of the work."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import click
+
+from morfax.jobs.wrong_use import WrongUse
+
+ORDER = (
+    "Drawing",
+    "Line",
+    "Head",
+    "Tool",
+    "Program",
+    "Systems",
+    "Machine",
+    "Tape",
+    "Wear",
+    "Output",
+)  # of the headings; options without a group come last
+REST = "Other options"
+
+
+class GroupedOption(click.Option):
+    """An option that stands under a heading of its verb's help."""
+
+    def __init__(self, *names: Any, group: str, **entries: Any) -> None:
+        super().__init__(*names, **entries)
+        self.group = group
+
+
+class Verb(click.Command):
+    """A command that lists its options under headings, and takes a job's wrong use for its own."""
+
+    def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the options, a section for each group."""
+        sections: dict[str, list[tuple[str, str]]] = {name: [] for name in (*ORDER, REST)}
+        for param in self.get_params(ctx):
+            record = param.get_help_record(ctx)
+            if record is not None and isinstance(param, click.Option):
+                sections[getattr(param, "group", REST)].append(record)
+        for name, records in sections.items():
+            if records:
+                with formatter.section(name):
+                    formatter.write_dl(records)
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run the verb; what a job refuses is wrong use of the command line."""
+        try:
+            return super().invoke(ctx)
+        except WrongUse as refused:
+            raise click.UsageError(str(refused), ctx) from None
+
+
+Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
+
+
+def option(group: str, *names: str, **entries: Any) -> Decorator:
+    """An option of a group."""
+    return click.option(*names, cls=GroupedOption, group=group, **entries)
+
+
+def renamed(old: str, new: str) -> Decorator:
+    """Refuse an old spelling of an option, and name the new one."""
+
+    def refuse(ctx: click.Context, param: click.Parameter, value: str | None) -> None:
+        if value is not None:
+            raise click.UsageError(f"{old} is called {new} now; give {new}", ctx)
+
+    return click.option(
+        old,
+        f"old_{old.strip('-')}",  # a name of its own: several spellings may stand for one parameter
+        hidden=True,
+        expose_value=False,
+        is_eager=True,
+        is_flag=False,
+        flag_value="",
+        callback=refuse,
+    )
+
+
+def given(option: str) -> bool:
+    """Whether an option was given on the command line."""
+    from click.core import ParameterSource
+
+    source = click.get_current_context().get_parameter_source(option)
+    return source is ParameterSource.COMMANDLINE

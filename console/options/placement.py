@@ -1,0 +1,67 @@
+"""The options of the recording unit: pick-ups, and how the motion is placed before it is recorded."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from dataclasses import fields
+from typing import Any
+
+import click
+
+from morfax.console.options.groups import option
+from morfax.console.options.types import ANGLE, NUMBER, PLACE
+from morfax.jobs.recording import PICK_UPS, RecordingUnit
+
+GROUP = "Program"
+_NAMES = tuple(field.name for field in fields(RecordingUnit) if field.name != "origin_mm")
+
+
+def unit_options(verb: Callable[..., Any]) -> Callable[..., Any]:
+    """Give a verb the options of the recording unit, and hand it the `unit`."""
+
+    @option(
+        GROUP,
+        "--pickup",
+        type=click.Choice(PICK_UPS),
+        help="What makes the tracks of a tape: its wave and its travel per cycle, see docs/reference/tape-format.md.  "
+        f"[default: {PICK_UPS[0]}]",
+    )
+    @option(
+        GROUP,
+        "--mirror",
+        type=click.Choice(["x", "y"]),
+        help="Run X, or Y, the other way.",
+    )
+    @option(
+        GROUP,
+        "--scale",
+        type=NUMBER,
+        default=1.0,
+        show_default=True,
+        help="Make X and Y this many times as large; the cutter's radius scales with them, Z does not.",
+    )
+    @option(
+        GROUP,
+        "--turn",
+        "turn_rad",
+        type=ANGLE,
+        default="0deg",
+        show_default=True,
+        help="Turn X and Y, counter-clockwise, such as 90deg.",
+    )
+    @option(
+        GROUP,
+        "--about",
+        "about_mm",
+        type=PLACE,
+        help="The place X,Y in mm that mirror, scale and turn leave where it is.  [default: the start of the "
+        "program]",
+    )
+    @functools.wraps(verb)
+    def with_unit(*args: Any, **options: Any) -> Any:
+        set_ = {name: options.pop(name) for name in _NAMES}
+        set_["mirror"] = set_["mirror"] or ""
+        return verb(*args, unit=RecordingUnit(**set_), **options)
+
+    return with_unit

@@ -1,0 +1,60 @@
+"""The options of a tape that does not say everything itself."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from dataclasses import fields
+from typing import Any
+
+from morfax.console.options.groups import option, renamed
+from morfax.console.options.types import FREQUENCY, NUMBER, PLACES, TRACKS
+from morfax.jobs.playing import ByHand
+
+CYCLES_PER_MM = NUMBER
+
+
+def tape_options(verb: Callable[..., Any]) -> Callable[..., Any]:
+    """Give a verb the options of a tape that does not say everything itself, and hand it the `by_hand`."""
+
+    @option(
+        "Tape",
+        "--reference-frequency",
+        "reference_hz",
+        type=FREQUENCY,
+        help="Reference frequency of the tape, such as 6kHz.  [default: what the tape says]",
+    )
+    @renamed("--reference", "--reference-frequency")
+    @option(
+        "Tape",
+        "--cycles-per-mm",
+        type=CYCLES_PER_MM,
+        help="Cycles of phase per mm of travel, such as 20.  [default: what the tape says]",
+    )
+    @option(
+        "Tape",
+        "--from",
+        "start_mm",
+        type=PLACES,
+        help="Where the machine stands at the start, mm: X,Y or X,Y,Z …  [default: what the tape says, else 0,0]",
+    )
+    @option(
+        "Tape",
+        "--tracks",
+        "order",
+        type=TRACKS,
+        help="On which tracks of the file reference, X, Y … are, such as 2,1,3,4.  [default: 1,2,3 …]",
+    )
+    @option(
+        "Tape",
+        "--closed",
+        is_flag=True,
+        default=None,
+        help="The program returns to its start: checked where the tape does not say where it ends.",
+    )
+    @functools.wraps(verb)
+    def with_tape(*args: Any, **options: Any) -> Any:
+        set_ = {field.name: options.pop(field.name) for field in fields(ByHand)}
+        return verb(*args, by_hand=ByHand(**set_), **options)
+
+    return with_tape

@@ -1,0 +1,106 @@
+"""The job `compare`: how far two contours are apart: paths, tapes, or one of them a drawing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from pathlib import Path as FilePath
+from typing import TYPE_CHECKING, Any
+
+from morfax.jobs import comparison
+from morfax.jobs import files as medium
+from morfax.jobs.listener import SILENT, Listener
+from morfax.jobs.playing import ByHand, read_or_play
+from morfax.jobs.settings import DrawingFile, Origin
+from morfax.jobs.wrong_use import WrongUse
+
+if TYPE_CHECKING:
+    from morfax.jobs.comparison import Comparison
+    from morfax.jobs.figures import Figures
+    from morfax.motion.motion import Path
+    from morfax.tracer.drawing.drawing import Drawing
+    from morfax.tracer.operator.operator import Panel
+
+
+@dataclass(frozen=True, slots=True)
+class CompareResult:
+    """What a comparison gave: figures, the error along the first path, and what it was compared with.
+
+    Whether it is `within` the tolerance is None without one. A face draws the picture.
+    """
+
+    figures: Figures
+    found: Comparison
+    paths: tuple[Path, ...]
+    drawing: Drawing | None
+    within: bool | None
+
+
+@dataclass(frozen=True, slots=True)
+class CompareJob:
+    """Compare two path files, tapes or programs; or one of them with a drawing."""
+
+    a: DrawingFile  # a path or tape too: its scale and ink then say nothing
+    b: FilePath
+    tolerance_mm: float | None = None
+    picture: FilePath | None = None
+    cutter_mm: float | None = None  # diameter of the cutter that the path is for
+    origin: Origin | None = (
+        None  # where the path's zero is on the drawing; None: the sheet's corner
+    )
+    by_hand: ByHand = field(default_factory=ByHand)
+
+    def run(self, listener: Listener = SILENT, panel: Panel | None = None) -> CompareResult:
+        """Compare; raises WrongUse and every fault."""
+        drawing_file, files = self._sorted()
+        if self.picture is not None:
+            medium.outgoing(self.picture, self.a.file, self.b)
+        if drawing_file is None:
+            self._refuse_drawing_options()
+        drawing = None if drawing_file is None else drawing_file.open()
+        paths = [read_or_play(file, self.by_hand, listener) for file in files]
+        if drawing is None:
+            found = comparison.from_path(paths[0], paths[1])
+        else:
+            paths = [self._on_sheet(drawing, paths[0])]
+            radius_mm = (self.cutter_mm or 0.0) / 2
+            found = comparison.from_drawing(drawing, paths[0], radius_mm=radius_mm)
+        within = None if self.tolerance_mm is None else found.largest_mm <= self.tolerance_mm
+        figures: dict[str, Any] = {
+            "a": str(self.a.file),
+            "b": str(self.b),
+            "picture": None if self.picture is None else str(self.picture),
+            "tolerance_mm": self.tolerance_mm,
+            "within_tolerance": within,
+            "largest_mm": found.largest_mm,
+            **found.figures,
+        }
+        return CompareResult(figures, found, tuple(paths), drawing, within)
+
+    def _sorted(self) -> tuple[DrawingFile | None, list[FilePath]]:
+        """The drawing, if one of the two is one, and the paths and tapes in the order given."""
+        both = (self.a.file, self.b)
+        drawings = [file for file in both if medium.kind_of(file) == "drawing"]
+        if len(drawings) == len(both):
+            raise WrongUse(
+                f"{self.a.file} and {self.b} are both drawings; trace one of them first, or give a path or a "
+                "tape"
+            )
+        rest = [file for file in both if file not in drawings]
+        return (replace(self.a, file=drawings[0]) if drawings else None), rest
+
+    def _refuse_drawing_options(self) -> None:
+        """Raise WrongUse for settings that only a drawing takes."""
+        if self.origin is not None:
+            raise WrongUse("--origin is a place on a drawing; without one leave it out")
+        if self.cutter_mm is not None:
+            raise WrongUse("--cutter is for a path beside a drawing's line; leave it out")
+
+    def _on_sheet(self, drawing: Drawing, path: Path) -> Path:
+        """The path in the sheet's own coordinates."""
+        if self.origin is None or self.origin == "sheet":
+            return path
+        from morfax.motion.placement import Placement
+        from morfax.tracer.following.start import reference_on
+
+        place_mm = reference_on(drawing) if isinstance(self.origin, str) else self.origin
+        return Placement(origin_mm=(-place_mm[0], -place_mm[1])).path(path)

@@ -1,0 +1,184 @@
+"""The job `play`: a tape or program moves the machine, and the machine's path is written."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass, field
+from pathlib import Path as FilePath
+from typing import TYPE_CHECKING, Any, Literal
+
+from morfax.jobs import files as medium
+from morfax.jobs import following
+from morfax.jobs.listener import SILENT, Listener
+from morfax.jobs.passage import Passage
+from morfax.jobs.playing import PIPE, ByHand, Playing
+from morfax.jobs.wrong_use import WrongUse, settings_checked
+
+if TYPE_CHECKING:
+    from morfax.jobs.figures import Figures
+    from morfax.motion.faults import Fault
+    from morfax.motion.motion import Path
+    from morfax.player.controls import Playback
+    from morfax.player.monitor.chart import Chart
+    from morfax.tracer.operator.operator import Panel
+
+MOTORS = ("electric", "hydraulic")  # player.tape.phase_lock; the first is the default
+OPTIONS = {
+    "resume_at_s": "--resume-at",
+    "acceleration_mm_s2": "--acceleration",
+    "motor": "--motor",
+    "zero_mm": "--zero",
+    "norm": "--norm",
+    "feed_override": "--feed-override",
+}
+FOR_TAPES = {"resume_at_s", "acceleration_mm_s2", "motor", "zero_mm"}
+
+
+@dataclass(frozen=True, slots=True)
+class ControlSettings:
+    """What somebody sets on the control; None: not set."""
+
+    resume_at_s: float | None = None
+    acceleration_mm_s2: float | None = None
+    norm: Literal["weights", "true"] | None = None
+    feed_override: float | None = None
+    motor: str | None = None
+    zero_mm: tuple[float, ...] | None = None
+
+    def given(self) -> dict[str, Any]:
+        """What was set."""
+        return {name: value for name, value in asdict(self).items() if value is not None}
+
+    def for_file(self, file: FilePath, by_hand: ByHand) -> dict[str, Any]:
+        """The settings as the control of a file takes them; raises WrongUse for one that it does not take."""
+        given = self.given()
+        _refuse_foreign(file, given)
+        if "resume_at_s" in given and by_hand.start_mm is None:
+            raise WrongUse(
+                "--resume-at needs the place where the machine stands then; give --from X,Y,Z"
+            )
+        if "norm" in given:
+            given["true_norm"] = given.pop("norm") == "true"
+        if "feed_override" in given:
+            given["override"] = given.pop("feed_override")
+        if "motor" in given:
+            from morfax.player.tape.phase_lock import MOTORS as LOCKS
+
+            given["settings"] = LOCKS[given.pop("motor")]
+        return given
+
+
+@dataclass(frozen=True, slots=True)
+class PlayResult:
+    """What a playing gave: figures, names for path and charts, and the fault that ended it early.
+
+    The job has written the path files (.csv). A face draws the others of `paths` from `path`, which is there
+    if pictures are wanted, and writes `charts` from the chart of the following errors and the speeds held.
+    """
+
+    figures: Figures
+    paths: tuple[FilePath, ...]
+    charts: tuple[FilePath, ...]
+    path: Path | None
+    chart: Chart | None
+    speeds: following.Speeds | None
+    fault: Fault | None
+
+
+@dataclass(frozen=True, slots=True)
+class PlayJob:
+    """Play a tape or a program on its own control."""
+
+    tape: FilePath  # or the pipe
+    outputs: tuple[FilePath, ...] = ()  # for the machine's path: .csv, .svg, .png
+    charts: tuple[FilePath, ...] = ()  # for the following errors: .csv and pictures
+    raw: bool = False
+    control: ControlSettings = field(default_factory=ControlSettings)
+    by_hand: ByHand = field(default_factory=ByHand)
+
+    def run(self, listener: Listener = SILENT, panel: Panel | None = None) -> PlayResult:
+        """Play and write; raises WrongUse, and the fault if nothing was played before it."""
+        # 1. what is set
+        for file in (*self.outputs, *self.charts):
+            medium.outgoing(file, self.tape)
+        settings = self.control.for_file(self.tape, self.by_hand)
+        chart = following.new_chart(self.raw) if self.charts else None
+        playing = Playing(self.tape, self.by_hand, self.raw, chart, settings)
+        # 2. the machine runs
+        with settings_checked():
+            passage, playback, fault, path = self._played(playing, listener)
+        # 3. what it ran
+        paths, charts = _marked(self.outputs, fault), _marked(self.charts, fault)
+        speeds = following.speeds_held(playback) if _has_picture(charts) else None
+        figures = {
+            medium.called(self.tape): str(self.tape),
+            "paths": [str(file) for file in paths] or None,
+            "following": [str(file) for file in charts] or None,
+            **_figures(passage, playback, fault),
+        }
+        if not fault and not passage.worked:
+            listener.warning(
+                "the tool never comes into the work; on a tape that runs backwards it goes up where it should "
+                "go down"
+            )
+        return PlayResult(figures, paths, charts, path, chart, speeds, fault)
+
+    def _played(
+        self, playing: Playing, listener: Listener
+    ) -> tuple[Passage, Playback, Fault | None, Path | None]:
+        """Play and write the path as it comes; keep the whole of it only where a picture wants it."""
+        if not _has_picture(self.outputs):
+            return *playing.into(self.outputs, listener), None
+        played = playing.whole(listener)
+        from morfax.motion.pathfile import write_path
+
+        for file in _marked(self.outputs, played.fault):
+            if file.suffix.lower() in medium.PATHS:
+                write_path(played.path, file)
+        return Passage.of(played.path), played.playback, played.fault, played.path
+
+
+def _marked(files: tuple[FilePath, ...], fault: Fault | None) -> tuple[FilePath, ...]:
+    """The names of files, marked if a fault ended the run early."""
+    return tuple(medium.incomplete(file) if fault else file for file in files)
+
+
+def _has_picture(files: tuple[FilePath, ...]) -> bool:
+    """Whether there is a picture among files for a path or a chart."""
+    return any(file.suffix.lower() not in medium.PATHS for file in files)
+
+
+def _refuse_foreign(tape: FilePath, given: dict[str, Any]) -> None:
+    """Raise WrongUse for a setting that is for another control than the one that plays the file."""
+    from morfax.player.controls import CONTROLS, TAPE, control_of
+
+    control, pulses = control_of(tape), CONTROLS[".ngc"]
+    if str(tape) == PIPE and given:
+        raise WrongUse(f"{_options(given)} is for files, not for a pipe")
+    if control != TAPE and not given.keys().isdisjoint(FOR_TAPES):
+        raise WrongUse(f"{_options(given.keys() & FOR_TAPES)} is for tapes; {tape} is none")
+    if control != pulses and "norm" in given:
+        raise WrongUse(f"--norm is for programs of lines and arcs, .ngc; {tape} is none")
+    if control not in (TAPE, pulses) and "feed_override" in given:
+        raise WrongUse(
+            f"--feed-override is for tapes and for programs of lines and arcs, .ngc; {tape} is none"
+        )
+
+
+def _options(given: Iterable[str]) -> str:
+    """The options of some settings."""
+    return ", ".join(sorted(OPTIONS[name] for name in given))
+
+
+def _figures(passage: Passage, playback: Playback, fault: Fault | None) -> dict[str, Any]:
+    """What a playing gave, as figures."""
+    return {
+        "incomplete": True if fault else None,
+        "duration_s": passage.end_s - passage.start_s,
+        "length_mm": passage.length_mm,
+        "start_place_mm": passage.start_mm,
+        "end_place_mm": passage.end_mm,
+        "largest_following_error_mm": float(max(playback.following_error_mm)),
+        **following.figures(playback),
+        "bridged_dropouts": len(getattr(playback, "bridged", ())) or None,
+    }

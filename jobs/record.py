@@ -1,0 +1,123 @@
+"""The job `record`: a path file, or a program played on its own control, becomes a program in any medium."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from pathlib import Path as FilePath
+from typing import TYPE_CHECKING, Any
+
+from morfax.jobs import files as medium
+from morfax.jobs.listener import SILENT, Listener, watched
+from morfax.jobs.playing import ByHand, read_or_play
+from morfax.jobs.recording import RecordingUnit, rehearsed
+from morfax.jobs.wrong_use import WrongUse
+
+if TYPE_CHECKING:
+    from morfax.jobs.figures import Figures
+    from morfax.motion.motion import Path
+    from morfax.recorder.media import Report
+    from morfax.tracer.operator.operator import Panel
+
+FEED_MM_S = 10.0  # of a path without times, as motion.pathfile has it
+REFERENCE_HZ = 6000.0  # as recorder.tape.format has it
+
+
+@dataclass(frozen=True, slots=True)
+class RecordResult:
+    """What a recording gave: figures, and the program's name."""
+
+    figures: Figures
+    program: FilePath
+
+
+@dataclass(frozen=True, slots=True)
+class RecordJob:
+    """Record a path file, or another program, in the medium that the output's name says."""
+
+    source: FilePath
+    output: FilePath | None = None  # None: the source's name with .wav, in the current folder
+    force: bool = False  # write over a name that nobody gave
+    feed_mm_s: float = FEED_MM_S  # of a path without times
+    reference_hz: float = REFERENCE_HZ
+    cycles_per_mm: float | None = None  # None: the pick-up's own
+    fit_tolerance_mm: float | None = None  # None: the medium's own
+    unit: RecordingUnit = field(default_factory=RecordingUnit)
+
+    def run(self, listener: Listener = SILENT, panel: Panel | None = None) -> RecordResult:
+        """Record; raises WrongUse and every fault."""
+        from morfax.motion.contour import length_mm
+
+        program = self._program()
+        self.unit.check(program)
+        settings = self._recorder_settings(program)
+        read = read_or_play(self.source, ByHand(), listener, self.feed_mm_s)
+        placed = self.unit.placement.path(read)
+        self.unit.warn(listener)
+        recording = _recorded(placed, program, settings, listener)
+        length = length_mm(placed) if placed.tool.any() else 0.0
+        figures = {
+            medium.called(program): str(program),
+            "duration_s": recording.duration_s,
+            "length_mm": length,
+            "start_place_mm": placed.positions_mm[0],
+            "end_place_mm": placed.positions_mm[-1],
+            **_density(recording, program, length),
+            **medium.recorder_figures(recording),
+            **self.unit.figures(),
+        }
+        return RecordResult(figures, program)
+
+    def _program(self) -> FilePath:
+        """The name for the program; raises FileFault if it cannot be written."""
+        if self.output is None:
+            name = FilePath(f"{self.source.stem}.wav")
+            return medium.made_up(name, self.source, force=self.force)
+        return medium.outgoing(self.output, self.source)
+
+    def _recorder_settings(self, program: FilePath) -> dict[str, Any]:
+        """Settings as the recorder of this medium takes them."""
+        if not medium.is_tape(program):
+            fit_mm = self.fit_tolerance_mm
+            return {} if fit_mm is None else {"tolerance_mm": fit_mm}
+        if self.fit_tolerance_mm is not None:
+            raise WrongUse(
+                "--fit-tolerance is not for tapes: a tape holds the motion itself; leave it out"
+            )
+        try:
+            fmt = self.unit.tape_format(
+                reference_hz=self.reference_hz, cycles_per_mm=self.cycles_per_mm
+            )
+        except ValueError as refused:
+            raise WrongUse(f"such a tape cannot be recorded: {refused}") from None
+        return {"fmt": fmt}
+
+
+def _recorded(
+    path: Path, program: FilePath, settings: dict[str, Any], listener: Listener
+) -> Report:
+    """Record a path; what the recorder made."""
+    from morfax.recorder.media import record
+
+    listener.compiling("the recorder", ("motion", "recorder"))
+    lasts_s = float(path.t_s[-1] - path.t_s[0])
+    stream = watched(path.motion(), listener, f"recording {program.name}", lasts_s)
+    if "fmt" not in settings:
+        return record(stream, program, **settings)
+    fmt = replace(settings["fmt"], axes=path.axes, start_mm=())
+    return record(rehearsed(stream, fmt, listener), program, fmt=fmt)
+
+
+def _density(recording: Report, program: FilePath, length_mm: float) -> dict[str, Any]:
+    """Bits per mm of the program, and of a tape of the same motion beside it."""
+    if not length_mm:
+        return {"bits_per_mm": None, "as_tape_bits_per_mm": None}
+    as_tape = None if medium.is_tape(program) else _tape_bits(recording.duration_s) / length_mm
+    return {"bits_per_mm": 8 * recording.bytes / length_mm, "as_tape_bits_per_mm": as_tape}
+
+
+def _tape_bits(duration_s: float) -> float:
+    """Bits of a magnetic tape of the usual format that runs so long, to set beside another medium's."""
+    from morfax.recorder.tape.tape import TapeFormat
+
+    fmt = TapeFormat()
+    return 16 * fmt.tracks * fmt.sample_rate_hz * (duration_s + 2 * fmt.dwell_s)

@@ -1,0 +1,135 @@
+"""The job `run`: the whole way from the drawing over the tape to the machine, and how well the three agree."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path as FilePath
+from typing import TYPE_CHECKING, Any
+
+from morfax.jobs import comparison
+from morfax.jobs import files as medium
+from morfax.jobs.listener import SILENT, Listener
+from morfax.jobs.playing import Played, Playing
+from morfax.jobs.recording import RecordingUnit
+from morfax.jobs.settings import DrawingFile, TraceSettings
+from morfax.jobs.tracing import Tracing
+from morfax.motion.faults import FileFault
+
+if TYPE_CHECKING:
+    from morfax.jobs.comparison import Comparison
+    from morfax.jobs.figures import Figures
+    from morfax.jobs.traced import Traced
+    from morfax.motion.faults import Fault
+    from morfax.motion.motion import Path
+    from morfax.tracer.drawing.drawing import Drawing
+    from morfax.tracer.operator.operator import Panel
+
+
+@dataclass(frozen=True, slots=True)
+class RunResult:
+    """What a run gave: figures, the played path as it lies on the drawing, its distance from the ink.
+
+    `picture` and `report` are the names under which the picture and the figures as JSON belong; a face writes
+    both. The faults are that of a line that was lost and that of a drive.
+    """
+
+    figures: Figures
+    drawing: Drawing
+    traced: Traced
+    played: Path
+    from_ink: Comparison
+    picture: FilePath
+    report: FilePath
+    faults: tuple[Fault, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class RunJob:
+    """Trace a drawing, play the tape, compare all three; the results go into a folder, under its name."""
+
+    drawing: DrawingFile
+    folder: FilePath | None = None  # None: the drawing's name, in the current folder
+    settings: TraceSettings = field(default_factory=TraceSettings)
+    unit: RecordingUnit = field(default_factory=RecordingUnit)
+
+    def file(self, ending: str) -> FilePath:
+        """The name of a result."""
+        stem = self.drawing.file.stem
+        return (self.folder or FilePath(stem)) / f"{stem}{ending}"
+
+    def run(self, listener: Listener = SILENT, panel: Panel | None = None) -> RunResult:
+        """Go the whole way; raises every fault but those of a lost line and of a drive, which the result has."""
+        # 1. trace and record
+        tracing = Tracing.prepared(self.settings, panel)
+        drawing = self.drawing.open()
+        self._make_folder()
+        traced = tracing.trace(drawing, listener)
+        unit = self.unit.at(traced.origin_mm)
+        tape = traced.record(self.file(".wav"), unit, listener)
+        traced_file = traced.write(self.file(".traced.csv"), unit)
+        # 2. play
+        played = Playing(tape).whole(listener)
+        played_file = self._write(played, traced)
+        unit.warn(listener)
+        # 3. compare, as the drawing was before it was mirrored, scaled and turned
+        about = unit.placement.about(traced.path.positions_mm[0])
+        path = about.back(played.path)
+        picture = traced.name(self.file(".png"))
+        listener.detail("comparing drawing, traced path and played path")
+        from_ink = comparison.from_drawing(drawing, path, "played", _radius_mm(traced))
+        written = {
+            "tape": str(tape),
+            "traced_path": str(traced_file),
+            "played_path": str(played_file),
+            "picture": str(picture),
+        }
+        figures: dict[str, Any] = {
+            "drawing": str(self.drawing.file),
+            **written,
+            **_compared(drawing, traced, path, from_ink),
+            **unit.figures(),
+        }
+        faults = tuple(fault for fault in (traced.fault, played.fault) if fault is not None)
+        report = traced.name(self.file(".json"))
+        return RunResult(figures, drawing, traced, path, from_ink, picture, report, faults)
+
+    def _make_folder(self) -> None:
+        """Make the folder; raises FileFault if it cannot be made, or a result would replace the drawing."""
+        picture = self.file(".png")
+        try:
+            picture.parent.mkdir(exist_ok=True)
+        except OSError as error:
+            raise FileFault(
+                f"cannot make the folder {picture.parent}: {error.strerror}; give another one with -o"
+            ) from error
+        medium.outgoing(picture, self.drawing.file)
+
+    def _write(self, played: Played, traced: Traced) -> FilePath:
+        """Write the played path; its name."""
+        from morfax.motion.pathfile import write_path
+
+        file = self.file(".played.csv")
+        file = medium.incomplete(file) if played.fault else traced.name(file)
+        write_path(played.path, file)
+        return file
+
+
+def _compared(
+    drawing: Drawing, traced: Traced, played: Path, from_ink: Comparison
+) -> dict[str, Any]:
+    """Figures of the traced drawing, and of all three compared."""
+    traced_from_ink = comparison.from_drawing(
+        drawing, traced.path, "traced", _radius_mm(traced)
+    )
+    between = comparison.from_path(played, traced.path, ("played", "traced"))
+    return {
+        **traced.figures(),
+        **traced_from_ink.figures,
+        **from_ink.figures,
+        **between.figures,
+    }
+
+
+def _radius_mm(traced: Traced) -> float:
+    """The radius of the cutter, 0 without one."""
+    return traced.cutter.radius_mm if traced.cutter else 0.0

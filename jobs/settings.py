@@ -1,0 +1,172 @@
+"""Settings: what somebody sets for a drawing, its lines, the head, the tool and the program.
+
+All are plain values. None means "not set": the operator's card then decides, after it the file of settings,
+and at last the head's and the tool's own values.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from pathlib import Path as FilePath
+from typing import TYPE_CHECKING, Literal
+
+from morfax.jobs.wrong_use import WrongUse, settings_checked
+
+if TYPE_CHECKING:
+    from morfax.tracer.cutter.cutter import Cutter, Side
+    from morfax.tracer.drawing.drawing import Drawing
+    from morfax.tracer.following.direction import Direction
+    from morfax.tracer.head.settings import Settings
+    from morfax.tracer.operator.card import Card, Override
+    from morfax.tracer.operator.operator import Operator, Panel, Work
+
+Origin = Literal["sheet", "reference"] | tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class DrawingFile:
+    """A drawing and how it is read: its scale where the file states none or a wrong one, ink, filled shapes."""
+
+    file: FilePath
+    dpi: float | None = None
+    width_mm: float | None = None
+    ink: str | None = None
+    edge: bool = False
+
+    def open(self) -> Drawing:
+        """Open the drawing; raises WrongUse for two scales, DrawingFault and FileFault for a bad file."""
+        from morfax.tracer.drawing.drawing import Drawing
+
+        if self.dpi is not None and self.width_mm is not None:
+            raise WrongUse("--dpi and --width were both given; give one of them")
+        return Drawing.open(
+            self.file, dpi=self.dpi, width_mm=self.width_mm, ink=self.ink, edge=self.edge
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class LineSettings:
+    """Which line is followed, or which lines, and what holds them together."""
+
+    start_mm: tuple[float, float] | None = None
+    lines: str | tuple[int, ...] | None = (
+        None  # None: the one line at the start, or the longest
+    )
+    line_width_mm: float | None = None
+    gap_mm: float | None = None
+    recatch_mm: float | None = None
+    direction: Direction | None = None
+    reference_mm: tuple[float, float] | None = None  # None: looked for on the drawing
+
+
+@dataclass(frozen=True, slots=True)
+class HeadSettings:
+    """Which head follows, and what is changed about it: its speed, a file of settings, settings by name."""
+
+    kind: str = "precise"
+    speed_mm_s: float | None = None
+    settings_file: FilePath | None = None
+    changes: tuple[str, ...] = ()  # NAME=VALUE
+
+
+@dataclass(frozen=True, slots=True)
+class ToolSettings:
+    """How deep the tool goes, where it stands above the work, and the cutter that runs beside the lines."""
+
+    depth_mm: float | None = None
+    clearance_mm: float | None = None
+    cutter_mm: float | None = None  # diameter; None: the tool runs on the line
+    side: Side = "outside"
+
+    def cutter(self) -> Cutter | None:
+        """The cutter, if there is one."""
+        if self.cutter_mm is None:
+            return None
+        from morfax.tracer.cutter.cutter import Cutter
+
+        return Cutter(self.cutter_mm, self.side)
+
+
+@dataclass(frozen=True, slots=True)
+class ProgramSettings:
+    """What is done at the stops, and where the machine's zero is on the sheet."""
+
+    card_file: FilePath | None = None
+    stop_override: Override | None = None  # None: the card's
+    origin: Origin = "sheet"
+
+
+@dataclass(frozen=True, slots=True)
+class TraceSettings:
+    """All that is set for tracing a drawing."""
+
+    line: LineSettings = field(default_factory=LineSettings)
+    head: HeadSettings = field(default_factory=HeadSettings)
+    tool: ToolSettings = field(default_factory=ToolSettings)
+    program: ProgramSettings = field(default_factory=ProgramSettings)
+
+    def card(self) -> Card:
+        """The operator's card, an empty one if no file is given; raises CardFault for a mistake on it."""
+        from morfax.tracer.operator.card import Card
+
+        file = self.program.card_file
+        card = Card() if file is None else Card.open(file)
+        override = self.program.stop_override
+        return card if override is None else replace(card, override=override)
+
+    def of_head(self, card: Card | None = None) -> Settings:
+        """Settings of the head; raises WrongUse for one that the head does not have or cannot take."""
+        from morfax.tracer.head.settings import choose
+
+        card = self.card() if card is None else card
+        changes: dict[str, object] = dict(self._filed())
+        by_options: dict[str, object] = {
+            "speed_mm_s": _first_set(self.head.speed_mm_s, card.trace_mm_s),
+            "gap_mm": self.line.gap_mm,
+            "recatch_mm": self.line.recatch_mm,
+            "line_width_mm": self.line.line_width_mm,
+        }
+        changes.update({name: v for name, v in by_options.items() if v is not None})
+        for change in self.head.changes:
+            name, _, value = change.partition("=")
+            changes[name.strip()] = value.strip()
+        with settings_checked():
+            return choose(self.head.kind, changes)
+
+    def operator(self, card: Card, panel: Panel | None) -> Operator:
+        """What is done at the stops, by the card and whoever is at the panel."""
+        from morfax.tracer.operator.operator import Operator
+
+        line = self.line
+        return Operator(self._work(card), card, panel, line.reference_mm, line.direction)
+
+    def _filed(self) -> dict[str, float]:
+        """Settings of the head in the file, by name."""
+        if self.head.settings_file is None:
+            return {}
+        from morfax.tracer.operator.settings_file import read_changes
+
+        return read_changes(self.head.settings_file)
+
+    def _work(self, card: Card) -> Work:
+        """Depths, feeds and clearance of the tool; of the card's passes those above the depth."""
+        from morfax.tracer.operator.operator import Work
+
+        usual = Work()
+        of_card_mm = card.depths_mm[-1] if card.depths_mm else None
+        depth_mm = _first_set(self.tool.depth_mm, of_card_mm, usual.depth_mm)
+        clearance_mm = _first_set(self.tool.clearance_mm, card.start_mm, usual.clearance_mm)
+        assert depth_mm is not None and clearance_mm is not None
+        return replace(
+            usual,
+            depth_mm=depth_mm,
+            clearance_mm=clearance_mm,
+            feed_mm_s=card.feed_mm_s or usual.feed_mm_s,
+            rapid_mm_s=card.rapid_mm_s or usual.rapid_mm_s,
+            passes_mm=tuple(pass_mm for pass_mm in card.depths_mm if pass_mm < depth_mm),
+        )
+
+
+def _first_set(*values: float | None) -> float | None:
+    """The first value that is set."""
+    return next((value for value in values if value is not None), None)

@@ -1,0 +1,95 @@
+"""The job `trace`: a drawing becomes a program and a path."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path as FilePath
+from typing import TYPE_CHECKING, Any
+
+from morfax.jobs import files as medium
+from morfax.jobs.listener import SILENT, Listener
+from morfax.jobs.recording import RecordingUnit
+from morfax.jobs.settings import DrawingFile, TraceSettings
+from morfax.jobs.tracing import Tracing
+
+if TYPE_CHECKING:
+    from morfax.jobs.figures import Figures
+    from morfax.jobs.traced import Traced
+    from morfax.motion.faults import Fault
+    from morfax.tracer.drawing.drawing import Drawing
+    from morfax.tracer.operator.operator import Panel
+
+
+@dataclass(frozen=True, slots=True)
+class TraceOutputs:
+    """Names for the results: the program (or a path file alone, .csv), the path, the picture.
+
+    Without a program's name the job makes one of the drawing's, in the current folder, which it writes over
+    only by `force`. The face draws the picture.
+    """
+
+    program: FilePath | None = None
+    path: FilePath | None = None
+    picture: FilePath | None = None
+    force: bool = False
+
+    def checked(self, drawing: FilePath) -> TraceOutputs:
+        """The names under which results can be written; raises FileFault if one cannot."""
+        for file in (self.program, self.path, self.picture):
+            if file is not None:
+                medium.outgoing(file, drawing)
+        program = self.program
+        if program is None:
+            program = medium.made_up(FilePath(f"{drawing.stem}.wav"), drawing, force=self.force)
+        if program.suffix.lower() in medium.PATHS:
+            return TraceOutputs(None, program, self.picture)
+        return TraceOutputs(program, self.path, self.picture)
+
+
+@dataclass(frozen=True, slots=True)
+class TraceResult:
+    """What a tracing gave: figures, what the head traced, and the name under which its picture belongs.
+
+    The fault is that of a line that was lost: the files then hold what was traced before it.
+    """
+
+    figures: Figures
+    drawing: Drawing
+    traced: Traced
+    picture: FilePath | None
+    fault: Fault | None
+
+
+@dataclass(frozen=True, slots=True)
+class TraceJob:
+    """Follow the line of a drawing and record the head's motion."""
+
+    drawing: DrawingFile
+    outputs: TraceOutputs = field(default_factory=TraceOutputs)
+    settings: TraceSettings = field(default_factory=TraceSettings)
+    unit: RecordingUnit = field(default_factory=RecordingUnit)
+
+    def run(self, listener: Listener = SILENT, panel: Panel | None = None) -> TraceResult:
+        """Trace and write; raises WrongUse and every fault but that of a line that was lost on its way."""
+        tracing = Tracing.prepared(self.settings, panel)
+        outputs = self.outputs.checked(self.drawing.file)
+        self.unit.check(outputs.program)
+        drawing = self.drawing.open()
+        size = f"{drawing.width_mm:.2f} x {drawing.height_mm:.2f} mm"
+        listener.detail(f"{self.drawing.file}: sheet of {size}")
+        traced = tracing.trace(drawing, listener)
+        unit = self.unit.at(traced.origin_mm)
+        written: dict[str, Any] = {}
+        if outputs.program is not None:
+            program = traced.record(outputs.program, unit, listener)
+            written[medium.called(outputs.program)] = str(program)
+        if outputs.path is not None:
+            written["path"] = str(traced.write(outputs.path, unit))
+        picture = None if outputs.picture is None else traced.name(outputs.picture)
+        if picture is not None:
+            written["picture"] = str(picture)
+        unit.warn(listener)
+        figures = {"drawing": str(self.drawing.file), **written, **traced.figures()}
+        return TraceResult(
+            {**figures, **unit.figures()}, drawing, traced, picture, traced.fault
+        )
