@@ -18,7 +18,8 @@ if TYPE_CHECKING:
     from morfax.tracer.following.direction import Direction
     from morfax.tracer.head.settings import Settings
     from morfax.tracer.operator.card import Card, Override
-    from morfax.tracer.operator.operator import Operator, Panel, Work
+    from morfax.tracer.operator.operator import Operator, Panel
+    from morfax.tracer.operator.work import Work
 
 Origin = Literal["sheet", "reference"] | tuple[float, float]
 
@@ -150,7 +151,7 @@ class TraceSettings:
 
     def _work(self, card: Card) -> Work:
         """Depths, feeds and clearance of the tool; of the card's passes those above the depth."""
-        from morfax.tracer.operator.operator import Work
+        from morfax.tracer.operator.work import Work
 
         usual = Work()
         of_card_mm = card.depths_mm[-1] if card.depths_mm else None

@@ -75,7 +75,7 @@ def panel(*, asking: bool) -> Attended | None:
         return Attended(asking=asking)
     if asking:
         raise click.UsageError(
-            "--ask needs a terminal to ask at; write a card instead, see docs/card.md"
+            "--ask needs a terminal to ask at; write a card instead, see docs/reference/card.md"
         )
     return None
 
