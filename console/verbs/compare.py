@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from morfax.jobs.settings import DrawingFile
 
 BEYOND_TOLERANCE = 1
-OF_SYSTEMS = ("start_mm", "lines", "speed_mm_s")  # options that only --systems takes
+OF_SYSTEMS = ("head_mm", "lines", "speed_mm_s")  # options that only --systems takes
 REPORT = ".html"
 
 EXAMPLES = """\b
@@ -58,14 +58,14 @@ Examples:
     "Output",
     "-o",
     "output",
-    type=Result(*PICTURES, REPORT),
+    type=Result(REPORT, *PICTURES),
     help="Draw the path with its error in colour, or all contours of --systems (.png, .svg, .pdf); with --systems "
     "also a report in one file (.html).",
 )
 @option(
     "Systems",
     "--start",
-    "start_mm",
+    "head_mm",  # start_mm is where a tape starts
     type=PLACE,
     help="With --systems: where the head looks for the line, as in trace.",
 )
@@ -161,7 +161,7 @@ def _systems(
         raise click.UsageError(
             "--cutter, --origin and what a tape does not say are of B; with --systems leave them out"
         )
-    line = LineSettings(start_mm=options["start_mm"], lines=options["lines"])
+    line = LineSettings(start_mm=options["head_mm"], lines=options["lines"])
     settings = TraceSettings(line, HeadSettings(speed_mm_s=options["speed_mm_s"]))
     output: FilePath | None = options["output"]
     job = SystemsJob(a, options["systems"], options["tolerance_mm"], output, settings)
