@@ -3,7 +3,7 @@
 A file's kind is read off its first bytes, and off its name where the bytes say nothing:
 
     tape      RIFF, RF64, fLaC, FORM, riff  or  .wav .rf64 .flac .aiff .w64
-    program   any other text              and .steps .cubic .ngc
+    program   any other text              and .steps .cubic .ngc .nc .gcode .tap .cnc
     drawing   PNG, JPEG, TIFF, BMP, …     or  .png .jpg .tif …
     path      any other text              or  .csv
 
@@ -27,6 +27,7 @@ Kind = Literal["tape", "program", "drawing", "path"]
 
 TAPES = (".wav", ".rf64", ".flac")  # that can be recorded
 PATHS = (".csv",)
+BLOCKS = (".ngc", ".nc", ".gcode", ".tap", ".cnc")  # G-code, RS-274
 
 _HEAD_BYTES = 1024  # of a file, in which a binary file has a zero
 _FIRST_BYTES: dict[bytes, Kind] = {
@@ -44,7 +45,7 @@ _FIRST_BYTES: dict[bytes, Kind] = {
 }
 _SUFFIXES: dict[str, Kind] = {
     **dict.fromkeys((".wav", ".rf64", ".flac", ".w64", ".aiff", ".aif"), "tape"),
-    **dict.fromkeys((".steps", ".cubic", ".ngc"), "program"),
+    **dict.fromkeys((".steps", ".cubic", *BLOCKS), "program"),
     **dict.fromkeys(
         (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".gif", ".webp", ".pgm"), "drawing"
     ),

@@ -7,10 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from morfax.jobs.files import BLOCKS
+
 
 def of_program(file: FilePath) -> dict[str, Any]:
     """The figures of a program; raises ProgramFault and FileFault."""
-    by_medium = {".steps": _of_steps, ".cubic": _of_cubic, ".ngc": _of_blocks}
+    by_medium = {".steps": _of_steps, ".cubic": _of_cubic, **dict.fromkeys(BLOCKS, _of_blocks)}
     return by_medium.get(file.suffix.lower(), _of_other)(file)
 
 

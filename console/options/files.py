@@ -11,7 +11,6 @@ FILE = click.Path(path_type=FilePath)
 
 PICTURES = (".png", ".svg", ".pdf")
 PATHS = (".csv",)
-PROGRAMS = (".wav", ".rf64", ".flac", ".steps", ".cubic", ".ngc")  # recorder.media.MEDIA
 
 
 class Result(click.ParamType):
@@ -38,3 +37,15 @@ class Result(click.ParamType):
         from click.shell_completion import CompletionItem
 
         return [CompletionItem(incomplete, type="file")]
+
+
+class Program(Result):
+    """The name for a program, which says its medium; or for one of some other results."""
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> FilePath:
+        """The name as a path; wrong use if its suffix is that of no medium."""
+        from morfax.recorder.media import MEDIA
+
+        return Result(*MEDIA, *self.suffixes).convert(value, param, ctx)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from morfax.console.options.desk import desk_options
-from morfax.console.options.files import FILE, PROGRAMS, Result
+from morfax.console.options.files import FILE, Program
 from morfax.console.options.groups import Verb, option, renamed
 from morfax.console.options.placement import unit_options
 from morfax.console.options.tape import CYCLES_PER_MM
@@ -34,7 +34,7 @@ Examples:
     "Output",
     "-o",
     "output",
-    type=Result(*PROGRAMS),
+    type=Program(),
     help="The program (.wav, .steps, .cubic, .ngc).  [default: the source's name with .wav, here]",
 )
 @option(

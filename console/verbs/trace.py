@@ -9,7 +9,7 @@ import click
 
 from morfax.console.options.desk import desk_options
 from morfax.console.options.drawing import drawing_options
-from morfax.console.options.files import FILE, PATHS, PICTURES, PROGRAMS, Result
+from morfax.console.options.files import FILE, PATHS, PICTURES, Program, Result
 from morfax.console.options.groups import Verb, option
 from morfax.console.options.placement import unit_options
 from morfax.console.options.tracing import trace_options
@@ -37,7 +37,7 @@ Examples:
     "Output",
     "-o",
     "output",
-    type=Result(*PROGRAMS, *PATHS),
+    type=Program(*PATHS),
     help="The tape (.wav), another program (.steps, .cubic, .ngc), or a path file only (.csv).  [default: the "
     "drawing's name with .wav, in this folder]",
 )
