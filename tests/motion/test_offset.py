@@ -9,11 +9,12 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from morfax.motion import arm
 from morfax.motion.arrays import Array
 from morfax.motion.contour import distance
 from morfax.motion.feed import run_along
 from morfax.motion.motion import MOTION_RATE_HZ
-from morfax.motion.offset import Guide, _guided, _swung, offset
+from morfax.motion.offset import DriveCurve, guided, offset
 from morfax.motion.polyline import Nearest
 
 shapely = pytest.importorskip("shapely")
@@ -56,24 +57,24 @@ def star(seed: int) -> Array:
 def test_a_circle_becomes_the_circle_that_is_smaller_or_larger_by_the_radius(
     left: bool, radius_mm: float
 ) -> None:
-    (way,) = offset([Guide(circle(10), True, left)], 3)
+    (way,) = offset([DriveCurve(circle(10), True, left)], 3)
     assert way.closed and np.abs(np.hypot(*way.points_mm.T) - radius_mm).max() < 0.1 * UM
     start = way.points_mm[0]
     assert start == pytest.approx([radius_mm, 0], abs=0.1 * UM)  # beside where the head began
 
 
 def test_a_cutter_as_wide_as_a_hole_goes_nowhere() -> None:
-    assert offset([Guide(circle(10), True, True)], 10.01) == []
+    assert offset([DriveCurve(circle(10), True, True)], 10.01) == []
 
 
 SQUARE = polygon((0, 0), (20, 0), (20, 20), (0, 20))
 
 
 def test_round_a_square_the_corners_are_rolled_round_and_inside_they_stay_sharp() -> None:
-    (outside,) = offset([Guide(SQUARE, True, False)], 3)
+    (outside,) = offset([DriveCurve(SQUARE, True, False)], 3)
     length_mm = np.hypot(*np.diff(outside.points_mm, axis=0).T).sum()
     assert length_mm == pytest.approx(80 + math.tau * 3, abs=2 * UM)
-    (inside,) = offset([Guide(SQUARE, True, True)], 3)
+    (inside,) = offset([DriveCurve(SQUARE, True, True)], 3)
     assert (
         distance(inside.points_mm, polygon((3, 3), (17, 3), (17, 17), (3, 17))).hausdorff_mm
         < 0.1 * UM
@@ -95,13 +96,13 @@ def test_two_rooms_joined_by_a_passage_too_narrow_are_two_ways() -> None:
         (10, 10),
         (0, 10),
     )
-    assert [way.closed for way in offset([Guide(rooms, True, True)], 0.9)] == [True]
-    assert [way.closed for way in offset([Guide(rooms, True, True)], 1.1)] == [True, True]
+    assert [way.closed for way in offset([DriveCurve(rooms, True, True)], 0.9)] == [True]
+    assert [way.closed for way in offset([DriveCurve(rooms, True, True)], 1.1)] == [True, True]
 
 
 def test_an_island_near_the_wall_of_a_pocket_is_not_passed_between() -> None:
     wall, island = circle(20), circle(5) + np.array([13, 0])  # 2 mm between them
-    guides = [Guide(wall, True, True), Guide(island, True, False)]
+    guides = [DriveCurve(wall, True, True), DriveCurve(island, True, False)]
     assert len(offset(guides, 0.9)) == 2
     (way,) = offset(guides, 1.5)
     edges = shapely.MultiLineString([wall, island])
@@ -114,7 +115,7 @@ def test_the_ways_are_the_edges_of_the_buffer(seed: int, radius_mm: float, left:
     line = star(seed)
     part = shapely.Polygon(line)
     assume(part.is_valid)
-    ways = offset([Guide(line, True, left)], radius_mm)
+    ways = offset([DriveCurve(line, True, left)], radius_mm)
     buffer = part.buffer(
         -radius_mm if left == part.exterior.is_ccw else radius_mm, quad_segs=500
     )
@@ -138,7 +139,7 @@ def test_the_ways_are_the_edges_of_the_buffer(seed: int, radius_mm: float, left:
 @given(seed=st.integers(0, 10_000), radius_mm=st.floats(1, 9.9))
 def test_the_noise_of_a_scan_makes_no_gouge_and_no_gap(seed: int, radius_mm: float) -> None:
     line = circle(10, noise_mm=0.5 * UM, seed=seed)
-    (way, *others) = offset([Guide(line, True, True)], radius_mm)
+    (way, *others) = offset([DriveCurve(line, True, True)], radius_mm)
     assert way.closed and not others
     near = shapely.distance(shapely.points(way.points_mm), shapely.LineString(line))
     assert near.min() > radius_mm - EXACT_MM and near.max() < radius_mm + EXACT_MM
@@ -146,8 +147,8 @@ def test_the_noise_of_a_scan_makes_no_gouge_and_no_gap(seed: int, radius_mm: flo
 
 def test_the_line_may_be_run_either_way_and_the_cutter_goes_with_it() -> None:
     there, back = (
-        offset([Guide(SQUARE, True, True)], 3)[0],
-        offset([Guide(SQUARE[::-1], True, False)], 3)[0],
+        offset([DriveCurve(SQUARE, True, True)], 3)[0],
+        offset([DriveCurve(SQUARE[::-1], True, False)], 3)[0],
     )
     assert distance(there.points_mm, back.points_mm).hausdorff_mm < 0.1 * UM
     areas = [
@@ -164,7 +165,7 @@ def test_the_line_may_be_run_either_way_and_the_cutter_goes_with_it() -> None:
 def test_a_way_is_run_at_its_feed_and_within_its_acceleration(
     feed_mm_s: float, left: bool, radius_mm: float
 ) -> None:
-    (way,) = offset([Guide(star(3), True, left)], radius_mm)
+    (way,) = offset([DriveCurve(star(3), True, left)], radius_mm)
     xy_mm = run_along(way.points_mm, feed_mm_s, 500)
     velocity = np.diff(xy_mm, axis=0) * MOTION_RATE_HZ
     speed = np.hypot(*velocity.T)
@@ -181,7 +182,7 @@ def test_a_way_is_run_at_its_feed_and_within_its_acceleration(
 
 def test_an_open_line_has_a_way_on_either_side() -> None:
     line = np.array([[0.0, 0], [10, 0], [10, 10]])
-    (left,), (right,) = (offset([Guide(line, False, side)], 2) for side in (True, False))
+    (left,), (right,) = (offset([DriveCurve(line, False, side)], 2) for side in (True, False))
     assert (
         not left.closed
         and distance(left.points_mm, np.array([[0.0, 2], [8, 2], [8, 10]])).hausdorff_mm
@@ -204,7 +205,7 @@ KINK = (
 def test_a_kink_of_some_um_does_not_part_the_way() -> None:
     line = np.array([place.split(",") for place in KINK.split()], float) * 0.1 * UM
     (way,) = offset(
-        [Guide(line, False, True)], 5.0
+        [DriveCurve(line, False, True)], 5.0
     )  # in two pieces, when a curl within the tolerance led back
     assert (
         distance(way.points_mm, np.array([way.points_mm[0], way.points_mm[-1]])).hausdorff_mm
@@ -223,7 +224,7 @@ def test_a_kink_among_short_steps_is_no_end_of_the_way(radius_mm: float) -> None
     ]  # degrees that each step turns; twice that closes
     heading = np.radians(np.cumsum(np.r_[half, half]))
     line = np.cumsum(0.03 * np.column_stack([np.cos(heading), np.sin(heading)]), axis=0)
-    ways = offset([Guide(np.vstack([line, line[:1]]), True, False)], radius_mm)
+    ways = offset([DriveCurve(np.vstack([line, line[:1]]), True, False)], radius_mm)
     assert [way.closed for way in ways] == [True]
     true = shapely.Polygon(line).buffer(radius_mm, quad_segs=512).exterior
     assert max(true.distance(shapely.Point(point)) for point in ways[0].points_mm) < 2 * UM
@@ -256,7 +257,9 @@ def test_round_a_part_much_smaller_than_the_tool_goes_one_way(
     seed: int, radius_mm: float
 ) -> None:
     line = scanned(star(seed), seed)
-    ways = offset([Guide(line, True, not shapely.Polygon(line).exterior.is_ccw)], radius_mm)
+    ways = offset(
+        [DriveCurve(line, True, not shapely.Polygon(line).exterior.is_ccw)], radius_mm
+    )
     assert [way.closed for way in ways] == [
         True
     ]  # of noise alone up to 27 pieces, when arms swung back through each vertex
@@ -273,7 +276,7 @@ def test_round_a_part_much_smaller_than_the_tool_goes_one_way(
 
 def test_in_a_hole_much_narrower_than_the_tool_the_arm_swings_no_further_than_round() -> None:
     """It took minutes: 300 m, back through a thousand vertices."""
-    guide, radius_mm = Guide(circle(5, 0.5 * UM), True, True), 150.0
-    swung = _swung(_guided(guide, radius_mm), True, radius_mm)
+    guide, radius_mm = DriveCurve(circle(5, 0.5 * UM), True, True), 150.0
+    swung = arm.swung(guided(guide, radius_mm), True, radius_mm)
     assert np.hypot(*np.diff(swung, axis=0).T).sum() < 2 * math.tau * radius_mm
     assert offset([guide], radius_mm) == []

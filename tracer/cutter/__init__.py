@@ -1,1 +1,4 @@
-"""TODO: what lives in this room, and its door."""
+"""The cutter: a program moved aside by a cutter's radius, with its lead line, stops and guide lines.
+
+The room asks the program and the offset paths of the ground floor. The jobs ask it.
+"""

@@ -1,15 +1,15 @@
-"""Beside a contour: the ways of the cutter along it, and the places of them that belong to what is drawn on
-the contour and to it.
+"""The contour and the cutter's paths beside it, and which places of the paths belong to places drawn on the
+contour.
 
-Signals: a line as it was followed and ways of the cutter's middle, mm, in; out where the contour begins, and
-places of the ways: which way, and which of its points, fractions included.
+Signals: a line as it was followed, and paths of the cutter's middle, mm, in; out where the contour begins,
+and places of the paths: which path, and which of its points, fractions included.
 
     ───┼──── contour        the foot of a stop mark: the arm of the cutter's radius stands on the contour at the mark, across its heading;
-       │arm                 where the cutter cannot come to it (in an inner corner), the place of the ways that is nearest
-    ───●──── way
+       │arm                 where the cutter cannot reach (in an inner corner), the nearest place of the paths
+    ───●──── path
 
-The contour is what is cut of a line: not the lead line to it, and not the guide lines off it. Where a guide
-line was left for and come back from, the contour goes straight on.
+The contour is what is cut of a line: without the lead line to it, and without the guide lines off it. Where
+the head took a guide line and came back, the contour goes straight on.
 
 Source: our own; the heading at a place is that of a cubic through the places about it, least squares.
 """
@@ -26,37 +26,43 @@ from numpy.polynomial import polynomial
 
 from morfax.motion.arrays import Array
 from morfax.motion.curves import hermite
-from morfax.motion.offset import Way
-from morfax.motion.polyline import APART_MM, crossings, lengths_mm, with_places
+from morfax.motion.offset import OffsetPath
+from morfax.motion.polyline import (
+    APART_MM,
+    at_places,
+    crossings,
+    evenly,
+    length_mm,
+    lengths_mm,
+    with_places,
+)
 from morfax.tracer.following.line import Line
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.operator.work import Halt
 from morfax.tracer.sensing.leg import turn
 
-ABOUT_MM = (
-    3.0,
-    2.0,
-    1.0,
-)  # to either side of a place its heading is felt: as far as the contour is a cubic there,
-STRAIGHT_MM = 0.015  # within this; about a tick the head wavers by some um
+# All limits below were chosen by trial on the test drawings.
+# the heading at a place is felt so far to either side, the furthest over which the contour is a cubic ...
+ABOUT_MM = (3.0, 2.0, 1.0)
+STRAIGHT_MM = 0.015  # ... within this: about a tick the head wavers by some um
 MET_MM = 1.0  # over this a contour's beginning and end are brought together
-LEFT_OUT_MM = 0.5  # to either side of where a guide line leaves: the head swivelled there
-FELT = 200  # positions, a third of a millimetre, by which the heading there is felt
-CORNER = math.radians(20)
-NEAR = 0.05  # of the radius: a way that is crossed by the arm further from its end is another's
+LEFT_OUT_MM = 0.5  # left out beside the junction of a guide line: the head swivelled there
+FELT = 200  # positions, a third of a millimetre, show the heading there
+CORNER = math.radians(20)  # the contour turns by more where a guide line leaves at a corner
+NEAR = 0.05  # of the radius: a path that the arm meets further from its end is another path
 
 
-class Place(NamedTuple):
-    """A place of the cutter's ways: the number of the way, and which of its points, fractions included."""
+class PathPlace(NamedTuple):
+    """A place of the cutter's paths: the number of the path, and which of its points, fractions included."""
 
-    way: int
+    path: int
     at: float
 
 
 @dataclass(frozen=True, slots=True)
 class Cut:
-    """What is cut of a line: from its position `first` on, (n, 2) mm without guide lines, closed if it comes
-    back there; and the line's stops.
+    """What is cut of a line: its places (n, 2) mm from position `first` on, without guide lines, and its
+    stops.
     """
 
     line: Line
@@ -69,23 +75,22 @@ class Cut:
     @property
     def length_mm(self) -> float:
         """How long the contour is, mm."""
-        return float(lengths_mm(self.places_mm)[-1])
+        return length_mm(self.places_mm)
 
     @classmethod
     def of(cls, line: Line, operator: Operator, number: int) -> Cut | None:
-        """What an operator cuts of a line, its stops numbered from one on; None if nothing, as of a guide
-        line without a tick.
+        """What an operator cuts of a line, its stops numbered from `number` on.
+
+        None if nothing is cut, as of a guide line without a tick.
         """
         down_at = operator.down_at(line, number)
         if len(line.xy_mm) < 2 or line.is_dot or (line.is_guide and down_at is None):
             return None
-        first = (
-            math.ceil(down_at or 0)
-            if line.is_guide
-            else (line.loop_from or 0)
-            if line.is_lead
-            else 0
-        )
+        first = 0
+        if line.is_guide:
+            first = math.ceil(down_at or 0)
+        elif line.is_lead:
+            first = line.loop_from or 0
         closed, places_mm = line.is_lead or line.ending == "closed", _places(line, first)
         if closed:
             places_mm = _closed(places_mm)
@@ -109,71 +114,64 @@ def _places(line: Line, first: int) -> Array:
 
 
 def _bridge(before: Array, after: Array) -> Array:
-    """A cubic from the end of some places (n, 2) mm to the beginning of others, on their headings; nothing
-    where those are a corner's.
+    """A cubic from the end of some places (n, 2) mm to the beginning of others, on their headings; nothing at
+    a corner.
     """
-    ways = [
-        before[-1] - before[max(0, len(before) - FELT)],
-        after[min(FELT, len(after)) - 1] - after[0],
-    ]
-    headings = [math.atan2(way[1], way[0]) for way in ways]
+    arrives = before[-1] - before[max(0, len(before) - FELT)]
+    leaves = after[min(FELT, len(after)) - 1] - after[0]
+    headings = [math.atan2(way[1], way[0]) for way in (arrives, leaves)]
     if abs(turn(*headings)) > CORNER:
         return np.empty((0, 2))
     return hermite(before[-1], headings[0], after[0], headings[1])[1:-1]
 
 
 def _closed(places_mm: Array) -> Array:
-    """Places of a closed contour (n, 2) mm, brought together where it begins and ends: the head came there
+    """Places of a closed contour (n, 2) mm, brought together at its beginning and end: the head came there
     twice, some um apart.
     """
     lengths = lengths_mm(places_mm)
     gap_mm = 0.5 * (places_mm[-1] - places_mm[0])
-    after, before = (
-        np.clip(1 - mm / MET_MM, 0.0, 1.0) for mm in (lengths, lengths[-1] - lengths)
-    )
+    after = np.clip(1 - lengths / MET_MM, 0.0, 1.0)
+    before = np.clip(1 - (lengths[-1] - lengths) / MET_MM, 0.0, 1.0)
     return np.asarray(places_mm + (after - before)[:, None] * gap_mm)
 
 
 @dataclass(frozen=True, slots=True)
 class Beside:
-    """The ways (n, 2) mm of a cutter along a contour, on its left or its right; a closed way ends where it
+    """The paths (n, 2) mm of a cutter along a contour, on its left or its right; a closed path ends where it
     begins.
     """
 
     cut: Cut
     left: bool
     radius_mm: float
-    ways: list[Way]
-    _every: Array = field(init=False)
+    paths: list[OffsetPath]
+    _every: Array = field(init=False)  # places of the contour, `APART_MM` from each to the next
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "_every", _evenly(self.cut.places_mm))
+        object.__setattr__(self, "_every", evenly(self.cut.places_mm, APART_MM))
 
-    def mm(self, place: Place) -> Array:
+    def mm(self, place: PathPlace) -> Array:
         """Where a place is, (2,) mm."""
-        way = self.ways[place.way].points_mm
-        return np.array([np.interp(place.at, np.arange(len(way)), column) for column in way.T])
+        return at_places(self.paths[place.path].points_mm, np.array([place.at]))[0]
 
-    def foot(self, place_mm: Array) -> Place:
-        """The place of the ways that belongs to one on the contour: at the end of the arm, or the nearest."""
+    def foot(self, place_mm: Array) -> PathPlace:
+        """The place of the paths that belongs to one on the contour: at the end of the arm, or the nearest."""
         arm = self._arm(place_mm)
         if arm is not None:
             way = with_places(np.array([place_mm, place_mm + (1 + NEAR) * arm]), APART_MM)
             met = list(self.met(way))
             if met and met[0][0] >= (1 - NEAR) / (1 + NEAR) * (len(way) - 1):
                 return met[0][1]
-        return min(
-            (_nearest(way.points_mm, place_mm, k) for k, way in enumerate(self.ways)),
-            key=lambda found: found[0],
-        )[1]
+        nearest = [_nearest(path.points_mm, place_mm, k) for k, path in enumerate(self.paths)]
+        return min(nearest, key=lambda found: found[0])[1]
 
-    def met(self, line_mm: Array) -> Iterator[tuple[float, Place]]:
-        """Where a line (n, 2) mm crosses the ways, in its order: which of its positions, and the place."""
-        found = [
-            (float(at), Place(k, float(there)))
-            for k, way in enumerate(self.ways)
-            for at, there in crossings(line_mm, way.points_mm)
-        ]
+    def met(self, line_mm: Array) -> Iterator[tuple[float, PathPlace]]:
+        """Where a line (n, 2) mm crosses the paths, in its order: which of its positions, and the place."""
+        found = list[tuple[float, PathPlace]]()
+        for k, path in enumerate(self.paths):
+            for at, there in crossings(line_mm, path.points_mm):
+                found.append((float(at), PathPlace(k, float(there))))
         yield from sorted(found)
 
     def _arm(self, place_mm: Array) -> Array | None:
@@ -192,28 +190,18 @@ class Beside:
     def _about(self, here: int, reach: int) -> tuple[Array, Array]:
         """Places of the contour about one of them, (n, 2) mm, and how far along it they are from that, mm."""
         index = np.arange(here - reach, here + reach + 1)
-        if self.cut.closed:
-            return self._every[index % len(self._every)], APART_MM * (index - here).astype(
-                float
-            )
-        index = index[(index >= 0) & (index < len(self._every))]
-        return self._every[index], APART_MM * (index - here).astype(float)
+        if not self.cut.closed:
+            index = index[(index >= 0) & (index < len(self._every))]
+        at_mm = APART_MM * (index - here).astype(float)
+        return self._every[index % len(self._every)], at_mm
 
 
-def _evenly(line_mm: Array) -> Array:
-    """Places of a polyline, `APART_MM` from each to the next."""
-    lengths = lengths_mm(line_mm)
-    at_mm = np.arange(0.0, lengths[-1], APART_MM)
-    return np.column_stack([np.interp(at_mm, lengths, column) for column in line_mm.T])
-
-
-def _nearest(way_mm: Array, place_mm: Array, number: int) -> tuple[float, Place]:
-    """How far a way is from a place at its nearest, mm, and where that is."""
-    steps = np.diff(way_mm, axis=0)
-    share = np.einsum("ij,ij->i", place_mm - way_mm[:-1], steps) / np.maximum(
-        np.einsum("ij,ij->i", steps, steps), 1e-18
-    )
+def _nearest(path_mm: Array, place_mm: Array, number: int) -> tuple[float, PathPlace]:
+    """How far a path is from a place at its nearest, mm, and where that is."""
+    steps = np.diff(path_mm, axis=0)
+    squared = np.maximum(np.einsum("ij,ij->i", steps, steps), 1e-18)  # no step of length 0
+    share = np.einsum("ij,ij->i", place_mm - path_mm[:-1], steps) / squared
     share = np.clip(share, 0.0, 1.0)
-    away = np.hypot(*(way_mm[:-1] + share[:, None] * steps - place_mm).T)
+    away = np.hypot(*(path_mm[:-1] + share[:, None] * steps - place_mm).T)
     best = int(np.argmin(away))
-    return float(away[best]), Place(number, best + float(share[best]))
+    return float(away[best]), PathPlace(number, best + float(share[best]))

@@ -1,326 +1,222 @@
-"""A drawn program carried over from its contour to the ways of the cutter beside it: lead line, stops, guide
-lines, and the way back.
+"""The transfer: a drawn program moved from its contour to the cutter's paths beside it: lead line, stops,
+guide lines, and the way back.
 
-Signals: a line as it was followed, and the ways of the cutter along its contour, in; out the lines that are
-run instead, mm at the motion rate, each with its lead line, marks and guide lines where they are then.
+Signals: a line as it was followed, and the paths of the cutter along its contour, in; out the lines that are
+run instead, mm at the motion rate, each with its lead line, marks and guide lines.
 
-    reference ──tick──┐ way of the cutter          reference ──────── contour
+    reference ──tick──┐ path of the cutter         reference ──────── contour
                       │   ─── contour                            tick   │   raised over the contour,
-                      └──                                               └──▶ down on the way
-       it is met on this side                      it is not met: the cutter runs on the other side
+                      └──                                               └──▶ down on the path
+       the lead line meets the path                the cutter runs on the other side of the contour
 
-    lead line   as drawn, to where it first crosses the way after the last tick, or last crosses it before that; else to its end, and from
-                there straight to the foot of the place where it joins. The tool goes down at the tick if from there on no place of the lead line
-                is nearer to a contour than the radius; else where the way begins.
-    stop mark   at its foot on the way (see `beside`)
-    guide line  as drawn, from where it crosses the way; else from its foot, straight to where it was drawn from. Nothing drilled is moved.
+    lead line   as drawn, to where it first crosses the path after the last tick, or last crosses it before the
+                tick; else to its end, and from there straight to the foot of the place where it joins. The
+                tool goes down at the tick if no place of the lead line from there on is nearer to a contour
+                than the radius; else where the path begins.
+    stop mark   at its foot on the path (see `contour`)
+    guide line  as drawn, from where it crosses the path; else from its foot, straight to where the drawn one
+                left the contour. Drilled holes are not moved.
 
 The numbers of the stops stay those of the drawing, also where the cutter comes to them in another order.
 
 Source: our own. The patent's draughtsman allows for the cutter himself (ES 361967, section on use).
-Questions: a contour of which the cutter's way is in pieces has one lead line. The other pieces are run before
+Questions: if the cutter's path is in pieces, the contour has one lead line. The other pieces are run before
 it, from the reference point, so that the program ends there; the tool is raised from piece to piece.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.motion.feed import run_along
-from morfax.motion.polyline import lengths_mm
-from morfax.tracer.cutter.contour import Beside, Place
+from morfax.motion.polyline import length_mm, lengths_mm
+from morfax.tracer.cutter.contour import Beside, PathPlace
+from morfax.tracer.cutter.runs import Detour, FeedRate, LeadRun, PathRun
 from morfax.tracer.following.line import Line
 from morfax.tracer.junctions.guides import GuideLine
-from morfax.tracer.program import braking as stops
-from morfax.tracer.program.program import BRAKE_MM_S2
 
 CLEAR_MM = 0.001  # a place is clear if it is no nearer to a contour than the radius less this
-NOTHING_MM = 1e-6
-# radii along a guide line: where it crosses the way later than this, it comes to another part of it
+# radii along a guide line: where it crosses a path later, it has come to another part; by trial
 OBLIQUE = 2.0
 
-Distances = Callable[[Array], Array]
 
+def transferred(
+    beside: Beside, away_mm: Callable[[Array], Array], feed: FeedRate
+) -> list[Line]:
+    """The lines that the cutter runs for a line: one for each path, the one with the lead line last.
 
-@dataclass(frozen=True, slots=True)
-class Feed:
-    """How fast the ways are run, and the motion rate."""
-
-    mm_s: float
-    rate_hz: float
-
-    def run(self, way_mm: Array) -> Array:
-        """Positions along a way (n, 2) mm from rest to rest."""
-        if np.hypot(*np.diff(way_mm, axis=0).T).sum() < NOTHING_MM:
-            return way_mm[-1:]
-        return run_along(way_mm, self.mm_s, BRAKE_MM_S2, self.rate_hz)
-
-    def resting(
-        self, rows_mm: Array, at: Sequence[float]
-    ) -> tuple[Array, Callable[[float], float]]:
-        """Positions (n, 2) mm that come to rest at some of them, fractions included, the last of which ends
-        them; and where each is then.
-        """
-        pieces = stops.pieces(rows_mm, at, BRAKE_MM_S2, self.rate_hz)[: len(at)]
-        rested = np.vstack([pieces[0], *(piece[1:] for piece in pieces[1:])])
-        rests = [len(pieces[0]) - 1, *(len(piece) - 1 for piece in pieces[1:])]
-        was, now = lengths_mm(rows_mm), lengths_mm(rested)
-        knots = [
-            np.r_[0.0, np.interp(at, np.arange(len(was)), was)],
-            np.r_[0.0, now[np.cumsum(rests)]],
-        ]
-        return rested, lambda old: _position(
-            rested, float(np.interp(np.interp(old, np.arange(len(was)), was), *knots))
-        )
-
-
-@dataclass(frozen=True, slots=True)
-class _Lead:
-    """The lead line to a way: positions (n, 2) mm, the last at rest on the way, and where that is; those for
-    the drawn marks, and guide lines.
+    `away_mm` gives the distances of places from all contours.
     """
-
-    xy_mm: Array
-    place: Place
-    at: dict[float, float]
-    guides: list[GuideLine]
-
-
-@dataclass(slots=True)
-class _Run:
-    """A way as it is run, from one of its places on: positions (n, 2) mm, and for positions of the drawn line
-    those that stand for them.
-    """
-
-    xy_mm: Array
-    way_mm: Array
-    begin_mm: float  # along the way
-    at: dict[float, float] = field(default_factory=dict)
-    guides: list[GuideLine] = field(default_factory=list)
-
-    @classmethod
-    def along(cls, way_mm: Array, begin: float, feed: Feed) -> _Run:
-        """Run a way; a closed one from and to a place between its points."""
-        k = int(begin)
-        place = way_mm[k] + (begin - k) * (way_mm[min(k + 1, len(way_mm) - 1)] - way_mm[k])
-        points = (
-            np.vstack([place, way_mm[k + 1 :], way_mm[1 : k + 1], place])
-            if begin > 0
-            else way_mm
-        )
-        return cls(
-            feed.run(points),
-            way_mm,
-            float(np.interp(begin, np.arange(len(way_mm)), lengths_mm(way_mm))),
-        )
-
-    def position(self, place: Place) -> float:
-        """Which position is at a place of the way, fractions included, before any guide line is put in."""
-        along = lengths_mm(self.way_mm)
-        mm = float(np.interp(place.at, np.arange(len(along)), along)) - self.begin_mm
-        mm = mm if mm >= 0 else mm + along[-1]
-        return _position(self.xy_mm, mm / along[-1] * lengths_mm(self.xy_mm)[-1])
-
-    def put_in(self, detours: list[_Detour]) -> None:
-        """Leave the way for guide lines, and come back to it."""
-        for detour in sorted(detours, key=lambda detour: -detour.leave):
-            shift = len(detour.xy_mm) + 1
-            self.at = {drawn: at + shift * (at > detour.leave) for drawn, at in self.at.items()}
-            self.guides = [_shifted(guide, shift) for guide in self.guides]
-            self.xy_mm = np.vstack(
-                [self.xy_mm[: detour.leave + 1], detour.xy_mm, self.xy_mm[detour.leave :]]
-            )
-            self.at |= {drawn: at + detour.leave + 1 for drawn, at in detour.at.items()}
-            tip = round(self.at[detour.tip])
-            self.guides.insert(0, GuideLine(detour.leave, tip, detour.leave + shift))
-
-    def put_after(self, lead: _Lead) -> None:
-        """Come to the way by a lead line."""
-        self.at = {**lead.at, **{drawn: at + len(lead.xy_mm) for drawn, at in self.at.items()}}
-        self.guides = [_shifted(guide, len(lead.xy_mm)) for guide in self.guides]
-        self.xy_mm = np.vstack([lead.xy_mm, self.xy_mm])
-
-
-@dataclass(frozen=True, slots=True)
-class _Detour:
-    """A guide line off a way: the way's position where it leaves, positions (n, 2) mm, the drawn tip, and
-    which stand for the drawn ones.
-    """
-
-    leave: int
-    xy_mm: Array
-    tip: float
-    at: dict[float, float]
-
-
-def carried(beside: Beside, away_mm: Distances, feed: Feed) -> list[Line]:
-    """The lines that the cutter runs for a line: one for each way, that to which the lead line comes the
-    last.
-
-    `away_mm` tells how far places are from all contours.
-    """
+    # 1. the lead line, and the paths from where it joins
     cut = beside.cut
     lead = _lead(beside, away_mm, feed) if cut.first > 0 else None
-    begins = {lead.place.way: lead.place.at} if lead is not None else {}
+    begins = {lead.place.path: lead.place.at} if lead is not None else {}
     runs = [
-        _Run.along(way.points_mm, begins.get(k, 0.0), feed) for k, way in enumerate(beside.ways)
+        PathRun.along(path.points_mm, begins.get(k, 0.0), feed)
+        for k, path in enumerate(beside.paths)
     ]
+    # 2. marks on the contour
     for mark in cut.line.marks:
-        if (mark.at > cut.first or lead is None) and _guide_at(cut.line, mark.at) is None:
+        on_contour = mark.at > cut.first or lead is None
+        if on_contour and _guide_at(cut.line, mark.at) is None:
             place = beside.foot(np.array(mark.place_mm))
-            runs[place.way].at[mark.at] = runs[place.way].position(place)
-    detours: dict[int, list[_Detour]] = {}
+            runs[place.path].at[mark.at] = runs[place.path].position(place)
+    # 3. guide lines
+    detours: dict[int, list[Detour]] = {}
     for guide in cut.line.guides:
         if guide.leave > cut.first:
-            way, detour = _detour(beside, guide, runs, feed)
-            detours.setdefault(way, []).append(detour)
-    for way, off_it in detours.items():
-        runs[way].put_in(off_it)
+            path, detour = _detour(beside, guide, runs, feed)
+            detours.setdefault(path, []).append(detour)
+    for path, off_it in detours.items():
+        runs[path].put_in(off_it)
     return _lines(beside, runs, lead)
 
 
-def _lead(beside: Beside, away_mm: Distances, feed: Feed) -> _Lead:
-    """The lead line, as far as it is run, and on to the way."""
+def _lead(beside: Beside, away_mm: Callable[[Array], Array], feed: FeedRate) -> LeadRun:
+    """The lead line, as far as it is run, and on to the path."""
     cut, line = beside.cut, beside.cut.line
     rows = line.xy_mm[: cut.first + 1]
     end, place = _joins(beside, rows)
-    guides = [guide for guide in line.guides if guide.back <= cut.first]
-    xy_mm, moved = feed.resting(rows, [*(guide.tip for guide in guides), end])
-    guides = [
-        GuideLine(*(round(moved(at)) for at in (guide.leave, guide.tip, guide.back)))
-        for guide in guides
-    ]
+    # 1. positions, at rest at the tips of guide lines and at the end
+    drawn = [guide for guide in line.guides if guide.back <= cut.first]
+    xy_mm, moved = feed.resting(rows, [*(guide.tip for guide in drawn), end])
     if end == cut.first:
         xy_mm = np.vstack([xy_mm, feed.run(np.vstack([rows[-1], beside.mm(place)]))])
     last = len(xy_mm) - 1
-    at = {
-        mark.at: last if mark.at >= end else moved(mark.at)
-        for mark in line.marks
-        if mark.at <= cut.first
-    }
-    if cut.down_at is not None:
-        clear = (
-            cut.down_at <= end < cut.first
-            and away_mm(rows[int(cut.down_at) : int(end) + 1]).min()
-            > beside.radius_mm - CLEAR_MM
-        )
-        at[cut.down_at] = at[cut.down_at] if clear else last
-    at |= {guide.tip: moved(guide.tip) for guide in line.guides if guide.back <= cut.first}
-    return _Lead(xy_mm, place, at, guides)
+    # 2. the drawn marks and tips
+    at = dict[float, float]()
+    for mark in line.marks:
+        if mark.at <= cut.first:
+            at[mark.at] = last if mark.at >= end else moved(mark.at)
+    if cut.down_at is not None and not _is_clear(beside, rows, end, away_mm):
+        at[cut.down_at] = last
+    at |= {guide.tip: moved(guide.tip) for guide in drawn}
+    guides = [GuideLine(*(round(moved(at)) for at in (g.leave, g.tip, g.back))) for g in drawn]
+    return LeadRun(xy_mm, place, at, guides)
 
 
-def _joins(beside: Beside, rows: Array) -> tuple[float, Place]:
-    """Which position of a lead line is its last, and where it comes onto the way: not before what is drilled
+def _is_clear(
+    beside: Beside, rows: Array, end: float, away_mm: Callable[[Array], Array]
+) -> bool:
+    """Whether the tool can go down at the lead line's tick: from there on no contour is too near."""
+    down_at = beside.cut.down_at
+    if down_at is None or not down_at <= end < beside.cut.first:
+        return False
+    nearest_mm = away_mm(rows[int(down_at) : int(end) + 1]).min()
+    return bool(nearest_mm > beside.radius_mm - CLEAR_MM)
+
+
+def _joins(beside: Beside, rows: Array) -> tuple[float, PathPlace]:
+    """Which position of a lead line is its last, and where it comes onto the path: after all that is drilled
     on it.
     """
     cut, line = beside.cut, beside.cut.line
     last = float(len(rows) - 1)
+    # 1. onto an open path at its beginning
     if not cut.closed:
-        begins = [Place(k, 0.0) for k in range(len(beside.ways))]
-        return last, min(
-            begins, key=lambda place: float(np.hypot(*(beside.mm(place) - rows[-1])))
-        )
+        begins = [PathPlace(k, 0.0) for k in range(len(beside.paths))]
+        away = [float(np.hypot(*(beside.mm(place) - rows[-1]))) for place in begins]
+        return last, begins[int(np.argmin(away))]
+    # 2. where the lead line crosses a path, if nothing is drilled after that
     met = [(at, place) for at, place in beside.met(rows) if _guide_at(line, at) is None]
     after = [(at, place) for at, place in met if cut.down_at is not None and at >= cut.down_at]
-    end, place = (after[:1] or met[-1:] or [(last, Place(0, 0.0))])[0]
-    drilled = [mark.at for mark in line.marks if mark.kind == "dot"] + [
-        guide.back for guide in line.guides
-    ]
-    if end == last or any(end < at <= cut.first for at in drilled):
-        return last, beside.foot(rows[-1])
-    return end, place
+    drilled: list[float] = [guide.back for guide in line.guides]
+    drilled += [mark.at for mark in line.marks if mark.kind == "dot"]
+    if met:
+        end, place = after[0] if after else met[-1]
+        if end != last and not any(end < at <= cut.first for at in drilled):
+            return end, place
+    # 3. from its end to the foot
+    return last, beside.foot(rows[-1])
 
 
 def _detour(
-    beside: Beside, guide: GuideLine, runs: list[_Run], feed: Feed
-) -> tuple[int, _Detour]:
-    """A guide line off the way of a cutter, and which way that is."""
+    beside: Beside, guide: GuideLine, runs: list[PathRun], feed: FeedRate
+) -> tuple[int, Detour]:
+    """A guide line off the path of a cutter, and which path that is."""
     line, xy_mm = beside.cut.line, beside.cut.line.xy_mm
-    at = {mark.at: mark.at for mark in line.marks if guide.leave < mark.at < guide.back} | {
-        guide.tip: guide.tip
-    }
-    drilled = [mark.at for mark in line.marks if mark.at in at and mark.kind == "dot"]
+    on_guide = [mark for mark in line.marks if guide.leave < mark.at < guide.back]
+    drilled = [mark.at for mark in on_guide if mark.kind == "dot"]
+    # 1. where the guide line crosses a path before the first hole; else the foot
     out = xy_mm[guide.leave : round(min([*drilled, guide.tip])) + 1]
-    crossed = [
-        (at, place)
-        for at, place in beside.met(out)
-        if lengths_mm(out)[int(at)] < OBLIQUE * beside.radius_mm
-    ]
-    place = crossed[0][1] if crossed else beside.foot(xy_mm[guide.leave])
-    row = round(runs[place.way].position(place))
+    out_mm, near_mm = lengths_mm(out), OBLIQUE * beside.radius_mm
+    crossed = [(at, place) for at, place in beside.met(out) if out_mm[int(at)] < near_mm]
     begin, end = guide.leave, guide.back
     if crossed:
-        begin += int(crossed[0][0]) + 1
-        end = guide.tip + int(
-            np.argmin(np.hypot(*(xy_mm[guide.tip : guide.back + 1] - xy_mm[begin]).T))
-        )
-    here = runs[place.way].xy_mm[row]
+        at, place = crossed[0]
+        begin += int(at) + 1
+        back = xy_mm[guide.tip : guide.back + 1]
+        end = guide.tip + int(np.argmin(np.hypot(*(back - xy_mm[begin]).T)))
+    else:
+        place = beside.foot(xy_mm[guide.leave])
+    # 2. out to it, along it and back
+    run = runs[place.path]
+    row = round(run.position(place))
+    here = run.xy_mm[row]
     drawn, moved = feed.resting(xy_mm[begin : end + 1], [0, guide.tip - begin, end - begin])
-    to_it, from_it = (
-        feed.run(np.vstack([here, drawn[0]])),
-        feed.run(np.vstack([drawn[-1], here])),
+    to_it = feed.run(np.vstack([here, drawn[0]]))
+    from_it = feed.run(np.vstack([drawn[-1], here]))
+    # 3. the positions of its marks and its tip
+    at_old = [*(mark.at for mark in on_guide), guide.tip]
+    new = {old: len(to_it) + moved(min(max(old, begin), end) - begin) for old in at_old}
+    return place.path, Detour(row, np.vstack([to_it, drawn, from_it]), guide.tip, new)
+
+
+def _lines(beside: Beside, runs: list[PathRun], lead: LeadRun | None) -> list[Line]:
+    """The runs as lines of the program, the one with the lead line last."""
+    main = len(runs) - 1 if lead is None else lead.place.path
+    lines = list[Line]()
+    for k, run in enumerate(runs):
+        if k != main:
+            lines.append(_with_stops(beside, run, _other_line(beside, k)))
+    return [*lines, _with_stops(beside, runs[main], _main_line(beside, runs[main], main, lead))]
+
+
+def _other_line(beside: Beside, number: int) -> Line:
+    """The line of a path without the lead line, not yet with its positions."""
+    line = beside.cut.line
+    ending = "closed" if beside.paths[number].closed else "ended"
+    reference_mm = line.reference_mm if beside.cut.closed else None
+    return replace(
+        line, fault=None, loop_from=None, guides=(), ending=ending, reference_mm=reference_mm
     )
-    at = {old: len(to_it) + moved(min(max(old, begin), end) - begin) for old in at}
-    return place.way, _Detour(row, np.vstack([to_it, drawn, from_it]), guide.tip, at)
 
 
-def _lines(beside: Beside, runs: list[_Run], lead: _Lead | None) -> list[Line]:
-    """The runs as lines of the program, with the stops that are on each."""
+def _main_line(beside: Beside, run: PathRun, number: int, lead: LeadRun | None) -> Line:
+    """The line of the path with the lead line, not yet with its positions; puts the lead line before the
+    run.
+    """
     cut, line = beside.cut, beside.cut.line
-    main = len(runs) - 1 if lead is None else lead.place.way
-    lines = []
-    for k in sorted(range(len(runs)), key=lambda k: k == main):
-        run = runs[k]
-        ending = "closed" if beside.ways[k].closed else "ended"
-        plain = replace(line, fault=None, loop_from=None, guides=(), ending=ending)
-        if k == main:
-            plain = replace(
-                plain, ending=line.ending if lead or line.fault else ending, fault=line.fault
-            )
-        elif not cut.closed:
-            plain = replace(plain, reference_mm=None)
-        if lead is not None and k == main:
-            run.put_after(lead)
-            plain = replace(
-                plain,
-                guides=tuple(lead.guides),
-                loop_from=len(lead.xy_mm) if line.is_lead else None,
-            )
-            if not cut.closed:
-                run.at[len(line.xy_mm) - 1] = len(run.xy_mm) - 1
-        marks = [replace(mark, at=run.at[mark.at]) for mark in line.marks if mark.at in run.at]
-        made = replace(plain, xy_mm=run.xy_mm, guides=(*plain.guides, *run.guides))
-        made = replace(
-            made, marks=tuple(replace(mark, place_mm=made.place(mark.at)) for mark in marks)
-        )
-        ours = sorted(
-            (run.at[stop.at], stop.number or 0) for stop in cut.stops if stop.at in run.at
-        )
-        lines.append(
-            replace(
-                made,
-                length_mm=float(lengths_mm(run.xy_mm)[-1]),
-                numbers=tuple(n for _, n in ours),
-            )
-        )
-    return lines
+    ending = "closed" if beside.paths[number].closed else "ended"
+    if lead is not None or line.fault is not None:
+        ending = line.ending
+    if lead is None:
+        return replace(line, loop_from=None, guides=(), ending=ending)
+    run.put_after(lead)
+    if not cut.closed:
+        run.at[len(line.xy_mm) - 1] = len(run.xy_mm) - 1
+    loop_from = len(lead.xy_mm) if line.is_lead else None
+    return replace(line, loop_from=loop_from, guides=tuple(lead.guides), ending=ending)
+
+
+def _with_stops(beside: Beside, run: PathRun, line: Line) -> Line:
+    """A line with the positions of its run, and with the guide lines, marks and stops that are on it."""
+    drawn, stops = beside.cut.line, beside.cut.stops
+    line = replace(line, xy_mm=run.xy_mm, guides=(*line.guides, *run.guides))
+    marks = [replace(mark, at=run.at[mark.at]) for mark in drawn.marks if mark.at in run.at]
+    marks = [replace(mark, place_mm=line.place(mark.at)) for mark in marks]
+    here = sorted((run.at[stop.at], stop.number or 0) for stop in stops if stop.at in run.at)
+    return replace(
+        line,
+        marks=tuple(marks),
+        length_mm=length_mm(run.xy_mm),
+        numbers=tuple(number for _, number in here),
+    )
 
 
 def _guide_at(line: Line, at: float) -> GuideLine | None:
     """The guide line on which a position is."""
     return next((guide for guide in line.guides if guide.leave < at < guide.back), None)
-
-
-def _shifted(guide: GuideLine, positions: int) -> GuideLine:
-    return GuideLine(guide.leave + positions, guide.tip + positions, guide.back + positions)
-
-
-def _position(xy_mm: Array, mm: float) -> float:
-    """Which position of a run has come so far, fractions included."""
-    lengths = lengths_mm(xy_mm)
-    moving = np.flatnonzero(np.r_[True, np.diff(lengths) > 0])
-    return float(np.interp(mm, lengths[moving], moving))

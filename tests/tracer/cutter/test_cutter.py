@@ -14,7 +14,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.contour import distance
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import thin
-from morfax.tracer.cutter.cutter import Cutter, Left, Side, with_cutter
+from morfax.tracer.cutter.cutter import Cutter, CutterSide, Left, with_cutter
 from morfax.tracer.drawing.deviation import deviation, touched
 from morfax.tracer.following.line import Line
 from morfax.tracer.marks.marks import Mark
@@ -166,7 +166,7 @@ CROSSING_THEMSELVES = {
 
 @pytest.mark.parametrize("side", ["outside", "inside"])
 @pytest.mark.parametrize("name", CROSSING_THEMSELVES)
-def test_a_line_that_crosses_itself_has_no_outside(name: str, side: Side) -> None:
+def test_a_line_that_crosses_itself_has_no_outside(name: str, side: CutterSide) -> None:
     line = closed(np.column_stack(CROSSING_THEMSELVES[name]))
     with pytest.raises(
         MotionFault, match=f"line 1 crosses itself: it has no {side}; give --side left or right"
@@ -177,7 +177,7 @@ def test_a_line_that_crosses_itself_has_no_outside(name: str, side: Side) -> Non
 @pytest.mark.parametrize("name", CROSSING_THEMSELVES)
 @pytest.mark.parametrize("side", ["left", "right"])
 def test_on_a_side_of_a_line_that_crosses_itself_nothing_is_gouged_and_what_is_not_cut_is_listed(
-    name: str, side: Side
+    name: str, side: CutterSide
 ) -> None:
     line = closed(np.column_stack(CROSSING_THEMSELVES[name]))
     try:
@@ -199,7 +199,7 @@ def test_on_a_side_of_a_line_that_crosses_itself_nothing_is_gouged_and_what_is_n
 @pytest.mark.parametrize("begin", [0, math.pi])  # begun inside of the other circle, and outside
 @pytest.mark.parametrize("side", ["outside", "inside"])
 def test_lines_that_cross_each_other_are_cut_round_both_or_within_both(
-    begin: float, side: Side
+    begin: float, side: CutterSide
 ) -> None:
     circles = [
         arc((30, 30), 25),

@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from morfax.motion.offset import Guide, offset
-from morfax.tracer.cutter import sides as edges
+from morfax.motion.offset import DriveCurve, offset
+from morfax.tracer.cutter import sides
 from tests.tracer.inked import UM, arc, polyline
 
 STAR = [
@@ -16,16 +16,16 @@ STAR = [
     for k, r in enumerate([10, 4] * 5)
 ]
 GUIDES = {
-    "hole": ([Guide(arc((9, 9), 2), True, True)], 4.0),
-    "square": ([Guide(polyline((0, 0), (3, 0), (3, 3), (0, 3)), True, True)], 3.0),
-    "slot": ([Guide(polyline((0, 0), (30, 0), (30, 1.2), (0, 1.2)), True, True)], 1.2),
-    "star": ([Guide(np.array(STAR), True, True)], 8.0),  # touches its inner corners
+    "hole": ([DriveCurve(arc((9, 9), 2), True, True)], 4.0),
+    "square": ([DriveCurve(polyline((0, 0), (3, 0), (3, 3), (0, 3)), True, True)], 3.0),
+    "slot": ([DriveCurve(polyline((0, 0), (30, 0), (30, 1.2), (0, 1.2)), True, True)], 1.2),
+    "star": ([DriveCurve(np.array(STAR), True, True)], 8.0),  # touches its inner corners
     "island": (
-        [Guide(arc((20, 20), 15), True, True), Guide(arc((20, 20), 12), True, False)],
+        [DriveCurve(arc((20, 20), 15), True, True), DriveCurve(arc((20, 20), 12), True, False)],
         3.0,
     ),
     "island aside": (
-        [Guide(arc((20, 20), 15), True, True), Guide(arc((25, 20), 8), True, False)],
+        [DriveCurve(arc((20, 20), 15), True, True), DriveCurve(arc((25, 20), 8), True, False)],
         12.0,
     ),
 }
@@ -35,35 +35,38 @@ GUIDES = {
 def test_a_cutter_goes_into_a_room_that_is_wider_and_into_no_narrower_one(name: str) -> None:
     guides, wide_mm = GUIDES[name]
     for number in range(len(guides)):
-        room = edges.room(guides, number)
+        room = sides.room(guides, number)
         assert room is not None and room.wide_mm == pytest.approx(wide_mm, abs=2 * UM)
-        assert 0 < room.wide_mm - room.passes_mm < 1.5 * edges.PASSES_MM + UM
+        assert 0 < room.wide_mm - room.passes_mm < 1.5 * sides.PASSES_MM + UM
     assert offset(guides, room.passes_mm / 2) and not offset(guides, wide_mm / 2 + 1 * UM)
 
 
 def test_outside_of_the_outermost_line_there_is_room_for_any_cutter() -> None:
-    assert edges.room([Guide(arc((9, 9), 5), True, False)], 0) is None
+    assert sides.room([DriveCurve(arc((9, 9), 5), True, False)], 0) is None
     assert (
-        edges.room([Guide(arc((9, 9), 5), True, False), Guide(arc((30, 9), 5), True, False)], 1)
+        sides.room(
+            [DriveCurve(arc((9, 9), 5), True, False), DriveCurve(arc((30, 9), 5), True, False)],
+            1,
+        )
         is None
     )
 
 
 def test_lines_that_cross_lie_in_none_of_each_other() -> None:
     lines = [
-        edges.thinned(line) for line in (arc((30, 30), 25), arc((47, 30), 12), arc((20, 30), 5))
+        sides.thinned(line) for line in (arc((30, 30), 25), arc((47, 30), 12), arc((20, 30), 5))
     ]
-    crossed = edges.crossing(lines)
+    crossed = sides.crossing(lines)
     assert crossed.tolist() == [
         [False, True, False],
         [True, False, False],
         [False, False, False],
     ]
-    assert edges.depths(lines, crossed) == [0, 0, 1]
+    assert sides.depths(lines, crossed) == [0, 0, 1]
 
 
 def test_a_curl_where_the_head_swivelled_is_no_crossing() -> None:
     curl = np.vstack(
         [arc((9, 9), 5, 0, 180), arc((4, 9.0), 0.1, 0, 360), arc((9, 9), 5, 180, 360)]
     )
-    assert not edges.crossing([curl[:-1]]).any()
+    assert not sides.crossing([curl[:-1]]).any()

@@ -15,7 +15,7 @@ from morfax.motion.faults import LineFault, MotionFault
 from morfax.motion.motion import join
 from morfax.motion.polyline import Nearest
 from morfax.tracer.cutter.contour import Cut
-from morfax.tracer.cutter.cutter import Cutter, Left, Side, with_cutter
+from morfax.tracer.cutter.cutter import Cutter, CutterSide, Left, with_cutter
 from morfax.tracer.following.line import Line
 from morfax.tracer.junctions.guides import GuideLine
 from morfax.tracer.marks.marks import Mark
@@ -80,7 +80,7 @@ def marked(tick_mm: float = 5.0, *, guide: bool = False, way: Array = WAY) -> Li
 
 def beside(
     line: Line,
-    side: Side,
+    side: CutterSide,
     diameter_mm: float = 4.0,
     card: str = "",
     passes_mm: tuple[float, ...] = (),
@@ -112,7 +112,7 @@ def least_mm(positions: Array, contour_mm: Array, radius_mm: float) -> float:
     [("outside", (8, 4)), ("inside", (12, 4)), ("left", (8, 4)), ("right", (12, 4))],
 )
 def test_the_lead_line_comes_to_the_way_and_goes_back_to_the_reference_point(
-    side: Side, begin: tuple[float, float]
+    side: CutterSide, begin: tuple[float, float]
 ) -> None:
     positions, stops, made = beside(marked(), side)
     for end in (positions[0], positions[-1]):
@@ -135,7 +135,7 @@ def test_the_lead_line_comes_to_the_way_and_goes_back_to_the_reference_point(
     [(5.0, "outside", 5.0), (9.0, "outside", 8.0), (5.0, "inside", 12.0)],
 )
 def test_the_tool_goes_down_at_the_tick_if_it_is_clear_there_and_else_on_the_way(
-    tick_mm: float, side: Side, down: float
+    tick_mm: float, side: CutterSide, down: float
 ) -> None:
     positions, stops, _ = beside(marked(tick_mm), side)
     assert stops[1].place_mm == pytest.approx((down, 4), abs=2 * SAMPLE_MM)
@@ -144,7 +144,7 @@ def test_the_tool_goes_down_at_the_tick_if_it_is_clear_there_and_else_on_the_way
 
 @pytest.mark.parametrize("side", ["outside", "inside"])
 def test_a_guide_line_is_run_raised_as_drawn_and_its_hole_is_where_it_was_drawn(
-    side: Side,
+    side: CutterSide,
 ) -> None:
     positions, stops, made = beside(marked(guide=True), side, passes_mm=(1.0,))
     assert [stops[k].kind for k in (1, 2, 3)] == ["tick", "hole", "tick"]
@@ -263,7 +263,7 @@ def test_of_a_lost_line_what_was_traced_is_cut_on_a_side_of_its_travel() -> None
         assert in_work(positions)[:, 0].max() == pytest.approx(10, abs=SAMPLE_MM)
     with pytest.raises(
         LineFault,
-        match=r"line lost at .* has no outside, so it is not cut: --side left or right would",
+        match=r"line lost at .* has no outside, so it is not cut; --side left or right cuts it",
     ):
         beside(line, "outside", 2.0)
     both = Trace((marked(), replace(line, number=2)), Operator(WORK))

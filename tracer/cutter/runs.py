@@ -1,0 +1,142 @@
+"""Runs: an offset path as the tool runs it, with its lead line and its guide lines.
+
+Signals: paths (n, 2) mm and a feed in mm/s in; positions (n, 2) mm at the motion rate out, and for positions
+of the drawn line the positions that stand for them.
+
+Source: our own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from morfax.motion.arrays import Array
+from morfax.motion.feed import run_along
+from morfax.motion.polyline import at_places, length_mm, lengths_mm
+from morfax.tracer.cutter.contour import PathPlace
+from morfax.tracer.junctions.guides import GuideLine
+from morfax.tracer.program import braking
+from morfax.tracer.program.program import BRAKE_MM_S2
+
+NOTHING_MM = 1e-6  # a shorter way is not run
+
+
+@dataclass(frozen=True, slots=True)
+class FeedRate:
+    """How fast the paths are run, and the motion rate."""
+
+    mm_s: float
+    rate_hz: float
+
+    def run(self, way_mm: Array) -> Array:
+        """Positions along a way (n, 2) mm from rest to rest."""
+        if length_mm(way_mm) < NOTHING_MM:
+            return way_mm[-1:]
+        return run_along(way_mm, self.mm_s, BRAKE_MM_S2, self.rate_hz)
+
+    def resting(
+        self, rows_mm: Array, at: Sequence[float]
+    ) -> tuple[Array, Callable[[float], float]]:
+        """Positions (n, 2) mm that come to rest at some of them, fractions included, and end at the last of
+        those; and which position each of them has become.
+        """
+        pieces = braking.pieces(rows_mm, at, BRAKE_MM_S2, self.rate_hz)[: len(at)]
+        rested = np.vstack([pieces[0], *(piece[1:] for piece in pieces[1:])])
+        rests = [len(pieces[0]) - 1, *(len(piece) - 1 for piece in pieces[1:])]
+        index, was, now = np.arange(len(rows_mm)), lengths_mm(rows_mm), lengths_mm(rested)
+        was_at = np.r_[0.0, np.interp(at, index, was)]
+        now_at = np.r_[0.0, now[np.cumsum(rests)]]
+
+        def moved(old: float) -> float:
+            mm = np.interp(np.interp(old, index, was), was_at, now_at)
+            return position_at(rested, float(mm))
+
+        return rested, moved
+
+
+@dataclass(frozen=True, slots=True)
+class LeadRun:
+    """The lead line to a path: positions (n, 2) mm, the last at rest on the path, and where that is; those
+    for the drawn marks, and guide lines.
+    """
+
+    xy_mm: Array
+    place: PathPlace
+    at: dict[float, float]
+    guides: list[GuideLine]
+
+
+@dataclass(frozen=True, slots=True)
+class Detour:
+    """A guide line off a path: the path's position where it leaves, positions (n, 2) mm, the drawn tip, and
+    which stand for the drawn ones.
+    """
+
+    leave: int
+    xy_mm: Array
+    tip: float
+    at: dict[float, float]
+
+
+@dataclass(slots=True)
+class PathRun:
+    """A path as it is run from one of its places on: positions (n, 2) mm, and for positions of the drawn line
+    those that stand for them.
+    """
+
+    xy_mm: Array
+    path_mm: Array
+    begin_mm: float  # along the path
+    at: dict[float, float] = field(default_factory=dict)
+    guides: list[GuideLine] = field(default_factory=list)
+
+    @classmethod
+    def along(cls, path_mm: Array, begin: float, feed: FeedRate) -> PathRun:
+        """Run a path; a closed one from and to a place between its points."""
+        points = path_mm
+        if begin > 0:
+            k, place = int(begin), at_places(path_mm, np.array([begin]))
+            points = np.vstack([place, path_mm[k + 1 :], path_mm[1 : k + 1], place])
+        begin_mm = np.interp(begin, np.arange(len(path_mm)), lengths_mm(path_mm))
+        return cls(feed.run(points), path_mm, float(begin_mm))
+
+    def position(self, place: PathPlace) -> float:
+        """Which position is at a place of the path, fractions included, before any guide line is put in."""
+        along = lengths_mm(self.path_mm)
+        mm = float(np.interp(place.at, np.arange(len(along)), along)) - self.begin_mm
+        mm = mm if mm >= 0 else mm + along[-1]
+        return position_at(self.xy_mm, mm / along[-1] * length_mm(self.xy_mm))
+
+    def put_in(self, detours: list[Detour]) -> None:
+        """Leave the path for guide lines, and come back to it."""
+        for detour in sorted(detours, key=lambda detour: -detour.leave):
+            leave, shift = detour.leave, len(detour.xy_mm) + 1
+            self.at = {drawn: at + shift * (at > leave) for drawn, at in self.at.items()}
+            self.guides = [shifted(guide, shift) for guide in self.guides]
+            before, after = self.xy_mm[: leave + 1], self.xy_mm[leave:]
+            self.xy_mm = np.vstack([before, detour.xy_mm, after])
+            self.at |= {drawn: at + leave + 1 for drawn, at in detour.at.items()}
+            tip = round(self.at[detour.tip])
+            self.guides.insert(0, GuideLine(leave, tip, leave + shift))
+
+    def put_after(self, lead: LeadRun) -> None:
+        """Come to the path by a lead line."""
+        shift = len(lead.xy_mm)
+        self.at = {**lead.at, **{drawn: at + shift for drawn, at in self.at.items()}}
+        self.guides = [shifted(guide, shift) for guide in self.guides]
+        self.xy_mm = np.vstack([lead.xy_mm, self.xy_mm])
+
+
+def shifted(guide: GuideLine, positions: int) -> GuideLine:
+    """A guide line so many positions later."""
+    return GuideLine(guide.leave + positions, guide.tip + positions, guide.back + positions)
+
+
+def position_at(xy_mm: Array, mm: float) -> float:
+    """Which position of a run has come this far, fractions included."""
+    lengths = lengths_mm(xy_mm)
+    moving = np.flatnonzero(np.r_[True, np.diff(lengths) > 0])
+    return float(np.interp(mm, lengths[moving], moving))
