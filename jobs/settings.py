@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Literal
 from morfax.jobs.wrong_use import WrongUse, settings_checked
 
 if TYPE_CHECKING:
-    from morfax.tracer.cutter.cutter import Cutter, Side
+    from morfax.tracer.cutter.cutter import Cutter, CutterSide
     from morfax.tracer.drawing.drawing import Drawing
     from morfax.tracer.following.direction import Direction
     from morfax.tracer.head.settings import Settings
@@ -77,7 +77,7 @@ class ToolSettings:
     depth_mm: float | None = None
     clearance_mm: float | None = None
     cutter_mm: float | None = None  # diameter; None: the tool runs on the line
-    side: Side = "outside"
+    side: CutterSide = "outside"
 
     def cutter(self) -> Cutter | None:
         """The cutter, if there is one."""
