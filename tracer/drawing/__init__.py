@@ -1,1 +1,5 @@
-"""TODO: what lives in this room, and its door."""
+"""The drawing on its table: an image file becomes darkness on a sheet in mm, strokes, shapes and a noise model.
+
+It asks `motion` only. `sensing` sees the sheet through cells; `following` and `program` ask which strokes there
+are; `deviation` measures a path against the ink without the head.
+"""

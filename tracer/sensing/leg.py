@@ -1,11 +1,11 @@
-"""Legs: clean stretches of line, as parabolas through what was felt of them.
+"""Legs: clean stretches of line, as parabolas through the stations that were felt on them.
 
 Signals: stations of the line (n, 3: centre x, y and width, mm) in; place, heading (rad) and bend (1/mm) of
 the line out, and where two legs meet.
 
     place(s) = end + s·t + bend/2·s²·n          t, n: along and across the heading at the leg's clean end
 
-Source: our own (see `knot`).
+Source: our own (see `rings`).
 """
 
 from __future__ import annotations
@@ -18,23 +18,27 @@ from numba import njit
 
 from morfax.motion.arrays import Array
 
-STRAIGHT = math.radians(40)  # straight on is within this
-TURNS_OFF = math.radians(20)  # a leg turns off to a side by more than this
-
-
-Meeting = tuple[
-    float, float
-]  # how far two legs meet beyond the one's clean end and before the other's, mm
-
+# straight on is within this, and a leg turns off to a side by more than that
+STRAIGHT, TURNS_OFF = math.radians(40), math.radians(20)
 FARTHEST_MM = 10.0  # legs that meet further away do not meet
-
+NEARLY_PARALLEL = 0.02  # sine of the angle between two legs that do not meet
 BITTEN = 0.06  # of the width: more than a scan's noise
+ROBUST = 1.4826  # standard deviations to a median absolute deviation of normal noise
+OUTLIERS = 3.0  # standard deviations: what is further off is left out
+LEAST_OFF_MM = 0.001  # of a station: nearer ones stay in
+FEWEST = 8  # stations: a parabola through fewer follows their noise
+# standard errors: neighbouring stations share their ink, so that a bend has to stand out further than three
+BEND_STANDS_OUT = 5.0
+
+# how far two legs meet beyond the one's clean end and before the other's, mm
+Meeting = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)
 class Leg:
-    """A clean stretch of line at a knot: `end_mm` is its clean end, the heading there and the bend are along
-    the travel.
+    """A clean stretch of line at a junction, with its stations `seen`.
+
+    `end_mm` is its clean end; the heading there and the bend are along the travel.
     """
 
     end_mm: Array
@@ -47,13 +51,13 @@ class Leg:
         """Places (…, 2) at distances from the clean end along the travel (negative: before it)."""
         s = np.asarray(along_mm, float)[..., None]
         t = np.array([math.cos(self.heading_rad), math.sin(self.heading_rad)])
-        return self.end_mm + s * t + 0.5 * self.bend_per_mm * s * s * np.array([-t[1], t[0]])
+        n = np.array([-t[1], t[0]])
+        return self.end_mm + s * t + 0.5 * self.bend_per_mm * s * s * n
 
     def shifted(self, along_mm: float, seen: Array) -> Leg:
-        """The same line from a place further along it, with what was felt from there."""
-        return Leg(
-            self.at(along_mm), self.heading_at(along_mm), self.bend_per_mm, self.width_mm, seen
-        )
+        """The same line from a place further along it, with the stations that were felt from there."""
+        heading = self.heading_at(along_mm)
+        return Leg(self.at(along_mm), heading, self.bend_per_mm, self.width_mm, seen)
 
     def turned_round(self) -> Leg:
         """The same leg, to go back along it."""
@@ -65,11 +69,13 @@ class Leg:
         return self.heading_rad + math.atan(self.bend_per_mm * along_mm)
 
 
-def leg_of(seen: Array, last: bool, length_mm: float) -> Leg:
-    """Fit a leg to what was felt, (n, 3) in the order of travel; its clean end is towards the `last` station,
-    or else the first.
+# fitting
 
-    As long a stretch is taken as one parabola fits about as well as the nearest part of it.
+
+def leg_of(seen: Array, last: bool, length_mm: float) -> Leg:
+    """Fit a leg to stations (n, 3) in the order of travel; its clean end is at the `last` or the first one.
+
+    The leg takes in as long a stretch as one parabola fits about as well as it fits the nearest part.
     """
     seen = _without_blot(seen, last)
     end = seen[-1] if last else seen[0]
@@ -77,21 +83,19 @@ def leg_of(seen: Array, last: bool, length_mm: float) -> Leg:
     best, limit = _leg(seen[away <= 0.5 * length_mm], end, seen)
     for share in (0.75, 1.0):
         leg, misfit = _leg(seen[away <= share * length_mm], end, seen)
-        if misfit > 1.3 * limit + 0.001:
+        if misfit > 1.3 * limit + LEAST_OFF_MM:
             break
         best, limit = leg, misfit
     return best
 
 
 def _without_blot(seen: Array, last: bool) -> Array:
-    """The stations without those next to the knot whose width shows a little of its ink already: a third of
-    them at most.
-    """
+    """The stations without those next to the junction whose width shows its ink: a third at most."""
     widths = seen[::-1, 2] if last else seen[:, 2]
     usual = float(np.median(widths))
-    spread = 1.4826 * float(np.median(np.abs(widths - usual)))
+    spread = ROBUST * float(np.median(np.abs(widths - usual)))
     most = len(seen) // 3
-    clean = np.abs(widths[: most + 1] - usual) < max(3 * spread, 0.03 * usual)
+    clean = np.abs(widths[: most + 1] - usual) < max(OUTLIERS * spread, 0.03 * usual)
     first = int(np.argmax(clean)) if clean.any() else most
     first = min(first + 1, most)
     return seen[: len(seen) - first] if last else seen[first:]
@@ -99,48 +103,53 @@ def _without_blot(seen: Array, last: bool) -> Array:
 
 def _leg(near: Array, end: Array, seen: Array) -> tuple[Leg, float]:
     """The leg through some stations, and their root mean square distance from it, mm."""
-    chord = near[-1, :2] - near[0, :2]
-    heading = math.atan2(chord[1], chord[0])
-    t = np.array([math.cos(heading), math.sin(heading)])
-    n = np.array([-t[1], t[0]])
+    heading, t, n = _chord(near[-1, :2] - near[0, :2])
     d = near[:, :2] - end[:2]
     (slope, offset, bend), misfit = _fit(d @ t, d @ n)
-    place, width = end[:2] + offset * n, float(np.median(near[:, 2]))
-    return Leg(
-        place, heading + math.atan(slope), bend / (1 + slope * slope) ** 1.5, width, seen
-    ), misfit
+    curvature = bend / (1 + slope * slope) ** 1.5
+    width = float(np.median(near[:, 2]))
+    leg = Leg(end[:2] + offset * n, heading + math.atan(slope), curvature, width, seen)
+    return leg, misfit
+
+
+def _chord(chord: Array) -> tuple[float, Array, Array]:
+    """Heading of a chord, and the unit vectors along it and to its left."""
+    heading = math.atan2(chord[1], chord[0])
+    t = np.array([math.cos(heading), math.sin(heading)])
+    return heading, t, np.array([-t[1], t[0]])
 
 
 @njit(cache=True)
 def _fit(x, y):  # type: ignore[no-untyped-def]
-    """(slope, offset, bend) at x = 0 of y(x), and the misfit; stations off by more than three times the usual
-    are left out.
+    """(slope, offset, bend) at x = 0 of y(x), and the misfit, without outliers.
 
-    Straight, unless a bend stands out fivefold of the uncertainty that independent stations would have:
-    neighbours share their ink.
+    The line is straight unless its bend stands out from the uncertainty of independent stations.
     """
-    degree = 2 if len(x) >= 8 else min(1, len(x) - 1)
+    degree = 2 if len(x) >= FEWEST else min(1, len(x) - 1)
     found, unsure = _parabola(x, y, np.ones(len(x)), degree)
+    # 1. without outliers
     for _ in range(2):
         away = np.abs(y - found[0] - found[1] * x - found[2] * x * x)
-        good = away <= 3 * max(1.4826 * np.median(away), 0.001)
-        if good.all() or good.sum() < 8:
+        good = away <= OUTLIERS * max(ROBUST * np.median(away), LEAST_OFF_MM)
+        if good.all() or good.sum() < FEWEST:
             break
         x, y = x[good], y[good]
         found, unsure = _parabola(x, y, np.ones(len(x)), degree)
+    # 2. straight, if it may be
     rest = y - found[0] - found[1] * x - found[2] * x * x
-    if degree == 2 and abs(found[2]) < 5 * unsure * math.sqrt(
-        max(np.sum(rest * rest) / (len(x) - 3), 1e-7)
-    ):
-        found, _ = _parabola(x, y, np.ones(len(x)), 1)
-        rest = y - found[0] - found[1] * x
+    if degree == 2:
+        noise = math.sqrt(max(np.sum(rest * rest) / (len(x) - 3), 1e-7))
+        if abs(found[2]) < BEND_STANDS_OUT * unsure * noise:
+            found, _ = _parabola(x, y, np.ones(len(x)), 1)
+            rest = y - found[0] - found[1] * x
     return (found[1], found[0], 2 * found[2]), math.sqrt(np.mean(rest * rest))
 
 
 @njit(cache=True)
 def _parabola(x, y, weights, degree):  # type: ignore[no-untyped-def]
-    """Coefficients of 1, x, x² of the weighted parabola (or straight line, or mean), and the last one's
-    uncertainty per unit of noise in y.
+    """Coefficients of 1, x, x² of the weighted parabola, straight line or mean, by its degree.
+
+    And the uncertainty of the last coefficient per unit of noise in y.
     """
     n = degree + 1
     sums, right = np.zeros((n, n)), np.zeros(n)
@@ -156,29 +165,25 @@ def _parabola(x, y, weights, degree):  # type: ignore[no-untyped-def]
 
 
 def centre_at(seen: Array, i: int, half_mm: float) -> Leg:
-    """The line about station i of what was felt: the parabola through the stations within `half_mm`, weighted
-    towards the middle.
+    """The line about station i: the parabola through the stations within `half_mm`, weighted to the middle.
 
-    A station whose width differs is spoiled by a speck on one edge: it counts the less.
+    A station whose width differs is spoiled by a speck on one edge, and counts less.
     """
     d = seen[:, :2] - seen[i, :2]
     near = np.flatnonzero(np.hypot(*d.T) < half_mm)
-    chord = d[near[-1]] - d[near[0]]
-    heading = math.atan2(chord[1], chord[0])
-    t = np.array([math.cos(heading), math.sin(heading)])
-    n = np.array([-t[1], t[0]])
+    heading, t, n = _chord(d[near[-1]] - d[near[0]])
     x, y = d[near] @ t, d[near] @ n
-    off = np.abs(seen[near, 2] / np.median(seen[near, 2]) - 1)
-    usual = max(3 * 1.4826 * float(np.median(off)), BITTEN)
+    width = float(np.median(seen[near, 2]))
+    off = np.abs(seen[near, 2] / width - 1)
+    usual = max(OUTLIERS * ROBUST * float(np.median(off)), BITTEN)
     weights = np.maximum(1 - (x / half_mm) ** 2, 0.05) / (1 + (off / usual) ** 4)
     offset, slope, bend = _parabola(x, y, weights, 2)[0]
-    return Leg(
-        seen[i, :2] + offset * n,
-        heading + math.atan(slope),
-        2 * bend / (1 + slope * slope) ** 1.5,
-        float(np.median(seen[near, 2])),
-        seen[i:],
-    )
+    curvature = 2 * bend / (1 + slope * slope) ** 1.5
+    place = seen[i, :2] + offset * n
+    return Leg(place, heading + math.atan(slope), curvature, width, seen[i:])
+
+
+# two legs
 
 
 def turn(a: float, b: float) -> float:
@@ -187,14 +192,12 @@ def turn(a: float, b: float) -> float:
 
 
 def meet(incoming: Leg, outgoing: Leg) -> Meeting | None:
-    """Distances (beyond the incoming leg's end, before the outgoing leg's end) where their lines cross, mm;
-    None if they do not.
-    """
+    """Distances (beyond the incoming leg's end, before the outgoing leg's) where they cross, mm, or None."""
     s = u = 0.0
     for _ in range(6):
         a, b = incoming.heading_at(s), outgoing.heading_at(-u)
         cross = math.sin(turn(a, b))
-        if abs(cross) < 0.02:
+        if abs(cross) < NEARLY_PARALLEL:
             return None
         gap = outgoing.at(-u) - incoming.at(s)
         ds = (gap[0] * math.sin(b) - gap[1] * math.cos(b)) / cross
@@ -212,7 +215,6 @@ def turns_off(incoming: Leg, leg: Leg) -> bool:
 
 def goes_straight(incoming: Leg, outgoing: Leg | None) -> bool:
     """Whether a leg goes on straight from another."""
-    return (
-        outgoing is not None
-        and abs(turn(incoming.heading_rad, outgoing.heading_rad)) < STRAIGHT
-    )
+    if outgoing is None:
+        return False
+    return abs(turn(incoming.heading_rad, outgoing.heading_rad)) < STRAIGHT

@@ -9,9 +9,9 @@ and whose mean tells that the line is there:
     mean  = 1/N · sum D(u)                  falls when the line goes
 
                       D     ___________
-                           /           \\           amplitude 0.6 of the line's width: the ends of the sweep stand
-                      ____/             \\____      just outside the edges, where the current changes most
-                         |<-- sweep --->|
+                           /           \\        amplitude 0.6 of the line's width: the ends of the sweep
+                      ____/             \\____   stand just outside the edges, where the current changes
+                         |<-- sweep --->|         most
 
 Source: patent ES 361967, figure 1: cell 101 on mount 42, eccentric pin 48, synchronous motor 45, amplifier
 FSA; cell 102. Questions: the patent gives no aperture. Chosen: a spot of Gaussian weight as wide as a disc of
@@ -84,8 +84,7 @@ def sweep(cells, place, heading, swing_mm, samples):  # type: ignore[no-untyped-
 
 @njit(cache=True)
 def ring(cells, centre, radius_mm):  # type: ignore[no-untyped-def]
-    """Dark arcs that a cell sees going once round a centre: (n, 2) angles where each begins and ends (end >
-    begin), rad.
+    """Dark arcs that a cell sees going once round a centre: (n, 2) rad, begin and end (end > begin).
 
     A ring that is dark all round is one arc of a whole turn.
     """

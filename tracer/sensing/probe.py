@@ -1,4 +1,11 @@
-"""TODO."""
+"""Probes: how far ink goes on from a leg, whether a stroke ends there, and how many strokes leave a place.
+
+Signals: a view, and a leg or a place in sheet mm, in; distances in mm, counts and arcs in rad out.
+
+A speck of paper on a stroke is not the stroke's end, and a speck of ink is not a stroke.
+
+Source: our own.
+"""
 
 from __future__ import annotations
 
@@ -12,17 +19,22 @@ from morfax.tracer.sensing.photocell import STEP_PX
 from morfax.tracer.sensing.ray import Ray, end_of_ink
 from morfax.tracer.sensing.view import View
 
-SPOKE = np.linspace(0.2, 1.0, 17)
-BESIDE = np.array([0.0, -0.25, 0.25])  # widths
+SPOKE = np.linspace(
+    0.2, 1.0, 17
+)  # of the way from a place to a stroke: where it has to be inked
+BESIDE = np.array([0.0, -0.25, 0.25])  # widths: a way in the middle and one on each side of it
 PAPER = 0.6  # of the level: lighter is paper for certain
 SPECK_PX = 4.0  # a speck of two pixels of paper, seen through an aperture
 SPECK_WIDTHS = 0.4  # ink narrower than this is no stroke
+TIP_WIDTHS, TIP_PX = 1.2, 5.0  # radius of the ring that tells a tip: outside the pen's round
+END_WIDTHS, END_MM = 6.0, 2.0  # beyond a leg's clean end the pen is sought this far
 
 
 def reach_of_ink(
     view: View, incoming: Leg, farthest_mm: float, aside_mm: float = 0.0
 ) -> float | None:
-    """How far the ink goes on from the incoming leg's end along its line, or beside it (left positive), mm;
+    """How far the ink goes on from a leg's end along its line, or beside it (left positive), mm.
+
     None if farther than asked.
     """
     step = STEP_PX * view.pitch_mm
@@ -39,11 +51,10 @@ def reach_of_ink(
 
 
 def stroke_end(view: View, leg: Leg, farthest_mm: float) -> float | None:
-    """How far the ink of a stroke goes on from a leg's end, mm, if the stroke ends there: no ink leaves its
-    tip but the stroke's own; None if not.
+    """How far a stroke goes on from a leg's end, mm, if it ends there; None if other ink leaves its tip.
 
-    It is felt as far as it is clean, round its bends, and only from there on looked for ahead. A speck of
-    paper on the stroke is not its end: beside its middle the ink goes on.
+    The stroke is felt as far as it is clean, round its bends; from there on its end is looked for straight
+    ahead. A speck of paper on the stroke is not its end: beside the speck the ink goes on.
     """
     seen, come_mm = view.feel(leg.end_mm, leg.heading_rad, farthest_mm), 0.0
     if len(seen) > len(leg.seen):
@@ -58,12 +69,12 @@ def stroke_end(view: View, leg: Leg, farthest_mm: float) -> float | None:
 
 
 def _inks(view: View, leg: Leg, farthest_mm: float) -> list[float]:
-    """How far the ink of a stroke may go on from a leg's end, mm: along its middle, beside that, and past a
-    speck of paper; none if farther.
+    """How far the ink of a stroke may go on from a leg's end, mm; empty if farther than asked.
+
+    Along its middle, beside the middle, and past a speck of paper.
     """
     middle, *beside = (
-        reach_of_ink(view, leg, farthest_mm, share * view.width_mm)
-        for share in (0.0, -0.25, 0.25)
+        reach_of_ink(view, leg, farthest_mm, share * view.width_mm) for share in BESIDE
     )
     if middle is None:
         return []
@@ -76,46 +87,46 @@ def _inks(view: View, leg: Leg, farthest_mm: float) -> list[float]:
 
 
 def is_tip(view: View, place: Array) -> bool:
-    """Whether a place half a width within the end of ink is the tip of a single stroke; what it does not
-    touch is no matter.
+    """Whether a place half a width within the end of ink is the tip of a single stroke.
+
+    Ink that does not touch the tip does not matter.
     """
-    return lines_from(view, place, max(1.2 * view.width_mm, 5 * view.pitch_mm)) == 1
+    radius_mm = max(TIP_WIDTHS * view.width_mm, TIP_PX * view.pitch_mm)
+    return lines_from(view, place, radius_mm) == 1
 
 
 def lines_from(view: View, centre: Array, radius_mm: float) -> int:
-    """How many strokes leave a place by ink, of those that a ring of cells sees about it; specks are none.
+    """How many strokes leave a place by ink, of those that a ring of cells sees about it.
 
-    Paper on the way to a stroke is lighter than where the way grazes an edge; a speck of it is not on all of
-    the ways side by side.
+    Paper on the way to a stroke is lighter than where the way grazes an edge. A speck of paper does not lie
+    on all of the ways side by side.
     """
     lighter = view.at_level(PAPER * view.level)
     joined = 0
     for heading in strokes_on(view, centre, radius_mm).mean(axis=1):
         way = np.array([math.cos(heading), math.sin(heading)])
         beside = np.outer(BESIDE * view.width_mm, [-way[1], way[0]])
-        joined += any(
-            all(lighter.dark(centre + off + share * radius_mm * way) for share in SPOKE)
-            for off in beside
-        )
+        spokes = centre + beside[:, None] + radius_mm * SPOKE[:, None] * way
+        joined += any(all(lighter.dark(place) for place in spoke) for spoke in spokes)
     return joined
 
 
 def lines_on(view: View, centre: Array, radius_mm: float) -> int:
-    """How many strokes a ring of cells sees about a place; specks are none."""
+    """How many strokes a ring of cells sees about a place; specks do not count."""
     return len(strokes_on(view, centre, radius_mm))
 
 
 def strokes_on(view: View, centre: Array, radius_mm: float) -> Array:
-    """The arcs that a ring sees which are no specks, (n, 2) rad."""
+    """The arcs that a ring sees, (n, 2) rad, without specks."""
     arcs = view.ring(centre, radius_mm)
-    return np.asarray(
-        arcs[(arcs[:, 1] - arcs[:, 0]) * radius_mm > SPECK_WIDTHS * view.width_mm]
-    )
+    lengths_mm = (arcs[:, 1] - arcs[:, 0]) * radius_mm
+    return np.asarray(arcs[lengths_mm > SPECK_WIDTHS * view.width_mm])
 
 
 def end_of(view: View, incoming: Leg) -> float | None:
-    """How far beyond a leg's clean end the pen was lifted, mm: half a width within the end of the ink; None
-    if the ink goes on.
+    """How far beyond a leg's clean end the pen was lifted, mm; None if the ink goes on.
+
+    The pen was lifted half a width within the end of the ink.
     """
-    ink = reach_of_ink(view, incoming, 6 * view.width_mm + 2.0)
+    ink = reach_of_ink(view, incoming, END_WIDTHS * view.width_mm + END_MM)
     return None if ink is None else ink - 0.5 * incoming.width_mm

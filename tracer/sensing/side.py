@@ -1,4 +1,4 @@
-"""TODO."""
+"""The two sides of a line: left and right, seen along the travel."""
 
 from __future__ import annotations
 
