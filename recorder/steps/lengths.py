@@ -22,6 +22,9 @@ tolerance"). Questions: the patent leaves the way to the programmer. Widths of 8
 
 from __future__ import annotations
 
+from itertools import product
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -31,15 +34,33 @@ from morfax.recorder.steps.rings import LARGEST, commands
 
 Steps = NDArray[np.int64]
 
-WIDTH = 16
+WIDTH = 16  # courses of the beam; from 8 on hardly any better (see Questions)
 SPARE_LEVELS = 400  # intervals that a course may take beyond twice the leg's own time
-_SPEED, _TOO_FAST, _NO_VECTOR, _STANDING = 0.05, 1.0, 0.4, 0.5
+_SPEED, _TOO_FAST, _NO_VECTOR, _STANDING = 0.05, 1.0, 0.4, 0.5  # prices of a course, as above
 _SLOWEST = 0.7  # steps per interval: near a stop the speed goes to nothing, and a course must still arrive
-_PX, _NX, _AT = (
-    0,
-    3,
-    6,
-)  # columns of a course: place, steps in the interval, nearest place of the leg
+# columns of a course: place, steps in the interval, nearest place of the leg, the course it goes on from
+_PX, _NX, _AT, _FROM, _COLUMNS = 0, 3, 6, 7, 8
+
+
+class _Task(NamedTuple):
+    """A leg in steps: places, speeds, intervals left from each place, changes allowed, vector commands."""
+
+    places: Array
+    speeds: Array
+    left: Array
+    spacing: float
+    start: Steps
+    end: Steps
+    changes: Steps
+    table: NDArray[np.int8]
+
+
+class _Book(NamedTuple):
+    """What every course did in every interval: where it comes from, its steps, its distance off the path."""
+
+    parents: NDArray[np.int16]
+    taken: NDArray[np.int8]
+    off: NDArray[np.float32]
 
 
 def cut(
@@ -56,156 +77,168 @@ def cut(
         return np.zeros((0, 3), np.int64), np.zeros(0)
     own = spacing_steps / np.maximum((speeds[1:] + speeds[:-1]) / 2, _SLOWEST)
     left = np.r_[np.cumsum(own[::-1])[::-1], 0.0]  # intervals from each place to the end
-    levels = int(2 * left[0]) + SPARE_LEVELS
-    shape = (levels, WIDTH)
-    parents, taken = np.zeros(shape, np.int16), np.zeros((*shape, 3), np.int8)
-    off = np.zeros(shape, np.float32)
-    course = np.array([spacing_steps, WIDTH])
-    last, winner = _search(
-        np.ascontiguousarray(places_steps),
-        speeds,
-        left,
-        course,
-        start_steps,
-        end,
-        moves,
-        commands(),
-        parents,
-        taken,
-        off,
+    changes = np.array(
+        list(product(*((-1, 0, 1) if axis else (0,) for axis in moves))), np.int64
     )
+    places = np.ascontiguousarray(places_steps)
+    task = _Task(places, speeds, left, spacing_steps, start_steps, end, changes, commands())
+    shape = int(2 * left[0]) + SPARE_LEVELS, WIDTH
+    book = _Book(
+        np.zeros(shape, np.int16), np.zeros((*shape, 3), np.int8), np.zeros(shape, np.float32)
+    )
+    last, winner = _search(task, book)
     if last < 0:
         raise ValueError("no course of steps arrives at the end of the leg; run it slower")
-    return _traced_back(last, winner, parents, taken, off)
+    return _traced_back(last, winner, book)
 
 
-def _traced_back(
-    last: int,
-    winner: int,
-    parents: NDArray[np.int16],
-    taken: NDArray[np.int8],
-    off: NDArray[np.float32],
-) -> tuple[Steps, Array]:
+def _traced_back(last: int, winner: int, book: _Book) -> tuple[Steps, Array]:
     """The steps and distances of the winning course, from its start."""
     steps, distances = np.zeros((last + 1, 3), np.int64), np.zeros(last + 1)
     for level in range(last, -1, -1):
-        steps[level], distances[level] = taken[level, winner], off[level, winner]
-        winner = int(parents[level, winner])
+        steps[level], distances[level] = book.taken[level, winner], book.off[level, winner]
+        winner = int(book.parents[level, winner])
     return steps, distances
 
 
 @njit(cache=True)
-def _nearest(places, first, guess, x, y, z):  # type: ignore[no-untyped-def]
-    """The leg's place nearest to a point, searched downhill from a guess, and the squared distance."""
-    n = len(places)
-    at = min(max(guess, first), n - 1)
-    best = (places[at, 0] - x) ** 2 + (places[at, 1] - y) ** 2 + (places[at, 2] - z) ** 2
-    for way in (1, -1):
-        while first <= at + way < n:
-            p = places[at + way]
-            other = (p[0] - x) ** 2 + (p[1] - y) ** 2 + (p[2] - z) ** 2
-            if other >= best:
-                break
-            at, best = at + way, other
-    return at, best
+def _search(task, book):  # type: ignore[no-untyped-def]
+    """Carry the beam on until a course stands at the end; its last level and its row, or -1."""
+    places, speeds, left, spacing, start, end, changes, table = (
+        task  # once: a tuple is slow in a loop
+    )
+    parents, taken, off = book
+    width = off.shape[1]
+    beam, new = np.zeros((width, _COLUMNS), np.int64), np.zeros((width, _COLUMNS), np.int64)
+    costs, new_costs = np.zeros(width), np.zeros(width)
+    course = np.zeros(_COLUMNS, np.int64)
+    beam[0, :3] = start
+    count = 1
+    near = len(places) - 1 - int(1 / spacing)  # the end may lie half a step off the whole steps
+    for level in range(len(off)):
+        # 1. continue every course in all ways that the motors allow, and keep the best
+        new_count = 0
+        for b in range(count):
+            for k in range(len(changes)):
+                if not _continued(beam, b, changes, k, course):
+                    continue
+                first = beam[b, _AT]
+                at = _nearest(places, first, first + int(_way(course) / spacing), course)
+                course[_AT] = at
+                cost = costs[b] + _squared(places, at, course)
+                cost += _speed_price(course, (speeds[first] + speeds[at]) / 2)
+                cost += _STANDING * (1 - left[first] + left[at])
+                if not _is_vector(table, beam, b, course):
+                    cost += _NO_VECTOR
+                new_count = _keep(new, new_costs, new_count, course, cost)
+        # 2. take them down
+        count = new_count
+        for b in range(count):
+            beam[b], costs[b] = new[b], new_costs[b]
+            parents[level, b] = new[b, _FROM]
+            taken[level, b] = new[b, _NX:_AT]
+            off[level, b] = np.sqrt(_squared(places, new[b, _AT], new[b]))
+        # 3. stop where one has arrived
+        for b in range(count):
+            if beam[b, _AT] >= near and _arrived(beam, b, end):
+                return level, b
+    return -1, 0
 
 
 @njit(cache=True)
-def _keep(beam, costs, origin, count, course, cost, parent):  # type: ignore[no-untyped-def]
+def _continued(beam, b, changes, k, course):  # type: ignore[no-untyped-def]
+    """Set a course that goes on from course b by change k of its steps; False where it is too fast."""
+    for axis in range(3):
+        steps = beam[b, _NX + axis] + changes[k, axis]
+        if abs(steps) > LARGEST:
+            return False
+        course[_NX + axis] = steps
+        course[_PX + axis] = beam[b, _PX + axis] + steps
+    course[_FROM] = b
+    return True
+
+
+@njit(cache=True)
+def _speed_price(course, speed):  # type: ignore[no-untyped-def]
+    """The price of an interval that is not as long as the speed asks for."""
+    excess = _way(course) - max(speed, _SLOWEST)
+    return (_TOO_FAST if excess > 0.5 else _SPEED) * excess**2
+
+
+@njit(cache=True)
+def _is_vector(table, beam, b, course):  # type: ignore[no-untyped-def]
+    """Whether a vector command leads from course b to the steps of a course."""
+    if course[_NX + 2] != beam[b, _NX + 2]:
+        return False
+    x, y = beam[b, _NX], beam[b, _NX + 1]
+    to_x, to_y = course[_NX] - x + 1, course[_NX + 1] - y + 1
+    return table[x + LARGEST, y + LARGEST, to_x, to_y] >= 0
+
+
+@njit(cache=True)
+def _keep(beam, costs, count, course, cost):  # type: ignore[no-untyped-def]
     """Put a course among the best ones; of two at one place and speed the cheaper stays."""
     width = len(costs)
     if count == width and cost >= costs[width - 1]:
         return count
     at = count
     for i in range(count):
-        if beam[i, 0] == course[0] and beam[i, 1] == course[1] and beam[i, 2] == course[2]:
-            same = (
-                beam[i, 3] == course[3] and beam[i, 4] == course[4] and beam[i, 5] == course[5]
-            )
-            if same:
-                if costs[i] <= cost:
-                    return count
-                at = i
-                break
+        if _alike(beam, i, course):
+            if costs[i] <= cost:
+                return count
+            at = i
+            break
     if at == count:
-        if count < width:
-            count += 1
+        count = min(count + 1, width)
         at = count - 1
     while at > 0 and costs[at - 1] > cost:
-        beam[at], costs[at], origin[at] = beam[at - 1], costs[at - 1], origin[at - 1]
+        beam[at], costs[at] = beam[at - 1], costs[at - 1]
         at -= 1
-    beam[at], costs[at], origin[at] = course, cost, parent
+    beam[at], costs[at] = course, cost
     return count
 
 
 @njit(cache=True)
-def _search(places, speeds, left, settings, start, end, moves, table, parents, taken, off):  # type: ignore[no-untyped-def]
-    """Carry the beam on until a course stands at the end; its last level and its row, or -1."""
-    spacing, width = settings[0], int(settings[1])
-    beam, new = np.zeros((width, 7), np.int64), np.zeros((width, 7), np.int64)
-    costs, new_costs, origin = np.zeros(width), np.zeros(width), np.zeros(width, np.int64)
-    course = np.zeros(7, np.int64)
-    beam[0, :3] = start
-    count = 1
-    near = (
-        len(places) - 1 - int(1 / spacing)
-    )  # the end itself may lie up to half a step off the whole steps
-    low, high = np.where(moves, -1, 0), np.where(moves, 1, 0)
-    for level in range(len(parents)):
-        new_count = 0
-        for b in range(count):
-            for dx in range(low[0], high[0] + 1):
-                for dy in range(low[1], high[1] + 1):
-                    for dz in range(low[2], high[2] + 1):
-                        course[3], course[4], course[5] = (
-                            beam[b, 3] + dx,
-                            beam[b, 4] + dy,
-                            beam[b, 5] + dz,
-                        )
-                        if max(abs(course[3]), abs(course[4]), abs(course[5])) > LARGEST:
-                            continue
-                        for axis in range(3):
-                            course[axis] = beam[b, axis] + course[3 + axis]
-                        way = np.sqrt(course[3] ** 2 + course[4] ** 2 + course[5] ** 2)
-                        guess = beam[b, 6] + int(way / spacing)
-                        at, squared = _nearest(
-                            places, beam[b, 6], guess, course[0], course[1], course[2]
-                        )
-                        course[6] = at
-                        wanted = max((speeds[beam[b, 6]] + speeds[at]) / 2, _SLOWEST)
-                        excess = way - wanted
-                        cost = (
-                            costs[b]
-                            + squared
-                            + (_TOO_FAST if excess > 0.5 else _SPEED) * excess**2
-                        )
-                        cost += _STANDING * (1 - left[beam[b, 6]] + left[at])
-                        if (
-                            dz != 0
-                            or table[beam[b, 3] + LARGEST, beam[b, 4] + LARGEST, dx + 1, dy + 1]
-                            < 0
-                        ):
-                            cost += _NO_VECTOR
-                        new_count = _keep(
-                            new, new_costs[:width], origin, new_count, course, cost, b
-                        )
-        for b in range(new_count):
-            beam[b], costs[b] = new[b], new_costs[b]
-            parents[level, b] = origin[b]
-            taken[level, b] = new[b, 3:6]
-            p = places[new[b, 6]]
-            off[level, b] = np.sqrt(
-                (p[0] - new[b, 0]) ** 2 + (p[1] - new[b, 1]) ** 2 + (p[2] - new[b, 2]) ** 2
-            )
-        count = new_count
-        for b in range(count):
-            arrived = beam[b, 0] == end[0] and beam[b, 1] == end[1] and beam[b, 2] == end[2]
-            if (
-                arrived
-                and beam[b, 3] == 0
-                and beam[b, 4] == 0
-                and beam[b, 5] == 0
-                and beam[b, 6] >= near
-            ):
-                return level, b
-    return -1, 0
+def _alike(beam, i, course):  # type: ignore[no-untyped-def]
+    """Whether a course is at the place of course i with the same steps."""
+    for column in range(_AT):
+        if beam[i, column] != course[column]:
+            return False
+    return True
+
+
+@njit(cache=True)
+def _arrived(beam, b, end):  # type: ignore[no-untyped-def]
+    """Whether course b stands at the end of the leg."""
+    for axis in range(3):
+        if beam[b, _PX + axis] != end[axis] or beam[b, _NX + axis] != 0:
+            return False
+    return True
+
+
+@njit(cache=True)
+def _nearest(places, first, guess, course):  # type: ignore[no-untyped-def]
+    """The leg's place nearest to a course's, searched downhill from a guess and not before `first`."""
+    n = len(places)
+    at = min(max(guess, first), n - 1)
+    best = _squared(places, at, course)
+    for way in (1, -1):
+        while first <= at + way < n:
+            other = _squared(places, at + way, course)
+            if other >= best:
+                break
+            at, best = at + way, other
+    return at
+
+
+@njit(cache=True)
+def _squared(places, at, course):  # type: ignore[no-untyped-def]
+    """Squared distance of a course's place from a place of the leg, steps²."""
+    x, y, z = places[at, 0] - course[0], places[at, 1] - course[1], places[at, 2] - course[2]
+    return x**2 + y**2 + z**2
+
+
+@njit(cache=True)
+def _way(course):  # type: ignore[no-untyped-def]
+    """Length of a course's last interval, steps."""
+    return np.sqrt(course[_NX] ** 2 + course[_NX + 1] ** 2 + course[_NX + 2] ** 2)

@@ -259,7 +259,7 @@ def test_the_kernels_do_as_plain_python_what_they_do_compiled() -> None:
         places, speeds, leg.spacing_mm / STEP_MM, np.zeros(3, np.int64)
     )
     plain = pytest.MonkeyPatch()
-    for name in ("_search", "_keep", "_nearest"):
+    for name in ("_search", "_continued", "_speed_price", "_keep", "_arrived", "_nearest"):
         plain.setattr(lengths_module, name, getattr(lengths_module, name).py_func)
     again = lengths_module.cut(places, speeds, leg.spacing_mm / STEP_MM, np.zeros(3, np.int64))
     plain.undo()
