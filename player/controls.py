@@ -5,8 +5,7 @@ control is only imported when a program asks for it; each has the signature
 
     play_xxx(file, **by_hand) -> Playback
 
-A file of any other suffix is taken for a magnetic tape, whose control says what is wrong with it if it is
-none.
+A file of any other suffix is taken for a magnetic tape; its control says what is wrong with it.
 """
 
 from __future__ import annotations
@@ -25,8 +24,7 @@ from morfax.player.monitor.monitor import FollowingLimit, Monitor
 
 
 class Playback(Protocol):
-    """A program in its machine: iterate for the motion; the figures, one per axis, are those of the last time
-    through.
+    """A program in its machine: iterate for the motion; figures, one per axis, are those of the last run.
 
     `following_error_mm` is the largest, `end_mm` where the machine stands, `end_error_mm` the same against
     the end that the program states (None before the end, or if it states none). The `monitor` (Herbert's)
@@ -54,7 +52,7 @@ class Playback(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Control:
-    """A control: whose it is, and the function that plays a file on it."""
+    """A control: its description, and the function that plays a file on it."""
 
     what: str
     module: str
@@ -94,5 +92,5 @@ def control_of(file: str | os.PathLike[str]) -> Control:
 
 
 def play(file: str | os.PathLike[str], **by_hand: Any) -> Playback:
-    """Put a program in the machine under its own control; raises TapeFault (or ProgramFault) and FileFault."""
+    """Put a program in the machine under its own control; raises TapeFault, ProgramFault, FileFault."""
     return control_of(file).player()(file, **by_hand)

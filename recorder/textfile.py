@@ -134,15 +134,17 @@ class Lines:
             raise self.fault(f"{line[:_SHOWN]!r} must be '{_END} crc32' and eight digits")
         if line != stated:
             raise ProgramFault(
-                f"{self.file}: a character is wrong somewhere: the check sum is {words[2][:16]}, the lines give "
-                f"{self._total:08x}; copy it again, or {AGAIN}; if you have changed it, end it with 'end' alone"
+                f"{self.file}: a character is wrong somewhere: the check sum is {words[2][:16]}, "
+                "the lines give "
+                f"{self._total:08x}; copy it again, or {AGAIN}; if you have changed it, end it with "
+                "'end' alone"
             )
         self.summed = True
 
 
 def note_of_no_sum(file: str | os.PathLike[str]) -> str:
     """The note on a program file without a check sum."""
-    return f"{file} has no check sum: a digit that was changed by mistake would not be noticed; {AGAIN} to have one"
+    return f"{file} has no check sum: a digit changed by mistake would not be noticed; {AGAIN} to have one"
 
 
 def _added(total: int, line: str) -> int:

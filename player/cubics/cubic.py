@@ -3,7 +3,7 @@
 Signals: a `.cubic` file in; the machine's own motion out, one sample for each interpolated point.
 
     tape ─► interpolator 32 ─► predicted ─┐
-                                          ├─► difference 29 ─► register 34 ─► decoder 35 ─► servo 36 ─► motor 9
+                                          ├─► difference 29 ─► register 34 ─► decoder 35 ─► servo 36, motor 9
     scales ─► counters 18, 19 ─► present ─┘        counts  │   limited           × modulus    mm/s
                                                            └─► monitor
 
@@ -52,9 +52,7 @@ _TOLERANCE_MM = 0.005  # of following: a tenth of the lag at 10 mm/s
 
 @dataclass(frozen=True, slots=True)
 class Servo:
-    """Settings of the servo: modulus in mm/s per mm (None: the program's), lowest digits dropped, scales,
-    motor.
-    """
+    """Settings: modulus in mm/s per mm (None: the program's), lowest digits dropped, scales, motor."""
 
     modulus_per_s: float | None = None
     dropped_digits: int = 0
@@ -66,7 +64,7 @@ class Servo:
     def limit(
         self, modulus_per_s: float, counts_per_mm: float, point_rate_hz: float
     ) -> FollowingLimit:
-        """The following error that is allowed.
+        """The allowed following error.
 
         It is the lag of modulus, motor and one point, as the next one is predicted, and what scales and
         dropped digits add.
@@ -106,8 +104,10 @@ class CubicPlayback(Supervised):
         self.conditions = [SOUND] * len(AXES)
         if self._modulus_per_s * STEPS_PER_CONSTANT > self.format.point_rate_hz:
             raise ProgramFault(
-                f"{name}: a speed modulus of {self._modulus_per_s:g} per s is too much for {self.format.point_rate_hz:g} "
-                f"points per s; give at most {self.format.point_rate_hz / STEPS_PER_CONSTANT:g}, or record more points"
+                f"{name}: a speed modulus of {self._modulus_per_s:g} per s is too much for "
+                f"{self.format.point_rate_hz:g} "
+                f"points per s; give at most {self.format.point_rate_hz / STEPS_PER_CONSTANT:g}, or "
+                "record more points"
             )
         self._check(travel_mm)
         self.limit = servo.limit(
@@ -117,7 +117,7 @@ class CubicPlayback(Supervised):
 
     @property
     def duration_s(self) -> float:
-        """How long the machine runs, s: the program, and its lag run off."""
+        """Running time of the machine, s: the program, and the time in which the lag runs off."""
         return (
             len(self.program.words) * self.format.interval_s
             + self._settling_points / self.format.point_rate_hz
@@ -128,9 +128,7 @@ class CubicPlayback(Supervised):
         return math.ceil(_SETTLING / self._modulus_per_s * self.format.point_rate_hz)
 
     def __iter__(self) -> Iterator[Motion]:
-        """Play: the machine's motion in blocks; raises LockFault or FollowingFault after the last sample that
-        was right.
-        """
+        """Play: the motion in blocks; raises LockFault or FollowingFault after the last good sample."""
         fmt, start = self.format, np.array(self.program.checks[0], np.int64)
         state = np.zeros((len(AXES), 2))
         state[:, 0] = self.start_mm
@@ -169,7 +167,7 @@ class CubicPlayback(Supervised):
     def _follow(
         self, predicted: NDArray[np.int64], state: Array, noise: np.random.Generator
     ) -> tuple[Array, Array]:
-        """Places of the machine in mm after each point, and as its scales had them before, in counts.
+        """Places in mm after each point, and the places in counts that the scales gave before it.
 
         Fewer rows where a difference was too large for its register.
         """
@@ -213,14 +211,15 @@ class CubicPlayback(Supervised):
         )
 
     def _out_of_range(self, predicted: NDArray[np.int64], row: int) -> LockFault:
-        """The fault of a difference that register 34 cannot hold."""
+        """The fault of a difference beyond register 34."""
         error_mm = predicted / self.format.counts_per_mm - self.end_mm
         axis = int(np.argmax(np.abs(error_mm)))
         allowed_mm = 2**self.servo.register_digits / self.format.counts_per_mm
         time_s, position_mm = row / self.format.point_rate_hz, float(self.end_mm[axis])
         return LockFault(
             f"the drive of {AXES[axis].upper()} lags {error_mm[axis]:+.3f} mm at {time_s:.3f} s, position "
-            f"{position_mm:.3f} mm; allowed ±{allowed_mm:g} mm: take a larger speed modulus, or record it slower",
+            f"{position_mm:.3f} mm; allowed ±{allowed_mm:g} mm: take a larger speed modulus, or "
+            "record it slower",
             axis=AXES[axis],
             time_s=time_s,
             error_cycles=float(error_mm[axis]) * self.format.counts_per_mm,
@@ -228,7 +227,7 @@ class CubicPlayback(Supervised):
         )
 
     def _check(self, travel_mm: float) -> None:
-        """Raise ProgramFault for words that lead out of the travel, past a checked place, or round a corner."""
+        """Raise ProgramFault for words that leave the travel, miss a checked place, or turn a corner."""
         fmt, words = self.format, self.program.words
         digits = fmt.digits
         reach = np.abs(words.astype(np.float64)) @ float(fmt.points) ** np.arange(1, 4)
@@ -252,7 +251,7 @@ class CubicPlayback(Supervised):
         self._check_slopes(*slopes(words, fmt.points, fmt.linear))
 
     def _check_travel(self, places: NDArray[np.int64], travel_mm: float) -> None:
-        """Raise ProgramFault where a sample lies out of the travel."""
+        """Raise ProgramFault for a sample outside the travel."""
         places_mm = np.abs(places / 2.0**self.format.digits / self.format.counts_per_mm)
         out = np.flatnonzero((places_mm > travel_mm).any(axis=1))
         if len(out):
@@ -261,7 +260,7 @@ class CubicPlayback(Supervised):
             raise self._fault(int(out[0]) - 1, f"{gone}; the machine has ±{travel_mm:g} mm")
 
     def _check_slopes(self, start: NDArray[np.int64], end: NDArray[np.int64]) -> None:
-        """Raise ProgramFault where the slope jumps: between intervals, at the start, or at the end."""
+        """Raise ProgramFault for a jump of the slope: between intervals, at the start, or at the end."""
         stop = np.zeros((1, start.shape[1]), np.int64)
         bad = np.flatnonzero((np.vstack([stop, end]) != np.vstack([start, stop])).any(axis=1))
         if len(bad):
@@ -271,7 +270,7 @@ class CubicPlayback(Supervised):
             )
 
     def _fault(self, interval: int, what: str) -> ProgramFault:
-        """A fault at an interval, with its line where there is a file."""
+        """A fault at an interval, with the line of the file if there is one."""
         lines = self.program.lines
         line = lines[min(max(interval, 0), len(lines) - 1)] if lines else None
         place = "" if line is None else f", line {line}"
@@ -282,7 +281,7 @@ class CubicPlayback(Supervised):
 
 @njit(cache=True)
 def _servo(predicted, noise, scales, register, drive, conditions, state, seen, moved_mm):  # type: ignore[no-untyped-def]
-    """Run the servos of all axes through a block; the number of rows done before a difference was too large."""
+    """Run the servos of all axes through a block; the rows done before a difference was too large."""
     counts_per_mm, largest, dropped = register
     modulus, gain, change, dt_s = drive
     for row in range(len(predicted)):

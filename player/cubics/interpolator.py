@@ -33,9 +33,7 @@ Words = NDArray[np.int64]
 
 @dataclass(frozen=True, slots=True)
 class TimeBase:
-    """The common time base 14: fast pulses and the dividers that all else is clocked by (figure 3's own
-    figures).
-    """
+    """The common time base 14: fast pulses and their dividers (figure 3's own figures)."""
 
     fast_hz: float = 3500.0
     word_digits: int = 16  # divider 56, n
@@ -81,7 +79,7 @@ class TimeBase:
 
 
 class Interpolator:
-    """The interpolators of all axes; what is in register I is carried from block to block."""
+    """The interpolators of all axes; register I is carried from block to block."""
 
     def __init__(self, start: Words, points: int, linear: int = 1) -> None:
         self._points, self._linear = points, linear
@@ -108,12 +106,12 @@ class Interpolator:
         return out
 
     def counts(self, registers: Words) -> Words:
-        """What register I says in whole counts, rounded."""
+        """The contents of register I in whole counts, rounded."""
         return np.asarray((registers + (1 << self._digits >> 1)) >> self._digits)
 
     @property
     def at(self) -> Words:
-        """Where the interpolators have come to, whole counts."""
+        """The present place of the interpolators, whole counts."""
         return self.counts(self._first)
 
 
@@ -132,8 +130,7 @@ def table(
 def truncated_end(
     start: int, words: tuple[int, int, int], steps: int, digits: tuple[int, int, int, int]
 ) -> float:
-    """Where an interval ends, in counts, if the registers have so many digits and what is below is dropped on
-    the way.
+    """End of an interval, in counts, in registers of these digits; lower digits are dropped on the way.
 
     The words are given with 3 log2(steps) digits, as ever.
     """
@@ -149,9 +146,7 @@ def truncated_end(
 
 
 def ends(words: Words, points: int, linear: int = 1) -> Words:
-    """How far each interval takes register I (k, axes), by the closed form: p A + p(p-1)/2 A² + p(p-1)(p-2)/6
-    A³.
-    """
+    """Travel of register I in each interval (k, axes): p A + p(p-1)/2 A² + p(p-1)(p-2)/6 A³."""
     n = points // linear
     first, second, third = words[..., 0], words[..., 1], words[..., 2]
     return np.asarray(
@@ -172,7 +167,7 @@ def slopes(words: Words, points: int, linear: int = 1) -> tuple[Words, Words]:
 
 
 def _moved(word: int, digits: int, to_digits: int) -> int:
-    """A word with other digits behind the point; what is below is dropped."""
+    """A word with other digits behind the point; lower digits are dropped."""
     return word << to_digits - digits if to_digits >= digits else word >> digits - to_digits
 
 

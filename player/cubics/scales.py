@@ -33,9 +33,7 @@ Codes = NDArray[np.int64]
 
 @dataclass(frozen=True, slots=True)
 class Scales:
-    """Settings of a two-scale measurement: lag and misalignment in coarse digits, noise as the largest either
-    way.
-    """
+    """Two-scale measurement: lag and misalignment in coarse digits, noise (largest either way)."""
 
     pitch_counts: int = 4096
     lag_digits: float = RIGHT_LAG
@@ -51,11 +49,11 @@ class Scales:
 
     @property
     def late_digits(self) -> float:
-        """How late the coarse scale really is."""
+        """The lag of the coarse scale with its misalignment, coarse digits."""
         return self.lag_digits + self.misaligned_digits
 
     def table(self) -> NDArray[np.float64]:
-        """What the kernel needs."""
+        """The settings as the kernel takes them."""
         return np.array(
             [
                 self.pitch_counts,
@@ -69,7 +67,7 @@ class Scales:
 def read_scales(
     position_counts: NDArray[np.float64], scales: Scales, seed: int = 0
 ) -> tuple[Codes, Codes]:
-    """Fine and coarse counts at positions; the noise is the same for the same seed."""
+    """Fine and coarse counts at positions, for claims 3 and 4; the same seed gives the same noise."""
     noise = np.random.default_rng(seed).uniform(-1, 1, (2, len(position_counts)))
     half = scales.pitch_counts / 2
     fine = (
@@ -83,15 +81,13 @@ def read_scales(
 
 
 def gated_pulses(phase_cycles: float, base: TimeBase) -> int:
-    """Fast pulses that pass a gate which a resolver's phase holds open: the count of its place within the
-    pitch.
-    """
+    """Fast pulses through a gate that a resolver's phase holds open, for claim 5: the place in the pitch."""
     open_s = phase_cycles % 1.0 / base.carrier_hz
     return int(open_s * base.fast_hz + 1e-9)
 
 
 def joined(fine: Codes, coarse: Codes, pitch_counts: int) -> Codes:
-    """The position code of both counts."""
+    """The position code of both counts, for claims 3 and 4; the servo's kernel has it in `measured`."""
     half_digits = pitch_counts.bit_length() - 2
     differ = (fine >> half_digits & 1) ^ (coarse & 1)  # exclusive OR 24
     return np.asarray(((coarse + differ) >> 1) * pitch_counts + fine)

@@ -28,7 +28,7 @@ class Store:
 
     @classmethod
     def of(cls, word: int, width: int) -> Store:
-        """Clear the store and write a word of so many digits."""
+        """Clear the store and write a word of this many digits."""
         if not -(1 << width - 1) <= word < 1 << width - 1:
             raise ValueError(
                 f"{word} does not fit in {width} digits; it must be below 2^{width - 1} either way"
@@ -37,20 +37,20 @@ class Store:
 
     @property
     def word(self) -> int:
-        """What the store holds."""
+        """The word in the store."""
         held = sum(digit << place for place, digit in enumerate(self.digits))
         return held - (self.digits[-1] << len(self.digits))
 
 
 class Stores:
-    """The four stores of an interpolator and their gates."""
+    """The four stores of an interpolator and their gates: the twin of `Interpolator` for claims 1 and 10."""
 
     def __init__(self, words: tuple[int, int, int, int], width: int) -> None:
         self.stores = [Store.of(word, width) for word in words]
 
     @property
     def words(self) -> tuple[int, ...]:
-        """What the four stores hold."""
+        """The words in the four stores."""
         return tuple(store.word for store in self.stores)
 
     def round(self, gate_1: bool = True, gate_2: bool = True, gate_3: bool = True) -> None:

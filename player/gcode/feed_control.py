@@ -13,7 +13,7 @@ A binary rate multiplier of n stages passes F of every 2^n clocks, evenly: the c
 bit k turns to 1 is passed where bit n - 1 - k of F is set. The counter comes to rest where feed pulses and
 command pulses balance:
 
-    7/8 f_p = 2.5 V,    2.5 V = 2.5 G + M + 0.75 S (three axes), 2.5 V = 2.5 G + M (two)         pulses per second
+    7/8 f_p = 2.5 V,    2.5 V = 2.5 G + M + 0.75 S (three axes), 2.5 V = 2.5 G + M (two)   pulses per second
 
 so that V is the resultant speed within -10.6 … +1.9 % (three axes), -7.2 … +1.0 % (two). With a true norm
 each axis weighs 2.5 times its direction cosine instead.
@@ -49,7 +49,7 @@ BLOCKED, EVERY, FOURTH = (
 
 
 def feed_number(pulses_per_s: float, recirculations_hz: float) -> int:
-    """The feed number for a resultant speed; raises ValueError where there is none."""
+    """The feed number for a resultant speed; raises ValueError for a speed without one."""
     feed_pulses_hz = pulses_per_s * GREATEST / FEED_EIGHTHS
     clocks_hz = CLOCKS * recirculations_hz
     number = (
@@ -65,14 +65,14 @@ def feed_number(pulses_per_s: float, recirculations_hz: float) -> int:
 
 
 def override_number(share: float) -> int:
-    """The override as a number of 10 bits; 1.0 and more is all of them, which passes every pulse."""
+    """The override as a number of 10 bits; 1.0 passes every pulse."""
     if not 0 <= share <= 1:
         raise ValueError(f"an override of {share:g} is none; give a share of 0 to 1")
     return round(share * 2**OVERRIDE_BITS)
 
 
 def resultant_weights(errors: NDArray[np.int64], *, true_norm: bool) -> NDArray[np.int64]:
-    """What a command pulse of each axis takes from the counter, in its units, on a line with these errors."""
+    """Counter units that a command pulse of each axis takes off, on a line with these errors."""
     size = np.abs(errors).astype(np.float64)
     if true_norm:
         return np.rint(
@@ -101,9 +101,7 @@ def passes(count, number, bits):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, inline="always")
 def feed_pulses(recirculation, number):  # type: ignore[no-untyped-def]
-    """Feed pulses within a recirculation, 1 and on: the four fast stages pass the same number in each, a slow
-    one may.
-    """
+    """Feed pulses within a recirculation, 1 and on: the four fast stages, and perhaps one of a slow stage."""
     fast = number >> (FEED_BITS - 4)
     slow = number & ((1 << (FEED_BITS - 4)) - 1)
     return fast + passes(recirculation, slow, FEED_BITS - 4)
@@ -117,7 +115,7 @@ def gate_opens(counter, recirculation):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def count_feed(recirculations, number, override):  # type: ignore[no-untyped-def]
-    """Feed pulses f_p in so many recirculations, after both rate multipliers."""
+    """Feed pulses f_p in this many recirculations, after both rate multipliers; for claim 4 and its tests."""
     through, before = 0, 0
     for recirculation in range(1, recirculations + 1):
         for _ in range(feed_pulses(recirculation, number)):

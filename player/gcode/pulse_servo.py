@@ -20,7 +20,8 @@ straddle a carry:
 The lag is added to itself in each recirculation, and its overflows are further pulses to the servo: the
 position loop.
 
-    speed demanded = gain · count,   count' = V + k · lag - v,   k = recirculations per s / 2^(stages of the lag register)
+    speed demanded = gain · count,   count' = V + k · lag - v,
+    k = recirculations per s / 2^(stages of the lag register)
 
 Source: patent from US application 631 214 of 1967, figures 7, 18, 20 and 21, claims 13 and 17 to 22.
 Questions: with an ICR of 5 bits the unit circuit is right for lags of -15 … +16 counts only (the text's own
@@ -55,9 +56,7 @@ Pulses = NDArray[np.int8]
 
 @dataclass(frozen=True, slots=True)
 class PulseServo:
-    """Settings of the pulse servos; the patent's own are a pulse of 0.0127 mm, registers of 16 and 5 bits, 5
-    stages.
-    """
+    """Settings of the pulse servos; HISTORIC has the patent's own."""
 
     pulse_mm: float = 0.001
     register_bits: int = 24
@@ -74,7 +73,7 @@ class PulseServo:
 
     @property
     def travel_mm(self) -> float:
-        """How far the position register reaches to either side, mm."""
+        """Reach of the position register to either side, mm."""
         return float((1 << (self.register_bits - 1)) - 1) * PULSES_PER_COUNT * self.pulse_mm
 
 
@@ -82,9 +81,7 @@ HISTORIC = PulseServo(pulse_mm=0.0127, register_bits=16, icr_bits=5, lag_stages=
 
 
 class PulseServos:
-    """The servos of a machine; registers and tables are carried from block to block. They start at rest, in
-    pulses.
-    """
+    """The servos of a machine, at rest at first; registers and tables are carried from block to block."""
 
     def __init__(
         self,
@@ -118,12 +115,11 @@ class PulseServos:
 
     @property
     def command(self) -> Counts:
-        """Where each axis has been told to be, pulses."""
+        """The commanded place of each axis, pulses."""
         return self._registers[:, COMMAND].copy()
 
     def follow(self, pulses: Pulses) -> tuple[Array, Array, int]:
-        """Commands and table positions (n, axes) in mm once in `sampled` recirculations, and the
-        recirculations done.
+        """Commands and places (n, axes) in mm once in `sampled` recirculations, and the recirculations done.
 
         They are fewer than the pulses given where a lag left the range of the unit circuit.
         """
@@ -149,14 +145,12 @@ class PulseServos:
 
 
 def unit_circuit(position: int, icr: int, icr_bits: int = 5) -> int:
-    """The interpolated position, from the position register and the low bits of the instantaneous command
-    register.
-    """
+    """The interpolated position from position register and command register, for claim 19 (`_unit`)."""
     return int(_unit(position, icr, icr_bits))
 
 
 def lag(position: int, icr: int, icr_bits: int = 5) -> int:
-    """The lag of the position behind the command in position counts, from their low bits."""
+    """The lag behind the command in position counts, from the low bits of both, for claim 20 (`_lag`)."""
     return int(_lag(position, icr, icr_bits))
 
 
@@ -185,9 +179,7 @@ def _lag(position, icr, bits):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def _follow(pulses, analogue, timing, conditions, registers, tables, commands, places):  # type: ignore[no-untyped-def]
-    """Step all axes through a block; recirculations done before a lag was out of range. One loop: all of
-    figure 7.
-    """
+    """Step all axes through figure 7; the recirculations done before a lag was out of range."""
     speed_per_count, share, largest_change, quantum_mm, dt_s, pulse_mm = analogue
     sampled, phase, bits, stages = timing
     mask, overflow = (1 << bits) - 1, 1 << stages

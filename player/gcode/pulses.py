@@ -65,8 +65,7 @@ class PulseControl:
 
     @property
     def limit(self) -> FollowingLimit:
-        """The following error that is allowed: what the servo needs to get to a speed at once, and some
-        pulses.
+        """The allowed following error: the servo's lag, its start to a speed at once, and some pulses.
 
         That is its lag, and at speed what the motor's current takes to bring it there.
         """
@@ -87,8 +86,7 @@ def play_pulses(
     true_norm: bool | None = None,
     override: float | None = None,
 ) -> PulsePlayback:
-    """Put an RS-274 program in the control; `true_norm` and `override` go before what the settings say of
-    them.
+    """Put an RS-274 program in the control; `true_norm` and `override` replace those of the settings.
 
     Raises ProgramFault with the line, FileFault, or ValueError for an override that is none, before anything
     moves.
@@ -102,8 +100,7 @@ def play_pulses(
 
 
 class PulsePlayback(Supervised):
-    """A program in the control: iterate for the machine's motion; the figures are those of the last time
-    through.
+    """A program in the control: iterate for the machine's motion; figures are those of the last run.
 
     `conditions` say what is wrong with the drives.
     """
@@ -119,7 +116,7 @@ class PulsePlayback(Supervised):
 
     @property
     def duration_s(self) -> float:
-        """About how long the program runs, s."""
+        """Approximate running time, s."""
         place, seconds = self.program.start_mm, 2 * STANDSTILL_S
         for move, (feed, _) in zip(self.program.moves, self._jobs, strict=True):
             length_mm = _length_mm(place, move)
@@ -131,7 +128,7 @@ class PulsePlayback(Supervised):
         return seconds
 
     def __iter__(self) -> Iterator[Motion]:
-        """Play; raises FollowingFault after the last sample that was right."""
+        """Play; raises FollowingFault after the last good sample."""
         control = self.settings
         start = self._pulses(self.start_mm)
         interpolator = Interpolator(start, control.servo_constant)
@@ -165,9 +162,7 @@ class PulsePlayback(Supervised):
         yield from self._stand(STANDSTILL_S)
 
     def run_moves(self) -> Iterator[tuple[float, Iterator[Pulses]]]:
-        """Programmed speed in mm/s and command pulses of each move but dwells, to be taken one after the
-        other.
-        """
+        """Programmed speed in mm/s and command pulses of each move but dwells, to be run in this order."""
         interpolator = Interpolator(self._pulses(self.start_mm), self.settings.servo_constant)
         for move, (speed_mm_s, run) in zip(self.program.moves, self._jobs, strict=True):
             if move.kind != DWELL:
@@ -181,7 +176,7 @@ class PulsePlayback(Supervised):
             left -= _DWELL_AT_ONCE
 
     def _job(self, move: Move) -> tuple[float, Callable[[Interpolator], Iterator[Pulses]]]:
-        """The speed of a move in mm/s, and what runs it; raises ProgramFault where it cannot be run."""
+        """The speed of a move in mm/s, and the function that runs it; raises ProgramFault."""
         control = self.settings
         speed_mm_s = control.rapid_mm_s if move.kind == RAPID else move.feed_mm_s
         feed = Feed()
@@ -245,7 +240,7 @@ class PulsePlayback(Supervised):
         return np.rint(np.asarray(place_mm) / self.settings.servo.pulse_mm).astype(np.int64)
 
     def _lag_fault(self, servos: PulseServos, time_s: float) -> FollowingFault:
-        """The fault of a lag that the instantaneous command register cannot tell."""
+        """The fault of a lag that is too large for the command register."""
         servo = self.settings.servo
         axis = int(np.argmax(servos.largest_lag))
         limit_mm = servo.lag_counts[1] * 2 * servo.pulse_mm
@@ -254,8 +249,10 @@ class PulsePlayback(Supervised):
             float(self.end_mm[axis]),
         )
         return FollowingFault(
-            f"the lag of {AXES[axis].upper()} left the range of the {servo.icr_bits} bits of its command register at "
-            f"{time_s:.3f} s: allowed {servo.lag_counts[0]} to {servo.lag_counts[1]} counts, {limit_mm:.3f} mm; "
+            f"the lag of {AXES[axis].upper()} left the range of the {servo.icr_bits} bits of its "
+            "command register at "
+            f"{time_s:.3f} s: allowed {servo.lag_counts[0]} to {servo.lag_counts[1]} counts, "
+            f"{limit_mm:.3f} mm; "
             "run it slower, or give a register of more bits",
             axis=AXES[axis],
             time_s=time_s,
@@ -266,7 +263,7 @@ class PulsePlayback(Supervised):
 
 
 def _reached(move: Move) -> Iterator[tuple[float, ...]]:
-    """The places that the registers must hold: end, and of an arc the centre and where it is furthest out."""
+    """The places that the registers must hold: the end; of an arc the centre and the furthest points too."""
     yield move.end_mm
     if not move.turned_rad:
         return

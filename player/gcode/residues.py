@@ -3,13 +3,13 @@
 Signals in: end point (and centre of an arc) in pulses, feed number. Signals out: per recirculation of 16
 clocks a command pulse -1, 0 or +1 for each axis.
 
-    error E = X_c - X_t ──► error gate 94 ──► + ──► + ──► residue register 96 ──┬──► sign not changed: command pulse
-                                              ▲     ▲                           │    (detector 101)
-                                              │   ∓(L + E_m), against the sign ◄┤ 99
-                                              └─────────────────────────────────┘
+    error E = X_c - X_t ─► error gate 94 ─► + ─► + ─► residue register 96 ──┬─► sign not changed: command
+                                            ▲    ▲                          │   pulse (detector 101)
+                                            │  ∓(L + E_m), against the sign ◄┤ 99
+                                            └───────────────────────────────┘
 
     line    RR ← RR + E (gate open) ∓ (L + E_m),       pulses per second  f_gate · E / (E_m + L)
-    arc     tangent V = E + A,  A_x = ± E_y · E/2h,  A_y = ∓ E_x · E/2h          (chord E, perpendicular h from M)
+    arc     tangent V = E + A,  A_x = ± E_y · E/2h,  A_y = ∓ E_x · E/2h    (chord E, perpendicular h from M)
 
 All axes keep the ratio of their errors, and the rate falls to nothing at the end point by itself. The ratio
 E/2h is made without division by one more residue loop Q: while it is positive E_m is taken from it and the
@@ -69,9 +69,7 @@ Pulses = NDArray[np.int8]
 
 @dataclass(frozen=True, slots=True)
 class Feed:
-    """What drives the error gates: feed number and override, or a fixed period in recirculations (0 = feed
-    control).
-    """
+    """What opens the error gates: feed number and override, or a fixed period in recirculations."""
 
     number: int = 0
     override: int = 1 << OVERRIDE_BITS
@@ -80,9 +78,7 @@ class Feed:
 
 
 class Interpolator:
-    """The three residue loops with the feed counter; all registers carry over from block to block of a
-    program.
-    """
+    """The three residue loops with the feed counter; registers are carried from block to block."""
 
     def __init__(
         self,
@@ -127,7 +123,7 @@ class Interpolator:
         sense: int,
         feed: Feed,
     ) -> Pulses:
-        """Command pulses of an arc in X and Y of less than half a turn, +1 counter-clockwise, -1 clockwise."""
+        """Command pulses of an arc in X and Y below half a turn, +1 counter-clockwise, -1 clockwise."""
         if sense not in (CLOCKWISE, COUNTER_CLOCKWISE):
             raise ValueError(
                 f"an arc turns counter-clockwise, +1, or clockwise, -1; not {sense}"
@@ -146,7 +142,7 @@ class Interpolator:
         feed: Feed,
         residue: int | None = None,
     ) -> Iterator[Pulses]:
-        """Load the residues and give command pulses, in parts, until there is no error; sense 0 is a line."""
+        """Load the residues and give command pulses, in parts, until the error is zero; sense 0 is a line."""
         target, middle = np.array(end, np.int64), np.array(centre, np.int64)
         error = target - self.position
         if residue is None:
@@ -237,7 +233,7 @@ def _add_tangent(error, centre, sense, state, added):  # type: ignore[no-untyped
 
 @njit(cache=True, inline="always")
 def _weigh_arc(centre, state, true_norm, weight):  # type: ignore[no-untyped-def]
-    """Where the radius is longer in X the speed is greater in Y: weights of the pulses by R_x and R_y."""
+    """Weights of an arc's pulses: where the radius is longer in X, the speed is greater in Y."""
     radius_x, radius_y = abs(centre[0] - state[0]), abs(centre[1] - state[1])
     if true_norm:
         radius = max(np.sqrt(float(radius_x) ** 2 + float(radius_y) ** 2), 1.0)

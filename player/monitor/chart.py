@@ -32,7 +32,7 @@ class Chart:
         self._rows: list[Array] = []  # (n, axes, 3)
 
     def begin(self, axes: Sequence[str]) -> None:
-        """A new sheet, for these axes."""
+        """Begin a new sheet, for these axes."""
         self.axes, self._times_s, self._rows = tuple(axes), [], []
 
     def note(

@@ -38,9 +38,7 @@ DEMAND, SPEED, COUNTED, FAULTY, LARGEST, SHARE = range(6)  # columns of the stat
 
 @dataclass(frozen=True, slots=True)
 class FollowingLimit:
-    """The table, points (mm/s, mm) from a speed of 0 on, its slope beyond them in s, tolerance, settling and
-    hold of the rate.
-    """
+    """The limit: points (mm/s, mm) from 0 mm/s on, slope beyond them in s, tolerance, settling, hold."""
 
     points: tuple[tuple[float, float], ...] = ((0.0, 0.0),)
     beyond_s: float = 0.06
@@ -69,7 +67,7 @@ class FollowingLimit:
     def linear(
         cls, lag_s: float = 0.06, tolerance_mm: float = 0.1, settle_s: float = 0.0
     ) -> FollowingLimit:
-        """The limit of a servo that is behind by a lag."""
+        """The limit of a servo with a constant lag."""
         return cls(((0.0, 0.0),), lag_s, tolerance_mm, settle_s)
 
     @classmethod
@@ -102,9 +100,7 @@ class FollowingLimit:
 def learn_table(
     demand_mm: Array, actual_mm: Array, rate_hz: float, speeds_mm_s: Sequence[float]
 ) -> tuple[tuple[float, float], ...]:
-    """Empirical points from a run of a sound servo: at each speed the largest error seen up to the next one,
-    mm.
-    """
+    """Empirical points from a run of a sound servo: the largest error up to the next speed, mm."""
     speed = np.abs(np.diff(demand_mm, axis=0, prepend=demand_mm[:1])) * rate_hz
     error = np.abs(demand_mm - actual_mm)
     upto = [*speeds_mm_s[1:], np.inf]
@@ -149,7 +145,7 @@ class Monitor:
         self._state[:, DEMAND] = np.nan
 
     def _fade(self, constant_s: float) -> float:
-        """What is left after a row of what fades with a time constant."""
+        """The share left after a row of a quantity that fades with a time constant."""
         return math.exp(-1 / (self.rate_hz * constant_s)) if constant_s > 0 else 0.0
 
     @property
@@ -159,11 +155,11 @@ class Monitor:
 
     @property
     def largest_share(self) -> Array:
-        """The largest share of its limit that each axis' error was; above 1 there was a fault."""
+        """The largest share of its limit that the error of each axis reached; above 1 is a fault."""
         return self._state[:, SHARE].copy()
 
     def watch(self, demand_mm: Array, actual_mm: Array) -> int:
-        """Watch a block (n, axes); the rows before a stop."""
+        """Watch a block (n, axes); the number of rows before a stop."""
         demand, actual = (
             np.ascontiguousarray(demand_mm, np.float64),
             np.ascontiguousarray(actual_mm, np.float64),
@@ -216,7 +212,8 @@ class Monitor:
         )
         self.warnings.append(
             FollowingFault(
-                f"the drive of {name.upper()} does not follow at {time_s:.3f} s: demand {demand_mm:.3f} mm, actual "
+                f"the drive of {name.upper()} does not follow at {time_s:.3f} s: demand "
+                f"{demand_mm:.3f} mm, actual "
                 f"{actual_mm:.3f} mm, error {demand_mm - actual_mm:+.3f} mm, allowed ±{limit_mm:.3f} mm at "
                 f"{speed:.3g} mm/s; free the axis, or ask for less speed",
                 axis=name,
@@ -229,9 +226,7 @@ class Monitor:
 
 
 class Supervised:
-    """What every playback has of its monitor: its limit, the one of the last time through, a chart if one is
-    put in.
-    """
+    """The monitor of a playback: its limit, the monitor of the last run, and a chart if one is put in."""
 
     limit: FollowingLimit
     monitor: Monitor
@@ -245,7 +240,7 @@ class Supervised:
 
     @property
     def following_error_mm(self) -> Array:
-        """The largest following error of each axis, the last time through, mm."""
+        """The largest following error of each axis in the last run, mm."""
         return self.monitor.largest_error_mm
 
 

@@ -45,9 +45,7 @@ class PositionServo:
 
 
 class PositionServos:
-    """The servos of a machine; state is carried from block to block, so a drive may break between two of
-    them.
-    """
+    """The servos of a machine; state is carried over, so a drive may break between two blocks."""
 
     def __init__(
         self,
@@ -61,7 +59,7 @@ class PositionServos:
         self.conditions = [SOUND] * len(start_mm)
 
     def follow(self, demand_mm: Array) -> Array:
-        """Positions (n, axes) of the load in mm, each as the transducer has it when its demand comes."""
+        """Positions (n, axes) of the load in mm, as the transducers have them when each demand comes."""
         demand = np.ascontiguousarray(demand_mm, np.float64)
         if demand.ndim != 2 or demand.shape[1] != len(self._state):
             raise ValueError(

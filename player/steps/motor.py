@@ -34,20 +34,18 @@ ACCELERATION_STEPS_S2 = 25600.0  # one step more in each 1/160 s, page 13
 
 @dataclass(frozen=True, slots=True)
 class Motor:
-    """What a motor with its load can do."""
+    """Limits of a motor with its load."""
 
     acceleration_steps_s2: float = ACCELERATION_STEPS_S2
 
     def most(self, interval_s: float) -> int:
-        """Steps by which two intervals in succession may differ."""
+        """Largest difference in steps between two intervals in succession."""
         return int(self.acceleration_steps_s2 * interval_s**2 + 1e-6)
 
 
 @dataclass(frozen=True, slots=True)
 class MotorCondition:
-    """What is wrong with a motor: share of its torque left, share that friction takes, steps/s that nobody
-    asked for.
-    """
+    """What is wrong with a motor: share of torque left, share taken by friction, stray steps/s."""
 
     torque_share: float = 1.0
     friction_share: float = 0.0
@@ -55,9 +53,7 @@ class MotorCondition:
     stuck: bool = False
 
     def row(self, most: int, interval_s: float) -> tuple[float, float, float, float]:
-        """For the kernel: changes of rate upwards and downwards and stray steps, in steps per interval;
-        whether free.
-        """
+        """The condition for the kernel: changes of rate up and down, stray steps per interval, if free."""
         rise, fall = (
             self.torque_share - self.friction_share,
             self.torque_share + self.friction_share,
@@ -69,9 +65,7 @@ SOUND = MotorCondition()
 
 
 class Motors:
-    """The motors of a machine; state is carried from block to block, so a motor may break between two of
-    them.
-    """
+    """The motors of a machine; state is carried over, so a motor may break between two blocks."""
 
     def __init__(self, axes: int, interval_s: float, motor: Motor | None = None) -> None:
         self._most, self._interval_s = (motor or Motor()).most(interval_s), interval_s
@@ -83,8 +77,7 @@ class Motors:
     def run(
         self, pulses: NDArray[np.int64], ticks: NDArray[np.int64], samples: int
     ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Pulses so far and steps (samples · k, axes) for pulses (k, axes), at the end of even parts of each
-        interval.
+        """Pulses and steps so far (samples · k, axes) for pulses (k, axes), at even parts of each interval.
 
         `ticks` is the table of the pulses that have come by each tick.
         """
@@ -103,7 +96,7 @@ class Motors:
 
     @property
     def lost(self) -> NDArray[np.int64]:
-        """Pulses so far that no step came of; minus where the load overran."""
+        """Pulses so far that made no step; negative where the load overran."""
         return np.rint(self._state[:, 2] - self._state[:, 1]).astype(np.int64)
 
 
@@ -130,7 +123,7 @@ def _run(pulses, ticks, samples, conditions, state, told, made):  # type: ignore
 
 @njit(cache=True, inline="always")
 def _spread(change, before, ticks, part, out):  # type: ignore[no-untyped-def]
-    """The count at the end of each part of an interval in which it changes by so much."""
+    """The count at the end of each part of an interval in which it changes by `change`."""
     size, sign = min(int(abs(change)), len(ticks) - 1), 1 if change > 0 else -1
     for i in range(len(out)):
         out[i] = int(before) + sign * ticks[size, (i + 1) * part]

@@ -53,7 +53,7 @@ Counts = NDArray[np.int8]
 
 
 def pulse_ticks(pulses: int) -> tuple[int, ...]:
-    """The oscillator ticks of an interval at which so many pulses come."""
+    """The oscillator ticks of an interval at which this many pulses come."""
     if not 0 <= pulses <= TICKS:
         raise ValueError(
             f"{pulses} pulses do not fit in an interval; it has room for 0 to {TICKS}"
@@ -63,7 +63,7 @@ def pulse_ticks(pulses: int) -> tuple[int, ...]:
 
 
 def ring_memory() -> NDArray[np.uint8]:
-    """The read-only memory 61: what to do to the counters, by count of X, count of Y and direction (1: next)."""
+    """The read-only memory 61: changes of the counters, by counts of X and Y and direction (1: next)."""
     memory = np.zeros(MEMORY_ENTRIES, np.uint8)
     for ring in RINGS.values():
         for place, (x, y) in enumerate(ring):
@@ -76,7 +76,7 @@ def ring_memory() -> NDArray[np.uint8]:
 
 
 def decode(program: Program) -> tuple[Counts, NDArray[np.int64]]:
-    """Counts (k, 3) of all intervals, and the row that each comes from."""
+    """Counts (k, 3) of all intervals, and the row of each."""
     counts = np.empty((2 * len(program.rows), 3), np.int8)
     source = np.empty(len(counts), np.int64)
     z_channels = program.format.channels > 5
@@ -85,7 +85,7 @@ def decode(program: Program) -> tuple[Counts, NDArray[np.int64]]:
 
 
 def pulses_of(counts: Counts, rates: tuple[int, ...]) -> NDArray[np.int64]:
-    """Pulses of each interval by the counts: plus above 8, minus below."""
+    """Pulses of each interval by the counts: positive above 8, negative below."""
     by_count = np.array([*(-n for n in reversed(rates)), 0, *rates], np.int64)
     return by_count[counts.astype(np.int64) - LOWEST]
 
@@ -99,7 +99,7 @@ def play_steps(
 
 @dataclass(frozen=True, slots=True)
 class ToolChange:
-    """The tool's code on the tape changes: when, and whether it is in the work from then on."""
+    """A change of bit 8: when, and whether the tool is in the work from then on."""
 
     time_s: float
     down: bool
@@ -136,20 +136,18 @@ class StepPlayback(Supervised):
 
     @property
     def duration_s(self) -> float:
-        """How long the program runs, s."""
+        """Running time of the program, s."""
         return len(self.counts) * self.format.interval_s
 
     @property
     def tool_changes(self) -> list[ToolChange]:
-        """What bit 8 says of the tool, from the first interval on."""
+        """The changes of bit 8, from the first interval on."""
         down = (self._program.rows[self._rows] & 0x80) != 0
         at = np.flatnonzero(np.diff(down, prepend=False)).tolist()
         return [ToolChange(k * self.format.interval_s, bool(down[k])) for k in at]
 
     def __iter__(self) -> Iterator[Motion]:
-        """Play: the machine's motion in blocks; raises FollowingFault after the last sample before a step was
-        lost.
-        """
+        """Play: the motion in blocks; raises FollowingFault after the last sample before a lost step."""
         fmt = self.format
         rate_hz = SAMPLES_PER_INTERVAL * fmt.rate_hz
         motors = Motors(len(AXES), fmt.interval_s, self._motor)
@@ -177,7 +175,7 @@ class StepPlayback(Supervised):
         self.end_error_mm = self.end_mm - np.array(fmt.end_mm)
 
     def _check(self, travel_mm: float) -> None:
-        """Raise ProgramFault for a program that leaves the travel, ends at speed, or not where it says."""
+        """Raise ProgramFault for a program that leaves the travel, ends at speed, or misses its end."""
         fmt, places = self.format, np.cumsum(self.pulses, axis=0)
         places_mm = self.start_mm + places * fmt.step_mm
         out = np.flatnonzero((np.abs(places_mm) > travel_mm).any(axis=1))
@@ -185,7 +183,8 @@ class StepPlayback(Supervised):
             axis = int(np.argmax(np.abs(places_mm[out[0]])))
             line = self._line(int(out[0]))
             raise ProgramFault(
-                f"{self._name}{_place(line)}: {AXES[axis].upper()} goes to {places_mm[out[0], axis]:.2f} mm; the machine "
+                f"{self._name}{_place(line)}: {AXES[axis].upper()} goes to "
+                f"{places_mm[out[0], axis]:.2f} mm; the machine "
                 f"has ±{travel_mm:g} mm: move its start, or record it smaller",
                 line=line,
             )
@@ -203,7 +202,7 @@ class StepPlayback(Supervised):
             )
 
     def _line(self, interval: int) -> int | None:
-        """The line of the file that an interval comes from, where there is a file."""
+        """The line of an interval in the file, if there is one."""
         return (
             int(self._program.lines[self._rows[interval]]) if len(self._program.lines) else None
         )
@@ -219,17 +218,18 @@ def tick_table() -> NDArray[np.int64]:
 
 
 def _check_motor(name: str, fmt: StepFormat, motor: Motor) -> None:
-    """Raise ProgramFault for an oscillator or rates that ask more of the motor than it can do."""
+    """Raise ProgramFault for an oscillator or rates beyond the motor."""
     asked = fmt.acceleration_steps_s2
     if asked > motor.acceleration_steps_s2 * (1 + 1e-9):
         raise ProgramFault(
-            f"{name}: its oscillator of {fmt.oscillator_hz:g} Hz and rates of {fmt.rates} ask for changes of {asked:g} "
+            f"{name}: its oscillator of {fmt.oscillator_hz:g} Hz and rates of {fmt.rates} ask for "
+            f"changes of {asked:g} "
             f"steps/s²; the motor gives {motor.acceleration_steps_s2:g}: record it with a slower oscillator"
         )
 
 
 def _place(line: int | None) -> str:
-    """Where in the file."""
+    """The line for a message."""
     return "" if line is None else f", line {line}"
 
 

@@ -6,8 +6,8 @@ track 1 the reference, at the sample rate. Signals out, one row per `decimation`
 frame i·decimation: cycles (axes), levels (tracks, amplitude), surprise (axes, cycles: how far a phase lay
 from the predicted one).
 
-    y(t) = sum over n of  h(n) · exp(-j w n) · x(t + n)          translating filter: h low-pass, w the nominal reference
-    cycles = arg( y_axis · conj(y_reference) ) / 2 pi            counted on from the predictor's guess, nearest turn (predictor.py)
+    y(t) = sum over n of  h(n) · exp(-j w n) · x(t + n)    translating filter: h low-pass, w the reference
+    cycles = arg( y_axis · conj(y_reference) ) / 2 pi      the turn nearest to the guess of predictor.py
 
 Both tracks are translated by the same w, so its phase and any error of the tape's speed cancel in the
 product, and only the difference is left. It is a phase all the way: nothing is integrated, so nothing drifts.
@@ -60,7 +60,7 @@ class Phases:
         return len(self.cycles)
 
     def joined(self, after: Phases) -> Phases:
-        """These rows and those after them."""
+        """These rows and the rows after them."""
         names = ("cycles", "surprise", "levels")
         return Phases(
             self.first_row,
@@ -68,11 +68,11 @@ class Phases:
         )
 
     def moved(self, rows: int) -> Phases:
-        """The same rows, so many later on the tape."""
+        """The same rows, further on the tape by this many."""
         return Phases(self.first_row + rows, self.cycles, self.surprise, self.levels)
 
     def cut(self, first: int, last: int) -> Phases:
-        """Rows `first` to before `last` of these."""
+        """The rows from `first` to before `last`."""
         rows = slice(max(first, 0), max(last, first, 0))
         return Phases(
             self.first_row + rows.start,
@@ -85,7 +85,7 @@ class Phases:
 def translating_taps(
     sample_rate_hz: float, reference_hz: float, decimation: int
 ) -> tuple[Float32s, Float32s]:
-    """Real and imaginary taps of the filter that moves the reference to 0 Hz and keeps what lies near it."""
+    """Real and imaginary taps of the filter that moves the reference to 0 Hz and keeps its neighbourhood."""
     low_pass, turns = _low_pass(sample_rate_hz, reference_hz, decimation)
     return _taps((low_pass * turns).real), _taps((low_pass * turns).imag)
 
@@ -93,7 +93,7 @@ def translating_taps(
 def _low_pass(
     sample_rate_hz: float, reference_hz: float, decimation: int
 ) -> tuple[Float64s, Complexes]:
-    """Taps h of the low-pass, and how far each is turned, exp(-j w n)."""
+    """Taps h of the low-pass, and the turn of each, exp(-j w n)."""
     cut_hz = min(sample_rate_hz / decimation, reference_hz) / 2
     half = round(2 * sample_rate_hz / cut_hz)
     n = np.arange(-half, half + 1)
@@ -104,15 +104,14 @@ def _low_pass(
 
 
 def _taps(values: Float64s) -> Float32s:
-    """Taps without those that are nothing."""
+    """The taps that are not negligible."""
     return np.where(np.abs(values) < SMALLEST_TAP, 0.0, values).astype(np.float32)
 
 
 def branches(
     sample_rate_hz: float, reference_hz: float, decimation: int
 ) -> tuple[Float32s, Float32s, Float32s]:
-    """The filter as real sums down the columns of a row, each sum turned once: taps (branches, columns,
-    rows), turns.
+    """The filter as real sums down the columns of a row, turned once: taps (branches, columns, rows), turns.
 
     With a whole number of reference cycles to a row, as most tapes have, all taps of a column turn alike and
     one real branch is enough; else there is one for the real and one for the imaginary taps.
@@ -166,7 +165,7 @@ class Discriminator:
         self._last: Phases | None = None
 
     def feed(self, frames: Frames) -> Phases:
-        """Take the next frames (n, tracks) of the tape; the rows that are complete by now, perhaps none."""
+        """Take the next frames (n, tracks) of the tape; the rows complete by now, perhaps none."""
         frames = (
             np.concatenate([self._tail, frames])
             if len(self._tail)
@@ -224,7 +223,7 @@ class Discriminator:
 
 
 def discriminate(blocks: Iterable[Frames], discriminator: Discriminator) -> Iterator[Phases]:
-    """Phases of a whole tape, from its blocks of frames; blocks without a row are left out."""
+    """Phases of a whole tape, from its blocks of frames; empty blocks are left out."""
     for frames in blocks:
         phases = discriminator.feed(frames)
         if len(phases):
@@ -236,8 +235,7 @@ def discriminate(blocks: Iterable[Frames], discriminator: Discriminator) -> Iter
 
 @njit(cache=True, nogil=True)
 def _wrap(rows, scale, taps, turns_re, turns_im, phase, levels):  # type: ignore[no-untyped-def]
-    """Fill `phase` (axes, n), each from -0.5 to 0.5 cycle, and `levels`, by chunks that fit the processor's
-    cache.
+    """Fill `phase` (axes, n), -0.5 to 0.5 cycle, and `levels`, by chunks that fit the processor's cache.
 
     `rows` of the tape (n, frame within the row · tracks + track), `scale` of a sample; the filter as
     `branches` has it.
@@ -309,16 +307,14 @@ def _group(taps, i):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "nsz"})
 def _amplitude(re, im, level):  # type: ignore[no-untyped-def]
-    """Peak of a carrier: what the filter leaves of it is half."""
+    """Peak of a carrier: twice the amplitude that the filter leaves."""
     for k in range(len(re)):
         level[k] = np.float32(2) * np.sqrt(re[k] * re[k] + im[k] * im[k])
 
 
 @njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "nsz"}, error_model="numpy")
 def _turn(re, im, ref_re, ref_im, phase):  # type: ignore[no-untyped-def]
-    """Phase of a track against the reference, cycles -0.5 to 0.5: an arc tangent that runs in vectors, 1e-8
-    cycle.
-    """
+    """Phase of a track against the reference, -0.5 to 0.5 cycle: a vectorised arc tangent, true to 1e-8."""
     for k in range(len(phase)):
         along = float(re[k]) * float(ref_re[k]) + float(im[k]) * float(ref_im[k])
         across = float(im[k]) * float(ref_re[k]) - float(re[k]) * float(ref_im[k])

@@ -10,19 +10,19 @@ below a fifth of its level at standstill, and as long as the discriminator's fil
 parabola through the 6 ms before the gap (p0, v0, a0: held, as rewound past the filter) and one through the 6
 ms after it (p1, v1, a1) then give
 
-    d      = T (v0 + v1) / 2 + T² (a0 - a1) / 12              travel over the gap of a motion of even jerk
-    r      = (p1 - p0) - d,  nearest whole number taken off   what was measured against what was held
-    dv     = (v1 - v0) - T (a0 + a1) / 2                      change of speed that the accelerations do not explain
-    H      = A T² / 4 + |dv| T / 2                            furthest that a motion of acceleration A may lie off d
+    d      = T (v0 + v1) / 2 + T² (a0 - a1) / 12      travel over the gap of a motion of even jerk
+    r      = (p1 - p0) - d,  less the nearest whole   what was measured against what was held
+    dv     = (v1 - v0) - T (a0 + a1) / 2              change of speed that the accelerations do not explain
+    H      = A T² / 4 + |dv| T / 2                    furthest that a motion of acceleration A may lie off d
 
-The count is certain where no other whole number can be meant:     H < 1 - |r| - 0.1                     (cycles)
+The count is certain where no other whole number is possible:      H < 1 - |r| - 0.1     (cycles)
 and the way between where it lies within a twentieth of a cycle:   |r| / 2 + |dv| T / 8 < 0.05
 
-         ________  p0                                            v0   _/\\_   longest way there and back that begins and
-                 \\ ................. /  what may have been            \\/     ends with the same speed: A T² / 4 of travel
-                     gap, T           p1 _______
+    ________  p0                                       v0  _/\\_  longest way there and back that begins and
+            \\ ................ /  what may have been       \\/   ends with the same speed: A T² / 4 of travel
+                gap, T          p1 _______
 
-Source: patent ES 361967, figure 5 (fault circuit 162) asks for it; the bounds are derived in docs/background/player.md.
+Source: patent ES 361967, figure 5 (fault circuit 162) asks for it; the bounds: docs/background/player.md.
 Questions: A is not on the tape: it is taken as what the machine's own motors can do, 5 m/s², and may be given
 where the program is known to be smoother.
 """
@@ -55,7 +55,7 @@ ROUGH_CYCLES = 0.04  # what is left of the parabola; 26 dB of noise leave 0.015
 
 @dataclass(frozen=True, slots=True)
 class Side:
-    """Motion at the edge of a gap, in cycles and rows: place, speed, half the acceleration, largest misfit."""
+    """Motion at the edge of a gap, in cycles and rows: place, speed, half the acceleration, worst misfit."""
 
     place: float
     speed: float
@@ -65,7 +65,7 @@ class Side:
 
 @dataclass(frozen=True, slots=True)
 class Bridge:
-    """A gap and what its sides tell; in cycles, `reach` being H, `off` r and `between` the error in the gap."""
+    """A gap and what its sides say, in cycles: `reach` is H, `off` is r, `between` the error in the gap."""
 
     travel: float
     off: float
@@ -75,7 +75,7 @@ class Bridge:
 
     @property
     def certain(self) -> bool:
-        """Whether only one number of whole cycles can be meant, and the way between is known."""
+        """Whether only one number of whole cycles is possible, and the way between is known."""
         sure = self.reach < 1 - abs(self.off) - COUNT_MARGIN
         return sure and self.between < BETWEEN_CYCLES and self.misfit < ROUGH_CYCLES
 
@@ -89,7 +89,7 @@ def side(cycles: Array, at: int) -> Side:
 
 
 def bridge(before: Side, after: Side, rows: int, acceleration: float) -> Bridge:
-    """What two sides tell of a gap of so many rows; the acceleration in cycles per row²."""
+    """A gap of this many rows between two sides; the acceleration in cycles per row²."""
     travel = rows * (before.speed + after.speed) / 2 + rows**2 * (before.bend - after.bend) / 6
     off = after.place - before.place - travel
     off -= round(off)
@@ -105,9 +105,7 @@ def bridge(before: Side, after: Side, rows: int, acceleration: float) -> Bridge:
 
 
 def longest_s(acceleration_mm_s2: float, cycles_per_mm: float) -> float:
-    """The longest gap whose count is certain where both sides agree, filter included, s: A T² / 4 = 0.9
-    cycle.
-    """
+    """The longest gap with a certain count if both sides agree, with filter, s: A T² / 4 = 0.9 cycle."""
     return float(np.sqrt(4 * (1 - COUNT_MARGIN) / (acceleration_mm_s2 * cycles_per_mm)))
 
 
@@ -121,9 +119,7 @@ def filled(before: Side, after: Side, travel: float, rows: int) -> Array:
 
 
 def under_way(rows: Phases, discriminator: Discriminator) -> Array:
-    """Count the first rows of a tape taken up in the middle of a motion, whose speed they tell; where it
-    starts.
-    """
+    """Count the first rows of a tape that begins in the middle of a motion; the start places, cycles."""
     places = np.zeros(rows.cycles.shape[1])
     for axis in range(rows.cycles.shape[1]):
         first = side(np.unwrap(rows.cycles[:SIDE_ROWS, axis], period=1.0), 0)
@@ -139,13 +135,13 @@ def _count_on(
     cycles: Array,
     surprise: NDArray[np.float32],
 ) -> None:
-    """Count an axis anew from a place on to the last row that the discriminator has given."""
+    """Count an axis anew from a place on to the discriminator's last row."""
     state = np.array([at.place - at.speed + at.bend, at.speed - 2 * at.bend, at.bend])
     discriminator.state[axis] = recount(cycles, discriminator.gains, state, surprise)
 
 
 class Gaps:
-    """Bridges the gaps of one tape; holds back what the next rows may still show to be lost."""
+    """Bridges the gaps of one tape; holds rows back that the next rows may show to be lost."""
 
     def __init__(
         self,
@@ -181,7 +177,7 @@ class Gaps:
     def feed(
         self, phases: Phases, *, last: bool = False
     ) -> tuple[Phases, tuple[int, Fault] | None]:
-        """Take the next rows; those that are certain by now, and the first that is not, with its fault."""
+        """Take the next rows; the rows that are certain now, and the first that is not, with its fault."""
         lost = np.zeros((len(phases), len(self._levels)), bool)
         share = 1 - np.exp(-1 / (STEADY_S * self._rate_hz))
         _mark(
@@ -205,9 +201,7 @@ class Gaps:
     def _bridge_all(
         self, rows: Phases, ready: int, last: bool
     ) -> tuple[int, tuple[int, Fault] | None]:
-        """Bridge the gaps of all axes; how many rows are certain then, and the fault that ends the tape
-        there.
-        """
+        """Bridge the gaps of all axes; the number of certain rows, and the fault that ends the tape there."""
         first: tuple[int, Fault] | None = None
         for axis in range(len(self._names)):
             for a, b in self._gaps_of(axis):
@@ -231,7 +225,7 @@ class Gaps:
         return ready, first
 
     def _gaps_of(self, axis: int) -> list[tuple[int, int]]:
-        """First and last row (past it) of each gap of an axis; gaps with too little between them are one."""
+        """First and last row (past it) of each gap of an axis; gaps close to each other are one."""
         lost = np.flatnonzero(self._lost[:, 0] | self._lost[:, axis + 1])
         if not len(lost):
             return []
@@ -272,20 +266,21 @@ class Gaps:
         track = 0 if self._lost[at, 0] else axis + 1
         name = "reference" if track == 0 else self._names[track - 1].upper()
         return TapeFault(
-            f"track {track + 1} ({name}) lost its carrier at {time_s:.3f} s, for more than {LONGEST_S * 1e3:g} ms or to "
+            f"track {track + 1} ({name}) lost its carrier at {time_s:.3f} s, for more than "
+            f"{LONGEST_S * 1e3:g} ms or to "
             f"the tape's end; record or copy the tape again",
             time_s=time_s,
         )
 
     def _uncertain(self, axis: int, place: float, time_s: float, gap_s: float) -> LockFault:
-        """The fault of a gap over which cycles may have been lost; `place` is the last certain one, in
-        cycles.
-        """
+        """The fault of a gap with an uncertain count; `place` is the last certain one, cycles."""
         name, position_mm = self._names[axis], self._place_mm(axis, place)
         return LockFault(
             f"{name.upper()} was lost for {gap_s * 1e3:.1f} ms at {time_s:.3f} s, last certain position "
-            f"{position_mm:.3f} mm: how many cycles passed there is not certain; copy the tape again, mend it "
-            f"(morfax mend), or go on behind it from a position given by hand (--resume-at {time_s + gap_s + SIDE_S:.2f}s --from ...)",
+            f"{position_mm:.3f} mm: how many cycles passed there is not certain; copy the tape "
+            "again, mend it "
+            "(morfax mend), or go on behind it from a position given by hand (--resume-at "
+            f"{time_s + gap_s + SIDE_S:.2f}s --from ...)",
             axis=name,
             time_s=time_s,
             error_cycles=float("nan"),

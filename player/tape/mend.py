@@ -46,9 +46,7 @@ Gap = tuple[int, int]  # first row, axis
 
 @dataclass(frozen=True, slots=True)
 class Mend:
-    """A dropout at which the player would have stopped: where, whole cycles put back, how far the way in it
-    may be off.
-    """
+    """A dropout that would have stopped the player: time, whole cycles put back, largest error within it."""
 
     axis: str
     time_s: float
@@ -77,9 +75,7 @@ def mend(
     acceleration_mm_s2: float | None = None,
     progress: Progress | None = None,
 ) -> Mended:
-    """Mend a tape; raises TapeFault where it cannot be known what was lost, and what playing and recording
-    raise.
-    """
+    """Mend a tape; raises TapeFault if the loss cannot be known, and the faults of playing and recording."""
     by_hand = {
         "reference_hz": reference_hz,
         "cycles_per_mm": cycles_per_mm,
@@ -91,7 +87,8 @@ def mend(
     fmt, reader = playback.format, playback.reader
     if fmt.end_mm is None:
         raise TapeFault(
-            f"{file} does not state where it ends, so nothing tells what was lost; if its program returns to its start, say so "
+            f"{file} does not state where it ends, so nothing tells what was lost; if its program "
+            "returns to its start, say so "
             f"(--closed)"
         )
     reader.told = {}
@@ -110,9 +107,7 @@ def mend(
 
 
 def _mend(gap: Gap, found: Bridge, cycles: int, fmt: TapeFormat) -> Mend:
-    """What was made of a dropout; a motion of acceleration A between the same ends may swing out by A T² /
-    16.
-    """
+    """The mend of a dropout; a motion of acceleration A in it may swing out by A T² / 16."""
     unknown_cycles = abs(found.off + cycles) / 2 + found.reach / 4
     return Mend(
         fmt.axes[gap[1]], gap[0] / fmt.motion_rate_hz, cycles, unknown_cycles * fmt.mm_per_cycle
@@ -120,7 +115,7 @@ def _mend(gap: Gap, found: Bridge, cycles: int, fmt: TapeFormat) -> Mend:
 
 
 def _read(playback: Playback) -> Iterator[tuple[int, Array]]:
-    """What the tape says, blocks of places in mm with their first row; raises the tape's faults."""
+    """Read the tape: blocks of places in mm with their first row; raises the tape's faults."""
     place_mm, fmt = playback.start_mm.copy(), playback.format
     for phases, bearings, fault in playback.reader.read(lambda: place_mm.tolist()):
         fault = bearings.first_fault(phases, fmt.motion_rate_hz, place_mm.tolist()) or fault
@@ -135,7 +130,7 @@ def _read(playback: Playback) -> Iterator[tuple[int, Array]]:
 
 
 def _end_mm(playback: Playback) -> Array:
-    """Where the tape ends, mm."""
+    """The stated end of the tape, mm."""
     rows = max(round(END_S * playback.format.motion_rate_hz), 1)
     last = np.zeros((0, len(playback.format.axes)))
     for _, places_mm in _read(playback):
@@ -144,7 +139,7 @@ def _end_mm(playback: Playback) -> Array:
 
 
 def _motion(playback: Playback) -> Iterator[Motion]:
-    """The motion between the standstills at both ends, which the recorder makes anew."""
+    """The motion between the standstills at both ends; the recorder makes the standstills anew."""
     fmt, rate_hz = playback.format, playback.format.motion_rate_hz
     still = round((1 - KEPT_DWELL) * fmt.dwell_s * rate_hz)
     end = -(-playback.frames // fmt.samples_per_motion) - still
@@ -155,7 +150,7 @@ def _motion(playback: Playback) -> Iterator[Motion]:
 
 
 def _lost(doubtful: dict[Gap, Bridge], missing: Array, fmt: TapeFormat) -> dict[Gap, int]:
-    """Whole cycles to put back at each doubtful dropout; raises TapeFault or LockFault where it is not known."""
+    """Whole cycles to put back at each doubtful dropout; raises TapeFault or LockFault if unknown."""
     told: dict[Gap, int] = {}
     for axis, cycles in enumerate(missing.tolist()):
         gaps = [gap for gap in sorted(doubtful) if gap[1] == axis]
@@ -181,7 +176,7 @@ def _candidates(found: Bridge) -> range:
 
 
 def _sets(candidates: list[range], total: int) -> list[tuple[int, ...]]:
-    """Sets of one number from each range with this sum; two at most, as more say no more."""
+    """Sets of one number from each range with this sum; at most two, as two are ambiguous already."""
     if not candidates:
         return [()] if total == 0 else []
     found: list[tuple[int, ...]] = []
@@ -206,9 +201,15 @@ def _unknown(
         ", ".join(f"{time_s:.3f} s" for time_s in times_s[:6]),
     )
     if sets and not cycles:
-        why = f"where it should, but what one of the {len(times_s)} dropouts at {places} lost another may have put back"
+        why = (
+            f"where it should, but what one of the {len(times_s)} dropouts at {places} lost another may "
+            "have put back"
+        )
     elif sets:
-        why = f"{cycles:+d} cycles off, and the {len(times_s)} dropouts at {places} could have lost them in more than one way"
+        why = (
+            f"{cycles:+d} cycles off, and the {len(times_s)} dropouts at {places} could have lost them "
+            "in more than one way"
+        )
     elif times_s:
         why = f"{cycles:+d} cycles off, and the dropouts at {places} are too short for it"
     else:
@@ -219,7 +220,8 @@ def _unknown(
 def _not_whole(axis: int, cycles: float, fmt: TapeFormat) -> LockFault:
     """The fault of an end that is off by more than whole cycles."""
     return LockFault(
-        f"{fmt.axes[axis].upper()} ends {cycles:+.2f} cycles off, which is no whole number within {END_CYCLES:g}: more than "
+        f"{fmt.axes[axis].upper()} ends {cycles:+.2f} cycles off, which is no whole number within "
+        f"{END_CYCLES:g}: more than "
         f"cycles was lost, or it is cut short; get another copy",
         axis=fmt.axes[axis],
         time_s=0.0,

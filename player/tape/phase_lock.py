@@ -16,7 +16,7 @@ the complex frequency:
     PI      u = K (w + a ∫ w dt)                     mm/s, demand to the motor
     motor   x = u / (s (1 + T s))
 
-    loop    s² (1 + s/b) + K (s + a) = 0             type 2: standing errors at rest and at constant speed are zero,
+    loop    s² (1 + s/b) + K (s + a) = 0          type 2: no standing error at rest or at constant speed,
                                                      and at constant acceleration  e = acceleration / (K a)
 
 K, a and b are placed so that the loop has the pair of poles (natural frequency, damping) and a third real one
@@ -80,11 +80,11 @@ class PhaseLock:
     drive: Drive = ELECTRIC
 
     def suited_to(self, rate_hz: float) -> PhaseLock:
-        """The settings for a motion rate: where that is low the loop is slower, 20 steps to a natural period."""
+        """The settings for a motion rate: at a low one the loop is slower, 20 steps to a natural period."""
         return replace(self, natural_hz=min(self.natural_hz, rate_hz / STEPS_PER_PERIOD))
 
     def poles(self, dt_s: float) -> Array:
-        """Where the stepped loop's three poles shall lie."""
+        """The three poles of the stepped loop."""
         natural = 2 * math.pi * self.natural_hz * dt_s
         pair = natural * (-self.damping + 1j * cmath.sqrt(1 - self.damping**2))
         other = natural * (-self.damping - 1j * cmath.sqrt(1 - self.damping**2))
@@ -98,7 +98,7 @@ MOTORS = {"electric": PhaseLock(), "hydraulic": PhaseLock(natural_hz=60.0, drive
 
 @dataclass(frozen=True, slots=True)
 class Network:
-    """Amplifier 161 and integrator 159 as stepped: gain in mm/s per mm, lead (zero and pole), zero of the PI."""
+    """Amplifier 161 and integrator 159, stepped: gain in mm/s per mm, lead (zero, pole), zero of the PI."""
 
     gain: float
     zero: float
@@ -107,9 +107,7 @@ class Network:
 
 
 def place(settings: PhaseLock, dt_s: float) -> Network:
-    """Solve the loop equation for the poles asked for; raises ValueError where the motion rate is too low for
-    them.
-    """
+    """Solve the loop equation for these poles; raises ValueError if the motion rate is too low."""
     if not 0 < settings.natural_hz * dt_s * FEWEST_STEPS <= 1:
         raise ValueError(
             f"a loop of {settings.natural_hz:g} Hz cannot be stepped at {1 / dt_s:g} Hz; "
@@ -124,9 +122,7 @@ def place(settings: PhaseLock, dt_s: float) -> Network:
 
 
 class Drives:
-    """The axis drives of a machine; state is carried from block to block. `steps`: of the loop from row to
-    row.
-    """
+    """The axis drives; state is carried from block to block. `steps`: loop steps from row to row."""
 
     def __init__(
         self,
@@ -156,9 +152,7 @@ class Drives:
         self.conditions = [SOUND] * axes
 
     def follow(self, cycles: Array) -> Array:
-        """Displacements (n, axes) in mm for phases (n, axes); fewer rows where a drive left the decoder's
-        range.
-        """
+        """Displacements (n, axes) in mm for phases (n, axes); fewer rows if a drive left the range."""
         cycles = self._between(np.ascontiguousarray(cycles, dtype=np.float64))
         moved = np.empty_like(cycles)
         range_mm = self.settings.range_cycles * self._mm_per_cycle
@@ -176,7 +170,7 @@ class Drives:
         return moved[self._steps - 1 : rows : self._steps]
 
     def _between(self, cycles: Array) -> Array:
-        """The phases at each step of the loop, straight from row to row."""
+        """The phases at each step of the loop, interpolated from row to row."""
         if self._steps == 1 or not len(cycles):
             return cycles
         before, self._last = np.vstack([self._last, cycles[:-1]]), cycles[-1:]
@@ -186,9 +180,7 @@ class Drives:
         )
 
     def adjust(self, shift_mm: Array) -> None:
-        """Turn the phase changers 155 until the screws stand so far from where they did, while the tape
-        stands still.
-        """
+        """Turn the phase changers 155 until the screws stand this far from before; the tape stands still."""
         rate_hz = 1 / (self._dt_s * self._steps)
         way = positions_mm(np.zeros(len(shift_mm)), shift_mm, ADJUSTING_MM_S, rate_hz=rate_hz)
         still = np.repeat(way[-1:], round(SETTLING_S * rate_hz), axis=0)
@@ -196,13 +188,12 @@ class Drives:
 
     @property
     def error_mm(self) -> Array:
-        """What the comparators last saw, mm."""
+        """The comparators' last errors, mm."""
         return self._state[:, ERROR].copy()
 
 
 def following_limit(settings: PhaseLock, mm_per_cycle: float, rate_hz: float) -> FollowingLimit:
-    """The following error that a tape's speed explains: at each the largest of a sound drive turned round at
-    once.
+    """The following error that a speed explains: the largest of a sound drive turned round at once.
 
     No program whose axis runs at a speed can ask for a greater change than from there to as fast the other
     way. A rate is held for twice the time in which the motor stops out of the fastest speed that it can be
@@ -228,7 +219,7 @@ def following_limit(settings: PhaseLock, mm_per_cycle: float, rate_hz: float) ->
 
 @njit(cache=True, nogil=True)
 def _follow(cycles, scale, network, drive, conditions, state, moved_mm):  # type: ignore[no-untyped-def]
-    """Step all axes through a block; the number of rows done before an error was out of range."""
+    """Step all axes through a block; the rows done before an error was out of range."""
     mm_per_cycle, range_mm, dt_s, back = scale
     gain, zero, lead_zero, lead_pole = network
     reach = (

@@ -55,8 +55,7 @@ def play(
     zero_mm: Sequence[float] = (),
     override: float = 1.0,
 ) -> Playback:
-    """Put a tape in the machine; what is given by hand goes before its text chunk. Raises TapeFault,
-    FileFault.
+    """Put a tape in the machine; values given by hand override its text chunk. Raises TapeFault, FileFault.
 
     `order`: on which tracks of the file reference, X, Y … are. `closed`: it returns to its start, if it does
     not say where it ends.
@@ -105,9 +104,7 @@ def play_pipe(
     closed: bool = False,
     samples: Samples | None = None,
 ) -> Playback:
-    """Put a tape that comes through a pipe in the machine, as it comes; it can be played once. Raises
-    TapeFault.
-    """
+    """Put a tape from a pipe in the machine; it can be played once. Raises TapeFault."""
     start = None if start_mm is None else tuple(start_mm)
     pipe = Pipe.open(
         stream,
@@ -128,7 +125,7 @@ def _ending(fmt: TapeFormat, closed: bool) -> TapeFormat:
 def _check_resumption(
     resume_at_s: float, start_mm: Sequence[float] | None, duration_s: float
 ) -> None:
-    """Raise ValueError for a tape time from which a tape cannot be gone on with."""
+    """Raise ValueError for a tape time at which a tape cannot be resumed."""
     if not 0 <= resume_at_s < duration_s:
         raise ValueError(
             f"the tape cannot be resumed at {resume_at_s:g} s; it lasts from 0 to {duration_s:.3f} s"
@@ -188,18 +185,16 @@ class Playback(Supervised):
 
     @property
     def bridged(self) -> dict[tuple[float, str], float]:
-        """Dropouts that were ridden over, the last time through: tape time in s and axis, and length in s."""
+        """Dropouts bridged in the last run: tape time in s and axis, and length in s."""
         return self.reader.bridged
 
     @property
     def duration_s(self) -> float:
-        """How long the tape runs, s."""
+        """Running time of the tape, s."""
         return self.frames / self.format.sample_rate_hz / self.setting.override
 
     def __iter__(self) -> Iterator[Motion]:
-        """Play: the motion in blocks; raises TapeFault, LockFault or FollowingFault after the last sample
-        that was right.
-        """
+        """Play: the motion in blocks; raises TapeFault, LockFault, FollowingFault after its last sample."""
         fmt = self.format
         drives = Drives(
             len(fmt.axes), fmt.mm_per_cycle, self.rate_hz, self.settings, steps=self._steps
@@ -232,9 +227,7 @@ class Playback(Supervised):
         self._check_end()
 
     def _motion(self, places_mm: Array, first_row: int) -> Motion:
-        """A block of positions: X, Y, Z and what other axes the tape has; an axis without a track stands at
-        0.
-        """
+        """A block of positions: X, Y, Z and further axes of the tape; an axis without a track stands at 0."""
         rate_hz, names = self.rate_hz, self.format.axes
         if tuple(names[: len(AXES)]) == AXES:
             return Motion(places_mm, rate_hz, first_row / rate_hz, names)
@@ -253,9 +246,12 @@ class Playback(Supervised):
             float(self.end_mm[axis]),
         )
         return LockFault(
-            f"the drive of {name.upper()} lost its lock at {time_s:.3f} s, position {position_mm:.3f} mm: error "
-            f"{error_cycles:+.2f} cycles, allowed ±{self.settings.range_cycles:g}; the tape asks for more than "
-            f"{drive.acceleration_mm_s2:g} mm/s² or {drive.top_speed_mm_s:g} mm/s: play it slower, or record it smoother",
+            f"the drive of {name.upper()} lost its lock at {time_s:.3f} s, position "
+            f"{position_mm:.3f} mm: error "
+            f"{error_cycles:+.2f} cycles, allowed ±{self.settings.range_cycles:g}; the tape asks "
+            "for more than "
+            f"{drive.acceleration_mm_s2:g} mm/s² or {drive.top_speed_mm_s:g} mm/s: play it slower, "
+            "or record it smoother",
             axis=name,
             time_s=time_s,
             error_cycles=error_cycles,
@@ -263,9 +259,7 @@ class Playback(Supervised):
         )
 
     def _check_end(self) -> None:
-        """Compare where the machine stands with what the tape says; raises LockFault beyond a quarter of a
-        cycle.
-        """
+        """Compare the machine's end with the tape's; raises LockFault beyond a quarter of a cycle."""
         fmt = self.format
         if fmt.end_mm is None:
             return
@@ -275,8 +269,10 @@ class Playback(Supervised):
         if abs(error_mm) * fmt.cycles_per_mm <= END_CYCLES:
             return
         raise LockFault(
-            f"{fmt.axes[axis].upper()} ends at {position_mm:.3f} mm, {error_mm:+.3f} mm from the end that the tape "
-            f"states; allowed ±{END_CYCLES * fmt.mm_per_cycle:g} mm; cycles were lost, or it is cut short: get another",
+            f"{fmt.axes[axis].upper()} ends at {position_mm:.3f} mm, {error_mm:+.3f} mm from the "
+            "end that the tape "
+            f"states; allowed ±{END_CYCLES * fmt.mm_per_cycle:g} mm; cycles were lost, or it is cut "
+            "short: get another",
             axis=fmt.axes[axis],
             time_s=self._rows / fmt.motion_rate_hz,
             error_cycles=error_mm * fmt.cycles_per_mm,

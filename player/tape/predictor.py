@@ -37,9 +37,7 @@ def predictor_gains(rate_hz: float, natural_hz: float = PREDICTOR_HZ) -> Float64
 
 
 def recount(phase: Float64s, gains: Float64s, state: Float64s, surprise: Float32s) -> Float64s:
-    """Count the phases of an axis anew from a state (place, speed, bend); they and the surprise are written
-    over.
-    """
+    """Count the phases of an axis anew, in place, from a state (place, speed, bend)."""
     turns, states = np.ascontiguousarray(phase)[None], state[None].copy()
     counted, told = np.empty((len(phase), 1)), np.empty((len(phase), 1), np.float32)
     count_turns(turns, gains, states, counted, told)
@@ -49,8 +47,7 @@ def recount(phase: Float64s, gains: Float64s, state: Float64s, surprise: Float32
 
 @njit(cache=True, nogil=True)
 def count_turns(phase, gains, state, cycles, surprise):  # type: ignore[no-untyped-def]
-    """Count the phases (axes, n) on by the predictor; `state` (axes: cycles, cycles/row, half of cycles/row²)
-    is carried.
+    """Count the phases (axes, n) on; `state` (axes: cycles, cycles/row, half of cycles/row²) is carried.
 
     All axes row by row: each waits for its own last row, and they can wait together.
     """

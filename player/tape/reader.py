@@ -60,8 +60,7 @@ class Reader:
         self.doubtful: dict[tuple[int, int], Bridge] = {}
 
     def read(self, stands_mm: Callable[[], Sequence[float]]) -> Iterator[Read]:
-        """Rows, bearings, and the row of the block from which nothing is certain; `stands_mm`: where the
-        machine is.
+        """Rows, bearings, and the first uncertain row of a block; `stands_mm`: the machine's place.
 
         Raises TapeFault where the tape is none, or its reference is on another track.
         """
@@ -112,7 +111,7 @@ class Reader:
     def _bearings(
         self, first: NDArray[np.float32], start: Phases, discriminator: Discriminator
     ) -> Bearings:
-        """What the first block tells; on the way the zero is where the machine is said to stand."""
+        """The bearings from the first block; on a resumed tape the zero is the machine's stated place."""
         fmt = self._format
         if self._resume_at_s:
             places = under_way(start, discriminator)
@@ -124,7 +123,7 @@ class Reader:
         return bearings
 
     def _gaps(self, discriminator: Discriminator, bearings: Bearings) -> Gaps:
-        """What bridges the dropouts of this tape."""
+        """The bridge builder for the dropouts of this tape."""
         fmt, start_mm = self._format, self._start_mm
 
         def place_mm(axis: int, cycles: float) -> float:
@@ -146,12 +145,12 @@ class Reader:
         return gaps
 
     def _time_s(self, phases: Phases) -> float:
-        """Tape time at the end of some rows, s."""
+        """Tape time after some rows, s."""
         return (phases.first_row + len(phases)) / self._format.motion_rate_hz
 
 
 def _too_short(frames: int, filter_frames: int) -> TapeFault:
-    """The fault of a tape that ends before it has begun."""
+    """The fault of a tape without enough frames for a single row."""
     return TapeFault(
         f"the tape ends after {frames} frames; it must be longer than the discriminator's filter, "
         f"{filter_frames} frames; record it again"

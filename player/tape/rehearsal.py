@@ -4,8 +4,8 @@ cannot be played.
 Signals in: the blocks of a motion that is to be recorded, mm. Signals out: the same blocks; a fault where the
 tape could not be read; and, told at the end, where a drive could not follow it.
 
-    motion ──► cycles ──┬──► predictor ──► jumps (bearings.py), shaking (watch.py)    no player reads such a tape: a fault
-                        └──► axis drives ──► lock lost (phase_lock.py)                at another feed override it may be followed
+    motion ──► cycles ──┬──► predictor ──► jumps, shaking (watch.py)      no player reads such a tape: a fault
+                        └──► axis drives ──► lock lost (phase_lock.py)    followed perhaps at another override
 
 Source: our own. Questions: the tape's filter rounds a jump a little, so it is found here at speeds up to 0.5
 % lower; noise, which no rehearsal knows, comes on top.
@@ -35,7 +35,7 @@ WITHIN_ROWS = 16  # of the motion: a jump surprises most within these
 
 @dataclass(frozen=True, slots=True)
 class Unfollowed:
-    """Where a drive would lose its lock: axis, time in the motion, s, and place, mm."""
+    """The place where a drive would lose its lock: axis, time in the motion in s, place in mm."""
 
     axis: str
     time_s: float
@@ -43,7 +43,7 @@ class Unfollowed:
 
 
 class Rehearsal:
-    """Rehearses one motion for a tape of a format; `unfollowed` is where a drive would lose its lock."""
+    """Rehearses one motion for a tape of a format; `unfollowed` is the first loss of lock."""
 
     def __init__(self, fmt: TapeFormat, settings: PhaseLock | None = None) -> None:
         rate_hz, axes = fmt.motion_rate_hz, len(fmt.axes)
@@ -60,9 +60,7 @@ class Rehearsal:
         self.unfollowed: Unfollowed | None = None
 
     def of(self, stream: Iterable[Motion]) -> Iterator[Motion]:
-        """Pass the blocks of a motion on; raises MotionFault after one in which a tape could not be read,
-        which the recorder has checked by then.
-        """
+        """Pass the blocks of a motion on; raises MotionFault behind a block that no player could read."""
         for block in stream:
             yield block
             self._run(np.asarray(block.positions_mm, np.float64))
@@ -98,7 +96,8 @@ class Rehearsal:
         )  # the first one stands
         by_mm_s = float(np.ptp(speeds))
         raise self._fault(
-            f"changes its speed by {by_mm_s:.3g} mm/s at once, and a tape can be read up to {self._largest_jump_mm_s:.3g} mm/s: "
+            f"changes its speed by {by_mm_s:.3g} mm/s at once, and a tape can be read up to "
+            f"{self._largest_jump_mm_s:.3g} mm/s: "
             "run it slower, or round the corner",
             (row, axis),
             positions_mm,
@@ -106,9 +105,7 @@ class Rehearsal:
         )
 
     def _refuse_shaking(self, positions_mm: Array, surprise: NDArray[np.float32]) -> None:
-        """Raise MotionFault where an axis shakes so that it is taken for noise, wherever the player's windows
-        begin.
-        """
+        """Raise MotionFault for an axis that shakes like noise, wherever the player's windows begin."""
         held, window = len(self._shown), shake_rows(self._format.motion_rate_hz)
         self._shown, step, first = (
             np.vstack([self._shown, np.abs(surprise)]),
@@ -121,8 +118,10 @@ class Rehearsal:
             if self._loud.max() >= WINDOWS:
                 axis = int(np.argmax(self._loud))
                 raise self._fault(
-                    f"shakes by {shakes[axis]:.4f} cycle, as the stairs of stepping motors or a tight bend at speed do, and "
-                    f"from {SHAKE_CYCLES:g} on a player takes that for noise: run it slower or smoother, or record the path from "
+                    f"shakes by {shakes[axis]:.4f} cycle, as the stairs of stepping motors or a "
+                    "tight bend at speed do, and "
+                    f"from {SHAKE_CYCLES:g} on a player takes that for noise: run it slower or "
+                    "smoother, or record the path from "
                     "which it was made",
                     (max(first - held, 0), axis),
                     positions_mm,
@@ -144,7 +143,7 @@ class Rehearsal:
 
     @property
     def _largest_jump_mm_s(self) -> float:
-        """The change of speed that surprises the predictor by just as much as is allowed, mm/s."""
+        """The largest change of speed that the predictor's limit lets through, mm/s."""
         fmt, ramp = self._format, 1e-3 * np.arange(200.0)[None]  # cycles a row
         surprise = np.empty((ramp.shape[1], 1), np.float32)
         count_turns(ramp, self._gains, np.zeros((1, 3)), np.empty(surprise.shape), surprise)

@@ -3,8 +3,8 @@ tape.
 
 Signals: none; machine.py plays by it.
 
-    zero        a phase added in front of the comparator of an axis: its screw stands zero mm from where the tape has it
-    override    the tape runs so many times as fast, and with it the sector wheels and the screws, along the same path;
+    zero        a phase added before an axis' comparator: its screw stands this far off the tape's place
+    override    the tape runs this many times as fast, with sector wheels and screws, along the same path;
                 the drives stay what they are, so what is too fast for them is a fault
 
 Source: patent ES 361967, figure 5 (phase changer 155 "for the adjustment of the zero", motor 163 electric or
@@ -29,7 +29,7 @@ LARGEST_ZERO_MM = 1000.0
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """Drives, zeros in mm in the order of the axes (what is not given is 0), and the override."""
+    """Drives, zeros in mm in the order of the axes (missing ones are 0), and the override."""
 
     lock: PhaseLock = MOTORS["electric"]
     zero_mm: tuple[float, ...] = ()
@@ -48,7 +48,7 @@ class Setting:
             )
 
     def zeros_mm(self, axes: Sequence[str]) -> NDArray[np.float64]:
-        """The zero of every axis, mm; raises ValueError for more of them than there are axes."""
+        """The zero of every axis, mm; raises ValueError for more zeros than axes."""
         if len(self.zero_mm) > len(axes):
             raise ValueError(
                 f"a zero of {len(self.zero_mm)} places does not fit; the tape has {len(axes)} axes"

@@ -4,10 +4,10 @@ Signals in: the first frames of the tape (n, tracks) and the first rows of the d
 rows. Out: level of each track (amplitude, full scale 1), frequency of the reference (Hz), zero of each axis
 (cycles); later the first row that cannot be trusted, with its fault.
 
-    zero of an axis = mean of its phase over the first 50 ms   (phase changer 155, turned until the drive stands)
+    zero of an axis = mean of its phase over the first 50 ms   (phase changer 155, until the drive stands)
 
-A track that starts at another phase, by another head or by skew that stands still, has thereby only another
-zero. A tape is refused when a track is silent or has no carrier, or when the strongest tone of track 1 is not
+A track that starts at another phase, by another head or by constant skew, only has another zero. A tape is
+refused when a track is silent or has no carrier, or when the strongest tone of track 1 is not
 the reference. A row cannot be trusted when a phase lies a quarter of a cycle or more from where its motion
 was taking it (beyond half a cycle it would be counted as another turn). What a lost level means is in
 dropouts.py.
@@ -56,7 +56,7 @@ Float64s = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Bearings:
-    """What the tracks are like at standstill; `names` are those of the axes."""
+    """The tracks at standstill; `names` are those of the axes."""
 
     levels: Float64s
     zero_cycles: Float64s
@@ -66,9 +66,7 @@ class Bearings:
     def first_fault(
         self, phases: Phases, rate_hz: float, positions_mm: Sequence[float]
     ) -> tuple[int, Fault] | None:
-        """The first row of a block that no motion explains, and why; the screws stood at `positions_mm`
-        before it.
-        """
+        """The first row that no motion explains, and its fault; the screws stood at `positions_mm`."""
         jumped = ~(np.abs(phases.surprise) < SURPRISE_CYCLES)
         if not jumped.any():
             return None
@@ -81,8 +79,10 @@ class Bearings:
     def _jump(self, axis: int, surprise: float, time_s: float, position_mm: float) -> LockFault:
         """The fault of a phase that no motion explains."""
         return LockFault(
-            f"the phase of {self.names[axis].upper()} jumps by {surprise:+.2f} cycle at {time_s:.3f} s, position "
-            f"{position_mm:.3f} mm; {SURPRISE_CYCLES:g} is allowed; look for a splice, dropout or sudden stop there",
+            f"the phase of {self.names[axis].upper()} jumps by {surprise:+.2f} cycle at "
+            f"{time_s:.3f} s, position "
+            f"{position_mm:.3f} mm; {SURPRISE_CYCLES:g} is allowed; look for a splice, dropout or "
+            "sudden stop there",
             axis=self.names[axis],
             time_s=time_s,
             error_cycles=surprise,
@@ -91,9 +91,7 @@ class Bearings:
 
 
 def take_bearings(frames: Float32s, phases: Phases, fmt: TapeFormat) -> Bearings:
-    """Bearings from the first frames and rows of a tape; raises TapeFault where a track or the reference is
-    missing.
-    """
+    """Bearings from the first frames and rows; raises TapeFault if a track or the reference is missing."""
     names, reference_hz = fmt.axes, fmt.reference_hz
     still = frames[: round(STANDSTILL_S * fmt.sample_rate_hz)]
     power = np.var(still, axis=0, dtype=np.float64)  # without a DC offset
@@ -103,7 +101,8 @@ def take_bearings(frames: Float32s, phases: Phases, fmt: TapeFormat) -> Bearings
     if not abs(found_hz / reference_hz - 1) <= REFERENCE_BAND:
         raise TapeFault(
             f"track 1 carries {found_hz:.0f} Hz where the reference of {reference_hz:g} Hz should be, within "
-            f"{REFERENCE_BAND:.0%}; give the tape's own (--reference-frequency {found_hz:.0f}Hz), or its tracks in order"
+            f"{REFERENCE_BAND:.0%}; give the tape's own (--reference-frequency {found_hz:.0f}Hz), or its "
+            "tracks in order"
         )
     rows = max(round(STANDSTILL_S * fmt.motion_rate_hz), 1)
     levels = phases.levels[:rows].astype(np.float64).mean(axis=0)
@@ -130,7 +129,7 @@ def take_bearings(frames: Float32s, phases: Phases, fmt: TapeFormat) -> Bearings
 
 
 def _standing(cycles: Float64s, zero: Float64s, fmt: TapeFormat, least: int) -> int:
-    """Rows of the standstill at the start, as far as it is stated and all axes stay near their zero."""
+    """Rows of the standstill at the start, as long as all axes stay near their zero."""
     stated = cycles[: round(0.9 * fmt.dwell_s * fmt.motion_rate_hz)]
     if len(stated) < least:
         return 0
@@ -144,35 +143,35 @@ def _standing(cycles: Float64s, zero: Float64s, fmt: TapeFormat, least: int) -> 
 
 
 def _demand_standstill(cycles: Float64s, names: Sequence[str]) -> None:
-    """Raise TapeFault where a tape that states a standstill starts under way: where it starts from is not
-    known.
-    """
+    """Raise TapeFault for a tape that states a standstill and starts under way."""
     moved = np.ptp(cycles, axis=0)
     axis = int(np.argmax(moved))
     if moved[axis] >= STANDSTILL_CYCLES:
         raise TapeFault(
-            f"the tape starts while {names[axis].upper()} moves, and states a standstill: its start is missing, so where "
-            f"it starts from is not known; get the whole tape, or go on from a place (--resume-at 0.1s --from X,Y,Z)"
+            f"the tape starts while {names[axis].upper()} moves, and states a standstill: its start "
+            "is missing, so where "
+            "it starts from is not known; get the whole tape, or go on from a place (--resume-at "
+            "0.1s --from X,Y,Z)"
         )
 
 
 def _demand_steady(standing: Float64s, names: Sequence[str]) -> None:
-    """Raise TapeFault where the phases of a standing machine swing so far that no position is certain."""
+    """Raise TapeFault for phases that swing too far at standstill for a certain position."""
     swing = (
         np.diff(np.percentile(standing, [2.3, 97.7], axis=0), axis=0)[0] / 4
     )  # dropouts left out
     axis = int(np.argmax(swing))
     if not swing[axis] <= UNSTEADY_CYCLES:
         raise TapeFault(
-            f"the phase of {names[axis].upper()} swings by {swing[axis]:.3f} cycle (RMS) at standstill, at most "
-            f"{UNSTEADY_CYCLES:g} is allowed: noise, crosstalk or tape that weaves; copy the tape on a better machine"
+            f"the phase of {names[axis].upper()} swings by {swing[axis]:.3f} cycle (RMS) at "
+            "standstill, at most "
+            f"{UNSTEADY_CYCLES:g} is allowed: noise, crosstalk or tape that weaves; copy the tape "
+            "on a better machine"
         )
 
 
 def evened(phases: Phases, fmt: TapeFormat) -> Phases:
-    """The rows with levels as they would be at standstill: those of a coil grow with the frequency of their
-    track.
-    """
+    """The rows with levels as at standstill: a coil's level grows with the frequency of its track."""
     if not fmt.sensor.by_speed or len(phases) < 2:
         return phases
     speed = np.gradient(phases.cycles, axis=0) * fmt.motion_rate_hz
@@ -183,9 +182,7 @@ def evened(phases: Phases, fmt: TapeFormat) -> Phases:
 
 
 def strongest_hz(samples: Float32s, sample_rate_hz: float) -> float:
-    """Frequency of the strongest tone in the first samples of a track, to a tenth of a line of the spectrum,
-    Hz.
-    """
+    """Frequency of the strongest tone in the first samples, true to a tenth of a spectral line, Hz."""
     samples = samples[:SPECTRUM_FRAMES]
     spectrum = np.abs(np.fft.rfft((samples - samples.mean()) * np.hanning(len(samples))))
     peak = min(max(int(np.argmax(spectrum)), 1), len(spectrum) - 2)
@@ -196,17 +193,17 @@ def strongest_hz(samples: Float32s, sample_rate_hz: float) -> float:
 
 
 def track_name(track: int, names: Sequence[str]) -> str:
-    """What a track carries."""
+    """The name of a track's signal."""
     return "reference" if track == 0 else names[track - 1].upper()
 
 
 def decibels(level: float) -> str:
-    """An amplitude against full scale, as text."""
+    """A level in dB of full scale, as text."""
     return f"{20 * math.log10(level):.0f} dB" if level > 0 else "none"
 
 
 def _zero(cycles: Float64s) -> Float64s:
-    """Phase at standstill, cycles; where an axis moves already, that of its first row."""
+    """Phase at standstill, cycles; for an axis that moves already, the phase of its first row."""
     stands = np.ptp(cycles, axis=0) < STANDSTILL_CYCLES
     return np.where(stands, cycles.mean(axis=0), cycles[0])
 
@@ -217,18 +214,21 @@ def _demand_signal(track: int, mean_square: float, names: Sequence[str]) -> None
     if not level >= SILENT_LEVEL:
         raise TapeFault(
             f"track {track + 1} ({track_name(track, names)}) is silent: level {decibels(level)}, at least "
-            f"{decibels(SILENT_LEVEL)} of full scale is needed; {'without the reference no place can be known: ' * (not track)}"
-            f"give a copy that has it, or say which tracks are reference, {', '.join(name.upper() for name in names)} (--tracks)"
+            f"{decibels(SILENT_LEVEL)} of full scale is needed; "
+            f"{'without the reference no place can be known: ' * (not track)}"
+            "give a copy that has it, or say which tracks are reference, "
+            f"{', '.join(name.upper() for name in names)} (--tracks)"
         )
 
 
 def _demand_round(track: int, samples: Float32s, names: Sequence[str]) -> None:
-    """Raise TapeFault for a track that is clipped so far that its harmonics fold back upon the carrier."""
+    """Raise TapeFault for a track so clipped that its harmonics fold back upon the carrier."""
     swing = samples - np.median(samples)
     crest = float(np.percentile(np.abs(swing), 98) / np.std(swing))
     if not crest >= LEAST_CREST:
         raise TapeFault(
-            f"track {track + 1} ({track_name(track, names)}) is clipped: its peak is {crest:.2f} of its root mean square, at "
+            f"track {track + 1} ({track_name(track, names)}) is clipped: its peak is {crest:.2f} of "
+            "its root mean square, at "
             f"least {LEAST_CREST:g} is needed; copy the tape again at a lower level"
         )
 
@@ -236,7 +236,7 @@ def _demand_round(track: int, samples: Float32s, names: Sequence[str]) -> None:
 def _demand_no_dropout(
     track: int, levels: Float32s, samples: Float32s, share: float, fmt: TapeFormat
 ) -> None:
-    """Raise TapeFault for a track that has a carrier, but not through all of the 50 ms."""
+    """Raise TapeFault for a track whose carrier drops out within the first 50 ms."""
     steady = levels > LEVEL_STEADY * np.percentile(levels, 90)
     edges = np.flatnonzero(np.diff(np.r_[False, steady, False]))
     if not len(edges) or float(levels.mean()) ** 2 / 2 >= share * float(
@@ -252,8 +252,10 @@ def _demand_no_dropout(
     if last - first < FEWEST_STEADY_ROWS or level**2 / 2 < share * power or not weak.any():
         return
     raise TapeFault(
-        f"track {track + 1} ({track_name(track, fmt.axes)}) has a dropout at {np.argmax(weak) / fmt.motion_rate_hz:.3f} s, within the "
-        f"first {STANDSTILL_S * 1e3:g} ms, from which its level and zero are told; copy the tape again, or go on behind it "
+        f"track {track + 1} ({track_name(track, fmt.axes)}) has a dropout at "
+        f"{np.argmax(weak) / fmt.motion_rate_hz:.3f} s, within the "
+        f"first {STANDSTILL_S * 1e3:g} ms, from which its level and zero are told; copy the tape "
+        "again, or go on behind it "
         f"(--resume-at 0.1s --from X,Y,Z)"
     )
 
@@ -265,6 +267,7 @@ def _demand_carrier(
     share = level**2 / 2 / mean_square
     if not share >= least:
         raise TapeFault(
-            f"track {track + 1} ({track_name(track, names)}) has no carrier: {share:.1%} of its power lies round the "
+            f"track {track + 1} ({track_name(track, names)}) has no carrier: {share:.1%} of its "
+            "power lies round the "
             f"reference, at least {least:.0%} is needed; this is no tape for it, or its reference is another"
         )

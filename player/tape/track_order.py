@@ -32,9 +32,7 @@ MOST_AXES = 6  # whose orders are gone through
 
 
 def found_order(tape: Tape) -> tuple[int, ...] | None:
-    """The tracks of the file on which reference, X, Y … are, if that is not their order; raises TapeFault if
-    it is not known.
-    """
+    """The tracks with reference, X, Y … if in another order than these; raises TapeFault if unknown."""
     fmt = tape.format
     watch: Watch | None = None
     time_s = 0.0
@@ -54,7 +52,7 @@ def found_order(tape: Tape) -> tuple[int, ...] | None:
 
 
 def _demand_tape(tape: Tape) -> None:
-    """Raise TapeFault unless every track carries what a tape does: of music too one track is the steadiest."""
+    """Raise TapeFault unless every track carries a tape signal; music has a steadiest track too."""
     fmt = tape.format
     frames = full_scale(next(tape.stored_blocks()))
     rows = Discriminator(
@@ -64,7 +62,7 @@ def _demand_tape(tape: Tape) -> None:
 
 
 def _by_the_end(tape: Tape, reference: int, fault: TapeFault) -> tuple[int, ...]:
-    """The one order of the other tracks that ends where the tape states; else the fault is raised."""
+    """The one order of the other tracks that ends at the stated place; else the given fault is raised."""
     fmt = tape.format
     others = [track for track in range(fmt.tracks) if track != reference]
     if fmt.end_mm is None or len(others) > MOST_AXES:
@@ -82,9 +80,7 @@ def _by_the_end(tape: Tape, reference: int, fault: TapeFault) -> tuple[int, ...]
 
 
 def _travelled(tape: Tape, reference: int, others: list[int]) -> Array:
-    """How far each of the other tracks goes against the reference from the start to the end of the tape,
-    cycles.
-    """
+    """Travel of each other track against the reference from start to end of the tape, cycles."""
     fmt = tape.format
     organ = Discriminator(
         fmt.sample_rate_hz, fmt.reference_hz, fmt.samples_per_motion, fmt.tracks

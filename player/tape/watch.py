@@ -2,13 +2,13 @@
 
 Signals in: blocks of frames (n, tracks) and rows of phases; out: nothing, or a fault.
 
-    reference     the frequency of each track at 64 moments of a block, against that at standstill; what all tracks share
-                  is the tape's speed. The reference is the steadiest; if another is twice as steady, that is it. At the
-                  end it is enough that another was steadier at all: flutter may hide how much
-    skew          a track that is late by s seconds stands s · reference off at standstill, and is wrong by s · deviation
-                  under way:       |zero| / reference · speed / q  <  0.05 cycle
-    shaking       the middle of what surprises the predictor within 96 ms: noise, crosstalk and print-through beat against
-                  the carrier, and beyond 0.0047 cycle bring the motors to the limit of their current
+    reference     the frequency of each track at 64 moments of a block, against that at standstill; all tracks
+                  share the tape's speed. The reference is the steadiest track: one twice as steady as track 1
+                  is it. At the end any steadier track is: flutter may hide how much steadier
+    skew          a track that is late by s seconds stands s · reference off at standstill, and is wrong by
+                  s · deviation under way:       |zero| / reference · speed / q  <  0.05 cycle
+    shaking       the median of the predictor's surprise within 96 ms: noise, crosstalk and print-through beat
+                  against the carrier, and beyond 0.0047 cycle bring the motors to the limit of their current
     stuck         two tracks with the same noise, sample for sample, are one signal
 
 Source: patent ES 361967, figure 5 (fault circuit 162). Questions: half a cycle of zero is a track with the
@@ -60,7 +60,7 @@ class Watch:
         )
 
     def wrong_reference(self, frames: Frames, time_s: float) -> TapeFault | None:
-        """The fault of a track 1 that moves more than another; frames of one block."""
+        """The fault of a track 1 that moves more than another; takes the frames of one block."""
         found = self._frequencies(frames)
         self._sums += np.square(found - self._still_hz).sum(axis=0)
         self._moments += len(found)
@@ -78,7 +78,7 @@ class Watch:
 
     @property
     def steadiest(self) -> int:
-        """The track that moved least so far, from 0."""
+        """The track that has moved least so far, from 0."""
         return int(np.argmin(self._sums))
 
     @property
@@ -90,7 +90,7 @@ class Watch:
         )
 
     def doubtful_reference(self, time_s: float) -> Fault | None:
-        """The fault of a track that moved against track 1 and was the steadier one over the whole tape."""
+        """The fault of a track that moved against track 1 and was steadier over the whole tape."""
         if self._moments < FEWEST_MOMENTS or self._noise is None:
             return None
         mean, apart = self._sums / self._moments, self._apart / self._moments
@@ -106,7 +106,8 @@ class Watch:
         name = track_name(steadiest, self._format.axes)
         return TapeFault(
             f"track 1 moves by {np.sqrt(mean[0]):.0f} Hz and track {steadiest + 1} ({name}) stands at "
-            f"{np.sqrt(mean[steadiest]):.0f} Hz, so the reference is on track {steadiest + 1}, found at {time_s:.3f} s, or "
+            f"{np.sqrt(mean[steadiest]):.0f} Hz, so the reference is on track {steadiest + 1}, "
+            f"found at {time_s:.3f} s, or "
             f"missing, and then no place can be known; "
             f"say which tracks are reference, {', '.join(axis.upper() for axis in self._format.axes)} "
             f"(--tracks {steadiest + 1},...)",
@@ -133,7 +134,7 @@ class Watch:
     def first_fault(
         self, phases: Phases, positions_mm: Sequence[float]
     ) -> tuple[int, Fault] | None:
-        """The first row of a block that skew or shaking make uncertain, with its fault."""
+        """The first row that skew or shaking make uncertain, with its fault."""
         found = [
             f
             for f in (self.skewed(phases, positions_mm), self.unsteady(phases, positions_mm))
@@ -142,7 +143,7 @@ class Watch:
         return min(found, key=lambda one: one[0], default=None)
 
     def skewed(self, phases: Phases, positions_mm: Sequence[float]) -> tuple[int, Fault] | None:
-        """The first row where an axis is too fast for the skew of its track, and the fault."""
+        """The first row with an axis too fast for the skew of its track, and the fault."""
         if len(phases) < 2 or not self._format.dwell_s:  # another's tape may start at any phase
             return None
         offset = np.abs(self._bearings.zero_cycles - np.round(self._bearings.zero_cycles))
@@ -156,8 +157,10 @@ class Watch:
         row, axis = (int(i) for i in np.argwhere(wrong)[0])
         name, time_s = self._format.axes[axis], (phases.first_row + row) / rate_hz
         return row, LockFault(
-            f"{name.upper()} moves at {speed[row, axis] * self._format.mm_per_cycle:.3g} mm/s at {time_s:.3f} s, and its "
-            f"track is {skew_s[axis] * 1e6:.0f} us off the reference: that is {speed[row, axis] * skew_s[axis]:.2f} cycle, "
+            f"{name.upper()} moves at {speed[row, axis] * self._format.mm_per_cycle:.3g} mm/s at "
+            f"{time_s:.3f} s, and its "
+            f"track is {skew_s[axis] * 1e6:.0f} us off the reference: that is "
+            f"{speed[row, axis] * skew_s[axis]:.2f} cycle, "
             f"{SKEW_CYCLES:g} is allowed; copy the tape with the head set straight",
             axis=name,
             time_s=time_s,
@@ -186,7 +189,8 @@ class Watch:
         )
         return at * window, LockFault(
             f"the phase of {name.upper()} shakes by {shakes[at, axis]:.4f} cycle (median) at {time_s:.3f} s, "
-            f"{SHAKE_CYCLES:g} is allowed: noise, crosstalk or print-through, which the motors cannot follow; copy the tape "
+            f"{SHAKE_CYCLES:g} is allowed: noise, crosstalk or print-through, which the motors "
+            "cannot follow; copy the tape "
             f"on a better machine",
             axis=name,
             time_s=time_s,
@@ -201,7 +205,7 @@ def shake_rows(rate_hz: float) -> int:
 
 
 def demand_apart(frames: Float32s, levels: Array, names: Sequence[str]) -> None:
-    """Raise TapeFault for two tracks that carry the same noise, in frames of standstill."""
+    """Raise TapeFault for two tracks with the same noise, in frames of standstill."""
     equal = frames / levels.astype(np.float32)
     for one in range(1, frames.shape[1]):
         floor = _noise(frames[:, one])
@@ -210,15 +214,14 @@ def demand_apart(frames: Float32s, levels: Array, names: Sequence[str]) -> None:
         for other in range(one):
             if float(np.std(equal[:, one] - equal[:, other])) * levels[one] < 0.05 * floor:
                 raise TapeFault(
-                    f"tracks {other + 1} ({track_name(other, names)}) and {one + 1} ({track_name(one, names)}) carry the "
+                    f"tracks {other + 1} ({track_name(other, names)}) and {one + 1} "
+                    f"({track_name(one, names)}) carry the "
                     f"same signal, noise and all; look to the cables, and copy the tape again"
                 )
 
 
 def _noise(samples: Float32s) -> float:
-    """White noise of a track, RMS: by the weakest tenth of its spectrum's lines, which tones and flutter do
-    not reach.
-    """
+    """White noise of a track, RMS: from the weakest tenth of the spectrum, free of tones and flutter."""
     window = np.hanning(len(samples))
     lines = np.abs(np.fft.rfft(samples * window)) ** 2 / np.sum(window**2)
     return float(np.sqrt(np.percentile(lines, 10) / -np.log(0.9)))

@@ -170,7 +170,8 @@ def _best_fit(path: Path, tolerance_mm: float, limits: Limits, counts_per_mm: fl
     good = [fit for fit in fits if fit.off_mm <= tolerance_mm]
     if not good:
         raise MotionFault(
-            f"the cubics come no nearer to the motion than {min(fit.off_mm for fit in fits):.4f} mm with intervals of "
+            f"the cubics come no nearer to the motion than {min(fit.off_mm for fit in fits):.4f} mm "
+            "with intervals of "
             f"{SHORTEST_S:g} s; allowed {tolerance_mm:g} mm: give a larger tolerance, or trace slower"
         )
     return min(good, key=lambda fit: len(fit.samples))

@@ -160,7 +160,7 @@ class _Spline:
         )  # of each segment's five numbers
 
     def laid(self, tolerance_mm: float) -> Chain | None:
-        """The chain by least squares, with more weight on the worst places where needed; None if none fits."""
+        """The chain by least squares, the worst places weighted more where needed; None if none fits."""
         weights = np.ones(len(self.few))
         for _ in range(4):
             self._settle(weights, tolerance_mm)

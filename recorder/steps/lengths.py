@@ -201,7 +201,7 @@ def _keep(beam, costs, count, course, cost):  # type: ignore[no-untyped-def]
 @njit(cache=True)
 def _alike(beam, i, course):  # type: ignore[no-untyped-def]
     """Whether a course is at the place of course i with the same steps."""
-    for column in range(_AT):
+    for column in range(_AT):  # noqa: SIM110  (numba takes no generators)
         if beam[i, column] != course[column]:
             return False
     return True
@@ -210,7 +210,7 @@ def _alike(beam, i, course):  # type: ignore[no-untyped-def]
 @njit(cache=True)
 def _arrived(beam, b, end):  # type: ignore[no-untyped-def]
     """Whether course b stands at the end of the leg."""
-    for axis in range(3):
+    for axis in range(3):  # noqa: SIM110
         if beam[b, _PX + axis] != end[axis] or beam[b, _NX + axis] != 0:
             return False
     return True

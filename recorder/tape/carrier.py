@@ -4,17 +4,17 @@ Signals: positions in mm in, one row per sample of the motion (6 kHz); frames in
 one row per sample of the tape (48 kHz), columns reference, X, Y, Z. Sample k of the motion stands at frame 8
 k of the carriers.
 
-    phase of the reference = reference · t                                        (cycles)
-    phase of a track       = phase of the reference + (position - start) / q      (cycles),   q = 1 / cycles per mm
-    sample                 = level · sin(2 pi phase)            (or the wave of another pick-up, see pickups.py)
+    phase of the reference = reference · t                                    (cycles)
+    phase of a track       = phase of the reference + (position - start) / q  (cycles), q = 1 / cycles per mm
+    sample                 = level · sin(2 pi phase)        (or the wave of another pick-up, see pickups.py)
 
 The sector wheel turns at a constant speed, so the phase of the reference follows from the count of samples
 alone, and that of a track from the absolute position: nothing is summed up, and nothing drifts. Between two
 samples of the motion the phase is a Catmull-Rom cubic, whose slope at each sample is that from its left to
 its right neighbour; this leaves no images of the motion rate and no kink in the phase:
 
-    position     p0      p1 ~~~~~~~ p2      p3        frames between p1 and p2 need p0 and p3: the carrier holds back
-    motion        |-------|----x----|-------|         two samples from one block to the next
+    position     p0      p1 ~~~~~~~ p2      p3     frames between p1 and p2 need p0 and p3: the carrier
+    motion        |-------|----x----|-------|      holds back two samples from one block to the next
 
 A wave with harmonics is summed up harmonic by harmonic. Each fades out by its own frequency at the moment,
 before half the sample rate, so that nothing folds back upon the carrier:
@@ -38,7 +38,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from morfax.recorder.tape.pickups import DEFAULT_PICK_UP, PICK_UPS, Sensor
 
-FADE_FROM, FADE_TO = 0.4, 0.475  # of the sample rate
+FADE_FROM, FADE_TO = 0.4, 0.475  # of the sample rate, as drawn above
 # samples that the next frames still need: the neighbour before, and two not yet played
 _HELD_BACK = 3
 

@@ -5,9 +5,9 @@ f its frequency now and r = exp(-2 pi · gap / pitch of the teeth), each is a su
 
     resolver    sin phi                                                        sine
     photocell   sum of sin(n phi) / n                    = pi/4 · sign(sin phi)    square: light or dark
-    scale       sum of (-1)^k sin(n phi) / n²            = pi/4 · (phi to the nearest node)    triangle, n = 2 k + 1
+    scale       sum of (-1)^k sin(n phi) / n²            = pi/4 · (phi to the nearest node)   triangle, n=2k+1
     hall        sum of r^(n-1) sin(n phi) / n            = arctan(2 r sin phi / (1 - r²)) / 2 r
-    coil        f / reference · sum of (-1)^k r^(n-1) sin(n phi)    = f / reference · slope of the flux that Hall sees
+    coil        f / reference · sum of (-1)^k r^(n-1) sin(n phi)    = f / reference · slope of Hall's flux
 
 so that the fundamental of all has the level of the tape at standstill, and the phase of all is that of the
 sine. Teeth as wide as their gaps make no even harmonics. A field falls off from the teeth by r^n for each

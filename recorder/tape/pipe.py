@@ -162,7 +162,8 @@ def _header(stream: BinaryIO) -> tuple[Samples, str]:
             return samples, text
         if size > LARGEST_CHUNK_BYTES:
             raise TapeFault(
-                f"the WAV in the pipe has a header chunk of {size} bytes; at most {LARGEST_CHUNK_BYTES} allowed"
+                f"the WAV in the pipe has a header chunk of {size} bytes; at most "
+                f"{LARGEST_CHUNK_BYTES} allowed"
             )
         body = _whole(stream, size + size % 2)
         if name == b"fmt ":
@@ -182,7 +183,8 @@ def _samples(body: bytes) -> Samples:
     good = (kind == _PCM and bits in (16, 24, 32)) or (kind == _FLOAT and bits in (32, 64))
     if not good or not 3 <= tracks <= 64 or not rate_hz:
         raise TapeFault(
-            f"the WAV in the pipe has {tracks} tracks of {bits} bits (kind {kind}) at {rate_hz} Hz; a tape has 3 or more of "
+            f"the WAV in the pipe has {tracks} tracks of {bits} bits (kind {kind}) at {rate_hz} Hz; "
+            "a tape has 3 or more of "
             f"16, 24 or 32 bit or float"
         )
     return Samples(tracks, rate_hz, bits, kind == _FLOAT)
@@ -213,7 +215,8 @@ def _format(
             stated = TapeFormat.from_json(text)
             if stated.tracks != samples.tracks:
                 raise TapeFault(
-                    f"the pipe has {samples.tracks} tracks, its text speaks of {stated.tracks}; record it again"
+                    f"the pipe has {samples.tracks} tracks, its text speaks of {stated.tracks}; "
+                    "record it again"
                 )
             return replace(stated, sample_rate_hz=rate_hz, **by_hand)
         if len(by_hand) < 2:

@@ -190,7 +190,8 @@ def _check(positions: Array, rate_hz: float, done: int, fmt: TapeFormat) -> None
     """Raise MotionFault for a block that this tape cannot take."""
     if abs(rate_hz - fmt.motion_rate_hz) > 1e-6 * fmt.motion_rate_hz:
         raise MotionFault(
-            f"the motion runs at {rate_hz:g} Hz; a tape of {fmt.sample_rate_hz} Hz takes {fmt.motion_rate_hz:g} Hz: "
+            f"the motion runs at {rate_hz:g} Hz; a tape of {fmt.sample_rate_hz} Hz takes "
+            f"{fmt.motion_rate_hz:g} Hz: "
             "give it at that rate, as Path.motion(rate_hz) does"
         )
     if positions.ndim != 2 or positions.shape[1] != len(fmt.axes):
@@ -208,8 +209,10 @@ def _check(positions: Array, rate_hz: float, done: int, fmt: TapeFormat) -> None
 def _too_fast(fmt: TapeFormat, axis: int, time_s: float, speed_mm_s: float) -> MotionFault:
     """The fault of a speed at which the track would leave its band."""
     message = (
-        f"axis {fmt.axes[axis]} moves at {abs(speed_mm_s):.4g} mm/s at {time_s:.4f} s; this tape takes at most "
-        f"{fmt.largest_speed_mm_s:.4g} mm/s ({fmt.largest_deviation_hz:.4g} Hz of deviation): move slower there"
+        f"axis {fmt.axes[axis]} moves at {abs(speed_mm_s):.4g} mm/s at {time_s:.4f} s; this tape "
+        "takes at most "
+        f"{fmt.largest_speed_mm_s:.4g} mm/s ({fmt.largest_deviation_hz:.4g} Hz of deviation): move "
+        "slower there"
     )
     return MotionFault(message, axis=fmt.axes[axis], time_s=time_s, speed_mm_s=speed_mm_s)
 

@@ -74,7 +74,8 @@ class Spool:
         container, subtype = kind
         if container == "FLAC" and tracks > MOST_FLAC_TRACKS:
             raise TapeFault(
-                f"a FLAC holds at most {MOST_FLAC_TRACKS} tracks, these are {tracks}; write a .wav, .rf64 or .w64"
+                f"a FLAC holds at most {MOST_FLAC_TRACKS} tracks, these are {tracks}; write a .wav, "
+                ".rf64 or .w64"
             )
         self._file, self._name, self._container = file, name or file, container
         self._subtype = subtype

@@ -229,7 +229,10 @@ def _check_last_frame(file: FilePath, sound: soundfile.SoundFile) -> None:
 
 def _cut_short(file: FilePath, held_s: float, stated_s: float) -> TapeFault:
     """The fault of a file that is shorter than its header states."""
-    message = f"{file} is cut short: {held_s:.3f} s of {stated_s:.3f} s are there; copy the file again or record it again"
+    message = (
+        f"{file} is cut short: {held_s:.3f} s of {stated_s:.3f} s are there; "
+        "copy the file again or record it again"
+    )
     return TapeFault(message, time_s=held_s)
 
 

@@ -1,11 +1,10 @@
-"""What a tape and its amplifiers do to the strength of a signal, each part a block-wise organ with its own
-memory.
+"""The wear of a signal's strength by tape and amplifiers; each part works block by block with its own memory.
 
 Signals: frames float32 (n, tracks), full scale 1, in and out. Every part gives the same frames however the
 tape is cut into blocks: a filter carries its state, a random part draws in the order of the frames.
 
-    print-through    y(n) = x(n) + g x(n - d) + g x(n + d)      d one turn of the reel
-    distortion       y = x - 4 h (x³ / peak² - 3/4 x)           h third harmonic over the fundamental, at the peak
+    print-through    y(n) = x(n) + g x(n - d) + g x(n + d)    d one turn of the reel
+    distortion       y = x - 4 h (x³ / peak² - 3/4 x)     h third harmonic over the fundamental, at the peak
     dropouts         gain 1 ... depth ... 1 with flanks of 0.1 ms; a Poisson process, lengths log-normal
     level            gain by tones of 0.2 to 8 Hz, on each track its own
 

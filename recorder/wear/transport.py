@@ -11,8 +11,9 @@ The worn tape starts at `cut_start_s` of the programme and ends `cut_end_s` befo
 from one seed, part by part, so that a part is the same whatever the others are, and however long the blocks.
 
 Source: patent ES 361967 (the tape goes from one machine to another); figures and their sources:
-docs/background/transport.md. Questions: wow and flutter are given unweighted, root mean square. A head's azimuth makes
-skew that grows evenly from track to track; weave is the tape wandering in its guides, in the same proportion.
+docs/background/transport.md. Questions: wow and flutter are given unweighted, root mean square. A head's
+azimuth makes skew that grows evenly from track to track; weave is the tape wandering in its guides, in the
+same proportion.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path as FilePath
 
 import numpy as np
@@ -32,6 +33,7 @@ from morfax.motion.files import disk_full_fault, written_beside
 from morfax.recorder.tape.format import LARGEST_TEXT_BYTES
 from morfax.recorder.tape.riff import make_plain
 from morfax.recorder.tape.spool import Spool, medium, sidecar
+from morfax.recorder.wear.settings import Wear, check
 from morfax.recorder.wear.signal import (
     Bandwidth,
     Dropout,
@@ -58,57 +60,6 @@ END_FRAMES = 1e-3  # rounding of a place at the very end
 
 Frames = NDArray[np.float32]
 Progress = Callable[[float, float | None], None]
-
-
-@dataclass(frozen=True, slots=True)
-class Wear:
-    """The wear of a tape; shares are of the speed, dB of the carrier's peak unless stated otherwise."""
-
-    speed: float = 0.0
-    wow: float = 0.0
-    flutter: float = 0.0
-    scrape: float = 0.0
-    skew_s: float = 0.0
-    weave_s: float = 0.0
-    noise_db: float | None = None
-    level_db: float = 0.0
-    uneven_db: float = 0.0
-    crosstalk_db: float | None = None
-    print_db: float | None = None
-    print_s: float = 1.5
-    dropouts_per_min: float = 0.0
-    dropout_s: float = 0.003
-    dropout_db: float = 30.0
-    dropout_all: bool = False
-    hum_db: float | None = None
-    hum_hz: float = 50.0
-    dc: float = 0.0
-    third: float = 0.0
-    bandwidth_hz: float | None = None
-    clip: float | None = None
-    stamped_hz: int | None = None
-    order: tuple[int, ...] = ()
-    inverted: tuple[int, ...] = ()
-    cut_start_s: float = 0.0
-    cut_end_s: float = 0.0
-
-
-SETS = {
-    "studio-15ips": Wear(
-        speed=0.002, wow=3e-4, flutter=4e-4, scrape=3e-4, skew_s=1.5e-6, weave_s=2e-7, noise_db=60, crosstalk_db=50,
-        print_db=56, print_s=0.8, third=0.01, uneven_db=0.2, bandwidth_hz=20_000, dropouts_per_min=0.2,
-        dropout_s=0.0005, dropout_db=6,
-    ),
-    "instrumentation": Wear(
-        speed=0.001, wow=5e-4, flutter=1e-3, scrape=1e-3, skew_s=5e-7, weave_s=2e-7, noise_db=46, crosstalk_db=40,
-        print_db=60, print_s=0.5, third=0.01, uneven_db=0.3, dropouts_per_min=1, dropout_s=0.0003, dropout_db=12,
-    ),
-    "cassette": Wear(
-        speed=0.015, wow=1.2e-3, flutter=1.2e-3, scrape=6e-4, skew_s=1.2e-5, weave_s=1e-6, noise_db=46, crosstalk_db=40,
-        print_db=50, print_s=1.2, third=0.03, uneven_db=0.7, bandwidth_hz=12_500, dropouts_per_min=4,
-        dropout_s=0.001, dropout_db=20, hum_db=55,
-    ),
-}  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,7 +139,7 @@ class Deck:
     """A worn tape machine: frames of the programme in, frames as played out."""
 
     def __init__(self, wear: Wear, rate_hz: float, tracks: int, seed: int) -> None:
-        _check(wear, tracks)
+        check(wear, tracks)
         self._wear, self._rate_hz, self._tracks = wear, rate_hz, tracks
         bands = ((wear.wow, WOW_HZ), (wear.flutter, FLUTTER_HZ), (wear.scrape, SCRAPE_HZ))
         tones = [
@@ -344,36 +295,3 @@ def _sidecar_text(source: FilePath) -> str:
         return sidecar(source).read_text("utf-8")[:LARGEST_TEXT_BYTES]
     except (OSError, ValueError):
         return ""
-
-
-def _check(wear: Wear, tracks: int) -> None:
-    """Raise ValueError for wear that no transport makes."""
-    numbers = (getattr(wear, field.name) for field in fields(wear))
-    if not all(np.isfinite(n) for n in numbers if isinstance(n, int | float)):
-        raise ValueError("a part of the wear is no finite number; give finite numbers")
-    if not -0.9 < wear.speed < 9:
-        raise ValueError(f"speed error is {wear.speed:g}; it must lie between -0.9 and 9")
-    if wear.order and sorted(wear.order) != list(range(1, tracks + 1)):
-        raise ValueError(
-            f"order is {wear.order}; it must name each of the tracks 1 to {tracks} once"
-        )
-    if any(not 1 <= track <= tracks for track in wear.inverted):
-        raise ValueError(f"inverted is {wear.inverted}; the tracks are 1 to {tracks}")
-    if wear.stamped_hz is not None and not 0 < wear.stamped_hz < 2**31:
-        raise ValueError(f"stamped_hz is {wear.stamped_hz}; a header holds 1 to {2**31 - 1} Hz")
-    for name in (
-        "wow",
-        "flutter",
-        "scrape",
-        "weave_s",
-        "uneven_db",
-        "dropouts_per_min",
-        "cut_start_s",
-        "cut_end_s",
-    ):
-        if getattr(wear, name) < 0:
-            raise ValueError(f"{name} is {getattr(wear, name):g}; it must be zero or more")
-    if wear.wow + wear.flutter + wear.scrape > 0.05:
-        raise ValueError("wow, flutter and scrape are more than 0.05 together; give less")
-    if not 0 < wear.print_s <= 10 or not wear.dropout_s > 0:
-        raise ValueError("print_s must lie between 0 and 10 s, and dropout_s above zero")

@@ -13,7 +13,8 @@ from morfax.motion.ramp import Ramp, positions_mm
 from morfax.player.tape.playback import play
 from morfax.recorder.tape.pickups import PICK_UPS
 from morfax.recorder.tape.tape import TapeFormat, record
-from morfax.recorder.wear.transport import Wear, age
+from morfax.recorder.wear.settings import Wear
+from morfax.recorder.wear.transport import age
 
 UM = 1e-3
 RADIUS_MM = 15.0

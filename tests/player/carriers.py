@@ -1,4 +1,4 @@
-"""Tapes made from closed forms, apart from the recorder: what a track must be at any moment is known exactly."""
+"""Tapes made from closed forms, without the recorder: every track is known exactly at any moment."""
 
 from __future__ import annotations
 

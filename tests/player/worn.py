@@ -12,7 +12,8 @@ from morfax.motion.faults import Fault, LockFault, TapeFault
 from morfax.motion.motion import Motion, join
 from morfax.player.tape.playback import play
 from morfax.recorder.tape.tape import record
-from morfax.recorder.wear.transport import Wear, age
+from morfax.recorder.wear.settings import Wear
+from morfax.recorder.wear.transport import age
 from tests.player.carriers import MOTION_RATE_HZ, circle, square
 
 RIGHT_CYCLES = 0.05

@@ -1,4 +1,4 @@
-"""Broken tapes: whatever bytes are changed or cut, the reader takes them or says what is wrong; and kill -9."""
+"""Broken tapes: whatever bytes are changed or cut, the reader takes them or names the fault; and kill -9."""
 
 from __future__ import annotations
 
@@ -93,7 +93,8 @@ KILLED = """
 import sys, numpy as np
 from morfax.motion.motion import Motion
 from morfax.recorder.tape.tape import record
-from morfax.recorder.wear.transport import SETS, age
+from morfax.recorder.wear.settings import SETS
+from morfax.recorder.wear.transport import age
 print("go", flush=True)
 while True:
     record((Motion(np.zeros((6000, 3))) for _ in range(60)), sys.argv[1])
@@ -125,7 +126,7 @@ def test_kill_9_leaves_no_half_file(tmp_path: Path, after_s: float) -> None:
 def test_a_tape_that_cannot_be_wound_is_told(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Found by atheris: of a broken FLAC libsndfile opens the file, and then cannot seek to its first frame."""
+    """Found by atheris: libsndfile opens a broken FLAC, and then cannot seek to its first frame."""
     short_tape(tmp_path, "a.flac")
     with Tape.open(tmp_path / "a.flac") as tape:
         monkeypatch.setattr(

@@ -1,6 +1,6 @@
 """Patent ES 361967 (Morfax, 1969): one test for each of its 17 claims, on the running system.
 
-`docs/background/claims-morfax.md` has the table from claim to test. The sheet is what the patent's draughtsman draws: a
+`docs/background/claims-morfax.md` has the table from claim to test. The sheet is the patent's draftsman's: a
 reference point, a lead line with a stop mark just before the contour, the contour, a stop mark on it.
 
        ┼──────┼──── contour ──┼── and back          drawn with 0.5 mm, scanned at 300 dpi with noise
@@ -312,7 +312,7 @@ def test_claim_7_the_contour_that_was_drawn_is_the_contour_that_is_cut(
 def test_claim_8_what_is_recorded_is_the_turning_of_the_follower_s_own_motors(
     sheet: Drawing, tmp_path: Path
 ) -> None:
-    """With slower motors X and Y follow the head's demand later, and the tape has that motion and no other."""
+    """With slower motors X and Y follow the head's demand later, and the tape has just that motion."""
     ways = []
     for lag_s in (0.001, 0.005):
         settings = Settings(speed_mm_s=SPEED_MM_S, drive=Drive(lag_s))
@@ -416,7 +416,10 @@ CARD = """
 start = "2mm"
 [[stop]]
 number = 1
-moves = [{ down = "4mm", feed = "4mm/s" }, { dwell = "300ms" }, { up = "1.5mm", feed = "2mm/s" }, { down = "3.25mm", feed = "3mm/s" }]
+moves = [
+  { down = "4mm", feed = "4mm/s" }, { dwell = "300ms" },
+  { up = "1.5mm", feed = "2mm/s" }, { down = "3.25mm", feed = "3mm/s" },
+]
 """
 
 
@@ -465,7 +468,7 @@ def _middles(z_mm: Array) -> list[float]:
 
 
 def tones(file: Path, *hz: float, seconds: float = 2.0) -> Path:
-    """A tape of nothing but tones, one to a track, made without the recorder; it says nothing of its format."""
+    """A tape of tones alone, one to a track, made without the recorder and without a format."""
     t_s = np.arange(round(seconds * RATE_HZ)) / RATE_HZ
     # from one frequency to its own within a tenth of a second, as no motor starts at once
     gently = np.where(t_s < 0.1, 5 * t_s**2, t_s - 0.05)

@@ -1,8 +1,8 @@
 """Patent from US application 631 214 (Pratt & Whitney, 1967): its worked examples, and one test for each
 claim.
 
-`docs/background/claims-pratt-whitney.md` has the table from claim to test. Pulses are of 0.0005 in, position counts of
-0.001 in.
+`docs/background/claims-pratt-whitney.md` has the table from claim to test. Pulses are of 0.0005 in, position
+counts of 0.001 in.
 """
 
 from __future__ import annotations

@@ -274,7 +274,7 @@ def test_claim_23_the_present_vector_tells_the_ring(speed: int) -> None:
 
 
 def test_claim_24_a_second_vector_waits_while_the_first_is_run() -> None:
-    """Figure 11: bits 2 and 1 are the first vector's, bits 4 and 3 the second's; a row lasts two intervals."""
+    """Figure 11: bits 2, 1 are the first vector's, bits 4, 3 the second's; a row lasts two intervals."""
     both = pulses([*INTO_RING_OF_SIX, NEXT | NEXT << 2, PREVIOUS << 2], vectors=2)
     assert both[6:] == [[6, -1], [6, -2], [6, -2], [6, -1]]
 

@@ -1,4 +1,4 @@
-"""The reader of RS-274: the subset that other programs write is read, all else is refused with line and word."""
+"""The reader of RS-274: the subset that other programs write is read, all else refused with line and word."""
 
 from __future__ import annotations
 

@@ -182,7 +182,7 @@ def test_two_axes_leave_z_at_zero(tmp_path: Path) -> None:
 
 def test_a_drive_that_cannot_follow_is_a_fault_with_its_state(tmp_path: Path) -> None:
     def dash(t_s: np.ndarray) -> np.ndarray:
-        """Y to 80 mm/s with 10 m/s², twice what the motor can do: 0.32 mm are missing in the end, 6.4 cycles."""
+        """Y to 80 mm/s with 10 m/s², twice the motor's limit: 0.32 mm are missing in the end, 6.4 cycles."""
         t = np.clip(t_s - 0.3, 0, None)
         return np.column_stack([0 * t, np.where(t < 0.008, 5000 * t**2, 80 * t - 0.32), 0 * t])
 

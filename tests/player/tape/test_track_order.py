@@ -1,4 +1,4 @@
-"""Tracks in another order: put right where only one order can be meant, told before anything moves where not."""
+"""Tracks in another order: put right where only one order is possible, else told before anything moves."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from morfax.motion.faults import TapeFault
 from morfax.motion.motion import Motion, join
 from morfax.player.tape.playback import play
 from morfax.recorder.tape.tape import record
-from morfax.recorder.wear.transport import Wear, age
+from morfax.recorder.wear.settings import Wear
+from morfax.recorder.wear.transport import age
 from tests.player.worn import program
 
 ORDERS = [(2, 1, 3, 4), (3, 2, 1, 4), (4, 2, 3, 1), (2, 3, 4, 1), (4, 3, 2, 1)]

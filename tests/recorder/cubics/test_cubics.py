@@ -151,7 +151,8 @@ def test_a_program_comes_back_from_its_file(tmp_path: FilePath) -> None:
 
 
 GOOD = (
-    "morfax cubic 1\ninterval_s 0.064\npoints 16\nlinear 1\ncounts_per_mm 2000\nmodulus_per_s 50\naxes x y z\n"
+    "morfax cubic 1\ninterval_s 0.064\npoints 16\nlinear 1\ncounts_per_mm 2000\nmodulus_per_s "
+    "50\naxes x y z\n"
     "intervals 1\n\nat 0 0 0\n46000 84000 -12000  0 0 0  0 0 0\nat 1000 0 0\nend\n"
 )
 BAD = [

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from morfax.motion import segments as legs_module
+from morfax.motion import speed_limits
 from morfax.motion.contour import distance
 from morfax.motion.faults import FileFault, MotionFault, ProgramFault
 from morfax.motion.motion import Path, thin
@@ -251,8 +251,8 @@ def test_a_bend_is_taken_no_faster_than_the_motor_can_pull() -> None:
 
 def test_the_kernels_do_as_plain_python_what_they_do_compiled() -> None:
     leg = legs(polyline((0, 0, 0), (0.3, 0.1, 0)), Limits(10, 256))[0]
-    squared = np.full(9, 5.0)
-    legs_module._passes.py_func(squared, 1.0)
+    squared = np.array([0, 5, 5, 5, 5, 5, 5, 5, 0.0])
+    speed_limits._passes.py_func(squared, np.ones(8), True)
     assert squared.tolist() == [0, 1, 2, 3, 4, 3, 2, 1, 0]
     places, speeds = leg.places_mm / STEP_MM, leg.speed_mm_s / STEP_MM / 160
     compiled = lengths_module.cut(

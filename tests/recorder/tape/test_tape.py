@@ -1,4 +1,4 @@
-"""A tape written and read gives the motion back; what cannot be a tape is refused, and leaves nothing behind."""
+"""A tape written and read gives the motion back; what cannot be a tape is refused and leaves no file."""
 
 import os
 from collections.abc import Iterator

@@ -11,7 +11,8 @@ import soundfile
 
 from morfax.motion.faults import FileFault, TapeFault
 from morfax.recorder.wear import transport
-from morfax.recorder.wear.transport import SETS, Deck, Wear, age
+from morfax.recorder.wear.settings import SETS, Wear
+from morfax.recorder.wear.transport import Deck, age
 
 RATE_HZ = 48000
 SECONDS = 4
