@@ -37,8 +37,9 @@ class AgeJob:
 
     def run(self, listener: Listener = SILENT, panel: Panel | None = None) -> AgeResult:
         """Wear the tape; raises WrongUse for wear that cannot be, TapeFault and FileFault."""
-        from morfax.recorder.wear.transport import SETS as WEAR
-        from morfax.recorder.wear.transport import Wear, age
+        from morfax.recorder.wear.settings import SETS as WEAR
+        from morfax.recorder.wear.settings import Wear
+        from morfax.recorder.wear.transport import age
 
         medium.outgoing(self.output, self.tape)
         listener.compiling("the transport", ("recorder",))

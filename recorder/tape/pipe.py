@@ -221,7 +221,8 @@ def _format(
             return replace(stated, sample_rate_hz=rate_hz, **by_hand)
         if len(by_hand) < 2:
             raise TapeFault(
-                "the pipe does not say its format; give --reference-frequency 6kHz --cycles-per-mm 20, or what it has"
+                "the pipe does not say its format; give --reference-frequency 6kHz --cycles-per-mm "
+                "20, or what it has"
             )
         axes, per_motion = _AXES[: samples.tracks - 1], max(2, round(rate_hz / 6000))
         return TapeFormat(

@@ -27,7 +27,8 @@ CORNERS_MM = [(10, 10), (40, 10), (40, 30), (10, 30), (10, 10)]
 
 
 def part() -> MotionPath:
-    """A square with one round corner and a hole drilled in two pecks, cut 3 mm deep at 10 mm/s, plunged at 4."""
+    """A square with one round corner and a hole drilled in two pecks, cut 3 mm deep at 10 mm/s, "
+    "plunged at 4."""
     turn = np.linspace(math.pi, math.pi / 2, 40)
     rounded = np.column_stack([15 + 5 * np.cos(turn), 25 + 5 * np.sin(turn)])
     around = np.vstack(
