@@ -136,9 +136,9 @@ def test_the_installed_command_traces_and_plays_in_an_empty_folder(
         run(python, "-c", "import morfax; print(morfax.__file__)", folder=tmp_path).strip()
     )
     assert where.is_relative_to(installed)
-    told = run(
-        morfax, "run", where.parent / "samples" / "cam.png", "-o", "demo", folder=tmp_path
-    )
-    assert "closed" in told
-    results = {"cam.wav", "cam.traced.csv", "cam.played.csv", "cam.png", "cam.json"}
-    assert {file.name for file in (tmp_path / "demo").iterdir()} == results
+    told = run(morfax, "demo", folder=tmp_path)
+    assert "played to ink" in told
+    results = {f"program.{end}" for end in ("wav", "traced.csv", "played.csv", "png", "json")}
+    demo = tmp_path / "morfax-demo"
+    assert {file.name for file in (demo / "results").iterdir()} == results
+    assert {file.name for file in demo.iterdir()} == {"program.png", "program.toml", "results"}

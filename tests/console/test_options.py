@@ -1,0 +1,100 @@
+"""Options: each has one meaning, an old spelling is refused with the new one, and the help has headings."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from morfax.console.cli import VERBS
+from tests.console.conftest import Morfax
+
+RENAMED = [
+    (("trace", "a.png", "--override", "2"), "--stop-override"),
+    (("trace", "a.png", "--override=all"), "--stop-override"),
+    (("trace", "a.png", "--reference", "8,23"), "--reference-point"),
+    (("run", "a.png", "--reference", "8,23"), "--reference-point"),
+    (("play", "a.wav", "--override", "50%"), "--feed-override"),
+    (("play", "a.wav", "--reference", "6kHz"), "--reference-frequency"),
+    (("compare", "a.wav", "b.csv", "--reference", "6kHz"), "--reference-frequency"),
+    (("inspect", "a.wav", "--reference", "6kHz"), "--reference-frequency"),
+    (("mend", "a.wav", "-o", "b.wav", "--reference", "6kHz"), "--reference-frequency"),
+    (("record", "a.csv", "--reference", "6kHz"), "--reference-frequency"),
+    (("record", "a.csv", "--tolerance", "10um"), "--fit-tolerance"),
+    (("age", "a.wav", "-o", "b.wav", "--speed", "1.5%"), "--speed-error"),
+    (("play", "a.wav", "--override"), "--feed-override"),
+]
+
+
+@pytest.mark.parametrize(("words", "new"), RENAMED)
+def test_an_old_spelling_is_refused_with_the_new_one(
+    morfax: Morfax, words: tuple[str, ...], new: str
+) -> None:
+    answer = morfax(*words)
+    old = next(word for word in words if word.startswith("--")).partition("=")[0]
+    assert answer.exit_code == 2 and len(answer.err.splitlines()) == 1
+    assert f"{old} is called {new} now" in answer.fault
+    assert f"{old} " not in morfax(words[0], "--help").out  # only the new one is shown
+    assert f"{new} " in morfax(words[0], "--help").out
+
+
+@pytest.mark.parametrize("verb", ["trace", "run"])
+def test_the_help_has_a_heading_for_each_part_of_the_work(morfax: Morfax, verb: str) -> None:
+    said = morfax(verb, "--help").out
+    headings = ["Drawing:", "Line:", "Head:", "Tool:", "Program:", "Output:", "Other options:"]
+    assert re.findall(r"^[A-Z][a-z ]+:$", said, re.MULTILINE) == headings
+    under = {
+        "Drawing": ("--dpi", "--ink", "--edge"),
+        "Line": ("--start", "--lines", "--gap", "--reference-point"),
+        "Head": ("--speed", "--head", "--set "),
+        "Tool": ("--depth", "--cutter", "--side"),
+        "Program": ("--card", "--stop-override", "--origin", "--mirror"),
+        "Output": ("-o", "--json"),
+    }
+    for name, options in under.items():
+        section = said.split(f"\n{name}:\n")[1].split("\n\n")[0]
+        assert [option for option in options if f"  {option}" not in section] == []
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_all_options_but_help_stand_under_a_heading(morfax: Morfax, verb: str) -> None:
+    rest = morfax(verb, "--help").out.split("Other options:\n")[1].split("\n\n")[0]
+    assert rest.split() == ["-h,", "--help", "Show", "this", "message", "and", "exit."]
+
+
+def test_an_origin_is_the_sheet_the_reference_point_or_a_place(morfax: Morfax) -> None:
+    answer = morfax("trace", "a.png", "--origin", "middle")
+    assert answer.exit_code == 2
+    assert "'middle' is no origin; give sheet, reference, or a place X,Y" in answer.fault
+
+
+@pytest.mark.parametrize(
+    ("words", "position", "offered"),
+    [
+        ("morfax tr", 1, "trace"),
+        ("morfax trace --stop", 2, "--stop-override"),
+        ("morfax trace a.png --head hi", 4, "historic"),
+    ],
+)
+def test_the_shell_completes_verbs_options_and_choices(
+    words: str, position: int, offered: str
+) -> None:
+    completing = {
+        "_MORFAX_COMPLETE": "bash_complete",
+        "COMP_WORDS": words,
+        "COMP_CWORD": str(position),
+        "PYTHONPATH": str(Path(__file__).parents[2]),
+    }
+    done = subprocess.run(
+        [sys.executable, "-c", "from morfax.console.cli import main; main()"],
+        env={**os.environ, **completing},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert offered in [line.partition(",")[2] for line in done.stdout.splitlines()]
+    assert done.stderr == ""

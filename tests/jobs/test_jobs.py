@@ -1,0 +1,290 @@
+"""Every job without the console: what it gives, what it tells its listener, that it prints nothing, and that it
+can be sent to another process.
+"""
+
+from __future__ import annotations
+
+import pickle
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from morfax.jobs.age import AgeJob
+from morfax.jobs.compare import CompareJob
+from morfax.jobs.inspect import InspectJob
+from morfax.jobs.mend import MendJob
+from morfax.jobs.play import ControlSettings, PlayJob
+from morfax.jobs.playing import ByHand
+from morfax.jobs.record import RecordJob
+from morfax.jobs.recording import RecordingUnit
+from morfax.jobs.run import RunJob
+from morfax.jobs.settings import (
+    DrawingFile,
+    HeadSettings,
+    LineSettings,
+    ProgramSettings,
+    ToolSettings,
+    TraceSettings,
+)
+from morfax.jobs.systems import SystemsJob
+from morfax.jobs.trace import TraceJob, TraceOutputs
+from morfax.jobs.wrong_use import WrongUse
+from morfax.motion.faults import CardFault, LineFault
+from morfax.motion.pathfile import read_path
+from tests.console.conftest import SAMPLES
+
+UM = 1e-3
+CURVE = DrawingFile(SAMPLES / "curve.png")
+PROGRAM = DrawingFile(SAMPLES / "program.png")
+CARD = TraceSettings(program=ProgramSettings(card_file=SAMPLES / "program.toml"))
+MODULES = [
+    "trace",
+    "run",
+    "record",
+    "play",
+    "compare",
+    "systems",
+    "inspect",
+    "mend",
+    "age",
+    "listener",
+    "settings",
+    "kernels",
+]
+
+
+@dataclass
+class Recording:
+    """A listener that takes down all that it hears."""
+
+    said: list[tuple[str, str]] = field(default_factory=list)
+    done: dict[str, list[float]] = field(default_factory=dict)
+
+    @contextmanager
+    def progress(self, what: str, total: float) -> Iterator[Callable[[float], None]]:
+        self.done[what] = []
+        yield lambda done: self.done[what].append(done / (total or 1))
+
+    def note(self, text: str) -> None:
+        self.said.append(("note", text))
+
+    def detail(self, text: str) -> None:
+        self.said.append(("detail", text))
+
+    def warning(self, text: str) -> None:
+        self.said.append(("warning", text))
+
+    def compiling(self, what: str, packages: tuple[str, ...]) -> None:
+        self.said.append(("compiling", what))
+
+
+class Answering:
+    """A panel whose operator presses the button at once."""
+
+    waited = 0
+
+    def ask(self, halt: Any, z_mm: float, usual: Any) -> None:
+        return None
+
+    def wait(self, halt: Any) -> float:
+        self.waited += 1
+        return 0.25
+
+
+@pytest.fixture(autouse=True)
+def silent(capfd: pytest.CaptureFixture[str]) -> Iterator[None]:
+    """No job prints."""
+    yield
+    assert capfd.readouterr() == ("", "")
+
+
+def worked(job: Any, panel: Any = None) -> tuple[Any, Recording]:
+    """The result of a job that has been to another process and back, and what it told."""
+    sent = pickle.loads(pickle.dumps(job))
+    assert sent == job and hash(sent) == hash(job)
+    listener = Recording()
+    result = sent.run(listener, panel)
+    pickle.dumps(result)  # and the result comes back
+    shares = [share for done in listener.done.values() for share in done]
+    assert all(0 <= share < 1.01 for share in shares)  # the last block may have a sample more
+    return result, listener
+
+
+def test_trace(here: Path) -> None:
+    outputs = TraceOutputs(here / "curve.wav", here / "curve.csv", here / "curve.png")
+    result, listener = worked(TraceJob(CURVE, outputs))
+    assert result.fault is None and result.figures["ending"] == "ended"
+    assert {file.name for file in here.iterdir()} == {"curve.wav", "curve.csv"}
+    assert result.picture == here / "curve.png"  # which a face draws
+    assert ("compiling", "the head") in listener.said
+    assert listener.done["following the line"][-1] > 0.9
+
+
+def test_run_puts_all_in_a_folder(here: Path) -> None:
+    result, listener = worked(RunJob(CURVE, here / "out"))
+    names = {"curve.wav", "curve.traced.csv", "curve.played.csv"}
+    assert {file.name for file in (here / "out").iterdir()} == names
+    assert result.faults == () and result.figures["played_to_ink"]["max_mm"] < 20 * UM
+    assert set(listener.done) >= {"following the line", "playing curve.wav"}
+
+
+def test_record_and_play(here: Path, path_file: Path) -> None:
+    result, listener = worked(RecordJob(path_file, here / "circle.wav"))
+    assert result.program == here / "circle.wav" and result.program.exists()
+    assert listener.done["recording circle.wav"][-1] == pytest.approx(1, abs=0.01)
+    outputs, charts = (here / "circle.csv", here / "circle.svg"), (here / "servos.png",)
+    result, _ = worked(PlayJob(here / "circle.wav", outputs, charts))
+    assert result.paths == outputs and result.charts == charts and result.fault is None
+    assert {file.name for file in here.iterdir()} == {"circle.wav", "circle.csv"}
+    assert result.path is not None and result.chart is not None  # for a face to draw
+    played, drawn = read_path(here / "circle.csv"), read_path(path_file)
+    assert np.abs(played.xy_mm[-1] - drawn.xy_mm[-1]).max() < 1 * UM
+
+
+def test_a_playing_may_be_set(tape_file: Path) -> None:
+    plain, _ = worked(PlayJob(tape_file))
+    faster, _ = worked(PlayJob(tape_file, control=ControlSettings(feed_override=1.5)))
+    shares = plain.figures["duration_s"] / faster.figures["duration_s"]
+    assert shares == pytest.approx(1.5, rel=1e-3)
+
+
+def test_compare(path_file: Path, tape_file: Path) -> None:
+    result, _ = worked(CompareJob(DrawingFile(tape_file), path_file, tolerance_mm=3 * UM))
+    assert result.within is True and result.figures["within_tolerance"] is True
+    result, _ = worked(CompareJob(CURVE, SAMPLES / "curve.csv", tolerance_mm=1e-6))
+    assert result.within is False and result.drawing is not None
+
+
+def test_systems(here: Path) -> None:
+    result, listener = worked(SystemsJob(CURVE, ("wav",), tolerance_mm=0.05))
+    assert result.within is True and [one.suffix for one in result.results] == ["wav"]
+    assert list(result.rows) == ["traced", "Morfax 1969 (.wav)"]
+    assert any(text.startswith("Morfax 1969") for kind, text in listener.said if kind == "note")
+    assert list(here.iterdir()) == []
+
+
+def test_inspect(here: Path, path_file: Path, tape_file: Path) -> None:
+    result, _ = worked(InspectJob(tape_file))
+    assert result.fault is None and result.figures["track_2_x"]["highest_travel_mm"] > 0
+    RecordJob(path_file, here / "circle.steps").run()
+    result, _ = worked(InspectJob(here / "circle.steps"))
+    assert result.figures["program"].endswith("circle.steps")
+
+
+def test_age_and_mend(here: Path, tape_file: Path) -> None:
+    aged, listener = worked(AgeJob(tape_file, here / "worn.wav", parts=(("noise_db", 40.0),)))
+    assert aged.tape.exists() and listener.done[f"wearing {tape_file.name}"][-1] == 1
+    mended, _ = worked(MendJob(here / "worn.wav", here / "mended.wav"))
+    assert mended.tape.exists() and mended.mends == ()
+
+
+def test_all_settings_travel() -> None:
+    line = LineSettings(None, (1, 3), 0.5, 0.7, 5.0, "cw", (8.5, 23.0))
+    head = HeadSettings("historic", 5.0, Path("head.toml"), ("lead_mm=1.5",))
+    tool, program = (
+        ToolSettings(3.0, 1.0, 6.0, "inside"),
+        ProgramSettings(None, (2,), (1.0, 2.0)),
+    )
+    unit = RecordingUnit("coil", "x", 2.0, 0.5, (1.0, 1.0))
+    job = TraceJob(CURVE, TraceOutputs(), TraceSettings(line, head, tool, program), unit)
+    assert pickle.loads(pickle.dumps(job)) == job
+    play = PlayJob(
+        Path("a.wav"),
+        control=ControlSettings(1.0, 500.0, None, 0.5, "hydraulic", (0.0, 1.0)),
+        by_hand=ByHand(6000.0, 20.0, (1.0, 2.0), (2, 1, 3, 4), True),
+    )
+    assert pickle.loads(pickle.dumps(play)) == play
+
+
+def test_options_go_before_the_card_and_the_card_before_the_file(here: Path) -> None:
+    (here / "card.toml").write_text('depth = "3mm"\n[speeds]\ntrace = "7mm/s"\n')
+    (here / "head.toml").write_text("speed_mm_s = 4\ngap_mm = 0.9\n")
+    program = ProgramSettings(card_file=here / "card.toml")
+    head = HeadSettings(settings_file=here / "head.toml")
+    by_card = TraceSettings(head=head, program=program)
+    assert by_card.of_head().speed_mm_s == 7 and by_card.of_head().gap_mm == 0.9
+    assert by_card.operator(by_card.card(), None).work.depth_mm == 3
+    head = HeadSettings(speed_mm_s=9.0, settings_file=here / "head.toml")
+    by_options = TraceSettings(
+        LineSettings(gap_mm=0.2), head, ToolSettings(depth_mm=1.0), program
+    )
+    assert by_options.of_head().speed_mm_s == 9 and by_options.of_head().gap_mm == 0.2
+    assert by_options.operator(by_options.card(), None).work.depth_mm == 1
+    head = HeadSettings(speed_mm_s=9.0, changes=("speed_mm_s=2",))
+    assert TraceSettings(head=head).of_head().speed_mm_s == 2
+
+
+def test_the_panel_is_asked(here: Path) -> None:
+    (here / "card.toml").write_text('restart = "manual"\n')
+    program = ProgramSettings(card_file=here / "card.toml")
+    job = TraceJob(PROGRAM, TraceOutputs(here / "a.csv"), TraceSettings(program=program))
+    with pytest.raises(CardFault, match="waits for the operator"):
+        job.run()
+    panel = Answering()
+    worked(job, panel)
+    assert panel.waited == 2
+
+
+def test_the_zero_may_be_any_place(here: Path) -> None:
+    for origin, start_mm in (("sheet", (8.5, 23.0)), ((8.0, 20.0), (0.5, 3.0))):
+        settings = TraceSettings(program=ProgramSettings(origin=origin))  # type: ignore[arg-type]
+        TraceJob(PROGRAM, TraceOutputs(here / "a.csv"), settings).run()
+        assert read_path(here / "a.csv").xy_mm[0] == pytest.approx(start_mm, abs=0.05)
+
+
+def test_what_is_wrong_is_raised(here: Path, path_file: Path) -> None:
+    nowhere = TraceSettings(LineSettings(start_mm=(1.0, 1.0)))
+    with pytest.raises(LineFault):
+        TraceJob(CURVE, TraceOutputs(here / "a.csv"), nowhere).run()
+    both = TraceSettings(LineSettings(start_mm=(1.0, 1.0), lines="all"))
+    with pytest.raises(WrongUse, match="--lines several"):
+        TraceJob(CURVE, TraceOutputs(here / "a.csv"), both).run()
+    with pytest.raises(WrongUse, match="--pickup is for tapes"):
+        RecordJob(path_file, here / "a.steps", unit=RecordingUnit("coil")).run()
+    with pytest.raises(WrongUse, match="no setting 'colour'"):
+        TraceSettings(head=HeadSettings(changes=("colour=3",))).of_head()
+    assert list(here.iterdir()) == []
+
+
+def test_an_interruption_passes_through_and_leaves_nothing(here: Path, path_file: Path) -> None:
+    class Impatient(Recording):
+        @contextmanager
+        def progress(self, what: str, total: float) -> Iterator[Callable[[float], None]]:
+            def stop(done: float) -> None:
+                raise KeyboardInterrupt
+
+            yield stop
+
+    with pytest.raises(KeyboardInterrupt):
+        RecordJob(path_file, here / "a.wav").run(Impatient())
+    assert list(here.iterdir()) == []
+
+
+def test_jobs_know_no_terminal_and_load_no_machine() -> None:
+    """Imported, they wait for nothing heavy; running, they never need click or rich."""
+    absent = ["click", "rich", "numba", "scipy", "cv2", "soundfile", "matplotlib"]
+    code = (
+        "import importlib, sys\n"
+        f"for name in {MODULES}: importlib.import_module('morfax.jobs.' + name)\n"
+        f"print([name for name in {absent} if name in sys.modules])\n"
+        "from pathlib import Path\n"
+        "from morfax.jobs import TraceJob\n"
+        "from morfax.jobs.settings import DrawingFile\n"
+        "from morfax.jobs.trace import TraceOutputs\n"
+        "import tempfile\n"
+        "with tempfile.TemporaryDirectory() as folder:\n"
+        f"    job = TraceJob(DrawingFile(Path({str(CURVE.file)!r})), TraceOutputs(Path(folder, 'a.csv')))\n"
+        "    job.run()\n"
+        "print([name for name in ('click', 'rich', 'matplotlib') if name in sys.modules])\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    )
+    assert done.stdout.splitlines() == ["[]", "[]"]
