@@ -30,6 +30,7 @@ VERBS = {
     "record": "Record a path file, or another program, in the medium that the name after -o says.",
     "mend": "Record a tape anew whose end tells which dropout lost how many whole cycles.",
     "age": "Wear a tape as a real recorder and the years do.",
+    "machines": "List the machines that G-code is written for, or print one to change.",
     "demo": "Trace a sample drawing, play the tape, compare, and show what came out.",
 }
 

@@ -108,9 +108,16 @@ def is_tape(file: FilePath) -> bool:
     return file.suffix.lower() in TAPES
 
 
+def is_gcode(file: FilePath) -> bool:
+    """Whether a program of this name is written as lines and arcs for a machine's control."""
+    return file.suffix.lower() in BLOCKS
+
+
 def called(file: FilePath) -> str:
-    """What a program is called in the figures: a tape, or a program in another medium."""
-    return "program" if _SUFFIXES.get(file.suffix.lower()) == "program" else "tape"
+    """What a result is called in the figures: a tape, a program in another medium, or a drawing."""
+    if is_tape(file):
+        return "tape"
+    return "program" if _SUFFIXES.get(file.suffix.lower()) == "program" else "drawn"
 
 
 def recorder_figures(report: Report) -> Figures:

@@ -37,7 +37,6 @@ class RecordJob:
     source: FilePath
     output: FilePath | None = None  # None: the source's name with .wav, in the current folder
     force: bool = False  # write over a name that nobody gave
-    feed_mm_s: float = FEED_MM_S  # of a path without times
     reference_hz: float = REFERENCE_HZ
     cycles_per_mm: float | None = None  # None: the pick-up's own
     fit_tolerance_mm: float | None = None  # None: the medium's own
@@ -48,9 +47,10 @@ class RecordJob:
         from morfax.motion.contour import length_mm
 
         program = self._program()
-        self.unit.check(program)
+        is_gcode = medium.is_gcode(program)
+        (self.unit if is_gcode else replace(self.unit, feed_mm_s=None)).check(program)
         settings = self._recorder_settings(program)
-        read = read_or_play(self.source, ByHand(), listener, self.feed_mm_s)
+        read = read_or_play(self.source, ByHand(), listener, self.unit.feed_mm_s or FEED_MM_S)
         placed = self.unit.placement.path(read)
         self.unit.warn(listener)
         recording = _recorded(placed, program, settings, listener)
@@ -78,7 +78,8 @@ class RecordJob:
         """Settings as the recorder of this medium takes them."""
         if not medium.is_tape(program):
             fit_mm = self.fit_tolerance_mm
-            return {} if fit_mm is None else {"tolerance_mm": fit_mm}
+            fit = {} if fit_mm is None else {"tolerance_mm": fit_mm}
+            return fit | self.unit.program_settings(program)
         if self.fit_tolerance_mm is not None:
             raise WrongUse(
                 "--fit-tolerance is not for tapes: a tape holds the motion itself; leave it out"

@@ -1,4 +1,4 @@
-"""The recording unit: which pick-ups make the tracks, and how the motion is placed before it is recorded."""
+"""The recording unit: how the motion is placed, and how the medium is written: pick-ups, machine, feeds."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from morfax.jobs import files as medium
 from morfax.jobs.wrong_use import WrongUse
+from morfax.motion.faults import CardFault
 
 if TYPE_CHECKING:
     from morfax.jobs.listener import Listener
@@ -29,9 +30,15 @@ PICK_UPS = (
 
 @dataclass(frozen=True, slots=True)
 class RecordingUnit:
-    """What somebody sets for the recording: the pick-up (None: not set), and how the motion is placed."""
+    """What somebody sets for the recording: how the motion is placed, and how the medium is written.
+
+    None is not set: the medium's own pick-up or machine, the motion's own feeds.
+    """
 
     pickup: str | None = None
+    machine: str | None = None  # name of a built-in one, or a .toml file
+    feed_mm_s: float | None = None  # of the cut
+    plunge_mm_s: float | None = None  # of Z into the work
     mirror: str = ""  # the axis that runs the other way, x or y
     scale: float = 1.0
     turn_rad: float = 0.0
@@ -50,11 +57,45 @@ class RecordingUnit:
         return replace(self, origin_mm=origin_mm)
 
     def check(self, program: FilePath | None) -> None:
-        """Raise WrongUse where a pick-up is set and the program is no tape."""
+        """Raise WrongUse where something is set that this medium does not have."""
         if self.pickup is not None and (program is None or not medium.is_tape(program)):
             raise WrongUse(
                 f"--pickup is for tapes, {', '.join(medium.TAPES)}; give -o such a name, or leave it out"
             )
+
+        if program is not None and medium.is_gcode(program):
+            self._check_machine()
+            return
+        for name, value in (
+            ("--machine", self.machine),
+            ("--feed", self.feed_mm_s),
+            ("--plunge", self.plunge_mm_s),
+        ):
+            if value is not None:
+                raise WrongUse(
+                    f"{name} is for G-code, {', '.join(medium.BLOCKS)}; give -o such a name, or leave it out"
+                )
+
+    def _check_machine(self) -> None:
+        """Raise WrongUse for a machine that is not there, CardFault for a mistake in its file."""
+        from morfax.recorder.gcode.machine import DEFAULT, machine
+
+        try:
+            machine(self.machine or DEFAULT)
+        except CardFault:
+            raise
+        except ValueError as refused:
+            raise WrongUse(f"--machine: {refused}") from None
+
+    def program_settings(self, program: FilePath) -> dict[str, Any]:
+        """What the recorder of this medium is told; tapes apart."""
+        if not medium.is_gcode(program):
+            return {}
+        from morfax.recorder.gcode.machine import DEFAULT
+        from morfax.recorder.gcode.plan import Feeds
+
+        feeds = Feeds(self.feed_mm_s, self.plunge_mm_s)
+        return {"machine_name": self.machine or DEFAULT, "feeds": feeds}
 
     def warn(self, listener: Listener) -> None:
         """Say what a scale does to the cutter and the speed."""
@@ -74,7 +115,7 @@ class RecordingUnit:
 
         placed = self.placement.stream(stream)
         if not medium.is_tape(file):
-            return record(placed, file)
+            return record(placed, file, **self.program_settings(file))
         fmt = self.tape_format()
         return record(rehearsed(placed, fmt, listener), file, fmt=fmt)
 

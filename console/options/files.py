@@ -40,12 +40,12 @@ class Result(click.ParamType):
 
 
 class Program(Result):
-    """The name for a program, which says its medium; or for one of some other results."""
+    """The name for a program or a drawing, which says its medium; or for one of some other results."""
 
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> FilePath:
         """The name as a path; wrong use if its suffix is that of no medium."""
-        from morfax.recorder.media import MEDIA
+        from morfax.recorder.media import DRAWINGS, MEDIA
 
-        return Result(*MEDIA, *self.suffixes).convert(value, param, ctx)
+        return Result(*MEDIA, *DRAWINGS, *self.suffixes).convert(value, param, ctx)

@@ -1,4 +1,4 @@
-"""The options of the recording unit: pick-ups, and how the motion is placed before it is recorded."""
+"""The options of the recording unit: how the motion is placed, and how the medium is written."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 import click
 
 from morfax.console.options.groups import option
-from morfax.console.options.types import ANGLE, NUMBER, PLACE
+from morfax.console.options.types import ANGLE, FEED, NUMBER, PLACE
 from morfax.jobs.recording import PICK_UPS, RecordingUnit
 
 GROUP = "Program"
@@ -24,8 +24,30 @@ def unit_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         GROUP,
         "--pickup",
         type=click.Choice(PICK_UPS),
-        help="What makes the tracks of a tape: its wave and its travel per cycle, see docs/reference/tape-format.md.  "
+        help="What makes the tracks of a tape: its wave and its travel per cycle, see "
+        "docs/reference/tape-format.md.  "
         f"[default: {PICK_UPS[0]}]",
+    )
+    @option(
+        GROUP,
+        "--machine",
+        help="The machine that G-code is for: a name that `morfax machines` lists, or a .toml file of "
+        "your own.  [default: linuxcnc]",
+    )
+    @option(
+        GROUP,
+        "--feed",
+        "feed_mm_s",
+        type=FEED,
+        help="Feed of the cut in G-code, such as 1200mm/min.  [default: the speeds of the motion; 10 mm/s for "
+        "a path without times]",
+    )
+    @option(
+        GROUP,
+        "--plunge",
+        "plunge_mm_s",
+        type=FEED,
+        help="Feed of Z into the work in G-code.  [default: that of the motion]",
     )
     @option(
         GROUP,

@@ -12,7 +12,7 @@ from morfax.console.options.files import FILE, Program
 from morfax.console.options.groups import Verb, option, renamed
 from morfax.console.options.placement import unit_options
 from morfax.console.options.tape import CYCLES_PER_MM
-from morfax.console.options.types import FEED, FREQUENCY, LENGTH
+from morfax.console.options.types import FREQUENCY, LENGTH
 from morfax.jobs.record import RecordJob
 
 if TYPE_CHECKING:
@@ -36,15 +36,6 @@ Examples:
     "output",
     type=Program(),
     help="The program (.wav, .steps, .cubic, .ngc).  [default: the source's name with .wav, here]",
-)
-@option(
-    "Program",
-    "--feed",
-    "feed_mm_s",
-    type=FEED,
-    default="10mm/s",
-    show_default=True,
-    help="Speed of a path without times.",
 )
 @option(
     "Tape",
@@ -81,7 +72,6 @@ Examples:
 def command(
     source: FilePath,
     output: FilePath | None,
-    feed_mm_s: float,
     reference_hz: float,
     cycles_per_mm: float | None,
     fit_tolerance_mm: float | None,
@@ -99,7 +89,6 @@ def command(
         source,
         output,
         force,
-        feed_mm_s,
         reference_hz,
         cycles_per_mm,
         fit_tolerance_mm,

@@ -75,7 +75,7 @@ def record_blocks(
     """
     wanted = machine(machine_name)
     planned = plan(stream, Writing(tolerance_mm, wanted.decimals, wanted.arcs), feeds)
-    comments = [f"for {wanted.what}", *_comments(planned)]
+    comments = [f"for {wanted.what}", *_comments(planned, depth=wanted.z)]
     with written_beside(file) as beside:
         text = program_text(planned.start_mm, planned.blocks, wanted, comments)
         beside.write_text("\n".join([*text, ""]), encoding="ascii")
@@ -91,7 +91,7 @@ def record_blocks(
     )
 
 
-def _comments(planned: Plan) -> list[str]:
+def _comments(planned: Plan, *, depth: bool) -> list[str]:
     """What a person at the machine wants to know before pressing start."""
     cut = [part.points_mm for part in planned.parts if not part.rapid]
     if not cut:
@@ -99,8 +99,9 @@ def _comments(planned: Plan) -> list[str]:
     points = np.vstack(cut)
     x_mm, y_mm, _ = np.ptp(points, axis=0)
     length_mm = sum(float(np.hypot(*np.diff(piece[:, :2], axis=0).T).sum()) for piece in cut)
+    down = f", Z down to {points[:, 2].min():.2f} mm" if depth else ""
     return [
-        f"cut {x_mm:.2f} x {y_mm:.2f} mm, Z down to {points[:, 2].min():.2f} mm",
+        f"cut {x_mm:.2f} x {y_mm:.2f} mm{down}",
         f"length {length_mm:.1f} mm, about {planned.duration_s:.0f} s",
         f"within {planned.deviation_mm:.4f} mm of the traced path",
     ]

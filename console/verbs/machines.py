@@ -1,0 +1,39 @@
+"""The verb `machines`: which machines G-code is written for, and one of them as a file to change."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+
+from morfax.console.options.desk import desk_options
+from morfax.console.options.groups import Verb
+
+if TYPE_CHECKING:
+    from morfax.console.terminal.desk import Desk
+
+EXAMPLES = """\b
+Examples:
+  morfax machines
+  morfax machines grbl-router
+"""
+
+
+@click.command("machines", cls=Verb, epilog=EXAMPLES)
+@click.argument("name", required=False)
+@desk_options
+def command(name: str | None, desk: Desk) -> None:
+    """List the machines that G-code is written for; with a NAME, print that machine as a file.
+
+    Send the file to my.toml (`morfax machines grbl-router > my.toml`), change it, and give it to trace, record or
+    run with --machine my.toml.
+    """
+    from morfax.recorder.gcode.machine import as_toml, machine, names
+
+    if name is None:
+        desk.figures({each: machine(each).what for each in names()})
+        return
+    try:
+        click.echo(as_toml(name), nl=False)
+    except ValueError as refused:
+        raise click.BadParameter(str(refused), param_hint="NAME") from None

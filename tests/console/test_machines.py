@@ -1,0 +1,71 @@
+"""Machines and drawings on the command line: what is written for whom, and what is refused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from morfax.player.gcode.rs274 import read_rs274
+from morfax.recorder.gcode.machine import as_toml, names
+from tests.console.conftest import SAMPLES, Morfax
+
+CAM = SAMPLES / "cam.csv"
+
+
+def test_machines_are_listed_and_printed_as_a_file_to_change(
+    morfax: Morfax, here: Path
+) -> None:
+    assert list(morfax("machines", "--json").figures) == names()
+    (here / "mine.toml").write_text(
+        morfax("machines", "grbl-pen").out.replace("down = 90", "down = 45")
+    )
+    assert morfax("record", CAM, "-o", "a.nc", "--machine", "mine.toml").exit_code == 0
+    assert "M3 S45" in (here / "a.nc").read_text().split("\n")
+    assert as_toml("grbl-pen") == morfax("machines", "grbl-pen").out
+
+
+def test_a_machine_that_is_not_there_is_wrong_use(morfax: Morfax, here: Path) -> None:
+    for words in (("machines", "mach3"), ("record", CAM, "-o", "a.nc", "--machine", "mach3")):
+        answer = morfax(*words)
+        assert (
+            answer.exit_code == 2 and "there is no machine 'mach3'; there are" in answer.fault
+        )
+    assert morfax("record", CAM, "-o", "a.nc", "--machine", "none.toml").exit_code == 8
+    assert not list(here.iterdir())
+
+
+def test_a_mistake_in_a_machine_is_told_with_its_line(morfax: Morfax, here: Path) -> None:
+    (here / "mine.toml").write_text('what = "mine"\narcs = 3\n')
+    answer = morfax("record", CAM, "-o", "a.nc", "--machine", "mine.toml")
+    assert (
+        answer.exit_code == 9
+        and "mine.toml, line 2: arcs holds 3; it may hold true" in answer.fault
+    )
+    assert not (here / "a.nc").exists()
+
+
+@pytest.mark.parametrize("option", [("--machine", "marlin"), ("--plunge", "2mm/s")])
+def test_what_g_code_alone_has_is_refused_for_a_tape(
+    option: tuple[str, str], morfax: Morfax, here: Path
+) -> None:
+    answer = morfax("record", CAM, "-o", "a.wav", *option)
+    assert answer.exit_code == 2 and f"{option[0]} is for G-code, .ngc" in answer.fault
+    assert not list(here.iterdir())
+
+
+def test_the_feed_that_is_asked_for_is_the_program_s(morfax: Morfax, here: Path) -> None:
+    words = ("trace", SAMPLES / "bracket.png", "-o", "a.nc", "--machine", "grbl-router")
+    assert morfax(*words, "--feed", "2400mm/min", "--plunge", "120mm/min").exit_code == 0
+    feeds = {move.feed_mm_s for move in read_rs274(here / "a.nc").moves if move.feed_mm_s}
+    assert feeds == {40.0, 2.0}
+
+
+@pytest.mark.parametrize(
+    ("suffix", "holds"), [(".dxf", "LWPOLYLINE"), (".svg", "<path"), (".plt", "PD")]
+)
+def test_a_drawing_of_what_is_cut_for_other_programs(
+    suffix: str, holds: str, morfax: Morfax, here: Path
+) -> None:
+    figures = morfax("trace", SAMPLES / "bracket.png", "-o", f"a{suffix}", "--json").figures
+    assert figures["drawn"] == f"a{suffix}" and holds in (here / f"a{suffix}").read_text()
