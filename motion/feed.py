@@ -25,10 +25,8 @@ from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.motion.speed_limits import reachable
 
 SHARP = math.radians(10)
-ALONG, ACROSS = (
-    0.7,
-    1 / 3,
-)  # shares of the acceleration: along the way; in its bend, and again in its turns from piece to piece
+# shares of the acceleration: along the way; in its bend, and again in its turns from piece to piece
+ALONG, ACROSS = 0.7, 1 / 3
 SMOOTHED_S = 0.002
 BEND_WITHIN_MM = 0.1  # to either side of a place its bend is counted
 STANDS_S = 2 * SMOOTHED_S  # at either end, so that the average comes to rest

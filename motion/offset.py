@@ -36,9 +36,8 @@ from morfax.motion.polyline import (
 from morfax.motion.trimming import FREE, NEARER, SAME_MM, chains, trimmed
 
 LEAST_MM = 0.05  # a shorter path is dropped, ...
-BROKEN = (
-    0.1  # ... and one from crossing to crossing shorter than this share of the radius; by trial
-)
+# ... and one from crossing to crossing shorter than this share of the radius; by trial
+BROKEN = 0.1
 ROUND_RADII = 6.0  # a path clockwise round a line is longer than this: 2 pi radii round a point
 
 

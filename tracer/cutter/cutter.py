@@ -46,9 +46,8 @@ from morfax.tracer.program.program import Trace
 CutterSide = Literal["outside", "inside", "left", "right"]
 
 LEFT_MM = 0.002  # where no more than this is left, the cutter has touched the line, ...
-LISTED_MM = (
-    0.01  # ... and a stretch where no more is left is not listed: the head wavers as much
-)
+# ... and a stretch where no more is left is not listed: the head wavers as much
+LISTED_MM = 0.01
 EVERY_MM = 0.02  # between the places of a line that are looked at
 GOUGE_MM = 0.005  # nearer to a line than the radius by more is a gouge: WITHIN_MM and the feed's smoothing
 GOUGES = 10  # one position in ten is looked at: every 17 um at 10 mm/s

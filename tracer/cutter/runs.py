@@ -19,7 +19,7 @@ from morfax.motion.polyline import at_places, length_mm, lengths_mm
 from morfax.tracer.cutter.contour import PathPlace
 from morfax.tracer.junctions.guides import GuideLine
 from morfax.tracer.program import braking
-from morfax.tracer.program.program import BRAKE_MM_S2
+from morfax.tracer.program.passes import BRAKE_MM_S2
 
 NOTHING_MM = 1e-6  # a shorter way is not run
 

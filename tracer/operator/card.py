@@ -37,9 +37,8 @@ Turn = Literal["straight", "left", "right"]
 Override = Literal["none", "all"] | tuple[int, ...]
 FEED_MM_S = 5.0  # of a move without a feed, on a card without a feed: our own figure
 CLEAR_COUNTS = 50  # 0.5 mm above the bottom of the hole the drill slows down: our own figure
-LEAST_START_COUNTS = (
-    6  # the first count above IN_WORK_BELOW_MM, where the tool is out of the work
-)
+# the first count above IN_WORK_BELOW_MM, where the tool is out of the work
+LEAST_START_COUNTS = 6
 _KEYS = ("start", "depth", "passes", "entry", "restart", "turns", "override", "speeds", "stop")
 _STOP_KEYS = ("number", "moves", "drill", "passes", "dwell", "restart")
 _MOVE_KEYS = ("down", "up", "feed", "dwell")

@@ -33,9 +33,8 @@ from morfax.tracer.operator.zunit import Move
 from morfax.tracer.sensing.side import Side
 
 STAND_S = 0.5  # at a stop without an entry on the card: our own figure
-NEAR_WIDTHS = (
-    3.0  # a dot as near to the end of a guide line is the hole drilled there; by trial
-)
+# a dot as near to the end of a guide line is the hole drilled there; by trial
+NEAR_WIDTHS = 3.0
 
 
 class Panel(Protocol):

@@ -42,9 +42,8 @@ COUNTS_PER_MM = 100
 LARGEST_COUNT = 99_999  # five decades
 ACCELERATION_MM_S2 = 200.0  # of the Z motor: our own figure
 _OFF_COUNT = 1e-6  # of a count: what arithmetic with inches leaves over
-_PULSE = (
-    1e-9  # of a count: what rounding takes off a pulse that has passed, 1e5 counts in 53 bits
-)
+# of a count: what rounding takes off a pulse that has passed, 1e5 counts in 53 bits
+_PULSE = 1e-9
 
 
 Sense = Literal["up", "down"]
