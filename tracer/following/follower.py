@@ -44,6 +44,7 @@ from morfax.tracer.marks.dots import disc, dot_ahead, dot_at_end
 from morfax.tracer.sensing.leg import Leg, goes_straight, leg_of
 from morfax.tracer.sensing.probe import end_of
 from morfax.tracer.tangles.memory import Tangles
+from morfax.tracer.tangles.solution import Approach
 
 # the share of a change of a clean line's width that the head takes over at once; by trial
 SWELLS = 0.5
@@ -163,9 +164,8 @@ class Follower:
         """The way out of a tangle, if the junction is one, else the plan; and whether the tangle explains it."""
         number = self._ways_out.junctions.next(self.carriage.travel_mm)
         way_in, rank = self.carriage.stands(), self._ways_out.turns.other.count(number)
-        return self._tangles.way_out(
-            self.view, incoming, self.carriage.trail, way_in, plan, number, rank
-        )
+        approach = Approach(incoming, self.carriage.trail, way_in, plan, number, rank)
+        return self._tangles.way_out(self.view, approach)
 
     def _is_dot(self, incoming: Leg, outgoing: Leg | None) -> bool:
         """Whether the junction is a dot on the line, or the leg out of it leads to a dot: no pen's width

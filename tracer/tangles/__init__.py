@@ -1,1 +1,4 @@
-"""TODO: what lives in this room, and its door."""
+"""Tangles: ink of several lines that runs together for longer than a corner, and the way on that explains it.
+
+The room asks `junctions` and what lies below; `following` asks it for the way out of a tangle (`memory`).
+"""

@@ -1,13 +1,14 @@
-"""The tangles that the head has come to, and what it remembers of them.
+"""The memory of tangles: those that the head has come to, and what it left there.
 
-Signals: the incoming leg and the trail in; the way out of the tangle ahead, and what was left there, out.
+Signals: the head's approach in; the way out of the tangle ahead, and junctions that are in doubt, out.
 
-Source: our own (see `pairing`).
+Source: our own (see `sketch`).
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -19,108 +20,93 @@ from morfax.tracer.marks.marks import longest_mm
 from morfax.tracer.sensing.leg import Leg, turn
 from morfax.tracer.sensing.probe import stroke_end
 from morfax.tracer.sensing.view import View
-from morfax.tracer.tangles.redrawing import MOST_LEGS, Sketch, Way
-from morfax.tracer.tangles.solution import unravelled
+from morfax.tracer.tangles.redrawing import Redrawing
+from morfax.tracer.tangles.sketch import MOST_LEGS, Sketch
+from morfax.tracer.tangles.solution import Approach, unravelled
 from morfax.tracer.tangles.strands import same_line, stretches_over
 from morfax.tracer.tangles.tangle import Tangle, tangle_ahead
 
+# Chosen by trial on the test drawings.
 LEAST_SEEN = 4  # stations of the incoming leg, to know the pen by
-LEAST_AHEAD_MM = 0.1
+LEAST_AHEAD_MM = 0.1  # the head can still come onto a strand's own leg
 BACK_RAD, LONGEST_TIP_MM = math.radians(130), 5.5  # lines that run together to one tip
 
 
 class Tangles:
-    """The tangles that the head has come to, each with the way it was drawn: where a line leads into one
-    again it takes the strand that is left.
+    """The tangles that the head has come to, each with its redrawing.
+
+    Where a line leads into one again, it takes the strand that is left.
     """
 
     def __init__(self) -> None:
-        self._known: list[tuple[Tangle, Way]] = []
+        self._known: list[tuple[Tangle, Redrawing]] = []
         self._left: list[tuple[int, int, Leg]] = []
         self._beside: list[Leg] = []
 
-    def way_out(
-        self,
-        view: View,
-        incoming: Leg,
-        trail: Trail,
-        way_in: tuple[Array, float],
-        plan: Plan | None,
-        number: int = 0,
-        rank: int = 0,
-    ) -> tuple[Plan | None, bool]:
-        """The way from where the head is (place, heading) out of the tangle ahead, and whether it explains
-        the tangle's ink.
+    def way_out(self, view: View, approach: Approach) -> tuple[Plan | None, bool]:
+        """The way out of the tangle ahead, and whether it explains the tangle's ink.
 
         It is the plan if that explains the ink as well as any other way, or if the tangle does not end in
-        legs, or in too many, or if no way explains its ink. `rank` 1 takes the second best way out, 2 the
-        third, and `number` is that of the tangle among the junctions.
+        legs, or in too many, or if no redrawing explains its ink.
         """
+        incoming, plan = approach.incoming, approach.plan
         if len(incoming.seen) < LEAST_SEEN:
             return plan, False
-        strand = self._strand_left(incoming, trail, way_in[0], view.width_mm)
-        if strand is not None and rank == 0:
-            first, vertices, last = strand
-            return Plan(stretches_over(way_in, first, vertices, last), last), True
+        # 1. the strand that is left of a tangle that is known
+        strand = self._strand_left(approach, view.width_mm)
+        if strand is not None and approach.rank == 0:
+            return strand, True
+        # 2. of an odd number of legs one ends on another: that is a junction, which the legs tell better
         tangle = tangle_ahead(view, incoming)
-        odd = (
-            len(tangle.legs) % 2 == 1
-        )  # one line ends on another: that is a junction, which the legs tell better
+        odd = len(tangle.legs) % 2 == 1
         if odd:
             self._beside += [leg for leg in tangle.legs[1:] if _runs_back(view, incoming, leg)]
-        if (
-            not tangle.whole
-            or not 2 <= len(tangle.legs) <= MOST_LEGS
-            or (odd and plan is not None)
-        ):
+        if not tangle.whole or not 2 <= len(tangle.legs) <= MOST_LEGS or (odd and plan):
             return plan, False
-        found, way, others = unravelled(
-            Sketch.of(view, tangle), incoming, trail, way_in, plan, rank
-        )
-        if way is not None:
-            self._known.append((tangle, way))
-        if rank == 0:
-            self._left += [(number, k + 1, leg) for k, leg in enumerate(others)]
-        return found, way is not None
+        # 3. the redrawing that explains the ink
+        found = unravelled(Sketch.of(view, tangle), approach)
+        if found.redrawing is not None:
+            self._known.append((tangle, found.redrawing))
+        if approach.rank == 0:
+            ranked = enumerate(found.others, 1)
+            self._left += [(approach.number, rank, leg) for rank, leg in ranked]
+        return found.plan, found.redrawing is not None
 
     def goes_back(self, tip: Array, trail: Trail, width_mm: float) -> bool:
-        """Whether the line that ends at a tip is two that ran together a little before, of which the one has
-        not been followed.
-        """
+        """Whether a line that ends at a tip is two that ran together before, one of which is not followed."""
         near = [leg for leg in self._beside if np.hypot(*(leg.end_mm - tip)) < LONGEST_TIP_MM]
         self._beside = []
         return any(not trail.holds(leg, width_mm) for leg in near)
 
     def doubts(self, trail: Trail, width_mm: float) -> tuple[tuple[int, int], ...]:
-        """Numbers of the junctions where another way out would have done as well and leads to ink that has
-        not been followed, and its rank.
+        """Junctions (number, rank of the way out) where another way would have done as well.
+
+        Only those that lead to ink that has not been followed.
         """
         return tuple(
             (number, rank) for number, rank, leg in self._left if not trail.holds(leg, width_mm)
         )
 
-    def _strand_left(
-        self, incoming: Leg, trail: Trail, place: Array, width_mm: float
-    ) -> tuple[Leg, Array, Leg] | None:
-        """The legs and the vertices between them of the strand that a line leads into; None if it leads into
-        no tangle that is known.
-        """
+    def _strand_left(self, approach: Approach, width_mm: float) -> Plan | None:
+        """The plan by the strand that a line leads into; None if it leads into no tangle that is known."""
+        incoming, place = approach.incoming, approach.stands[0]
         for tangle, way in self._known:
-            legs = [tangle.legs[0].turned_round(), *tangle.legs[1:]]
-            for pair, vertices in zip(way.pairs, way.vertices, strict=True):
-                if 0 in pair:
-                    continue  # the one that was taken
-                for a, b, between in ((*pair, vertices), (*pair[::-1], vertices[::-1])):
-                    first = legs[a].turned_round()
-                    if same_line(first, incoming, width_mm) and not trail.holds(
-                        legs[b], width_mm
-                    ):
-                        return (
-                            first if ahead_mm(place, first) > LEAST_AHEAD_MM else incoming,
-                            between,
-                            legs[b],
-                        )
+            for a, b, vertices in _strands(way):
+                first, last = tangle.legs[a].turned_round(), tangle.legs[b]
+                if not same_line(first, incoming, width_mm):
+                    continue
+                if not approach.trail.holds(last, width_mm):
+                    begin = first if ahead_mm(place, first) > LEAST_AHEAD_MM else incoming
+                    return Plan(stretches_over(approach.stands, begin, vertices, last), last)
         return None
+
+
+def _strands(way: Redrawing) -> Iterator[tuple[int, int, Array]]:
+    """The strands that were not taken, either way round: legs, and the vertices between them."""
+    for (a, b), vertices in zip(way.pairs, way.vertices, strict=True):
+        if 0 not in (a, b):
+            yield a, b, vertices
+            yield b, a, vertices[::-1]
 
 
 def _runs_back(view: View, incoming: Leg, leg: Leg) -> bool:

@@ -6,45 +6,81 @@ straight line by itself. A pen of the line's width w leaves on a place at distan
 
     darkness = erfc((d - w/2) / (softness·√2)) / 2
 
-The vertices are moved until the square of what is wrong, summed over the tangle, is least (Levenberg and
+The vertices are moved until the sum over the tangle of what is wrong, squared, is least (Levenberg and
 Marquardt).
 
 Signals: places and darkness (see `tangle`), poses (x, y, heading) of the legs' ends, mm and rad; vertices in
 and out.
 
-Source: our own.
+Source: our own. Questions: scipy has a Levenberg and Marquardt too. This one runs in the kernel, on a few
+vertices, some hundred times per tangle; calls from there into Python would take longer than the fit.
 """
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.tracer.sensing.photocell import darkness_at
 
+# Chosen by trial on the test drawings.
 PIECES = 6  # straight pieces that a bend is drawn with
-NUDGE_MM = 0.01
+STEEPEST = 0.6  # cosine: a bend that leaves further aside of its chord reaches no further ahead
+NUDGE_MM = 0.01  # by which a vertex is moved to see what that changes
 FARTHEST_MM = 0.3  # a vertex is moved at a time
 SPECK_PX = 1.5  # from the middle of a speck to the ink beside it
+INKED = 3.0  # softnesses from its edge, ink is whole or none: erfc is within 1e-5 of that
+DAMPING, LEAST_DAMPING = 1e-2, 1e-4  # of the step: at first, and at the least
+EASED, DAMPED = 0.3, 4  # times: after a step that was good, and after one that was not
 MOST_DAMPED = 6  # times that a step is tried again, shorter
+LEAST_GAIN = 1e-3  # of what is wrong: a smaller gain ends the fit
+
+
+class Ink(NamedTuple):
+    """The ink of a tangle: its places (n, 2), their darkness, and how far each is from what is drawn anyway.
+
+    The pen leaves half a width of ink to either side, of some softness.
+    """
+
+    places_mm: Array
+    darkness: Array
+    known_mm: Array
+    half_mm: float
+    softness_mm: float
+
+
+class Drawn(NamedTuple):
+    """What is drawn: pairs of poses (k, 2, 3), the vertices that each strand has, and how many strokes."""
+
+    ends: Array
+    counts: NDArray[np.int64]
+    strokes: int
 
 
 @njit(cache=True)
-def bend(x0, y0, heading, x1, y1, t):  # type: ignore[no-untyped-def]
-    """Place at a share t of the bend that leaves (x0, y0) along a heading and ends at (x1, y1)."""
-    dx, dy = x1 - x0, y1 - y0
+def bend(pose, x, y, t):  # type: ignore[no-untyped-def]
+    """Place at a share t of the bend that leaves a pose along its heading and ends at (x, y)."""
+    x0, y0, heading = pose[0], pose[1], pose[2]
+    dx, dy = x - x0, y - y0
     chord = math.hypot(dx, dy)
     c, s = math.cos(heading), math.sin(heading)
-    reach = 0.5 * chord / max((dx * c + dy * s) / max(chord, 1e-9), 0.6)
+    cosine = (dx * c + dy * s) / max(chord, 1e-9)
+    reach = 0.5 * chord / max(cosine, STEEPEST)
     a, b, d = (1 - t) ** 2, 2 * t * (1 - t), t * t
-    return a * x0 + b * (x0 + reach * c) + d * x1, a * y0 + b * (y0 + reach * s) + d * y1
+    return a * x0 + b * (x0 + reach * c) + d * x, a * y0 + b * (y0 + reach * s) + d * y
 
 
 @njit(cache=True)
 def cubic(pose, other, t):  # type: ignore[no-untyped-def]
-    """Place at a share t of the cubic between two poses that face each other."""
+    """Place at a share t of the cubic between two poses that face each other.
+
+    It is `motion.curves.hermite` place by place, as a kernel needs it.
+    """
     chord = math.hypot(other[0] - pose[0], other[1] - pose[1])
     h, p, q = t * t * (3 - 2 * t), chord * t * (1 - t) ** 2, chord * t * t * (1 - t)
     x = pose[0] * (1 - h) + other[0] * h + p * math.cos(pose[2]) + q * math.cos(other[2])
@@ -53,50 +89,65 @@ def cubic(pose, other, t):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def pieces(ends, counts, strokes, vertices, out):  # type: ignore[no-untyped-def]
-    """Straight pieces (4, n) of strands between pairs of poses (k, 2, 3) with `counts` vertices each, and of
-    single strokes; how many.
-    """
+def most_pieces(drawn, vertices):  # type: ignore[no-untyped-def]
+    """How many straight pieces there are at the most."""
+    return 2 * PIECES * len(drawn.ends) + 2 * len(vertices) + 1
+
+
+@njit(cache=True)
+def pieces(drawn, vertices, out):  # type: ignore[no-untyped-def]
+    """Draw strands and strokes as straight pieces (4, n): x and y of either end; how many."""
     n = at = 0
-    for k in range(len(ends)):
-        first, last = ends[k, 0], ends[k, 1]
-        x, y = first[0], first[1]
-        if counts[k] == 0:
-            for i in range(1, 2 * PIECES + 1):
-                to_x, to_y = cubic(first, last, i / (2 * PIECES))
-                out[0, n], out[1, n], out[2, n], out[3, n] = x, y, to_x, to_y
-                n, x, y = n + 1, to_x, to_y
+    # 1. strands
+    for k in range(len(drawn.ends)):
+        first, last, count = drawn.ends[k, 0], drawn.ends[k, 1], drawn.counts[k]
+        if count == 0:
+            n = _cubic_pieces(first, last, out, n)
             continue
-        for i in range(1, PIECES + 1):
-            to_x, to_y = bend(
-                first[0], first[1], first[2], vertices[at, 0], vertices[at, 1], i / PIECES
-            )
-            out[0, n], out[1, n], out[2, n], out[3, n] = x, y, to_x, to_y
-            n, x, y = n + 1, to_x, to_y
-        for i in range(at, at + counts[k] - 1):
-            out[0, n], out[1, n] = vertices[i, 0], vertices[i, 1]
-            out[2, n], out[3, n] = vertices[i + 1, 0], vertices[i + 1, 1]
-            n += 1
-        at += counts[k]
-        x, y = last[0], last[1]
-        for i in range(1, PIECES + 1):
-            to_x, to_y = bend(
-                last[0], last[1], last[2], vertices[at - 1, 0], vertices[at - 1, 1], i / PIECES
-            )
-            out[0, n], out[1, n], out[2, n], out[3, n] = x, y, to_x, to_y
-            n, x, y = n + 1, to_x, to_y
-    for _ in range(strokes):
-        out[0, n], out[1, n] = vertices[at, 0], vertices[at, 1]
-        out[2, n], out[3, n] = vertices[at + 1, 0], vertices[at + 1, 1]
-        n, at = n + 1, at + 2
+        n = _bend_pieces(first, vertices[at], out, n)
+        for i in range(at, at + count - 1):
+            n = _piece(vertices[i], vertices[i + 1], out, n)
+        at += count
+        n = _bend_pieces(last, vertices[at - 1], out, n)
+    # 2. strokes
+    for _ in range(drawn.strokes):
+        n = _piece(vertices[at], vertices[at + 1], out, n)
+        at += 2
+    return n
+
+
+@njit(cache=True)
+def _piece(start, end, out, n):  # type: ignore[no-untyped-def]
+    """Write one straight piece; how many there are then."""
+    out[0, n], out[1, n], out[2, n], out[3, n] = start[0], start[1], end[0], end[1]
+    return n + 1
+
+
+@njit(cache=True)
+def _cubic_pieces(first, last, out, n):  # type: ignore[no-untyped-def]
+    """Write the pieces of a cubic; how many there are then."""
+    start = (first[0], first[1])
+    for i in range(1, 2 * PIECES + 1):
+        end = cubic(first, last, i / (2 * PIECES))
+        n = _piece(start, end, out, n)
+        start = end
+    return n
+
+
+@njit(cache=True)
+def _bend_pieces(pose, vertex, out, n):  # type: ignore[no-untyped-def]
+    """Write the pieces of a bend; how many there are then."""
+    start = (pose[0], pose[1])
+    for i in range(1, PIECES + 1):
+        end = bend(pose, vertex[0], vertex[1], i / PIECES)
+        n = _piece(start, end, out, n)
+        start = end
     return n
 
 
 @njit(cache=True, fastmath=True)
 def away(places, lines, count, out):  # type: ignore[no-untyped-def]
-    """Bring distances (n,) of places down to those from the first pieces of some lines (4, k), where these
-    are nearer; mm.
-    """
+    """Lower distances (n,) of places to those from the first pieces of some lines (4, k), mm."""
     x0, y0 = lines[0, :count].copy(), lines[1, :count].copy()
     vx, vy = lines[2, :count] - x0, lines[3, :count] - y0
     per = 1.0 / (vx * vx + vy * vy + 1e-18)
@@ -113,15 +164,13 @@ def away(places, lines, count, out):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def on_paper_mm(cells, lines, count):  # type: ignore[no-untyped-def]
-    """Length of the first pieces of some lines (4, k) that lies on paper, mm; a speck of it with ink on both
-    sides is none.
-    """
-    total, pitch_mm, level = 0.0, cells.pitch_mm, cells.level
+    """Length on paper of the first pieces of some lines (4, k), mm; a speck within the ink is no paper."""
+    total, level = 0.0, cells.level
     for i in range(count):
         vx, vy = lines[2, i] - lines[0, i], lines[3, i] - lines[1, i]
         length = math.hypot(vx, vy)
-        steps = max(1, math.ceil(length / pitch_mm))
-        aside = SPECK_PX * pitch_mm / max(length, 1e-9)
+        steps = max(1, math.ceil(length / cells.pitch_mm))
+        aside = SPECK_PX * cells.pitch_mm / max(length, 1e-9)
         for k in range(steps):
             t = (k + 0.5) / steps
             x, y = lines[0, i] + t * vx, lines[1, i] + t * vy
@@ -138,83 +187,67 @@ def ink(distance_mm, half_mm, softness_mm, out):  # type: ignore[no-untyped-def]
     """Darkness that a pen of half a width leaves at distances from its way."""
     for k in range(len(distance_mm)):
         u = (distance_mm[k] - half_mm) / (math.sqrt(2.0) * softness_mm)
-        out[k] = 0.5 * math.erfc(u) if abs(u) < 3.0 else (0.0 if u > 0 else 1.0)
+        out[k] = 0.5 * math.erfc(u) if abs(u) < INKED else (0.0 if u > 0 else 1.0)
 
 
 @njit(cache=True)
-def _wrong(  # type: ignore[no-untyped-def]
-    places, darkness, known_mm, pen, ends, counts, strokes, vertices, lines, distance, out
-):
-    """What is drawn too dark at each place, into `out`; the sum of its squares."""
-    distance[:] = known_mm
-    away(places, lines, pieces(ends, counts, strokes, vertices, lines), distance)
-    ink(distance, pen[0], pen[1], out)
+def _wrong(seen, drawn, vertices, lines, out):  # type: ignore[no-untyped-def]
+    """What is drawn too dark at each place, into `out` (2, n) after the distances; the sum of its squares."""
+    distance, wrong = out[0], out[1]
+    distance[:] = seen.known_mm
+    away(seen.places_mm, lines, pieces(drawn, vertices, lines), distance)
+    ink(distance, seen.half_mm, seen.softness_mm, wrong)
     total = 0.0
-    for k in range(len(places)):
-        out[k] -= darkness[k]
-        total += out[k] * out[k]
+    for k in range(len(wrong)):
+        wrong[k] -= seen.darkness[k]
+        total += wrong[k] * wrong[k]
     return total
 
 
 @njit(cache=True)
-def settle(places, darkness, known_mm, pen, ends, counts, strokes, vertices, rounds):  # type: ignore[no-untyped-def]
-    """Move the vertices (k, 2), in place, to where the pen (half a width, softness) leaves the ink that is
-    there; the sum of squares that is left.
+def _changes(seen, drawn, vertices, lines, now):  # type: ignore[no-untyped-def]
+    """By how much each coordinate of the vertices changes what is wrong at each place, per mm."""
+    change, out = np.empty((2 * len(vertices), len(now))), np.empty((2, len(now)))
+    for i in range(len(change)):
+        old = vertices[i // 2, i % 2]
+        vertices[i // 2, i % 2] = old + NUDGE_MM
+        _wrong(seen, drawn, vertices, lines, out)
+        vertices[i // 2, i % 2] = old
+        change[i] = (out[1] - now) / NUDGE_MM
+    return change
 
-    `known_mm` is how far each place is from what is drawn anyway: the legs.
+
+@njit(cache=True)
+def settle(seen, drawn, vertices, rounds):  # type: ignore[no-untyped-def]
+    """Move the vertices (k, 2), in place, to where the pen leaves the ink that is there.
+
+    Returns the sum of squares of what is still wrong.
     """
-    n, p = len(places), 2 * len(vertices)
-    lines = np.empty((4, 2 * PIECES * len(ends) + p + 1))
-    now, trial, distance = np.empty(n), np.empty(n), np.empty(n)
-    best = _wrong(
-        places, darkness, known_mm, pen, ends, counts, strokes, vertices, lines, distance, now
-    )
-    change = np.empty((p, n))
-    damping = 1e-2
-    for _ in range(rounds if p > 0 else 0):
-        for i in range(p):
-            old = vertices[i // 2, i % 2]
-            vertices[i // 2, i % 2] = old + NUDGE_MM
-            _wrong(
-                places,
-                darkness,
-                known_mm,
-                pen,
-                ends,
-                counts,
-                strokes,
-                vertices,
-                lines,
-                distance,
-                change[i],
-            )
-            vertices[i // 2, i % 2] = old
-            change[i] = (change[i] - now) / NUDGE_MM
+    n = len(seen.places_mm)
+    lines = np.empty((4, most_pieces(drawn, vertices)))
+    out = np.empty((2, n))
+    best = _wrong(seen, drawn, vertices, lines, out)
+    now = out[1].copy()
+    damping = DAMPING
+    for _ in range(rounds if len(vertices) > 0 else 0):
+        # 1. the normal equations
+        change = _changes(seen, drawn, vertices, lines, now)
         square, right = change @ change.T, change @ now
         before = best
+        # 2. a step that makes less wrong, damped until it does
         for _ in range(MOST_DAMPED):
-            step = np.linalg.solve(square + np.diag(damping * np.diag(square) + 1e-6), right)
+            damped = square + np.diag(damping * np.diag(square) + 1e-6)
+            step = np.linalg.solve(damped, right)
             step *= min(1.0, FARTHEST_MM / (np.max(np.abs(step)) + 1e-12))
             moved = vertices - step.reshape(-1, 2)
-            total = _wrong(
-                places,
-                darkness,
-                known_mm,
-                pen,
-                ends,
-                counts,
-                strokes,
-                moved,
-                lines,
-                distance,
-                trial,
-            )
+            total = _wrong(seen, drawn, moved, lines, out)
             if total < best:
-                best, damping = total, max(0.3 * damping, 1e-4)
+                best, damping = total, max(EASED * damping, LEAST_DAMPING)
                 vertices[:] = moved
-                now[:] = trial
+                now[:] = out[1]
                 break
-            damping *= 4
-        if best > before * (1 - 1e-3):
+            damping *= DAMPED
+        # 3. until no step gains much
+        if best > before * (1 - LEAST_GAIN):
             break
     return best

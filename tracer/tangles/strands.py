@@ -3,7 +3,7 @@
 Signals: legs and the vertices between them in; stretches (n, 2) mm out, one ending at each vertex where the
 head swivels.
 
-Source: our own (see `pairing`).
+Source: our own (see `sketch`).
 """
 
 from __future__ import annotations
@@ -17,56 +17,53 @@ from morfax.motion.arrays import Array
 from morfax.motion.curves import SPACING_MM, hermite
 from morfax.tracer.head.course import ahead_mm, along_leg, onto
 from morfax.tracer.head.plan import Plan
+from morfax.tracer.junctions.corner import SMOOTH
 from morfax.tracer.sensing.leg import Leg, turn
 from morfax.tracer.tangles import pen
 from morfax.tracer.tangles.tangle import Tangle
 
-SAME_RAD = math.radians(20)
-NEAR_MM = 3.0
-KINK_RAD = math.radians(14)  # a smaller change of heading is run through
+# Chosen by trial on the test drawings: two legs are on one line if they are
+SAME_RAD = math.radians(20)  # turned by no more
+ASIDE = 0.5  # of the width: no further off each other's line
+NEAR_MM, NEAR_WIDTHS = 3.0, 4.0  # no further apart along it
 
 
 def stretches_over(
-    way_in: tuple[Array, float], incoming: Leg, vertices: Array, outgoing: Leg
+    stands: tuple[Array, float], incoming: Leg, vertices: Array, outgoing: Leg
 ) -> list[Array]:
-    """Stretches from where the head is over the vertices to the outgoing leg's clean end, one ending at each
-    vertex where the head swivels.
+    """Stretches from where the head is over the vertices to the outgoing leg's clean end.
+
+    One ends at each vertex where the head swivels.
     """
-    way, along = onto(*way_in, incoming, 0.0)
+    way, along = onto(*stands, incoming, 0.0)
     start = np.vstack([way, along_leg(incoming, along, 0.0)])
+    into, out_of = (
+        (incoming.end_mm, incoming.heading_rad),
+        (outgoing.end_mm, outgoing.heading_rad),
+    )
+    # 1. without a vertex, a cubic
     if not len(vertices):
-        return [
-            np.vstack(
-                [
-                    start,
-                    hermite(
-                        incoming.end_mm,
-                        incoming.heading_rad,
-                        outgoing.end_mm,
-                        outgoing.heading_rad,
-                    ),
-                ]
-            )
-        ]
-    first = np.vstack([start, _bend(incoming.end_mm, incoming.heading_rad, vertices[0])])
+        return [np.vstack([start, hermite(*into, *out_of)])]
+    # 2. a bend to the first vertex, straight lines, and a bend from the last
+    first = np.vstack([start, _bend(*into, vertices[0])])
     last = _bend(outgoing.end_mm, outgoing.heading_rad + math.pi, vertices[-1])[::-1]
     out = [first]
     for part in [*(_straight(a, b) for a, b in pairwise(vertices)), last]:
-        before, after = out[-1][-1] - out[-1][-2], part[1] - part[0]
-        if (
-            abs(turn(math.atan2(before[1], before[0]), math.atan2(after[1], after[0])))
-            > KINK_RAD
-        ):
+        if _turned(out[-1], part) > SMOOTH:
             out.append(part)
         else:
             out[-1] = np.vstack([out[-1], part[1:]])
     return out
 
 
+def _turned(before: Array, after: Array) -> float:
+    """By how much a way turns from one part to the next, rad."""
+    arriving, leaving = before[-1] - before[-2], after[1] - after[0]
+    return abs(turn(math.atan2(arriving[1], arriving[0]), math.atan2(leaving[1], leaving[0])))
+
+
 def as_drawn(plan: Plan, tangle: Tangle, width_mm: float) -> list[Array]:
-    """What a plan draws: its stretches, what was felt of its leg, and on to that leg's clean end in the
-    tangle.
-    """
+    """What a plan draws: its stretches, what was felt of its leg, and on to that leg's end in the tangle."""
     way = [*plan.stretches[:-1], np.vstack([plan.stretches[-1], plan.leg.seen[:, :2]])]
     for leg in tangle.legs[1:]:
         if same_line(plan.leg, leg, width_mm):
@@ -79,33 +76,29 @@ def same_line(leg: Leg, other: Leg, width_mm: float) -> bool:
     along = ahead_mm(leg.end_mm, other) * math.cos(turn(leg.heading_rad, other.heading_rad))
     gap = other.end_mm - leg.at(along)
     turned = abs(turn(leg.heading_at(along), other.heading_rad))
-    return (
-        turned < SAME_RAD
-        and float(np.hypot(*gap)) < 0.5 * width_mm
-        and abs(along) < max(4 * width_mm, NEAR_MM)
-    )
+    near = abs(along) < max(NEAR_WIDTHS * width_mm, NEAR_MM)
+    return turned < SAME_RAD and near and float(np.hypot(*gap)) < ASIDE * width_mm
 
 
 def aside_mm(vertices: Array, stretches: list[Array]) -> float:
     """How far vertices reach from some stretches, mm."""
     places = np.vstack(stretches)
-    return max(
-        (float(np.min(np.hypot(*(places - vertex).T))) for vertex in vertices), default=0.0
-    )
+    away = [float(np.min(np.hypot(*(places - vertex).T))) for vertex in vertices]
+    return max(away, default=0.0)
 
 
 def _bend(place: Array, heading: float, vertex: Array) -> Array:
     """Places (n, 2) along the bend from a leg's end to a vertex."""
-    shares = np.linspace(
-        0, 1, max(2, math.ceil(float(np.hypot(*(vertex - place))) / SPACING_MM) + 1)
-    )
-    return np.array(
-        [pen.bend(place[0], place[1], heading, vertex[0], vertex[1], t) for t in shares]
-    )
+    pose = np.array([place[0], place[1], heading])
+    shares = np.linspace(0, 1, _count(place, vertex))
+    return np.array([pen.bend(pose, vertex[0], vertex[1], t) for t in shares])
 
 
 def _straight(start: Array, end: Array) -> Array:
     """Places (n, 2) along a straight line."""
-    return np.linspace(
-        start, end, max(2, math.ceil(float(np.hypot(*(end - start))) / SPACING_MM) + 1)
-    )
+    return np.linspace(start, end, _count(start, end))
+
+
+def _count(start: Array, end: Array) -> int:
+    """How many places there are between two."""
+    return max(2, math.ceil(float(np.hypot(*(end - start))) / SPACING_MM) + 1)

@@ -21,7 +21,8 @@ from morfax.tracer.sensing.leg import leg_of
 from morfax.tracer.sensing.photocell import behind_aperture
 from morfax.tracer.sensing.view import View
 from morfax.tracer.tangles import pen
-from morfax.tracer.tangles.redrawing import Sketch, Way, matchings, ways
+from morfax.tracer.tangles.redrawing import Redrawing, matchings
+from morfax.tracer.tangles.sketch import Sketch, redrawings
 from morfax.tracer.tangles.tangle import Tangle, tangle_ahead
 from tests.tracer.inked import UM, inked, polyline
 
@@ -45,8 +46,8 @@ def tangle(
     )
 
 
-def best(view: View, found: Tangle) -> Way:
-    return ways(Sketch.of(view, found))[0]
+def best(view: View, found: Tangle) -> Redrawing:
+    return redrawings(Sketch.of(view, found))[0]
 
 
 @pytest.mark.parametrize(("legs", "count"), [(2, 1), (3, 3), (4, 3), (6, 15)])
