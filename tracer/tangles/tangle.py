@@ -1,14 +1,14 @@
-"""Tangles: all the ink about a knot, as far as the clean legs that lead out of it.
+"""A tangle: all the ink about a junction, as far as the clean legs that lead out of it.
 
 Where inks of several lines run together for longer than a corner, no one leg tells the way on. So the head
-sends a wave through the ink from its clean incoming leg (see `fronts`): a branch of it that stays as broad as
-the line is, and is felt clean, is a leg, and the wave ends there; one that ends is a tip. What is left
-between the legs is the tangle's own ink, which `pairing` explains.
+sends a wave through the ink from its clean incoming leg (see `wavefront`). A branch of it that stays as broad
+as the line is, and is felt clean, is a leg, and the wave ends there; a branch that ends is a tip. What is
+left between the legs is the tangle's own ink, which `sketch` explains.
 
 Signals: the incoming leg in; the legs (the way in first, its heading into the tangle; the others' out of it)
 and the ink out, places in sheet mm.
 
-Source: our own (see `knot`).
+Source: our own (see `rings`).
 """
 
 from __future__ import annotations
@@ -22,33 +22,45 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.tracer.drawing.drawing import Darkness
+from morfax.tracer.junctions.rings import FEWEST, LEAST_WIDTHS
 from morfax.tracer.sensing.leg import Leg, leg_of
 from morfax.tracer.sensing.view import View
 from morfax.tracer.tangles.wavefront import Fronts, fronts_from
 
 Flags = NDArray[np.bool_]
 
-REACH_MM, REACH_WIDTHS = 5.0, 10.0  # the wave runs no farther
-LEAST_WIDTHS = 0.8  # of clean line make a leg
+# Chosen by trial on the test drawings.
+REACH_MM, REACH_WIDTHS = 5.0, 10.0  # the wave runs no farther than the larger of these
 STUB_WIDTHS, STUB_MM = 3.0, 1.5  # ink that ends sooner than either is a tip
+BEGIN_WIDTHS = 0.6  # from the start: a leg begins no nearer
+LEAST_BROAD, MOST_BROAD, BROAD_FRONTS = (
+    0.6,
+    1.4,
+    3,
+)  # of the line's width, as a mean of so many fronts
 LEAST_LIKE, MOST_LIKE = 0.75, 1.25  # of the line's width: a leg of it
-TAPERED = 0.94
+TAPERED, TAPERED_STATIONS = (
+    0.94,
+    12,
+)  # the far half of so many stations, in widths of the near half
 CLEAN_FRONTS = 4  # as broad as the line, one after the other
 MOST_PLACES = 700  # enough to place a vertex within 10 um
-ABOUT_MM = 0.25  # of paper about the ink belongs to the tangle
+ABOUT_MM, ABOUT_PX = 0.25, 2  # of paper about the ink belongs to the tangle
+DARKEST = 1.05  # of the line's darkness: a place counts for no more
 
 
 @dataclass(frozen=True, slots=True)
 class Tangle:
-    """The legs about a knot, the way in first, and the darkness (n,) of the places (n, 2) in and about the
-    ink between them, 1 on the line.
+    """The legs about a junction, and the ink between them: darkness (n,) of places (n, 2), 1 on the line.
+
+    The way in is first; its heading is into the tangle. `whole`: the wave ended in legs and tips.
     """
 
     legs: list[Leg]
     places_mm: Array
     darkness: Array
     area_mm2: float
-    whole: bool  # the wave ended in legs and tips
+    whole: bool
 
 
 def tangle_ahead(view: View, incoming: Leg) -> Tangle:
@@ -74,22 +86,21 @@ def _inside(view: View, fronts: Fronts, ended: Flags) -> tuple[Flags, Darkness]:
 def _legs(view: View, fronts: Fronts, reach_mm: float) -> tuple[list[Leg], Flags]:
     """The legs in which the wave ends, and which fronts lie in one."""
     legs: list[Leg] = []
-    beyond = fronts.beyond_mm()
+    tips = _tips(view, fronts, reach_mm)
+    come_mm = fronts.at * fronts.step_mm
     clean, ended = np.zeros(len(fronts.at), int), np.zeros(len(fronts.at), bool)
     for k, before in enumerate(fronts.parents):
+        # 1. beyond a leg the wave has ended
         if before and all(ended[p] for p in before):
             ended[k] = True
             continue
+        # 2. fronts as broad as the line, one after the other
         alone = len(before) == 1 and len(fronts.children[before[0]]) == 1
-        like_line = 0.6 < float(np.mean(_latest(fronts, k, 3))) / view.width_mm < 1.4
-        clean[k] = clean[before[0]] + 1 if alone and like_line else 0
-        come_mm = fronts.at[k] * fronts.step_mm
-        tip = (
-            beyond[k] < min(STUB_WIDTHS * view.width_mm, STUB_MM)
-            and come_mm + beyond[k] < reach_mm - 2 * fronts.step_mm
-        )
-        if clean[k] < CLEAN_FRONTS or tip or come_mm < 0.6 * view.width_mm:
+        if alone and _like_line(view, fronts, k):
+            clean[k] = clean[before[0]] + 1
+        if clean[k] < CLEAN_FRONTS or tips[k] or come_mm[k] < BEGIN_WIDTHS * view.width_mm:
             continue
+        # 3. the leg there, if it is felt clean
         leg = _leg_at(view, fronts, k)
         if leg is not None:
             legs.append(leg)
@@ -97,10 +108,22 @@ def _legs(view: View, fronts: Fronts, reach_mm: float) -> tuple[list[Leg], Flags
     return legs, ended
 
 
+def _tips(view: View, fronts: Fronts, reach_mm: float) -> Flags:
+    """Which fronts lie in ink that ends soon, within the wave's reach."""
+    beyond_mm = fronts.beyond_mm()
+    ends_mm = fronts.at * fronts.step_mm + beyond_mm
+    soon = beyond_mm < min(STUB_WIDTHS * view.width_mm, STUB_MM)
+    return np.asarray(soon & (ends_mm < reach_mm - 2 * fronts.step_mm))
+
+
+def _like_line(view: View, fronts: Fronts, k: int) -> bool:
+    """Whether the latest fronts are as broad as the line is."""
+    broad = float(np.mean(_latest(fronts, k, BROAD_FRONTS))) / view.width_mm
+    return LEAST_BROAD < broad < MOST_BROAD
+
+
 def _latest(fronts: Fronts, k: int, count: int) -> list[float]:
-    """Breadths of a front and of those that it came from: of one alone it tells only roughly, by its few
-    pixels.
-    """
+    """Breadths of a front and of those that it came from: one alone has few pixels, and tells roughly."""
     out = [float(fronts.breadth_mm[k])]
     while len(out) < count and len(fronts.parents[k]) == 1:
         k = fronts.parents[k][0]
@@ -109,7 +132,7 @@ def _latest(fronts: Fronts, k: int, count: int) -> list[float]:
 
 
 def _leg_at(view: View, fronts: Fronts, k: int) -> Leg | None:
-    """The leg felt outward from the fronts that come before a front; None if it is not clean there."""
+    """The leg felt outward from the fronts before a front; None if it is not clean there."""
     first = k
     for _ in range(CLEAN_FRONTS - 1):
         first = fronts.parents[first][0]
@@ -118,7 +141,7 @@ def _leg_at(view: View, fronts: Fronts, k: int) -> Leg | None:
     local = view.like(fronts.places_mm[k], heading)
     if not LEAST_LIKE < local.width_mm / view.width_mm < MOST_LIKE:
         return None
-    least = max(4, math.ceil(LEAST_WIDTHS * view.width_mm / view.step_mm))
+    least = max(FEWEST, math.ceil(LEAST_WIDTHS * view.width_mm / view.step_mm))
     for place in (fronts.places_mm[first], fronts.places_mm[k]):
         seen = local.feel(place, heading, local.leg_mm)
         if len(seen) >= least:
@@ -127,31 +150,31 @@ def _leg_at(view: View, fronts: Fronts, k: int) -> Leg | None:
 
 
 def _tapers(seen: Array) -> bool:
-    """Whether what was felt grows narrower all along: two lines that run to a tip."""
+    """Whether what was felt grows narrower: two lines that run to a tip."""
     near, far = (float(np.median(part)) for part in np.array_split(seen[:, 2], 2))
-    return len(seen) >= 12 and far < TAPERED * near
+    return len(seen) >= TAPERED_STATIONS and far < TAPERED * near
 
 
 def _ink(view: View, fronts: Fronts, ended: Flags) -> tuple[Array, Array, float]:
-    """Places and darkness, and the area, of the tangle's ink and the paper about it, without what is near ink
-    that is not the tangle's.
+    """Places, darkness, and area (mm²) of the tangle's ink and of the paper about it.
+
+    Paper near ink that is not the tangle's is left out.
     """
+    pitch = view.pitch_mm
     (inside, seen), (top, left) = _inside(view, fronts, ended), fronts.corner
+    # 1. its pixels
     square = np.ones((3, 3), np.uint8)
-    about = cv2.dilate(
-        inside.view(np.uint8), square, iterations=max(2, round(ABOUT_MM / view.pitch_mm))
-    )
-    others = cv2.dilate(((seen > view.level) & ~inside).view(np.uint8), square, iterations=2)
+    wide = max(ABOUT_PX, round(ABOUT_MM / pitch))
+    about = cv2.dilate(inside.view(np.uint8), square, iterations=wide)
+    other = ((seen > view.level) & ~inside).view(np.uint8)
+    others = cv2.dilate(other, square, iterations=ABOUT_PX)
     i, j = np.nonzero(inside | ((about > 0) & (others == 0)))
-    x, y = (
-        (j + left + 0.5) * view.pitch_mm,
-        (view.cells.darkness.shape[0] - i - top - 0.5) * view.pitch_mm,
-    )
-    places, darkness = (
-        np.column_stack([x, y]),
-        np.minimum(seen[i, j] / (2 * view.level), 1.05).astype(float),
-    )
+    # 2. as places on the sheet
+    x, y = (j + left + 0.5) * pitch, (view.cells.darkness.shape[0] - i - top - 0.5) * pitch
+    places = np.column_stack([x, y])
+    darkness = np.minimum(seen[i, j] / (2 * view.level), DARKEST).astype(float)
+    # 3. some of them, if there are many
     if len(places) > MOST_PLACES:
         some = np.random.default_rng(0).permutation(len(places))[:MOST_PLACES]
         places, darkness = places[some], darkness[some]
-    return places, darkness, float(len(i)) * view.pitch_mm**2
+    return places, darkness, float(len(i)) * pitch**2
