@@ -1,4 +1,4 @@
-"""Hooks of mkdocs: the page of all modules, and what the plugins of the site leave to be put right."""
+"""The page of all modules, from their docstrings (a hook of mkdocs)."""
 
 from __future__ import annotations
 
@@ -6,36 +6,19 @@ import ast
 from pathlib import Path
 from typing import Any
 
-ROOT = Path(__file__).parents[1]
-OPTIONS, MODULES = "reference/options.md", "reference/modules.md"
+ROOT = Path(__file__).parents[2]
+PAGE = "reference/modules.md"
 # in the order in which they may ask each other, lowest first; a package that is not named comes last
 PACKAGES = ("motion", "tracer", "recorder", "player", "jobs", "reports", "console")
-TRACER = [
-    "drawing",
-    "sensing",
-    "marks",
-    "head",
-    "junctions",
-    "tangles",
-    "following",
-    "operator",
-    "program",
-    "cutter",
-]
-
-
-def on_page_content(html: str, page: Any, **_: Any) -> str:
-    """Show a dash where an option has no default; mkdocs-click prints click's own marker there."""
-    if page.file.src_uri != OPTIONS:
-        return html
-    return html.replace("<code>Sentinel.UNSET</code>", "–").replace(
-        "<td>None</td>", "<td>–</td>"
-    )
+TRACER = (
+    *("drawing", "sensing", "marks", "head", "junctions"),
+    *("tangles", "following", "operator", "program", "cutter"),
+)
 
 
 def on_page_markdown(markdown: str, page: Any, **_: Any) -> str:
     """Fill the page of all modules."""
-    return f"{markdown}\n{all_modules()}" if page.file.src_uri == MODULES else markdown
+    return f"{markdown}\n{all_modules()}" if page.file.src_uri == PAGE else markdown
 
 
 def all_modules() -> str:
