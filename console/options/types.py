@@ -146,7 +146,7 @@ def _decades(least_counts: int) -> Callable[[str], float]:
 
 LENGTH = Quantity("length", parse_length_mm, above_zero=True)
 REACH = Quantity("length", parse_length_mm)  # of the head; may be 0
-DEPTH = Quantity("length", _decades(1))
+DEPTH = Quantity("length", _decades(0))
 # up to 0.05 mm above the work the tool counts as in it
 CLEARANCE = Quantity("length", _decades(6))
 CUTTER = Quantity("length", parse_length_mm, within="0.05mm to 500mm")

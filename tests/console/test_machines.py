@@ -69,3 +69,18 @@ def test_a_drawing_of_what_is_cut_for_other_programs(
 ) -> None:
     figures = morfax("trace", SAMPLES / "bracket.png", "-o", f"a{suffix}", "--json").figures
     assert figures["drawn"] == f"a{suffix}" and holds in (here / f"a{suffix}").read_text()
+
+
+def test_a_pen_needs_no_depth(morfax: Morfax, here: Path) -> None:
+    words = (
+        "trace",
+        SAMPLES / "bracket.png",
+        "-o",
+        "a.nc",
+        "--machine",
+        "grbl-pen",
+        "--depth",
+        "0mm",
+    )
+    assert morfax(*words).exit_code == 0
+    assert "M3 S90" in (here / "a.nc").read_text().split("\n")
