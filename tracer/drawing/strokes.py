@@ -150,6 +150,13 @@ class Sheet:
         best = int(np.argmin(distances))
         return float(distances[best]), places[best], int(runs.patch[best])
 
+    def middle_mm(self, patch: int) -> Array:
+        """The middle of a patch's box, sheet mm."""
+        top, bottom, left, right = self.patches.box(np.arange(self.patches.count) == patch)
+        rows = self.drawing.darkness.shape[0]
+        middle_px = np.array([0.5 * (left + right), rows - 0.5 * (top + bottom)])
+        return middle_px * self.drawing.pitch_mm
+
     def _mm(self, rows: Pixels, columns: Pixels) -> Array:
         pitch = self.drawing.pitch_mm
         return np.column_stack(

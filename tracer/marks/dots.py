@@ -18,34 +18,39 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.circle import circle_through
 from morfax.tracer.drawing.strokes import Sheet
+from morfax.tracer.marks.sizes import (
+    DOT_ALONG,
+    DOT_EVEN,
+    DOT_FULL,
+    DOT_LARGEST_WIDTHS,
+    DOT_LEAST_WIDTHS,
+    DOT_ROUND,
+)
 from morfax.tracer.sensing.leg import Leg, turn
 from morfax.tracer.sensing.spokes import ANGLES, WAYS, spokes
 from morfax.tracer.sensing.view import View
 
-LEAST_WIDTHS = 0.85  # radius of a dot
-LARGEST_WIDTHS = 6.0
-LEAST_FULL = 0.65  # area of a dot over that of its box; a disc has 0.785
-ROUND = 0.15  # spokes of a dot differ by less than this share
-ALONG = math.radians(50)  # the line leaves a dot within this of its heading
+AHEAD = np.arange(
+    0.25, DOT_LARGEST_WIDTHS, 0.25
+)  # widths beyond a leg's end at which a dot is sought
 
 
 def disc(view: View, place: Array, along: Array) -> Array | None:
-    """The centre of a dot about a place on the line, which has the direction `along` there; None if there is
-    none.
-    """
+    """The centre of a dot about a place on the line, whose direction there is `along`; None without a dot."""
     found = _disc(view, place)
     if found is None:
         return None
+    centre, arms = found
     heading = math.atan2(along[1], along[0])
-    on_line = [
-        min(abs(turn(heading + k * math.pi, angle)) for k in (0, 1)) for angle in found[1]
-    ]
-    return found[0] if not on_line or max(on_line) < ALONG else None
+    ahead = [abs(turn(heading, arm)) for arm in arms]
+    back = [abs(turn(heading + math.pi, arm)) for arm in arms]
+    off_line = np.minimum(ahead, back)
+    return centre if np.all(off_line < DOT_ALONG) else None
 
 
 def dot_at_end(view: View, incoming: Leg) -> Array | None:
-    """The centre of a dot beyond a leg's clean end at which the line ends; None if there is none."""
-    for along in np.arange(0.25, LARGEST_WIDTHS, 0.25) * view.width_mm:
+    """The centre of a dot beyond a leg's clean end at which the line ends; None if it does not end so."""
+    for along in AHEAD * view.width_mm:
         place = incoming.at(along)
         if not view.dark(place):
             return None
@@ -53,15 +58,15 @@ def dot_at_end(view: View, incoming: Leg) -> Array | None:
         if found is None:
             continue
         centre, arms = found
-        heading = incoming.heading_at(float(along))
-        if all(abs(turn(heading + math.pi, angle)) < ALONG for angle in arms):
+        back = incoming.heading_at(float(along)) + math.pi
+        if all(abs(turn(back, arm)) < DOT_ALONG for arm in arms):
             return centre
     return None
 
 
 def dot_ahead(view: View, leg: Leg) -> bool:
     """Whether a leg leads to a dot, at which the line may end or not."""
-    for along in np.arange(0.25, LARGEST_WIDTHS, 0.25) * view.width_mm:
+    for along in AHEAD * view.width_mm:
         place, heading = leg.at(along), leg.heading_at(float(along))
         if not view.dark(place):
             return False
@@ -73,31 +78,32 @@ def dot_ahead(view: View, leg: Leg) -> bool:
 def alone(sheet: Sheet, view: View) -> Iterator[Array]:
     """Centres of the dots that stand alone on the paper, mm: round patches of ink that no line leaves."""
     pitch, patches = sheet.drawing.pitch_mm, sheet.patches
-    sides = patches.longer_sides * pitch
-    small = (sides > 2 * LEAST_WIDTHS * view.width_mm) & (
-        sides < 2 * LARGEST_WIDTHS * view.width_mm
+    sides_mm = patches.longer_sides * pitch
+    least_mm, largest_mm = (
+        2 * widths * view.width_mm for widths in (DOT_LEAST_WIDTHS, DOT_LARGEST_WIDTHS)
     )
-    full = patches.areas * pitch**2 > LEAST_FULL * sides**2
+    small = (sides_mm > least_mm) & (sides_mm < largest_mm)
+    full = patches.areas * pitch**2 > DOT_FULL * sides_mm**2
     for patch in np.flatnonzero(small & full):
-        top, bottom, left, right = patches.box(np.arange(patches.count) == patch)
-        middle = (
-            np.array(
-                [0.5 * (left + right), sheet.drawing.darkness.shape[0] - 0.5 * (top + bottom)]
-            )
-            * pitch
-        )
-        found = _disc(view, middle)
+        found = _disc(view, sheet.middle_mm(int(patch)))
         if found is not None and not len(found[1]):
             yield found[0]
 
 
 def _disc(view: View, place: Array) -> tuple[Array, Array] | None:
     """Centre of the round of ink about a place, and the directions in which ink leaves it, rad."""
-    for share in (2.5 * ROUND, ROUND, ROUND):  # the place may be beside the middle at first
-        reach = spokes(view, place, LARGEST_WIDTHS * view.width_mm)[:, 0]
-        usual = float(np.nanmedian(reach)) if np.isfinite(reach).mean() > 0.6 else math.inf
+    largest_mm = DOT_LARGEST_WIDTHS * view.width_mm
+    for share in (
+        2.5 * DOT_ROUND,
+        DOT_ROUND,
+        DOT_ROUND,
+    ):  # at first the place may be off the middle
+        reach = spokes(view, place, largest_mm)[:, 0]
+        if np.isfinite(reach).mean() <= DOT_EVEN:
+            return None
+        usual = float(np.nanmedian(reach))
         even = np.abs(reach - usual) < share * usual
-        if not LEAST_WIDTHS * view.width_mm < usual < math.inf or even.mean() < 0.6:
+        if usual <= DOT_LEAST_WIDTHS * view.width_mm or even.mean() < DOT_EVEN:
             return None
         place, _, _ = circle_through(place + reach[even, None] * WAYS[even])
     return place, ANGLES[~even & ~(reach < usual)]  # a shorter spoke ends at a speck

@@ -1,8 +1,8 @@
-"""The reference point: a small cross or ring that the draughtsman drew, where the operator brings the head
-before the run.
+"""The reference point: a small cross or ring that the draughtsman drew, to which the operator brings the
+head before the run.
 
-Signals: the patches of ink of a drawing and the cells' picture in; places (sheet mm) out, each with the lead
-line that leaves it if it touches one.
+Signals: the patches of ink of a drawing and a view in; places (sheet mm) out, each with the lead line that
+leaves it, if one does.
 
     ─┼─   ○       alone on the paper           ─┼────  ○────       with the lead line drawn from it
 
@@ -28,16 +28,24 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.circle import circle_through
 from morfax.tracer.drawing.strokes import Sheet, Stroke
+from morfax.tracer.marks.sizes import (
+    ALIKE,
+    BOX,
+    CROSS_MM,
+    INKED,
+    RING_LIKE,
+    RING_ROUND,
+    RING_SEEN,
+    SQUARE,
+)
 from morfax.tracer.sensing.leg import Leg, leg_of
 from morfax.tracer.sensing.probe import SPECK_WIDTHS, is_tip, lines_on
 from morfax.tracer.sensing.spokes import WAYS, spokes
 from morfax.tracer.sensing.view import View
 
-LEAST_MM, LARGEST_MM = 1.5, 10.0  # across
-SQUARE = math.sin(math.radians(15))  # arms are this near to square
-INKED = 0.85  # of an arm's length
-ALIKE = 0.4  # arms differ by less than this share
-MOST_PX = 50_000_000  # of a patch that is looked through for rings
+LEAST_MM, LARGEST_MM = CROSS_MM
+MOST_PX = 50_000_000  # of a patch that is searched for holes: a tenth of a second
+BEYOND = np.array([1.5, 1.9, 2.3])  # widths beyond the arms, at which the lead line is sought
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,16 +90,16 @@ def _apart(a: Reference, b: Reference) -> float:
 def _small_patches(sheet: Sheet) -> Iterator[tuple[int, Array]]:
     """The patches of a reference point's size, about as high as wide, and their middles."""
     pitch, patches = sheet.drawing.pitch_mm, sheet.patches
-    small = (patches.longer_sides * pitch >= LEAST_MM) & (
-        patches.longer_sides * pitch <= LARGEST_MM
-    )
-    for patch in np.flatnonzero(small):
+    sides_mm = patches.longer_sides * pitch
+    for patch in np.flatnonzero((sides_mm >= LEAST_MM) & (sides_mm <= LARGEST_MM)):
         top, bottom, left, right = patches.box(np.arange(patches.count) == patch)
-        if min(bottom - top, right - left) > 0.7 * max(bottom - top, right - left):
-            middle = np.array(
-                [0.5 * (left + right), sheet.drawing.darkness.shape[0] - 0.5 * (top + bottom)]
-            )
-            yield int(patch), middle * pitch
+        if _is_square(bottom - top, right - left):
+            yield int(patch), sheet.middle_mm(int(patch))
+
+
+def _is_square(high: int, wide: int) -> bool:
+    """Whether a box is about as high as wide."""
+    return min(high, wide) > BOX * max(high, wide)
 
 
 def _holes(sheet: Sheet, patch: int) -> Iterator[Array]:
@@ -100,58 +108,43 @@ def _holes(sheet: Sheet, patch: int) -> Iterator[Array]:
     top, bottom, left, right = sheet.patches.box(chosen)
     if (bottom - top) * (right - left) > MOST_PX:
         return
-    pitch = sheet.drawing.pitch_mm
-    contours, _ = cv2.findContours(
-        sheet.patches.painted(chosen, top, bottom, left, right),
-        cv2.RETR_CCOMP,
-        cv2.CHAIN_APPROX_NONE,
-    )
+    pitch, rows = sheet.drawing.pitch_mm, sheet.drawing.darkness.shape[0]
+    ink = sheet.patches.painted(chosen, top, bottom, left, right)
+    contours, _ = cv2.findContours(ink, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
     for contour in contours:
         x, y, wide, high = cv2.boundingRect(contour)
-        if LEAST_MM <= max(wide, high) * pitch <= LARGEST_MM and min(wide, high) > 0.7 * max(
-            wide, high
-        ):
-            yield (
-                np.array(
-                    [
-                        left + x + 0.5 * wide,
-                        sheet.drawing.darkness.shape[0] - top - y - 0.5 * high,
-                    ]
-                )
-                * pitch
-            )
+        if LEAST_MM <= max(wide, high) * pitch <= LARGEST_MM and _is_square(high, wide):
+            middle_px = left + x + 0.5 * wide, rows - top - y - 0.5 * high
+            yield np.array(middle_px) * pitch
 
 
 def _crosses(view: View, tips_mm: Array) -> Iterator[Reference]:
     """The crosses whose arms end at some places."""
     tips = [tip for tip in tips_mm if is_tip(view, tip)]
     for i, a in enumerate(tips):
-        near = [
-            tip
-            for tip in tips[i + 1 :]
-            if LEAST_MM < math.dist(a, tip) + view.width_mm < LARGEST_MM
-        ]
-        for b in near:
-            for c in tips:
-                if c is not a and c is not b and (found := _cross(view, a, b, c)) is not None:
-                    yield found
+        for b in tips[i + 1 :]:
+            if not LEAST_MM < math.dist(a, b) + view.width_mm < LARGEST_MM:
+                continue
+            others = [c for c in tips if c is not a and c is not b]
+            crosses = (_cross(view, a, b, c) for c in others)
+            yield from (cross for cross in crosses if cross is not None)
 
 
 def _cross(view: View, a: Array, b: Array, c: Array) -> Reference | None:
-    """The cross of which three tips are given, a and b of one stroke; the fourth arm may run on as the lead
-    line, or another line begin anywhere on it.
+    """The cross whose arms end at three tips, a and b of one stroke.
+
+    The fourth arm may run on as the lead line, or another line may begin anywhere on it.
     """
-    half = 0.5 * (b - a)
-    middle, reach = a + half, float(np.hypot(*half))
+    # 1. three arms square to each other, and a fourth, all of them inked
+    half, middle = 0.5 * (b - a), a + 0.5 * (b - a)
     arm = c - middle
-    length = float(np.hypot(*arm))
-    if not abs(length - reach) < ALIKE * reach or abs(arm @ half) > SQUARE * length * reach:
+    reach, length = float(np.hypot(*half)), float(np.hypot(*arm))
+    if abs(length - reach) >= ALIKE * reach or abs(arm @ half) > SQUARE * length * reach:
         return None
-    if not all(
-        _inked(view, middle, middle + way)
-        for way in (-half, half, arm, -arm * min(1.0, reach / length))
-    ):
+    fourth = -arm * min(1.0, reach / length)
+    if not all(_inked(view, middle, middle + way) for way in (-half, half, arm, fourth)):
         return None
+    # 2. their middle lines cross in one place, as far from all the tips
     arms = [_felt_inward(view, tip, middle) for tip in (a, b, c)]
     if min(len(arm) for arm in arms) < 4:
         return None
@@ -159,11 +152,19 @@ def _cross(view: View, a: Array, b: Array, c: Array) -> Reference | None:
     reaches = np.hypot(*(np.array([a, b, c]) - centre).T)
     if np.ptp(reaches) > ALIKE * np.median(reaches):
         return None
-    if lines_on(view, centre, float(reaches.max()) + 1.2 * view.width_mm) > 1:
-        return None  # lines pass or cross here
-    return Reference(
-        (float(centre[0]), float(centre[1])), "cross", _lead(view, centre, float(reaches.max()))
-    )
+    # 3. no lines pass or cross here
+    reach_mm = float(reaches.max())
+    if lines_on(view, centre, reach_mm + 1.2 * view.width_mm) > 1:
+        return None
+    return _reference(view, centre, reach_mm, "cross")
+
+
+def _reference(
+    view: View, centre: Array, reach_mm: float, kind: Literal["cross", "ring"]
+) -> Reference:
+    """A reference point that reaches so far from its centre, with its lead line."""
+    place_mm = float(centre[0]), float(centre[1])
+    return Reference(place_mm, kind, _lead(view, centre, reach_mm))
 
 
 def _inked(view: View, a: Array, b: Array) -> bool:
@@ -181,25 +182,22 @@ def _felt_inward(view: View, tip: Array, middle: Array) -> Array:
 
 
 def _lead(view: View, centre: Array, reach_mm: float) -> Leg | None:
-    """The clean beginning of the line that leaves a cross or ring which reaches so far from its centre, felt
-    back to it as far as it is clean.
+    """The clean beginning of the line that leaves a cross or a ring, felt back to it as far as it is clean.
+
+    The cross or the ring reaches so far from its centre.
     """
-    for arc in view.ring(centre, reach_mm + 1.5 * view.width_mm):
-        for outside in (1.5, 1.9, 2.3):
-            way = _unit(float(arc.mean()))
-            seen = view.feel(
-                centre + (reach_mm + outside * view.width_mm) * way,
-                float(arc.mean()),
-                view.leg_mm,
-            )
+    for arc in view.ring(centre, reach_mm + BEYOND[0] * view.width_mm):
+        heading = float(arc.mean())
+        way = np.array([math.cos(heading), math.sin(heading)])
+        for start in centre + (reach_mm + BEYOND[:, None] * view.width_mm) * way:
+            seen = view.feel(start, heading, view.leg_mm)
             if len(seen) < 4:
                 continue
             leg = leg_of(seen, False, view.leg_mm)
             back = view.feel(leg.end_mm, leg.heading_rad + math.pi, reach_mm + view.width_mm)
-            back = back[
-                1 : max(1, len(back) - round(view.width_mm / view.step_mm))
-            ]  # well clear of the other arms
-            return leg_of(np.vstack([back[::-1], seen]), False, view.leg_mm)
+            last = max(1, len(back) - round(view.width_mm / view.step_mm))
+            clear = back[1:last]  # of the other arms
+            return leg_of(np.vstack([clear[::-1], seen]), False, view.leg_mm)
     return None
 
 
@@ -221,23 +219,19 @@ def _ring(view: View, place: Array) -> Reference | None:
         return None
     changes = spokes(view, place, LARGEST_MM / 2)
     widths = changes[:, 1] - changes[:, 0]
-    good = np.abs(widths / view.width_mm - 1) < 0.6
+    good = np.abs(widths / view.width_mm - 1) < RING_LIKE
     specks = widths < SPECK_WIDTHS * view.width_mm
-    if good.mean() < 0.75 or _runs(~good & ~specks) > 1:
-        return None  # with several lines from it, it is a part of the drawing
+    several_lines = _runs(~good & ~specks) > 1  # then it is a part of the drawing
+    if good.mean() < RING_SEEN or several_lines:
+        return None
     middles = place + changes[good].mean(axis=1)[:, None] * WAYS[good]
     centre, radius_mm, misfit_mm = circle_through(middles)
-    if misfit_mm > 0.1 * radius_mm or not LEAST_MM < 2 * radius_mm < LARGEST_MM:
+    if misfit_mm > RING_ROUND * radius_mm or not LEAST_MM < 2 * radius_mm < LARGEST_MM:
         return None
-    lead = _lead(view, centre, radius_mm + 0.5 * view.width_mm)
-    return Reference((float(centre[0]), float(centre[1])), "ring", lead)
+    return _reference(view, centre, radius_mm + 0.5 * view.width_mm, "ring")
 
 
 def _runs(flags: NDArray[np.bool_]) -> int:
     """How many runs of two or more there are round a circle of flags."""
     twice = flags & np.roll(flags, 1)
     return int(np.sum(twice & ~np.roll(twice, 1)))
-
-
-def _unit(heading: float) -> Array:
-    return np.array([math.cos(heading), math.sin(heading)])

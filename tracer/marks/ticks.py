@@ -1,11 +1,11 @@
-"""Strokes beside the line, felt outward by cells: what may be a stop mark.
+"""Strokes beside the line, felt outward by cells: some of them are stop marks.
 
-Signals: the way of the head at a station, a side of it and a distance in; the stroke there out: its middles
-in mm along and away from the way and on the sheet, how far it reaches, and what is about it.
+Signals: the path of the head at a station, a side of it and a distance in; the stroke there out: its middles
+in mm along and away from the path and on the sheet, how far it reaches, and what is about it.
 
-    away  │   ▮   │ <- paper to both sides for so many widths: else it is lettering, a blot, a line beside the line
+    away  │   ▮   │ <- paper to both sides: else it is lettering, a blot, a line beside the line
           │   ▮   │
-     ─────────┴──────── way ─▶            beyond its end nothing in line with it: else it is a dash of a line that crosses
+     ─────────┴──────── path ─▶    beyond its end nothing in line with it: else it is a crossing line's dash
 
 Source: our own (see `marks`).
 """
@@ -21,33 +21,30 @@ import numpy as np
 from numba import njit
 
 from morfax.motion.arrays import Array
+from morfax.tracer.marks import sizes
+from morfax.tracer.sensing.leg import LEAST_OFF_MM, OUTLIERS, ROBUST
 from morfax.tracer.sensing.photocell import STEP_PX
 from morfax.tracer.sensing.probe import is_tip
 from morfax.tracer.sensing.ray import Ray, end_of_ink, seen_on
 from morfax.tracer.sensing.view import LEVEL, View
 
-LEAST_MM, LEAST_WIDTHS = 0.6, 1.2  # of a stroke, beyond the line's edge
-FARTHEST_MM = 1.5  # from the line's edge to a stroke beside it
-SLANT = math.tan(math.radians(40))
-LIKE = (0.5, 1.6)  # a stroke's width, of the line's
-SEEN = (
-    0.3,
-    2.0,
-    # the same, of a stroke that is none of the line's pen, but is seen: what crosses the line may be one half
-    # by half
-)
-# widths from the line's middle: nearer, a stroke's ink and the line's run together
-CLEAR_OF_LINE = 0.9
-TURNS = 3  # the cells are turned so often until they look square to a stroke
-CLEAR_WIDTHS = 1.5  # of paper to both sides of a stroke that touches the line
-APART_MM, APART_WIDTHS = 1.5, 3.0  # of one that does not: lettering stands beside lines
-SOILED, APART_SOILED = 0.15, 0.03  # of that may be ink
-INK = (0.65, 1.4)  # a stroke's darkness, of the line's: one pen draws both
-DASH_MM, DASH_WIDTHS = 2.0, 4.0  # dashes of one line are no further apart
+TURNS = 3  # the cells are turned this often: by then they stand square to a stroke
+ACROSS = 1.2  # widths, along the path from a stroke's middle: its edges are nearer
+WIDE, STRAY = (
+    1.6,
+    0.25,
+)  # widths: a dash is no wider, and its middle no further from the stroke's own line
+DASH = 1.5  # widths: ink in line with a stroke that goes on for longer is a dash
+SPECK_MM, SPECK_PX, SPECK_WIDTHS = (
+    0.16,
+    2.5,
+    0.6,
+)  # of paper on a stroke: two pixels through the aperture
+NEAREST = 0.4  # widths from the path: the line's own ink is not felt
 
 
 class Base(NamedTuple):
-    """Where and to which side a stroke is felt: a place of the way (mm), the way's direction there (unit
+    """Where and to which side a stroke is felt: a place of the path (mm), the path's direction there (unit
     vector), and the side, 1 left or -1 right."""
 
     place: Array
@@ -56,10 +53,13 @@ class Base(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Stroke:
-    """Ink beside the line, felt outward: its middles (n, 2) as mm along and away from the way, and on the
-    sheet, whether it touches the line, whether it ends, how far beyond the line's edge, whether there is
-    paper about it, and whether the line's pen drew it."""
+class SideStroke:
+    """Ink beside the line, felt outward.
+
+    Its middles (n, 2) as mm along and away from the path, and their places on the sheet; whether it touches
+    the line, whether it ends, how far it reaches beyond the line's edge, whether there is paper about it, and
+    whether the line's pen drew it: as wide and as dark as the line.
+    """
 
     side: int
     middles: Array
@@ -68,11 +68,11 @@ class Stroke:
     ends: bool
     reach_mm: float
     is_clear: bool
-    is_like: bool  # as wide and as dark as the line
+    is_like: bool
 
     @property
     def foot_mm(self) -> float:
-        """Where its middle line meets the way, mm along it."""
+        """Where its middle line meets the path, mm along it."""
         return float(self._line()[1])
 
     @property
@@ -82,7 +82,7 @@ class Stroke:
 
     @property
     def slant(self) -> float:
-        """How far it goes along the way for each mm away from it."""
+        """How far it goes along the path for each mm away from it."""
         return float(self._line()[0])
 
     @property
@@ -90,7 +90,12 @@ class Stroke:
         """Whether it is straight, and near enough to square."""
         slant, foot = self._line()
         rest = self.middles[:, 0] - foot - slant * self.middles[:, 1]
-        return bool(abs(slant) < SLANT and np.sqrt(np.mean(rest**2)) < 0.1)
+        return bool(abs(slant) < sizes.SLANT and np.sqrt(np.mean(rest**2)) < sizes.BENT_MM)
+
+    @property
+    def is_tick(self) -> bool:
+        """Whether it is drawn as a tick is."""
+        return self.ends and self.straight and self.is_clear and self.is_like
 
     def _line(self) -> Array:
         return np.polyfit(self.middles[:, 1], self.middles[:, 0], 1)
@@ -98,54 +103,65 @@ class Stroke:
 
 def felt(
     view: View, base: Base, at_mm: float, away_mm: float, longest_mm: float
-) -> Stroke | None:
-    """The stroke that a cell is on beside a place of the way, which is `at_mm` along it; None if it is not
-    nearly as wide as the line, or too short.
+) -> SideStroke | None:
+    """The stroke that a cell is on beside a place of the path, which is `at_mm` along it.
+
+    None if the stroke is not nearly as wide as the line, or too short.
     """
-    width, (place, along, side) = view.width_mm, base
+    width = view.width_mm
     seen = _stroke_at(view.cells, base, away_mm, longest_mm + width, width)
-    inner = seen[:, 1] > CLEAR_OF_LINE * width
-    wide = float(np.median(seen[inner, 2])) / width if inner.sum() > 2 else 0.0
-    if not SEEN[0] < wide < SEEN[1]:
+    # 1. as wide, as long and as near as a stroke may be
+    middles = seen[seen[:, 1] > sizes.CLEAR_OF_LINE * width]
+    wide = float(np.median(middles[:, 2])) / width if len(middles) > 2 else 0.0
+    if not sizes.SEEN[0] < wide < sizes.SEEN[1]:
         return None
     nearest, reach = float(seen[:, 1].min()), float(seen[:, 1].max()) - 0.5 * width
-    touches = nearest < 0.5 * width + 2 * view.pitch_mm
-    long_enough = reach - max(0.0, nearest - 0.5 * width) > max(LEAST_MM, LEAST_WIDTHS * width)
-    if not long_enough or nearest - 0.5 * width > FARTHEST_MM:
+    from_line_mm = nearest - 0.5 * width
+    least_mm = max(sizes.LEAST_MM, sizes.LEAST_WIDTHS * width)
+    if reach - max(0.0, from_line_mm) <= least_mm or from_line_mm > sizes.FARTHEST_MM:
         return None
-    middles, others = seen[inner], max(DASH_MM, DASH_WIDTHS * width)
-    is_like = (
-        LIKE[0] < wide < LIKE[1]
-        and INK[0] < _darkness(view.cells, base, middles) * LEVEL / view.level < INK[1]
-    )
-    across = side * np.array([-along[1], along[0]])
-    tips = [
-        seen[np.argmax(seen[:, 1]), :2] - [0, 0.5 * width],
-        seen[np.argmin(seen[:, 1]), :2] + [0, 0.5 * width],
-    ]
-    at_tips = [
-        is_tip(view, place + u * along + v * across) for u, v in tips[: 1 if touches else 2]
-    ]
-    ends = (
-        reach < longest_mm
-        and all(at_tips)
-        and not _goes_on(view.cells, base, middles, others, width)
-    )
-    clear_mm = CLEAR_WIDTHS * width if touches else max(APART_MM, APART_WIDTHS * width)
-    soiled = _soiled(view.cells, base, middles, (0.4 * width, clear_mm))
-    is_clear = soiled < (SOILED if touches else APART_SOILED)
-    places = place + middles[:, :1] * along + middles[:, 1:2] * across
-    return Stroke(
-        side, middles[:, :2] + [at_mm, 0.0], places, touches, ends, reach, is_clear, is_like
-    )
+    # 2. what the cells see of it
+    touches = from_line_mm < 2 * view.pitch_mm
+    darkness = _darkness(view.cells, base, middles) * LEVEL / view.level
+    is_like = sizes.LIKE[0] < wide < sizes.LIKE[1] and sizes.INK[0] < darkness < sizes.INK[1]
+    ends = reach < longest_mm and _ends(view, base, seen, touches)
+    is_clear = _is_clear(view, base, middles, touches)
+    # 3. where it is
+    across = base.side * np.array([-base.along[1], base.along[0]])
+    places = base.place + middles[:, :1] * base.along + middles[:, 1:2] * across
+    on_path = middles[:, :2] + [at_mm, 0.0]
+    return SideStroke(base.side, on_path, places, touches, ends, reach, is_clear, is_like)
 
 
-def crossing_mm(view: View, place: Array, along: Array, mark: Sequence[Stroke]) -> float:
-    """Where the middle line of a mark, which is one stroke or one on either side, meets the way, mm along it
-    from a place of it near by.
+def _ends(view: View, base: Base, seen: Array, touches: bool) -> bool:
+    """Whether a stroke ends at its far end, and at the near one if it does not touch the line."""
+    width, across = view.width_mm, base.side * np.array([-base.along[1], base.along[0]])
+    far = seen[np.argmax(seen[:, 1]), :2] - [0, 0.5 * width]
+    near = seen[np.argmin(seen[:, 1]), :2] + [0, 0.5 * width]
+    for u, v in [far] if touches else [far, near]:
+        if not is_tip(view, base.place + u * base.along + v * across):
+            return False
+    middles = seen[seen[:, 1] > sizes.CLEAR_OF_LINE * width]
+    others_mm = max(sizes.DASH_MM, sizes.DASH_WIDTHS * width)
+    return not _goes_on(view.cells, base, middles, others_mm, width)
 
-    Felt square to the mark: along the way, its round tips and the corners at its foot would draw the middle
-    of a slanted one aside.
+
+def _is_clear(view: View, base: Base, middles: Array, touches: bool) -> bool:
+    """Whether there is paper to both sides of a stroke."""
+    width = view.width_mm
+    clear_mm = sizes.CLEAR_WIDTHS * width
+    if not touches:
+        clear_mm = max(sizes.APART_MM, sizes.APART_WIDTHS * width)
+    beside_mm = sizes.CLEAR_OF_EDGE * width, clear_mm
+    soiled = float(_soiled(view.cells, base, middles, beside_mm))
+    return soiled < (sizes.SOILED if touches else sizes.APART_SOILED)
+
+
+def crossing_mm(view: View, place: Array, along: Array, mark: Sequence[SideStroke]) -> float:
+    """Where the middle line of a mark meets the path, mm along it from a place near by.
+
+    The mark is one stroke, or one on either side. It is felt square to itself: felt along the path, its round
+    tips and the corners at its foot would draw the middle of a slanted mark aside.
     """
     left = np.array([-along[1], along[0]])
     slant, foot_mm = mark[0].side * mark[0].slant, 0.0
@@ -159,24 +175,27 @@ def crossing_mm(view: View, place: Array, along: Array, mark: Sequence[Stroke]) 
     return foot_mm
 
 
-def _square_to(view: View, place: Array, square: Array, slant: float, stroke: Stroke) -> Array:
-    """Middles (n, 2) of a stroke on the sheet, felt along a direction square to it from clear of the line on;
-    as they were, if there are too few.
+def _square_to(
+    view: View, place: Array, square: Array, slant: float, stroke: SideStroke
+) -> Array:
+    """Middles (n, 2) of a stroke on the sheet, felt square to it and clear of the line.
+
+    Too few of them are left: the middles as they were.
     """
     width, lean, away = view.width_mm, math.hypot(1.0, slant), stroke.middles[:, 1]
     base = Base(place, square, stroke.side)
     away_mm, farthest_mm = float(np.median(away)) * lean, float(away.max()) * lean + width
     seen = _stroke_at(view.cells, base, away_mm, farthest_mm, width)
-    seen = seen[seen[:, 1] > CLEAR_OF_LINE * width * lean + 0.5 * width * abs(slant)]
+    seen = seen[seen[:, 1] > sizes.CLEAR_OF_LINE * width * lean + 0.5 * width * abs(slant)]
     out = stroke.side * np.array([-square[1], square[0]])
     return place + seen[:, :1] * square + seen[:, 1:2] * out if len(seen) > 3 else stroke.places
 
 
 def _robust_line(x: Array, y: Array) -> tuple[float, float]:
-    """Slope and offset of the straight line y(x), places that a speck has drawn aside left out."""
+    """Slope and offset of the straight line y(x), without places that a speck has drawn aside."""
     for _ in range(2):
         rest = np.abs(y - np.polyval(np.polyfit(x, y, 1), x))
-        good = rest <= 3 * max(1.4826 * float(np.median(rest)), 0.001)
+        good = rest <= OUTLIERS * max(ROBUST * float(np.median(rest)), LEAST_OFF_MM)
         x, y = x[good], y[good]
     slope, offset = np.polyfit(x, y, 1)
     return float(slope), float(offset)
@@ -184,7 +203,7 @@ def _robust_line(x: Array, y: Array) -> tuple[float, float]:
 
 @njit(cache=True)
 def _row(base, v_mm):  # type: ignore[no-untyped-def]
-    """The ray along the way at a distance away from it."""
+    """The ray along the path at a distance away from it."""
     place, along, side = base
     x, y = place[0] - side * v_mm * along[1], place[1] + side * v_mm * along[0]
     return Ray(x, y, along[0], along[1], 0.0)
@@ -222,24 +241,23 @@ def _goes_on(cells, base, middles, beyond_mm, width_mm):  # type: ignore[no-unty
     step, run = 0.5 * cells.pitch_mm, 0.0
     for k in range(1, int(beyond_mm / step)):
         there = u + slant * k * step
-        right, left = _across(cells, base, there, v + k * step, 1.2 * width_mm)
-        like = (
-            left - right < 1.6 * width_mm
-            and abs(0.5 * (left + right) - there) < 0.25 * width_mm
-        )
+        right, left = _across(cells, base, there, v + k * step, ACROSS * width_mm)
+        stray = abs(0.5 * (left + right) - there)
+        like = left - right < WIDE * width_mm and stray < STRAY * width_mm
         run = run + step if like else 0.0
-        if run > 1.5 * width_mm:
+        if run > DASH * width_mm:
             return True
     return False
 
 
 @njit(cache=True)
 def _stroke_at(cells, base, away_mm, farthest_mm, width_mm):  # type: ignore[no-untyped-def]
-    """Middles (along, away) and widths of a stroke, (n, 3) mm, felt inward and outward from a place beside
-    the way until there is no ink, specks apart.
+    """Middles (along, away) and widths of a stroke, (n, 3) mm, felt inward and outward from a place on it.
+
+    It ends where no ink is left but specks.
     """
     step = 0.5 * cells.pitch_mm
-    speck_mm = min(max(0.16, 2.5 * cells.pitch_mm), 0.6 * width_mm)
+    speck_mm = min(max(SPECK_MM, SPECK_PX * cells.pitch_mm), SPECK_WIDTHS * width_mm)
     seen = np.empty((2 * int(farthest_mm / step) + 4, 3))
     count = 0
     for way in (-1, 1):
@@ -247,8 +265,8 @@ def _stroke_at(cells, base, away_mm, farthest_mm, width_mm):  # type: ignore[no-
         if way > 0 and count:
             u = seen[0, 0]
         last = v
-        while 0.4 * width_mm < v <= farthest_mm:
-            right, left = _across(cells, base, u, v, 1.2 * width_mm)
+        while NEAREST * width_mm < v <= farthest_mm:
+            right, left = _across(cells, base, u, v, ACROSS * width_mm)
             if math.isnan(left - right):
                 if abs(v - last) > speck_mm:
                     break
@@ -264,9 +282,7 @@ def _stroke_at(cells, base, away_mm, farthest_mm, width_mm):  # type: ignore[no-
 
 @njit(cache=True)
 def _across(cells, base, u_mm, v_mm, reach_mm):  # type: ignore[no-untyped-def]
-    """Where ink about u ends, back and forth along the way, at a distance v from it; NaN without ink, or
-    without an end in reach.
-    """
+    """Where ink about u ends, back and forth along the path, at a distance v from it; NaN if it does not."""
     ahead = _row(base, v_mm)
     x, y = ahead.x_mm + u_mm * ahead.cosine, ahead.y_mm + u_mm * ahead.sine
     ahead = Ray(x, y, ahead.cosine, ahead.sine, 0.0)

@@ -23,7 +23,7 @@ SPECK_PX, SPECK_MM = 2.2, 0.25  # no wider is a speck: one pixel seen through th
 
 
 class Ray(NamedTuple):
-    """Where a ray begins (sheet mm), its direction there (cosine, sine), and how it bends to the left (1/mm)."""
+    """Where a ray begins (sheet mm), its direction there (cosine, sine), and its bend to the left (1/mm)."""
 
     x_mm: float
     y_mm: float

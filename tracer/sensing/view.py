@@ -93,7 +93,7 @@ class View:
         return np.asarray(scout(self.cells, pose, self.width_mm, self.step_mm, stations))
 
     def feel_along(self, way: Array) -> Array:
-        """Centres and widths (n, 3) of the line across a way (n, 2) mm, a step apart, wherever it is clean."""
+        """Centres and widths (n, 3) of the line across a way (n, 2) mm, a step apart, where it is clean."""
         if len(way) < 3:
             return np.empty((0, 3))
         come_mm = lengths_mm(way)

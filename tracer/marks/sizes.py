@@ -1,0 +1,56 @@
+"""How marks are drawn: sizes and limits of ticks, dots and reference points.
+
+Lengths are mm on the sheet, or widths of the line; where both stand, the larger counts.
+
+Source: patent ES 361967 shows the marks and gives no sizes. Chosen by trial on the test drawings, so that a
+mark drawn by hand beside a line of 0.3 to 0.7 mm is found, and lettering, dashes and branches are not.
+"""
+
+from __future__ import annotations
+
+import math
+
+# a tick: a short stroke across the line or beside it
+LEAST_MM, LEAST_WIDTHS = 0.6, 1.2  # it reaches at least this far beyond the line's edge
+LONGEST_MM, LONGEST_WIDTHS = 5.0, 10.0  # and at most, across the line, on each side
+# a tick that touches the line on one side: a longer stroke is a line that begins there
+BESIDE_MM, BESIDE_WIDTHS = 3.5, 7.0
+FARTHEST_MM = 1.5  # from the line's edge to a tick beside it
+SLANT = math.tan(math.radians(40))  # from square to the line, at most
+BENT_MM = 0.1  # root mean square distance from a straight line, at most
+# width, of the line's: of a tick, and of ink that is looked at, for a line that crosses may show half
+LIKE, SEEN = (0.5, 1.6), (0.3, 2.0)
+INK = (0.65, 1.4)  # darkness, of the line's: one pen draws both
+CLEAR_OF_LINE = (
+    0.9  # widths from the line's middle: nearer, the ink of tick and line runs together
+)
+# paper to both sides: of a tick that touches the line, and of one that does not, for lettering stands there
+CLEAR_WIDTHS, APART_MM, APART_WIDTHS = 1.5, 1.5, 3.0
+SOILED, APART_SOILED = 0.15, 0.03  # share of that paper that may be ink
+CLEAR_OF_EDGE = 0.4  # widths from the tick's edge to where that paper begins
+DASH_MM, DASH_WIDTHS = 2.0, 4.0  # dashes of one line are no further apart
+SAME_WIDTHS = 0.6  # feet on both sides that are nearer along the line are one tick's
+CORNER_WIDTHS, CORNER_MM, CORNER_ASIDE = (
+    1.2,
+    0.5,
+    0.25,
+)  # so far the line is straight about a tick, widths aside
+LEAST_PX = 2.5  # a line's width: of a thinner one the cells cannot tell a mark from a burr
+
+# a dot: a round of ink, wider than the line
+DOT_LEAST_WIDTHS, DOT_LARGEST_WIDTHS = 0.85, 6.0  # its radius
+DOT_FULL = 0.65  # its area over that of its box, at least; a disc has 0.785
+DOT_ROUND = 0.15  # its spokes differ by less than this share
+DOT_EVEN = 0.6  # share of the spokes that are alike, at least: the line covers the others
+DOT_ALONG = math.radians(50)  # the line leaves it within this of its heading
+BESIDE_DOT = 1.5  # widths, from a dot's edge to where the line is by itself
+
+# a reference point: a cross or a ring
+CROSS_MM = (1.5, 10.0)  # across
+SQUARE = math.sin(math.radians(15))  # its arms are this near to square
+INKED = 0.85  # share of an arm's length that is ink, at least
+ALIKE = 0.4  # its arms differ by less than this share
+BOX = 0.7  # the shorter side of its box over the longer, at least
+RING_LIKE = 0.6  # the ring's line differs in width by less than this share of the line's
+RING_SEEN = 0.75  # share of the spokes that cross it, at least
+RING_ROUND = 0.1  # misfit to a circle over the radius, at most
