@@ -260,6 +260,27 @@ def test_what_cannot_be_run_is_refused_before_anything_moves() -> None:
         playback("G1 X5 F600", control=PulseControl(override=2.0))
 
 
+@pytest.mark.parametrize(
+    ("start", "arc", "axis"),
+    [
+        ((1995, -50), "G3 X1995 Y50 R70.71", "X goes to 2015.7"),
+        ((-1995, 50), "G3 X-1995 Y-50 R70.71", "X goes to -2015.7"),
+        ((50, 1995), "G3 X-50 Y1995 R70.71", "Y goes to 2015.7"),
+        ((-50, -1995), "G3 X50 Y-1995 R70.71", "Y goes to -2015.7"),
+        ((1995, 50), "G2 X1995 Y-50 R70.71", "X goes to 2015.7"),
+    ],
+)
+def test_an_arc_that_bulges_out_of_the_travel_is_refused(
+    start: tuple[int, int], arc: str, axis: str
+) -> None:
+    """Both ends lie within the ± 2000 mm, and the arc 15.7 mm outside; 25 mm further in all of it is inside."""
+    x, y = start
+    lines = f"G1 X{x} Y{y} F600", arc
+    with pytest.raises(ProgramFault, match=axis):
+        playback(*lines)
+    playback(*(line.replace("1995", "1970") for line in lines))
+
+
 @pytest.mark.parametrize("speed", [0.0, -1.0, math.inf, math.nan, 1e9])
 def test_a_speed_without_a_feed_number_is_refused(speed: float) -> None:
     with pytest.raises(ValueError, match=r"has no feed number; give"):

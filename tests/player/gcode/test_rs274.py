@@ -72,6 +72,25 @@ def test_all_that_the_subset_holds_is_read() -> None:
     assert program.moves[-1].end_mm == (5 + 25.4, 1, -0.5)
 
 
+@pytest.mark.parametrize("arc", ["I{0}", "J{0}", "I{1} J{1}", "R{0}"])
+def test_an_arc_in_inches_is_the_arc_in_mm(arc: str) -> None:
+    """Centre offsets and radius are in the unit of the places."""
+    ends = {"I{0}": (2, 0), "J{0}": (0, 2), "I{1} J{1}": (1, 1), "R{0}": (1, 1)}[arc]
+    found = []
+    for unit, scale in (("G20", 1 / 25.4), ("G21", 1.0)):
+        x, y, one, half = (n * scale for n in (*ends, 1.0, 0.5))
+        words = arc.format(f"{one:.9f}", f"{half:.9f}")
+        found.append(moves(unit, "G1 X0 Y0 F60", f"G3 X{x:.9f} Y{y:.9f} {words}")[-1])
+    inches, metric = found
+    assert inches.centre_mm == pytest.approx(metric.centre_mm, abs=1e-7)  # nine decimals
+    assert inches.turned_rad == pytest.approx(metric.turned_rad, abs=1e-7)
+
+
+def test_a_dwell_lasts_a_day_at_most() -> None:
+    assert moves("G4 P86400")[0].dwell_s == 86400
+    assert "a day at most" in refused("G4 P86401")
+
+
 def test_every_ending_ends() -> None:
     for ending in ("M2", "M30", "m02", "%"):
         assert len(parse_rs274(["%", "G0 X1", ending, "G0 X9"]).moves) == 1
