@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo test check bench figures docs soak fuzz clean
+.PHONY: demo test check bench figures docs soak fuzz mutants clean
 
 $(VENV)/installed: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -37,6 +37,13 @@ docs: $(VENV)/installed
 # the tests of trust at full length: every pair of wear, ten thousand dropouts, tapes of three and six hours; 12 GB, about an hour
 soak: $(VENV)/installed
 	MORFAX_SOAK=1 $(BIN)/pytest tests/player/test_worn.py tests/player/test_long.py tests/console/test_killed.py -s
+
+# one wrong line at a time into a room, and whether its tests notice: ROOM=player/gcode SAMPLE=60 (0: all of them)
+ROOM ?= player/gcode
+SAMPLE ?= 0
+SEED ?= 1
+mutants: $(VENV)/installed
+	$(BIN)/python -m tests.mutants $(ROOM) --sample $(SAMPLE) --seed $(SEED)
 
 # broken tapes until something breaks: RUNS=1000000
 RUNS ?= 1000000

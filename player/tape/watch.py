@@ -25,7 +25,8 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import Fault, LockFault, TapeFault
-from morfax.player.tape.discriminator import Frames, Phases, translating_taps
+from morfax.player.tape.band_filter import translating_taps
+from morfax.player.tape.discriminator import Frames, Phases
 from morfax.player.tape.standstill import Bearings, track_name
 from morfax.recorder.tape.format import TapeFormat
 

@@ -24,8 +24,9 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.faults import MotionFault
 from morfax.motion.segments import Source, as_path
-from morfax.recorder.gcode.arcs import Segment, fit
+from morfax.recorder.gcode.arcs import fit
 from morfax.recorder.gcode.program_text import Block
+from morfax.recorder.gcode.spline import Segment
 from morfax.recorder.gcode.stretches import Stretch, stretches
 
 _LARGEST_RADIUS_MM = 10_000.0  # a way of 300 mm is 1.1 um off its chord

@@ -26,11 +26,11 @@ import numpy as np
 from morfax.motion.faults import TapeFault
 from morfax.recorder.tape.carrier import Frames
 from morfax.recorder.tape.format import TapeFormat, columns_of, is_format_text
+from morfax.recorder.tape.stated import unnamed
 
 PIPE_FRAMES = 65536
 LARGEST_CHUNK_BYTES = 1 << 20  # of a header: more is no tape
 _PCM, _FLOAT, _EXTENSIBLE = 1, 3, 0xFFFE
-_AXES = ("x", "y", "z", "a", "b", "c", "u", "v", "w")
 
 
 @dataclass(frozen=True, slots=True)
@@ -224,14 +224,7 @@ def _format(
                 "the pipe does not say its format; give --reference-frequency 6kHz --cycles-per-mm "
                 "20, or what it has"
             )
-        axes, per_motion = _AXES[: samples.tracks - 1], max(2, round(rate_hz / 6000))
-        return TapeFormat(
-            sample_rate_hz=rate_hz,
-            axes=axes,
-            dwell_s=0.0,
-            samples_per_motion=per_motion,
-            **by_hand,
-        )
+        return unnamed(rate_hz, samples.tracks, by_hand)
     except TapeFault:
         raise
     except ValueError as error:

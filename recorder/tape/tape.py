@@ -3,22 +3,15 @@
 Signals: a WAV, RF64 or FLAC in; float32 frames (n, tracks) out, full scale 1, columns reference, X, Y, Z. One
 block is held at a time, however long the tape.
 
-A tape that another program wrote or stripped has no format in it; reference and cycles per mm are then given
-by hand, and what they do not say is taken for granted: the axes are X, Y, Z … in the order of the tracks, and
-start at zero.
-
 Source: patent ES 361967, figure 5 (the tracks that the machine is given).
-Questions: a file resampled by a sound program keeps its text; its own sample rate counts, not the one stated.
 """
 
 from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from pathlib import Path as FilePath
 from types import TracebackType
-from typing import Any
 
 import numpy as np
 import soundfile
@@ -26,29 +19,17 @@ from numpy.typing import NDArray
 
 from morfax.motion.faults import FileFault, TapeFault
 from morfax.recorder.tape.carrier import Frames
-from morfax.recorder.tape.format import (
-    LARGEST_TEXT_BYTES,
-    TapeFormat,
-    columns_of,
-    is_format_text,
-)
+from morfax.recorder.tape.format import TapeFormat, columns_of
 from morfax.recorder.tape.recording import Recording, record
 from morfax.recorder.tape.riff import read_sizes
-from morfax.recorder.tape.spool import sidecar
+from morfax.recorder.tape.stated import format_of, started, text_of
 
 __all__ = ["Recording", "Tape", "TapeFormat", "record"]
 
 BLOCK_FRAMES = 65536
-_UNNAMED_AXES = ("x", "y", "z", "a", "b", "c", "u", "v", "w")
-# of a tape without a format, as nearly as a whole number of frames allows
-_MOTION_RATE_HZ = 6000.0
 _FEWEST_TRACKS = 3
 _INT16_STEP = np.float32(1 / 32768)  # full scale 1
 Stored = NDArray[np.float32 | np.int16]
-_EXAMPLES = {
-    "reference_hz": "--reference-frequency 6kHz",
-    "cycles_per_mm": "--cycles-per-mm 20",
-}
 
 
 class Tape:
@@ -83,13 +64,13 @@ class Tape:
         sound = _open_sound(FilePath(file))
         try:
             _check_whole(FilePath(file), sound)
-            fmt = _format(
+            fmt = format_of(
                 FilePath(file),
                 sound,
                 {"reference_hz": reference_hz, "cycles_per_mm": cycles_per_mm},
             )
             return cls(
-                FilePath(file), sound, _started(fmt, start_mm), columns_of(order, fmt.tracks)
+                FilePath(file), sound, started(fmt, start_mm), columns_of(order, fmt.tracks)
             )
         except BaseException:
             sound.close()
@@ -133,7 +114,7 @@ class Tape:
     @property
     def text(self) -> str:
         """The text chunk as it stands in the file; empty if there is none."""
-        return _text(self.file, self._sound).strip()
+        return text_of(self.file, self._sound).strip()
 
     def blocks(self, frames: int = BLOCK_FRAMES, first: int = 0) -> Iterator[Frames]:
         """The tape from frame `first` on in blocks (n, tracks) of so many frames, the last one shorter."""
@@ -234,88 +215,3 @@ def _cut_short(file: FilePath, held_s: float, stated_s: float) -> TapeFault:
         "copy the file again or record it again"
     )
     return TapeFault(message, time_s=held_s)
-
-
-def _format(
-    file: FilePath, sound: soundfile.SoundFile, by_hand: dict[str, float | None]
-) -> TapeFormat:
-    """The tape's format, from its text chunk or by hand; raises TapeFault."""
-    given: dict[str, Any] = {
-        name: value for name, value in by_hand.items() if value is not None
-    }
-    stated = _stated(file, sound)
-    if stated is None and len(given) < len(by_hand):
-        lacks = " ".join(example for name, example in _EXAMPLES.items() if name not in given)
-        raise TapeFault(
-            f"{file} does not say its format (no text chunk); give {lacks}, or whatever the tape has"
-        )
-    try:
-        if stated is None:
-            return _unnamed(sound, given)
-        if given.get("cycles_per_mm", stated.cycles_per_mm) != stated.cycles_per_mm:
-            stated = replace(
-                stated, end_mm=None
-            )  # another travel for the same phase ends elsewhere
-        return replace(stated, sample_rate_hz=sound.samplerate, **given)
-    except ValueError as error:
-        raise TapeFault(f"{file} cannot be played so: {error}") from None
-
-
-def _stated(file: FilePath, sound: soundfile.SoundFile) -> TapeFormat | None:
-    """The format in the text chunk; None without one."""
-    text = _text(file, sound)
-    if not is_format_text(text):
-        return None
-    try:
-        fmt = TapeFormat.from_json(text)
-    except TapeFault as fault:
-        raise TapeFault(f"{file}: {fault}") from None
-    if fmt.tracks != sound.channels:
-        raise TapeFault(
-            f"{file} has {sound.channels} tracks, but its text chunk speaks of {fmt.tracks}: reference, "
-            f"{', '.join(fmt.axes)}; take the file as it was recorded"
-        )
-    return fmt
-
-
-def _text(file: FilePath, sound: soundfile.SoundFile) -> str:
-    """The text chunk, or the text of the file beside the tape (a W64 has no text chunk)."""
-    text = str(sound.comment)
-    if text.strip():
-        return text
-    try:
-        with sidecar(file).open("rb") as beside:
-            return beside.read(LARGEST_TEXT_BYTES + 1).decode("utf-8", "replace")
-    except OSError:
-        return ""
-
-
-def _unnamed(sound: soundfile.SoundFile, given: dict[str, Any]) -> TapeFormat:
-    """The format of a tape that does not state it."""
-    rate = sound.samplerate
-    axes = _UNNAMED_AXES[: sound.channels - 1]
-    return TapeFormat(
-        sample_rate_hz=rate,
-        axes=axes,
-        dwell_s=0.0,
-        samples_per_motion=max(2, round(rate / _MOTION_RATE_HZ)),
-        **given,
-    )
-
-
-def _started(fmt: TapeFormat, start_mm: Sequence[float] | None) -> TapeFormat:
-    """The format with a start given by hand, for the axes given; the end moves by the same distance."""
-    if start_mm is None:
-        return fmt
-    if len(start_mm) > len(fmt.axes):
-        raise TapeFault(
-            f"the start was given {len(start_mm)} places; the tape has {len(fmt.axes)} axes"
-        )
-    start = tuple(float(mm) for mm in start_mm) + fmt.start_mm[len(start_mm) :]
-    shifts = [new - old for new, old in zip(start, fmt.start_mm, strict=True)]
-    end = (
-        None
-        if fmt.end_mm is None
-        else tuple(mm + by for mm, by in zip(fmt.end_mm, shifts, strict=True))
-    )
-    return replace(fmt, start_mm=start, end_mm=end)

@@ -273,12 +273,23 @@ def test_what_cannot_be_run_is_refused_before_anything_moves() -> None:
 def test_an_arc_that_bulges_out_of_the_travel_is_refused(
     start: tuple[int, int], arc: str, axis: str
 ) -> None:
-    """Both ends lie within the ± 2000 mm, and the arc 15.7 mm outside; 25 mm further in all of it is inside."""
+    """Both ends lie within the ± 2000 mm, the arc 15.7 mm outside; 25 mm further in all of it fits."""
     x, y = start
     lines = f"G1 X{x} Y{y} F600", arc
     with pytest.raises(ProgramFault, match=axis):
         playback(*lines)
     playback(*(line.replace("1995", "1970") for line in lines))
+
+
+@pytest.mark.parametrize("sign", ["", "-"])
+def test_an_arc_that_does_not_come_to_its_outermost_place_may_have_that_outside(
+    sign: str,
+) -> None:
+    """From 60 to 120 degrees round 1960, 0 mm with 50 mm; at 0 degrees it would be at 2010 mm."""
+    code = "G2" if sign else "G3"
+    first, last = f"G1 X{sign}1985 Y43.3013 F600", f"{code} X{sign}1935 Y43.3013 R50"
+    (x, y), *_ = [move.centre_mm for move in playback(first, last).program.moves[1:]]
+    assert (abs(x), y) == pytest.approx((1960, 0), abs=0.001)
 
 
 @pytest.mark.parametrize("speed", [0.0, -1.0, math.inf, math.nan, 1e9])

@@ -12,11 +12,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from morfax.player.tape import discriminator as organ
+from morfax.player.tape.band_filter import translating_taps
 from morfax.player.tape.discriminator import (
     Discriminator,
     Phases,
     discriminate,
-    translating_taps,
 )
 from tests.player.carriers import (
     CYCLES_PER_MM,

@@ -21,7 +21,7 @@ from morfax.motion.motion import MOTION_RATE_HZ, Motion, thin
 from morfax.motion.motion import Path as MotionPath
 from morfax.motion.pathfile import read_path
 from morfax.player.gcode.rs274 import Move, Program, read_rs274
-from morfax.recorder.gcode.arcs import BREAK_RAD, Segment, fit
+from morfax.recorder.gcode.arcs import fit
 from morfax.recorder.gcode.blocks import TOLERANCE_MM, record_blocks
 from morfax.recorder.gcode.pieces import (
     corners,
@@ -30,6 +30,7 @@ from morfax.recorder.gcode.pieces import (
     off_line_mm,
     resample,
 )
+from morfax.recorder.gcode.spline import BREAK_RAD, Segment
 from morfax.recorder.gcode.stretches import DWELL_S
 from morfax.recorder.media import record
 from morfax.tracer.operator.zunit import Move as ZMove

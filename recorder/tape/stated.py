@@ -1,0 +1,111 @@
+"""The format of a tape as its file states it, or as the operator gives it by hand.
+
+Signals: a sound file with its text chunk, or with a text beside it, in; its format out. Figures given by hand
+override the text. A tape that states nothing needs reference and cycles per mm by hand; its axes are then X,
+Y, Z … in the order of the tracks, and start at zero.
+
+Questions: a file that a sound program has resampled keeps its text; its own sample rate counts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path as FilePath
+from typing import Any
+
+import soundfile
+
+from morfax.motion.faults import TapeFault
+from morfax.recorder.tape.format import LARGEST_TEXT_BYTES, TapeFormat, is_format_text
+from morfax.recorder.tape.spool import sidecar
+
+_UNNAMED_AXES = ("x", "y", "z", "a", "b", "c", "u", "v", "w")
+# of a tape without a format, as nearly as a whole number of frames allows
+_MOTION_RATE_HZ = 6000.0
+_EXAMPLES = {
+    "reference_hz": "--reference-frequency 6kHz",
+    "cycles_per_mm": "--cycles-per-mm 20",
+}
+
+
+def format_of(
+    file: FilePath, sound: soundfile.SoundFile, by_hand: dict[str, float | None]
+) -> TapeFormat:
+    """The tape's format, from its text chunk or by hand; raises TapeFault."""
+    given: dict[str, Any] = {
+        name: value for name, value in by_hand.items() if value is not None
+    }
+    stated = _stated(file, sound)
+    if stated is None and len(given) < len(by_hand):
+        lacks = " ".join(example for name, example in _EXAMPLES.items() if name not in given)
+        raise TapeFault(
+            f"{file} does not say its format (no text chunk); give {lacks}, or whatever the tape has"
+        )
+    try:
+        if stated is None:
+            return unnamed(sound.samplerate, sound.channels, given)
+        if given.get("cycles_per_mm", stated.cycles_per_mm) != stated.cycles_per_mm:
+            # another travel for the same phase ends elsewhere
+            stated = replace(stated, end_mm=None)
+        return replace(stated, sample_rate_hz=sound.samplerate, **given)
+    except ValueError as error:
+        raise TapeFault(f"{file} cannot be played so: {error}") from None
+
+
+def _stated(file: FilePath, sound: soundfile.SoundFile) -> TapeFormat | None:
+    """The format in the text chunk; None without one."""
+    text = text_of(file, sound)
+    if not is_format_text(text):
+        return None
+    try:
+        fmt = TapeFormat.from_json(text)
+    except TapeFault as fault:
+        raise TapeFault(f"{file}: {fault}") from None
+    if fmt.tracks != sound.channels:
+        raise TapeFault(
+            f"{file} has {sound.channels} tracks, but its text chunk speaks of {fmt.tracks}: reference, "
+            f"{', '.join(fmt.axes)}; take the file as it was recorded"
+        )
+    return fmt
+
+
+def text_of(file: FilePath, sound: soundfile.SoundFile) -> str:
+    """The text chunk, or the text of the file beside the tape (a W64 has no text chunk)."""
+    text = str(sound.comment)
+    if text.strip():
+        return text
+    try:
+        with sidecar(file).open("rb") as beside:
+            return beside.read(LARGEST_TEXT_BYTES + 1).decode("utf-8", "replace")
+    except OSError:
+        return ""
+
+
+def unnamed(sample_rate_hz: int, tracks: int, given: dict[str, Any]) -> TapeFormat:
+    """The format of a tape that states none: axes by the order of the tracks, from zero on all of them."""
+    return TapeFormat(
+        sample_rate_hz=sample_rate_hz,
+        axes=_UNNAMED_AXES[: tracks - 1],
+        dwell_s=0.0,
+        samples_per_motion=max(2, round(sample_rate_hz / _MOTION_RATE_HZ)),
+        **given,
+    )
+
+
+def started(fmt: TapeFormat, start_mm: Sequence[float] | None) -> TapeFormat:
+    """The format with a start given by hand, for the axes given; the end moves by the same distance."""
+    if start_mm is None:
+        return fmt
+    if len(start_mm) > len(fmt.axes):
+        raise TapeFault(
+            f"the start was given {len(start_mm)} places; the tape has {len(fmt.axes)} axes"
+        )
+    start = tuple(float(mm) for mm in start_mm) + fmt.start_mm[len(start_mm) :]
+    shifts = [new - old for new, old in zip(start, fmt.start_mm, strict=True)]
+    end = (
+        None
+        if fmt.end_mm is None
+        else tuple(mm + by for mm, by in zip(fmt.end_mm, shifts, strict=True))
+    )
+    return replace(fmt, start_mm=start, end_mm=end)
