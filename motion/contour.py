@@ -1,7 +1,7 @@
 """Contour measures: how far two paths are apart, how long one is, whether it closes.
 
-Signals: Path, Motion, (n, 2) arrays of mm, or lists of such polylines; of a Path or Motion only what is run
-with the tool in the work counts.
+Signals: Path, Motion, (n, 2) arrays of mm, or lists of such polylines in; distances and lengths in mm out. Of
+a Path or Motion only what is run with the tool in the work counts.
 
 Each polyline is sampled every 0.01 mm, its own points included. The nearest samples of the other are found in
 a k-d tree, and the sample is then projected on the straight pieces that meet there, so that equal curves with
@@ -20,6 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.motion import polyline
 from morfax.motion.arrays import Array
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import IN_WORK_BELOW_MM, Motion, Path
@@ -27,8 +28,9 @@ from morfax.motion.motion import IN_WORK_BELOW_MM, Motion, Path
 SAMPLE_MM = 0.01
 # beyond 10 m of path the samples stand further apart: memory stays below 200 MB
 LARGEST_SAMPLES = 1_000_000
-_NEIGHBOURS = 4
-_SAMPLES_AT_ONCE = 100_000
+_NEIGHBOURS = 4  # nearest samples whose pieces are tried, see Questions
+_SAMPLES_AT_ONCE = 100_000  # so that memory stays small
+_P95 = 0.95  # of the length is nearer than this distance
 
 
 Contour = Path | Motion | Array | Sequence[Array]
@@ -36,7 +38,7 @@ Contour = Path | Motion | Array | Sequence[Array]
 
 @dataclass(frozen=True, slots=True)
 class Summary:
-    """Distances of one path from another, mm: root mean square, 95 % of the length is nearer than, largest."""
+    """Distances of one path from another, mm: root mean square, that below which 95 % of the length lies, largest."""
 
     rms_mm: float
     p95_mm: float
@@ -48,7 +50,7 @@ class Summary:
 
 @dataclass(frozen=True, slots=True)
 class Distances:
-    """Distances both ways: what the path does wrong, and what of the reference it misses."""
+    """Distances both ways: where the path is wrong, and where it misses the reference."""
 
     path_to_reference: Summary
     reference_to_path: Summary
@@ -66,10 +68,8 @@ class Distances:
 def distance(path: Contour, reference: Contour) -> Distances:
     """Distances of a path from a reference and back, mm."""
     ours, theirs = _sampled(path), _sampled(reference)
-    there, back = (
-        _Finder(theirs).distances_mm(ours.points_mm),
-        _Finder(ours).distances_mm(theirs.points_mm),
-    )
+    there = _Finder(theirs).distances_mm(ours.points_mm)
+    back = _Finder(ours).distances_mm(theirs.points_mm)
     return Distances(_summary(there, ours.weights_mm), _summary(back, theirs.weights_mm))
 
 
@@ -88,7 +88,7 @@ def distances_mm(points_mm: Array, reference: Contour) -> Array:
 
 def length_mm(path: Contour) -> float:
     """Length of the path in the work, mm."""
-    return float(sum(_steps_mm(run).sum() for run in polylines(path)))
+    return sum((polyline.length_mm(run) for run in polylines(path)), 0.0)
 
 
 def closure_mm(path: Contour) -> float:
@@ -97,34 +97,37 @@ def closure_mm(path: Contour) -> float:
 
 
 def polylines(path: Contour) -> list[Array]:
-    """The (n, 2) polylines in mm that count; raises MotionFault if there are none, ValueError if it is no
-    contour.
-    """
+    """The (n, 2) polylines in mm that count; raises MotionFault if none does, ValueError for no contour."""
     if isinstance(path, Motion):
         path = Path(path.times_s, path.positions_mm, path.axes)
     if isinstance(path, Path):
-        runs = path.runs()
-        if not runs:
-            raise MotionFault(
-                f"the path never has its tool in the work; z must come down to {IN_WORK_BELOW_MM} mm or below somewhere"
-            )
-        return runs
+        return _in_work(path)
     runs = [path] if isinstance(path, np.ndarray) else [np.asarray(run) for run in path]
+    if not runs:
+        raise ValueError("the list of polylines is empty; it must hold at least one")
     for run in runs:
-        if run.ndim != 2 or run.shape[1] != 2 or not len(run) or not np.isfinite(run).all():
+        is_flat = run.ndim == 2 and run.shape[1] == 2 and len(run) > 0
+        if not is_flat or not np.isfinite(run).all():
             raise ValueError(
                 f"an array of shape {run.shape} is no polyline; it must be (n, 2), n > 0, of finite mm"
             )
+    return runs
+
+
+def _in_work(path: Path) -> list[Array]:
+    """The polylines that a path runs with the tool in the work; raises MotionFault if it runs none."""
+    runs = path.runs()
     if not runs:
-        raise ValueError("the list of polylines is empty; it must hold at least one")
+        raise MotionFault(
+            "the path never has its tool in the work; z must come down to"
+            f" {IN_WORK_BELOW_MM} mm or below somewhere"
+        )
     return runs
 
 
 @dataclass(frozen=True, slots=True)
 class _Sampled:
-    """Points (n, 2) along polylines, the length each stands for, and whether a straight piece leads on to the
-    next.
-    """
+    """Points (n, 2) along polylines, the length each stands for, and whether a piece leads on to the next."""
 
     points_mm: Array
     weights_mm: Array
@@ -134,19 +137,17 @@ class _Sampled:
 def _sampled(path: Contour, sample_mm: float = SAMPLE_MM) -> _Sampled:
     """Sample all polylines so densely, their own points included."""
     runs = polylines(path)
-    apart_mm = max(
-        sample_mm, sum(float(_steps_mm(run).sum()) for run in runs) / LARGEST_SAMPLES
-    )
+    total_mm = sum(polyline.length_mm(run) for run in runs)
+    apart_mm = max(sample_mm, total_mm / LARGEST_SAMPLES)
     parts = [_along(run, apart_mm) for run in runs]
     leads_on = np.concatenate([np.arange(len(part)) < len(part) - 1 for part in parts])
-    return _Sampled(
-        np.vstack(parts), np.concatenate([_shares_mm(part) for part in parts]), leads_on
-    )
+    weights_mm = np.concatenate([_shares_mm(part) for part in parts])
+    return _Sampled(np.vstack(parts), weights_mm, leads_on)
 
 
 def _along(run: Array, apart_mm: float) -> Array:
     """The polyline's points and, between them, points at most `apart_mm` from each other."""
-    s = np.r_[0.0, np.cumsum(_steps_mm(run))]
+    s = polyline.lengths_mm(run)
     keep = np.r_[True, np.diff(s) > 0]
     s, run = s[keep], run[keep]
     between = np.linspace(0.0, s[-1], int(np.ceil(s[-1] / apart_mm)) + 1)
@@ -156,13 +157,8 @@ def _along(run: Array, apart_mm: float) -> Array:
 
 def _shares_mm(points: Array) -> Array:
     """The length that each point of a polyline stands for: half of the pieces on both its sides, mm."""
-    steps = _steps_mm(points)
+    steps = polyline.steps_mm(points)
     return (np.r_[0.0, steps] + np.r_[steps, 0.0]) / 2
-
-
-def _steps_mm(run: Array) -> Array:
-    """Lengths of the straight pieces of a polyline, mm."""
-    return np.hypot(*np.diff(run, axis=0).T)
 
 
 class _Finder:
@@ -183,7 +179,7 @@ class _Finder:
         return np.concatenate(parts)
 
     def _some(self, points: Array) -> Array:
-        """The same for so many points as fit into a little memory."""
+        """The same for a few points, so that memory stays small."""
         k = min(_NEIGHBOURS, len(self._sampled.points_mm))
         near_mm, near = self._tree.query(points, k=k)
         best = near_mm.reshape(len(points), k)[:, 0]
@@ -193,16 +189,13 @@ class _Finder:
         return best
 
     def _to_piece(self, points: Array, piece: NDArray[np.int64]) -> Array:
-        """Distance of each point from the straight piece that leads on from a sample; infinite where none
-        does.
-        """
+        """Distance of each point from the piece that leads on from a sample; infinite where none does."""
         at, leads_on = self._sampled.points_mm, self._sampled.leads_on
         start = at[piece]  # piece -1 is the last sample, from which none leads on
         along = at[(piece + 1) % len(at)] - start
         squared = np.einsum("ij,ij->i", along, along)
-        share = np.einsum("ij,ij->i", points - start, along) / np.where(
-            squared > 0, squared, 1.0
-        )
+        squared = np.where(squared > 0, squared, 1.0)
+        share = np.einsum("ij,ij->i", points - start, along) / squared
         off = points - start - np.clip(share, 0.0, 1.0)[:, None] * along
         return np.where(leads_on[piece], np.hypot(off[:, 0], off[:, 1]), np.inf)
 
@@ -212,6 +205,7 @@ def _summary(distances_mm: Array, weights_mm: Array) -> Summary:
     weights = weights_mm if weights_mm.sum() > 0 else np.ones_like(weights_mm)
     order = np.argsort(distances_mm)
     share = np.cumsum(weights[order])
-    p95 = distances_mm[order[np.searchsorted(share, 0.95 * share[-1]).clip(max=len(order) - 1)]]
+    at = np.searchsorted(share, _P95 * share[-1]).clip(max=len(order) - 1)
+    p95 = distances_mm[order[at]]
     rms = np.sqrt(np.average(distances_mm**2, weights=weights))
     return Summary(float(rms), float(p95), float(distances_mm.max()))

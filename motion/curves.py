@@ -1,4 +1,11 @@
-"""Curves: a smooth way between two places and headings, and how fast a way may be run for its bends."""
+"""Curves: a smooth way between two places and headings, and how fast a way may be run in its bends.
+
+Signals: places (n, 2) mm, headings in rad, speeds in mm/s.
+
+    v² · bend <= acceleration        v falls to the speed at the end by braking (see `speed_limits`)
+
+Source: the cubic between two places and slopes is Hermite's; our own use.
+"""
 
 from __future__ import annotations
 
@@ -19,10 +26,11 @@ def hermite(start: Array, heading: float, end: Array, end_heading: float) -> Arr
     """The cubic from one place and heading to another, (n, 2) mm."""
     chord = float(np.hypot(*(end - start)))
     t = np.linspace(0, 1, max(2, math.ceil(chord / SPACING_MM) + 1))[:, None]
-    a = chord * np.array([math.cos(heading), math.sin(heading)])
-    b = chord * np.array([math.cos(end_heading), math.sin(end_heading)])
+    leaving = chord * np.array([math.cos(heading), math.sin(heading)])
+    arriving = chord * np.array([math.cos(end_heading), math.sin(end_heading)])
     h = t * t * (3 - 2 * t)
-    return np.asarray(start * (1 - h) + end * h + a * t * (1 - t) ** 2 - b * t * t * (1 - t))
+    slopes = leaving * t * (1 - t) ** 2 - arriving * t * t * (1 - t)
+    return np.asarray(start * (1 - h) + end * h + slopes)
 
 
 def bends_per_mm(points: Array) -> Array:

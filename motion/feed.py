@@ -6,12 +6,11 @@ motion rate out.
 
     v <= feed      v² · bend <= a/3      v · dv/ds <= 0.7 a      v = 0 at a corner (`SHARP`)
 
-A way is made of straight pieces, so at each of its places the velocity would jump by v · turn. It is averaged
-over `SMOOTHED_S`, in which the jump is made good at a third of the acceleration, and which moves the way
+A way is made of straight pieces, so at each of its places the velocity would jump by v · turn. The positions
+are averaged over `SMOOTHED_S`: in that time the jump is made at a third of the acceleration, and the way moves
 inward by no more than a · SMOOTHED_S² / 24: 0.1 um. Across and along together stay within a.
 
-Source: the two passes that are usual in controls (see `motion.speed_limits`);
-our own.
+Source: the two passes that are usual in controls (see `motion.speed_limits`); the averaging is our own.
 """
 
 from __future__ import annotations
@@ -22,13 +21,16 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.motion import MOTION_RATE_HZ
+from morfax.motion.polyline import at_lengths, lengths_mm, steps_mm
 from morfax.motion.speed_limits import reachable
 
-SHARP = math.radians(10)
+SHARP = math.radians(10)  # a sharper turn is a corner: the tool stops there
 # shares of the acceleration: along the way; in its bend, and again in its turns from piece to piece
 ALONG, ACROSS = 0.7, 1 / 3
 SMOOTHED_S = 0.002
-BEND_WITHIN_MM = 0.1  # to either side of a place its bend is counted
+BEND_WITHIN_MM = 0.1  # the bend at a place is that within this to either side; by trial
+LEAST_STEP_MM = 1e-9  # a shorter step repeats a place
+LEAST_BEND = 1e-9  # 1/mm, and rad of a turn: so that nothing is divided by zero
 STANDS_S = 2 * SMOOTHED_S  # at either end, so that the average comes to rest
 
 
@@ -36,28 +38,30 @@ def run_along(
     way_mm: Array, feed_mm_s: float, acceleration_mm_s2: float, rate_hz: float = MOTION_RATE_HZ
 ) -> Array:
     """Positions (m, 2) mm along a way, from rest at its first place to rest at its last."""
+    # 1. the speed at each place of the way
     way_mm = _with_halves(way_mm)
-    steps = np.hypot(*np.diff(way_mm, axis=0).T)
+    steps = steps_mm(way_mm)
     allowed = _allowed(way_mm, steps, feed_mm_s, acceleration_mm_s2)
     speeds = reachable(allowed, 2 * ALONG * acceleration_mm_s2 * steps)
+    # 2. how far the tool has come at each period
     t_s = np.r_[0.0, np.cumsum(2 * steps / (speeds[1:] + speeds[:-1]))]
-    s_mm = np.r_[0.0, np.cumsum(steps)]
+    s_mm = lengths_mm(way_mm)
     at_s = np.arange(0.0, t_s[-1], 1 / rate_hz)
     k = np.clip(np.searchsorted(t_s, at_s, side="right") - 1, 0, len(steps) - 1)
     since, whole = at_s - t_s[k], t_s[k + 1] - t_s[k]
-    along = s_mm[k] + since * (speeds[k] + 0.5 * (speeds[k + 1] - speeds[k]) * since / whole)
+    gained = 0.5 * (speeds[k + 1] - speeds[k]) * since / whole
+    along = s_mm[k] + since * (speeds[k] + gained)
+    # 3. standing at both ends, and averaged
     stands = round(STANDS_S * rate_hz)
     along = np.r_[np.zeros(stands), along, np.full(stands, s_mm[-1])]
-    return _averaged(
-        np.column_stack([np.interp(along, s_mm, column) for column in way_mm.T]), rate_hz
-    )
+    return _averaged(at_lengths(way_mm, along), rate_hz)
 
 
 def _with_halves(way_mm: Array) -> Array:
-    """The way without places that repeat, and with its first and last pieces halved: a piece between two
-    stops has none.
+    """The way without places that repeat, and its pieces halved: between two stops there must be a place to
+    move at.
     """
-    way_mm = way_mm[np.r_[True, np.hypot(*np.diff(way_mm, axis=0).T) > 1e-9]]
+    way_mm = way_mm[np.r_[True, steps_mm(way_mm) > LEAST_STEP_MM]]
     middles = 0.5 * (way_mm[1:] + way_mm[:-1])
     both = np.empty((2 * len(way_mm) - 1, 2))
     both[::2], both[1::2] = way_mm, middles
@@ -65,28 +69,23 @@ def _with_halves(way_mm: Array) -> Array:
 
 
 def _allowed(way_mm: Array, steps: Array, feed_mm_s: float, acceleration_mm_s2: float) -> Array:
-    """Highest speed at each place, mm/s, by the turn there and by the bend about it; 0 at both ends and at
-    sharp corners.
-    """
+    """Highest speed at each place, mm/s, by the turn there and by the bend about it; 0 at corners and ends."""
+    # 1. the turn at each place; both ends count as corners
     ways = np.diff(way_mm, axis=0)
-    turns = np.abs(
-        np.arctan2(
-            ways[:-1, 0] * ways[1:, 1] - ways[:-1, 1] * ways[1:, 0],
-            np.einsum("ij,ij->i", ways[:-1], ways[1:]),
-        )
-    )
+    across = ways[:-1, 0] * ways[1:, 1] - ways[:-1, 1] * ways[1:, 0]
+    turns = np.abs(np.arctan2(across, np.einsum("ij,ij->i", ways[:-1], ways[1:])))
     turns = np.r_[math.pi, turns, math.pi]
+    # 2. the bend about each place: the larger of those before and after it
     s = np.r_[0.0, np.cumsum(steps)]
     turned = np.r_[0.0, np.cumsum(np.where(turns > SHARP, 0.0, turns))]
-    low, high = (
-        np.searchsorted(s, s - BEND_WITHIN_MM),
-        np.searchsorted(s, s + BEND_WITHIN_MM, side="right"),
-    )
-    bend = np.maximum(turned[high] - turned[:-1], turned[1:] - turned[low]) / np.minimum(
-        BEND_WITHIN_MM, s[-1]
-    )
-    by_bend = np.sqrt(ACROSS * acceleration_mm_s2 / np.maximum(bend, 1e-9))
-    by_turn = ACROSS * acceleration_mm_s2 * SMOOTHED_S / np.maximum(turns, 1e-9)
+    low = np.searchsorted(s, s - BEND_WITHIN_MM)
+    high = np.searchsorted(s, s + BEND_WITHIN_MM, side="right")
+    turned_about = np.maximum(turned[high] - turned[:-1], turned[1:] - turned[low])
+    bend = turned_about / np.minimum(BEND_WITHIN_MM, s[-1])
+    # 3. the speeds that they allow
+    across_mm_s2 = ACROSS * acceleration_mm_s2
+    by_bend = np.sqrt(across_mm_s2 / np.maximum(bend, LEAST_BEND))
+    by_turn = across_mm_s2 * SMOOTHED_S / np.maximum(turns, LEAST_BEND)
     return np.where(turns > SHARP, 0.0, np.minimum(feed_mm_s, np.minimum(by_bend, by_turn)))
 
 

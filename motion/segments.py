@@ -1,25 +1,25 @@
-"""Legs: a motion cut at its stops, and how fast each leg may be run.
+"""Segments: a motion cut at its stops, and how fast each segment may be run.
 
-Signals: a motion in mm at any rate, or a path; out come legs, each a row of places at equal distances along
-the path with the speed (mm/s) that the machine may have there, zero at both ends. A program whose medium
-bounds the acceleration is made of these and not of the motion's own times:
+Signals: a motion in mm at any rate, or a path, in; segments out: places at equal distances along the path with
+the speed (mm/s) that the machine may have there, zero at both ends. A program whose medium bounds the
+acceleration is made of segments, and not of the motion's own times:
 
     speed        __________________              ______
               __/  the motion's own \\____    ___/      \\
              /  or less, in a bend       \\__/           \\
             stop                       corner            stop
 
-The legs part where the motion stands, and at corners: places where the direction turns by more than
-`corner_rad` within `window_mm` to either side. Within a leg, with v the speed, t the tangent and k the
+The segments part where the motion stands, and at corners: places where the direction turns by more than
+`corner_rad` within `window_mm` to either side. Within a segment, with v the speed, t the tangent and k the
 curvature, axis by axis:
 
     v |t| <= speed        v² |k| <= acceleration        |v dv/ds| <= acceleration
 
 Source: patents ES 443122 (the motor's change of speed is limited, and so the smallest radius at a speed) and
 US 3062995, column 2 (the curve may at no point be angular). Questions: neither says how its programmer slowed
-down; here by the two passes that are usual in controls. The times of the motion count only as an upper bound
-of the speed, and as rests where it stands. Pull along the path and pull across it may each take their share
-of the acceleration (0.7, so that together they stay within it).
+down; here by the two passes that are usual in controls (see `speed_limits`). The times of the motion count
+only as an upper bound of the speed, and as rests where it stands. Acceleration along the path and across it
+have a share each (0.7, so that both together stay within the whole).
 """
 
 from __future__ import annotations
@@ -41,13 +41,13 @@ Source = Iterable[Motion] | Motion | Path
 SHARE = 0.7  # of the acceleration, along the path and across it
 STANDING_MM_S = 0.05  # slower is standing: 0.2 um of thinning in 4 ms
 REST_S = 0.02  # a shorter stand is the turn of a corner, and no rest
-SAME_PLACE_MM = 1e-6
+SAME_PLACE_MM = 1e-6  # places as near as this are one
 FASTEST_MM_S = 1e6  # stands for no limit: its square is still a number
 
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """What an axis can do, and how finely a leg is looked at: distance of its places, reach of a corner, mm."""
+    """What an axis can do, and how finely a segment is looked at: distance of places, reach of a corner, mm."""
 
     speed_mm_s: float
     acceleration_mm_s2: float
@@ -57,10 +57,8 @@ class Limits:
 
 
 @dataclass(frozen=True, slots=True)
-class Leg:
-    """Places (m, 3) at equal distances, the speed allowed at each, and how long the motion rests before the
-    leg.
-    """
+class Segment:
+    """Places (m, 3) at equal distances, the speed allowed at each, and the rest before the segment, s."""
 
     places_mm: Array
     speed_mm_s: Array
@@ -69,20 +67,18 @@ class Leg:
 
     @property
     def times_s(self) -> Array:
-        """When each place is reached, s from the start of the leg."""
+        """When each place is reached, s from the start of the segment."""
         mean_mm_s = (self.speed_mm_s[1:] + self.speed_mm_s[:-1]) / 2
         return np.r_[0.0, np.cumsum(self.spacing_mm / mean_mm_s)]
 
     @property
     def length_mm(self) -> float:
-        """Length of the leg, mm."""
+        """Length of the segment, mm."""
         return (len(self.places_mm) - 1) * self.spacing_mm
 
 
-def legs(source: Source, limits: Limits) -> list[Leg]:
-    """The legs of a motion; none where it stands all the time. Raises MotionFault if it is empty or not
-    finite.
-    """
+def segments(source: Source, limits: Limits) -> list[Segment]:
+    """The segments of a motion, none of one that stands; raises MotionFault if it is empty or not finite."""
     path = as_path(source)
     points_mm, speeds_mm_s, rests_s = _moving(path)
     if len(points_mm) < 2:
@@ -94,15 +90,15 @@ def legs(source: Source, limits: Limits) -> list[Leg]:
     for a, b in pairwise(cuts.tolist()):
         part = slice(a, b + 1)
         found.append(
-            _leg(points_mm[part], along_mm[part], speeds_mm_s[a:b], float(rests_s[a]), limits)
+            _segment(
+                points_mm[part], along_mm[part], speeds_mm_s[a:b], float(rests_s[a]), limits
+            )
         )
     return found
 
 
 def as_path(source: Source) -> Path:
-    """A motion as a path of X, Y, Z; raises MotionFault if there is nothing in it, or a place that is no
-    number.
-    """
+    """A motion as a path of X, Y, Z; raises MotionFault if it is empty, or a place is no number."""
     try:
         path = (
             source
@@ -137,9 +133,7 @@ def as_path(source: Source) -> Path:
 
 
 def _moving(path: Path) -> tuple[Array, Array, Array]:
-    """Different points, the speed from each to the next (infinite: whatever is allowed), and the rest at
-    each, s.
-    """
+    """Different points, the speed from each to the next (infinite: no bound), and the rest at each, s."""
     length_mm = np.sqrt((np.diff(path.positions_mm, axis=0) ** 2).sum(axis=1))
     took_s = np.diff(path.t_s)
     stands = length_mm <= STANDING_MM_S * took_s
@@ -169,10 +163,10 @@ def corners(points_mm: Array, limits: Limits) -> NDArray[np.int64]:
     return np.array([group[np.argmax(turn[group])] for group in groups])
 
 
-def _leg(
+def _segment(
     points_mm: Array, along_mm: Array, speeds_mm_s: Array, rest_s: float, limits: Limits
-) -> Leg:
-    """A leg: its places, and its speeds by one pass forwards and one back."""
+) -> Segment:
+    """A segment: its places, and its speeds by one pass forwards and one back."""
     length_mm = along_mm[-1] - along_mm[0]
     pieces = max(2, int(np.ceil(length_mm / limits.spacing_mm)))
     at_mm = along_mm[0] + length_mm * np.arange(pieces + 1) / pieces
@@ -184,7 +178,7 @@ def _leg(
     allowed = np.minimum(allowed, FASTEST_MM_S)
     allowed[[0, -1]] = 0.0
     gain = 2 * SHARE * limits.acceleration_mm_s2 * length_mm / pieces
-    return Leg(places, reachable(allowed, gain), length_mm / pieces, rest_s)
+    return Segment(places, reachable(allowed, gain), length_mm / pieces, rest_s)
 
 
 def _allowed_mm_s(places: Array, spacing_mm: float, limits: Limits) -> Array:

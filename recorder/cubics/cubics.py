@@ -35,7 +35,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import Path
-from morfax.motion.segments import Leg, Limits, Source, as_path, legs
+from morfax.motion.segments import Limits, Segment, Source, as_path, segments
 from morfax.recorder.cubics.file import (
     STEPS_PER_CONSTANT,
     CubicFormat,
@@ -160,7 +160,7 @@ def _best_fit(path: Path, tolerance_mm: float, limits: Limits, counts_per_mm: fl
     """The fit with the fewest intervals; raises MotionFault if none stays within the tolerance."""
     fits = [
         _fitted(
-            legs(path, replace(limits, corner_rad=share * limits.corner_rad)),
+            segments(path, replace(limits, corner_rad=share * limits.corner_rad)),
             path.positions_mm[0],
             counts_per_mm,
             tolerance_mm,
@@ -178,7 +178,7 @@ def _best_fit(path: Path, tolerance_mm: float, limits: Limits, counts_per_mm: fl
 
 
 def _fitted(
-    parts: list[Leg], start_mm: Array, counts_per_mm: float, tolerance_mm: float
+    parts: list[Segment], start_mm: Array, counts_per_mm: float, tolerance_mm: float
 ) -> _Fit:
     """The fit with the longest interval that stays within the tolerance, or else with the shortest."""
     interval_s = LONGEST_S
@@ -192,7 +192,7 @@ def _fitted(
 
 
 def _samples(
-    parts: list[Leg], start_mm: Array, interval_s: float, counts_per_mm: float
+    parts: list[Segment], start_mm: Array, interval_s: float, counts_per_mm: float
 ) -> tuple[Words, float]:
     """Samples (k + 1, axes, 2) of all legs in whole counts, and the largest distance from them, mm."""
     found = [np.stack([_counts(start_mm, counts_per_mm), np.zeros(3, np.int64)], axis=-1)[None]]
@@ -205,7 +205,7 @@ def _samples(
     return np.concatenate(found), off_mm
 
 
-def _leg_samples(leg: Leg, interval_s: float, counts_per_mm: float) -> Words:
+def _leg_samples(leg: Segment, interval_s: float, counts_per_mm: float) -> Words:
     """Samples of one leg, from rest to rest in a whole number of intervals."""
     times = leg.times_s
     intervals = max(1, int(np.ceil(times[-1] / interval_s - 1e-9)))
@@ -239,7 +239,7 @@ def _spline(at: Array, places: Array, intervals: int) -> tuple[Array, Array]:
     return np.asarray(spline(ends)), np.asarray(spline.derivative()(ends))
 
 
-def _off_mm(leg: Leg, samples: Words, counts_per_mm: float) -> float:
+def _off_mm(leg: Segment, samples: Words, counts_per_mm: float) -> float:
     """The largest distance of the cubics from the leg's path, measured across the path, mm."""
     at = np.linspace(0, len(samples) - 1, max(64, 4 * len(leg.places_mm) // 3))
     run_mm = hermite(samples, at) / counts_per_mm

@@ -32,7 +32,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import IN_WORK_BELOW_MM
-from morfax.motion.segments import Leg, Limits, Source, as_path, legs
+from morfax.motion.segments import Limits, Segment, Source, as_path, segments
 from morfax.recorder.report import WrittenIntervals
 from morfax.recorder.steps.file import MOST_ROWS, STEP_MM, Program, StepFormat, write_program
 from morfax.recorder.steps.lengths import cut
@@ -166,7 +166,7 @@ def _within(
     off_mm = np.inf
     for share in _SLOWER:
         try:
-            lengths, down, off_mm = _lengths(legs(path, _limits(fmt, share)), fmt)
+            lengths, down, off_mm = _lengths(segments(path, _limits(fmt, share)), fmt)
         except ValueError:
             continue
         if off_mm <= tolerance_mm:
@@ -186,7 +186,7 @@ def _limits(fmt: StepFormat, share: float) -> Limits:
     )
 
 
-def _lengths(parts: list[Leg], fmt: StepFormat) -> tuple[Steps, NDArray[np.bool_], float]:
+def _lengths(parts: list[Segment], fmt: StepFormat) -> tuple[Steps, NDArray[np.bool_], float]:
     """The lengths of all legs with the rests between them, and the largest distance from the motion, mm."""
     taken, down, off = [np.zeros((0, 3), np.int64)], [np.zeros(0, np.bool_)], 0.0
     origin = parts[0].places_mm[0] if parts else np.zeros(3)

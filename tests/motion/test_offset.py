@@ -145,6 +145,17 @@ def test_the_noise_of_a_scan_makes_no_gouge_and_no_gap(seed: int, radius_mm: flo
     assert near.min() > radius_mm - EXACT_MM and near.max() < radius_mm + EXACT_MM
 
 
+@pytest.mark.parametrize("left", [True, False])
+def test_a_line_that_comes_back_along_itself_is_gone_round_its_tip(left: bool) -> None:
+    spike = np.array([[0.0, 0.0], [10.0, 0.0], [0.0, 0.0]])
+    (way,) = offset([DriveCurve(spike, False, left)], 2.0)
+    near = shapely.distance(shapely.points(way.points_mm), shapely.LineString(spike))
+    assert abs(near - 2.0).max() < EXACT_MM
+    length_mm = np.hypot(*np.diff(way.points_mm, axis=0).T).sum()
+    assert length_mm == pytest.approx(20 + 2 * math.pi, abs=EXACT_MM)
+    assert way.points_mm[:, 0].max() == pytest.approx(12.0, abs=EXACT_MM)
+
+
 def test_the_line_may_be_run_either_way_and_the_cutter_goes_with_it() -> None:
     there, back = (
         offset([DriveCurve(SQUARE, True, True)], 3)[0],

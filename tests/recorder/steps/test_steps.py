@@ -13,7 +13,7 @@ from morfax.motion import speed_limits
 from morfax.motion.contour import distance
 from morfax.motion.faults import FileFault, MotionFault, ProgramFault
 from morfax.motion.motion import Path, thin
-from morfax.motion.segments import Limits, legs
+from morfax.motion.segments import Limits, segments
 from morfax.player.steps.stepping import play_steps
 from morfax.recorder.steps import lengths as lengths_module
 from morfax.recorder.steps.file import Program, StepFormat, holes, read_program, write_program
@@ -231,7 +231,7 @@ def test_every_vector_command_stands_in_the_table() -> None:
 
 
 def test_legs_part_at_corners_and_rests_and_run_from_stop_to_stop() -> None:
-    found = legs(SQUARE, Limits(10, 256))
+    found = segments(SQUARE, Limits(10, 256))
     assert [round(leg.length_mm, 3) for leg in found] == [10] * 4
     for leg in found:
         assert leg.speed_mm_s[0] == leg.speed_mm_s[
@@ -243,14 +243,14 @@ def test_legs_part_at_corners_and_rests_and_run_from_stop_to_stop() -> None:
 
 
 def test_a_bend_is_taken_no_faster_than_the_motor_can_pull() -> None:
-    leg = max(legs(circle(0.5, 100), Limits(100, 256)), key=lambda leg: leg.length_mm)
+    leg = max(segments(circle(0.5, 100), Limits(100, 256)), key=lambda leg: leg.length_mm)
     assert leg.speed_mm_s.max() == pytest.approx(
         np.sqrt(0.7 * 256 * 0.5 * np.sqrt(2)), rel=0.05
     )  # at 45 degrees
 
 
 def test_the_kernels_do_as_plain_python_what_they_do_compiled() -> None:
-    leg = legs(polyline((0, 0, 0), (0.3, 0.1, 0)), Limits(10, 256))[0]
+    leg = segments(polyline((0, 0, 0), (0.3, 0.1, 0)), Limits(10, 256))[0]
     squared = np.array([0, 5, 5, 5, 5, 5, 5, 5, 0.0])
     speed_limits._passes.py_func(squared, np.ones(8), True)
     assert squared.tolist() == [0, 1, 2, 3, 4, 3, 2, 1, 0]
