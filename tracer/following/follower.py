@@ -41,14 +41,13 @@ from morfax.tracer.junctions.planner import Planner
 from morfax.tracer.junctions.rings import fork_in
 from morfax.tracer.junctions.width_change import Onward, another_pen, of_another_pen
 from morfax.tracer.marks.dots import disc, dot_ahead, dot_at_end
-from morfax.tracer.sensing.leg import Leg, goes_straight, leg_of
+from morfax.tracer.sensing.leg import FEWEST_STATIONS, Leg, goes_straight, leg_of
 from morfax.tracer.sensing.probe import end_of
 from morfax.tracer.tangles.memory import Tangles
 from morfax.tracer.tangles.solution import Approach
 
 # the share of a change of a clean line's width that the head takes over at once; by trial
 SWELLS = 0.5
-FEWEST_STATIONS = 4  # that make a leg
 FROM_BEHIND = (1.0, 0.6, 0.3)  # legs behind the axis: nearer, if a speck spoils the first place
 AWAY_LEADS, AWAY_WIDTHS = 4.0, 3.0  # the head is away from home after this travel
 

@@ -35,6 +35,8 @@ ONTO_MM = 0.2  # the shortest way onto the incoming leg's line, unless half the 
 ON_INK = 0.8  # share of a course's places on ink: it may cross a gap
 FAINT = 0.5  # of the level: ink, faint or not
 ON_INK_EVERY = 5  # of a course's places, 0.02 mm apart, one is looked at
+# a smaller change of heading is no corner: the head runs through it; by trial on the test drawings
+SMOOTH = math.radians(14)
 
 
 def onto(place: Array, heading: float, leg: Leg, limit_mm: float) -> tuple[Array, float]:

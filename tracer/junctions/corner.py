@@ -22,12 +22,11 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.curves import hermite
-from morfax.tracer.head.course import ahead_mm, along_leg, onto
+from morfax.tracer.head.course import SMOOTH, ahead_mm, along_leg, onto
 from morfax.tracer.sensing.leg import Leg, meet, turn
 from morfax.tracer.sensing.view import View
 
 HIDDEN = 8  # stations at a corner between those that its legs are felt by
-SMOOTH = math.radians(14)  # a smaller change of heading is no corner
 SLIGHT = math.radians(40)  # a turn up to this goes straight on at a junction
 HIDES = 0.7  # of the width: a pen that turned on the vertex inks half of it on the outside
 SHARP = 0.08  # of the line's width: a corner that misses less ink on the outside is sharp

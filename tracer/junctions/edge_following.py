@@ -27,7 +27,7 @@ from numba import njit
 
 from morfax.motion.arrays import Array
 from morfax.tracer.junctions.corner import Corner, hides_outside, rounding
-from morfax.tracer.sensing.leg import Leg, leg_of, turn
+from morfax.tracer.sensing.leg import FEWEST_STATIONS, Leg, leg_of, turn
 from morfax.tracer.sensing.photocell import darkness_at
 from morfax.tracer.sensing.ray import Ray, end_of_ink
 from morfax.tracer.sensing.scout import onward
@@ -45,7 +45,6 @@ REGAINED_MM, REGAINED = (
 BESIDE = 4.0  # widths; ink that is beside the line for less is a corner or a crossing
 JUMP = 0.25  # of the width, from station to station: the far edge is no longer the same
 WIDE = 0.62  # of the width, from the middle to the far edge: ink beside the line
-FEWEST = 4  # stations that make a leg
 FEWEST_BACK = 6  # stations that make a way to a tip, or back from it
 
 PASSED = np.array(
@@ -175,12 +174,12 @@ def _along_outside(
     way = seen[base, :2] - seen[min(base + CHORD, len(seen) - 1), :2]
     length_mm = float(np.hypot(*(seen[base, :2] - seen[0, :2]).T)) + beyond_mm
     count = math.floor(length_mm / view.step_mm) + 1
-    if count < FEWEST or base < 2:
+    if count < FEWEST_STATIONS or base < 2:
         return None
     width = float(np.median(seen[base:, 2]))
     pose = float(seen[base, 0]), float(seen[base, 1]), math.atan2(way[1], way[0])
     felt = _along_edge(view.cells, pose, side, width, Walk(view.step_mm, count, count))
-    if len(felt) < FEWEST:
+    if len(felt) < FEWEST_STATIONS:
         return None
     outside = np.column_stack([felt[:, :2], np.full(len(felt), width)])[:0:-1]
     return np.vstack([outside, seen[base:]]), view.leg_mm + length_mm

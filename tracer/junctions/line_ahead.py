@@ -17,7 +17,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.tracer.head.trail import Trail
-from morfax.tracer.sensing.leg import Leg, goes_straight, leg_of, turn
+from morfax.tracer.sensing.leg import FEWEST, Leg, goes_straight, leg_of, turn
 from morfax.tracer.sensing.photocell import STEP_PX
 from morfax.tracer.sensing.probe import reach_of_ink
 from morfax.tracer.sensing.view import View
@@ -25,7 +25,6 @@ from morfax.tracer.sensing.view import View
 # Chosen by trial on the test drawings.
 AHEAD = math.radians(75)  # a lost line is looked for within this of its heading
 FARTHEST_WIDTHS = 6.0  # how far the heading is held through a blot, in widths of the line
-FEWEST = 8  # stations that make a leg here: a bend can be told by as many
 BEGIN = 0.5  # of the width: a leg begins no further from the place where it is sought
 ARCS_APART = 0.5  # widths
 OFF_PLACE = 1.5  # widths from a place on ink, beyond its own blot: legs leave it there

@@ -21,7 +21,6 @@ from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.trail import Trail
 from morfax.tracer.junctions.choice import Choice
 from morfax.tracer.junctions.corner import (
-    SMOOTH,
     Corner,
     bends_on,
     rounding,
@@ -149,7 +148,7 @@ class Planner:
         They do not where they run into one another smoothly, or meet behind their clean ends.
         """
         angle = abs(turn(corner.incoming.heading_rad, corner.outgoing.heading_rad))
-        return angle > SMOOTH and corner.nearest_mm > -self.view.width_mm
+        return angle > course.SMOOTH and corner.nearest_mm > -self.view.width_mm
 
     def _past_speck(self, plan: Plan, incoming: Leg, outgoing: Leg) -> Plan | None:
         """A way without a corner once more, felt along it; None if the line is not clean but for a speck."""

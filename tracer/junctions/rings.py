@@ -30,7 +30,7 @@ from scipy.ndimage import maximum_filter1d
 
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import lengths_mm
-from morfax.tracer.sensing.leg import Leg, leg_of, turn
+from morfax.tracer.sensing.leg import FEWEST_STATIONS, LEAST_WIDTHS, Leg, leg_of, turn
 from morfax.tracer.sensing.view import View
 
 # Chosen by trial on the test drawings; stations are a view's step apart.
@@ -57,7 +57,6 @@ NARROWEST, WIDEST, WIDEST_RAD = (
     1.2,
 )  # of the width, and half the arc: as wide as the line
 MORE_LEGS = 0.5  # of a leg's length: rings grow on by this after a leg was found
-LEAST_WIDTHS, FEWEST = 0.8, 4  # of clean line, and stations, make a leg
 
 
 def corner_in(seen: Array, first: int) -> int | None:
@@ -223,8 +222,8 @@ def _leg_outward(view: View, centre: Array, radius: float, arc: _Arc) -> Leg | N
     heading = math.atan2(way[1], way[0])
     view = view.like(places[-1], heading)
     seen = view.feel(places[0], heading, view.leg_mm)
-    if len(seen) < FEWEST:
+    if len(seen) < FEWEST_STATIONS:
         seen = view.feel(places[-1], heading, view.leg_mm)
     # less may be the blunt end of a tip
-    least = max(FEWEST, math.ceil(LEAST_WIDTHS * view.width_mm / view.step_mm))
+    least = max(FEWEST_STATIONS, math.ceil(LEAST_WIDTHS * view.width_mm / view.step_mm))
     return leg_of(seen, False, view.leg_mm) if len(seen) >= least else None

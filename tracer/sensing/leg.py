@@ -26,6 +26,7 @@ BITTEN = 0.06  # of the width: more than a scan's noise
 ROBUST = 1.4826  # standard deviations to a median absolute deviation of normal noise
 OUTLIERS = 3.0  # standard deviations: what is further off is left out
 LEAST_OFF_MM = 0.001  # of a station: nearer ones stay in
+FEWEST_STATIONS, LEAST_WIDTHS = 4, 0.8  # of clean line make a leg; by trial
 FEWEST = 8  # stations: a parabola through fewer follows their noise
 # standard errors: neighbouring stations share their ink, so that a bend has to stand out further than three
 BEND_STANDS_OUT = 5.0

@@ -15,9 +15,8 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.curves import SPACING_MM, hermite
-from morfax.tracer.head.course import ahead_mm, along_leg, onto
+from morfax.tracer.head.course import SMOOTH, ahead_mm, along_leg, onto
 from morfax.tracer.head.plan import Plan
-from morfax.tracer.junctions.corner import SMOOTH
 from morfax.tracer.sensing.leg import Leg, turn
 from morfax.tracer.tangles import pen
 from morfax.tracer.tangles.tangle import Tangle

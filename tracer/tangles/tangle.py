@@ -22,8 +22,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.tracer.drawing.drawing import Darkness
-from morfax.tracer.junctions.rings import FEWEST, LEAST_WIDTHS
-from morfax.tracer.sensing.leg import Leg, leg_of
+from morfax.tracer.sensing.leg import FEWEST_STATIONS, LEAST_WIDTHS, Leg, leg_of
 from morfax.tracer.sensing.view import View
 from morfax.tracer.tangles.wavefront import Fronts, fronts_from
 
@@ -141,7 +140,7 @@ def _leg_at(view: View, fronts: Fronts, k: int) -> Leg | None:
     local = view.like(fronts.places_mm[k], heading)
     if not LEAST_LIKE < local.width_mm / view.width_mm < MOST_LIKE:
         return None
-    least = max(FEWEST, math.ceil(LEAST_WIDTHS * view.width_mm / view.step_mm))
+    least = max(FEWEST_STATIONS, math.ceil(LEAST_WIDTHS * view.width_mm / view.step_mm))
     for place in (fronts.places_mm[first], fronts.places_mm[k]):
         seen = local.feel(place, heading, local.leg_mm)
         if len(seen) >= least:
