@@ -21,8 +21,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
+from numpy.polynomial import polynomial
 from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 from scipy.spatial import cKDTree
@@ -42,21 +44,36 @@ CLEAR_OF_ROUND = 2.0  # standard deviations from where the round touches the leg
 ASIDE = 0.25
 TRIES = 5  # each with the legs felt where the angle and the round of the one before leave them clear
 BENT = 0.7  # of what is left by a straight leg: a parabola has to leave less than this share
-FURTHER, NOISE = (
-    0.18,
-    0.05,
-)  # of the way, and standard deviations: by noise the outline of a sharp corner is further inside (98 %)
+# of the way, and standard deviations: by noise the outline of a sharp corner is further inside (98 %)
+FURTHER, NOISE = 0.18, 0.05
 SHORT, LEGS = 0.1, 0.35  # and by the legs' bend less far
+NEARLY_PARALLEL = 0.1  # sine of the angle between legs that do not meet
 
 
 @dataclass(frozen=True, slots=True)
 class Edge:
-    """A closed outline (n, 2), its last place its first, and which of its places are the middles of corners
-    that were put back.
-    """
+    """A closed outline (n, 2), its last place its first, and which places are corners that were put back."""
 
     outline: Array
     corners: NDArray[np.int64]
+
+
+class EdgeLeg(NamedTuple):
+    """A leg of a corner: its near end, the direction towards the corner, and a polynomial across it."""
+
+    origin: Array
+    along: Array
+    across: Array
+
+    def beside(self, place: Array) -> tuple[Array, Array]:
+        """The leg beside a place, and its direction there."""
+        u = float((place - self.origin) @ self.along)
+        left = np.array([-self.along[1], self.along[0]])
+        powers = np.arange(len(self.across))
+        slope = float(np.sum(powers[1:] * self.across[1:] * u ** powers[:-1]))
+        direction = self.along + slope * left
+        beside = self.origin + u * self.along + float(np.sum(self.across * u**powers)) * left
+        return beside, direction / np.hypot(*direction)
 
 
 def sharpened(outline: Array, softness_px: float) -> Edge:
@@ -64,9 +81,11 @@ def sharpened(outline: Array, softness_px: float) -> Edge:
     places = _evenly(outline)
     turns = _corners(places, softness_px)
     parts, middles, come = list[Array](), list[int](), 0
-    for first, last, corner in [
-        found for k in range(len(turns)) if (found := _corner(places, turns, k, softness_px))
-    ]:
+    for k in range(len(turns)):
+        found = _corner(places, turns, k, softness_px)
+        if found is None:
+            continue
+        first, last, corner = found
         if last > first >= come:
             parts += [places[come : first + 1], corner]
             middles.append(sum(map(len, parts)) - len(corner) + len(corner) // 2)
@@ -75,9 +94,7 @@ def sharpened(outline: Array, softness_px: float) -> Edge:
 
 
 def _evenly(outline: Array) -> Array:
-    """Places at equal distances, the first not once more at the end, begun furthest from where the outline
-    turns.
-    """
+    """Places at equal distances, the first not repeated, begun where the outline turns least."""
     s = lengths_px(outline)
     at = np.linspace(0, s[-1], max(8, round(s[-1] / APART_PX)), endpoint=False)
     places = np.column_stack([np.interp(at, s, column) for column in outline.T])
@@ -88,13 +105,8 @@ def _evenly(outline: Array) -> Array:
 def _turned(places: Array, reach: int) -> Array:
     """By how much the outline turns within so many places of each, rad, without sign."""
     back, on = places - np.roll(places, reach, axis=0), np.roll(places, -reach, axis=0) - places
-    return np.asarray(
-        np.abs(
-            np.arctan2(
-                back[:, 0] * on[:, 1] - back[:, 1] * on[:, 0], np.einsum("ij,ij->i", back, on)
-            )
-        )
-    )
+    cross = back[:, 0] * on[:, 1] - back[:, 1] * on[:, 0]
+    return np.asarray(np.abs(np.arctan2(cross, np.einsum("ij,ij->i", back, on))))
 
 
 def _corners(places: Array, softness_px: float) -> list[int]:
@@ -105,72 +117,101 @@ def _corners(places: Array, softness_px: float) -> list[int]:
     for k in np.argsort(-turned):
         if turned[k] < LEAST_TURN:
             break
-        if all(
-            min(abs(k - other), len(places) - abs(k - other)) > 2 * reach for other in found
-        ):
+        away = np.abs(k - np.array(found))
+        if np.all(np.minimum(away, len(places) - away) > 2 * reach):
             found.append(int(k))
     return sorted(found)
 
 
-def _corner(
-    places: Array, corners: list[int], k: int, softness_px: float
-) -> tuple[int, int, Array] | None:
-    """What stands in the place of a corner, and the places between which; None if the corner is none, or the
-    lens does not explain it.
+class _Instead(NamedTuple):
+    """Places (n, 2) that stand in an outline instead of those from the first to the last number."""
+
+    first: int
+    last: int
+    places: Array
+
+
+class _Fit(NamedTuple):
+    """A corner as the lens explains it: vertex, directions of the legs towards it, angle between them (rad).
+
+    How far inside the vertex the outline is, and that of a sharp corner would be, and the radius of its
+    round; all three in standard deviations of the lens.
     """
+
+    vertex: Array
+    t: Array
+    w: Array
+    angle: float
+    way: float
+    sharp: float
+    radius: float
+
+    @property
+    def touch(self) -> float:
+        """From the vertex to where the round touches the legs."""
+        return _touch(self.angle, self.radius)
+
+    @property
+    def taken_off(self) -> float:
+        """What the lens has taken off the corner's own outline."""
+        return self.way - self.radius * (1 / math.sin(self.angle / 2) - 1)
+
+    def is_explained(self, away: float) -> bool:
+        """Whether the lens explains it, with legs that are felt from so far away on."""
+        return self.touch <= away and self.way >= (1 - SHORT) * self.sharp - LEGS
+
+
+def _corner(places: Array, corners: list[int], k: int, softness_px: float) -> _Instead | None:
+    """What stands in the place of a corner; None if it is no corner, or if the lens does not explain it."""
     at, dense = corners[k], softness_px / APART_PX
     before = at - corners[k - 1] if k else at + len(places) - corners[-1]
     after = (corners[k + 1] if k + 1 < len(corners) else corners[0] + len(places)) - at
-    angle, radius, taken_off, found = math.pi / 2, 0.0, 0.0, None
+    # 1. feel the legs, from further away where the corner that they make is narrow or round
+    fit, angle, touch = None, math.pi / 2, 0.0
     for _ in range(TRIES):
-        away = (
-            max(
-                CLEAR / max(math.sin(min(angle, math.pi / 2)), 0.2),
-                _touch(angle, radius) + CLEAR_OF_ROUND,
-            )
-            * dense
-        )
-        spans = [
+        clear = CLEAR / max(math.sin(min(angle, math.pi / 2)), 0.2)
+        away = max(clear, touch + CLEAR_OF_ROUND) * dense
+        ends = [
             min(away + LEG * dense, gap - CLEAR * dense, len(places) / 2)
             for gap in (before, after)
         ]
-        if min(spans) - away < SHORTEST_LEG * dense:
+        if min(ends) - away < SHORTEST_LEG * dense:
             break
-        legs = [
-            _felt(places, at, sign * away, sign * span)
-            for sign, span in zip((-1, 1), spans, strict=True)
-        ]
-        met = _met(*legs)
-        if met is None:
-            return None
-        vertex, t, w = met
-        angle = _between(t, w)
-        if not NARROWEST < angle < math.pi - LEAST_TURN:
-            return None
+        legs = _felt(places, at, -away, -ends[0]), _felt(places, at, away, ends[1])
         first, last = max(0, round(at - away)), min(len(places) - 1, round(at + away))
-        way = float(np.hypot(*(places[first : last + 1] - vertex).T).min()) / softness_px
-        sharp = _way(round(angle, 3))
-        radius = (
-            _radius(round(angle, 3), round(way, 3))
-            if way > (1 + FURTHER) * sharp + NOISE
-            else 0.0
-        )
-        found = first, last, _rounded(vertex, (t, w), radius * softness_px)
-        taken_off = way - radius * (1 / math.sin(angle / 2) - 1)
-    if (
-        found is None
-        or _touch(angle, radius) * dense > away
-        or way < (1 - SHORT) * sharp - LEGS
-    ):
+        fit = _fit(places[first : last + 1], legs, softness_px)
+        if fit is None:
+            return None
+        angle, touch = fit.angle, fit.touch
+    # 2. put the corner back if the lens explains the outline
+    if fit is None or not fit.is_explained(away / dense):
         return None
-    first, last, corner = found
-    if (corner[0] - places[first]) @ t < 0 or (corner[-1] - places[last]) @ w < 0:
+    corner = _rounded(fit, softness_px)
+    if (corner[0] - places[first]) @ fit.t < 0 or (corner[-1] - places[last]) @ fit.w < 0:
         return None  # it would lie behind the ends of its legs
-    return found if _off(places, *found) < (taken_off + ASIDE) * softness_px else None
+    found = _Instead(first, last, corner)
+    return found if _off(places, found) < (fit.taken_off + ASIDE) * softness_px else None
 
 
-def _off(places: Array, first: int, last: int, corner: Array) -> float:
-    """How far the outline that a corner stands for is from it at most, pixels."""
+def _fit(outline: Array, legs: tuple[EdgeLeg, EdgeLeg], softness_px: float) -> _Fit | None:
+    """The corner that two legs make beside a piece of outline; None if they make none."""
+    met = _met(*legs)
+    if met is None:
+        return None
+    vertex, t, w = met
+    angle = _between(t, w)
+    if not NARROWEST < angle < math.pi - LEAST_TURN:
+        return None
+    way = float(np.hypot(*(outline - vertex).T).min()) / softness_px
+    sharp, radius = _way(round(angle, 3)), 0.0
+    if way > (1 + FURTHER) * sharp + NOISE:
+        radius = _radius(round(angle, 3), round(way, 3))
+    return _Fit(vertex, t, w, angle, way, sharp, radius)
+
+
+def _off(places: Array, found: _Instead) -> float:
+    """How far the outline that a corner stands for is from the corner at most, pixels."""
+    first, last, corner = found
     instead = with_places(np.vstack([places[first], corner, places[last]]), APART_PX)
     return float(cKDTree(instead).query(places[first : last + 1])[0].max())
 
@@ -180,19 +221,17 @@ def _touch(angle: float, radius: float) -> float:
     return radius / math.tan(angle / 2)
 
 
-def _rounded(vertex: Array, towards: tuple[Array, Array], radius_px: float) -> Array:
-    """A corner with a round as places (n, 2), from the leg with the first direction towards it to the other;
-    the vertex alone if there is none.
-    """
+def _rounded(fit: _Fit, softness_px: float) -> Array:
+    """A corner with its round as places (n, 2), from leg to leg; the vertex alone without a round."""
+    radius_px = fit.radius * softness_px
     if radius_px < APART_PX:
-        return vertex[None]
-    t, w = towards
-    angle, inward = _between(t, w), -(t + w) / np.hypot(*(t + w))
-    turns = math.copysign(math.pi - angle, t[1] * w[0] - t[0] * w[1])
-    outward = math.atan2(-inward[1], -inward[0]) + turns * np.linspace(
-        -0.5, 0.5, 3 + math.ceil(abs(turns) * radius_px)
-    )
-    middle = vertex + inward * radius_px / math.sin(angle / 2)
+        return fit.vertex[None]
+    t, w = fit.t, fit.w
+    inward = -(t + w) / np.hypot(*(t + w))
+    turns = math.copysign(math.pi - fit.angle, t[1] * w[0] - t[0] * w[1])
+    shares = np.linspace(-0.5, 0.5, 3 + math.ceil(abs(turns) * radius_px))
+    outward = math.atan2(-inward[1], -inward[0]) + turns * shares
+    middle = fit.vertex + inward * radius_px / math.sin(fit.angle / 2)
     return np.asarray(middle + radius_px * np.column_stack([np.cos(outward), np.sin(outward)]))
 
 
@@ -201,57 +240,34 @@ def _between(t: Array, w: Array) -> float:
     return math.acos(float(np.clip(t @ w, -1, 1)))
 
 
-def _felt(places: Array, at: int, near: float, far: float) -> tuple[Array, Array, Array]:
-    """A leg as a parabola seen from its near end: that place, the direction towards the corner, and the
-    coefficients across it.
-    """
+def _felt(places: Array, at: int, near: float, far: float) -> EdgeLeg:
+    """A leg as a parabola seen from its near end, or as a straight line if that fits about as well."""
     rows = np.arange(round(min(near, far)), round(max(near, far)) + 1) + at
     leg = places[rows % len(places)]
-    origin = leg[-1] if near < 0 else leg[0]
-    chord = origin - (leg[0] if near < 0 else leg[-1])
-    along = chord / np.hypot(*chord)
+    origin, end = (leg[-1], leg[0]) if near < 0 else (leg[0], leg[-1])
+    along = (origin - end) / np.hypot(*(origin - end))
     u, v = (leg - origin) @ along, (leg - origin) @ np.array([-along[1], along[0]])
-    straight, bent = (np.polynomial.polynomial.polyfit(u, v, degree) for degree in (1, 2))
-    off = [
-        float(np.std(v - np.polynomial.polynomial.polyval(u, each)))
-        for each in (straight, bent)
-    ]
-    return origin, along, bent if off[1] < BENT * off[0] else straight
+    straight, bent = (polynomial.polyfit(u, v, degree) for degree in (1, 2))
+    off = [float(np.std(v - polynomial.polyval(u, each))) for each in (straight, bent)]
+    return EdgeLeg(origin, along, bent if off[1] < BENT * off[0] else straight)
 
 
-def _met(
-    a: tuple[Array, Array, Array], b: tuple[Array, Array, Array]
-) -> tuple[Array, Array, Array] | None:
-    """Where two legs meet, and their directions there, towards the corner."""
-    place = 0.5 * (a[0] + b[0])
+def _met(a: EdgeLeg, b: EdgeLeg) -> tuple[Array, Array, Array] | None:
+    """Where two legs meet, and their directions there, towards the corner; None if they do not."""
+    place = 0.5 * (a.origin + b.origin)
     for _ in range(6):
-        (p, t), (q, w) = _at(a, place), _at(b, place)
+        (p, t), (q, w) = a.beside(place), b.beside(place)
         cross = t[0] * w[1] - t[1] * w[0]
-        if abs(cross) < 0.1:
+        if abs(cross) < NEARLY_PARALLEL:
             return None
         gap = q - p
         place = p + t * (gap[0] * w[1] - gap[1] * w[0]) / cross
-    reach = 4 * float(np.hypot(*(a[0] - b[0])))
-    if (
-        max(np.hypot(*(place - a[0])), np.hypot(*(place - b[0]))) > reach
-        or (place - a[0]) @ a[1] < 0
-        or (place - b[0]) @ b[1] < 0
-    ):
-        return None
+    reach = 4 * float(np.hypot(*(a.origin - b.origin)))
+    for leg in (a, b):
+        beyond = place - leg.origin
+        if np.hypot(*beyond) > reach or beyond @ leg.along < 0:
+            return None
     return place, t, w
-
-
-def _at(leg: tuple[Array, Array, Array], place: Array) -> tuple[Array, Array]:
-    """The leg beside a place, and its direction there."""
-    origin, along, across = leg
-    u = float((place - origin) @ along)
-    left = np.array([-along[1], along[0]])
-    powers = np.arange(len(across))
-    slope = float(np.sum(powers[1:] * across[1:] * u ** powers[:-1]))
-    direction = along + slope * left
-    return origin + u * along + float(np.sum(across * u**powers)) * left, direction / np.hypot(
-        *direction
-    )
 
 
 @lru_cache(maxsize=4096)
@@ -264,9 +280,7 @@ def _way(angle: float) -> float:
 
 @lru_cache(maxsize=4096)
 def _radius(angle: float, way: float) -> float:
-    """Radius of the round with which the outline is so far inside the vertex, in standard deviations; 0 if a
-    sharp corner's is.
-    """
+    """Radius of the round whose outline is so far inside the vertex, standard deviations; 0: sharp."""
     from scipy.optimize import brentq
 
     if way <= _way(angle):
@@ -276,19 +290,15 @@ def _radius(angle: float, way: float) -> float:
 
 
 def _seen(angle: float, radius: float, way: float) -> float:
-    """Share of the shape that a lens sees so far inside the vertex of a rounded corner, in standard
-    deviations.
-    """
+    """Share of the shape that a lens sees so far (standard deviations) inside a rounded corner."""
     from scipy.special import erf
 
     half = angle / 2
+    middle = radius / math.sin(half)
     x = np.linspace(way - 5, way + 5, 1001)
-    arc = np.sqrt(np.maximum(radius**2 - (x - radius / math.sin(half)) ** 2, 0))
-    across = np.where(
-        x < radius * math.cos(half) ** 2 / math.sin(half),
-        np.where(x < radius / math.sin(half) - radius, 0, arc),
-        np.maximum(x, 0) * math.tan(half),
-    )
-    return float(
-        np.trapezoid(erf(across / math.sqrt(2)) * np.exp(-0.5 * (x - way) ** 2), x)
-    ) / math.sqrt(2 * math.pi)
+    on_leg = np.maximum(x, 0) * math.tan(half)
+    on_round = np.sqrt(np.maximum(radius**2 - (x - middle) ** 2, 0))
+    on_round = np.where(x < middle - radius, 0, on_round)
+    across = np.where(x < middle * math.cos(half) ** 2, on_round, on_leg)
+    seen = erf(across / math.sqrt(2)) * np.exp(-0.5 * (x - way) ** 2)
+    return float(np.trapezoid(seen, x)) / math.sqrt(2 * math.pi)
