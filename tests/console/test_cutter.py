@@ -56,7 +56,7 @@ def test_a_line_too_small_for_the_cutter_is_told_of_and_listed(
     answer = morfax("trace", *options, "12mm", "--picture", "bracket.png")
     assert answer.exit_code == 0 and (here / "bracket.png").exists()
     assert (
-        "line 2 is left out: a cutter of 12 mm has no room beside it, one of up to 7.95 mm has"
+        "line 2 is left out: a cutter of 12 mm has no room beside it; one of up to 7.95 mm fits"
         in answer.err
     )
     assert [line["line"] for line in answer.figures["lines"]] == [1]

@@ -37,7 +37,7 @@ def test_fine_details_are_followed_enlarged_and_told_of(morfax: Morfax, here: Pa
     hole = arc((15, 16), 0.5)
     sheet = filled(here / "plate.png", CIRCLE, holes=(hole,))
     answer = morfax("trace", sheet, "--edge", "--lines", "all", "-o", "plate.csv", "--json")
-    assert answer.exit_code == 0 and "followed 2 times enlarged" in answer.err
+    assert answer.exit_code == 0 and "traced at 2 times the scale" in answer.err
     path = read_path(here / "plate.csv")
     assert distance(path, [CIRCLE, hole]).hausdorff_mm < 45 * UM  # as in test_silhouette
     again = morfax("trace", filled(here / "disc.png", CIRCLE), "--edge", "-o", "disc.csv")

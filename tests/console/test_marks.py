@@ -73,7 +73,7 @@ def test_override_passes_marks_by(morfax: Morfax, here: Path) -> None:
 
 def test_a_stop_that_is_not_there_is_told_of(morfax: Morfax, here: Path) -> None:
     answer = morfax("trace", PROGRAM, "-o", "program.csv", "--stop-override", "2,7")
-    assert answer.exit_code == 0 and "there is no stop 7: 2 were found" in answer.err
+    assert answer.exit_code == 0 and "the drawing has no stop 7: 2 were found" in answer.err
 
 
 def test_a_turn_at_a_junction_that_is_not_there_is_told_of(morfax: Morfax, here: Path) -> None:

@@ -1,0 +1,88 @@
+"""Figures of a traced drawing: its lines, stops and junctions, and what the cutter leaves."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from morfax.tracer.cutter.cutter import Cutter, Left
+    from morfax.tracer.program.program import Trace
+
+
+def lines(trace: Trace) -> dict[str, Any]:
+    """What the head found of each line, in the order in which the lines are cut."""
+    rows = [
+        {
+            "line": line.number,
+            "ending": line.ending,
+            "length_mm": line.length_mm,
+            "line_width_mm": line.width_mm,
+            "start_place_mm": line.start_mm,
+        }
+        for line in trace.lines
+    ]
+    return {
+        "idle_mm": trace.idle_mm,
+        "patches_left_out": trace.left_out,
+        "ink_left_out_mm": trace.left_out_mm,
+        "lines": rows,
+    }
+
+
+def stops(trace: Trace) -> list[dict[str, Any]]:
+    """The stops, by number: what kind of mark, where, and where Z goes."""
+    return [
+        {
+            "stop": action.halt.number,
+            "mark": action.halt.kind,
+            "stop_place_mm": action.halt.place_mm,
+            "z_mm": [move.to_mm for move in action.moves],
+        }
+        for actions in trace.actions
+        for action in actions
+        if action.halt.number is not None
+    ]
+
+
+def junctions(trace: Trace, *, numbered: bool) -> list[dict[str, Any]]:
+    """The junctions on each line, in the order that the card's `turns` count; lines may be numbered."""
+    return [
+        {
+            "junction": k,
+            **({"of_line": line.number} if numbered else {}),
+            "junction_place_mm": place_mm,
+        }
+        for line in trace.lines
+        for k, place_mm in enumerate(line.junctions_mm, 1)
+    ]
+
+
+def of_cutter(cutter: Cutter, left: Left) -> dict[str, Any]:
+    """The cutter, the lines that it leaves out, and the stretches that it cannot reach."""
+    left_out = [
+        {
+            "line_left_out": out.line,
+            "length_mm": out.length_mm,
+            "middle_place_mm": out.room.place_mm if out.room else None,
+            "room_mm": out.room.wide_mm if out.room else None,
+            "cutter_up_to_mm": out.room.passes_mm if out.room else None,
+            "stops_left_out": list(out.stops) or None,
+        }
+        for out in left.lines
+    ]
+    unreached = [
+        {
+            "unreached": k,
+            "of_line": stretch.line,
+            "place_mm": stretch.place_mm,
+            "left_mm": stretch.left_mm,
+            "stretch_mm": stretch.length_mm,
+        }
+        for k, stretch in enumerate(left.stretches, 1)
+    ]
+    return {
+        "cutter_diameter_mm": cutter.diameter_mm,
+        "side": cutter.side,
+        "lines_left_out": left_out or None,
+        "unreached": unreached or None,
+    }
