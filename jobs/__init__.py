@@ -1,9 +1,9 @@
 """Whole pieces of work without a terminal: one job per verb, from plain values to results.
 
-A job is a frozen dataclass that can be pickled; `job.run(listener, panel)` works, tells the Listener what goes
-on, asks the Panel, and returns a result or raises a fault. The faces (console, later a page and batches) ask
-this room; it asks the machines below: tracer, recorder, player, motion. A face draws the pictures of a result
-with `morfax.reports`.
+A job is a frozen dataclass that can be pickled; `job.run(listener, panel)` works, tells the Listener what it
+does, asks the Panel, and returns a result or raises a fault. The faces (console, later a page and batches)
+ask this room; it asks the machines below: tracer, recorder, player, motion. A face draws the pictures of a
+result with `morfax.reports`.
 """
 
 from __future__ import annotations

@@ -62,7 +62,7 @@ class InspectJob:
         return InspectResult({"program": str(self.tape), **figures})
 
     def _of_tape(self, listener: Listener) -> InspectResult:
-        """What a tape says of itself and what its tracks hold; a tape that cannot be played as far as it goes."""
+        """What a tape says of itself, and what its tracks hold, as far as that can be known."""
         stated: dict[str, Any] = {}
         travels: dict[str, Figures] = {}
         fault: TapeFault | None = None

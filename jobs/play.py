@@ -118,7 +118,8 @@ class PlayJob:
         }
         if not fault and not passage.worked:
             listener.warning(
-                "the tool never comes into the work; on a tape that runs backwards it goes up where it should "
+                "the tool never comes into the work; on a tape that runs backwards it goes up where it "
+                "should "
                 "go down"
             )
         return PlayResult(figures, paths, charts, path, chart, speeds, fault)

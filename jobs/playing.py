@@ -128,7 +128,8 @@ class Playing:
         if order := getattr(playback, "found_order", None):
             tracks = ",".join(map(str, order))
             listener.warning(
-                f"{self.file.name} has its tracks in another order; its end tells that it is --tracks {tracks}"
+                f"{self.file.name} has its tracks in another order; its end tells that it is --tracks "
+                f"{tracks}"
             )
         met: list[Fault] = []
         motion = _until_fault(playback, met)

@@ -98,7 +98,8 @@ def _of_solids(trace: Trace) -> Iterator[str]:
     if solid:
         x, y = solid[0].start_mm
         yield (
-            f"the ink at {x:.1f},{y:.1f} mm is the rim of a dark area broader than a line: if that is a filled "
+            f"the ink at {x:.1f},{y:.1f} mm is the rim of a dark area broader than a line: if that is a "
+            "filled "
             "shape, --edge follows its outline"
         )
 
@@ -109,7 +110,8 @@ def _of_stops(trace: Trace) -> Iterator[str]:
     if missing:
         numbers = ", ".join(map(str, missing))
         yield (
-            f"the drawing has no stop {numbers}: {stops} were found, the figures list their places; check the "
+            f"the drawing has no stop {numbers}: {stops} were found, the figures list their places; "
+            "check the "
             "numbers on the card and after --stop-override"
         )
 
@@ -158,7 +160,8 @@ def _of_gaps(trace: Trace) -> Iterator[str]:
             x, y = line.start_mm
             yield (
                 f"{_named(line, trace)} is open, but ends {line.gap_mm:.1f} mm from its beginning at "
-                f"{x:.1f},{y:.1f} mm: if that is a gap in a closed line, --gap {_rounded_up(line.gap_mm):g}mm "
+                f"{x:.1f},{y:.1f} mm: if that is a gap in a closed line, --gap "
+                f"{_rounded_up(line.gap_mm):g}mm "
                 "takes the head across"
             )
 
@@ -211,7 +214,8 @@ def _of_rest(line: Line) -> Iterator[str]:
     """One line that is the smaller part of the ink in which lines cross or touch."""
     if line.length_mm < FEW_SHARE * line.ink_mm:
         yield (
-            f"about {line.ink_mm - line.length_mm:.0f} mm of ink that is joined to the line was not followed: "
+            f"about {line.ink_mm - line.length_mm:.0f} mm of ink that is joined to the line was not "
+            "followed: "
             "--lines all also follows the lines that cross or touch it, --start X,Y another one"
         )
 

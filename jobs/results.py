@@ -23,7 +23,7 @@ NAMES = {
 
 @dataclass(frozen=True, slots=True)
 class SystemResult:
-    """One system: its path and comparisons, or the fault that kept it from running; its figures either way."""
+    """One system: its figures, and its path with comparisons or the fault that kept it from running."""
 
     suffix: str
     figures: Figures

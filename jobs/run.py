@@ -1,4 +1,4 @@
-"""The job `run`: the whole way from the drawing over the tape to the machine, and how well the three agree."""
+"""The job `run`: the whole way from the drawing to the machine, and how well all three agree."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class RunJob:
         return (self.folder or FilePath(stem)) / f"{stem}{ending}"
 
     def run(self, listener: Listener = SILENT, panel: Panel | None = None) -> RunResult:
-        """Go the whole way; raises every fault but those of a lost line and of a drive, which the result has."""
+        """Go the whole way; the faults of a lost line and of a drive are in the result, others are raised."""
         # 1. trace and record
         tracing = Tracing.prepared(self.settings, panel)
         drawing = self.drawing.open()

@@ -26,7 +26,7 @@ Origin = Literal["sheet", "reference"] | tuple[float, float]
 
 @dataclass(frozen=True, slots=True)
 class DrawingFile:
-    """A drawing and how it is read: its scale where the file states none or a wrong one, ink, filled shapes."""
+    """A drawing and how it is read: its scale if the file states none or a wrong one, ink, filled shapes."""
 
     file: FilePath
     dpi: float | None = None

@@ -3,10 +3,10 @@
 Signals in: a drawing and what the head traced of it. Signals out: for each system the path that its machine
 ran and its figures, or the fault that kept it from running; the others go on.
 
-    drawing ─► head ─► traced ─┬─► .wav   ─► phase-locked drives ───────► path ─┐
-                               ├─► .steps ─► stepping motors ───────────► path ─┤ against the ink's centre,
-                               ├─► .cubic ─► difference interpolator ───► path ─┤ the traced path and its corners
-                               └─► .ngc   ─► pulse interpolator ────────► path ─┘
+    drawing ─► head ─► traced ─┬─► .wav   ─► phase-locked drives ─────► path ─┐
+                               ├─► .steps ─► stepping motors ─────────► path ─┤ against the ink's centre,
+                               ├─► .cubic ─► difference interpolator ─► path ─┤ the traced path, its corners
+                               └─► .ngc   ─► pulse interpolator ──────► path ─┘
 """
 
 from __future__ import annotations
@@ -218,7 +218,7 @@ def _from_ink(row: Figures) -> dict[str, Any]:
 
 
 def corner_error_mm(corners_mm: Array, path: Path) -> float | None:
-    """The largest distance of a corner's vertex, as traced, from the path; None where there are no corners."""
+    """The largest distance of a traced corner's vertex from the path; None without corners."""
     from morfax.motion.contour import distances_mm
 
     return float(distances_mm(corners_mm, path).max()) if len(corners_mm) else None

@@ -34,7 +34,7 @@ class Tracing:
 
     @classmethod
     def prepared(cls, settings: TraceSettings, panel: Panel | None = None) -> Tracing:
-        """Read the card and the settings; raises WrongUse, CardFault and FileFault for what is wrong there."""
+        """Read the card and the settings; raises WrongUse, CardFault and FileFault for a mistake in them."""
         if settings.line.lines is not None and settings.line.start_mm is not None:
             raise WrongUse("--start picks one line, --lines several; give one of them")
         card = settings.card()

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.files import written_beside
-from morfax.reports.overlay import DPI, UM_PER_MM, save
+from morfax.reports.canvas import UM_PER_MM, new_figure, save
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -40,12 +40,8 @@ def write(chart: Chart, file: FilePath, title: str, speeds: Speeds | None = None
 
 def picture(chart: Chart, title: str, speeds: Speeds | None = None) -> Figure:
     """One panel for each axis, and one for the speed held if there is one."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
     panels = len(chart.axes) + (speeds is not None)
-    figure = Figure(figsize=(8.5, 0.8 + PANEL_IN * panels), layout="constrained", dpi=DPI)
-    FigureCanvasAgg(figure)
+    figure = new_figure(8.5, 0.8 + PANEL_IN * panels)
     axes = figure.subplots(panels, 1, squeeze=False)[:, 0]
     for number, name in enumerate(chart.axes):
         _panel(axes[number], chart, number, name)

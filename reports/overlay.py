@@ -9,7 +9,6 @@ matplotlib takes most of a second to import: nothing here does it before a pictu
 
 from __future__ import annotations
 
-import io
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path as FilePath
@@ -17,8 +16,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from morfax.motion.files import written_beside
+from morfax.motion.arrays import Array
 from morfax.motion.motion import Path
+from morfax.reports.canvas import REFERENCE, UM_PER_MM, View, new_figure, save, show_drawing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -26,52 +26,39 @@ if TYPE_CHECKING:
 
     from morfax.tracer.drawing.drawing import Drawing
 
-from morfax.motion.arrays import Array
-
-UM_PER_MM = 1000.0
 COLOURS = ("#1f5fa8", "#5fa8d3", "#f2a65a", "#c1121f")  # no error … largest error
 PLAIN = "#c1121f"
 RAISED = "#1f5fbf"  # stops, and ways with the tool up
-UNMEASURED = "#8a8a8a"  # the path where it has no error that means anything
-REFERENCE = "#555555"
+UNMEASURED = "#8a8a8a"  # the path where its error cannot be measured
 MARGIN_SHARE = 0.06  # of the larger side, round the path
-LARGEST_IMAGE_PX = 2000  # a larger drawing is reduced for the picture
 # more points are gathered, and the largest error of each gathering is shown
 LARGEST_POINTS = 20_000
 INSETS = 3
 NARROWEST = 0.35  # shorter to longer side of what is shown
 WIDE = 0.6  # height to width
-DPI = 130
-PLACE_MARKS = (("x", "#c1121f"), ("+", "#1f5fa8"))
+LIGHT = 3.2  # ink as light grey, for a path to lie on
 
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """What there is to be seen: a path, its reference, and the error at points along it."""
+    """What a picture shows: a path, its reference, and the error at points along it."""
 
     title: str
     path: Path
     drawing: Drawing | None = None
     reference: Path | None = None
     points_mm: Array | None = None  # (n, 2)
-    error_mm: Array | None = None  # (n,); not a number where there is none that means anything
-    numbers_mm: Sequence[
-        tuple[str, tuple[float, float]]
-    ] = ()  # numbers of lines, and where each begins
-    stops_mm: Mapping[str, tuple[float, float]] = field(
-        default_factory=dict
-    )  # where the head stops, by name
+    error_mm: Array | None = None  # (n,); not a number where it cannot be measured
+    # numbers of lines, and where each begins; where the head stops, by name
+    numbers_mm: Sequence[tuple[str, tuple[float, float]]] = ()
+    stops_mm: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
 
 def draw(picture: Picture, file: FilePath) -> None:
-    """Write the picture; the suffix says as what (.png, .svg, .pdf)."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
+    """Write the picture, of the kind that the suffix says (.png, .svg, .pdf)."""
     insets = _worst_places(picture)
     view = view_of(picture)
-    figure = Figure(layout="compressed")
-    FigureCanvasAgg(figure)
+    figure = new_figure(layout="compressed")
     main, beside = _axes(figure, len(insets), (view[3] - view[2]) / (view[1] - view[0]))
     _fill(figure, main, picture, view)
     for number, (axes, place_mm) in enumerate(zip(beside, insets, strict=True), 1):
@@ -79,60 +66,8 @@ def draw(picture: Picture, file: FilePath) -> None:
     save(figure, file)
 
 
-def draw_sheet(
-    drawing: Drawing, places_mm: dict[str, tuple[float, float]], file: FilePath
-) -> None:
-    """Write a picture of the whole sheet, with a grid and with places that have a name (those beyond its
-    edges left out).
-    """
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    figure = Figure(layout="compressed")
-    FigureCanvasAgg(figure)
-    axes, _ = _axes(figure, 0, drawing.height_mm / drawing.width_mm)
-    darkness, extent = _cut_out(drawing, (0.0, drawing.width_mm, 0.0, drawing.height_mm))
-    axes.imshow(
-        darkness,
-        extent=extent,
-        cmap="Greys",
-        vmin=0,
-        vmax=1.5,
-        interpolation="nearest",
-        zorder=0,
-    )
-    axes.set(xlim=extent[:2], ylim=extent[2:], xlabel="X, mm", ylabel="Y, mm", aspect="equal")
-    axes.grid(color=REFERENCE, linewidth=0.4, alpha=0.4)
-    for (name, (x, y)), (marker, colour) in zip(places_mm.items(), PLACE_MARKS, strict=False):
-        if extent[0] <= x <= extent[1] and extent[2] <= y <= extent[3]:
-            axes.plot(
-                x,
-                y,
-                marker,
-                color=colour,
-                markersize=12,
-                label=f"{name} {x:.1f},{y:.1f}",
-                linestyle="none",
-            )
-    if axes.get_legend_handles_labels()[0]:
-        axes.legend(loc="upper right", fontsize=8, framealpha=0.8)
-    save(figure, file)
-
-
-def save(figure: Figure, file: FilePath) -> None:
-    """Write a figure whole or not at all; made in memory first, since not every kind of picture tells of a
-    full disk.
-    """
-    made = io.BytesIO()
-    figure.savefig(
-        made, format=file.suffix[1:].lower(), dpi=DPI, bbox_inches="tight", pad_inches=0.15
-    )
-    with written_beside(file) as unfinished:
-        unfinished.write_bytes(made.getvalue())
-
-
 def _axes(figure: Figure, insets: int, height_to_width: float) -> tuple[Axes, list[Axes]]:
-    """The main axes, and one for each enlargement: in a column beside them, or below them if they are wide."""
+    """The main axes, and one for each enlargement: in a column beside, or below if the main ones are wide."""
     shape = float(np.clip(height_to_width, 0.2, 1.4))
     if not insets:
         figure.set_size_inches(8.5, 1.4 + 8 * shape)
@@ -150,9 +85,7 @@ def _axes(figure: Figure, insets: int, height_to_width: float) -> tuple[Axes, li
     ]
 
 
-def _fill(
-    figure: Figure, axes: Axes, picture: Picture, view: tuple[float, float, float, float]
-) -> None:
+def _fill(figure: Figure, axes: Axes, picture: Picture, view: View) -> None:
     """Draw the whole contour, with its marks and the scale of the colours."""
     ground(axes, picture, view)
     coloured = _contour(axes, picture, line_pt=1.8)
@@ -172,54 +105,17 @@ def _fill(
         )
 
 
-def ground(axes: Axes, picture: Picture, view: tuple[float, float, float, float]) -> None:
+def ground(axes: Axes, picture: Picture, view: View) -> None:
     """Draw what the path was compared with: the drawing in light grey, or the other path."""
     if picture.drawing is not None:
-        darkness, extent = _cut_out(picture.drawing, view)
-        axes.imshow(
-            darkness,
-            extent=extent,
-            cmap="Greys",
-            vmin=0,
-            vmax=3.2,
-            interpolation="nearest",
-            zorder=0,
-        )
+        show_drawing(axes, picture.drawing, view, LIGHT)
     if picture.reference is not None:
         for run in picture.reference.runs():
             axes.plot(*run.T, color=REFERENCE, linewidth=0.8, linestyle=(0, (4, 2)), zorder=1)
 
 
-def _cut_out(
-    drawing: Drawing, view: tuple[float, float, float, float]
-) -> tuple[Any, tuple[float, float, float, float]]:
-    """The part of the drawing within the view, not larger than needed, and its extent in sheet mm."""
-    pitch_mm, (rows, columns) = drawing.pitch_mm, drawing.darkness.shape
-    left, right = (
-        int(np.clip(x / pitch_mm + r, 0, columns)) for x, r in ((view[0], 0), (view[1], 1))
-    )
-    top, bottom = (
-        int(np.clip(rows - y / pitch_mm + r, 0, rows)) for y, r in ((view[3], 0), (view[2], 1))
-    )
-    part: Any = drawing.darkness[top:bottom, left:right]
-    extent = (
-        left * pitch_mm,
-        right * pitch_mm,
-        (rows - bottom) * pitch_mm,
-        (rows - top) * pitch_mm,
-    )
-    if max(part.shape) > LARGEST_IMAGE_PX:
-        import cv2
-
-        scale = LARGEST_IMAGE_PX / max(part.shape)
-        part = cv2.resize(part, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
-    return part, extent
-
-
 def _contour(axes: Axes, picture: Picture, line_pt: float) -> Any:
-    """Draw the path: in the colours of its error where there is one (gives what a colour bar needs), else in
-    one.
-    """
+    """Draw the path, its error in colour if that is known; gives what a colour bar needs."""
     measured = (
         picture.points_mm is not None
         and picture.error_mm is not None
@@ -233,7 +129,7 @@ def _contour(axes: Axes, picture: Picture, line_pt: float) -> Any:
 
 
 def _coloured(axes: Axes, picture: Picture, line_pt: float) -> Any:
-    """Draw the error along the path in colours, where there is one; gives what a colour bar needs."""
+    """Draw the error along the path in colours, where it is measured; gives what a colour bar needs."""
     from matplotlib.collections import LineCollection
     from matplotlib.colors import LinearSegmentedColormap
 
@@ -255,7 +151,7 @@ def _coloured(axes: Axes, picture: Picture, line_pt: float) -> Any:
 
 
 def _gathered(points: Array, error: Array) -> tuple[Array, Array]:
-    """Not more points than can be seen; each shows the largest error of those it stands for."""
+    """As many points as can be seen; each shows the largest error of those that it stands for."""
     step = -(-len(points) // LARGEST_POINTS)
     starts = np.arange(0, len(points), step)
     return points[starts], np.fmax.reduceat(error, starts)
@@ -299,7 +195,7 @@ def _numbers(axes: Axes, picture: Picture) -> None:
 
 
 def _stops(axes: Axes, picture: Picture) -> None:
-    """Mark the stops, and the ways with the tool up, which they part from those in the work."""
+    """Mark the stops, and the ways with the tool up."""
     if not picture.stops_mm:
         return
     raised = np.where(picture.path.tool[:, None], np.nan, picture.path.xy_mm)
@@ -356,10 +252,8 @@ def _worst_places(picture: Picture) -> list[Array]:
     return places
 
 
-def view_of(picture: Picture) -> tuple[float, float, float, float]:
-    """What part of the sheet to show, mm: all of it where there is no error to look at, else what was
-    compared.
-    """
+def view_of(picture: Picture) -> View:
+    """The part of the sheet to show, mm: what was compared, or the whole sheet without an error to see."""
     if picture.drawing is not None and picture.points_mm is None:
         return 0.0, picture.drawing.width_mm, 0.0, picture.drawing.height_mm
     parts = [

@@ -12,7 +12,9 @@ from typing import TYPE_CHECKING
 from morfax.motion.files import written_beside
 from morfax.motion.units import format_length_mm
 from morfax.reports import following, table
-from morfax.reports.overlay import Picture, draw, draw_sheet, save
+from morfax.reports.canvas import save
+from morfax.reports.overlay import Picture, draw
+from morfax.reports.sheet import draw_sheet
 
 if TYPE_CHECKING:
     from morfax.jobs.compare import CompareResult

@@ -105,7 +105,8 @@ def _write_svg(program: Program, file: FilePath) -> None:
     parts = strips(program)
     width, height = _size_mm(parts)
     tape = "".join(
-        f'  <rect x="{s.x_mm:.2f}" y="{HEAD_MM}" width="{s.width_mm}" height="{s.length_mm:.2f}" fill="{PAPER}"/>\n'
+        f'  <rect x="{s.x_mm:.2f}" y="{HEAD_MM}" width="{s.width_mm}" height="{s.length_mm:.2f}"'
+        f' fill="{PAPER}"/>\n'
         f'  <text x="{s.x_mm:.2f}" y="{HEAD_MM - 1.5}" font-size="3" fill="{INK}">{s.first_row + 1}</text>\n'
         for s in parts
     )

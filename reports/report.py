@@ -39,7 +39,7 @@ def write(
     rows: Mapping[str, Figures],
     pictures: Sequence[tuple[str, Figure]],
 ) -> None:
-    """Write the report: what is told first, a table with a row for each system, faults in full, the pictures."""
+    """Write the report: an introduction, a table with a row for each system, faults in full, the pictures."""
     faults = [f"{name}: {row['fault']}" for name, row in rows.items() if row.get("fault")]
     plain = [
         (name, {key: value for key, value in row.items() if key != "fault"})
@@ -50,9 +50,8 @@ def write(
         *(f"<p>{escape(line)}</p>" for line in told),
         _table(as_cells(plain)),
         *(f'<p class="fault">{escape(fault)}</p>' for fault in faults),
-        *(f'<figure><img src="{_embedded(figure)}" alt="{escape(said)}"><figcaption>{escape(said)}</figcaption></figure>'
-          for said, figure in pictures),
-    ]  # fmt: skip
+        *(_figure(figure, said) for said, figure in pictures),
+    ]
     head = f'<meta charset="utf-8"><title>{escape(title)}</title><style>{STYLE}</style>'
     html = (
         f'<!DOCTYPE html>\n<html lang="en"><head>{head}</head>\n<body>\n'
@@ -72,6 +71,13 @@ def _table(cells: list[list[str]]) -> str:
             "<tr>" + "".join(f"<{tag}>{escape(cell)}</{tag}>" for cell in line) + "</tr>"
         )
     return "<table>" + "\n".join(lines) + "</table>"
+
+
+def _figure(figure: Figure, said: str) -> str:
+    """A picture with its caption."""
+    caption = escape(said)
+    image = f'<img src="{_embedded(figure)}" alt="{caption}">'
+    return f"<figure>{image}<figcaption>{caption}</figcaption></figure>"
 
 
 def _embedded(figure: Figure) -> str:

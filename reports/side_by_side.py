@@ -15,7 +15,8 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import lengths_mm
-from morfax.reports.overlay import DPI, REFERENCE, UM_PER_MM, Picture, ground, view_of
+from morfax.reports.canvas import REFERENCE, UM_PER_MM, new_figure
+from morfax.reports.overlay import Picture, ground, view_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -42,7 +43,7 @@ def contours(
     enlarged.
     """
     ran = [result for result in results if result.path is not None]
-    figure = _figure(11, 11)
+    figure = new_figure(11, 11)
     grid = figure.add_gridspec(3, 3, height_ratios=(2.1, 1, 1))
     main = figure.add_subplot(grid[0, :])
     picture = Picture(title, traced, drawing)
@@ -71,7 +72,7 @@ def contours(
 def errors(results: Sequence[SystemResult]) -> Figure:
     """The signed distance of each contour from the ink's centre along the way; all on one scale."""
     ran = [result for result in results if result.from_ink is not None]
-    figure = _figure(11, 0.9 + 1.5 * max(1, len(ran)))
+    figure = new_figure(11, 0.9 + 1.5 * max(1, len(ran)))
     panels = figure.subplots(max(1, len(ran)), 1, squeeze=False, sharex=True, sharey=True)[:, 0]
     for axes, result in zip(panels, ran, strict=False):
         assert result.from_ink is not None
@@ -83,16 +84,6 @@ def errors(results: Sequence[SystemResult]) -> Figure:
         axes.set_title(result.name, fontsize=9, loc="left")
         axes.grid(alpha=0.3)
     panels[-1].set_xlabel("way along the contour, mm")
-    return figure
-
-
-def _figure(width_in: float, height_in: float) -> Figure:
-    """An empty figure."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(width_in, height_in), layout="constrained", dpi=DPI)
-    FigureCanvasAgg(figure)
     return figure
 
 

@@ -1,4 +1,4 @@
-"""A path as an SVG drawing in its true size: one unit is one mm, the sheet's lower-left corner is the page's."""
+"""A path as an SVG drawing in its true size: one unit is one mm, the page's corner is the sheet's."""
 
 from __future__ import annotations
 
@@ -29,7 +29,8 @@ def write_svg(path: Path, file: FilePath, sheet_mm: tuple[float, float] | None =
         beside.write_text(
             f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:.4f}mm" height="{height:.4f}mm"'
             f' viewBox="0 0 {width:.4f} {height:.4f}">\n'
-            f' <g fill="none" stroke="black" stroke-width="{LINE_MM}" stroke-linejoin="round">\n{lines} </g>\n</svg>\n',
+            f' <g fill="none" stroke="black" stroke-width="{LINE_MM}" stroke-linejoin="round">\n'
+            f"{lines} </g>\n</svg>\n",
             encoding="utf-8",
         )
 

@@ -35,7 +35,8 @@ def drawing_options(argument: str) -> Decorator:
             "--ink",
             callback=_colour,
             metavar="COLOUR",
-            help="Colour of the line, such as blue or '#0000c0': other colours, such as a printed grid, count "
+            help="Colour of the line, such as blue or '#0000c0': other colours, such as a printed grid, "
+            "count "
             "as paper.  [default: all that is dark]",
         )
         @option(

@@ -36,7 +36,8 @@ def tape_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         "--from",
         "start_mm",
         type=PLACES,
-        help="Where the machine stands at the start, mm: X,Y or X,Y,Z …  [default: what the tape says, else 0,0]",
+        help="Where the machine stands at the start, mm: X,Y or X,Y,Z …  [default: what the tape says, "
+        "else 0,0]",
     )
     @option(
         "Tape",

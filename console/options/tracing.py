@@ -45,14 +45,16 @@ START = option(
     "--start",
     "start_mm",
     type=PLACE,
-    help="Where the head looks for the line, X,Y in mm from the sheet's lower-left corner.  [default: a smooth "
+    help="Where the head looks for the line, X,Y in mm from the sheet's lower-left corner.  [default: a "
+    "smooth "
     "place of the longest line]",
 )
 SEVERAL = option(
     "Line",
     "--lines",
     type=LINES,
-    help="Several lines as one program, inner before outer: all, outer (those inside no other), or numbers such "
+    help="Several lines as one program, inner before outer: all, outer (those inside no other), or "
+    "numbers such "
     "as 1,3; 1 is the longest.  [default: one line, the longest or that at --start]",
 )
 TRACING_SPEED = option(
@@ -129,7 +131,8 @@ _HEAD = (
         "--settings",
         "settings_file",
         type=FILE,
-        help="Settings of the head from a file (.toml) as --print-settings writes it. --set and other options "
+        help="Settings of the head from a file (.toml) as --print-settings writes it. --set and other "
+        "options "
         "take precedence.",
     ),
     option(
@@ -168,7 +171,8 @@ _TOOL = (
         "Tool",
         "--side",
         type=click.Choice(["outside", "inside", "left", "right"]),
-        help="Side of the line for --cutter: outside or inside of the part (of a hole the other way round), or "
+        help="Side of the line for --cutter: outside or inside of the part (of a hole the other way "
+        "round), or "
         "left or right of the head's travel.  [default: outside]",
     ),
 )
@@ -185,7 +189,8 @@ _PROGRAM = (
         "Program",
         "--stop-override",
         type=STOPS,
-        help="Stop marks that do not stop the head: none, all, or numbers such as 1,3.  [default: the card's, or "
+        help="Stop marks that do not stop the head: none, all, or numbers such as 1,3.  [default: the "
+        "card's, or "
         "none]",
     ),
     renamed("--override", "--stop-override"),
@@ -201,7 +206,8 @@ _PROGRAM = (
         type=ORIGIN,
         default="sheet",
         show_default=True,
-        help="The machine's zero: sheet (its lower-left corner), reference (the reference point), or X,Y in mm.",
+        help="The machine's zero: sheet (its lower-left corner), reference (the reference point), or "
+        "X,Y in mm.",
     ),
 )
 

@@ -131,8 +131,9 @@ def _decades(least_counts: int) -> Callable[[str], float]:
         )
 
         length_mm, most_mm = parse_length_mm(text), LARGEST_COUNT * COUNT_MM
-        allowed = f"give {least_counts * COUNT_MM:.2f} to {most_mm:.2f} mm in steps of {COUNT_MM:g} mm, such as 2.5mm"
-        if not least_counts * COUNT_MM <= length_mm <= most_mm:
+        least_mm = least_counts * COUNT_MM
+        allowed = f"give {least_mm:.2f} to {most_mm:.2f} mm in steps of {COUNT_MM:g} mm, such as 2.5mm"
+        if not least_mm <= length_mm <= most_mm:
             raise ValueError(f"{text!r} cannot be set here on the five decades of Z; {allowed}")
         try:
             return counts_of(length_mm) / COUNTS_PER_MM

@@ -44,7 +44,8 @@ Examples:
     "Systems",
     "--systems",
     type=Systems(),
-    help="Trace the drawing A once, record it in the medium of each system and play it on its control: all, or "
+    help="Trace the drawing A once, record it in the medium of each system and play it on its control: "
+    "all, or "
     f"some of {','.join(NAMES)}.",
 )
 @option(
@@ -59,7 +60,8 @@ Examples:
     "-o",
     "output",
     type=Result(REPORT, *PICTURES),
-    help="Draw the path with its error in colour, or all contours of --systems (.png, .svg, .pdf); with --systems "
+    help="Draw the path with its error in colour, or all contours of --systems (.png, .svg, .pdf); with "
+    "--systems "
     "also a report in one file (.html).",
 )
 @option(

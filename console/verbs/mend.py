@@ -41,7 +41,8 @@ Examples:
     "--acceleration",
     "acceleration_mm_s2",
     type=NUMBER,
-    help="The most that the program asks of an axis, mm/s²: with a lower figure fewer dropouts stay in doubt.  "
+    help="The most that the program asks of an axis, mm/s²: with a lower figure fewer dropouts stay in "
+    "doubt.  "
     "[default: 5000]",
 )
 @tape_options

@@ -51,14 +51,16 @@ Examples:
     "charts",
     type=Result(*PICTURES, *PATHS),
     multiple=True,
-    help="Draw (.png, .svg, .pdf) or write (.csv) the following error of each axis against its limit; of an .ngc "
+    help="Draw (.png, .svg, .pdf) or write (.csv) the following error of each axis against its limit; "
+    "of an .ngc "
     "program the picture also shows the speed held.",
 )
 @option(
     "Output",
     "--raw",
     is_flag=True,
-    help="Keep every sample of the motion.  [default: thinned to within 0.2 um, following errors every 10 ms]",
+    help="Keep every sample of the motion.  [default: thinned to within 0.2 um, following errors every "
+    "10 ms]",
 )
 @option(
     "Machine",
@@ -85,7 +87,8 @@ Examples:
     "Machine",
     "--feed-override",
     type=SHARE,
-    help="Speed against the program's, along the same path: of a tape 10% to 200%, of an .ngc program 0% to 100%.  "
+    help="Speed against the program's, along the same path: of a tape 10% to 200%, of an .ngc program "
+    "0% to 100%.  "
     "[default: 100%]",
 )
 @renamed("--override", "--feed-override")
@@ -100,7 +103,8 @@ Examples:
     "--zero",
     "zero_mm",
     type=PLACES,
-    help="Zero adjustment of a tape's axes, X,Y or X,Y,Z … in mm: how far the machine stands from where the tape "
+    help="Zero adjustment of a tape's axes, X,Y or X,Y,Z … in mm: how far the machine stands from where "
+    "the tape "
     "has it.",
 )
 @tape_options

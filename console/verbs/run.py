@@ -1,4 +1,4 @@
-"""The verb `run`: the whole way, from the drawing over the tape to the machine, and how well the three agree."""
+"""The verb `run`: the whole way from the drawing to the machine, and how well all three agree."""
 
 from __future__ import annotations
 

@@ -38,7 +38,8 @@ Examples:
     "-o",
     "output",
     type=Program(*PATHS),
-    help="The tape (.wav), another program (.steps, .cubic, .ngc), or a path file only (.csv).  [default: the "
+    help="The tape (.wav), another program (.steps, .cubic, .ngc), or a path file only (.csv).  "
+    "[default: the "
     "drawing's name with .wav, in this folder]",
 )
 @option(

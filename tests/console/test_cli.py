@@ -62,7 +62,10 @@ def test_help_lists_the_verbs_and_every_exit_code(morfax: Morfax) -> None:
 
 
 def test_help_is_quick_because_it_loads_none_of_the_machines() -> None:
-    check = "import sys; from morfax.console.cli import main; main(['--help']); print([m for m in sys.modules if m in %r])"
+    check = (
+        "import sys; from morfax.console.cli import main; main(['--help']);"
+        " print([m for m in sys.modules if m in %r])"
+    )
     heavy = ["numpy", "numba", "scipy", "cv2", "soundfile", "matplotlib", "rich", "PIL"]
     done = subprocess.run(
         [sys.executable, "-c", check % heavy], capture_output=True, text=True, check=True

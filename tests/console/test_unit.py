@@ -1,4 +1,4 @@
-"""The recording unit's options: what they put on the tape, what is compared with what, and what is refused."""
+"""The recording unit's options: what they put on the tape, what is compared, and what is refused."""
 
 from pathlib import Path
 

@@ -1,5 +1,5 @@
-"""Every job without the console: what it gives, what it tells its listener, that it prints nothing, and that it
-can be sent to another process.
+"""Every job without the console: its result, what it tells its listener, that it prints nothing and can be
+sent to another process.
 """
 
 from __future__ import annotations

@@ -1,0 +1,81 @@
+"""The canvas of all pictures: a figure of matplotlib, the drawing in grey, and a file that is whole or absent.
+
+matplotlib takes most of a second to import: nothing here does it before a picture is asked for.
+"""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path as FilePath
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from morfax.motion.files import written_beside
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from morfax.tracer.drawing.drawing import Drawing
+
+UM_PER_MM = 1000.0
+DPI = 130
+LARGEST_IMAGE_PX = 2000  # a larger drawing is reduced for the picture
+REFERENCE = "#555555"
+
+View = tuple[float, float, float, float]  # left, right, bottom, top, mm on the sheet
+
+
+def new_figure(
+    width_in: float = 8.5, height_in: float = 8.5, layout: str = "constrained"
+) -> Figure:
+    """An empty figure that needs no screen."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(width_in, height_in), layout=layout, dpi=DPI)  # type: ignore[arg-type]
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def save(figure: Figure, file: FilePath) -> None:
+    """Write a figure whole or not at all."""
+    made = io.BytesIO()  # since not every kind of picture notices a full disk
+    kind = file.suffix[1:].lower()
+    figure.savefig(made, format=kind, dpi=DPI, bbox_inches="tight", pad_inches=0.15)
+    with written_beside(file) as unfinished:
+        unfinished.write_bytes(made.getvalue())
+
+
+def show_drawing(axes: Axes, drawing: Drawing, view: View, darkest: float) -> View:
+    """Draw the part of the drawing in a view, ink as 1 / `darkest`; the part of the sheet that is shown."""
+    darkness, extent = _cut_out(drawing, view)
+    axes.imshow(
+        darkness,
+        extent=extent,
+        cmap="Greys",
+        vmin=0,
+        vmax=darkest,
+        interpolation="nearest",
+        zorder=0,
+    )
+    return extent
+
+
+def _cut_out(drawing: Drawing, view: View) -> tuple[Any, View]:
+    """The part of the drawing within the view, not larger than needed, and its extent in sheet mm."""
+    pitch_mm, (rows, columns) = drawing.pitch_mm, drawing.darkness.shape
+    left, right = np.clip([view[0] / pitch_mm, view[1] / pitch_mm + 1], 0, columns).astype(int)
+    top, bottom = np.clip(
+        [rows - view[3] / pitch_mm, rows - view[2] / pitch_mm + 1], 0, rows
+    ).astype(int)
+    part: Any = drawing.darkness[top:bottom, left:right]
+    low_mm, high_mm = (rows - bottom) * pitch_mm, (rows - top) * pitch_mm
+    extent = (float(left * pitch_mm), float(right * pitch_mm), float(low_mm), float(high_mm))
+    if max(part.shape) > LARGEST_IMAGE_PX:
+        import cv2
+
+        scale = LARGEST_IMAGE_PX / max(part.shape)
+        part = cv2.resize(part, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
+    return part, extent

@@ -1,0 +1,34 @@
+"""The whole sheet with a grid, so that a place on it can be read off its axes."""
+
+from __future__ import annotations
+
+from pathlib import Path as FilePath
+from typing import TYPE_CHECKING
+
+from morfax.reports.canvas import REFERENCE, new_figure, save, show_drawing
+
+if TYPE_CHECKING:
+    from morfax.tracer.drawing.drawing import Drawing
+
+MARKS = (("x", "#c1121f"), ("+", "#1f5fa8"))
+DARKEST = 1.5  # ink as dark grey
+
+
+def draw_sheet(
+    drawing: Drawing, places_mm: dict[str, tuple[float, float]], file: FilePath
+) -> None:
+    """Write a picture of the whole sheet, with a grid and with named places as far as they lie on it."""
+    width_mm, height_mm = drawing.width_mm, drawing.height_mm
+    figure = new_figure(8.5, 1.4 + 8 * min(max(height_mm / width_mm, 0.2), 1.4), "compressed")
+    axes = figure.add_subplot()
+    extent = show_drawing(axes, drawing, (0.0, width_mm, 0.0, height_mm), DARKEST)
+    axes.set(xlim=extent[:2], ylim=extent[2:], xlabel="X, mm", ylabel="Y, mm", aspect="equal")
+    axes.grid(color=REFERENCE, linewidth=0.4, alpha=0.4)
+    for (name, (x, y)), (marker, colour) in zip(places_mm.items(), MARKS, strict=False):
+        if extent[0] <= x <= extent[1] and extent[2] <= y <= extent[3]:
+            label = f"{name} {x:.1f},{y:.1f}"
+            style = {"markersize": 12, "linestyle": "none"}
+            axes.plot(x, y, marker, color=colour, label=label, **style)  # type: ignore[arg-type]
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend(loc="upper right", fontsize=8, framealpha=0.8)
+    save(figure, file)
