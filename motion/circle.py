@@ -18,7 +18,7 @@ from morfax.motion.arrays import Array
 
 
 def circle_through(places: Array) -> tuple[Array, float, float]:
-    """Centre, radius and misfit (root mean square distance), mm, of the circle that fits places (n, 2) best."""
+    """Centre, radius and misfit (root mean square), mm, of the circle that fits places (n, 2) best."""
     middle = places.mean(axis=0)
     d = places - middle
     squares = np.sum(d * d, axis=1)

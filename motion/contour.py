@@ -38,7 +38,7 @@ Contour = Path | Motion | Array | Sequence[Array]
 
 @dataclass(frozen=True, slots=True)
 class Summary:
-    """Distances of one path from another, mm: root mean square, that below which 95 % of the length lies, largest."""
+    """Distances of one path from another, mm: root mean square, 95th percentile by length, largest."""
 
     rms_mm: float
     p95_mm: float

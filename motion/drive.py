@@ -3,15 +3,15 @@ machine.
 
 Signals: speed demand in mm/s in, speed of the screw in mm/s out, one value per period of `dt_s`.
 
-The tacho closes the loop round the motor, so that what is left is one lag, and the amplifier's current limits
-the acceleration:
+The tacho closes the loop round the motor, so that one lag is left; the amplifier's current limits the
+acceleration:
 
     dv/dt = clip((demand - v) / lag, -acceleration, +acceleration)
 
 stepped exactly for the lag: v += clip((demand - v)·(1 - exp(-dt/lag)), ±acceleration·dt).
 
-What may be wrong with a drive is its `Condition`: of the demand a share is left, friction takes a part of
-what is left, a runaway adds to it, and a stuck axis does not turn.
+What may be wrong with a drive is its `Condition`: only a share of the demand is left, friction takes a part
+of that, a runaway adds to it, and a stuck axis does not turn.
 
 Source: patent ES 361967, figure 1 (amplifiers DCX and DCY, tachos TX and TY, motors 17 and 12) and figure 5
 (amplifier 161, motor 163). Questions: the patent gives no figures. Chosen: a lag of 1 ms and 5 m/s², a modern
@@ -44,7 +44,7 @@ class Drive:
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """What is wrong with a drive: share of its gain left, friction that holds it, a speed it runs away with."""
+    """What is wrong with a drive: the share of its gain left, its friction, the speed of a runaway."""
 
     gain_share: float = 1.0
     friction_mm_s: float = 0.0

@@ -2,14 +2,15 @@
 
     Fault                    exit code   carries
     ├── DrawingFault              3      the drawing cannot be used (also a ValueError)
-    ├── LineFault                 4      no line where one was asked for, or the line was lost: place and heading
+    ├── LineFault                 4      no line at the place asked for, or the line was lost: place, heading
     ├── TapeFault                 5      not a tape, cut short, silent, format unknown (also a ValueError)
-    │   └── ProgramFault          5      not a program of its kind, cut short, garbled, format unknown: line of the file
+    │   └── ProgramFault          5      not a program of its kind, cut short, garbled: line of the file
     ├── LockFault                 6      a drive left the comparator's range: axis, tape time, positions
-    ├── FollowingFault            6      a drive lags more than its speed explains: axis, time, demand, actual, limit
-    ├── MotionFault               7      a motion or path that cannot be recorded: axis, time, speed (also a ValueError)
+    ├── FollowingFault            6      a drive lags more than its speed explains: axis, time, places, limit
+    ├── MotionFault               7      no motion to be recorded: axis, time, speed (also a ValueError)
     ├── FileFault                 8      a file that cannot be read or written (also an OSError)
-    └── CardFault                 9      a mistake in the operator's card or the head's file of settings: line, field, what it holds (also a ValueError)
+    └── CardFault                 9      a mistake in a card or a file of settings: line, field
+                                         (also a ValueError)
 
 A message is one line: what was wrong, the value got, the values allowed, what to do next.
 """
@@ -30,9 +31,7 @@ class DrawingFault(Fault, ValueError):
 
 
 class LineFault(Fault):
-    """No line at the place asked for (the nearest is at `nearest_mm`), or the head lost it; sheet mm,
-    radians.
-    """
+    """No line at the place asked for (`nearest_mm`: the nearest), or the head lost it; sheet mm, rad."""
 
     exit_code = 4
 
@@ -65,9 +64,7 @@ class TapeFault(Fault, ValueError):
 
 
 class ProgramFault(TapeFault):
-    """The file is no program of its medium that can be played; `line` is the line of the file where one is
-    known.
-    """
+    """The file is no program that can be played; `line` is the line of the file where one is known."""
 
     def __init__(
         self, message: str, *, line: int | None = None, time_s: float | None = None
@@ -94,7 +91,7 @@ class LockFault(Fault):
 
 
 class FollowingFault(Fault):
-    """A drive is further behind its demand than the speed of the demand allows (patent ES 414458, figure 1)."""
+    """A drive is further behind its demand than the demand's speed allows (patent ES 414458, figure 1)."""
 
     exit_code = 6
 

@@ -7,7 +7,7 @@ motion rate out.
     v <= feed      v² · bend <= a/3      v · dv/ds <= 0.7 a      v = 0 at a corner (`SHARP`)
 
 A way is made of straight pieces, so at each of its places the velocity would jump by v · turn. The positions
-are averaged over `SMOOTHED_S`: in that time the jump is made at a third of the acceleration, and the way moves
+are averaged over `SMOOTHED_S`: in that time the jump is made at a third of the acceleration; the way moves
 inward by no more than a · SMOOTHED_S² / 24: 0.1 um. Across and along together stay within a.
 
 Source: the two passes that are usual in controls (see `motion.speed_limits`); the averaging is our own.
@@ -69,7 +69,7 @@ def _with_halves(way_mm: Array) -> Array:
 
 
 def _allowed(way_mm: Array, steps: Array, feed_mm_s: float, acceleration_mm_s2: float) -> Array:
-    """Highest speed at each place, mm/s, by the turn there and by the bend about it; 0 at corners and ends."""
+    """Highest speed at each place, mm/s, by the turn there and the bend about it; 0 at corners and ends."""
     # 1. the turn at each place; both ends count as corners
     ways = np.diff(way_mm, axis=0)
     across = ways[:-1, 0] * ways[1:, 1] - ways[:-1, 1] * ways[1:, 0]

@@ -26,10 +26,9 @@ _DISK_FULL = {
 def written_beside(
     file: str | os.PathLike[str], named: Callable[[], Path] | None = None
 ) -> Iterator[Path]:
-    """Give a new, hidden file of the same suffix beside `file`; it is renamed to `file` on success, removed
-    on failure.
+    """Give a new, hidden file of the same suffix beside `file`; rename it on success, remove it on failure.
 
-    `named` tells another name for it in the same folder, when it is whole.
+    `named` gives another name for the whole file, in the same folder.
 
     Raises FileFault if the folder is missing or not writable, if `file` is no regular file, or if the disk is
     full.

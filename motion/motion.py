@@ -19,19 +19,13 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 
 AXES: tuple[str, ...] = ("x", "y", "z")
-FURTHER_AXES = (
-    "a",
-    "b",
-    "c",
-    "u",
-    "v",
-    "w",
-)  # what a fourth and later axis may be called; all in mm of their own screws
+# what a fourth and later axis may be called; all in mm of their own screws
+FURTHER_AXES = tuple("abcuvw")
 MOTION_RATE_HZ = 6000.0  # 48 kHz / 8
 # the tool is in the work at and below the surface; the margin is for a servo's rest error
 IN_WORK_BELOW_MM = 0.05
 THINNING_TOLERANCE_MM = 2e-4
-BLOCK_SAMPLES = 65536
+BLOCK_SAMPLES = 65536  # 11 s at 6 kHz
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,10 +75,8 @@ class Path:
         self, rate_hz: float = MOTION_RATE_HZ, block_samples: int = BLOCK_SAMPLES
     ) -> Iterator[Motion]:
         """Stream the path as blocks at a rate, from its first time to its last."""
-        start_s, samples = (
-            float(self.t_s[0]),
-            int(np.floor((self.t_s[-1] - self.t_s[0]) * rate_hz + 0.5)) + 1,
-        )
+        start_s, end_s = float(self.t_s[0]), float(self.t_s[-1])
+        samples = int(np.floor((end_s - start_s) * rate_hz + 0.5)) + 1
         for first in range(0, samples, block_samples):
             t_s = start_s + np.arange(first, min(first + block_samples, samples)) / rate_hz
             columns = [np.interp(t_s, self.t_s, column) for column in self.positions_mm.T]
@@ -105,9 +97,7 @@ def join(stream: Iterable[Motion]) -> Motion:
 
 
 def thin(stream: Iterable[Motion], tolerance_mm: float = THINNING_TOLERANCE_MM) -> Path:
-    """Thin a stream to the samples that give all others back within `tolerance_mm` per axis; memory grows
-    with the path only.
-    """
+    """Thin a stream to the samples that give all others back within `tolerance_mm` per axis."""
     pieces = list(thinned(stream, tolerance_mm))
     if not pieces:
         raise ValueError("the stream of motion is empty; it must hold at least one block")
@@ -121,9 +111,7 @@ def thin(stream: Iterable[Motion], tolerance_mm: float = THINNING_TOLERANCE_MM) 
 def thinned(
     stream: Iterable[Motion], tolerance_mm: float = THINNING_TOLERANCE_MM
 ) -> Iterator[Path]:
-    """The pieces of a thinned path as the blocks of a stream come, so that nothing has to hold all of it;
-    none of an empty stream.
-    """
+    """The pieces of a thinned path as the blocks of a stream come; none of an empty stream."""
     state: Array | None = None
     samples, start_s, rate_hz, axes = 0, 0.0, MOTION_RATE_HZ, AXES
     for block in stream:

@@ -49,7 +49,7 @@ def write_path(path: Path, file: str | os.PathLike[str]) -> None:
 
 
 def write_rows(path: Path, out: TextIO, *, header: bool = False) -> None:
-    """Write the rows of a path, or of a piece of one, to an open file; with `header` the line of names first."""
+    """Write the rows of a path, or of a piece of one, to an open file, `header`: after the names."""
     if header:
         out.write(_header(path))
     places_mm = np.round(path.positions_mm, 5)
@@ -101,7 +101,7 @@ class _Rows:
 
 @dataclass(slots=True)
 class _NewPoints:
-    """Points that are put in: after which row each comes, where it is, and the time since the point before."""
+    """Points that are put in: after which row, where, and the time since the point before."""
 
     after: list[int] = field(default_factory=list)
     points: list[Array] = field(default_factory=list)

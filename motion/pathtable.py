@@ -38,7 +38,7 @@ Lines = list[tuple[int, str]]  # the number of each line in the file, and the li
 
 @dataclass(frozen=True, slots=True)
 class PathTable:
-    """The columns of a file as read, without those that are absent; `lines` holds each row's line in the file."""
+    """The columns that a file has, as read; `lines` holds each row's line in the file."""
 
     columns: dict[str, Array]
     lines: NDArray[np.int64]
@@ -97,7 +97,7 @@ def _read_text(file: File) -> str:
 
 
 def _find_columns(header: str, separator: str, place: str) -> dict[str, int]:
-    """Which column holds what; raises MotionFault for a column that is missing, doubled or in another unit."""
+    """Which column holds what; raises MotionFault for one that is missing, doubled or in another unit."""
     names = [name.strip().strip('"').strip().lower() for name in header.split(separator)]
     names = [_NAMES.get(name, name) for name in names]
     for required in ("x_mm", "y_mm"):

@@ -30,9 +30,7 @@ _MIRRORS = {"": (1.0, 1.0), "x": (-1.0, 1.0), "y": (1.0, -1.0)}
 
 @dataclass(frozen=True, slots=True)
 class Placement:
-    """What is done to a motion: the axis that runs the other way ("x", "y" or none), scale, turn, about which
-    point; and where the zero is.
-    """
+    """What is done to a motion: mirror ("x", "y" or none), scale and turn about a point; the new zero."""
 
     mirror: str = ""
     scale: float = 1.0
@@ -55,19 +53,14 @@ class Placement:
     def matrix(self) -> Array:
         """Scale · turn · mirror, (2, 2); quarter turns are exact."""
         cosine, sine = round(math.cos(self.turn_rad), 15), round(math.sin(self.turn_rad), 15)
-        return (
-            self.scale
-            * np.array([[cosine, -sine], [sine, cosine]])
-            * np.array(_MIRRORS[self.mirror])
-        )
+        rotation = np.array([[cosine, -sine], [sine, cosine]])
+        return self.scale * rotation * np.array(_MIRRORS[self.mirror])
 
     def about(self, start_mm: Array) -> Placement:
         """The same with its point: the one given, or where the motion starts."""
-        return (
-            self
-            if self.about_mm is not None
-            else replace(self, about_mm=(float(start_mm[0]), float(start_mm[1])))
-        )
+        if self.about_mm is not None:
+            return self
+        return replace(self, about_mm=(float(start_mm[0]), float(start_mm[1])))
 
     def stream(self, stream: Iterable[Motion]) -> Iterable[Motion]:
         """A stream, placed; the stream itself where nothing changes."""
@@ -75,21 +68,16 @@ class Placement:
 
     def path(self, path: Path) -> Path:
         """A path, placed."""
-        return replace(
-            path,
-            positions_mm=self.about(path.positions_mm[0])._moved(
-                path.positions_mm, self.matrix
-            ),
-        )
+        placement = self.about(path.positions_mm[0])
+        return replace(path, positions_mm=placement._moved(path.positions_mm, self.matrix))
 
     def back(self, path: Path) -> Path:
         """A path that was placed about a known point, as it was before."""
         moved = np.array(path.positions_mm, np.float64)
         moved[:, :2] += self.origin_mm
         undo = replace(self, origin_mm=(0.0, 0.0))
-        return replace(
-            path, positions_mm=undo._moved(moved, np.asarray(np.linalg.inv(self.matrix)))
-        )
+        inverse = np.asarray(np.linalg.inv(self.matrix))
+        return replace(path, positions_mm=undo._moved(moved, inverse))
 
     def _placed(self, stream: Iterable[Motion]) -> Iterator[Motion]:
         """Place block by block."""
@@ -97,9 +85,8 @@ class Placement:
         for block in stream:
             if placement.about_mm is None and len(block.positions_mm):
                 placement = self.about(block.positions_mm[0])
-            yield replace(
-                block, positions_mm=placement._moved(block.positions_mm, placement.matrix)
-            )
+            moved = placement._moved(block.positions_mm, placement.matrix)
+            yield replace(block, positions_mm=moved)
 
     def _moved(self, positions_mm: Array, matrix: Array) -> Array:
         """Positions with X and Y put through a matrix about the point."""

@@ -1,8 +1,8 @@
 """Polylines: how long they are, where they cross, how far places are from them, and the same polyline with
 fewer or more places.
 
-Signals: polylines (n, 2) mm in; lengths, distances and polylines in mm out. A crossing is given as the number
-of a place, with the share of the piece after that place: 3.25 is a quarter of the way from place 3 to place 4.
+Signals: polylines (n, 2) mm in; lengths, distances and polylines in mm out. A crossing is the number of a
+place with the share of the piece after it: 3.25 is a quarter of the way from place 3 to place 4.
 
 Source: our own; fewer places as by Douglas and Peucker, The Canadian Cartographer 10 (1973).
 """

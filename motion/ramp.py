@@ -4,8 +4,8 @@ Signals in: the demanded place in mm, a feed in mm/s, one acceleration in mm/s²
 Signals out: positions in mm at the motion rate.
 
     feed        ___________
-               /           \\            counter, set to -N, the increments of the whole move (of all axes together):
-              /             \\             +2 for each increment while the speed rises (itself and its braking distance)
+               /           \\            counter, set to -N, the increments of the move of all axes together:
+              /             \\             +2 for each increment while the speed rises (it, and its braking)
         _____/               \\_____       +1 for each at constant speed, 0 while the speed falls
              +2    +1       0 ^ 0        ramp down as soon as the counter is no longer negative
 
@@ -22,8 +22,8 @@ to 4. Questions: the patent leaves out what follows. A move too short to reach i
 ramp down; if N is odd there the counter goes from -1 to +1 within one increment, so the test is for >= 0, and
 that one increment is run half up, half down. Several axes have one counter and keep the ratio of their
 distances, as only then each of them ends exactly. The first feed is reached after a whole number of
-increments: the acceleration is lowered by the little that this takes; later feeds are the next lower whole
-numbers. A new demand on the way sets the counter to -N + e.
+increments: the acceleration is lowered slightly for that; later feeds are the next lower whole numbers. A new
+demand on the way sets the counter to -N + e.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ from morfax.motion.motion import MOTION_RATE_HZ
 
 UP, CONSTANT, DOWN = 1, 0, -1
 _LARGEST_COUNT = 1 << 40  # 1000 km in increments of 1 um: the counter is a 64-bit integer
-_NOTHING_MM = 1e-9  # done in one period: a hundredth of an atom, and its square still a number
+_NOTHING_MM = 1e-9  # a shorter move is done in one period: its square is still a number
 
 
 Counts = NDArray[np.int64]
@@ -67,9 +67,7 @@ class Ramp:
 
 @dataclass(frozen=True, slots=True)
 class Profile:
-    """What the counter made of a move: rows (mode, half increments), and where it reached zero with what
-    count.
-    """
+    """A counted move: rows (mode, half increments), where the counter reached zero, and its count then."""
 
     pieces: Counts
     increments: int
@@ -78,9 +76,7 @@ class Profile:
     count_then: int
 
     def at_rest(self) -> tuple[int, int]:
-        """Half increments travelled and square of the speed (in half increments) at the end: (2 N, 0) if
-        exact.
-        """
+        """Half increments travelled, and the square of the speed in them, at the end: (2 N, 0) if exact."""
         modes, halves = self.pieces.T
         return int(halves.sum()), 2 * self.moving + int((modes * halves).sum())
 
@@ -90,9 +86,9 @@ def count_ramp(
 ) -> Profile:
     """Run the counter over a move of so many increments, of all axes together.
 
-    Speeds are given as the increments that a ramp from rest needs to reach them; `speeds[i + 1]` is asked for
-    after `changes_at[i]` increments. `moving` is the speed at a new demand on the way. Raises ValueError if
-    it is too short.
+    A speed is given as the increments that a ramp from rest needs to reach it; `speeds[i + 1]` begins after
+    `changes_at[i]` increments. `moving` is the speed at a new demand on the way. Raises ValueError if the
+    move is too short.
     """
     if not 0 <= moving <= increments <= _LARGEST_COUNT:
         raise ValueError(
@@ -121,13 +117,11 @@ def positions_mm(
 ) -> Array:
     """Positions (n, axes) in mm of a straight move at the motion rate: the start first, the end exactly last.
 
-    `changes` holds (mm along the path, new feed in mm/s). A move of nothing is one row.
+    `changes` holds (mm along the path, new feed in mm/s). A move of length 0 is one row.
     """
-    ramp, start, end = (
-        ramp or Ramp(),
-        np.asarray(start_mm, np.float64),
-        np.asarray(end_mm, np.float64),
-    )
+    # 1. the move in increments
+    ramp = ramp or Ramp()
+    start, end = np.asarray(start_mm, np.float64), np.asarray(end_mm, np.float64)
     feeds = [feed_mm_s, *(feed for _, feed in changes)]
     _check(start, end, feeds, rate_hz)
     length_mm = math.dist(start, end)
@@ -135,11 +129,13 @@ def positions_mm(
         return np.array([start, end])[: 1 + bool((start != end).any())]
     increments = max(1, int(np.rint(np.abs(end - start) / ramp.increment_mm).sum()))
     mm_per_count = length_mm / increments
+    # 2. what the counter makes of it
     speeds, acceleration_mm_s2 = _speeds(
         feeds, mm_per_count, ramp.acceleration_mm_s2, increments
     )
     changes_at = [round(min(max(at_mm / mm_per_count, 0), increments)) for at_mm, _ in changes]
     profile = count_ramp(increments, speeds, changes_at)
+    # 3. places at each period
     travelled = _sample(profile, acceleration_mm_s2 / mm_per_count, rate_hz) / increments
     positions = start + travelled[:, None] * (end - start)
     positions[-1] = end
@@ -147,10 +143,10 @@ def positions_mm(
 
 
 def _check(start: Array, end: Array, feeds: Sequence[float], rate_hz: float) -> None:
-    """Raise ValueError for what is no move."""
+    """Raise ValueError if a move has no two places, or would never arrive."""
     if start.ndim != 1 or start.shape != end.shape or not np.isfinite([start, end]).all():
         raise ValueError(
-            f"a move from {start} to {end} is none; give two places of as many finite mm each"
+            f"a move from {start} to {end} is no move; give two places, finite mm for the same axes"
         )
     for name, value in [("feed", feed) for feed in feeds] + [("rate", rate_hz)]:
         if not 0 < value < math.inf:
@@ -164,7 +160,7 @@ def _speeds(
 ) -> tuple[list[int], float]:
     """Feeds as increments of a ramp from rest, and the acceleration that makes the first of them whole.
 
-    A speed that takes as many increments as the whole move is never reached, and stands for all above it.
+    A speed that takes all increments of the move is never reached, and stands for all speeds above it.
     """
     exactly = feeds[0] ** 2 / (2 * acceleration_mm_s2 * mm_per_count)
     if exactly < increments:
@@ -180,36 +176,33 @@ def _speeds(
 def _sample(profile: Profile, acceleration_s2: float, rate_hz: float) -> Array:
     """Increments travelled at each period of the motion rate, for an acceleration in increments/s²."""
     modes, halves = profile.pieces.T
-    squares = (
-        2 * profile.moving + np.r_[0, np.cumsum(modes * halves)]
-    )  # of the speed, in half increments
+    # squares of the speed, in half increments
+    squares = 2 * profile.moving + np.r_[0, np.cumsum(modes * halves)]
     speed = np.sqrt(acceleration_s2 * squares)  # increments/s
-    took_s = halves / (
-        speed[:-1] + speed[1:]
-    )  # a piece's mean speed is the mean of its ends', both are exact
+    # a piece's mean speed is the mean of the speeds at its ends, both exact
+    took_s = halves / (speed[:-1] + speed[1:])
     begins_s = np.r_[0.0, np.cumsum(took_s)]
     t_s = np.arange(math.ceil(begins_s[-1] * rate_hz - 1e-9) + 1) / rate_hz
     piece = np.clip(np.searchsorted(begins_s, t_s, "right") - 1, 0, len(modes) - 1)
     since_s = np.minimum(t_s - begins_s[piece], took_s[piece])
     begins = np.r_[0, np.cumsum(halves)][piece] / 2
-    return begins + (speed[piece] + acceleration_s2 * modes[piece] / 2 * since_s) * since_s
+    gained = acceleration_s2 * modes[piece] / 2 * since_s
+    return begins + (speed[piece] + gained) * since_s
 
 
 @njit(cache=True)
 def _count(increments, square, changes_at, speeds, pieces):  # type: ignore[no-untyped-def]
-    """Counter 60 over one move, increment by increment; rows of `pieces` used, where zero was reached, the
-    count then.
+    """Counter 60 over one move: the rows of `pieces` used, where zero was reached, and the count then.
 
-    In a kernel, as a move of 300 mm on three axes has a million increments.
+    Increment by increment: a move of 300 mm on three axes has a million of them.
     """
     counter, travelled, change, rows = square - increments, 0, 0, 0
     pieces[0] = 0
     while counter < 0:
         while change < len(changes_at) and travelled >= changes_at[change]:
             change += 1
-        if (
-            square < speeds[change] and counter == -1
-        ):  # the odd increment: half up, half down, and the speed is kept
+        if square < speeds[change] and counter == -1:
+            # the odd increment: half up, half down, and the speed is kept
             rows = _add(pieces, rows, 1, 1)
             rows = _add(pieces, rows, -1, 1)
             counter += 2

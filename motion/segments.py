@@ -1,7 +1,7 @@
 """Segments: a motion cut at its stops, and how fast each segment may be run.
 
-Signals: a motion in mm at any rate, or a path, in; segments out: places at equal distances along the path with
-the speed (mm/s) that the machine may have there, zero at both ends. A program whose medium bounds the
+Signals: a motion in mm at any rate, or a path, in; segments out: places at equal distances along the path
+with the speed (mm/s) that the machine may have there, zero at both ends. A program whose medium bounds the
 acceleration is made of segments, and not of the motion's own times:
 
     speed        __________________              ______
@@ -47,7 +47,7 @@ FASTEST_MM_S = 1e6  # stands for no limit: its square is still a number
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """What an axis can do, and how finely a segment is looked at: distance of places, reach of a corner, mm."""
+    """What an axis can do, and how finely a segment is looked at: distance of places, reach of corners."""
 
     speed_mm_s: float
     acceleration_mm_s2: float

@@ -3,7 +3,7 @@
 Signals: the speed allowed at each of n places, mm/s, and what the square of the speed can gain from each
 place to the next, mm²/s² (one number, or n - 1 of them); the speeds that can be reached, mm/s, out.
 
-    allowed    ‾‾‾‾‾‾|__|‾‾‾‾‾‾‾|          v² of a place is at most v² of its neighbour, and the gain between them:
+    allowed    ‾‾‾‾‾‾|__|‾‾‾‾‾‾‾|          v² of a place is at most v² of its neighbour and the gain:
     braked     ‾‾‾‾╲ |__|‾‾‾‾‾╲ |          gain = 2 · acceleration · distance
     reachable  ╱‾‾‾╲_|__|╱‾‾‾‾╲_|
 

@@ -1,7 +1,7 @@
 """A field of a TOML file: what it holds, what it may hold, and the fault that says so with its line.
 
-Signals in: the text of a file (TOML): the operator's card, the head's settings, a machine. Signals out: quantities
-in mm/s and s, choices, whole numbers; or a CardFault:
+Signals in: the text of a TOML file: the operator's card, the head's settings, a machine. Signals out:
+quantities in mm/s and s, choices, whole numbers; or a CardFault:
 
     part.toml, line 7: speeds.feed holds "5kg"; it may hold a speed of 0.01 to 100 mm/s, such as "5mm/s"
 
@@ -24,8 +24,8 @@ from morfax.motion.faults import CardFault, FileFault
 from morfax.motion.toml_lines import Path, lines_of
 from morfax.motion.units import parse_speed_mm_s, parse_time_s
 
-SLOWEST_MM_S, FASTEST_MM_S = 0.01, 100.0
-LONGEST_DWELL_S = 600.0
+SLOWEST_MM_S, FASTEST_MM_S = 0.01, 100.0  # of the feeds, see Questions
+LONGEST_DWELL_S = 600.0  # our own figure
 _LONGEST_SHOWN = 40  # characters: a fault is one line
 _AT = re.compile(r"\(at line (\d+), column (\d+)\)")
 
@@ -35,7 +35,7 @@ D = TypeVar("D")
 
 @dataclass(frozen=True, slots=True)
 class Page:
-    """The paper: the name of the card, the line of each field, and what the whole is called in a fault."""
+    """The page: the name of the file, the line of each field, and what the file is called in a fault."""
 
     name: str
     lines: Mapping[Path, int]
@@ -44,7 +44,7 @@ class Page:
 
 @dataclass(frozen=True, slots=True)
 class Field:
-    """What stands in one field of a card."""
+    """One field of a file: its value, its path, and the page it is on."""
 
     value: Any
     path: Path
@@ -70,7 +70,10 @@ class Field:
 
     def speed_mm_s(self) -> float:
         """A speed, mm/s."""
-        allowed = f'it may hold a speed of {SLOWEST_MM_S:g} to {FASTEST_MM_S:g} mm/s, such as "5mm/s" or "300mm/min"'
+        allowed = (
+            f"it may hold a speed of {SLOWEST_MM_S:g} to {FASTEST_MM_S:g} mm/s,"
+            ' such as "5mm/s" or "300mm/min"'
+        )
         return self._within(parse_speed_mm_s, SLOWEST_MM_S, FASTEST_MM_S, allowed)
 
     def time_s(self) -> float:

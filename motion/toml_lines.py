@@ -1,11 +1,11 @@
-"""On which line of a card each field stands, so that a mistake can be pointed at.
+"""On which line of a TOML file each field is, so that a fault can name the line.
 
-Signals in: the text of a card that tomllib has read. Signals out: the line (from 1) of every field, by its
+Signals in: the text of a file that tomllib has read. Signals out: the line (from 1) of every field, by its
 path: the keys down to it, and the number (from 0) of an element of an array: `("stop", 1, "moves", 0,
 "down")`.
 
-tomllib says what a card holds, and not where. So the text is gone through once more, for its keys, brackets
-and commas only; what a value means is tomllib's business.
+tomllib gives the values, and not their lines. So this module reads the text once more, for its keys, brackets
+and commas only; the values are left to tomllib.
 
 Source: TOML 1.0.0 (toml.io/en/v1.0.0): keys, strings, arrays, inline tables, tables, arrays of tables.
 """
@@ -26,12 +26,12 @@ _END = ("", "", 0)
 
 
 def lines_of(text: str) -> dict[Path, int]:
-    """The line of every field of a text that tomllib can read; of a table opened more than once, the first."""
+    """The line of every field of a text that tomllib can read; the first of a table opened more than once."""
     return _Reader(text.replace("\r\n", "\n")).read()
 
 
 class _Reader:
-    """Goes through the words of a card: (kind, text, line)."""
+    """Goes through the words of a file: (kind, text, line)."""
 
     def __init__(self, text: str) -> None:
         found = (word for word in _WORD.finditer(text) if word.lastgroup != "comment")

@@ -1,4 +1,4 @@
-"""Units at the edge: "10mm" becomes 10.0 and back again. Inside the house there are mm, s and Hz only.
+"""Units at the edge: "10mm" becomes 10.0 and back again. All other modules know mm, s, Hz and rad only.
 
 A bare number has one documented unit: mm, mm/s, Hz, s or degrees. A space may stand between number and unit,
 and capitals do not matter.
@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 import re
 
-LONGEST_MM = 1e6
+LONGEST_MM = 1e6  # a kilometre: a longer length is a slip of the pen
 MM_PER_INCH = 25.4  # exact since the international yard and pound agreement, 1959
 
 _LENGTH_MM = {
@@ -49,7 +49,7 @@ _NUMBER_AND_UNIT = re.compile(
 
 
 def parse_length_mm(text: str) -> float:
-    """Length in mm of "10mm", "50um", "0.4in" or a bare number of mm, up to a kilometre; it may be negative."""
+    """Length in mm of "10mm", "50um", "0.4in" or a bare number of mm, within a kilometre either way."""
     allowed = "10mm, 50um, 1cm, 0.4in or a bare number of mm, up to 1000m"
     length_mm = _parse(text, "length", _LENGTH_MM, allowed)
     if abs(length_mm) > LONGEST_MM:
@@ -142,9 +142,8 @@ def format_place_mm(x_mm: float, y_mm: float) -> str:
 
 def _parse(text: str, kind: str, units: dict[str, float], allowed: str) -> float:
     """Number times unit; raises ValueError that says what was got and what is allowed."""
-    plain = (
-        text.strip().lower().replace("\u00b5", "u").replace("\u03bc", "u")
-    )  # micro sign, Greek mu
+    # micro sign, Greek mu
+    plain = text.strip().lower().replace("\u00b5", "u").replace("\u03bc", "u")
     found = _NUMBER_AND_UNIT.fullmatch(plain)
     scale = {"": 1.0, **units}.get(found[2]) if found else None
     value = float(found[1]) * scale if found and scale is not None else math.nan

@@ -1,4 +1,4 @@
-"""Offsets against closed forms and against shapely's buffer; the way run at a feed within its acceleration."""
+"""Offsets against closed forms and shapely's buffer; the path run at a feed within its acceleration."""
 
 from __future__ import annotations
 
@@ -169,6 +169,17 @@ def test_the_line_may_be_run_either_way_and_the_cutter_goes_with_it() -> None:
         for w in (there, back)
     ]
     assert areas[0] > 0 > areas[1]
+
+
+def test_at_a_corner_of_20_degrees_the_tool_stops() -> None:
+    turned = math.radians(20)
+    corner = np.array(
+        [[0.0, 0.0], [5.0, 0.0], [5 + 5 * math.cos(turned), 5 * math.sin(turned)]]
+    )
+    xy_mm = run_along(corner, 10.0, 500.0)
+    speed = np.hypot(*np.diff(xy_mm, axis=0).T) * MOTION_RATE_HZ
+    middle = np.hypot(*(xy_mm[1:] - corner[1]).T) < 1.0
+    assert speed[middle].min() < 0.3  # from 10: what the mean over 2 ms leaves of a stop
 
 
 @pytest.mark.parametrize("feed_mm_s", [10.0, 90.0])

@@ -43,6 +43,17 @@ def test_a_long_move_goes_up_holds_and_comes_down() -> None:
     assert pieces(count_ramp(1000, [150])) == [(UP, 150), (CONSTANT, 700), (DOWN, 150)]
 
 
+def test_after_a_change_to_a_lower_feed_the_move_holds_that_feed_exactly() -> None:
+    profile = count_ramp(1000, [200, 50], [400])
+    assert pieces(profile) == [
+        (UP, 200),
+        (CONSTANT, 200),
+        (DOWN, 150),
+        (CONSTANT, 400),
+        (DOWN, 50),
+    ]
+
+
 def test_a_short_move_turns_from_up_to_down() -> None:
     assert pieces(count_ramp(300, [200])) == [(UP, 150), (DOWN, 150)]
 

@@ -1,4 +1,4 @@
-"""Speed limits along a way, against the closed form: v² of a place is at most v² of any other and the gain to it."""
+"""Speed limits along a way, against the closed form: v² is at most v² elsewhere and the gain to it."""
 
 from __future__ import annotations
 

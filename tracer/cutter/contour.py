@@ -4,9 +4,9 @@ contour.
 Signals: a line as it was followed, and paths of the cutter's middle, mm, in; out where the contour begins,
 and places of the paths: which path, and which of its points, fractions included.
 
-    ───┼──── contour        the foot of a stop mark: the arm of the cutter's radius stands on the contour at the mark, across its heading;
-       │arm                 where the cutter cannot reach (in an inner corner), the nearest place of the paths
-    ───●──── path
+    ───┼──── contour        the foot of a stop mark: the arm of the cutter's radius stands on the contour at
+       │arm                 the mark, across its heading; where the cutter cannot reach (in an inner corner),
+    ───●──── path           the nearest place of the paths
 
 The contour is what is cut of a line: without the lead line to it, and without the guide lines off it. Where
 the head took a guide line and came back, the contour goes straight on.
@@ -156,7 +156,7 @@ class Beside:
         return at_places(self.paths[place.path].points_mm, np.array([place.at]))[0]
 
     def foot(self, place_mm: Array) -> PathPlace:
-        """The place of the paths that belongs to one on the contour: at the end of the arm, or the nearest."""
+        """The place of the paths for a place on the contour: at the end of the arm, or the nearest."""
         arm = self._arm(place_mm)
         if arm is not None:
             way = with_places(np.array([place_mm, place_mm + (1 + NEAR) * arm]), APART_MM)

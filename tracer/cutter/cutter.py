@@ -1,5 +1,5 @@
-"""The cutter: a program whose tool runs beside the lines that were followed, a cutter's radius away, and never
-nearer to any of them.
+"""The cutter: a program whose tool runs beside the lines that were followed, a cutter's radius away, and
+never nearer to any of them.
 
 Signals: a Trace along the lines' middles and a cutter in; out a Trace along the offset paths of the cutter's
 middle, and the stretches that the cutter cannot reach (mm).
@@ -93,7 +93,7 @@ class LeftOut:
 
 @dataclass(frozen=True, slots=True)
 class Left:
-    """What the cutter leaves: stretches of lines, the one with most left first, and whole lines, by number."""
+    """What the cutter leaves: stretches of lines, the most left first, and whole lines, by number."""
 
     stretches: list[Unreached] = field(default_factory=list)
     lines: list[LeftOut] = field(default_factory=list)
@@ -201,9 +201,7 @@ def _has_paths(cut: Cut, paths: Sequence[OffsetPath], cutter: Cutter) -> bool:
 
 
 def _refuse_gouges(beside: Trace, near: Nearest, cutter: Cutter) -> None:
-    """Raise MotionFault if the tool moves in the work nearer to a line than its radius, as where a card lowers
-    it on the way to a contour.
-    """
+    """Raise MotionFault if the tool cuts into a line, as where a card lowers it on the way to a contour."""
     nearest_mm = cutter.radius_mm - GOUGE_MM
     for block in beside:
         moves = np.any(np.diff(block.positions_mm[:, :2], axis=0) != 0, axis=1)

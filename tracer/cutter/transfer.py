@@ -9,8 +9,8 @@ run instead, mm at the motion rate, each with its lead line, marks and guide lin
                       └──                                               └──▶ down on the path
        the lead line meets the path                the cutter runs on the other side of the contour
 
-    lead line   as drawn, to where it first crosses the path after the last tick, or last crosses it before the
-                tick; else to its end, and from there straight to the foot of the place where it joins. The
+    lead line   as drawn, to where it first crosses the path after the last tick, or last crosses it before
+                the tick; else to its end, and from there straight to the foot of where it joins. The
                 tool goes down at the tick if no place of the lead line from there on is nearer to a contour
                 than the radius; else where the path begins.
     stop mark   at its foot on the path (see `contour`)

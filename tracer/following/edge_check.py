@@ -58,8 +58,9 @@ def _lost(run: Followed, at: int, why: str) -> Followed:
     x, y = kept[-1]
     travel_mm = float(lengths_mm(kept)[-1])
     fault = LineFault(
-        f"edge lost at {x:.2f},{y:.2f} mm, after {travel_mm:.1f} mm: the shape is too fine for the head, {why};"
-        " look at the drawing there, scan it at a higher resolution, or print it larger (--scale brings it back)",
+        f"edge lost at {x:.2f},{y:.2f} mm, after {travel_mm:.1f} mm: the shape is too fine for the head,"
+        f" {why}; look at the drawing there, scan it at a higher resolution, or print it larger (--scale"
+        " brings it back)",
         x_mm=float(x),
         y_mm=float(y),
         heading_rad=run.heading_rad,

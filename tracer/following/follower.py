@@ -160,7 +160,7 @@ class Follower:
         return self._at_end(incoming, choices) if plan is None else self._pass(plan)
 
     def _out_of_tangle(self, incoming: Leg, plan: Plan | None) -> tuple[Plan | None, bool]:
-        """The way out of a tangle, if the junction is one, else the plan; and whether the tangle explains it."""
+        """The way out of a tangle, or the plan if this is none; and whether the tangle explains the way."""
         number = self._ways_out.junctions.next(self.carriage.travel_mm)
         way_in, rank = self.carriage.stands(), self._ways_out.turns.other.count(number)
         approach = Approach(incoming, self.carriage.trail, way_in, plan, number, rank)

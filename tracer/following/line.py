@@ -2,7 +2,7 @@
 
 Signals: what a Follower did in; out the line as the operator and the program need it, mm at the motion rate.
 
-    lead line    ├───────●───────┐loop       begins at a reference point, or bears a tick, and runs into its loop
+    lead line    ├───────●───────┐loop       begins at a reference point or has a tick; runs into its loop
     guide line   ├───────────────●           begins at a reference point and ends
     guides of a line                         guide lines that the head took off it, to their end and back
 
@@ -62,7 +62,7 @@ class Line:
     def of(
         cls, run: Followed, number: int = 1, reference_mm: tuple[float, float] | None = None
     ) -> Line:
-        """What the head did, as a line of the drawing, with its marks but for those of the reference point."""
+        """What the head did, as a line of the drawing with its marks, but for the reference point's."""
         marks = marks_along(run.view, run.positions_mm)
         if reference_mm is not None:
             marks = [m for m in marks if math.dist(m.place_mm, reference_mm) >= REFERENCE_MM]

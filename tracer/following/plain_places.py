@@ -43,7 +43,7 @@ BENT = 0.8  # rad in a leg's length: a line that bends by more is no parabola ov
 
 
 class Scored(NamedTuple):
-    """A stance, and how plain its place is: the length felt to the shorter side (mm), less bend after that."""
+    """A stance, and how plain its place is: length felt to the shorter side (mm), then less bend."""
 
     length_mm: float
     straightness: float
@@ -100,7 +100,7 @@ def stances(view: View, places: Array) -> list[Scored]:
 
 
 def _heading(view: View, place: Array) -> float | None:
-    """Heading of the line through a place; None if the ring there does not see two arcs opposite each other."""
+    """Heading of the line through a place; None if the ring does not see two arcs opposite each other."""
     radius = max(RING_WIDTHS * view.width_mm, RING_PX * view.pitch_mm)
     arcs = view.ring(place, radius)
     if len(arcs) != 2:
@@ -111,7 +111,7 @@ def _heading(view: View, place: Array) -> float | None:
 
 
 def _both_ways(view: View, place: Array, heading: float) -> tuple[Leg, float] | None:
-    """The line felt both ways from a place as one leg about it, and the length felt on the shorter side, mm."""
+    """The line felt both ways from a place as one leg, and the length felt on the shorter side, mm."""
     right, left = view.edges(place, heading, 2 * view.width_mm)
     width_mm = left - right
     if not math.isfinite(width_mm) or not NARROWEST < width_mm / view.width_mm < WIDEST:

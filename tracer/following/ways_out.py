@@ -69,7 +69,7 @@ class WaysOut:
         return found, side is not None
 
     def leaves_beside(self, view: View, incoming: Leg, carriage: Carriage) -> bool:
-        """Whether the head is to leave a clean line where ink turns off beside it; else it is only counted."""
+        """Whether the head leaves a clean line where ink turns off beside it; else counts the junction."""
         number = self.junctions.next(carriage.travel_mm)
         asked = number in self.turns.other or any(self.turns.sides[number : number + 1])
         if asked or self.comes_back(view, incoming):

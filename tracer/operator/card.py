@@ -47,7 +47,7 @@ _DRILL_KEYS = ("depth", "peck", "clear", "feed", "dwell")
 
 @dataclass(frozen=True, slots=True)
 class Drill:
-    """A hole: its depth below the work and how it is drilled, in counts of 0.01 mm, with a dwell at the bottom."""
+    """A hole: its depth and how it is drilled, in counts of 0.01 mm, with a dwell at the bottom."""
 
     depth_counts: int
     peck_counts: int
@@ -56,7 +56,7 @@ class Drill:
     dwell_s: float = 0.0
 
     def presets(self, at: Counters, rapid_mm_s: float) -> tuple[Preset, ...]:
-        """Settings of the panel from a place down to depth and back up; none if the place is as deep already."""
+        """Settings of the panel from a place down to depth and back; none if the place is as deep already."""
         made, bottom = list[Preset](), max(0, -at.count)
         while bottom < self.depth_counts:
             near = min(self.clear_counts - bottom, at.count)  # from here on at the drill's feed
@@ -87,7 +87,7 @@ class Stop:
         return (*made, Preset(0, dwell_s=self.dwell_s)) if self.dwell_s > 0 else made
 
     def motor_moves(self, z_mm: float, rapid_mm_s: float, where: str) -> list[Move]:
-        """What the motor does from a height; raises CardFault, with the field, for a move that cannot be set."""
+        """What the motor does from a height; raises CardFault for a move that cannot be set."""
         made = list[Move]()
         try:
             at = Counters(counts_of(z_mm))

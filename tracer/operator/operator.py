@@ -1,4 +1,4 @@
-"""The operator at the panel: what the Z unit does at the start of a line, at its stops, at its guide lines and
+"""The operator at the panel: what the Z unit does at the start of a line, at its stops and guide lines, and
 at its end.
 
 Signals: a line as it was followed, with its marks, in; actions out: at which position of the line X and Y
@@ -112,8 +112,9 @@ class Operator:
         return next(own, self.work.depths_mm)
 
     def down_at(self, line: Line, first: int) -> float | None:
-        """The position of the tick where the tool goes down into a line whose stops are numbered from `first`;
-        None if it goes down at no tick.
+        """The position of the tick where the tool goes down into a line; None if it does so at no tick.
+
+        The stops of the line are numbered from `first`.
         """
         down = self._down(self._not_overridden(self._halts(line, first)), line)
         return down.at if down is not None and down.kind == "tick" else None

@@ -50,7 +50,7 @@ class Entry(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Action:
-    """What Z does at a halt: moves one after the other, each with its dwell, and an entry on the way after it.
+    """What Z does at a halt: moves one after the other, each with its dwell, and an entry on the way after.
 
     Where the tool goes down into the line, `depths_mm` are the depths at which that line is run.
     """

@@ -12,7 +12,7 @@ position in mm above the work. Signal out: Z in mm at the motion rate, up positi
 One pulse of the disc is one count. Each move is run by the ramp counter with the count as its increment: it
 speeds up, holds the feed, and comes to rest on the last pulse, so that coincidence and rest fall together:
 
-    count at rest = count before ± switches,     Z = 0.01 mm · count                (both exact, as counts are whole)
+    count at rest = count before ± switches,     Z = 0.01 mm · count          (both exact: counts are whole)
 
 Source: patent ES 361967, figure 3 (switches 126, counters 127, disc 128, counting unit 124, coincidence 133,
 motor 125, amplifier 135, tacho 136), claims 3, 13 and 14; the ramp from patent ES 414458, figures 3 and 4

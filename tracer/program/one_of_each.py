@@ -122,7 +122,7 @@ def _follow_from_plain_places(setup: Setup, contour: Contour) -> Line | LineFaul
 
 
 def _a_letter(contour: Contour) -> LineFault:
-    """The fault of a patch that was asked for by its number, and on which the head can nowhere be put down."""
+    """The fault of a patch that was asked for by number, and on which the head can nowhere be put down."""
     x, y = contour.stroke.middles_mm.mean(axis=0)
     return LineFault(
         f"line {contour.number}, about {x:.1f},{y:.1f} mm, is taken for a letter: the head can be put down"

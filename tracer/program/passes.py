@@ -191,8 +191,9 @@ def _at(xy_mm: Array, z_mm: float | Array) -> Array:
 
 
 def _entered(xy_mm: Array, entry: Entry, come_mm: float) -> tuple[Array, float]:
-    """Z along a piece (n, 2) mm of the way on which the tool goes down, (n,) mm, and how far the tool has come
-    then: smooth at both ends, 3s² - 2s³.
+    """Z along a piece (n, 2) mm of the way on which the tool goes down, (n,) mm, and how far it has come.
+
+    Z is smooth at both ends: 3s² - 2s³.
     """
     lengths = come_mm + lengths_mm(xy_mm)
     share = np.minimum(lengths / entry.length_mm, 1.0)

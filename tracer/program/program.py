@@ -37,7 +37,7 @@ ENDINGS = ("lost", "joined", "ended", "closed")  # the one to be told first come
 class Trace:
     """What the head did: a stream of Motion over its lines, in the order in which they are cut.
 
-    `left_out` patches of ink were too short to be lines; `left_out_mm` of ink is joined to lines, and no line.
+    `left_out` patches of ink were too short to be lines; `left_out_mm` of ink is joined to lines, but none.
     """
 
     lines: tuple[Line, ...]

@@ -138,7 +138,7 @@ class Run(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class _Wanted:
-    """The line that is asked for: the set-up, the place that the operator points at, and the line's number."""
+    """The line that is asked for: the set-up, the place that the operator points at, and its number."""
 
     setup: Setup
     start_mm: tuple[float, float] | None = None

@@ -273,7 +273,7 @@ def test_an_open_line_has_no_direction_round() -> None:
 def test_a_guide_line_is_taken_where_the_card_says_so_and_come_back_from(
     seed: int | None,
 ) -> None:
-    """The loop is gone round all the same; the guide line has been left for and come back from at one place."""
+    """The head still goes round the loop; it took the guide line and came back from it at one place."""
     guide = polyline((22, 14), (17.5, 14))
     operator = Operator(card=Card.parse('turns = ["right", "left"]'))
     (line,) = trace(inked(LEAD, CIRCLE, guide, seed=seed), (4.2, 14.0), operator=operator).lines

@@ -1,4 +1,4 @@
-"""Plans before the head moves: which lines there are, where it is put down, and the trail that it remembers."""
+"""Before the head moves: the lines of the sheet, where the head is put down, and its trail."""
 
 from __future__ import annotations
 

@@ -53,7 +53,8 @@ def test_every_setting_is_written_with_what_it_may_hold() -> None:
         ("gap_mm = nan", "head.toml, line 1: gap_mm holds NaN; it may hold"),
         (
             "colour = 1",
-            "head.toml, line 1: colour holds 1; there is no such field; the file of settings may hold speed_mm_s, slow",
+            "head.toml, line 1: colour holds 1; there is no such field;"
+            " the file of settings may hold speed_mm_s, slow",
         ),
         ("lead_mm 1", "head.toml, line 1: the file of settings holds"),
     ],
