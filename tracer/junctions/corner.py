@@ -34,7 +34,7 @@ BENT = 0.3  # of the line's width: a corner that misses more ink is no corner, b
 ACROSS = 0.15  # of the width: the edge is found on rays so far to either side of the bisector
 RAYS = 5  # of which the median counts
 REACH_WIDTHS, REACH_PX = 2.0, 3  # how far from the vertex the edge is sought
-PIECE_RAD = math.radians(30)  # a cubic is an arc within a micron over this
+PIECE_RAD = math.radians(30)  # a cubic is an arc within 0.6 um per mm of its radius over this
 
 
 @dataclass(frozen=True, slots=True)
