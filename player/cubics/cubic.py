@@ -45,7 +45,7 @@ from morfax.recorder.textfile import note_of_no_sum
 
 REGISTER_DIGITS = 12  # of register 34, sign apart
 _SETTLING = 15.0  # time constants of the servo: the lag falls to 3e-7 of itself
-_BLOCK_INTERVALS = 256
+_BLOCK_INTERVALS = 256  # of the program in memory at a time
 _LARGEST_WORD = 2**62  # of register I with its digits
 _TOLERANCE_MM = 0.005  # of following: a tenth of the lag at 10 mm/s
 

@@ -36,9 +36,9 @@ from numba import njit
 from numpy.typing import NDArray
 
 CLOCKS = 16  # of a recirculation
-FEED_BITS = 20
-OVERRIDE_BITS = 10
-FEED_EIGHTHS = 7
+FEED_BITS = 20  # of the feed number; chosen here
+OVERRIDE_BITS = 10  # of the override; chosen here
+FEED_EIGHTHS = 7  # a feed pulse enters stages 1, 2 and 3
 GREATEST, MIDDLE, SMALLEST = 20, 8, 6  # eighths
 EIGHTH = 1024  # units of the counter
 BLOCKED, EVERY, FOURTH = (

@@ -19,7 +19,7 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.player.gcode.pulses import PulsePlayback
 
-WINDOW_S = 0.02
+WINDOW_S = 0.02  # over which a speed is measured: twice the time constant of an approach
 
 
 @dataclass(frozen=True, slots=True)

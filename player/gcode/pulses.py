@@ -43,8 +43,8 @@ from morfax.player.gcode.residues import LINE, Feed, Interpolator
 from morfax.player.gcode.rs274 import DWELL, RAPID, Move, Program, read_rs274
 from morfax.player.monitor.monitor import FollowingLimit, Supervised
 
-LARGEST_ARC = math.radians(170)
-STANDSTILL_S = 0.25
+LARGEST_ARC = math.radians(170)  # below the half turn that the residue loops take
+STANDSTILL_S = 0.25  # before the first move and behind the last: the lag runs off
 _DWELL_AT_ONCE = 65536  # recirculations
 
 

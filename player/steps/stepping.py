@@ -45,8 +45,8 @@ from morfax.recorder.textfile import note_of_no_sum
 STANDSTILL, LOWEST, HIGHEST = 8, 1, 15  # counts
 UP_X, DOWN_X, UP_Y, DOWN_Y = 1, 2, 4, 8  # outputs of the ring memory
 MEMORY_ENTRIES = 512  # four bits of each count, and the direction
-SAMPLES_PER_INTERVAL = 8
-_BLOCK_INTERVALS = 4096
+SAMPLES_PER_INTERVAL = 8  # of the motion: 1280 Hz at the usual oscillator
+_BLOCK_INTERVALS = 4096  # of the program in memory at a time
 _PRINTED_TICKS = {1: (32,), 2: (16, 48), 3: (10, 31, 52)}
 
 Counts = NDArray[np.int8]
@@ -247,9 +247,9 @@ def _outputs(change_x: int, change_y: int) -> int:
 @njit(cache=True)
 def _counted(count, up, down):  # type: ignore[no-untyped-def]
     """A counter after UP or DOWN; NAND gate 39 bars it above 15, OR gate 44 below 1."""
-    if up and not down and count < 15:
+    if up and not down and count < HIGHEST:
         return count + 1
-    if down and not up and count > 1:
+    if down and not up and count > LOWEST:
         return count - 1
     return count
 

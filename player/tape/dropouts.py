@@ -40,16 +40,14 @@ from morfax.motion.arrays import Array
 from morfax.motion.faults import Fault, LockFault, TapeFault
 from morfax.player.tape.discriminator import Discriminator, Phases
 from morfax.player.tape.predictor import recount
+from morfax.player.tape.standstill import ALLOWED_CYCLES, LEVEL_STEADY
 
-# of the level 20 ms ago: 0.2 of another signal turns the phase by 0.03 cycle
-LEVEL_STEADY = 0.8
 LEVEL_KEPT = 0.2  # of the level at standstill
-STEADY_S = 0.02
+STEADY_S = 0.02  # ago: the level that a row is compared with
 SIDE_S = 0.006  # of sound tape on each side
 SIDE_ROWS = 36  # the same at 6 kHz
 LONGEST_S = 0.1  # a track that is away longer has ended
 COUNT_MARGIN = 0.1  # cycles, for noise
-BETWEEN_CYCLES = 0.05
 ROUGH_CYCLES = 0.04  # what is left of the parabola; 26 dB of noise leave 0.015
 
 
@@ -77,7 +75,7 @@ class Bridge:
     def certain(self) -> bool:
         """Whether only one number of whole cycles is possible, and the way between is known."""
         sure = self.reach < 1 - abs(self.off) - COUNT_MARGIN
-        return sure and self.between < BETWEEN_CYCLES and self.misfit < ROUGH_CYCLES
+        return sure and self.between < ALLOWED_CYCLES and self.misfit < ROUGH_CYCLES
 
 
 def side(cycles: Array, at: int) -> Side:
@@ -155,24 +153,18 @@ class Gaps:
     ) -> None:
         self._told = told  # whole cycles to add at a gap (row, axis); None: what is not certain is a fault
         self.doubtful: dict[tuple[int, int], Bridge] = {}
-        self._discriminator, self._rate_hz, self._place_mm, self._names = (
-            discriminator,
-            rate_hz,
-            place_mm,
-            names,
-        )
+        self._discriminator, self._rate_hz = discriminator, rate_hz
+        self._place_mm, self._names = place_mm, names
         self._levels, self._tracked = levels, levels.copy()
         self._acceleration = acceleration  # cycles/row²
         self._side = max(round(SIDE_S * rate_hz), 6)
         self._spread = -(-discriminator.filter_frames // (2 * discriminator.decimation))
-        self._rows: Phases | None = (
-            None  # from `side` rows before the first that is not yet given out
-        )
+        # from `side` rows before the first that is not yet given out
+        self._rows: Phases | None = None
         self._lost = np.zeros((0, len(levels)), bool)
         self._given: int | None = None  # the row up to which rows were given out
-        self.bridged: dict[
-            tuple[float, str], float
-        ] = {}  # tape time in s and axis: length in s
+        # tape time in s and axis: length in s
+        self.bridged: dict[tuple[float, str], float] = {}
 
     def feed(
         self, phases: Phases, *, last: bool = False

@@ -32,7 +32,8 @@ from morfax.motion.arrays import Array
 from morfax.motion.faults import LockFault, TapeFault
 from morfax.motion.motion import Motion
 from morfax.player.tape.dropouts import COUNT_MARGIN, Bridge
-from morfax.player.tape.playback import END_CYCLES, Playback, play
+from morfax.player.tape.playback import Playback, play
+from morfax.player.tape.track_order import END_CYCLES
 from morfax.recorder.tape.format import TapeFormat
 from morfax.recorder.tape.recording import Progress, Recording, record
 

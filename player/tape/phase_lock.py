@@ -52,11 +52,13 @@ from morfax.motion.ramp import positions_mm
 from morfax.player.monitor.monitor import FollowingLimit, learn_table
 
 TOLERANCE_CYCLES = 0.25  # of following: noise of the phase, and what a dropout leaves unknown
-TRIED_SPEEDS = 16
+TRIED_SPEEDS = 16  # points of the table of following errors, up to the top speed
 ADJUSTING_MM_S = 10.0  # how fast the machine creeps while the phase changer is turned
-SETTLING_S = 0.1
+SETTLING_S = (
+    0.1  # ten periods of the loop and more, after which a turned phase changer is at rest
+)
 BACK_S = 0.5e-3  # a third of the way in a period of 6 kHz
-STEPS_PER_PERIOD = 20.0
+STEPS_PER_PERIOD = 20.0  # of the natural frequency, at a low motion rate
 FEWEST_STEPS = 10.0  # per natural period
 POSITION, SPEED, DEMAND, LEAD, ERROR = range(5)  # columns of the state of an axis
 

@@ -34,11 +34,9 @@ from morfax.player.monitor.monitor import Supervised
 from morfax.player.tape.phase_lock import Drives, PhaseLock, following_limit
 from morfax.player.tape.reader import Reader
 from morfax.player.tape.setting import Setting
-from morfax.player.tape.track_order import found_order
+from morfax.player.tape.track_order import END_CYCLES, found_order
 from morfax.recorder.tape.pipe import Pipe, Samples
 from morfax.recorder.tape.tape import Tape, TapeFormat
-
-END_CYCLES = 0.25  # a cycle lost is four times as much, and a drive at rest stands a hundred times nearer
 
 
 def play(

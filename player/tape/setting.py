@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from morfax.player.tape.phase_lock import MOTORS, PhaseLock
 
 OVERRIDES = 0.1, 2.0  # what a transport of variable speed does
-LARGEST_ZERO_MM = 1000.0
+LARGEST_ZERO_MM = 1000.0  # half of the machine's travel to either side
 
 
 @dataclass(frozen=True, slots=True)

@@ -32,23 +32,27 @@ from morfax.player.tape.discriminator import Phases
 from morfax.recorder.tape.format import TapeFormat
 from morfax.recorder.tape.pickups import DEFAULT_PICK_UP, PICK_UPS
 
-STANDSTILL_S = 0.05
+STANDSTILL_S = (
+    0.05  # the patent has no figure; 300 rows at 6 kHz average noise of 40 dB to 6e-5 cycle
+)
 STANDSTILL_CYCLES = 0.25  # phase that moves more than this within the 50 ms moves on purpose
 SILENT_LEVEL = 1e-3  # -60 dB of full scale
 # of a track's power; 20 dB of noise leave 0.99, clipping to a square 0.81, white noise has 0.2
 CARRIER_SHARE = 0.9
-LEVEL_STEADY, LEVEL_LOST, FEWEST_STEADY_ROWS = (
-    0.8,
-    0.5,
-    48,
-)  # shares of the level; 8 ms at 6 kHz: a dropout, or no carrier
+# of the level: with a fifth of it from another signal the phase turns by 0.03 cycle
+LEVEL_STEADY = 0.8
+LEVEL_LOST = 0.5  # of the level: a dropout
+FEWEST_STEADY_ROWS = 48  # 8 ms at 6 kHz: a carrier with a dropout, and not a track without one
+ALLOWED_CYCLES = 0.05  # that any cause may turn a phase: 2.5 um at 20 cycles per mm
 # 1.31 and more of a sine with eight samples, 1.20 where two thirds of it are cut off
 LEAST_CREST = 1.24
 # RMS at standstill: five times as much is a twentieth of a cycle; 20 dB of noise make 0.0079
 UNSTEADY_CYCLES = 0.009
 REFERENCE_BAND = 0.1  # a tape's speed may be this much off
-SURPRISE_CYCLES = 0.25
-SPECTRUM_FRAMES = 16384
+SURPRISE_CYCLES = (
+    0.25  # half of the half cycle at which a phase would be counted as another turn
+)
+SPECTRUM_FRAMES = 16384  # 0.34 s at 48 kHz: lines of 2.9 Hz
 
 Float32s = NDArray[np.float32]
 Float64s = NDArray[np.float64]

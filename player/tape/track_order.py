@@ -27,6 +27,7 @@ from morfax.recorder.tape.tape import Tape, full_scale
 
 # of a tape that stands for so long nothing is known beforehand; the watch goes on
 SEARCHED_S = 20.0
+# a cycle lost is four times as much, and a drive at rest stands a hundred times nearer
 END_CYCLES = 0.25
 MOST_AXES = 6  # whose orders are gone through
 

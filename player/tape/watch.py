@@ -27,18 +27,17 @@ from morfax.motion.arrays import Array
 from morfax.motion.faults import Fault, LockFault, TapeFault
 from morfax.player.tape.band_filter import translating_taps
 from morfax.player.tape.discriminator import Frames, Phases
-from morfax.player.tape.standstill import Bearings, track_name
+from morfax.player.tape.standstill import ALLOWED_CYCLES, Bearings, track_name
 from morfax.recorder.tape.format import TapeFormat
 
 MOMENTS = 64  # in a block
 STEADIER = 4.0  # of the mean square, before another track is taken for the reference
 LEAST_MOTION_HZ = 8.0  # of track 1, RMS: 0.4 mm/s; 30 dB of noise leave 3
-FEWEST_MOMENTS = 64
+FEWEST_MOMENTS = 64  # one block, before the watch says anything
 MOVED = 2.0  # of the mean square at standstill: a track that moved against track 1
-LEAST_APART_HZ = 1.0
-SKEW_CYCLES = 0.05
+LEAST_APART_HZ = 1.0  # RMS: 0.05 mm/s, below which a track stands against track 1
 SHAKE_S = 0.096  # 576 rows at 6 kHz
-SHAKE_STRIDE = 4
+SHAKE_STRIDE = 4  # rows: the filter spans eight, so the rows between say little more
 # 26 dB of noise shake by 0.0033, and seldom by 0.0045; a corner shakes less than half of the window
 SHAKE_CYCLES = 0.0047
 # of full scale and of the carrier: below it noise may be the rounding of the samples
@@ -152,7 +151,7 @@ class Watch:
         rate_hz = self._format.motion_rate_hz
         stride = max(round(rate_hz * 0.002), 1)  # speeds over 2 ms, above the noise
         speed = np.abs(phases.cycles[stride:] - phases.cycles[:-stride]) * (rate_hz / stride)
-        wrong = speed * skew_s > SKEW_CYCLES
+        wrong = speed * skew_s > ALLOWED_CYCLES
         if not wrong.any():
             return None
         row, axis = (int(i) for i in np.argwhere(wrong)[0])
@@ -162,7 +161,7 @@ class Watch:
             f"{time_s:.3f} s, and its "
             f"track is {skew_s[axis] * 1e6:.0f} us off the reference: that is "
             f"{speed[row, axis] * skew_s[axis]:.2f} cycle, "
-            f"{SKEW_CYCLES:g} is allowed; copy the tape with the head set straight",
+            f"{ALLOWED_CYCLES:g} is allowed; copy the tape with the head set straight",
             axis=name,
             time_s=time_s,
             error_cycles=float(speed[row, axis] * skew_s[axis]),

@@ -46,8 +46,8 @@ from morfax.recorder.report import WrittenIntervals
 
 Words = NDArray[np.int64]
 
-TOLERANCE_MM = 0.002
-LONGEST_S, SHORTEST_S = 0.512, 0.004
+TOLERANCE_MM = 0.002  # four counts
+LONGEST_S, SHORTEST_S = 0.512, 0.004  # of the intervals tried, each half of the one before
 POINT_RATE_HZ = 4000.0  # nearly, of the interpolated points: the servo is as fast
 _NEIGHBOURS = 4  # places whose pieces are tried
 STRETCH = 1.1  # of the motion's own time

@@ -25,8 +25,8 @@ from morfax.motion.arrays import Array
 from morfax.motion.polyline import lengths_mm
 from morfax.recorder.gcode.pieces import SPACING_MM, Piece, curvature_per_mm
 
-ROUNDS = 20
-BREAK_RAD = 1e-4
+ROUNDS = 20  # of Levenberg and Marquardt; what has not settled by then is taken as it is
+BREAK_RAD = 1e-4  # a break that weighs as much as a place at the edge of the tolerance
 _STEP = 1e-7  # mm and rad, of the slopes by differences
 
 

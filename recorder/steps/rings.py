@@ -28,7 +28,7 @@ Vector = tuple[int, int]
 
 SAME, PREVIOUS, NEXT = 0b00, 0b01, 0b10  # figure 6, bits 2 and 1
 LARGEST = 7  # steps of an axis in an interval
-NOT_IN_A_RING = -1
+NOT_IN_A_RING = -1  # no command leads there
 
 _OCTANTS: dict[int, tuple[Vector, ...]] = {
     2: ((2, 0), (2, 1)),

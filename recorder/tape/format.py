@@ -29,7 +29,7 @@ from morfax.recorder.tape.pickups import DEFAULT_PICK_UP, PICK_UPS, Sensor
 VERSION = 2  # the latest; version 1 has no entry `pickup`
 LARGEST_TEXT_BYTES = 2000  # libsndfile 1.2 reads no text chunk of a WAV from 2048 bytes on
 LARGEST_DEVIATION = 1.0 / 3.0  # of the reference
-_MOST_AXES = 15
+_MOST_AXES = 15  # with the reference sixteen tracks; chosen here
 
 _AGAIN = "record the tape again"
 

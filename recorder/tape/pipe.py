@@ -28,7 +28,7 @@ from morfax.recorder.tape.carrier import Frames
 from morfax.recorder.tape.format import TapeFormat, columns_of, is_format_text
 from morfax.recorder.tape.stated import unnamed
 
-PIPE_FRAMES = 65536
+PIPE_FRAMES = 65536  # 1.4 s at 48 kHz
 LARGEST_CHUNK_BYTES = 1 << 20  # of a header: more is no tape
 _PCM, _FLOAT, _EXTENSIBLE = 1, 3, 0xFFFE
 

@@ -32,7 +32,7 @@ LARGEST_RIFF_BYTES = (
 # in an RF64: see ds64; in a plain WAV written through a pipe: up to the end
 _UNKNOWN = 0xFFFFFFFF
 _EXTENSIBLE = b"\xfe\xff"
-_SEARCHED_BYTES = 65536
+_SEARCHED_BYTES = 65536  # of a header
 
 
 @dataclass(frozen=True, slots=True)

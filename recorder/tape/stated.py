@@ -17,12 +17,11 @@ from typing import Any
 import soundfile
 
 from morfax.motion.faults import TapeFault
+from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.recorder.tape.format import LARGEST_TEXT_BYTES, TapeFormat, is_format_text
 from morfax.recorder.tape.spool import sidecar
 
 _UNNAMED_AXES = ("x", "y", "z", "a", "b", "c", "u", "v", "w")
-# of a tape without a format, as nearly as a whole number of frames allows
-_MOTION_RATE_HZ = 6000.0
 _EXAMPLES = {
     "reference_hz": "--reference-frequency 6kHz",
     "cycles_per_mm": "--cycles-per-mm 20",
@@ -88,7 +87,7 @@ def unnamed(sample_rate_hz: int, tracks: int, given: dict[str, Any]) -> TapeForm
         sample_rate_hz=sample_rate_hz,
         axes=_UNNAMED_AXES[: tracks - 1],
         dwell_s=0.0,
-        samples_per_motion=max(2, round(sample_rate_hz / _MOTION_RATE_HZ)),
+        samples_per_motion=max(2, round(sample_rate_hz / MOTION_RATE_HZ)),
         **given,
     )
 

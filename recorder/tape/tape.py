@@ -26,8 +26,8 @@ from morfax.recorder.tape.stated import format_of, started, text_of
 
 __all__ = ["Recording", "Tape", "TapeFormat", "record"]
 
-BLOCK_FRAMES = 65536
-_FEWEST_TRACKS = 3
+BLOCK_FRAMES = 65536  # 1.4 s at 48 kHz, a megabyte of four tracks
+_FEWEST_TRACKS = 3  # reference, X, Y
 _INT16_STEP = np.float32(1 / 32768)  # full scale 1
 Stored = NDArray[np.float32 | np.int16]
 

@@ -12,15 +12,12 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-MOST_FLUTTER = (
-    0.05  # of wow, flutter and scrape together: the transport reads ahead for no more
-)
+# of wow, flutter and scrape together: the transport reads ahead for no more
+MOST_FLUTTER = 0.05
 LONGEST_TURN_S = 10.0  # of the reel; print-through holds one turn in memory
 LARGEST_RATE_HZ = 2**31 - 1  # of a header
-LEAST_SPEED, LARGEST_SPEED = (
-    -0.9,
-    9.0,
-)  # error of the speed: a tape at a tenth, or at ten times its speed
+# error of the speed: a tape at a tenth, or at ten times its speed
+LEAST_SPEED, LARGEST_SPEED = -0.9, 9.0
 
 
 @dataclass(frozen=True, slots=True)

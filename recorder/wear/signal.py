@@ -24,8 +24,8 @@ from scipy.signal import butter, sosfilt
 from morfax.motion.arrays import Array
 from morfax.recorder.wear.timebase import Tones
 
-FLANK_S = 1e-4
-UNEVEN_HZ = (0.2, 8.0)
+FLANK_S = 1e-4  # of a dropout
+UNEVEN_HZ = (0.2, 8.0)  # of the tones of the level
 SPREAD = 0.5  # of the logarithm of a dropout's length
 
 

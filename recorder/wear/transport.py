@@ -55,7 +55,7 @@ from morfax.recorder.wear.timebase import (
     Tones,
 )
 
-BLOCK_FRAMES = 32768
+BLOCK_FRAMES = 32768  # 0.7 s at 48 kHz
 END_FRAMES = 1e-3  # rounding of a place at the very end
 
 Frames = NDArray[np.float32]
