@@ -253,7 +253,7 @@ def corner_figure() -> plt.Figure:
                 *stretch.T,
                 color=ORANGE,
                 lw=2.5,
-                label="course through the knot" if k == 0 else None,
+                label="course through the junction" if k == 0 else None,
             )
         axes.plot(*done.positions_mm.T, color=RED, lw=0.9, label="motion of the axis")
         axes.plot(*vertex, "+", color="black", markersize=12, label="the corner as drawn")
@@ -265,18 +265,18 @@ def corner_figure() -> plt.Figure:
 
 
 def ride_figure() -> plt.Figure:
-    """A ride: another line comes close, runs along, and leaves again."""
+    """Edge following: another line comes close, runs along, and leaves again."""
     x = np.linspace(0, 24, 400)
     own = np.column_stack([x, np.zeros_like(x)])
     other = np.column_stack([x, 0.3 + 1.6 * np.clip(np.abs(x - 12) - 2.5, 0, None) ** 2 / 12])
     drawing, by = inked(own, other)
     run = put_head(drawing, by + np.array([1.5, 0]))
-    with listening(planner, "follow_edge") as rides:
+    with listening(planner, "follow_edge") as runs:
         done = run.follow(40.0)
-    incoming, ride = next((words[1], ride) for words, ride in rides if ride is not None)
+    incoming, felt = next((words[1], felt) for words, felt in runs if felt is not None)
     figure, axes = plt.subplots(figsize=(13, 4.2))
     ground(axes, drawing, about(by + np.array([12, 0.5]), 9, 2.2))
-    seen = ride.seen[:, :2]
+    seen = felt.seen[:, :2]
     step = np.gradient(seen, axis=0)
     right = (
         np.column_stack([step[:, 1], -step[:, 0]]) / np.hypot(*step.T)[:, None]
@@ -294,7 +294,7 @@ def ride_figure() -> plt.Figure:
     axes.plot(*done.positions_mm.T, color=RED, lw=0.9, label="motion of the axis")
     axes.plot(*(own + by).T, ":", color="black", lw=0.8, label="the line as drawn")
     off = np.abs(done.positions_mm[:, 1] - by[1]).max() * 1000
-    axes.set_title(f"riding past a line that touches: {off:.0f} µm off at most")
+    axes.set_title(f"followed by one edge past a line that touches: {off:.0f} µm off at most")
     axes.legend(fontsize=7, loc="upper center", ncol=3)
     figure.tight_layout()
     return figure

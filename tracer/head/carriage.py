@@ -28,9 +28,8 @@ from morfax.tracer.sensing.view import View
 
 CHUNK = 6000  # samples that the kernel follows before it reports: a second at the motion rate
 SETTLE_LAGS = 7  # a stop lasts this many lags of the drives: 1/1000 of the last speed is left
-FELT_ENOUGH = (
-    0.5  # of the lead: what was felt of a leg this far ahead tells where the cell will see it
-)
+# of the lead: what was felt of a leg this far ahead tells where the cell will see it
+FELT_ENOUGH = 0.5
 SPARE = 1000  # samples beside those that a course takes at the slowest
 
 

@@ -26,9 +26,8 @@ from morfax.motion.curves import SPACING_MM, hermite
 from morfax.tracer.sensing.leg import Leg, centre_at
 from morfax.tracer.sensing.view import View
 
-FELT_LEGS = (
-    0.3  # of a leg's length, to both sides: what a place on a felt line is averaged over
-)
+# of a leg's length, to both sides: what a place on a felt line is averaged over
+FELT_LEGS = 0.3
 NODES = 3  # within that length
 LEFT_LEGS = 0.55  # of a leg's length: less of a felt line is too little to tell a corner by
 ONTO_MM = 0.2  # the shortest way onto the incoming leg's line, unless half the way to the limit is less

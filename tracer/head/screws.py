@@ -17,9 +17,8 @@ from numba import njit
 
 from morfax.motion.drive import drive_step
 
-SLOWEST = (
-    0.02  # of the tracing speed: a head that starts from rest gets away within a few periods
-)
+# of the tracing speed: a head that starts from rest gets away within a few periods
+SLOWEST = 0.02
 
 
 @njit(cache=True, inline="always")

@@ -36,9 +36,8 @@ SWING_ALONG = 0.1  # of the amplitude: lengthwise half-axis of the eccentric pin
 GUARD_MM, GUARD_PX = 0.17, 2  # from the line's edge to a guard cell beside it
 GUARD_AHEAD_MM, GUARD_AHEAD_PX = 0.15, 1.5  # from the swinging cell to the guard cells
 LOOK_AHEAD_MM = 1.0  # from the swinging cell to cell 102
-TIGHTEST_RAD = (
-    0.23  # that a line may turn within half the window: a parabola still follows that
-)
+# that a line may turn within half the window: a parabola still follows that
+TIGHTEST_RAD = 0.23
 LEAST_SWEEP_PERIODS = 8  # fewer tell no fundamental
 
 CALIBRATED_ASIDE = 0.1  # of the line's width: the fundamental's slope is measured between these

@@ -38,10 +38,8 @@ PASSES = math.radians(12)  # two legs within this of one line are a line that pa
 BESIDE = 0.35  # of the width: they lie on one line
 # widths ahead where a line is sought that turns back to a side: at first its ink runs along with the way in
 SIDEWAYS_WIDTHS = (0.0, 1.0, 2.0)
-OVERRUN_MM, OVERRUN_WIDTHS = (
-    1.5,
-    2.0,
-)  # a lead line may be drawn so far beyond the contour's edge
+# a lead line may be drawn so far beyond the contour's edge
+OVERRUN_MM, OVERRUN_WIDTHS = 1.5, 2.0
 REACH_MM, REACH_WIDTHS = 2.0, 6.0  # how far ahead the ink's end is sought
 LOOKS = 3  # about a place, and then about the vertex found there
 THERE = 0.3  # of the width: the rings stood about the vertex

@@ -38,10 +38,8 @@ FARTHEST_MM = 40.0
 WELL_WITHIN = 10  # stations from a leg's clean end: both edges are clean there
 CHORD = 5  # stations that a heading is taken over
 TIP = math.radians(150)  # a corner that turns by more is a tip
-REGAINED_MM, REGAINED = (
-    1.5,
-    6,
-)  # so much of both edges, or so many stations: the line is by itself again
+# after this much of both edges, or as many stations, the line is by itself again
+REGAINED_MM, REGAINED = 1.5, 6
 BESIDE = 4.0  # widths; ink that is beside the line for less is a corner or a crossing
 JUMP = 0.25  # of the width, from station to station: the far edge is no longer the same
 WIDE = 0.62  # of the width, from the middle to the far edge: ink beside the line
@@ -52,16 +50,12 @@ PASSED = np.array(
 )  # of the way clear of a vertex: a line that passes is seen there
 CLEAR_WIDTHS, CLEAR_ACROSS, LEAST_SINE = 1.5, 1.2, 0.1  # that way: beyond the other leg's ink
 FARTHEST_CLEAR = 4.0  # widths; if it is longer, the legs are too nearly in line to tell
-LIKE, CENTRED = (
-    0.2,
-    0.8,
-)  # of the width: by so much a line that passes may be wider, and off the leg's line
+# of the width: by so much a line that passes may be wider, and off the leg's line
+LIKE, CENTRED = 0.2, 0.8
 BEFORE, BEYOND = 0.5, 1.0  # widths that a vertex may move towards the legs, and away from them
 
-NEAR_EDGE, FAR_EDGE = (
-    0.2,
-    0.85,
-)  # of the width from the middle: where the edge that is followed may be
+# of the width from the middle: where the edge that is followed may be
+NEAR_EDGE, FAR_EDGE = 0.2, 0.85
 OFF, OFF_PX = 1 / 6, 0.2  # of the width, and pixels: farther off its place the edge is lost
 ACROSS = 3.0  # widths to which the other edge is looked for
 

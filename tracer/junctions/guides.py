@@ -19,9 +19,8 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 
-AGAIN_MM = (
-    4.0  # until it has come further than this, the head has not left a junction; by trial
-)
+# until it has come further than this, the head has not left a junction; by trial
+AGAIN_MM = 4.0
 BACK_MM = 0.05  # so near to the junction the head is back
 
 

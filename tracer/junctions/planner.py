@@ -36,7 +36,7 @@ from morfax.tracer.sensing.view import View
 
 # Chosen by trial on the test drawings.
 LEAST_GAP_PX = 2.5  # a scan can lose this much of a line
-FAINTER = 0.5  # a line that becomes lighter at once goes on with so much of its darkness
+FAINTER = 0.5  # of the level: a line may become lighter at once by half
 ACROSS = np.linspace(-0.5, 0.5, 7)  # of the width: where a faint line's ink is looked for
 SPECK_PX = 4.5  # between stations of a line that is clean but for a speck
 FAR_WIDTHS = 4.0  # ink beside the line for longer may be the line's own way back

@@ -37,25 +37,17 @@ from morfax.tracer.sensing.view import View
 CORNER = math.radians(20)  # a line that turns less within a few stations is smooth
 CHORD, SKIPPED = 7, 3  # stations of a chord, and between the chords and the corner
 LEANS = 3  # the last stations of a line lean towards what ended it
-FORK_CHORD, FORK_EVERY, FORK_ENDS = (
-    6,
-    4,
-    4,
-)  # stations: of a chord, between places, and after the last of them
-FORK_ASIDE, FORK_BEYOND = (
-    0.9,
-    0.8,
-)  # widths: the felt line has left the straight one, and ink goes on beyond
+# stations: of a chord, between places, and after the last of them
+FORK_CHORD, FORK_EVERY, FORK_ENDS = 6, 4, 4
+# widths: the felt line has left the straight one, and ink goes on beyond
+FORK_ASIDE, FORK_BEYOND = 0.9, 0.8
 FORK_PLACES = 12  # of ink, all the way
 
 BEGIN = 0.3  # of the width: the first ring
 FARTHEST_MM, FARTHEST_WIDTHS = 5.0, 10.0  # rings do not grow beyond the larger of these
 CLEAN_RINGS = 3  # on which an arc has the line's width: a leg
-NARROWEST, WIDEST, WIDEST_RAD = (
-    0.5,
-    1.45,
-    1.2,
-)  # of the width, and half the arc: as wide as the line
+# of the width, and half the arc: as wide as the line
+NARROWEST, WIDEST, WIDEST_RAD = 0.5, 1.45, 1.2
 MORE_LEGS = 0.5  # of a leg's length: rings grow on by this after a leg was found
 
 

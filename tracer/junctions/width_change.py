@@ -37,10 +37,8 @@ PENS = (2.0, 0.45)  # with a ring's tolerance each, from a quarter of the width 
 WIDEST, NARROWEST = 3.5, 0.25  # straight ahead
 ALIKE = 0.1  # no other pen
 STEP = 0.2  # another pen, and no swelling of the line
-STEADY_WIDTHS, STEADY = (
-    8.0,
-    0.06,
-)  # so long and so evenly: two lines that run together do not stay so
+# so long and so evenly: two lines that run together do not stay so
+STEADY_WIDTHS, STEADY = 8.0, 0.06
 AHEAD_WIDTHS, AHEAD_STEP = 4.0, 0.5  # as far, and in such steps, the other line is looked for
 FAR_LEGS = 2.0  # the vertex lies further off than at a corner of one width
 ASIDE = 0.4  # of what a line beside it would set the middle off: it is in line

@@ -47,11 +47,8 @@ MOST_IMPROVED = 4  # plain redrawings
 MOST_SETTLED = 4  # rough ones
 LEFT_OVER = 0.4  # of the line's darkness: ink that is not drawn
 PLAN_EVERY = 4  # of the places of a stretch, 20 um apart
-ALL, SOME, FEW = (
-    12,
-    4,
-    3,
-)  # rounds in which vertices settle: at last, of a plain redrawing, of a try
+# rounds in which vertices settle: at last, of a plain redrawing, of a try
+ALL, SOME, FEW = 12, 4, 3
 LEG_MM = np.linspace(0, 1.2, 7)  # of each leg is drawn
 NOWHERE_MM = 1e3  # from all that is drawn
 FARTHEST_MEETING_MM = 5.0  # legs that meet further ahead do not meet within a tangle

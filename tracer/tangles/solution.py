@@ -30,26 +30,19 @@ from morfax.tracer.tangles.strands import as_drawn, aside_mm, same_line, stretch
 
 # Misfits, unless said otherwise; chosen by trial on the test drawings.
 CLEAR = 0.25  # up to which a redrawing explains the ink
-LEAST_CLEAR, BETTER = (
-    1.0,
-    0.25,
-)  # up to this for two legs far apart, if so much better than the plan
+# a way between two legs far apart may leave this, if it is better than the plan by such a share
+LEAST_CLEAR, BETTER = 1.0, 0.25
 FEW = 2.5  # vertices: no more for that, if the plan leads there too
-TWICE, LEAST_MISFIT = (
-    2.0,
-    0.02,
-)  # one explains the ink as well as another: so many times its misfit, and more
+# one explains the ink as well as another: so many times its misfit, and more
+TWICE, LEAST_MISFIT = 2.0, 0.02
 DOUBTFUL = 0.08  # straight on stands unless the ink tells against it by more
 AS_GOOD = 0.05  # of a plan that needs no other to be compared with
 WELL_MM2 = 0.015  # area of wrong ink in a redrawing that explains all of it
-BLOT_VERTICES, BLOT_WIDTHS = (
-    4.5,
-    4.0,
-)  # more vertices that reach no farther, and leave ink, are a scribble
+# more vertices that reach no farther, and leave ink, are a scribble
+BLOT_VERTICES, BLOT_WIDTHS = 4.5, 4.0
 ROUGH_WIDTHS = 0.6  # to and fro within the line's own ink: that is rough
-MARK_AS_GOOD = (
-    1.3  # times the misfit of a redrawing: a tick in its place explains the ink as well
-)
+# times the misfit of a redrawing: a tick in its place explains the ink as well
+MARK_AS_GOOD = 1.3
 CROSSES_RAD = math.radians(25)  # a line that bends less goes straight on
 
 

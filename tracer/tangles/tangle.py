@@ -32,16 +32,11 @@ Flags = NDArray[np.bool_]
 REACH_MM, REACH_WIDTHS = 5.0, 10.0  # the wave runs no farther than the larger of these
 STUB_WIDTHS, STUB_MM = 3.0, 1.5  # ink that ends sooner than either is a tip
 BEGIN_WIDTHS = 0.6  # from the start: a leg begins no nearer
-LEAST_BROAD, MOST_BROAD, BROAD_FRONTS = (
-    0.6,
-    1.4,
-    3,
-)  # of the line's width, as a mean of so many fronts
+# of the line's width, as a mean of so many fronts
+LEAST_BROAD, MOST_BROAD, BROAD_FRONTS = 0.6, 1.4, 3
 LEAST_LIKE, MOST_LIKE = 0.75, 1.25  # of the line's width: a leg of it
-TAPERED, TAPERED_STATIONS = (
-    0.94,
-    12,
-)  # the far half of so many stations, in widths of the near half
+# the far half of so many stations, in widths of the near half
+TAPERED, TAPERED_STATIONS = 0.94, 12
 CLEAN_FRONTS = 4  # as broad as the line, one after the other
 MOST_PLACES = 700  # enough to place a vertex within 10 um
 ABOUT_MM, ABOUT_PX = 0.25, 2  # of paper about the ink belongs to the tangle

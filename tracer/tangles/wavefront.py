@@ -32,15 +32,10 @@ STEP_MM, STEP_PX = 0.1, 1.5  # how far the wave runs from front to front, at lea
 LEAST_PX = 1e-6  # a distance is lowered by no less
 
 OPEN, STARTS = 1, 2  # of ink: where the wave may run, and where it starts
-START_PX, START_ASIDE = (
-    1.5,
-    0.4,
-)  # the start: so far ahead, and half a width less a little to either side
-SHUT, SHUT_PX, SHUT_ASIDE = (
-    2.0,
-    2.0,
-    0.9,
-)  # widths, pixels behind and widths aside of the start: shut off
+# the start: so far ahead, and half a width less a little to either side
+START_PX, START_ASIDE = 1.5, 0.4
+# widths, pixels behind and widths aside of the start: shut off
+SHUT, SHUT_PX, SHUT_ASIDE = 2.0, 2.0, 0.9
 MARGIN_PX = 4  # of the window beyond the reach
 RECENT = 64  # links among which a pair is looked for: those of one row's neighbours
 

@@ -150,14 +150,16 @@ def test_a_turning_head_puts_places_where_its_cell_was_in_the_middle_of_the_swee
     state.turn_rad_s = turn_rad_s
     half = tuning.sweep_periods // 2
     for k in range(tuning.sweep_periods):
-        if k == half:
+        if k in (half - 1, half):
             state.x_mm += (
-                1.0  # the axis leaps after the middle: only its place in the middle counts
+                1.0  # the axis leaps before and after the middle: its place between counts
             )
         kernel._swing(white(0.5), state, tuning)
     kernel._detect(state, tuning)
     was = -turn_rad_s * half * tuning.period_s
-    place = PLACE + tuning.lead_mm * np.array([math.cos(was), math.sin(was)])
+    place = (
+        PLACE + np.array([1.0, 0.0]) + tuning.lead_mm * np.array([math.cos(was), math.sin(was)])
+    )
     aside = state.middle_mm * np.array([-math.sin(was), math.cos(was)])
     assert state.drum_mm[0] == pytest.approx(place + aside, abs=1e-6 * UM)
 

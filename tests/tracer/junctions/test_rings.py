@@ -1,4 +1,4 @@
-"""Knots: what is felt of legs, where they meet, where ink ends, against geometry that is known."""
+"""Rings about a junction: what is felt of legs, where they meet, where ink ends, against geometry that is known."""
 
 from __future__ import annotations
 
@@ -217,7 +217,7 @@ def test_a_speck_of_paper_on_a_thin_line_is_not_its_end(pixels: int) -> None:
 
 
 def legs_seen(drawing: Drawing, centre: tuple[float, float], trail: Array) -> list[float]:
-    """Headings of the legs that leave a knot, degrees -1..359, in order; each leg must lie on its line."""
+    """Headings of the legs that leave a junction, degrees -1..359, in order; each leg must lie on its line."""
     legs = legs_around(view(drawing), np.array(centre), trail)
     for leg in legs:
         aside = (leg.end_mm - centre) @ [-math.sin(leg.heading_rad), math.cos(leg.heading_rad)]
@@ -257,7 +257,7 @@ def test_the_end_of_a_line_has_no_legs() -> None:
 
 
 def test_a_line_close_by_is_no_leg() -> None:
-    """Its ink is on the rings, but not joined to the knot's."""
+    """Its ink is on the rings, but not joined to the junction's."""
     drawing = inked(polyline((4, 10), CENTRE, (10, 16)), polyline((11, 7), (11, 16)))
     assert legs_seen(drawing, CENTRE, WEST) == pytest.approx([90], abs=0.5)
 
