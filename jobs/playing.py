@@ -131,6 +131,8 @@ class Playing:
                 f"{self.file.name} has its tracks in another order; its end tells that it is --tracks "
                 f"{tracks}"
             )
+        for note in playback.notes:
+            listener.note(note)
         met: list[Fault] = []
         motion = _until_fault(playback, met)
         what = f"playing {self.file.name}"

@@ -41,11 +41,8 @@ OVERRIDE_BITS = 10  # of the override; chosen here
 FEED_EIGHTHS = 7  # a feed pulse enters stages 1, 2 and 3
 GREATEST, MIDDLE, SMALLEST = 20, 8, 6  # eighths
 EIGHTH = 1024  # units of the counter
-BLOCKED, EVERY, FOURTH = (
-    240 * EIGHTH,
-    64 * EIGHTH,
-    32 * EIGHTH,
-)  # from here on stages 5 to 8 are set; 7 or 8; 6
+# from here on stages 5 to 8 are set; 7 or 8; 6
+BLOCKED, EVERY, FOURTH = 240 * EIGHTH, 64 * EIGHTH, 32 * EIGHTH
 
 
 def feed_number(pulses_per_s: float, recirculations_hz: float) -> int:

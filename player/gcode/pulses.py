@@ -70,9 +70,8 @@ class PulseControl:
         That is its lag, and at speed what the motor's current takes to bring it there.
         """
         lag_s, most_mm_s2 = 1 / self.servo.gain_per_s, self.servo.drive.acceleration_mm_s2
-        speeds = np.linspace(
-            0, self.recirculations_hz * self.servo.pulse_mm, 17
-        )  # a pulse in each recirculation
+        # a pulse in each recirculation
+        speeds = np.linspace(0, self.recirculations_hz * self.servo.pulse_mm, 17)
         errors_mm = lag_s * speeds + speeds**2 / (2 * most_mm_s2)
         points = list(zip(speeds.tolist(), errors_mm.tolist(), strict=True))
         return FollowingLimit.table(points, 0.05 + 4 * self.servo.pulse_mm, settle_s=2 * lag_s)

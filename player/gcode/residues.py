@@ -52,15 +52,8 @@ from morfax.player.gcode.feed_control import (
 
 AXES = 3
 LINE, CLOCKWISE, COUNTER_CLOCKWISE = 0, -1, 1
-_POSITION, _RESIDUE, _RATIO, _COUNTER, _RECIRCULATION, _FED, _SIZE = (
-    0,
-    3,
-    6,
-    7,
-    8,
-    9,
-    10,
-)  # the state's registers
+# the state's registers
+_POSITION, _RESIDUE, _RATIO, _COUNTER, _RECIRCULATION, _FED, _SIZE = 0, 3, 6, 7, 8, 9, 10
 AT_ONCE = 65536  # recirculations
 
 Counts = NDArray[np.int64]

@@ -162,9 +162,8 @@ class _Reader:
         """Read a line."""
         if "(" in text or ";" in text:
             text = _COMMENT.sub("", text)
-        parts = _WORD.split(
-            "".join(text.split())
-        )  # what stands between words, a letter, a number, and so on
+        # what stands between words, a letter, a number, and so on
+        parts = _WORD.split("".join(text.split()))
         if any(parts[::3]):
             parts = self._second_look("".join(parts))
         if len(parts) > 1:
@@ -196,9 +195,8 @@ class _Reader:
             self._set_modes(groups)
             dwell, stop = "dwell" in groups, groups.get("stop", -1)
             if _BLENDING in groups:
-                values.pop(
-                    "P", None
-                )  # how far a control may round corners; this one rounds none
+                # how far a control may round corners; this one rounds none
+                values.pop("P", None)
         elif "G" in values:  # nearly all lines come here
             self.kind = _KINDS[values["G"]]
         self._move(values, dwell)

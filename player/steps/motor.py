@@ -69,9 +69,8 @@ class Motors:
 
     def __init__(self, axes: int, interval_s: float, motor: Motor | None = None) -> None:
         self._most, self._interval_s = (motor or Motor()).most(interval_s), interval_s
-        self._state = np.zeros(
-            (axes, 3)
-        )  # steps of the last interval, all steps (with what broken ones leave), pulses
+        # steps of the last interval, all steps (with what broken ones leave), pulses
+        self._state = np.zeros((axes, 3))
         self.conditions: Sequence[MotorCondition] = [SOUND] * axes
 
     def run(

@@ -95,9 +95,8 @@ class Discriminator:
         self.filter_frames = len(translating_taps(sample_rate_hz, reference_hz, decimation)[0])
         self._filter = branches(sample_rate_hz, reference_hz, decimation, GROUP)
         self._half = self.filter_frames // 2
-        self._reach = (
-            2 * self._half // decimation
-        )  # rows that the filter reaches beyond its first
+        # rows that the filter reaches beyond its first
+        self._reach = 2 * self._half // decimation
         self.gains = predictor_gains(sample_rate_hz / decimation)
         self.state = np.full((tracks - 1, 3), np.nan)
         self._tail: Frames = np.zeros((0, tracks), np.float32)

@@ -54,9 +54,8 @@ from morfax.player.monitor.monitor import FollowingLimit, learn_table
 TOLERANCE_CYCLES = 0.25  # of following: noise of the phase, and what a dropout leaves unknown
 TRIED_SPEEDS = 16  # points of the table of following errors, up to the top speed
 ADJUSTING_MM_S = 10.0  # how fast the machine creeps while the phase changer is turned
-SETTLING_S = (
-    0.1  # ten periods of the loop and more, after which a turned phase changer is at rest
-)
+# 25 periods of the usual loop, after which a turned phase changer is at rest
+SETTLING_S = 0.1
 BACK_S = 0.5e-3  # a third of the way in a period of 6 kHz
 STEPS_PER_PERIOD = 20.0  # of the natural frequency, at a low motion rate
 FEWEST_STEPS = 10.0  # per natural period
@@ -224,9 +223,8 @@ def _follow(cycles, scale, network, drive, conditions, state, moved_mm):  # type
     """Step all axes through a block; the rows done before an error was out of range."""
     mm_per_cycle, range_mm, dt_s, back = scale
     gain, zero, lead_zero, lead_pole = network
-    reach = (
-        drive[1] / drive[0]
-    )  # mm/s that a demand may lie off the speed before the current is at its limit
+    # mm/s that a demand may lie off the speed before the current is at its limit
+    reach = drive[1] / drive[0]
     top = drive[2]
     for row in range(len(cycles)):
         for axis in range(len(state)):
@@ -238,14 +236,12 @@ def _follow(cycles, scale, network, drive, conditions, state, moved_mm):  # type
                 return row
             lead_now = lead_pole * lead + now - lead_zero * error  # amplifier 161
             demand += gain * (lead_now - zero * lead)  # integrator 159
-            given = min(
-                max(demand, speed - reach), speed + reach
-            )  # what the motor's current can answer,
+            # what the motor can answer: its current,
+            given = min(max(demand, speed - reach), speed + reach)
             given = min(max(given, -top), top)  # and its speed
             demand += back * (given - demand)
-            speed_now = conditioned_step(
-                speed, given, drive[0], drive[1], conditions[axis]
-            )  # motor 163, tacho
+            # motor 163, tacho
+            speed_now = conditioned_step(speed, given, drive[0], drive[1], conditions[axis])
             speed_now = min(max(speed_now, -top), top)
             state[axis, POSITION] = position + (speed + speed_now) / 2 * dt_s
             state[axis, SPEED], state[axis, DEMAND], state[axis, LEAD] = (

@@ -157,12 +157,10 @@ class Playback(Supervised):
         self.format, self.frames, self.setting = fmt, frames, setting
         self.rate_hz = fmt.motion_rate_hz * setting.override
         self.settings = setting.lock.suited_to(fmt.motion_rate_hz)
-        self._steps = math.ceil(
-            1 / setting.override
-        )  # of the loop to a row: it is no slower where the tape is
-        motors_mm_s2 = (
-            self.settings.drive.acceleration_mm_s2 / setting.override**2
-        )  # as it would be on the tape
+        # of the loop to a row: it is no slower where the tape is
+        self._steps = math.ceil(1 / setting.override)
+        # as it would be on the tape
+        motors_mm_s2 = self.settings.drive.acceleration_mm_s2 / setting.override**2
         self.acceleration_mm_s2 = (
             motors_mm_s2 if acceleration_mm_s2 is None else acceleration_mm_s2
         )

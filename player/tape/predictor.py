@@ -24,9 +24,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-PREDICTOR_HZ = (
-    120.0  # natural frequency; measured beside it: 7.6e-4 cycle RMS at 40 dB of noise
-)
+# natural frequency; measured beside it: 7.6e-4 cycle RMS at 40 dB of noise
+PREDICTOR_HZ = 120.0
 
 Float32s = NDArray[np.float32]
 Float64s = NDArray[np.float64]

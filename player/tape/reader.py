@@ -70,9 +70,8 @@ class Reader:
         )
         first_row = round(self._resume_at_s * rate_hz)
         with self._open_tape() as tape:
-            lead = min(
-                first_row, discriminator.filter_frames // fmt.samples_per_motion
-            )  # rows that the filter needs
+            # rows that the filter needs
+            lead = min(first_row, discriminator.filter_frames // fmt.samples_per_motion)
             blocks = iter(
                 tape.stored_blocks(BLOCK_FRAMES, (first_row - lead) * fmt.samples_per_motion)
             )

@@ -91,9 +91,8 @@ class Rehearsal:
         around = np.vstack([self._before, positions_mm])[: len(self._before) + row + 1, axis][
             -WITHIN_ROWS:
         ]
-        speeds = (
-            np.diff(around, prepend=around[:1]) * self._format.motion_rate_hz
-        )  # the first one stands
+        # the first one stands
+        speeds = np.diff(around, prepend=around[:1]) * self._format.motion_rate_hz
         by_mm_s = float(np.ptp(speeds))
         raise self._fault(
             f"changes its speed by {by_mm_s:.3g} mm/s at once, and a tape can be read up to "

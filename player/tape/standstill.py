@@ -32,9 +32,8 @@ from morfax.player.tape.discriminator import Phases
 from morfax.recorder.tape.format import TapeFormat
 from morfax.recorder.tape.pickups import DEFAULT_PICK_UP, PICK_UPS
 
-STANDSTILL_S = (
-    0.05  # the patent has no figure; 300 rows at 6 kHz average noise of 40 dB to 6e-5 cycle
-)
+# the patent has no figure; 300 rows at 6 kHz average noise of 40 dB to 6e-5 cycle
+STANDSTILL_S = 0.05
 STANDSTILL_CYCLES = 0.25  # phase that moves more than this within the 50 ms moves on purpose
 SILENT_LEVEL = 1e-3  # -60 dB of full scale
 # of a track's power; 20 dB of noise leave 0.99, clipping to a square 0.81, white noise has 0.2
@@ -49,9 +48,8 @@ LEAST_CREST = 1.24
 # RMS at standstill: five times as much is a twentieth of a cycle; 20 dB of noise make 0.0079
 UNSTEADY_CYCLES = 0.009
 REFERENCE_BAND = 0.1  # a tape's speed may be this much off
-SURPRISE_CYCLES = (
-    0.25  # half of the half cycle at which a phase would be counted as another turn
-)
+# half of the half cycle at which a phase would be counted as another turn
+SURPRISE_CYCLES = 0.25
 SPECTRUM_FRAMES = 16384  # 0.34 s at 48 kHz: lines of 2.9 Hz
 
 Float32s = NDArray[np.float32]
@@ -111,9 +109,8 @@ def take_bearings(frames: Float32s, phases: Phases, fmt: TapeFormat) -> Bearings
     rows = max(round(STANDSTILL_S * fmt.motion_rate_hz), 1)
     levels = phases.levels[:rows].astype(np.float64).mean(axis=0)
     for track in range(len(levels)):
-        sensor = (
-            PICK_UPS[DEFAULT_PICK_UP] if track == 0 else fmt.sensor
-        )  # the reference comes from its source, a sine
+        # the reference comes from its source, a sine
+        sensor = PICK_UPS[DEFAULT_PICK_UP] if track == 0 else fmt.sensor
         share = CARRIER_SHARE * sensor.fundamental_share(reference_hz, fmt.sample_rate_hz)
         _demand_no_dropout(track, phases.levels[:rows, track], still[:, track], share, fmt)
         if not sensor.flat:
@@ -124,9 +121,8 @@ def take_bearings(frames: Float32s, phases: Phases, fmt: TapeFormat) -> Bearings
         _demand_standstill(phases.cycles[:rows], names)
     standing = phases.cycles[: _standing(phases.cycles, zero, fmt, rows)]
     if len(standing) > rows:
-        off = (
-            standing - zero - np.round(standing - zero)
-        )  # a dropout may have cost whole cycles by now
+        # a dropout may have cost whole cycles by now
+        off = standing - zero - np.round(standing - zero)
         _demand_steady(off, names)
         zero = zero + np.median(off, axis=0)
     return Bearings(levels, zero, found_hz, names)
@@ -138,9 +134,8 @@ def _standing(cycles: Float64s, zero: Float64s, fmt: TapeFormat, least: int) -> 
     if len(stated) < least:
         return 0
     moved = (np.abs(stated - zero) > STANDSTILL_CYCLES).mean(axis=1)
-    steps = np.flatnonzero(
-        np.convolve(moved > 0, np.ones(least), "valid") == least
-    )  # longer than a dropout
+    # longer than a dropout
+    steps = np.flatnonzero(np.convolve(moved > 0, np.ones(least), "valid") == least)
     return (
         max(int(steps[0]) - least, 0) if len(steps) else len(stated)
     )  # an axis may have crept before it was seen
@@ -161,9 +156,8 @@ def _demand_standstill(cycles: Float64s, names: Sequence[str]) -> None:
 
 def _demand_steady(standing: Float64s, names: Sequence[str]) -> None:
     """Raise TapeFault for phases that swing too far at standstill for a certain position."""
-    swing = (
-        np.diff(np.percentile(standing, [2.3, 97.7], axis=0), axis=0)[0] / 4
-    )  # dropouts left out
+    # dropouts left out
+    swing = np.diff(np.percentile(standing, [2.3, 97.7], axis=0), axis=0)[0] / 4
     axis = int(np.argmax(swing))
     if not swing[axis] <= UNSTEADY_CYCLES:
         raise TapeFault(

@@ -55,9 +55,8 @@ class Watch:
         self._taps = re.astype(np.float64) + 1j * im
         self._still_hz = bearings.reference_hz
         self._sums, self._apart, self._moments = np.zeros(fmt.tracks), np.zeros(fmt.tracks), 0
-        self._noise: Array | None = (
-            None  # mean square of a frequency less that of track 1, at standstill
-        )
+        # mean square of a frequency less that of track 1, at standstill
+        self._noise: Array | None = None
 
     def wrong_reference(self, frames: Frames, time_s: float) -> TapeFault | None:
         """The fault of a track 1 that moves more than another; takes the frames of one block."""
@@ -126,9 +125,8 @@ class Watch:
         first = np.einsum("n,mnt->mt", self._taps, seen[:, :length])
         after = np.einsum("n,mnt->mt", self._taps, seen[:, step:])
         rate_hz, hz = self._format.sample_rate_hz / step, self._format.reference_hz
-        turned = (
-            np.angle(after * first.conj()) / (2 * np.pi) - hz / rate_hz
-        )  # the taps do not turn along
+        # the taps do not turn along
+        turned = np.angle(after * first.conj()) / (2 * np.pi) - hz / rate_hz
         return np.asarray(hz + (turned - np.round(turned)) * rate_hz)
 
     def first_fault(

@@ -230,9 +230,8 @@ def _spline(at: Array, places: Array, intervals: int) -> tuple[Array, Array]:
         inner = basis[:, 2:-2]
         wanted = inner.T @ (places - basis[:, rest] @ coefficients[rest])
         normal = (inner.T @ inner).tocsc()
-        normal.setdiag(
-            normal.diagonal() + 1e-9 * max(1.0, normal.diagonal().max())
-        )  # an interval may hold no place
+        # an interval may hold no place
+        normal.setdiag(normal.diagonal() + 1e-9 * max(1.0, normal.diagonal().max()))
         coefficients[2:-2] = spsolve(normal, wanted).reshape(-1, places.shape[1])
     spline = BSpline(knots, coefficients, 3)
     ends = np.arange(intervals + 1.0)

@@ -86,9 +86,8 @@ class Spline:
             -1, 2
         )  # of the joints; -1 is fixed
         of_halves = np.where(curved, 2 * n - 3 + np.cumsum(curved), -1)
-        self.columns = np.column_stack(
-            [columns[:-1], columns[1:], of_halves]
-        )  # of each segment's five numbers
+        # of each segment's five numbers
+        self.columns = np.column_stack([columns[:-1], columns[1:], of_halves])
 
     def laid(self, tolerance_mm: float) -> Chain | None:
         """The chain by least squares, the worst places weighted more where needed; None if none fits."""
@@ -168,9 +167,8 @@ class Spline:
             values.append(slope * weights / tolerance_mm)
         chords = np.diff(self.joints, axis=0)
         turn = np.column_stack([-chords[:, 1], chords[:, 0]]) / (chords**2).sum(axis=1)[:, None]
-        slopes = np.column_stack(
-            [-turn, turn, np.ones(len(turn))]
-        )  # of a chord's direction, and of half an angle
+        # of a chord's direction, and of half an angle
+        slopes = np.column_stack([-turn, turn, np.ones(len(turn))])
         for j in range(len(residuals) - n):
             after = (j + 1) % len(turn)
             for segment, sign in ((j, -1.0), (after, 1.0)):

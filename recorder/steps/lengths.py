@@ -104,9 +104,8 @@ def _traced_back(last: int, winner: int, book: _Book) -> tuple[Steps, Array]:
 @njit(cache=True)
 def _search(task, book):  # type: ignore[no-untyped-def]
     """Carry the beam on until a course stands at the end; its last level and its row, or -1."""
-    places, speeds, left, spacing, start, end, changes, table = (
-        task  # once: a tuple is slow in a loop
-    )
+    # once: a tuple is slow in a loop
+    places, speeds, left, spacing, start, end, changes, table = task
     parents, taken, off = book
     width = off.shape[1]
     beam, new = np.zeros((width, _COLUMNS), np.int64), np.zeros((width, _COLUMNS), np.int64)

@@ -70,9 +70,8 @@ class Carrier:
         self._start_mm = np.atleast_1d(np.asarray(start_mm, np.float64))
         self._held = np.empty((0, len(self._start_mm)))  # displacement in cycles
         self._periods = 0
-        lowest = (
-            0.5 * pick_up.reference_hz / pick_up.sample_rate_hz
-        )  # a track stays above two thirds of the reference
+        # a track stays above two thirds of the reference
+        lowest = 0.5 * pick_up.reference_hz / pick_up.sample_rate_hz
         self._harmonics = int((FADE_TO / lowest + 1) / 2)
 
     def frames(self, positions_mm: ArrayLike) -> Frames:
@@ -84,9 +83,8 @@ class Carrier:
             )
         cycles = (positions - self._start_mm) * self._pick_up.cycles_per_mm
         if not len(self._held):
-            cycles = np.vstack(
-                [cycles[:1], cycles]
-            )  # the screws stood at the first position before
+            # the screws stood at the first position before
+            cycles = np.vstack([cycles[:1], cycles])
         return self._synthesise(np.vstack([self._held, cycles]))
 
     def rest(self) -> Frames:
@@ -166,9 +164,8 @@ def _wave(cycles, frequency, amplitudes):  # type: ignore[no-untyped-def]
     """Sum of the odd harmonics at a phase; the frequency (over the sample rate) fades the high ones out."""
     fundamental = _sine(cycles)
     before, now = -fundamental, fundamental
-    twice_cosine = (
-        2.0 - 4.0 * fundamental * fundamental
-    )  # of the doubled phase; sin((n + 2) x) = 2 cos 2x sin nx - ...
+    # of the doubled phase; sin((n + 2) x) = 2 cos 2x sin nx - ...
+    twice_cosine = 2.0 - 4.0 * fundamental * fundamental
     wave = 0.0
     for k in range(len(amplitudes)):
         fade = ((2 * k + 1) * frequency - FADE_FROM) / (FADE_TO - FADE_FROM)

@@ -34,9 +34,8 @@ from numpy.typing import NDArray
 from morfax.motion.axis import LeadScrew
 
 GAP_SHARE = 0.25  # air gap over the pitch of the teeth
-DECAY = math.exp(
-    -2 * math.pi * GAP_SHARE
-)  # r: how much weaker the field of each further harmonic is
+# r: how much weaker the field of each further harmonic is
+DECAY = math.exp(-2 * math.pi * GAP_SHARE)
 SCALE_PITCH_MM = 0.1  # of a scale along the slide; chosen here
 
 _SCREW = LeadScrew(pitch_mm=5.0, sectors=100)

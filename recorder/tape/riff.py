@@ -26,9 +26,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
-LARGEST_RIFF_BYTES = (
-    2**32 - 2**16
-)  # a margin below 4 GiB for programs that count frames in whole pages
+# a margin below 4 GiB for programs that count frames in whole pages
+LARGEST_RIFF_BYTES = 2**32 - 2**16
 # in an RF64: see ds64; in a plain WAV written through a pipe: up to the end
 _UNKNOWN = 0xFFFFFFFF
 _EXTENSIBLE = b"\xfe\xff"

@@ -138,9 +138,8 @@ class Tape:
 
     def _read(self, frames: int, done: int) -> Stored:
         """The next block; raises TapeFault where the file ends early or cannot be decoded."""
-        kind = (
-            "int16" if self._sound.subtype == "PCM_16" else "float32"
-        )  # libsndfile is slow to make one of the other
+        # libsndfile is slow to make one of the other
+        kind = "int16" if self._sound.subtype == "PCM_16" else "float32"
         try:
             block: Stored = self._sound.read(frames, dtype=kind, always_2d=True)
         except soundfile.SoundFileError as error:

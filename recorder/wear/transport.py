@@ -183,9 +183,8 @@ class Deck:
             yield self._played(self._recorded(block))
         if self._print is not None:
             yield self._played(self._laid(self._print.rest()))
-        self._head.take(
-            np.zeros((64, self._tracks), np.float32)
-        )  # blank tape: the last frames' filter reaches there
+        # blank tape: the last frames' filter reaches there
+        self._head.take(np.zeros((64, self._tracks), np.float32))
         yield self._played(np.zeros((0, self._tracks), np.float32), last=True)
 
     def _recorded(self, frames: Frames) -> Frames:
@@ -209,9 +208,8 @@ class Deck:
     def _played(self, frames: Frames, last: bool = False) -> Frames:
         """The frames that the play head reads from the tape that has come by now."""
         self._head.take(frames)
-        reach, slow = (
-            (self._came, 0.99) if last else (self._head.reach, 1.01)
-        )  # flutter may be 1 % either way
+        # flutter may be 1 % either way
+        reach, slow = (self._came, 0.99) if last else (self._head.reach, 1.01)
         gone = (
             self.timebase.programme_s(np.array([self._went / self._rate_hz]))[0] * self._rate_hz
         )

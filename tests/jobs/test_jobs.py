@@ -148,6 +148,18 @@ def test_record_and_play(here: Path, path_file: Path) -> None:
     assert np.abs(played.xy_mm[-1] - drawn.xy_mm[-1]).max() < 1 * UM
 
 
+def test_a_program_without_a_check_sum_plays_with_a_note(here: Path, path_file: Path) -> None:
+    program = here / "circle.cubic"
+    worked(RecordJob(path_file, program))
+    _, listener = worked(PlayJob(program))
+    assert not [text for kind, text in listener.said if kind == "note" and "check sum" in text]
+    text = program.read_text(encoding="ascii")
+    program.write_text(text[: text.rindex(" crc32")] + "\n", encoding="ascii")
+    result, listener = worked(PlayJob(program))
+    assert result.fault is None
+    assert [text for kind, text in listener.said if kind == "note" and "check sum" in text]
+
+
 def test_a_playing_may_be_set(tape_file: Path) -> None:
     plain, _ = worked(PlayJob(tape_file))
     faster, _ = worked(PlayJob(tape_file, control=ControlSettings(feed_override=1.5)))

@@ -134,9 +134,8 @@ def test_a_broken_drive_is_found_in_time_with_its_state(
     assert abs(fault.demand_mm - fault.actual_mm) > fault.limit_mm
     assert fault.limit_mm < RIGS[name].wide_mm
     assert "X does not follow" in str(fault)
-    told_s = sum(
-        block.duration_s for block in blocks
-    )  # what was sound was given out, and no more
+    # what was sound was given out, and no more
+    told_s = sum(block.duration_s for block in blocks)
     assert told_s == pytest.approx(fault.time_s, abs=0.002)
 
 

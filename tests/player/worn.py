@@ -110,7 +110,6 @@ class Bench:
             (went - wanted)[ends],
             np.gradient(wanted, axis=0)[ends],
         )  # mm, and mm per row
-        late = np.clip(
-            (error * speed).sum() / max((speed**2).sum(), 1e-12), -0.6, 0.6
-        )  # of all axes: the tape's clock
+        # of all axes: the tape's clock
+        late = np.clip((error * speed).sum() / max((speed**2).sum(), 1e-12), -0.6, 0.6)
         return float(np.abs(error - late * speed).max() * 20), fault

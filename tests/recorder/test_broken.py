@@ -117,9 +117,8 @@ def test_kill_9_leaves_no_half_file(tmp_path: Path, after_s: float) -> None:
         if file.exists():
             with Tape.open(file) as tape:
                 assert tape.frames > 62 * 48000 * 0.98  # whole, whichever run it is from
-    record(
-        Motion(np.zeros((60, 3))), names[0], TapeFormat(dwell_s=0.01)
-    )  # the next run is not disturbed
+    # the next run is not disturbed
+    record(Motion(np.zeros((60, 3))), names[0], TapeFormat(dwell_s=0.01))
     assert soundfile.info(names[0]).frames == (60 + 120) * 8
 
 

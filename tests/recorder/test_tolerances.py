@@ -73,9 +73,8 @@ def test_a_cubic_program_keeps_its_tolerance(
 
 @pytest.mark.parametrize("tolerance_um", [5, 10, 30])
 def test_a_block_program_keeps_its_tolerance(tmp_path: FilePath, tolerance_um: float) -> None:
-    how = (
-        {} if tolerance_um == 10 else {"tolerance_mm": tolerance_um * UM}
-    )  # 10 um is the default
+    # 10 um is the default
+    how = {} if tolerance_um == 10 else {"tolerance_mm": tolerance_um * UM}
     record_blocks(waves(), tmp_path / "a.ngc", **how)
     run_mm = np.vstack(run_of(read_rs274(tmp_path / "a.ngc")))
     assert off_um(run_mm) <= tolerance_um + DRAWN_UM
@@ -83,9 +82,8 @@ def test_a_block_program_keeps_its_tolerance(tmp_path: FilePath, tolerance_um: f
 
 @pytest.mark.parametrize("tolerance_um", [6, 10, 25, 80])
 def test_a_step_program_keeps_its_tolerance(tmp_path: FilePath, tolerance_um: float) -> None:
-    how = (
-        {} if tolerance_um == 10 else {"tolerance_mm": tolerance_um * UM}
-    )  # one step of 10 um is the default
+    # one step of 10 um is the default
+    how = {} if tolerance_um == 10 else {"tolerance_mm": tolerance_um * UM}
     record_steps(waves(), tmp_path / "a.steps", **how)
     assert off_um(interval_ends_mm(tmp_path / "a.steps")) <= tolerance_um + COUNTED_UM
 

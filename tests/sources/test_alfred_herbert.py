@@ -76,9 +76,8 @@ def test_claim_2_each_increment_counts_two_while_the_speed_grows_and_one_while_i
     profile = count_ramp(1_000, [150])
     (up, rising), (constant, holding), (down, falling) = profile.pieces.tolist()
     assert (up, constant, down) == (UP, CONSTANT, DOWN)
-    assert (
-        -1_000 + 2 * (rising // 2) + holding // 2 == profile.count_then == 0
-    )  # lengths are in half increments
+    # lengths are in half increments
+    assert -1_000 + 2 * (rising // 2) + holding // 2 == profile.count_then == 0
     assert rising == falling  # at the same rate
     way = positions_mm([0.0], [30.0], 10.0)[:, 0]
     push = np.diff(way, 2) * MOTION_RATE_HZ**2

@@ -166,9 +166,8 @@ def test_claim_1_the_follower_goes_round_the_drawing_and_its_signal_tells_direct
     assert abs(turned[-1] - turned[0]) == pytest.approx(
         2 * math.pi, abs=0.01
     )  # progressively round, once
-    assert (
-        np.abs(np.hypot(*(loop - CENTRE_MM).T) - RADIUS_MM).max() < 0.02
-    )  # on the line of 0.5 mm
+    # on the line of 0.5 mm
+    assert np.abs(np.hypot(*(loop - CENTRE_MM).T) - RADIUS_MM).max() < 0.02
     hz = [(tape.hz(X, at_s), tape.speed_mm_s(X, at_s)) for at_s in round_the_contour(tape)]
     assert max(speed for _, speed in hz) > 9 and min(speed for _, speed in hz) < -9
     for found, speed in hz:
@@ -189,9 +188,8 @@ def test_claim_2_an_oscillating_cell_steers_and_the_tracks_lie_about_a_recorded_
         )[0]
         for aside_mm in (-0.3, -0.1, 0.1, 0.3)
     ]
-    assert (
-        sides[0] > sides[1] > 0.02 and sides[3] < sides[2] < -0.02
-    )  # the fundamental of its swing tells the side
+    # the fundamental of its swing tells the side
+    assert sides[0] > sides[1] > 0.02 and sides[3] < sides[2] < -0.02
     for aside_mm in (-0.2, 0.2):  # and turns the head back upon the line
         stance, _ = next(put_down(sheet, (15.0, 30.0), HISTORIC))
         carriage = Carriage(stance, HISTORIC, MOTION_RATE_HZ)
@@ -204,9 +202,8 @@ def test_claim_2_an_oscillating_cell_steers_and_the_tracks_lie_about_a_recorded_
         )
     for number in (X, Y):
         heard = [tape.hz(number, at_s) for at_s in round_the_contour(tape)]
-        assert (
-            min(heard) < REFERENCE_HZ - 180 and max(heard) > REFERENCE_HZ + 180
-        )  # 10 mm/s is 200 Hz
+        # 10 mm/s is 200 Hz
+        assert min(heard) < REFERENCE_HZ - 180 and max(heard) > REFERENCE_HZ + 180
     assert {round(tape.hz(REFERENCE, at_s)) for at_s in round_the_contour(tape)} == {6000}
 
 
@@ -270,9 +267,8 @@ def test_claim_6_the_reference_on_the_tape_drives_the_wheel_that_each_drive_is_f
         slow.comment = told.to_json()
         slow.write(frames)
     as_recorded, slower = thin(play(tape.file)), thin(play(tmp_path / "slow.wav"))
-    assert (
-        distance(slower, as_recorded).hausdorff_mm < 1 * UM
-    )  # carriers and reference are both 4 % lower
+    # carriers and reference are both 4 % lower
+    assert distance(slower, as_recorded).hausdorff_mm < 1 * UM
     assert slower.t_s[-1] == pytest.approx(as_recorded.t_s[-1] * 48 / 46, rel=1e-4)
     # the reference alone runs 0.1 % fast for two seconds: a wheel that turns so turns the screws
     warped = frames.copy()

@@ -322,9 +322,8 @@ def test_claim_15_a_count_of_feed_pulses_lets_the_interpolators_run() -> None:
     pulses = Interpolator().line((4_000, 0, 0), Feed(feed_number(6_000, RECIRCULATIONS_HZ)))
     first = int(np.flatnonzero(pulses[:, 0])[0])
     fed = count_feed(first + 1, feed_number(6_000, RECIRCULATIONS_HZ), override_number(1.0))
-    assert (
-        fed * FEED_EIGHTHS >= FOURTH // EIGHTH
-    )  # nothing moves before the count has reached stage 6
+    # nothing moves before the count has reached stage 6
+    assert fed * FEED_EIGHTHS >= FOURTH // EIGHTH
     assert held((20_000, 0, 0)) == pytest.approx(1.0, rel=0.005)
     assert held((20_000, 0, 0), override=0.5) == pytest.approx(0.5, rel=0.005)
 

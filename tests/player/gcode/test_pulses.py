@@ -116,18 +116,16 @@ def test_the_speed_is_held_within_what_the_weights_allow(axes: int) -> None:
         direction = np.r_[random.normal(size=axes), [0.0] * (3 - axes)]
         end = tuple(int(v) for v in np.rint(direction / np.linalg.norm(direction) * 15_000))
         speed = random.uniform(3_000, 16_000)
-        assert (
-            low - 0.005 < measured(end, speed) < high + 0.005
-        )  # half of 1 %: the counter fills at the start
+        # half of 1 %: the counter fills at the start
+        assert low - 0.005 < measured(end, speed) < high + 0.005
         assert measured(end, speed, true_norm=True) == pytest.approx(1.0, abs=0.005)
 
 
 @pytest.mark.parametrize("true_norm", [False, True])
 def test_the_speed_is_held_all_round_a_circle(true_norm: bool) -> None:
     """With the weights of the wrong axes the speed is up to 1.99 times the programmed one."""
-    low, high = (
-        (0.95, 1.005) if true_norm else (0.89, 0.99)
-    )  # measured 0.952 to 1.001, 0.891 to 0.984
+    # measured 0.952 to 1.001, 0.891 to 0.984
+    low, high = (0.95, 1.005) if true_norm else (0.89, 0.99)
     feed = Feed(feed_number(9_000, RECIRCULATIONS_HZ), true_norm=true_norm)
     for middle_deg in range(5, 360, 10):
         angles = np.radians([middle_deg - 4, middle_deg + 4])
@@ -229,9 +227,8 @@ def test_a_program_is_played_to_its_pulse() -> None:
     assert motion.duration_s == pytest.approx(run.duration_s, rel=0.15)
     assert (run.following_error_mm > 0).all()
     circle = motion.positions_mm[motion.positions_mm[:, 0] > 40.01, :2]
-    assert (
-        np.abs(np.hypot(*(circle - [45, 20]).T) - 5).max() < 5 * PULSE_MM
-    )  # 4 of the arc, 1 of the servo
+    # 4 of the arc, 1 of the servo
+    assert np.abs(np.hypot(*(circle - [45, 20]).T) - 5).max() < 5 * PULSE_MM
     assert circle.max(axis=0) == pytest.approx(
         [50, 25], abs=5 * PULSE_MM
     )  # a whole turn, in three arcs

@@ -217,6 +217,5 @@ def test_it_reads_fast() -> None:
     lines = ["G1 F600", *(f"G1 X{i % 977:.4f} Y{i % 1013:.4f}" for i in range(30_000)), "M2"]
     begun = time.perf_counter()
     assert len(parse_rs274(lines).moves) == 30_000
-    assert (
-        len(lines) / (time.perf_counter() - begun) > 20_000
-    )  # a fifth of what the benchmark asks for on a free machine
+    # a fifth of what the benchmark asks for on a free machine
+    assert len(lines) / (time.perf_counter() - begun) > 20_000

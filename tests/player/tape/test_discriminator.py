@@ -211,9 +211,8 @@ def test_the_arc_tangent_goes_all_the_way_round(kernel: Callable[..., None]) -> 
     parts = [part.astype(np.float32) for part in (axis.real, axis.imag, ref.real, ref.imag)]
     phase = np.empty(len(cycles))
     kernel(*parts, phase)
-    assert (
-        np.abs(phase - cycles).max() < 5e-8
-    )  # cycles: float32 parts, and 1e-8 of the polynomial
+    # cycles: float32 parts, and 1e-8 of the polynomial
+    assert np.abs(phase - cycles).max() < 5e-8
 
 
 def test_the_arc_tangent_of_nothing_is_nothing_and_of_no_number_is_none() -> None:

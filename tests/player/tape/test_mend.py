@@ -65,9 +65,8 @@ def test_a_dropout_that_is_too_long_for_the_player_is_mended(
     error = np.abs(went[600 : 600 + len(whole)] - whole)
     outside = np.ones(len(whole), bool)
     outside[9600 - 20 : 9600 + round(6 * length_ms) + 20] = False
-    assert (
-        error[outside].max() < 1.5 * UM
-    )  # read, recorded anew and read again: two following errors and 16 bit
+    # read, recorded anew and read again: two following errors and 16 bit
+    assert error[outside].max() < 1.5 * UM
     assert error.max() < mended.mends[0].unknown_mm
 
 

@@ -73,9 +73,8 @@ def test_placing_is_exact(
 def test_the_loop_has_margin() -> None:
     z = np.exp(2j * np.pi * np.geomspace(1, 2990, 20_000) * DT_S)
     loop = open_loop(PhaseLock(), z)
-    assert (
-        np.abs(1 + loop).min() > 0.65
-    )  # vector margin: no gain from 0.4 to 2.8 of the right one breaks the loop
+    # vector margin: no gain from 0.4 to 2.8 of the right one breaks the loop
+    assert np.abs(1 + loop).min() > 0.65
     crossing = np.flatnonzero(np.diff(np.sign(np.abs(loop) - 1)))
     assert len(crossing) == 1
     assert np.degrees(np.angle(-loop[crossing[0]])) > 45  # phase margin
@@ -150,9 +149,8 @@ def test_a_sound_drive_passes_the_monitor_at_any_start_stop_and_turn_at_once(
     told = speed * (np.clip(t_s - 0.1, 0, 0.3) + onto * np.clip(t_s - 0.4, 0, None))[:, None]
     told = told + np.random.default_rng(7).normal(0, noise_um * UM, told.shape)
     watch = Monitor("x", MOTION_RATE_HZ, following_limit(lock, Q_MM, MOTION_RATE_HZ))
-    moved = follow(
-        told, lock
-    )  # near the range the slower loop leaves it: that is the fault circuit's to say
+    # near the range the slower loop leaves it: that is the fault circuit's to say
+    moved = follow(told, lock)
     assert watch.watch(told[: len(moved)], moved) == len(moved) and (
         len(moved) == len(told) or share > 0.9
     )
@@ -162,12 +160,10 @@ def test_the_limit_of_a_tape_drive_is_its_own_error_at_low_speed_and_its_range_a
     None
 ):
     limit = following_limit(PhaseLock(), Q_MM, MOTION_RATE_HZ)
-    assert (
-        limit.limit_mm(1.0) < 17 * UM
-    )  # a twelfth of the range: a quarter of a cycle, and 4 um of turning round
-    braked_mm = (
-        2 * 10.0**2 / 5000.0
-    )  # from 10 mm/s to as fast the other way, at the limit of the current
+    # a twelfth of the range: a quarter of a cycle, and 4 um of turning round
+    assert limit.limit_mm(1.0) < 17 * UM
+    # from 10 mm/s to as fast the other way, at the limit of the current
+    braked_mm = 2 * 10.0**2 / 5000.0
     assert braked_mm < limit.limit_mm(10.0) - limit.tolerance_mm < 1.6 * braked_mm
     assert limit.limit_mm(100.0) == pytest.approx(4.25 * Q_MM)
 
@@ -175,9 +171,8 @@ def test_the_limit_of_a_tape_drive_is_its_own_error_at_low_speed_and_its_range_a
 def test_noise_of_40_db_stays_below_a_tenth_of_a_micrometre() -> None:
     cycles = np.random.default_rng(3).normal(0, 7.6e-4, (60_000, 3))
     moved = Drives(3, Q_MM, MOTION_RATE_HZ).follow(cycles)
-    assert (
-        np.sqrt(np.mean(moved**2)) < 0.05 * UM
-    )  # 0.038 um in, the loop's band of some 800 of 3000 Hz out
+    # 0.038 um in, the loop's band of some 800 of 3000 Hz out
+    assert np.sqrt(np.mean(moved**2)) < 0.05 * UM
 
 
 def test_noise_that_meets_the_limit_of_the_current_on_one_side_does_not_push_the_screw_off() -> (
@@ -186,9 +181,8 @@ def test_noise_that_meets_the_limit_of_the_current_on_one_side_does_not_push_the
     told = circle(10, 90)(np.arange(9000) * DT_S)  # 0.8 m/s² of 5, to and fro; 25 dB of noise
     noise = np.random.default_rng(1).normal(0, 4.4e-3, told.shape) * Q_MM
     off_cycles = np.abs(follow(told + noise) - follow(told)).max() * CYCLES_PER_MM
-    assert (
-        off_cycles < 0.022
-    )  # 0.01 to 0.017 by the seed; 0.036 to 0.045 where the integrator fell back at once
+    # 0.01 to 0.017 by the seed; 0.036 to 0.045 where the integrator fell back at once
+    assert off_cycles < 0.022
 
 
 def test_beyond_the_range_the_rows_end() -> None:

@@ -60,9 +60,8 @@ def test_the_machine_goes_where_the_tape_says(tmp_path: Path) -> None:
     positions = played(tmp_path / "t.wav")
     told = swing(np.arange(len(positions)) / MOTION_RATE_HZ)
     assert len(positions) == SECONDS * MOTION_RATE_HZ
-    assert (
-        np.abs(positions - told)[:-8].max() < 0.6 * UM
-    )  # following error of 0.5 m/s²; the last rows are held
+    # following error of 0.5 m/s²; the last rows are held
+    assert np.abs(positions - told)[:-8].max() < 0.6 * UM
 
 
 @pytest.mark.parametrize(

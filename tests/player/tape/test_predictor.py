@@ -29,9 +29,8 @@ def test_predictor_has_three_equal_poles() -> None:
 
 def test_a_motion_of_constant_acceleration_holds_no_surprise_for_long() -> None:
     told = surprises(5e-5 * np.arange(600.0) ** 2)  # 180 m/s² of a usual tape
-    assert (
-        np.abs(told[300:]).max() < 1e-6 < np.abs(told[:300]).max()
-    )  # 120 Hz: settled within 50 ms
+    # 120 Hz: settled within 50 ms
+    assert np.abs(told[300:]).max() < 1e-6 < np.abs(told[:300]).max()
 
 
 def test_a_jump_of_speed_surprises_by_its_size_and_is_counted_all_the_same() -> None:

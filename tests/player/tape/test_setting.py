@@ -40,9 +40,8 @@ def tape(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_the_phase_changer_moves_the_whole_path(tape: Path) -> None:
     plain = join(play(tape)).positions_mm
-    playback = play(
-        tape, zero_mm=(0.013, -7.0, 0.4)
-    )  # a quarter of a cycle, 140 cycles, 8 cycles
+    # a quarter of a cycle, 140 cycles, 8 cycles
+    playback = play(tape, zero_mm=(0.013, -7.0, 0.4))
     moved = join(playback).positions_mm
     assert np.abs(moved - plain - [0.013, -7.0, 0.4]).max() < REST_MM
     assert playback.start_mm == pytest.approx([0.013, -7.0, 0.4], abs=1e-9)
@@ -77,9 +76,8 @@ def test_an_override_changes_the_time_and_not_the_path(tape: Path, override: flo
 
 
 def test_the_following_error_grows_with_the_square_of_the_override(tmp_path: Path) -> None:
-    record(
-        Motion(circle(20.0, 90.0)), tmp_path / "a.wav"
-    )  # 405 mm/s², far above the noise of 16 bit
+    # 405 mm/s², far above the noise of 16 bit
+    record(Motion(circle(20.0, 90.0)), tmp_path / "a.wav")
     errors = []
     for override in (0.5, 1.0, 2.0):
         playback = play(tmp_path / "a.wav", override=override)
@@ -128,9 +126,8 @@ def test_a_motor_that_is_too_slow_faults(tmp_path: Path) -> None:
 def test_both_motors_make_a_loop_of_type_2(motor: str) -> None:
     """Errors at rest and at constant speed are zero, and at constant acceleration acceleration / (K a)."""
     t_s = np.arange(24_000) / MOTION_RATE_HZ
-    speed = np.clip(
-        100 * (t_s - 0.5), 0, 50
-    )  # at rest, 100 mm/s² for half a second, then 50 mm/s
+    # at rest, 100 mm/s² for half a second, then 50 mm/s
+    speed = np.clip(100 * (t_s - 0.5), 0, 50)
     x = np.cumsum(speed)[:, None] / MOTION_RATE_HZ
     drives = Drives(1, 0.05, MOTION_RATE_HZ, MOTORS[motor])
     error = (x - drives.follow(x / 0.05))[:, 0]

@@ -61,9 +61,8 @@ def test_corners_are_stops(tmp_path: FilePath) -> None:
     places = np.cumsum(program.words[..., 0], axis=0)
     assert len(places) == report.intervals
     corner = distance(thin(play_cubic(tmp_path / "a.cubic")), SQUARE).reference_to_path
-    assert (
-        corner.max_mm < 2.5 * UM
-    )  # the corner itself is reached, but for what is left of the lag
+    # the corner itself is reached, but for what is left of the lag
+    assert corner.max_mm < 2.5 * UM
 
 
 def test_the_tool_goes_down_and_up(tmp_path: FilePath) -> None:

@@ -109,9 +109,8 @@ def test_the_samples_need_hardly_more_than_the_fewest_segments(
     report = record_blocks(path, tmp_path / "part.ngc")
     assert report.deviation_mm <= TOLERANCE_MM
     there_and_back = distance(run_of(read_rs274(report.file)), path.runs())
-    assert (
-        there_and_back.hausdorff_mm <= report.deviation_mm + 0.001
-    )  # 1 um: sagitta of what is drawn out here
+    # 1 um: sagitta of what is drawn out here
+    assert there_and_back.hausdorff_mm <= report.deviation_mm + 0.001
 
 
 def test_a_rounded_square_is_four_lines_and_four_arcs() -> None:
@@ -191,9 +190,8 @@ def test_a_smooth_line_is_run_tangent_at_every_joint_within_the_tolerance(seed: 
         assert abs(jump) <= 10 * BREAK_RAD
     assert chain.deviation_mm <= TOLERANCE_MM
     drawn = np.vstack([_drawn_segment(segment) for segment in chain.segments])
-    assert (
-        distance(drawn, points).hausdorff_mm <= TOLERANCE_MM + 0.002
-    )  # 1 um of sagitta, 1 um between samples
+    # 1 um of sagitta, 1 um between samples
+    assert distance(drawn, points).hausdorff_mm <= TOLERANCE_MM + 0.002
     fewest = len(longest_pieces(resample(points), TOLERANCE_MM))
     assert len(chain.segments) <= max(ASKED * fewest, fewest + 2)
 

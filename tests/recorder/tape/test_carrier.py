@@ -57,9 +57,8 @@ def test_the_plain_kernel_is_the_compiled_one(monkeypatch: pytest.MonkeyPatch) -
     positions, _ = swing(50)
     compiled = all_frames(FULL, positions)
     monkeypatch.setattr(carrier, "_write", carrier._write.py_func)
-    assert (
-        np.abs(all_frames(FULL, positions) - compiled).max() <= SINE
-    )  # the compiler may fuse multiply and add
+    # the compiler may fuse multiply and add
+    assert np.abs(all_frames(FULL, positions) - compiled).max() <= SINE
 
 
 def test_the_sine_is_a_sine() -> None:
@@ -89,9 +88,8 @@ def test_a_vibration_leaves_no_images_of_the_motion_rate() -> None:
     spectrum = np.abs(np.fft.rfft(frames * np.blackman(len(frames)))) / (0.21 * len(frames))
     hz = np.fft.rfftfreq(len(frames), 1 / 48_000)
     outside = np.abs(hz - 6000) > 2500
-    assert (
-        20 * np.log10(spectrum[outside].max()) < -100
-    )  # dB below the carrier; 16 bit noise is at -98 in all
+    # dB below the carrier; 16 bit noise is at -98 in all
+    assert 20 * np.log10(spectrum[outside].max()) < -100
 
 
 def test_the_historic_tracks_have_the_frequencies_worked_out(

@@ -50,9 +50,8 @@ def test_harmonics_are_those_of_the_closed_form(name: str) -> None:
         # 65 536 points round a square's steps: 1e-8 of the wave
         assert PICK_UPS[name].amplitudes(count)[n // 2] == pytest.approx(amplitude, abs=1e-8)
         assert abs(np.mean(wave * np.cos(n * phi))) < 1e-8
-    assert (
-        max(abs(np.mean(wave * np.sin(n * phi))) for n in range(2, 2 * count, 2)) < 1e-8
-    )  # teeth as wide as gaps
+    # teeth as wide as gaps
+    assert max(abs(np.mean(wave * np.sin(n * phi))) for n in range(2, 2 * count, 2)) < 1e-8
 
 
 @pytest.mark.parametrize("name", ["resolver", "hall", "coil", "scale"])
@@ -60,9 +59,8 @@ def test_a_slow_carrier_holds_the_whole_wave(name: str) -> None:
     # reference 100 Hz: 227 harmonics, of which those left out are below the last one's share
     frames = track(name, 0.0, reference_hz=100.0)
     phi = 2 * np.pi * 100 * np.arange(8, 8 + len(frames)) / 48_000
-    left_out = (
-        1 / (2 * 200) if name == "scale" else 0.0
-    )  # sum of 1/n² from n = 200 on, every second
+    # sum of 1/n² from n = 200 on, every second
+    left_out = 1 / (2 * 200) if name == "scale" else 0.0
     # the harmonics of a coil are so steep in the fundamental that they make 1.4 of its polynomial's error
     assert np.abs(frames - CLOSED[name](phi)).max() <= left_out + 1.5 * ROUNDING
 
@@ -71,16 +69,14 @@ def test_a_slow_carrier_holds_the_whole_wave(name: str) -> None:
 @pytest.mark.parametrize("speed_mm_s", [-90.0, -37.0, 0.0, 55.0, 95.0])
 def test_nothing_aliases(name: str, speed_mm_s: float) -> None:
     frames = track(name, speed_mm_s)
-    hz = (
-        6000 + 20 * speed_mm_s
-    )  # a whole number: every harmonic falls upon one line of the spectrum
+    # a whole number: every harmonic falls upon one line of the spectrum
+    hz = 6000 + 20 * speed_mm_s
     lines = 2 * np.abs(np.fft.rfft(frames)) / len(frames)
     own = [int(n * hz) for n in range(1, 9, 2) if n * hz < 24_000]
     assert lines[own[0]] == pytest.approx(hz / 6000 if name == "coil" else 1.0, abs=ROUNDING)
     lines[own] = 0
-    assert (
-        lines.max() < 1e-6
-    )  # -120 dB; a square sampled as it is has its fifth harmonic at 30 kHz back at 18, -14 dB
+    # -120 dB; a square sampled as it is has its fifth harmonic at 30 kHz back at 18, -14 dB
+    assert lines.max() < 1e-6
 
 
 def test_a_square_that_is_not_band_limited_would_fail_that() -> None:

@@ -50,9 +50,8 @@ def test_raw_samples_play_with_what_is_given_by_hand(tape: Path) -> None:
     went = join(play_pipe(io.BytesIO(frames.tobytes() + b"\0\0\0"), **BY_HAND)).positions_mm
     whole = join(play(tape)).positions_mm
     assert len(went) == len(whole)
-    assert (
-        np.abs(went - whole).max() < 1e-6
-    )  # mm: the zero is taken from less of the standstill
+    # mm: the zero is taken from less of the standstill
+    assert np.abs(went - whole).max() < 1e-6
 
 
 @pytest.mark.parametrize(

@@ -103,9 +103,8 @@ def test_any_format_carries_the_motion(
     turned = displacement_cycles(read_frames(tmp_path / "a.wav"), per_motion)
     dwell = round(0.1 * fmt.motion_rate_hz)
     error = turned[dwell:-dwell] - cycles * (positions - positions[0])
-    assert (
-        np.abs(error).max() < 2e-3
-    )  # the transform's ringing on a tape of under a second, not the tape
+    # the transform's ringing on a tape of under a second, not the tape
+    assert np.abs(error).max() < 2e-3
 
 
 def test_blocks_do_not_show(tmp_path: Path) -> None:
@@ -239,9 +238,8 @@ def test_a_full_disk_is_a_fault_and_leaves_nothing(tmp_path: Path, name: str) ->
     import resource
 
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(
-        resource.RLIMIT_FSIZE, (20_000, before[1])
-    )  # the disk takes 20 kB, as a full one would
+    # the disk takes 20 kB, as a full one would
+    resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, before[1]))
     try:
         with pytest.raises(FileFault, match="no half file is left"):
             record(circle(), tmp_path / name)
@@ -370,9 +368,8 @@ def test_blocks_are_of_the_size_asked_for(tmp_path: Path) -> None:
     with Tape.open(tmp_path / "a.wav") as tape:
         sizes = [len(block) for block in tape.blocks(1000)]
         assert sizes[:-1] == [1000] * (len(sizes) - 1)
-        assert (
-            sum(sizes) == recording.frames == sum(len(block) for block in tape.blocks())
-        )  # and again from the start
+        # and again from the start
+        assert sum(sizes) == recording.frames == sum(len(block) for block in tape.blocks())
         assert all(block.dtype == np.float32 for block in tape.blocks())
         with pytest.raises(ValueError, match="at least 1"):
             next(tape.blocks(0))
