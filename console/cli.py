@@ -115,37 +115,33 @@ def _ended(words: Sequence[str] | None) -> int:
     except click.ClickException as wrong_use:
         return _say(_told(wrong_use), wrong_use.exit_code)
     except (click.Abort, KeyboardInterrupt) as stop:
-        return _say(
-            "interrupted; no unfinished file was left under its final name",
-            128 + _signal_of(stop),
-        )
-    except Fault as fault:
-        return _say(str(fault), fault.exit_code)
+        said = "interrupted; no unfinished file was left under its final name"
+        return _say(said, 128 + _signal_of(stop))
     except SystemExit:  # what click makes of a broken pipe
         return _broken_pipe()
-    except OSError as error:
-        return (
-            _broken_pipe()
-            if error.errno == errno.EPIPE
-            else _say(_cause(error), FileFault.exit_code)
-        )
     except Exception as error:
-        if _is_out_of_memory(error):
-            return _say(NO_MEMORY, DrawingFault.exit_code)
-        if os.environ.get("MORFAX_TRACEBACK"):
-            traceback.print_exc()
-        told = " ".join(str(error).split())
-        return _say(
-            f"a mistake in morfax: {type(error).__name__}: {told} (MORFAX_TRACEBACK=1 shows where)",
-            MISTAKE,
-        )
+        return _failed(error)
+
+
+def _failed(error: Exception) -> int:
+    """Say what ended a verb: a fault, the operating system, a lack of memory, or a mistake of ours."""
+    if isinstance(error, Fault):
+        return _say(str(error), error.exit_code)
+    if isinstance(error, OSError):
+        if error.errno == errno.EPIPE:
+            return _broken_pipe()
+        return _say(_cause(error), FileFault.exit_code)
+    if _is_out_of_memory(error):
+        return _say(NO_MEMORY, DrawingFault.exit_code)
+    if os.environ.get("MORFAX_TRACEBACK"):
+        traceback.print_exc()
+    mistake = f"a mistake in morfax: {type(error).__name__}: {' '.join(str(error).split())}"
+    return _say(f"{mistake} (MORFAX_TRACEBACK=1 shows where)", MISTAKE)
 
 
 @contextmanager
 def _stopped_by_signals() -> Iterator[None]:
-    """Have the signals that ask a program to end stop the work as Ctrl-C does, so that unfinished files are
-    removed.
-    """
+    """Have signals that ask a program to end stop the work as Ctrl-C does: unfinished files are removed."""
 
     def stop(number: int, frame: object) -> None:
         raise KeyboardInterrupt(number)
@@ -195,9 +191,7 @@ def _cause(error: OSError) -> str:
 
 
 def _is_out_of_memory(error: Exception) -> bool:
-    """Whether Python, numpy or OpenCV (which has its own error for it, with the code StsNoMem) found no
-    memory.
-    """
+    """Whether Python, numpy or OpenCV (whose own error has the code StsNoMem) found no memory."""
     return isinstance(error, MemoryError) or getattr(error, "code", None) == -4
 
 

@@ -67,9 +67,7 @@ def listen(file: FilePath, fault: TapeFault | None) -> tuple[dict[str, Any], lis
 def _carriers(
     blocks: Iterable[NDArray[np.float32]], rate_hz: float, tracks: int
 ) -> list[Carrier]:
-    """Measure the tracks, window by window; what is left over at the end is shorter than a window and left
-    out.
-    """
+    """Measure the tracks window by window; a rest that is shorter than a window is left out."""
     levels, frequencies = [np.full((1, tracks), -np.inf)], [np.full((1, tracks), np.nan)]
     for block in blocks:
         windows = block[: len(block) // WINDOW_FRAMES * WINDOW_FRAMES].reshape(

@@ -93,9 +93,7 @@ def outgoing(file: FilePath, *made_from: FilePath) -> FilePath:
 
 
 def made_up(name: FilePath, *made_from: FilePath, force: bool) -> FilePath:
-    """A name that nobody gave, for a result in the current folder; raises FileFault if a file has it already
-    and `force` is not set.
-    """
+    """A name that nobody gave, for a result; raises FileFault if a file has it, unless `force`."""
     if name.exists() and not force:
         raise FileFault(
             f"{name} is there already; give a name with -o, or --force to write over it"

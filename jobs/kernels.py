@@ -30,18 +30,14 @@ def choose_cache() -> None:
 
 
 def are_cold(packages: tuple[str, ...] = PACKAGES) -> bool:
-    """Whether a kernel of these packages has still to be compiled (never, or not since its source was
-    changed).
-    """
+    """Whether a kernel of these packages was never compiled, or not since its source was changed."""
     return any(_is_cold(package) for package in packages)
 
 
 def told(packages: tuple[str, ...] = PACKAGES) -> bool:
-    """Whether the operator was told already that kernels of the sources as they are have to be compiled; he
-    is from now on.
+    """Whether a face has said already that kernels of the present sources will be compiled; marks it as said.
 
-    A kernel that a verb never runs stays older than its source: without this the verb would tell of it at
-    every run.
+    A kernel that a job never runs stays older than its source: without the mark every run would say it.
     """
     newest_s = max(file.stat().st_mtime for package in packages for file in _sources(package))
     given = os.environ.get("NUMBA_CACHE_DIR")

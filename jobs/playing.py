@@ -75,15 +75,13 @@ class ByHand:
 
 @dataclass(frozen=True, slots=True)
 class Playing:
-    """A file in its machine: what its tape does not say, whether every sample is kept, a chart of the
-    following errors, and settings as the control takes them.
-    """
+    """A file in its machine, and how it is played."""
 
     file: FilePath  # or the pipe
-    by_hand: ByHand = field(default_factory=ByHand)
-    raw: bool = False
-    chart: Chart | None = None
-    settings: Mapping[str, Any] = field(default_factory=dict)
+    by_hand: ByHand = field(default_factory=ByHand)  # what the tape does not say
+    raw: bool = False  # keep every sample
+    chart: Chart | None = None  # to take down the following errors
+    settings: Mapping[str, Any] = field(default_factory=dict)  # as the control takes them
 
     def whole(self, listener: Listener) -> Played:
         """Play to the end or to a fault; raises the fault if nothing was played before it."""
@@ -103,8 +101,7 @@ class Playing:
     ) -> tuple[Passage, Playback, Fault | None]:
         """Play, and write the path (.csv) as it comes, so that a long tape takes no more memory.
 
-        A path that a fault ended early is marked in its name. Raises the fault if nothing was played before
-        it.
+        A path that a fault ended early is marked in its name. A fault before any motion is raised.
         """
         from morfax.motion.motion import thinned
 

@@ -108,9 +108,7 @@ class RecordingUnit:
             )
 
     def record(self, stream: Iterable[Motion], file: FilePath, listener: Listener) -> Report:
-        """Record a motion, placed, in the medium that the name says; raises MotionFault for a tape that no
-        player could read.
-        """
+        """Record a motion, placed, in the medium that the name says; raises MotionFault if it cannot be."""
         from morfax.recorder.media import record
 
         placed = self.placement.stream(stream)
@@ -142,9 +140,7 @@ class RecordingUnit:
 def rehearsed(
     stream: Iterable[Motion], fmt: TapeFormat, listener: Listener
 ) -> Iterator[Motion]:
-    """Pass a motion on to its tape; raises MotionFault where no player could read the tape, and warns where a
-    drive could not follow it.
-    """
+    """Pass a motion on to its tape; a fault where no player could read it, a warning where no drive follows."""
     from morfax.player.tape.rehearsal import Rehearsal
 
     rehearsal = Rehearsal(fmt)

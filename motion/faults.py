@@ -17,11 +17,17 @@ A message is one line: what was wrong, the value got, the values allowed, what t
 
 from __future__ import annotations
 
+from typing import Any
+
 
 class Fault(Exception):
     """Root of the tree; `exit_code` is what the command line ends with."""
 
     exit_code = 1
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Travel to another process with all that the fault carries."""
+        return _unpacked, (type(self), self.args, dict(self.__dict__))
 
 
 class DrawingFault(Fault, ValueError):
@@ -143,3 +149,10 @@ class CardFault(Fault, ValueError):
     ) -> None:
         super().__init__(message)
         self.line, self.field, self.holds = line, field, holds
+
+
+def _unpacked(kind: type[Fault], args: tuple[Any, ...], carried: dict[str, Any]) -> Fault:
+    """A fault that came from another process."""
+    fault = kind.__new__(kind, *args)
+    fault.__dict__.update(carried)
+    return fault

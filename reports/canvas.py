@@ -1,4 +1,4 @@
-"""The canvas of all pictures: a figure of matplotlib, the drawing in grey, and a file that is whole or absent.
+"""The canvas of all pictures: a figure of matplotlib, the drawing in grey, a file that is whole or absent.
 
 matplotlib takes most of a second to import: nothing here does it before a picture is asked for.
 """

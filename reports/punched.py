@@ -1,5 +1,4 @@
-"""The punched tape as a picture: strips of tape in their true size, with their holes and feed holes (.svg,
-.png).
+"""The punched tape as a picture: strips of tape in their true size, with their holes and feed holes.
 
 Signals in: a step program. Out: strips of 100 rows side by side, read from the top down, the row's number at
 the head of each; bit 1 is at the right-hand edge, as in the file.
@@ -26,7 +25,7 @@ PITCH_MM = 2.54
 HOLE_MM, FEED_HOLE_MM = 1.83, 1.17  # diameters
 WIDTHS_MM = {5: 17.46, 8: 25.4}
 ROWS_PER_STRIP = 100
-MOST_ROWS = 10_000  # 25 m of tape; what is beyond is not drawn
+MOST_ROWS = 10_000  # 25 m of tape; the rest is not drawn
 BETWEEN_MM, HEAD_MM = 6.0, 6.0
 PX_PER_MM = 6
 PAPER, HOLE, INK = "#f3e3b3", "#30302c", "#30302c"

@@ -1,5 +1,4 @@
-"""Pictures of the systems side by side: all contours with the places where they differ enlarged, and errors
-along the way.
+"""Pictures of the systems side by side: all contours with enlargements where they differ, and their errors.
 
 Signals in: the results of `jobs.systems`, the traced path and the drawing, mm. Out: figures of matplotlib.
 Errors are some micrometres, so the contours lie on each other on the sheet; the enlargements have axes in µm
@@ -39,9 +38,7 @@ def contours(
     drawing: Drawing,
     corners_mm: Array,
 ) -> Figure:
-    """All contours over the drawing, and where each is furthest from the traced path, and at corners,
-    enlarged.
-    """
+    """All contours over the drawing; enlarged where each is furthest from the traced path, and at corners."""
     ran = [result for result in results if result.path is not None]
     figure = new_figure(11, 11)
     grid = figure.add_gridspec(3, 3, height_ratios=(2.1, 1, 1))
@@ -113,9 +110,7 @@ def _lines(
 
 
 def _places(ran: Sequence[SystemResult], corners_mm: Array) -> list[tuple[Array, str]]:
-    """Where each system is furthest from the traced path, then corners, apart from each other; and what it
-    is.
-    """
+    """Places to enlarge, apart from each other, and what each is: the furthest of each system, then corners."""
     wanted: list[tuple[Array, str]] = []
     for result in ran:
         assert result.from_traced is not None
@@ -135,7 +130,7 @@ def _places(ran: Sequence[SystemResult], corners_mm: Array) -> list[tuple[Array,
 def _enlarge(
     axes: Axes, ran: Sequence[SystemResult], traced: Path, place_mm: Array, title: str
 ) -> None:
-    """One place, so large that the contours part."""
+    """One place, enlarged until the contours separate."""
     reach_um = LEAST_REACH_UM
     for result in ran:
         assert result.from_traced is not None

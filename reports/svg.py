@@ -15,7 +15,7 @@ LINE_MM = 0.1
 
 
 def write_svg(path: Path, file: FilePath, sheet_mm: tuple[float, float] | None = None) -> None:
-    """Draw what is run with the tool in the work, as polylines; on a sheet of the given width and height."""
+    """Draw what is run with the tool in the work, as polylines, on a sheet of a width and height."""
     low = np.minimum(path.xy_mm.min(axis=0) - MARGIN_MM, 0) * (path.xy_mm.min(axis=0) < 0)
     width, height = (
         path.xy_mm.max(axis=0) + MARGIN_MM if sheet_mm is None else np.array(sheet_mm)

@@ -1,9 +1,8 @@
 """Figures as text for people and as JSON for programs.
 
-Signals in: a dictionary whose keys carry the unit (`rms_mm`, `duration_s`); a value may itself be such a
-dictionary, and values of None are left out. Out: JSON with just those keys, or text with the figures in the
-unit that reads best. Dictionaries inside become the rows of one table, and a list of them one of its own,
-whose rows are called by their first figure:
+Signals in: figures (see `jobs.figures`); values of None are left out. Out: JSON with the same keys, or text
+with the figures in the unit that reads best. Dictionaries inside become the rows of one table; a list of them
+becomes a table of its own, whose rows are named after their first figure:
 
     duration  26.4 s
                          RMS    95 %  largest
@@ -24,8 +23,8 @@ from morfax.motion import units
 Row = tuple[str, Figures]  # of a table: its name, and its figures
 
 _LABELS = {"rms": "RMS", "p95": "95 %", "max": "largest"}
-_LENGTH_DECIMALS = 5  # of a mm; what is less is the rounding of the files
-_WIDEST = 1000  # columns; a table is never wrapped, so that a program can read it by lines
+_LENGTH_DECIMALS = 5  # of a mm; a smaller part is the rounding of the files
+_WIDEST = 1000  # columns; a table is never wrapped, so that a program can read it line by line
 
 _UNITS: dict[str, Callable[[Any], str]] = {
     "_mm_s": units.format_speed_mm_s,
@@ -76,9 +75,7 @@ def _is_listing(value: Any) -> bool:
 
 
 def _named(listing: list[Figures]) -> list[Row]:
-    """The rows of a list of dictionaries, called by the first figure of each: "line 3", twice if it was cut
-    in two pieces.
-    """
+    """The rows of a list of dictionaries, named after the first figure of each, such as "line 3"."""
     first = next(iter(listing[0]))
     return [
         (f"{first} {row[first]}", {key: row[key] for key in row if key != first})
@@ -87,7 +84,7 @@ def _named(listing: list[Figures]) -> list[Row]:
 
 
 def _lines(figures: Figures) -> Any:
-    """One line for each figure: what it is, how much."""
+    """One line for each figure: its label and its value."""
     from rich.table import Table
 
     table = Table(box=None, show_header=False, pad_edge=False, padding=(0, 2, 0, 0))

@@ -39,8 +39,8 @@ def unit_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         "--feed",
         "feed_mm_s",
         type=FEED,
-        help="Feed of the cut in G-code, such as 1200mm/min.  [default: the speeds of the motion; 10 mm/s for "
-        "a path without times]",
+        help="Feed of the cut in G-code, such as 1200mm/min.  [default: the speeds of the motion; "
+        "10 mm/s for a path without times]",
     )
     @option(
         GROUP,

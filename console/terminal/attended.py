@@ -1,9 +1,9 @@
-"""The operator at the terminal: asked for the decades at every stop (--ask), and for the button where the
+"""The operator at the terminal: asked for the decades at every stop (--ask), and to press the button where the
 card says so.
 
-Questions and answers go over stderr and stdin. An answer is a move (down 7mm 5mm/s), a dwell (dwell 2s) or a
-drill cycle (drill 8mm, or drill 8mm peck 2mm); an empty one ends the stop. A stop of no moves is left to what
-is usual there, which the question says.
+Questions go to stderr, answers come from stdin. An answer is a move (down 7mm 5mm/s), a dwell (dwell 2s) or
+a drill cycle (drill 8mm, or drill 8mm peck 2mm); an empty one ends the stop. Without any answer the usual
+moves are made, which the question names.
 """
 
 from __future__ import annotations
@@ -23,18 +23,19 @@ if TYPE_CHECKING:
     from morfax.tracer.operator.work import Halt
     from morfax.tracer.operator.zunit import Move
 
-ANY_MM_S = 50.0  # of the drill above its hole: whether the counters can show a move does not depend on it
+# of the drill above its hole: any speed serves to try whether the counters can show a move
+ANY_MM_S = 50.0
 ANSWERS = "down LENGTH [FEED], up LENGTH [FEED], dwell TIME, drill DEPTH [peck LENGTH]"
 
 
 class Attended:
-    """Somebody at the terminal."""
+    """The Panel of a terminal."""
 
     def __init__(self, *, asking: bool) -> None:
         self._asking = asking
 
     def ask(self, halt: Halt, z_mm: float, usual: Sequence[Move]) -> Stop | None:
-        """Ask for the moves at a stop; None without an answer."""
+        """Ask for the moves at a stop; None without an answer: the usual ones."""
         if not self._asking:
             return None
         click.echo(
@@ -91,7 +92,7 @@ def _stop(halt: Halt) -> str:
 
 
 def _told(z_mm: float, moves: Sequence[Move]) -> str:
-    """Moves from a position of Z, as the operator reads them."""
+    """Moves from a height of Z, as the operator reads them."""
     said = []
     for move in moves:
         said += [f"to Z {format_length_mm(move.to_mm)}"] if move.to_mm != z_mm else []
@@ -111,22 +112,15 @@ def _toml(answer: str) -> str:
     if words[0] == "drill" and len(words) in (2, 4) and words[2:3] in ([], ["peck"]):
         peck = f', peck = "{words[3]}"' if len(words) == 4 else ""
         return f'drill {{ depth = "{words[1]}"{peck} }}\n'
-    raise ValueError("no such move")
+    raise ValueError("it is no move")
 
 
 def _read(entry: str) -> Stop:
     """What the answers so far say, as the entry of a card; raises CardFault for a mistake."""
     from morfax.tracer.operator.card import Card
 
-    moves = [
-        line.removeprefix("move ") for line in entry.splitlines() if line.startswith("move")
-    ]
-    drills = [
-        line.removeprefix("drill ") for line in entry.splitlines() if line.startswith("drill")
-    ]
-    text = (
-        "[[stop]]\n"
-        + (f"moves = [{', '.join(moves)}]\n" if moves else "")
-        + "".join(f"drill = {d}\n" for d in drills)
-    )
-    return Card.parse(text, "answer").stop(1)
+    lines = [line.split(" ", 1) for line in entry.splitlines()]
+    moves = [said for kind, said in lines if kind == "move"]
+    drills = [f"drill = {said}\n" for kind, said in lines if kind == "drill"]
+    listed = f"moves = [{', '.join(moves)}]\n" if moves else ""
+    return Card.parse("".join(["[[stop]]\n", listed, *drills]), "answer").stop(1)

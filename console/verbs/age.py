@@ -131,8 +131,8 @@ def command(
 ) -> None:
     """Wear a tape as a real recorder and the years do.
 
-    Each part of the wear stands by itself; without any the tape is only copied. The figures of the sets are in
-    docs/background/transport.md.
+    Each part of the wear stands by itself; without any the tape is only copied. The sets are described
+    in docs/background/transport.md.
     """
     worn = {name: value for name, value in parts.items() if value is not None}
     if "stamped_hz" in worn:

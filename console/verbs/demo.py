@@ -1,4 +1,4 @@
-"""The verb `demo`: the whole way on a drawing that is part of morfax."""
+"""The verb `demo`: the whole way on a sample drawing that is part of morfax."""
 
 from __future__ import annotations
 

@@ -25,8 +25,8 @@ Examples:
 def command(name: str | None, desk: Desk) -> None:
     """List the machines that G-code is written for; with a NAME, print that machine as a file.
 
-    Send the file to my.toml (`morfax machines grbl-router > my.toml`), change it, and give it to trace, record or
-    run with --machine my.toml.
+    Send the file to my.toml (`morfax machines grbl-router > my.toml`), change it, and give it to trace,
+    record or run with --machine my.toml.
     """
     from morfax.recorder.gcode.machine import as_toml, machine, names
 

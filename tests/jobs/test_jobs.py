@@ -36,7 +36,14 @@ from morfax.jobs.settings import (
 from morfax.jobs.systems import SystemsJob
 from morfax.jobs.trace import TraceJob, TraceOutputs
 from morfax.jobs.wrong_use import WrongUse
-from morfax.motion.faults import CardFault, LineFault
+from morfax.motion.faults import (
+    CardFault,
+    Fault,
+    FileFault,
+    FollowingFault,
+    LineFault,
+    LockFault,
+)
 from morfax.motion.pathfile import read_path
 from tests.console.conftest import SAMPLES
 
@@ -300,3 +307,18 @@ def test_jobs_know_no_terminal_and_load_no_machine() -> None:
         [sys.executable, "-c", code], capture_output=True, text=True, check=True
     )
     assert done.stdout.splitlines() == ["[]", "[]"]
+
+
+@pytest.mark.parametrize(
+    "fault",
+    [
+        LineFault("lost", x_mm=1.0, y_mm=2.0, heading_rad=0.5, nearest_mm=(3.0, 4.0)),
+        LockFault("lock", axis="x", time_s=1.0, error_cycles=0.5, position_mm=2.0),
+        FollowingFault("lag", axis="y", time_s=1.0, demand_mm=2.0, actual_mm=1.0, limit_mm=0.5),
+        CardFault("card", line=3, field="depth", holds="deep"),
+        FileFault("cannot write a.wav"),
+    ],
+)
+def test_a_fault_comes_back_from_another_process_with_all_that_it_carries(fault: Fault) -> None:
+    back = pickle.loads(pickle.dumps(fault))
+    assert type(back) is type(fault) and str(back) == str(fault) and vars(back) == vars(fault)
