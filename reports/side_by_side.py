@@ -110,7 +110,7 @@ def _lines(
 
 
 def _places(ran: Sequence[SystemResult], corners_mm: Array) -> list[tuple[Array, str]]:
-    """Places to enlarge, apart from each other, and what each is: the furthest of each system, then corners."""
+    """Places to enlarge, apart from each other, and what each is: the worst of each system, then corners."""
     wanted: list[tuple[Array, str]] = []
     for result in ran:
         assert result.from_traced is not None

@@ -1,5 +1,5 @@
-"""The operator at the terminal: asked for the decades at every stop (--ask), and to press the button where the
-card says so.
+"""The operator at the terminal: asked for the decades at every stop (--ask), and for the button where the card
+says so.
 
 Questions go to stderr, answers come from stdin. An answer is a move (down 7mm 5mm/s), a dwell (dwell 2s) or
 a drill cycle (drill 8mm, or drill 8mm peck 2mm); an empty one ends the stop. Without any answer the usual
