@@ -55,15 +55,13 @@ class Planner:
 
     def along_legs(self, incoming: Leg, choice: Choice) -> tuple[Plan | None, int]:
         """The way through a junction that the legs alone tell, and how many there were to choose from."""
-        outgoing, corner, count = choice
-        # 1. by the leg that was chosen, if there is ink all along the way
-        if outgoing is not None:
-            plan = self.through(incoming, outgoing, corner)
-            if course.on_ink(self.view, plan.stretches):
-                if len(plan.stretches) > 1 and not self._is_round(corner):
-                    return plan, count
-                return self._past_speck(plan, incoming, outgoing) or plan, count
-            count = 0  # that leg is another line's
+        count = choice.choices
+        # 1. by the leg that was chosen, unless that is another line's
+        if choice.leg is not None:
+            plan = self._by_choice(incoming, choice.leg, choice.corner)
+            if plan is not None:
+                return plan, count
+            count = 0
         # 2. straight on
         outgoing = self._straight_on(incoming, others=count > 0)
         if outgoing is not None and count and self._goes_back(outgoing.seen):
@@ -72,6 +70,15 @@ class Planner:
         if outgoing is None and self.settings.recatch_mm > 0:
             outgoing = caught_again(self.view, incoming, self.trail, self.settings.recatch_mm)
         return None if outgoing is None else self.through(incoming, outgoing, None), count
+
+    def _by_choice(self, incoming: Leg, outgoing: Leg, corner: Corner | None) -> Plan | None:
+        """The way by the leg that was chosen; None if there is no ink all along it."""
+        plan = self.through(incoming, outgoing, corner)
+        if not course.on_ink(self.view, plan.stretches):
+            return None
+        if len(plan.stretches) > 1 and not self._is_round(corner):
+            return plan
+        return self._past_speck(plan, incoming, outgoing) or plan
 
     def _straight_on(self, incoming: Leg, *, others: bool) -> Leg | None:
         """The line straight ahead; unless there are `others`, also a fainter one, and one in grain."""

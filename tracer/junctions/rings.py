@@ -110,16 +110,23 @@ def legs_around(view: View, centre: Array, trail: Array) -> list[Leg]:
             break
         # 2. those that have been clean for long enough are legs
         before = len(found)
-        for arc in joined:
-            if arc.clean >= CLEAN_RINGS and arc.undecided:
-                leg = _leg_outward(view, centre, radius, arc)
-                if leg is not None:
-                    found.append(leg)
-                    arc.found = True
+        found += _new_legs(view, centre, radius, joined)
         # 3. rings go on a little after the first leg, and for as long as some ink is undecided
         undecided = any(arc.undecided for arc in joined)
         if found and (not before or undecided):
             last_mm = radius + MORE_LEGS * view.leg_mm
+    return found
+
+
+def _new_legs(view: View, centre: Array, radius: float, arcs: list[_Arc]) -> list[Leg]:
+    """The legs that arcs are now known to be."""
+    found = []
+    for arc in arcs:
+        if arc.clean >= CLEAN_RINGS and arc.undecided:
+            leg = _leg_outward(view, centre, radius, arc)
+            if leg is not None:
+                found.append(leg)
+                arc.found = True
     return found
 
 
@@ -185,16 +192,25 @@ def _joined(ring: _Ring, inner: list[_Arc], width_mm: float) -> list[_Arc]:
             continue
         arc = _Arc(begin, end, 0, False, any(a.found for a in parents), ())
         arc.incoming = _is_way_in(arc, parents, ring.trail_rad)
-        half = min(0.5 * (end - begin), 0.5 * math.pi)
-        width = 2 * ring.radius_mm * math.sin(half)
-        if NARROWEST * width_mm < width < WIDEST * width_mm and half < WIDEST_RAD:
-            children = sum(parents[0].overlaps(b, e) for b, e in ring.arcs) if parents else 0
-            alone = len(parents) == 1 and children == 1
-            arc.clean = parents[0].clean + 1 if alone else 1
-            track = (*parents[0].track, arc.middle) if alone else (arc.middle,)
-            arc.track = track[-CLEAN_RINGS:]
+        if _is_as_wide(arc, ring.radius_mm, width_mm):
+            _go_on(arc, parents, ring.arcs)
         out.append(arc)
     return out
+
+
+def _is_as_wide(arc: _Arc, radius_mm: float, width_mm: float) -> bool:
+    """Whether an arc is about as wide as the line."""
+    half = min(0.5 * (arc.end - arc.begin), 0.5 * math.pi)
+    width = 2 * radius_mm * math.sin(half)
+    return NARROWEST * width_mm < width < WIDEST * width_mm and half < WIDEST_RAD
+
+
+def _go_on(arc: _Arc, parents: list[_Arc], arcs: Array) -> None:
+    """Count an arc clean: with its parent's rings, if it is the only child of an only parent."""
+    alone = len(parents) == 1 and sum(parents[0].overlaps(b, e) for b, e in arcs) == 1
+    arc.clean = parents[0].clean + 1 if alone else 1
+    track = (*parents[0].track, arc.middle) if alone else (arc.middle,)
+    arc.track = track[-CLEAN_RINGS:]
 
 
 def _is_way_in(arc: _Arc, parents: list[_Arc], trail_rad: float | None) -> bool:

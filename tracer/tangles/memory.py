@@ -61,7 +61,7 @@ class Tangles:
         odd = len(tangle.legs) % 2 == 1
         if odd:
             self._beside += [leg for leg in tangle.legs[1:] if _runs_back(view, incoming, leg)]
-        if not tangle.whole or not 2 <= len(tangle.legs) <= MOST_LEGS or (odd and plan):
+        if not _is_closed(tangle) or (odd and plan is not None):
             return plan, False
         # 3. the redrawing that explains the ink
         found = unravelled(Sketch.of(view, tangle), approach)
@@ -99,6 +99,11 @@ class Tangles:
                     begin = first if ahead_mm(place, first) > LEAST_AHEAD_MM else incoming
                     return Plan(stretches_over(approach.stands, begin, vertices, last), last)
         return None
+
+
+def _is_closed(tangle: Tangle) -> bool:
+    """Whether a tangle ends in legs, and in no more than can be joined."""
+    return tangle.whole and 2 <= len(tangle.legs) <= MOST_LEGS
 
 
 def _strands(way: Redrawing) -> Iterator[tuple[int, int, Array]]:

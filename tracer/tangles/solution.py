@@ -75,28 +75,17 @@ class Solution(NamedTuple):
 def unravelled(sketch: Sketch, approach: Approach) -> Solution:
     """The way out of a tangle."""
     plan, legs = approach.plan, sketch.tangle.legs
-    two = len(legs) == 2
     # 1. a plan between two legs that explains the ink needs no other
-    planned = math.inf
-    if plan is not None:
-        planned = sketch.misfit_with(
-            Redrawing((), ()), as_drawn(plan, sketch.tangle, _width(sketch))
-        )
-    if two and planned < AS_GOOD and _leads_to(sketch, plan, 1):
+    planned = _planned_misfit(sketch, plan)
+    if len(legs) == 2 and planned < AS_GOOD and _leads_to(sketch, plan, 1):
         return Solution(plan, Redrawing(((0, 1),), (NONE,)))
     # 2. the best redrawing by each leg, of those that explain the ink
-    every = redrawings(sketch)
-    if every[0].partner is None:
-        return Solution(plan)  # the line ends here, on another
-    clear = max(CLEAR, min(BETTER * planned, LEAST_CLEAR)) if two else CLEAR
-    best = _by_leg(sketch, every, approach, clear)
+    best = _by_leg(sketch, approach, planned)
     if not best:
         return Solution(plan)
     # 3. one of them, and those that would do as well
     leg, straight = _taken(sketch, best, approach)
-    way = best[leg]
-    others = [legs[k] for k in best if k != leg and _is_as_good(best[k], way)]
-    others = others if _bends(sketch, way) else []
+    way, others = best[leg], _others(sketch, best, leg)
     # 4. the plan, if it explains the ink as well
     direct = approach.over(NONE, legs[leg])
     if any(_is_rough(way, line, _width(sketch)) for line in (plan, direct)):
@@ -104,6 +93,21 @@ def unravelled(sketch: Sketch, approach: Approach) -> Solution:
     if straight or (_leads_to(sketch, plan, leg) and _stands(sketch, way, plan)):
         return Solution(plan, way, others)
     return Solution(approach.over(way.own, legs[leg]), way, others)
+
+
+def _planned_misfit(sketch: Sketch, plan: Plan | None) -> float:
+    """The misfit of a plan by itself; infinite if there is no plan."""
+    if plan is None:
+        return math.inf
+    return sketch.misfit_with(Redrawing((), ()), as_drawn(plan, sketch.tangle, _width(sketch)))
+
+
+def _others(sketch: Sketch, best: dict[int, Redrawing], leg: int) -> list[Leg]:
+    """The legs but the one that is taken whose redrawings would do as well."""
+    if not _bends(sketch, best[leg]):
+        return []
+    as_good = [k for k in best if k != leg and _is_as_good(best[k], best[leg])]
+    return [sketch.tangle.legs[k] for k in as_good]
 
 
 def _width(sketch: Sketch) -> float:
@@ -116,11 +120,17 @@ def _leads_to(sketch: Sketch, plan: Plan | None, leg: int) -> bool:
     return plan is not None and same_line(plan.leg, sketch.tangle.legs[leg], _width(sketch))
 
 
-def _by_leg(
-    sketch: Sketch, every: list[Redrawing], approach: Approach, clear: float
-) -> dict[int, Redrawing]:
-    """The best redrawing to each leg that has not been followed, the best first, if it explains the ink."""
-    best: dict[int, Redrawing] = {}
+def _by_leg(sketch: Sketch, approach: Approach, planned: float) -> dict[int, Redrawing]:
+    """The best redrawing to each leg that has not been followed, the best first, if it explains the ink.
+
+    None if the line ends here, on another; `planned` is the misfit of the plan.
+    """
+    every, best = redrawings(sketch), dict[int, Redrawing]()
+    if every[0].partner is None:
+        return best
+    clear = CLEAR
+    if len(sketch.tangle.legs) == 2:
+        clear = max(CLEAR, min(BETTER * planned, LEAST_CLEAR))
     for way in every:
         leg = way.partner
         if leg is None or approach.trail.holds(sketch.tangle.legs[leg], _width(sketch)):

@@ -89,8 +89,7 @@ def _legs(view: View, fronts: Fronts, reach_mm: float) -> tuple[list[Leg], Flags
             ended[k] = True
             continue
         # 2. fronts as broad as the line, one after the other
-        alone = len(before) == 1 and len(fronts.children[before[0]]) == 1
-        if alone and _like_line(view, fronts, k):
+        if _like_line(view, fronts, k):
             clean[k] = clean[before[0]] + 1
         if clean[k] < CLEAN_FRONTS or tips[k] or come_mm[k] < BEGIN_WIDTHS * view.width_mm:
             continue
@@ -111,7 +110,10 @@ def _tips(view: View, fronts: Fronts, reach_mm: float) -> Flags:
 
 
 def _like_line(view: View, fronts: Fronts, k: int) -> bool:
-    """Whether the latest fronts are as broad as the line is."""
+    """Whether a front follows one alone, and the latest fronts are as broad as the line is."""
+    before = fronts.parents[k]
+    if len(before) != 1 or len(fronts.children[before[0]]) != 1:
+        return False
     broad = float(np.mean(_latest(fronts, k, BROAD_FRONTS))) / view.width_mm
     return LEAST_BROAD < broad < MOST_BROAD
 

@@ -140,16 +140,8 @@ def _wave(ground, reach_px):  # type: ignore[no-untyped-def]
     out = np.full((rows, columns), FAR)
     queue = np.empty((rows * columns, 2), np.int32)
     waiting = np.zeros((rows, columns), np.bool_)
-    first = count = 0
-    # 1. the start waits
-    for i in range(rows):
-        for j in range(columns):
-            if ground[i, j] == STARTS:
-                out[i, j] = 0.0
-                queue[count, 0], queue[count, 1] = i, j
-                waiting[i, j] = True
-                count += 1
-    # 2. each pixel that waits passes its distance on; those that it lowers wait in turn
+    first, count = 0, _begin(ground, out, queue, waiting)
+    # each pixel that waits passes its distance on; those that it lowers wait in turn
     while count > 0:
         i, j = queue[first, 0], queue[first, 1]
         first, count = (first + 1) % len(queue), count - 1
@@ -169,6 +161,20 @@ def _wave(ground, reach_px):  # type: ignore[no-untyped-def]
                     waiting[y, x] = True
                     count += 1
     return out
+
+
+@njit(cache=True)
+def _begin(ground, out, queue, waiting):  # type: ignore[no-untyped-def]
+    """Put the pixels where the wave starts into the queue; how many."""
+    count = 0
+    for i in range(ground.shape[0]):
+        for j in range(ground.shape[1]):
+            if ground[i, j] == STARTS:
+                out[i, j] = 0.0
+                queue[count, 0], queue[count, 1] = i, j
+                waiting[i, j] = True
+                count += 1
+    return count
 
 
 @njit(cache=True)
