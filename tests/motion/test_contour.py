@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from morfax.motion.contour import closure_mm, distance, length_mm, pointwise
+from morfax.motion.contour import closure_mm, distance, distances_mm, length_mm, pointwise
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import Motion, Path
 
@@ -42,6 +42,11 @@ def test_equal_curves_with_other_points_are_nothing_apart(seed: int, points: int
     # a sample nearer than half a sample to a crossing may find four samples of the other branch nearest
     assert apart.hausdorff_mm <= SAMPLE_MM / 2
     assert apart.path_to_reference.rms_mm <= 0.02 * SAMPLE_MM
+
+
+def test_a_place_on_a_line_is_on_it_though_a_sample_of_another_line_is_nearer() -> None:
+    line, beside = np.array([[0.0, 0], [10, 0]]), np.array([[0.005, 0.004], [0.005, 5]])
+    assert distances_mm(np.array([[0.005, 0.0]]), [line, beside])[0] <= ROUNDING_MM
 
 
 def test_concentric_circles_are_their_radii_apart() -> None:

@@ -34,6 +34,12 @@ def wave(seed: int, mm: float = 4.0, apart_mm: float = 0.03) -> np.ndarray:
     return with_places(nodes, apart_mm)
 
 
+def test_a_crossing_in_a_place_of_a_line_counts_once() -> None:
+    across, along = np.array([[1.0, -1.0], [1.0, 1.0]]), np.array([[0.0, 0], [1, 0], [2, 0]])
+    assert crossings(along, across).tolist() == [[1.0, 0.5]]
+    assert crossings(across, along).tolist() == [[0.5, 1.0]]
+
+
 def test_lengths_add_up_along_the_line() -> None:
     line = np.array([[0, 0], [3, 4], [3, 4], [3, 5.0]])
     assert lengths_mm(line).tolist() == [0, 5, 5, 6]

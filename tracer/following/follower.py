@@ -15,18 +15,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault
-from morfax.tracer.following.followed import Followed, without_repeat
+from morfax.tracer.following.followed import Followed, line_lost, without_repeat
 from morfax.tracer.following.way_home import WayHome
 from morfax.tracer.following.ways_out import (
     STRAIGHT_ON,
     Turns,
     WaysOut,
+    aimed_at,
+    leads_to_dot,
     nearest_station,
     station_before,
 )
@@ -40,7 +41,7 @@ from morfax.tracer.junctions.felt_corner import round_corner
 from morfax.tracer.junctions.planner import Planner
 from morfax.tracer.junctions.rings import fork_in
 from morfax.tracer.junctions.width_change import Onward, another_pen, of_another_pen
-from morfax.tracer.marks.dots import disc, dot_ahead, dot_at_end
+from morfax.tracer.marks.dots import dot_at_end
 from morfax.tracer.sensing.leg import FEWEST_STATIONS, Leg, goes_straight, leg_of
 from morfax.tracer.sensing.probe import end_of
 from morfax.tracer.tangles.memory import Tangles
@@ -79,9 +80,7 @@ class Follower:
     def follow(
         self, longest_mm: float, told: Callable[[float], None] | None = None
     ) -> Followed:
-        """Follow until the line closes, ends or is lost, for `longest_mm` at most; `told` hears the travel,
-        mm.
-        """
+        """Follow until the line closes, ends or is lost, or `longest_mm`; `told` hears the travel, mm."""
         home = self._home.for_kernel()
         while self.carriage.travel_mm < longest_mm:
             why = self.carriage.follow(self.view, home)
@@ -137,14 +136,14 @@ class Follower:
         # 1. a dot at the end of the line, and a line drawn with another pen
         dot = None if goes_straight(incoming, outgoing) else dot_at_end(self.view, incoming)
         if dot is not None:
-            return self._end(_aimed_at(incoming, dot), math.dist(incoming.end_mm, dot))
+            return self._end(aimed_at(incoming, dot), math.dist(incoming.end_mm, dot))
         if outgoing is not None and another_pen(self.view, outgoing):
             plan = self._planner().onward(incoming, Onward(self.view, outgoing, corner))
             if plan is not None:
                 return self._pass(plan)
         # 2. the way that the legs show, and a better one where they are a tangle
         plan, choices = self._planner().along_legs(incoming, choice)
-        explained = self._is_dot(incoming, outgoing)
+        explained = leads_to_dot(self.view, incoming, outgoing)
         if not asked and not explained:
             plan, explained = self._out_of_tangle(incoming, plan)
         # 3. nothing leads on with this pen
@@ -165,17 +164,6 @@ class Follower:
         way_in, rank = self.carriage.stands(), self._ways_out.turns.other.count(number)
         approach = Approach(incoming, self.carriage.trail, way_in, plan, number, rank)
         return self._tangles.way_out(self.view, approach)
-
-    def _is_dot(self, incoming: Leg, outgoing: Leg | None) -> bool:
-        """Whether the junction is a dot on the line, or the leg out of it leads to a dot: no pen's width
-        explains that ink.
-        """
-        if outgoing is None or dot_ahead(self.view, outgoing):
-            return outgoing is not None
-        if not goes_straight(incoming, outgoing):
-            return False
-        way = outgoing.end_mm - incoming.end_mm
-        return disc(self.view, incoming.end_mm + 0.5 * way, way) is not None
 
     def _planner(self) -> Planner:
         """What plans the way on from where the head stands."""
@@ -239,10 +227,9 @@ class Follower:
         on_guide = self._ways_out.junctions.turn_round(self.carriage.count)
         if not on_guide and not to_tip:
             return self._done("ended")
-        back = incoming.turned_round()
         self.carriage.swivel(incoming.heading_at(end_mm) + math.pi)
         self.carriage.run([course.along_leg(incoming, end_mm, 0.0)], self.settings.speed_mm_s)
-        self._aim(back)
+        self._aim(incoming.turned_round())
         return None
 
     def _to_end(self, incoming: Leg, end_mm: float) -> Array:
@@ -307,20 +294,8 @@ class Follower:
     def _lost(self, why: str, instead: str = BRIDGE) -> Followed:
         """The end of a line that was lost: the fault says where, and what to do instead."""
         place_mm, heading = self.carriage.stands()
-        x, y = place_mm / self.view.enlarged
-        travel_mm = self.carriage.travel_mm / self.view.enlarged
-        degrees = round(math.degrees(heading)) % 360
-        fault = LineFault(
-            f"line lost at {x:.2f},{y:.2f} mm, heading {degrees} degrees, after {travel_mm:.1f} mm: {why};"
-            f" look at the drawing there, {instead}",
-            x_mm=float(x),
-            y_mm=float(y),
-            heading_rad=heading,
-        )
+        times = self.view.enlarged
+        place = float(place_mm[0] / times), float(place_mm[1] / times)
+        because = f"{why}; look at the drawing there, {instead}"
+        fault = line_lost(place, heading, self.carriage.travel_mm / times, because)
         return self._done("lost", fault)
-
-
-def _aimed_at(incoming: Leg, dot: Array) -> Leg:
-    """The leg from its clean end straight to a dot."""
-    way = dot - incoming.end_mm
-    return replace(incoming, heading_rad=math.atan2(way[1], way[0]), bend_per_mm=0.0)

@@ -31,8 +31,6 @@ from morfax.tracer.head.stance import Stance
 from morfax.tracer.marks.reference import references
 from morfax.tracer.sensing.view import View
 
-Place = tuple[float, float]
-
 # All limits below were chosen by trial on the test drawings.
 CATCH_MM, CATCH_PX = 3.0, 12.0  # how far from a given place the line may be: the larger
 AT_END_MM, AT_END_WIDTHS = 1.5, 3.0  # a start nearer to an open end is that end: the larger
@@ -42,9 +40,9 @@ LISTED = 8  # reference points that a message lists
 
 def put_down(
     drawing: Drawing | Sheet,
-    start_mm: Place | None = None,
+    start_mm: tuple[float, float] | None = None,
     settings: Settings | None = None,
-    reference_mm: Place | None = None,
+    reference_mm: tuple[float, float] | None = None,
 ) -> Iterator[tuple[Stance, float]]:
     """Stances near a place, or on the longest line, the best first, each with the line's length, mm.
 
@@ -77,7 +75,7 @@ def put_down(
 
 
 def ends_of(
-    sheet: Sheet, stroke: Stroke, settings: Settings, reference_mm: Place | None
+    sheet: Sheet, stroke: Stroke, settings: Settings, reference_mm: tuple[float, float] | None
 ) -> list[tuple[Stance, float]]:
     """Stances at the open ends of one of the lines, each with its length, mm."""
     view = view_of(sheet, settings.aperture_mm, settings.line_width_mm or stroke.width_mm)
@@ -85,7 +83,7 @@ def ends_of(
     return [(stance, stroke.length_mm) for stance in ends[:ENDS]]
 
 
-def reference_on(drawing: Drawing) -> Place:
+def reference_on(drawing: Drawing) -> tuple[float, float]:
     """The place of the only reference point of a drawing, mm; raises LineFault unless there is just one."""
     sheet = Sheet.of(drawing)
     line = sheet.longest()
@@ -100,7 +98,9 @@ def reference_on(drawing: Drawing) -> Place:
     )
 
 
-def _ends_near(view: View, stroke: Stroke, start_mm: Place, gap_mm: float) -> list[Stance]:
+def _ends_near(
+    view: View, stroke: Stroke, start_mm: tuple[float, float], gap_mm: float
+) -> list[Stance]:
     """Stances at the open ends near a place."""
     ends = stroke.ends_mm()
     near_mm = max(AT_END_MM, AT_END_WIDTHS * view.width_mm)

@@ -8,7 +8,8 @@ Source: patent ES 361967, section on use: guide lines to drill points, taken at 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import math
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -17,6 +18,7 @@ from morfax.motion.arrays import Array
 from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.junctions.choice import Asked, Choice, survey
 from morfax.tracer.junctions.guides import Junctions
+from morfax.tracer.marks.dots import disc, dot_ahead
 from morfax.tracer.sensing.leg import Leg, goes_straight, leg_of, turns_off
 from morfax.tracer.sensing.side import SIDES, Side
 from morfax.tracer.sensing.view import View
@@ -107,3 +109,23 @@ def station_before(view: View, seen: Array, here: int, guard_mm: float) -> tuple
 def nearest_station(seen: Array, place_mm: Array) -> int:
     """Which station of a felt line (n, 3) is nearest to a place."""
     return int(np.argmin(np.hypot(*(seen[:, :2] - place_mm).T)))
+
+
+def leads_to_dot(view: View, incoming: Leg, outgoing: Leg | None) -> bool:
+    """Whether a junction is a dot on the line, or the leg out of it leads to a dot: no pen's width explains
+    that ink.
+    """
+    if outgoing is None:
+        return False
+    if dot_ahead(view, outgoing):
+        return True
+    if not goes_straight(incoming, outgoing):
+        return False
+    way = outgoing.end_mm - incoming.end_mm
+    return disc(view, incoming.end_mm + 0.5 * way, way) is not None
+
+
+def aimed_at(incoming: Leg, dot: Array) -> Leg:
+    """The leg from its clean end straight to a dot."""
+    way = dot - incoming.end_mm
+    return replace(incoming, heading_rad=math.atan2(way[1], way[0]), bend_per_mm=0.0)

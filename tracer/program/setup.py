@@ -13,7 +13,7 @@ from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.operator.operator import Operator
 
-Progress = Callable[[float, float], None]  # how far the head has come, of what length, mm
+HeadProgress = Callable[[float, float], None]  # how far the head has come, of what length, mm
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,7 +23,7 @@ class Setup:
     sheet: Sheet
     settings: Settings = field(default_factory=Settings)
     operator: Operator = field(default_factory=Operator)
-    progress: Progress | None = None
+    progress: HeadProgress | None = None
 
     def after(self, before_mm: float, total_mm: float) -> Setup:
         """The set-up for one of several lines: its progress counts on from those before, of their total."""

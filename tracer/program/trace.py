@@ -30,7 +30,7 @@ from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance, turned_round
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.program import Trace
-from morfax.tracer.program.setup import Progress, Setup
+from morfax.tracer.program.setup import HeadProgress, Setup
 
 # of the ink that is joined to it: a shorter run is along another line, which crosses this one; by trial
 SHORT = 0.5
@@ -42,7 +42,7 @@ def trace(
     start_mm: tuple[float, float] | None = None,
     settings: Settings | None = None,
     operator: Operator | None = None,
-    progress: Progress | None = None,
+    progress: HeadProgress | None = None,
 ) -> Trace:
     """Follow a line of the drawing: the one at `start_mm` (sheet mm), or the longest.
 
@@ -66,7 +66,7 @@ def followed(
     With `other_turns` it tries other turns than straight on if the line does not come back.
     """
     stances = put_down(setup.sheet, start_mm, setup.settings, setup.operator.reference_mm)
-    best, others = _best(_Wanted(setup, start_mm, number), stances, other_turns)
+    best, others = _best(_Target(setup, start_mm, number), stances, other_turns)
     assert best is not None  # put_down gives a stance, or raises
     if others:
         raise _several_lead([best, *others])
@@ -78,7 +78,7 @@ def followed_from_an_end(setup: Setup, stroke: Stroke, number: int = 1) -> Line 
     or is lost from each.
     """
     stances = ends_of(setup.sheet, stroke, setup.settings, setup.operator.reference_mm)
-    best, _ = _best(_Wanted(setup, number=number), iter(stances))
+    best, _ = _best(_Target(setup, number=number), iter(stances))
     return best if best is not None and best.ending != "lost" else None
 
 
@@ -122,6 +122,14 @@ class Run(NamedTuple):
         return self.line.ending == "joined" and not self.stance.at_end and began_there
 
     @property
+    def is_certain(self) -> bool:
+        """Whether it is the line without doubt; if it passed a junction, a lead line may come in there."""
+        if self.stance.at_end and self.line.junctions_mm:
+            return False
+        ending = self.line.ending
+        return ending == "closed" or (self.goes_far and ending != "joined")
+
+    @property
     def from_open_end(self) -> bool:
         """Whether it began at an open end that is no reference point's."""
         return _is_open(self.stance)
@@ -137,7 +145,7 @@ class Run(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class _Wanted:
+class _Target:
     """The line that is asked for: the set-up, the place that the operator points at, and its number."""
 
     setup: Setup
@@ -166,7 +174,7 @@ class _Wanted:
         is_solid = sheet.is_solid_at(stance.place_mm)
         return Run(replace(line, ink_mm=ink_mm, is_solid=is_solid), stance, ink_mm)
 
-    def without_turns(self) -> _Wanted:
+    def without_turns(self) -> _Target:
         """The same line, straight on at every junction."""
         return replace(self, setup=self.setup.without_turns())
 
@@ -178,6 +186,9 @@ class _Search:
     best: Run | None = None
     leads: list[Run] = field(default_factory=list)
     smooth: list[Run] = field(default_factory=list)
+    settled: bool = (
+        False  # the best is the lead line from the reference point: nothing else is tried
+    )
 
     def is_over(self, stance: Stance) -> bool:
         """Whether no more stances are tried from this one on."""
@@ -194,9 +205,8 @@ class _Search:
             self.leads.append(run)
         best = run if self.best is None or run.goes_before(self.best) else self.best
         self.best = best
-        # 1. a run without doubt; at a junction a lead line may come in
-        certain = not (stance.at_end and line.junctions_mm)
-        if certain and (line.ending == "closed" or (run.goes_far and line.ending != "joined")):
+        # 1. a run without doubt
+        if run.is_certain:
             return True
         if stance.at_end:
             return False
@@ -206,7 +216,7 @@ class _Search:
 
 
 def _best(
-    wanted: _Wanted, stances: Iterator[tuple[Stance, float]], other_turns: bool = True
+    wanted: _Target, stances: Iterator[tuple[Stance, float]], other_turns: bool = True
 ) -> tuple[Line | None, list[Line]]:
     """The best run from one of some stances, None if there are no stances; and further lead lines that are as
     good.
@@ -214,6 +224,18 @@ def _best(
     The card's turns are counted from the beginning of the lead line: so at which open end a lead line begins
     is judged without them.
     """
+    search = _searched(wanted, stances)
+    if search.best is None or search.settled:
+        return (search.best.line if search.best else None), []
+    best = _with_other_turns(wanted, search.best, search.smooth) if other_turns else search.best
+    first = search.leads[0] if search.leads else best
+    if wanted.setup.operator.sides and first.from_open_end:
+        first = wanted.run(first.stance, first.ink_mm)
+    return first.line, [lead.line for lead in search.leads[1:]]
+
+
+def _searched(wanted: _Target, stances: Iterator[tuple[Stance, float]]) -> _Search:
+    """The runs from one stance after the other, until no better one need be looked for."""
     search, straight = _Search(), wanted.without_turns()
     for stance, ink_mm in stances:
         if search.is_over(stance):
@@ -227,19 +249,13 @@ def _best(
                 raise
             continue
         if run.line.is_lead and not run.from_open_end and run.goes_far:
-            return run.line, []
+            return _Search(run, settled=True)
         if search.add(run):
             break
-    if search.best is None:
-        return None, []
-    best = _with_other_turns(wanted, search.best, search.smooth) if other_turns else search.best
-    first = search.leads[0] if search.leads else best
-    if wanted.setup.operator.sides and first.from_open_end:
-        first = wanted.run(first.stance, first.ink_mm)
-    return first.line, [lead.line for lead in search.leads[1:]]
+    return search
 
 
-def _with_other_turns(wanted: _Wanted, best: Run, smooth: list[Run]) -> Run:
+def _with_other_turns(wanted: _Target, best: Run, smooth: list[Run]) -> Run:
     """The first run that closes with other turns than straight on, in place of a best run that ran in, or
     closed round a small part of the ink.
     """

@@ -32,7 +32,7 @@ from morfax.tracer.program.joined_lines import joined_to
 from morfax.tracer.program.one_of_each import are_of_reference, is_inside, one_of_each
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.selection import Contour, Which
-from morfax.tracer.program.setup import Progress, Setup
+from morfax.tracer.program.setup import HeadProgress, Setup
 from morfax.tracer.program.trace import followed
 
 ALIKE = 0.02  # a line is as long from its other end, within this share; by trial
@@ -43,7 +43,7 @@ def trace_lines(
     which: Which = "all",
     settings: Settings | None = None,
     operator: Operator | None = None,
-    progress: Progress | None = None,
+    progress: HeadProgress | None = None,
 ) -> Trace:
     """Follow several lines of the drawing: "all", those that lie inside no other ("outer"), or some by their
     numbers (1 is the longest).
