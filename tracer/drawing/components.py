@@ -1,12 +1,11 @@
-"""Patches of ink: what hangs together on a sheet, kept as runs of pixels, so that a large sheet costs no more
-than its ink.
+"""Patches of ink: connected components of a sheet as runs of pixels, so that paper costs no memory.
 
 Signals: masks of ink in strips of whole rows, from the top, in; out for each run its row, where it begins and
 ends (pixels, the end not included), and the number of the patch that it belongs to. Two runs of neighbouring
-rows belong together if they touch, be it at a corner.
+rows belong together if they touch, also at a corner.
 
-                row  ..####....##..      3 runs, 2 patches: an image of labels would take four bytes for every pixel
-              row+1  ....####......      of the paper
+                row  ..####....##..      3 runs, 2 patches: an image of labels would take four bytes
+              row+1  ....####......      for every pixel of the paper
 
 Source: our own; joining runs by a forest of parents is the textbook's way.
 """
@@ -53,10 +52,8 @@ class Patches:
         """Width or height of each patch, whichever is more; pixels."""
         sides = []
         for low, high in ((self.row, self.row + 1), (self.begin, self.end)):
-            least, most = (
-                np.full(self.count, np.iinfo(np.int32).max, np.int32),
-                np.zeros(self.count, np.int32),
-            )
+            least = np.full(self.count, np.iinfo(np.int32).max, np.int32)
+            most = np.zeros(self.count, np.int32)
             np.minimum.at(least, self.patch, low)
             np.maximum.at(most, self.patch, high)
             sides.append(most - least)
@@ -65,13 +62,8 @@ class Patches:
     def box(self, chosen: NDArray[np.bool_]) -> tuple[int, int, int, int]:
         """First row, last row + 1, first column, last column + 1 of the chosen patches."""
         own = chosen[self.patch]
-        row = self.row[own]
-        return (
-            int(row.min()),
-            int(row.max()) + 1,
-            int(self.begin[own].min()),
-            int(self.end[own].max()),
-        )
+        row, begin, end = self.row[own], self.begin[own], self.end[own]
+        return int(row.min()), int(row.max()) + 1, int(begin.min()), int(end.max())
 
     def painted(
         self, chosen: NDArray[np.bool_], top: int, bottom: int, left: int, right: int
@@ -85,9 +77,7 @@ class Patches:
 
 
 def strips(shape: tuple[int, ...], halo: int = 0) -> Iterator[tuple[int, int, slice]]:
-    """First row and last row + 1 of each strip of a sheet, and the rows of the strip with a halo of
-    neighbours.
-    """
+    """First row and last row + 1 of each strip of a sheet, and its rows with a halo of neighbours."""
     rows, columns = shape[:2]
     height = max(4 * halo, STRIP_PX // max(columns, 1), 1)
     for top in range(0, rows, height):
@@ -101,17 +91,13 @@ def runs_of(mask: Mask | NDArray[np.bool_], top: int) -> tuple[Numbers, Numbers,
     padded = np.zeros((rows, columns + 2), np.bool_)
     padded[:, 1:-1] = mask
     edges = np.flatnonzero(padded[:, 1:] != padded[:, :-1])
-    row, column = np.divmod(edges, columns + 1)
-    return (
-        (row[::2] + top).astype(np.int32),
-        column[::2].astype(np.int32),
-        column[1::2].astype(np.int32),
-    )
+    row, column = (part.astype(np.int32) for part in np.divmod(edges, columns + 1))
+    return row[::2] + np.int32(top), column[::2], column[1::2]
 
 
 @njit(cache=True)
 def _paint(mask, row, begin, end):  # type: ignore[no-untyped-def]
-    """Set what of the runs lies within the mask."""
+    """Set those parts of the runs that lie within the mask."""
     for k in range(len(row)):
         for column in range(max(begin[k], 0), min(end[k], mask.shape[1])):
             mask[row[k], column] = 1

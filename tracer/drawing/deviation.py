@@ -1,5 +1,6 @@
-"""How far a path is from the ink's own centre, and which ink no path covers: the measure of `compare DRAWING
-PATH`, independent of the head.
+"""How far a path is from the ink's own centre, and which ink no path covers; without the head.
+
+It is the measure of `compare DRAWING PATH`.
 
 Signals: a Drawing and a path's polylines (sheet mm) in; the signed distance of the path from the middle of
 the ink at places along it, mm (positive: the path lies to the left of the ink's middle), and the length of
@@ -9,12 +10,13 @@ Across the path, the ink's two edges are where the darkness falls through half o
 middle is halfway. Where the ink is much wider than the line usually is (a crossing, a corner) the middle
 means nothing, and the place is not measured.
 
-Source: our own; the darkness is the drawing's, interpolated by scipy, and not the head's cells.
+Source: our own. The edges are found here once more, and not by `ray`: the measure has to be independent of
+the head, so it interpolates the drawing's own darkness by scipy and sees nothing through the head's cells.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import cv2
@@ -26,24 +28,29 @@ from morfax.motion.arrays import Array
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import Path
 from morfax.motion.polyline import lengths_mm
-from morfax.tracer.drawing.components import Mask, Patches, runs_of, strips
+from morfax.tracer.drawing.components import Mask, Numbers, Patches, runs_of, strips
 from morfax.tracer.drawing.drawing import Drawing
 
-EVERY_MM = 0.1
-TOUCH_MM = 0.02  # between the places of a cutter's way
-STANDS, LEAP = (
-    0.1,
-    10.0,
-)  # of these: round a corner, and from one leg of a corner to the other, the edge is not on the line
+EVERY_MM = 0.1  # between the places that are measured
+TOUCH_MM = 0.02  # between the places of a cutter's path
+# of TOUCH_MM: where the cutter's edge moves less it stands, as at a corner; where it moves more it leaps from
+# one leg to the other: there the edge is not on the line
+STANDS, LEAP = 0.1, 10.0
 WIDEST = 1.3  # of the usual width: beyond this the ink's middle means nothing
 # the middle of the ink is averaged along the path over this, against the noise of the paper
 AVERAGED_MM = 0.5
+SOFTENED_PX, INK = (
+    0.7,
+    0.5,
+)  # ink is darker than half, seen through a spot of this standard deviation
+COVERS = 1.6  # widths: a path covers the ink within 0.8 of them
 
 
 @dataclass(frozen=True, slots=True)
 class Deviation:
-    """Distances of a path from the ink's middle (mm, NaN where there is none to measure) at places (n, 2)
-    along it, and ink missed.
+    """Distances of a path from the ink's middle at places (n, 2) along it, and the ink that it missed.
+
+    mm; NaN where the ink's middle cannot be measured.
     """
 
     points_mm: Array
@@ -85,11 +92,11 @@ class Deviation:
 def deviation(
     drawing: Drawing, path: Path | Sequence[Array], over: Sequence[Array] = ()
 ) -> Deviation:
-    """Measure a path, or its runs as (n, 2) polylines in sheet mm, against the drawing; MotionFault if it
-    nowhere follows the ink.
+    """Measure a path, or its runs as (n, 2) polylines in sheet mm, against the drawing.
 
-    Distances are those of the runs with the tool in the work; ink is missed if the path nowhere goes over it,
-    be it with the tool up as on a lead line, nor anything in `over`.
+    Distances are those of the runs with the tool in the work. Ink is missed if the path nowhere goes over it,
+    not even with the tool up as on a lead line, and no polyline of `over` does. Raises MotionFault if the
+    path nowhere follows the ink.
     """
     runs = path.runs() if isinstance(path, Path) else list(path)
     places = [_places(run) for run in runs if len(run) > 1]
@@ -104,7 +111,8 @@ def deviation(
     ]
     if not any(np.isfinite(error).any() for error in errors):
         raise MotionFault(
-            "the path nowhere follows the drawing's ink, it only crosses it; check that both have the same scale and origin"
+            "the path nowhere follows the drawing's ink, it only crosses it;"
+            " check that both have the same scale and origin"
         )
     missed, ink = _missed(
         drawing, [path.xy_mm] if isinstance(path, Path) else [*runs, *over], width_mm
@@ -115,25 +123,23 @@ def deviation(
 
 
 def touched(drawing: Drawing, path: Path, radius_mm: float) -> list[Array]:
-    """What the edge of a cutter touches whose middle runs along a path, as (n, 2) polylines: on the side of
-    each run where there is more ink.
+    """Where the edge of a cutter touches the ink, as (n, 2) polylines, when its middle runs along a path.
+
+    The edge touches on that side of each run where there is more ink.
     """
     polylines = []
     for run in path.runs():
         points, headings = _places(run, TOUCH_MM)
         if not len(points):
             continue  # a hole
-        seen = _profile(drawing, points, headings, np.array([radius_mm, -radius_mm])).mean(
-            axis=0
-        )
-        arm_mm = radius_mm if seen[0] >= seen[1] else -radius_mm
+        both = _profile(drawing, points, headings, np.array([radius_mm, -radius_mm]))
+        left, right = both.mean(axis=0)
+        arm_mm = radius_mm if left >= right else -radius_mm
         edge = points + arm_mm * np.column_stack([-np.sin(headings), np.cos(headings)])
         steps = np.hypot(*np.diff(edge, axis=0).T) / TOUCH_MM
         on_line = (steps > STANDS) & (steps < LEAP)
-        ends = np.flatnonzero(np.diff(np.r_[False, on_line, False].astype(np.int8))).reshape(
-            -1, 2
-        )
-        polylines += [edge[a : b + 1] for a, b in ends]
+        ends = np.flatnonzero(np.diff(np.r_[False, on_line, False].astype(np.int8)))
+        polylines += [edge[a : b + 1] for a, b in ends.reshape(-1, 2)]
     return polylines
 
 
@@ -144,13 +150,11 @@ def _places(run: Array, every_mm: float = EVERY_MM) -> tuple[Array, Array]:
     run = run[keep]
     s = lengths_mm(run)
     at = np.arange(0.5 * every_mm, s[-1], every_mm)
-    points = np.column_stack([np.interp(at, s, run[:, 0]), np.interp(at, s, run[:, 1])])
-    half = 0.5 * EVERY_MM
-    ends = [
-        np.column_stack([np.interp(at + d, s, run[:, 0]), np.interp(at + d, s, run[:, 1])])
-        for d in (-half, half)
-    ]
-    way = ends[1] - ends[0]
+    points, behind, ahead = (
+        np.column_stack([np.interp(at + d * EVERY_MM, s, column) for column in run.T[:2]])
+        for d in (0.0, -0.5, 0.5)
+    )
+    way = ahead - behind
     return points, np.arctan2(way[:, 1], way[:, 0])
 
 
@@ -179,7 +183,8 @@ def _line_width(drawing: Drawing, places: list[tuple[Array, Array]]) -> float:
         reach *= 2
     if not len(found):
         raise MotionFault(
-            "the path lies nowhere on the drawing's ink; check that both have the same scale and origin"
+            "the path lies nowhere on the drawing's ink;"
+            " check that both have the same scale and origin"
         )
     return float(np.median(found))
 
@@ -187,9 +192,7 @@ def _line_width(drawing: Drawing, places: list[tuple[Array, Array]]) -> float:
 def _edges(
     drawing: Drawing, points: Array, headings: Array, reach_mm: float
 ) -> tuple[Array, Array]:
-    """Edges of the ink nearest to a path, mm to its left; NaN where there is no ink under it or no edge
-    within reach.
-    """
+    """Edges of the ink nearest to a path, mm to its left; NaN without ink under it or an edge in reach."""
     step = 0.25 * drawing.pitch_mm
     count = int(np.ceil(reach_mm / step))
     across = np.arange(-count, count + 1, dtype=float) * step
@@ -234,16 +237,8 @@ def _averaged(errors: Array) -> Array:
 
 
 def _missed(drawing: Drawing, runs: Sequence[Array], width_mm: float) -> tuple[float, float]:
-    """Length of ink that no path covers, and of all ink, mm: area over the line's width; specks do not count."""
-    patches = Patches.of(
-        runs_of(
-            (cv2.GaussianBlur(drawing.darkness[rows], (0, 0), 0.7) > 0.5)[top - rows.start :][
-                : bottom - top
-            ],
-            top,
-        )
-        for top, bottom, rows in strips(drawing.darkness.shape, halo=8)
-    )
+    """Length of ink that no path covers, and of all ink, mm: area over the line's width, without specks."""
+    patches = Patches.of(_runs(drawing))
     counts = patches.areas * drawing.pitch_mm**2 >= width_mm**2
     covered, columns = _covered(drawing, runs, width_mm), drawing.darkness.shape[1]
     missed = sum(
@@ -254,22 +249,20 @@ def _missed(drawing: Drawing, runs: Sequence[Array], width_mm: float) -> tuple[f
     return float(missed * area_mm), float(patches.areas[counts].sum() * area_mm)
 
 
+def _runs(drawing: Drawing) -> Iterator[tuple[Numbers, Numbers, Numbers]]:
+    """Runs of ink, strip by strip."""
+    for top, bottom, rows in strips(drawing.darkness.shape, halo=8):
+        ink = cv2.GaussianBlur(drawing.darkness[rows], (0, 0), SOFTENED_PX) > INK
+        yield runs_of(np.asarray(ink[top - rows.start : bottom - rows.start], bool), top)
+
+
 def _covered(drawing: Drawing, runs: Sequence[Array], width_mm: float) -> Mask:
-    """Mask of the sheet where a pen a little wider than the line, run along the paths, would have inked it."""
+    """Mask of the sheet where a pen a little wider than the line, run along the paths, would ink it."""
     rows, columns = drawing.darkness.shape
     covered = np.zeros((rows, columns), np.uint8)
-    thickness = max(1, round((1.6 * width_mm) / drawing.pitch_mm))
+    thickness = max(1, round(COVERS * width_mm / drawing.pitch_mm))
     for run in runs:
-        pixels = np.column_stack(
-            [run[:, 0] / drawing.pitch_mm - 0.5, rows - run[:, 1] / drawing.pitch_mm - 0.5]
-        )
-        cv2.polylines(
-            covered,
-            [np.round(pixels * 16).astype(np.int32)],
-            False,
-            1,
-            thickness,
-            cv2.LINE_8,
-            4,
-        )
+        x, y = run[:, :2].T / drawing.pitch_mm
+        sixteenths = np.round(16 * np.column_stack([x - 0.5, rows - y - 0.5])).astype(np.int32)
+        cv2.polylines(covered, [sixteenths], False, 1, thickness, cv2.LINE_8, shift=4)
     return covered

@@ -10,11 +10,11 @@ at their darkest.
 Sheet coordinates: mm from the lower-left corner, X right, Y up; pixel i covers [i, i+1) pitches, so the
 centre of pixel 0 is at half a pitch.
 
-A sheet may have a thousand million pixels: all that is done to every pixel is done strip by strip, and only
-the darkness is kept as a whole.
+A sheet may have a thousand million pixels: every pixel is worked on strip by strip, and only the darkness is
+kept as a whole.
 
-Questions: the patent takes the drawing for granted. A resolution that the file does not state is asked for,
-never guessed.
+Questions: the patent takes the drawing for granted. If the file states no resolution, the operator is asked;
+it is never guessed.
 """
 
 from __future__ import annotations
@@ -33,15 +33,18 @@ from numpy.typing import NDArray
 from morfax.motion.faults import DrawingFault
 from morfax.tracer.drawing import inks, paper
 from morfax.tracer.drawing.components import Patches, runs_of, strips
-from morfax.tracer.drawing.raster import Grey, _pitches_mm, _read
+from morfax.tracer.drawing.raster import Grey, pitches_mm, read
 from morfax.tracer.drawing.shapes import outlined
 
 if TYPE_CHECKING:
     from morfax.tracer.drawing.noise import Noise
 
 LEAST_CONTRAST = 10.0  # grey levels of 255 between paper and ink
+ABOVE_NOISE = 6.0  # standard deviations of the paper: what is darker is no noise
+DARKER = 80.0  # percentile of the strokes' pixels: those that no edge makes lighter
 LEAST_STROKE_MM = 2.0  # shorter strokes are specks
-FEWEST_SAMPLES = 1 << 22  # that tell the noise of the paper, and the darkness of the ink
+FEWEST_SAMPLES = 1 << 22  # pixels that tell the noise of the paper, and the darkness of the ink
+OBLONG = 1e-3  # sides of a pixel that differ by more than this share are made alike: a fax has such pixels
 
 Darkness = NDArray[np.float32]
 Shapes = NDArray[np.bool_]
@@ -51,9 +54,9 @@ Shapes = NDArray[np.bool_]
 class Drawing:
     """A drawing as the cells see it: `darkness` (rows from the top, columns) on pixels of `pitch_mm`.
 
-    Of filled shapes the `edges_mm`, closed polylines (n, 2), that a run has to keep to, and how many times
-    `enlarged` the head sees the line along them; if they are not asked for, where there are `shapes`, on the
-    picture reduced by a whole number.
+    Of filled shapes whose edges are asked for: `edges_mm`, closed polylines (n, 2) to which a run has to
+    keep, and how many times `enlarged` the head sees the line along them. Otherwise `shapes` tells where
+    filled shapes are, on the picture reduced by a whole number.
     """
 
     darkness: Darkness
@@ -89,30 +92,29 @@ class Drawing:
         ink: str | None = None,
         edge: bool = False,
     ) -> Drawing:
-        """Read an image file; its scale from `dpi`, or from the sheet's `width_mm`, or from the file. Of a
-        coloured drawing only one `ink`, if given; of filled shapes their edges, if `edge`.
+        """Read an image file; its scale from `dpi`, or from the sheet's `width_mm`, or from the file.
 
-        Raises DrawingFault if it is no image, states no resolution, or holds no line; FileFault if it cannot
-        be read.
+        With `ink` only that ink of a coloured drawing is read, with `edge` the edges of filled shapes. Raises
+        DrawingFault if the file is no image, states no resolution, or holds no line; FileFault if it
+        cannot be read.
         """
         file, wanted = Path(file), None if ink is None else inks.parsed(ink)
         if dpi is not None and width_mm is not None:
             raise DrawingFault(
                 "both a resolution and a width were given; give one of --dpi and --width"
             )
-        picture, stated = _read(file, coloured=ink is not None)
-        pitch = _pitches_mm(file, picture.shape[1], stated, dpi, width_mm)
-        grey = (
-            picture
-            if wanted is None
-            else inks.covered(np.asarray(picture, np.uint8), wanted, None if edge else pitch[0])
-        )
-        if abs(pitch[0] / pitch[1] - 1) > 1e-3:  # a fax has oblong pixels
+        # 1. grey levels on square pixels
+        picture, stated = read(file, coloured=ink is not None)
+        pitch = pitches_mm(file, picture.shape[1], stated, dpi, width_mm)
+        grey = picture
+        if wanted is not None:
+            colours = np.asarray(picture, np.uint8)
+            grey = inks.covered(colours, wanted, None if edge else pitch[0])
+        if abs(pitch[0] / pitch[1] - 1) > OBLONG:
             size = grey.shape[1], round(grey.shape[0] * pitch[1] / pitch[0])
-            grey = np.asarray(
-                cv2.resize(grey.astype(np.float32), size, interpolation=cv2.INTER_LINEAR),
-                np.float32,
-            )
+            square = cv2.resize(grey.astype(np.float32), size, interpolation=cv2.INTER_LINEAR)
+            grey = np.asarray(square, np.float32)
+        # 2. darkness
         if edge:
             line = outlined(grey, pitch[0])
             return cls(line.darkness, pitch[0] / line.finer, file, line.finer, line.edges_mm)
@@ -121,18 +123,17 @@ class Drawing:
 
 
 def levelled(grey: Grey, pitch_mm: float) -> tuple[Darkness, Shapes]:
-    """Darkness 0..1 of a grey picture (0..255): paper levelled, contrast of the strokes 1; and where filled
-    shapes are, on a picture reduced by a whole number.
+    """Darkness of a grey picture (0..255): paper levelled to 0, the strokes' contrast 1; and filled shapes.
 
-    Raises DrawingFault if nothing on it is long and dark enough to be a line.
+    Where these are is told on a picture reduced by a whole number. Raises DrawingFault if nothing is long and
+    dark enough to be a line.
     """
     level = paper.Paper.of(grey, pitch_mm)
     contrast = np.empty(grey.shape, np.float32)
     for top, bottom, _ in strips(grey.shape):
         behind = level.rows(top, bottom)
-        first, second = (
-            (behind, grey[top:bottom]) if level.is_light else (grey[top:bottom], behind)
-        )
+        here = grey[top:bottom]
+        first, second = (behind, here) if level.is_light else (here, behind)
         np.subtract(first, second, out=contrast[top:bottom], dtype=np.float32)
     ink = _ink_contrast(contrast, pitch_mm)
     contrast /= np.float32(ink)
@@ -140,33 +141,31 @@ def levelled(grey: Grey, pitch_mm: float) -> tuple[Darkness, Shapes]:
 
 
 def _ink_contrast(contrast: Darkness, pitch_mm: float) -> float:
-    """Contrast of the strokes against the paper, grey levels: what the darker part of the longer strokes has."""
+    """Contrast of the strokes against the paper, grey levels: that of the longer strokes' darker part."""
     every = max(4, math.isqrt(contrast.size // FEWEST_SAMPLES))
     sample = np.concatenate(
         [soft[-top % every :: every, ::every].ravel() for top, soft in _softened(contrast)]
     )
     centre = float(np.median(sample))
     noise = 1.4826 * float(np.median(np.abs(sample - centre)))
-    least = max(LEAST_CONTRAST, centre + 6 * noise)
+    least = max(LEAST_CONTRAST, centre + ABOVE_NOISE * noise)
     patches = Patches.of(runs_of(soft > least, top) for top, soft in _softened(contrast))
     strokes = patches.longer_sides >= max(12, LEAST_STROKE_MM / pitch_mm)
     if not strokes.any():
         raise DrawingFault(
-            f"no line on the drawing: nothing longer than {LEAST_STROKE_MM:g} mm is {least:.0f} or more of 255 grey levels"
-            " darker than the paper; check the file, or scan it with more contrast"
+            f"no line on the drawing: nothing longer than {LEAST_STROKE_MM:g} mm is {least:.0f} or more"
+            " of 255 grey levels darker than the paper; check the file, or scan it with more contrast"
         )
     every = max(1, int(patches.areas[strokes].sum()) // (4 * FEWEST_SAMPLES))
-    inked = [
-        contrast[top:bottom][
-            patches.painted(strokes, top, bottom, 0, contrast.shape[1]).view(bool)
-        ][::every]
-        for top, bottom, _ in strips(contrast.shape)
-    ]
-    return float(np.percentile(np.concatenate(inked), 80))
+    inked = []
+    for top, bottom, _ in strips(contrast.shape):
+        mask = patches.painted(strokes, top, bottom, 0, contrast.shape[1]).view(bool)
+        inked.append(contrast[top:bottom][mask][::every])
+    return float(np.percentile(np.concatenate(inked), DARKER))
 
 
 def _softened(contrast: Darkness) -> Iterator[tuple[int, Darkness]]:
-    """The picture behind a spot of one pixel (standard deviation), strip by strip: first row, and the strip."""
+    """The picture behind a spot of one pixel (standard deviation), by strips: first row, and the strip."""
     for top, bottom, rows in strips(contrast.shape, halo=8):
         soft = cv2.GaussianBlur(contrast[rows], (0, 0), 1.0)
         yield top, np.asarray(soft[top - rows.start : bottom - rows.start], np.float32)

@@ -1,14 +1,13 @@
-"""One ink of several: how much of a pixel is covered by the ink of a colour, whatever other inks, such as a
-printed grid's, are on the sheet.
+"""One ink of several: how much of a pixel the ink of one colour covers, whatever other inks are on the sheet.
 
-Signals: a colour picture and the colour asked for in; out grey levels, 255 where there is none of that ink
-and 0 where it covers the pixel.
+Signals: a colour picture and the colour asked for in; out grey levels, 255 where no such ink is and 0 where
+it covers the pixel. A printed grid is another ink.
 
 A pixel on an edge is a mixture of paper and ink, so its colour lies on the straight way from the one to the
 other, and how far along it is the share that is covered. The inks are found by the direction in which their
 colours lie from the paper's; then w is chosen so that
 
-    share = w · (pixel - paper)        w · (ink - paper) = 1        Σ (w · (other - paper))² + noise² · |w|²  least
+    share = w · (pixel - paper)     w · (ink - paper) = 1      Σ (w · (other - paper))² + noise² · |w|²  least
 
 over the pixels of other colours. It is linear in the pixel's colour, so that edges stay where they are, to a
 part of a pixel.
@@ -34,18 +33,18 @@ Picture = NDArray[np.uint8]  # rows from the top, columns, channels
 Colour = tuple[int, int, int]
 
 SAMPLES = 1 << 20  # pixels that tell the inks
+MOST_INKS = 6
 LEAST = 40.0  # levels from the paper's colour: less is paper
 NEAR = math.radians(18)  # inks whose colours lie in directions as near as this are one
 LIKE = math.radians(35)  # the ink asked for is the nearest within this
+FULL = 70.0  # percentile of an ink's pixels, by their distance from paper: these are on no edge
 # from grey's direction: further a colour has a hue, nearer it is black or pencil
 HUE, NO_HUE = math.radians(10), math.radians(4)
 LEAST_SHARE = 0.01  # of all the ink on the sheet
 FRINGE_PX = 8  # about a line JPEG makes other colours
 EVEN = 6.0  # levels: paper that differs by less is left as it is
-GREY, WHITE = (
-    200.0,
-    235.0,
-)  # levels: darker paper is too dark for inks to be told by their colours, and is made so light
+# levels: on paper darker than GREY the colours of inks cannot be told; such paper is made as light as WHITE
+GREY, WHITE = 200.0, 235.0
 NOISE = 5.0  # levels: a scan's, and what JPEG makes of edges
 
 
@@ -64,10 +63,10 @@ def parsed(text: str) -> Colour:
 def covered(
     picture: Picture, wanted: Colour, pitch_mm: float | None = None
 ) -> NDArray[np.float32]:
-    """Grey levels of the ink that is nearest to a colour; raises DrawingFault if there is none like it.
+    """Grey levels of the ink that is nearest to a colour; raises DrawingFault if no ink is like it.
 
-    With a pitch uneven paper is levelled first, in place: on a sheet with broad areas of ink it cannot be
-    told from them.
+    With a pitch uneven paper is levelled first, in place. Without one it is not: broad areas of ink would
+    look like dark paper.
     """
     if pitch_mm is not None:
         _level(picture, pitch_mm)
@@ -77,25 +76,22 @@ def covered(
     if not angles or min(angles) > LIKE:
         found = ", ".join(_named(ink) for ink in inks) or "none"
         raise DrawingFault(
-            f"there is no ink of the colour {_named(np.array(wanted))} on paper of {_named(paper)}; the colours found are {found}; give one of them with --ink"
+            f"there is no ink of the colour {_named(np.array(wanted))} on paper of {_named(paper)};"
+            f" the colours found are {found}; give one of them with --ink"
         )
     own = int(np.argmin(angles))
     apart = [_angle(paper - ink, paper - inks[own]) for k, ink in enumerate(inks) if k != own]
-    weights = _weights(
-        picture, paper, inks[own] - paper, min([NEAR, *(angle / 2 for angle in apart)])
-    )
+    near = min([NEAR, *(angle / 2 for angle in apart)])
+    weights = _weights(picture, paper, inks[own] - paper, near)
     grey = np.empty(picture.shape[:2], np.float32)
     for top, bottom, _ in strips(grey.shape):
-        grey[top:bottom] = 255 - 255 * (
-            picture[top:bottom].astype(np.float32) @ weights - paper @ weights
-        )
+        share = picture[top:bottom].astype(np.float32) @ weights - paper @ weights
+        grey[top:bottom] = 255 - 255 * share
     return grey
 
 
 def _level(picture: Picture, pitch_mm: float) -> None:
-    """Make light paper as light all over as it is as a rule, and white if a photograph has it grey, each
-    channel by itself.
-    """
+    """Make light paper as light all over as it usually is, and white if it is grey, channel by channel."""
     for channel in np.moveaxis(picture, 2, 0):
         paper = Paper.of(channel, pitch_mm)
         usual = float(np.median(paper.reduced))
@@ -103,24 +99,22 @@ def _level(picture: Picture, pitch_mm: float) -> None:
         if not paper.is_light or (is_even and usual > GREY):
             continue
         for top, bottom, _ in strips(channel.shape):
-            level = channel[top:bottom] * (
-                max(usual, WHITE) / np.maximum(paper.rows(top, bottom), 1.0)
-            )
-            channel[top:bottom] = np.clip(np.round(level), 0, 255)
+            gain = max(usual, WHITE) / np.maximum(paper.rows(top, bottom), 1.0)
+            channel[top:bottom] = np.clip(np.round(channel[top:bottom] * gain), 0, 255)
 
 
 def _weights(picture: Picture, paper: Array, own: Array, near: float) -> Array:
-    """The weights that give 1 for an ink's colour and as little as they can for others: those away from that
-    ink, whose fringes have any colour.
+    """The weights that give 1 for an ink's colour and as little as possible for other inks.
+
+    Other inks are sought away from that ink: its fringes have any colour.
     """
     spread, count = np.zeros((3, 3)), 1
     about = np.ones((2 * FRINGE_PX + 1,) * 2, np.uint8)
     for top, bottom, rows in strips(picture.shape[:2], halo=FRINGE_PX):
         part = picture[rows].astype(np.float32) - paper.astype(np.float32)
         far = np.sqrt(np.einsum("ijk,ijk->ij", part, part))
-        like = (far > LEAST) & (
-            part @ own.astype(np.float32) > math.cos(near) * np.hypot.reduce(own) * far
-        )
+        least = math.cos(near) * np.hypot.reduce(own) * far
+        like = (far > LEAST) & (part @ own.astype(np.float32) > least)
         other = (far > LEAST) & (cv2.dilate(like.view(np.uint8), about) == 0)
         inner = slice(top - rows.start, bottom - rows.start)
         seen = part[inner][other[inner]].astype(float)
@@ -137,26 +131,29 @@ def _sample(picture: Picture) -> Array:
 
 
 def _found(picture: Picture) -> tuple[Array, list[Array]]:
-    """The paper's colour, the most frequent one, and those of the inks, the one of which there is most first."""
+    """The paper's colour, which is the most frequent one, and those of the inks, the most frequent first."""
+    # 1. the paper
     pixels = _sample(picture)
     bins = np.floor(pixels / 16).astype(int) @ [256, 16, 1]
     paper = np.median(pixels[bins == np.bincount(bins).argmax()], axis=0)
     ways = paper - pixels
     far = np.hypot.reduce(ways, axis=1)
     ways, far, pixels = ways[far > LEAST], far[far > LEAST], pixels[far > LEAST]
+    # 2. the inks, by the directions of their colours from the paper's
     units, left, inks = ways / far[:, None], np.ones(len(far), bool), list[Array]()
     total = far.sum()
-    while left.any() and len(inks) < 6:
+    while left.any() and len(inks) < MOST_INKS:
         own = left & (units @ _densest(units[left], far[left]) > math.cos(NEAR))
         if far[own].sum() < LEAST_SHARE * total:
             break
-        inks.append(np.median(pixels[own & (far >= np.percentile(far[own], 70))], axis=0))
+        full = own & (far >= np.percentile(far[own], FULL))
+        inks.append(np.median(pixels[full], axis=0))
         left &= ~own
     return paper, inks
 
 
 def _densest(units: Array, weights: Array) -> Array:
-    """The direction in which there is most."""
+    """The direction in which most colours lie."""
     bins = np.round(units * 6).astype(int) @ [400, 20, 1]
     numbers, inverse = np.unique(bins, return_inverse=True)
     own = inverse == np.bincount(inverse, weights, len(numbers)).argmax()
@@ -170,8 +167,9 @@ def _angle(a: Array, b: Array) -> float:
 
 
 def _unlike(wanted: Array, found: Array) -> float:
-    """Angle between the directions of a colour that is asked for and of an ink, rad; a right angle if the one
-    has a hue and the other is black or pencil.
+    """Angle between the directions of the colour that is asked for and of an ink, rad.
+
+    A right angle if the one has a hue and the other is black or pencil.
     """
     grey = np.ones(3)
     has_hue, is_grey = _angle(wanted, grey) > HUE, _angle(found, grey) < NO_HUE
@@ -179,5 +177,5 @@ def _unlike(wanted: Array, found: Array) -> float:
 
 
 def _named(colour: Array) -> str:
-    """A colour as one would give it."""
+    """A colour as the operator would give it: #rrggbb."""
     return "#" + "".join(f"{round(float(level)):02x}" for level in colour)

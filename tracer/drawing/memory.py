@@ -1,8 +1,8 @@
-"""Room for the sheet: how much memory a drawing takes, and whether this computer has it, asked before the
-picture is unpacked.
+"""Memory for the sheet: how much a drawing takes, and whether this computer has it free.
 
-    pixels · (darkness 4 bytes + the same behind the aperture 4 bytes + what the picture itself takes) +
-    strips
+It is asked before the picture is unpacked.
+
+    pixels · (darkness 4 bytes + the same behind the aperture 4 bytes + the picture itself) + strips
 
 Source: our own. Questions: a system that does not say how much memory is free is taken to have enough; the
 fault then comes from the system.
@@ -29,21 +29,20 @@ def make_sure(file: Path, columns: int, rows: int) -> None:
     if free is None or pixels < SMALL_PX or needed <= free:
         return
     raise DrawingFault(
-        f"{file} has {columns} x {rows} pixels ({pixels / 1e6:.0f} million) and needs {needed / GB:.1f} GB of memory, {free / GB:.1f} GB are"
-        " free; scan it at a lower resolution, cut out the part to be traced, or close other programs"
+        f"{file} has {columns} x {rows} pixels ({pixels / 1e6:.0f} million) and needs"
+        f" {needed / GB:.1f} GB of memory, {free / GB:.1f} GB are free;"
+        " scan it at a lower resolution, cut out the part to be traced, or close other programs"
     )
 
 
 def free_bytes() -> int | None:
-    """Memory that can be had without swapping, within the limit of a container; None if the system does not
-    say.
-    """
+    """Memory free without swapping, within a container's limit, bytes; None if the system does not say."""
     known = [free for free in (_of_the_system(), _of_the_container()) if free is not None]
     return min(known, default=None)
 
 
 def _of_the_system() -> int | None:
-    """What Linux calls available; elsewhere all the memory that there is, where that is known."""
+    """What Linux calls available; elsewhere all memory, where the system says how much that is."""
     available = _figures(Path("/proc/meminfo")).get("MemAvailable:")
     if available is not None:
         return available * 1024
@@ -54,9 +53,7 @@ def _of_the_system() -> int | None:
 
 
 def _of_the_container(folder: Path = Path("/sys/fs/cgroup")) -> int | None:
-    """What the limit of a container (cgroup, version 2) leaves; files in its cache can be dropped and do not
-    count.
-    """
+    """What the limit of a container (cgroup, version 2) leaves; its cache of files does not count."""
     try:
         limit = int((folder / "memory.max").read_text())
     except (OSError, ValueError):  # none, or "max"
@@ -65,7 +62,7 @@ def _of_the_container(folder: Path = Path("/sys/fs/cgroup")) -> int | None:
 
 
 def _figures(file: Path) -> dict[str, int]:
-    """Names and whole numbers, one pair to a line; none if there is no such file."""
+    """Names and whole numbers, one pair to a line; empty if the file does not exist."""
     try:
         words = [line.split() for line in file.read_text().splitlines()]
     except OSError:

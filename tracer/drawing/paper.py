@@ -2,9 +2,9 @@
 
 Signals: a grey picture (0..255), or a channel of a coloured one, in; the paper's level at every pixel out.
 
-The paper is what is left of the picture when dark strokes narrower than a few mm are closed (a grey closing),
-smoothed. Whether the strokes are dark on light or light on dark is read off the skew of the grey levels about
-their local mean: strokes are the smaller part, so they stand out further.
+The paper is the picture with its dark strokes narrower than a few mm closed (a grey closing), smoothed.
+Whether the strokes are dark on light or light on dark is read off the skew of the grey levels about their
+local mean: strokes are the smaller part, so they stand out further.
 
 Source: our own; the patent takes the drawing for granted.
 """
@@ -29,8 +29,9 @@ Grey = NDArray[np.uint8] | NDArray[np.float32]
 
 @dataclass(frozen=True, slots=True)
 class Paper:
-    """The level of the paper on a picture reduced by a whole number to a pitch, how wide the picture is, and
-    whether the strokes are darker than it.
+    """The level of the paper on a picture reduced by a whole number to a pitch.
+
+    And the columns of the picture itself, and whether the strokes are darker than the paper.
     """
 
     reduced: Levels
@@ -47,54 +48,42 @@ class Paper:
         across = 2 * (max(24, round(WIDEST_STROKE_MM / pitch_mm)) // (2 * by)) + 1
         stroke = _disc(across // 2)
         relief = small - cv2.blur(small, (across, across))
-        is_light = (
-            float((relief**3).sum()) <= 0
-        )  # strokes take less room than paper: the few stand out further
+        # strokes take less room than paper: the few stand out further
+        is_light = float((relief**3).sum()) <= 0
         level = cv2.morphologyEx(small, cv2.MORPH_CLOSE if is_light else cv2.MORPH_OPEN, stroke)
         smooth = np.asarray(cv2.GaussianBlur(level, (0, 0), across / 2), np.float32)
         return cls(smooth, by, grey.shape[1], is_light, by * pitch_mm)
 
     def rows(self, top: int, bottom: int) -> Levels:
         """The paper of some rows of the picture."""
-        first, last = (
-            max(0, top // self.by - 1),
-            min(len(self.reduced), -(-bottom // self.by) + 1),
-        )
-        large = cv2.resize(
-            self.reduced[first:last],
-            None,
-            fx=self.by,
-            fy=self.by,
-            interpolation=cv2.INTER_LINEAR,
-        )
-        return np.asarray(
-            large[top - first * self.by : bottom - first * self.by, : self.columns], np.float32
-        )
+        by = self.by
+        first, last = max(0, top // by - 1), min(len(self.reduced), -(-bottom // by) + 1)
+        part = self.reduced[first:last]
+        large = cv2.resize(part, None, fx=by, fy=by, interpolation=cv2.INTER_LINEAR)
+        rows = slice(top - first * by, bottom - first * by)
+        return np.asarray(large[rows, : self.columns], np.float32)
 
     def shapes(self, contrast: float) -> NDArray[np.bool_]:
-        """Where the paper is as dark as ink of a contrast, or nearly, on the reduced picture: filled shapes
-        that are broader than a stroke, and about them.
+        """Where filled shapes broader than a stroke are, and about them, on the reduced picture.
+
+        There the paper is nearly as dark as ink of a contrast.
         """
-        away = (
-            self.reduced.max() - self.reduced
-            if self.is_light
-            else self.reduced - self.reduced.min()
-        )
-        grown = cv2.dilate(
-            (away > SHAPE * contrast).view(np.uint8),
-            _disc(round(WIDEST_STROKE_MM / 2 / self.pitch_mm)),
-        )
+        away = self.reduced - self.reduced.min()
+        if self.is_light:
+            away = self.reduced.max() - self.reduced
+        dark = (away > SHAPE * contrast).view(np.uint8)
+        grown = cv2.dilate(dark, _disc(round(WIDEST_STROKE_MM / 2 / self.pitch_mm)))
         return np.asarray(grown, bool)
 
 
 def _disc(radius_px: int) -> NDArray[np.uint8]:
-    """A disc of a radius."""
+    """Mask of a disc."""
     across = 2 * radius_px + 1
     return np.asarray(cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (across, across)), np.uint8)
 
 
 def _reduced(grey: Grey, by: int) -> Levels:
-    """The mean of each square of `by` pixels; the last squares go on over the edge with what is there."""
+    """The mean of each square of `by` pixels; beyond the picture its last pixels are repeated."""
     rows, columns = (-(-side // by) for side in grey.shape)
     small = np.empty((rows, columns), np.float32)
     for top, bottom, _ in strips((rows, columns * by * by)):

@@ -3,9 +3,9 @@
 Signals in: an image file that Pillow reads. Signals out: levels 0..255 (float32 beyond 8 bits) of the first
 page, upright, rows from the top; the stated resolution in dots per inch, and whether it is to be believed.
 
-Source: the patent takes the drawing and its scale for granted. Questions: a wrong scale makes a wrong part, and
-nothing later can tell. So 72 and 96 dpi, which programs write when they know none, and whatever a camera states
-are refused like a missing resolution.
+Source: the patent takes the drawing and its scale for granted. Questions: a wrong scale makes a wrong part,
+and nothing later can tell. So 72 and 96 dpi, which programs write when they know no scale, and whatever a
+camera states are refused like a missing resolution.
 """
 
 from __future__ import annotations
@@ -27,36 +27,32 @@ if TYPE_CHECKING:
 MM_PER_INCH = 25.4
 # what programs write into a file when they know no resolution: screens' dots, and Pillow's and Exif's default
 PLACEHOLDERS_DPI = (72.0, 96.0)
-# Exif tags that only a camera writes (a scanner has a maker and a model, too)
-EXIF_IFD, CAMERA_TAGS = (
-    0x8769,
-    (0x829A, 0x829D, 0x920A),
-)  # exposure time, aperture, focal length
+# Exif tags that only a camera writes (a scanner has a maker and a model, too): exposure time, aperture, focal
+# length, in the directory of Exif; and the tag of the resolution in X
+EXIF_IFD, CAMERA_TAGS, X_RESOLUTION = 0x8769, (0x829A, 0x829D, 0x920A), 0x11A
+# chosen far beyond any scan: a scale outside is a slip
 LEAST_PITCH_MM, LARGEST_PITCH_MM = 0.001, 10.0
+ROUNDED_DPI = 0.02  # a file that states dots per metre is off a whole number of dpi by no more
 Grey = NDArray[np.uint8] | NDArray[np.float32]  # levels 0..255
 
 
 class Stated(NamedTuple):
-    """The resolution that a file states, dots per inch in X and Y, and why it is no scale (None: it is one)."""
+    """The resolution that a file states, dots per inch in X and Y, and why it is no scale, if it is none."""
 
     dpi: tuple[float, float]
     doubt: str | None = None
 
 
-def _read(file: Path, *, coloured: bool) -> tuple[Grey, Stated | None]:
-    """Grey levels, or colours, of the first page of an image file, upright, and the resolution that the file
-    states.
-    """
+def read(file: Path, *, coloured: bool) -> tuple[Grey, Stated | None]:
+    """Grey levels, or colours, of the first page of an image file, upright, and its stated resolution."""
     from PIL import Image, ImageOps, UnidentifiedImageError
 
     Image.MAX_IMAGE_PIXELS = None  # a large sheet is no attack; a lack of memory is said below
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            with (
-                file.open("rb") as stream,
-                Image.open(stream) as image,
-            ):  # a stream is never mapped: Pillow turns maps wrongly
+            # by a stream, which is never mapped: Pillow turns maps wrongly
+            with file.open("rb") as stream, Image.open(stream) as image:
                 room.make_sure(file, *image.size)
                 image.load()
                 stated = _stated(image)
@@ -83,22 +79,21 @@ def _read(file: Path, *, coloured: bool) -> tuple[Grey, Stated | None]:
 
 
 def _states_resolution(image: Image) -> bool:
-    """Whether the file itself states a resolution: Pillow answers 72 dpi for a JPEG with Exif that does not."""
+    """Whether the file states a resolution: for a JPEG with Exif that does not Pillow answers 72 dpi."""
     if "dpi" not in image.info:
         return False
     by_jfif = image.info.get("jfif_unit", 0) in (1, 2)
-    return image.format != "JPEG" or by_jfif or 282 in image.getexif()  # 282: XResolution
+    return image.format != "JPEG" or by_jfif or X_RESOLUTION in image.getexif()
 
 
 def _grey(image: Image) -> Grey:
-    """Grey levels 0..255 of an image of any mode; the darkest colour channel, so that a coloured line is as
-    dark as it can be.
-    """
+    """Grey levels 0..255 of an image of any mode: its darkest channel, so that coloured lines are dark."""
     columns, rows = image.size
     deep = image.mode in ("I;16", "I;16B", "I;16L", "I", "F")
     grey = np.empty((rows, columns), np.float32 if deep else np.uint8)
     for top, bottom, _ in strips(grey.shape):
-        strip = image.crop((0, top, columns, bottom))  # as a whole it would be held twice more
+        # the whole image would be held twice more
+        strip = image.crop((0, top, columns, bottom))
         grey[top:bottom] = np.asarray(strip) if deep else _darkest_channel(strip)
     if deep:
         np.multiply(grey, 255 / _white(image.mode, float(grey.max())), out=grey)
@@ -113,9 +108,7 @@ def _white(mode: str, lightest: float) -> float:
 
 
 def _darkest_channel(image: Image) -> NDArray[np.uint8]:
-    """The darkest of the colour channels of an image of eight bits or fewer, on white where it is
-    transparent.
-    """
+    """The darkest colour channel of an image of eight bits or fewer, on white where it is transparent."""
     if image.mode in ("1", "L"):
         return np.asarray(image.convert("L"))
     if image.mode in ("LA", "PA", "RGBA", "La", "RGBa") or "transparency" in image.info:
@@ -133,7 +126,7 @@ def _stated(image: Image) -> Stated | None:
     x, y = (float(v) for v in image.info["dpi"])
     if not (np.isfinite(x) and np.isfinite(y) and x > 1 and y > 1):
         return None
-    x, y = (round(v) if abs(v - round(v)) < 0.02 else v for v in (x, y))
+    x, y = (round(v) if abs(v - round(v)) < ROUNDED_DPI else v for v in (x, y))
     return Stated((x, y), _doubt(image, x, y))
 
 
@@ -146,7 +139,7 @@ def _doubt(image: Image, x_dpi: float, y_dpi: float) -> str | None:
     return None
 
 
-def _pitches_mm(
+def pitches_mm(
     file: Path,
     columns: int,
     stated: Stated | None,
@@ -161,7 +154,8 @@ def _pitches_mm(
         if value is not None and not LEAST_PITCH_MM <= (pitch_mm or 0.0) <= LARGEST_PITCH_MM:
             allowed = f"{MM_PER_INCH / LARGEST_PITCH_MM:.3g} to {MM_PER_INCH / LEAST_PITCH_MM:.3g} dpi"
             raise DrawingFault(
-                f"{name} is {value:g}; it must give pixels of {LEAST_PITCH_MM:g} to {LARGEST_PITCH_MM:g} mm, {allowed}"
+                f"{name} is {value:g}; it must give pixels of {LEAST_PITCH_MM:g} to"
+                f" {LARGEST_PITCH_MM:g} mm, {allowed}"
             )
     if width_mm is not None:
         return (width_mm / columns,) * 2

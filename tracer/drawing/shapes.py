@@ -1,20 +1,18 @@
-"""Silhouettes: the edge of a filled shape as the cells see it behind a mask that passes light on the edge
-only, so that the head rides on it as on a line.
+"""Silhouettes: the edge of a filled shape, drawn as a line that the head follows like any other.
 
 Signals: grey levels in; out darkness 0..1 of a line of `EDGE_MM` whose middle is where the picture is half
-way between paper and shape, and that middle as outlines: not for the head, but to see afterwards that it kept
-to them (see `kept`).
+way between paper and shape, and that middle as outlines. The head does not see the outlines; they serve to
+check afterwards that it kept to them (see `edge_check`).
 
 The line is as a round pen would draw it along the edge: dark where the edge is within half the line's width.
-So corners look as inked corners do, and the head takes them as it takes those: it finds its way by its own
-cells, and the mask is not its path. What the scanner's lens has taken off the corners is put back (see
-`vertices`). Where edges are near one another the line is finer, on finer pixels; edges nearer than the lens
-tells apart are refused. Paper and shape may both be uneven: their levels are those round about
-(`ROUND_ABOUT_MM`).
+So corners look as inked corners do, and the head takes them in the same way: it finds its way by its own
+cells. What the scanner's lens has taken off the corners is put back (see `sharpening`). Where edges are near
+one another the line is finer, on finer pixels (see `spacing`); edges that the lens has run together are
+refused. Paper and shape may both be uneven: their levels are averaged over `ROUND_ABOUT_MM`.
 
 Source: our own; the patent's follower has lines only. Questions: an edge is the same from both sides, so
-light shapes on dark paper need no word; which of the two is paper matters for what is too thin to be a shape
-only: paper is what most of the sheet's border is.
+light shapes on dark paper need no option. Which of the two is paper matters only for ink that is too thin to
+be a shape: paper is what covers most of the sheet's border.
 """
 
 from __future__ import annotations
@@ -50,8 +48,9 @@ Grey = NDArray[np.float32]
 
 @dataclass(frozen=True, slots=True)
 class Outlined:
-    """A line along the edges of filled shapes: its darkness on pixels so many times `finer` than the
-    picture's, and the edges (n, 2) in sheet mm.
+    """A line along the edges of filled shapes, on pixels so many times `finer` than the picture's.
+
+    Its darkness, and the edges (n, 2) in sheet mm.
     """
 
     darkness: Grey
@@ -62,8 +61,8 @@ class Outlined:
 def outlined(grey: NDArray[Any], pitch_mm: float) -> Outlined:
     """The line along the edges of filled shapes, finer where they are near one another.
 
-    Raises DrawingFault if there are no shapes, if one is cut by the border of the sheet, and if edges are
-    nearer than can be told apart.
+    Raises DrawingFault without any shape, if the border of the sheet cuts a shape, and if edges are so near
+    that the lens has run them together.
     """
     from skimage.measure import find_contours
 
@@ -80,12 +79,10 @@ def outlined(grey: NDArray[Any], pitch_mm: float) -> Outlined:
     sharp = [sharpened(edge, softness_px) for edge in _refined(edges, share)]
     times = finer(sharp, share.shape, pitch_mm, softness_px)
     fine = [(edge.outline + 0.5) * times - 0.5 for edge in sharp]
-    darkness = _inked(
-        fine, (share.shape[0] * times, share.shape[1] * times), EDGE_MM / pitch_mm
-    )
-    return Outlined(
-        darkness, times, tuple(_mm(edge.outline, share.shape, pitch_mm) for edge in sharp)
-    )
+    rows, columns = share.shape
+    darkness = _inked(fine, (rows * times, columns * times), EDGE_MM / pitch_mm)
+    edges_mm = tuple(_mm(edge.outline, share.shape, pitch_mm) for edge in sharp)
+    return Outlined(darkness, times, edges_mm)
 
 
 def _mm(outline: Array, shape: tuple[int, ...], pitch_mm: float) -> Array:
@@ -101,9 +98,8 @@ def _none() -> DrawingFault:
 
 def _share(soft: Grey, pitch_mm: float) -> Grey:
     """How much of each pixel is the darker of paper and shape, 0..1."""
-    level = np.full_like(
-        soft, cv2.threshold(np.clip(soft, 0, 255).astype(np.uint8), 0, 255, cv2.THRESH_OTSU)[0]
-    )
+    eight_bits = np.clip(soft, 0, 255).astype(np.uint8)
+    level = np.full_like(soft, cv2.threshold(eight_bits, 0, 255, cv2.THRESH_OTSU)[0])
     for _ in range(2):  # the second time by levels that are those of the place
         dark = (soft <= level).view(np.uint8)
         if not 0 < int(dark.sum()) < dark.size:
@@ -116,41 +112,34 @@ def _share(soft: Grey, pitch_mm: float) -> Grey:
 
 
 def _level(soft: Grey, part: NDArray[np.uint8], pitch_mm: float) -> Grey:
-    """The level of one part of the picture round about each pixel; far from it that of the part on the whole."""
+    """The level of one part of the picture round about each pixel; far from the part its usual level."""
     inner = cv2.erode(part, np.ones((2 * FADES_PX + 1,) * 2, np.uint8))
     inner = (inner if inner.any() else part).astype(np.float32)
-    size, small = (
-        (soft.shape[1], soft.shape[0]),
-        (max(1, soft.shape[1] // REDUCED), max(1, soft.shape[0] // REDUCED)),
-    )
-    whole = float(np.median(soft[inner > 0]))
+    rows, columns = soft.shape
+    reduced = max(1, columns // REDUCED), max(1, rows // REDUCED)
+    usual = float(np.median(soft[inner > 0]))
     about_px = ROUND_ABOUT_MM / pitch_mm / REDUCED
-    total, count = (
-        cv2.GaussianBlur(
-            cv2.resize(each, small, interpolation=cv2.INTER_AREA),
-            (0, 0),
-            about_px,
-            borderType=cv2.BORDER_REFLECT,
-        )
-        for each in ((soft - whole) * inner, inner)
-    )
-    return np.asarray(
-        whole + cv2.resize(total / (count + 1e-3), size, interpolation=cv2.INTER_LINEAR),
-        np.float32,
-    )
+
+    def about(values: NDArray[Any]) -> Grey:
+        small = cv2.resize(values, reduced, interpolation=cv2.INTER_AREA)
+        mean = cv2.GaussianBlur(small, (0, 0), about_px, borderType=cv2.BORDER_REFLECT)
+        return np.asarray(mean, np.float32)
+
+    off = about((soft - usual) * inner) / (about(inner) + 1e-3)
+    whole = cv2.resize(off, (columns, rows), interpolation=cv2.INTER_LINEAR)
+    return np.asarray(usual + whole, np.float32)
 
 
 def _refuse_lines(share: Grey, pitch_mm: float) -> None:
     """Raise DrawingFault if nothing on the sheet is as broad as a shape."""
     border = np.concatenate([share[0], share[-1], share[:, 0], share[:, -1]])
     shapes = (share < 0.5) if float(np.median(border)) > 0.5 else (share > 0.5)
-    broadest_mm = (
-        2 * pitch_mm * float(cv2.distanceTransform(shapes.view(np.uint8), cv2.DIST_L2, 5).max())
-    )
+    depth_px = cv2.distanceTransform(shapes.view(np.uint8), cv2.DIST_L2, 5)
+    broadest_mm = 2 * pitch_mm * float(depth_px.max())
     if broadest_mm < LEAST_SHAPE_MM:
         raise DrawingFault(
-            f"no filled shape on the drawing: what is on it is {broadest_mm:.2g} mm broad at most, and a shape is {LEAST_SHAPE_MM:g} mm or more;"
-            " leave --edge out to follow lines"
+            f"no filled shape on the drawing: what is on it is {broadest_mm:.2g} mm broad at most,"
+            f" and a shape is {LEAST_SHAPE_MM:g} mm or more; leave --edge out to follow lines"
         )
 
 
@@ -158,9 +147,9 @@ def _refuse_cut(edges: list[Array], shape: tuple[int, ...], pitch_mm: float) -> 
     """Raise DrawingFault if an edge runs off the sheet."""
     for edge in edges:
         if np.any(edge[0] != edge[-1]):
-            row, column = edge[0]
+            x, y = _mm(edge[:1], shape, pitch_mm)[0]
             raise DrawingFault(
-                f"a filled shape is cut by the border of the sheet at {(column + 0.5) * pitch_mm:.1f},{(shape[0] - row - 0.5) * pitch_mm:.1f} mm;"
+                f"a filled shape is cut by the border of the sheet at {x:.1f},{y:.1f} mm;"
                 " scan it whole, with paper all round it (or cut a dark border off the scan)"
             )
 
@@ -178,26 +167,24 @@ def _softness_px(share: Grey, edges: list[Array]) -> float:
 
 
 def _refined(edges: list[Array], share: Grey) -> list[Array]:
-    """The edges where a smooth surface through the pixels is half way: straight pieces from pixel to pixel
-    cut corners by a tenth of a pixel.
+    """The edges where a smooth surface through the pixels is half way.
+
+    Straight pieces from pixel to pixel would cut corners by a tenth of a pixel.
     """
     from scipy.ndimage import map_coordinates, spline_filter
 
     surface = spline_filter(share, 3, output=np.float32)
 
     def height(places: Array) -> Array:
-        return np.asarray(
-            map_coordinates(surface, places.T, order=3, prefilter=False, mode="nearest"),
-            np.float64,
-        )
+        seen = map_coordinates(surface, places.T, order=3, prefilter=False, mode="nearest")
+        return np.asarray(seen, np.float64)
 
     refined, nearby = list[Array](), SLOPE_PX * np.eye(2)
     for edge in edges:
         places = with_places(edge, APART_PX)
         for _ in range(2):  # steps of Newton's
-            slope = np.column_stack(
-                [height(places + way) - height(places - way) for way in nearby]
-            ) / (2 * SLOPE_PX)
+            steps = [height(places + way) - height(places - way) for way in nearby]
+            slope = np.column_stack(steps) / (2 * SLOPE_PX)
             step = (height(places) - 0.5) / np.maximum((slope**2).sum(axis=1), LEAST_SLOPE**2)
             places = places - np.clip(step, -0.5, 0.5)[:, None] * slope
         refined.append(np.vstack([places[:-1], places[:1]]))
@@ -210,9 +197,8 @@ def _inked(edges: list[Array], shape: tuple[int, ...], reach_px: float) -> Grey:
 
     near = np.zeros(shape, np.uint8)
     for edge in edges:
-        cv2.polylines(
-            near, [np.round(edge[:, ::-1]).astype(np.int32)], False, 1, 2 * round(reach_px) + 3
-        )
+        pixels = np.round(edge[:, ::-1]).astype(np.int32)
+        cv2.polylines(near, [pixels], False, 1, 2 * round(reach_px) + 3)
     rows, columns = np.nonzero(near)
     tree = cKDTree(np.vstack([with_places(edge, 0.1) for edge in edges]))
     away_px = tree.query(np.column_stack([rows, columns]))[0]

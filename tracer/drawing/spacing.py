@@ -1,12 +1,11 @@
-"""How far apart edges are: how fine the line along them has to be drawn, so that it does not run into itself.
+"""How far apart edges are: how fine the line along them has to be, so that it does not run into itself.
 
 Signals: edges in pixels and the lens's softness in; out by how much finer than the picture the line is drawn.
 
-    ____      ____        A rib, a slot, the top of a tooth: the edge comes back beside itself. So do the two legs of a corner,
-        \\____/            which are a corner's all the same: a corner put back (see `vertices`) is known, and does not count.
+    ____      ____        A rib, a slot, the top of a tooth: the edge comes back beside itself. So do the
+        \\____/            two legs of a corner; a corner that was put back (see `sharpening`) does not count.
 
-Source: our own. Questions: edges nearer than the lens tells apart (`CLEAR`) move one another, and are
-refused.
+Source: our own. Questions: edges nearer than `CLEAR` seem to move one another, and are refused.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault
 from morfax.motion.polyline import lengths_mm as lengths_px
 from morfax.motion.polyline import with_places
-from morfax.tracer.drawing import memory as room
+from morfax.tracer.drawing import memory
 from morfax.tracer.drawing.sharpening import Edge
 
 APART_MM = 1.2  # three widths of the line along the edges: it is drawn as much finer as they are nearer
@@ -39,17 +38,20 @@ ROUND_ABOUT = 8
 def finer(
     edges: list[Edge], shape: tuple[int, ...], pitch_mm: float, softness_px: float
 ) -> int:
-    """By how much finer the line has to be drawn for edges that are near one another; raises DrawingFault if
-    they are nearer than told apart.
+    """By how much finer the line has to be drawn for edges that are near one another.
+
+    Raises DrawingFault if edges are so near that the lens has moved them.
     """
     pairs = _Pairs.of(edges, APART_MM / pitch_mm)
     least_mm = max(LEAST_APART_MM, CLEAR * softness_px * pitch_mm)
     beside = pairs.some(pairs.back > ROUND_ABOUT)
     if beside.nearest_px * pitch_mm < least_mm:
         row, column = beside.where
+        x, y = (column + 0.5) * pitch_mm, (shape[0] - row - 0.5) * pitch_mm
         raise DrawingFault(
-            f"two edges are {beside.nearest_px * pitch_mm:.2f} mm apart at {(column + 0.5) * pitch_mm:.1f},{(shape[0] - row - 0.5) * pitch_mm:.1f} mm,"
-            f" and are told apart from {least_mm:.2f} mm on; print the shape larger (--scale brings it back), or scan it finer"
+            f"two edges are {beside.nearest_px * pitch_mm:.2f} mm apart at {x:.1f},{y:.1f} mm,"
+            f" less than the {least_mm:.2f} mm at which the scan shows both where they are;"
+            " print the shape larger (--scale brings it back), or scan it finer"
         )
     comes_back = pairs.some(pairs.back > BACK)
     apart_mm = comes_back.some(~_legs_of_corners(edges, comes_back)).nearest_px * pitch_mm
@@ -60,18 +62,22 @@ def finer(
 
 def _make_room(apart_mm: float, times: int, shape: tuple[int, ...]) -> None:
     """Raise DrawingFault if there is not the memory for a line that is so many times finer."""
-    free, needed = room.free_bytes(), room.PER_PIXEL * times**2 * shape[0] * shape[1]
+    free, needed = memory.free_bytes(), memory.PER_PIXEL * times**2 * shape[0] * shape[1]
     if times > 1 and free is not None and needed > free:
         raise DrawingFault(
-            f"edges {apart_mm:.2f} mm apart have to be drawn {times} times finer, and that needs {needed / room.GB:.1f} GB of memory,"
-            f" {free / room.GB:.1f} GB are free; cut out the part to be traced, or close other programs"
+            f"edges {apart_mm:.2f} mm apart have to be drawn {times} times finer; that needs"
+            f" {needed / memory.GB:.1f} GB of memory, {free / memory.GB:.1f} GB are free;"
+            " cut out the part to be traced, or close other programs"
         )
 
 
 @dataclass(frozen=True, slots=True)
 class _Pairs:
-    """Places of edges that are near each other: places (n, 2, 2), edges (n, 2), ways along them (n, 2), and
-    how many times as far along as across (n,), all in pixels; infinitely many from one edge to another."""
+    """Pairs of places of edges that are near each other, pixels.
+
+    The places (n, 2, 2), the numbers of their edges (n, 2), how far along these they are (n, 2), and how many
+    times as far apart along the edge as straight across (n,), infinite from one edge to another.
+    """
 
     places: Array
     edge: NDArray[np.int64]
@@ -81,10 +87,8 @@ class _Pairs:
     @classmethod
     def of(cls, edges: list[Edge], within_px: float) -> _Pairs:
         lines = [with_places(edge.outline, 1.0)[:-1] for edge in edges]
-        places, edge = (
-            np.vstack(lines),
-            np.repeat(np.arange(len(lines)), [len(line) for line in lines]),
-        )
+        places = np.vstack(lines)
+        edge = np.repeat(np.arange(len(lines)), [len(line) for line in lines])
         along = np.concatenate([lengths_px(line) for line in lines])
         pairs = cKDTree(places).query_pairs(within_px, output_type="ndarray")
         between = _between(along[pairs], _lengths(edges)[edge[pairs[:, 0]]])
@@ -120,21 +124,18 @@ def _legs_of_corners(edges: list[Edge], pairs: _Pairs) -> NDArray[np.bool_]:
         if not len(own) or not len(edge.corners):
             continue
         along = np.sort(pairs.along[own], axis=1)
-        forward = along[:, 1] - along[:, 0] <= 0.5 * lengths[number]
-        middle = (along.mean(axis=1) + np.where(forward, 0.0, 0.5 * lengths[number])) % lengths[
-            number
-        ]
-        corners = lengths_px(edge.outline)[edge.corners]
-        apart = np.abs(middle[:, None] - corners)
-        corner = edge.outline[
-            edge.corners[np.minimum(apart, lengths[number] - apart).argmin(axis=1)]
-        ]
-        straight = np.hypot(*(pairs.places[own] - corner[:, None]).transpose(2, 0, 1)).sum(
-            axis=1
-        )
-        legs[own] = straight > LEG * _between(
-            pairs.along[own], np.full(len(own), lengths[number])
-        )
+        # 1. the corner that is nearest to the middle between the two places, along the edge
+        length = lengths[number]
+        forward = along[:, 1] - along[:, 0] <= 0.5 * length
+        middle = (along.mean(axis=1) + np.where(forward, 0.0, 0.5 * length)) % length
+        apart = np.abs(middle[:, None] - lengths_px(edge.outline)[edge.corners])
+        nearest = np.minimum(apart, length - apart).argmin(axis=1)
+        corner = edge.outline[edge.corners[nearest]]
+        # 2. straight to the corner and straight on is nearly as far as along the edge
+        ways = pairs.places[own] - corner[:, None]
+        straight = np.hypot(*ways.transpose(2, 0, 1)).sum(axis=1)
+        between = _between(pairs.along[own], np.full(len(own), length))
+        legs[own] = straight > LEG * between
     return legs
 
 
@@ -143,6 +144,6 @@ def _lengths(edges: list[Edge]) -> Array:
 
 
 def _between(along: Array, length: Array) -> Array:
-    """How far apart two places (n, 2) are along closed edges of some lengths (n,), the shorter way round."""
+    """How far apart two places (n, 2) are along closed edges of some lengths (n,), the shorter way."""
     apart = np.abs(along[:, 0] - along[:, 1])
     return np.asarray(np.minimum(apart, length - apart))

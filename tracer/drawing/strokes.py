@@ -1,4 +1,4 @@
-"""Which lines there are on a drawing, and where the head may be put down: plans only, never the path.
+"""Strokes: which lines are on a drawing, and where the head may be put down; plans only, never the path.
 
 Signals: a Drawing in; strokes out, each a connected patch of ink with its length, width and places near its
 middle (sheet mm).
@@ -40,9 +40,7 @@ MOST_ENDS = 100
 
 @dataclass(frozen=True, slots=True)
 class Stroke:
-    """A connected patch of ink: places near the middle of its line (n, 2) mm, and how much ink there is about
-    each.
-    """
+    """A connected patch of ink: places near the middle of its line (n, 2) mm, and the ink about each."""
 
     length_mm: float
     width_mm: float
@@ -55,9 +53,7 @@ class Stroke:
         return bool(np.hypot(*(self.middles_mm - place_mm).T).min() < self.width_mm)
 
     def ends_mm(self) -> Array:
-        """Places that may be ends of the line, most likely first; (n, 2) mm, none closer together than two
-        widths.
-        """
+        """Places that may be ends of the line, most likely first, two widths apart or more; (n, 2) mm."""
         order = np.argsort(self.filled)
         places = self.middles_mm[order[self.filled[order] < LESS * np.median(self.filled)]]
         kept: list[Array] = []
@@ -69,9 +65,7 @@ class Stroke:
 
 @dataclass(frozen=True, slots=True)
 class Sheet:
-    """The patches of ink on a drawing, with the length and the width that each has as a line, and which of
-    them are filled shapes.
-    """
+    """The patches of ink on a drawing: their lengths and widths as lines, and which are filled shapes."""
 
     drawing: Drawing
     patches: Patches
@@ -94,13 +88,8 @@ class Sheet:
         widths = np.maximum(
             4 * deep - 2, 1.0
         )  # a line of w pixels has depths 1, 2 … w/2 … 2, 1
-        sheet = cls(
-            drawing,
-            patches,
-            areas / widths * drawing.pitch_mm,
-            widths * drawing.pitch_mm,
-            _are_solid(drawing, patches),
-        )
+        lengths_mm, widths_mm = areas / widths * drawing.pitch_mm, widths * drawing.pitch_mm
+        sheet = cls(drawing, patches, lengths_mm, widths_mm, _are_solid(drawing, patches))
         if not sheet._long_enough().any():
             raise DrawingFault(
                 "no line on the drawing: nothing on it is long enough; check the file and its scale"
@@ -112,14 +101,13 @@ class Sheet:
         return self.stroke(int(np.argmax(self.lengths_mm)))
 
     def nearest(self, place_mm: tuple[float, float], within_mm: float) -> Stroke:
-        """The line nearest to a place; raises LineFault if none is within reach, and says how far the nearest
-        is.
-        """
+        """The line nearest to a place; raises LineFault, with its place, if it is out of reach."""
         distance_mm, (x, y), patch = self._nearest_ink(place_mm)
         if distance_mm > within_mm:
             raise LineFault(
-                f"no line within {within_mm:g} mm of {place_mm[0]:g},{place_mm[1]:g} mm: the nearest is {distance_mm:.1f} mm away,"
-                f" at {x:.1f},{y:.1f}; start there, or leave --start out for the longest line",
+                f"no line within {within_mm:g} mm of {place_mm[0]:g},{place_mm[1]:g} mm:"
+                f" the nearest is {distance_mm:.1f} mm away, at {x:.1f},{y:.1f};"
+                " start there, or leave --start out for the longest line",
                 x_mm=place_mm[0],
                 y_mm=place_mm[1],
                 nearest_mm=(float(x), float(y)),
@@ -128,22 +116,18 @@ class Sheet:
 
     def is_solid_at(self, place_mm: Array) -> bool:
         """Whether the ink nearest to a place is the rim of a filled shape."""
-        return bool(
-            self.are_solid[self._nearest_ink((float(place_mm[0]), float(place_mm[1])))[2]]
-        )
+        _, _, patch = self._nearest_ink((float(place_mm[0]), float(place_mm[1])))
+        return bool(self.are_solid[patch])
 
     def _long_enough(self) -> NDArray[np.bool_]:
         """Which patches are long enough to be lines."""
         return self.lengths_mm >= max(LEAST_LENGTH_MM, LEAST_LENGTH_PX * self.drawing.pitch_mm)
 
     def _nearest_ink(self, place_mm: tuple[float, float]) -> tuple[float, Array, int]:
-        """Distance of the ink of a line nearest to a place, mm, where it is, and the patch that it belongs
-        to.
-        """
+        """Distance of the ink of a line nearest to a place, mm, where it is, and the number of its patch."""
         runs = self.patches
-        column = np.clip(
-            round(place_mm[0] / self.drawing.pitch_mm - 0.5), runs.begin, runs.end - 1
-        )
+        nearest = round(place_mm[0] / self.drawing.pitch_mm - 0.5)
+        column = np.clip(nearest, runs.begin, runs.end - 1)
         places = self._mm(runs.row, column)
         distances = np.hypot(*(places - np.asarray(place_mm)).T)
         distances[~self._long_enough()[runs.patch]] = np.inf
@@ -158,10 +142,9 @@ class Sheet:
         return middle_px * self.drawing.pitch_mm
 
     def _mm(self, rows: Pixels, columns: Pixels) -> Array:
-        pitch = self.drawing.pitch_mm
-        return np.column_stack(
-            [(columns + 0.5) * pitch, (self.drawing.darkness.shape[0] - rows - 0.5) * pitch]
-        )
+        """Centres of pixels, (n, 2) sheet mm."""
+        up = self.drawing.darkness.shape[0] - rows
+        return np.column_stack([columns + 0.5, up - 0.5]) * self.drawing.pitch_mm
 
     def stroke(self, patch: int) -> Stroke:
         """A patch as a line, with its middle places."""
@@ -194,9 +177,7 @@ class Sheet:
         rows: tuple[int, int],
         columns: tuple[int, int],
     ) -> tuple[Pixels, Pixels, Array]:
-        """Row, column and ink about it of the pixels in a tile no neighbour of which is deeper in the patch's
-        ink.
-        """
+        """Row, column and ink about it of the pixels in a tile that lie deeper in the ink than all about."""
         halo = max(disc_px, DEEPEST_PX) + 1
         part = [
             edge for (a, b), size in zip((rows, columns), self.drawing.darkness.shape, strict=True)
