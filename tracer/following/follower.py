@@ -51,7 +51,6 @@ from morfax.tracer.tangles.solution import Approach
 SWELLS = 0.5
 FROM_BEHIND = (1.0, 0.6, 0.3)  # legs behind the axis: nearer, if a speck spoils the first place
 AWAY_LEADS, AWAY_WIDTHS = 4.0, 3.0  # the head is away from home after this travel
-
 # a place from which the line is clean, the heading there, and the travel
 Anchor = tuple[Array, float, float]
 NO_GUARDS = "the swinging cell sees no more ink, and this head has no guard cells to find on by"
