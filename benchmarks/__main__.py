@@ -1,6 +1,4 @@
-"""Run all benchmarks, or those named: `python -m benchmarks [tape …]`; `folder DIR` is the table of a folder
-of drawings.
-"""
+"""Run all benchmarks, or those named: `python -m benchmarks [tape …]`; `folder DIR` measures drawings."""
 
 from __future__ import annotations
 
@@ -11,7 +9,7 @@ from pathlib import Path
 
 
 def main(names: list[str]) -> None:
-    """Call `main()` of every module beside this one that has one, or of those named."""
+    """Call `main()` of every benchmark in this folder, or of those named."""
     if names[:1] == ["folder"]:
         importlib.import_module("benchmarks.folder").main(names[1:])
         return
@@ -22,7 +20,7 @@ def main(names: list[str]) -> None:
     ]
     if unknown := [name for name in names if name not in here]:
         sys.exit(
-            f"no benchmark {unknown[0]}; there are {', '.join(here)}; without a name all are run but folder, which wants a DIR"
+            f"{unknown[0]} is no benchmark; give {', '.join(here)}, or no name for all but folder, which needs a DIR"
         )
     for name in names or [name for name in here if name != "folder"]:
         run = getattr(importlib.import_module(f"benchmarks.{name}"), "main", None)

@@ -1,8 +1,7 @@
-"""The other controls: the step decoder and the cubic interpolator, against the same in numpy where there is
-such.
+"""The other controls: the step decoder, and the cubic interpolator against its closed form in numpy.
 
-The step program is a minute of vectors of six steps with both axes running, decoded to positions at eight
-samples to the interval; the cubic one 2000 intervals of 64 points on three axes. Best of five, kernels
+The step program is ten minutes of vectors of six steps with both axes running, decoded to positions at eight
+samples to the interval. The cubic program is 2000 intervals of 64 points on three axes. Best of five, kernels
 compiled before.
 """
 
@@ -35,7 +34,7 @@ def best_s(task: Callable[[], object]) -> float:
 
 
 def step_program() -> Program:
-    """Up to six steps along X, then round and round the ring."""
+    """Speed up to six steps along X, then go round the ring."""
     rows = np.full(STEP_ROWS, 0b00010, np.uint8)
     rows[:6] = 0b10001
     return Program(StepFormat(vectors=1), rows)
@@ -61,7 +60,7 @@ def points_per_second(axes: int) -> float:
 
 
 def points_per_second_in_numpy(axes: int) -> float:
-    """The same by the closed form in numpy, points/s of each axis; what one would write first."""
+    """The same by the closed form in numpy, as one would first write it, points/s of each axis."""
     words = np.random.default_rng(1).integers(-(10**6), 10**6, (INTERVALS, axes, 3))
     n = np.arange(1, POINTS + 1)
     powers = np.stack([n, n * (n - 1) // 2, n * (n - 1) * (n - 2) // 6])

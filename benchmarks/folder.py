@@ -1,12 +1,11 @@
 """The table of a folder of drawings: `python -m benchmarks folder DIR [--line 0.5mm]... [--size 300mm]`.
 
-Every truth file (`*.csv` with columns loop, x, y in mm) is traced as a program of all its lines: from the
-image beside it (`name.png`, .jpg or .tif, in the same sheet coordinates) or, where there is none, from a
-picture drawn of it here, at 300 dpi with each of the line widths, scaled to the size where one is given, and
-with a scanner's softness and noise. Every loop of the truth has its row; a traced line counts for the loop
-that it is nearest to. Printed are ending, pieces (lines traced for the loop), RMS, 95 % and largest distance
-of the path from the truth, Hausdorff distance, and the share of the truth that no path comes within 0.2 mm
-of. The time is that of the whole drawing.
+Every truth file (`*.csv` with columns loop, x, y in mm) is traced as a program of all its lines. The drawing is
+the image beside it (`name.png`, .jpg or .tif, in the same sheet coordinates). Without an image it is drawn here
+at 300 dpi with each of the line widths, scaled to the given size, with a scanner's softness and noise. Every
+loop of the truth has a row; a traced line counts for the loop that it is nearest to. A row has the ending, the
+pieces (lines traced for the loop), RMS, 95 % and largest distance of the path from the truth, Hausdorff
+distance, and the share of the truth that no path comes within 0.2 mm of. The time is that of the whole drawing.
 """
 
 from __future__ import annotations
@@ -55,7 +54,7 @@ def loops_of(file: Path) -> list[Points]:
 def drawn(
     loops: list[Points], line_mm: float, size_mm: float | None = None
 ) -> tuple[Drawing, list[Points]]:
-    """A picture of the lines as a scanner sees it, and the lines in its sheet coordinates."""
+    """Draw the lines as a scanner sees them; the picture, and the lines in its sheet coordinates."""
     every = np.vstack(loops)
     scale = 1.0 if size_mm is None else size_mm / float(np.ptp(every, axis=0).max())
     loops, every = [loop * scale for loop in loops], every * scale
@@ -120,12 +119,12 @@ def rows(
 
 
 def nearest(line: Line, truth: list[Points]) -> int:
-    """The loop that a traced line is nearest to, by half of its way."""
+    """Find the loop that a traced line is nearest to, by the median distance."""
     return int(np.argmin([np.median(distances_mm(line.xy_mm[::30], [loop])) for loop in truth]))
 
 
 def figures(lines: list[Line], loop: Points) -> str:
-    """What was traced for one loop, against its truth."""
+    """Measure what was traced for one loop against its truth."""
     if not lines:
         return f"{'missed':8s}{0:7d}{'':38s}{100:10.2f}"
     path = [line.xy_mm for line in lines]

@@ -1,4 +1,4 @@
-"""What all benchmarks share: the line of a table, the best of a few rounds taken in turn, and the table."""
+"""What all benchmarks share: the rows of a table, the best time of several rounds in turn, and the table."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ ROUNDS = 3
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """A line of the table: what was measured, how much of what, and the ratio to what."""
+    """A row of the table: what was measured, its value and unit, and its ratio to something else."""
 
     what: str
     value: float
@@ -23,7 +23,7 @@ class Row:
 def best_s(
     tasks: dict[str, Callable[[], object]], clock: Callable[[], float] = time.perf_counter
 ) -> dict[str, float]:
-    """Shortest time of each task, s; they take turns, so that what else the machine does falls on all alike."""
+    """Shortest time of each task, s; tasks take turns, so that other load hits all alike."""
     times: dict[str, list[float]] = {name: [] for name in tasks}
     for _ in range(ROUNDS):
         for name, task in tasks.items():

@@ -1,8 +1,8 @@
 """Tapes: decoding against the analytic signal of scipy and against merely reading; playing against real time.
 
-All are run in turn, three times over, and the best of each is taken, so that what else the machine does falls
-on all alike. The tape is a minute of circles at 50 mm/s, four tracks of 48 kHz and 16 bit. Memory is what
-Python and numpy hold at most, for that tape and for one ten times as long.
+All run in turn, three times, and the best of each counts, so that other load hits all alike. The tape is a
+minute of circles at 50 mm/s, four tracks of 48 kHz and 16 bit. Memory is the most that Python and numpy hold at
+once, for that tape and for one ten times as long.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ def decode(file: Path) -> None:
 
 
 def decode_by_hilbert(file: Path) -> None:
-    """File to phases with the analytic signal of each block; what one would write first."""
+    """File to phases by the analytic signal of each block, as one would first write it."""
     from scipy.signal import hilbert
 
     with soundfile.SoundFile(file) as sound:

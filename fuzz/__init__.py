@@ -1,1 +1,1 @@
-"""Fuzzing by hand (`make fuzz`): random and broken input, which must end as a fault and nothing else."""
+"""Fuzzing by hand (`make fuzz`): random and broken input must be read or end in a fault, nothing else."""

@@ -1,9 +1,8 @@
 """Fuzz the tape reader, the pipe and the text chunk with atheris: `python -m fuzz.tapes -runs=1000000`.
 
-The first inputs are whole tapes of a moment, of every kind of file, and their text: what is broken from there
-gets past the first bytes. Every input must end as a fault of the domain or be taken; any other exception, 2 s
-of work or 1 GB of memory ends the run with the input kept in a file (`-timeout=2 -rss_limit_mb=1024` are set
-by `make fuzz`).
+The first inputs are whole tapes of a moment, in every kind of file, and their text: changes of these get past
+the first bytes. Every input must be read, or end in a fault of the domain. Any other exception, 2 s of work or
+1 GB of memory ends the run and keeps the input in a file (`make fuzz` sets `-timeout=2 -rss_limit_mb=1024`).
 """
 
 from __future__ import annotations
@@ -18,9 +17,9 @@ from pathlib import Path
 import atheris
 import numpy as np
 
-os.environ["NUMBA_DISABLE_JIT"] = "1"  # which cannot compile what atheris has instrumented
+os.environ["NUMBA_DISABLE_JIT"] = "1"  # numba cannot compile code that atheris has instrumented
 
-with atheris.instrument_imports(include=["recorder", "morfax.motion.faults"]):
+with atheris.instrument_imports(include=["morfax.recorder", "morfax.motion.faults"]):
     from morfax.motion.faults import Fault
     from morfax.motion.motion import Motion
     from morfax.recorder.tape.format import TapeFormat
@@ -44,7 +43,7 @@ def seeds(folder: Path) -> None:
 
 
 def one(data: bytes) -> None:
-    """Try one input on a reader that its first byte chooses."""
+    """Try one input on the reader that its first byte chooses."""
     kind, body = data[:1], data[1:]
     try:
         if kind < b"\x55":

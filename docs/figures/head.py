@@ -21,13 +21,15 @@ from matplotlib.axes import Axes
 from morfax.motion.arrays import Array
 from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.tracer.drawing.drawing import Drawing, levelled
-from morfax.tracer.following import follower
+from morfax.tracer.following import follower, ways_out
 from morfax.tracer.following.start import put_down
 from morfax.tracer.head import kernel
 from morfax.tracer.head.settings import Settings
+from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.state import DRUM, Home
 from morfax.tracer.junctions import planner
 from morfax.tracer.sensing import photocell
+from morfax.tracer.sensing.view import View
 from morfax.tracer.tangles import memory
 from samples import draw
 
@@ -55,12 +57,17 @@ def inked(*lines: Array) -> tuple[Drawing, Array]:
     return Drawing(levelled(grey, PITCH_MM)[0], PITCH_MM), moved[0][0] - lines[0][0]
 
 
-def put_head(drawing: Drawing, start_mm: Array) -> follower.Follower:
-    """A head put down on the line at a place, heading to the right."""
+def put_down_at(drawing: Drawing, start_mm: Array) -> Stance:
+    """A stance on the line at a place, heading to the right."""
     stance, _ = next(put_down(drawing, (float(start_mm[0]), float(start_mm[1])), SETTINGS))
     if np.cos(stance.heading_rad) < 0:
         stance = type(stance)(stance.place_mm, stance.heading_rad - np.pi, stance.view)
-    return follower.Follower(stance, SETTINGS, MOTION_RATE_HZ)
+    return stance
+
+
+def put_head(drawing: Drawing, start_mm: Array) -> follower.Follower:
+    """A head put down on the line at a place, heading to the right."""
+    return follower.Follower(put_down_at(drawing, start_mm), SETTINGS, MOTION_RATE_HZ)
 
 
 @contextmanager
@@ -98,9 +105,10 @@ def about(place: Array, half_x: float, half_y: float) -> tuple[float, float, flo
 def sweep_figure() -> plt.Figure:
     """What the swinging cell sees at three offsets, and its fundamental over all of them."""
     drawing, by = inked(np.array([[0.0, 0.0], [20.0, 0.0]]))
-    run = put_head(drawing, by + np.array([10, 0]))
+    stance = put_down_at(drawing, by + np.array([10, 0]))
+    run = follower.Follower(stance, SETTINGS, MOTION_RATE_HZ)
     cells, amplitude = run.view.cells, run.carriage.tuning.amplitude_mm
-    place, offsets = run.stance.place_mm, (0.0, 0.1, 0.25)
+    place, offsets = stance.place_mm, (0.0, 0.1, 0.25)
     figure, (across, *signals, slope) = plt.subplots(
         1, 5, figsize=(15, 3.4), width_ratios=(1.1, 1, 1, 1, 1.3)
     )
@@ -183,8 +191,9 @@ def seen_from_axis(run: follower.Follower) -> dict[str, Array]:
 def drum_figure() -> plt.Figure:
     """The head on an arc: axis, drum of places, parabola, point, cells."""
     drawing, by = inked(draw.arc((0, 0), 6, 0, 340))
-    run = put_head(drawing, by + np.array([0, 6]))
-    home = Home(*run.stance.place_mm, run.stance.heading_rad, 1e9)
+    stance = put_down_at(drawing, by + np.array([0, 6]))
+    run = follower.Follower(stance, SETTINGS, MOTION_RATE_HZ)
+    home = Home(*stance.place_mm, stance.heading_rad, 1e9)
     state, tuning = run.carriage.state, run.carriage.tuning
     kernel.follow(run.view.cells, state, tuning, home, np.empty((3000, 2)))
     axis, heading = np.array([state.x_mm, state.y_mm]), state.heading_rad
@@ -233,14 +242,14 @@ def corner_figure() -> plt.Figure:
         drawing, by = inked(corner)
         run = put_head(drawing, by + np.array([-7, 0]))
         with (
-            listening(photocell, "ring") as rings,
-            listening(follower, "survey") as surveys,
+            listening(View, "ring") as rings,
+            listening(ways_out, "survey") as surveys,
             listening(run.carriage, "run") as drives,
         ):
             done = run.follow(30.0)
         vertex = corner[1] + by
         ground(axes, drawing, about(vertex + np.array([-1.3, 0.9]), 2.1, 2.1))
-        for (_, _, centre, radius, _), arcs in rings:
+        for (_, centre, radius), arcs in rings:
             if np.hypot(*(centre - vertex)) < 1.5:
                 draw_ring(axes, centre, radius, arcs)
         (_, incoming, *_), (outgoing, *_) = surveys[0]
