@@ -20,7 +20,7 @@ def main(names: list[str]) -> None:
     ]
     if unknown := [name for name in names if name not in here]:
         sys.exit(
-            f"{unknown[0]} is no benchmark; give {', '.join(here)}, or no name for all but folder, which needs a DIR"
+            f"{unknown[0]} is no benchmark; give {', '.join(here)}, or no name for all but `folder DIR`"
         )
     for name in names or [name for name in here if name != "folder"]:
         run = getattr(importlib.import_module(f"benchmarks.{name}"), "main", None)

@@ -1,8 +1,8 @@
 """The other controls: the step decoder, and the cubic interpolator against its closed form in numpy.
 
-The step program is ten minutes of vectors of six steps with both axes running, decoded to positions at eight
-samples to the interval. The cubic program is 2000 intervals of 64 points on three axes. Best of five, kernels
-compiled before.
+The step program is ten minutes of vectors of six steps with both axes running, decoded to positions at
+eight samples to the interval. The cubic program is 2000 intervals of 64 points on three axes. Best of
+five, kernels compiled before.
 """
 
 from __future__ import annotations
@@ -82,7 +82,8 @@ def main() -> None:
     )
     ours, numpys = points_per_second(3), points_per_second_in_numpy(3)
     print(
-        f"  cubic interpolator, three axes    {ours / 1e6:8.1f} million points/s/axis{ours / numpys:8.2f} x numpy"
+        f"  cubic interpolator, three axes    {ours / 1e6:8.1f} million points/s/axis"
+        f"{ours / numpys:8.2f} x numpy"
     )
 
 

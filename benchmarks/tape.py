@@ -1,8 +1,9 @@
-"""Tapes: decoding against the analytic signal of scipy and against merely reading; playing against real time.
+"""Tapes: decoding against the analytic signal of scipy and against merely reading; playing against real
+time.
 
-All run in turn, three times, and the best of each counts, so that other load hits all alike. The tape is a
-minute of circles at 50 mm/s, four tracks of 48 kHz and 16 bit. Memory is the most that Python and numpy hold at
-once, for that tape and for one ten times as long.
+All run in turn, three times, and the best of each counts, so that other load hits all alike. The tape is
+a minute of circles at 50 mm/s, four tracks of 48 kHz and 16 bit. Memory is the most that Python and numpy
+hold at once, for that tape and for one ten times as long.
 """
 
 from __future__ import annotations

@@ -1,11 +1,11 @@
 """Tracing a drawing, side by side with what one would reach for first: the contours and the skeleton of
 scikit-image.
 
-All start from the same file, a scan at 300 dpi of a star inked with a line of 0.5 mm (the project's own cam where
-the collection of real parts is missing), and end with places in mm on the sheet. The time is that of the whole
-way from the file, kernels warm. The accuracy is the RMS distance of those places from the true line. Contours
-run along both edges of the ink, half a line width away; a row of its own subtracts that half, as if the width
-were known.
+All start from the same file, a scan at 300 dpi of a star inked with a line of 0.5 mm (the project's own
+cam where the collection of real parts is missing), and end with places in mm on the sheet. The time is
+that of the whole way from the file, kernels warm. The accuracy is the RMS distance of those places from
+the true line. Contours run along both edges of the ink, half a line width away; a row of its own
+subtracts that half, as if the width were known.
 
 Times real time: the motion's own duration over the time that the processor spent (all its cores counted).
 """

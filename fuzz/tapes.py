@@ -1,8 +1,9 @@
 """Fuzz the tape reader, the pipe and the text chunk with atheris: `python -m fuzz.tapes -runs=1000000`.
 
-The first inputs are whole tapes of a moment, in every kind of file, and their text: changes of these get past
-the first bytes. Every input must be read, or end in a fault of the domain. Any other exception, 2 s of work or
-1 GB of memory ends the run and keeps the input in a file (`make fuzz` sets `-timeout=2 -rss_limit_mb=1024`).
+The first inputs are whole tapes of a moment, in every kind of file, and their text: changes of these get
+past the first bytes. Every input must be read, or end in a fault of the domain. Any other exception, 2 s
+of work or 1 GB of memory ends the run and keeps the input in a file (`make fuzz` sets `-timeout=2
+-rss_limit_mb=1024`).
 """
 
 from __future__ import annotations

@@ -66,7 +66,7 @@ def cam() -> list[Points]:
 
 
 def bracket() -> list[Points]:
-    """Angle bracket of 70 x 50 mm: right-angled, obtuse and rounded corners; a slot of 8 mm as a second line."""
+    """Angle bracket of 70 x 50 mm: right-angled, obtuse and rounded corners; and a slot of 8 mm."""
     outline = closed(
         np.array([0.0, 0.0]),
         arc((60, 10), 10, -90, 0),
