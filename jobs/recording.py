@@ -140,7 +140,7 @@ class RecordingUnit:
 def rehearsed(
     stream: Iterable[Motion], fmt: TapeFormat, listener: Listener
 ) -> Iterator[Motion]:
-    """Pass a motion on to its tape; a fault if no player could read it, a warning if a drive would lose it."""
+    """Pass a motion on to its tape; a fault if no player could read it, a warning if a drive loses it."""
     from morfax.player.tape.rehearsal import Rehearsal
 
     rehearsal = Rehearsal(fmt)

@@ -1,4 +1,4 @@
-"""The operator at the terminal: asked for the decades at every stop (--ask), and for the button where the card
+"""The operator at the terminal: asked for the decades at every stop (--ask), and for the button if the card
 says so.
 
 Questions go to stderr, answers come from stdin. An answer is a move (down 7mm 5mm/s), a dwell (dwell 2s) or
