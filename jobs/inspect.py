@@ -48,7 +48,7 @@ class InspectJob:
     picture: FilePath | None = None  # of the punched tape of a .steps program
 
     def run(self, listener: Listener = SILENT, panel: Panel | None = None) -> InspectResult:
-        """Inspect; raises WrongUse, and the fault of a file of which nothing can be told."""
+        """Inspect; raises WrongUse, and the fault of a file that cannot be measured at all."""
         is_program = medium.kind_of(self.tape) == "program"
         if self.picture is not None:
             if not is_program or self.tape.suffix.lower() != ".steps":

@@ -2,7 +2,7 @@
 
 Signals in: a path, and what it was compared with: the drawing it came from, or another path, with the error
 at each of some points along the contour, all in mm. Out: a picture; its axes are sheet coordinates in mm. The
-worst places are shown once more, enlarged so much that the error can be seen.
+worst places are shown once more, enlarged until the error can be seen.
 
 matplotlib takes most of a second to import: nothing here does it before a picture is asked for.
 """
