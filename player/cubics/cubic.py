@@ -182,14 +182,8 @@ class CubicPlayback(Supervised):
         register = np.array(
             [fmt.counts_per_mm, 2.0**servo.register_digits, 2.0**servo.dropped_digits]
         )
-        drive = np.array(
-            [
-                self._modulus_per_s,
-                servo.drive.gain(dt_s),
-                servo.drive.acceleration_mm_s2 * dt_s,
-                dt_s,
-            ]
-        )
+        gain, most = servo.drive.gain(dt_s), servo.drive.acceleration_mm_s2 * dt_s
+        drive = np.array([self._modulus_per_s, gain, most, dt_s])
         wrong = as_rows(self.conditions)
         rows = _servo(
             predicted,

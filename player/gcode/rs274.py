@@ -24,7 +24,6 @@ to be as far from both.
 
 from __future__ import annotations
 
-import math
 import os
 import re
 from collections.abc import Iterable, Sequence
@@ -33,48 +32,22 @@ from pathlib import Path as FilePath
 from typing import NamedTuple
 
 from morfax.motion.faults import FileFault, ProgramFault
+from morfax.player.gcode.arc_words import ArcWords, Place, WordError
+from morfax.player.gcode.modal_groups import BLENDING, CODES, DISTANCE, MOTION, READ, UNITS
 
 RAPID, LINE, CLOCKWISE, COUNTER_CLOCKWISE, DWELL = "G0", "G1", "G2", "G3", "G4"
 INCH_MM = 25.4
-LONGEST_DWELL_S = 86400.0
-TURN = 2 * math.pi
+LONGEST_DWELL_S = 86400.0  # a day: more is a mistake of the unit
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)"
 _WORD = re.compile(f"([A-Z])({_NUMBER})")
 _COMMENT = re.compile(r"\([^()]*\)|;.*")
-_MOTION, _UNITS, _DISTANCE, _BLENDING = "motion", "units", "distance mode", "blending"
-_GROUPS = {
-    _MOTION: ("G0", "G1", "G2", "G3"),
-    _UNITS: ("G20", "G21"),
-    _DISTANCE: ("G90", "G91"),
-    "dwell": ("G4",),
-    "plane": ("G17",),
-    "coordinate system": ("G54",),
-    "feed mode": ("G94",),
-    "cutter compensation": ("G40",),
-    "tool length": ("G49",),
-    "canned cycle": ("G80",),
-    _BLENDING: ("G61", "G64"),
-    "stop": ("M0", "M2", "M30"),
-    "spindle": ("M3", "M4", "M5"),
-}
-_CODES = {
-    (code[0], float(code[1:])): group for group, codes in _GROUPS.items() for code in codes
-}
 _KINDS = {0.0: RAPID, 1.0: LINE, 2.0: CLOCKWISE, 3.0: COUNTER_CLOCKWISE}
 _PLAIN, _MOVING, _ARC_WORDS = frozenset("GXYZIJRFPSTN"), frozenset("XYZIJR"), frozenset("IJR")
-_READ = (
-    "G0 G1 G2 G3 G4 G17 G20 G21 G40 G49 G54 G61 G64 G80 G90 G91 G94, "
-    "X Y Z I J R F P S T N, M0 M2 M3 M4 M5 M30"
-)
-
-Place = tuple[float, float, float]
 
 
 class Move(NamedTuple):
-    """One move: where it ends; of an arc the centre and the angle turned, rad; feed in mm/s; of a dwell the
-    time, s.
-    """
+    """A move: end; for an arc centre and angle turned, rad; feed in mm/s; for a dwell its time, s."""
 
     line: int
     kind: str
@@ -87,7 +60,7 @@ class Move(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Program:
-    """A program as read: where the machine stands at the start, and the moves."""
+    """A program as read: start of the machine, and moves."""
 
     start_mm: Place
     moves: list[Move]
@@ -96,9 +69,7 @@ class Program:
 def read_rs274(
     file: str | os.PathLike[str], start_mm: Sequence[float] | None = None
 ) -> Program:
-    """Read a program; raises ProgramFault with line and word for what is refused, FileFault if it cannot be
-    read.
-    """
+    """Read a program; raises ProgramFault with line and word, FileFault for an unreadable file."""
     try:
         text = FilePath(file).read_bytes().decode("ascii")
     except UnicodeDecodeError as error:
@@ -183,7 +154,7 @@ class _Reader:
         return parts
 
     def _obey(self, letters: list[str], numbers: list[str]) -> None:
-        """Do what the words of a line say, in the order of the standard."""
+        """Carry out the words of a line, in the order of the standard."""
         values = dict(zip(letters, map(float, numbers), strict=True))
         dwell, stop = False, -1
         if (
@@ -194,7 +165,7 @@ class _Reader:
             groups = self._codes(letters, numbers)
             self._set_modes(groups)
             dwell, stop = "dwell" in groups, groups.get("stop", -1)
-            if _BLENDING in groups:
+            if BLENDING in groups:
                 # how far a control may round corners; this one rounds none
                 values.pop("P", None)
         elif "G" in values:  # nearly all lines come here
@@ -203,14 +174,12 @@ class _Reader:
         self.ended = stop in (2, 30)
 
     def _codes(self, letters: list[str], numbers: list[str]) -> dict[str, int]:
-        """The G and M words of a line by their groups; raises ProgramFault for a word that is not played or
-        doubled.
-        """
+        """The G and M words of a line by their groups; raises ProgramFault for an unknown or doubled word."""
         groups: dict[str, int] = {}
         for at, (letter, text) in enumerate(zip(letters, numbers, strict=True)):
-            group = _CODES.get((letter, float(text))) if letter in "GM" else letter
+            group = CODES.get((letter, float(text))) if letter in "GM" else letter
             if group is None or (group == letter and letter not in _PLAIN):
-                raise self._fault(letter + text, f"is not played; this control reads {_READ}")
+                raise self._fault(letter + text, f"is not played; this control reads {READ}")
             if group in groups or (group == letter and letter in letters[:at]):
                 raise self._fault(
                     letter + text, f"is the second word for {group} in the line; give one"
@@ -221,16 +190,16 @@ class _Reader:
 
     def _set_modes(self, groups: dict[str, int]) -> None:
         """Units, distance mode and motion of this line and those after it."""
-        if _UNITS in groups:
-            self.scale = INCH_MM if groups[_UNITS] == 20 else 1.0
-        if _DISTANCE in groups:
-            self.relative = groups[_DISTANCE] == 91
-        if _MOTION in groups:
+        if UNITS in groups:
+            self.scale = INCH_MM if groups[UNITS] == 20 else 1.0
+        if DISTANCE in groups:
+            self.relative = groups[DISTANCE] == 91
+        if MOTION in groups:
             if "dwell" in groups:
                 raise self._fault(
                     "G4", "stands with another motion in one line; give it a line of its own"
                 )
-            self.kind = _KINDS[groups[_MOTION]]
+            self.kind = _KINDS[groups[MOTION]]
 
     def _move(self, values: dict[str, float], dwell: bool) -> None:
         """Feed, dwell, and then the motion that the axis words ask for."""
@@ -309,84 +278,13 @@ class _Reader:
 
     def _arc(self, values: dict[str, float], begin: Place, end: Place) -> Move:
         """G2 and G3: the arc between two places."""
-        if end[2] != begin[2]:
-            raise self._fault(
-                f"Z{values['Z']:g}",
-                "makes the arc a helix; this control turns arcs in X and Y: keep Z",
-            )
-        if "R" in values and ("I" in values or "J" in values):
-            raise self._fault(
-                f"R{values['R']:g}", "stands with a centre, I or J; give one of the two"
-            )
         sense = 1 if self.kind == COUNTER_CLOCKWISE else -1
-        given = "R" in values
-        centre = (
-            self._by_radius(begin, end, values["R"], sense)
-            if given
-            else self._by_offset(begin, end, values)
-        )
-        first = math.atan2(begin[1] - centre[1], begin[0] - centre[0])
-        turned = sense * (math.atan2(end[1] - centre[1], end[0] - centre[0]) - first) % TURN
-        whole = begin == end or (turned < 1e-12 and "R" not in values)
-        return Move(
-            self.number,
-            self.kind,
-            end,
-            self.feed_mm_s,
-            centre,
-            sense * (TURN if whole else turned),
-        )
-
-    def _by_radius(
-        self, begin: Place, end: Place, given: float, sense: int
-    ) -> tuple[float, float]:
-        """The centre that leaves less than half a turn, or with a negative radius more."""
-        across, up, radius = end[0] - begin[0], end[1] - begin[1], given * self.scale
-        chord = math.hypot(across, up)
-        if chord == 0 or chord / 2 > abs(radius) + _slack(abs(radius)) / 2:
-            raise self._fault(
-                f"R{given:g}",
-                f"does not reach: the ends of the arc are {chord:.4f} mm apart; give "
-                + (
-                    "I and J for a whole turn"
-                    if chord == 0
-                    else f"{chord / 2:.4f} mm or more, or other ends"
-                ),
-            )
-        off = (
-            math.sqrt(max(radius**2 - chord**2 / 4, 0.0))
-            * math.copysign(sense, sense * radius)
-            / chord
-        )
-        return (begin[0] + end[0]) / 2 - off * up, (begin[1] + end[1]) / 2 + off * across
-
-    def _by_offset(
-        self, begin: Place, end: Place, values: dict[str, float]
-    ) -> tuple[float, float]:
-        """The centre from I and J, moved to be as far from both ends."""
-        i, j = values.get("I", 0.0) * self.scale, values.get("J", 0.0) * self.scale
-        centre = begin[0] + i, begin[1] + j
-        radius, other = math.hypot(i, j), math.dist(end[:2], centre)
-        if radius == 0:
-            raise self._fault(self.kind, "has no centre; give I and J, or R")
-        if abs(other - radius) > _slack(radius):
-            raise self._fault(
-                f"I{values.get('I', 0.0):g} J{values.get('J', 0.0):g}",
-                f"is no centre of both ends: {radius:.4f} mm from the start, {other:.4f} mm from the end; "
-                f"they may differ by {_slack(radius):.4f} mm",
-            )
-        across, up = end[0] - begin[0], end[1] - begin[1]
-        chord_squared = across**2 + up**2
-        if chord_squared == 0:
-            return centre
-        along = (i * across + j * up) / chord_squared - 0.5
-        return centre[0] - along * across, centre[1] - along * up
+        try:
+            centre, turned = ArcWords(self.kind, sense, values, self.scale).arc(begin, end)
+        except WordError as error:
+            raise self._fault(error.word, error.what) from None
+        return Move(self.number, self.kind, end, self.feed_mm_s, centre, turned)
 
     def _fault(self, word: str, what: str) -> ProgramFault:
         """A fault at this line."""
         return ProgramFault(f"{self.name}, line {self.number}: {word} {what}", line=self.number)
-
-
-def _slack(radius_mm: float) -> float:
-    """How much the distances of an arc's ends from its centre may differ, mm."""
-    return min(max(0.005, 0.001 * radius_mm), 0.5)

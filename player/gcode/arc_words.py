@@ -1,0 +1,104 @@
+"""The words of an arc in RS-274: centre and angle turned, from I and J or from R.
+
+Signals in: the words of a G2 or G3 in the program's unit, begin and end in mm. Signals out: the centre in mm
+and the angle turned in rad, positive counter-clockwise. A centre that is not quite as far from both ends is
+moved to be so.
+
+Source: RS-274-D as LinuxCNC reads it. Questions: the slack of the radii is a thousandth of the radius, from
+5 um to 0.5 mm, as programs of other origin round their places.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+TURN = 2 * math.pi
+SAME_RAD = 1e-12  # a smaller turn to the same place is a whole one
+SLACK_SHARE, LEAST_SLACK_MM, LARGEST_SLACK_MM = (
+    0.001,
+    0.005,
+    0.5,
+)  # of the radius, and within these
+
+Place = tuple[float, float, float]
+Centre = tuple[float, float]
+
+
+class WordError(ValueError):
+    """A word that makes no arc, and what is wrong with it."""
+
+    def __init__(self, word: str, what: str) -> None:
+        super().__init__(f"{word} {what}")
+        self.word, self.what = word, what
+
+
+@dataclass(frozen=True, slots=True)
+class ArcWords:
+    """G2 or G3 with its sense (+1 counter-clockwise), its words by their letters, and mm per unit."""
+
+    kind: str
+    sense: int
+    values: dict[str, float]
+    scale: float
+
+    def arc(self, begin: Place, end: Place) -> tuple[Centre, float]:
+        """Centre and angle turned between two places; raises WordError."""
+        values, given = self.values, "R" in self.values
+        if end[2] != begin[2]:
+            raise WordError(
+                f"Z{values['Z']:g}",
+                "makes the arc a helix; this control turns arcs in X and Y: keep Z",
+            )
+        if given and ("I" in values or "J" in values):
+            raise WordError(
+                f"R{values['R']:g}", "stands with a centre, I or J; give one of the two"
+            )
+        centre = self._by_radius(begin, end) if given else self._by_offset(begin, end)
+        first = math.atan2(begin[1] - centre[1], begin[0] - centre[0])
+        last = math.atan2(end[1] - centre[1], end[0] - centre[0])
+        turned = self.sense * (last - first) % TURN
+        whole = begin == end or (turned < SAME_RAD and not given)
+        return centre, self.sense * (TURN if whole else turned)
+
+    def _by_radius(self, begin: Place, end: Place) -> Centre:
+        """The centre that leaves less than half a turn, or with a negative radius more."""
+        given = self.values["R"]
+        across, up, radius = end[0] - begin[0], end[1] - begin[1], given * self.scale
+        chord = math.hypot(across, up)
+        if chord == 0 or chord / 2 > abs(radius) + _slack_mm(abs(radius)) / 2:
+            more = f"{chord / 2:.4f} mm or more, or other ends"
+            raise WordError(
+                f"R{given:g}",
+                f"does not reach: the ends of the arc are {chord:.4f} mm apart; give "
+                + ("I and J for a whole turn" if chord == 0 else more),
+            )
+        height = math.sqrt(max(radius**2 - chord**2 / 4, 0.0))
+        off = height * math.copysign(self.sense, self.sense * radius) / chord
+        return (begin[0] + end[0]) / 2 - off * up, (begin[1] + end[1]) / 2 + off * across
+
+    def _by_offset(self, begin: Place, end: Place) -> Centre:
+        """The centre from I and J, moved to be as far from both ends."""
+        given_i, given_j = self.values.get("I", 0.0), self.values.get("J", 0.0)
+        i, j = given_i * self.scale, given_j * self.scale
+        centre = begin[0] + i, begin[1] + j
+        radius, other = math.hypot(i, j), math.dist(end[:2], centre)
+        if radius == 0:
+            raise WordError(self.kind, "has no centre; give I and J, or R")
+        if abs(other - radius) > _slack_mm(radius):
+            raise WordError(
+                f"I{given_i:g} J{given_j:g}",
+                f"is no centre of both ends: {radius:.4f} mm from the start, {other:.4f} mm from the "
+                f"end; they may differ by {_slack_mm(radius):.4f} mm",
+            )
+        across, up = end[0] - begin[0], end[1] - begin[1]
+        chord_squared = across**2 + up**2
+        if chord_squared == 0:
+            return centre
+        along = (i * across + j * up) / chord_squared - 0.5
+        return centre[0] - along * across, centre[1] - along * up
+
+
+def _slack_mm(radius_mm: float) -> float:
+    """The allowed difference between the distances of an arc's ends from its centre, mm."""
+    return min(max(LEAST_SLACK_MM, SLACK_SHARE * radius_mm), LARGEST_SLACK_MM)
