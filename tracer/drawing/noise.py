@@ -32,6 +32,7 @@ from scipy.ndimage import map_coordinates
 from scipy.special import erf
 
 from morfax.motion.arrays import Array
+from morfax.tracer.drawing.drawing import ROBUST
 
 INK = 0.5  # darker is ink
 SEARCHED = 1 << 18  # pixels of the rows that are searched for ink, and of the columns
@@ -51,7 +52,6 @@ ROUNDS = (
 )
 # linear interpolation, over all places between pixels: variance of its kernel, share of white noise left
 INTERPOLATED_PX2, INTERPOLATED_NOISE = 1 / 6, 4 / 9
-ROBUST = 1.4826  # standard deviations to a median absolute deviation of normal noise
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,26 +1,21 @@
 """Vertices: corners of an edge that the scanner's lens has rounded, brought back to where their legs meet.
 
 Signals: an outline (n, 2) in pixels where a picture has half of its contrast, and the softness of the edge
-(standard deviation, pixels) in; out the outline with its sharp corners. A lens as soft as s puts the outline
-of a sharp corner whose legs are an angle a apart a way w · s inside the vertex, where
+(standard deviation, pixels) in; out the outline with its sharp corners.
 
-    ∫ φ(x - w) · erf(x · tan(a/2) / √2) dx  (x > 0) = 1/2          right angle 0.77    36 degrees 2.5
+The lens leaves the legs of a corner where they are from 3 s / sin(a) on, for a softness s and an angle a
+between the legs. There they are felt, as parabolas where they are bent. How far inside the vertex the outline
+is tells the corner's round (see `lens`). A corner that does not fit its outline beside the vertex stays as it
+is: the lens does not explain it.
 
-and leaves the legs where they are from 3 s / sin(a) on. There they are felt, as parabolas where they are
-bent. A corner whose outline is further inside than that by more than noise does it is a round one: its radius
-is that with which the same integral, over the width of a rounded corner, is a half. A corner that does not
-fit its outline beside the vertex stays as it is: the lens does not explain it.
-
-Source: the half-plane and the wedge seen through a normal distribution; our own. Questions: a round that
-moves the outline by less than noise does (`FURTHER`, `NOISE`) is taken for a sharp corner: at a right angle
-one of 0.12 mm at 300 dpi, which is 0.05 mm out.
+Source: our own. Questions: a round that moves the outline by less than noise does (`FURTHER`, `NOISE`) is
+taken for a sharp corner: at a right angle a round of 0.12 mm at 300 dpi, which moves it by 0.05 mm.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -32,6 +27,7 @@ from scipy.spatial import cKDTree
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import lengths_mm as lengths_px
 from morfax.motion.polyline import with_places
+from morfax.tracer.drawing.lens import radius_of, way_inside
 
 APART_PX = 0.25  # between the places of an outline
 CLEAR = 3.0  # standard deviations: a leg is where it is when the other is as far away as this
@@ -164,8 +160,8 @@ class _Fit(NamedTuple):
 def _corner(places: Array, corners: list[int], k: int, softness_px: float) -> _Instead | None:
     """What stands in the place of a corner; None if it is no corner, or if the lens does not explain it."""
     at, dense = corners[k], softness_px / APART_PX
-    before = at - corners[k - 1] if k else at + len(places) - corners[-1]
-    after = (corners[k + 1] if k + 1 < len(corners) else corners[0] + len(places)) - at
+    before = (at - corners[k - 1] - 1) % len(places) + 1
+    after = (corners[(k + 1) % len(corners)] - at - 1) % len(places) + 1
     # 1. feel the legs, from further away where the corner that they make is narrow or round
     fit, angle, touch = None, math.pi / 2, 0.0
     for _ in range(TRIES):
@@ -203,9 +199,9 @@ def _fit(outline: Array, legs: tuple[EdgeLeg, EdgeLeg], softness_px: float) -> _
     if not NARROWEST < angle < math.pi - LEAST_TURN:
         return None
     way = float(np.hypot(*(outline - vertex).T).min()) / softness_px
-    sharp, radius = _way(round(angle, 3)), 0.0
+    sharp, radius = way_inside(round(angle, 3)), 0.0
     if way > (1 + FURTHER) * sharp + NOISE:
-        radius = _radius(round(angle, 3), round(way, 3))
+        radius = radius_of(round(angle, 3), round(way, 3))
     return _Fit(vertex, t, w, angle, way, sharp, radius)
 
 
@@ -268,37 +264,3 @@ def _met(a: EdgeLeg, b: EdgeLeg) -> tuple[Array, Array, Array] | None:
         if np.hypot(*beyond) > reach or beyond @ leg.along < 0:
             return None
     return place, t, w
-
-
-@lru_cache(maxsize=4096)
-def _way(angle: float) -> float:
-    """How far inside a sharp corner its outline is, in standard deviations of the lens."""
-    from scipy.optimize import brentq
-
-    return float(brentq(lambda way: _seen(angle, 0.0, way) - 0.5, 0, 30))
-
-
-@lru_cache(maxsize=4096)
-def _radius(angle: float, way: float) -> float:
-    """Radius of the round whose outline is so far inside the vertex, standard deviations; 0: sharp."""
-    from scipy.optimize import brentq
-
-    if way <= _way(angle):
-        return 0.0
-    alone = way / (1 / math.sin(angle / 2) - 1)  # with a perfect lens
-    return float(brentq(lambda radius: _seen(angle, radius, way) - 0.5, 0, alone, xtol=1e-3))
-
-
-def _seen(angle: float, radius: float, way: float) -> float:
-    """Share of the shape that a lens sees so far (standard deviations) inside a rounded corner."""
-    from scipy.special import erf
-
-    half = angle / 2
-    middle = radius / math.sin(half)
-    x = np.linspace(way - 5, way + 5, 1001)
-    on_leg = np.maximum(x, 0) * math.tan(half)
-    on_round = np.sqrt(np.maximum(radius**2 - (x - middle) ** 2, 0))
-    on_round = np.where(x < middle - radius, 0, on_round)
-    across = np.where(x < middle * math.cos(half) ** 2, on_round, on_leg)
-    seen = erf(across / math.sqrt(2)) * np.exp(-0.5 * (x - way) ** 2)
-    return float(np.trapezoid(seen, x)) / math.sqrt(2 * math.pi)
