@@ -32,9 +32,7 @@ def sagitta_rad(radius_mm: float) -> float:
 
 
 def swung(line: Array, closed: bool, radius_mm: float) -> Array:
-    """The end of the arm to the left of a line, (n, 2) mm; of a closed line the last place is not the first
-    again.
-    """
+    """The end of the arm to the left of a line, (n, 2) mm; a closed line is left open."""
     # 1. headings, lengths and arms of the straight pieces
     ways = np.diff(closed_up(line) if closed else line, axis=0)
     lengths = np.hypot(*ways.T)

@@ -58,9 +58,7 @@ def run_along(
 
 
 def _with_halves(way_mm: Array) -> Array:
-    """The way without places that repeat, and its pieces halved: between two stops there must be a place to
-    move at.
-    """
+    """The way without repeated places, its pieces halved, so that it moves between two stops."""
     way_mm = way_mm[np.r_[True, steps_mm(way_mm) > LEAST_STEP_MM]]
     middles = 0.5 * (way_mm[1:] + way_mm[:-1])
     both = np.empty((2 * len(way_mm) - 1, 2))

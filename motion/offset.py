@@ -52,9 +52,7 @@ class DriveCurve:
 
 @dataclass(frozen=True, slots=True)
 class OffsetPath:
-    """A path of the tool's middle (n, 2) mm, and the number of the drive curve that most of it runs along; a
-    closed one ends where it begins.
-    """
+    """A path of the tool's middle (n, 2) mm, closed up if closed, and the drive curve it runs along most."""
 
     points_mm: Array
     closed: bool
@@ -62,9 +60,7 @@ class OffsetPath:
 
 
 def offset(curves: Sequence[DriveCurve], radius_mm: float) -> list[OffsetPath]:
-    """Paths of a tool of this radius along drive curves, each in its curve's direction; none where the tool
-    does not fit.
-    """
+    """Paths of a tool of this radius along drive curves, in their direction; none where it does not fit."""
     lines = [guided(curve, radius_mm) for curve in curves]
     closed = [curve.closed for curve in curves]
     whole = [

@@ -43,9 +43,7 @@ def length_mm(line_mm: Array) -> float:
 
 
 def area_mm2(line_mm: Array) -> float:
-    """Area inside a line whose end is joined to its start, mm²: positive if it goes round
-    counter-clockwise.
-    """
+    """Area inside a line taken for closed, mm²: positive if it goes round counter-clockwise."""
     x, y = (line_mm - line_mm[0]).T
     return 0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
 

@@ -61,9 +61,7 @@ class PathPlace(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Cut:
-    """What is cut of a line: its places (n, 2) mm from position `first` on, without guide lines, and its
-    stops.
-    """
+    """What is cut of a line: places (n, 2) mm from `first` on, no guide lines, and its stops."""
 
     line: Line
     first: int
@@ -114,9 +112,7 @@ def _places(line: Line, first: int) -> Array:
 
 
 def _bridge(before: Array, after: Array) -> Array:
-    """A cubic from the end of some places (n, 2) mm to the beginning of others, on their headings; nothing at
-    a corner.
-    """
+    """A cubic from the end of some places (n, 2) mm to the beginning of others; nothing at a corner."""
     arrives = before[-1] - before[max(0, len(before) - FELT)]
     leaves = after[min(FELT, len(after)) - 1] - after[0]
     headings = [math.atan2(way[1], way[0]) for way in (arrives, leaves)]
@@ -126,9 +122,7 @@ def _bridge(before: Array, after: Array) -> Array:
 
 
 def _closed(places_mm: Array) -> Array:
-    """Places of a closed contour (n, 2) mm, brought together at its beginning and end: the head came there
-    twice, some um apart.
-    """
+    """Places of a closed contour (n, 2) mm, brought together where it begins and ends some um apart."""
     lengths = lengths_mm(places_mm)
     gap_mm = 0.5 * (places_mm[-1] - places_mm[0])
     after = np.clip(1 - lengths / MET_MM, 0.0, 1.0)
@@ -138,9 +132,7 @@ def _closed(places_mm: Array) -> Array:
 
 @dataclass(frozen=True, slots=True)
 class Beside:
-    """The paths (n, 2) mm of a cutter along a contour, on its left or its right; a closed path ends where it
-    begins.
-    """
+    """The paths of a cutter along a contour, on its left or right; a closed path ends where it begins."""
 
     cut: Cut
     left: bool

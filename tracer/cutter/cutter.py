@@ -81,9 +81,7 @@ class Unreached:
 
 @dataclass(frozen=True, slots=True)
 class LeftOut:
-    """A line that the cutter does not touch: its length (mm), its stops, and the room beside it if that is
-    shut in.
-    """
+    """A line that the cutter does not touch: length (mm), stops, and the room beside it if shut in."""
 
     line: int
     length_mm: float
@@ -261,9 +259,7 @@ def _left(
     paths: Sequence[OffsetPath],
     radius_mm: float,
 ) -> Left:
-    """The stretches of the lines that the cutter does not reach from any path, and the lines that it nowhere
-    reaches.
-    """
+    """The stretches of lines that the cutter does not reach, and the lines that it nowhere reaches."""
     near, left = Nearest([path.points_mm for path in paths], radius_mm), Left()
     for k, cut in enumerate(cuts):
         places = with_places(plain(cut.places_mm, WITHIN_MM), EVERY_MM)

@@ -71,9 +71,7 @@ def thinned(line_mm: Array) -> Array:
 
 
 def crossing(lines_mm: Sequence[Array]) -> NDArray[np.bool_]:
-    """Which lines (n, 2) mm, taken for closed, cross which: `crossing[i, j]`; `[i, i]` if line i crosses
-    itself.
-    """
+    """Which lines (n, 2) mm, taken for closed, cross which; `[i, i]` if line i crosses itself."""
     closed = [closed_up(line) for line in lines_mm]
     owner = np.concatenate([np.full(len(line), k) for k, line in enumerate(closed)])
     last = np.flatnonzero(np.r_[np.diff(owner) != 0, True])
@@ -160,9 +158,7 @@ class _Grid:
 def _free(
     grid: _Grid, lines_mm: Sequence[Array], own_mm: Array, inside: bool
 ) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
-    """A grid that is 0 where a line runs, else 1; and which cells are on the own line's side, with no line
-    between.
-    """
+    """A grid that is 0 where a line runs, else 1; and which cells are beside the own line, on its side."""
     free = np.ones(grid.shape, np.uint8)
     filled, beside = np.zeros_like(free), np.zeros_like(free)
     cv2.polylines(free, [grid.cells(line) for line in lines_mm], False, 0)

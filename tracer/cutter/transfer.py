@@ -110,9 +110,7 @@ def _is_clear(
 
 
 def _joins(beside: Beside, rows: Array) -> tuple[float, PathPlace]:
-    """Which position of a lead line is its last, and where it comes onto the path: after all that is drilled
-    on it.
-    """
+    """The last position of a lead line, and where it comes onto the path: after all that is drilled on it."""
     cut, line = beside.cut, beside.cut.line
     last = float(len(rows) - 1)
     # 1. onto an open path at its beginning
@@ -186,9 +184,7 @@ def _other_line(beside: Beside, number: int) -> Line:
 
 
 def _main_line(beside: Beside, run: PathRun, number: int, lead: LeadRun | None) -> Line:
-    """The line of the path with the lead line, not yet with its positions; puts the lead line before the
-    run.
-    """
+    """The line of the path with the lead line, not yet with its positions; puts the lead line first."""
     cut, line = beside.cut, beside.cut.line
     ending = "closed" if beside.paths[number].closed else "ended"
     if lead is not None or line.fault is not None:

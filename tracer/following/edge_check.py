@@ -27,9 +27,7 @@ CHECKED = 8  # one position in 8 is checked: every 13 um at 10 mm/s
 
 
 def kept_to(edges_mm: tuple[Array, ...], run: Followed) -> Followed:
-    """The run, if it kept to the edges, and, closed, left nothing of its edge out; else a run lost at the
-    first place where it did not.
-    """
+    """The run, if it kept to the edges and, closed, left none of its edge out; else lost at that place."""
     if not edges_mm:
         return run
     lines = [with_places(edge, EVERY_MM) for edge in edges_mm]

@@ -108,9 +108,7 @@ class Line:
 
     @property
     def own_mm(self) -> Array:
-        """Places that are certainly its own, (n, 2) mm: all, or up to the first junction of a line that did
-        not come back.
-        """
+        """Places certainly its own, (n, 2) mm: up to the first junction of a line that did not come back."""
         places = self.places_mm
         if self.ending in ("closed", "ended") or not self.junctions_mm:
             return places

@@ -112,9 +112,7 @@ def nearest_station(seen: Array, place_mm: Array) -> int:
 
 
 def leads_to_dot(view: View, incoming: Leg, outgoing: Leg | None) -> bool:
-    """Whether a junction is a dot on the line, or the leg out of it leads to a dot: no pen's width explains
-    that ink.
-    """
+    """Whether a junction is a dot, or the leg out leads to one: no pen's width explains that ink."""
     if outgoing is None:
         return False
     if dot_ahead(view, outgoing):

@@ -82,9 +82,7 @@ class Operator:
         return sorted(n for n in {*override, *of_entries} if n > stops), stops
 
     def stops(self, line: Line, first: int) -> list[Halt]:
-        """The stops of a line in order, with the numbers that the line has for them, or numbered from
-        `first`.
-        """
+        """The stops of a line in order, with their own numbers, or numbered from `first`."""
         # 1. ticks and dots
         stops = list[Halt]()
         for mark in line.marks:
@@ -181,9 +179,7 @@ class Operator:
         return actions
 
     def _refuse_passes_above(self, actions: Sequence[Action]) -> None:
-        """Raise CardFault if a line that ends with the tool up has further passes: only the first has
-        stops.
-        """
+        """Raise CardFault if a line that ends with the tool up has further passes, which have no stops."""
         depths_mm = self.depths_mm(actions)
         if len(depths_mm) < 2 or not any(action.depths_mm for action in actions):
             return
@@ -197,9 +193,7 @@ class Operator:
         )
 
     def _entered(self, action: Action) -> Action:
-        """The action where the tool goes down, with the card's entry: to the surface while X and Y stand, and
-        further on the way.
-        """
+        """Where the tool goes down, with the card's entry: to the surface while X and Y stand."""
         to_mm, length_mm = action.moves[-1].to_mm, self.card.entry_mm
         if length_mm is None or to_mm >= 0 or len(action.moves) > 1:
             return action
@@ -234,9 +228,7 @@ class Operator:
         return [Move(z_mm, feed_mm_s, stop.dwell_s or STAND_S)]
 
     def _from_card(self, halt: Halt, stop: Stop, z_mm: float) -> list[Move]:
-        """The moves that an entry of the card gives; none for a dwell alone, which goes with the usual
-        moves.
-        """
+        """The moves that an entry of the card gives; none for a dwell alone."""
         if not stop.moves and stop.drill is None:
             return []
         x, y = halt.place_mm

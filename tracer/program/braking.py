@@ -39,9 +39,7 @@ SLOWEST_MM_S = 0.02  # where the head swivels it stands: its time there is kept
 def pieces(
     xy_mm: Array, halts: Sequence[float], acceleration_mm_s2: float, rate_hz: float
 ) -> list[Array]:
-    """The way cut at its halts, in order: one piece more than `halts`, each at rest at the cuts; positions
-    before the first are row 0.
-    """
+    """The way cut at its halts: one piece more than `halts`, at rest at the cuts; before the first row 0."""
     # 1. the halts as nodes among the positions
     at = np.clip(np.asarray(halts, float), 0, len(xy_mm) - 1)
     nodes = np.unique(np.r_[np.arange(len(xy_mm), dtype=float), at])
@@ -60,9 +58,7 @@ def pieces(
 
 
 def run(way_mm: Array, speed_mm_s: float, acceleration_mm_s2: float, rate_hz: float) -> Array:
-    """Along a way (n, 2) mm from rest to rest, as fast as its bends allow and no faster than asked; at a
-    uniform rate.
-    """
+    """Along a way (n, 2) mm from rest to rest, as fast as asked and its bends allow; at a uniform rate."""
     places = _nodes(way_mm)
     # 1. from rest to rest between the corners
     speeds = np.zeros(len(places))
@@ -108,9 +104,7 @@ def _speeds(way_mm: Array, steps_s: Array, cuts: Array, acceleration_mm_s2: floa
 
 
 def _timed(places: Array, took_s: Array, speeds: Array, rate_hz: float) -> Array:
-    """Nodes with the times that their steps take, as positions at a uniform rate: first and last exactly, the
-    last one perhaps a part of a period late.
-    """
+    """Nodes with the times of their steps, as positions at a uniform rate: first and last exactly."""
     times = np.r_[0.0, np.cumsum(took_s)]
     if times[-1] <= 0 or len(places) < 2:
         return places[:1]

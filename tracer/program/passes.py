@@ -114,9 +114,7 @@ class Passes:
         yield _at(self._from_rest(line, first, last), z_mm)
 
     def _again(self, line: Line, z_mm: float, depth_mm: float) -> Iterator[Array]:
-        """Along a line, or its loop, once more at another depth, (n, 3) mm: straight on where it closes, else
-        up and over.
-        """
+        """Along a line, or its loop, once more at another depth, (n, 3) mm: straight on, or up and over."""
         xy_mm = self._from_rest(line, _loop_from(line), len(line.xy_mm) - 1)
         if _comes_round(line):
             yield _at(self._feed(xy_mm[-1], xy_mm[0]), z_mm)
@@ -148,9 +146,7 @@ class Passes:
         return ramp.positions_mm(start_mm, end_mm, self.work.feed_mm_s, rate_hz=self.rate_hz)
 
     def _home(self, line: Line, at_mm: Array) -> Iterator[Array]:
-        """Back along a lead or guide line to where it began, and to the reference point, at clearance, (n, 3)
-        mm.
-        """
+        """Back along a lead or guide line, and to its reference point, at clearance, (n, 3) mm."""
         if not line.goes_back:
             if np.any(at_mm != line.xy_mm[-1]):
                 yield self.rapid(at_mm, line.xy_mm[-1])

@@ -53,9 +53,7 @@ class Contour:
     reach_mm: float
 
     def starts_mm(self) -> list[tuple[float, float]]:
-        """A few places to put the head down, apart from each other: furthest from corners, crossings and ends
-        first.
-        """
+        """A few places to put the head down, apart: furthest from corners, crossings and ends first."""
         stroke = self.stroke
         some = slice(None, None, max(1, len(stroke.middles_mm) // LOOKED_AT))
         places, filled = stroke.middles_mm[some], stroke.filled[some]

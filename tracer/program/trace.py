@@ -74,9 +74,7 @@ def followed(
 
 
 def followed_from_an_end(setup: Setup, stroke: Stroke, number: int = 1) -> Line | None:
-    """The head's best run from the open ends of a line, as of a lead line; None if the line has no open end,
-    or is lost from each.
-    """
+    """The head's best run from the open ends of a line; None without open ends, or if lost from each."""
     stances = ends_of(setup.sheet, stroke, setup.settings, setup.operator.reference_mm)
     best, _ = _best(_Target(setup, number=number), iter(stances))
     return best if best is not None and best.ending != "lost" else None
@@ -114,9 +112,7 @@ class Run(NamedTuple):
 
     @property
     def ran_in(self) -> bool:
-        """Whether it began in the middle of a line and ended in what it had followed: it may have begun on a
-        chord.
-        """
+        """Whether it began in the middle of a line, perhaps on a chord, and ended in what it had followed."""
         away_mm = float(np.hypot(*(self.line.start_mm - self.stance.place_mm)))
         began_there = away_mm < self.stance.view.width_mm
         return self.line.ending == "joined" and not self.stance.at_end and began_there
@@ -135,9 +131,7 @@ class Run(NamedTuple):
         return _is_open(self.stance)
 
     def goes_before(self, best: Run) -> bool:
-        """Whether it is better than the best so far: it is longer; a run that closes goes before one that ran
-        in.
-        """
+        """Whether it is better than the best so far: longer; one that closes goes before one that ran in."""
         closes = "closed" in (self.line.ending, best.line.ending)
         if closes and self.ran_in != best.ran_in:
             return best.ran_in

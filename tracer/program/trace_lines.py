@@ -127,9 +127,7 @@ def _none_begun(lines: list[Line]) -> LineFault:
 
 
 def _in_order(setup: Setup, lines: list[Line]) -> list[Line]:
-    """The lines in the order in which they are cut; an open one is followed once more from its other end
-    where that end is nearer.
-    """
+    """The lines in the order of cutting; an open one followed anew from its other end if that is nearer."""
     inner = nesting.nested(
         [line.loop_mm for line in lines], [not line.is_open for line in lines]
     )
