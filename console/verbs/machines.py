@@ -23,10 +23,10 @@ Examples:
 @click.argument("name", required=False)
 @desk_options
 def command(name: str | None, desk: Desk) -> None:
-    """List the machines that G-code is written for; with a NAME, print that machine as a file.
+    """List the machines that G-code is written for, or print one to change.
 
-    Send the file to my.toml (`morfax machines grbl-router > my.toml`), change it, and give it to trace,
-    record or run with --machine my.toml.
+    With a NAME the machine is printed as a file. Send it to my.toml (`morfax machines
+    grbl-router > my.toml`), change it, and give it to trace, record or run with --machine my.toml.
     """
     from morfax.recorder.gcode.machine import as_toml, machine, names
 
