@@ -38,7 +38,7 @@ def aslant(deg: float, length_mm: float = 16.0) -> Array:
 
 
 def wave(length_mm: float = 40.0) -> Array:
-    """A sine of 1 mm whose wavelength falls from 20 to 9 mm: bends to 2 mm of radius, changing all the way."""
+    """A sine of 1 mm whose wavelength falls from 20 to 9 mm: bends to 2 mm of radius, changing throughout."""
     x = np.linspace(0, length_mm, 100 * int(length_mm))
     return np.column_stack([x + 4, 6 + np.sin(2 * np.pi * (x / 20 + x * x / 1333))])
 

@@ -26,7 +26,7 @@ Seen = tuple[View, Leg, Trail]
 
 
 def come_along(drawing: Drawing, to_mm: float = X_MM) -> Seen:
-    """A head that has come along y = 10 mm, and feels the line ahead up to a junction, at most to x = `to_mm`."""
+    """A head that has come along y = 10 mm, and feels the line ahead up to a junction or to x = `to_mm`."""
     eyes = View(photocell.behind_aperture(drawing, 0.15), WIDTH_MM + 25 * UM)
     start = np.array([to_mm - 3.0, 10.0])
     trail = Trail(np.array([4.0, 10.0]), eyes.step_mm)

@@ -1,4 +1,4 @@
-"""Rings about a junction: what is felt of legs, where they meet, where ink ends, against geometry that is known."""
+"""Rings about a junction: what is felt of legs, where they meet and ink ends, against known geometry."""
 
 from __future__ import annotations
 
@@ -217,7 +217,7 @@ def test_a_speck_of_paper_on_a_thin_line_is_not_its_end(pixels: int) -> None:
 
 
 def legs_seen(drawing: Drawing, centre: tuple[float, float], trail: Array) -> list[float]:
-    """Headings of the legs that leave a junction, degrees -1..359, in order; each leg must lie on its line."""
+    """Headings of the legs out of a junction, degrees -1..359, in order; each leg must lie on its line."""
     legs = legs_around(view(drawing), np.array(centre), trail)
     for leg in legs:
         aside = (leg.end_mm - centre) @ [-math.sin(leg.heading_rad), math.cos(leg.heading_rad)]
