@@ -48,7 +48,7 @@ def test_the_line_itself_does_not_deviate(seed: int | None) -> None:
 @settings(max_examples=12)
 @given(by_mm=st.floats(-0.1, 0.1))
 def test_an_offset_is_found_with_its_sign(by_mm: float) -> None:
-    """Wider, run anticlockwise, is to the right of the ink: negative. The other way round it is to the left."""
+    """Wider, run anticlockwise, is right of the ink: negative. The other way round it is left."""
     drawing = inked(CIRCLE)
     there, back = deviation(drawing, [off(by_mm)]), deviation(drawing, [off(by_mm, -1)])
     assert np.nanmean(there.error_mm) == pytest.approx(-by_mm, abs=0.7 * UM)

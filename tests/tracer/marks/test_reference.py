@@ -57,7 +57,7 @@ def test_a_cross_with_the_lead_line_from_its_middle_at_any_angle_to_its_arms(
 def test_a_lead_line_drawn_a_little_beyond_the_contour_ends_at_it(
     beyond_mm: float, slant_deg: float, width_mm: float
 ) -> None:
-    """The axis goes no further into the part than the contour; the tick on the lead line stays the only mark."""
+    """The axis stays out of the part; the tick on the lead line stays the only mark."""
     a = math.radians(slant_deg)
     way, join = np.array([math.cos(a), math.sin(a)]), np.array(JOIN)
     lead = np.array([join - 18 * way, join + beyond_mm * way])

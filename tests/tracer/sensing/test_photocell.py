@@ -131,7 +131,7 @@ def test_the_mean_falls_when_the_line_goes(behind: photocell.Cells) -> None:
 
 @COMPILED_AND_PLAIN
 def test_a_cell_reads_pixels_in_sheet_coordinates(plain: bool) -> None:
-    """Pixel i covers [i, i+1) pitches; rows run down from the top, Y up; straight in between; paper outside."""
+    """Pixel i covers [i, i+1) pitches; rows run down, Y up; straight in between; paper outside."""
     read = kernel(photocell.darkness_at, plain)
     ramp = np.arange(12, dtype=np.float32).reshape(3, 4) / 12
     cells = photocell.Cells(ramp, 0.1, 0.5)
