@@ -44,9 +44,8 @@ class CompareJob:
     tolerance_mm: float | None = None
     picture: FilePath | None = None
     cutter_mm: float | None = None  # diameter of the cutter that the path is for
-    origin: Origin | None = (
-        None  # where the path's zero is on the drawing; None: the sheet's corner
-    )
+    # where the path's zero is on the drawing; None: the sheet's corner
+    origin: Origin | None = None
     by_hand: ByHand = field(default_factory=ByHand)
 
     def run(self, listener: Listener = SILENT, panel: Panel | None = None) -> CompareResult:

@@ -19,13 +19,8 @@ if TYPE_CHECKING:
     from morfax.recorder.media import Report
     from morfax.recorder.tape.tape import TapeFormat
 
-PICK_UPS = (
-    "resolver",
-    "photocell",
-    "coil",
-    "hall",
-    "scale",
-)  # recorder.tape.pickups; the first is the default
+# recorder.tape.pickups; the first is the default
+PICK_UPS = ("resolver", "photocell", "coil", "hall", "scale")
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,9 +21,8 @@ if TYPE_CHECKING:
 # chosen by trial on the test drawings
 UNEVEN = 1.25  # the widest gap of a dashed line against the widest that was met
 UNCUT_SHARE = 0.2  # of a line; corners alone leave less
-FEW_SHARE = (
-    0.7  # of the ink that is joined to a line: if the line is less, the rest is worth a remark
-)
+# of the ink that is joined to a line: if the line is less, the rest is worth a remark
+FEW_SHARE = 0.7
 STEP_PER_MM = 10  # a gap is suggested in whole tenths of a mm
 
 

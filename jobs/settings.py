@@ -50,9 +50,8 @@ class LineSettings:
     """Which line is followed, or which lines, and what holds them together."""
 
     start_mm: tuple[float, float] | None = None
-    lines: str | tuple[int, ...] | None = (
-        None  # None: the one line at the start, or the longest
-    )
+    # None: the one line at the start, or the longest
+    lines: str | tuple[int, ...] | None = None
     line_width_mm: float | None = None
     gap_mm: float | None = None
     recatch_mm: float | None = None

@@ -40,9 +40,8 @@ HELD_SHARE = 0.05  # of the tracing speed, either way
 HELD_OVER_S = 0.5  # a step of 10 um is a fivehundredth of the way at 10 mm/s
 CORNER_RAD = 0.5  # of turn within 50 um
 WINDOW_MM = 0.05
-SAME_PLACE_MM = (
-    1e-6  # points of a path that are nearer than this have no direction between them
-)
+# points of a path that are nearer than this have no direction between them
+SAME_PLACE_MM = 1e-6
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,11 +15,8 @@ from dataclasses import dataclass
 
 TURN = 2 * math.pi
 SAME_RAD = 1e-12  # a smaller turn to the same place is a whole one
-SLACK_SHARE, LEAST_SLACK_MM, LARGEST_SLACK_MM = (
-    0.001,
-    0.005,
-    0.5,
-)  # of the radius, and within these
+# of the radius, and within these
+SLACK_SHARE, LEAST_SLACK_MM, LARGEST_SLACK_MM = (0.001, 0.005, 0.5)
 
 Place = tuple[float, float, float]
 Centre = tuple[float, float]

@@ -31,10 +31,8 @@ from morfax.tracer.program.trace_lines import trace_lines
 from tests.tracer.inked import UM, inked, polyline
 
 SAMPLES = FilePath(__file__).parents[2] / "samples"
-PLAYED_RMS_MM, PLAYED_MAX_MM = (
-    0.15 * UM,
-    1.5 * UM,
-)  # issue 0.5/3 um (0.07/0.8, the following error where it stops)
+# issue 0.5/3 um (0.07/0.8, the following error where it stops)
+PLAYED_RMS_MM, PLAYED_MAX_MM = (0.15 * UM, 1.5 * UM)
 CLOSED_WITHIN_MM = 20 * UM
 SKIPPED = (
     "no folder ../shared beside the repository: its drawings and vectors are not part of it"

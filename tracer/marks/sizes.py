@@ -3,7 +3,7 @@
 Lengths are mm on the sheet, or widths of the line; where both stand, the larger counts.
 
 Source: patent ES 361967 shows the marks and gives no sizes. Chosen by trial on the test drawings, so that a
-mark drawn by hand beside a line of 0.3 to 0.7 mm is found, and lettering, dashes and branches are not.
+mark drawn by hand is found, and lettering, dashes and branches are not.
 """
 
 from __future__ import annotations
@@ -21,20 +21,16 @@ BENT_MM = 0.1  # root mean square distance from a straight line, at most
 # width, of the line's: of a tick, and of ink that is looked at, for a line that crosses may show half
 LIKE, SEEN = (0.5, 1.6), (0.3, 2.0)
 INK = (0.65, 1.4)  # darkness, of the line's: one pen draws both
-CLEAR_OF_LINE = (
-    0.9  # widths from the line's middle: nearer, the ink of tick and line runs together
-)
+# widths from the line's middle: nearer, the ink of tick and line runs together
+CLEAR_OF_LINE = 0.9
 # paper to both sides: of a tick that touches the line, and of one that does not, for lettering stands there
 CLEAR_WIDTHS, APART_MM, APART_WIDTHS = 1.5, 1.5, 3.0
 SOILED, APART_SOILED = 0.15, 0.03  # share of that paper that may be ink
 CLEAR_OF_EDGE = 0.4  # widths from the tick's edge to where that paper begins
 DASH_MM, DASH_WIDTHS = 2.0, 4.0  # dashes of one line are no further apart
 SAME_WIDTHS = 0.6  # feet on both sides that are nearer along the line are one tick's
-CORNER_WIDTHS, CORNER_MM, CORNER_ASIDE = (
-    1.2,
-    0.5,
-    0.25,
-)  # so far the line is straight about a tick, widths aside
+# so far the line is straight about a tick, widths aside
+CORNER_WIDTHS, CORNER_MM, CORNER_ASIDE = 1.2, 0.5, 0.25
 LEAST_PX = 2.5  # a line's width: of a thinner one the cells cannot tell a mark from a burr
 
 # a dot: a round of ink, wider than the line
