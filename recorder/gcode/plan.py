@@ -29,7 +29,8 @@ from morfax.recorder.gcode.program_text import Block
 from morfax.recorder.gcode.spline import Segment
 from morfax.recorder.gcode.stretches import Stretch, stretches
 
-_LARGEST_RADIUS_MM = 10_000.0  # a way of 300 mm is 1.1 um off its chord
+# of an arc, where its chord stays within the tolerance: 60 mm of it are 45 um off the chord
+_LARGEST_RADIUS_MM = 10_000.0
 COUNT_MM = 0.01  # the step of the Z unit's decades
 # of the tolerance, at most 2 um: a depth as near to a whole count is written as that count
 COUNT_SHARE = 0.25
@@ -139,14 +140,15 @@ class _Planner:
         return stretch.speed_mm_s if stretch.rapid or asked_mm_s is None else asked_mm_s
 
     def _segment(self, segment: Segment, feed_mm_s: float, off_mm: float) -> None:
-        """Plan a line or an arc; an arc that its chord stands for, or of a huge radius, becomes a line."""
+        """Plan a line or an arc; an arc that its chord stands for within the tolerance becomes a line."""
         place: Array = np.array(
             [*np.round(segment.end_mm, self.writing.decimals), self.place[2]]
         )
         half = segment.turned_rad / 2
         (dx, dy), bulge = (place - self.place)[:2], segment.length_mm / 2 * math.tan(half / 2)
         is_straight = abs(bulge) < self.last_digit_mm
-        if is_straight or abs(segment.curvature_per_mm) * _LARGEST_RADIUS_MM < 1:
+        is_huge = abs(segment.curvature_per_mm) * _LARGEST_RADIUS_MM < 1
+        if is_straight or (is_huge and off_mm + abs(bulge) <= self.tolerance_mm):
             self._line(place, feed_mm_s, rapid=False)
             self.deviation_mm = max(self.deviation_mm, off_mm + abs(bulge))
             return

@@ -55,5 +55,5 @@ def test_a_drawing_on_which_no_line_can_be_begun_is_told_in_its_row(tmp_path: Pa
 
 
 def test_a_benchmark_that_there_is_not_is_one_line_with_those_that_there_are() -> None:
-    with pytest.raises(SystemExit, match=r"no benchmark --help; there are .*folder.*tracing"):
+    with pytest.raises(SystemExit, match=r"--help is no benchmark; give .*folder.*tracing"):
         main(["--help"])

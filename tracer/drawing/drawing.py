@@ -40,7 +40,6 @@ if TYPE_CHECKING:
     from morfax.tracer.drawing.noise import Noise
 
 LEAST_CONTRAST = 10.0  # grey levels of 255 between paper and ink
-ROBUST = 1.4826  # standard deviations to a median absolute deviation of normal noise
 ABOVE_NOISE = 6.0  # standard deviations of the paper: what is darker is no noise
 DARKER = 80.0  # percentile of the strokes' pixels: those that no edge makes lighter
 LEAST_STROKE_MM = 2.0  # shorter strokes are specks
@@ -148,7 +147,7 @@ def _ink_contrast(contrast: Darkness, pitch_mm: float) -> float:
         [soft[-top % every :: every, ::every].ravel() for top, soft in _softened(contrast)]
     )
     centre = float(np.median(sample))
-    noise = ROBUST * float(np.median(np.abs(sample - centre)))
+    noise = paper.ROBUST * float(np.median(np.abs(sample - centre)))
     least = max(LEAST_CONTRAST, centre + ABOVE_NOISE * noise)
     patches = Patches.of(runs_of(soft > least, top) for top, soft in _softened(contrast))
     strokes = patches.longer_sides >= max(12, LEAST_STROKE_MM / pitch_mm)

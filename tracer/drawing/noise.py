@@ -32,7 +32,7 @@ from scipy.ndimage import map_coordinates
 from scipy.special import erf
 
 from morfax.motion.arrays import Array
-from morfax.tracer.drawing.drawing import ROBUST
+from morfax.tracer.drawing.paper import ROBUST
 
 INK = 0.5  # darker is ink
 SEARCHED = 1 << 18  # pixels of the rows that are searched for ink, and of the columns
@@ -47,9 +47,8 @@ PAPER = 0.25  # lighter is paper, and nothing else is drawn there
 GOLDEN = (math.sqrt(5) - 1) / 2  # its multiples fill the pixel evenly
 DARKER = 84.13  # percentile one standard deviation above the median
 OUTLIERS = 3.0  # robust standard deviations
-ROUNDS = (
-    20  # darkness, softness and width settle to 1 % where a line is three times as wide as soft
-)
+# darkness, softness and width settle to 1 % where a line is three times as wide as soft
+ROUNDS = 20
 # linear interpolation, over all places between pixels: variance of its kernel, share of white noise left
 INTERPOLATED_PX2, INTERPOLATED_NOISE = 1 / 6, 4 / 9
 

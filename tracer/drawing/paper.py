@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from morfax.tracer.drawing.components import strips
 
+ROBUST = 1.4826  # standard deviations to a median absolute deviation of normal noise
 WIDEST_STROKE_MM = 6.0  # broader dark areas count as paper that is dark
 SHAPE = 0.6  # of the ink's contrast: paper that is darker by so much is no shadow
 REDUCED_PITCH_MM = 0.34  # the paper is estimated on a picture reduced to this, by 4 at least

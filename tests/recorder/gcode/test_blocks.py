@@ -261,6 +261,19 @@ def z_program(*moves: tuple[float, float, float]) -> MotionPath:
     return thin([Motion(points)])
 
 
+@pytest.mark.parametrize("radius_mm", [5e3, 2e4, 1e5])
+def test_a_flat_arc_stays_within_the_tolerance(radius_mm: float, tmp_path: Path) -> None:
+    # 120 mm of an arc are 360, 90 and 18 um off their chord
+    turn = 120 / radius_mm
+    path = path_of(arc(radius_mm, 0, turn) - np.array([radius_mm, 0]), z_mm=-1)
+    report = record_blocks(path, tmp_path / "part.ngc")
+    assert report.deviation_mm <= TOLERANCE_MM
+    there_and_back = distance(run_of(read_rs274(report.file)), path.runs())
+    assert (
+        there_and_back.hausdorff_mm <= TOLERANCE_MM + 0.001
+    )  # 1 um: sagitta of what is drawn out here
+
+
 def test_every_move_of_z_keeps_its_depth_its_feed_and_its_dwell(tmp_path: Path) -> None:
     # a hole of 8 mm in pecks of 4, a dwell at its bottom, and a plunge slower than the way down to the work
     path = z_program(

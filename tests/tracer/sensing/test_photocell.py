@@ -68,13 +68,14 @@ def point_cell(offset_mm: float) -> float:
 def test_a_swept_point_cell_sees_the_closed_form(
     strip: Drawing, vectors: Callable[[str], Any], plain: bool
 ) -> None:
+    cells = photocell.Cells(strip.darkness, strip.pitch_mm, photocell.LEVEL)
     for row in vectors("mf_scan")["rows"]:
         offset_mm = row["offset_mm"]
         assert point_cell(offset_mm) == pytest.approx(row["point_cell_closed_form"], abs=1e-5)
         # pixels of 5 um make an edge a ramp of that; where it stands at the turn of the sweep (0.65 mm), that
         # is 0.1 of the sweep's time
         share = 0.03 if abs(abs(offset_mm) - 0.65) < 0.01 else 0.003
-        assert swept(strip.darkness, offset_mm, plain)[0] == pytest.approx(
+        assert swept(cells, offset_mm, plain)[0] == pytest.approx(
             row["point_cell_closed_form"], abs=share
         )
 
