@@ -17,7 +17,7 @@ by its own rules. Depths that are whole counts of the Z unit are written as such
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -29,8 +29,9 @@ from morfax.recorder.gcode.program_text import Block
 from morfax.recorder.gcode.spline import Segment
 from morfax.recorder.gcode.stretches import Stretch, stretches
 
-# of an arc, where its chord stays within the tolerance: 60 mm of it are 45 um off the chord
-_LARGEST_RADIUS_MM = 10_000.0
+# of an arc: its centre has to lie within the travel of the machine, +-2 m; a flatter one becomes lines
+_LARGEST_RADIUS_MM = 1000.0
+FLAT_SHARE = 0.05  # of the tolerance, kept for the chords of such an arc
 COUNT_MM = 0.01  # the step of the Z unit's decades
 # of the tolerance, at most 2 um: a depth as near to a whole count is written as that count
 COUNT_SHARE = 0.25
@@ -127,7 +128,7 @@ class _Planner:
             for place in points[kept[1:]]:
                 self._line(place, feed_mm_s, rapid=stretch.rapid)
             return
-        for chain in fit(points[:, :2], self.tolerance_mm):
+        for chain in fit(points[:, :2], (1 - FLAT_SHARE) * self.tolerance_mm):
             self.deviation_mm = max(self.deviation_mm, chain.deviation_mm + self.last_digit_mm)
             for segment in chain.segments:
                 self._segment(segment, feed_mm_s, chain.deviation_mm)
@@ -140,17 +141,20 @@ class _Planner:
         return stretch.speed_mm_s if stretch.rapid or asked_mm_s is None else asked_mm_s
 
     def _segment(self, segment: Segment, feed_mm_s: float, off_mm: float) -> None:
-        """Plan a line or an arc; an arc that its chord stands for within the tolerance becomes a line."""
+        """Plan a line or an arc; an arc too flat for a centre becomes lines within the tolerance."""
         place: Array = np.array(
             [*np.round(segment.end_mm, self.writing.decimals), self.place[2]]
         )
         half = segment.turned_rad / 2
         (dx, dy), bulge = (place - self.place)[:2], segment.length_mm / 2 * math.tan(half / 2)
         is_straight = abs(bulge) < self.last_digit_mm
-        is_huge = abs(segment.curvature_per_mm) * _LARGEST_RADIUS_MM < 1
-        if is_straight or (is_huge and off_mm + abs(bulge) <= self.tolerance_mm):
+        if is_straight or abs(segment.curvature_per_mm) * _LARGEST_RADIUS_MM < 1:
+            chords = math.ceil(math.sqrt(abs(bulge) / (self.tolerance_mm - off_mm))) or 1
+            for k in range(1, chords):
+                part = replace(segment, length_mm=segment.length_mm * k / chords)
+                self._line(np.array([*part.end_mm, self.place[2]]), feed_mm_s, rapid=False)
             self._line(place, feed_mm_s, rapid=False)
-            self.deviation_mm = max(self.deviation_mm, off_mm + abs(bulge))
+            self.deviation_mm = max(self.deviation_mm, off_mm + abs(bulge) / chords**2)
             return
         out = 0.5 / math.tan(half)
         centre = dx / 2 - out * dy, dy / 2 + out * dx
