@@ -24,7 +24,7 @@ from typing import Any
 from morfax.motion.faults import MotionFault
 from morfax.motion.files import written_beside
 from morfax.motion.segments import Source
-from morfax.recorder.drawings.runs import Run, radius_mm, runs_of
+from morfax.recorder.drawings.cut_lines import CutLine, cut_lines_of, radius_mm
 from morfax.recorder.gcode.program_text import digits
 from morfax.recorder.report import Written
 
@@ -37,9 +37,9 @@ LINE_MM = 0.1  # width of an SVG's lines
 
 @dataclass(frozen=True, slots=True)
 class DrawingReport(Written):
-    """What was written: runs, how many are closed, time of the motion, largest distance from it."""
+    """What was written: lines, how many are closed, time of the motion, largest distance from it."""
 
-    runs: int
+    lines: int
     closed: int
     duration_s: float
     deviation_mm: float
@@ -47,7 +47,7 @@ class DrawingReport(Written):
     @property
     def figures(self) -> dict[str, Any]:
         """Further figures for the report."""
-        return {"runs": self.runs, "closed": self.closed, "deviation_mm": self.deviation_mm}
+        return {"lines": self.lines, "closed": self.closed, "deviation_mm": self.deviation_mm}
 
 
 def record_dxf(
@@ -75,20 +75,20 @@ def _record(
     stream: Source,
     file: str | os.PathLike[str],
     tolerance_mm: float,
-    text_of: Callable[[list[Run]], str],
+    text_of: Callable[[list[CutLine]], str],
 ) -> DrawingReport:
     """Write what is cut."""
-    runs, planned = runs_of(stream, tolerance_mm)
-    text = text_of(runs)
+    lines, planned = cut_lines_of(stream, tolerance_mm)
+    text = text_of(lines)
     with written_beside(file) as beside:
         beside.write_text(text, encoding="ascii")
-    closed = sum(run.closed for run in runs)
+    closed = sum(line.closed for line in lines)
     return DrawingReport(
-        FilePath(file), len(runs), closed, planned.duration_s, planned.deviation_mm
+        FilePath(file), len(lines), closed, planned.duration_s, planned.deviation_mm
     )
 
 
-def _dxf(runs: list[Run]) -> str:
+def _dxf(lines: list[CutLine]) -> str:
     """The text of a DXF."""
     import io
 
@@ -97,26 +97,26 @@ def _dxf(runs: list[Run]) -> str:
 
     document = ezdxf.new("R2010", units=units.MM)
     space = document.modelspace()
-    for run in runs:
-        if not run.pieces:
-            space.add_point(run.begin_mm)
+    for line in lines:
+        if not line.pieces:
+            space.add_point(line.begin_mm)
             continue
-        bulges = [math.tan(piece.turned_rad / 4) for piece in run.pieces]
-        places = [run.begin_mm, *(piece.end_mm for piece in run.pieces)]
-        if run.closed:
+        bulges = [math.tan(piece.turned_rad / 4) for piece in line.pieces]
+        places = [line.begin_mm, *(piece.end_mm for piece in line.pieces)]
+        if line.closed:
             places.pop()
         else:
             bulges.append(0.0)
         corners = [(x, y, bulge) for (x, y), bulge in zip(places, bulges, strict=True)]
-        space.add_lwpolyline(corners, format="xyb", close=run.closed)
+        space.add_lwpolyline(corners, format="xyb", close=line.closed)
     text = io.StringIO()
     document.write(text)
     return text.getvalue()
 
 
-def _svg(runs: list[Run]) -> str:
+def _svg(lines: list[CutLine]) -> str:
     """The text of an SVG."""
-    (left, low), (right, high) = _box(runs)
+    (left, low), (right, high) = _box(lines)
     left, low, right, high = (
         left - MARGIN_MM,
         low - MARGIN_MM,
@@ -127,11 +127,11 @@ def _svg(runs: list[Run]) -> str:
     def place(x_mm: float, y_mm: float) -> str:
         return f"{digits(x_mm - left, 4)} {digits(high - y_mm, 4)}"
 
-    lines = []
-    for run in runs:
-        words = ["M " + place(*run.begin_mm)]
-        begin = run.begin_mm
-        for piece in run.pieces:
+    paths = []
+    for line in lines:
+        words = ["M " + place(*line.begin_mm)]
+        begin = line.begin_mm
+        for piece in line.pieces:
             if piece.turned_rad:
                 radius = digits(radius_mm(begin, piece), 4)
                 large = int(abs(piece.turned_rad) > math.pi)
@@ -142,15 +142,15 @@ def _svg(runs: list[Run]) -> str:
             else:
                 words.append("L " + place(*piece.end_mm))
             begin = piece.end_mm
-        words.append("Z" if run.closed else "" if run.pieces else "h 0")
-        lines.append(f'  <path d="{" ".join(words).rstrip()}"/>')
+        words.append("Z" if line.closed else "" if line.pieces else "h 0")
+        paths.append(f'  <path d="{" ".join(words).rstrip()}"/>')
     width, height = digits(right - left, 4), digits(high - low, 4)
     return "\n".join(
         [
             f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}mm" height="{height}mm" '
             f'viewBox="0 0 {width} {height}">',
             f'<g fill="none" stroke="black" stroke-width="{LINE_MM:g}" stroke-linecap="round">',
-            *lines,
+            *paths,
             "</g>",
             "</svg>",
             "",
@@ -158,9 +158,9 @@ def _svg(runs: list[Run]) -> str:
     )
 
 
-def _hpgl(runs: list[Run]) -> str:
+def _hpgl(lines: list[CutLine]) -> str:
     """The text of a plotter file."""
-    (left, low), (right, high) = _box(runs)
+    (left, low), (right, high) = _box(lines)
     if min(left, low) < -STEP_MM / 2:
         raise MotionFault(
             f"what is cut reaches to X {left:.2f}, Y {low:.2f} mm, and a plotter begins at 0, 0; "
@@ -172,17 +172,17 @@ def _hpgl(runs: list[Run]) -> str:
             f"{LARGEST_STEP * STEP_MM:.0f} mm; cut it in parts"
         )
     text = ["IN;SP1;"]
-    for run in runs:
-        places = [run.begin_mm, *_chords(run)]
+    for line in lines:
+        places = [line.begin_mm, *_chords(line)]
         steps = [f"{round(x / STEP_MM)},{round(y / STEP_MM)}" for x, y in places]
         text += [f"PU{steps[0]};", f"PD{','.join(steps[1:])};"]
     return "\n".join([*text, "PU;SP0;", ""])
 
 
-def _chords(run: Run) -> list[tuple[float, float]]:
-    """Places of a run, arcs as chords that stay within half a step of them."""
-    places, begin = [], run.begin_mm
-    for piece in run.pieces:
+def _chords(line: CutLine) -> list[tuple[float, float]]:
+    """Places of a line, arcs as chords that stay within half a step of them."""
+    places, begin = [], line.begin_mm
+    for piece in line.pieces:
         if piece.turned_rad:
             radius = radius_mm(begin, piece)
             widest_rad = 2 * math.acos(max(0.0, 1 - STEP_MM / 2 / radius))
@@ -209,8 +209,8 @@ def _along(
     return place.real, place.imag
 
 
-def _box(runs: list[Run]) -> tuple[tuple[float, float], tuple[float, float]]:
+def _box(lines: list[CutLine]) -> tuple[tuple[float, float], tuple[float, float]]:
     """Lower left and upper right corner of all that is cut, mm."""
-    places = [place for run in runs for place in (run.begin_mm, *_chords(run))]
+    places = [place for line in lines for place in (line.begin_mm, *_chords(line))]
     x_mm, y_mm = zip(*places, strict=True)
     return (min(x_mm), min(y_mm)), (max(x_mm), max(y_mm))

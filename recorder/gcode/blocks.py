@@ -30,7 +30,7 @@ import numpy as np
 from morfax.motion.files import written_beside
 from morfax.motion.segments import Source
 from morfax.recorder.gcode.machine import DEFAULT, machine
-from morfax.recorder.gcode.plan import Feeds, Plan, Writing, plan
+from morfax.recorder.gcode.plan import BlockPlan, Feeds, Writing, plan
 from morfax.recorder.gcode.program_text import program_text
 from morfax.recorder.report import Written
 
@@ -91,7 +91,7 @@ def record_blocks(
     )
 
 
-def _comments(planned: Plan, *, depth: bool) -> list[str]:
+def _comments(planned: BlockPlan, *, depth: bool) -> list[str]:
     """What a person at the machine wants to know before pressing start."""
     cut = [part.points_mm for part in planned.parts if not part.rapid]
     if not cut:

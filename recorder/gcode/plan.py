@@ -64,7 +64,7 @@ class Writing:
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class BlockPlan:
     """Where a program starts, its blocks, the stretches that they stand for, and how well."""
 
     start_mm: Array
@@ -78,7 +78,7 @@ class Plan:
         return sum(block.code in codes for block in self.blocks)
 
 
-def plan(stream: Source, writing: Writing, feeds: Feeds | None = None) -> Plan:
+def plan(stream: Source, writing: Writing, feeds: Feeds | None = None) -> BlockPlan:
     """The blocks of a motion, which stay within the tolerance of it.
 
     Raises MotionFault for a motion that stands still, ValueError for a tolerance that cannot be written.
@@ -97,7 +97,7 @@ def plan(stream: Source, writing: Writing, feeds: Feeds | None = None) -> Plan:
     planner = _Planner(path.positions_mm[0], writing, feeds or Feeds())
     for part in parts:
         planner.stretch(part)
-    return Plan(
+    return BlockPlan(
         planner.start_mm, planner.blocks, parts, planner.duration_s, planner.deviation_mm
     )
 
@@ -115,7 +115,7 @@ class _Planner:
         self.start_mm = self.place = self._written(start_mm)
 
     def stretch(self, stretch: Stretch) -> None:
-        """Plan a stretch, and the dwell before it."""
+        """BlockPlan a stretch, and the dwell before it."""
         if stretch.dwell_s:
             self.blocks.append(Block("G4", tuple(self.place), dwell_s=stretch.dwell_s))
         points = np.vstack([self.place, stretch.points_mm[1:]])
@@ -141,7 +141,7 @@ class _Planner:
         return stretch.speed_mm_s if stretch.rapid or asked_mm_s is None else asked_mm_s
 
     def _segment(self, segment: Segment, feed_mm_s: float, off_mm: float) -> None:
-        """Plan a line or an arc; an arc too flat for a centre becomes lines within the tolerance."""
+        """BlockPlan a line or an arc; an arc too flat for a centre becomes lines within the tolerance."""
         place: Array = np.array(
             [*np.round(segment.end_mm, self.writing.decimals), self.place[2]]
         )
@@ -163,7 +163,7 @@ class _Planner:
         self.place = place
 
     def _line(self, place_mm: Array, feed_mm_s: float, *, rapid: bool) -> None:
-        """Plan a line or a rapid, if it goes anywhere."""
+        """BlockPlan a line or a rapid, if it goes anywhere."""
         place = self._written(place_mm)
         if (place == self.place).all():
             return

@@ -93,7 +93,7 @@ def test_a_dxf_is_the_part_in_mm(tmp_path: Path) -> None:
     assert ezdxf.readfile(tmp_path / "part.dxf").units == ezdxf.units.MM
     assert len(lines) == 1 and points == [HOLE_MM]
     assert distance(lines, [outline]).hausdorff_mm <= TOLERANCE_MM + 1 * UM
-    assert (report.runs, report.closed) == (2, 1)  # type: ignore[attr-defined]
+    assert (report.lines, report.closed) == (2, 1)  # type: ignore[attr-defined]
     wheel = ezdxf.readfile(tmp_path / "part.dxf").modelspace().query("LWPOLYLINE")[0]
     assert wheel.closed and len(wheel) <= 4  # arcs and the flat, not chords
 

@@ -1,10 +1,10 @@
-"""Runs: what a motion cuts, as chains of lines and arcs without the ways between them.
+"""Cut lines: what a motion cuts, as chains of lines and arcs without the ways between them.
 
-Signals in: a motion in mm. Signals out: runs in sheet coordinates, mm, each from where the tool goes into the
-work to where it comes out; a run that ends where it begins is closed, a hole is a run of one place.
+Signals in: a motion in mm. Signals out: lines in sheet coordinates, mm, each from where the tool goes into
+the work to where it comes out; a line that ends where it begins is closed, a hole is a line of one place.
 
 Source: our own. Questions: depth and passes are left to the program that reads the drawing; a line that is
-run on at several depths is one run, as long as the tool stays down.
+run on at several depths is one line, as long as the tool stays down.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from typing import NamedTuple
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import IN_WORK_BELOW_MM
 from morfax.motion.segments import Source
-from morfax.recorder.gcode.plan import Plan, Writing, plan
+from morfax.recorder.gcode.plan import BlockPlan, Writing, plan
 from morfax.recorder.gcode.program_text import Block
 
 # a gap as wide as a fine line's noise on a scan; a closed trace ends within 0.01 mm of its start
@@ -33,7 +33,7 @@ class Piece(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Run:
+class CutLine:
     """A chain of pieces from a place on, mm."""
 
     begin_mm: Place
@@ -41,14 +41,14 @@ class Run:
 
     @property
     def closed(self) -> bool:
-        """Whether the run ends where it begins."""
+        """Whether the line ends where it begins."""
         return (
             len(self.pieces) > 1
             and math.dist(self.begin_mm, self.pieces[-1].end_mm) <= CLOSED_MM
         )
 
 
-def runs_of(source: Source, tolerance_mm: float) -> tuple[list[Run], Plan]:
+def cut_lines_of(source: Source, tolerance_mm: float) -> tuple[list[CutLine], BlockPlan]:
     """What a motion cuts, within a tolerance, and the plan; raises MotionFault if it cuts nothing."""
     planned = plan(source, Writing(tolerance_mm))
     found, begin_mm, pieces = [], None, list[Piece]()
@@ -58,19 +58,19 @@ def runs_of(source: Source, tolerance_mm: float) -> tuple[list[Run], Plan]:
         if cuts and begin_mm is None:
             begin_mm = place[:2]
         if not cuts and begin_mm is not None:
-            found.append(Run(begin_mm, tuple(pieces)))
+            found.append(CutLine(begin_mm, tuple(pieces)))
             begin_mm, pieces = None, []
         if cuts and block.place_mm[:2] != place[:2]:
             pieces.append(_piece(place, block))
         place = block.place_mm
     if begin_mm is not None:
-        found.append(Run(begin_mm, tuple(pieces)))
-    runs = list(dict.fromkeys(found))  # the pecks of one hole are one place
-    if not runs:
+        found.append(CutLine(begin_mm, tuple(pieces)))
+    lines = list(dict.fromkeys(found))  # the pecks of one hole are one place
+    if not lines:
         raise MotionFault(
             f"nothing is cut: Z stays above {IN_WORK_BELOW_MM:g} mm; a drawing shows what is cut"
         )
-    return runs, planned
+    return lines, planned
 
 
 def _piece(begin_mm: tuple[float, float, float], block: Block) -> Piece:
