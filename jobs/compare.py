@@ -55,7 +55,7 @@ class CompareJob:
             medium.outgoing(self.picture, self.a.file, self.b)
         if drawing_file is None:
             self._refuse_drawing_options()
-        drawing = None if drawing_file is None else drawing_file.open()
+        drawing = None if drawing_file is None else drawing_file.open(listener)
         paths = [read_or_play(file, self.by_hand, listener) for file in files]
         if drawing is None:
             found = comparison.from_path(paths[0], paths[1])

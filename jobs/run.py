@@ -61,7 +61,7 @@ class RunJob:
         """Go the whole way; the faults of a lost line and of a drive are in the result, others are raised."""
         # 1. trace and record
         tracing = Tracing.prepared(self.settings, panel)
-        drawing = self.drawing.open()
+        drawing = self.drawing.open(listener)
         self._make_folder()
         traced = tracing.trace(drawing, listener)
         unit = self.unit.at(traced.origin_mm)

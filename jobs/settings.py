@@ -10,6 +10,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Literal
 
+from morfax.jobs.listener import SILENT, Listener
 from morfax.jobs.wrong_use import WrongUse, settings_checked
 
 if TYPE_CHECKING:
@@ -33,16 +34,22 @@ class DrawingFile:
     width_mm: float | None = None
     ink: str | None = None
     edge: bool = False
+    page: int | None = None  # of a file of several; None: the first, and it is said
 
-    def open(self) -> Drawing:
+    def open(self, listener: Listener = SILENT) -> Drawing:
         """Open the drawing; raises WrongUse for two scales, DrawingFault and FileFault for a bad file."""
+        from morfax.tracer.drawing import inks, raster
         from morfax.tracer.drawing.drawing import Drawing
+        from morfax.tracer.drawing.scale import Scale
 
         if self.dpi is not None and self.width_mm is not None:
             raise WrongUse("--dpi and --width were both given; give one of them")
-        return Drawing.open(
-            self.file, dpi=self.dpi, width_mm=self.width_mm, ink=self.ink, edge=self.edge
-        )
+        ink = None if self.ink is None else inks.parsed(self.ink)
+        scan = raster.read(self.file, coloured=ink is not None, page=self.page)
+        drawing = Drawing.of(scan, Scale(self.dpi, self.width_mm), ink, self.edge)
+        for note in drawing.notes:
+            listener.note(note)
+        return drawing
 
 
 @dataclass(frozen=True, slots=True)

@@ -83,7 +83,7 @@ class SystemsJob:
                 f"{file} is no drawing; --systems traces one and plays it on each system"
             )
         # 2. trace, record, play, measure
-        drawing = self.drawing.open()
+        drawing = self.drawing.open(listener)
         traced = tracing.trace(drawing, listener)
         measured = _Measuring(drawing, traced, tracing.of_head.speed_mm_s)
         results = measured.systems(self.systems, listener)

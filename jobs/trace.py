@@ -74,7 +74,7 @@ class TraceJob:
         tracing = Tracing.prepared(self.settings, panel)
         outputs = self.outputs.checked(self.drawing.file)
         self.unit.check(outputs.program)
-        drawing = self.drawing.open()
+        drawing = self.drawing.open(listener)
         size = f"{drawing.width_mm:.2f} x {drawing.height_mm:.2f} mm"
         listener.detail(f"{self.drawing.file}: sheet of {size}")
         traced = tracing.trace(drawing, listener)

@@ -1,4 +1,4 @@
-"""The options of a drawing: scale, ink, filled shapes."""
+"""The options of a drawing: scale, page, ink, filled shapes."""
 
 from __future__ import annotations
 
@@ -32,6 +32,12 @@ def drawing_options(argument: str) -> Decorator:
         )
         @option(
             "Drawing",
+            "--page",
+            type=click.IntRange(min=1),
+            help="Page of a file of several.  [default: the first]",
+        )
+        @option(
+            "Drawing",
             "--ink",
             callback=_colour,
             metavar="COLOUR",
@@ -47,7 +53,7 @@ def drawing_options(argument: str) -> Decorator:
         )
         @functools.wraps(verb)
         def with_drawing(*args: Any, **options: Any) -> Any:
-            names = ("dpi", "width_mm", "ink", "edge")
+            names = ("dpi", "width_mm", "ink", "edge", "page")
             how = {name: options.pop(name) for name in names}
             options[argument] = DrawingFile(options[argument], **how)
             return verb(*args, **options)

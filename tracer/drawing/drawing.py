@@ -31,9 +31,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.faults import DrawingFault
-from morfax.tracer.drawing import inks, paper
+from morfax.tracer.drawing import inks, paper, raster
 from morfax.tracer.drawing.components import Patches, runs_of, strips
-from morfax.tracer.drawing.raster import Grey, pitches_mm, read
+from morfax.tracer.drawing.scale import Scale
+from morfax.tracer.drawing.scan import Grey, Scan
 from morfax.tracer.drawing.shapes import outlined
 
 if TYPE_CHECKING:
@@ -56,7 +57,7 @@ class Drawing:
 
     Of filled shapes whose edges are asked for: `edges_mm`, closed polylines (n, 2) to which a run has to
     keep, and how many times `enlarged` the head sees the line along them. Otherwise `shapes` tells where
-    filled shapes are, on the picture reduced by a whole number.
+    filled shapes are, on the picture reduced by a whole number. `notes` on the file are for the operator.
     """
 
     darkness: Darkness
@@ -65,6 +66,7 @@ class Drawing:
     enlarged: int = 1
     edges_mm: tuple[NDArray[np.float64], ...] = ()
     shapes: Shapes | None = None
+    notes: tuple[str, ...] = ()
 
     @property
     def width_mm(self) -> float:
@@ -98,18 +100,24 @@ class Drawing:
         DrawingFault if the file is no image, states no resolution, or holds no line; FileFault if it
         cannot be read.
         """
-        file, wanted = Path(file), None if ink is None else inks.parsed(ink)
-        if dpi is not None and width_mm is not None:
-            raise DrawingFault(
-                "both a resolution and a width were given; give one of --dpi and --width"
-            )
+        wanted = None if ink is None else inks.parsed(ink)
+        scan = raster.read(Path(file), coloured=wanted is not None)
+        return cls.of(scan, Scale(dpi, width_mm), wanted, edge)
+
+    @classmethod
+    def of(
+        cls, scan: Scan, scale: Scale, ink: inks.Colour | None = None, edge: bool = False
+    ) -> Drawing:
+        """Make a drawing of a scan that was opened; in colours where an ink is asked for.
+
+        Raises DrawingFault for a missing scale and for a scan that holds no line.
+        """
         # 1. grey levels on square pixels
-        picture, stated = read(file, coloured=ink is not None)
-        pitch = pitches_mm(file, picture.shape[1], stated, dpi, width_mm)
-        grey = picture
-        if wanted is not None:
-            colours = np.asarray(picture, np.uint8)
-            grey = inks.covered(colours, wanted, None if edge else pitch[0])
+        pitch = scale.pitches_mm(scan)
+        grey = scan.pixels
+        if ink is not None:
+            colours = np.asarray(scan.pixels, np.uint8)
+            grey = inks.covered(colours, ink, None if edge else pitch[0])
         if abs(pitch[0] / pitch[1] - 1) > OBLONG:
             size = grey.shape[1], round(grey.shape[0] * pitch[1] / pitch[0])
             square = cv2.resize(grey.astype(np.float32), size, interpolation=cv2.INTER_LINEAR)
@@ -117,9 +125,17 @@ class Drawing:
         # 2. darkness
         if edge:
             line = outlined(grey, pitch[0])
-            return cls(line.darkness, pitch[0] / line.finer, file, line.finer, line.edges_mm)
+            finer = line.finer
+            return cls(
+                line.darkness,
+                pitch[0] / finer,
+                scan.file,
+                finer,
+                line.edges_mm,
+                notes=scan.notes,
+            )
         darkness, shapes = levelled(grey, pitch[0])
-        return cls(darkness, pitch[0], file, shapes=shapes)
+        return cls(darkness, pitch[0], scan.file, shapes=shapes, notes=scan.notes)
 
 
 def levelled(grey: Grey, pitch_mm: float) -> tuple[Darkness, Shapes]:

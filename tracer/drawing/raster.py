@@ -1,18 +1,18 @@
-"""Raster: an image file becomes grey levels, or colours, and the scale that the file states.
+"""Raster: a page of an image file becomes a Scan: grey levels, or colours, and what the file states.
 
-Signals in: an image file that Pillow reads. Signals out: levels 0..255 (float32 beyond 8 bits) of the first
-page, upright, rows from the top; the stated resolution in dots per inch, and whether it is to be believed.
+Signals in: an image file that Pillow reads. Signals out: levels 0..255 (float32 beyond 8 bits), or colours, of
+one page, upright, rows from the top; the stated resolution in dots per inch, and whether it is to be believed;
+the camera.
 
-Source: the patent takes the drawing and its scale for granted. Questions: a wrong scale makes a wrong part,
-and nothing later can tell. So 72 and 96 dpi, which programs write when they know no scale, and whatever a
-camera states are refused like a missing resolution.
+Source: Exif 2.32 (tags of cameras). Questions: 72 and 96 dpi, which programs write when they know no scale,
+and whatever a camera states are no scale (see `scale`).
 """
 
 from __future__ import annotations
 
 import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,31 +20,25 @@ from numpy.typing import NDArray
 from morfax.motion.faults import DrawingFault, FileFault
 from morfax.tracer.drawing import memory as room
 from morfax.tracer.drawing.components import strips
+from morfax.tracer.drawing.scan import MM_PER_INCH, Camera, Grey, Scan, Stated
 
 if TYPE_CHECKING:
-    from PIL.Image import Image
+    from PIL.Image import Exif, Image
 
-MM_PER_INCH = 25.4
+__all__ = ["MM_PER_INCH", "read"]
+
 # what programs write into a file when they know no resolution: screens' dots, and Pillow's and Exif's default
 PLACEHOLDERS_DPI = (72.0, 96.0)
 # Exif tags that only a camera writes (a scanner has a maker and a model, too): exposure time, aperture, focal
-# length, in the directory of Exif; and the tag of the resolution in X
+# length, in the directory of Exif; further tags, and that of the resolution in X
 EXIF_IFD, CAMERA_TAGS, X_RESOLUTION = 0x8769, (0x829A, 0x829D, 0x920A), 0x11A
-# chosen far beyond any scan: a scale outside is a slip
-LEAST_PITCH_MM, LARGEST_PITCH_MM = 0.001, 10.0
+MAKE, MODEL, FOCAL_MM, FOCAL_35MM = 0x10F, 0x110, 0x920A, 0xA405
 ROUNDED_DPI = 0.02  # a file that states dots per metre is off a whole number of dpi by no more
-Grey = NDArray[np.uint8] | NDArray[np.float32]  # levels 0..255
+PREVIEWS = ("MPO",)  # formats whose further pictures are no pages: a camera's previews
 
 
-class Stated(NamedTuple):
-    """The resolution that a file states, dots per inch in X and Y, and why it is no scale, if it is none."""
-
-    dpi: tuple[float, float]
-    doubt: str | None = None
-
-
-def read(file: Path, *, coloured: bool) -> tuple[Grey, Stated | None]:
-    """Grey levels, or colours, of the first page of an image file, upright, and its stated resolution."""
+def read(file: Path, *, coloured: bool, page: int | None = None) -> Scan:
+    """A page of an image file, the first without a number; raises DrawingFault, FileFault."""
     from PIL import Image, ImageOps, UnidentifiedImageError
 
     Image.MAX_IMAGE_PIXELS = None  # a large sheet is no attack; a lack of memory is said below
@@ -53,11 +47,14 @@ def read(file: Path, *, coloured: bool) -> tuple[Grey, Stated | None]:
             warnings.simplefilter("ignore")
             # by a stream, which is never mapped: Pillow turns maps wrongly
             with file.open("rb") as stream, Image.open(stream) as image:
+                pages = _turned_to(file, image, page)
                 room.make_sure(file, *image.size)
                 image.load()
-                stated = _stated(image)
+                camera = _camera(image.getexif())
+                stated = _stated(image, camera)
                 ImageOps.exif_transpose(image, in_place=True)
-                return np.array(image.convert("RGB")) if coloured else _grey(image), stated
+                pixels = np.array(image.convert("RGB")) if coloured else _grey(image)
+                number = image.tell() + 1
     except UnidentifiedImageError:
         raise DrawingFault(
             f"{file} is not an image that can be read; give a PNG, JPEG or TIFF file"
@@ -76,6 +73,56 @@ def read(file: Path, *, coloured: bool) -> tuple[Grey, Stated | None]:
         raise DrawingFault(
             f"{file} is a damaged image ({error}); scan or save it again"
         ) from None
+    notes = page_notes(file, number, pages) if page is None else ()
+    return Scan(file, pixels, stated, camera, number, pages, notes)
+
+
+def page_notes(file: Path, page: int, pages: int) -> tuple[str, ...]:
+    """What the operator should know of a file of several pages."""
+    if pages == 1:
+        return ()
+    return (f"{file} has {pages} pages; page {page} is taken; for another one give --page",)
+
+
+def check_page(file: Path, page: int, pages: int) -> None:
+    """Raise DrawingFault for a page that the file does not have."""
+    if not 1 <= page <= pages:
+        has = "one page" if pages == 1 else f"pages 1 to {pages}"
+        raise DrawingFault(f"{file} has no page {page}; it has {has}; give --page one of them")
+
+
+def _turned_to(file: Path, image: Image, page: int | None) -> int:
+    """Turn to a page, if one is asked for; how many pages there are."""
+    pages = 1 if image.format in PREVIEWS else getattr(image, "n_frames", 1)
+    if page is not None:
+        check_page(file, page, pages)
+        if page - 1 != image.tell():
+            image.info.pop("dpi", None)  # of the page before
+            image.seek(page - 1)
+    return pages
+
+
+def _camera(exif: Exif) -> Camera | None:
+    """The camera that made a picture, None if it was none."""
+    tags = exif.get_ifd(EXIF_IFD)
+    if not any(tag in tags for tag in CAMERA_TAGS):
+        return None
+    make, model = (_text(exif.get(tag)) for tag in (MAKE, MODEL))
+    return Camera(make, model, _length(tags.get(FOCAL_MM)), _length(tags.get(FOCAL_35MM)))
+
+
+def _text(value: object) -> str | None:
+    """A word of Exif, None if there is none."""
+    return str(value).strip("\0 ") or None if value is not None else None
+
+
+def _length(value: object) -> float | None:
+    """A length of Exif above zero, None if there is none: some programs write 0, or 0/0."""
+    try:
+        length = float(value)  # type: ignore[arg-type]
+    except (TypeError, ValueError, ZeroDivisionError):
+        return None
+    return length if np.isfinite(length) and length > 0 else None
 
 
 def _states_resolution(image: Image) -> bool:
@@ -119,7 +166,7 @@ def _darkest_channel(image: Image) -> NDArray[np.uint8]:
     return np.asarray(np.asarray(image.convert("RGB")).min(axis=2))
 
 
-def _stated(image: Image) -> Stated | None:
+def _stated(image: Image, camera: Camera | None) -> Stated | None:
     """The resolution that the file states; whole numbers where the file rounds to dots per metre."""
     if not _states_resolution(image):
         return None
@@ -127,47 +174,13 @@ def _stated(image: Image) -> Stated | None:
     if not (np.isfinite(x) and np.isfinite(y) and x > 1 and y > 1):
         return None
     x, y = (round(v) if abs(v - round(v)) < ROUNDED_DPI else v for v in (x, y))
-    return Stated((x, y), _doubt(image, x, y))
+    return Stated((x, y), _doubt(camera, x, y))
 
 
-def _doubt(image: Image, x_dpi: float, y_dpi: float) -> str | None:
+def _doubt(camera: Camera | None, x_dpi: float, y_dpi: float) -> str | None:
     """Why a stated resolution is not the paper's; None where it may be."""
-    if any(tag in image.getexif().get_ifd(EXIF_IFD) for tag in CAMERA_TAGS):
+    if camera is not None:
         return "but a camera took it, and a camera does not know how far the paper was"
     if x_dpi == y_dpi and x_dpi in PLACEHOLDERS_DPI:
         return "which is what programs write when they know no scale"
     return None
-
-
-def pitches_mm(
-    file: Path,
-    columns: int,
-    stated: Stated | None,
-    dpi: float | None,
-    width_mm: float | None,
-) -> tuple[float, float]:
-    """Pixel pitch in X and Y, mm."""
-    for name, value, pitch_mm in (
-        ("--dpi", dpi, dpi and MM_PER_INCH / dpi),
-        ("--width", width_mm, width_mm and width_mm / columns),
-    ):
-        if value is not None and not LEAST_PITCH_MM <= (pitch_mm or 0.0) <= LARGEST_PITCH_MM:
-            allowed = f"{MM_PER_INCH / LARGEST_PITCH_MM:.3g} to {MM_PER_INCH / LEAST_PITCH_MM:.3g} dpi"
-            raise DrawingFault(
-                f"{name} is {value:g}; it must give pixels of {LEAST_PITCH_MM:g} to"
-                f" {LARGEST_PITCH_MM:g} mm, {allowed}"
-            )
-    if width_mm is not None:
-        return (width_mm / columns,) * 2
-    if dpi is not None:
-        return (MM_PER_INCH / dpi,) * 2
-    if stated is None:
-        raise DrawingFault(
-            f"{file} states no resolution; give --dpi 300, or the sheet's width with --width 120mm"
-        )
-    if stated.doubt is not None:
-        raise DrawingFault(
-            f"{file} states {stated.dpi[0]:g} dpi, {stated.doubt}; "
-            f"give the sheet's width with --width 120mm, or --dpi {stated.dpi[0]:g} if that is true"
-        )
-    return MM_PER_INCH / stated.dpi[0], MM_PER_INCH / stated.dpi[1]
