@@ -152,6 +152,9 @@ def test_a_machine_of_one_s_own_is_a_file(tmp_path: Path) -> None:
         ),
         ("[values]\nspeed = true", r"line 2: values.speed holds true; it may hold a number"),
         ("z = ", r"line 1: .* holds"),
+        ("travel_mm = [300, 0, 60]", r"it may hold lengths in mm, such as \[300, 180, 60\]"),
+        ("rapid_mm_s = true", r"it may hold speeds in mm/s, one for all axes or three"),
+        ("corner_mm = -1", r"corner_mm holds -1; it may hold a length in mm above zero"),
     ],
 )
 def test_a_mistake_is_told_with_its_line(line: str, says: str, tmp_path: Path) -> None:
@@ -159,6 +162,20 @@ def test_a_mistake_is_told_with_its_line(line: str, says: str, tmp_path: Path) -
     file.write_text(line + "\n")
     with pytest.raises(CardFault, match=says):
         machine(str(file))
+
+
+def test_travel_speeds_and_accelerations_are_data(tmp_path: Path) -> None:
+    file = tmp_path / "mine.toml"
+    file.write_text("z = false\ntravel_mm = [300, 180]\nrapid_mm_s = 80\n")
+    mine = machine(str(file))
+    assert mine.travel_mm == (300.0, 180.0, math.inf) and mine.rapid_mm_s == (80.0,) * 3
+    assert all(machine(name).travel_mm is None for name in names())  # nobody knows it
+
+
+def test_values_are_changed_by_name() -> None:
+    assert "M3 S18000" in machine("grbl-router", {"speed": 18000}).begin
+    with pytest.raises(ValueError, match="no value 'rpm'; its values are: speed, spin_up"):
+        machine("grbl-router", {"rpm": 18000})
 
 
 def test_a_name_that_is_none_names_those_that_are(tmp_path: Path) -> None:
