@@ -5,6 +5,7 @@ Signals: what a Follower did in; out the line as the operator and the program ne
     lead line    ├───────●───────┐loop       begins at a reference point or has a tick; runs into its loop
     guide line   ├───────────────●           begins at a reference point and ends
     guides of a line                         guide lines that the head took off it, to their end and back
+    leads of a line    ╰──┤loop├──╯          lead-in and lead-out that a cut was given: cut with the line
 
 Source: patent ES 361967, section on use: reference point, lead line, guide lines to drill points and back.
 """
@@ -37,6 +38,19 @@ REFERENCE_MM = 3.0  # a mark nearer to a reference point is a stroke of that poi
 
 
 @dataclass(frozen=True, slots=True)
+class Leads:
+    """Lead-in and lead-out of a closed line: the positions between which it comes round, and their sizes, mm.
+
+    The size is the radius of an arc or the length of a straight lead, as asked for; 0 without one.
+    """
+
+    first: int
+    last: int
+    in_mm: float = 0.0
+    out_mm: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
 class Line:
     """One line as it was followed: positions (n, 2) mm at the motion rate, how it ended ("closed", "ended",
     "joined", "lost"), its number on the drawing.
@@ -57,6 +71,7 @@ class Line:
     is_solid: bool = False  # the patch is the rim of a filled shape
     numbers: tuple[int, ...] | None = None  # of its stops; None: on from the line before
     breaks: tuple[Break, ...] = ()  # where it ends, and ink goes on
+    leads: Leads | None = None  # that a cut was given; those drawn on paper are `loop_from`
 
     @classmethod
     def of(
@@ -140,6 +155,18 @@ class Line:
         return self.reference_mm is not None or any(
             mark.kind == "tick" and mark.at < self.loop_from for mark in self.marks
         )
+
+    @property
+    def first(self) -> int:
+        """The position where its passes begin: behind the lead line or the lead-in."""
+        if self.leads is not None:
+            return self.leads.first
+        return (self.loop_from or 0) if self.is_lead else 0
+
+    @property
+    def last(self) -> int:
+        """The position where its passes end: before the lead-out."""
+        return len(self.xy_mm) - 1 if self.leads is None else self.leads.last
 
     @property
     def is_guide(self) -> bool:

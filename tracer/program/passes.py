@@ -4,8 +4,9 @@ Signals: a line and what the operator does along it in; positions of X, Y, Z out
 motion rate.
 
 A line of several passes is run at each depth: a closed one straight on from its end, another one from its
-start again, with the tool up on the way. The marks stop the head on the first pass. From a lead line's loop
-the tool goes back along the lead line, and so to the reference point, as it came.
+start again, with the tool up on the way. The marks stop the head on the first pass. The lead-in of a cut is
+run on the first pass, its lead-out on the last. From a lead line's loop the tool goes back along the lead
+line, and so to the reference point, as it came.
 
 Source: patent ES 361967, section on use; the Z moves are the Z unit's (see `zunit`), and when they are made
 is the operator's (see `operator`).
@@ -52,8 +53,10 @@ class Passes:
             yield self.rapid(line.begin_mm, line.start_mm)
         at = np.array([*line.start_mm, self.work.clearance_mm])
         depths_mm = self.operator.depths_mm(actions)
-        # 1. the first pass, with what is done on the way
-        for block in self._first_pass(line, actions):
+        # 1. the first pass, with what is done on the way; a lead-out waits for the last pass
+        end = len(line.xy_mm) - 1
+        first_to = line.last if len(depths_mm) > 1 or _enters(actions) else end
+        for block in self._first_pass(line, actions, first_to):
             yield block
             at = block[-1]
         # 2. further passes, or once more where the tool went down on the way
@@ -61,6 +64,10 @@ class Passes:
             for block in self._further(line, actions, depths_mm, float(at[2])):
                 yield block
                 at = block[-1]
+        if first_to < end:
+            lead_out = self._from_rest(line, first_to, end)
+            yield _at(lead_out, float(at[2]))
+            at = np.array([*lead_out[-1], at[2]])
         # 3. up, and back to where the program ends
         if at[2] != self.work.clearance_mm:
             yield _standing(at[:2], self._z(float(at[2]), self.work.clearance_mm))
@@ -71,10 +78,10 @@ class Passes:
         way = ramp.positions_mm(start_mm, end_mm, self.work.rapid_mm_s, rate_hz=self.rate_hz)
         return _at(way, self.work.clearance_mm)
 
-    def _first_pass(self, line: Line, actions: Sequence[Action]) -> Iterator[Array]:
-        """Along a line, with what is done on the way, (n, 3) mm."""
+    def _first_pass(self, line: Line, actions: Sequence[Action], to: int) -> Iterator[Array]:
+        """Along a line to a position, with what is done on the way, (n, 3) mm."""
         z_mm, entry, come_mm = self.work.clearance_mm, None, 0.0
-        halts = [*(action.halt.at for action in actions), len(line.xy_mm) - 1]
+        halts = [*(action.halt.at for action in actions), to]
         pieces = braking.pieces(line.xy_mm, halts, BRAKE_MM_S2, self.rate_hz)[: len(halts)]
         for piece, action in zip_longest(pieces, actions):
             for block in _blocks(piece):
@@ -100,22 +107,26 @@ class Passes:
             z_mm = -depth_mm
 
     def _where_it_entered(self, line: Line, actions: Sequence[Action]) -> Iterator[Array]:
-        """Once more at depth along the piece of a closed line where the tool went down, (n, 3) mm."""
+        """Once more at depth along the piece of a closed line where the tool went down, (n, 3) mm.
+
+        A line with leads is run once more whole, so that it ends where its lead-out begins.
+        """
         down = next((action for action in actions if action.entry is not None), None)
         if down is None or down.entry is None or not _comes_round(line):
             return
-        first, lengths = _loop_from(line), lengths_mm(line.xy_mm)
+        first, lengths = line.first, lengths_mm(line.xy_mm)
         down_mm = np.interp(down.halt.at, range(len(lengths)), lengths)
         last = int(np.searchsorted(lengths, down_mm + down.entry.length_mm))
         if last <= first:
             return
-        z_mm, last = -down.entry.depth_mm, min(last, len(line.xy_mm) - 1)
-        yield _at(self._feed(line.xy_mm[-1], line.xy_mm[first]), z_mm)
+        z_mm = -down.entry.depth_mm
+        last = line.last if line.leads is not None else min(last, line.last)
+        yield _at(self._feed(line.xy_mm[line.last], line.xy_mm[first]), z_mm)
         yield _at(self._from_rest(line, first, last), z_mm)
 
     def _again(self, line: Line, z_mm: float, depth_mm: float) -> Iterator[Array]:
         """Along a line, or its loop, once more at another depth, (n, 3) mm: straight on, or up and over."""
-        xy_mm = self._from_rest(line, _loop_from(line), len(line.xy_mm) - 1)
+        xy_mm = self._from_rest(line, line.first, line.last)
         if _comes_round(line):
             yield _at(self._feed(xy_mm[-1], xy_mm[0]), z_mm)
         else:
@@ -170,9 +181,9 @@ def _comes_round(line: Line) -> bool:
     return line.ending == "closed" or line.is_lead
 
 
-def _loop_from(line: Line) -> int:
-    """The position where the passes of a line begin: behind the lead line."""
-    return (line.loop_from or 0) if line.is_lead else 0
+def _enters(actions: Sequence[Action]) -> bool:
+    """Whether the tool goes down into a line while it moves."""
+    return any(action.entry is not None for action in actions)
 
 
 def _blocks(xy_mm: Array) -> Iterator[Array]:

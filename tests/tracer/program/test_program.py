@@ -12,7 +12,7 @@ import pytest
 from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault
 from morfax.motion.motion import MOTION_RATE_HZ, join
-from morfax.tracer.following.line import Line
+from morfax.tracer.following.line import Leads, Line
 from morfax.tracer.junctions.guides import GuideLine
 from morfax.tracer.marks.marks import Mark
 from morfax.tracer.operator.card import Card
@@ -194,3 +194,42 @@ def test_duration_length_and_reference_are_those_of_the_lines() -> None:
         and program.reference_mm == (-3.0, 0.0)
         and program.start_mm == (0.0, 0.0)
     )
+
+
+# a square with a lead-in of 3 mm and a lead-out of 2 mm
+WAY = run_through((7, 0), (10, 0), (10, 8), (18, 8), (18, 0), (10, 0), (10, -2))
+CORNER = at(WAY[: len(WAY) // 2], (10, 0))
+BACK = len(WAY) - 1 - at(WAY[::-1][: len(WAY) // 2], (10, 0))
+LED = Line(WAY, "closed", 0.5, 37.0, leads=Leads(CORNER, BACK, 3.0, 2.0))
+
+
+def test_the_tool_goes_down_where_a_lead_in_begins_and_up_where_the_lead_out_ends() -> None:
+    positions = moved(LED)
+    z_moves = np.flatnonzero(np.diff(positions[:, 2]) != 0)
+    np.testing.assert_allclose(positions[z_moves[0], :2], (7, 0), atol=EXACT_MM)
+    np.testing.assert_allclose(positions[z_moves[-1], :2], (10, -2), atol=EXACT_MM)
+    np.testing.assert_allclose(positions[-1], (10, -2, WORK.clearance_mm), atol=EXACT_MM)
+
+
+@pytest.mark.parametrize(
+    ("work", "card"),
+    [
+        (replace(WORK, passes_mm=(1.0, 2.0)), Card()),
+        (WORK, Card(entry_mm=5.0)),
+        (WORK, Card(entry_mm=1.0)),
+    ],
+    ids=["three passes", "an entry into the loop", "an entry on the lead-in"],
+)
+def test_of_several_passes_the_first_has_the_lead_in_and_the_last_the_lead_out(
+    work: Work, card: Card
+) -> None:
+    """Between the passes the tool stays in the work and runs on; nowhere does it leap."""
+    positions = moved(LED, operator=Operator(work, card))
+    in_lead = positions[(positions[:, 0] < 9.9) & (positions[:, 2] < 0)]
+    out_lead = positions[positions[:, 1] < -0.1]
+    assert np.all(np.diff(in_lead[:, 0]) >= 0)  # once, towards the square
+    assert np.all(np.diff(out_lead[:, 1]) <= 0)  # once, away from it
+    np.testing.assert_allclose(out_lead[0, 2], -WORK.depth_mm, atol=EXACT_MM)
+    raised = np.flatnonzero(positions[:, 2] > EXACT_MM)
+    assert np.diff(raised).max() == len(positions) - len(raised) + 1  # up before and after only
+    assert np.abs(np.diff(positions[:, :2], axis=0)).max() < 2 * STEP_MM
