@@ -12,7 +12,6 @@ import pytest
 import shapely
 from PIL import Image
 from scipy.spatial import cKDTree
-from skimage.draw import polygon
 
 from morfax.motion.contour import distance
 from morfax.motion.faults import DrawingFault
@@ -61,10 +60,8 @@ def filled(
         *((outline, 1.0) for outline in outlines),
         *((hole, 0.0) for hole in holes),
     ):
-        i, j = polygon(
-            8 * rows - outline[:, 1] * scale - 0.5, outline[:, 0] * scale - 0.5, fine.shape
-        )
-        fine[i, j] = level
+        x, y = outline[:, 0] * scale - 0.5, 8 * rows - outline[:, 1] * scale - 0.5
+        fine[_inside(x, y, fine.shape)] = level
     dark = cv2.GaussianBlur(
         cv2.resize(fine, (columns, rows), interpolation=cv2.INTER_AREA),
         (0, 0),
@@ -78,6 +75,24 @@ def filled(
     grey = 255 - grey if light else grey
     Image.fromarray(np.clip(np.round(grey), 0, 255).astype(np.uint8)).save(file, dpi=(DPI, DPI))
     return file
+
+
+def _inside(x: Points, y: Points, shape: tuple[int, ...]) -> Points:
+    """Which pixel middles lie inside a closed polygon: right of an odd number of its edges."""
+    rows, columns = shape
+    x, y = np.append(x, x[0]), np.append(y, y[0])
+    low, high = np.minimum(y[:-1], y[1:]), np.maximum(y[:-1], y[1:])
+    first, last = (np.clip(np.ceil(side), 0, rows).astype(int) for side in (low, high))
+    # 1. every row that an edge crosses, and where
+    crossed = last - first
+    edge = np.repeat(np.arange(len(crossed)), crossed)
+    row = np.arange(len(edge)) - (np.cumsum(crossed) - crossed - first)[edge]
+    along = (row - y[edge]) / (y[edge + 1] - y[edge])
+    column = np.ceil(x[edge] + along * (x[edge + 1] - x[edge])).clip(0, columns).astype(int)
+    # 2. each crossing turns all pixels to its right
+    turns = np.zeros((rows, columns + 1), np.uint8)
+    np.add.at(turns, (row, column), 1)
+    return np.cumsum(turns, axis=1, dtype=np.uint8)[:, :-1] % 2 == 1
 
 
 def nearest_um(path: Points, places: Points) -> Points:
