@@ -4,8 +4,8 @@ Signals in: the words of a G2 or G3 in the program's unit, begin and end in mm. 
 and the angle turned in rad, positive counter-clockwise. A centre that is not quite as far from both ends is
 moved to be so.
 
-Source: RS-274-D as LinuxCNC reads it. Questions: the slack of the radii is a thousandth of the radius, from
-5 um to 0.5 mm, as programs of other origin round their places.
+Source: RS-274-D as LinuxCNC reads it. Questions: how far the radii may differ is the control's own; without
+another one the limits are Grbl's: a thousandth of the radius, from 5 um to 0.5 mm.
 """
 
 from __future__ import annotations
@@ -15,8 +15,6 @@ from dataclasses import dataclass
 
 TURN = 2 * math.pi
 SAME_RAD = 1e-12  # a smaller turn to the same place is a whole one
-# of the radius, and within these
-SLACK_SHARE, LEAST_SLACK_MM, LARGEST_SLACK_MM = (0.001, 0.005, 0.5)
 
 Place = tuple[float, float, float]
 Centre = tuple[float, float]
@@ -31,6 +29,32 @@ class WordError(ValueError):
 
 
 @dataclass(frozen=True, slots=True)
+class ArcLimits:
+    """How far the ends of an arc may lie off one circle, mm; whether it may climb.
+
+    The radii of both ends may differ by `least_mm`, or by a share of the radius up to `most_mm`; half the
+    chord may exceed R by `reach_mm`, or, if that is None, by half of what the radii may differ.
+    """
+
+    least_mm: float = 0.005  # Grbl 1.1, gcode.c, gc_execute_line: so are the next two
+    share: float = 0.001
+    most_mm: float = 0.5
+    reach_mm: float | None = None
+    helix: bool = False
+
+    def slack_mm(self, radius_mm: float) -> float:
+        """The allowed difference between the distances of an arc's ends from its centre, mm."""
+        return min(max(self.least_mm, self.share * radius_mm), self.most_mm)
+
+    def beyond_mm(self, radius_mm: float) -> float:
+        """How far half the chord may exceed the radius, mm."""
+        return self.slack_mm(radius_mm) / 2 if self.reach_mm is None else self.reach_mm
+
+
+OURS = ArcLimits()
+
+
+@dataclass(frozen=True, slots=True)
 class ArcWords:
     """G2 or G3 with its sense (+1 counter-clockwise), its words by their letters, and mm per unit."""
 
@@ -38,11 +62,12 @@ class ArcWords:
     sense: int
     values: dict[str, float]
     scale: float
+    limits: ArcLimits = OURS
 
     def arc(self, begin: Place, end: Place) -> tuple[Centre, float]:
         """Centre and angle turned between two places; raises WordError."""
         values, given = self.values, "R" in self.values
-        if end[2] != begin[2]:
+        if end[2] != begin[2] and not self.limits.helix:
             raise WordError(
                 f"Z{values['Z']:g}",
                 "makes the arc a helix; this control turns arcs in X and Y: keep Z",
@@ -55,7 +80,7 @@ class ArcWords:
         first = math.atan2(begin[1] - centre[1], begin[0] - centre[0])
         last = math.atan2(end[1] - centre[1], end[0] - centre[0])
         turned = self.sense * (last - first) % TURN
-        whole = begin == end or (turned < SAME_RAD and not given)
+        whole = begin[:2] == end[:2] or (turned < SAME_RAD and not given)
         return centre, self.sense * (TURN if whole else turned)
 
     def _by_radius(self, begin: Place, end: Place) -> Centre:
@@ -63,7 +88,7 @@ class ArcWords:
         given = self.values["R"]
         across, up, radius = end[0] - begin[0], end[1] - begin[1], given * self.scale
         chord = math.hypot(across, up)
-        if chord == 0 or chord / 2 > abs(radius) + _slack_mm(abs(radius)) / 2:
+        if chord == 0 or chord / 2 > abs(radius) + self.limits.beyond_mm(abs(radius)):
             more = f"{chord / 2:.4f} mm or more, or other ends"
             raise WordError(
                 f"R{given:g}",
@@ -82,11 +107,12 @@ class ArcWords:
         radius, other = math.hypot(i, j), math.dist(end[:2], centre)
         if radius == 0:
             raise WordError(self.kind, "has no centre; give I and J, or R")
-        if abs(other - radius) > _slack_mm(radius):
+        slack_mm = self.limits.slack_mm(radius)
+        if abs(other - radius) > slack_mm:
             raise WordError(
                 f"I{given_i:g} J{given_j:g}",
                 f"is no centre of both ends: {radius:.4f} mm from the start, {other:.4f} mm from the "
-                f"end; they may differ by {_slack_mm(radius):.4f} mm",
+                f"end; they may differ by {slack_mm:.4f} mm",
             )
         across, up = end[0] - begin[0], end[1] - begin[1]
         chord_squared = across**2 + up**2
@@ -95,7 +121,3 @@ class ArcWords:
         along = (i * across + j * up) / chord_squared - 0.5
         return centre[0] - along * across, centre[1] - along * up
 
-
-def _slack_mm(radius_mm: float) -> float:
-    """The allowed difference between the distances of an arc's ends from its centre, mm."""
-    return min(max(LEAST_SLACK_MM, SLACK_SHARE * radius_mm), LARGEST_SLACK_MM)

@@ -32,7 +32,7 @@ from pathlib import Path as FilePath
 from typing import NamedTuple
 
 from morfax.motion.faults import FileFault, ProgramFault
-from morfax.player.gcode.arc_words import ArcWords, Place, WordError
+from morfax.player.gcode.arc_words import OURS, ArcWords, Place, WordError
 from morfax.player.gcode.modal_groups import BLENDING, CODES, DISTANCE, MOTION, READ, UNITS
 
 RAPID, LINE, CLOCKWISE, COUNTER_CLOCKWISE, DWELL = "G0", "G1", "G2", "G3", "G4"
@@ -40,8 +40,8 @@ INCH_MM = 25.4
 LONGEST_DWELL_S = 86400.0  # a day: more is a mistake of the unit
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)"
-_WORD = re.compile(f"([A-Z])({_NUMBER})")
-_COMMENT = re.compile(r"\([^()]*\)|;.*")
+WORD = re.compile(f"([A-Z])({_NUMBER})")
+COMMENT = re.compile(r"\([^()]*\)|;.*")
 _KINDS = {0.0: RAPID, 1.0: LINE, 2.0: CLOCKWISE, 3.0: COUNTER_CLOCKWISE}
 _PLAIN, _MOVING, _ARC_WORDS = frozenset("GXYZIJRFPSTN"), frozenset("XYZIJR"), frozenset("IJR")
 
@@ -86,7 +86,7 @@ def parse_rs274(
     lines: Iterable[str], name: str = "program", start_mm: Sequence[float] | None = None
 ) -> Program:
     """The program of some lines of text; raises ProgramFault."""
-    reader = _Reader(name, start_mm)
+    reader = Reader(name, start_mm)
     for number, text in enumerate(lines, 1):
         reader.number = number
         reader.read(text)
@@ -106,7 +106,7 @@ def parse_rs274(
     return Program((x_mm, y_mm, z_mm), reader.moves_from((x_mm, y_mm, z_mm)))
 
 
-class _Reader:
+class Reader:
     """The modal state of a program, and the moves so far."""
 
     def __init__(self, name: str, start_mm: Sequence[float] | None) -> None:
@@ -117,6 +117,7 @@ class _Reader:
         )
         self.place = [0.0, 0.0, 0.0] if start_mm is None else list(start_mm)
         self.kind, self.scale, self.relative, self.feed_mm_s = "", 1.0, False, 0.0
+        self.arc_limits = OURS
         self.begun = False  # whether there was a % or a word
         self.unsent = [0, 0, 0]  # moves of each axis before the program first sends it
 
@@ -132,28 +133,28 @@ class _Reader:
     def read(self, text: str) -> None:
         """Read a line."""
         if "(" in text or ";" in text:
-            text = _COMMENT.sub("", text)
+            text = COMMENT.sub("", text)
         # what stands between words, a letter, a number, and so on
-        parts = _WORD.split("".join(text.split()))
+        parts = WORD.split("".join(text.split()))
         if any(parts[::3]):
             parts = self._second_look("".join(parts))
         if len(parts) > 1:
             self.begun = True
-            self._obey(parts[1::3], parts[2::3])
+            self.obey(parts[1::3], parts[2::3])
 
     def _second_look(self, text: str) -> list[str]:
         """A line that is not all words: a %, small letters, or refused."""
         if text == "%":  # the first begins the program, the next ends it
             self.ended, self.begun = self.begun, True
             return []
-        parts = _WORD.split(text.upper())
+        parts = WORD.split(text.upper())
         for between in parts[::3]:
             if between:
                 what = "is no word; words are a letter and a number such as X5 or Y-0.25"
                 raise self._fault(repr(between[:20]), what)
         return parts
 
-    def _obey(self, letters: list[str], numbers: list[str]) -> None:
+    def obey(self, letters: list[str], numbers: list[str]) -> None:
         """Carry out the words of a line, in the order of the standard."""
         values = dict(zip(letters, map(float, numbers), strict=True))
         dwell, stop = False, -1
@@ -280,7 +281,9 @@ class _Reader:
         """G2 and G3: the arc between two places."""
         sense = 1 if self.kind == COUNTER_CLOCKWISE else -1
         try:
-            centre, turned = ArcWords(self.kind, sense, values, self.scale).arc(begin, end)
+            centre, turned = ArcWords(self.kind, sense, values, self.scale, self.arc_limits).arc(
+                begin, end
+            )
         except WordError as error:
             raise self._fault(error.word, error.what) from None
         return Move(self.number, self.kind, end, self.feed_mm_s, centre, turned)

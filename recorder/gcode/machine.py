@@ -17,6 +17,7 @@ from typing import Any
 
 from morfax.motion.toml_fields import Field, opened, parsed
 from morfax.recorder.gcode.machine_fields import CONTROL, FIELDS, LINES, filled, strings
+from morfax.recorder.gcode.takes import Takes, ToolWords
 
 DEFAULT = "linuxcnc"
 CALLED = "the machine"
@@ -37,7 +38,7 @@ class Machine:
     arcs: bool = True
     decimals: int = 4
     dwell_unit_s: float = 1.0
-    longest_line: int = 255
+    longest_line: int = 252
     feeds: bool = True  # whether the program says F
     rapids_have_feed: bool = False  # whether a rapid bears F
     rapid_mm_s: Axes = (50.0, 50.0, 20.0)
@@ -49,11 +50,15 @@ class Machine:
     end: tuple[str, ...] = ("M2",)
     tool_down: tuple[str, ...] = ()
     tool_up: tuple[str, ...] = ()
+    takes: Takes = field(default_factory=Takes)
+    tool: ToolWords = field(default_factory=ToolWords)
     values: dict[str, float] = field(default_factory=dict, compare=False)
 
     def comment(self, text: str) -> str:
         """A line that the control passes over, cut to its longest."""
         plain = CONTROL.sub("?", text).replace("(", "[").replace(")", "]")
+        for obeyed in self.takes.not_sent:  # even in a comment
+            plain = plain.replace(obeyed, ".")
         kept = plain[: self.longest_line - 3]
         return f"; {kept}" if self.semicolon else f"({kept})"
 

@@ -11,6 +11,7 @@ import re
 from typing import Any
 
 from morfax.motion.toml_fields import Field
+from morfax.recorder.gcode.takes import read_takes, read_tool
 
 SUFFIXES = (".ngc", ".nc", ".gcode", ".tap", ".cnc")
 CONTROL = re.compile(r"[^\x20-\x7e]")  # what is no printable character of ASCII
@@ -140,4 +141,6 @@ FIELDS: dict[str, tuple[str, Any]] = {
     "tool_down": ("tool_down", strings),
     "tool_up": ("tool_up", strings),
     "values": ("values", _values),
+    "takes": ("takes", read_takes),
+    "tool": ("tool", read_tool),
 }
