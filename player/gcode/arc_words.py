@@ -120,4 +120,3 @@ class ArcWords:
             return centre
         along = (i * across + j * up) / chord_squared - 0.5
         return centre[0] - along * across, centre[1] - along * up
-

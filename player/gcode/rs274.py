@@ -281,9 +281,9 @@ class Reader:
         """G2 and G3: the arc between two places."""
         sense = 1 if self.kind == COUNTER_CLOCKWISE else -1
         try:
-            centre, turned = ArcWords(self.kind, sense, values, self.scale, self.arc_limits).arc(
-                begin, end
-            )
+            centre, turned = ArcWords(
+                self.kind, sense, values, self.scale, self.arc_limits
+            ).arc(begin, end)
         except WordError as error:
             raise self._fault(error.word, error.what) from None
         return Move(self.number, self.kind, end, self.feed_mm_s, centre, turned)

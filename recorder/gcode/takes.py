@@ -1,12 +1,12 @@
-"""What a control takes of a program: its words, its lines, the ends of its arcs, and what puts the tool in the work.
+"""What a control takes of a program: words, lines, the ends of arcs, and what puts the tool in the work.
 
-Signals in: the tables [takes] and [tool] of a machine's file. Signals out: Takes and ToolWords, or a CardFault
-that points at the line of a mistake. `morfax check` reads programs by them; writing does not need them.
+Signals in: the tables [takes] and [tool] of a machine's file. Signals out: Takes and ToolWords, or a
+CardFault that points at the line of a mistake. `morfax check` reads programs by them; writing does without.
 
-Source: Grbl 1.1, gcode.c (gc_execute_line), protocol.c (protocol_main_loop), serial.c (the interrupt that reads a
-character); LinuxCNC 2.10, interp_array.cc, interp_check.cc, interp_arc.cc (arc_data_ijk, arc_data_r),
-interp_internal.hh; Marlin 2's list of G-codes. Questions: Marlin does not look at the ends of an arc: it turns
-by the angle and then jumps to the end. Its limits here are Grbl's.
+Source: Grbl 1.1, gcode.c (gc_execute_line), protocol.c (protocol_main_loop), serial.c (the interrupt that
+reads a character); LinuxCNC 2.9, interp_array.cc, interp_check.cc, interp_arc.cc (arc_data_ijk, arc_data_r),
+interp_internal.hh; Marlin 2's list of G-codes. Questions: Marlin does not look at the ends of an arc: it
+turns by the angle and then jumps to the end. Its limits here are Grbl's.
 """
 
 from __future__ import annotations

@@ -37,7 +37,7 @@ def test_linuxcnc_s_longest_line_is_the_one_that_it_reads() -> None:
 
 
 def test_no_comment_holds_what_grbl_obeys_in_a_comment() -> None:
-    """Grbl, serial.c: ! and ~ are taken out of the stream wherever they stand, and hold or start the machine."""
+    """Grbl, serial.c: ! and ~ are taken out of the stream wherever they stand."""
     assert machine("grbl-pen").comment("part!~ 2") == "(part.. 2)"
     assert machine("linuxcnc").comment("part! 2") == "(part! 2)"
 
@@ -48,7 +48,10 @@ def test_no_comment_holds_what_grbl_obeys_in_a_comment() -> None:
         ('codes = "G0 G1x"', r'takes.codes holds "G0 G1x"; it may hold G and M words'),
         ('codes = "G0-M5"', r"takes.codes holds .*it may hold G and M words"),
         ("arc_mm = -1", r"takes.arc_mm holds -1; it may hold a number from 0"),
-        ('end = "never"', r'takes.end holds "never"; it may hold "needed" or "usual" or "none"'),
+        (
+            'end = "never"',
+            r'takes.end holds "never"; it may hold "needed" or "usual" or "none"',
+        ),
         ("percent = 1", r"takes.percent holds 1; it may hold true or false"),
         ("letter = 1", r"takes.letter holds 1; there is no such field"),
     ],
