@@ -1,7 +1,8 @@
 """What each field of a machine's file may hold.
 
-Signals in: the fields of a TOML file (`motion.toml_fields`). Signals out: the values of a Machine by name, or a
-CardFault with the line of a mistake. Speeds are mm/s, accelerations mm/s2, lengths mm: the unit is in the name.
+Signals in: the fields of a TOML file (`motion.toml_fields`). Signals out: the values of a Machine by name,
+or a CardFault with the line of a mistake. Speeds are mm/s, accelerations mm/s2, lengths mm: the unit is in
+the name.
 """
 
 from __future__ import annotations

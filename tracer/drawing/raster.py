@@ -1,8 +1,8 @@
 """Raster: a page of an image file becomes a Scan: grey levels, or colours, and what the file states.
 
-Signals in: an image file that Pillow reads. Signals out: levels 0..255 (float32 beyond 8 bits), or colours, of
-one page, upright, rows from the top; the stated resolution in dots per inch, and whether it is to be believed;
-the camera.
+Signals in: an image file that Pillow reads. Signals out: levels 0..255 (float32 beyond 8 bits), or colours,
+of one page, upright, rows from the top; the stated resolution in dots per inch, and whether it is to be
+believed; the camera.
 
 Source: Exif 2.32 (tags of cameras). Questions: 72 and 96 dpi, which programs write when they know no scale,
 and whatever a camera states are no scale (see `scale`).

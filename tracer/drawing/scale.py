@@ -1,7 +1,7 @@
 """Scale: how many mm a pixel of a scan is, by what the operator gives, or by what the file states.
 
-Signals in: a Scan; a resolution or a width that the operator gives. Signals out: the pixel's pitch in X and Y,
-mm.
+Signals in: a Scan; a resolution or a width that the operator gives. Signals out: the pixel's pitch in X and
+Y, mm.
 
 Source: the patent takes the drawing's scale for granted. Questions: a wrong scale makes a wrong part, and
 nothing later can tell. So a file without a resolution, or with one that is to be doubted (see `raster`), is
