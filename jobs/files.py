@@ -28,6 +28,7 @@ Kind = Literal["tape", "program", "drawing", "path"]
 TAPES = (".wav", ".rf64", ".flac")  # that can be recorded
 PATHS = (".csv",)
 BLOCKS = (".ngc", ".nc", ".gcode", ".tap", ".cnc")  # G-code, RS-274
+WITH_ARCS = (*BLOCKS, ".dxf", ".svg")
 
 _HEAD_BYTES = 1024  # of a file, in which a binary file has a zero
 _FIRST_BYTES: dict[bytes, Kind] = {

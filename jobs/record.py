@@ -10,7 +10,7 @@ from morfax.jobs import files as medium
 from morfax.jobs.listener import SILENT, Listener, watched
 from morfax.jobs.playing import ByHand, read_or_play
 from morfax.jobs.recording import RecordingUnit, rehearsed
-from morfax.jobs.wrong_use import WrongUse
+from morfax.jobs.wrong_use import WrongUse, settings_checked
 
 if TYPE_CHECKING:
     from morfax.jobs.figures import Figures
@@ -39,7 +39,6 @@ class RecordJob:
     force: bool = False  # write over a name that nobody gave
     reference_hz: float = REFERENCE_HZ
     cycles_per_mm: float | None = None  # None: the pick-up's own
-    fit_tolerance_mm: float | None = None  # None: the medium's own
     unit: RecordingUnit = field(default_factory=RecordingUnit)
 
     def run(self, listener: Listener = SILENT, panel: Panel | None = None) -> RecordResult:
@@ -77,13 +76,7 @@ class RecordJob:
     def _recorder_settings(self, program: FilePath) -> dict[str, Any]:
         """Settings as the recorder of this medium takes them."""
         if not medium.is_tape(program):
-            fit_mm = self.fit_tolerance_mm
-            fit = {} if fit_mm is None else {"tolerance_mm": fit_mm}
-            return fit | self.unit.program_settings(program)
-        if self.fit_tolerance_mm is not None:
-            raise WrongUse(
-                "--fit-tolerance is not for tapes: a tape holds the motion itself; leave it out"
-            )
+            return self.unit.program_settings(program)
         try:
             fmt = self.unit.tape_format(
                 reference_hz=self.reference_hz, cycles_per_mm=self.cycles_per_mm
@@ -103,7 +96,8 @@ def _recorded(
     lasts_s = float(path.t_s[-1] - path.t_s[0])
     stream = watched(path.motion(), listener, f"recording {program.name}", lasts_s)
     if "fmt" not in settings:
-        return record(stream, program, **settings)
+        with settings_checked():  # such as a tolerance finer than the last decimal
+            return record(stream, program, **settings)
     fmt = replace(settings["fmt"], axes=path.axes, start_mm=())
     return record(rehearsed(stream, fmt, listener), program, fmt=fmt)
 

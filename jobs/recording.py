@@ -9,7 +9,7 @@ from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
 from morfax.jobs import files as medium
-from morfax.jobs.wrong_use import WrongUse
+from morfax.jobs.wrong_use import WrongUse, settings_checked
 from morfax.motion.faults import CardFault
 
 if TYPE_CHECKING:
@@ -34,6 +34,9 @@ class RecordingUnit:
     machine: str | None = None  # name of a built-in one, or a .toml file
     feed_mm_s: float | None = None  # of the cut
     plunge_mm_s: float | None = None  # of Z into the work
+    # how far a program may be from the path; None: the medium's own
+    fit_tolerance_mm: float | None = None
+    lines_only: bool = False  # no arcs
     mirror: str = ""  # the axis that runs the other way, x or y
     scale: float = 1.0
     turn_rad: float = 0.0
@@ -57,7 +60,7 @@ class RecordingUnit:
             raise WrongUse(
                 f"--pickup is for tapes, {', '.join(medium.TAPES)}; give -o such a name, or leave it out"
             )
-
+        self._check_fit(program)
         if program is not None and medium.is_gcode(program):
             self._check_machine()
             return
@@ -70,6 +73,20 @@ class RecordingUnit:
                 raise WrongUse(
                     f"{name} is for G-code, {', '.join(medium.BLOCKS)}; give -o such a name, or leave it out"
                 )
+
+    def _check_fit(self, program: FilePath | None) -> None:
+        """Raise WrongUse for a tolerance or lines only where nothing is fitted."""
+        is_exact = program is None or medium.is_tape(program)
+        if self.fit_tolerance_mm is not None and is_exact:
+            what = "path files" if program is None else "tapes"
+            raise WrongUse(
+                f"--fit-tolerance is not for {what}: they hold the motion itself; leave it out"
+            )
+        if self.lines_only and (program is None or program.suffix.lower() not in medium.WITH_ARCS):
+            raise WrongUse(
+                f"--lines-only is for what has arcs, {', '.join(medium.WITH_ARCS)}; give -o such a name, "
+                "or leave it out"
+            )
 
     def _check_machine(self) -> None:
         """Raise WrongUse for a machine that is not there, CardFault for a mistake in its file."""
@@ -84,13 +101,17 @@ class RecordingUnit:
 
     def program_settings(self, program: FilePath) -> dict[str, Any]:
         """What the recorder of this medium is told; tapes apart."""
+        fit_mm = self.fit_tolerance_mm
+        fit: dict[str, Any] = {} if fit_mm is None else {"tolerance_mm": fit_mm}
+        if self.lines_only:
+            fit["arcs"] = False
         if not medium.is_gcode(program):
-            return {}
+            return fit
         from morfax.recorder.gcode.machine import DEFAULT
         from morfax.recorder.gcode.plan import Feeds
 
         feeds = Feeds(self.feed_mm_s, self.plunge_mm_s)
-        return {"machine_name": self.machine or DEFAULT, "feeds": feeds}
+        return {**fit, "machine_name": self.machine or DEFAULT, "feeds": feeds}
 
     def warn(self, listener: Listener) -> None:
         """Say what a scale does to the cutter and the speed."""
@@ -108,7 +129,8 @@ class RecordingUnit:
 
         placed = self.placement.stream(stream)
         if not medium.is_tape(file):
-            return record(placed, file, **self.program_settings(file))
+            with settings_checked():  # such as a tolerance finer than the last decimal
+                return record(placed, file, **self.program_settings(file))
         fmt = self.tape_format()
         return record(rehearsed(placed, fmt, listener), file, fmt=fmt)
 

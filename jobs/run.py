@@ -61,6 +61,7 @@ class RunJob:
         """Go the whole way; the faults of a lost line and of a drive are in the result, others are raised."""
         # 1. trace and record
         tracing = Tracing.prepared(self.settings, panel)
+        self.unit.check(self.file(".wav"))
         drawing = self.drawing.open(listener)
         self._make_folder()
         traced = tracing.trace(drawing, listener)

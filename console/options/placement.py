@@ -9,8 +9,8 @@ from typing import Any
 
 import click
 
-from morfax.console.options.groups import option
-from morfax.console.options.types import ANGLE, FEED, NUMBER, PLACE
+from morfax.console.options.groups import option, renamed
+from morfax.console.options.types import ANGLE, FEED, LENGTH, NUMBER, PLACE
 from morfax.jobs.recording import PICK_UPS, RecordingUnit
 
 GROUP = "Program"
@@ -48,6 +48,20 @@ def unit_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         "plunge_mm_s",
         type=FEED,
         help="Feed of Z into the work in G-code.  [default: that of the motion]",
+    )
+    @option(
+        GROUP,
+        "--fit-tolerance",
+        "fit_tolerance_mm",
+        type=LENGTH,
+        help="How far the program may be from the path; not for tapes.  [default: the medium's own]",
+    )
+    @renamed("--tolerance", "--fit-tolerance")
+    @option(
+        GROUP,
+        "--lines-only",
+        is_flag=True,
+        help="No arcs in G-code and in drawings: short lines instead.",
     )
     @option(
         GROUP,

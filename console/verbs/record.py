@@ -12,7 +12,7 @@ from morfax.console.options.files import FILE, Program
 from morfax.console.options.groups import Verb, option, renamed
 from morfax.console.options.placement import unit_options
 from morfax.console.options.tape import CYCLES_PER_MM
-from morfax.console.options.types import FREQUENCY, LENGTH
+from morfax.console.options.types import FREQUENCY
 from morfax.jobs.record import RecordJob
 
 if TYPE_CHECKING:
@@ -54,14 +54,6 @@ Examples:
     help="Cycles of phase per mm of travel.  [default: those of the pick-up: 20, of the scale 10]",
 )
 @option(
-    "Program",
-    "--fit-tolerance",
-    "fit_tolerance_mm",
-    type=LENGTH,
-    help="How far the program may be from the path; not for tapes.  [default: the medium's own]",
-)
-@renamed("--tolerance", "--fit-tolerance")
-@option(
     "Output",
     "--force",
     is_flag=True,
@@ -74,7 +66,6 @@ def command(
     output: FilePath | None,
     reference_hz: float,
     cycles_per_mm: float | None,
-    fit_tolerance_mm: float | None,
     force: bool,
     unit: RecordingUnit,
     desk: Desk,
@@ -91,7 +82,6 @@ def command(
         force,
         reference_hz,
         cycles_per_mm,
-        fit_tolerance_mm,
         unit,
     )
     desk.figures(job.run(desk).figures)

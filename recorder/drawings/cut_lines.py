@@ -48,9 +48,9 @@ class CutLine:
         )
 
 
-def cut_lines_of(source: Source, tolerance_mm: float) -> tuple[list[CutLine], BlockPlan]:
-    """What a motion cuts, within a tolerance, and the plan; raises MotionFault if it cuts nothing."""
-    planned = plan(source, Writing(tolerance_mm))
+def cut_lines_of(source: Source, writing: Writing) -> tuple[list[CutLine], BlockPlan]:
+    """What a motion cuts, and the plan; raises MotionFault if it cuts nothing."""
+    planned = plan(source, writing)
     found, begin_mm, pieces = [], None, list[Piece]()
     place = (float(planned.start_mm[0]), float(planned.start_mm[1]), float(planned.start_mm[2]))
     for block in planned.blocks:

@@ -25,6 +25,7 @@ from morfax.motion.faults import MotionFault
 from morfax.motion.files import written_beside
 from morfax.motion.segments import Source
 from morfax.recorder.drawings.cut_lines import CutLine, cut_lines_of, radius_mm
+from morfax.recorder.gcode.plan import Writing
 from morfax.recorder.gcode.program_text import digits
 from morfax.recorder.report import Written
 
@@ -51,34 +52,42 @@ class DrawingReport(Written):
 
 
 def record_dxf(
-    stream: Source, file: str | os.PathLike[str], *, tolerance_mm: float = TOLERANCE_MM
+    stream: Source,
+    file: str | os.PathLike[str],
+    *,
+    tolerance_mm: float = TOLERANCE_MM,
+    arcs: bool = True,
 ) -> DrawingReport:
-    """Draw what a motion cuts as DXF; raises MotionFault, FileFault."""
-    return _record(stream, file, tolerance_mm, _dxf)
+    """Draw what a motion cuts as DXF, with or without arcs; raises MotionFault, FileFault."""
+    return _record(stream, file, Writing(tolerance_mm, arcs=arcs), _dxf)
 
 
 def record_svg(
-    stream: Source, file: str | os.PathLike[str], *, tolerance_mm: float = TOLERANCE_MM
+    stream: Source,
+    file: str | os.PathLike[str],
+    *,
+    tolerance_mm: float = TOLERANCE_MM,
+    arcs: bool = True,
 ) -> DrawingReport:
-    """Draw what a motion cuts as SVG; raises MotionFault, FileFault."""
-    return _record(stream, file, tolerance_mm, _svg)
+    """Draw what a motion cuts as SVG, with or without arcs; raises MotionFault, FileFault."""
+    return _record(stream, file, Writing(tolerance_mm, arcs=arcs), _svg)
 
 
 def record_hpgl(
     stream: Source, file: str | os.PathLike[str], *, tolerance_mm: float = TOLERANCE_MM
 ) -> DrawingReport:
     """Draw what a motion cuts for a pen or cutting plotter; raises MotionFault, FileFault."""
-    return _record(stream, file, tolerance_mm, _hpgl)
+    return _record(stream, file, Writing(tolerance_mm), _hpgl)
 
 
 def _record(
     stream: Source,
     file: str | os.PathLike[str],
-    tolerance_mm: float,
+    writing: Writing,
     text_of: Callable[[list[CutLine]], str],
 ) -> DrawingReport:
     """Write what is cut."""
-    lines, planned = cut_lines_of(stream, tolerance_mm)
+    lines, planned = cut_lines_of(stream, writing)
     text = text_of(lines)
     with written_beside(file) as beside:
         beside.write_text(text, encoding="ascii")

@@ -65,25 +65,26 @@ def record_blocks(
     file: str | os.PathLike[str],
     *,
     tolerance_mm: float = TOLERANCE_MM,
+    arcs: bool = True,
     machine_name: str = DEFAULT,
     feeds: Feeds | None = None,
 ) -> BlockReport:
-    """Record a motion as a program of lines and arcs that stay within the tolerance of it.
+    """Record a motion as a program of lines, and arcs if wanted, that stay within the tolerance of it.
 
     The machine is a built-in one by its name, or that of a .toml file. Raises MotionFault, FileFault,
     CardFault for a mistake in a machine's file, ValueError for a name or a tolerance that cannot be.
     """
     wanted = machine(machine_name)
-    planned = plan(stream, Writing(tolerance_mm, wanted.decimals, wanted.arcs), feeds)
+    planned = plan(stream, Writing(tolerance_mm, wanted.decimals, arcs and wanted.arcs), feeds)
     comments = [f"for {wanted.what}", *_comments(planned, depth=wanted.z)]
     with written_beside(file) as beside:
         text = program_text(planned.start_mm, planned.blocks, wanted, comments)
         beside.write_text("\n".join([*text, ""]), encoding="ascii")
-    arcs, dwells = planned.count("G2", "G3"), planned.count("G4")
+    turned, dwells = planned.count("G2", "G3"), planned.count("G4")
     return BlockReport(
         FilePath(file),
-        len(planned.blocks) - arcs - dwells,
-        arcs,
+        len(planned.blocks) - turned - dwells,
+        turned,
         dwells,
         planned.duration_s,
         planned.deviation_mm,

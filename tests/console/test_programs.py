@@ -88,12 +88,44 @@ def test_what_is_for_tapes_only_is_wrong_use(
         ["play", "a.steps", "--reference-frequency", "6kHz"],
         ["inspect", "a.steps", "--reference-frequency", "6kHz"],
         ["record", path_file, "-o", "a.wav", "--fit-tolerance", "1um"],
+        ["record", path_file, "-o", "a.steps", "--lines-only"],
+        ["trace", SAMPLES / "curve.png", "-o", "b.wav", "--fit-tolerance", "1um"],
+        ["trace", SAMPLES / "curve.png", "-o", "b.csv", "--lines-only"],
+        ["run", SAMPLES / "curve.png", "-o", "b", "--lines-only"],
         ["inspect", tape_file, "-o", "tape.png"],
         ["record", path_file, "-o", "a.tape"],
         ["inspect", "a.steps", "-o", "tape.jpg"],
     ):
         answer = morfax(*words)
         assert answer.exit_code == 2 and answer.fault
+
+
+def test_trace_and_record_take_a_tolerance_and_lines_only(morfax: Morfax, here: Path) -> None:
+    """A wider tolerance makes fewer lines, none of them an arc, within it of the traced path."""
+    sources = {"trace": SAMPLES / "curve.png", "record": SAMPLES / "curve.csv"}
+    for verb, source in sources.items():
+        for name, words in (
+            ("as-usual.ngc", []),
+            ("lines.ngc", ["--lines-only"]),
+            ("coarse.ngc", ["--lines-only", "--fit-tolerance", "50um"]),
+            ("lines.svg", ["--lines-only"]),
+        ):
+            assert morfax(verb, source, "-o", name, *words).exit_code == 0
+        usual, lines, coarse = (
+            Path(name).read_text() for name in ("as-usual.ngc", "lines.ngc", "coarse.ngc")
+        )
+        assert "\nG3 " in usual and "\nG3 " not in lines and "\nG2 " not in lines
+        assert 2 * coarse.count("\nG1 ") < lines.count("\nG1 ")  # as the root of the tolerance
+        assert " A " not in Path("lines.svg").read_text()
+        answer = morfax("compare", "coarse.ngc", "lines.ngc", "--tolerance", "62um")
+        assert answer.exit_code == 0, answer.err  # 50 and 10 um, and 2 of its pulses
+
+
+def test_a_tolerance_finer_than_the_last_decimal_is_one_line(morfax: Morfax, here: Path) -> None:
+    for verb, source in (("trace", "curve.png"), ("record", "curve.csv")):
+        answer = morfax(verb, SAMPLES / source, "-o", "a.ngc", "--fit-tolerance", "0.1um")
+        assert answer.exit_code == 2 and "give 0.0002 mm or more" in answer.fault
+    assert not list(here.iterdir())
 
 
 def test_a_garbled_program_is_one_line_and_leaves_nothing(
