@@ -82,7 +82,9 @@ class RecordingUnit:
             raise WrongUse(
                 f"--fit-tolerance is not for {what}: they hold the motion itself; leave it out"
             )
-        if self.lines_only and (program is None or program.suffix.lower() not in medium.WITH_ARCS):
+        if self.lines_only and (
+            program is None or program.suffix.lower() not in medium.WITH_ARCS
+        ):
             raise WrongUse(
                 f"--lines-only is for what has arcs, {', '.join(medium.WITH_ARCS)}; give -o such a name, "
                 "or leave it out"

@@ -121,7 +121,9 @@ def test_trace_and_record_take_a_tolerance_and_lines_only(morfax: Morfax, here: 
         assert answer.exit_code == 0, answer.err  # 50 and 10 um, and 2 of its pulses
 
 
-def test_a_tolerance_finer_than_the_last_decimal_is_one_line(morfax: Morfax, here: Path) -> None:
+def test_a_tolerance_finer_than_the_last_decimal_is_one_line(
+    morfax: Morfax, here: Path
+) -> None:
     for verb, source in (("trace", "curve.png"), ("record", "curve.csv")):
         answer = morfax(verb, SAMPLES / source, "-o", "a.ngc", "--fit-tolerance", "0.1um")
         assert answer.exit_code == 2 and "give 0.0002 mm or more" in answer.fault
