@@ -46,6 +46,8 @@ class ByHand:
     cycles_per_mm: float | None = None
     start_mm: tuple[float, ...] | None = None
     order: tuple[int, ...] | None = None
+    still: tuple[str, ...] | None = None
+    alike: tuple[str, ...] | None = None
     closed: bool | None = None
 
     def given(self) -> dict[str, Any]:
@@ -67,8 +69,8 @@ class ByHand:
         given = self.given()
         if given and control_of(file) != TAPE:
             raise WrongUse(
-                "--reference-frequency, --cycles-per-mm, --from, --tracks and --closed are for tapes; "
-                f"{file} is none"
+                "--reference-frequency, --cycles-per-mm, --from, --tracks, --still, --alike and --closed are "
+                f"for tapes; {file} is none"
             )
         return given
 

@@ -8,7 +8,7 @@ from dataclasses import fields
 from typing import Any
 
 from morfax.console.options.groups import option, renamed
-from morfax.console.options.types import FREQUENCY, NUMBER, PLACES, TRACKS
+from morfax.console.options.types import AXES, FREQUENCY, NUMBER, PLACES, TRACKS
 from morfax.jobs.playing import ByHand
 
 CYCLES_PER_MM = NUMBER
@@ -45,6 +45,18 @@ def tape_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         "order",
         type=TRACKS,
         help="On which tracks of the file reference, X, Y … are, such as 2,1,3,4.  [default: 1,2,3 …]",
+    )
+    @option(
+        "Tape",
+        "--still",
+        type=AXES,
+        help="Axes that are meant to stand from start to end, such as y or x,y.  [default: what the tape says]",
+    )
+    @option(
+        "Tape",
+        "--alike",
+        type=AXES,
+        help="Axes that are meant to run alike, such as x,y.  [default: what the tape says]",
     )
     @option(
         "Tape",

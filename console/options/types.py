@@ -106,6 +106,14 @@ def _tracks(text: str) -> tuple[int, ...]:
         raise ValueError(f"{text[:40]!r} names no tracks; give 2,1,3,4") from None
 
 
+def _axes(text: str) -> tuple[str, ...]:
+    """Axes of "x,y"."""
+    names = tuple(part.strip().lower() for part in text.split(","))
+    if not all(name.isidentifier() for name in names):
+        raise ValueError(f"{text[:40]!r} names no axes; give such as y or x,y")
+    return names
+
+
 def _parse_origin(text: str) -> Any:
     """Where a machine's zero is on the sheet: "sheet", "reference", or a place."""
     word = text.strip().lower()
@@ -163,4 +171,5 @@ TIME = Quantity("time", parse_time_s)
 LINES = Quantity("lines", _parse_lines)
 STOPS = Quantity("stops", _parse_stops)
 TRACKS = Quantity("tracks", _tracks)
+AXES = Quantity("axes", _axes)
 ORIGIN = Quantity("sheet|reference|x,y", _parse_origin)

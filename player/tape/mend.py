@@ -72,6 +72,8 @@ def mend(
     cycles_per_mm: float | None = None,
     start_mm: Sequence[float] | None = None,
     order: Sequence[int] | None = None,
+    still: Sequence[str] | None = None,
+    alike: Sequence[str] | None = None,
     closed: bool = False,
     acceleration_mm_s2: float | None = None,
     progress: Progress | None = None,
@@ -82,6 +84,8 @@ def mend(
         "cycles_per_mm": cycles_per_mm,
         "start_mm": start_mm,
         "order": order,
+        "still": still,
+        "alike": alike,
     }
     limits = {"closed": closed, "acceleration_mm_s2": acceleration_mm_s2}
     playback = play(file, **by_hand, **limits)  # type: ignore[arg-type]

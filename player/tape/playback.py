@@ -31,6 +31,7 @@ from morfax.motion.drive import SOUND
 from morfax.motion.faults import LockFault
 from morfax.motion.motion import AXES, Motion
 from morfax.player.monitor.monitor import Supervised
+from morfax.player.tape.bare import NOT_VOUCHED
 from morfax.player.tape.phase_lock import Drives, PhaseLock, following_limit
 from morfax.player.tape.reader import Reader
 from morfax.player.tape.setting import Setting
@@ -46,6 +47,8 @@ def play(
     cycles_per_mm: float | None = None,
     start_mm: Sequence[float] | None = None,
     order: Sequence[int] | None = None,
+    still: Sequence[str] | None = None,
+    alike: Sequence[str] | None = None,
     closed: bool = False,
     settings: PhaseLock | None = None,
     acceleration_mm_s2: float | None = None,
@@ -56,7 +59,7 @@ def play(
     """Put a tape in the machine; values given by hand override its text chunk. Raises TapeFault, FileFault.
 
     `order`: on which tracks of the file reference, X, Y … are. `closed`: it returns to its start, if it does
-    not say where it ends.
+    not say where it ends. `still`, `alike`: axes that may stand from start to end, and that may run alike.
 
     `settings` are those of the drives (MOTORS). `zero_mm`: by how much the phase changers move each axis;
     `override`: how fast the tape runs against the speed at which it was recorded. Raises ValueError for what
@@ -74,6 +77,8 @@ def play(
             cycles_per_mm=cycles_per_mm,
             start_mm=start_mm,
             order=order,
+            still=still,
+            alike=alike,
         )
 
     with open_tape() as tape:
@@ -99,6 +104,8 @@ def play_pipe(
     cycles_per_mm: float | None = None,
     start_mm: Sequence[float] | None = None,
     order: Sequence[int] | None = None,
+    still: Sequence[str] | None = None,
+    alike: Sequence[str] | None = None,
     closed: bool = False,
     samples: Samples | None = None,
 ) -> Playback:
@@ -110,6 +117,8 @@ def play_pipe(
         cycles_per_mm=cycles_per_mm,
         start_mm=start,
         order=order,
+        still=still,
+        alike=alike,
         samples=samples,
     )
     return Playback(lambda: pipe, _ending(pipe.format, closed), 0, Setting())
@@ -173,6 +182,7 @@ class Playback(Supervised):
         self.end_mm: Array = self.start_mm.copy()
         self.end_error_mm: Array | None = None
         self.found_order: tuple[int, ...] | None = None
+        self.notes = (NOT_VOUCHED,)
         self.conditions = [SOUND] * len(fmt.axes)
         self.limit = following_limit(
             self.settings, fmt.mm_per_cycle, self.rate_hz * self._steps

@@ -24,10 +24,12 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import Fault, TapeFault
+from morfax.player.tape.bare import demand_own_motion
 from morfax.player.tape.discriminator import Discriminator, Phases, discriminate
 from morfax.player.tape.dropouts import Bridge, Gaps, under_way
 from morfax.player.tape.standstill import STANDSTILL_S, Bearings, evened, take_bearings
 from morfax.player.tape.watch import Watch, demand_apart
+from morfax.recorder.tape.own_motion import OwnMotion
 from morfax.recorder.tape.pipe import Pipe
 from morfax.recorder.tape.tape import Stored, Tape, TapeFormat, full_scale
 
@@ -93,8 +95,10 @@ class Reader:
             start = start.cut(lead if first_row else 0, len(start))
             bearings = self._bearings(full_scale(first), start, discriminator)
             gaps, watch = self._gaps(discriminator, bearings), Watch(fmt, bearings)
+            own = OwnMotion(len(fmt.axes))
             for phases in chain([start], rows):
                 out, fault = gaps.feed(phases)
+                own.feed(out.cycles)
                 wrong = (
                     None if first_row else watch.wrong_reference(held[0], self._time_s(phases))
                 )
@@ -103,9 +107,14 @@ class Reader:
                 yield out, bearings, watch.first_fault(out, stands_mm()) or fault
             out, fault = gaps.feed(phases.cut(len(phases), len(phases)), last=True)
             yield out, bearings, fault
-            doubt = None if first_row else watch.doubtful_reference(self._time_s(phases))
+            if first_row:
+                return  # what was before is not known
+            own.feed(out.cycles)
+            ended_s = self._time_s(phases)
+            doubt = watch.doubtful_reference(ended_s)
             if doubt is not None:
                 raise doubt
+            demand_own_motion(own, fmt, self._start_mm.tolist(), ended_s)
 
     def _bearings(
         self, first: NDArray[np.float32], start: Phases, discriminator: Discriminator

@@ -40,6 +40,9 @@ SILENT_LEVEL = 1e-3  # -60 dB of full scale
 CARRIER_SHARE = 0.9
 # of the level: with a fifth of it from another signal the phase turns by 0.03 cycle
 LEVEL_STEADY = 0.8
+# of the first 50 ms that may be a fifth and more below the level: 2.5 ms with any phase, up to half a cycle
+# off, turn the zero by half of what is allowed
+WEAK_SHARE = 0.05
 LEVEL_LOST = 0.5  # of the level: a dropout
 FEWEST_STEADY_ROWS = 48  # 8 ms at 6 kHz: a carrier with a dropout, and not a track without one
 ALLOWED_CYCLES = 0.05  # that any cause may turn a phase: 2.5 um at 20 cycles per mm
@@ -237,9 +240,8 @@ def _demand_no_dropout(
     """Raise TapeFault for a track whose carrier drops out within the first 50 ms."""
     steady = levels > LEVEL_STEADY * np.percentile(levels, 90)
     edges = np.flatnonzero(np.diff(np.r_[False, steady, False]))
-    if not len(edges) or float(levels.mean()) ** 2 / 2 >= share * float(
-        np.var(samples, dtype=np.float64)
-    ):
+    enough = float(levels.mean()) ** 2 / 2 >= share * float(np.var(samples, dtype=np.float64))
+    if not len(edges) or (enough and float((~steady).mean()) < WEAK_SHARE):
         return  # nothing to be heard, or enough of it
     first, last = max(
         zip(edges[::2], edges[1::2], strict=True), key=lambda run: run[1] - run[0]

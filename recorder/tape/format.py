@@ -5,7 +5,9 @@
      "start_mm": [40.1, 12.0, 2.0], "end_mm": [40.1, 12.0, 2.0], "dwell_s": 1.0, "level": 0.5,
      "samples_per_motion": 8}
 
-A tape whose pick-ups are not resolvers has one more entry, `"pickup": "photocell"`, and is of version 2.
+A tape whose pick-ups are not resolvers has one more entry, `"pickup": "photocell"`, and is of version 2. A
+tape on which X or Y stands throughout, or two axes run alike, says so with `"still": ["y"]` and `"alike":
+["x", "z"]`, and is of version 3: nothing else tells such a track from a copy of another.
 
 Signals: track 1 is the reference, then one per axis; phase of a track - phase of the reference = displacement
 from `start_mm` times `cycles_per_mm`, in cycles. An axis may use a third of the reference as deviation, which
@@ -26,7 +28,8 @@ from morfax.motion.faults import TapeFault
 from morfax.recorder.tape.carrier import PickUp
 from morfax.recorder.tape.pickups import DEFAULT_PICK_UP, PICK_UPS, Sensor
 
-VERSION = 2  # the latest; version 1 has no entry `pickup`
+VERSION = 3  # the latest
+_NEW_ENTRIES = {"pickup": 2, "still": 3, "alike": 3}  # the first version that has it
 LARGEST_TEXT_BYTES = 2000  # libsndfile 1.2 reads no text chunk of a WAV from 2048 bytes on
 LARGEST_DEVIATION = 1.0 / 3.0  # of the reference
 _MOST_AXES = 15  # with the reference sixteen tracks; chosen here
@@ -37,6 +40,8 @@ _AGAIN = "record the tape again"
 @dataclass(frozen=True, slots=True)
 class TapeFormat:
     """Format of a tape; raises ValueError if it cannot be. `level`: amplitude of a carrier, full scale 1.
+
+    `still`: axes that are meant to stand from start to end; `alike`: axes that are meant to run alike.
 
     Without `start_mm` the start is zero on all axes; `end_mm` is None where it is not known. The version is
     the lowest that can say it.
@@ -53,6 +58,8 @@ class TapeFormat:
     level: float = 0.5
     samples_per_motion: int = 8
     pickup: str = DEFAULT_PICK_UP
+    still: tuple[str, ...] = ()
+    alike: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         _check_numbers(self)
@@ -65,7 +72,10 @@ class TapeFormat:
             self.level,
             f"at most {most:.3g}, where a {self.pickup} reaches full scale",
         )
-        object.__setattr__(self, "version", 1 if self.pickup == DEFAULT_PICK_UP else 2)
+        for name in ("still", "alike"):
+            _check_some_axes(self, name)
+        lowest = 1 if self.pickup == DEFAULT_PICK_UP else 2
+        object.__setattr__(self, "version", 3 if self.still or self.alike else lowest)
         object.__setattr__(self, "start_mm", self.start_mm or (0.0,) * len(self.axes))
         for name in ("start_mm", "end_mm"):
             _check_place(self, name)
@@ -187,14 +197,16 @@ def _check_entries(values: dict[str, Any]) -> None:
 
 def _entries(version: object) -> set[str]:
     """The entries that a text of a version has."""
-    return {field.name for field in fields(TapeFormat)} - (
-        set() if version == 2 else {"pickup"}
-    )
+    number = version if _is_number(version) else 1
+    return {
+        field.name for field in fields(TapeFormat) if _NEW_ENTRIES.get(field.name, 1) <= number
+    }
 
 
 def _check_numbers(fmt: TapeFormat) -> None:
     """Raise ValueError for the first number that cannot be."""
-    _demand(_is_number(fmt.version) and fmt.version in (1, 2), "version", fmt.version, "1 or 2")
+    known = _is_number(fmt.version) and fmt.version in range(1, VERSION + 1)
+    _demand(known, "version", fmt.version, f"1 to {VERSION}")
     for name, most in (("sample_rate_hz", 2**31), ("samples_per_motion", 10_000)):
         value = getattr(fmt, name)
         _demand(
@@ -221,6 +233,13 @@ def _check_axes(fmt: TapeFormat) -> None:
     good = good and all(isinstance(a, str) and a.isascii() and a.isidentifier() for a in axes)
     good = good and len(set(axes)) == len(axes) and max(map(len, axes)) <= 10
     _demand(good, "axes", axes, f"1 to {_MOST_AXES} different names such as x, y, z")
+
+
+def _check_some_axes(fmt: TapeFormat, name: str) -> None:
+    """Raise ValueError unless an entry names axes of the tape."""
+    axes = getattr(fmt, name)
+    good = isinstance(axes, tuple) and all(axis in fmt.axes for axis in axes)
+    _demand(good, name, axes, f"axes of the tape: {', '.join(fmt.axes)}")
 
 
 def _check_place(fmt: TapeFormat, name: str) -> None:

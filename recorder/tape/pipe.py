@@ -26,7 +26,7 @@ import numpy as np
 from morfax.motion.faults import TapeFault
 from morfax.recorder.tape.carrier import Frames
 from morfax.recorder.tape.format import TapeFormat, columns_of, is_format_text
-from morfax.recorder.tape.stated import unnamed
+from morfax.recorder.tape.stated import allowed, unnamed
 
 PIPE_FRAMES = 65536  # 1.4 s at 48 kHz
 LARGEST_CHUNK_BYTES = 1 << 20  # of a header: more is no tape
@@ -86,6 +86,8 @@ class Pipe:
         cycles_per_mm: float | None = None,
         start_mm: tuple[float, ...] | None = None,
         order: Sequence[int] | None = None,
+        still: Sequence[str] | None = None,
+        alike: Sequence[str] | None = None,
         samples: Samples | None = None,
     ) -> Pipe:
         """Read the header, if there is one; raises TapeFault for no tape, or for an unknown format."""
@@ -102,6 +104,7 @@ class Pipe:
             fmt = replace(
                 fmt, start_mm=tuple(start_mm) + fmt.start_mm[len(start_mm) :], end_mm=None
             )
+        fmt = allowed(fmt, still, alike)
         return cls(stream, samples, fmt, begun, columns_of(order, fmt.tracks))
 
     def __enter__(self) -> Pipe:

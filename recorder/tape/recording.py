@@ -31,13 +31,19 @@ from morfax.motion.files import disk_full_fault, written_beside
 from morfax.motion.motion import AXES, Motion, Path
 from morfax.recorder.report import Written
 from morfax.recorder.tape.carrier import Carrier, Frames
-from morfax.recorder.tape.format import TapeFormat
+from morfax.recorder.tape.format import LARGEST_TEXT_BYTES, TapeFormat
+from morfax.recorder.tape.own_motion import OwnMotion
 from morfax.recorder.tape.riff import make_plain, replace_text
 from morfax.recorder.tape.spool import Spool, medium, sidecar
 
 _BLOCK_SAMPLES = 8192  # a megabyte of frames, which stays in the processor's cache
 _PLACE_DECIMALS = 6  # of the start and end in the text chunk: a nanometre
 _PLACE_CHARACTERS = 24  # room for one coordinate of the end
+_AXIS_CHARACTERS = (
+    30  # room for an axis' name among those that stand, and among those that run alike
+)
+# room for all three entries that a text of version 3 has more
+_ENTRY_CHARACTERS = 60
 
 Progress = Callable[[float, float | None], None]
 
@@ -83,7 +89,7 @@ def record(
     first = next(blocks, None)
     if first is None:
         raise MotionFault("the motion is empty; a tape needs at least one position")
-    fmt = replace(fmt, start_mm=_place(first[0]), end_mm=None)
+    fmt = replace(fmt, start_mm=_place(first[0]), end_mm=None, still=(), alike=())
     tape = _Take(fmt, first[0], progress, _total_s(stream))
     with written_beside(file) as beside:
         try:
@@ -100,7 +106,8 @@ def record(
                     out.put(frames)
         except soundfile.SoundFileError as error:
             raise disk_full_fault(file) from error
-        fmt = replace(fmt, end_mm=_place(tape.last_mm))
+        still, alike = tape.own.told(fmt.axes)
+        fmt = replace(fmt, end_mm=_place(tape.last_mm), still=still, alike=alike)
         _finish(beside, fmt, FilePath(file))
     return Recording(FilePath(file), fmt, tape.count, tuple(tape.largest_speed_mm_s.tolist()))
 
@@ -117,6 +124,7 @@ class _Take:
         self.count = 0
         self.last_mm = first_mm
         self.largest_speed_mm_s = np.zeros(len(first_mm))
+        self.own = OwnMotion(len(first_mm))
 
     def frames(self, blocks: Iterable[Array]) -> Iterator[Frames]:
         """All frames of the tape, standstill included."""
@@ -154,6 +162,7 @@ class _Take:
             )
         self.largest_speed_mm_s = np.maximum(self.largest_speed_mm_s, np.abs(speed).max(axis=0))
         self._samples += len(positions)
+        self.own.feed(positions * fmt.cycles_per_mm)
         self.last_mm = positions[-1]
 
     def _tell(self) -> None:
@@ -230,8 +239,9 @@ def _finish(beside: FilePath, fmt: TapeFormat, file: FilePath) -> None:
 
 def _placeholder(fmt: TapeFormat) -> str:
     """The text chunk with room for the end position, which is not known yet."""
-    text = replace(fmt, end_mm=None).to_json()
-    return text.ljust(len(text) + _PLACE_CHARACTERS * len(fmt.axes))
+    text = replace(fmt, end_mm=None, still=(), alike=()).to_json()
+    room = _ENTRY_CHARACTERS + (_PLACE_CHARACTERS + _AXIS_CHARACTERS) * len(fmt.axes)
+    return text.ljust(min(len(text) + room, LARGEST_TEXT_BYTES))
 
 
 def _place(position: Array) -> tuple[float, ...]:

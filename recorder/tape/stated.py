@@ -92,6 +92,20 @@ def unnamed(sample_rate_hz: int, tracks: int, given: dict[str, Any]) -> TapeForm
     )
 
 
+def allowed(
+    fmt: TapeFormat, still: Sequence[str] | None, alike: Sequence[str] | None
+) -> TapeFormat:
+    """The format with axes that may stand, or run alike, by hand; raises TapeFault for others than its axes."""
+    if still is None and alike is None:
+        return fmt
+    try:
+        return replace(
+            fmt, still=(*fmt.still, *(still or ())), alike=(*fmt.alike, *(alike or ()))
+        )
+    except ValueError as error:
+        raise TapeFault(f"the tape cannot be played so: {error}") from None
+
+
 def started(fmt: TapeFormat, start_mm: Sequence[float] | None) -> TapeFormat:
     """The format with a start given by hand, for the axes given; the end moves by the same distance."""
     if start_mm is None:

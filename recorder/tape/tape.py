@@ -22,7 +22,7 @@ from morfax.recorder.tape.carrier import Frames
 from morfax.recorder.tape.format import TapeFormat, columns_of
 from morfax.recorder.tape.recording import Recording, record
 from morfax.recorder.tape.riff import read_sizes
-from morfax.recorder.tape.stated import format_of, started, text_of
+from morfax.recorder.tape.stated import allowed, format_of, started, text_of
 
 __all__ = ["Recording", "Tape", "TapeFormat", "record"]
 
@@ -53,10 +53,13 @@ class Tape:
         cycles_per_mm: float | None = None,
         start_mm: Sequence[float] | None = None,
         order: Sequence[int] | None = None,
+        still: Sequence[str] | None = None,
+        alike: Sequence[str] | None = None,
     ) -> Tape:
         """Open a tape; values given by hand override its text chunk; a start X, Y leaves Z as it is.
 
         `order`: the tracks of the file, from 1, on which reference, X, Y … are, where it is not this order.
+        `still`, `alike`: axes that may stand from start to end, and that may run alike.
 
         Raises FileFault if the file cannot be read, TapeFault if it is no tape, cut short, empty or of
         unknown format.
@@ -69,9 +72,8 @@ class Tape:
                 sound,
                 {"reference_hz": reference_hz, "cycles_per_mm": cycles_per_mm},
             )
-            return cls(
-                FilePath(file), sound, started(fmt, start_mm), columns_of(order, fmt.tracks)
-            )
+            fmt = allowed(started(fmt, start_mm), still, alike)
+            return cls(FilePath(file), sound, fmt, columns_of(order, fmt.tracks))
         except BaseException:
             sound.close()
             raise

@@ -123,7 +123,8 @@ def test_a_tape_backwards_is_no_other_tape_but_the_tool_goes_up(
     answer = morfax(
         "play", written(frames[::-1].copy(), tape_text(here, frames)), "-o", "bad.csv"
     )
-    assert answer.exit_code == 0 and "backwards" in answer.err
+    assert answer.exit_code == 5 and "the tape runs backwards" in answer.err
+    assert "bad.incomplete.csv" in answer.out
     assert (
         "backwards"
         not in morfax("play", written(frames, tape_text(here, frames)), "-o", "good.csv").err

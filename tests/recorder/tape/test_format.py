@@ -54,8 +54,8 @@ def test_the_defaults_are_those_of_the_design() -> None:
 @pytest.mark.parametrize(
     ("entry", "value", "fault"),
     [
-        ("version", 3, "version 3; this program reads 2"),
-        ("version", "1", "version is 1; it must be 1 or 2"),
+        ("version", 4, "version 4; this program reads 3"),
+        ("version", "1", "version is 1; it must be 1 to 3"),
         ("version", True, "version is True"),
         ("sample_rate_hz", 48000.5, "sample_rate_hz is 48000.5; it must be a whole number"),
         ("sample_rate_hz", 0, "sample_rate_hz is 0"),

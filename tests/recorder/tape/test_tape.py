@@ -313,7 +313,7 @@ def test_a_resampled_tape_goes_by_its_own_rate(tmp_path: Path) -> None:
         (1, "", "has one track; a tape has at least 3"),
         (2, "", "has 2 tracks; a tape has at least 3"),
         (5, TapeFormat().to_json(), "has 5 tracks, but its text chunk speaks of 4"),
-        (4, '{"version": 9}', "version 9; this program reads 2"),
+        (4, '{"version": 9}', "version 9; this program reads 3"),
         (4, "{broken", "no JSON object"),
     ],
 )
