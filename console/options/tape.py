@@ -50,7 +50,7 @@ def tape_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         "Tape",
         "--still",
         type=AXES,
-        help="Axes that are meant to stand from start to end, such as y or x,y.  [default: what the tape says]",
+        help="Axes meant to stand from start to end, such as y or x,y.  [default: what the tape says]",
     )
     @option(
         "Tape",

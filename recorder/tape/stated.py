@@ -95,7 +95,7 @@ def unnamed(sample_rate_hz: int, tracks: int, given: dict[str, Any]) -> TapeForm
 def allowed(
     fmt: TapeFormat, still: Sequence[str] | None, alike: Sequence[str] | None
 ) -> TapeFormat:
-    """The format with axes that may stand, or run alike, by hand; raises TapeFault for others than its axes."""
+    """The format with axes that may stand, or run alike, by hand; raises TapeFault for no axes of it."""
     if still is None and alike is None:
         return fmt
     try:
