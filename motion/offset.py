@@ -33,7 +33,7 @@ from morfax.motion.polyline import (
     plain,
     steps_mm,
 )
-from morfax.motion.trimming import FREE, NEARER, SAME_MM, chains, trimmed
+from morfax.motion.trimming import FREE, NEARER, SAME_MM, OffsetPiece, chains, trimmed
 
 LEAST_MM = 0.05  # a shorter path is dropped, ...
 # ... and one from crossing to crossing shorter than this share of the radius; by trial
@@ -70,22 +70,28 @@ def offset(curves: Sequence[DriveCurve], radius_mm: float) -> list[OffsetPath]:
     ways = [swung(a, is_closed, radius_mm) for a, is_closed in zip(lines, closed, strict=True)]
     paths = list[OffsetPath]()
     for chain in chains(trimmed(ways, closed, near, radius_mm)):
-        comes_round = chain[0].start == chain[-1].end != FREE
         points = np.vstack([piece.points_mm for piece in chain])
         points = points[np.r_[True, steps_mm(points) > SAME_MM]]
-        guide = max(chain, key=lambda piece: piece.length_mm).guide
-        broken = not comes_round and FREE not in (chain[0].start, chain[-1].end)
-        least_mm = BROKEN * radius_mm if broken else LEAST_MM
-        if length_mm(points) < least_mm or (
-            comes_round and _goes_round_nothing(points, radius_mm)
-        ):
+        comes_round = chain[0].start == chain[-1].end != FREE
+        if not _is_kept(chain, points, comes_round, radius_mm):
             continue
+        guide = max(chain, key=lambda piece: piece.length_mm).guide
         if comes_round:
             points = _begun(points, ways[guide][0])
-        paths.append(
-            OffsetPath(points if curves[guide].left else points[::-1], comes_round, guide)
-        )
+        along = points if curves[guide].left else points[::-1]
+        paths.append(OffsetPath(along, comes_round, guide))
     return paths
+
+
+def _is_kept(
+    chain: list[OffsetPiece], points: Array, comes_round: bool, radius_mm: float
+) -> bool:
+    """Whether a path is long enough, and goes round something if it comes round."""
+    broken = not comes_round and FREE not in (chain[0].start, chain[-1].end)
+    least_mm = BROKEN * radius_mm if broken else LEAST_MM
+    if length_mm(points) < least_mm:
+        return False
+    return not (comes_round and _goes_round_nothing(points, radius_mm))
 
 
 def guided(curve: DriveCurve, radius_mm: float) -> Array:

@@ -117,13 +117,15 @@ class Attempts:
         other = self.run(about)
         if run.ending == "closed":
             is_other = other.ending == "closed" and other.travel_mm < SHORTER * run.travel_mm
-            return (
-                self._with_doubts(about, other) if is_other else self._with_doubts(stance, run)
-            )
+            return self._with_doubts(*((about, other) if is_other else (stance, run)))
         there_and_back = self._through_tips(about, other)
         if there_and_back is not None:
             return there_and_back
         # 3. back from an end, or on with other turns
+        return self._back_or_on(stance, run, other)
+
+    def _back_or_on(self, stance: Stance, run: Followed, other: Followed) -> Followed:
+        """What follows a run that did not close, nor end in a tip, when the other way round is known."""
         if run.ending == "ended":
             return self._from_end(run, other)
         if other.ending == "closed":

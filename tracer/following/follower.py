@@ -51,8 +51,7 @@ from morfax.tracer.tangles.solution import Approach
 SWELLS = 0.5
 FROM_BEHIND = (1.0, 0.6, 0.3)  # legs behind the axis: nearer, if a speck spoils the first place
 AWAY_LEADS, AWAY_WIDTHS = 4.0, 3.0  # the head is away from home after this travel
-# a place from which the line is clean, the heading there, and the travel
-Anchor = tuple[Array, float, float]
+Anchor = tuple[Array, float, float]  # where the line begins to be clean: place, heading, travel
 NO_GUARDS = "the swinging cell sees no more ink, and this head has no guard cells to find on by"
 SLOWER = "go slower there with --speed, or follow with --head precise"
 BRIDGE = "bridge a gap with --gap, or scan at a higher resolution"
@@ -70,10 +69,8 @@ class Follower:
         self._at_tip = False
         self.carriage = Carriage(stance, settings, rate_hz)
         self._tangles = Tangles()
-        lead_mm = self.carriage.tuning.lead_mm
-        self._home = WayHome(
-            stance, max(AWAY_LEADS * lead_mm, AWAY_WIDTHS * self.view.width_mm)
-        )
+        by_lead_mm = AWAY_LEADS * self.carriage.tuning.lead_mm
+        self._home = WayHome(stance, max(by_lead_mm, AWAY_WIDTHS * self.view.width_mm))
         self._aim(self._first_leg(stance))
 
     def follow(
@@ -87,8 +84,9 @@ class Follower:
                 told(self.carriage.travel_mm)
             if why == HOME:
                 return self._go_home()
-            # before the next junction, whose other legs have been followed
-            if self.carriage.trail.comes_again(self.view.width_mm):
+            if self.carriage.trail.comes_again(
+                self.view.width_mm
+            ):  # before a junction that is known
                 return self._done("joined")
             if why == CHANGED:
                 self.view = self.view.like(*self.carriage.stands(), follows=SWELLS)
@@ -136,26 +134,33 @@ class Follower:
         dot = None if goes_straight(incoming, outgoing) else dot_at_end(self.view, incoming)
         if dot is not None:
             return self._end(aimed_at(incoming, dot), math.dist(incoming.end_mm, dot))
+        plan = None
         if outgoing is not None and another_pen(self.view, outgoing):
             plan = self._planner().onward(incoming, Onward(self.view, outgoing, corner))
-            if plan is not None:
-                return self._pass(plan)
+        if plan is not None:
+            return self._pass(plan)
         # 2. the way that the legs show, and a better one where they are a tangle
         plan, choices = self._planner().along_legs(incoming, choice)
         explained = leads_to_dot(self.view, incoming, outgoing)
-        if not asked and not explained:
+        if not (asked or explained):
             plan, explained = self._out_of_tangle(incoming, plan)
         # 3. nothing leads on with this pen
         if plan is None and not choices:
-            other = of_another_pen(self.view, incoming, self.carriage.trail)
-            plan = None if other is None else self._planner().onward(incoming, other)
-            if other is not None and plan is not None:
-                self.view = other.view
+            plan = self._with_another_pen(incoming)
+            if plan is not None:
                 return self._pass(plan)
         # 4. past what nothing explains
         if not explained:
             plan = self._planner().past(incoming, choice) or plan
         return self._at_end(incoming, choices) if plan is None else self._pass(plan)
+
+    def _with_another_pen(self, incoming: Leg) -> Plan | None:
+        """The way on along a line of another width, which the head takes up, if there is one."""
+        other = of_another_pen(self.view, incoming, self.carriage.trail)
+        plan = None if other is None else self._planner().onward(incoming, other)
+        if other is not None and plan is not None:
+            self.view = other.view
+        return plan
 
     def _out_of_tangle(self, incoming: Leg, plan: Plan | None) -> tuple[Plan | None, bool]:
         """The way out of a tangle, or the plan if this is none; and whether the tangle explains the way."""
@@ -206,13 +211,10 @@ class Follower:
         if end is None:
             return self._lost("no clean line leads on through the ink ahead")
         if self._home.is_across(incoming, end, self.settings.recatch_mm):
-            return self._across_to_home(incoming, end)
+            # across the paper, to the end at which the head began
+            self.carriage.run([self._to_end(incoming, end)], self.settings.speed_mm_s)
+            return self._go_home()
         return self._end(incoming, end, joined=choices > 0)
-
-    def _across_to_home(self, incoming: Leg, end_mm: float) -> Followed:
-        """Run to the end of the line, and across the paper to the end at which the head began."""
-        self.carriage.run([self._to_end(incoming, end_mm)], self.settings.speed_mm_s)
-        return self._go_home()
 
     def _end(self, incoming: Leg, end_mm: float, *, joined: bool = False) -> Followed | None:
         """Run to an end of the line; and back, if it is a guide line's end, or a tip where two lines end."""
@@ -292,9 +294,9 @@ class Follower:
 
     def _lost(self, why: str, instead: str = BRIDGE) -> Followed:
         """The end of a line that was lost: the fault says where, and what to do instead."""
-        place_mm, heading = self.carriage.stands()
+        (x, y), heading = self.carriage.stands()
         times = self.view.enlarged
-        place = float(place_mm[0] / times), float(place_mm[1] / times)
+        place = float(x / times), float(y / times)
         because = f"{why}; look at the drawing there, {instead}"
         fault = line_lost(place, heading, self.carriage.travel_mm / times, because)
         return self._done("lost", fault)

@@ -63,15 +63,23 @@ def put_down(
     for stance in ends[:ENDS]:
         yield stance, stroke.length_mm
     # 3. its plain places
+    plain = _plain(view, stroke, start_mm, catch_mm)
+    for stance in plain:
+        yield stance, stroke.length_mm
+    if not plain and not ends:
+        is_solid = bool(sheet.are_solid[stroke.patch])
+        raise _nowhere_clean(view.width_mm, is_solid, settings.line_width_mm)
+
+
+def _plain(
+    view: View, stroke: Stroke, start_mm: tuple[float, float] | None, catch_mm: float
+) -> list[Stance]:
+    """Stances at plain places of a line, the plainest first; the plainest alone of those near a place."""
     plain = stances(view, places_of(stroke, start_mm, ABOUT_WIDTHS * stroke.width_mm))
     if not plain and start_mm is not None:
         plain = stances(view, places_of(stroke, start_mm, catch_mm))
     plain.sort(key=plainness, reverse=True)
-    for scored in plain if start_mm is None else plain[:1]:
-        yield scored.stance, stroke.length_mm
-    if not plain and not ends:
-        is_solid = bool(sheet.are_solid[stroke.patch])
-        raise _nowhere_clean(view.width_mm, is_solid, settings.line_width_mm)
+    return [scored.stance for scored in (plain if start_mm is None else plain[:1])]
 
 
 def ends_of(

@@ -66,13 +66,13 @@ def trace_lines(
         lines += [line for line in further if which != "outer" or not is_inside(line, lines)]
     # 3. dots that stand alone
     if beyond or which == "all":
-        holes = _dots(setup, asked, max((line.number for line in lines), default=patches))
+        last = max((line.number for line in lines), default=patches)
+        holes = _dots(setup, asked, last)
         lines, left_out = lines + holes, left_out - len(holes)
     if beyond:
         lines = _of_numbers(lines, which)
     # 4. in order
-    if not any(len(line.xy_mm) > 1 for line in lines):
-        raise _none_begun(lines)
+    _refuse_none_begun(lines)
     in_order = _in_order(setup, lines)
     return Trace(tuple(in_order), operator, left_out=left_out, left_out_mm=left_mm)
 
@@ -117,10 +117,12 @@ def _dots(setup: Setup, asked: list[Contour], last: int) -> list[Line]:
     return [Line.of_dot(centre, width_mm, n) for n, centre in enumerate(centres, last + 1)]
 
 
-def _none_begun(lines: list[Line]) -> LineFault:
-    """The fault of a sheet on which no line could be begun."""
+def _refuse_none_begun(lines: list[Line]) -> None:
+    """Raise LineFault for a sheet on which no line could be begun."""
+    if any(len(line.xy_mm) > 1 for line in lines):
+        return
     fault = lines[0].fault if lines else None
-    return fault or LineFault(
+    raise fault or LineFault(
         "no line can be begun: the ink on the sheet is too short, or is letters; give --start X,Y at a plain"
         " stretch, or, if dots are to be drilled, the --line-width of their pen"
     )

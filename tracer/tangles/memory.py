@@ -63,7 +63,12 @@ class Tangles:
             self._beside += [leg for leg in tangle.legs[1:] if _runs_back(view, incoming, leg)]
         if not _is_closed(tangle) or (odd and plan is not None):
             return plan, False
-        # 3. the redrawing that explains the ink
+        return self._redrawn(view, tangle, approach)
+
+    def _redrawn(
+        self, view: View, tangle: Tangle, approach: Approach
+    ) -> tuple[Plan | None, bool]:
+        """The way out by the redrawing that explains the ink, which is remembered; and whether one does."""
         found = unravelled(Sketch.of(view, tangle), approach)
         if found.redrawing is not None:
             self._known.append((tangle, found.redrawing))

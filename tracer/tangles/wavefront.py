@@ -148,7 +148,7 @@ def _wave(ground, reach_px):  # type: ignore[no-untyped-def]
         waiting[i, j] = False
         for k in range(len(MOVES)):
             y, x = i + MOVES[k, 0], j + MOVES[k, 1]
-            if y < 0 or x < 0 or y >= rows or x >= columns:
+            if not (0 <= y < rows and 0 <= x < columns):
                 continue
             if not ground[y, x] or not ground[i + HALVES[k, 0], j + HALVES[k, 1]]:
                 continue
