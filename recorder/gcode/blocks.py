@@ -11,8 +11,9 @@ Signals: a stream of Motion or a Path in, a program file out, in mm, mm/min and 
     G4 P1                                a dwell
     G0 Z2                                the tool goes up; M5 and M2 end the program
 
-`recorder.gcode.plan` finds the blocks in the motion, `recorder.gcode.program_text` writes them in the words
-of a machine.
+`recorder.gcode.plan` finds the blocks in the motion, `recorder.gcode.tooling` puts a tool that is only up or
+down in the place of Z, `recorder.gcode.program_text` writes them in the words of a machine, and
+`recorder.gcode.program_head` says at the head what it is.
 
 Source: RS-274-D, as LinuxCNC, Grbl and Marlin take it. Questions: a motion that starts at or below the
 surface goes to its place first and then down.
@@ -21,17 +22,18 @@ surface goes to its place first and then down.
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path as FilePath
 from typing import Any
 
-import numpy as np
-
 from morfax.motion.files import written_beside
 from morfax.motion.segments import Source
-from morfax.recorder.gcode.machine import DEFAULT, machine
-from morfax.recorder.gcode.plan import BlockPlan, Feeds, Writing, plan
+from morfax.recorder.gcode.machine import DEFAULT, Machine, machine
+from morfax.recorder.gcode.plan import Feeds, Writing, plan
+from morfax.recorder.gcode.program_head import Made, head
 from morfax.recorder.gcode.program_text import program_text
+from morfax.recorder.gcode.running_time import running_time_s
+from morfax.recorder.gcode.tooling import without_z
 from morfax.recorder.report import Written
 
 TOLERANCE_MM = 0.01
@@ -66,19 +68,27 @@ def record_blocks(
     *,
     tolerance_mm: float = TOLERANCE_MM,
     arcs: bool = True,
-    machine_name: str = DEFAULT,
+    machine_name: str | Machine = DEFAULT,
     feeds: Feeds | None = None,
+    made: Made | None = None,
 ) -> BlockReport:
     """Record a motion as a program of lines, and arcs if wanted, that stay within the tolerance of it.
 
-    The machine is a built-in one by its name, or that of a .toml file. Raises MotionFault, FileFault,
-    CardFault for a mistake in a machine's file, ValueError for a name or a tolerance that cannot be.
+    The machine is a built-in one by its name, that of a .toml file, or one at hand. Raises MotionFault,
+    FileFault, CardFault for a mistake in a machine's file, ValueError for a name or a tolerance that cannot
+    be.
     """
-    wanted = machine(machine_name)
+    wanted = machine_name if isinstance(machine_name, Machine) else machine(machine_name)
+    if feeds and feeds.cut_mm_s and not wanted.feeds:
+        wanted = replace(wanted, panel_feed_mm_s=feeds.cut_mm_s)
     planned = plan(stream, Writing(tolerance_mm, wanted.decimals, arcs and wanted.arcs), feeds)
-    comments = [f"for {wanted.what}", *_comments(planned, depth=wanted.z)]
+    start_mm, blocks = planned.start_mm, planned.blocks
+    if not wanted.z:
+        blocks = without_z(start_mm, blocks, wanted)
+    seconds = float(running_time_s(start_mm, blocks, wanted))
+    comments = head(planned, blocks, seconds, wanted, made or Made())
     with written_beside(file) as beside:
-        text = program_text(planned.start_mm, planned.blocks, wanted, comments)
+        text = program_text(start_mm, blocks, wanted, comments)
         beside.write_text("\n".join([*text, ""]), encoding="ascii")
     turned, dwells = planned.count("G2", "G3"), planned.count("G4")
     return BlockReport(
@@ -86,23 +96,7 @@ def record_blocks(
         len(planned.blocks) - turned - dwells,
         turned,
         dwells,
-        planned.duration_s,
+        seconds,
         planned.deviation_mm,
         wanted.name,
     )
-
-
-def _comments(planned: BlockPlan, *, depth: bool) -> list[str]:
-    """What a person at the machine wants to know before pressing start."""
-    cut = [part.points_mm for part in planned.parts if not part.rapid]
-    if not cut:
-        return [f"about {planned.duration_s:.0f} s, nothing is cut"]
-    points = np.vstack(cut)
-    x_mm, y_mm, _ = np.ptp(points, axis=0)
-    length_mm = sum(float(np.hypot(*np.diff(piece[:, :2], axis=0).T).sum()) for piece in cut)
-    down = f", Z down to {points[:, 2].min():.2f} mm" if depth else ""
-    return [
-        f"cut {x_mm:.2f} x {y_mm:.2f} mm{down}",
-        f"length {length_mm:.1f} mm, about {planned.duration_s:.0f} s",
-        f"within {planned.deviation_mm:.4f} mm of the traced path",
-    ]

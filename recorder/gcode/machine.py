@@ -50,6 +50,11 @@ class Machine:
     end: tuple[str, ...] = ("M2",)
     tool_down: tuple[str, ...] = ()
     tool_up: tuple[str, ...] = ()
+    dot_down: tuple[str, ...] = ()  # where X and Y stand meanwhile; (): as anywhere
+    dot_up: tuple[str, ...] = ()
+    hole_begin: tuple[str, ...] = ()  # before a hole of the part is cut
+    hole_overcut: tuple[str, ...] = ()  # where it closes, before the way on
+    hole_end: tuple[str, ...] = ()
     takes: Takes = field(default_factory=Takes)
     tool: ToolWords = field(default_factory=ToolWords)
     values: dict[str, float] = field(default_factory=dict, compare=False)

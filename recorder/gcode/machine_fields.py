@@ -17,7 +17,17 @@ from morfax.recorder.gcode.takes import read_takes, read_tool
 SUFFIXES = (".ngc", ".nc", ".gcode", ".tap", ".cnc")
 CONTROL = re.compile(r"[^\x20-\x7e]")  # what is no printable character of ASCII
 PLACEHOLDER = re.compile(r"\{(\w+)\}")
-LINES = ("begin", "end", "tool_down", "tool_up")
+LINES = (
+    "begin",
+    "end",
+    "tool_down",
+    "tool_up",
+    "dot_down",
+    "dot_up",
+    "hole_begin",
+    "hole_overcut",
+    "hole_end",
+)
 
 
 def strings(held: Field) -> list[Field]:
@@ -137,10 +147,7 @@ FIELDS: dict[str, tuple[str, Any]] = {
     "corner_mm": ("corner_mm", lambda held: _above_zero(held, "a length in mm")),
     "panel_feed_mm_s": ("panel_feed_mm_s", lambda held: _above_zero(held, "a speed in mm/s")),
     "travel_mm": ("travel_mm", _travel),
-    "begin": ("begin", strings),
-    "end": ("end", strings),
-    "tool_down": ("tool_down", strings),
-    "tool_up": ("tool_up", strings),
+    **{name: (name, strings) for name in LINES},
     "values": ("values", _values),
     "takes": ("takes", read_takes),
     "tool": ("tool", read_tool),

@@ -3,11 +3,11 @@
 Signals in: where the program starts, its blocks (places in mm, feeds in mm/s), and the Machine. Signals out:
 lines of text, none longer than the machine takes.
 
-A machine with a Z axis gets every block. Where there is none, the tool's own words stand for Z: `tool_down`
-where Z goes into the work, `tool_up` before the next rapid, so that a hole drilled in pecks is one dot.
+A machine with a Z axis gets every block. Where there is none, `recorder.gcode.tooling` has put the tool's own
+words in the place of Z.
 
 Source: RS-274-D. Questions: a letter that does not change is left out, as people and most programs do; an arc
-always bears its end and its centre.
+always bears its end and its centre. Marlin runs a rapid at the feed before it, so that its rapids bear one.
 """
 
 from __future__ import annotations
@@ -20,65 +20,80 @@ from morfax.motion.motion import IN_WORK_BELOW_MM
 from morfax.recorder.gcode.machine import Machine
 
 WHOLE_FEED_MM_MIN = 10.0  # a feed from here on is written without decimals
-CUTS = ("G1", "G2", "G3")
+RAPID, DWELL, WORDS = "G0", "G4", "words"
+ARCS = ("G2", "G3")
+CUTS = ("G1", *ARCS)
+END = "end of the program"  # a comment, where the control has no word for it
+ENDING = ("M2", "M30", "%")
 
 
 class Block(NamedTuple):
-    """One block: G0 to G3 to a place (x, y, z) mm, arcs with their centre, or G4 with its time."""
+    """One block: G0 to G3 to a place (x, y, z) mm, arcs with their centre; G4 with its time; or words."""
 
     code: str
     place_mm: tuple[float, float, float]
     centre_mm: tuple[float, float] = (0.0, 0.0)
     feed_mm_s: float = 0.0
     dwell_s: float = 0.0
+    words: tuple[str, ...] = ()  # lines of the machine's own, written as they are
 
 
 def program_text(
     start_mm: Array, blocks: Sequence[Block], machine: Machine, comments: Iterable[str]
 ) -> list[str]:
-    """The lines of a program."""
+    """The lines of a program; the blocks are as the machine runs them."""
     text = _Text(machine, [machine.comment(line) for line in comments])
     text.lines += machine.begin
     first_feed_mm_s = next((block.feed_mm_s for block in blocks if block.code in CUTS), 0.0)
     text.begin(start_mm, first_feed_mm_s)
     for block in blocks:
-        if machine.z:
-            text.block(block)
-        else:
-            text.block_without_z(block)
-    text.tool(down=False)
-    return [*text.lines, *machine.end]
+        text.block(block)
+    text.lines += machine.end
+    if not any(line in ENDING for line in machine.end):
+        text.lines.append(machine.comment(END))
+    return text.lines
 
 
 class _Text:
-    """The lines so far, where they lead to, and whether the tool is down (a machine without Z)."""
+    """The lines so far, and where they lead to."""
 
     def __init__(self, machine: Machine, lines: list[str]) -> None:
         self.machine, self.lines = machine, lines
         self.place_mm: list[float] = [0.0, 0.0, 0.0]
         self.feed = ""
-        self.is_down = False
 
     def begin(self, start_mm: Array, feed_mm_s: float) -> None:
         """Write the way to the start: Z alone first where that is up, last where it is down."""
         self.place_mm = [float(mm) for mm in start_mm]
+        across_mm_s, up_mm_s = min(self.machine.rapid_mm_s[:2]), self.machine.rapid_mm_s[2]
         x_y = "G0" + self._words("XY", self.place_mm[:2])
         z = self._words("Z", self.place_mm[2:])
         if not self.machine.z:
-            self.lines.append(x_y)
-            self.tool(down=self.place_mm[2] <= IN_WORK_BELOW_MM)
+            self.lines.append(x_y + self._rapid_feed(across_mm_s))
+            self.place_mm[2] = 0.0
         elif self.place_mm[2] > IN_WORK_BELOW_MM:
-            self.lines += ["G0" + z, x_y]
+            self.lines.append("G0" + z + self._rapid_feed(up_mm_s))
+            self.lines.append(x_y + self._rapid_feed(across_mm_s))
         else:
-            self.lines += [x_y, "G1" + z + self._feed(feed_mm_s)]
+            self.lines.append(x_y + self._rapid_feed(across_mm_s))
+            self.lines.append("G1" + z + self._feed(feed_mm_s))
 
     def block(self, block: Block) -> None:
-        """Write a block for a machine with Z."""
-        if block.code == "G4":
+        """Write a block; one without a code says only a place."""
+        if block.code == WORDS:
+            self.lines += block.words
+            if any("F" in word for word in block.words):
+                self.feed = ""
+        elif block.code == DWELL:
             time = block.dwell_s / self.machine.dwell_unit_s
             self.lines.append(f"G4 P{digits(time, 2)}")
-            return
-        arc = block.code in ("G2", "G3")
+        elif block.code:
+            self._move(block)
+
+    def _move(self, block: Block) -> None:
+        """Write a rapid, a line or an arc."""
+        across_mm_s, up_mm_s = min(self.machine.rapid_mm_s[:2]), self.machine.rapid_mm_s[2]
+        arc = block.code in ARCS
         axes = "XY" if arc else "XYZ"
         words = ""
         for axis, letter in enumerate(axes):
@@ -86,33 +101,17 @@ class _Text:
                 words += self._words(letter, block.place_mm[axis : axis + 1])
         if arc:
             words += self._words("IJ", block.centre_mm)
-        feed = "" if block.code == "G0" else self._feed(block.feed_mm_s)
+        if block.code == RAPID:
+            is_up = block.place_mm[2] != self.place_mm[2]
+            feed = self._rapid_feed(up_mm_s if is_up else across_mm_s)
+        else:
+            feed = self._feed(block.feed_mm_s)
         self.lines.append(block.code + words + feed)
         self.place_mm = list(block.place_mm)
 
-    def block_without_z(self, block: Block) -> None:
-        """Write a block for a machine whose tool is only up or down."""
-        if block.code == "G4":
-            self.block(block)
-            return
-        begins_mm, ends_mm = self.place_mm[2], block.place_mm[2]
-        across = tuple(self.place_mm[:2]) != block.place_mm[:2]
-        if not across:  # up again waits: the next peck may follow
-            self.place_mm = list(block.place_mm)
-            if ends_mm <= IN_WORK_BELOW_MM:
-                self.tool(down=True)
-            return
-        in_work = min(begins_mm, ends_mm) <= IN_WORK_BELOW_MM
-        self.tool(down=in_work)
-        self.place_mm[2] = ends_mm
-        code = block.code if in_work else "G0"
-        self.block(block._replace(code="G1" if in_work and code == "G0" else code))
-
-    def tool(self, *, down: bool) -> None:
-        """Put the tool down or up, where it is not there yet."""
-        if down != self.is_down and not self.machine.z:
-            self.lines += self.machine.tool_down if down else self.machine.tool_up
-            self.is_down = down
+    def _rapid_feed(self, feed_mm_s: float) -> str:
+        """The word of a rapid's feed, where the control wants one."""
+        return self._feed(feed_mm_s) if self.machine.rapids_have_feed else ""
 
     def _feed(self, feed_mm_s: float) -> str:
         """The word of a feed, where it changes."""

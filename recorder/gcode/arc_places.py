@@ -1,0 +1,78 @@
+"""Places along the blocks of a program: lines, and arcs by their centres.
+
+Signals in: blocks with their places in mm. Signals out: angles turned in rad, lengths in mm, places along.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from morfax.motion.arrays import Array
+from morfax.recorder.gcode.program_text import ARCS, WORDS, Block
+
+CHORD_MM = 0.2  # between the places on an arc: finer than any line drawn with a pen is wide
+
+Place = tuple[float, float, float]
+
+
+def turned_rad(begin_mm: Place, block: Block) -> float:
+    """The angle that an arc turns from a place, + left; 0 for a line."""
+    if block.code not in ARCS:
+        return 0.0
+    i, j = block.centre_mm
+    centre = begin_mm[0] + i, begin_mm[1] + j
+    first = math.atan2(-j, -i)
+    last = math.atan2(block.place_mm[1] - centre[1], block.place_mm[0] - centre[0])
+    sense = 1 if block.code == "G3" else -1
+    turned = sense * (last - first) % math.tau
+    return sense * (turned or math.tau)
+
+
+def length_mm(begin_mm: Place, block: Block) -> float:
+    """The length of a block from a place, mm."""
+    turned = turned_rad(begin_mm, block)
+    if turned:
+        return abs(turned) * math.hypot(*block.centre_mm)
+    return math.dist(begin_mm, block.place_mm)
+
+
+def place_at(begin_mm: Place, block: Block, share: float) -> tuple[float, float]:
+    """The place at a share of a block's way."""
+    turned = turned_rad(begin_mm, block) * share
+    if not turned:
+        dx, dy = block.place_mm[0] - begin_mm[0], block.place_mm[1] - begin_mm[1]
+        return begin_mm[0] + share * dx, begin_mm[1] + share * dy
+    i, j = block.centre_mm
+    cos, sin = math.cos(turned), math.sin(turned)
+    return begin_mm[0] + i - cos * i + sin * j, begin_mm[1] + j - sin * i - cos * j
+
+
+def places_along(blocks: Sequence[Block]) -> Array:
+    """Places (n, 2) along some blocks, from that of the first on; arcs as chords."""
+    places = [blocks[0].place_mm[:2]]
+    begin = blocks[0].place_mm
+    for block in blocks[1:]:
+        if block.code == WORDS:
+            continue
+        parts = 1
+        if block.code in ARCS:
+            parts = max(8, math.ceil(length_mm(begin, block) / CHORD_MM))
+        places += [place_at(begin, block, k / parts) for k in range(1, parts)]
+        places.append(block.place_mm[:2])
+        begin = block.place_mm
+    return np.array(places)
+
+
+def part_of(
+    begin_mm: Place, block: Block, longest_mm: float, decimals: int
+) -> tuple[Block, float]:
+    """A block, or so much of it as a length allows, and its length, mm."""
+    whole_mm = length_mm(begin_mm, block)
+    if whole_mm <= longest_mm:
+        return block, whole_mm
+    x, y = place_at(begin_mm, block, longest_mm / whole_mm)
+    place = round(x, decimals), round(y, decimals), block.place_mm[2]
+    return block._replace(place_mm=place), longest_mm

@@ -1,0 +1,143 @@
+"""The head of a program: what a person at the machine wants to know before pressing start.
+
+Signals in: the plan, the blocks as the machine runs them, and what the program is made from. Signals out: the
+comments at its head, and the figures in them: size in mm, length in mm, time in s, the smallest inner radius.
+
+An inner bend is one that turns towards the inside of what stays: the tool's round shape must fit into it. Of
+a closed line that is the outside of a part, it turns the other way than the line as a whole; of a hole, the
+same way. Two blocks that meet at more than `SHARP_RAD` make a sharp inner corner, which no round tool cuts.
+
+Source: our own. Questions: the radii are those of the written path; with a cutter beside the line they are
+smaller by the cutter's radius than those of the part.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from morfax.motion.motion import IN_WORK_BELOW_MM
+from morfax.motion.nesting import nested
+from morfax.motion.polyline import area_mm2
+from morfax.recorder.gcode.arc_places import (
+    Place,
+    length_mm,
+    place_at,
+    places_along,
+    turned_rad,
+)
+from morfax.recorder.gcode.machine import Machine
+from morfax.recorder.gcode.plan import BlockPlan
+from morfax.recorder.gcode.program_text import CUTS, WORDS, Block
+
+CLOSED_MM = 0.05  # a closed trace ends within 0.01 mm of its start
+SHARP_RAD = math.radians(20)  # between two blocks of a bend it is less; chosen by trial
+STEP = 1e-3  # of a block's way, for its direction
+
+
+@dataclass(frozen=True, slots=True)
+class Made:
+    """What a program is made from: the drawing's or path's name, and the tool, as text; '' not known."""
+
+    source: str = ""
+    tool: str = ""
+
+
+def head(
+    planned: BlockPlan, blocks: Sequence[Block], seconds: float, machine: Machine, made: Made
+) -> list[str]:
+    """The comments at the head of a program."""
+    lines = cut_lines(planned, blocks, machine)
+    told = [f"for {machine.name}: {machine.what}"]
+    told += [f"from {made.source}"] if made.source else []
+    told += [f"tool: {made.tool}"] if made.tool else []
+    if not lines:
+        return [*told, f"about {seconds:.0f} s, nothing is cut"]
+    places = np.vstack([places_along(line) for line in lines])
+    x_mm, y_mm = np.ptp(places, axis=0)
+    deepest_mm = min(block.place_mm[2] for line in lines for block in line)
+    down = f", Z down to {deepest_mm:.2f} mm" if machine.z else ""
+    way_mm = sum(
+        length_mm(before.place_mm, block) for line in lines for before, block in pairwise(line)
+    )
+    many = "1 line" if len(lines) == 1 else f"{len(lines)} lines"
+    told.append(f"cut {x_mm:.2f} x {y_mm:.2f} mm, {many}{down}")
+    panel = f" at {machine.panel_feed_mm_s * 60:.0f} mm/min from the panel, without piercing"
+    told.append(
+        f"length {way_mm:.1f} mm, about {_time(seconds)}{'' if machine.feeds else panel}"
+    )
+    inner_mm = smallest_inner_radius_mm(lines)
+    if inner_mm is not None:
+        told.append(
+            f"smallest inner radius {inner_mm:.2f} mm" if inner_mm else "sharp inner corners"
+        )
+    return [*told, f"within {planned.deviation_mm:.4f} mm of the traced path"]
+
+
+def _time(seconds: float) -> str:
+    """A time as one says it."""
+    if seconds < 90:
+        return f"{seconds:.0f} s"
+    return f"{int(seconds + 0.5) // 60} min {int(seconds + 0.5) % 60:02d} s"
+
+
+def cut_lines(
+    planned: BlockPlan, blocks: Sequence[Block], machine: Machine
+) -> list[list[Block]]:
+    """What is cut each time the tool is down: a place, and the blocks from there on."""
+    x, y, z = (float(mm) for mm in planned.start_mm)
+    before = Block("", (x, y, z if machine.z else 0.0))
+    lines, is_open = list[list[Block]](), False
+    for block in blocks:
+        lowest_mm = min(before.place_mm[2], block.place_mm[2])
+        cuts = block.code in CUTS and lowest_mm <= IN_WORK_BELOW_MM
+        across = before.place_mm[:2] != block.place_mm[:2]
+        if cuts and across:
+            if not is_open:
+                lines.append([before])
+            lines[-1].append(block)
+        is_open = (is_open or (cuts and across)) and (block.code in (*CUTS, WORDS, "G4", ""))
+        if block.code:
+            before = block
+    return lines
+
+
+def smallest_inner_radius_mm(lines: Sequence[list[Block]]) -> float | None:
+    """The smallest radius of the inner bends of closed lines, 0 for a sharp corner; None without any."""
+    places = [places_along(line) for line in lines]
+    closed = [
+        bool(math.dist(line[0], line[-1]) <= CLOSED_MM and len(line) > 3) for line in places
+    ]
+    depth = nested(places, closed).sum(axis=1)
+    found = list[float]()
+    for number, line in enumerate(lines):
+        if closed[number]:
+            sense = 1 if area_mm2(places[number]) > 0 else -1
+            inner = -sense if depth[number] % 2 == 0 else sense
+            found += _bends_mm(line, inner)
+    return min(found, default=None)
+
+
+def _bends_mm(line: list[Block], sense: int) -> list[float]:
+    """Radii of the arcs of a closed line that turn to one side, and 0 for each corner to that side."""
+    blocks = list(pairwise(line))
+    found = list[float]()
+    for (before, block), (_, after) in zip(blocks, [*blocks[1:], blocks[0]], strict=True):
+        if sense * turned_rad(before.place_mm, block) > 0:
+            found.append(math.hypot(*block.centre_mm))
+        arrives = _heading_rad(before.place_mm, block, 1 - STEP, 1.0)
+        leaves = _heading_rad(block.place_mm, after, 0.0, STEP)
+        turn = math.remainder(leaves - arrives, math.tau)
+        if sense * turn > SHARP_RAD:
+            found.append(0.0)
+    return found
+
+
+def _heading_rad(begin: Place, block: Block, from_: float, to: float) -> float:
+    """The heading of a block between two shares of its way."""
+    (x0, y0), (x1, y1) = place_at(begin, block, from_), place_at(begin, block, to)
+    return math.atan2(y1 - y0, x1 - x0)
