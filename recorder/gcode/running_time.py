@@ -3,18 +3,18 @@
 Signals in: blocks (places in mm, feeds in mm/s) as the machine runs them, and the Machine with the speed and
 acceleration of its axes. Signals out: the time in s.
 
-    speed      ____________                 1. each block at its feed, or as fast as the axes allow
-              /            \\      ____       2. corners at the speed at which they are rounded off by corner_mm
-             /              \\____/    \\      3. from the last block back, and then on from the first: no block
-            /                          \\        begins faster than it can brake, nor ends faster than it gets
+    speed      ____________               1. each block at its feed, or as fast as the axes allow
+              /            \\      ____     2. corners at the speed at which corner_mm rounds them off
+             /              \\____/    \\    3. from the last block back, and then on from the first: no
+            /                          \\      block begins faster than it can brake
 
 At a corner that turns by t a circle that stays `corner_mm` from it has the radius r, and the speed v there is
 
     r = corner sin(b) / (1 - sin(b)),  b = (pi - t) / 2,        v^2 = a r
 
-Source: LinuxCNC's trajectory planner (blend arcs within the P of G64), and Grbl's junction deviation, which is
-the same formula. Held against LinuxCNC 2.9's simulation, see CHANGELOG. Questions: controls look some blocks
-ahead, and here all are known.
+Source: LinuxCNC's trajectory planner (blend arcs within the P of G64), and Grbl's junction deviation, which
+is the same formula. Held against LinuxCNC 2.9's simulation, see CHANGELOG. Questions: controls look some
+blocks ahead, and here all are known.
 """
 
 from __future__ import annotations

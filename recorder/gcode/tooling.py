@@ -12,8 +12,9 @@ slower, and runs on along the line for `overcut_mm` after it is off, which leave
 closes.
 
 Source: QtPlasmaC's user manual (velocity reduction M67 E3, torch off M62 P3, arcs up to 32 mm, 4 mm of
-overcut at 60 %). Questions: QtPlasmaC's own filter (`#<holes>=4`) finds a hole only where it is one whole arc,
-and a drawn one is several; so the words stand in the program. Only a hole that ends on its own line is overcut.
+overcut at 60 %). Questions: QtPlasmaC's own filter (`#<holes>=4`) finds a hole only where it is one whole
+arc, and a drawn one is several; so the words stand in the program. Only a hole that ends on its own line is
+overcut.
 """
 
 from __future__ import annotations
@@ -98,7 +99,7 @@ def _worked(part: list[Block], machine: Machine, *, is_hole: bool) -> list[Block
 
 
 def _holes(parts: list[list[Block]], machine: Machine) -> set[int]:
-    """Numbers of the parts that are holes: closed, inside another closed one, no wider than the machine says."""
+    """Numbers of the parts that are holes: closed, inside a closed one, no wider than `hole_mm`."""
     widest_mm = machine.values.get("hole_mm", 0.0)
     if not machine.hole_begin or widest_mm <= 0:
         return set()
@@ -113,7 +114,7 @@ def _holes(parts: list[list[Block]], machine: Machine) -> set[int]:
 
 
 def _is_closed(line_mm: Array) -> bool:
-    """Whether a line comes back onto its first fifth in its last one: a lead-in and a lead-out lie beside it."""
+    """Whether the last fifth of a line meets the first; a lead-in and a lead-out lie beside it."""
     along = np.r_[0.0, np.cumsum(np.hypot(*np.diff(line_mm, axis=0).T))]
     first, last = line_mm[along <= along[-1] / 5], line_mm[along >= along[-1] * 4 / 5]
     if along[-1] <= 10 * CLOSED_MM:
