@@ -4,7 +4,7 @@ A file's kind is read off its first bytes, and off its name where the bytes say 
 
     tape      RIFF, RF64, fLaC, FORM, riff  or  .wav .rf64 .flac .aiff .w64
     program   any other text              and .steps .cubic .ngc .nc .gcode .tap .cnc
-    drawing   PNG, JPEG, TIFF, BMP, …     or  .png .jpg .tif …
+    drawing   PNG, JPEG, TIFF, PDF, …     or  .png .jpg .tif .pdf .heic …
     path      any other text              or  .csv
 
 A result is written over a file of a name that somebody gave; over a file of a name that morfax made up only
@@ -43,12 +43,17 @@ _FIRST_BYTES: dict[bytes, Kind] = {
     b"MM\0*": "drawing",
     b"BM": "drawing",
     b"GIF8": "drawing",
+    b"%PDF": "drawing",
 }
 _SUFFIXES: dict[str, Kind] = {
     **dict.fromkeys((".wav", ".rf64", ".flac", ".w64", ".aiff", ".aif"), "tape"),
     **dict.fromkeys((".steps", ".cubic", *BLOCKS), "program"),
     **dict.fromkeys(
-        (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".gif", ".webp", ".pgm"), "drawing"
+        (
+            *(".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".gif", ".webp", ".pgm"),
+            *(".pdf", ".heic", ".heif", ".avif"),
+        ),
+        "drawing",
     ),
     **dict.fromkeys((".csv", ".txt", ".tsv"), "path"),
 }
@@ -61,7 +66,7 @@ def kind_of(file: FilePath) -> Kind:
             first = opened.read(_HEAD_BYTES)
     except OSError as error:
         raise FileFault(f"cannot read {file}: {error.strerror}; check the name") from error
-    if first[:4] == b"RIFF" and first[8:12] == b"WEBP":
+    if (first[:4], first[8:12]) == (b"RIFF", b"WEBP") or first[4:8] == b"ftyp":  # HEIC, AVIF
         return "drawing"
     of_bytes = (kind for magic, kind in _FIRST_BYTES.items() if first.startswith(magic))
     kind = next(of_bytes, None) or _SUFFIXES.get(file.suffix.lower())

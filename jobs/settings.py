@@ -45,7 +45,7 @@ class DrawingFile:
         if self.dpi is not None and self.width_mm is not None:
             raise WrongUse("--dpi and --width were both given; give one of them")
         ink = None if self.ink is None else inks.parsed(self.ink)
-        scan = raster.read(self.file, coloured=ink is not None, page=self.page)
+        scan = raster.read(self.file, coloured=ink is not None, page=self.page, dpi=self.dpi)
         drawing = Drawing.of(scan, Scale(self.dpi, self.width_mm), ink, self.edge)
         for note in drawing.notes:
             listener.note(note)

@@ -21,7 +21,8 @@ def drawing_options(argument: str) -> Decorator:
             "Drawing",
             "--dpi",
             type=click.FloatRange(min=0, min_open=True),
-            help="Resolution of the drawing, dots per inch.  [default: what the file states]",
+            help="Resolution of the drawing, dots per inch; of a PDF's drawn lines: how finely they are "
+            "rendered.  [default: what the file states; 600]",
         )
         @option(
             "Drawing",
@@ -34,7 +35,7 @@ def drawing_options(argument: str) -> Decorator:
             "Drawing",
             "--page",
             type=click.IntRange(min=1),
-            help="Page of a file of several.  [default: the first]",
+            help="Page of a PDF, of a TIFF of several, or of moving pictures.  [default: the first]",
         )
         @option(
             "Drawing",

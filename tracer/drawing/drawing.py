@@ -101,7 +101,7 @@ class Drawing:
         cannot be read.
         """
         wanted = None if ink is None else inks.parsed(ink)
-        scan = raster.read(Path(file), coloured=wanted is not None)
+        scan = raster.read(Path(file), coloured=wanted is not None, dpi=dpi)
         return cls.of(scan, Scale(dpi, width_mm), wanted, edge)
 
     @classmethod

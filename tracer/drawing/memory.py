@@ -22,8 +22,13 @@ FIXED_BYTES = 0.3 * GB  # strips in work, libraries
 SMALL_PX = 16e6  # a sheet below this is tried in any case
 
 
-def make_sure(file: Path, columns: int, rows: int) -> None:
-    """Raise DrawingFault if a sheet of so many pixels does not fit into the memory that is free."""
+def make_sure(
+    file: Path, columns: int, rows: int, coarser: str = "scan it at a lower resolution"
+) -> None:
+    """Raise DrawingFault if a sheet of so many pixels does not fit into the memory that is free.
+
+    `coarser` says how to have fewer pixels.
+    """
     pixels, free = columns * rows, free_bytes()
     needed = PER_PIXEL * pixels + FIXED_BYTES
     if free is None or pixels < SMALL_PX or needed <= free:
@@ -31,7 +36,7 @@ def make_sure(file: Path, columns: int, rows: int) -> None:
     raise DrawingFault(
         f"{file} has {columns} x {rows} pixels ({pixels / 1e6:.0f} million) and needs"
         f" {needed / GB:.1f} GB of memory, {free / GB:.1f} GB are free;"
-        " scan it at a lower resolution, cut out the part to be traced, or close other programs"
+        f" {coarser}, cut out the part to be traced, or close other programs"
     )
 
 
