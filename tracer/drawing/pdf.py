@@ -3,8 +3,8 @@
 Signals in: a PDF. Signals out: a Scan of one page, on white paper, upright; its resolution is that of the
 page, so that no scale need be given.
 
-A page that shows pictures, maybe words, and no drawn lines is a scan: it is rendered on the pixels of its finest picture, so
-that every pixel stays as it was scanned. Drawn lines are rendered at 600 dpi, or as asked for:
+A page that shows pictures, maybe words, and no drawn lines is a scan: it is rendered on the pixels of its
+finest picture, so that every pixel stays as it was scanned. Drawn lines are rendered at 600 dpi, or as asked:
 
     X, Y of the page, 1/72 inch  ->  columns, rows:  (X, Y) · dpi / 72, moved so that the picture's corner is
                                                      a pixel's corner

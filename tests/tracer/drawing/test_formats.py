@@ -49,7 +49,9 @@ def saved(image: Image.Image, file: Path, **how: Any) -> Path:
     from pillow_heif import register_heif_opener
 
     register_heif_opener()
-    if "exif" in how:  # as bytes: pillow-heif then writes the turn that a HEIC is shown by, as phones do
+    if (
+        "exif" in how
+    ):  # as bytes: pillow-heif then writes the turn that a HEIC is shown by, as phones do
         how["exif"] = how["exif"].tobytes()
     image.convert("RGB").save(file, quality=95, **how)
     return file

@@ -1,4 +1,4 @@
-"""PDF: the size is the page's; a scanned page keeps its pixels, drawn lines are rendered as finely as asked."""
+"""PDF: the size is the page's; a scanned page keeps its pixels, lines are rendered as finely as asked."""
 
 from __future__ import annotations
 
