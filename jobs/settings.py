@@ -16,6 +16,7 @@ from morfax.jobs.wrong_use import WrongUse, settings_checked
 if TYPE_CHECKING:
     from morfax.tracer.cutter.cutter import Cutter, CutterSide
     from morfax.tracer.drawing.drawing import Drawing
+    from morfax.tracer.drawing.scale import Known
     from morfax.tracer.following.direction import Direction
     from morfax.tracer.head.settings import Settings
     from morfax.tracer.operator.card import Card, Override
@@ -35,6 +36,9 @@ class DrawingFile:
     ink: str | None = None
     edge: bool = False
     page: int | None = None  # of a file of several; None: the first, and it is said
+    known: Known | None = (
+        None  # two places and the length between them, instead of dpi or width
+    )
 
     def open(self, listener: Listener = SILENT) -> Drawing:
         """Open the drawing; raises WrongUse for two scales, DrawingFault and FileFault for a bad file."""
@@ -42,11 +46,12 @@ class DrawingFile:
         from morfax.tracer.drawing.drawing import Drawing
         from morfax.tracer.drawing.scale import Scale
 
-        if self.dpi is not None and self.width_mm is not None:
-            raise WrongUse("--dpi and --width were both given; give one of them")
+        scale = Scale(self.dpi, self.width_mm, self.known)
+        if len(scale.given()) > 1:
+            raise WrongUse(f"{' and '.join(scale.given())} were both given; give one of them")
         ink = None if self.ink is None else inks.parsed(self.ink)
         scan = raster.read(self.file, coloured=ink is not None, page=self.page, dpi=self.dpi)
-        drawing = Drawing.of(scan, Scale(self.dpi, self.width_mm), ink, self.edge)
+        drawing = Drawing.of(scan, scale, ink, self.edge)
         for note in drawing.notes:
             listener.note(note)
         return drawing

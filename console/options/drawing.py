@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from morfax.console.options.groups import Decorator, option
-from morfax.console.options.types import LENGTH
+from morfax.console.options.types import LENGTH, PIXELS
 from morfax.jobs.settings import DrawingFile
+
+if TYPE_CHECKING:
+    from morfax.tracer.drawing.scale import Known
 
 
 def drawing_options(argument: str) -> Decorator:
@@ -30,6 +33,16 @@ def drawing_options(argument: str) -> Decorator:
             "width_mm",
             type=LENGTH,
             help="Width of the whole sheet, such as 120mm; instead of --dpi.",
+        )
+        @option(
+            "Drawing",
+            "--known",
+            nargs=3,
+            type=(PIXELS, PIXELS, LENGTH),
+            callback=_known,
+            metavar="X,Y X,Y LENGTH",
+            help="Two places in pixels (columns from the left, rows from the top, as picture viewers show) "
+            "and the length between them, such as 210,305 2572,310 200mm; instead of --dpi.",
         )
         @option(
             "Drawing",
@@ -54,7 +67,7 @@ def drawing_options(argument: str) -> Decorator:
         )
         @functools.wraps(verb)
         def with_drawing(*args: Any, **options: Any) -> Any:
-            names = ("dpi", "width_mm", "ink", "edge", "page")
+            names = ("dpi", "width_mm", "ink", "edge", "page", "known")
             how = {name: options.pop(name) for name in names}
             options[argument] = DrawingFile(options[argument], **how)
             return verb(*args, **options)
@@ -62,6 +75,17 @@ def drawing_options(argument: str) -> Decorator:
         return with_drawing
 
     return with_options
+
+
+def _known(
+    ctx: click.Context, param: click.Parameter, value: tuple[Any, Any, Any] | None
+) -> Known | None:
+    """Two places and the length between them."""
+    if value is None:
+        return None
+    from morfax.tracer.drawing.scale import Known
+
+    return Known(*value)
 
 
 def _colour(ctx: click.Context, param: click.Parameter, value: str | None) -> str | None:

@@ -72,6 +72,21 @@ def _parse_places_mm(text: str) -> tuple[float, ...]:
     )
 
 
+def _parse_pixels(text: str) -> tuple[float, float]:
+    """Place in pixels of "X,Y", two bare numbers."""
+    parts = text.split(",")
+    try:
+        x, y = (float(part) for part in parts)
+    except ValueError:
+        x = y = math.nan
+    if not (math.isfinite(x) and math.isfinite(y)):
+        raise ValueError(
+            f"{text!r} is no place in pixels; give column and row, two numbers without a unit, "
+            "such as 210,305"
+        )
+    return x, y
+
+
 def _parse_lines(text: str) -> str | tuple[int, ...]:
     """Which lines of a drawing: "all", "outer", or their numbers."""
     word = text.strip().lower()
@@ -166,6 +181,7 @@ ANGLE = Quantity("angle", parse_angle_rad)
 SHARE = Quantity("share", parse_share)
 NUMBER = Quantity("number", _number, above_zero=True)
 PLACE = Quantity("x,y", parse_place_mm)
+PIXELS = Quantity("x,y", _parse_pixels)
 PLACES = Quantity("x,y,z", _parse_places_mm)
 TIME = Quantity("time", parse_time_s)
 LINES = Quantity("lines", _parse_lines)
