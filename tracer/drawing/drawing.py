@@ -123,6 +123,7 @@ class Drawing:
             square = cv2.resize(grey.astype(np.float32), size, interpolation=cv2.INTER_LINEAR)
             grey = np.asarray(square, np.float32)
         # 2. darkness
+        notes = (*scan.notes, *scale.notes(scan))
         if edge:
             line = outlined(grey, pitch[0])
             finer = line.finer
@@ -132,10 +133,10 @@ class Drawing:
                 scan.file,
                 finer,
                 line.edges_mm,
-                notes=scan.notes,
+                notes=notes,
             )
         darkness, shapes = levelled(grey, pitch[0])
-        return cls(darkness, pitch[0], scan.file, shapes=shapes, notes=scan.notes)
+        return cls(darkness, pitch[0], scan.file, shapes=shapes, notes=notes)
 
 
 def levelled(grey: Grey, pitch_mm: float) -> tuple[Darkness, Shapes]:
