@@ -56,7 +56,10 @@ class CompareJob:
         if drawing_file is None:
             self._refuse_drawing_options()
         drawing = None if drawing_file is None else drawing_file.open(listener)
-        paths = [read_or_play(file, self.by_hand, listener) for file in files]
+        paths = [
+            read_or_play(file, by_hand, listener)
+            for file, by_hand in zip(files, self.by_hand.beside(files), strict=True)
+        ]
         if drawing is None:
             found = comparison.from_path(paths[0], paths[1])
         else:

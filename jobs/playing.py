@@ -9,13 +9,14 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any, TextIO
 
 from morfax.jobs import files as medium
 from morfax.jobs.listener import Listener, watched
 from morfax.jobs.passage import Passage
+from morfax.jobs.recording import machine_checked
 from morfax.jobs.wrong_use import WrongUse
 from morfax.motion.faults import Fault
 from morfax.motion.files import written_beside
@@ -40,7 +41,7 @@ class Played:
 
 @dataclass(frozen=True, slots=True)
 class ByHand:
-    """What somebody sets by hand for a tape whose text chunk does not say it."""
+    """What somebody sets by hand for a tape whose text chunk does not say it, or for a G-code program."""
 
     reference_hz: float | None = None
     cycles_per_mm: float | None = None
@@ -49,10 +50,23 @@ class ByHand:
     still: tuple[str, ...] | None = None
     alike: tuple[str, ...] | None = None
     closed: bool | None = None
+    machine: str | None = (
+        None  # that a G-code program is for: a built-in one's name, or a .toml file
+    )
 
     def given(self) -> dict[str, Any]:
         """What was set."""
         return {name: value for name, value in asdict(self).items() if value is not None}
+
+    def beside(self, files: Sequence[FilePath]) -> list[ByHand]:
+        """What is set for each of some files: the machine for G-code alone; WrongUse if there is none."""
+        if self.machine is not None and not any(map(medium.is_gcode, files)):
+            raise WrongUse(
+                f"--machine is for G-code, {', '.join(medium.BLOCKS)}; there is none here: leave it out"
+            )
+        return [
+            self if medium.is_gcode(file) else replace(self, machine=None) for file in files
+        ]
 
     def open_tape(self, file: FilePath) -> Tape:
         """Open a tape for reading; a context manager."""
@@ -60,13 +74,21 @@ class ByHand:
 
         given = self.given()
         given.pop("closed", None)
+        given.pop("machine", None)
         return Tape.open(file, **given)
 
     def for_file(self, file: FilePath) -> dict[str, Any]:
-        """What was set; raises WrongUse for a file that is no tape."""
+        """What was set; raises WrongUse where the file is no tape, or no G-code for a machine."""
         from morfax.player.controls import TAPE, control_of
 
         given = self.given()
+        if self.machine is not None:
+            if not medium.is_gcode(file):
+                raise WrongUse(
+                    f"--machine is for G-code, {', '.join(medium.BLOCKS)}; {file} is none: leave it out"
+                )
+            machine_checked(self.machine)
+            given.pop("machine")
         if given and control_of(file) != TAPE:
             raise WrongUse(
                 "--reference-frequency, --cycles-per-mm, --from, --tracks, --still, --alike and --closed are "
@@ -143,6 +165,8 @@ class Playing:
 
         if str(self.file) != PIPE:
             return play(self.file, **self.by_hand.for_file(self.file), **self.settings)
+        if self.by_hand.machine is not None:
+            raise WrongUse("--machine is for files of G-code, not for a pipe; leave it out")
         from morfax.player.tape.playback import play_pipe
 
         return play_pipe(sys.stdin.buffer, **self.by_hand.given())

@@ -62,7 +62,7 @@ class RecordingUnit:
             )
         self._check_fit(program)
         if program is not None and medium.is_gcode(program):
-            self._check_machine()
+            machine_checked(self.machine)
             return
         for name, value in (
             ("--machine", self.machine),
@@ -89,17 +89,6 @@ class RecordingUnit:
                 f"--lines-only is for what has arcs, {', '.join(medium.WITH_ARCS)}; give -o such a name, "
                 "or leave it out"
             )
-
-    def _check_machine(self) -> None:
-        """Raise WrongUse for a machine that is not there, CardFault for a mistake in its file."""
-        from morfax.recorder.gcode.machine import DEFAULT, machine
-
-        try:
-            machine(self.machine or DEFAULT)
-        except CardFault:
-            raise
-        except ValueError as refused:
-            raise WrongUse(f"--machine: {refused}") from None
 
     def program_settings(self, program: FilePath) -> dict[str, Any]:
         """What the recorder of this medium is told; tapes apart."""
@@ -154,6 +143,18 @@ class RecordingUnit:
             "scale": None if self.scale == 1 else self.scale,
             "turned_deg": round(math.degrees(self.turn_rad), 9) or None,
         }
+
+
+def machine_checked(name: str | None) -> None:
+    """Raise WrongUse for a machine that is not there, CardFault for a mistake in its file."""
+    from morfax.recorder.gcode.machine import DEFAULT, machine
+
+    try:
+        machine(name or DEFAULT)
+    except CardFault:
+        raise
+    except ValueError as refused:
+        raise WrongUse(f"--machine: {refused}") from None
 
 
 def rehearsed(

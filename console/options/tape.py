@@ -14,6 +14,14 @@ from morfax.jobs.playing import ByHand
 CYCLES_PER_MM = NUMBER
 
 
+FOR_MACHINE = option(
+    "Machine",
+    "--machine",
+    help="The machine that a G-code program is for, as `morfax machines` lists them, or its .toml file: "
+    "its words tell when the tool is in the work.  [default: what the program says]",
+)
+
+
 def tape_options(verb: Callable[..., Any]) -> Callable[..., Any]:
     """Give a verb the options of a tape that does not say everything itself, and hand it the `by_hand`."""
 
@@ -67,7 +75,11 @@ def tape_options(verb: Callable[..., Any]) -> Callable[..., Any]:
     )
     @functools.wraps(verb)
     def with_tape(*args: Any, **options: Any) -> Any:
-        set_ = {field.name: options.pop(field.name) for field in fields(ByHand)}
+        set_ = {
+            field.name: options.pop(field.name)
+            for field in fields(ByHand)
+            if field.name in options
+        }
         return verb(*args, by_hand=ByHand(**set_), **options)
 
     return with_tape

@@ -12,7 +12,7 @@ from morfax.console.options.drawing import drawing_options
 from morfax.console.options.files import FILE, PICTURES, Result
 from morfax.console.options.groups import Verb, given, option
 from morfax.console.options.systems import Systems
-from morfax.console.options.tape import tape_options
+from morfax.console.options.tape import FOR_MACHINE, tape_options
 from morfax.console.options.types import CUTTER, LENGTH, LINES, ORIGIN, PLACE, SPEED
 from morfax.jobs.compare import CompareJob
 from morfax.jobs.results import NAMES
@@ -99,6 +99,7 @@ Examples:
     "reference point), or X,Y in mm.  [default: sheet]",
 )
 @drawing_options("a")
+@FOR_MACHINE
 @tape_options
 @desk_options
 @click.pass_context

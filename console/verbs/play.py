@@ -11,7 +11,7 @@ import click
 from morfax.console.options.desk import desk_options
 from morfax.console.options.files import FILE, PATHS, PICTURES, Result
 from morfax.console.options.groups import Verb, option, renamed
-from morfax.console.options.tape import tape_options
+from morfax.console.options.tape import FOR_MACHINE, tape_options
 from morfax.console.options.types import NUMBER, PLACES, SHARE, TIME
 from morfax.jobs.play import MOTORS, ControlSettings, PlayJob
 
@@ -107,6 +107,7 @@ Examples:
     "the tape "
     "has it.",
 )
+@FOR_MACHINE
 @tape_options
 @desk_options
 def command(

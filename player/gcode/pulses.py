@@ -38,9 +38,10 @@ from morfax.motion.drive import SOUND
 from morfax.motion.faults import FollowingFault, ProgramFault
 from morfax.motion.motion import AXES, MOTION_RATE_HZ, Motion
 from morfax.player.gcode.feed_control import feed_number, override_number
+from morfax.player.gcode.machine_reader import read_program
 from morfax.player.gcode.pulse_servo import PulseServo, PulseServos
 from morfax.player.gcode.residues import LINE, Feed, Interpolator
-from morfax.player.gcode.rs274 import DWELL, RAPID, Move, Program, read_rs274
+from morfax.player.gcode.rs274 import DWELL, RAPID, Move, Program
 from morfax.player.monitor.monitor import FollowingLimit, Supervised
 
 LARGEST_ARC = math.radians(170)  # below the half turn that the residue loops take
@@ -84,8 +85,11 @@ def play_pulses(
     start_mm: Sequence[float] | None = None,
     true_norm: bool | None = None,
     override: float | None = None,
+    machine: str | None = None,
 ) -> PulsePlayback:
     """Put an RS-274 program in the control; `true_norm` and `override` replace those of the settings.
+
+    Without the name of the `machine` that it is for, the program says so itself.
 
     Raises ProgramFault with the line, FileFault, or ValueError for an override that is none, before anything
     moves.
@@ -95,7 +99,25 @@ def play_pulses(
         settings or PulseControl(),
         **{name: value for name, value in asked.items() if value is not None},
     )
-    return PulsePlayback(read_rs274(file, start_mm), control, str(file))
+    program = read_program(file, start_mm, machine)
+    if not program.machine:
+        return PulsePlayback(program, control, str(file))
+    # a program for a faster machine is run as fast as this one's rapids, which keeps it within 10 um
+    most_mm_s, held_mm_s = (
+        control.recirculations_hz * control.servo.pulse_mm,
+        control.rapid_mm_s,
+    )
+    moves = [
+        move._replace(feed_mm_s=held_mm_s) if move.feed_mm_s > most_mm_s else move
+        for move in program.moves
+    ]
+    playback = PulsePlayback(replace(program, moves=moves), control, str(file))
+    if moves != program.moves:
+        playback.notes = (
+            f"{file} asks for feeds above {most_mm_s:g} mm/s, the fastest of this control; they are played "
+            f"at {held_mm_s:g} mm/s, along the same path",
+        )
+    return playback
 
 
 class PulsePlayback(Supervised):

@@ -60,18 +60,24 @@ class Move(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Program:
-    """A program as read: start of the machine, and moves."""
+    """A program as read: start of the machine, moves, and the machine that it is for, '' if not known."""
 
     start_mm: Place
     moves: list[Move]
+    machine: str = ""
 
 
 def read_rs274(
     file: str | os.PathLike[str], start_mm: Sequence[float] | None = None
 ) -> Program:
     """Read a program; raises ProgramFault with line and word, FileFault for an unreadable file."""
+    return parse_rs274(text_of(file).split("\n"), str(file), start_mm)
+
+
+def text_of(file: str | os.PathLike[str]) -> str:
+    """The text of a program; raises ProgramFault for what is none, FileFault for an unreadable file."""
     try:
-        text = FilePath(file).read_bytes().decode("ascii")
+        return FilePath(file).read_bytes().decode("ascii")
     except UnicodeDecodeError as error:
         line = FilePath(file).read_bytes()[: error.start].count(b"\n") + 1
         raise ProgramFault(
@@ -79,27 +85,29 @@ def read_rs274(
         ) from None
     except OSError as error:
         raise FileFault(f"cannot read {file}: {error.strerror}; check the name") from error
-    return parse_rs274(text.split("\n"), str(file), start_mm)
 
 
 def parse_rs274(
-    lines: Iterable[str], name: str = "program", start_mm: Sequence[float] | None = None
+    lines: Iterable[str],
+    name: str = "program",
+    start_mm: Sequence[float] | None = None,
+    reader: Reader | None = None,
 ) -> Program:
-    """The program of some lines of text; raises ProgramFault."""
-    reader = Reader(name, start_mm)
+    """The program of some lines of text, by a reader of one's own; raises ProgramFault."""
+    reader = reader or Reader(name, start_mm)
     for number, text in enumerate(lines, 1):
         reader.number = number
         reader.read(text)
         if reader.ended:
             break
-    if not reader.ended:
+    if not reader.ended and not (reader.begun and reader.is_whole):
         what = (
             "holds no line"
             if not reader.number or reader.number == 1
             else f"breaks off after line {reader.number}"
         )
         raise ProgramFault(
-            f"{name} {what}; a program ends with M2, M30 or %: get the whole of it",
+            f"{name} {what}; a program ends with {reader.ending}: get the whole of it",
             line=reader.number,
         )
     x_mm, y_mm, z_mm = (0.0 if place is None else place for place in reader.start)
@@ -108,6 +116,9 @@ def parse_rs274(
 
 class Reader:
     """The modal state of a program, and the moves so far."""
+
+    is_whole = False  # whether the end of the file may be the end of the program
+    ending = "M2, M30 or %"
 
     def __init__(self, name: str, start_mm: Sequence[float] | None) -> None:
         self.name, self.number, self.ended = name, 0, False

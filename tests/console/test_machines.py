@@ -84,3 +84,19 @@ def test_a_pen_needs_no_depth(morfax: Morfax, here: Path) -> None:
     )
     assert morfax(*words).exit_code == 0
     assert "M3 S90" in (here / "a.nc").read_text().split("\n")
+
+
+def test_a_program_is_read_back_as_its_machine_reads_it(morfax: Morfax, here: Path) -> None:
+    words = ("record", CAM, "-o", "a.ngc", "--machine", "qtplasmac")
+    assert morfax(*words).exit_code == 0
+    for machine in ((), ("--machine", "qtplasmac")):
+        figures = morfax("compare", "a.ngc", CAM, *machine, "--json").figures
+        assert figures["largest_mm"] <= 0.010  # um of what was written
+    assert morfax("play", "a.ngc", "--machine", "mach3").exit_code == 2
+
+
+def test_a_machine_is_for_g_code_alone(morfax: Morfax, here: Path) -> None:
+    answer = morfax("compare", CAM, CAM, "--machine", "marlin")
+    assert answer.exit_code == 2 and "--machine is for G-code, .ngc" in answer.fault
+    answer = morfax("play", SAMPLES / "cam.wav", "--machine", "marlin")
+    assert answer.exit_code == 2 and "--machine is for G-code, .ngc" in answer.fault
