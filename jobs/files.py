@@ -28,6 +28,8 @@ Kind = Literal["tape", "program", "drawing", "path"]
 TAPES = (".wav", ".rf64", ".flac")  # that can be recorded
 PATHS = (".csv",)
 BLOCKS = (".ngc", ".nc", ".gcode", ".tap", ".cnc")  # G-code, RS-274
+PLOTS = (".plt", ".hpgl")  # HP-GL
+DRAWN = (".dxf", ".svg", *PLOTS)  # what other programs and plotters read
 WITH_ARCS = (*BLOCKS, ".dxf", ".svg")
 
 _HEAD_BYTES = 1024  # of a file, in which a binary file has a zero
@@ -47,7 +49,7 @@ _FIRST_BYTES: dict[bytes, Kind] = {
 }
 _SUFFIXES: dict[str, Kind] = {
     **dict.fromkeys((".wav", ".rf64", ".flac", ".w64", ".aiff", ".aif"), "tape"),
-    **dict.fromkeys((".steps", ".cubic", *BLOCKS), "program"),
+    **dict.fromkeys((".steps", ".cubic", *BLOCKS, *PLOTS), "program"),
     **dict.fromkeys(
         (
             *(".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".gif", ".webp", ".pgm"),
@@ -117,10 +119,17 @@ def is_gcode(file: FilePath) -> bool:
     return file.suffix.lower() in BLOCKS
 
 
+def is_plot(file: FilePath) -> bool:
+    """Whether a file of this name is for a plotter."""
+    return file.suffix.lower() in PLOTS
+
+
 def called(file: FilePath) -> str:
     """What a result is called in the figures: a tape, a program in another medium, or a drawing."""
     if is_tape(file):
         return "tape"
+    if file.suffix.lower() in DRAWN:
+        return "drawn"
     return "program" if _SUFFIXES.get(file.suffix.lower()) == "program" else "drawn"
 
 

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any, TextIO
 
 from morfax.jobs import files as medium
 from morfax.jobs.listener import Listener, watched
+from morfax.jobs.machining import chosen
 from morfax.jobs.passage import Passage
-from morfax.jobs.recording import machine_checked
 from morfax.jobs.wrong_use import WrongUse
 from morfax.motion.faults import Fault
 from morfax.motion.files import written_beside
@@ -60,13 +60,11 @@ class ByHand:
 
     def beside(self, files: Sequence[FilePath]) -> list[ByHand]:
         """What is set for each of some files: the machine for G-code alone; WrongUse if there is none."""
-        if self.machine is not None and not any(map(medium.is_gcode, files)):
+        if self.machine is not None and not any(map(_has_machine, files)):
             raise WrongUse(
                 f"--machine is for G-code, {', '.join(medium.BLOCKS)}; there is none here: leave it out"
             )
-        return [
-            self if medium.is_gcode(file) else replace(self, machine=None) for file in files
-        ]
+        return [self if _has_machine(file) else replace(self, machine=None) for file in files]
 
     def open_tape(self, file: FilePath) -> Tape:
         """Open a tape for reading; a context manager."""
@@ -83,11 +81,11 @@ class ByHand:
 
         given = self.given()
         if self.machine is not None:
-            if not medium.is_gcode(file):
+            if not _has_machine(file):
                 raise WrongUse(
                     f"--machine is for G-code, {', '.join(medium.BLOCKS)}; {file} is none: leave it out"
                 )
-            machine_checked(self.machine)
+            chosen(self.machine, program=file)
             given.pop("machine")
         if given and control_of(file) != TAPE:
             raise WrongUse(
@@ -181,6 +179,11 @@ def read_or_play(
     from morfax.motion.pathfile import read_path
 
     return read_path(file) if feed_mm_s is None else read_path(file, feed_mm_s)
+
+
+def _has_machine(file: FilePath) -> bool:
+    """Whether a program is written in the words of a machine."""
+    return medium.is_gcode(file) or medium.is_plot(file)
 
 
 @contextmanager

@@ -46,8 +46,8 @@ class RecordJob:
         from morfax.motion.contour import length_mm
 
         program = self._program()
-        is_gcode = medium.is_gcode(program)
-        (self.unit if is_gcode else replace(self.unit, feed_mm_s=None)).check(program)
+        has_feed = medium.is_gcode(program) or medium.is_plot(program)
+        (self.unit if has_feed else replace(self.unit, feed_mm_s=None)).check(program)
         settings = self._recorder_settings(program)
         read = read_or_play(self.source, ByHand(), listener, self.unit.feed_mm_s or FEED_MM_S)
         placed = self.unit.placement.path(read)
@@ -76,7 +76,7 @@ class RecordJob:
     def _recorder_settings(self, program: FilePath) -> dict[str, Any]:
         """Settings as the recorder of this medium takes them."""
         if not medium.is_tape(program):
-            return self.unit.program_settings(program)
+            return self.unit.made_from(self.source.name).program_settings(program)
         try:
             fmt = self.unit.tape_format(
                 reference_hz=self.reference_hz, cycles_per_mm=self.cycles_per_mm

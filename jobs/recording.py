@@ -9,13 +9,14 @@ from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
 from morfax.jobs import files as medium
+from morfax.jobs import machining
 from morfax.jobs.wrong_use import WrongUse, settings_checked
-from morfax.motion.faults import CardFault
 
 if TYPE_CHECKING:
     from morfax.jobs.listener import Listener
     from morfax.motion.motion import Motion
     from morfax.motion.placement import Placement
+    from morfax.recorder.gcode.machine import Machine
     from morfax.recorder.media import Report
     from morfax.recorder.tape.tape import TapeFormat
 
@@ -34,6 +35,8 @@ class RecordingUnit:
     machine: str | None = None  # name of a built-in one, or a .toml file
     feed_mm_s: float | None = None  # of the cut
     plunge_mm_s: float | None = None  # of Z into the work
+    rapid_mm_s: float | None = None  # above the work; None: the machine's
+    machine_values: tuple[str, ...] = ()  # NAME=NUMBER, in the place of the machine's own
     # how far a program may be from the path; None: the medium's own
     fit_tolerance_mm: float | None = None
     lines_only: bool = False  # no arcs
@@ -42,6 +45,10 @@ class RecordingUnit:
     turn_rad: float = 0.0
     about_mm: tuple[float, float] | None = None  # None: the start of the motion
     origin_mm: tuple[float, float] = (0.0, 0.0)
+    source: str = (
+        ""  # the drawing's or path's name, and the tool as text: for the head of a program
+    )
+    tool: str = ""
 
     @property
     def placement(self) -> Placement:
@@ -61,18 +68,31 @@ class RecordingUnit:
                 f"--pickup is for tapes, {', '.join(medium.TAPES)}; give -o such a name, or leave it out"
             )
         self._check_fit(program)
-        if program is not None and medium.is_gcode(program):
-            machine_checked(self.machine)
+        if program is not None and _has_machine(program):
+            self.chosen(program)
             return
         for name, value in (
             ("--machine", self.machine),
+            ("--machine-value", self.machine_values or None),
             ("--feed", self.feed_mm_s),
             ("--plunge", self.plunge_mm_s),
+            ("--rapid", self.rapid_mm_s),
         ):
             if value is not None:
                 raise WrongUse(
                     f"{name} is for G-code, {', '.join(medium.BLOCKS)}; give -o such a name, or leave it out"
                 )
+
+    def chosen(self, program: FilePath) -> Machine:
+        """The machine for a program of G-code or a plotter's; raises WrongUse, CardFault."""
+        values = self.machine_values
+        if self.feed_mm_s is not None and medium.is_plot(program):
+            values = (f"speed={self.feed_mm_s / 10:.3g}", *values)  # HP-GL's VS, cm/s
+        return machining.chosen(self.machine, values, self.rapid_mm_s, program)
+
+    def made_from(self, source: str, tool: str = "") -> RecordingUnit:
+        """The same with what the head of a program says of its source and its tool."""
+        return replace(self, source=source, tool=tool)
 
     def _check_fit(self, program: FilePath | None) -> None:
         """Raise WrongUse for a tolerance or lines only where nothing is fitted."""
@@ -96,13 +116,13 @@ class RecordingUnit:
         fit: dict[str, Any] = {} if fit_mm is None else {"tolerance_mm": fit_mm}
         if self.lines_only:
             fit["arcs"] = False
-        if not medium.is_gcode(program):
+        if not _has_machine(program):
             return fit
-        from morfax.recorder.gcode.machine import DEFAULT
         from morfax.recorder.gcode.plan import Feeds
+        from morfax.recorder.gcode.program_head import Made
 
-        feeds = Feeds(self.feed_mm_s, self.plunge_mm_s)
-        return {**fit, "machine_name": self.machine or DEFAULT, "feeds": feeds}
+        feeds, made = Feeds(self.feed_mm_s, self.plunge_mm_s), Made(self.source, self.tool)
+        return {**fit, "machine_name": self.chosen(program), "feeds": feeds, "made": made}
 
     def warn(self, listener: Listener) -> None:
         """Say what a scale does to the cutter and the speed."""
@@ -145,16 +165,9 @@ class RecordingUnit:
         }
 
 
-def machine_checked(name: str | None) -> None:
-    """Raise WrongUse for a machine that is not there, CardFault for a mistake in its file."""
-    from morfax.recorder.gcode.machine import DEFAULT, machine
-
-    try:
-        machine(name or DEFAULT)
-    except CardFault:
-        raise
-    except ValueError as refused:
-        raise WrongUse(f"--machine: {refused}") from None
+def _has_machine(program: FilePath) -> bool:
+    """Whether a program is written in the words of a machine."""
+    return medium.is_gcode(program) or medium.is_plot(program)
 
 
 def rehearsed(

@@ -90,6 +90,13 @@ class ToolSettings:
     cutter_mm: float | None = None  # diameter; None: the tool runs on the line
     side: CutterSide = "outside"
 
+    @property
+    def described(self) -> str:
+        """The tool in the words of a program's head."""
+        if self.cutter_mm is None:
+            return "on the line"
+        return f"{self.cutter_mm:g} mm wide, {self.side}"
+
     def cutter(self) -> Cutter | None:
         """The cutter, if there is one."""
         if self.cutter_mm is None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from morfax.jobs import files as medium
 from morfax.jobs.listener import SILENT, Listener
+from morfax.jobs.machining import tell_what_is_lost
 from morfax.jobs.recording import RecordingUnit
 from morfax.jobs.settings import DrawingFile, TraceSettings
 from morfax.jobs.tracing import Tracing
@@ -77,8 +78,10 @@ class TraceJob:
         drawing = self.drawing.open(listener)
         size = f"{drawing.width_mm:.2f} x {drawing.height_mm:.2f} mm"
         listener.detail(f"{self.drawing.file}: sheet of {size}")
+        self._tell_what_is_lost(outputs.program, listener)
         traced = tracing.trace(drawing, listener)
-        unit = self.unit.at(traced.origin_mm)
+        tool = self.settings.tool
+        unit = self.unit.at(traced.origin_mm).made_from(self.drawing.file.name, tool.described)
         written: dict[str, Any] = {}
         if outputs.program is not None:
             program = traced.record(outputs.program, unit, listener)
@@ -93,3 +96,12 @@ class TraceJob:
         return TraceResult(
             {**figures, **unit.figures()}, drawing, traced, picture, traced.fault
         )
+
+    def _tell_what_is_lost(self, program: FilePath | None, listener: Listener) -> None:
+        """Warn of what the card or an option asks for and the program's medium cannot hold."""
+        if program is None:
+            return
+        has_machine = medium.is_gcode(program) or medium.is_plot(program)
+        machine = self.unit.chosen(program) if has_machine else None
+        card, tool = self.settings.card(), self.settings.tool
+        tell_what_is_lost(card, tool, program, machine, listener)

@@ -82,7 +82,7 @@ CONTROLS: dict[str, Control] = {
     ".cubic": Control(
         "difference interpolator and servo", "morfax.player.cubics.cubic", "play_cubic"
     ),
-    **dict.fromkeys((".ngc", ".nc", ".gcode", ".tap", ".cnc"), PULSES),
+    **dict.fromkeys((".ngc", ".nc", ".gcode", ".tap", ".cnc", ".plt", ".hpgl"), PULSES),
 }
 
 

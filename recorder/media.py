@@ -54,6 +54,7 @@ _TAPE = Medium("magnetic tape", "morfax.recorder.tape.tape", "record")
 
 _BLOCKS = Medium("lines and arcs in RS-274", "morfax.recorder.gcode.blocks", "record_blocks")
 _DRAWINGS = "morfax.recorder.drawings.drawings"
+_PLOTTER = Medium("plotter file in HP-GL", "morfax.recorder.drawings.hpgl", "record_hpgl")
 
 MEDIA: dict[str, Medium] = {
     ".wav": _TAPE,
@@ -70,8 +71,8 @@ MEDIA: dict[str, Medium] = {
 DRAWINGS: dict[str, Medium] = {
     ".dxf": Medium("drawing in DXF", _DRAWINGS, "record_dxf"),
     ".svg": Medium("drawing in SVG, true to size", _DRAWINGS, "record_svg"),
-    ".plt": Medium("plotter file in HP-GL", _DRAWINGS, "record_hpgl"),
-    ".hpgl": Medium("plotter file in HP-GL", _DRAWINGS, "record_hpgl"),
+    ".plt": _PLOTTER,
+    ".hpgl": _PLOTTER,
 }
 
 

@@ -14,7 +14,8 @@ from morfax.console.options.types import ANGLE, FEED, LENGTH, NUMBER, PLACE
 from morfax.jobs.recording import PICK_UPS, RecordingUnit
 
 GROUP = "Program"
-_NAMES = tuple(field.name for field in fields(RecordingUnit) if field.name != "origin_mm")
+_OF_THE_JOB = ("origin_mm", "source", "tool")  # no options
+_NAMES = tuple(field.name for field in fields(RecordingUnit) if field.name not in _OF_THE_JOB)
 
 
 def unit_options(verb: Callable[..., Any]) -> Callable[..., Any]:
@@ -31,8 +32,17 @@ def unit_options(verb: Callable[..., Any]) -> Callable[..., Any]:
     @option(
         GROUP,
         "--machine",
-        help="The machine that G-code is for: a name that `morfax machines` lists, or a .toml file of "
-        "your own.  [default: linuxcnc]",
+        help="The machine that G-code or a plotter file is for: a name that `morfax machines` lists, or a "
+        ".toml file of your own.  [default: linuxcnc; hpgl for .plt]",
+    )
+    @option(
+        GROUP,
+        "--machine-value",
+        "machine_values",
+        multiple=True,
+        metavar="NAME=NUMBER",
+        help="Change a value of the machine by name, such as speed=18000 or power=300; `morfax machines "
+        "NAME` shows them.",
     )
     @option(
         GROUP,
@@ -48,6 +58,14 @@ def unit_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         "plunge_mm_s",
         type=FEED,
         help="Feed of Z into the work in G-code.  [default: that of the motion]",
+    )
+    @option(
+        GROUP,
+        "--rapid",
+        "rapid_mm_s",
+        type=FEED,
+        help="Speed above the work, for controls that want one in the program (Marlin), and for the time "
+        "that is stated; LinuxCNC and Grbl have their own.  [default: the machine's]",
     )
     @option(
         GROUP,

@@ -23,9 +23,11 @@ import os
 import re
 from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path as FilePath
 
 from morfax.motion.faults import ProgramFault
 from morfax.player.gcode.arc_words import ArcLimits
+from morfax.player.gcode.hpgl_reader import ABOVE_MM, read_hpgl
 from morfax.player.gcode.rs274 import (
     COMMENT,
     RAPID,
@@ -35,12 +37,10 @@ from morfax.player.gcode.rs274 import (
     parse_rs274,
     text_of,
 )
-from morfax.recorder.gcode.machine import Machine, machine, names
+from morfax.recorder.gcode.machine import HPGL, Machine, machine, names
 from morfax.recorder.gcode.program_text import END
 
-ABOVE_MM = (
-    2.0  # where a tool without Z stands when it is up; as a program without a card has it
-)
+PLOTS = (".plt", ".hpgl")
 HEAD_LINES = 10  # among which a program of ours says what it is for
 
 _FOR = re.compile(r"^[(;]\s*for ([\w.-]+): ")
@@ -61,6 +61,8 @@ def read_program(
     Raises ProgramFault with line and word, FileFault for an unreadable file, ValueError and CardFault for a
     machine that is none.
     """
+    if FilePath(file).suffix.lower() in PLOTS:
+        return read_hpgl(file, machine(machine_name or HPGL))
     lines = text_of(file).split("\n")
     wanted = machine(machine_name) if machine_name else machine_of(lines, str(file))
     if wanted is None:

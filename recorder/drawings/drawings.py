@@ -1,15 +1,13 @@
-"""The drawing recorders: what a motion cuts, as a file of DXF, SVG or HPGL.
+"""The drawing recorders: what a motion cuts, as a file of DXF or SVG.
 
     .dxf            one LWPOLYLINE for each line (arcs as bulges), one POINT for each hole; units mm
     .svg            one path for each line (arcs as A), in true size: width and height in mm, one unit is 1 mm
-    .plt .hpgl      IN; SP1; PU and PD in steps of 0.025 mm, arcs as chords within half a step; SP0
 
 Signals: a stream of Motion or a Path in, the file and a report out. X and Y are those of the path; an SVG has
 Y down and begins at the upper left corner of what is cut.
 
-Source: Autodesk's DXF reference (LWPOLYLINE, bulge = tan of a quarter of the angle); SVG 1.1, paths;
-Hewlett-Packard, HP-GL reference (plotter units of 0.025 mm). Questions: a plotter takes whole steps, so that
-a place is off by up to 0.018 mm there; places left of or below zero are refused by many, and told here.
+Source: Autodesk's DXF reference (LWPOLYLINE, bulge = tan of a quarter of the angle); SVG 1.1, paths.
+Questions: an SVG says nothing of where its corner lies on the sheet; a margin keeps its lines whole.
 """
 
 from __future__ import annotations
@@ -21,17 +19,15 @@ from dataclasses import dataclass
 from pathlib import Path as FilePath
 from typing import Any
 
-from morfax.motion.faults import MotionFault
 from morfax.motion.files import written_beside
 from morfax.motion.segments import Source
+from morfax.recorder.drawings.chords import box
 from morfax.recorder.drawings.cut_lines import CutLine, cut_lines_of, radius_mm
 from morfax.recorder.gcode.plan import Writing
 from morfax.recorder.gcode.program_text import digits
 from morfax.recorder.report import Written
 
 TOLERANCE_MM = 0.01
-STEP_MM = 0.025  # HP-GL's plotter unit
-LARGEST_STEP = 32767  # HP-GL's plotter units are numbers of 16 bit
 MARGIN_MM = 1.0  # round an SVG, so that its lines are not cut off by half
 LINE_MM = 0.1  # width of an SVG's lines
 
@@ -71,13 +67,6 @@ def record_svg(
 ) -> DrawingReport:
     """Draw what a motion cuts as SVG, with or without arcs; raises MotionFault, FileFault."""
     return _record(stream, file, Writing(tolerance_mm, arcs=arcs), _svg)
-
-
-def record_hpgl(
-    stream: Source, file: str | os.PathLike[str], *, tolerance_mm: float = TOLERANCE_MM
-) -> DrawingReport:
-    """Draw what a motion cuts for a pen or cutting plotter; raises MotionFault, FileFault."""
-    return _record(stream, file, Writing(tolerance_mm), _hpgl)
 
 
 def _record(
@@ -125,7 +114,7 @@ def _dxf(lines: list[CutLine]) -> str:
 
 def _svg(lines: list[CutLine]) -> str:
     """The text of an SVG."""
-    (left, low), (right, high) = _box(lines)
+    (left, low), (right, high) = box(lines)
     left, low, right, high = (
         left - MARGIN_MM,
         low - MARGIN_MM,
@@ -165,61 +154,3 @@ def _svg(lines: list[CutLine]) -> str:
             "",
         ]
     )
-
-
-def _hpgl(lines: list[CutLine]) -> str:
-    """The text of a plotter file."""
-    (left, low), (right, high) = _box(lines)
-    if min(left, low) < -STEP_MM / 2:
-        raise MotionFault(
-            f"what is cut reaches to X {left:.2f}, Y {low:.2f} mm, and a plotter begins at 0, 0; "
-            "move the zero with --origin"
-        )
-    if max(right, high) > LARGEST_STEP * STEP_MM:
-        raise MotionFault(
-            f"what is cut reaches to X {right:.1f}, Y {high:.1f} mm, and a plotter file to "
-            f"{LARGEST_STEP * STEP_MM:.0f} mm; cut it in parts"
-        )
-    text = ["IN;SP1;"]
-    for line in lines:
-        places = [line.begin_mm, *_chords(line)]
-        steps = [f"{round(x / STEP_MM)},{round(y / STEP_MM)}" for x, y in places]
-        text += [f"PU{steps[0]};", f"PD{','.join(steps[1:])};"]
-    return "\n".join([*text, "PU;SP0;", ""])
-
-
-def _chords(line: CutLine) -> list[tuple[float, float]]:
-    """Places of a line, arcs as chords that stay within half a step of them."""
-    places, begin = [], line.begin_mm
-    for piece in line.pieces:
-        if piece.turned_rad:
-            radius = radius_mm(begin, piece)
-            widest_rad = 2 * math.acos(max(0.0, 1 - STEP_MM / 2 / radius))
-            count = math.ceil(abs(piece.turned_rad) / widest_rad)
-            places += [
-                _along(begin, piece.end_mm, piece.turned_rad, k / count)
-                for k in range(1, count)
-            ]
-        places.append(piece.end_mm)
-        begin = piece.end_mm
-    return places
-
-
-def _along(
-    begin_mm: tuple[float, float], end_mm: tuple[float, float], turned_rad: float, share: float
-) -> tuple[float, float]:
-    """The place on an arc after a share of its angle: a chord from its beginning, turned out of the whole
-    chord.
-    """
-    chord = complex(*end_mm) - complex(*begin_mm)
-    part = math.sin(share * turned_rad / 2) / math.sin(turned_rad / 2)
-    out_rad = -(1 - share) * turned_rad / 2
-    place = complex(*begin_mm) + chord * part * complex(math.cos(out_rad), math.sin(out_rad))
-    return place.real, place.imag
-
-
-def _box(lines: list[CutLine]) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Lower left and upper right corner of all that is cut, mm."""
-    places = [place for line in lines for place in (line.begin_mm, *_chords(line))]
-    x_mm, y_mm = zip(*places, strict=True)
-    return (min(x_mm), min(y_mm)), (max(x_mm), max(y_mm))

@@ -20,6 +20,7 @@ from morfax.recorder.gcode.machine_fields import CONTROL, FIELDS, LINES, filled,
 from morfax.recorder.gcode.takes import Takes, ToolWords
 
 DEFAULT = "linuxcnc"
+HPGL = "hpgl"  # the default of .plt and .hpgl
 CALLED = "the machine"
 
 
@@ -33,6 +34,8 @@ class Machine:
     name: str
     what: str
     suffix: str = ".ngc"
+    is_hpgl: bool = False  # whether its programs are HP-GL; all others are RS-274
+    step_mm: float = 0.025  # HP-GL's plotter unit
     semicolon: bool = False  # comments after ; and not in ( )
     z: bool = True
     arcs: bool = True
@@ -72,6 +75,11 @@ def names() -> list[str]:
     """Names of the built-in machines."""
     folder = resources.files("morfax.recorder.gcode") / "machines"
     return sorted(file.name[:-5] for file in folder.iterdir() if file.name.endswith(".toml"))
+
+
+def gcode_names() -> list[str]:
+    """Names of the built-in machines that take G-code."""
+    return [name for name in names() if not machine(name).is_hpgl]
 
 
 def as_toml(name: str) -> str:

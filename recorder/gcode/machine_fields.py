@@ -14,7 +14,7 @@ from typing import Any
 from morfax.motion.toml_fields import Field
 from morfax.recorder.gcode.takes import read_takes, read_tool
 
-SUFFIXES = (".ngc", ".nc", ".gcode", ".tap", ".cnc")
+SUFFIXES = (".ngc", ".nc", ".gcode", ".tap", ".cnc", ".plt", ".hpgl")
 CONTROL = re.compile(r"[^\x20-\x7e]")  # what is no printable character of ASCII
 PLACEHOLDER = re.compile(r"\{(\w+)\}")
 LINES = (
@@ -132,6 +132,8 @@ FIELDS: dict[str, tuple[str, Any]] = {
         "semicolon",
         lambda held: held.choice("parentheses", "semicolon") == "semicolon",
     ),
+    "language": ("is_hpgl", lambda held: held.choice("rs274", "hpgl") == "hpgl"),
+    "step_mm": ("step_mm", lambda held: _above_zero(held, "a length in mm")),
     "z": ("z", _truth),
     "arcs": ("arcs", _truth),
     "decimals": ("decimals", _decimals),

@@ -14,9 +14,10 @@ from ezdxf.path import make_path
 from morfax.motion.contour import distance
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import Path as MotionPath
-from morfax.recorder.drawings.drawings import STEP_MM, TOLERANCE_MM
+from morfax.recorder.drawings.drawings import TOLERANCE_MM
 from morfax.recorder.media import DRAWINGS, record
 
+STEP_MM = 0.025  # HP-GL's plotter unit
 UM = 1e-3
 CENTRE_MM, RADIUS_MM, HOLE_MM = (30.0, 25.0), 12.5, (30.0, 25.0)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from itertools import pairwise
 from pathlib import Path
 
@@ -14,7 +15,9 @@ from morfax.player.gcode.machine_reader import ABOVE_MM, MachineReader, machine_
 from morfax.player.gcode.pulses import play_pulses
 from morfax.player.gcode.rs274 import DWELL, Move, parse_rs274
 from morfax.recorder.gcode.blocks import record_blocks
-from morfax.recorder.gcode.machine import as_toml, machine, names
+from morfax.recorder.gcode.machine import as_toml, gcode_names, machine
+from morfax.recorder.gcode.plan import Feeds
+from morfax.recorder.media import record
 from tests.recorder.gcode.test_machine import part
 
 UM = 1e-3
@@ -33,7 +36,7 @@ def z_across(moves: list[Move]) -> list[float]:
     return [move.end_mm[2] for before, move in pairs if before.end_mm[:2] != move.end_mm[:2]]
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", gcode_names())
 def test_what_was_written_is_played_within_10_um(name: str, tmp_path: Path) -> None:
     file = tmp_path / f"part{machine(name).suffix}"
     record_blocks(part(), file, machine_name=name)
@@ -132,3 +135,31 @@ def test_feeds_of_a_faster_machine_are_held_and_told(tmp_path: Path) -> None:
     playback = play_pulses(file)
     fastest_mm_s = max(move.feed_mm_s for move in playback.program.moves)
     assert fastest_mm_s == 20.0 and "above 48 mm/s" in playback.notes[0]
+
+
+def test_a_plotter_file_is_played_within_its_steps(tmp_path: Path) -> None:
+    file = tmp_path / "part.plt"
+    record(part(), file, feeds=Feeds(cut_mm_s=10))
+    playback = play_pulses(file)
+    step_mm = machine("hpgl").step_mm
+    # half a step for the chords, half a step across each axis for the rounding
+    allowed_mm = READ_BACK_MM + step_mm / 2 + math.hypot(step_mm, step_mm) / 2
+    assert distance(thin(playback), part()).hausdorff_mm <= allowed_mm
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("IN;SP1;\nPU0,0;\nPD400,0;\n", "ends with the pen down; a plotter file ends with PU"),
+        ("IN;\nAA400,0,90;\nPU;", "line 2: 'AA400,0,90' is not played"),
+        ("IN;PU0,0;PD400,0,400;PU;", "line 1: '400,0,400' is no row of places X,Y"),
+        ("", "ends with the pen where it stood"),
+    ],
+)
+def test_a_plotter_file_that_is_not_whole_is_refused(
+    text: str, says: str, tmp_path: Path
+) -> None:
+    file = tmp_path / "part.plt"
+    file.write_text(text)
+    with pytest.raises(ProgramFault, match=says):
+        read_program(file)

@@ -17,7 +17,7 @@ from morfax.motion.faults import CardFault, FileFault
 from morfax.motion.motion import Path as MotionPath
 from morfax.player.gcode.rs274 import read_rs274
 from morfax.recorder.gcode.blocks import record_blocks
-from morfax.recorder.gcode.machine import as_toml, machine, names
+from morfax.recorder.gcode.machine import as_toml, gcode_names, machine, names
 from morfax.recorder.gcode.plan import Feeds
 
 BUILT_IN = [
@@ -58,7 +58,8 @@ def program(name: str, folder: Path, feeds: Feeds | None = None) -> list[str]:
 
 
 def test_the_built_in_machines_are_these() -> None:
-    assert names() == BUILT_IN
+    assert gcode_names() == BUILT_IN
+    assert names() == sorted([*BUILT_IN, "hpgl"])
     assert machine().name == "linuxcnc"
 
 

@@ -1,0 +1,102 @@
+"""The machine that a program is for: chosen by its name or file, changed by what somebody sets, and what it
+cannot hold of a card.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path as FilePath
+from typing import TYPE_CHECKING
+
+from morfax.jobs import files as medium
+from morfax.jobs.wrong_use import WrongUse
+from morfax.motion.faults import CardFault
+
+if TYPE_CHECKING:
+    from morfax.jobs.listener import Listener
+    from morfax.jobs.settings import ToolSettings
+    from morfax.recorder.gcode.machine import Machine
+    from morfax.tracer.operator.card import Card
+
+
+def chosen(
+    name: str | None,
+    values: tuple[str, ...] = (),
+    rapid_mm_s: float | None = None,
+    program: FilePath | None = None,
+) -> Machine:
+    """The machine of that name or file, or the usual one for the program, with NAME=NUMBER and a rapid set.
+
+    Raises WrongUse for a machine or a value that is not there, CardFault for a mistake in a file.
+    """
+    from morfax.recorder.gcode.machine import DEFAULT, HPGL, machine
+
+    is_plot = program is not None and medium.is_plot(program)
+    try:
+        found = machine(name or (HPGL if is_plot else DEFAULT), _numbers(values))
+    except CardFault:
+        raise
+    except ValueError as refused:
+        raise WrongUse(f"--machine: {refused}") from None
+    if program is not None and found.is_hpgl != is_plot:
+        suffixes = medium.PLOTS if found.is_hpgl else medium.BLOCKS
+        raise WrongUse(
+            f"--machine {found.name} takes {', '.join(suffixes)}; give -o such a name, or another machine"
+        )
+    if rapid_mm_s is None:
+        return found
+    return replace(
+        found, rapid_mm_s=(rapid_mm_s, rapid_mm_s, min(rapid_mm_s, found.rapid_mm_s[2]))
+    )
+
+
+def _numbers(values: tuple[str, ...]) -> dict[str, float]:
+    """Values by their names; raises WrongUse for one without a number."""
+    numbers = {}
+    for value in values:
+        name, _, number = value.partition("=")
+        try:
+            numbers[name.strip()] = float(number)
+        except ValueError:
+            raise WrongUse(
+                f"--machine-value {value!r} is no NAME=NUMBER; give one such as speed=18000"
+            ) from None
+    return numbers
+
+
+def tell_what_is_lost(
+    card: Card,
+    tool: ToolSettings,
+    program: FilePath,
+    machine: Machine | None,
+    listener: Listener,
+) -> None:
+    """Warn, before anything moves, of what the card or an option asks for and the medium cannot hold."""
+    lost = _asked(card, tool)
+    if not lost:
+        return
+    asked = ", ".join(lost)
+    if machine is None:
+        if program.suffix.lower() in medium.DRAWN:
+            listener.warning(
+                f"{program.name} holds what is cut, and no {asked}: set these where it is read"
+            )
+    elif not machine.z:
+        listener.warning(
+            f"{machine.name} has no Z, so that {program.name} holds no {asked}: each pass runs the line once "
+            "more, and a drilled hole is one dot"
+        )
+
+
+def _asked(card: Card, tool: ToolSettings) -> list[str]:
+    """What Z is asked to do, by its names."""
+    stops = card.stops
+    drills = [stop.drill for stop in stops if stop.drill is not None]
+    deep = tool.depth_mm or card.depths_mm or any(stop.passes_mm for stop in stops)
+    asked = {
+        "depth": bool(deep or drills or any(stop.moves for stop in stops)),
+        "entry": card.entry_mm is not None,
+        "pecks": any(drill.peck_counts < drill.depth_counts for drill in drills),
+        "feed of Z": card.feed_mm_s is not None,
+    }
+    return [name for name, is_asked in asked.items() if is_asked]
