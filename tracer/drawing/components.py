@@ -39,7 +39,7 @@ class Patches:
     def of(cls, runs: Iterable[tuple[Numbers, Numbers, Numbers]]) -> Patches:
         """Join runs (see `runs_of`), strip by strip from the top, to patches."""
         row, begin, end = (np.concatenate(part) for part in zip(*runs, strict=True))
-        patch, count = _joined(row, begin, end)
+        patch, count = joined(row, begin, end, True)
         return cls(row, begin, end, patch, int(count))
 
     @property
@@ -104,18 +104,22 @@ def _paint(mask, row, begin, end):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _joined(row, begin, end):  # type: ignore[no-untyped-def]
-    """The patch of each run, numbered as they are met, and how many there are."""
+def joined(row, begin, end, corners):  # type: ignore[no-untyped-def]
+    """The patch of each run, numbered as they are met, and how many there are.
+
+    Runs that touch only at a corner belong together if `corners` count.
+    """
     runs = len(row)
     parent = np.arange(runs)
-    above = 0
+    above, apart = 0, 0 if corners else 1
     for k in range(runs):
         while above < k and (
-            row[above] < row[k] - 1 or (row[above] == row[k] - 1 and end[above] < begin[k])
+            row[above] < row[k] - 1
+            or (row[above] == row[k] - 1 and end[above] < begin[k] + apart)
         ):
             above += 1
         other = above
-        while other < k and row[other] == row[k] - 1 and begin[other] <= end[k]:
+        while other < k and row[other] == row[k] - 1 and begin[other] + apart <= end[k]:
             a, b = _root(parent, other), _root(parent, k)
             parent[max(a, b)] = min(a, b)
             other += 1

@@ -75,8 +75,8 @@ def dot_ahead(view: View, leg: Leg) -> bool:
     return False
 
 
-def alone(sheet: Sheet, view: View) -> Iterator[Array]:
-    """Centres of the dots that stand alone on the paper, mm: round patches of ink that no line leaves."""
+def alone(sheet: Sheet, view: View) -> Iterator[tuple[int, Array]]:
+    """The dots that stand alone on the paper, round patches of ink that no line leaves: patch and centre, mm."""
     pitch, patches = sheet.drawing.pitch_mm, sheet.patches
     sides_mm = patches.longer_sides * pitch
     least_mm, largest_mm = (
@@ -87,7 +87,7 @@ def alone(sheet: Sheet, view: View) -> Iterator[Array]:
     for patch in np.flatnonzero(small & full):
         found = _disc(view, sheet.middle_mm(int(patch)))
         if found is not None and not len(found[1]):
-            yield found[0]
+            yield int(patch), found[0]
 
 
 def _disc(view: View, place: Array) -> tuple[Array, Array] | None:

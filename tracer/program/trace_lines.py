@@ -5,8 +5,7 @@ with short idle ways from line to line.
 
 The lines are followed one after the other, the widest spread first, and put in order when it is known where
 each begins and ends. If one is lost, the others are cut all the same. Lines that cross or touch one another
-are one patch of ink: the others of it are followed after the first (see `joined_lines`), and are numbered on
-from the patches.
+are one patch of ink: the others of it are followed after the first (see `joined_lines`).
 
 Source: patent ES 361967 has one contour to a tape, and an operator who brings the head to it; to bring the
 head to one line after the other is our own.
@@ -14,7 +13,7 @@ head to one line after the other is our own.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -38,6 +37,18 @@ from morfax.tracer.program.trace import followed
 ALIKE = 0.02  # a line is as long from its other end, within this share; by trial
 
 
+@dataclass(frozen=True, slots=True)
+class FoundLines:
+    """Lines that were followed, not yet in order; how many patches are no lines, and mm of ink that is joined
+    to lines, but none. `patch_of` has the patch's number of each line that is joined to another.
+    """
+
+    lines: list[Line]
+    left_out: int
+    left_out_mm: float
+    patch_of: dict[int, int] = field(default_factory=dict)
+
+
 def trace_lines(
     drawing: Drawing,
     which: Which = "all",
@@ -53,45 +64,65 @@ def trace_lines(
     """
     operator = operator or Operator()
     setup = Setup(Sheet.of(drawing), settings or Settings(), operator, progress)
-    # 1. one line of each patch; only a line joined to another may have a number beyond the patches
-    patches = len(selection.lines_of(setup.sheet))
-    beyond = not isinstance(which, str) and max(which) > patches
-    asked, left_out = selection.plan(setup.sheet, "all" if beyond else which)
+    found = found_lines(setup, which)
+    _refuse_none_begun(found.lines)
+    in_order = _in_order(setup, found.lines)
+    return Trace(
+        tuple(in_order), operator, left_out=found.left_out, left_out_mm=found.left_out_mm
+    )
+
+
+def found_lines(setup: Setup, which: Which) -> FoundLines:
+    """Follow the lines that are asked for; raises LineFault for a number that no line has.
+
+    Numbers: patches, the longest first; dots that stand alone; lines that are joined to another.
+    """
+    patches, holes = len(selection.lines_of(setup.sheet)), list[Line]()
+    if which == "all" or (not isinstance(which, str) and max(which) > patches):
+        holes = [line for _, line in dots_alone(setup)]
+    beyond = not isinstance(which, str) and max(which) > patches + len(holes)
+    # 1. one line of each patch; only a line joined to another has a number beyond patches and dots
+    numbered = which if isinstance(which, str) else tuple(n for n in which if n <= patches)
+    asked, left_out = selection.plan(setup.sheet, "all" if beyond else numbered)
     lines, letters = one_of_each(setup, asked, which)
-    left_out += letters
     # 2. the other lines of those patches
     joined, left_mm = _joined(setup, asked, lines)
+    patch_of = dict[int, int]()
     if beyond or isinstance(which, str):
-        further = _numbered_on(joined, patches)
-        lines += [line for line in further if which != "outer" or not is_inside(line, lines)]
+        further = _numbered_on(joined, patches + len(holes))
+        patch_of = {line.number: patch for line, patch in further}
+        others = [line for line, _ in further]
+        lines += [line for line in others if which != "outer" or not is_inside(line, lines)]
     # 3. dots that stand alone
-    if beyond or which == "all":
-        last = max((line.number for line in lines), default=patches)
-        holes = _dots(setup, asked, last)
-        lines, left_out = lines + holes, left_out - len(holes)
-    if beyond:
+    lines += holes
+    if beyond or (holes and which != "all"):
         lines = _of_numbers(lines, which)
-    # 4. in order
-    _refuse_none_begun(lines)
-    in_order = _in_order(setup, lines)
-    return Trace(tuple(in_order), operator, left_out=left_out, left_out_mm=left_mm)
+    return FoundLines(lines, left_out + letters - len(holes), left_mm, patch_of)
 
 
-def _joined(setup: Setup, asked: list[Contour], lines: list[Line]) -> tuple[list[Line], float]:
-    """Further lines of the patches on which a line was followed, and the length of ink left over, mm."""
-    joined, left_mm, own = list[Line](), 0.0, {line.number: line for line in lines}
+def _joined(
+    setup: Setup, asked: list[Contour], lines: list[Line]
+) -> tuple[list[tuple[Line, int]], float]:
+    """Further lines of the patches on which a line was followed, each with its patch's number; and the length
+    of ink left over, mm.
+    """
+    joined, left_mm = list[tuple[Line, int]](), 0.0
+    own = {line.number: line for line in lines}
     for contour in asked:
         line = own.get(contour.number)
         if line is not None and len(line.xy_mm) > 1:  # not one that was never begun
             others, more_mm = joined_to(line, contour, setup)
-            joined, left_mm = joined + others, left_mm + more_mm
-    return [line for line in joined if not are_of_reference(line.places_mm, lines)], left_mm
+            joined += [(other, contour.number) for other in others]
+            left_mm += more_mm
+    kept = [each for each in joined if not are_of_reference(each[0].places_mm, lines)]
+    return kept, left_mm
 
 
-def _numbered_on(lines: list[Line], last: int) -> list[Line]:
-    """The lines with numbers after the last one, the longest first."""
-    longest_first = sorted(lines, key=lambda line: -line.length_mm)
-    return [replace(line, number=number) for number, line in enumerate(longest_first, last + 1)]
+def _numbered_on(joined: list[tuple[Line, int]], last: int) -> list[tuple[Line, int]]:
+    """The lines with numbers after the last one, the longest first; each with its patch's number."""
+    longest_first = sorted(joined, key=lambda each: -each[0].length_mm)
+    numbered = enumerate(longest_first, last + 1)
+    return [(replace(line, number=number), patch) for number, (line, patch) in numbered]
 
 
 def _of_numbers(lines: list[Line], numbers: Which) -> list[Line]:
@@ -103,18 +134,19 @@ def _of_numbers(lines: list[Line], numbers: Which) -> list[Line]:
     return [line for line in lines if line.number in numbers]
 
 
-def _dots(setup: Setup, asked: list[Contour], last: int) -> list[Line]:
-    """The dots that stand alone on the paper, numbered on from the lines.
+def dots_alone(setup: Setup) -> list[tuple[int, Line]]:
+    """The dots that stand alone on the paper, numbered on from the patches that are lines: patch, and line.
 
     None of them is found if neither a line nor a setting shows how wide the pen is.
     """
+    patches = selection.lines_of(setup.sheet)
     width_mm = setup.settings.line_width_mm
-    if width_mm is None and not asked:
+    if width_mm is None and not len(patches):
         return []
-    width_mm = width_mm or float(np.median([contour.stroke.width_mm for contour in asked]))
+    width_mm = width_mm or float(np.median(setup.sheet.widths_mm[patches]))
     view = view_of(setup.sheet, setup.settings.aperture_mm, width_mm)
-    centres = dots.alone(setup.sheet, view)
-    return [Line.of_dot(centre, width_mm, n) for n, centre in enumerate(centres, last + 1)]
+    found = enumerate(dots.alone(setup.sheet, view), len(patches) + 1)
+    return [(patch, Line.of_dot(centre, width_mm, n)) for n, (patch, centre) in found]
 
 
 def _refuse_none_begun(lines: list[Line]) -> None:

@@ -82,7 +82,7 @@ def test_dots_alone_on_the_paper_are_found_and_rings_squares_and_blots_are_not()
     drawing = inked(
         LINE, arc((10, 5), 1.2), seed=5, specks=[dot((16, 6), 1.6), dot((22, 5), 3.0), square]
     )
-    found = sorted(tuple(centre) for centre in dots.alone(Sheet.of(drawing), seen(drawing)))
+    found = sorted(tuple(centre) for _, centre in dots.alone(Sheet.of(drawing), seen(drawing)))
     assert len(found) == 2
     assert [
         math.dist(a, b) < WITHIN_MM for a, b in zip(found, [(16, 6), (22, 5)], strict=True)
