@@ -48,16 +48,22 @@ class Patches:
         return np.asarray(np.bincount(self.patch, self.end - self.begin, self.count), float)
 
     @property
-    def longer_sides(self) -> Numbers:
-        """Width or height of each patch, whichever is more; pixels."""
-        sides = []
+    def boxes(self) -> Numbers:
+        """First row, last row + 1, first column, last column + 1 of each patch; (n, 4) pixels."""
+        edges = []
         for low, high in ((self.row, self.row + 1), (self.begin, self.end)):
             least = np.full(self.count, np.iinfo(np.int32).max, np.int32)
             most = np.zeros(self.count, np.int32)
             np.minimum.at(least, self.patch, low)
             np.maximum.at(most, self.patch, high)
-            sides.append(most - least)
-        return np.maximum(*sides)
+            edges += [least, most]
+        return np.column_stack(edges)
+
+    @property
+    def longer_sides(self) -> Numbers:
+        """Width or height of each patch, whichever is more; pixels."""
+        top, bottom, left, right = self.boxes.T
+        return np.maximum(bottom - top, right - left)
 
     def box(self, chosen: NDArray[np.bool_]) -> tuple[int, int, int, int]:
         """First row, last row + 1, first column, last column + 1 of the chosen patches."""

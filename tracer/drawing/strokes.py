@@ -151,10 +151,11 @@ class Sheet:
         chosen = np.arange(self.patches.count) == patch
         disc_px = max(4, round(1.5 * self.widths_mm[patch] / self.drawing.pitch_mm))
         top, bottom, left, right = self.patches.box(chosen)
+        halo_px = max(disc_px, min(DEEPEST_PX, bottom - top, right - left)) + 1
         tiles = [
             self._middles(
                 chosen,
-                disc_px,
+                (disc_px, halo_px),
                 (row, min(row + TILE_PX, bottom)),
                 (column, min(column + TILE_PX, right)),
             )
@@ -173,12 +174,12 @@ class Sheet:
     def _middles(
         self,
         chosen: NDArray[np.bool_],
-        disc_px: int,
+        disc_and_halo_px: tuple[int, int],
         rows: tuple[int, int],
         columns: tuple[int, int],
     ) -> tuple[Pixels, Pixels, Array]:
         """Row, column and ink about it of the pixels in a tile that lie deeper in the ink than all about."""
-        halo = max(disc_px, DEEPEST_PX) + 1
+        disc_px, halo = disc_and_halo_px
         part = [
             edge for (a, b), size in zip((rows, columns), self.drawing.darkness.shape, strict=True)
             for edge in (max(0, a - halo), min(size, b + halo))

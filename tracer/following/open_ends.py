@@ -53,7 +53,7 @@ def at_ends(
     ends = list(stances_at(view, stroke.ends_mm(), gap_mm))
     # 1. from the reference point that the operator names
     if reference_mm is not None:
-        named = _from_reference(reference_mm, ends)
+        named = from_reference(reference_mm, ends)
         if named:
             return named
         leading = _leading_away(view, stroke, reference_mm)
@@ -64,7 +64,7 @@ def at_ends(
         if lead is not None and stroke.is_at(lead.end_mm):
             local = view.like(lead.end_mm, lead.heading_rad)
             return [Stance(lead.end_mm, lead.heading_rad, local, True, place_mm)]
-        from_it = _from_reference(place_mm, ends)
+        from_it = from_reference(place_mm, ends)
         if from_it:
             return from_it
     return ends
@@ -118,7 +118,7 @@ def _named_first(
         yield named_mm if is_named else reference.place_mm, reference.lead
 
 
-def _from_reference(place_mm: tuple[float, float], ends: list[Stance]) -> list[Stance]:
+def from_reference(place_mm: tuple[float, float], ends: list[Stance]) -> list[Stance]:
     """The stances at ends that are near a reference point and lead away from it, the nearest first."""
     found = []
     for end in ends:

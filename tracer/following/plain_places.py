@@ -52,9 +52,14 @@ class Scored(NamedTuple):
 
 def view_of(sheet: Sheet, aperture_mm: float | None, width_mm: float) -> View:
     """The sheet through cells for a line of a width."""
-    least_mm = LEAST_APERTURE_MM / sheet.drawing.enlarged
-    aperture_mm = aperture_mm or min(max(APERTURE * width_mm, least_mm), LARGEST_APERTURE_MM)
+    aperture_mm = aperture_mm or aperture_for(sheet, width_mm)
     return View(photocell.behind_aperture(sheet.drawing, aperture_mm), width_mm)
+
+
+def aperture_for(sheet: Sheet, width_mm: float) -> float:
+    """The aperture of cells for a line of a width, mm."""
+    least_mm = LEAST_APERTURE_MM / sheet.drawing.enlarged
+    return min(max(APERTURE * width_mm, least_mm), LARGEST_APERTURE_MM)
 
 
 def local_view(view: View, place: Array) -> View:

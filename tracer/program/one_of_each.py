@@ -12,6 +12,8 @@ be put down is taken for a letter; a larger one counts as a lost line.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from morfax.motion import nesting
@@ -48,9 +50,14 @@ def one_of_each(setup: Setup, asked: list[Contour], which: Which) -> tuple[list[
 
 def are_of_reference(places: Array, lines: list[Line]) -> bool:
     """Whether places (n, 2) mm are the reference point from which a line, or a lead line, begins."""
-    reach_mm = 0.5 * LARGEST_MM + ABOUT_REFERENCE_MM
     begins = [line.begin_mm for line in lines if line.is_lead or line.reference_mm is not None]
-    return any(np.hypot(*(places - begin_mm).T).max() < reach_mm for begin_mm in begins)
+    return are_about(places, begins)
+
+
+def are_about(places: Array, references_mm: Iterable[tuple[float, float]]) -> bool:
+    """Whether places (n, 2) mm are those of one of some reference points."""
+    reach_mm = 0.5 * LARGEST_MM + ABOUT_REFERENCE_MM
+    return any(np.hypot(*(places - place_mm).T).max() < reach_mm for place_mm in references_mm)
 
 
 def is_inside(line: Line, lines: list[Line]) -> bool:

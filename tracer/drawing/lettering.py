@@ -1,0 +1,64 @@
+"""Lettering: patches of ink that stand in a row like the letters of a word.
+
+Signals: a Sheet in; out the patches that are likely letters.
+
+    ╭╮ ┌╮ ╶┐ ┌╴       as high as one another, close together side by side, three or more,
+    ╰╯ ├┴ ╶┤ └┐       and unlike one another: holes in a row are alike
+
+Source: our own. Questions: what is written with joined letters is one patch, and is not found.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from morfax.motion.arrays import Array
+from morfax.tracer.drawing.strokes import Sheet
+
+# All limits below were chosen by trial on the test drawings.
+LEAST_MM, LARGEST_MM = 1.0, 12.0  # of a letter's height
+ALIKE = 0.5  # the lower of two letters is at least so high as the other
+APART = 1.0  # heights from letter to letter, at most
+BESIDE = 0.5  # of the lower letter's height stands beside the other
+FEWEST = 3  # letters in a row
+UNLIKE = 0.15  # the lengths of letters differ by more than this share of their mean
+
+
+def lettering(sheet: Sheet) -> set[int]:
+    """The patches that are likely letters."""
+    boxes_mm = sheet.patches.boxes * sheet.drawing.pitch_mm
+    heights_mm = boxes_mm[:, 1] - boxes_mm[:, 0]
+    wide_mm = boxes_mm[:, 3] - boxes_mm[:, 2]
+    sized = (heights_mm >= LEAST_MM) & (heights_mm <= LARGEST_MM) & (wide_mm <= LARGEST_MM)
+    patches = np.flatnonzero(sized & ~sheet.are_solid)
+    if len(patches) < FEWEST:
+        return set()
+    rows = _rows(boxes_mm[patches])
+    letters = set[int]()
+    for row in range(int(rows.max()) + 1):
+        own = patches[rows == row]
+        lengths_mm = sheet.lengths_mm[own]
+        if len(own) >= FEWEST and lengths_mm.std() > UNLIKE * lengths_mm.mean():
+            letters |= {int(patch) for patch in own}
+    return letters
+
+
+def _rows(boxes_mm: Array) -> NDArray[np.int32]:
+    """The row in which each of some boxes (top, bottom, left, right; downwards) stands."""
+    top, bottom, left, right = boxes_mm.T
+    middles = np.column_stack([0.5 * (left + right), 0.5 * (top + bottom)])
+    high = bottom - top
+    within_mm = LARGEST_MM + APART * LARGEST_MM
+    a, b = cKDTree(middles).query_pairs(within_mm, output_type="ndarray").T
+    lower = np.minimum(high[a], high[b])
+    beside = np.minimum(bottom[a], bottom[b]) - np.maximum(top[a], top[b]) > BESIDE * lower
+    alike = lower > ALIKE * np.maximum(high[a], high[b])
+    apart_mm = np.maximum(left[a], left[b]) - np.minimum(right[a], right[b])
+    near = beside & alike & (apart_mm < APART * lower) & (apart_mm > -BESIDE * lower)
+    pairs = coo_array((np.ones(near.sum()), (a[near], b[near])), shape=(len(high),) * 2)
+    _, rows = connected_components(pairs, directed=False)
+    return np.asarray(rows)
