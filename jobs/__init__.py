@@ -12,6 +12,7 @@ import importlib
 from typing import Any
 
 _DOORS = {
+    "LinesJob": "lines",
     "TraceJob": "trace",
     "RunJob": "run",
     "RecordJob": "record",

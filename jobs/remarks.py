@@ -74,17 +74,17 @@ def _of_left_out(lines: Sequence[LeftOut], cutter: Cutter) -> str:
     fits_mm = min((out.room.passes_mm for out in lines if out.room is not None), default=0.0)
     it = "it" if len(lines) == 1 else "them"
     said = (
-        f"{_numbered('line', numbers)} left out: a cutter of {cutter.diameter_mm:g} mm has no room "
+        f"{numbered('line', numbers)} left out: a cutter of {cutter.diameter_mm:g} mm has no room "
         f"beside {it}"
     )
     if fits_mm > 0:
         said += f"; one of up to {fits_mm:g} mm fits"
     if stops:
-        said += f"; {_numbered('stop', stops)} left out with {it}"
+        said += f"; {numbered('stop', stops)} left out with {it}"
     return said
 
 
-def _numbered(what: str, numbers: list[int]) -> str:
+def numbered(what: str, numbers: list[int]) -> str:
     """Things by their numbers, with their verb."""
     if len(numbers) == 1:
         return f"{what} {numbers[0]} is"

@@ -57,6 +57,21 @@ SEVERAL = option(
     "numbers such "
     "as 1,3; 1 is the longest.  [default: one line, the longest or that at --start]",
 )
+LINE_WIDTH = option(
+    "Line",
+    "--line-width",
+    "line_width_mm",
+    type=LENGTH,
+    help="Width of the line, such as 0.5mm.  [default: measured on the drawing]",
+)
+GAP = option(
+    "Line",
+    "--gap",
+    "gap_mm",
+    type=REACH,
+    help="Widest gap in the line that the head crosses; with 0 only gaps of a scan, some 3 pixels.  "
+    f"[default: {DEFAULTS['gap_mm']}]",
+)
 TRACING_SPEED = option(
     "Head",
     "--speed",
@@ -68,21 +83,8 @@ TRACING_SPEED = option(
 _LINE = (
     START,
     SEVERAL,
-    option(
-        "Line",
-        "--line-width",
-        "line_width_mm",
-        type=LENGTH,
-        help="Width of the line, such as 0.5mm.  [default: measured on the drawing]",
-    ),
-    option(
-        "Line",
-        "--gap",
-        "gap_mm",
-        type=REACH,
-        help="Widest gap in the line that the head crosses; with 0 only gaps of a scan, some 3 pixels.  "
-        f"[default: {DEFAULTS['gap_mm']}]",
-    ),
+    LINE_WIDTH,
+    GAP,
     option(
         "Line",
         "--recatch",

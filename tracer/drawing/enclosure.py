@@ -25,7 +25,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from morfax.tracer.drawing.components import Numbers, Patches, joined
+from morfax.tracer.drawing.components import Patches, joined
 
 NONE = -1  # no patch: the open paper
 

@@ -21,8 +21,8 @@ from morfax.tracer.drawing.strokes import Sheet
 
 # All limits below were chosen by trial on the test drawings.
 LEAST_MM, LARGEST_MM = 1.0, 12.0  # of a letter's height
-ALIKE = 0.5  # the lower of two letters is at least so high as the other
-APART = 1.0  # heights from letter to letter, at most
+ALIKE = 0.35  # the lower of two letters is at least so high as the other
+APART = 1.0  # mean heights from letter to letter, at most
 BESIDE = 0.5  # of the lower letter's height stands beside the other
 FEWEST = 3  # letters in a row
 UNLIKE = 0.15  # the lengths of letters differ by more than this share of their mean
@@ -58,7 +58,8 @@ def _rows(boxes_mm: Array) -> NDArray[np.int32]:
     beside = np.minimum(bottom[a], bottom[b]) - np.maximum(top[a], top[b]) > BESIDE * lower
     alike = lower > ALIKE * np.maximum(high[a], high[b])
     apart_mm = np.maximum(left[a], left[b]) - np.minimum(right[a], right[b])
-    near = beside & alike & (apart_mm < APART * lower) & (apart_mm > -BESIDE * lower)
+    mean_mm = 0.5 * (high[a] + high[b])
+    near = beside & alike & (apart_mm < APART * mean_mm) & (apart_mm > -BESIDE * lower)
     pairs = coo_array((np.ones(near.sum()), (a[near], b[near])), shape=(len(high),) * 2)
     _, rows = connected_components(pairs, directed=False)
     return np.asarray(rows)

@@ -120,14 +120,13 @@ def survey(setup: Setup) -> Survey:
     # 1. patches that are lines
     crosses_mm = _references_mm(setup)
     seen = [
-        _of_patch(setup, contour, view, crosses_mm) for contour, view in _viewed(setup, contours)
+        _of_patch(setup, contour, view, crosses_mm)
+        for contour, view in _viewed(setup, contours)
     ]
     entries = {entry.patch: entry for entry in _with_references(seen, contours)}
     # 2. dots that stand alone
     for patch, line in dots_alone(setup):
-        entries[patch] = Entry(
-            line.number, "dot", line.start_mm, 0.0, line.width_mm, patch
-        )
+        entries[patch] = Entry(line.number, "dot", line.start_mm, 0.0, line.width_mm, patch)
     # 3. what lies inside which, and what stands in rows
     enclosure = Enclosure.of(sheet.patches, len(sheet.drawing.darkness))
     loops = enclosure.loops((AREA_WIDTHS * sheet.widths_mm / sheet.drawing.pitch_mm) ** 2)
@@ -163,9 +162,7 @@ def _references_mm(setup: Setup) -> list[Place]:
     return [reference.place_mm for reference in references(setup.sheet, view)]
 
 
-def _of_patch(
-    setup: Setup, contour: Contour, view: View, crosses_mm: list[Place]
-) -> Entry:
+def _of_patch(setup: Setup, contour: Contour, view: View, crosses_mm: list[Place]) -> Entry:
     """What a patch looks like, but for what it goes round: "several" with more than two ends, "closed" with
     none.
     """

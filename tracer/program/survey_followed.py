@@ -40,7 +40,9 @@ def followed(seen: Survey, setup: Setup) -> Survey:
         elif entry.number in lines:
             entries[entry.number] = _came_out(entry, lines[entry.number])
         else:
-            along = [n for n, line in lines.items() if strokes[entry.number].lies_on(line.places_mm)]
+            along = [
+                n for n, line in lines.items() if strokes[entry.number].lies_on(line.places_mm)
+            ]
             entries[entry.number] = replace(entry, piece_of=along[0] if along else None)
     # 2. lines that are joined to another
     for number, patch in found.patch_of.items():

@@ -1,0 +1,116 @@
+"""The job `lines`: what is on a drawing before anything is traced, with the numbers that --lines takes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from pathlib import Path as FilePath
+from typing import TYPE_CHECKING, Any
+
+from morfax.jobs import files as medium
+from morfax.jobs.listener import SILENT, Listener
+from morfax.jobs.remarks_on_lines import remarks_on_lines
+from morfax.jobs.scale_doubts import scale_doubts
+from morfax.jobs.settings import DrawingFile, LineSettings, TraceSettings
+
+if TYPE_CHECKING:
+    from morfax.jobs.figures import Figures
+    from morfax.tracer.drawing.drawing import Drawing
+    from morfax.tracer.operator.operator import Panel
+    from morfax.tracer.program.setup import Setup
+    from morfax.tracer.program.survey import Entry, Survey
+
+
+@dataclass(frozen=True, slots=True)
+class LinesResult:
+    """What is on a drawing: figures, the survey, and the name under which its picture belongs."""
+
+    figures: Figures
+    drawing: Drawing
+    survey: Survey
+    picture: FilePath | None
+
+
+@dataclass(frozen=True, slots=True)
+class LinesJob:
+    """Say what is on a drawing; with `follow` after all lines have been followed, and nothing recorded."""
+
+    drawing: DrawingFile
+    line: LineSettings = field(default_factory=LineSettings)
+    follow: bool = False
+    picture: FilePath | None = None
+
+    def run(self, listener: Listener = SILENT, panel: Panel | None = None) -> LinesResult:
+        """Look, and follow if asked; raises DrawingFault, FileFault and WrongUse."""
+        from morfax.tracer.drawing.strokes import Sheet
+        from morfax.tracer.program.setup import Setup
+        from morfax.tracer.program.survey import survey
+
+        of_head = TraceSettings(self.line).of_head()
+        if self.picture is not None:
+            medium.outgoing(self.picture, self.drawing.file)
+        drawing = self.drawing.open(listener)
+        listener.compiling("the head", ("motion", "tracer"))
+        setup = Setup(Sheet.of(drawing), of_head)
+        seen = survey(setup)
+        if self.follow and seen.entries:
+            seen = _followed(seen, setup, listener)
+        for text in (*scale_doubts(drawing, seen.width_mm), *remarks_on_lines(seen)):
+            listener.warning(text)
+        written = {} if self.picture is None else {"picture": str(self.picture)}
+        figures = {"drawing": str(self.drawing.file), **written, **_figures(drawing, seen)}
+        return LinesResult(figures, drawing, seen, self.picture)
+
+
+def _followed(seen: Survey, setup: Setup, listener: Listener) -> Survey:
+    """The survey with all lines followed, and its progress told."""
+    from morfax.tracer.program.survey_followed import followed
+
+    with listener.progress("following the lines", 1.0) as advance:
+
+        def tell(come_mm: float, all_mm: float) -> None:
+            advance(come_mm / all_mm)
+
+        return followed(seen, replace(setup, progress=tell))
+
+
+def _figures(drawing: Drawing, seen: Survey) -> dict[str, Any]:
+    """What was seen, as figures: the sheet, what has no number, and a row for each number."""
+    return {
+        "sheet_width_mm": drawing.width_mm,
+        "sheet_height_mm": drawing.height_mm,
+        "line_width_mm": seen.width_mm,
+        "dots": sum(entry.kind == "dot" for entry in seen.entries),
+        "likely_letters": len(seen.lettering),
+        "patches_left_out": len(seen.left_out),
+        "ink_left_out_mm": seen.left_out_mm,
+        "ink_not_followed_mm": seen.not_followed_mm,
+        "lines": [_row(entry) for entry in seen.entries],
+    }
+
+
+def _row(entry: Entry) -> dict[str, Any]:
+    """One number, as figures."""
+    return {
+        "line": entry.number,
+        "kind": entry.kind,
+        "length_mm": entry.length_mm,
+        "inside": entry.inside,
+        "line_width_mm": entry.width_mm,
+        "joined_to": entry.joined_to,
+        "place_mm": entry.place_mm,
+        "in_all": entry.is_in_all,
+        "remark": ", ".join(_said_of(entry)) or None,
+    }
+
+
+def _said_of(entry: Entry) -> list[str]:
+    """What is to be known of a line beside its figures."""
+    said = {
+        "rim of a solid area": entry.is_solid,
+        "taken for a letter": entry.is_letter,
+        "no place for the head": not entry.can_begin and not entry.is_letter,
+        "lettering?": entry.is_lettering and not entry.is_letter,
+        "reference point": entry.is_reference,
+        f"piece of line {entry.piece_of}": entry.piece_of is not None,
+    }
+    return [text for text, holds in said.items() if holds]

@@ -1,0 +1,68 @@
+"""Doubts about a drawing's scale: lines as no pen draws them, and a sheet that is almost a known format.
+
+Signals in: a drawing, and the usual width of its lines (mm). Signals out: texts, each with what to do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from morfax.tracer.drawing.drawing import Drawing
+
+# mm; ISO 128-2 has lines of 0.13 to 2 mm, and a scan may give them somewhat thinner
+THINNEST_MM, BROADEST_MM = 0.1, 2.0
+FEWEST_PX = (
+    3.0  # of a line's width: below it the head sees fewer than one pixel between the edges
+)
+# shorter and longer side, mm; ISO 216 and ANSI Y14.1
+FORMATS = {
+    "A5": (148.0, 210.0),
+    "A4": (210.0, 297.0),
+    "A3": (297.0, 420.0),
+    "A2": (420.0, 594.0),
+    "letter": (215.9, 279.4),
+    "legal": (215.9, 355.6),
+    "tabloid": (279.4, 431.8),
+}
+ALIKE = 0.007  # share by which the ratio of a format's sides is met: 2 mm on 297; by trial
+SAME, NEAR = (
+    0.012,
+    0.1,
+)  # share by which both sides are off: a scanner's margin, or a wrong scale; by trial
+
+
+def scale_doubts(drawing: Drawing, line_width_mm: float | None) -> Iterator[str]:
+    """What makes the scale of a drawing unlikely."""
+    if line_width_mm is not None:
+        yield from _of_line_width(line_width_mm, drawing.pitch_mm / drawing.enlarged)
+    yield from _of_format(drawing.width_mm, drawing.height_mm)
+
+
+def _of_line_width(width_mm: float, pitch_mm: float) -> Iterator[str]:
+    """A line that is broader or thinner than pens draw, or too few pixels wide."""
+    if not THINNEST_MM <= width_mm <= BROADEST_MM:
+        yield (
+            f"the lines are {width_mm:.2g} mm wide by this scale; pens draw {THINNEST_MM:g} to {BROADEST_MM:g} "
+            "mm: check the scale (--dpi, --width, --known)"
+        )
+    if width_mm < FEWEST_PX * pitch_mm:
+        yield (
+            f"the lines are {width_mm / pitch_mm:.1f} pixels wide, and the head wants {FEWEST_PX:g}: scan at "
+            "a higher resolution"
+        )
+
+
+def _of_format(width_mm: float, height_mm: float) -> Iterator[str]:
+    """A sheet with the shape of a known format, but a few per cent larger or smaller."""
+    shorter_mm, longer_mm = sorted((width_mm, height_mm))
+    for name, (short_mm, long_mm) in FORMATS.items():
+        times = shorter_mm / short_mm
+        alike = abs(longer_mm / shorter_mm / (long_mm / short_mm) - 1) < ALIKE
+        if alike and SAME < abs(times - 1) < NEAR:
+            across_mm = short_mm if width_mm == shorter_mm else long_mm
+            yield (
+                f"the sheet is {width_mm:.1f} x {height_mm:.1f} mm, the shape of {name} at {100 * times:.1f} %: "
+                f"if it is {name}, give --width {across_mm:g}mm"
+            )

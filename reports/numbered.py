@@ -1,0 +1,121 @@
+"""The numbered sheet: each line in a colour with its number, what has no number in grey.
+
+Signals in: the result of the job `lines`. Out: a picture; its axes are sheet coordinates in mm.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.reports.canvas import LARGEST_IMAGE_PX, REFERENCE, new_figure, save
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from morfax.jobs.lines import LinesResult
+    from morfax.tracer.program.survey import Entry, Survey
+
+COLOURS = (
+    "#1f5fa8",
+    "#c1121f",
+    "#2a8f4f",
+    "#8a3fa0",
+    "#d9822b",
+    "#0f8b8d",
+    "#b5338a",
+    "#6b4f1d",
+)
+LEFT_OUT = "#b0b0b0"
+LETTERING = "#e0b000"
+PATH_PT = 1.2
+
+
+def draw_numbered(result: LinesResult) -> None:
+    """Draw the sheet with its lines in colours, and their numbers."""
+    if result.picture is None:
+        return
+    drawing, seen = result.drawing, result.survey
+    width_mm, height_mm = drawing.width_mm, drawing.height_mm
+    figure = new_figure(8.5, 1.4 + 8 * min(max(height_mm / width_mm, 0.2), 1.4), "compressed")
+    axes = figure.add_subplot()
+    extent = (0.0, width_mm, 0.0, height_mm)
+    axes.imshow(_painted(seen), extent=extent, interpolation="nearest", zorder=0)
+    for line in seen.lines:
+        colour = _colour(line.number)
+        axes.plot(*line.places_mm.T, color=colour, linewidth=PATH_PT, zorder=2)
+    for entry in seen.entries:
+        _number(axes, entry)
+    axes.set(xlim=extent[:2], ylim=extent[2:], xlabel="X, mm", ylabel="Y, mm", aspect="equal")
+    _legend(axes, seen)
+    name = drawing.file.name if drawing.file else "drawing"
+    axes.set_title(f"{name}: numbers for --lines", fontsize=10)
+    save(figure, result.picture)
+
+
+def _colour(number: int) -> str:
+    """The colour of a number."""
+    return COLOURS[(number - 1) % len(COLOURS)]
+
+
+def _painted(seen: Survey) -> NDArray[np.uint8]:
+    """The sheet's ink in colours, reduced to a size for a picture; (rows, columns, 3)."""
+    patches, (rows, columns) = seen.sheet.patches, seen.sheet.drawing.darkness.shape
+    of_patch = np.full((patches.count, 3), _rgb(LEFT_OUT), np.uint8)
+    of_patch[list(seen.lettering)] = _rgb(LETTERING)
+    for entry in seen.entries:
+        if entry.joined_to is None and entry.is_in_all and not entry.is_lettering:
+            of_patch[entry.patch] = _rgb(LEFT_OUT if seen.lines else _colour(entry.number))
+    down = max(1, -(-max(rows, columns) // LARGEST_IMAGE_PX))
+    image = np.full((-(-rows // down), -(-columns // down), 3), 255, np.uint8)
+    for row, begin, end, patch in zip(
+        patches.row // down,
+        patches.begin // down,
+        -(-patches.end // down),
+        patches.patch,
+        strict=True,
+    ):
+        image[row, begin:end] = of_patch[patch]
+    return image
+
+
+def _rgb(colour: str) -> tuple[int, ...]:
+    """Red, green and blue of #rrggbb."""
+    return tuple(int(colour[at : at + 2], 16) for at in (1, 3, 5))
+
+
+def _number(axes: Axes, entry: Entry) -> None:
+    """Write a number beside a place of its line."""
+    colour = _colour(entry.number) if entry.is_in_all else REFERENCE
+    if entry.kind == "dot":
+        axes.plot(
+            *entry.place_mm, marker="o", markersize=9, markerfacecolor="none", color=colour
+        )
+    box = {
+        "boxstyle": "round,pad=0.15",
+        "facecolor": "white",
+        "edgecolor": colour,
+        "alpha": 0.85,
+    }
+    text = str(entry.number) if entry.is_in_all else f"({entry.number})"
+    axes.annotate(
+        text,
+        entry.place_mm,
+        (5, 5),
+        textcoords="offset points",
+        fontsize=8,
+        color=colour,
+        bbox=box,
+    )
+
+
+def _legend(axes: Axes, seen: Survey) -> None:
+    """Say what the two further colours are."""
+    if seen.left_out or seen.lines:
+        axes.plot([], [], color=LEFT_OUT, linewidth=4, label="left out, or not a line")
+    if seen.lettering:
+        axes.plot([], [], color=LETTERING, linewidth=4, label="likely lettering")
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend(loc="upper right", fontsize=8, framealpha=0.8)
