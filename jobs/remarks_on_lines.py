@@ -1,5 +1,5 @@
-"""Remarks on what is on a drawing beside its table: which numbers are not yet certain, what --lines all leaves
-out, and what it takes though that may not be meant.
+"""Remarks on what is on a drawing beside its table: which numbers are uncertain, what --lines all leaves out,
+and what it takes though that may not be meant.
 
 Signals in: a survey. Signals out: texts, each with what to do.
 """
@@ -19,8 +19,8 @@ def remarks_on_lines(seen: Survey) -> Iterator[str]:
     """Remarks on a survey, the most important first."""
     if not seen.entries:
         yield (
-            "no piece of ink is long enough to be a line (4 mm or six line widths, or 12 mm across): check the "
-            "scale, or give --start X,Y to trace"
+            "no piece of ink is long enough to be a line (4 mm or six line widths, or 12 mm across): "
+            "check the scale, or give --start X,Y to trace"
         )
         return
     yield from _of_several(seen)
@@ -77,8 +77,8 @@ def _of_solids(seen: Survey) -> Iterator[str]:
     solid = [entry.number for entry in seen.entries if entry.is_solid]
     if solid:
         yield (
-            f"{numbered('line', solid)} the rim of a dark area broader than a line: if that is a filled shape, "
-            "--edge follows its outline"
+            f"{numbered('line', solid)} the rim of a dark area broader than a line: if that is a filled "
+            "shape, --edge follows its outline"
         )
 
 

@@ -44,8 +44,8 @@ def _of_line_width(width_mm: float, pitch_mm: float) -> Iterator[str]:
     """A line that is broader or thinner than pens draw, or too few pixels wide."""
     if not THINNEST_MM <= width_mm <= BROADEST_MM:
         yield (
-            f"the lines are {width_mm:.2g} mm wide by this scale; pens draw {THINNEST_MM:g} to {BROADEST_MM:g} "
-            "mm: check the scale (--dpi, --width, --known)"
+            f"the lines are {width_mm:.2g} mm wide by this scale; pens draw {THINNEST_MM:g} to "
+            f"{BROADEST_MM:g} mm: check the scale (--dpi, --width, --known)"
         )
     if width_mm < FEWEST_PX * pitch_mm:
         yield (
@@ -63,6 +63,6 @@ def _of_format(width_mm: float, height_mm: float) -> Iterator[str]:
         if alike and SAME < abs(times - 1) < NEAR:
             across_mm = short_mm if width_mm == shorter_mm else long_mm
             yield (
-                f"the sheet is {width_mm:.1f} x {height_mm:.1f} mm, the shape of {name} at {100 * times:.1f} %: "
-                f"if it is {name}, give --width {across_mm:g}mm"
+                f"the sheet is {width_mm:.1f} x {height_mm:.1f} mm, the shape of {name} at "
+                f"{100 * times:.1f} %: if it is {name}, give --width {across_mm:g}mm"
             )

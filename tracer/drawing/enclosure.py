@@ -54,7 +54,7 @@ class Enclosure:
         # 2. the paper before each patch's first run
         _, top = np.unique(patches.patch, return_index=True)
         inside = surrounding[area[before[top]]]
-        areas_px = np.bincount(area, end - begin, count)
+        areas_px = np.bincount(area, end - begin, count).astype(float)
         return cls(inside, surrounding[1:], areas_px[1:])
 
     def loops(self, least_px: NDArray[np.float64]) -> NDArray[np.int64]:

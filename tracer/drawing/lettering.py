@@ -30,7 +30,7 @@ UNLIKE = 0.15  # the lengths of letters differ by more than this share of their 
 
 def lettering(sheet: Sheet) -> set[int]:
     """The patches that are likely letters."""
-    boxes_mm = sheet.patches.boxes * sheet.drawing.pitch_mm
+    boxes_mm = np.asarray(sheet.patches.boxes, float) * sheet.drawing.pitch_mm
     heights_mm = boxes_mm[:, 1] - boxes_mm[:, 0]
     wide_mm = boxes_mm[:, 3] - boxes_mm[:, 2]
     sized = (heights_mm >= LEAST_MM) & (heights_mm <= LARGEST_MM) & (wide_mm <= LARGEST_MM)

@@ -76,7 +76,7 @@ def dot_ahead(view: View, leg: Leg) -> bool:
 
 
 def alone(sheet: Sheet, view: View) -> Iterator[tuple[int, Array]]:
-    """The dots that stand alone on the paper, round patches of ink that no line leaves: patch and centre, mm."""
+    """The dots that stand alone, round patches of ink that no line leaves: the patch and its centre, mm."""
     pitch, patches = sheet.drawing.pitch_mm, sheet.patches
     sides_mm = patches.longer_sides * pitch
     least_mm, largest_mm = (
