@@ -55,8 +55,10 @@ class Takes:
     not_sent: str = ""  # characters that the control obeys wherever they stand
     one_code: bool = False  # one G or M in a line, and none that still holds from before
     small_letters: bool = True
-    lone_centre: bool = True  # a whole turn may be told by its centre alone
+    lone_motion: bool = True  # a whole turn may be told by its centre alone, G2 I5
+    turns: bool = False  # P of an arc counts turns
     largest_line_number: float = math.inf
+    largest_tool: float = math.inf  # T
     digits: int = 15  # that the control keeps of a number
     arc_mm: float = 0.005  # an arc's ends lie on one circle within this,
     arc_share: float = 0.001  # or within this share of the radius,
@@ -132,8 +134,10 @@ _TAKES: dict[str, Callable[[Field], Any]] = {
     "not_sent": _text,
     "one_code": _truth,
     "small_letters": _truth,
-    "lone_centre": _truth,
+    "lone_motion": _truth,
+    "turns": _truth,
     "largest_line_number": _number,
+    "largest_tool": _number,
     "digits": Field.number,
     "arc_mm": _number,
     "arc_share": _number,
