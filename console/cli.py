@@ -31,6 +31,7 @@ VERBS = {
     "record": "Record a path file, or another program, in the medium that the name after -o says.",
     "mend": "Record a tape anew whose end tells which dropout lost how many whole cycles.",
     "age": "Wear a tape as a real recorder and the years do.",
+    "check": "Say whether a machine may be started with a program, and what the program does.",
     "machines": "List the machines that G-code is written for, or print one to change.",
     "demo": "Trace a sample drawing, play the tape, compare, and show what came out.",
 }
@@ -38,7 +39,7 @@ VERBS = {
 EXIT_CODES = """\b
 Exit codes:
   0  done
-  1  the contours are further apart than --tolerance
+  1  compare: further apart than --tolerance; check: do not start the machine
   2  wrong use of the command line
   3  the drawing cannot be used (or is too large for the memory)
   4  no line at that place, or the line was lost (what was traced is kept)

@@ -142,6 +142,20 @@ def _parse_origin(text: str) -> Any:
         ) from None
 
 
+def _parse_stock(text: str) -> tuple[float, float, float | None]:
+    """Width, height and thickness in mm of "200x100x18mm", or "200x100mm" without a thickness."""
+    allowed = "200x100x18mm (width, height, thickness), or 200x100mm"
+    parts = text.lower().replace("×", "x").split("x")
+    unit = parts[-1].strip().lstrip("0123456789.")
+    try:
+        sizes = [parse_length_mm(p if p.strip()[-1:].isalpha() else p + unit) for p in parts]
+    except ValueError:
+        sizes = []
+    if len(sizes) not in (2, 3) or min(sizes) <= 0:
+        raise ValueError(f"{text!r} is no stock; give {allowed}, above zero")
+    return sizes[0], sizes[1], sizes[2] if len(sizes) == 3 else None
+
+
 def _decades(least_counts: int) -> Callable[[str], float]:
     """How to read a length of Z, which is set on five decades."""
 
@@ -168,6 +182,7 @@ def _decades(least_counts: int) -> Callable[[str], float]:
     return parse
 
 
+STOCK = Quantity("stock", _parse_stock)
 LENGTH = Quantity("length", parse_length_mm, above_zero=True)
 REACH = Quantity("length", parse_length_mm)  # of the head; may be 0
 DEPTH = Quantity("length", _decades(0))

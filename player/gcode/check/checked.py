@@ -56,9 +56,7 @@ def check_program(file: FilePath, machine: Machine, stock: Stock | None = None) 
     return check_lines(lines, machine, stock)
 
 
-def check_lines(
-    lines: Iterable[str], machine: Machine, stock: Stock | None = None
-) -> Checked:
+def check_lines(lines: Iterable[str], machine: Machine, stock: Stock | None = None) -> Checked:
     """Check some lines of text."""
     findings = Findings()
     taken, rules = Lines(machine, findings), WordRules(machine, findings)
@@ -88,14 +86,18 @@ def _check_last_line(taken: Lines, follower: Follower, findings: Findings) -> No
     """Find a program without an end, and a tool that it leaves on."""
     ended = taken.ended or follower.ended
     if not taken.begun:
-        findings.here("end", "the program holds no line", "lines such as G1 X5", "get the whole of it")
+        findings.here(
+            "end", "the program holds no line", "lines such as G1 X5", "get the whole of it"
+        )
     elif not ended and taken.takes.end == "needed":
         findings.here("end", "the program has no end", "M2, M30 or %", "get the whole of it")
     elif not ended and taken.takes.end == "usual":
         findings.remark("end", "the program has no M2 or M30", "see that it is whole")
     if follower.tool.switched_on and follower.tool.on:
         off = "M5" if ("M", 5.0) in follower.machine.tool.off else "its word for off"
-        findings.here("end", "the program ends with the tool on", "the tool off", f"put {off} last")
+        findings.here(
+            "end", "the program ends with the tool on", "the tool off", f"put {off} last"
+        )
 
 
 def _steps(follower: Follower, surface_mm: float) -> list[Step]:

@@ -1,6 +1,7 @@
 """Canned cycles: G81 to G89 and G73 drill at a place, from R down to Z, and come up again.
 
-Signals in: the words of a line, with which R and Z hold on. Signals out: rapids and a line, run by the reader.
+Signals in: the words of a line; R and Z hold from line to line. Signals out: rapids and a line, which the
+reader runs.
 
     Z   ──┐  ┌── above (G98)      XY first, then down to R as a rapid, down to Z at the feed, up
      R    └┐┌┘── or R (G99)

@@ -31,7 +31,7 @@ class Finding:
         """The finding in one line."""
         more = self.lines - 1
         also = f" (and {more} more, to line {self.last_line})" if more else ""
-        allowed = f"; {self.allowed}" if self.allowed else ""
+        allowed = f"; allowed: {self.allowed}" if self.allowed else ""
         return f"line {self.line}{also}: {self.what}{allowed}; {self.do}"
 
 

@@ -1,7 +1,7 @@
 """The reader of the pulse control, going on after a mistake, and following what that control does not play.
 
-Signals in: the words of a line, those that the machine's control takes. Signals out: moves, each with its line
-and whether the tool was on; findings for what the reader refuses.
+Signals in: the words of a line, those that the machine's control takes. Signals out: moves, each with its
+line and whether the tool was on; findings for what the reader refuses.
 
 What the reader plays goes to it as it is. Helices, arcs in other planes and canned cycles become lines; G28,
 G30 and G53 go up, to where the machine is above all places so far; G92 moves the zero; the other ways of
@@ -14,6 +14,7 @@ in a program. A peck is run in one go: what it cuts is the same.
 from __future__ import annotations
 
 import math
+
 from morfax.motion.faults import ProgramFault
 from morfax.player.gcode.arc_words import TURN, ArcLimits, ArcWords, Place, WordError
 from morfax.player.gcode.check.cycles import CannedCycle
@@ -46,7 +47,11 @@ class Follower(Reader):
         super().__init__(name, None)
         takes = machine.takes
         limits = takes.arc_mm, takes.arc_share, takes.arc_most_mm, takes.reach_mm
-        self.machine, self.findings, self.arc_limits = machine, findings, ArcLimits(*limits, True)
+        self.machine, self.findings, self.arc_limits = (
+            machine,
+            findings,
+            ArcLimits(*limits, True),
+        )
         self.tool = ToolState(machine.tool)
         self.on: list[bool] = []  # for each move
         self.said: list[tuple[int, str]] = []  # words of the tool, before which move
@@ -143,7 +148,9 @@ class Follower(Reader):
             if "K" in values and not {"I", "J", "R"} & values.keys():
                 values = {**values, "I": 0.0}
         self.k = values.get("K", 0.0)
-        passed = {letter: f"{value:.17g}" for letter, value in values.items() if letter in letters}
+        passed = {
+            letter: f"{value:.17g}" for letter, value in values.items() if letter in letters
+        }
         if ("G", 4.0) in present:
             passed |= self._dwell_words(values)
         if self.inverse_time or values.get("F", 0.0) < 0:
@@ -208,7 +215,10 @@ class Follower(Reader):
     def _lacks_a_place(self, names: frozenset[str]) -> None:
         """Find an arc that says no place in its plane, where the control wants one."""
         if not self.machine.takes.lone_motion:
-            what, allowed = f"{self.kind} says no place in its plane", " or ".join(sorted(names))
+            what, allowed = (
+                f"{self.kind} says no place in its plane",
+                " or ".join(sorted(names)),
+            )
             self.findings.here("word", what, allowed, "write the place, even if it stays")
 
     def _off_the_arc(self, error: WordError, end: Place) -> None:

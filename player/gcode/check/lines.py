@@ -1,4 +1,4 @@
-"""Lines of a program as a control takes them in: length, characters, comments, %; and the words that are left.
+"""Lines of a program as a control takes them in: length, characters, comments, %; and the words left.
 
 Signals in: lines of text. Signals out: the words of each line by letter and number, and findings.
 

@@ -7,8 +7,8 @@ line where it begins.
                      │
     below    ════════╧════   a rapid across: refused; a line with the tool off: refused
 
-Source: none; these are what breaks tools and spoils work. Questions: how high the tool stands before the first
-Z is not in a program. A tool's radius is not known here: the stock is held against the tool's middle.
+Source: none; these are what breaks tools and spoils work. Questions: how high the tool stands before the
+first Z is not in a program. A tool's radius is not known here: the stock is held against the tool's middle.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ _SAME = 3  # decimals of a mm within which a hole is the same hole
 
 @dataclass(frozen=True, slots=True)
 class Stock:
-    """The material: its size, mm, the place of its lower left corner, the Z of its upper face, and how far
-    below its lower face the tool may go.
+    """The material: its size, mm (None: not known), the place of its lower left corner, the Z of its upper
+    face, and how far below its lower face the tool may go.
     """
 
-    width_mm: float
-    height_mm: float
+    width_mm: float | None = None
+    height_mm: float | None = None
     thickness_mm: float | None = None
     corner_mm: tuple[float, float] = (0.0, 0.0)
     surface_mm: float = 0.0
@@ -87,7 +87,9 @@ _PLUNGES = Rule(
 
 def check_tool(steps: Sequence[Step], machine: Machine, findings: Findings) -> None:
     """Find lines with the tool off: below the surface, or, without a Z, wherever lines are no travel."""
-    on, off = (" or ".join(map(called, sorted(each))) for each in (machine.tool.on, machine.tool.off))
+    on, off = (
+        " or ".join(map(called, sorted(each))) for each in (machine.tool.on, machine.tool.off)
+    )
     rule = Rule(
         "tool",
         "cuts with the tool off" if machine.z else "a line at feed runs with the tool off",
@@ -149,6 +151,8 @@ def check_travel(steps: Sequence[Step], machine: Machine, findings: Findings) ->
 
 def check_stock(steps: Sequence[Step], stock: Stock, findings: Findings) -> None:
     """Find work beside the stock, and deeper than it."""
+    if stock.width_mm is None or stock.height_mm is None:
+        return
     left, bottom = stock.corner_mm
     right, top = left + stock.width_mm, bottom + stock.height_mm
     lowest_mm = stock.surface_mm - (stock.thickness_mm or 0.0) - stock.through_mm

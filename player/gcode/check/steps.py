@@ -1,4 +1,4 @@
-"""Steps: the moves of a program with where each begins, its line, and whether the tool was on; and their reach.
+"""Steps: the moves of a program with where each begins and whether the tool was on; and their reach.
 
 Signals in: the moves that the follower has read. Signals out: steps in mm, their lengths and bounds.
 """
@@ -77,5 +77,7 @@ def bounds_mm(steps: Iterable[Step]) -> tuple[Place, Place] | None:
         highs.append(high)
     if not lows:
         return None
-    (x, y, z), (to_x, to_y, to_z) = map(min, zip(*lows)), map(max, zip(*highs))
+    (x, y, z), (to_x, to_y, to_z) = (
+        map(chosen, zip(*places, strict=True)) for chosen, places in ((min, lows), (max, highs))
+    )
     return (x, y, z), (to_x, to_y, to_z)

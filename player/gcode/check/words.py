@@ -2,9 +2,10 @@
 
 Signals in: the words of a line, and the motion that holds from the lines before. Signals out: findings.
 
-Source: LinuxCNC 2.9, interp_array.cc (modal groups), interp_check.cc (check_other_codes: which words a letter
-belongs to); Grbl 1.1, gcode.c, gc_execute_line, steps 2 and 3 (groups, repeated and unused words, values below
-zero). Questions: the groups are LinuxCNC's; what Grbl alone refuses beside a motion is `alone` in its data.
+Source: LinuxCNC 2.9, interp_array.cc (modal groups), interp_check.cc (check_other_codes: which words a
+letter belongs to); Grbl 1.1, gcode.c, gc_execute_line, steps 2 and 3 (groups, repeated and unused words,
+values below zero). Questions: the groups are LinuxCNC's; what Grbl alone refuses beside a motion is `alone`
+in its data.
 """
 
 from __future__ import annotations
@@ -98,7 +99,9 @@ class WordRules:
             self.findings.here("word", what, allowed, "leave it out", cause=letter + "large")
         digits = sum(map(str.isdigit, number.lstrip("-+0.")))
         if digits > self.takes.digits:
-            what = f"{letter}{number} has {digits} digits; the control keeps {self.takes.digits}"
+            what = (
+                f"{letter}{number} has {digits} digits; the control keeps {self.takes.digits}"
+            )
             self.findings.remark("word", what, "write fewer decimals", cause="digits")
 
     def _largest(self, letter: str) -> float:
@@ -146,7 +149,9 @@ class WordRules:
             what = f"{called(code)} stands without a place"
             self.findings.here("word", what, "X, Y or Z", "write the place, even if it stays")
         if ("G", 10.0) in named and not letters >= {"L", "P"} and not self.takes.one_code:
-            self.findings.here("word", "G10 stands without L or P", "both", "write G10 L2 P1 X0")
+            self.findings.here(
+                "word", "G10 stands without L or P", "both", "write G10 L2 P1 X0"
+            )
 
     def _belongs(self, words: Words, present: set[Code]) -> None:
         """Find words that no word of the line uses."""

@@ -1,0 +1,220 @@
+"""Pictures of a checked program: rapids, plunges, cuts and their direction; stock and travel; findings.
+
+Signals in: the result of a check. Signals out: a picture. From above, in mm of the program's zero; below it,
+where there is a Z, the height of the tool along its way.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path as FilePath
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from morfax.motion.arrays import Array
+from morfax.reports.canvas import new_figure, save
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from morfax.jobs.check import CheckResult
+    from morfax.player.gcode.check.findings import Finding
+    from morfax.player.gcode.check.steps import Step
+
+CUT, RAPID, PLUNGE = "#222222", "#1f5fbf", "#2a7f3f"
+STOPS, REMARK = "#c1121f", "#b08000"
+WOOD, TRAVEL = "#f3e3c3", "#8a8a8a"
+CHORD_RAD = math.radians(4)  # of an arc that is drawn
+ARROWS = 60  # along the whole cut
+MOST_MARKED = 30  # findings with their line; further ones would hide the drawing
+WIDTH_IN = 8.5
+SIDE_IN = 1.8  # height of the view along the way
+
+
+def draw_checked(result: CheckResult, name: str, file: FilePath) -> None:
+    """Write the picture, of the kind that the suffix says (.png, .svg, .pdf)."""
+    steps = [step for step in result.checked.steps if step.moves]
+    figure = new_figure(layout="constrained")
+    shape = _shape(steps)
+    above_in = min(max(WIDTH_IN * shape, 3.0), 10.0)
+    if result.machine.z and steps:
+        figure.set_size_inches(WIDTH_IN, above_in + 1.2 + SIDE_IN)
+        above, side = figure.subplots(2, 1, height_ratios=(above_in, SIDE_IN))
+        _side_view(side, steps, result)
+    else:
+        figure.set_size_inches(WIDTH_IN, above_in + 1.2)
+        above = figure.add_subplot()
+    _ground(above, steps, result)
+    _ways(above, steps)
+    _arrows(above, steps)
+    _marked(above, result.checked.findings)
+    verdict = "may be started" if result.may_start else "must not be started"
+    above.set(
+        xlabel="X, mm",
+        ylabel="Y, mm",
+        aspect="equal",
+        title=f"{name}, {result.machine.name}: {verdict}",
+    )
+    above.title.set_color(CUT if result.may_start else STOPS)
+    above.margins(0.06)
+    if above.get_legend_handles_labels()[0]:
+        figure.legend(
+            *above.get_legend_handles_labels(), loc="outside lower center", ncols=6, fontsize=8
+        )
+    save(figure, file)
+
+
+def way_mm(step: Step) -> Array:
+    """Places (n, 3) along a step: its ends, and between those of an arc as many as it takes to look round."""
+    begin, end = np.array(step.begin_mm), np.array(step.move.end_mm)
+    turned = step.move.turned_rad
+    if not turned:
+        return np.vstack([begin, end])
+    share = np.linspace(0, 1, max(2, math.ceil(abs(turned) / CHORD_RAD)) + 1)
+    x, y = np.array(step.begin_mm[:2]) - step.move.centre_mm
+    cos, sin = np.cos(turned * share), np.sin(turned * share)
+    places: Array = np.column_stack(
+        [
+            step.move.centre_mm[0] + cos * x - sin * y,
+            step.move.centre_mm[1] + sin * x + cos * y,
+            begin[2] + share * (end[2] - begin[2]),
+        ]
+    )
+    return places
+
+
+def _shape(steps: Sequence[Step]) -> float:
+    """Height to width of the program."""
+    if not steps:
+        return 0.5
+    places = np.vstack([way_mm(step) for step in steps])[:, :2]
+    width, height = np.ptp(places, axis=0) + 1.0
+    return float(height / width)
+
+
+def _ground(axes: Axes, steps: Sequence[Step], result: CheckResult) -> None:
+    """Draw the stock, the machine's travel, and the zero."""
+    from matplotlib.patches import Rectangle
+
+    stock = result.stock
+    if stock is not None and stock.width_mm is not None and stock.height_mm is not None:
+        size = stock.width_mm, stock.height_mm
+        axes.add_patch(
+            Rectangle(stock.corner_mm, *size, facecolor=WOOD, edgecolor="none", label="stock")
+        )
+    if result.machine.travel_mm is not None and steps:
+        low = np.vstack([way_mm(step) for step in steps])[:, :2].min(axis=0)
+        size = result.machine.travel_mm[0], result.machine.travel_mm[1]
+        style: dict[str, Any] = {"fill": False, "edgecolor": TRAVEL, "linestyle": ":"}
+        axes.add_patch(Rectangle((low[0], low[1]), *size, label="travel", **style))
+    axes.plot(0, 0, marker="+", markersize=14, color=TRAVEL, linestyle="none", label="zero")
+
+
+def _ways(axes: Axes, steps: Sequence[Step]) -> None:
+    """Draw rapids, cuts and plunges."""
+    rapids = [way_mm(step)[:, :2] for step in steps if step.is_rapid and step.across]
+    lines = [way_mm(step)[:, :2] for step in steps if not step.is_rapid and step.across]
+    in_work = [step.in_work for step in steps if not step.is_rapid and step.across]
+    cuts = [line for line, cut in zip(lines, in_work, strict=True) if cut]
+    travels = [line for line, cut in zip(lines, in_work, strict=True) if not cut]
+    _collection(axes, rapids, "rapid", RAPID, 0.7, (0, (5, 3)))
+    _collection(axes, travels, "line above the work", RAPID, 0.7, "-")
+    _collection(axes, cuts, "cut", CUT, 1.4, "-")
+    down = [step.move.end_mm[:2] for step in steps if _plunges(step)]
+    if down:
+        style: dict[str, Any] = {"marker": "o", "markersize": 5, "linestyle": "none"}
+        axes.plot(*np.array(down).T, color=PLUNGE, label="plunge", zorder=4, **style)
+
+
+def _plunges(step: Step) -> bool:
+    """Whether a step goes straight down into the work."""
+    down = step.move.end_mm[2] < step.begin_mm[2]
+    return step.in_work and not step.is_rapid and not step.across and down
+
+
+def _collection(
+    axes: Axes, lines: Sequence[Array], label: str, colour: str, width_pt: float, style: Any
+) -> None:
+    """Draw many lines of one kind."""
+    from matplotlib.collections import LineCollection
+
+    if lines:
+        look: dict[str, Any] = {"colors": colour, "linewidths": width_pt, "linestyles": style}
+        axes.add_collection(LineCollection(list(lines), label=label, **look))
+
+
+def _arrows(axes: Axes, steps: Sequence[Step]) -> None:
+    """Draw the direction of travel, evenly along what is cut, at least once in each cut."""
+    cuts = [step for step in steps if step.in_work and not step.is_rapid and step.across]
+    spacing_mm, waiting_mm = sum(step.length_mm for step in cuts) / ARROWS, math.inf
+    places, ways = [], []
+    before: Step | None = None
+    for step in cuts:
+        if before is None or before.move.end_mm[:2] != step.begin_mm[:2]:
+            waiting_mm = math.inf
+        waiting_mm += step.length_mm
+        if waiting_mm >= spacing_mm:
+            way = way_mm(step)[:, :2]
+            middle = (len(way) - 1) // 2
+            places.append((way[middle] + way[middle + 1]) / 2)
+            ways.append(
+                (way[middle + 1] - way[middle]) / math.dist(way[middle + 1], way[middle])
+            )
+            waiting_mm = 0.0
+        before = step
+    if places:
+        look: dict[str, Any] = {
+            "pivot": "mid",
+            "color": CUT,
+            "scale": 1,
+            "scale_units": "inches",
+        }
+        head: dict[str, Any] = {
+            "headwidth": 9,
+            "headlength": 9,
+            "headaxislength": 8,
+            "width": 0.0012,
+        }
+        axes.quiver(*np.array(places).T, *(0.12 * np.array(ways)).T, zorder=3, **look, **head)
+
+
+def _marked(axes: Axes, findings: Sequence[Finding]) -> None:
+    """Mark the findings that have a place, with their line."""
+    shown = [finding for finding in findings if finding.place_mm is not None]
+    for stops, colour, label in ((True, STOPS, "found"), (False, REMARK, "remark")):
+        places = [each.place_mm[:2] for each in shown if each.stops == stops and each.place_mm]
+        if places:
+            style: dict[str, Any] = {"marker": "x", "markersize": 9, "linestyle": "none"}
+            axes.plot(*np.array(places).T, color=colour, label=label, zorder=6, **style)
+    for finding in shown[:MOST_MARKED]:
+        assert finding.place_mm is not None
+        axes.annotate(
+            f"line {finding.line}: {finding.rule}",
+            finding.place_mm[:2],
+            (6, 6),
+            textcoords="offset points",
+            fontsize=7,
+            color=STOPS if finding.stops else REMARK,
+            zorder=7,
+        )
+
+
+def _side_view(axes: Axes, steps: Sequence[Step], result: CheckResult) -> None:
+    """Draw the height of the tool along its way, with the work's faces."""
+    stock = result.stock
+    surface_mm = stock.surface_mm if stock is not None else 0.0
+    along_mm, rapids, lines = 0.0, list[Array](), list[Array]()
+    for step in steps:
+        ends = [along_mm, along_mm + step.length_mm]
+        way = np.column_stack([ends, [step.begin_mm[2], step.move.end_mm[2]]])
+        (rapids if step.is_rapid else lines).append(way)
+        along_mm = ends[1]
+    _collection(axes, rapids, "rapid", RAPID, 0.7, "-")
+    _collection(axes, lines, "line", CUT, 1.0, "-")
+    axes.axhline(surface_mm, color="#a07840", linewidth=0.8)
+    if stock is not None and stock.thickness_mm is not None:
+        axes.axhspan(surface_mm - stock.thickness_mm, surface_mm, color=WOOD, zorder=0)
+    axes.autoscale_view()
+    axes.set(xlabel="along the way, mm", ylabel="Z, mm", xlim=(0, max(along_mm, 1.0)))
