@@ -49,14 +49,14 @@ class CheckJob:
     """Check a program for a machine, and on a stock if one is given."""
 
     program: FilePath
-    machine: str | None = None  # name of a built-in one, or a .toml file; None: the default
+    # name of a built-in one, or a .toml file; None: the one that the program names, or linuxcnc
+    machine: str | None = None
     stock: Stock | None = None
     picture: FilePath | None = None
 
     def run(self, listener: Listener = SILENT, panel: Panel | None = None) -> CheckResult:
         """Check; raises WrongUse, CardFault, FileFault, ProgramFault for what is no text."""
         from morfax.player.gcode.check.checked import check_program
-        from morfax.recorder.gcode.machine import DEFAULT, machine
 
         if medium.kind_of(self.program) in ("tape", "drawing") or (
             self.program.suffix.lower() in OTHER_MEDIA
@@ -67,8 +67,7 @@ class CheckJob:
             )
         if self.picture is not None:
             medium.outgoing(self.picture, self.program)
-        with settings_checked():
-            made = machine(self.machine or DEFAULT)
+        made = self._machine()
         checked = check_program(self.program, made, self.stock)
         surface_mm = self.stock.surface_mm if self.stock else 0.0
         figures = {
@@ -79,6 +78,17 @@ class CheckJob:
             "findings": [_told(finding) for finding in checked.findings],
         }
         return CheckResult(figures, checked, made, self.stock)
+
+    def _machine(self) -> Machine:
+        """The machine that is given, that the program names, or the default."""
+        from morfax.player.gcode.machine_reader import machine_of
+        from morfax.recorder.gcode.machine import machine
+
+        if self.machine is None:
+            lines = self.program.read_bytes().decode("latin-1").splitlines()
+            return machine_of(lines, str(self.program)) or machine()
+        with settings_checked():
+            return machine(self.machine)
 
 
 def _told(finding: Finding) -> dict[str, Any]:

@@ -188,15 +188,18 @@ def _marked(axes: Axes, findings: Sequence[Finding]) -> None:
         if places:
             style: dict[str, Any] = {"marker": "x", "markersize": 9, "linestyle": "none"}
             axes.plot(*np.array(places).T, color=colour, label=label, zorder=6, **style)
+    texts: dict[tuple[float, ...], list[Finding]] = {}
     for finding in shown[:MOST_MARKED]:
         assert finding.place_mm is not None
+        texts.setdefault(finding.place_mm[:2], []).append(finding)
+    for place_mm, here in texts.items():
         axes.annotate(
-            f"line {finding.line}: {finding.rule}",
-            finding.place_mm[:2],
+            "\n".join(f"line {each.line}: {each.rule}" for each in here),
+            (place_mm[0], place_mm[1]),
             (6, 6),
             textcoords="offset points",
             fontsize=7,
-            color=STOPS if finding.stops else REMARK,
+            color=STOPS if any(each.stops for each in here) else REMARK,
             zorder=7,
         )
 

@@ -33,7 +33,7 @@ Examples:
     "Machine",
     "--machine",
     help="The machine that shall run it: a name that `morfax machines` lists, or a .toml file of your "
-    "own.  [default: linuxcnc]",
+    "own.  [default: the one that the program names, or linuxcnc]",
 )
 @option(
     "Machine",

@@ -43,7 +43,7 @@ from morfax.recorder.gcode.program_text import END
 PLOTS = (".plt", ".hpgl")
 HEAD_LINES = 10  # among which a program of ours says what it is for
 
-_FOR = re.compile(r"^[(;]\s*for ([\w.-]+): ")
+FOR = re.compile(r"^[(;]\s*for ([\w.-]+): ")
 _PARAMETER = re.compile(r"^\s*#<[^>]*>\s*=.*$")
 _PANEL = re.compile(r"F#<[^>]*>", re.IGNORECASE)
 _SPINDLE = re.compile(r"\$\d+")
@@ -77,7 +77,7 @@ def machine_of(lines: Sequence[str], name: str = "program") -> Machine | None:
     Raises ProgramFault for a program of ours for a machine that is not built in.
     """
     for line in lines[:HEAD_LINES]:
-        if said := _FOR.match(line):
+        if said := FOR.match(line):
             if said[1] in names():
                 return machine(said[1])
             raise ProgramFault(
@@ -115,7 +115,7 @@ class MachineReader(Reader):
 
     def read(self, text: str) -> None:
         """Read a line."""
-        if _FOR.match(text):
+        if FOR.match(text):
             self.is_whole = False  # one of ours says in a comment that it is whole
         if text.strip() in (self.machine.comment(END), f"; {END}"):
             self.ended = True

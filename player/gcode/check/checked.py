@@ -25,7 +25,9 @@ from morfax.player.gcode.check.lines import Lines
 from morfax.player.gcode.check.motion_rules import Stock
 from morfax.player.gcode.check.steps import Step
 from morfax.player.gcode.check.words import WordRules
+from morfax.player.gcode.machine_reader import FOR
 from morfax.recorder.gcode.machine import Machine
+from morfax.recorder.gcode.program_text import END
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,20 +63,26 @@ def check_lines(lines: Iterable[str], machine: Machine, stock: Stock | None = No
     findings = Findings()
     taken, rules = Lines(machine, findings), WordRules(machine, findings)
     follower = Follower("program", machine, findings)
-    count = 0
+    count, is_ours, is_whole = 0, False, False
     for count, raw in enumerate(lines, 1):
         findings.line = count
+        is_ours = is_ours or bool(FOR.match(raw))
+        is_whole = is_whole or raw == machine.comment(END)
         words = taken.words(raw)
         if words is not None:
             follower.follow(words, rules.check(words, follower.motion))
         if taken.ended or follower.ended:
             break
     _check_last_line(taken, follower, findings)
+    if is_ours and machine.takes.end == "none" and not is_whole:
+        allowed = f"{machine.comment(END)!r} in its last line"
+        findings.here("end", "the program breaks off", allowed, "get the whole of it")
     surface_mm = stock.surface_mm if stock else 0.0
     steps = _steps(follower, surface_mm)
     motion_rules.check_rapids(steps, surface_mm, findings)
     motion_rules.check_tool(steps, machine, findings)
-    motion_rules.check_start(steps, machine, findings)
+    before_z = len(steps) if follower.start[2] is None else follower.unsent[2]
+    motion_rules.check_start(steps, machine, before_z, findings)
     motion_rules.check_end(steps, machine, findings)
     motion_rules.check_travel(steps, machine, findings)
     if stock is not None:

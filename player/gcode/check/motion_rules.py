@@ -102,16 +102,15 @@ def check_tool(steps: Sequence[Step], machine: Machine, findings: Findings) -> N
             findings.add(rule.at(step), rule.what)
 
 
-def check_start(steps: Sequence[Step], machine: Machine, findings: Findings) -> None:
-    """Remark on ways across before Z has been sent anywhere, and on a program that cuts nothing."""
-    for step in steps:
-        if not machine.z or step.begin_mm[2] != step.move.end_mm[2]:
-            break
-        if step.across:
-            what = "goes across before Z has been sent up"
-            do = "have the tool stand above work and clamps when you start"
-            findings.add(Rule("start", what, "", do, False).at(step))
-            break
+def check_start(
+    steps: Sequence[Step], machine: Machine, before_z: int, findings: Findings
+) -> None:
+    """Remark on ways across in the first steps, before Z has been sent anywhere, and on nothing cut."""
+    across = next((step for step in steps[:before_z] if step.across), None)
+    if machine.z and across is not None:
+        what = "goes across before Z has been sent up"
+        do = "have the tool stand above work and clamps when you start"
+        findings.add(Rule("start", what, "", do, False).at(across))
     if steps and not any(step.in_work and not step.is_rapid for step in steps):
         what = "nothing is cut: the tool is never in the work"
         do = "check the zero of Z (--surface), and that this is the program's machine"
