@@ -88,7 +88,12 @@ class CheckJob:
             lines = self.program.read_bytes().decode("latin-1").splitlines()
             return machine_of(lines, str(self.program)) or machine()
         with settings_checked():
-            return machine(self.machine)
+            made = machine(self.machine)
+        if not medium.is_gcode(FilePath(f"program{made.suffix}")):
+            raise WrongUse(
+                f"--machine {made.name} takes no G-code; check is for machines that do"
+            )
+        return made
 
 
 def _told(finding: Finding) -> dict[str, Any]:

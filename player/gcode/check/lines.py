@@ -87,7 +87,7 @@ class Lines:
             if inside is None:
                 continue
             if not self.takes.parentheses:
-                allowed, do = "comments stand after ;", "write it after ;"
+                allowed, do = "a comment after a semicolon", "write it so"
                 self.findings.here("comment", "has a comment in ( )", allowed, do, cause="( )")
             elif not closed:
                 allowed = "a comment ends with ) in its own line"

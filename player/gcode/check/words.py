@@ -79,7 +79,7 @@ class WordRules:
             elif code in self.takes.codes:
                 named.append(code)
             else:
-                self._not_taken(called(code), f"G and M: {listed(self.takes.codes)}")
+                self._not_taken(called(code), listed(self.takes.codes, letter))
         self._groups(words, named)
         self._beside_a_motion(words, named)
         if not self.takes.one_code:
@@ -172,10 +172,10 @@ def called(code: Code) -> str:
     return f"{code[0]}{code[1]:g}"
 
 
-def listed(many: frozenset[Code]) -> str:
-    """Words in their order, runs of them from to: "G0 to G4 G10"."""
+def listed(many: frozenset[Code], letters: str = "GM") -> str:
+    """Words with some letters in their order, runs of them from to: "G0 to G4 G10"."""
     runs: list[list[Code]] = []
-    for code in sorted(many):
+    for code in sorted(code for code in many if code[0] in letters):
         if runs and runs[-1][-1] == (code[0], code[1] - 1):
             runs[-1].append(code)
         else:

@@ -21,6 +21,7 @@ from morfax.recorder.gcode.machine import machine, names
 
 SAMPLES = Path(__file__).parents[4] / "samples"
 DEEP_MM = 3.0
+OF_G_CODE = [name for name in names() if machine(name).suffix not in (".plt", ".hpgl")]
 WHOLE_TURN = r"^G[23] .*I"
 
 Programs = Callable[[str, str], Path]
@@ -42,7 +43,7 @@ def written(name: str, sample: str, folder: Path) -> Path:
     return file
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", OF_G_CODE)
 @pytest.mark.parametrize("sample", ["bracket", "program"])
 def test_every_program_that_we_write_may_be_started(
     name: str, sample: str, program: Programs
@@ -114,7 +115,7 @@ MISTAKES: dict[str, tuple[str, Mistake]] = {
 }
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", OF_G_CODE)
 @pytest.mark.parametrize("mistake", MISTAKES)
 def test_a_mistake_that_is_put_in_is_found_at_its_line(
     name: str, mistake: str, program: Programs
@@ -130,7 +131,7 @@ def test_a_mistake_that_is_put_in_is_found_at_its_line(
         assert at + 1 in [each.line for each in found]
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", OF_G_CODE)
 def test_a_stock_or_a_travel_too_small_is_found(name: str, program: Programs) -> None:
     file, wanted = program(name, "bracket"), machine(name)
     for stock, rule in ((Stock(5, 5, 18), "stock"), (Stock(900, 900, 1), "depth")):
@@ -144,7 +145,7 @@ def test_a_stock_or_a_travel_too_small_is_found(name: str, program: Programs) ->
 @pytest.mark.skipif(
     shutil.which("rs274") is None, reason="rs274 of linuxcnc-uspace is not installed"
 )
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", OF_G_CODE)
 def test_linuxcnc_s_reader_takes_every_program_whose_words_it_knows(
     name: str, tmp_path: Path, program: Programs
 ) -> None:
