@@ -22,7 +22,7 @@ from morfax.jobs import kernels
 from morfax.motion.faults import DrawingFault, Fault, FileFault
 
 VERBS = {
-    "lines": "Say what is on a drawing, with the numbers that trace --lines takes.",
+    "lines": "Say what is on a drawing: a numbered table of its lines, dots and likely lettering.",
     "trace": "Follow the line of a drawing and record the head's motion on a tape.",
     "play": "Play a tape into the simulated machine and write the path it runs.",
     "compare": "Say how far two contours are apart: paths, tapes, or one of them a drawing.",

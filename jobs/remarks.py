@@ -43,8 +43,9 @@ def remarks(
     yield from _of_breaks(trace, gap_mm)
     yield from _of_stems(trace)
     yield from _of_crossing_guides(trace)
-    if settings.line.lines is None and trace.fault is None:
+    if not settings.line.are_several and trace.fault is None:
         yield from _of_rest(trace.lines[0])
+        yield from _of_others(trace)
 
 
 def of_cutter(beside: Trace, left: Left, cutter: Cutter) -> Iterator[str]:
@@ -216,6 +217,16 @@ def _of_rest(line: Line) -> Iterator[str]:
             f"about {line.ink_mm - line.length_mm:.0f} mm of ink that is joined to the line was not "
             "followed: "
             "--lines all also follows the lines that cross or touch it, --start X,Y another one"
+        )
+
+
+def _of_others(trace: Trace) -> Iterator[str]:
+    """Further lines of the sheet, where one was traced and nobody said which."""
+    if trace.others:
+        lines = "1 further line" if trace.others == 1 else f"{trace.others} further lines"
+        yield (
+            f"one line is traced; the sheet has {lines}: `morfax lines` lists them, --lines all "
+            "traces them too"
         )
 
 

@@ -69,6 +69,13 @@ class LineSettings:
     recatch_mm: float | None = None
     direction: Direction | None = None
     reference_mm: tuple[float, float] | None = None  # None: looked for on the drawing
+    # further places to start: the line at each is traced as well
+    more_starts_mm: tuple[tuple[float, float], ...] = ()
+
+    @property
+    def are_several(self) -> bool:
+        """Whether lines are asked for, and not one line."""
+        return self.lines is not None or bool(self.more_starts_mm)
 
 
 @dataclass(frozen=True, slots=True)

@@ -37,6 +37,8 @@ class Tracing:
         """Read the card and the settings; raises WrongUse, CardFault and FileFault for a mistake in them."""
         if settings.line.lines is not None and settings.line.start_mm is not None:
             raise WrongUse("--start picks one line, --lines several; give one of them")
+        if settings.line.more_starts_mm and settings.line.start_mm is None:
+            raise WrongUse("more_starts_mm are further places; give the first one as start_mm")
         card = settings.card()
         if panel is None and waits(card):
             raise CardFault(
@@ -69,13 +71,13 @@ class Tracing:
             beside, left = with_cutter(followed, cutter, self.of_head.speed_mm_s)
             for text in of_cutter(beside, left, cutter):
                 listener.warning(text)
-        several = self.settings.line.lines is not None
+        several = self.settings.line.are_several
         return Traced(beside, thin(beside), several, origin_mm, cutter, left)
 
     def _followed(self, drawing: Drawing, listener: Listener) -> Trace:
         """The line that the head followed, or the lines."""
         from morfax.tracer.program.trace import trace
-        from morfax.tracer.program.trace_lines import trace_lines
+        from morfax.tracer.program.trace_lines import trace_lines, trace_places
 
         line = self.settings.line
         with listener.progress("following the line", 1.0) as advance:
@@ -83,6 +85,9 @@ class Tracing:
             def tell(come_mm: float, all_mm: float) -> None:
                 advance(come_mm / all_mm)
 
+            if line.more_starts_mm and line.start_mm is not None:
+                starts_mm = (line.start_mm, *line.more_starts_mm)
+                return trace_places(drawing, starts_mm, self.of_head, self.operator, tell)
             if line.lines is None:
                 return trace(drawing, line.start_mm, self.of_head, self.operator, tell)
             return trace_lines(drawing, line.lines, self.of_head, self.operator, tell)

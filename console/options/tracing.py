@@ -43,11 +43,11 @@ DEFAULTS = {
 START = option(
     "Line",
     "--start",
-    "start_mm",
+    "starts_mm",
     type=PLACE,
-    help="Where the head looks for the line, X,Y in mm from the sheet's lower-left corner.  [default: a "
-    "smooth "
-    "place of the longest line]",
+    multiple=True,
+    help="Where the head looks for the line, X,Y in mm from the sheet's lower-left corner; several times for "
+    "several lines as one program.  [default: a smooth place of the longest line]",
 )
 SEVERAL = option(
     "Line",
@@ -242,6 +242,10 @@ def _settings(options: dict[str, Any]) -> TraceSettings:
             "--side is the side of the cutter; give its diameter with --cutter, such as 6mm"
         )
     options["side"] = options["side"] or "outside"
+
+    starts_mm = options.pop("starts_mm")
+    options["start_mm"] = starts_mm[0] if starts_mm else None
+    options["more_starts_mm"] = tuple(starts_mm[1:])
 
     def of(kind: type[Any]) -> Any:
         return kind(**{field.name: options.pop(field.name) for field in fields(kind)})

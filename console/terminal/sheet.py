@@ -26,6 +26,13 @@ def sheet_shown(job: TraceJob | RunJob, picture: FilePath | None, desk: Desk) ->
             from morfax.reports.pictures import draw_start
 
             file = incomplete(picture)
-            draw_start(job.drawing, job.settings.line.start_mm, fault, file)
+            start_mm = job.settings.line.start_mm
+            if (
+                fault.nearest_mm is not None
+                and fault.x_mm is not None
+                and fault.y_mm is not None
+            ):
+                start_mm = (fault.x_mm, fault.y_mm)
+            draw_start(job.drawing, start_mm, fault, file)
             desk.note(f"the sheet is drawn in {file}; read a place for --start off its axes")
         raise

@@ -158,6 +158,37 @@ def test_another_line_is_traced_from_its_start(morfax: Morfax, here: Path) -> No
     assert answer.figures["length_mm"] == pytest.approx(2 * 22 + 8 * np.pi, rel=0.005)
 
 
+def test_several_starts_are_one_program_the_slot_before_its_outline(
+    morfax: Morfax, here: Path
+) -> None:
+    bracket = SAMPLES / "bracket.png"
+    call = ("trace", bracket, "--start", "40,7", "--start", "48,26", "-o", "both.csv", "--json")
+    answer = morfax(*call)
+    assert answer.exit_code == 0 and answer.err == ""
+    slot, outline = answer.figures["lines"]
+    assert (slot["line"], outline["line"]) == (2, 1)
+    assert slot["length_mm"] == pytest.approx(2 * 22 + 8 * np.pi, rel=0.005)
+    assert len(read_path("both.csv").runs()) == 2
+    call = ("trace", bracket, "--start", "50.5,26", "--start", "48,26", "-o", "one.csv")
+    answer = morfax(*call)
+    assert (
+        answer.exit_code == 4 and "are on the same line; leave one of them out" in answer.fault
+    )
+    call = ("trace", bracket, "--start", "48,26", "--start", "20,50", "-o", "one.csv")
+    answer = morfax(*call)
+    assert answer.exit_code == 4 and "no line within 3 mm of 20,50 mm" in answer.fault
+    assert not Path("one.csv").exists()
+
+
+def test_a_plain_trace_says_what_else_is_on_the_sheet(morfax: Morfax, here: Path) -> None:
+    told = morfax("trace", SAMPLES / "bracket.png", "-o", "outline.csv").err
+    assert "the sheet has 1 further line: `morfax lines` lists them" in told
+    for words in (("--start", "48,26"), ("--lines", "1")):
+        told = morfax("trace", SAMPLES / "bracket.png", *words, "-o", "outline.csv").err
+        assert told == ""
+    assert morfax("trace", SAMPLES / "program.png", "-o", "program.csv").err == ""
+
+
 def test_all_lines_are_one_program_listed_and_numbered(morfax: Morfax, here: Path) -> None:
     """The bracket's slot, then its outline; the table has a row for each, the JSON an entry."""
     call = ("trace", SAMPLES / "bracket.png", "--lines", "all", "-o", "bracket.csv")

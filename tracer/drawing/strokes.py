@@ -141,6 +141,12 @@ class Sheet:
         middle_px = np.array([0.5 * (left + right), rows - 0.5 * (top + bottom)])
         return middle_px * self.drawing.pitch_mm
 
+    def run_middles_mm(self, runs: Pixels) -> Array:
+        """Middles of some runs of ink, (n, 2) sheet mm."""
+        patches = self.patches
+        columns = 0.5 * (patches.begin[runs] + patches.end[runs] - 1)
+        return self._mm(patches.row[runs], columns)
+
     def _mm(self, rows: Pixels, columns: Pixels) -> Array:
         """Centres of pixels, (n, 2) sheet mm."""
         up = self.drawing.darkness.shape[0] - rows

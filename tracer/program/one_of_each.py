@@ -12,8 +12,6 @@ be put down is taken for a letter; a larger one counts as a lost line.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 import numpy as np
 
 from morfax.motion import nesting
@@ -21,13 +19,10 @@ from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault
 from morfax.motion.polyline import nearest_mm
 from morfax.tracer.following.line import Line
-from morfax.tracer.marks.reference import LARGEST_MM
 from morfax.tracer.program import selection
 from morfax.tracer.program.selection import Contour, Which
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace import SHORT, followed, followed_from_an_end
-
-ABOUT_REFERENCE_MM = 1.0  # ink as far beyond the largest reference point is still a part of it
 
 
 def one_of_each(setup: Setup, asked: list[Contour], which: Which) -> tuple[list[Line], int]:
@@ -51,13 +46,7 @@ def one_of_each(setup: Setup, asked: list[Contour], which: Which) -> tuple[list[
 def are_of_reference(places: Array, lines: list[Line]) -> bool:
     """Whether places (n, 2) mm are the reference point from which a line, or a lead line, begins."""
     begins = [line.begin_mm for line in lines if line.is_lead or line.reference_mm is not None]
-    return are_about(places, begins)
-
-
-def are_about(places: Array, references_mm: Iterable[tuple[float, float]]) -> bool:
-    """Whether places (n, 2) mm are those of one of some reference points."""
-    reach_mm = 0.5 * LARGEST_MM + ABOUT_REFERENCE_MM
-    return any(np.hypot(*(places - place_mm).T).max() < reach_mm for place_mm in references_mm)
+    return selection.are_about(places, begins)
 
 
 def is_inside(line: Line, lines: list[Line]) -> bool:

@@ -38,6 +38,7 @@ class Trace:
     """What the head did: a stream of Motion over its lines, in the order in which they are cut.
 
     `left_out` patches of ink were too short to be lines; `left_out_mm` of ink is joined to lines, but none.
+    `others`: further lines of a sheet whose longest line was asked for.
     """
 
     lines: tuple[Line, ...]
@@ -45,6 +46,7 @@ class Trace:
     rate_hz: float = MOTION_RATE_HZ
     left_out: int = 0
     left_out_mm: float = 0.0
+    others: int = 0
 
     @property
     def work(self) -> Work:

@@ -16,7 +16,7 @@ others by number.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
@@ -28,6 +28,7 @@ from morfax.motion.faults import LineFault
 from morfax.motion.nesting import lies_inside
 from morfax.motion.polyline import nearest_mm
 from morfax.tracer.drawing.strokes import Sheet, Stroke
+from morfax.tracer.marks.reference import LARGEST_MM
 
 Which = str | tuple[int, ...]  # "all", "outer", or the numbers of lines
 
@@ -40,6 +41,7 @@ STARTS = 8  # places at which the head may be put down on a line, ...
 STARTS_WIDTHS = 4.0  # ... this far apart
 LOOKED_AT = 400  # places of a line that are looked at for them
 COVERED = 0.8  # a stroke is a part of a followed line if this share of it lies on that line
+ABOUT_REFERENCE_MM = 1.0  # ink as far beyond the largest reference point is still a part of it
 COMPARED = 40  # places of a stroke that are compared with a followed line
 BESIDE_MM = 1.0  # a stroke further outside a followed line's bounds does not lie on it
 
@@ -104,6 +106,30 @@ def lines_of(sheet: Sheet) -> NDArray[np.int64]:
     long_enough = sheet.lengths_mm >= shortest_mm
     patches = np.flatnonzero(long_enough | (_reach_mm(sheet) >= LETTER_MM))
     return patches[np.argsort(-sheet.lengths_mm[patches], kind="stable")]
+
+
+def others_than(
+    sheet: Sheet, line_mm: Array, reference_mm: tuple[float, float] | None = None
+) -> int:
+    """How many patches are lines, have no ink on a followed line (n, 2) mm, and are not the reference point
+    from which it begins.
+    """
+    numbered = np.zeros(sheet.patches.count, bool)
+    numbered[lines_of(sheet)] = True
+    runs = np.flatnonzero(numbered[sheet.patches.patch])
+    patch, middles_mm = sheet.patches.patch[runs], sheet.run_middles_mm(runs)
+    near = nearest_mm(middles_mm, line_mm) < 0.5 * sheet.widths_mm[patch]
+    others = numbered & (np.bincount(patch[near], minlength=len(numbered)) == 0)
+    if reference_mm is not None:
+        for number in np.flatnonzero(others):
+            others[number] = not are_about(middles_mm[patch == number], [reference_mm])
+    return int(np.count_nonzero(others))
+
+
+def are_about(places: Array, references_mm: Iterable[tuple[float, float]]) -> bool:
+    """Whether places (n, 2) mm are those of one of some reference points."""
+    reach_mm = 0.5 * LARGEST_MM + ABOUT_REFERENCE_MM
+    return any(np.hypot(*(places - place_mm).T).max() < reach_mm for place_mm in references_mm)
 
 
 def least_mm(width_mm: float | Array) -> Array:

@@ -35,7 +35,6 @@ from morfax.tracer.following.plain_places import aperture_for, stance_near, view
 from morfax.tracer.following.start import put_down
 from morfax.tracer.marks.reference import references
 from morfax.tracer.program import selection
-from morfax.tracer.program.one_of_each import are_about
 from morfax.tracer.program.selection import Contour
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace import followed_from_an_end
@@ -212,7 +211,7 @@ def _with_references(seen: list[Entry], contours: list[Contour]) -> Iterator[Ent
     places_mm = [entry.reference_mm for entry in seen if entry.reference_mm is not None]
     middles_mm = {contour.number: contour.stroke.middles_mm for contour in contours}
     for entry in seen:
-        own = are_about(middles_mm[entry.number], places_mm)
+        own = selection.are_about(middles_mm[entry.number], places_mm)
         yield replace(entry, is_reference=own and entry.is_small)
 
 

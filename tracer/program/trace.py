@@ -30,6 +30,7 @@ from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance, turned_round
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.program import Trace
+from morfax.tracer.program.selection import others_than
 from morfax.tracer.program.setup import HeadProgress, Setup
 
 # of the ink that is joined to it: a shorter run is along another line, which crosses this one; by trial
@@ -52,7 +53,11 @@ def trace(
     """
     operator = operator or Operator()
     setup = Setup(Sheet.of(drawing), settings or Settings(), operator, progress)
-    return Trace((followed(setup, start_mm),), operator)
+    line = followed(setup, start_mm)
+    others = 0
+    if start_mm is None:
+        others = others_than(setup.sheet, line.places_mm, line.reference_mm)
+    return Trace((line,), operator, others=others)
 
 
 def followed(

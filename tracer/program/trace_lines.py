@@ -13,12 +13,14 @@ head to one line after the other is our own.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from morfax.motion import nesting
 from morfax.motion.faults import LineFault
+from morfax.motion.polyline import nearest_mm
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
@@ -34,6 +36,7 @@ from morfax.tracer.program.selection import Contour, Which
 from morfax.tracer.program.setup import HeadProgress, Setup
 from morfax.tracer.program.trace import followed
 
+SAME = 0.8  # of a line's way along another: they are one line; by trial
 ALIKE = 0.02  # a line is as long from its other end, within this share; by trial
 
 
@@ -70,6 +73,32 @@ def trace_lines(
     return Trace(
         tuple(in_order), operator, left_out=found.left_out, left_out_mm=found.left_out_mm
     )
+
+
+def trace_places(
+    drawing: Drawing,
+    starts_mm: Sequence[tuple[float, float]],
+    settings: Settings | None = None,
+    operator: Operator | None = None,
+    progress: HeadProgress | None = None,
+) -> Trace:
+    """Follow the line at each of several places (sheet mm); they are numbered as the places are given.
+
+    Raises LineFault if no line is near a place, or two places are on one line.
+    """
+    operator = operator or Operator()
+    setup, lines = Setup(Sheet.of(drawing), settings or Settings(), operator), list[Line]()
+    for number, start_mm in enumerate(starts_mm, 1):
+        line = followed(setup, start_mm, number)
+        for other in lines:
+            near = nearest_mm(line.places_mm, other.places_mm) < line.width_mm
+            if near.mean() > SAME:
+                raise _one_line(starts_mm[other.number - 1], start_mm)
+        lines.append(line)
+        if progress is not None:
+            progress(float(number), float(len(starts_mm)))
+    _refuse_none_begun(lines)
+    return Trace(tuple(_in_order(setup, lines)), operator)
 
 
 def found_lines(setup: Setup, which: Which) -> FoundLines:
@@ -157,6 +186,16 @@ def _refuse_none_begun(lines: list[Line]) -> None:
     raise fault or LineFault(
         "no line can be begun: the ink on the sheet is too short, or is letters; give --start X,Y at a plain"
         " stretch, or, if dots are to be drilled, the --line-width of their pen"
+    )
+
+
+def _one_line(first_mm: tuple[float, float], second_mm: tuple[float, float]) -> LineFault:
+    """The fault of two places to start that are on one line."""
+    (x, y), (u, v) = first_mm, second_mm
+    return LineFault(
+        f"--start {x:g},{y:g} and --start {u:g},{v:g} are on the same line; leave one of them out",
+        x_mm=u,
+        y_mm=v,
     )
 
 
