@@ -1,5 +1,4 @@
-"""The follower: the head put down on a line, which it follows through its junctions until the line closes,
-ends or is lost.
+"""The follower: the head follows a line through its junctions until the line closes, ends or is lost.
 
 Signals: a drawing, a place and a heading in; out what the head did (see `followed`): positions of the X and Y
 screws (n, 2) mm at the motion rate, and the ending.
@@ -91,8 +90,7 @@ class Follower:
             if why == CHANGED:
                 self.view = self.view.like(*self.carriage.stands(), follows=SWELLS)
                 self.carriage.retune(self.view)
-                continue
-            if why == MORE:
+            if why in (CHANGED, MORE):
                 continue
             if self.settings.direct_rad_s_mm > 0:
                 return self._lost(NO_GUARDS, SLOWER)
