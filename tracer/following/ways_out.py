@@ -10,13 +10,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.tracer.head.carriage import Carriage
-from morfax.tracer.junctions.choice import Asked, Choice, survey
+from morfax.tracer.junctions.choice import Asked, Choice, WayIn, survey
 from morfax.tracer.junctions.guides import Junctions
 from morfax.tracer.marks.dots import disc, dot_ahead
 from morfax.tracer.sensing.leg import Leg, goes_straight, leg_of, turns_off
@@ -56,17 +57,18 @@ class WaysOut:
         trail, travel_mm = carriage.trail, carriage.travel_mm
         if self.comes_back(view, incoming):
             self.junctions.is_back(carriage.count, travel_mm)
-            return survey(view, incoming, trail), True
+            return survey(WayIn(view, incoming, trail)), True
         number = self.junctions.next(travel_mm)
         side = self.turns.sides[number] if number < len(self.turns.sides) else None
         leads = number == 0 and self.from_reference
         rank = self.turns.other.count(number)
-        found = survey(view, incoming, trail, Asked(rank, side, leads))
+        way_in = WayIn(view, incoming, trail)
+        found = survey(way_in, Asked(rank, side, leads))
         if found.choices > 1:
-            place = self._place_of(view, incoming, found, carriage)
+            place = _place_of(way_in, found)
             self.junctions.come_to(place, travel_mm)
             turns_aside = side is not None and not goes_straight(incoming, found.leg)
-            if turns_aside and _goes_on(view, incoming, carriage):
+            if turns_aside and goes_straight(incoming, survey(way_in).leg):
                 self.junctions.take(place, carriage.count)
         return found, side is not None
 
@@ -76,9 +78,10 @@ class WaysOut:
         asked = number in self.turns.other or any(self.turns.sides[number : number + 1])
         if asked or self.comes_back(view, incoming):
             return True
-        found = survey(view, incoming, carriage.trail)
+        way_in = WayIn(view, incoming, carriage.trail)
+        found = survey(way_in)
         if found.choices > 1:
-            place = self._place_of(view, incoming, found, carriage)
+            place = _place_of(way_in, found)
             self.junctions.come_to(place, carriage.travel_mm)
         return False
 
@@ -86,18 +89,15 @@ class WaysOut:
         """Whether the head is back at the junction where it took a guide line."""
         return self.junctions.comes_back(incoming.end_mm, 2 * view.width_mm + BACK_MM)
 
-    def _place_of(self, view: View, incoming: Leg, found: Choice, carriage: Carriage) -> Array:
-        """Where a junction is: where the way in meets the way out, or else a line that turns off."""
-        turned = [survey(view, incoming, carriage.trail, Asked(side=side)) for side in SIDES]
-        for leg, corner, _ in (found, *turned):
-            if corner is not None and leg is not None and turns_off(incoming, leg):
-                return corner.vertex_mm
-        return incoming.end_mm
 
-
-def _goes_on(view: View, incoming: Leg, carriage: Carriage) -> bool:
-    """Whether a line goes straight on at a junction."""
-    return goes_straight(incoming, survey(view, incoming, carriage.trail).leg)
+def _place_of(way_in: WayIn, found: Choice) -> Array:
+    """Where a junction is: where the way in meets the way out, or else a line that turns off."""
+    incoming = way_in.incoming
+    turned = (survey(way_in, Asked(side=side)) for side in SIDES)
+    for leg, corner, _ in chain([found], turned):
+        if corner is not None and leg is not None and turns_off(incoming, leg):
+            return corner.vertex_mm
+    return incoming.end_mm
 
 
 def station_before(view: View, seen: Array, here: int, guard_mm: float) -> tuple[int, Leg]:

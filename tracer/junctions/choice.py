@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import combinations
 from typing import NamedTuple
 
@@ -71,16 +71,38 @@ class Choice(NamedTuple):
     choices: int
 
 
-def survey(view: View, incoming: Leg, trail: Trail, asked: Asked = STRAIGHTEST) -> Choice:
+@dataclass(frozen=True, slots=True)
+class WayIn:
+    """The way into a junction: how the line is seen, its leg and the trail; and legs found about places there.
+
+    Several surveys of one junction look about the same places: their legs are felt once.
+    """
+
+    view: View
+    incoming: Leg
+    trail: Trail
+    _felt: dict[tuple[float, float], list[Leg]] = field(default_factory=dict)
+
+    def legs_around(self, centre: Array) -> list[Leg]:
+        """The clean legs that leave a place (see `rings`), but for the way in."""
+        place = float(centre[0]), float(centre[1])
+        if place not in self._felt:
+            way_in = np.vstack([self.trail.recent(), self.incoming.seen[:, :2]])
+            self._felt[place] = legs_around(self.view, centre, way_in)
+        return self._felt[place]
+
+
+def survey(way_in: WayIn, asked: Asked = STRAIGHTEST) -> Choice:
     """Choose the leg by which the head leaves the junction ahead of a leg.
 
     Rings stand where the line stops being clean. If it does not go straight on from there, they also stand
     where the ink ahead ends: at the tip of a sharp corner.
     """
+    view, incoming = way_in.view, way_in.incoming
     half = 0.5 * view.width_mm
     near = half + view.step_mm
     ink = reach_of_ink(view, incoming, REACH_WIDTHS * view.width_mm + REACH_MM)
-    around = _Survey(view, incoming, trail, asked)
+    around = _Survey(way_in, asked)
     # 1. where the line stops being clean
     begin = near if ink is None else max(0.0, min(near, ink - half))
     found = around.look(incoming.at(begin))
@@ -100,23 +122,30 @@ def survey(view: View, incoming: Leg, trail: Trail, asked: Asked = STRAIGHTEST) 
 
 @dataclass(frozen=True, slots=True)
 class _Survey:
-    """What a junction is surveyed by: how the line is seen, the way in, and how the head is to leave."""
+    """What a junction is surveyed by: the way in, and how the head is to leave."""
 
-    view: View
-    incoming: Leg
-    trail: Trail
+    way_in: WayIn
     asked: Asked
+
+    @property
+    def view(self) -> View:
+        """How the line is seen."""
+        return self.way_in.view
+
+    @property
+    def incoming(self) -> Leg:
+        """The leg of the way in."""
+        return self.way_in.incoming
 
     def look(self, centre: Array) -> Choice:
         """Choose among the legs about a centre, and then about the vertex, until that stays."""
-        view, incoming = self.view, self.incoming
-        way_in = np.vstack([self.trail.recent(), incoming.seen[:, :2]])
+        view, incoming, trail = self.view, self.incoming, self.way_in.trail
         leg, corner, count = None, None, 0
         for _ in range(LOOKS):
-            every = legs_around(view, centre, way_in)
+            every = self.way_in.legs_around(centre)
             every = self._without_overrun(every) if self.asked.leads else every
             every = self._without_marks(every)
-            new = [leg for leg in every if not self.trail.holds(leg, view.width_mm)]
+            new = [leg for leg in every if not trail.holds(leg, view.width_mm)]
             new = self._without_stubs(new, every)
             count = max(count, len(new) + (len(new) < len(every)))
             if not new:

@@ -22,15 +22,16 @@ principles.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
+from numba import njit
+from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d
 
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import lengths_mm
-from morfax.tracer.sensing.leg import FEWEST_STATIONS, LEAST_WIDTHS, Leg, leg_of, turn
+from morfax.tracer.sensing.leg import FEWEST_STATIONS, LEAST_WIDTHS, Leg, leg_of
+from morfax.tracer.sensing.photocell import TWO_PI, ring
 from morfax.tracer.sensing.view import View
 
 # Chosen by trial on the test drawings; stations are a view's step apart.
@@ -49,6 +50,21 @@ CLEAN_RINGS = 3  # on which an arc has the line's width: a leg
 # of the width, and half the arc: as wide as the line
 NARROWEST, WIDEST, WIDEST_RAD = 0.5, 1.45, 1.2
 MORE_LEGS = 0.5  # of a leg's length: rings grow on by this after a leg was found
+
+# an arc of ink on a ring: where it begins and ends, its middle, and those of the two rings within, rad; for
+# how many rings it has been clean; whether it is the way in, or a leg already
+ARC = np.dtype(
+    [
+        ("begin", np.float64),
+        ("end", np.float64),
+        ("middle", np.float64),
+        ("middle_one_back", np.float64),
+        ("middle_two_back", np.float64),
+        ("clean", np.int64),
+        ("incoming", np.bool_),
+        ("found", np.bool_),
+    ]
+)
 
 
 def corner_in(seen: Array, first: int) -> int | None:
@@ -95,76 +111,33 @@ def legs_around(view: View, centre: Array, trail: Array) -> list[Leg]:
     """The clean legs that leave a junction, but for the one by which the `trail` (n, 2) came in."""
     trail = _up_to(trail, centre)
     trail_mm = np.hypot(*(trail - centre).T)
-    joined: list[_Arc] = []
+    arcs = np.empty(0, ARC)
     found: list[Leg] = []
     last_mm = max(FARTHEST_MM, FARTHEST_WIDTHS * view.width_mm)
     for radius in np.arange(BEGIN * view.width_mm, last_mm, view.step_mm):
         if radius > last_mm:
             break
         # 1. the ring's arcs, as they hang on the ring within
-        ring = _Ring(
-            view.ring(centre, radius), radius, _crossing(trail, trail_mm, centre, radius)
-        )
-        joined = _joined(ring, joined, view.width_mm)
-        if not joined:
+        trail_rad = _crossing(trail, trail_mm, centre, radius)
+        arcs = _outward(view.cells, centre, (radius, view.width_mm, trail_rad), arcs)
+        if not len(arcs):
             break
         # 2. those that have been clean for long enough are legs
         before = len(found)
-        found += _new_legs(view, centre, radius, joined)
+        for k in np.flatnonzero(_undecided(arcs) & (arcs["clean"] >= CLEAN_RINGS)):
+            leg = _leg_outward(view, centre, radius, arcs[k])
+            if leg is not None:
+                found.append(leg)
+                arcs["found"][k] = True
         # 3. rings go on a little after the first leg, and for as long as some ink is undecided
-        undecided = any(arc.undecided for arc in joined)
-        if found and (not before or undecided):
+        if found and (not before or _undecided(arcs).any()):
             last_mm = radius + MORE_LEGS * view.leg_mm
     return found
 
 
-def _new_legs(view: View, centre: Array, radius: float, arcs: list[_Arc]) -> list[Leg]:
-    """The legs that arcs are now known to be."""
-    found = []
-    for arc in arcs:
-        if arc.clean >= CLEAN_RINGS and arc.undecided:
-            leg = _leg_outward(view, centre, radius, arc)
-            if leg is not None:
-                found.append(leg)
-                arc.found = True
-    return found
-
-
-class _Ring(NamedTuple):
-    """A ring: its arcs of ink (n, 2) rad, its radius, and where the trail crosses it (rad)."""
-
-    arcs: Array
-    radius_mm: float
-    trail_rad: float | None
-
-
-@dataclass(slots=True)
-class _Arc:
-    """An arc of ink on a ring: where it begins and ends (rad), for how many rings it has been clean, whether
-    it is the way in, or a leg already, and its middles on the last rings.
-    """
-
-    begin: float
-    end: float
-    clean: int
-    incoming: bool
-    found: bool
-    track: tuple[float, ...]
-
-    @property
-    def middle(self) -> float:
-        """Direction of its middle, rad."""
-        return 0.5 * (self.begin + self.end)
-
-    @property
-    def undecided(self) -> bool:
-        """Whether it is neither the way in nor a leg yet."""
-        return not self.found and not self.incoming
-
-    def overlaps(self, begin: float, end: float) -> bool:
-        """Whether it has a direction in common with another arc."""
-        apart = abs(turn(self.middle, 0.5 * (begin + end)))
-        return apart < 0.5 * (self.end - self.begin + end - begin)
+def _undecided(arcs: NDArray[np.void]) -> NDArray[np.bool_]:
+    """Which arcs are neither the way in nor a leg yet."""
+    return np.asarray(~(arcs["found"] | arcs["incoming"]))
 
 
 def _up_to(trail: Array, centre: Array) -> Array:
@@ -174,58 +147,20 @@ def _up_to(trail: Array, centre: Array) -> Array:
     return trail[: len(trail) - int(np.argmin(np.hypot(*(newest - centre).T)))]
 
 
-def _crossing(trail: Array, trail_mm: Array, centre: Array, radius: float) -> float | None:
-    """Direction in which the trail, back from its newest place, crosses a ring; None if it is too short."""
+def _crossing(trail: Array, trail_mm: Array, centre: Array, radius: float) -> float:
+    """Direction in which the trail, back from its newest place, crosses a ring; NaN if it is too short."""
     beyond = np.flatnonzero(trail_mm >= radius)
     if not len(beyond):
-        return None
+        return math.nan
     place = trail[beyond[-1]] - centre
     return math.atan2(place[1], place[0])
 
 
-def _joined(ring: _Ring, inner: list[_Arc], width_mm: float) -> list[_Arc]:
-    """The arcs of a ring that are joined by ink to those of the ring within it."""
-    out = []
-    for begin, end in ring.arcs:
-        parents = [arc for arc in inner if arc.overlaps(begin, end)]
-        if inner and not parents:
-            continue
-        arc = _Arc(begin, end, 0, False, any(a.found for a in parents), ())
-        arc.incoming = _is_way_in(arc, parents, ring.trail_rad)
-        if _is_as_wide(arc, ring.radius_mm, width_mm):
-            _go_on(arc, parents, ring.arcs)
-        out.append(arc)
-    return out
-
-
-def _is_as_wide(arc: _Arc, radius_mm: float, width_mm: float) -> bool:
-    """Whether an arc is about as wide as the line."""
-    half = min(0.5 * (arc.end - arc.begin), 0.5 * math.pi)
-    width = 2 * radius_mm * math.sin(half)
-    return NARROWEST * width_mm < width < WIDEST * width_mm and half < WIDEST_RAD
-
-
-def _go_on(arc: _Arc, parents: list[_Arc], arcs: Array) -> None:
-    """Count an arc clean: with its parent's rings, if it is the only child of an only parent."""
-    alone = len(parents) == 1 and sum(parents[0].overlaps(b, e) for b, e in arcs) == 1
-    arc.clean = parents[0].clean + 1 if alone else 1
-    track = (*parents[0].track, arc.middle) if alone else (arc.middle,)
-    arc.track = track[-CLEAN_RINGS:]
-
-
-def _is_way_in(arc: _Arc, parents: list[_Arc], trail_rad: float | None) -> bool:
-    """Whether an arc is the way in: the trail crosses it, or it hangs on the way in, not on the junction."""
-    if parents and all(a.incoming and a.clean > 1 for a in parents):
-        return True
-    if trail_rad is None:
-        return any(a.incoming for a in parents)
-    return arc.overlaps(trail_rad, trail_rad)
-
-
-def _leg_outward(view: View, centre: Array, radius: float, arc: _Arc) -> Leg | None:
+def _leg_outward(view: View, centre: Array, radius: float, arc: np.void) -> Leg | None:
     """Feel outward along an arc that three rings have seen; None if the line there is not clean after all."""
     radii = radius - view.step_mm * np.arange(CLEAN_RINGS - 1, -1, -1)
-    places = centre + radii[:, None] * np.column_stack([np.cos(arc.track), np.sin(arc.track)])
+    track = np.array([arc["middle_two_back"], arc["middle_one_back"], arc["middle"]])
+    places = centre + radii[:, None] * np.column_stack([np.cos(track), np.sin(track)])
     way = places[-1] - places[0]
     heading = math.atan2(way[1], way[0])
     view = view.like(places[-1], heading)
@@ -235,3 +170,71 @@ def _leg_outward(view: View, centre: Array, radius: float, arc: _Arc) -> Leg | N
     # less may be the blunt end of a tip
     least = max(FEWEST_STATIONS, math.ceil(LEAST_WIDTHS * view.width_mm / view.step_mm))
     return leg_of(seen, False, view.leg_mm) if len(seen) >= least else None
+
+
+@njit(cache=True)
+def _outward(cells, centre, ring_mm, inner):  # type: ignore[no-untyped-def]
+    """The arcs of a ring that are joined by ink to those of the ring within it.
+
+    `ring_mm` holds the ring's radius, the line's width, and the direction in which the trail crosses (rad).
+    """
+    radius_mm, width_mm, trail_rad = ring_mm
+    seen = ring(cells, centre, radius_mm)
+    arcs = np.zeros(len(seen), ARC)
+    count = 0
+    for k in range(len(seen)):
+        begin, end = seen[k, 0], seen[k, 1]
+        # 1. the arcs within on which it hangs
+        parents, parent, incoming, settled, found = 0, 0, 0, 0, False
+        for p in range(len(inner)):
+            if _overlap(inner[p]["begin"], inner[p]["end"], begin, end):
+                parents, parent = parents + 1, p
+                incoming += inner[p]["incoming"]
+                settled += inner[p]["incoming"] and inner[p]["clean"] > 1
+                found = found or inner[p]["found"]
+        if len(inner) > 0 and parents == 0:
+            continue
+        arc = arcs[count]
+        count += 1
+        arc["begin"], arc["end"], arc["middle"] = begin, end, 0.5 * (begin + end)
+        arc["found"] = found
+        # 2. the way in: the trail crosses it, or it hangs on the way in, and not on the junction
+        if parents > 0 and settled == parents:
+            arc["incoming"] = True
+        elif math.isnan(trail_rad):
+            arc["incoming"] = incoming > 0
+        else:
+            arc["incoming"] = _overlap(begin, end, trail_rad, trail_rad)
+        # 3. clean: as wide as the line, with its parent's rings if it is the only child of an only parent
+        if _is_as_wide(end - begin, radius_mm, width_mm):
+            arc["clean"] = 1
+            if parents == 1 and _children(inner[parent], seen) == 1:
+                arc["clean"] = inner[parent]["clean"] + 1
+                arc["middle_one_back"] = inner[parent]["middle"]
+                arc["middle_two_back"] = inner[parent]["middle_one_back"]
+    return arcs[:count].copy()
+
+
+@njit(cache=True)
+def _children(arc, seen):  # type: ignore[no-untyped-def]
+    """How many arcs (n, 2) rad of the next ring hang on an arc."""
+    count = 0
+    for k in range(len(seen)):
+        count += _overlap(arc["begin"], arc["end"], seen[k, 0], seen[k, 1])
+    return count
+
+
+@njit(cache=True)
+def _overlap(begin, end, other_begin, other_end):  # type: ignore[no-untyped-def]
+    """Whether two arcs, rad, have a direction in common."""
+    apart = 0.5 * (other_begin + other_end) - 0.5 * (begin + end)
+    apart -= TWO_PI * round(apart / TWO_PI)
+    return abs(apart) < 0.5 * (end - begin + other_end - other_begin)
+
+
+@njit(cache=True)
+def _is_as_wide(arc_rad, radius_mm, width_mm):  # type: ignore[no-untyped-def]
+    """Whether an arc is about as wide as the line."""
+    half = min(0.5 * arc_rad, 0.5 * math.pi)
+    width = 2 * radius_mm * math.sin(half)
+    return NARROWEST * width_mm < width < WIDEST * width_mm and half < WIDEST_RAD

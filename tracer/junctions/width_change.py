@@ -27,7 +27,7 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.tracer.head.course import ahead_mm
 from morfax.tracer.head.trail import Trail
-from morfax.tracer.junctions.choice import PASSES, survey
+from morfax.tracer.junctions.choice import PASSES, WayIn, survey
 from morfax.tracer.junctions.corner import Corner
 from morfax.tracer.sensing.leg import Leg, leg_of, turn
 from morfax.tracer.sensing.view import View
@@ -62,7 +62,7 @@ def of_another_pen(view: View, incoming: Leg, trail: Trail) -> Onward | None:
     # 2. about the junction
     for times in PENS:
         other = replace(view, width_mm=times * view.width_mm, usual_mm=None)
-        leg, corner, _ = survey(other, incoming, trail)
+        leg, corner, _ = survey(WayIn(other, incoming, trail))
         if leg is None or corner is None or abs(leg.width_mm / view.width_mm - 1) <= STEP:
             continue
         found = replace(view, width_mm=leg.width_mm, usual_mm=None)

@@ -9,7 +9,7 @@ import pytest
 
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.head.trail import Trail
-from morfax.tracer.junctions.choice import Asked, survey
+from morfax.tracer.junctions.choice import Asked, WayIn, survey
 from morfax.tracer.junctions.edge_following import follow_edge
 from morfax.tracer.junctions.line_ahead import straight_on
 from morfax.tracer.sensing import photocell
@@ -48,7 +48,7 @@ def test_a_corner_has_one_way_on_and_a_vertex(out_deg: float) -> None:
     a = math.radians(out_deg)
     line = np.vstack([WAY_IN, [X_MM + 6 * math.cos(a), 10 + 6 * math.sin(a)]])
     eyes, incoming, trail = come_along(inked(line))
-    outgoing, corner, choices = survey(eyes, incoming, trail)
+    outgoing, corner, choices = survey(WayIn(eyes, incoming, trail))
     assert choices == 1 and degrees(outgoing) == pytest.approx(out_deg, abs=1)
     assert corner is not None
     within_mm = (
@@ -63,7 +63,7 @@ def test_a_crossing_is_gone_straight_over(other_deg: float) -> None:
     way = 6 * np.array([math.cos(a), math.sin(a)])
     other = np.array([X_MM, 10]) + np.array([-way, way])
     eyes, incoming, trail = come_along(inked(polyline((4, 10), (24, 10)), other))
-    outgoing, _, choices = survey(eyes, incoming, trail)
+    outgoing, _, choices = survey(WayIn(eyes, incoming, trail))
     assert choices == 3 and goes_straight(incoming, outgoing)
     assert degrees(outgoing) == pytest.approx(0, abs=0.5)
 
@@ -75,8 +75,8 @@ def test_at_a_fork_without_a_straight_leg_the_straightest_is_taken_and_the_next_
         WAY_IN, polyline((X_MM, 10), (X_MM + 4, 16)), polyline((X_MM, 10), (X_MM, 4))
     )
     eyes, incoming, trail = come_along(drawing)
-    first, _, choices = survey(eyes, incoming, trail)
-    second, _, _ = survey(eyes, incoming, trail, Asked(rank=1))
+    first, _, choices = survey(WayIn(eyes, incoming, trail))
+    second, _, _ = survey(WayIn(eyes, incoming, trail), Asked(rank=1))
     assert choices == 2
     assert degrees(first) == pytest.approx(56.3, abs=1) and degrees(second) == pytest.approx(
         -90, abs=1
@@ -90,13 +90,13 @@ def test_what_has_been_followed_already_is_not_taken_again() -> None:
         np.column_stack([np.full(800, X_MM), np.arange(18, 10, -0.01)])
     )  # came down here first, then round again
     up.add(np.column_stack([np.arange(4, X_MM - 2, 0.01), np.full(800, 10.0)]))
-    outgoing, _, choices = survey(eyes, incoming, up)
+    outgoing, _, choices = survey(WayIn(eyes, incoming, up))
     assert outgoing is None and choices == 1  # counted, as the line is joined and not ended
 
 
 def test_at_an_end_there_is_no_way_on() -> None:
     eyes, incoming, trail = come_along(inked(WAY_IN))
-    assert survey(eyes, incoming, trail) == (None, None, 0)
+    assert survey(WayIn(eyes, incoming, trail)) == (None, None, 0)
     assert straight_on(eyes, incoming, 0.5) is None
 
 
