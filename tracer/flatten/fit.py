@@ -1,0 +1,138 @@
+"""The fit: a camera from edges that were found in the photograph and whose place on the sheet is known.
+
+Signals in: places in the photograph (px), each on an edge whose line on the sheet is known; out: the camera,
+and how far each edge is then from its line, mm on the sheet.
+
+    residual = normal · to_sheet(place) - offset - gain
+
+An edge tells one coordinate only, across it: so marks and the sheet's own edges are fitted alike. The gain is
+how much ink spreads marks on all sides, mm; it stands in their fit only, since of a sheet's own edges it
+would be another size.
+
+Source: bundle adjustment of one view; scipy's least squares. Questions: paper that is not flat is not in the
+model; what it does stays in the residual, which is reported.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.motion.arrays import Array
+from morfax.tracer.flatten.camera import Camera, Rectangle
+
+# what phones' lenses have, standard deviations: weak, for photographs whose edges do not tell
+K1_SPREAD, K2_SPREAD = 0.1, 0.05
+EDGE_MM = 0.02  # standard deviation of an edge found in a photograph of 12 Mpx: measured on synthetic ones
+
+
+@dataclass(frozen=True)
+class Sightings:
+    """Places in the photograph (n, 2), and the line on the sheet that each is on: normal and offset, mm.
+
+    A sighting belongs to a `place` (n,): a mark, or a stretch of the sheet's edge.
+    """
+
+    places_px: Array
+    normals: Array
+    offsets_mm: Array
+    place: NDArray[np.intp]
+    softness_px: Array
+
+    @classmethod
+    def joined(cls, parts: list[Sightings]) -> Sightings:
+        """Several in one; their places are counted on."""
+        first = np.cumsum([0, *(int(part.place.max()) + 1 for part in parts)])
+        return cls(
+            np.vstack([part.places_px for part in parts]),
+            np.vstack([part.normals for part in parts]),
+            np.concatenate([part.offsets_mm for part in parts]),
+            np.concatenate([part.place + k for part, k in zip(parts, first, strict=False)]),
+            np.concatenate([part.softness_px for part in parts]),
+        )
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A camera fitted to sightings, and what is left of them: `residual_mm` (n,), beyond the `gain_mm`."""
+
+    camera: Camera
+    sightings: Sightings
+    residual_mm: Array
+    gain_mm: float = 0.0
+
+    @cached_property
+    def displaced(self) -> tuple[Array, Array]:
+        """Each place's middle in the photograph (m, 2), px, and how far it lies off on the sheet (m, 2), mm."""
+        seen, middles, ways = self.sightings, [], []
+        for place in np.unique(seen.place):
+            here = seen.place == place
+            middles.append(seen.places_px[here].mean(axis=0))
+            ways.append(np.linalg.lstsq(seen.normals[here], self.residual_mm[here], rcond=1e-3)[0])
+        return np.array(middles), np.array(ways)
+
+    @property
+    def rms_mm(self) -> float:
+        """How far marks, or stretches of edges, lie off, root mean square, mm."""
+        return float(np.sqrt(np.mean((self.displaced[1] ** 2).sum(axis=1))))
+
+    @property
+    def max_mm(self) -> float:
+        """How far the worst mark, or stretch of an edge, lies off, mm."""
+        return float(np.hypot(*self.displaced[1].T).max())
+
+    @property
+    def size_share(self) -> float:
+        """The worst error in size between two places that are more than half the shorter side apart."""
+        middles_px, ways = self.displaced
+        at = self.camera.to_sheet(middles_px)
+        apart = at[:, None] - at[None]
+        lengths = np.hypot(apart[..., 0], apart[..., 1])
+        far = lengths > 0.5 * min(self.camera.sheet.width, self.camera.sheet.height)
+        if not far.any():
+            return 0.0
+        along = np.abs((apart * (ways[:, None] - ways[None])).sum(axis=2))
+        return float((along[far] / lengths[far] ** 2).max())
+
+    @property
+    def softness_px(self) -> float:
+        """Softness of the edges, standard deviation, px."""
+        return float(np.median(self.sightings.softness_px))
+
+
+def fitted(
+    sightings: Sightings, sheet: Rectangle, photo: Rectangle, first: Array, *, inked: bool
+) -> Fit:
+    """Fit a camera, from a homography that is nearly right; `inked` edges may have spread."""
+    from scipy.optimize import least_squares
+
+    weights = EDGE_MM / np.array([K1_SPREAD, K2_SPREAD])
+
+    def residual(numbers: Array) -> Array:
+        """What is left of the sightings, and of what lenses usually are, mm."""
+        camera = _camera(numbers, sheet, photo)
+        on_sheet = camera.to_sheet(sightings.places_px)
+        off = (on_sheet * sightings.normals).sum(axis=1) - sightings.offsets_mm
+        gain = numbers[10] if inked else 0.0
+        return np.concatenate([off - gain, weights * numbers[8:10]])
+
+    start = np.concatenate([(first / first[2, 2]).ravel()[:8], np.zeros(3 if inked else 2)])
+    found = least_squares(residual, start, method="lm", x_scale=1.0)
+    camera = _camera(found.x, sheet, photo)
+    return Fit(camera, sightings, found.fun[:-2], float(found.x[10]) if inked else 0.0)
+
+
+def homography_of(places_mm: Array, places_px: Array, sheet: Rectangle, photo: Rectangle) -> Array:
+    """The homography between places on the sheet and in the photograph, both from their middles."""
+    found, _ = cv2.findHomography(sheet.from_middle(places_mm), photo.from_middle(places_px))
+    return np.asarray(found, float)
+
+
+def _camera(numbers: Array, sheet: Rectangle, photo: Rectangle) -> Camera:
+    """The camera of its numbers: eight of the homography, k1, k2."""
+    homography = np.append(numbers[:8], 1.0).reshape(3, 3)
+    return Camera(sheet, photo, homography, float(numbers[8]), float(numbers[9]))
