@@ -16,10 +16,17 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault
-from morfax.tracer.flatten.camera import Camera, Rectangle, projected
+from morfax.tracer.flatten.projection import Projection, Rectangle, projected
 from morfax.tracer.flatten.edges import Picture, crossings
 from morfax.tracer.flatten.fit import Fit, Sightings, fitted, homography_of
-from morfax.tracer.flatten.layout import BAR_END_MM, BAR_THICK_MM, SQUARES, Layout, dictionary, layout_of
+from morfax.tracer.flatten.layout import (
+    BAR_END_MM,
+    BAR_THICK_MM,
+    SQUARES,
+    Layout,
+    dictionary,
+    layout_of,
+)
 
 FEWEST = 4  # marks: fewer may be a drawing that looks like them
 LEAST_SPREAD = 0.6  # of the area within all marks: beyond the marks found the map is a guess
@@ -64,12 +71,14 @@ def sheet_of(marks: Marks, photo: Rectangle) -> tuple[Layout, Marks] | None:
     if homography is None:
         return None
     off = np.hypot(*(projected(homography, places_mm) - places).T).reshape(-1, 4).max(axis=1)
-    true = {number: marks[number] for number, far in zip(numbers, off, strict=True) if far < STRAY}
+    true = {
+        number: marks[number] for number, far in zip(numbers, off, strict=True) if far < STRAY
+    }
     return (layout, true) if len(true) >= FEWEST else None
 
 
 def fit_marks(picture: Picture, layout: Layout, marks: Marks) -> Fit:
-    """Fit a camera to the marks' edges; raises DrawingFault if the marks found are on one side only."""
+    """Fit a projection to the marks' edges; raises DrawingFault if the marks found are on one side only."""
     photo = Rectangle(picture.shape[1], picture.shape[0])
     sheet = Rectangle(layout.paper.width_mm, layout.paper.height_mm)
     places_mm = np.vstack([layout.marks_mm[number] for number in marks])
@@ -89,15 +98,17 @@ def fit_marks(picture: Picture, layout: Layout, marks: Marks) -> Fit:
     return fitted(Sightings.joined(sightings), sheet, photo, first, inked=True)
 
 
-def bar_length_mm(picture: Picture, layout: Layout, camera: Camera) -> float | None:
-    """Length of the bar as the camera sees it, mm of the layout; None if an end cannot be seen."""
-    ends = [_bar_end(picture, layout, camera, sign) for sign in (-1.0, 1.0)]
+def bar_length_mm(picture: Picture, layout: Layout, projection: Projection) -> float | None:
+    """Length of the bar as it is seen, mm of the layout; None if an end cannot be seen."""
+    ends = [_bar_end(picture, layout, projection, sign) for sign in (-1.0, 1.0)]
     if ends[0] is None or ends[1] is None:
         return None
     return ends[1] - ends[0]
 
 
-def _bar_end(picture: Picture, layout: Layout, camera: Camera, sign: float) -> float | None:
+def _bar_end(
+    picture: Picture, layout: Layout, projection: Projection, sign: float
+) -> float | None:
     """Middle of the stroke at one end of the bar, X from the bar's middle outwards by its thickness, mm."""
     x, y = layout.bar_mm[0 if sign < 0 else 1]
     ups = np.linspace(-0.35, 0.35, BAR_PLACES) * BAR_END_MM
@@ -106,14 +117,17 @@ def _bar_end(picture: Picture, layout: Layout, camera: Camera, sign: float) -> f
     found = []
     for edge, way in ((x, sign), (x - sign * BAR_THICK_MM, -sign)):
         places_mm = np.column_stack([np.full(len(ups), edge), y + ups])
-        at, beyond = camera.to_photo(places_mm), camera.to_photo(places_mm + (way * reach, 0.0))
+        at, beyond = (
+            projection.to_photo(places_mm),
+            projection.to_photo(places_mm + (way * reach, 0.0)),
+        )
         across = beyond - at
         reach_px = float(np.median(np.hypot(*across.T)))
         outward = across / np.hypot(*across.T)[:, None]
         seen = crossings(picture, at, outward, reach_px).places_px
         if len(seen) < len(ups) / 2:
             return None
-        found.append(float(np.median(camera.to_sheet(seen)[:, 0])))
+        found.append(float(np.median(projection.to_sheet(seen)[:, 0])))
     return (found[0] + found[1] + sign * BAR_THICK_MM) / 2
 
 

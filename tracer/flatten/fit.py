@@ -1,6 +1,6 @@
-"""The fit: a camera from edges that were found in the photograph and whose place on the sheet is known.
+"""The fit: a projection from edges that were found in the photograph and whose place on the sheet is known.
 
-Signals in: places in the photograph (px), each on an edge whose line on the sheet is known; out: the camera,
+Signals in: places in the photograph (px), each on an edge whose line on the sheet is known; out: the projection,
 and how far each edge is then from its line, mm on the sheet.
 
     residual = normal · to_sheet(place) - offset - gain
@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
-from morfax.tracer.flatten.camera import Camera, Rectangle
+from morfax.tracer.flatten.projection import Projection, Rectangle
 
 # what phones' lenses have, standard deviations: weak, for photographs whose edges do not tell
 K1_SPREAD, K2_SPREAD = 0.1, 0.05
@@ -58,9 +58,9 @@ class Sightings:
 
 @dataclass(frozen=True)
 class Fit:
-    """A camera fitted to sightings, and what is left of them: `residual_mm` (n,), beyond the `gain_mm`."""
+    """A projection fitted to sightings, and what is left of them: `residual_mm` (n,), beyond the `gain_mm`."""
 
-    camera: Camera
+    projection: Projection
     sightings: Sightings
     residual_mm: Array
     gain_mm: float = 0.0
@@ -72,7 +72,9 @@ class Fit:
         for place in np.unique(seen.place):
             here = seen.place == place
             middles.append(seen.places_px[here].mean(axis=0))
-            ways.append(np.linalg.lstsq(seen.normals[here], self.residual_mm[here], rcond=1e-3)[0])
+            ways.append(
+                np.linalg.lstsq(seen.normals[here], self.residual_mm[here], rcond=1e-3)[0]
+            )
         return np.array(middles), np.array(ways)
 
     @property
@@ -89,10 +91,10 @@ class Fit:
     def size_share(self) -> float:
         """The worst error in size between two places that are more than half the shorter side apart."""
         middles_px, ways = self.displaced
-        at = self.camera.to_sheet(middles_px)
+        at = self.projection.to_sheet(middles_px)
         apart = at[:, None] - at[None]
         lengths = np.hypot(apart[..., 0], apart[..., 1])
-        far = lengths > 0.5 * min(self.camera.sheet.width, self.camera.sheet.height)
+        far = lengths > 0.5 * min(self.projection.sheet.width, self.projection.sheet.height)
         if not far.any():
             return 0.0
         along = np.abs((apart * (ways[:, None] - ways[None])).sum(axis=2))
@@ -107,32 +109,34 @@ class Fit:
 def fitted(
     sightings: Sightings, sheet: Rectangle, photo: Rectangle, first: Array, *, inked: bool
 ) -> Fit:
-    """Fit a camera, from a homography that is nearly right; `inked` edges may have spread."""
+    """Fit a projection, from a homography that is nearly right; `inked` edges may have spread."""
     from scipy.optimize import least_squares
 
     weights = EDGE_MM / np.array([K1_SPREAD, K2_SPREAD])
 
     def residual(numbers: Array) -> Array:
         """What is left of the sightings, and of what lenses usually are, mm."""
-        camera = _camera(numbers, sheet, photo)
-        on_sheet = camera.to_sheet(sightings.places_px)
+        projection = _projection(numbers, sheet, photo)
+        on_sheet = projection.to_sheet(sightings.places_px)
         off = (on_sheet * sightings.normals).sum(axis=1) - sightings.offsets_mm
         gain = numbers[10] if inked else 0.0
         return np.concatenate([off - gain, weights * numbers[8:10]])
 
     start = np.concatenate([(first / first[2, 2]).ravel()[:8], np.zeros(3 if inked else 2)])
     found = least_squares(residual, start, method="lm", x_scale=1.0)
-    camera = _camera(found.x, sheet, photo)
-    return Fit(camera, sightings, found.fun[:-2], float(found.x[10]) if inked else 0.0)
+    projection = _projection(found.x, sheet, photo)
+    return Fit(projection, sightings, found.fun[:-2], float(found.x[10]) if inked else 0.0)
 
 
-def homography_of(places_mm: Array, places_px: Array, sheet: Rectangle, photo: Rectangle) -> Array:
+def homography_of(
+    places_mm: Array, places_px: Array, sheet: Rectangle, photo: Rectangle
+) -> Array:
     """The homography between places on the sheet and in the photograph, both from their middles."""
     found, _ = cv2.findHomography(sheet.from_middle(places_mm), photo.from_middle(places_px))
     return np.asarray(found, float)
 
 
-def _camera(numbers: Array, sheet: Rectangle, photo: Rectangle) -> Camera:
-    """The camera of its numbers: eight of the homography, k1, k2."""
+def _projection(numbers: Array, sheet: Rectangle, photo: Rectangle) -> Projection:
+    """The projection of its numbers: eight of the homography, k1, k2."""
     homography = np.append(numbers[:8], 1.0).reshape(3, 3)
-    return Camera(sheet, photo, homography, float(numbers[8]), float(numbers[9]))
+    return Projection(sheet, photo, homography, float(numbers[8]), float(numbers[9]))

@@ -113,8 +113,6 @@ class Layout:
 
 def layout_of(numbers: list[int]) -> Layout | None:
     """The sheet on which most of these marks stand; None without any."""
-    counts = {
-        name: len(Layout.of(name).marks_mm.keys() & set(numbers)) for name in FIRST
-    }
+    counts = {name: len(Layout.of(name).marks_mm.keys() & set(numbers)) for name in FIRST}
     most = max(counts, key=lambda name: counts[name])
     return Layout.of(most) if counts[most] else None

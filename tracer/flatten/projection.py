@@ -1,4 +1,4 @@
-"""The camera: where a place on the sheet comes out in the photograph, and back.
+"""The projection: where a place on the sheet comes out in the photograph, and back.
 
 Signals: places on the sheet (mm, X right, Y up, from the lower-left corner) and in the photograph (px, from the
 upper-left corner, the centre of the first pixel at 0.5, 0.5), each as an array (n, 2).
@@ -26,7 +26,9 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 
-HALF_DIAGONAL_35MM = math.hypot(36.0, 24.0) / 2  # of the film that focal lengths are compared with, mm
+HALF_DIAGONAL_35MM = (
+    math.hypot(36.0, 24.0) / 2
+)  # of the film that focal lengths are compared with, mm
 # of phones' main cameras, 23 to 28 mm on film of 35 mm: the middle, and the standard deviation of its logarithm
 USUAL_FOCAL_MM, USUAL_SPREAD = 26.0, 0.15
 STATED_SPREAD = 0.03  # of a focal length that the file states: it is rounded to whole mm
@@ -68,7 +70,7 @@ class Rectangle:
 
 
 @dataclass(frozen=True, slots=True)
-class Camera:
+class Projection:
     """How a sheet (mm) comes out in a photograph (px): homography (3, 3) and radial distortion."""
 
     sheet: Rectangle
@@ -134,7 +136,9 @@ class Pose(NamedTuple):
                 + (log_length / focal.spread) ** 2
             )
 
-        best = minimize_scalar(off, bounds=(-4 * focal.spread, 4 * focal.spread), method="bounded")
+        best = minimize_scalar(
+            off, bounds=(-4 * focal.spread, 4 * focal.spread), method="bounded"
+        )
         _, stretch, tilt = _rules(homography, focal.length * math.exp(best.x))
         return cls(tilt, stretch, math.sqrt(best.fun))
 
@@ -146,13 +150,15 @@ def projected(homography: Array, places: Array) -> Array:
 
 
 def undistorted(places: Array, k1: float, k2: float) -> Array:
-    """Places as a lens without distortion would have them, of those that a lens has drawn."""
+    """Places as a lens without distortion would have them, of those that a lens drew."""
     drawn = np.hypot(*places.T)
     r = drawn.copy()
     for _ in range(NEWTON_STEPS):
         r2 = r * r
         slope = 1 + 3 * k1 * r2 + 5 * k2 * r2**2
-        r -= (r * (1 + k1 * r2 + k2 * r2**2) - drawn) / np.where(np.abs(slope) > 0.1, slope, 0.1)
+        r -= (r * (1 + k1 * r2 + k2 * r2**2) - drawn) / np.where(
+            np.abs(slope) > 0.1, slope, 0.1
+        )
     return places * (r / np.maximum(drawn, 1e-12))[:, None]
 
 
