@@ -51,17 +51,15 @@ class Phone:
 
     def to_photo(self, places_mm: Array, size_mm: tuple[float, float]) -> Array:
         """Where places (n, 2) on a sheet (Y up, from the lower left) come out, px."""
-        return self._seen(np.asarray(places_mm, float), size_mm, self._distance_mm(size_mm))
+        return self._seen(np.asarray(places_mm, float), size_mm, self._aimed_mm(size_mm))
 
-    def _seen(
-        self, places_mm: Array, size_mm: tuple[float, float], distance_mm: float
-    ) -> Array:
-        """Where places come out, px, seen from so far."""
-        rays = self._turned(places_mm, size_mm) + (0.0, 0.0, distance_mm)
+    def _seen(self, places_mm: Array, size_mm: tuple[float, float], middle_mm: Array) -> Array:
+        """Where places come out, px, if the sheet's middle is so far right, down and away."""
+        rays = self._turned(places_mm, size_mm) + middle_mm
         u = rays[:, :2] / rays[:, 2:]
         r2 = (u**2).sum(axis=1, keepdims=True)
         u = u * (1 + self.k1 * r2 + self.k2 * r2**2)
-        return u * self.focal_px + (self.columns / 2, self.rows / 2)
+        return u * self.focal_px + np.array([self.columns / 2, self.rows / 2])
 
     def _turned(self, places_mm: Array, size_mm: tuple[float, float]) -> Array:
         """Places (n, 3) before the lens: X right, Y down, Z away, about the sheet's middle."""
@@ -72,18 +70,19 @@ class Phone:
         flat = np.column_stack([places_mm - np.array(size_mm) / 2, np.zeros(len(places_mm))])
         return np.asarray((flat * (1, -1, 1)) @ in_plane.T @ rotated.T, float)
 
-    def _distance_mm(self, size_mm: tuple[float, float]) -> float:
-        """How far the lens is from the sheet's middle, so that the sheet fills the photograph."""
+    def _aimed_mm(self, size_mm: tuple[float, float]) -> Array:
+        """Where the sheet's middle is before the lens (right, down, away): it fills the photograph."""
         w, h = size_mm
         around = np.array([(0, 0), (w, 0), (w, h), (0, h), (w / 2, 0), (w, h / 2)], float)
         around = np.vstack([around, (w, h) - around])
-        near, far = 0.5 * max(size_mm), 20.0 * max(size_mm)
-        for _ in range(50):
-            middle = math.sqrt(near * far)
-            seen = self._seen(around, size_mm, middle) - (self.columns / 2, self.rows / 2)
-            out = np.abs(seen) / (self.columns / 2, self.rows / 2)
-            near, far = (middle, far) if out.max() > self.fills else (near, middle)
-        return far
+        frame = np.array([self.columns, self.rows], float)
+        middle_mm = np.array([0.0, 0.0, 2.0 * max(size_mm)])
+        for _ in range(30):
+            seen = self._seen(around, size_mm, middle_mm)
+            low, high = seen.min(axis=0), seen.max(axis=0)
+            middle_mm[2] *= float(((high - low) / frame).max()) / self.fills
+            middle_mm[:2] -= ((low + high) / 2 - frame / 2) * middle_mm[2] / self.focal_px
+        return middle_mm
 
     def photograph(self, sheet: Picture, size_mm: tuple[float, float]) -> Picture:
         """The photograph of a sheet (rows from the top, columns, 3) that covers a size."""
@@ -99,7 +98,7 @@ class Phone:
         light = cv2.GaussianBlur(light, (0, 0), self.blur_px)
         random = np.random.default_rng(self.seed)
         light += random.standard_normal(light.shape[:2], np.float32)[..., None] * self.noise
-        levels = np.round(_levels(light) * 255).astype(np.uint8)
+        levels = _LEVELS[np.clip(light * _FINE + 0.5, 0, _FINE).astype(np.uint16)]
         good, packed = cv2.imencode(
             ".jpg", levels[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, self.quality]
         )
@@ -132,9 +131,7 @@ class Phone:
         corner, along, up = self._turned(
             np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)]), size_mm
         )
-        plane = np.column_stack(
-            [along - corner, up - corner, corner + (0, 0, self._distance_mm(size_mm))]
-        )
+        plane = np.column_stack([along - corner, up - corner, corner + self._aimed_mm(size_mm)])
         back = np.linalg.inv(plane).astype(np.float32)
         rays = u[..., 0, None] * back[:, 0] + u[..., 1, None] * back[:, 1] + back[:, 2]
         return np.asarray(rays[..., :2] / rays[..., 2:], np.float32)
@@ -147,13 +144,16 @@ class Phone:
         return np.asarray(0.85 - self.shadow * shadow, np.float32)
 
 
-_EVERY = np.arange(256) / 255
-_LIGHT = np.where(_EVERY <= 0.04045, _EVERY / 12.92, ((_EVERY + 0.055) / 1.055) ** 2.4).astype(
-    np.float32
-)
+def _light_of(level: Array) -> Array:
+    """Light 0..1 of levels 0..1, by the curve of sRGB."""
+    return np.where(level <= 0.04045, level / 12.92, ((level + 0.055) / 1.055) ** 2.4)
 
 
-def _levels(light: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Levels 0..1 of light, by the curve of sRGB."""
-    light = np.clip(light, 0, 1)
+def _level_of(light: Array) -> Array:
+    """Levels 0..1 of light 0..1."""
     return np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
+
+
+_FINE = 65535  # steps of light
+_LIGHT = _light_of(np.arange(256) / 255).astype(np.float32)
+_LEVELS = np.round(_level_of(np.arange(_FINE + 1) / _FINE) * 255).astype(np.uint8)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
-from morfax.jobs import comparison
+from morfax.jobs import comparison, flattening
 from morfax.jobs import files as medium
 from morfax.jobs.listener import SILENT, Listener
 from morfax.jobs.playing import ByHand, read_or_play
@@ -74,6 +74,7 @@ class CompareJob:
             "tolerance_mm": self.tolerance_mm,
             "within_tolerance": within,
             "largest_mm": found.largest_mm,
+            **flattening.figures(drawing, self.picture),
             **found.figures,
         }
         return CompareResult(figures, found, tuple(paths), drawing, within)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
-from morfax.jobs import comparison
+from morfax.jobs import comparison, flattening
 from morfax.jobs import files as medium
 from morfax.jobs.listener import SILENT, Listener
 from morfax.jobs.playing import Played, Playing
@@ -87,6 +87,7 @@ class RunJob:
         figures: dict[str, Any] = {
             "drawing": str(self.drawing.file),
             **written,
+            **flattening.figures(drawing, picture),
             **_compared(drawing, traced, path, from_ink),
             **unit.figures(),
         }

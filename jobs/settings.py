@@ -10,6 +10,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Literal
 
+from morfax.jobs import flattening
+from morfax.jobs.flattening import FlattenSettings
 from morfax.jobs.listener import SILENT, Listener
 from morfax.jobs.wrong_use import WrongUse, settings_checked
 
@@ -17,6 +19,8 @@ if TYPE_CHECKING:
     from morfax.tracer.cutter.cutter import Cutter, CutterSide
     from morfax.tracer.drawing.drawing import Drawing
     from morfax.tracer.drawing.scale import Known
+    from morfax.tracer.drawing.scan import Scan
+    from morfax.tracer.flatten.flat import Flattening
     from morfax.tracer.following.direction import Direction
     from morfax.tracer.head.settings import Settings
     from morfax.tracer.operator.card import Card, Override
@@ -39,6 +43,7 @@ class DrawingFile:
     known: Known | None = (
         None  # two places and the length between them, instead of dpi or width
     )
+    flatten: FlattenSettings = field(default_factory=FlattenSettings)
 
     def open(self, listener: Listener = SILENT) -> Drawing:
         """Open the drawing; raises WrongUse for two scales, DrawingFault and FileFault for a bad file."""
@@ -50,11 +55,29 @@ class DrawingFile:
         if len(scale.given()) > 1:
             raise WrongUse(f"{' and '.join(scale.given())} were both given; give one of them")
         ink = None if self.ink is None else inks.parsed(self.ink)
+        self.flatten.check(bool(scale.given()))
         scan = raster.read(self.file, coloured=ink is not None, page=self.page, dpi=self.dpi)
-        drawing = Drawing.of(scan, scale, ink, self.edge)
+        scan, made = self._flattened(scan, bool(scale.given()), listener)
+        drawing = replace(Drawing.of(scan, scale, ink, self.edge), flattening=made)
         for note in drawing.notes:
             listener.note(note)
         return drawing
+
+    def _flattened(
+        self, scan: Scan, scale_given: bool, listener: Listener
+    ) -> tuple[Scan, Flattening | None]:
+        """The scan of a photograph made flat, and how well; any other scan as it is."""
+        from morfax.tracer.drawing import raster
+
+        wanted = self.flatten.of(scan, scale_given)
+        if wanted is None:
+            if scale_given:
+                flattening.warn_of_tilt(scan, listener)
+            return scan, None
+        if self.ink is None:
+            scan = raster.read(self.file, coloured=True, page=self.page)
+        flat, made = flattening.made_flat(scan, wanted, self.flatten.bar_mm, listener)
+        return (flat if self.ink is not None else flattening.in_grey(flat, made)), made
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from morfax.jobs import comparison, following
+from morfax.jobs import comparison, flattening, following
 from morfax.jobs import files as medium
 from morfax.jobs.listener import SILENT, Listener
 from morfax.jobs.playing import Playing
@@ -94,6 +94,7 @@ class SystemsJob:
         figures = {
             "drawing": str(file),
             "report": None if self.output is None else str(self.output),
+            **flattening.figures(drawing),
             "tolerance_mm": self.tolerance_mm,
             "within_tolerance": within,
             "ending": traced.trace.ending,

@@ -7,6 +7,7 @@ from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
 from morfax.jobs import files as medium
+from morfax.jobs import flattening
 from morfax.jobs.listener import SILENT, Listener
 from morfax.jobs.machining import tell_what_is_lost
 from morfax.jobs.recording import RecordingUnit
@@ -92,7 +93,8 @@ class TraceJob:
         if picture is not None:
             written["picture"] = str(picture)
         unit.warn(listener)
-        figures = {"drawing": str(self.drawing.file), **written, **traced.figures()}
+        flat = flattening.figures(drawing, picture)
+        figures = {"drawing": str(self.drawing.file), **written, **flat, **traced.figures()}
         return TraceResult(
             {**figures, **unit.figures()}, drawing, traced, picture, traced.fault
         )

@@ -32,7 +32,10 @@ GRID_LINE_MM = 0.15
 POINTS_PER_MM = 72 / MM_PER_INCH
 WORDS_PT = 6.0
 PNG_DPI = 600.0
-TOLD = "morfax {name}: print at 100 %, then measure this bar; if it is not 100 mm long, give its length with --bar"
+TOLD = (
+    "morfax {name}: print at 100 %, then measure this bar; "
+    "if it is not 100 mm long, give its length with --bar"
+)
 
 
 def write_sheet(layout: Layout, file: FilePath, *, grid: bool = True) -> None:
@@ -93,7 +96,7 @@ def _bar(axes: Axes, layout: Layout) -> None:
         _filled(axes, [a, y - half, b, y + half])
     said = TOLD.format(name=layout.paper.name.upper())
     middle, top = (left + right) / 2, layout.band_mm[3]
-    axes.text(middle, top - 1.0, said, fontsize=WORDS_PT, ha="center", va="top", color=BLACK)
+    axes.text(middle, top - 0.5, said, fontsize=WORDS_PT, ha="center", va="top", color=BLACK)
 
 
 def _filled(axes: Axes, box: Any) -> None:
@@ -102,7 +105,9 @@ def _filled(axes: Axes, box: Any) -> None:
 
     left, bottom, right, top = box
     size = (float(right - left), float(top - bottom))
-    axes.add_patch(Rectangle((float(left), float(bottom)), *size, color=BLACK, linewidth=0))
+    axes.add_patch(
+        Rectangle((float(left), float(bottom)), *size, color=BLACK, linewidth=0, snap=False)
+    )
 
 
 def _black(squares: NDArray[np.bool_]) -> Iterator[Box]:

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from morfax.jobs.trace import TraceResult
     from morfax.motion.faults import LineFault
     from morfax.motion.motion import Path
+    from morfax.tracer.drawing.drawing import Drawing
 
 REPORT = ".html"
 TOLD = (
@@ -48,6 +49,7 @@ def draw_traced(result: TraceResult) -> None:
         stops_mm=traced.marked_mm,
     )
     draw(picture, result.picture)
+    _draw_flat(result.drawing, result.picture)
 
 
 def draw_start(
@@ -77,6 +79,7 @@ def draw_run(result: RunResult) -> None:
         stops_mm=result.traced.marked_mm,
     )
     draw(picture, result.picture)
+    _draw_flat(result.drawing, result.picture)
 
 
 def write_figures(result: RunResult) -> None:
@@ -98,6 +101,8 @@ def draw_compared(result: CompareResult, names: str, file: FilePath) -> None:
         found.error_mm,
     )
     draw(picture, file)
+    if result.drawing is not None:
+        _draw_flat(result.drawing, file)
 
 
 def draw_played(result: PlayResult, name: str) -> None:
@@ -143,6 +148,16 @@ def draw_punched(program: FilePath, file: FilePath) -> int:
     from morfax.reports import punched
 
     return punched.draw_tape(read_program(program), file)
+
+
+def _draw_flat(drawing: Drawing, beside: FilePath) -> None:
+    """Draw how a photograph was made flat, if the drawing is one, beside another picture."""
+    from morfax.jobs.flattening import picture_beside
+    from morfax.reports.flattening import draw_flattening
+
+    file = picture_beside(beside, drawing)
+    if file is not None:
+        draw_flattening(drawing, file)
 
 
 def _draw_path(path: Path, file: FilePath, title: str) -> None:

@@ -1,4 +1,4 @@
-"""The options of a drawing: scale, page, ink, filled shapes."""
+"""The options of a drawing: scale, flattening, page, ink, filled shapes."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from morfax.console.options.groups import Decorator, option
-from morfax.console.options.types import LENGTH, PIXELS
+from morfax.console.options.types import BAR, FLATTEN, LENGTH, PIXELS
+from morfax.jobs.flattening import FlattenSettings
 from morfax.jobs.settings import DrawingFile
 
 if TYPE_CHECKING:
@@ -65,11 +66,29 @@ def drawing_options(argument: str) -> Decorator:
             is_flag=True,
             help="Filled shapes: the head follows their edges.",
         )
+        @option(
+            "Drawing",
+            "--flatten",
+            "wanted",
+            type=FLATTEN,
+            help="Make a photograph flat and to scale: by the marks of a printed sheet (marks), by the "
+            "edges of the sheet (paper=a4, letter, a3, 148x105mm), or by four places of a rectangle, in "
+            'pixels from the upper left, clockwise ("X,Y X,Y X,Y X,Y=200x100mm"); auto takes marks, else the '
+            "one format that fits.  [default: auto for a picture that a camera made]",
+        )
+        @option(
+            "Drawing",
+            "--bar",
+            "bar_mm",
+            type=BAR,
+            help="Length of the bar on a printed sheet with marks, such as 99.6mm.  [default: 100mm]",
+        )
         @functools.wraps(verb)
         def with_drawing(*args: Any, **options: Any) -> Any:
             names = ("dpi", "width_mm", "ink", "edge", "page", "known")
             how = {name: options.pop(name) for name in names}
-            options[argument] = DrawingFile(options[argument], **how)
+            flatten = FlattenSettings(options.pop("wanted"), options.pop("bar_mm"))
+            options[argument] = DrawingFile(options[argument], **how, flatten=flatten)
             return verb(*args, **options)
 
         return with_drawing

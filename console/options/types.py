@@ -182,12 +182,21 @@ def _decades(least_counts: int) -> Callable[[str], float]:
     return parse
 
 
+def _flatten(text: str) -> Any:
+    """What is wanted of a photograph."""
+    from morfax.tracer.flatten.wanted import parsed
+
+    return parsed(text)
+
+
 STOCK = Quantity("stock", _parse_stock)
 LENGTH = Quantity("length", parse_length_mm, above_zero=True)
 REACH = Quantity("length", parse_length_mm)  # of the head; may be 0
 DEPTH = Quantity("length", _decades(0))
 # up to 0.05 mm above the work the tool counts as in it
 CLEARANCE = Quantity("length", _decades(6))
+BAR = Quantity("length", parse_length_mm, within="90mm to 110mm")  # further off is a slip
+FLATTEN = Quantity("marks|paper=FORMAT|places=WxH|auto", _flatten)
 CUTTER = Quantity("length", parse_length_mm, within="0.05mm to 500mm")
 SPEED = Quantity("speed", parse_speed_mm_s)
 FEED = Quantity("speed", parse_speed_mm_s, within="0.01mm/s to 1000mm/s")

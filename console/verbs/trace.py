@@ -53,7 +53,8 @@ Examples:
     "Output",
     "--picture",
     type=Result(*PICTURES),
-    help="Draw the path over the drawing (.png, .svg, .pdf).",
+    help="Draw the path over the drawing (.png, .svg, .pdf); of a photograph made flat, part.png, also what "
+    "was found in it, part.flat.png.",
 )
 @option(
     "Output",

@@ -39,6 +39,7 @@ from morfax.tracer.drawing.shapes import outlined
 
 if TYPE_CHECKING:
     from morfax.tracer.drawing.noise import Noise
+    from morfax.tracer.flatten.flat import Flattening
 
 LEAST_CONTRAST = 10.0  # grey levels of 255 between paper and ink
 ABOVE_NOISE = 6.0  # standard deviations of the paper: what is darker is no noise
@@ -57,7 +58,8 @@ class Drawing:
 
     Of filled shapes whose edges are asked for: `edges_mm`, closed polylines (n, 2) to which a run has to
     keep, and how many times `enlarged` the head sees the line along them. Otherwise `shapes` tells where
-    filled shapes are, on the picture reduced by a whole number. `notes` on the file are for the operator.
+    filled shapes are, on the picture reduced by a whole number. `notes` on the file are for the operator;
+    `flattening` is how well a photograph was made flat.
     """
 
     darkness: Darkness
@@ -67,6 +69,7 @@ class Drawing:
     edges_mm: tuple[NDArray[np.float64], ...] = ()
     shapes: Shapes | None = None
     notes: tuple[str, ...] = ()
+    flattening: Flattening | None = None
 
     @property
     def width_mm(self) -> float:

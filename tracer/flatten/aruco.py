@@ -16,7 +16,6 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault
-from morfax.tracer.flatten.projection import Projection, Rectangle, projected
 from morfax.tracer.flatten.edges import Picture, crossings
 from morfax.tracer.flatten.fit import Fit, Sightings, fitted, homography_of
 from morfax.tracer.flatten.layout import (
@@ -27,6 +26,7 @@ from morfax.tracer.flatten.layout import (
     dictionary,
     layout_of,
 )
+from morfax.tracer.flatten.projection import Projection, Rectangle, projected
 
 FEWEST = 4  # marks: fewer may be a drawing that looks like them
 LEAST_SPREAD = 0.6  # of the area within all marks: beyond the marks found the map is a guess
@@ -48,7 +48,8 @@ def marks_in(picture: Picture) -> Marks:
     if numbers is None:
         return {}
     found: Marks = {}
-    for number, four in zip(numbers.ravel().tolist(), corners, strict=True):
+    for number, four in zip(numbers.ravel().astype(int), corners, strict=True):
+        number = int(number)
         if number in found:
             raise DrawingFault(
                 f"mark {number} is in the photograph twice; photograph one sheet at a time"
@@ -67,9 +68,10 @@ def sheet_of(marks: Marks, photo: Rectangle) -> tuple[Layout, Marks] | None:
         return None
     places_mm = np.vstack([layout.marks_mm[number] for number in numbers])
     places = photo.from_middle(np.vstack([marks[number] for number in numbers]))
-    homography, _ = cv2.findHomography(places_mm, places, cv2.RANSAC, STRAY)
-    if homography is None:
+    likely, _ = cv2.findHomography(places_mm, places, cv2.RANSAC, STRAY)
+    if likely is None:
         return None
+    homography = np.asarray(likely, float)
     off = np.hypot(*(projected(homography, places_mm) - places).T).reshape(-1, 4).max(axis=1)
     true = {
         number: marks[number] for number, far in zip(numbers, off, strict=True) if far < STRAY
@@ -119,7 +121,7 @@ def _bar_end(
         places_mm = np.column_stack([np.full(len(ups), edge), y + ups])
         at, beyond = (
             projection.to_photo(places_mm),
-            projection.to_photo(places_mm + (way * reach, 0.0)),
+            projection.to_photo(places_mm + np.array([way * reach, 0.0])),
         )
         across = beyond - at
         reach_px = float(np.median(np.hypot(*across.T)))

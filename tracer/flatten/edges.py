@@ -1,7 +1,7 @@
 """Edges in a photograph, to a part of a pixel: where light falls through half between both sides of an edge.
 
-Signals: a picture (rows from the top, columns, 3 colours of 8 bits) and places near an edge with the way across
-it, px; out the places on the edge, and how soft it is.
+Signals: a picture (rows from the top, columns, 3 colours of 8 bits) and places near an edge with the way
+across it, px; out the places on the edge, and how soft it is.
 
 Blur spreads light, and light is not what a picture's levels count: half the light is level 188 of 255. So
 levels are turned into light first, by the curve of sRGB. By the levels themselves a blurred sheet is seen too
@@ -35,7 +35,7 @@ LIGHT = np.where(_LEVELS <= 0.04045, _LEVELS / 12.92, ((_LEVELS + 0.055) / 1.055
 
 
 class Crossings(NamedTuple):
-    """Places on an edge (n, 2), px; which of those asked for they are (n,); softness, standard deviation, px."""
+    """Places on an edge (n, 2), px; which of those asked for they are; softness, standard deviation, px."""
 
     places_px: Array
     of: NDArray[np.intp]

@@ -1,7 +1,7 @@
 """The fit: a projection from edges that were found in the photograph and whose place on the sheet is known.
 
-Signals in: places in the photograph (px), each on an edge whose line on the sheet is known; out: the projection,
-and how far each edge is then from its line, mm on the sheet.
+Signals in: places in the photograph (px), each on an edge whose line on the sheet is known; out: the
+projection, and how far each edge is then from its line, mm on the sheet.
 
     residual = normal · to_sheet(place) - offset - gain
 
@@ -58,7 +58,7 @@ class Sightings:
 
 @dataclass(frozen=True)
 class Fit:
-    """A projection fitted to sightings, and what is left of them: `residual_mm` (n,), beyond the `gain_mm`."""
+    """A projection fitted to sightings, and what is left of them: `residual_mm` (n,), beyond `gain_mm`."""
 
     projection: Projection
     sightings: Sightings
@@ -67,7 +67,7 @@ class Fit:
 
     @cached_property
     def displaced(self) -> tuple[Array, Array]:
-        """Each place's middle in the photograph (m, 2), px, and how far it lies off on the sheet (m, 2), mm."""
+        """Each place's middle in the photograph (m, 2), px, and how far off on the sheet it lies, mm."""
         seen, middles, ways = self.sightings, [], []
         for place in np.unique(seen.place):
             here = seen.place == place

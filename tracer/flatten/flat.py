@@ -3,18 +3,19 @@
 Signals: a picture in (rows from the top, columns, 3 colours of 8 bits); out the sheet as pixels of one pitch,
 and the figures: tilt, mm per pixel, what marks or edges are off, the bar's length, softness.
 
-The picture is resampled once, at the finest scale that it has anywhere on the sheet, so that nothing of it is
-lost. Printed marks, the bar, and a rim beyond which the table may show, are made paper.
+The picture is resampled once. Printed marks, the bar, and a rim beyond which the table may show, are made
+paper.
 
-Source: our own. Questions: a sheet that is bent is flat in no camera. What marks or edges are off tells; if it
-stands for more than 1 % in size the photograph is refused.
+Source: our own. Questions: a sheet that is bent is flat in no camera. What marks or edges are off tells; if
+it stands for more than 1 % in size the photograph is refused.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+import cv2
 import numpy as np
 
 from morfax.motion.faults import DrawingFault
@@ -29,6 +30,7 @@ from morfax.tracer.flatten.resampling import clean, resampled
 from morfax.tracer.flatten.wanted import Wanted
 
 WORTH_A_WARNING, TOO_MUCH = 0.002, 0.01  # of size
+REDUCED_PX = 1200  # longer side of the photograph that is kept for a picture
 STEEPEST = math.radians(60)  # chosen: a sheet tilted further is a strip
 
 
@@ -43,6 +45,7 @@ class Flattening:
     scale: float = 1.0  # mm on the paper to mm of the projection: a print that is not 100 %
     fit: Fit | None = None  # of marks or edges
     bar_mm: float | None = None
+    reduced: Picture | None = None  # the photograph, smaller
 
     @property
     def mm_per_px(self) -> tuple[float, float]:
@@ -72,6 +75,20 @@ class Flattening:
         return Layout(self.paper).printed_mm() if self.wanted.way == "marks" else []
 
     @property
+    def told(self) -> str:
+        """What the sheet is, and what was found of it."""
+        size = (
+            f"{self.paper.width_mm * self.scale:g} x {self.paper.height_mm * self.scale:g} mm"
+        )
+        if self.wanted.way == "marks":
+            assert self.fit is not None
+            count = len(self.fit.displaced[0])
+            return f"{count} of {len(Layout(self.paper).marks_mm)} marks on {self.paper.name}, {size}"
+        if self.wanted.way == "paper":
+            return f"edges of {self.paper.name}, {size}"
+        return f"four places, {size}"
+
+    @property
     def seen(self) -> str:
         """What the map was fitted to."""
         return {"marks": "marks", "paper": "sheet's edges"}.get(self.wanted.way, "places")
@@ -85,15 +102,24 @@ def flattened(
     Raises DrawingFault if what is wanted is not in the photograph, or not flat.
     """
     made = found(picture, wanted, bar_mm, focal or Focal())
-    _check(made)
     flat, pitch_mm = resampled(picture, made.projection)
     if made.wanted.way != "corners":
         clean(flat, pitch_mm, made.printed_mm)
+    by = min(1.0, REDUCED_PX / max(picture.shape[:2]))
+    small = cv2.resize(picture, None, fx=by, fy=by, interpolation=cv2.INTER_AREA)
+    made = replace(made, reduced=np.asarray(small, np.uint8))
     return flat, pitch_mm * made.scale, made
 
 
 def found(picture: Picture, wanted: Wanted, bar_mm: float, focal: Focal) -> Flattening:
-    """What is wanted, found in a photograph; raises DrawingFault if it is not there."""
+    """What is wanted, found in a photograph; raises DrawingFault if it is not there, or not flat."""
+    made = _found(picture, wanted, bar_mm, focal)
+    _check(made)
+    return made
+
+
+def _found(picture: Picture, wanted: Wanted, bar_mm: float, focal: Focal) -> Flattening:
+    """What is wanted, found in a photograph."""
     if wanted.way == "corners":
         return _of_corners(picture, wanted, focal)
     if wanted.way != "paper":

@@ -2,12 +2,13 @@
 
 Signals: a picture, and what is known of the lens, in; a format, upright or lying, and the fit out.
 
-Four edges fit a rectangle of any sides: a homography takes every quadrangle to every other. But a rigid sheet
-before a lens of a known focal length has one ratio of sides only. So a format fits as well as its sheet stands
-rigidly there (see `projection.Pose`). The sheets of the A series all have one ratio, and fit together.
+Four edges fit a rectangle of any sides: a homography takes every quadrangle to every other. But a rigid
+sheet before a lens of a known focal length has one ratio of sides only. So a format fits as well as its
+sheet stands rigidly there (see `projection.Pose`). The sheets of the A series all have one ratio, and fit
+together.
 
-Source: Zhang and He 2007, whiteboards (the ratio of a rectangle in one view). Questions: without a focal length
-in the file phones' usual one is taken; a sheet tilted far may then fit two formats.
+Source: Zhang and He 2007, whiteboards (the ratio of a rectangle in one view). Questions: without a focal
+length in the file phones' usual one is taken; a sheet tilted far may then fit two formats.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ Sides = list[tuple[Array, Array]]  # see outline.sides
 
 
 def fit_named(picture: Picture, paper: Format, focal: Focal) -> tuple[Format, Fit]:
-    """Fit a sheet of a format, upright or lying; raises DrawingFault if its edges do not show, or do not fit."""
+    """Fit a sheet of a format, upright or lying; raises DrawingFault if no edges show, or do not fit."""
     found = _sides(picture)
     if found is None:
         raise DrawingFault(
@@ -53,7 +54,7 @@ def fit_named(picture: Picture, paper: Format, focal: Focal) -> tuple[Format, Fi
 
 
 def fit_any(picture: Picture, focal: Focal) -> tuple[Format, Fit]:
-    """Fit a sheet of the one known format that it can have; raises DrawingFault if none is, or several are."""
+    """Fit a sheet of the one known format that it can have; raises DrawingFault if none or several fit."""
     found = _sides(picture)
     if found is None:
         raise DrawingFault(

@@ -33,12 +33,12 @@ class Format(NamedTuple):
 FORMATS = {
     each.name: each
     for each in (
-        Format("a2", 420.0, 594.0),
-        Format("a3", 297.0, 420.0),
         Format("a4", 210.0, 297.0),
-        Format("a5", 148.0, 210.0),
-        Format("a6", 105.0, 148.0),
         Format("letter", 215.9, 279.4),
+        Format("a3", 297.0, 420.0),
+        Format("a5", 148.0, 210.0),
+        Format("a2", 420.0, 594.0),
+        Format("a6", 105.0, 148.0),
         Format("legal", 215.9, 355.6),
         Format("tabloid", 279.4, 431.8),
     )

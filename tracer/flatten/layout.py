@@ -1,7 +1,7 @@
 """The sheet with marks: which mark stands where, where the bar and the grid are, and where one draws.
 
-Signals out: places in mm from the lower-left corner of the paper, Y up. Every mark of the dictionary stands on
-one format of paper and at one place only, so that any few of them tell both.
+Signals out: places in mm from the lower-left corner of the paper, Y up. Every mark of the dictionary stands
+on one format of paper and at one place only, so that any few of them tell both.
 
     ┌─────────────────┐
     │ ▣   ▣   ▣   ▣   │   marks 10 mm, 8 mm from the edge of the paper: printers leave up to 6.4 mm white
@@ -12,8 +12,8 @@ one format of paper and at one place only, so that any few of them tell both.
     │ ▣   ▣   ▣   ▣   │
     └─────────────────┘
 
-Source: OpenCV's predefined dictionary DICT_4X4_50 (50 marks of 4 x 4 squares inside a black border). Questions:
-50 marks are enough for three formats; a sheet of another format has none.
+Source: OpenCV's predefined dictionary DICT_4X4_50 (50 marks of 4 x 4 squares inside a black border).
+Questions: 50 marks are enough for three formats; a sheet of another format has none.
 """
 
 from __future__ import annotations
@@ -33,6 +33,7 @@ SQUARES = 6  # of a mark, along its side: four, and the border
 QUIET_MM = 2.0  # white about a mark; one square is asked for (1.7 mm)
 BAR_MM = 100.0  # as printed at 100 %
 BAR_THICK_MM, BAR_END_MM = 0.6, 3.0  # the bar, and the strokes at its ends
+BAR_CLEAR_MM = 0.8  # white below the bar
 BAND_MM = 7.0  # height of the band with the bar and its words, above the lower marks
 GRID_MM = 10.0
 # of each format: its first mark, and how many stand along the upper edge and down one side
@@ -89,7 +90,7 @@ class Layout:
     @property
     def bar_mm(self) -> Array:
         """The two ends (2, 2) of the bar: the outer edges of the strokes there, mm."""
-        middle, y = self.paper.width_mm / 2, self.band_mm[1] + BAR_END_MM / 2
+        middle, y = self.paper.width_mm / 2, self.band_mm[1] + BAR_CLEAR_MM + BAR_END_MM / 2
         return np.array([(middle - BAR_MM / 2, y), (middle + BAR_MM / 2, y)])
 
     @property

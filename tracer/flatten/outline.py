@@ -6,8 +6,8 @@ sightings of its edges out.
 1. On a picture of some 700 pixels, paper and table are parted by lightness and by colour (Otsu's threshold).
    The hull of each large patch has four long straight sides, though a thumb hides a corner: the corners are
    where the sides meet. The outline whose sides show the clearest edge is taken.
-2. On the picture itself each side is found over its whole length, every few pixels, and freed of what does not
-   lie on the smooth curve of the others: a thumb, a tear, a pencil.
+2. On the picture itself each side is found over its whole length, every few pixels, and freed of what does
+   not lie on the smooth curve of the others: a thumb, a tear, a pencil.
 
 Source: our own. Questions: a table as light as the paper shows no edge; then there is no outline.
 """
@@ -86,7 +86,7 @@ def sides(picture: Picture, corners_px: Array) -> list[tuple[Array, Array]] | No
             kept, curve = _smooth((along / long)[seen.of], off)
             if np.count_nonzero(kept) < LEAST_SIDE * len(along):
                 return None
-            away = np.polynomial.polynomial.polyval(along / long, curve)
+            away = np.asarray(np.polynomial.polynomial.polyval(along / long, curve), float)
         found.append((seen.places_px[kept], seen.softness_px[kept]))
     return found
 
@@ -150,7 +150,7 @@ def _quadrangles(mask: Mask) -> Iterator[Array]:
 
 
 def _four_sides(polygon: Array) -> Array | None:
-    """Corners of the four longest sides of a convex polygon, clockwise from the upper left; None if aslant."""
+    """Corners of the four longest sides of a convex polygon, clockwise; None if they are aslant."""
     if len(polygon) < 4:
         return None
     lengths = np.hypot(*(np.roll(polygon, -1, axis=0) - polygon).T)
@@ -214,10 +214,10 @@ def _clearness(small: Picture, corners_px: Array) -> float:
 def _smooth(along: Array, off: Array) -> tuple[NDArray[np.bool_], Array]:
     """Which places lie on a smooth curve, and the curve; what is far off it is left out, worst first."""
     polynomial = np.polynomial.polynomial
-    kept = np.ones(len(along), bool)
-    curve = np.array([np.median(off)])
+    kept: NDArray[np.bool_] = np.ones(len(along), bool)
+    curve: Array = np.array([np.median(off)])
     for degree in (1, 2, *[SMOOTH_DEGREE] * ROUNDS):
-        curve = polynomial.polyfit(along[kept], off[kept], degree)
+        curve = np.asarray(polynomial.polyfit(along[kept], off[kept], degree), float)
         away = np.abs(off - polynomial.polyval(along, curve))
         usual = 1.4826 * float(np.median(away[kept]))
         kept = away < max(LEAST_STRAY_PX, STRAY * usual)

@@ -1,7 +1,7 @@
 """The projection: where a place on the sheet comes out in the photograph, and back.
 
-Signals: places on the sheet (mm, X right, Y up, from the lower-left corner) and in the photograph (px, from the
-upper-left corner, the centre of the first pixel at 0.5, 0.5), each as an array (n, 2).
+Signals: places on the sheet (mm, X right, Y up, from the lower-left corner) and in the photograph (px, from
+the upper-left corner, the centre of the first pixel at 0.5, 0.5), each as an array (n, 2).
 
     w · (u, v, 1) = H · (x, y, 1)            x, y: from the sheet's middle, in its half diagonals
     r² = u² + v²                             u, v: from the photograph's middle, in its half diagonals
@@ -29,7 +29,7 @@ from morfax.motion.arrays import Array
 HALF_DIAGONAL_35MM = (
     math.hypot(36.0, 24.0) / 2
 )  # of the film that focal lengths are compared with, mm
-# of phones' main cameras, 23 to 28 mm on film of 35 mm: the middle, and the standard deviation of its logarithm
+# of phones' main cameras, 23 to 28 mm on film of 35 mm: the middle, and the spread of its logarithm
 USUAL_FOCAL_MM, USUAL_SPREAD = 26.0, 0.15
 STATED_SPREAD = 0.03  # of a focal length that the file states: it is rounded to whole mm
 RIGID = 0.005  # standard deviation of the rules of a rigid sheet: a fit to edges gives a few thousandths
@@ -62,11 +62,13 @@ class Rectangle:
 
     def from_middle(self, places: Array) -> Array:
         """Places from the middle, in half diagonals."""
-        return (places - (self.width / 2, self.height / 2)) / self.half_diagonal
+        middle = np.array([self.width / 2, self.height / 2])
+        return np.asarray((places - middle) / self.half_diagonal, float)
 
     def from_corner(self, places: Array) -> Array:
         """Places from the corner, of those in half diagonals from the middle."""
-        return places * self.half_diagonal + (self.width / 2, self.height / 2)
+        middle = np.array([self.width / 2, self.height / 2])
+        return np.asarray(places * self.half_diagonal + middle, float)
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +90,9 @@ class Projection:
     def to_sheet(self, places_px: Array) -> Array:
         """Which places on the sheet are seen at places in the photograph, mm."""
         ideal = undistorted(self.photo.from_middle(places_px), self.k1, self.k2)
-        return self.sheet.from_corner(projected(np.linalg.inv(self.homography), ideal))
+        return self.sheet.from_corner(
+            projected(np.asarray(np.linalg.inv(self.homography), float), ideal)
+        )
 
     def corners_px(self) -> Array:
         """The sheet's corners in the photograph, px, clockwise from the upper left."""
@@ -114,7 +118,7 @@ class Projection:
 
 
 class Pose(NamedTuple):
-    """How a rigid sheet stands before the lens: its tilt (rad), and how much longer than it should its X seems.
+    """How a rigid sheet stands before the lens: its tilt (rad), and how much too long its X seems.
 
     `off` is in standard deviations of what a rigid sheet allows.
     """

@@ -5,8 +5,8 @@ their pitch, mm, out.
 
 The pitch is the finest scale that the photograph has anywhere on the sheet, so that nothing of it is lost.
 
-Source: our own. Questions: cubic interpolation; anything finer sees no more in a photograph that is as soft as
-a pixel.
+Source: our own. Questions: cubic interpolation; anything finer sees no more in a photograph that is as soft
+as a pixel.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def resampled(picture: Picture, projection: Projection) -> tuple[Picture, float]
         places = np.column_stack([np.tile(x_mm, len(y_mm)), np.repeat(y_mm, columns)])
         at = (projection.to_photo(places) - 0.5).astype(np.float32).reshape(-1, columns, 2)
         flat[top : top + len(y_mm)] = cv2.remap(
-            picture, at, None, cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE
+            picture, at[..., 0], at[..., 1], cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE
         )
     return flat, pitch_mm
 
