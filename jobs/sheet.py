@@ -47,7 +47,7 @@ class SheetJob:
             "height_mm": layout.paper.height_mm,
             "marks": len(layout.marks_mm),
             "bar_mm": BAR_MM,
-            "room_width_mm": right - left,
-            "room_height_mm": top - bottom,
+            "frame_width_mm": right - left,
+            "frame_height_mm": top - bottom,
         }
         return SheetResult(figures, layout, self.file, self.grid)
