@@ -32,7 +32,7 @@ from morfax.recorder.gcode.arc_places import (
 )
 from morfax.recorder.gcode.machine import Machine
 from morfax.recorder.gcode.plan import BlockPlan
-from morfax.recorder.gcode.program_text import CUTS, WORDS, Block
+from morfax.recorder.gcode.program_text import CUTS, RAPID, WORDS, Block
 
 CLOSED_MM = 0.05  # a closed trace ends within 0.01 mm of its start
 SHARP_RAD = math.radians(20)  # between two blocks of a bend it is less; chosen by trial
@@ -64,7 +64,9 @@ def head(
     way_mm = sum(
         length_mm(before.place_mm, block) for line in lines for before, block in pairwise(line)
     )
-    many = "1 line" if len(lines) == 1 else f"{len(lines)} lines"
+    many = _many(len(lines), "line")
+    if holes := drilled_mm(planned):
+        many += f", {_many(len(holes), 'drilled hole')}"
     told.append(f"cut {x_mm:.2f} x {y_mm:.2f} mm, {many}{down}")
     panel = f" at {machine.panel_feed_mm_s * 60:.0f} mm/min from the panel, without piercing"
     told.append(
@@ -76,6 +78,11 @@ def head(
             f"smallest inner radius {inner_mm:.2f} mm" if inner_mm else "sharp inner corners"
         )
     return [*told, f"within {planned.deviation_mm:.4f} mm of the traced path"]
+
+
+def _many(number: int, what: str) -> str:
+    """So many of something."""
+    return f"{number} {what}" if number == 1 else f"{number} {what}s"
 
 
 def _time(seconds: float) -> str:
@@ -91,19 +98,40 @@ def cut_lines(
     """What is cut each time the tool is down: a place, and the blocks from there on."""
     x, y, z = (float(mm) for mm in planned.start_mm)
     before = Block("", (x, y, z if machine.z else 0.0))
-    lines, is_open = list[list[Block]](), False
+    lines, is_open, is_over = list[list[Block]](), False, False
     for block in blocks:
+        if block.code == WORDS:  # what runs on after a hole has closed is no part of its line
+            is_over = block.words == machine.hole_overcut or (
+                is_over and block.words != machine.tool_up
+            )
+            continue
         lowest_mm = min(before.place_mm[2], block.place_mm[2])
-        cuts = block.code in CUTS and lowest_mm <= IN_WORK_BELOW_MM
         across = before.place_mm[:2] != block.place_mm[:2]
-        if cuts and across:
+        cuts = block.code in CUTS and across and lowest_mm <= IN_WORK_BELOW_MM
+        if cuts and not is_over:
             if not is_open:
                 lines.append([before])
             lines[-1].append(block)
-        is_open = (is_open or (cuts and across)) and (block.code in (*CUTS, WORDS, "G4", ""))
-        if block.code:
-            before = block
+        is_open = (is_open or cuts) and block.code != RAPID
+        before = block if block.code else before
     return lines
+
+
+def drilled_mm(planned: BlockPlan) -> set[tuple[float, float]]:
+    """The places where the tool goes into the work and comes out again without moving across."""
+    x, y, _ = (float(mm) for mm in planned.start_mm)
+    begun: tuple[float, float] | None = None
+    found, place = set[tuple[float, float]](), (x, y)
+    for block in planned.blocks:
+        across = block.place_mm[:2] != place
+        if block.code in CUTS and not across and block.place_mm[2] <= IN_WORK_BELOW_MM:
+            begun = begun or place
+        if across:
+            if begun is not None and block.code == RAPID:
+                found.add(begun)
+            begun = None
+        place = block.place_mm[:2]
+    return found | ({begun} if begun is not None else set())
 
 
 def smallest_inner_radius_mm(lines: Sequence[list[Block]]) -> float | None:
