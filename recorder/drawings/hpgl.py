@@ -6,7 +6,7 @@
     PU;SP0;                pen up, and away
 
 Signals: a stream of Motion or a Path in, a file and a report out. Places are whole steps of the machine,
-0.025 mm, arcs are chords within half a step.
+0.025 mm, arcs are chords within a quarter of a step.
 
 Source: Hewlett-Packard, HP-GL reference (plotter units of 0.025 mm; VS in cm/s, FS from 1 to 8). Questions:
 whole steps put a place off by up to 0.018 mm; places left of or below zero are refused by many plotters, and
@@ -58,7 +58,7 @@ def record_hpgl(
         beside.write_text(text, encoding="ascii")
     blocks = without_z(planned.start_mm, planned.blocks, wanted)
     seconds = float(running_time_s(planned.start_mm, blocks, wanted))
-    off_mm = planned.deviation_mm + wanted.step_mm * (0.5 + math.sqrt(0.5))
+    off_mm = planned.deviation_mm + wanted.step_mm * (0.25 + math.sqrt(0.5))
     closed = sum(line.closed for line in lines)
     return DrawingReport(FilePath(file), len(lines), closed, seconds, off_mm)
 
@@ -78,7 +78,7 @@ def _hpgl(lines: list[CutLine], wanted: Machine) -> str:
         )
     text = list(wanted.begin)
     for line in lines:
-        places = [line.begin_mm, *chords(line, step_mm / 2)]
+        places = [line.begin_mm, *chords(line, step_mm / 4)]
         steps = [f"{round(x / step_mm)},{round(y / step_mm)}" for x, y in places]
         text += [f"PU{steps[0]};", f"PD{','.join(steps[1:])};"]
     return "\n".join([*text, *wanted.end, ""])

@@ -100,3 +100,71 @@ def test_a_machine_is_for_g_code_alone(morfax: Morfax, here: Path) -> None:
     assert answer.exit_code == 2 and "--machine is for G-code, .ngc" in answer.fault
     answer = morfax("play", SAMPLES / "cam.wav", "--machine", "marlin")
     assert answer.exit_code == 2 and "--machine is for G-code, .ngc" in answer.fault
+
+
+def test_values_of_the_machine_and_rapids_are_set_by_name(morfax: Morfax, here: Path) -> None:
+    words = ("record", CAM, "-o", "a.gcode", "--machine", "marlin", "--rapid", "1800mm/min")
+    assert morfax(*words, "--machine-value", "speed=18000").exit_code == 0
+    lines = (here / "a.gcode").read_text().split("\n")
+    assert "M3 S18000" in lines
+    assert all(" F1800" in line for line in lines if line.startswith("G0 X"))
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (("--machine-value", "rpm=3"), "no value 'rpm'; its values are: speed, spin_up"),
+        (("--machine-value", "speed"), "'speed' is no NAME=NUMBER; give one such as"),
+        (("--machine", "hpgl"), "--machine hpgl takes .plt, .hpgl; give -o such a name"),
+    ],
+)
+def test_what_a_machine_does_not_have_is_wrong_use(
+    words: tuple[str, ...], says: str, morfax: Morfax, here: Path
+) -> None:
+    answer = morfax("record", CAM, "-o", "a.ngc", *words)
+    assert answer.exit_code == 2 and says in answer.fault
+    assert not list(here.iterdir())
+
+
+def test_a_plotter_file_has_its_speed_and_force_and_is_played(
+    morfax: Morfax, here: Path
+) -> None:
+    words = (
+        "record",
+        CAM,
+        "-o",
+        "a.plt",
+        "--feed",
+        "1200mm/min",
+        "--machine-value",
+        "force=20",
+    )
+    assert morfax(*words).exit_code == 0
+    assert (here / "a.plt").read_text().startswith("IN;SP1;\nVS2;\nFS20;\nPU")
+    figures = morfax("compare", "a.plt", CAM, "--json").figures
+    assert figures["largest_mm"] <= 0.025  # half a step each way, chords, and the fit
+
+
+@pytest.mark.parametrize(
+    ("output", "machine", "says"),
+    [
+        (
+            "a.nc",
+            ("--machine", "grbl-laser"),
+            "grbl-laser has no Z, so that a.nc holds no depth, pecks",
+        ),
+        (
+            "a.dxf",
+            (),
+            "a.dxf holds what is cut, and no depth, pecks: set these where it is read",
+        ),
+        ("a.ngc", (), ""),
+    ],
+)
+def test_what_a_medium_cannot_hold_of_a_card_is_told(
+    output: str, machine: tuple[str, ...], says: str, morfax: Morfax, here: Path
+) -> None:
+    words = ("trace", SAMPLES / "program.png", "--card", SAMPLES / "program.toml", "-o", output)
+    answer = morfax(*words, *machine)
+    assert answer.exit_code == 0
+    assert says in answer.err if says else "holds no" not in answer.err
