@@ -18,7 +18,9 @@ if TYPE_CHECKING:
 
 
 def drawing_options(argument: str) -> Decorator:
-    """Give a verb the options of a drawing, and hand it the drawing of an argument as a DrawingFile."""
+    """Give a verb the options of a drawing, and hand it the drawing of an argument, or each of several, as a
+    DrawingFile.
+    """
 
     def with_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         @option(
@@ -87,8 +89,12 @@ def drawing_options(argument: str) -> Decorator:
         def with_drawing(*args: Any, **options: Any) -> Any:
             names = ("dpi", "width_mm", "ink", "edge", "page", "known")
             how = {name: options.pop(name) for name in names}
-            flatten = FlattenSettings(options.pop("wanted"), options.pop("bar_mm"))
-            options[argument] = DrawingFile(options[argument], **how, flatten=flatten)
+            how["flatten"] = FlattenSettings(options.pop("wanted"), options.pop("bar_mm"))
+            files = options[argument]
+            if isinstance(files, tuple):
+                options[argument] = tuple(DrawingFile(file, **how) for file in files)
+            else:
+                options[argument] = DrawingFile(files, **how)
             return verb(*args, **options)
 
         return with_drawing

@@ -23,16 +23,16 @@ def sheet_shown(job: TraceJob | RunJob, picture: FilePath | None, desk: Desk) ->
         yield
     except LineFault as fault:
         if picture is not None:
-            from morfax.reports.pictures import draw_start
-
-            file = incomplete(picture)
-            start_mm = job.settings.line.start_mm
-            if (
-                fault.nearest_mm is not None
-                and fault.x_mm is not None
-                and fault.y_mm is not None
-            ):
-                start_mm = (fault.x_mm, fault.y_mm)
-            draw_start(job.drawing, start_mm, fault, file)
-            desk.note(f"the sheet is drawn in {file}; read a place for --start off its axes")
+            show_sheet(job, fault, picture, desk)
         raise
+
+
+def show_sheet(job: TraceJob | RunJob, fault: LineFault, picture: FilePath, desk: Desk) -> None:
+    """Draw the sheet with the place at which a job found no line."""
+    from morfax.reports.pictures import draw_start
+
+    file, start_mm = incomplete(picture), job.settings.line.start_mm
+    if fault.nearest_mm is not None and fault.x_mm is not None and fault.y_mm is not None:
+        start_mm = (fault.x_mm, fault.y_mm)
+    draw_start(job.drawing, start_mm, fault, file)
+    desk.note(f"the sheet is drawn in {file}; read a place for --start off its axes")

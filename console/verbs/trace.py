@@ -9,12 +9,14 @@ import click
 
 from morfax.console.options.desk import desk_options
 from morfax.console.options.drawing import drawing_options
-from morfax.console.options.files import FILE, PATHS, PICTURES, Program, Result
+from morfax.console.options.files import FILE, PATHS, PICTURES, ProgramOrFolder, Result
 from morfax.console.options.groups import Verb, option
 from morfax.console.options.placement import unit_options
 from morfax.console.options.tracing import trace_options
+from morfax.console.terminal.each import trace_each
 from morfax.console.terminal.sheet import sheet_shown
 from morfax.jobs.trace import TraceJob, TraceOutputs
+from morfax.jobs.trace_each import NAME, TraceEachJob
 
 if TYPE_CHECKING:
     from morfax.console.terminal.desk import Desk
@@ -27,20 +29,20 @@ Examples:
   morfax trace samples/cam.png
   morfax trace scan.png --width 120mm --start 40,62 -o cam.wav --path cam.csv
   morfax trace samples/bracket.png --lines all --picture bracket-lines.png
-  morfax trace scan.jpg --dpi 600 --card part.toml --picture cam-traced.png
+  morfax trace scans/*.png --width 210mm --lines all -o parts/{}.ngc
 """
 
 
 @click.command("trace", cls=Verb, epilog=EXAMPLES)
-@click.argument("drawing", type=FILE)
+@click.argument("drawings", metavar="DRAWING...", type=FILE, nargs=-1, required=True)
 @option(
     "Output",
     "-o",
     "output",
-    type=Program(*PATHS),
-    help="The tape (.wav), another program (.steps, .cubic, .ngc), or a path file only (.csv).  "
-    "[default: the "
-    "drawing's name with .wav, in this folder]",
+    type=ProgramOrFolder(*PATHS),
+    help="The tape (.wav), another program (.steps, .cubic, .ngc), or a path file only (.csv). Of several "
+    "drawings: a folder for the tapes, or a name with {} for the drawing's, such as parts/{}.ngc.  [default: "
+    "the drawing's name with .wav, in this folder]",
 )
 @option(
     "Output",
@@ -62,12 +64,12 @@ Examples:
     is_flag=True,
     help="Without -o: write over a tape that is there already.",
 )
-@drawing_options("drawing")
+@drawing_options("drawings")
 @trace_options
 @unit_options
 @desk_options
 def command(
-    drawing: DrawingFile,
+    drawings: tuple[DrawingFile, ...],
     output: FilePath | None,
     path_file: FilePath | None,
     picture: FilePath | None,
@@ -84,9 +86,15 @@ def command(
     the names; of several lines (--lines) the others are cut all the same. The picture numbers them. If the
     head finds no line to start on, --picture shows the sheet, so that a place for --start can be read off it.
     The picture shows the drawing as it is; tape and path are mirrored, scaled and turned as asked for.
+    Several drawings are traced with the same options, each to results of its own name; one that fails does
+    not stop the others.
     """
     outputs = TraceOutputs(output, path_file, picture, force)
-    job = TraceJob(drawing, outputs, settings, unit)
+    names = [str(name) for name in (output, path_file, picture) if name is not None]
+    if len(drawings) > 1 or any(NAME in name for name in names) or (output and output.is_dir()):
+        trace_each(TraceEachJob(drawings, outputs, settings, unit), desk, panel)
+        return
+    job = TraceJob(drawings[0], outputs, settings, unit)
     with sheet_shown(job, picture, desk):
         result = job.run(desk, panel)
     if result.picture is not None:

@@ -1,0 +1,109 @@
+"""Several drawings traced with the same options, each to results with a name of its own.
+
+Signals: drawings, names with {} for each drawing's name, and settings in; the outcome of each drawing out, as
+it is done. A drawing that fails does not stop the others. All names are checked before the first is traced.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path as FilePath
+from typing import TYPE_CHECKING, Any
+
+from morfax.jobs import files as medium
+from morfax.jobs.listener import SILENT, Listener
+from morfax.jobs.recording import RecordingUnit
+from morfax.jobs.settings import DrawingFile, TraceSettings
+from morfax.jobs.trace import TraceJob, TraceOutputs, TraceResult
+from morfax.jobs.wrong_use import WrongUse
+from morfax.motion.faults import Fault
+
+if TYPE_CHECKING:
+    from morfax.tracer.operator.operator import Panel
+
+NAME = "{}"  # stands for the drawing's name, without its suffix
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What came of one drawing: a result, or the fault that kept it from one."""
+
+    job: TraceJob
+    result: TraceResult | None
+    fault: Fault | None
+
+    def figures(self) -> dict[str, Any]:
+        """Figures of the drawing, with the fault as text."""
+        told = {} if self.result is None else self.result.figures
+        fault = {} if self.fault is None else {"fault": str(self.fault)}
+        return {"drawing": str(self.job.drawing.file), **told, **fault}
+
+
+@dataclass(frozen=True, slots=True)
+class TraceEachJob:
+    """Trace several drawings; `outputs` has a folder for the programs, or names with {} in them."""
+
+    drawings: tuple[DrawingFile, ...]
+    outputs: TraceOutputs = field(default_factory=TraceOutputs)
+    settings: TraceSettings = field(default_factory=TraceSettings)
+    unit: RecordingUnit = field(default_factory=RecordingUnit)
+
+    def jobs(self) -> list[TraceJob]:
+        """A job for each drawing; raises WrongUse for names that do not differ, FileFault for a bad one."""
+        jobs = [self._job(drawing) for drawing in self.drawings]
+        taken = dict[FilePath, FilePath]()
+        sources = [drawing.file for drawing in self.drawings]
+        for job in jobs:
+            named = job.outputs.checked(job.drawing.file)
+            for file in (named.program, named.path, named.picture):
+                if file is None:
+                    continue
+                medium.outgoing(file, *sources)
+                if file.absolute() in taken:
+                    raise WrongUse(
+                        f"{taken[file.absolute()]} and {job.drawing.file} would both be written to {file}; "
+                        "trace them one by one, or rename one"
+                    )
+                taken[file.absolute()] = job.drawing.file
+        return jobs
+
+    def each(
+        self, listener: Listener = SILENT, panel: Panel | None = None
+    ) -> Iterator[Outcome]:
+        """Trace one drawing after the other; raises WrongUse, other faults are in the outcomes."""
+        jobs = self.jobs()
+        for number, job in enumerate(jobs, 1):
+            listener.note(f"{number} of {len(jobs)}: {job.drawing.file}")
+            try:
+                result = job.run(listener, panel)
+            except Fault as fault:
+                yield Outcome(job, None, fault)
+            else:
+                yield Outcome(job, result, result.fault)
+
+    def _job(self, drawing: DrawingFile) -> TraceJob:
+        """The job of one drawing."""
+        stem, outputs = drawing.file.stem, self.outputs
+        program = outputs.program
+        if program is not None and program.is_dir():
+            made = program / f"{stem}.wav"
+            program = medium.made_up(made, drawing.file, force=outputs.force)
+        else:
+            program = self._named(program, stem)
+        names = TraceOutputs(
+            program,
+            self._named(outputs.path, stem),
+            self._named(outputs.picture, stem),
+            outputs.force,
+        )
+        return TraceJob(drawing, names, self.settings, self.unit)
+
+    def _named(self, name: FilePath | None, stem: str) -> FilePath | None:
+        """A name with the drawing's in it; raises WrongUse for one name for several drawings."""
+        if name is None or NAME in str(name):
+            return None if name is None else FilePath(str(name).replace(NAME, stem))
+        raise WrongUse(
+            f"{name} is one name for the results of {len(self.drawings)} drawings; put {NAME} in it for the "
+            f"drawing's name, such as {name.with_name(NAME + name.suffix)}"
+        )
