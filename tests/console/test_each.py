@@ -1,4 +1,4 @@
-"""Several drawings on one command line: a result each by its own name, and one that fails beside the others."""
+"""Several drawings on one command line: a result each by its own name; one that fails stops no other."""
 
 from __future__ import annotations
 
@@ -29,7 +29,10 @@ def test_each_drawing_has_its_own_results_and_one_that_fails_stops_no_other(
     morfax: Morfax, rings: tuple[str, ...]
 ) -> None:
     answer = morfax("trace", *rings, "-o", "{}.ngc", "--picture", "{}-seen.png", "--json")
-    assert answer.exit_code == 3 and (answer.figures["traced"], answer.figures["failed"]) == (2, 1)
+    assert answer.exit_code == 3 and (answer.figures["traced"], answer.figures["failed"]) == (
+        2,
+        1,
+    )
     lengths_mm = [row.get("length_mm") for row in answer.figures["drawings"]]
     assert lengths_mm[1] is None and "fault" in answer.figures["drawings"][1]
     for length_mm, radius_px in ((lengths_mm[0], 47), (lengths_mm[2], 71)):
