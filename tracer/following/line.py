@@ -174,6 +174,11 @@ class Line:
         return self.is_dot or (self.reference_mm is not None and self.ending == "ended")
 
     @property
+    def comes_round(self) -> bool:
+        """Whether its end is its beginning, or that of its loop."""
+        return self.ending == "closed" or self.is_lead
+
+    @property
     def is_dot(self) -> bool:
         """Whether it is a dot that stands alone, and no line."""
         return self.ending == "ended" and len(self.xy_mm) == 2 and self.length_mm == 0
@@ -221,10 +226,14 @@ class Line:
 
     def without_guides(self, first: int, last: int) -> list[Array]:
         """Stretches (n, 2) mm from one position to another, between the guide lines taken on the way."""
+        return [self.xy_mm[a:b] for a, b in self.ranges(first, last)]
+
+    def ranges(self, first: int, last: int) -> list[tuple[int, int]]:
+        """The positions of those stretches: of each its first, and the one after its last."""
         taken = [guide for guide in self.guides if first < guide.leave <= last]
         begins = [first, *(guide.back for guide in taken)]
         ends = [*(guide.leave for guide in taken), last + 1]
-        return [self.xy_mm[a:b] for a, b in zip(begins, ends, strict=True) if a < b]
+        return [(a, b) for a, b in zip(begins, ends, strict=True) if a < b]
 
     def place(self, at: float) -> tuple[float, float]:
         """Where the axis is at a position, fractions included, mm."""

@@ -27,9 +27,9 @@ from typing import Protocol
 from morfax.motion.faults import CardFault
 from morfax.tracer.following.direction import Direction
 from morfax.tracer.following.line import Line
-from morfax.tracer.operator.card import Card, Stop
+from morfax.tracer.operator.card import Card, Drill, Stop
 from morfax.tracer.operator.work import Action, Entry, Halt, Work
-from morfax.tracer.operator.zunit import Move
+from morfax.tracer.operator.zunit import COUNTS_PER_MM, Move
 from morfax.tracer.sensing.side import Side
 
 STAND_S = 0.5  # at a stop without an entry on the card: our own figure
@@ -173,7 +173,7 @@ class Operator:
             if halt is down:
                 made = self._entered(Action(halt, moves, None, self._depths(halt)))
             actions.append(made)
-            z_mm = -made.entry.depth_mm if made.entry else moves[-1].to_mm
+            z_mm = made.z_mm
         if z_mm >= 0 and not line.is_guide:
             self._refuse_passes_above(actions)
         return actions
@@ -193,12 +193,17 @@ class Operator:
         )
 
     def _entered(self, action: Action) -> Action:
-        """Where the tool goes down, with the card's entry: to the surface while X and Y stand."""
-        to_mm, length_mm = action.moves[-1].to_mm, self.card.entry_mm
-        if length_mm is None or to_mm >= 0 or len(action.moves) > 1:
+        """Where the tool goes down, with a ramp or an entry: to the surface while X and Y stand."""
+        to_mm = action.moves[-1].to_mm
+        if to_mm >= 0 or len(action.moves) > 1:
+            return action
+        entry = self.work.ramp(0.0, -to_mm)
+        if entry is None and self.card.entry_mm is not None:
+            entry = Entry(-to_mm, self.card.entry_mm)
+        if entry is None:
             return action
         to_surface = replace(action.moves[0], to_mm=0.0)
-        return replace(action, moves=(to_surface,), entry=Entry(-to_mm, length_mm))
+        return replace(action, moves=(to_surface,), entry=entry)
 
     def _to(self, z_mm: float) -> tuple[Move, ...]:
         """One move of Z at the work's feed."""
@@ -224,8 +229,16 @@ class Operator:
         if is_down:
             return [Move(-self._depths(halt)[0], feed_mm_s, stop.dwell_s)]
         if halt.kind in ("dot", "hole") and z_mm > 0:
+            if self.work.peck_mm is not None:
+                return self._pecks(halt, stop, z_mm, self.work.peck_mm)
             return [Move(-self.work.depth_mm, feed_mm_s, stop.dwell_s), Move(z_mm, feed_mm_s)]
         return [Move(z_mm, feed_mm_s, stop.dwell_s or STAND_S)]
+
+    def _pecks(self, halt: Halt, stop: Stop, z_mm: float, peck_mm: float) -> list[Move]:
+        """The moves that drill a hole peck by peck."""
+        depth, peck = (round(mm * COUNTS_PER_MM) for mm in (self.work.depth_mm, peck_mm))
+        drill = Drill(depth, peck, feed_mm_s=self.work.feed_mm_s, dwell_s=stop.dwell_s)
+        return self._from_card(halt, Stop(stop.number, drill=drill), z_mm)
 
     def _from_card(self, halt: Halt, stop: Stop, z_mm: float) -> list[Move]:
         """The moves that an entry of the card gives; none for a dwell alone."""

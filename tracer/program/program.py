@@ -29,6 +29,7 @@ from morfax.tracer.following.line import Line
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.operator.work import Action, Work
 from morfax.tracer.program.passes import Passes
+from morfax.tracer.program.tabs import Tab, tabs_of
 
 ENDINGS = ("lost", "joined", "ended", "closed")  # the one to be told first comes first
 
@@ -109,6 +110,11 @@ class Trace:
         """What the operator does along each line."""
         return self.operator.actions(self.lines)
 
+    @cached_property
+    def tabs(self) -> list[tuple[Tab, ...]]:
+        """The holding tabs of each line; raises MotionFault if there is no room for them."""
+        return tabs_of(self.lines, self.operator, self.actions)
+
     def __iter__(self) -> Iterator[Motion]:
         """Blocks of Motion: down, along the line, up, and over to the next."""
         first = 0
@@ -119,9 +125,11 @@ class Trace:
     def _blocks(self) -> Iterator[Array]:
         """Positions of those blocks, (n, 3) mm."""
         passes = Passes(self.operator, self.rate_hz)
-        for line, after, actions in zip_longest(self.lines, self.lines[1:], self.actions):
+        for line, after, actions, tabs in zip_longest(
+            self.lines, self.lines[1:], self.actions, self.tabs
+        ):
             if len(line.xy_mm) > 1:  # not one that was never begun
-                yield from passes.along(line, actions)
+                yield from passes.along(line, actions, tabs)
             if after is not None:
                 yield passes.rapid(line.end_mm, after.begin_mm)
 

@@ -1,0 +1,76 @@
+"""The height of the tool along a pass: level, on a slope down into the work, raised over a tab.
+
+Signals: positions of X and Y along the way, (n, 2) mm, in; Z beside them out, mm.
+
+    level  ───────────────      slope  ──╲            tab       ┌────┐
+                                          ╲────               ──┘    └──
+
+Source: our own; the moves of Z while X and Y stand are the Z unit's (see `zunit`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from morfax.motion.arrays import Array
+from morfax.motion.polyline import lengths_mm
+from morfax.tracer.operator.work import Entry
+
+ROUNDED = 1e-9  # of the feed, and of a period: what rounding adds
+ARRIVED_MM = 1e-9  # of a slope: what rounding leaves of it
+
+
+@dataclass(slots=True)
+class ToolHeight:
+    """Where the tool is: its height beside the tabs, the slope it is on and how far it has come there, and
+    the top of the tab that it is passing, mm.
+    """
+
+    z_mm: float
+    entry: Entry | None = None
+    come_mm: float = 0.0
+    top_mm: float | None = None
+
+    @property
+    def raised_mm(self) -> float:
+        """Where Z stands."""
+        return self.z_mm if self.top_mm is None else max(self.z_mm, self.top_mm)
+
+    @property
+    def left_mm(self) -> float:
+        """How much of the slope is left, mm."""
+        return 0.0 if self.entry is None else self.entry.length_mm - self.come_mm
+
+    def go_down(self, entry: Entry | None) -> None:
+        """Begin a slope, or none."""
+        self.entry, self.come_mm = entry, 0.0
+
+    def along(self, xy_mm: Array, length_mm: float) -> Array:
+        """Go along a piece (n, 2) mm of the way, which is so long on the line: Z beside it, (n,) mm.
+
+        In a bend the positions are a little less apart than the line is long, and Z goes by the line.
+        """
+        z_mm = np.full(len(xy_mm), self.z_mm)
+        if self.entry is not None:
+            lengths = lengths_mm(xy_mm)
+            share = lengths / lengths[-1] if lengths[-1] > 0 else lengths
+            z_mm = self.entry.z_mm(self.come_mm + share * length_mm)
+            self.come_mm += length_mm
+            if self.left_mm <= ARRIVED_MM:
+                z_mm[-1] = -self.entry.depth_mm
+                self.entry = None
+            self.z_mm = float(z_mm[-1])
+        return z_mm if self.top_mm is None else np.maximum(z_mm, self.top_mm)
+
+
+def slowed(positions_mm: Array, feed_mm_s: float, rate_hz: float) -> Array:
+    """The same way (n, 3) mm with more time where Z would move faster than its feed."""
+    periods = np.abs(np.diff(positions_mm[:, 2])) * rate_hz / feed_mm_s
+    if not len(periods) or periods.max() <= 1 + ROUNDED:
+        return positions_mm
+    times = np.r_[0.0, np.cumsum(np.maximum(periods, 1.0))]
+    uniform = np.arange(1, int(np.ceil(times[-1] - ROUNDED)))
+    between = [np.interp(uniform, times, column) for column in positions_mm.T]
+    return np.vstack([positions_mm[:1], np.column_stack(between), positions_mm[-1:]])
