@@ -34,6 +34,7 @@ from morfax.motion.motion import IN_WORK_BELOW_MM, Path
 DWELL_S = 0.25  # half as long again as the longest swivel of the head
 LEVEL = 0.02  # Z that changes less than this share of the way across stands
 NOISE_MM = 2e-4  # of a thinned path
+HIDDEN_MM = NOISE_MM / LEVEL  # over less, noise hides whether a step climbs
 STAND = 0.25  # of the speed before and after it: a slower place parts two moves of Z
 HALF = 0.5  # of the length: its median speed is the feed of a stretch
 # of an upright move, which has hardly left its ramp up when the ramp down begins
@@ -54,10 +55,11 @@ class Stretch:
 
     @property
     def rapid(self) -> bool:
-        """Whether the stretch is run above the work, or straight up."""
+        """Whether the stretch is run above the work, or straight up out of it."""
         z_mm = self.points_mm[:, 2]
         above = bool(z_mm.min() > IN_WORK_BELOW_MM)
-        return above or (self.kind == "upright" and bool(z_mm[-1] > z_mm[0]))
+        goes_out = bool(z_mm[-1] > max(z_mm[0], IN_WORK_BELOW_MM))
+        return above or (self.kind == "upright" and goes_out)
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,10 +94,25 @@ def _moving(path: Path) -> _Steps:
     climbs = (np.abs(up_mm) > LEVEL * across_mm) & (np.abs(up_mm) > NOISE_MM)
     stands = (took_s >= DWELL_S) & (np.hypot(across_mm, up_mm) <= 2 * NOISE_MM)
     index = np.flatnonzero(~stands & (climbs | (across_mm > NOISE_MM / 10)))
+    climbs[index] = _with_rests(climbs[index], across_mm[index])
     begins_s, ends_s = path.t_s[index], path.t_s[index] + took_s[index]
     stood_s = begins_s - np.r_[begins_s[:1], ends_s[:-1]]
     dwelt_s = np.where(stood_s >= DWELL_S, stood_s, 0.0)
     return _Steps(index, across_mm[index], up_mm[index], took_s[index], dwelt_s, climbs[index])
+
+
+def _with_rests(climbs: NDArray[np.bool_], across_mm: Array) -> NDArray[np.bool_]:
+    """Which steps climb, with those of a slope that are so short that noise hides it: where it begins from
+    rest.
+    """
+    climbs = climbs.copy()
+    edges = np.flatnonzero(np.diff(np.r_[True, climbs, True].astype(np.int8)))
+    for first, last in edges.reshape(-1, 2):
+        beside = np.r_[across_mm[max(first - 1, 0) : first], across_mm[last : last + 1]]
+        is_short = across_mm[first:last].sum() <= HIDDEN_MM
+        if is_short and len(beside) and beside.max() > NOISE_MM:
+            climbs[first:last] = True
+    return climbs
 
 
 def _moves(steps: _Steps, first: int, last: int) -> list[tuple[int, int]]:
@@ -103,13 +120,21 @@ def _moves(steps: _Steps, first: int, last: int) -> list[tuple[int, int]]:
     if first == last or not steps.climbs[first]:
         return [(first, last)] if first < last else []
     up_mm, took_s = steps.up_mm[first:last], steps.took_s[first:last]
-    turns = np.flatnonzero(np.diff(np.sign(up_mm)) != 0) + 1
+    turns = np.flatnonzero(np.diff(_senses(up_mm)) != 0) + 1
     found = []
     for a, b in pairwise([0, *turns.tolist(), len(up_mm)]):
         speeds_mm_s = np.abs(up_mm[a:b]) / np.maximum(took_s[a:b], 1e-9)
         stands = [a + k for k in _stands(speeds_mm_s)]
         found += [(first + c, first + d) for c, d in pairwise([a, *stands, b])]
     return found
+
+
+def _senses(up_mm: Array) -> Array:
+    """Whether each step goes up (1) or down (-1); one that goes neither way as the step before it."""
+    senses = np.sign(np.where(np.abs(up_mm) > NOISE_MM, up_mm, 0.0))
+    known = np.flatnonzero(senses)
+    before = np.maximum(np.searchsorted(known, np.arange(len(senses)), "right") - 1, 0)
+    return senses[known[before]] if len(known) else senses
 
 
 def _stands(speeds_mm_s: Array) -> list[int]:
