@@ -17,6 +17,7 @@ by its own rules. Depths that are whole counts of the Z unit are written as such
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -37,6 +38,9 @@ COUNT_MM = 0.01  # the step of the Z unit's decades
 COUNT_SHARE = 0.25
 # three times what thinning takes off the place where one move of Z ends and one begins
 COUNT_REACH_MM = 0.002
+# a plunge as long has reached its feed: at 200 mm/s², that of the Z unit, up to 10 mm/s
+FELT_PLUNGE_MM = 0.5
+SHORT_MM = 0.1  # a shorter line does not show how steep a slope is
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +49,13 @@ class Feeds:
 
     cut_mm_s: float | None = None
     plunge_mm_s: float | None = None
+    down_slopes_mm_s: float = math.inf  # of Z on a slope, at most
+
+    def with_plunge_of(self, parts: Sequence[Stretch]) -> Feeds:
+        """The feeds with that of Z on slopes: no more than what is asked for, or any straight plunge has."""
+        speeds_mm_s = (part.speed_mm_s for part in parts if part.plunge_mm >= FELT_PLUNGE_MM)
+        slowest_mm_s = min(speeds_mm_s, default=math.inf)
+        return replace(self, down_slopes_mm_s=self.plunge_mm_s or slowest_mm_s)
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +105,7 @@ def plan(stream: Source, writing: Writing, feeds: Feeds | None = None) -> BlockP
         raise MotionFault(
             "the motion stands still at one place; a program needs at least two different places"
         )
-    planner = _Planner(path.positions_mm[0], writing, feeds or Feeds())
+    planner = _Planner(path.positions_mm[0], writing, (feeds or Feeds()).with_plunge_of(parts))
     for part in parts:
         planner.stretch(part)
     return BlockPlan(
@@ -119,15 +130,21 @@ class _Planner:
         if stretch.dwell_s:
             self.blocks.append(Block("G4", tuple(self.place), dwell_s=stretch.dwell_s))
         points = np.vstack([self.place, stretch.points_mm[1:]])
-        length_mm = float(np.sqrt((np.diff(points, axis=0) ** 2).sum(axis=1)).sum())
         feed_mm_s = self._feed_mm_s(stretch)
+        is_fitted = stretch.kind == "plane" and self.writing.arcs and not stretch.rapid
+        kept, off_mm = ([], 0.0) if is_fitted else _straightest(points, self.tolerance_mm)
+        if stretch.kind == "slope" and not stretch.rapid:
+            feed_mm_s = min(feed_mm_s, self.feeds.down_slopes_mm_s / _slope(points[kept]))
+        length_mm = float(np.sqrt((np.diff(points, axis=0) ** 2).sum(axis=1)).sum())
         self.duration_s += length_mm / feed_mm_s + stretch.dwell_s
-        if stretch.rapid or stretch.kind != "plane" or not self.writing.arcs:
-            kept, off_mm = _straightest(points, self.tolerance_mm)
-            self.deviation_mm = max(self.deviation_mm, off_mm)
-            for place in points[kept[1:]]:
-                self._line(place, feed_mm_s, rapid=stretch.rapid)
-            return
+        self.deviation_mm = max(self.deviation_mm, off_mm)
+        for place in points[kept[1:]]:
+            self._line(place, feed_mm_s, rapid=stretch.rapid)
+        if is_fitted:
+            self._fitted(points, feed_mm_s)
+
+    def _fitted(self, points: Array, feed_mm_s: float) -> None:
+        """BlockPlan lines and arcs through points in a plane."""
         for chain in fit(points[:, :2], (1 - FLAT_SHARE) * self.tolerance_mm):
             self.deviation_mm = max(self.deviation_mm, chain.deviation_mm + self.last_digit_mm)
             for segment in chain.segments:
@@ -181,6 +198,13 @@ class _Planner:
             place[2] = round(count_mm, self.writing.decimals)
             self.deviation_mm = max(self.deviation_mm, off_mm)
         return place
+
+
+def _slope(points: Array) -> float:
+    """The steepest of some lines through points (n, 3) mm: Z to the length of the line, at least 1e-9."""
+    steps = np.diff(points, axis=0)
+    lengths_mm = np.maximum(np.sqrt((steps**2).sum(axis=1)), SHORT_MM)
+    return max(float((np.abs(steps[:, 2]) / lengths_mm).max()), 1e-9)
 
 
 def _straightest(points: Array, tolerance_mm: float) -> tuple[list[int], float]:

@@ -34,7 +34,8 @@ from morfax.motion.motion import IN_WORK_BELOW_MM, Path
 DWELL_S = 0.25  # half as long again as the longest swivel of the head
 LEVEL = 0.02  # Z that changes less than this share of the way across stands
 NOISE_MM = 2e-4  # of a thinned path
-HIDDEN_MM = NOISE_MM / LEVEL  # over less, noise hides whether a step climbs
+# over less on either side of a rest, noise hides whether a step climbs
+HIDDEN_MM = 2 * NOISE_MM / LEVEL
 STAND = 0.25  # of the speed before and after it: a slower place parts two moves of Z
 HALF = 0.5  # of the length: its median speed is the feed of a stretch
 # of an upright move, which has hardly left its ramp up when the ramp down begins
@@ -52,6 +53,13 @@ class Stretch:
     kind: Kind
     speed_mm_s: float
     dwell_s: float = 0.0
+
+    @property
+    def plunge_mm(self) -> float:
+        """How far it goes straight down into the work."""
+        z_mm = self.points_mm[:, 2]
+        is_plunge = self.kind == "upright" and not self.rapid
+        return float(z_mm[0] - z_mm[-1]) if is_plunge else 0.0
 
     @property
     def rapid(self) -> bool:
