@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Literal
 
 from morfax.jobs import flattening
 from morfax.jobs.flattening import FlattenSettings
+from morfax.jobs.depths import DepthSettings, passes_mm
 from morfax.jobs.listener import SILENT, Listener
 from morfax.jobs.wrong_use import WrongUse, settings_checked
 
@@ -153,6 +154,7 @@ class TraceSettings:
     head: HeadSettings = field(default_factory=HeadSettings)
     tool: ToolSettings = field(default_factory=ToolSettings)
     program: ProgramSettings = field(default_factory=ProgramSettings)
+    depths: DepthSettings = field(default_factory=DepthSettings)
 
     def card(self) -> Card:
         """The operator's card, an empty one if no file is given; raises CardFault for a mistake on it."""
@@ -161,7 +163,7 @@ class TraceSettings:
         file = self.program.card_file
         card = Card() if file is None else Card.open(file)
         override = self.program.stop_override
-        return card if override is None else replace(card, override=override)
+        return self.depths.on(card if override is None else replace(card, override=override))
 
     def of_head(self, card: Card | None = None) -> Settings:
         """Settings of the head; raises WrongUse for one that the head does not have or cannot take."""
@@ -212,7 +214,11 @@ class TraceSettings:
             clearance_mm=clearance_mm,
             feed_mm_s=card.feed_mm_s or usual.feed_mm_s,
             rapid_mm_s=card.rapid_mm_s or usual.rapid_mm_s,
-            passes_mm=tuple(pass_mm for pass_mm in card.depths_mm if pass_mm < depth_mm),
+            passes_mm=passes_mm(card, depth_mm),
+            tabs=card.tabs,
+            ramp_rad=card.ramp_rad,
+            peck_mm=card.peck_mm,
+            cutter_mm=self.tool.cutter_mm or 0.0,
         )
 
 

@@ -44,6 +44,19 @@ def stops(trace: Trace) -> list[dict[str, Any]]:
     ]
 
 
+def tabs(trace: Trace) -> list[dict[str, Any]]:
+    """The holding tabs, numbered along the program: of which line, and where."""
+    places = [
+        (line.number, tab.place_mm)
+        for line, tabs in zip(trace.lines, trace.tabs, strict=True)
+        for tab in tabs
+    ]
+    return [
+        {"tab": k, "of_line": number, "tab_place_mm": place_mm}
+        for k, (number, place_mm) in enumerate(places, 1)
+    ]
+
+
 def junctions(trace: Trace, *, numbered: bool) -> list[dict[str, Any]]:
     """The junctions on each line, in the order that the card's `turns` count; lines may be numbered."""
     return [

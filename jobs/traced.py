@@ -53,6 +53,9 @@ class Traced:
             f"stop {row['stop']}": row["stop_place_mm"]
             for row in trace_figures.stops(self.trace)
         }
+        stops_mm |= {
+            f"tab {row['tab']}": row["tab_place_mm"] for row in trace_figures.tabs(self.trace)
+        }
         if self.left is None:
             return stops_mm
         lines_mm = {
@@ -77,6 +80,8 @@ class Traced:
             "origin_place_mm": self.origin_mm if any(self.origin_mm) else None,
             **(trace_figures.lines(trace) if self.several else {}),
             "stops": trace_figures.stops(trace) or None,
+            "tabs": trace_figures.tabs(trace) or None,
+            "passes_mm": list(trace.work.depths_mm) if trace.work.passes_mm else None,
             "junctions": trace_figures.junctions(trace, numbered=self.several) or None,
         }
         if self.cutter is None or self.left is None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from morfax.jobs.depths import of_tabs
 from morfax.jobs.remarks import of_cutter, remarks
 from morfax.jobs.traced import Traced
 from morfax.jobs.wrong_use import WrongUse
@@ -71,6 +72,8 @@ class Tracing:
             beside, left = with_cutter(followed, cutter, self.of_head.speed_mm_s)
             for text in of_cutter(beside, left, cutter):
                 listener.warning(text)
+        for text in of_tabs(beside):
+            listener.warning(text)
         several = self.settings.line.are_several
         return Traced(beside, thin(beside), several, origin_mm, cutter, left)
 

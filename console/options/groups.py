@@ -14,6 +14,7 @@ ORDER = (
     "Line",
     "Head",
     "Tool",
+    "Cutting",
     "Program",
     "Systems",
     "Machine",

@@ -9,6 +9,7 @@ from typing import Any, NoReturn
 
 import click
 
+from morfax.console.options.depths import DEPTHS, depth_settings
 from morfax.console.options.files import FILE
 from morfax.console.options.groups import Decorator, option, renamed
 from morfax.console.options.types import (
@@ -225,7 +226,7 @@ def trace_options(verb: Callable[..., Any]) -> Callable[..., Any]:
             _print_settings(settings)
         return verb(*args, settings=settings, panel=attended.panel(asking=ask), **options)
 
-    return _with((*_LINE, *_HEAD, *_TOOL, *_PROGRAM), with_settings)
+    return _with((*_LINE, *_HEAD, *_TOOL, *DEPTHS, *_PROGRAM), with_settings)
 
 
 def _with(options: tuple[Decorator, ...], verb: Callable[..., Any]) -> Callable[..., Any]:
@@ -251,7 +252,7 @@ def _settings(options: dict[str, Any]) -> TraceSettings:
         return kind(**{field.name: options.pop(field.name) for field in fields(kind)})
 
     line, head, tool = of(LineSettings), of(HeadSettings), of(ToolSettings)
-    return TraceSettings(line, head, tool, of(ProgramSettings))
+    return TraceSettings(line, head, tool, of(ProgramSettings), depth_settings(options))
 
 
 def _print_settings(settings: TraceSettings) -> NoReturn:

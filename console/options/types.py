@@ -193,6 +193,9 @@ STOCK = Quantity("stock", _parse_stock)
 LENGTH = Quantity("length", parse_length_mm, above_zero=True)
 REACH = Quantity("length", parse_length_mm)  # of the head; may be 0
 DEPTH = Quantity("length", _decades(0))
+COUNTED = Quantity("length", _decades(1))  # of Z, above zero
+# flatter, Z changes too little for its noise to show a slope
+RAMP = Quantity("angle", parse_angle_rad, within="1.5deg to 45deg")
 # up to 0.05 mm above the work the tool counts as in it
 CLEARANCE = Quantity("length", _decades(6))
 BAR = Quantity("length", parse_length_mm, within="90mm to 110mm")  # further off is a slip

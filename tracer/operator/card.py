@@ -30,6 +30,8 @@ from typing import Literal, cast
 from morfax.motion.faults import CardFault
 from morfax.motion.toml_fields import Field, opened, parsed, read
 from morfax.tracer.operator.counts_field import counts_in
+from morfax.tracer.operator.depth_fields import length_mm, passes_mm, ramp_rad, start_mm, tabs
+from morfax.tracer.operator.work import Tabs
 from morfax.tracer.operator.zunit import COUNTS_PER_MM, Counters, Move, Preset, counts_of, moves
 
 Restart = Literal["automatic", "manual"]
@@ -37,9 +39,10 @@ Turn = Literal["straight", "left", "right"]
 Override = Literal["none", "all"] | tuple[int, ...]
 FEED_MM_S = 5.0  # of a move without a feed, on a card without a feed: our own figure
 CLEAR_COUNTS = 50  # 0.5 mm above the bottom of the hole the drill slows down: our own figure
-# the first count above IN_WORK_BELOW_MM, where the tool is out of the work
-LEAST_START_COUNTS = 6
-_KEYS = ("start", "depth", "passes", "entry", "restart", "turns", "override", "speeds", "stop")
+_KEYS = (
+    *("start", "depth", "passes", "entry", "restart", "turns", "override", "speeds", "stop"),
+    *("step_down", "ramp", "tabs", "peck"),
+)
 _STOP_KEYS = ("number", "moves", "drill", "passes", "dwell", "restart")
 _MOVE_KEYS = ("down", "up", "feed", "dwell")
 _DRILL_KEYS = ("depth", "peck", "clear", "feed", "dwell")
@@ -114,6 +117,10 @@ class Card:
     entry_mm: float | None = (
         None  # the tool goes down to its depth along this length of the line
     )
+    step_down_mm: float | None = None  # deepest cut of one pass; passes are then equal
+    ramp_rad: float | None = None  # or at this angle
+    tabs: Tabs | None = None
+    peck_mm: float | None = None  # how deep a drill goes at a time
     restart: Restart = "automatic"
     turns: tuple[
         Turn, ...
@@ -145,47 +152,34 @@ def _card(whole: Field) -> Card:
     feed_mm_s = read(speeds, "feed", Field.speed_mm_s, None)
     if "depth" in fields and "passes" in fields:
         fields["depth"].refuse("give passes or depth, not both: the last pass is the depth")
-    depth = read(fields, "depth", lambda field: (_length_mm(field),), ())
+    for one, other in (("passes", "step_down"), ("entry", "ramp")):
+        if one in fields and other in fields:
+            fields[other].refuse(f"give {one} or {other}, not both")
+    peck = read(fields, "peck", counts_in, None)
+    depth = read(fields, "depth", lambda field: (length_mm(field),), ())
     return Card(
-        start_mm=read(fields, "start", _start_mm, None),
-        depths_mm=read(fields, "passes", _passes, depth),
-        entry_mm=read(fields, "entry", _length_mm, None),
+        start_mm=read(fields, "start", start_mm, None),
+        depths_mm=read(fields, "passes", passes_mm, depth),
+        entry_mm=read(fields, "entry", length_mm, None),
+        step_down_mm=read(fields, "step_down", length_mm, None),
+        ramp_rad=read(fields, "ramp", ramp_rad, None),
+        tabs=read(fields, "tabs", tabs, None),
+        peck_mm=None if peck is None else peck / COUNTS_PER_MM,
         trace_mm_s=read(speeds, "trace", Field.speed_mm_s, None),
         feed_mm_s=feed_mm_s,
         rapid_mm_s=read(speeds, "rapid", Field.speed_mm_s, None),
         restart=read(fields, "restart", _restart, "automatic"),
         turns=read(fields, "turns", _turns, ()),
         override=read(fields, "override", _override, "none"),
-        stops=read(fields, "stop", lambda field: _stops(field, feed_mm_s or FEED_MM_S), ()),
+        stops=read(
+            fields, "stop", lambda field: _stops(field, feed_mm_s or FEED_MM_S, peck), ()
+        ),
     )
 
 
 def _speeds(field: Field) -> dict[str, Field]:
     """The speeds of the card."""
     return field.table("trace", "feed", "rapid")
-
-
-def _start_mm(field: Field) -> float:
-    """Where the tool stands above the work, mm: out of the work."""
-    return counts_in(field, LEAST_START_COUNTS) / COUNTS_PER_MM
-
-
-def _length_mm(field: Field) -> float:
-    """A length that can be set on five decades, mm."""
-    return counts_in(field) / COUNTS_PER_MM
-
-
-def _passes(field: Field) -> tuple[float, ...]:
-    """Depths in mm, each deeper than the one before."""
-    allowed = 'depths, each deeper than the one before, such as ["2mm", "4mm"]'
-    depths: list[int] = []
-    for element in field.elements(allowed):
-        counts = counts_in(element)
-        if depths and counts <= depths[-1]:
-            before_mm = depths[-1] / COUNTS_PER_MM
-            element.refuse(f"it may hold more than the pass before, {before_mm:g} mm")
-        depths.append(counts)
-    return tuple(counts / COUNTS_PER_MM for counts in depths)
 
 
 def _restart(field: Field) -> Restart:
@@ -209,11 +203,11 @@ def _override(field: Field) -> Override:
     return tuple(number.number() for number in field.elements(allowed))
 
 
-def _stops(field: Field, feed_mm_s: float) -> tuple[Stop, ...]:
+def _stops(field: Field, feed_mm_s: float, peck: int | None) -> tuple[Stop, ...]:
     """All entries for stops, each of another number."""
     stops: list[Stop] = []
     for element in field.elements("entries [[stop]]"):
-        stop = _stop(element, feed_mm_s)
+        stop = _stop(element, feed_mm_s, peck)
         if any(stop.number == other.number for other in stops):
             which = "a number" if stop.number is None else "another number"
             element.refuse(f"an entry before it is for the same stops; it may hold {which}")
@@ -221,7 +215,7 @@ def _stops(field: Field, feed_mm_s: float) -> tuple[Stop, ...]:
     return tuple(stops)
 
 
-def _stop(entry: Field, feed_mm_s: float) -> Stop:
+def _stop(entry: Field, feed_mm_s: float, peck: int | None) -> Stop:
     """One entry for a stop, or for all others."""
     fields = entry.table(*_STOP_KEYS)
     both = [key for key in ("moves", "drill", "passes") if key in fields]
@@ -230,8 +224,8 @@ def _stop(entry: Field, feed_mm_s: float) -> Stop:
     return Stop(
         number=read(fields, "number", Field.number, None),
         moves=read(fields, "moves", lambda field: _moves(field, feed_mm_s), ()),
-        drill=read(fields, "drill", lambda drill: _drill(drill, feed_mm_s), None),
-        passes_mm=read(fields, "passes", _passes, ()),
+        drill=read(fields, "drill", lambda drill: _drill(drill, feed_mm_s, peck), None),
+        passes_mm=read(fields, "passes", passes_mm, ()),
         dwell_s=read(fields, "dwell", Field.time_s, 0.0),
         restart=read(fields, "restart", _restart, None),
         written=next((fields[key] for key in both if key != "passes"), None),
@@ -257,13 +251,13 @@ def _move(field: Field, feed_mm_s: float) -> Preset:
     return Preset(read(fields, "down", counts_in, 0), "down", feed_mm_s, dwell_s)
 
 
-def _drill(field: Field, feed_mm_s: float) -> Drill:
+def _drill(field: Field, feed_mm_s: float, peck_of_all: int | None) -> Drill:
     """A drill cycle."""
     fields = field.table(*_DRILL_KEYS)
     if "depth" not in fields:
         field.refuse('it must hold a depth, such as { depth = "8mm" }')
     depth = counts_in(fields["depth"])
-    peck = read(fields, "peck", counts_in, depth)
+    peck = read(fields, "peck", counts_in, min(peck_of_all or depth, depth))
     if peck > depth:
         fields["peck"].refuse(f"it may hold the depth at most, {depth / COUNTS_PER_MM:g} mm")
     return Drill(

@@ -1,0 +1,76 @@
+"""The options of cutting in Z: passes by a step, ramps, holding tabs, pecks, the speed above the work."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from typing import Any
+
+import click
+
+from morfax.console.options.groups import option
+from morfax.console.options.types import COUNTED, FEED, LENGTH, RAMP
+from morfax.jobs.depths import DepthSettings
+
+GROUP = "Cutting"
+DEPTHS = (
+    option(
+        GROUP,
+        "--step-down",
+        "step_down_mm",
+        type=COUNTED,
+        help="Deepest cut of one pass, such as 1.5mm: each line is run at equal passes down to its depth.  "
+        "[default: the card's passes, or one]",
+    ),
+    option(
+        GROUP,
+        "--ramp",
+        "ramp_rad",
+        type=RAMP,
+        help="The tool goes into the work along the line, at this angle, such as 3deg: round along a closed "
+        "line, to and fro at the start of an open one.  [default: the card's, or straight down]",
+    ),
+    option(
+        GROUP,
+        "--tabs",
+        type=click.IntRange(min=0, max=1000),
+        help="Holding tabs on each closed line, evenly and clear of corners; 0 for none.  [default: the "
+        "card's, or none]",
+    ),
+    option(
+        GROUP,
+        "--tab-width",
+        "tab_width_mm",
+        type=LENGTH,
+        help="How wide a tab is at its top; the path over it is longer by the cutter's diameter.  "
+        "[default: the card's, or 3mm]",
+    ),
+    option(
+        GROUP,
+        "--tab-height",
+        "tab_height_mm",
+        type=COUNTED,
+        help="How high a tab stands above the depth.  [default: the card's, or 1mm]",
+    ),
+    option(
+        GROUP,
+        "--peck",
+        "peck_mm",
+        type=COUNTED,
+        help="Holes are drilled so deep at a time, such as 2mm, and the drill comes up in between.  "
+        "[default: the card's, or at once]",
+    ),
+    option(
+        GROUP,
+        "--rapid",
+        "rapid_mm_s",
+        type=FEED,
+        help="Speed above the work of tapes, steps and cubics; G-code has the machine's own.  [default: the "
+        "card's, or 50mm/s]",
+    ),
+)
+
+
+def depth_settings(options: dict[str, Any]) -> DepthSettings:
+    """The settings of cutting in Z, taken out of all options."""
+    names = [field.name for field in fields(DepthSettings)]
+    return DepthSettings(**{name: options.pop(name) for name in names})
