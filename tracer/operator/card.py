@@ -117,16 +117,16 @@ class Card:
     entry_mm: float | None = (
         None  # the tool goes down to its depth along this length of the line
     )
-    step_down_mm: float | None = None  # deepest cut of one pass; passes are then equal
-    ramp_rad: float | None = None  # or at this angle
-    tabs: Tabs | None = None
-    peck_mm: float | None = None  # how deep a drill goes at a time
     restart: Restart = "automatic"
     turns: tuple[
         Turn, ...
     ] = ()  # at the junctions, in the order in which the head comes to them
     override: Override = "none"  # stop marks that do not stop the head
     stops: tuple[Stop, ...] = ()
+    step_down_mm: float | None = None  # deepest cut of one pass; passes are then equal
+    ramp_rad: float | None = None  # the tool goes in along the line at this angle
+    tabs: Tabs | None = None
+    peck_mm: float | None = None  # how deep a drill goes at a time
 
     @classmethod
     def open(cls, file: FilePath) -> Card:
