@@ -1,4 +1,4 @@
-"""Settings of cutting in Z: passes by a step, ramps, holding tabs, pecks, and the speed above the work."""
+"""Settings of cutting in Z: passes by a step, ramps, holding tabs and pecks."""
 
 from __future__ import annotations
 
@@ -9,10 +9,9 @@ from morfax.jobs.wrong_use import WrongUse
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-    from pathlib import Path as FilePath
 
     from morfax.tracer.operator.card import Card, Stop
-    from morfax.tracer.operator.work import Tabs, Work
+    from morfax.tracer.operator.work import Tabs
     from morfax.tracer.program.program import Trace
 
 
@@ -26,7 +25,6 @@ class DepthSettings:
     tab_width_mm: float | None = None
     tab_height_mm: float | None = None
     peck_mm: float | None = None
-    rapid_mm_s: float | None = None
 
     def on(self, card: Card) -> Card:
         """The card with what is asked for in its place; raises WrongUse for tabs of no number."""
@@ -38,8 +36,6 @@ class DepthSettings:
         if self.peck_mm is not None:
             stops = tuple(_pecked(stop, self.peck_mm) for stop in card.stops)
             changes |= {"peck_mm": self.peck_mm, "stops": stops}
-        if self.rapid_mm_s is not None:
-            changes["rapid_mm_s"] = self.rapid_mm_s
         return replace(card, **changes)  # type: ignore[arg-type]
 
     def _tabs(self, of_card: Tabs | None) -> Tabs | None:
@@ -102,22 +98,16 @@ def _pecked(stop: Stop, peck_mm: float) -> Stop:
     return replace(stop, drill=replace(stop.drill, peck_counts=peck))
 
 
-def without_z(work: Work, program: FilePath | None, machine_name: str | None) -> str | None:
-    """A remark on several passes where the medium has no Z; raises WrongUse for tabs or ramps there."""
-    medium = _without_z(program, machine_name)
-    asked = [name for name, value in (("tabs", work.tabs), ("ramps", work.ramp_rad)) if value]
-    if medium is None:
-        return None
-    if asked:
+def refuse_without_z(card: Card, medium: str) -> None:
+    """Raise WrongUse for tabs or a ramp on a medium that has no Z, by its name."""
+    asked = [("tabs", card.tabs), ("a ramp", card.ramp_rad)]
+    names = [name for name, value in asked if value]
+    if names:
+        need = "needs" if names == ["a ramp"] else "need"
         raise WrongUse(
-            f"{' and '.join(asked)} need a Z axis, and {medium} has none; leave out"
-            f" {' and '.join('--' + name.replace('ramps', 'ramp') for name in asked)}, or what the card says"
-            " of them"
+            f"{' and '.join(names)} {need} a Z axis, and {medium} has none; leave out --tabs and --ramp, or what"
+            " the card says of them"
         )
-    passes = len(work.depths_mm)
-    if passes > 1:
-        return f"{medium} has no Z: each line is run {passes} times at one height"
-    return None
 
 
 def of_tabs(trace: Trace) -> Iterator[str]:
@@ -138,18 +128,3 @@ def of_tabs(trace: Trace) -> Iterator[str]:
         )
     if not any(trace.tabs):
         yield "no line that is cut comes round: there is nothing to hold, and no tab"
-
-
-def _without_z(program: FilePath | None, machine_name: str | None) -> str | None:
-    """What a medium without Z is called; None if it has one."""
-    from morfax.jobs import files
-    from morfax.recorder.gcode.machine import DEFAULT, machine
-    from morfax.recorder.media import DRAWINGS
-
-    if program is None:
-        return None
-    if program.suffix.lower() in DRAWINGS:
-        return f"a drawing ({program.suffix})"
-    if files.is_gcode(program) and not machine(machine_name or DEFAULT).z:
-        return f"the machine {machine_name}"
-    return None

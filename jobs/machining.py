@@ -9,6 +9,7 @@ from pathlib import Path as FilePath
 from typing import TYPE_CHECKING
 
 from morfax.jobs import files as medium
+from morfax.jobs.depths import refuse_without_z
 from morfax.jobs.wrong_use import WrongUse
 from morfax.motion.faults import CardFault
 
@@ -71,7 +72,14 @@ def tell_what_is_lost(
     machine: Machine | None,
     listener: Listener,
 ) -> None:
-    """Warn, before anything moves, of what the card or an option asks for and the medium cannot hold."""
+    """Warn, before anything moves, of what the card or an option asks for and the medium cannot hold.
+
+    Raises WrongUse for tabs and ramps where there is no Z.
+    """
+    if machine is None and program.suffix.lower() in medium.DRAWN:
+        refuse_without_z(card, f"a drawing ({program.suffix})")
+    if machine is not None and not machine.z:
+        refuse_without_z(card, f"the machine {machine.name}")
     lost = _asked(card, tool)
     if not lost:
         return
@@ -96,7 +104,9 @@ def _asked(card: Card, tool: ToolSettings) -> list[str]:
     asked = {
         "depth": bool(deep or drills or any(stop.moves for stop in stops)),
         "entry": card.entry_mm is not None,
-        "pecks": any(drill.peck_counts < drill.depth_counts for drill in drills),
+        "passes": card.step_down_mm is not None,
+        "pecks": card.peck_mm is not None
+        or any(drill.peck_counts < drill.depth_counts for drill in drills),
         "feed of Z": card.feed_mm_s is not None,
     }
     return [name for name, is_asked in asked.items() if is_asked]

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 from morfax.jobs import files as medium
 from morfax.jobs import flattening
-from morfax.jobs.depths import without_z
 from morfax.jobs.listener import SILENT, Listener
 from morfax.jobs.machining import tell_what_is_lost
 from morfax.jobs.recording import RecordingUnit
@@ -77,9 +76,6 @@ class TraceJob:
         tracing = Tracing.prepared(self.settings, panel)
         outputs = self.outputs.checked(self.drawing.file)
         self.unit.check(outputs.program)
-        flat = without_z(tracing.operator.work, outputs.program, self.unit.machine)
-        if flat is not None:
-            listener.warning(flat)
         drawing = self.drawing.open(listener)
         size = f"{drawing.width_mm:.2f} x {drawing.height_mm:.2f} mm"
         listener.detail(f"{self.drawing.file}: sheet of {size}")

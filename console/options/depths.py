@@ -1,4 +1,4 @@
-"""The options of cutting in Z: passes by a step, ramps, holding tabs, pecks, the speed above the work."""
+"""The options of cutting in Z: passes by a step, ramps, holding tabs and pecks."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from morfax.console.options.groups import option
-from morfax.console.options.types import COUNTED, FEED, LENGTH, RAMP
+from morfax.console.options.types import COUNTED, LENGTH, RAMP
 from morfax.jobs.depths import DepthSettings
 
 GROUP = "Cutting"
@@ -58,14 +58,6 @@ DEPTHS = (
         type=COUNTED,
         help="Holes are drilled so deep at a time, such as 2mm, and the drill comes up in between.  "
         "[default: the card's, or at once]",
-    ),
-    option(
-        GROUP,
-        "--rapid",
-        "rapid_mm_s",
-        type=FEED,
-        help="Speed above the work of tapes, steps and cubics; G-code has the machine's own.  [default: the "
-        "card's, or 50mm/s]",
     ),
 )
 

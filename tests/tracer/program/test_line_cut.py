@@ -35,7 +35,9 @@ def line(places: list[tuple[float, float]] | Array, ending: str = "closed") -> L
 
 def circle(radius_mm: float = RADIUS_MM, centre_mm: tuple[float, float] = (0, 0)) -> Line:
     angles = np.linspace(0, 2 * math.pi, max(90, int(2 * math.pi * radius_mm / NODE_MM)))
-    return line(np.asarray(centre_mm) + radius_mm * np.column_stack([np.cos(angles), np.sin(angles)]))
+    return line(
+        np.asarray(centre_mm) + radius_mm * np.column_stack([np.cos(angles), np.sin(angles)])
+    )
 
 
 def cut(work: Work, *lines: Line) -> Array:
@@ -88,10 +90,24 @@ def test_a_tab_in_a_corner_is_moved_along_until_it_is_clear_of_it() -> None:
     """Begun 15 mm from a corner, the shares' middles are 10 mm beyond the corners; 10 mm more and they would
     be in them.
     """
-    begun = [(25, 0), (60, 0), (60, 40), (0, 40), (0, 0), (25, 0)]  # middles at 25, 75, 125, 175 mm
+    begun = [
+        (25, 0),
+        (60, 0),
+        (60, 40),
+        (0, 40),
+        (0, 0),
+        (25, 0),
+    ]  # middles at 25, 75, 125, 175 mm
     tabs = Trace((line(begun),), Operator(Work(5.0, tabs=Tabs(4, width_mm=8.0)))).tabs[0]
     assert np.abs(np.subtract(tabs[0].place_mm, (50, 0))).max() < 1 * UM
-    in_corner = [(35, 0), (60, 0), (60, 40), (0, 40), (0, 0), (35, 0)]  # the first at the corner itself
+    in_corner = [
+        (35, 0),
+        (60, 0),
+        (60, 40),
+        (0, 40),
+        (0, 0),
+        (35, 0),
+    ]  # the first at the corner itself
     tabs = Trace((line(in_corner),), Operator(Work(5.0, tabs=Tabs(4, width_mm=8.0)))).tabs[0]
     for tab in tabs:
         away_mm = np.abs(np.subtract(tab.place_mm, [[0, 0], [60, 0], [60, 40], [0, 40]]))
@@ -119,7 +135,11 @@ def test_tabs_of_a_circle_stand_evenly_and_only_in_the_passes_below_their_top() 
         (Tabs(4, width_mm=80.0), 0.0, "4 tabs of 80 mm would hold more than half of line 1"),
         (Tabs(20, width_mm=3.0), 3.0, "which is 200.0 mm round; give --tabs 16, or narrower"),
         (Tabs(1, width_mm=300.0), 0.0, "a tab of 300 mm would hold more than half of line 1"),
-        (Tabs(4, height_mm=5.0), 0.0, "tabs of 5 mm are not lower than line 1 is cut deep, 5 mm"),
+        (
+            Tabs(4, height_mm=5.0),
+            0.0,
+            "tabs of 5 mm are not lower than line 1 is cut deep, 5 mm",
+        ),
     ],
 )
 def test_tabs_without_room_are_refused_in_one_line(
@@ -136,12 +156,19 @@ def test_a_star_of_short_sides_has_no_place_clear_of_its_corners() -> None:
     star = line(np.column_stack([radii * np.cos(angles), radii * np.sin(angles)]))
     narrow = Trace((star,), Operator(Work(5.0, tabs=Tabs(4, width_mm=1.5))))
     assert len(narrow.tabs[0]) == 4
-    with pytest.raises(MotionFault, match=r"tab 1 of line 1 has no place about .* clear of corners"):
+    with pytest.raises(
+        MotionFault, match=r"tab 1 of line 1 has no place about .* clear of corners"
+    ):
         cut(Work(5.0, tabs=Tabs(4), cutter_mm=3.0), star)
 
 
-def test_a_hole_gets_as_many_tabs_as_it_has_room_for_and_none_where_all_is_milled_away() -> None:
-    outline, hole = line(RECTANGLE), circle(6.0, (20, 20))  # 37.7 mm round: half of it for 3 tabs of 6
+def test_a_hole_gets_as_many_tabs_as_it_has_room_for_and_none_where_all_is_milled_away() -> (
+    None
+):
+    outline, hole = (
+        line(RECTANGLE),
+        circle(6.0, (20, 20)),
+    )  # 37.7 mm round: half of it for 3 tabs of 6
     small = circle(2.0, (45, 20))  # the path of a cutter of 6 mm in a hole of 10
     holes = replace(hole, number=2), replace(small, number=3)
     trace = Trace((*holes, outline), Operator(Work(5.0, tabs=Tabs(4), cutter_mm=3.0)))
@@ -172,7 +199,9 @@ def test_a_ramp_longer_than_the_line_goes_round_and_round() -> None:
     work = Work(1.0, ramp_rad=math.radians(2))
     positions_mm = cut(work, circle(2.0))
     sloping = positions_mm[(positions_mm[:, 2] < -1e-9) & (positions_mm[:, 2] > -1.0 + 1e-9)]
-    assert lengths_mm(sloping[:, :2])[-1] == pytest.approx(1.0 / math.tan(math.radians(2)), rel=2e-3)
+    assert lengths_mm(sloping[:, :2])[-1] == pytest.approx(
+        1.0 / math.tan(math.radians(2)), rel=2e-3
+    )
     assert nearest_mm(circle(2.0).xy_mm, at_depth(positions_mm, 1.0)).max() < 5 * UM
 
 
@@ -203,7 +232,9 @@ def test_a_ramp_has_strokes_no_longer_than_a_short_line() -> None:
     steps = np.diff(positions_mm[:, 0])
     reversals = np.count_nonzero(np.diff(np.sign(steps[np.abs(steps) > 1e-9])) == -2)
     assert reversals == 3  # 11.4 mm in six strokes
-    with pytest.raises(MotionFault, match=r"the tool has 0\.05 mm to go down a ramp at 0\.0,0\.0"):
+    with pytest.raises(
+        MotionFault, match=r"the tool has 0\.05 mm to go down a ramp at 0\.0,0\.0"
+    ):
         cut(Work(1.0, ramp_rad=math.radians(5)), line([(0, 0), (0.05, 0)], "ended"))
 
 
@@ -215,7 +246,11 @@ def test_where_the_head_stops_on_the_ramp_the_tool_is_at_depth_before_the_stop()
     positions_mm = cut(Work(1.5, ramp_rad=math.radians(3)), replace(round_line, marks=(tick,)))
     stands = np.flatnonzero(np.hypot(*np.diff(positions_mm[:, :2], axis=0).T) == 0)
     longest = np.split(stands, np.flatnonzero(np.diff(stands) > 1) + 1)
-    stop = next(run for run in longest if len(run) > 0.45 * MOTION_RATE_HZ and positions_mm[run[0], 2] < 0)
+    stop = next(
+        run
+        for run in longest
+        if len(run) > 0.45 * MOTION_RATE_HZ and positions_mm[run[0], 2] < 0
+    )
     assert positions_mm[stop, 2] == pytest.approx(-1.5)
     assert np.hypot(*(positions_mm[stop[0], :2] - tick.place_mm)) < 5 * UM
     assert nearest_mm(round_line.xy_mm, at_depth(positions_mm, 1.5)).max() < 5 * UM
@@ -229,7 +264,9 @@ def test_a_ramp_passes_over_the_tabs_and_the_line_is_deep_between_them() -> None
     for tab in over:
         assert np.hypot(*(deep - tab.place_mm).T).min() > 1.5 - 0.01
     away_mm = nearest_mm(circle().xy_mm, deep)
-    assert (away_mm > 5 * UM).mean() == pytest.approx(3 * 3.0 / (2 * math.pi * RADIUS_MM), rel=0.02)
+    assert (away_mm > 5 * UM).mean() == pytest.approx(
+        3 * 3.0 / (2 * math.pi * RADIUS_MM), rel=0.02
+    )
 
 
 def test_with_leads_the_ramp_begins_on_the_lead_in_and_the_lead_out_comes_last() -> None:
@@ -238,7 +275,9 @@ def test_with_leads_the_ramp_begins_on_the_lead_in_and_the_lead_out_comes_last()
     xy_mm = np.vstack([lead_in, round_line.xy_mm[1:], lead_out[1:]])
     first, last = len(lead_in) - 1, len(lead_in) + len(round_line.xy_mm) - 2
     leads = Leads(first, last, 5.0, 5.0)
-    positions_mm = cut(Work(2.0, ramp_rad=math.radians(3)), replace(round_line, xy_mm=xy_mm, leads=leads))
+    positions_mm = cut(
+        Work(2.0, ramp_rad=math.radians(3)), replace(round_line, xy_mm=xy_mm, leads=leads)
+    )
     assert np.degrees(np.arctan(slopes(positions_mm))) == pytest.approx(-3, abs=0.05)
     assert nearest_mm(round_line.xy_mm, at_depth(positions_mm, 2.0)).max() < 5 * UM
     assert positions_mm[-1] == pytest.approx([20, 5, 2], abs=1 * UM)
@@ -250,6 +289,9 @@ def test_with_leads_the_ramp_begins_on_the_lead_in_and_the_lead_out_comes_last()
 def test_a_hole_is_drilled_in_pecks_and_the_drill_comes_up_in_between() -> None:
     hole = Line.of_dot(np.array([7.0, 8.0]), 0.5, 1)
     z_mm = cut(Work(5.0, peck_mm=2.0, rapid_mm_s=5.0), hole)[:, 2]
-    turns = np.flatnonzero(np.diff(np.sign(np.diff(z_mm[np.r_[True, np.diff(z_mm) != 0]]))) != 0) + 1
+    turns = (
+        np.flatnonzero(np.diff(np.sign(np.diff(z_mm[np.r_[True, np.diff(z_mm) != 0]]))) != 0)
+        + 1
+    )
     heights = z_mm[np.r_[True, np.diff(z_mm) != 0]][turns]
     assert heights == pytest.approx([-2, 2, -4, 2, -5], abs=1e-9)
