@@ -11,8 +11,8 @@ from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Literal
 
 from morfax.jobs import flattening
-from morfax.jobs.flattening import FlattenSettings
 from morfax.jobs.depths import DepthSettings, passes_mm
+from morfax.jobs.flattening import FlattenSettings
 from morfax.jobs.listener import SILENT, Listener
 from morfax.jobs.wrong_use import WrongUse, settings_checked
 

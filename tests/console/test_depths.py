@@ -48,7 +48,12 @@ def test_every_medium_gets_the_same_z_and_a_card_says_the_same(
 ) -> None:
     """Passes of 1, 2 and 3 mm, each after a ramp of 14.3 mm; tabs of 3 mm at 2 mm in the last one alone."""
     round_mm = 238.6  # the cam
-    assert set(traced) == {-3.0, -2.0, -1.0, 2.0}  # and over the work, home from the end of the ramp
+    assert set(traced) == {
+        -3.0,
+        -2.0,
+        -1.0,
+        2.0,
+    }  # and over the work, home from the end of the ramp
     assert traced[-1.0] == pytest.approx(round_mm - 14.3, abs=0.3)
     assert traced[-2.0] == pytest.approx(round_mm - 14.3 + 3 * 3.0, abs=0.3)
     assert traced[-3.0] == pytest.approx(round_mm - 3 * 3.0, abs=0.3)
