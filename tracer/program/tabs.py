@@ -199,6 +199,6 @@ def _no_place(line: Line, loop: Way, wanted_mm: float, number: int) -> MotionFau
     """The fault of a tab that has no place between corners, bends and stops."""
     x, y = loop.place(wanted_mm)
     return MotionFault(
-        f"tab {number} of line {line.number} has no place about {x:.1f},{y:.1f} mm clear of corners, bends and"
-        " stops; give another number of --tabs, or narrower ones with --tab-width"
+        f"tab {number} of line {line.number} has no place about {x:.1f},{y:.1f} mm clear of corners, bends"
+        " and stops; give another number of --tabs, or narrower ones with --tab-width"
     )
