@@ -3,9 +3,9 @@
 Signals: a line, what the operator does along it and its holding tabs in; positions of X, Y, Z out, in blocks
 (n, 3) mm at the motion rate.
 
-    closed line   Z  ──╲                     ╭── once more        ramp: down along the line, round and round if
-                        ╲____________________│____                need be; once more where it was not yet deep
-    open line     Z  ──╲╱╲╱──────────────────────                 ramp: to and fro where the tool goes down
+    closed line   Z  ──╲                  ┆ once more     down along the line, round and round if need be,
+                        ╲_________________┆______         and once more where it was not yet deep
+    open line     Z  ──╲╱╲╱______________________         to and fro where the tool goes down
 
 On a closed line, too, the tool goes to and fro if the head stops on the ramp. At a tab X and Y stand while Z
 goes up, and again while it goes down. On a slope X and Y run no faster than Z with its feed.
