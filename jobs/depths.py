@@ -105,8 +105,8 @@ def refuse_without_z(card: Card, medium: str) -> None:
     if names:
         need = "needs" if names == ["a ramp"] else "need"
         raise WrongUse(
-            f"{' and '.join(names)} {need} a Z axis, and {medium} has none; leave out --tabs and --ramp, or what"
-            " the card says of them"
+            f"{' and '.join(names)} {need} a Z axis, and {medium} has none; leave out --tabs and --ramp, or"
+            " what the card says of them"
         )
 
 

@@ -1,6 +1,6 @@
 """The fields of the card that say how deep: heights, passes, ramps, tabs.
 
-Signals in: fields of the card. Signals out: mm, rad and Tabs, or a CardFault that names what a field may hold.
+Signals in: fields of the card. Signals out: mm, rad and Tabs, or a CardFault with what a field may hold.
 
 Source: patent ES 361967, the five decade switches of the Z unit; ramps and tabs are our own, as in CAM.
 """

@@ -21,7 +21,7 @@ from morfax.tracer.operator.zunit import ACCELERATION_MM_S2, Move
 class Tabs:
     """Holding tabs: how many on a closed line, how wide their top is, and how high they stand, mm.
 
-    What is cut out hangs on them until it is broken off. 3 mm by 1 mm hold a part of plywood: our own figures.
+    What is cut out hangs on them until it is broken off. 3 mm by 1 mm are our own figures.
     """
 
     count: int
