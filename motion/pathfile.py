@@ -69,15 +69,19 @@ def _header(path: Path) -> str:
 
 def read_path(file: str | os.PathLike[str], feed_mm_s: float = FEED_MM_S) -> Path:
     """Read a path file; raises MotionFault with the line if it is no path, FileFault if it cannot be read."""
+    return at_feed(read_table(file), feed_mm_s, str(file))
+
+
+def at_feed(table: PathTable, feed_mm_s: float, name: str) -> Path:
+    """The path of a table, run at a feed where it has no times; raises MotionFault if it stands still."""
     if not feed_mm_s > 0:
         raise ValueError(f"a feed of {feed_mm_s} mm/s does not move; give one above zero")
-    table = read_table(file)
     rows = _with_z_moves(table)
     t_s = rows.times_s(feed_mm_s)
     keep = np.r_[True, np.diff(t_s) > 0]  # points that take no time are doubled points
     if np.count_nonzero(keep) < 2:
         raise MotionFault(
-            f"{file}: the path stands still at one place; a path needs at least two different points"
+            f"{name}: the path stands still at one place; a path needs at least two different points"
         )
     positions_mm = np.ascontiguousarray(rows.positions_mm[keep])
     return Path(t_s[keep], positions_mm, (*AXES, *table.further))

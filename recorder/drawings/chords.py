@@ -5,9 +5,10 @@ Signals in: cut lines, and how far a chord may be from its arc, mm. Signals out:
 
 from __future__ import annotations
 
-import math
+import numpy as np
 
-from morfax.recorder.drawings.cut_lines import CutLine, Place, radius_mm
+from morfax.recorder.drawings.cut_lines import CutLine, Place
+from morfax.recorder.drawings.flattening import bulged
 
 WITHIN_MM = 0.0125  # half of HP-GL's plotter unit
 
@@ -17,27 +18,12 @@ def chords(line: CutLine, within_mm: float = WITHIN_MM) -> list[Place]:
     places, begin = list[Place](), line.begin_mm
     for piece in line.pieces:
         if piece.turned_rad:
-            radius = radius_mm(begin, piece)
-            widest_rad = 2 * math.acos(max(0.0, 1 - within_mm / radius))
-            count = math.ceil(abs(piece.turned_rad) / widest_rad)
-            places += [
-                _along(begin, piece.end_mm, piece.turned_rad, k / count)
-                for k in range(1, count)
-            ]
+            ends = np.array(begin), np.array(piece.end_mm)
+            arc = bulged(*ends, piece.turned_rad, within_mm)
+            places += [(float(x), float(y)) for x, y in arc[:-1]]
         places.append(piece.end_mm)
         begin = piece.end_mm
     return places
-
-
-def _along(begin_mm: Place, end_mm: Place, turned_rad: float, share: float) -> Place:
-    """The place on an arc after a share of its angle: a chord from its beginning, turned out of the whole
-    chord.
-    """
-    chord = complex(*end_mm) - complex(*begin_mm)
-    part = math.sin(share * turned_rad / 2) / math.sin(turned_rad / 2)
-    out_rad = -(1 - share) * turned_rad / 2
-    place = complex(*begin_mm) + chord * part * complex(math.cos(out_rad), math.sin(out_rad))
-    return place.real, place.imag
 
 
 def box(lines: list[CutLine]) -> tuple[Place, Place]:

@@ -22,7 +22,8 @@ from typing import Any
 from morfax.motion.files import written_beside
 from morfax.motion.segments import Source
 from morfax.recorder.drawings.chords import box
-from morfax.recorder.drawings.cut_lines import CutLine, cut_lines_of, radius_mm
+from morfax.recorder.drawings.cut_lines import CutLine, Piece, Place, cut_lines_of, radius_mm
+from morfax.recorder.drawings.units import ZERO
 from morfax.recorder.gcode.plan import Writing
 from morfax.recorder.gcode.program_text import digits
 from morfax.recorder.report import Written
@@ -30,6 +31,9 @@ from morfax.recorder.report import Written
 TOLERANCE_MM = 0.01
 MARGIN_MM = 1.0  # round an SVG, so that its lines are not cut off by half
 LINE_MM = 0.1  # width of an SVG's lines
+WIDEST_ARC_RAD = (
+    2.5  # of an SVG: at half a turn a digit of 0.1 um in its radius moves the centre by 1 um
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,7 +133,7 @@ def _svg(lines: list[CutLine]) -> str:
     for line in lines:
         words = ["M " + place(*line.begin_mm)]
         begin = line.begin_mm
-        for piece in line.pieces:
+        for piece in _narrow(line):
             if piece.turned_rad:
                 radius = digits(radius_mm(begin, piece), 4)
                 large = int(abs(piece.turned_rad) > math.pi)
@@ -146,7 +150,7 @@ def _svg(lines: list[CutLine]) -> str:
     return "\n".join(
         [
             f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}mm" height="{height}mm" '
-            f'viewBox="0 0 {width} {height}">',
+            f'viewBox="0 0 {width} {height}" {ZERO}="{digits(left, 4)} {digits(low, 4)}">',
             f'<g fill="none" stroke="black" stroke-width="{LINE_MM:g}" stroke-linecap="round">',
             *paths,
             "</g>",
@@ -154,3 +158,20 @@ def _svg(lines: list[CutLine]) -> str:
             "",
         ]
     )
+
+
+def _narrow(line: CutLine) -> list[Piece]:
+    """The pieces of a line, wide arcs in two."""
+    begins = [line.begin_mm, *(piece.end_mm for piece in line.pieces)]
+    return [part for k, piece in enumerate(line.pieces) for part in _halves(begins[k], piece)]
+
+
+def _halves(begin_mm: Place, piece: Piece) -> list[Piece]:
+    """An arc in two where it turns so far that its ends and its radius say little about its centre."""
+    if abs(piece.turned_rad) < WIDEST_ARC_RAD:
+        return [piece]
+    chord = complex(*piece.end_mm) - complex(*begin_mm)
+    half = chord / 2 * complex(1, -math.tan(piece.turned_rad / 4))
+    middle = complex(*begin_mm) + half
+    turned_rad = piece.turned_rad / 2
+    return [Piece((middle.real, middle.imag), turned_rad), Piece(piece.end_mm, turned_rad)]

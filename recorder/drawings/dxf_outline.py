@@ -1,0 +1,204 @@
+"""DXF read: what a CAD program has drawn in its model space, as an outline in mm.
+
+Signals in: a DXF, as text or binary. Signals out: an Outline; X and Y are those of the file.
+
+    LINE, ARC, CIRCLE, ELLIPSE, SPLINE, LWPOLYLINE, POLYLINE     contours, curves flattened to 1 um
+    POINT                                                        holes
+    INSERT                                                       what its block holds, to any depth
+    all else (TEXT, HATCH, DIMENSION, …)                         left out, and it is said
+
+What is on a layer that is off or frozen is left out. The unit is the file's ($INSUNITS), or one given by hand.
+
+Source: Autodesk's DXF reference: HEADER ($INSUNITS), LAYER (flag 1 frozen, a negative colour off), LWPOLYLINE
+(bulge = tan of a quarter of the angle). Questions: Z is left out. Entities on layer 0 of a block are on the
+layer of its INSERT.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from itertools import pairwise
+from pathlib import Path as FilePath
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from morfax.motion.arrays import Array
+from morfax.motion.faults import DrawingFault, FileFault
+from morfax.recorder.drawings.flattening import FLAT_MM, bulged
+from morfax.recorder.drawings.outline import Outline
+from morfax.recorder.drawings.units import NO_UNIT, unit_mm
+
+if TYPE_CHECKING:
+    from ezdxf.document import Drawing
+    from ezdxf.entities import DXFGraphic
+
+DEEPEST = 16  # blocks in one another; one that holds itself is deeper
+SPLINE_FRAME = 16  # flag of a vertex that only controls a curve
+MOST = 1_000_000  # entities; some hundred would fill a sheet
+LEAST_CHORDS = (
+    8  # of a spline between two knots, and of an ellipse: what lies between is found from there
+)
+
+
+def read_dxf(file: FilePath, unit: str | None = None) -> Outline:
+    """Read a DXF; raises DrawingFault for one that is damaged, empty or without a unit, FileFault."""
+    document = _opened(file)
+    scale = _scale(file, document, unit)
+    pieces, left_out = list[Array](), Counter[str]()
+    for count, entity in enumerate(_visible(file, document)):
+        if count > MOST:
+            raise DrawingFault(f"{file} holds more than {MOST} entities; save the part alone")
+        places = _places(entity, FLAT_MM / scale)
+        if places is None:
+            left_out[entity.dxftype()] += 1
+        elif len(places):
+            pieces.append(scale * places)
+    if not pieces:
+        raise DrawingFault(f"{file} holds no lines in its model space; save the part there")
+    told = ", ".join(f"{count} {kind}" for kind, count in sorted(left_out.items()))
+    return Outline.of(pieces, [f"{file}: {told} are no lines, and left out"] if told else [])
+
+
+def _opened(file: FilePath) -> Drawing:
+    """The document in a file."""
+    import ezdxf
+    from ezdxf import recover
+    from ezdxf.lldxf.const import DXFError
+
+    try:
+        try:
+            return ezdxf.readfile(file)
+        except (DXFError, UnicodeDecodeError, ValueError, KeyError, IndexError, TypeError):
+            return recover.readfile(file)[0]
+    except OSError as error:
+        if error.errno is not None:
+            raise FileFault(f"cannot read {file}: {error.strerror}; check the name") from None
+        raise DrawingFault(f"{file} is no DXF; save it as one") from None
+    except RecursionError:
+        raise DrawingFault(f"{file} is a damaged DXF; save it again") from None
+    except (DXFError, ValueError, KeyError, IndexError, TypeError, AttributeError) as error:
+        why = " ".join(str(error).split())[:80]
+        raise DrawingFault(f"{file} is a damaged DXF ({why}); save it again") from None
+
+
+def _scale(file: FilePath, document: Drawing, unit: str | None) -> float:
+    """Length of the file's unit, mm."""
+    from ezdxf import units
+    from ezdxf.enums import InsertUnits
+
+    if unit is not None:
+        return unit_mm(unit)
+    if document.units == 0:
+        raise DrawingFault(NO_UNIT.format(file=file, why="$INSUNITS is 0 or not there"))
+    try:
+        return float(
+            units.conversion_factor(InsertUnits(document.units), InsertUnits.Millimeters)
+        )
+    except (KeyError, ValueError, TypeError):
+        why = f"$INSUNITS is {document.units}, which is no unit"
+        raise DrawingFault(NO_UNIT.format(file=file, why=why)) from None
+
+
+def _visible(file: FilePath, document: Drawing) -> Iterator[DXFGraphic]:
+    """What is shown of the model space, blocks as what they hold."""
+    off, frozen = set[str](), set[str]()
+    for layer in document.layers:
+        name = layer.dxf.name.lower()
+        if layer.is_off():
+            off.add(name)
+        if layer.is_frozen():
+            frozen.add(name)
+
+    def shown(
+        entities: Iterable[DXFGraphic], of_insert: str, depth: int
+    ) -> Iterator[DXFGraphic]:
+        if depth > DEEPEST:
+            raise DrawingFault(
+                f"{file} has blocks in one another, more than {DEEPEST} deep; explode them"
+            )
+        for entity in entities:
+            own = entity.dxf.get("layer", "0").lower()
+            layer = of_insert if own == "0" and of_insert else own
+            is_block = entity.dxftype() == "INSERT"
+            if (
+                entity.dxf.get("invisible", 0)
+                or layer in frozen
+                or (layer in off and not is_block)
+            ):
+                continue
+            if not is_block:
+                yield entity
+                continue
+            for one in _each(entity):
+                yield from shown(one.virtual_entities(), layer, depth + 1)
+
+    yield from shown(document.modelspace(), "", 0)
+
+
+def _each(insert: Any) -> Iterable[Any]:
+    """The places of a block that is put in, in rows and columns where it has several."""
+    return insert.multi_insert() if insert.mcount > 1 else [insert]
+
+
+def _places(entity: Any, off: float) -> Array | None:
+    """Places of an entity in the file's unit, curves flattened; None if it is no line."""
+    kind = entity.dxftype()
+    if kind == "LINE":
+        return _flat([entity.dxf.start, entity.dxf.end])
+    if kind == "POINT":
+        return _flat([entity.dxf.location])
+    if kind in ("ARC", "CIRCLE"):
+        radius = abs(entity.dxf.radius)
+        return _flat(entity.flattening(min(off, radius / 2))) if radius else _flat([])
+    if kind in ("ELLIPSE", "SPLINE"):
+        return _flat(entity.flattening(off, LEAST_CHORDS))
+    if kind == "LWPOLYLINE":
+        corners = np.array(entity.get_points("xyb"), float).reshape(-1, 3)
+        flat = _with_bulges(corners, entity.closed, off)
+        z = entity.dxf.elevation
+        return _flat(entity.ocs().points_to_wcs([(x, y, z) for x, y in flat]))
+    if kind == "POLYLINE":
+        return _polyline(entity, off)
+    return None
+
+
+def _polyline(entity: Any, off: float) -> Array | None:
+    """Places of a polyline of the old kind; None if it is a mesh."""
+    if not (entity.is_2d_polyline or entity.is_3d_polyline):
+        return None
+    vertices = [v for v in entity.vertices if not v.dxf.flags & SPLINE_FRAME]
+    if entity.is_3d_polyline:
+        places = [v.dxf.location for v in vertices]
+        return _flat(places + places[:1] if entity.is_closed else places)
+    corners = np.array(
+        [(v.dxf.location.x, v.dxf.location.y, v.dxf.get("bulge", 0.0)) for v in vertices], float
+    ).reshape(-1, 3)
+    flat = _with_bulges(corners, entity.is_closed, off)
+    return _flat(entity.ocs().points_to_wcs([(x, y, 0.0) for x, y in flat]))
+
+
+def _with_bulges(corners: Array, closed: bool, off: float) -> Array:
+    """The places of a polyline of corners (x, y, bulge), its arcs flattened."""
+    if not len(corners):
+        return np.empty((0, 2))
+    around = np.vstack([corners, corners[:1]]) if closed and len(corners) > 1 else corners
+    parts = [around[:1, :2]]
+    for (*begin, bulge), (*end, _) in pairwise(around):
+        if begin == end:
+            continue
+        is_arc = abs(bulge) > 1e-12  # flatter than a millionth of 1 um in 1 m
+        turned_rad = 4 * math.atan(bulge)
+        parts.append(
+            bulged(np.array(begin), np.array(end), turned_rad, off)
+            if is_arc
+            else np.array([end])
+        )
+    return np.vstack(parts)
+
+
+def _flat(places: Iterable[Any]) -> Array:
+    """X and Y of places, (n, 2)."""
+    return np.array([(place[0], place[1]) for place in places], float).reshape(-1, 2)
