@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
-from morfax.jobs import comparison, flattening
+from morfax.jobs import comparison, flattening, outlines
 from morfax.jobs import files as medium
 from morfax.jobs.listener import SILENT, Listener
 from morfax.jobs.playing import ByHand, read_or_play
@@ -37,7 +37,7 @@ class CompareResult:
 
 @dataclass(frozen=True, slots=True)
 class CompareJob:
-    """Compare two path files, tapes or programs; or one of them with a drawing."""
+    """Compare two path files, drawings from CAD, tapes or programs; or one of them with a drawing."""
 
     a: DrawingFile  # a path or tape too: its scale and ink then say nothing
     b: FilePath
@@ -47,17 +47,19 @@ class CompareJob:
     # where the path's zero is on the drawing; None: the sheet's corner
     origin: Origin | None = None
     by_hand: ByHand = field(default_factory=ByHand)
+    drawn_unit: str | None = None  # of a drawing from CAD; None: the file's own
 
     def run(self, listener: Listener = SILENT, panel: Panel | None = None) -> CompareResult:
         """Compare; raises WrongUse and every fault."""
         drawing_file, files = self._sorted()
+        outlines.check_unit(self.drawn_unit, *files)
         if self.picture is not None:
             medium.outgoing(self.picture, self.a.file, self.b)
         if drawing_file is None:
             self._refuse_drawing_options()
         drawing = None if drawing_file is None else drawing_file.open(listener)
         paths = [
-            read_or_play(file, by_hand, listener)
+            read_or_play(file, by_hand, listener, drawn_unit=self.drawn_unit)
             for file, by_hand in zip(files, self.by_hand.beside(files), strict=True)
         ]
         if drawing is None:

@@ -3,8 +3,9 @@
 A file's kind is read off its first bytes, and off its name where the bytes say nothing:
 
     tape      RIFF, RF64, fLaC, FORM, riff  or  .wav .rf64 .flac .aiff .w64
-    program   any other text              and .steps .cubic .ngc .nc .gcode .tap .cnc
+    program   any other text              and .steps .cubic .ngc .nc .gcode .tap .cnc .plt .hpgl
     drawing   PNG, JPEG, TIFF, PDF, …     or  .png .jpg .tif .pdf .heic …
+    outline                                   .dxf .svg
     path      any other text              or  .csv
 
 A result is written over a file of a name that somebody gave; over a file of a name that morfax made up only
@@ -23,13 +24,14 @@ from morfax.motion.faults import FileFault
 if TYPE_CHECKING:
     from morfax.recorder.media import Report
 
-Kind = Literal["tape", "program", "drawing", "path"]
+Kind = Literal["tape", "program", "drawing", "outline", "path"]
 
 TAPES = (".wav", ".rf64", ".flac")  # that can be recorded
 PATHS = (".csv",)
+OUTLINES = (".dxf", ".svg")  # drawings from CAD
 BLOCKS = (".ngc", ".nc", ".gcode", ".tap", ".cnc")  # G-code, RS-274
 PLOTS = (".plt", ".hpgl")  # HP-GL
-DRAWN = (".dxf", ".svg", *PLOTS)  # what other programs and plotters read
+DRAWN = (*OUTLINES, *PLOTS)  # what other programs and plotters read
 WITH_ARCS = (*BLOCKS, ".dxf", ".svg")
 
 _HEAD_BYTES = 1024  # of a file, in which a binary file has a zero
@@ -57,6 +59,7 @@ _SUFFIXES: dict[str, Kind] = {
         ),
         "drawing",
     ),
+    **dict.fromkeys(OUTLINES, "outline"),
     **dict.fromkeys((".csv", ".txt", ".tsv"), "path"),
 }
 
@@ -122,6 +125,11 @@ def is_gcode(file: FilePath) -> bool:
 def is_plot(file: FilePath) -> bool:
     """Whether a file of this name is for a plotter."""
     return file.suffix.lower() in PLOTS
+
+
+def is_outline(file: FilePath) -> bool:
+    """Whether a file of this name is a drawing of lines, from CAD."""
+    return file.suffix.lower() in OUTLINES
 
 
 def called(file: FilePath) -> str:

@@ -1,4 +1,7 @@
-"""The job `play`: a tape or program moves the machine, and the machine's path is written."""
+"""The job `play`: a tape or program moves the machine, and the machine's path is written.
+
+A drawing from CAD has no control of its own: it is recorded on a tape first, and the tape is played.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,7 @@ from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any, Literal
 
 from morfax.jobs import files as medium
-from morfax.jobs import following
+from morfax.jobs import following, outlines
 from morfax.jobs.listener import SILENT, Listener
 from morfax.jobs.passage import Passage
 from morfax.jobs.playing import PIPE, ByHand, Playing
@@ -87,7 +90,7 @@ class PlayResult:
 
 @dataclass(frozen=True, slots=True)
 class PlayJob:
-    """Play a tape or a program on its own control."""
+    """Play a tape or a program on its own control, a drawing from CAD by way of a tape."""
 
     tape: FilePath  # or the pipe
     outputs: tuple[FilePath, ...] = ()  # for the machine's path: .csv, .svg, .png
@@ -95,17 +98,20 @@ class PlayJob:
     raw: bool = False
     control: ControlSettings = field(default_factory=ControlSettings)
     by_hand: ByHand = field(default_factory=ByHand)
+    drawn_unit: str | None = None  # of a drawing from CAD; None: the file's own
 
     def run(self, listener: Listener = SILENT, panel: Panel | None = None) -> PlayResult:
         """Play and write; raises WrongUse, and the fault if nothing was played before it."""
         # 1. what is set
         for file in (*self.outputs, *self.charts):
             medium.outgoing(file, self.tape)
+        if str(self.tape) != PIPE:
+            outlines.check_unit(self.drawn_unit, self.tape)
         settings = self.control.for_file(self.tape, self.by_hand)
         chart = following.new_chart(self.raw) if self.charts else None
-        playing = Playing(self.tape, self.by_hand, self.raw, chart, settings)
         # 2. the machine runs
-        with settings_checked():
+        with settings_checked(), outlines.as_tape(self.tape, self.drawn_unit, listener) as tape:
+            playing = Playing(tape, self.by_hand, self.raw, chart, settings)
             passage, playback, fault, path = self._played(playing, listener)
         # 3. what it ran
         paths, charts = _marked(self.outputs, fault), _marked(self.charts, fault)

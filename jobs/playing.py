@@ -171,14 +171,22 @@ class Playing:
 
 
 def read_or_play(
-    file: FilePath, by_hand: ByHand, listener: Listener, feed_mm_s: float | None = None
+    file: FilePath,
+    by_hand: ByHand,
+    listener: Listener,
+    feed_mm_s: float | None = None,
+    drawn_unit: str | None = None,
 ) -> Path:
-    """Read a path file, at the feed if it has no times; or play a tape or another program."""
-    if medium.kind_of(file) in ("tape", "program"):
-        return Playing(file, by_hand).without_fault(listener)
-    from morfax.motion.pathfile import read_path
+    """Read a path file or a drawing from CAD, at the feed if it has no times; or play a tape or a program."""
+    from morfax.jobs import outlines
+    from morfax.motion.pathfile import FEED_MM_S, read_path
 
-    return read_path(file) if feed_mm_s is None else read_path(file, feed_mm_s)
+    kind, feed_mm_s = medium.kind_of(file), feed_mm_s or FEED_MM_S
+    if kind in ("tape", "program"):
+        return Playing(file, by_hand).without_fault(listener)
+    if kind == "outline":
+        return outlines.read_path(file, drawn_unit, feed_mm_s, listener)
+    return read_path(file, feed_mm_s)
 
 
 def _has_machine(file: FilePath) -> bool:

@@ -7,6 +7,7 @@ from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
 from morfax.jobs import files as medium
+from morfax.jobs import outlines
 from morfax.jobs.listener import SILENT, Listener, watched
 from morfax.jobs.playing import ByHand, read_or_play
 from morfax.jobs.recording import RecordingUnit, rehearsed
@@ -32,7 +33,7 @@ class RecordResult:
 
 @dataclass(frozen=True, slots=True)
 class RecordJob:
-    """Record a path file, or another program, in the medium that the output's name says."""
+    """Record a path file, a drawing from CAD or another program in the medium that the output's name says."""
 
     source: FilePath
     output: FilePath | None = None  # None: the source's name with .wav, in the current folder
@@ -40,6 +41,7 @@ class RecordJob:
     reference_hz: float = REFERENCE_HZ
     cycles_per_mm: float | None = None  # None: the pick-up's own
     unit: RecordingUnit = field(default_factory=RecordingUnit)
+    drawn_unit: str | None = None  # of a drawing from CAD; None: the file's own
 
     def run(self, listener: Listener = SILENT, panel: Panel | None = None) -> RecordResult:
         """Record; raises WrongUse and every fault."""
@@ -49,7 +51,9 @@ class RecordJob:
         has_feed = medium.is_gcode(program) or medium.is_plot(program)
         (self.unit if has_feed else replace(self.unit, feed_mm_s=None)).check(program)
         settings = self._recorder_settings(program)
-        read = read_or_play(self.source, ByHand(), listener, self.unit.feed_mm_s or FEED_MM_S)
+        outlines.check_unit(self.drawn_unit, self.source)
+        feed_mm_s = self.unit.feed_mm_s or FEED_MM_S
+        read = read_or_play(self.source, ByHand(), listener, feed_mm_s, self.drawn_unit)
         placed = self.unit.placement.path(read)
         self.unit.warn(listener)
         recording = _recorded(placed, program, settings, listener)

@@ -16,10 +16,13 @@ import os
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path as FilePath
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from morfax.motion.faults import FileFault
 from morfax.motion.motion import Motion, Path
+
+if TYPE_CHECKING:
+    from morfax.recorder.drawings.outline import Outline
 
 Source = Iterable[Motion] | Motion | Path
 
@@ -74,6 +77,22 @@ DRAWINGS: dict[str, Medium] = {
     ".plt": _PLOTTER,
     ".hpgl": _PLOTTER,
 }
+
+# how they are read back
+_READERS = {
+    ".dxf": ("morfax.recorder.drawings.dxf_outline", "read_dxf"),
+    ".svg": ("morfax.recorder.drawings.svg_outline", "read_svg"),
+}
+
+
+def read_outline(file: str | os.PathLike[str], unit: str | None = None) -> Outline:
+    """Read the lines of a drawing from CAD; with `unit` its figures are in that one, whatever it says.
+
+    Raises DrawingFault for one that cannot be read or does not say its unit, FileFault.
+    """
+    module, function = _READERS[FilePath(file).suffix.lower()]
+    read: Callable[..., Outline] = getattr(importlib.import_module(module), function)
+    return read(FilePath(file), unit)
 
 
 def record(stream: Source, file: str | os.PathLike[str], **settings: Any) -> Report:

@@ -12,9 +12,20 @@ from morfax.console.options.groups import Decorator, option
 from morfax.console.options.types import BAR, FLATTEN, LENGTH, PIXELS
 from morfax.jobs.flattening import FlattenSettings
 from morfax.jobs.settings import DrawingFile
+from morfax.recorder.drawings.drawn_units import UNITS_MM
 
 if TYPE_CHECKING:
     from morfax.tracer.drawing.scale import Known
+
+
+# of a drawing from CAD: DXF, SVG, HP-GL
+DRAWN_UNIT = option(
+    "Drawing",
+    "--unit",
+    "drawn_unit",
+    type=click.Choice(tuple(UNITS_MM)),
+    help="Unit of a drawing from CAD (.dxf, .svg).  [default: what the file says]",
+)
 
 
 def drawing_options(argument: str) -> Decorator:

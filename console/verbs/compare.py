@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from morfax.console.options.desk import desk_options
-from morfax.console.options.drawing import drawing_options
+from morfax.console.options.drawing import DRAWN_UNIT, drawing_options
 from morfax.console.options.files import FILE, PICTURES, Result
 from morfax.console.options.groups import Verb, given, option
 from morfax.console.options.systems import Systems
@@ -33,6 +33,7 @@ Examples:
   morfax compare scan.png cam.csv
   morfax compare scan.png cam.wav --tolerance 50um -o cam-error.png
   morfax compare traced.csv played.csv --json
+  morfax compare part.dxf played.csv
   morfax compare scan.png --systems all -o five-machines.html
 """
 
@@ -98,6 +99,7 @@ Examples:
     help="Where the path's zero is on the drawing: sheet (its lower-left corner), reference (the drawing's "
     "reference point), or X,Y in mm.  [default: sheet]",
 )
+@DRAWN_UNIT
 @drawing_options("a")
 @FOR_MACHINE
 @tape_options
@@ -113,10 +115,10 @@ def command(
 ) -> None:
     """Say how far two contours are apart: paths, tapes, or one of them a drawing.
 
-    A and B are path files (.csv), tapes (.wav; they are played first) or, one of them, a drawing. Only what
-    is run with the tool in the work counts. Between two paths the distance is measured both ways. Against a
-    drawing it is the distance to the ink's own centre, measured across the path in the image, and the ink
-    that no path covers is counted.
+    A and B are path files (.csv), drawings from CAD (.dxf, .svg), tapes (.wav; they are played first)
+    or, one of them, a drawing on paper. Only what is run with the tool in the work counts. Between two paths
+    the distance is measured both ways. Against a drawing on paper it is the distance to the ink's own centre,
+    measured across the path in the image, and the ink that no path covers is counted.
 
     With --systems the systems are set side by side: A is a drawing and B is left out; the table has a row for
     each system, and one that refuses or faults says why in its row.
@@ -144,7 +146,9 @@ def _two(
             f"{str(picture)!r} must end in {', '.join(PICTURES)}; a report is for --systems",
             param_hint="'-o'",
         )
-    compared = {name: options[name] for name in ("tolerance_mm", "cutter_mm", "origin")}
+    compared = {
+        name: options[name] for name in ("tolerance_mm", "cutter_mm", "origin", "drawn_unit")
+    }
     result = CompareJob(a, b, picture=picture, by_hand=by_hand, **compared).run(desk)
     if picture is not None:
         from morfax.reports.pictures import draw_compared

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from morfax.console.options.desk import desk_options
+from morfax.console.options.drawing import DRAWN_UNIT
 from morfax.console.options.files import FILE, PATHS, PICTURES, Result
 from morfax.console.options.groups import Verb, option, renamed
 from morfax.console.options.tape import FOR_MACHINE, tape_options
@@ -108,6 +109,7 @@ Examples:
     "has it.",
 )
 @FOR_MACHINE
+@DRAWN_UNIT
 @tape_options
 @desk_options
 def command(
@@ -117,20 +119,22 @@ def command(
     charts: tuple[FilePath, ...],
     raw: bool,
     by_hand: ByHand,
+    drawn_unit: str | None,
     desk: Desk,
     **control: Any,
 ) -> None:
     """Play a tape into the simulated machine and write the path it runs.
 
     The path is that of the machine's own lead screws, phase-locked to the tape. Without -o the verb only
-    prints figures. TAPE may be -, a pipe: a WAV, or raw 16-bit samples of four tracks. If the machine faults,
-    the path before the fault is kept, with `.incomplete` in its name.
+    prints figures. TAPE may be -, a pipe: a WAV, or raw 16-bit samples of four tracks. A drawing from CAD
+    (.dxf, .svg) is recorded on a tape first, as `morfax record` does it, and that tape is played. If
+    the machine faults, the path before the fault is kept, with `.incomplete` in its name.
     """
     paths = outputs if path_file is None else (*outputs, path_file)
     settings = ControlSettings(
         **{field.name: control[field.name] for field in fields(ControlSettings)}
     )
-    result = PlayJob(tape, paths, charts, raw, settings, by_hand).run(desk)
+    result = PlayJob(tape, paths, charts, raw, settings, by_hand, drawn_unit).run(desk)
     if result.path is not None or result.chart is not None:
         from morfax.reports.pictures import draw_played
 

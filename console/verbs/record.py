@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from morfax.console.options.desk import desk_options
+from morfax.console.options.drawing import DRAWN_UNIT
 from morfax.console.options.files import FILE, Program
 from morfax.console.options.groups import Verb, option, renamed
 from morfax.console.options.placement import unit_options
@@ -24,6 +25,7 @@ Examples:
   morfax record cam.csv -o cam.wav
   morfax record cam.wav -o cam.steps --fit-tolerance 20um
   morfax record outline.csv -o slow.wav --feed 300mm/min
+  morfax record part.dxf -o part.wav
   morfax record cam.wav -o left-hand.wav --mirror x --pickup photocell
 """
 
@@ -59,6 +61,7 @@ Examples:
     is_flag=True,
     help="Without -o: write over a tape that is there already.",
 )
+@DRAWN_UNIT
 @unit_options
 @desk_options
 def command(
@@ -68,13 +71,15 @@ def command(
     cycles_per_mm: float | None,
     force: bool,
     unit: RecordingUnit,
+    drawn_unit: str | None,
     desk: Desk,
 ) -> None:
     """Record a path file, or another program, in the medium that the name after -o says.
 
     SOURCE is a CSV file with the columns t_s, x_mm, y_mm, z_mm, tool (x_mm and y_mm, or x and y, are enough;
     without times the path is run at the feed), and u_mm, v_mm … for further axes (A, B, C, U, V, W), which
-    only a tape takes; or a program in any medium, which is first played on its own control.
+    only a tape takes; a drawing from CAD (.dxf, .svg), whose lines are run at the feed with the tool up
+    between them, inner ones first; or a program in any medium, which is first played on its own control.
     """
     job = RecordJob(
         source,
@@ -83,5 +88,6 @@ def command(
         reference_hz,
         cycles_per_mm,
         unit,
+        drawn_unit,
     )
     desk.figures(job.run(desk).figures)

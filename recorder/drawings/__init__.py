@@ -1,4 +1,4 @@
-"""Drawings for other programs: what a motion cuts, as DXF, SVG or HPGL, for CAM, laser and cutting plotters.
+"""Drawings for other programs and from them: what is cut as DXF, SVG or HPGL, written and read back.
 
-The room asks recorder/gcode for the plan of lines and arcs; `media.record` asks it.
+The room asks recorder/gcode for the plan of lines and arcs; `media` asks it, and the jobs for what it reads.
 """

@@ -7,7 +7,7 @@ Signals in: a DXF, as text or binary. Signals out: an Outline; X and Y are those
     INSERT                                                       what its block holds, to any depth
     all else (TEXT, HATCH, DIMENSION, …)                         left out, and it is said
 
-What is on a layer that is off or frozen is left out. The unit is the file's ($INSUNITS), or one given by hand.
+What is on a layer that is off or frozen is left out. The unit is the file's ($INSUNITS), or given by hand.
 
 Source: Autodesk's DXF reference: HEADER ($INSUNITS), LAYER (flag 1 frozen, a negative colour off), LWPOLYLINE
 (bulge = tan of a quarter of the angle). Questions: Z is left out. Entities on layer 0 of a block are on the
@@ -27,9 +27,9 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault, FileFault
+from morfax.recorder.drawings.drawn_units import NO_UNIT, unit_mm
 from morfax.recorder.drawings.flattening import FLAT_MM, bulged
 from morfax.recorder.drawings.outline import Outline
-from morfax.recorder.drawings.units import NO_UNIT, unit_mm
 
 if TYPE_CHECKING:
     from ezdxf.document import Drawing
@@ -38,6 +38,16 @@ if TYPE_CHECKING:
 DEEPEST = 16  # blocks in one another; one that holds itself is deeper
 SPLINE_FRAME = 16  # flag of a vertex that only controls a curve
 MOST = 1_000_000  # entities; some hundred would fill a sheet
+# what ezdxf meets in damaged files, besides its own errors
+DAMAGE = (
+    ValueError,
+    LookupError,
+    TypeError,
+    AttributeError,
+    StopIteration,
+    ArithmeticError,
+    RecursionError,
+)
 LEAST_CHORDS = (
     8  # of a spline between two knots, and of an ellipse: what lies between is found from there
 )
@@ -45,6 +55,27 @@ LEAST_CHORDS = (
 
 def read_dxf(file: FilePath, unit: str | None = None) -> Outline:
     """Read a DXF; raises DrawingFault for one that is damaged, empty or without a unit, FileFault."""
+    from ezdxf.lldxf.const import DXFError
+
+    try:
+        pieces, left_out = _pieces(file, unit)
+    except OSError as error:
+        if error.errno is not None:
+            raise FileFault(f"cannot read {file}: {error.strerror}; check the name") from None
+        raise DrawingFault(f"{file} is no DXF; save it as one") from None
+    except DrawingFault:
+        raise
+    except (DXFError, *DAMAGE) as error:
+        why = " ".join(str(error).split())[:80] or type(error).__name__
+        raise DrawingFault(f"{file} is a damaged DXF ({why}); save it again") from None
+    if not pieces:
+        raise DrawingFault(f"{file} holds no lines in its model space; save the part there")
+    told = ", ".join(f"{count} {kind}" for kind, count in sorted(left_out.items()))
+    return Outline.of(pieces, [f"{file}: {told} are no lines, and left out"] if told else [])
+
+
+def _pieces(file: FilePath, unit: str | None) -> tuple[list[Array], Counter[str]]:
+    """The lines of a file, mm, and how many things of each kind are none."""
     document = _opened(file)
     scale = _scale(file, document, unit)
     pieces, left_out = list[Array](), Counter[str]()
@@ -55,33 +86,22 @@ def read_dxf(file: FilePath, unit: str | None = None) -> Outline:
         if places is None:
             left_out[entity.dxftype()] += 1
         elif len(places):
+            if not np.isfinite(places).all():
+                raise ValueError(f"a place of a {entity.dxftype()} is no number")
             pieces.append(scale * places)
-    if not pieces:
-        raise DrawingFault(f"{file} holds no lines in its model space; save the part there")
-    told = ", ".join(f"{count} {kind}" for kind, count in sorted(left_out.items()))
-    return Outline.of(pieces, [f"{file}: {told} are no lines, and left out"] if told else [])
+    return pieces, left_out
 
 
 def _opened(file: FilePath) -> Drawing:
-    """The document in a file."""
+    """The document in a file; one with mistakes is mended as far as it goes."""
     import ezdxf
     from ezdxf import recover
     from ezdxf.lldxf.const import DXFError
 
     try:
-        try:
-            return ezdxf.readfile(file)
-        except (DXFError, UnicodeDecodeError, ValueError, KeyError, IndexError, TypeError):
-            return recover.readfile(file)[0]
-    except OSError as error:
-        if error.errno is not None:
-            raise FileFault(f"cannot read {file}: {error.strerror}; check the name") from None
-        raise DrawingFault(f"{file} is no DXF; save it as one") from None
-    except RecursionError:
-        raise DrawingFault(f"{file} is a damaged DXF; save it again") from None
-    except (DXFError, ValueError, KeyError, IndexError, TypeError, AttributeError) as error:
-        why = " ".join(str(error).split())[:80]
-        raise DrawingFault(f"{file} is a damaged DXF ({why}); save it again") from None
+        return ezdxf.readfile(file)
+    except (DXFError, *DAMAGE):
+        return recover.readfile(file)[0]
 
 
 def _scale(file: FilePath, document: Drawing, unit: str | None) -> float:

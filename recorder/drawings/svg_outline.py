@@ -10,8 +10,8 @@ from where the file says its zero is (`data-lower-left-mm`, which morfax writes)
 What is hidden (display, visibility), neither stroked nor filled, or only filled in white (paper) is left out.
 So are words and pictures, and it is said.
 
-Source: SVG 1.1, 7.7 viewBox, 7.8 preserveAspectRatio, 8.3 paths; CSS 2.1, 4.3.2 lengths. Questions: clip paths
-are not applied. A drawing on a sheet of another shape is in its middle (xMidYMid), whatever else the file says.
+Source: SVG 1.1, 7.7 viewBox, 7.8 preserveAspectRatio, 8.3 paths; CSS 2.1, 4.3.2 lengths. Questions: clip
+paths are not applied. A drawing on a sheet of another shape is in its middle (xMidYMid), whatever it says.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault, FileFault
+from morfax.recorder.drawings.drawn_units import INCH_MM, NO_UNIT, UNITS_MM, ZERO, unit_mm
 from morfax.recorder.drawings.flattening import FLAT_MM, bezier, chords_of
 from morfax.recorder.drawings.outline import Outline
-from morfax.recorder.drawings.units import INCH_MM, NO_UNIT, UNITS_MM, ZERO, unit_mm
 
 if TYPE_CHECKING:
     from svgelements import Arc, Path
@@ -42,6 +42,8 @@ LENGTH = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([a-zA-Z%
 PHYSICAL_MM = {"mm": 1.0, "cm": 10.0, "in": INCH_MM, "pt": INCH_MM / 72, "pc": INCH_MM / 6,
                "q": 0.25}  # fmt: skip
 SHAPED = 1e-6  # width and height that differ in scale by a smaller share are rounded
+# what svgelements meets in damaged files
+DAMAGE = (ValueError, LookupError, TypeError, AttributeError, ArithmeticError, RecursionError)
 WORDS = ("text", "image", "foreignObject")
 
 
@@ -64,11 +66,13 @@ def read_svg(file: FilePath, unit: str | None = None) -> Outline:
     root = _root(file)
     sheet = _sheet(file, root, unit)
     off = FLAT_MM / max(sheet.x_mm, sheet.y_mm)
-    pieces = [
-        sheet.placed(places)
-        for shape in _shapes(file, root)
-        for places in _flattened(shape, off)
-    ]
+    try:
+        pieces = [
+            sheet.placed(places) for shape in _shapes(root) for places in _flattened(shape, off)
+        ]
+    except DAMAGE as error:
+        why = " ".join(str(error).split())[:80] or type(error).__name__
+        raise DrawingFault(f"{file} is a damaged SVG ({why}); save it again") from None
     if not pieces:
         raise DrawingFault(f"{file} holds no lines; turn words into paths, and save it again")
     count = Counter(tag for tag in map(_tag, root.iter()) if tag in WORDS)
@@ -177,7 +181,7 @@ def _view_box(
 # what is on it
 
 
-def _shapes(file: FilePath, root: ElementTree.Element) -> Iterator[Path]:
+def _shapes(root: ElementTree.Element) -> Iterator[Path]:
     """What is drawn and shown, as paths in the drawing's units."""
     import svgelements
 
@@ -185,22 +189,9 @@ def _shapes(file: FilePath, root: ElementTree.Element) -> Iterator[Path]:
     for name in ("width", "height", "viewBox"):
         bare.attrib.pop(name, None)
     source = io.BytesIO(ElementTree.tostring(bare))
-    try:
-        for element in svgelements.SVG.parse(source, reify=True, on_error="raise").elements():
-            if isinstance(element, svgelements.Shape) and _is_shown(element):
-                yield abs(svgelements.Path(element))
-    except (
-        ValueError,
-        TypeError,
-        KeyError,
-        IndexError,
-        AttributeError,
-        ZeroDivisionError,
-    ) as error:
-        why = " ".join(str(error).split())[:80]
-        raise DrawingFault(f"{file} is a damaged SVG ({why}); save it again") from None
-    except RecursionError:
-        raise DrawingFault(f"{file} is an SVG that uses itself; save it again") from None
+    for element in svgelements.SVG.parse(source, reify=True, on_error="raise").elements():
+        if isinstance(element, svgelements.Shape) and _is_shown(element):
+            yield abs(svgelements.Path(element))
 
 
 def _is_shown(shape: Any) -> bool:

@@ -42,6 +42,7 @@ PDF, HEIF_BRANDS = (
     b"%PDF-",
     (b"heic", b"heix", b"hevc", b"hevx", b"heim", b"heis", b"mif1", b"msf1"),
 )
+DRAWN_LINES = (".dxf", ".svg", ".plt", ".hpgl")  # drawings from CAD
 PREVIEWS = ("MPO",)  # formats whose further pictures are no pages: a camera's previews
 TURNED = (5, 6, 7, 8)  # orientations of Exif that put columns in the place of rows
 ORIENTATION = 0x112
@@ -71,6 +72,10 @@ def read(
                 register_heif_opener()
             return _picture(file, stream, coloured, page)
     except UnidentifiedImageError:
+        if file.suffix.lower() in DRAWN_LINES:
+            raise DrawingFault(
+                f"{file} holds lines already, and nothing is to be traced; give it to morfax record"
+            ) from None
         raise DrawingFault(
             f"{file} is not an image that can be read; give a PNG, JPEG or TIFF file"
         ) from None
