@@ -5,34 +5,47 @@ program of lines, the pen down on the paper at Z 0, up at 2 mm above it.
 
     IN SP VS FS     begin, pen, speed in cm/s, force: VS is the feed, the others are the machine's
     PU PD           pen up, pen down, and on to places if there are some
-    PA              places, not distances: the only way that is read
+    PA PR           places, or distances from the place before
+    AA AR CI        arcs about a place, by degrees, and circles about the pen: as chords within 1 um
 
 Source: Hewlett-Packard, HP-GL reference. Questions: the file says nowhere that it is whole; one that does not
-end with the pen up is taken for cut short. Without VS the pen runs at 10 cm/s.
+end with the pen up is taken for cut short. Without VS the pen runs at 10 cm/s. Units of the user's own (SC),
+words (LB) and coded lines (PE) are refused; other programs can turn them into lines.
 """
 
 from __future__ import annotations
 
+import math
 import os
 import re
 
+import numpy as np
+
 from morfax.motion.faults import ProgramFault
 from morfax.player.gcode.rs274 import LINE, RAPID, Move, Program, text_of
+from morfax.recorder.drawings.flattening import FLAT_MM, bulged
 from morfax.recorder.gcode.machine import Machine
 
 ABOVE_MM = 2.0  # where the pen stands when it is up
 USUAL_CM_S = 10.0
+NO_LENGTH_MM = 1e-9  # an arc of no angle, or of no radius
 
-_COMMAND = re.compile(r"([A-Z]{2})\s*([-\d.,\s]*)")
-_PASSED = ("IN", "SP", "FS", "PA", "DF")
+_COMMANDS = re.compile(r"[A-Z]{2}[^A-Z;]*|[^;\s]+")
+_COMMAND = re.compile(r"([A-Z]{2})\s*([-+\d.,\s]*)")
+# what sets up the port of a plotter, and says nothing to its pen
+_ESCAPES = re.compile(r"\x1b(?:\.[@-Z()](?:[-\d;]*:)?|[^A-Za-z@]*[A-Za-z@])")
+_PASSED = ("IN", "SP", "FS", "DF", "LT", "PT", "PW", "AS")
+_PLACES, _ARCS = ("PU", "PD", "PA", "PR"), ("AA", "AR")
+_READ = "IN SP VS FS PU PD PA PR AA AR CI"
 
 
 def read_hpgl(file: str | os.PathLike[str], machine: Machine) -> Program:
     """Read a plotter file; raises ProgramFault with the command, FileFault for an unreadable file."""
     reader = _Pen(str(file), machine)
-    for number, line in enumerate(text_of(file).upper().split("\n"), 1):
-        for command in filter(None, (part.strip() for part in line.split(";"))):
-            reader.obey(number, command)
+    text = _ESCAPES.sub("", text_of(file))
+    for number, line in enumerate(text.upper().split("\n"), 1):
+        for command in _COMMANDS.findall(line):
+            reader.obey(number, command.strip())
     if reader.is_down or not reader.moves:
         raise ProgramFault(
             f"{file} ends with the pen {'down' if reader.is_down else 'where it stood'}; a plotter file ends "
@@ -49,39 +62,83 @@ class _Pen:
         self.name, self.step_mm = name, machine.step_mm
         self.moves: list[Move] = []
         self.is_down, self.feed_mm_s = False, 10 * USUAL_CM_S
-        self.place = (0.0, 0.0)
+        self.place, self.by_steps = (0.0, 0.0), False
 
     def obey(self, number: int, command: str) -> None:
         """Carry out a command; raises ProgramFault for one that is not read."""
         found = _COMMAND.fullmatch(command)
-        if not found or found[1] not in ("PU", "PD", "VS", *_PASSED):
+        if not found or found[1] not in ("VS", "CI", *_PLACES, *_ARCS, *_PASSED):
             raise ProgramFault(
-                f"{self.name}, line {number}: {command[:20]!r} is not played; this control reads IN SP VS FS "
-                "PU PD PA",
+                f"{self.name}, line {number}: {command[:20]!r} is not played; this control reads {_READ}",
                 line=number,
             )
-        values = self._values(number, found[2])
-        if found[1] == "VS" and values:
+        code, values = found[1], self._values(number, found[1], found[2])
+        if code == "VS" and values:
             self.feed_mm_s = 10 * values[0]
-        if found[1] in ("PU", "PD"):
-            self._pen(number, down=found[1] == "PD")
-        if found[1] in ("PU", "PD", "PA"):
-            for x, y in zip(values[::2], values[1::2], strict=True):
-                self.place = x * self.step_mm, y * self.step_mm
-                self._go(number, LINE if self.is_down else RAPID)
+        if code in ("IN", "DF"):
+            self.by_steps = False
+        if code in _PLACES:
+            self._row(number, code, values)
+        if code in _ARCS:
+            self._arc(number, values, about_pen=code == "AR")
+        if code == "CI":
+            self._circle(number, values[0] * self.step_mm)
 
-    def _values(self, number: int, text: str) -> list[float]:
-        """The numbers of a command; raises ProgramFault for half a place."""
+    def _values(self, number: int, code: str, text: str) -> list[float]:
+        """The numbers of a command; raises ProgramFault for half a place, or half an arc."""
+        wanted = {"CI": (1, 2), "AA": (3, 4), "AR": (3, 4)}.get(code)
         try:
             values = [float(part) for part in re.split(r"[,\s]+", text.strip()) if part]
         except ValueError:
-            values = [0.0, 0.0, 0.0]
-        if len(values) > 1 and len(values) % 2:
+            values = [0.0] * 5
+        is_half = code in _PLACES and len(values) % 2 == 1
+        if is_half or (wanted is not None and len(values) not in wanted):
+            what = f"no {code} of {wanted[0]} numbers" if wanted else "no row of places X,Y"
             raise ProgramFault(
-                f"{self.name}, line {number}: {text[:20]!r} is no row of places X,Y; get the whole of it",
+                f"{self.name}, line {number}: {text[:20]!r} is {what}; get the whole of it",
                 line=number,
             )
         return values
+
+    def _row(self, number: int, code: str, values: list[float]) -> None:
+        """To places, by the pen that is up or down."""
+        if code in ("PU", "PD"):
+            self._pen(number, down=code == "PD")
+        else:
+            self.by_steps = code == "PR"
+        for x, y in zip(values[::2], values[1::2], strict=True):
+            from_x, from_y = self.place if self.by_steps else (0.0, 0.0)
+            self._to(number, (from_x + x * self.step_mm, from_y + y * self.step_mm))
+
+    def _arc(self, number: int, values: list[float], *, about_pen: bool) -> None:
+        """Along an arc about a centre, by degrees, in two halves: a whole turn has no chord."""
+        x_mm, y_mm = (value * self.step_mm for value in values[:2])
+        centre = complex(x_mm, y_mm) + (complex(*self.place) if about_pen else 0)
+        half_rad = math.radians(values[2]) / 2
+        for _ in range(2):
+            begin = complex(*self.place)
+            end = centre + (begin - centre) * complex(math.cos(half_rad), math.sin(half_rad))
+            if abs(end - begin) < NO_LENGTH_MM:
+                continue
+            ends = np.array(self.place), np.array([end.real, end.imag])
+            for x, y in bulged(*ends, half_rad, FLAT_MM).tolist():
+                self._to(number, (x, y))
+
+    def _circle(self, number: int, radius_mm: float) -> None:
+        """A circle about the pen, which comes back, and is down or up again as it was."""
+        centre, was_down = self.place, self.is_down
+        self._pen(number, down=False)
+        self._to(number, (centre[0] + radius_mm, centre[1]))
+        self._pen(number, down=True)
+        self._arc(number, [*(value / self.step_mm for value in centre), 360.0], about_pen=False)
+        self._pen(number, down=False)
+        self._to(number, centre)
+        self._pen(number, down=was_down)
+
+    def _to(self, number: int, place_mm: tuple[float, float]) -> None:
+        """To a place, by the pen as it is."""
+        self.place = place_mm
+        self._go(number, LINE if self.is_down else RAPID)
 
     def _pen(self, number: int, *, down: bool) -> None:
         """Put the pen down or up, where it is not there yet."""

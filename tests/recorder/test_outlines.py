@@ -1,4 +1,4 @@
-"""DXF, SVG and HP-GL read: every curve within 1 um, units, layers, blocks; what is written is read back."""
+"""DXF and SVG read: every curve within 1 um, units, layers, blocks; what is written is read back."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ezdxf import units
 from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault, FileFault
 from morfax.recorder.drawings.cut_lines import CutLine, Piece
-from morfax.recorder.drawings.drawings import _dxf, _hpgl, _svg
+from morfax.recorder.drawings.drawings import _dxf, _svg
 from morfax.recorder.drawings.flattening import FLAT_MM, bezier, bulged, chords_of
 from morfax.recorder.drawings.outline import Outline
 from morfax.recorder.media import read_outline
@@ -305,63 +305,6 @@ def test_what_an_svg_does_not_show_is_left_out(tmp_path: Path) -> None:
     assert outline.notes == (f"{tmp_path / 'a.svg'}: 1 text are no lines, and left out",)
 
 
-# HP-GL
-
-
-def hpgl(file: Path, text: str) -> tuple[Array, ...]:
-    """The contours of a plotter file, mm."""
-    file.write_text(text, encoding="latin-1")
-    return read_outline(file).contours_mm
-
-
-def test_a_plotter_file_is_read(tmp_path: Path) -> None:
-    text = "\x1b.(;IN;SP1;PU0,0;PD400,0,400,400;PR-400,0;PA0,0;PU;PA1000,1000;PD;PU;SP0;"
-    square, hole = hpgl(tmp_path / "a.plt", text)
-    assert square.tolist() == [[0, 0], [10, 0], [10, 10], [0, 10], [0, 0]]
-    assert hole.tolist() == [[25, 25]]
-
-
-def test_a_plotter_s_arcs_are_within_a_micrometre(tmp_path: Path) -> None:
-    text = "IN;PU4000,0;PD;AA0,0,-270;PU;PA8000,8000;CI2000;PU0,-8000;PD;CI400;PA40,-8000;PU"
-    arc, circle, about, line = hpgl(tmp_path / "a.hpgl", text)
-    allowed = FLAT_MM + ROUNDED
-    assert off_circle(arc, (0, 0), 100) <= allowed
-    assert arc[-1] == pytest.approx((0, 100), abs=ROUNDED)
-    assert off_circle(circle, (200, 200), 50) <= allowed and (circle[0] == circle[-1]).all()
-    assert off_circle(about, (0, -200), 10) <= allowed
-    assert line == pytest.approx(np.array([[0, -200], [1, -200]]))
-
-
-def test_words_of_a_plotter_file_are_left_out_and_it_is_said(tmp_path: Path) -> None:
-    (tmp_path / "a.plt").write_text("IN;LBPD 9,9; M6\x03PU0,0;PD40,0;PU;")
-    outline = read_outline(tmp_path / "a.plt")
-    assert len(outline.contours_mm) == 1
-    assert outline.notes == (f"{tmp_path / 'a.plt'}: 1 LB are words, and left out",)
-
-
-@pytest.mark.parametrize(
-    ("text", "why"),
-    [
-        (
-            "IN;SC0,100,0,100;PD1,1;",
-            r"line 1: 'SC0,100,0,100' cannot be read: units of its own",
-        ),
-        ("IN;\nPE<=abc;", r"line 2: 'PE<=abc' cannot be read: PE is not known"),
-        ("IN;RO90;", "a turned sheet"),
-        ("IN;PD1,2,3;", "a place has two figures"),
-        ("IN;PD1,1e999;", "cannot be read"),
-        ("IN;PU1,2;", "draws nothing"),
-        ("", "draws nothing"),
-        ("words", "cannot be read"),
-    ],
-)
-def test_what_a_plotter_file_cannot_hold_is_refused(
-    tmp_path: Path, text: str, why: str
-) -> None:
-    with pytest.raises(DrawingFault, match=why):
-        hpgl(tmp_path / "a.plt", text)
-
-
 # what is written is read back
 
 
@@ -409,22 +352,10 @@ def test_what_is_written_is_read_back_within_a_micrometre(
         )  # chords 1 um, digits 0.1 um
 
 
-def test_a_plotter_file_that_is_written_is_read_back_exactly(tmp_path: Path) -> None:
-    (tmp_path / "part.plt").write_text(_hpgl(cut()))
-    contours = read_outline(tmp_path / "part.plt").contours_mm
-    assert len(contours) == 5 and contours[-1].tolist() == [[12.5, 12.5]]
-    steps = np.vstack(contours) / 0.025
-    assert np.abs(steps - np.round(steps)).max() < 1e-9
-    for contour, line in zip(contours, cut(), strict=True):
-        # half a step across each axis
-        ends = np.array([line.begin_mm, (line.pieces or (Piece(line.begin_mm),))[-1].end_mm])
-        assert np.abs(contour[[0, -1]] - ends).max() <= 0.0125 + ROUNDED
-
-
 # bad files
 
 
-@pytest.mark.parametrize("suffix", [".dxf", ".svg", ".plt"])
+@pytest.mark.parametrize("suffix", [".dxf", ".svg"])
 def test_what_is_no_drawing_is_told(tmp_path: Path, suffix: str) -> None:
     file = tmp_path / f"bad{suffix}"
     for content in (
