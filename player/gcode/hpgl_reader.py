@@ -23,7 +23,7 @@ import numpy as np
 
 from morfax.motion.faults import ProgramFault
 from morfax.player.gcode.rs274 import LINE, RAPID, Move, Program, text_of
-from morfax.recorder.drawings.flattening import FLAT_MM, bulged
+from morfax.recorder.drawings.curve_chords import FLAT_MM, bulged
 from morfax.recorder.gcode.machine import Machine
 
 ABOVE_MM = 2.0  # where the pen stands when it is up

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from morfax.recorder.drawings.curve_chords import bulged
 from morfax.recorder.drawings.cut_lines import CutLine, Place
-from morfax.recorder.drawings.flattening import bulged
 
 WITHIN_MM = 0.0125  # half of HP-GL's plotter unit
 

@@ -30,8 +30,8 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault, FileFault
+from morfax.recorder.drawings.curve_chords import FLAT_MM, bezier, chords_of
 from morfax.recorder.drawings.drawn_units import INCH_MM, NO_UNIT, UNITS_MM, ZERO, unit_mm
-from morfax.recorder.drawings.flattening import FLAT_MM, bezier, chords_of
 from morfax.recorder.drawings.outline import Outline
 
 if TYPE_CHECKING:

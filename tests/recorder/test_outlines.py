@@ -13,9 +13,9 @@ from ezdxf import units
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault, FileFault
+from morfax.recorder.drawings.curve_chords import FLAT_MM, bezier, bulged, chords_of
 from morfax.recorder.drawings.cut_lines import CutLine, Piece
 from morfax.recorder.drawings.drawings import _dxf, _svg
-from morfax.recorder.drawings.flattening import FLAT_MM, bezier, bulged, chords_of
 from morfax.recorder.drawings.outline import Outline
 from morfax.recorder.media import read_outline
 

@@ -11,7 +11,7 @@ import pytest
 from morfax.motion.arrays import Array
 from morfax.motion.faults import ProgramFault
 from morfax.player.gcode.hpgl_reader import read_hpgl
-from morfax.recorder.drawings.flattening import FLAT_MM
+from morfax.recorder.drawings.curve_chords import FLAT_MM
 from morfax.recorder.gcode.machine import machine
 
 ROUNDED = 1e-9  # mm: what float64 leaves of 100 mm

@@ -1,4 +1,4 @@
-"""Flattening: arcs, ellipses and Béziers become chords that stay within a distance of them.
+"""Curve chords: arcs, ellipses and Béziers become chords that stay within a distance of them.
 
 Signals in: curves by their own figures, and how far a chord may be off, in any one unit of length. Signals
 out: places (n, 2), those after the curve's beginning.
