@@ -1,4 +1,7 @@
-"""Run all benchmarks, or those named: `python -m benchmarks [tape …]`; `folder DIR` measures drawings."""
+"""Run all benchmarks, or those named: `python -m benchmarks [tape …]`.
+
+`folder DIR` measures drawings, `flatten [N]` simulated photographs; both take a while and run only if named.
+"""
 
 from __future__ import annotations
 
@@ -7,11 +10,13 @@ import pkgutil
 import sys
 from pathlib import Path
 
+WITH_WORDS = ("folder", "flatten")  # that take words of their own
+
 
 def main(names: list[str]) -> None:
     """Call `main()` of every benchmark in this folder, or of those named."""
-    if names[:1] == ["folder"]:
-        importlib.import_module("benchmarks.folder").main(names[1:])
+    if names and names[0] in WITH_WORDS:
+        importlib.import_module(f"benchmarks.{names[0]}").main(names[1:])
         return
     here = [
         module.name
@@ -20,9 +25,10 @@ def main(names: list[str]) -> None:
     ]
     if unknown := [name for name in names if name not in here]:
         sys.exit(
-            f"{unknown[0]} is no benchmark; give {', '.join(here)}, or no name for all but `folder DIR`"
+            f"{unknown[0]} is no benchmark; give {', '.join(here)},"
+            f" or no name for all but {' and '.join(WITH_WORDS)}"
         )
-    for name in names or [name for name in here if name != "folder"]:
+    for name in names or [name for name in here if name not in WITH_WORDS]:
         run = getattr(importlib.import_module(f"benchmarks.{name}"), "main", None)
         if run is not None:
             run()

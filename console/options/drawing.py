@@ -84,6 +84,7 @@ def drawing_options(argument: str) -> Decorator:
             "--flatten",
             "wanted",
             type=FLATTEN,
+            metavar="WAY",
             help="Make a photograph flat and to scale: by the marks of a printed sheet (marks), by the "
             "edges of the sheet (paper=a4, letter, a3, 148x105mm), or by four places of a rectangle, in "
             'pixels from the upper left, clockwise ("X,Y X,Y X,Y X,Y=200x100mm"); auto takes marks, else the '
