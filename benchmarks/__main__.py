@@ -27,6 +27,7 @@ def main(names: list[str]) -> None:
         sys.exit(
             f"{unknown[0]} is no benchmark; give {', '.join(here)},"
             f" or no name for all but {' and '.join(WITH_WORDS)}"
+            f" or no name for all but {' and '.join(WITH_WORDS)}"
         )
     for name in names or [name for name in here if name not in WITH_WORDS]:
         run = getattr(importlib.import_module(f"benchmarks.{name}"), "main", None)

@@ -1,10 +1,10 @@
-"""Photographs made flat, against the truth: `python -m benchmarks flatten [N] [--traced M] [--results FILE]`.
+"""Photographs made flat, against the truth: `python -m benchmarks flatten [N] [--traced M]`.
 
 N photographs of a simulated phone (12 Mpx, A4 filling most of it, tilted by 0 to 25 degrees in any direction,
 a bent lens, shadow, JPEG 85, blur of 1.2 px), half of them of a sheet with marks, half of plain paper, each
-with a cam drawn on it. Of every photograph the map is measured: how far places all over the sheet come out from
-where they are. Of the first M of either kind the head traces the cam too, and the traced line is measured: its
-distance from the drawn one, and its size, X and Y.
+with a cam drawn on it. Of every photograph the map is measured: how far places all over the sheet come out
+from where they are. Of the first M of either kind the head traces the cam too, and the traced line is
+measured: its distance from the drawn one, and its size, X and Y.
 
 With --results every photograph is kept as a line of JSON, and a further run goes on where the last one ended.
 """
@@ -23,13 +23,16 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmarks.phone import Phone
+from benchmarks.phone import FOCAL_35MM, Phone
 from morfax.jobs.flattening import FlattenSettings
 from morfax.jobs.settings import DrawingFile
 from morfax.motion.contour import distances_mm
 from morfax.motion.motion import thin
-from morfax.reports.marked_sheet import picture
-from morfax.tracer.flatten.layout import Layout
+from morfax.reports import marked_sheet
+from morfax.tracer.drawing import raster
+from morfax.tracer.flatten.flat import found
+from morfax.tracer.flatten.layout import BAR_MM, Layout
+from morfax.tracer.flatten.projection import Focal
 from morfax.tracer.flatten.wanted import parsed
 from morfax.tracer.program.trace import trace
 
@@ -80,8 +83,12 @@ def measured(way: str, number: int, *, traced: bool) -> Row:
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "photo.jpg"
         phone.write(sheet(way), A4, file)
-        drawing = DrawingFile(file, flatten=FlattenSettings(parsed(way))).open()
-    made = drawing.flattening
+        if traced:
+            drawing = DrawingFile(file, flatten=FlattenSettings(parsed(way))).open()
+            made = drawing.flattening
+        else:
+            picture = np.asarray(raster.read(file, coloured=True).pixels, np.uint8)
+            made = found(picture, parsed(way), BAR_MM, Focal.stated(FOCAL_35MM))
     assert made is not None and made.fit is not None
     row: Row = {
         "way": way,
@@ -133,7 +140,7 @@ def held(way: str, number: int) -> Phone:
 @cache
 def sheet(way: str) -> Picture:
     """A sheet of a kind with a cam drawn on it."""
-    paper = picture(Layout.of("a4"), 25.4 * PX_PER_MM)
+    paper = marked_sheet.picture(Layout.of("a4"), 25.4 * PX_PER_MM)
     if way != "marks":
         paper[:] = 245
     x, y = cam().T * PX_PER_MM
