@@ -25,9 +25,9 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.tracer.flatten.projection import Projection, Rectangle
 
-# what phones' lenses have, standard deviations: weak, for photographs whose edges do not tell
-K1_SPREAD, K2_SPREAD = 0.1, 0.05
-EDGE_MM = 0.02  # standard deviation of an edge found in a photograph of 12 Mpx: measured on synthetic ones
+# what phones' lenses have, standard deviations: k1 of 0.05 by the focal length is 0.035 here
+K1_SPREAD, K2_SPREAD = 0.035, 0.02
+PAPER_MM = 0.1  # how flat paper lies, standard deviation: chosen, a sheet of glass does better
 
 
 @dataclass(frozen=True)
@@ -112,20 +112,26 @@ def fitted(
     """Fit a projection, from a homography that is nearly right; `inked` edges may have spread."""
     from scipy.optimize import least_squares
 
-    weights = EDGE_MM / np.array([K1_SPREAD, K2_SPREAD])
+    # edges bend with the paper: all sightings of a mark or a stretch weigh as one
+    each = 1 / PAPER_MM / np.sqrt(np.bincount(sightings.place)[sightings.place])
+    usual = 1 / np.array([K1_SPREAD, K2_SPREAD])
 
     def residual(numbers: Array) -> Array:
-        """What is left of the sightings, and of what lenses usually are, mm."""
-        projection = _projection(numbers, sheet, photo)
-        on_sheet = projection.to_sheet(sightings.places_px)
-        off = (on_sheet * sightings.normals).sum(axis=1) - sightings.offsets_mm
+        """What is left of the sightings, and of what lenses usually are, standard deviations."""
+        off = _off_mm(sightings, _projection(numbers, sheet, photo))
         gain = numbers[10] if inked else 0.0
-        return np.concatenate([off - gain, weights * numbers[8:10]])
+        return np.concatenate([each * (off - gain), usual * numbers[8:10]])
 
     start = np.concatenate([(first / first[2, 2]).ravel()[:8], np.zeros(3 if inked else 2)])
-    found = least_squares(residual, start, method="lm", x_scale=1.0)
-    projection = _projection(found.x, sheet, photo)
-    return Fit(projection, sightings, found.fun[:-2], float(found.x[10]) if inked else 0.0)
+    found = least_squares(residual, start, method="lm", x_scale=1.0).x
+    projection, gain = _projection(found, sheet, photo), float(found[10]) if inked else 0.0
+    return Fit(projection, sightings, _off_mm(sightings, projection) - gain, gain)
+
+
+def _off_mm(sightings: Sightings, projection: Projection) -> Array:
+    """How far sightings are from their lines, outwards, mm."""
+    on_sheet = projection.to_sheet(sightings.places_px)
+    return np.asarray((on_sheet * sightings.normals).sum(axis=1) - sightings.offsets_mm, float)
 
 
 def homography_of(
