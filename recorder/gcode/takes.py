@@ -15,6 +15,7 @@ import math
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 from morfax.motion.toml_fields import Field
@@ -24,6 +25,7 @@ _CODE = re.compile(r"([GM])(\d+(?:\.\d)?)(?:-([GM])(\d+))?")
 Code = tuple[str, float]  # such as ("G", 38.2)
 
 
+@cache
 def codes(text: str) -> frozenset[Code]:
     """The words that a text such as "G0 G1 G38.2 M100-M199" names; raises ValueError for what is none."""
     named: set[Code] = set()

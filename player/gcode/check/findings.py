@@ -41,15 +41,16 @@ class Findings:
 
     line: int = 0
     _found: dict[Hashable, Finding] = field(default_factory=dict)
+    _again: dict[Hashable, tuple[int, int]] = field(default_factory=dict)  # lines, the last
 
     def add(self, finding: Finding, cause: Hashable = None) -> None:
         """Add a finding; another one of the same rule and cause is counted with the first."""
         key = (finding.rule, len(self._found) if cause is None else cause, cause is None)
-        first = self._found.get(key)
-        if first is None:
-            self._found[key] = replace(finding, last_line=finding.line)
-        elif first.last_line < finding.line:
-            self._found[key] = replace(first, lines=first.lines + 1, last_line=finding.line)
+        first = self._found.setdefault(key, finding)
+        lines, last_line = self._again.get(key, (1, first.line))
+        if last_line < finding.line:
+            lines, last_line = lines + 1, finding.line
+        self._again[key] = lines, last_line
 
     def here(
         self, rule: str, what: str, allowed: str, do: str, *, cause: Hashable = None
@@ -63,4 +64,8 @@ class Findings:
 
     def in_order(self) -> list[Finding]:
         """All findings, by their lines."""
-        return sorted(self._found.values(), key=lambda each: (each.line, not each.stops))
+        found = []
+        for key, finding in self._found.items():
+            lines, last_line = self._again[key]
+            found.append(replace(finding, lines=lines, last_line=last_line))
+        return sorted(found, key=lambda each: (each.line, not each.stops))

@@ -59,6 +59,8 @@ class Follower(Reader):
         self.plane, self.turns = LEVEL, 1
         self.inverse_time = self.absolute_centres = False
         self.offset = [0.0, 0.0, 0.0]  # of G92
+        self.lost: set[str] = set()
+        self.lost_at_begin: set[str] = set()
         self.k, self.cycle = 0.0, CannedCycle()
 
     def follow(self, words: Words, named: list[Code]) -> None:
@@ -66,6 +68,7 @@ class Follower(Reader):
         self.number = self.findings.line
         values = dict(zip(words.letters[::-1], map(float, words.numbers[::-1]), strict=True))
         present, first = set(named), len(self.moves)
+        self._lose_places(words, values)
         self._modes(present, values, words)
         self.tool.obey(words, named)
         if any(letter == "M" for letter, _ in named):
@@ -80,6 +83,13 @@ class Follower(Reader):
         self.on += [self.tool.on or bool(present & PROBES)] * (len(self.moves) - first)
         self.ended = bool(present & codes("M2 M30 M99"))
         self.tool.end(named)
+
+    def _lose_places(self, words: Words, values: dict[str, float]) -> None:
+        """Remember which axes stand at a place that was not read, until they are sent to one that is."""
+        self.lost_at_begin = set(self.lost)
+        self.lost |= AXES & words.computed
+        if not self.relative:
+            self.lost -= values.keys()
 
     def _modes(self, present: set[Code], values: dict[str, float], words: Words) -> None:
         """Set the modes that the reader does not have, and those that it must lose."""
@@ -97,6 +107,8 @@ class Follower(Reader):
             self.absolute_centres = ("G", 90.1) in present
         if present & codes("G98 G99"):
             self.cycle.returns_to_start = ("G", 98.0) in present
+        if "P" in words.computed and ("G", 4.0) in present:
+            values["P"] = 0.0  # a time that is not known
         if "F" in words.computed or ("F" in values and self.inverse_time):
             self.feed_mm_s = self.machine.panel_feed_mm_s
         self._say_what_is_not_followed(present)
@@ -110,6 +122,8 @@ class Follower(Reader):
                 "places and time are as if it were not there",
                 cause=code,
             )
+        if present & _NOT_READ:
+            self.lost |= AXES
         for code in present & _NOT_READ:
             self.findings.here(
                 "not read",
@@ -133,6 +147,9 @@ class Follower(Reader):
             self._obey(present - CYCLES, {"F": values["F"]} if "F" in values else {})
             if AXES & values.keys():
                 self.cycle.run(self, values)
+        elif ("G", 4.0) in present and AXES & values.keys():  # first the dwell, then the way
+            self._obey({("G", 4.0)}, {"P": values["P"]} if "P" in values else {})
+            self._obey(present - codes("G4"), values)
         else:
             self._obey(present, values)
 
@@ -203,7 +220,8 @@ class Follower(Reader):
         try:
             centre, turned = arc.arc(plane.turned_to(begin), plane.turned_to(end))
         except WordError as error:
-            self._off_the_arc(error, end)
+            if not self.lost_at_begin & plane.names:
+                self._off_the_arc(error, end)
             return Move(self.number, LINE, end, self.feed_mm_s)
         turned += math.copysign((self.turns - 1) * TURN, turned)
         if self.plane == LEVEL and begin[2] == end[2]:

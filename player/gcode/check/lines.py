@@ -22,6 +22,11 @@ _O_WORD = re.compile(r"O[\d<\[]")
 _SPINDLE = re.compile(r"\$-?[\d.]+")
 _CHECKSUM = re.compile(r"\*\d+$")
 _MESSAGE = re.compile(r"\s*(N\d+\s*)?M11[78]\b")  # Marlin: the rest of the line is text
+# a letter, and a parameter or an expression for its value: X#1, X-[#1+2], XSIN[30]
+_COMPUTED = re.compile(
+    r"([A-Z@^])[-+]?(?:ABS|ACOS|ASIN|ATAN|COS|EXP|FIX|FUP|LN|ROUND|SIN|SQRT|TAN|EXISTS)?[#\[]"
+)
+_POLAR = re.compile(r"[@^][-+\d.]+")
 _LONGEST_SHOWN = 30  # characters of a line, in a finding
 _MOVES = frozenset("XYZIJKRABCUVW")
 
@@ -159,6 +164,8 @@ class Lines:
             compact, computed = without_computed(compact)
         if "$" in self.takes.letters:
             compact = _SPINDLE.sub("", compact)
+        if "@" in self.takes.letters and (_POLAR.search(compact) or computed & {"@", "^"}):
+            compact, computed = _POLAR.sub("", compact), computed | {"X", "Y"}
         parts = WORD.split(compact)
         for between in filter(None, parts[::3]):
             self.findings.here(
@@ -185,19 +192,16 @@ class Lines:
 def without_computed(compact: str) -> tuple[str, frozenset[str]]:
     """A line without the words whose value is a parameter or an expression, and the letters of these."""
     left, letters, at = "", set(), 0
-    while at < len(compact):
-        if at and compact[at] in "#[" and compact[at - 1].isalpha():
-            letters.add(compact[at - 1])
-            left, at = left[:-1], _end_of_value(compact, at)
-        else:
-            left += compact[at]
-            at += 1
-    return left, frozenset(letters)
+    while found := _COMPUTED.search(compact, at):
+        left += compact[at : found.start()]
+        letters.add(found[1])
+        at = _end_of_value(compact, found.end() - 1)
+    return left + compact[at:], frozenset(letters)
 
 
 def _end_of_value(compact: str, at: int) -> int:
     """Where a parameter or an expression that begins here ends."""
-    while at < len(compact) and compact[at] == "#":
+    while at < len(compact) and compact[at] in "#+-":
         at += 1
     closing = {"[": "]", "<": ">"}.get(compact[at : at + 1])
     if closing is None:
@@ -208,5 +212,6 @@ def _end_of_value(compact: str, at: int) -> int:
     for place in range(at, len(compact)):
         depth += (compact[place] == opening) - (compact[place] == closing)
         if depth == 0:
-            return place + 1
+            is_atan = compact[place + 1 : place + 3] == "/["  # ATAN[..]/[..]
+            return _end_of_value(compact, place + 2) if is_atan else place + 1
     return len(compact)

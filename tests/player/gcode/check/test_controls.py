@@ -5,7 +5,7 @@ protocol.c, protocol_main_loop), and rs274 of LinuxCNC 2.9 (interp_read.cc, inte
 interp_arc.cc). Each line stood between "G21 G90 G94", "G0 X0 Y0 Z5" and "M2". Where rs274 is installed, its
 column is held against it here.
 
-Not in the table, as we refuse what both take: F0, G4 beside G0, X--5; a computed place, which is not read.
+Not in the table, as we refuse what both take: F0, X--5; a computed place, which is not read.
 Refused by LinuxCNC alone, and not by us: a tool that is not in its table, M100 to M199 without their files,
 K in an XY arc.
 """
@@ -106,6 +106,7 @@ TABLE = """
 --  G92 G0 X1
 ++  G92.1
 ++  G4 P1
+++  G4 P1 G0 X1
 --  G4
 --  G4 P-1
 --  G4 X1
