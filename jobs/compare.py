@@ -10,8 +10,9 @@ from morfax.jobs import comparison, flattening, outlines
 from morfax.jobs import files as medium
 from morfax.jobs.listener import SILENT, Listener
 from morfax.jobs.playing import ByHand, read_or_play
-from morfax.jobs.settings import DrawingFile, Origin
+from morfax.jobs.settings import DrawingFile
 from morfax.jobs.wrong_use import WrongUse
+from morfax.jobs.zero import Zero, refuse_of_part
 
 if TYPE_CHECKING:
     from morfax.jobs.comparison import Comparison
@@ -45,12 +46,13 @@ class CompareJob:
     picture: FilePath | None = None
     cutter_mm: float | None = None  # diameter of the cutter that the path is for
     # where the path's zero is on the drawing; None: the sheet's corner
-    origin: Origin | None = None
+    zero: Zero | None = None
     by_hand: ByHand = field(default_factory=ByHand)
     drawn_unit: str | None = None  # of a drawing from CAD; None: the file's own
 
     def run(self, listener: Listener = SILENT, panel: Panel | None = None) -> CompareResult:
         """Compare; raises WrongUse and every fault."""
+        refuse_of_part(self.zero)
         drawing_file, files = self._sorted()
         outlines.check_unit(self.drawn_unit, *files)
         if self.picture is not None:
@@ -95,17 +97,17 @@ class CompareJob:
 
     def _refuse_drawing_options(self) -> None:
         """Raise WrongUse for settings that only a drawing takes."""
-        if self.origin is not None:
-            raise WrongUse("--origin is a place on a drawing; without one leave it out")
+        if self.zero is not None:
+            raise WrongUse("--zero is a place on a drawing; without one leave it out")
         if self.cutter_mm is not None:
             raise WrongUse("--cutter is for a path beside a drawing's line; leave it out")
 
     def _on_sheet(self, drawing: Drawing, path: Path) -> Path:
         """The path in the sheet's own coordinates."""
-        if self.origin is None or self.origin == "sheet":
+        if self.zero is None or self.zero == "sheet":
             return path
         from morfax.motion.placement import Placement
         from morfax.tracer.following.start import reference_on
 
-        place_mm = reference_on(drawing) if isinstance(self.origin, str) else self.origin
+        place_mm = reference_on(drawing) if isinstance(self.zero, str) else self.zero
         return Placement(origin_mm=(-place_mm[0], -place_mm[1])).path(path)

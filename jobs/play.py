@@ -30,7 +30,7 @@ OPTIONS = {
     "resume_at_s": "--resume-at",
     "acceleration_mm_s2": "--acceleration",
     "motor": "--motor",
-    "zero_mm": "--zero",
+    "zero_mm": "--zero-adjustment",
     "norm": "--norm",
     "feed_override": "--feed-override",
 }

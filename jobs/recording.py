@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from morfax.recorder.gcode.machine import Machine
     from morfax.recorder.media import Report
     from morfax.recorder.tape.tape import TapeFormat
+    from morfax.tracer.cutter.contouring import Milling
 
 # recorder.tape.pickups; the first is the default
 PICK_UPS = ("resolver", "photocell", "coil", "hall", "scale")
@@ -123,6 +124,12 @@ class RecordingUnit:
 
         feeds, made = Feeds(self.feed_mm_s, self.plunge_mm_s), Made(self.source, self.tool)
         return {**fit, "machine_name": self.chosen(program), "feeds": feeds, "made": made}
+
+    def milling(self, program: FilePath | None) -> Milling | None:
+        """The way round in which the machine cuts closed lines, if it asks for one."""
+        if program is None or not medium.is_gcode(program):
+            return None
+        return self.chosen(program).milling
 
     def warn(self, listener: Listener) -> None:
         """Say what a scale does to the cutter and the speed."""

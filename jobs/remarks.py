@@ -146,7 +146,7 @@ def _of_reference(trace: Trace, settings: TraceSettings) -> Iterator[str]:
         return
     use = (
         "it is the machine's zero only"
-        if settings.program.origin == "reference"
+        if settings.program.zero == "reference"
         else "the program does not begin there"
     )
     x, y = given

@@ -65,7 +65,7 @@ class RunJob:
         drawing = self.drawing.open(listener)
         self._make_folder()
         traced = tracing.trace(drawing, listener)
-        unit = self.unit.at(traced.origin_mm)
+        unit = traced.placed(self.unit)
         tape = traced.record(self.file(".wav"), unit, listener)
         traced_file = traced.write(self.file(".traced.csv"), unit)
         # 2. play
@@ -89,6 +89,7 @@ class RunJob:
             **written,
             **flattening.figures(drawing, picture),
             **_compared(drawing, traced, path, from_ink),
+            **traced.zero_figures(unit),
             **unit.figures(),
         }
         faults = tuple(fault for fault in (traced.fault, played.fault) if fault is not None)

@@ -8,15 +8,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from pathlib import Path as FilePath
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 from morfax.jobs import flattening
+from morfax.jobs.contour_settings import ContourSettings
 from morfax.jobs.depths import DepthSettings, passes_mm
 from morfax.jobs.flattening import FlattenSettings
 from morfax.jobs.listener import SILENT, Listener
 from morfax.jobs.wrong_use import WrongUse, settings_checked
 
 if TYPE_CHECKING:
+    from morfax.jobs.zero import Zero
     from morfax.tracer.cutter.cutter import Cutter, CutterSide
     from morfax.tracer.drawing.drawing import Drawing
     from morfax.tracer.drawing.scale import Known
@@ -27,8 +29,6 @@ if TYPE_CHECKING:
     from morfax.tracer.operator.card import Card, Override
     from morfax.tracer.operator.operator import Operator, Panel
     from morfax.tracer.operator.work import Work
-
-Origin = Literal["sheet", "reference"] | tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,11 +139,11 @@ class ToolSettings:
 
 @dataclass(frozen=True, slots=True)
 class ProgramSettings:
-    """What is done at the stops, and where the machine's zero is on the sheet."""
+    """What is done at the stops, and where the zero of the program is."""
 
     card_file: FilePath | None = None
     stop_override: Override | None = None  # None: the card's
-    origin: Origin = "sheet"
+    zero: Zero = "sheet"
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,6 +155,7 @@ class TraceSettings:
     tool: ToolSettings = field(default_factory=ToolSettings)
     program: ProgramSettings = field(default_factory=ProgramSettings)
     depths: DepthSettings = field(default_factory=DepthSettings)
+    contour: ContourSettings = field(default_factory=ContourSettings)
 
     def card(self) -> Card:
         """The operator's card, an empty one if no file is given; raises CardFault for a mistake on it."""

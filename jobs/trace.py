@@ -76,13 +76,14 @@ class TraceJob:
         tracing = Tracing.prepared(self.settings, panel)
         outputs = self.outputs.checked(self.drawing.file)
         self.unit.check(outputs.program)
+        tracing = tracing.on_machine(self.unit.milling(outputs.program))
         drawing = self.drawing.open(listener)
         size = f"{drawing.width_mm:.2f} x {drawing.height_mm:.2f} mm"
         listener.detail(f"{self.drawing.file}: sheet of {size}")
         self._tell_what_is_lost(outputs.program, listener)
         traced = tracing.trace(drawing, listener)
         tool = self.settings.tool
-        unit = self.unit.at(traced.origin_mm).made_from(self.drawing.file.name, tool.described)
+        unit = traced.placed(self.unit).made_from(self.drawing.file.name, tool.described)
         written: dict[str, Any] = {}
         if outputs.program is not None:
             program = traced.record(outputs.program, unit, listener)
@@ -95,9 +96,8 @@ class TraceJob:
         unit.warn(listener)
         flat = flattening.figures(drawing, picture)
         figures = {"drawing": str(self.drawing.file), **written, **flat, **traced.figures()}
-        return TraceResult(
-            {**figures, **unit.figures()}, drawing, traced, picture, traced.fault
-        )
+        figures |= {**traced.zero_figures(unit), **unit.figures()}
+        return TraceResult(figures, drawing, traced, picture, traced.fault)
 
     def _tell_what_is_lost(self, program: FilePath | None, listener: Listener) -> None:
         """Warn of what the card or an option asks for and the program's medium cannot hold."""

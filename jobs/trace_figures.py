@@ -29,6 +29,20 @@ def lines(trace: Trace) -> dict[str, Any]:
     }
 
 
+def leads(trace: Trace) -> list[dict[str, Any]]:
+    """The leads that closed lines were given: where the tool comes onto the line, and their sizes."""
+    return [
+        {
+            "of_line": line.number,
+            "cut_begins_place_mm": line.place(line.first),
+            "lead_in_mm": line.leads.in_mm or None,
+            "lead_out_mm": line.leads.out_mm or None,
+        }
+        for line in trace.lines
+        if line.leads is not None
+    ]
+
+
 def stops(trace: Trace) -> list[dict[str, Any]]:
     """The stops, by number: what kind of mark, where, and where Z goes."""
     return [

@@ -9,8 +9,11 @@ from dataclasses import dataclass
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from morfax.jobs import files as medium
 from morfax.jobs import trace_figures
+from morfax.jobs.zero import ZeroOnSheet
 
 if TYPE_CHECKING:
     from morfax.jobs.listener import Listener
@@ -21,6 +24,7 @@ if TYPE_CHECKING:
     from morfax.tracer.program.program import Trace
 
 Place = tuple[float, float]
+SHEET = ZeroOnSheet("sheet")
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +34,7 @@ class Traced:
     trace: Trace
     path: Path
     several: bool = False  # lines were asked for, not one line
-    origin_mm: Place = (0.0, 0.0)  # the machine's zero on the sheet
+    zero: ZeroOnSheet = SHEET  # of the program
     cutter: Cutter | None = None
     left: Left | None = None  # by the cutter
 
@@ -66,6 +70,17 @@ class Traced:
         stretches_mm = {f"left {k}": u.place_mm for k, u in enumerate(self.left.stretches, 1)}
         return {**stops_mm, **lines_mm, **stretches_mm}
 
+    def placed(self, unit: RecordingUnit) -> RecordingUnit:
+        """The recording unit with the zero of this program."""
+        about = unit.placement.about(self.path.positions_mm[0])
+        return unit.at(self.zero.origin_mm(about))
+
+    def zero_figures(self, unit: RecordingUnit) -> dict[str, Any]:
+        """Where on the sheet the zero of the program is, if it is not the sheet's own."""
+        placement = unit.placement.about(self.path.positions_mm[0])
+        x, y = placement.places_back(np.zeros((1, 2)))[0].tolist()
+        return {} if self.zero.asked == "sheet" else {"zero_place_mm": (x, y)}
+
     def figures(self) -> dict[str, Any]:
         """What the head found, as figures."""
         trace = self.trace
@@ -77,8 +92,8 @@ class Traced:
             "line_width_mm": trace.line_width_mm,
             "start_place_mm": trace.start_mm,
             "reference_place_mm": trace.reference_mm,
-            "origin_place_mm": self.origin_mm if any(self.origin_mm) else None,
             **(trace_figures.lines(trace) if self.several else {}),
+            "leads": trace_figures.leads(trace) or None,
             "stops": trace_figures.stops(trace) or None,
             "tabs": trace_figures.tabs(trace) or None,
             "passes_mm": list(trace.work.depths_mm) if trace.work.passes_mm else None,

@@ -6,18 +6,22 @@ the operator should know about the run goes to the listener as warnings (see `re
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from morfax.jobs.contour_remarks import of_contouring
 from morfax.jobs.depths import of_tabs
 from morfax.jobs.remarks import of_cutter, remarks
 from morfax.jobs.traced import Traced
 from morfax.jobs.wrong_use import WrongUse
+from morfax.jobs.zero import ZeroOnSheet
 from morfax.motion.faults import CardFault
 
 if TYPE_CHECKING:
     from morfax.jobs.listener import Listener
     from morfax.jobs.settings import TraceSettings
+    from morfax.tracer.cutter.contouring import Milling
+    from morfax.tracer.cutter.cutter import Left
     from morfax.tracer.drawing.drawing import Drawing
     from morfax.tracer.head.settings import Settings
     from morfax.tracer.operator.card import Card
@@ -40,6 +44,7 @@ class Tracing:
             raise WrongUse("--start picks one line, --lines several; give one of them")
         if settings.line.more_starts_mm and settings.line.start_mm is None:
             raise WrongUse("more_starts_mm are further places; give the first one as start_mm")
+        settings.contour.check(settings.line.direction)
         card = settings.card()
         if panel is None and waits(card):
             raise CardFault(
@@ -62,20 +67,38 @@ class Tracing:
         followed = self._followed(drawing, listener)
         for text in remarks(followed, self.settings, self.of_head.gap_mm, drawing.enlarged):
             listener.warning(text)
-        # 2. the machine's zero
-        origin_mm = self._origin_mm(drawing, followed)
-        # 3. the cutter beside the lines
-        cutter, left, beside = self.settings.tool.cutter(), None, followed
-        if cutter is not None:
-            from morfax.tracer.cutter.cutter import with_cutter
-
-            beside, left = with_cutter(followed, cutter, self.of_head.speed_mm_s)
+        # 2. the zero of the program
+        zero = ZeroOnSheet.of(self.settings, drawing, followed)
+        # 3. the cutter beside the lines, or the tool along them
+        beside, left = self._cut(followed)
+        cutter, contouring = self.settings.tool.cutter(), self.settings.contour.contouring()
+        if cutter is not None and left is not None:
             for text in of_cutter(beside, left, cutter):
                 listener.warning(text)
+        for text in of_contouring(beside, contouring):
+            listener.warning(text)
         for text in of_tabs(beside):
             listener.warning(text)
         several = self.settings.line.are_several
-        return Traced(beside, thin(beside), several, origin_mm, cutter, left)
+        return Traced(beside, thin(beside), several, zero, cutter, left)
+
+    def on_machine(self, milling: Milling | None) -> Tracing:
+        """The same with the direction of closed lines that a machine asks for, if nobody asks for another."""
+        contour = self.settings.contour.on_machine(milling, self.settings.line.direction)
+        return replace(self, settings=replace(self.settings, contour=contour))
+
+    def _cut(self, followed: Trace) -> tuple[Trace, Left | None]:
+        """The program as the tool runs it, and what a cutter leaves."""
+        cutter, contouring = self.settings.tool.cutter(), self.settings.contour.contouring()
+        if cutter is not None:
+            from morfax.tracer.cutter.cutter import with_cutter
+
+            return with_cutter(followed, cutter, self.of_head.speed_mm_s, contouring)
+        if contouring.asks:
+            from morfax.tracer.cutter.along_lines import contoured
+
+            return contoured(followed, contouring, self.of_head.speed_mm_s), None
+        return followed, None
 
     def _followed(self, drawing: Drawing, listener: Listener) -> Trace:
         """The line that the head followed, or the lines."""
@@ -94,21 +117,6 @@ class Tracing:
             if line.lines is None:
                 return trace(drawing, line.start_mm, self.of_head, self.operator, tell)
             return trace_lines(drawing, line.lines, self.of_head, self.operator, tell)
-
-    def _origin_mm(self, drawing: Drawing, followed: Trace) -> tuple[float, float]:
-        """The machine's zero on the sheet; raises LineFault without the reference point that is asked for.
-
-        The reference point is the one given, or that from which the program begins, or the only one drawn.
-        """
-        from morfax.tracer.following.start import reference_on
-
-        origin = self.settings.program.origin
-        if origin == "sheet":
-            return (0.0, 0.0)
-        if not isinstance(origin, str):
-            return origin
-        given_mm = self.settings.line.reference_mm
-        return given_mm or followed.reference_mm or reference_on(drawing)
 
 
 def waits(card: Card) -> bool:

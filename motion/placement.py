@@ -74,10 +74,18 @@ class Placement:
     def back(self, path: Path) -> Path:
         """A path that was placed about a known point, as it was before."""
         moved = np.array(path.positions_mm, np.float64)
-        moved[:, :2] += self.origin_mm
+        moved[:, :2] = self.places_back(moved[:, :2])
+        return replace(path, positions_mm=moved)
+
+    def places(self, places_mm: Array) -> Array:
+        """Places (n, 2) mm, placed about a known point."""
+        return self._moved(places_mm, self.matrix)
+
+    def places_back(self, places_mm: Array) -> Array:
+        """Places (n, 2) mm that were placed about a known point, as they were before."""
         undo = replace(self, origin_mm=(0.0, 0.0))
-        inverse = np.asarray(np.linalg.inv(self.matrix))
-        return replace(path, positions_mm=undo._moved(moved, inverse))
+        inverse = np.asarray(np.linalg.inv(self.matrix), np.float64)
+        return undo._moved(places_mm + np.array(self.origin_mm), inverse)
 
     def _placed(self, stream: Iterable[Motion]) -> Iterator[Motion]:
         """Place block by block."""

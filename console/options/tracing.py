@@ -9,6 +9,7 @@ from typing import Any, NoReturn
 
 import click
 
+from morfax.console.options.cutting import CUTTING, KERF, contour_settings, kerf_is_cutter
 from morfax.console.options.depths import DEPTHS, depth_settings
 from morfax.console.options.files import FILE
 from morfax.console.options.groups import Decorator, option, renamed
@@ -18,11 +19,11 @@ from morfax.console.options.types import (
     DEPTH,
     LENGTH,
     LINES,
-    ORIGIN,
     PLACE,
     REACH,
     SPEED,
     STOPS,
+    ZERO,
 )
 from morfax.console.terminal import attended
 from morfax.jobs.settings import (
@@ -170,6 +171,7 @@ _TOOL = (
         help="Diameter of the cutter, such as 6mm: the tool runs beside the line, half the diameter away.  "
         "[default: the tool runs on the line]",
     ),
+    KERF,
     option(
         "Tool",
         "--side",
@@ -205,13 +207,15 @@ _PROGRAM = (
     ),
     option(
         "Program",
-        "--origin",
-        type=ORIGIN,
+        "--zero",
+        type=ZERO,
         default="sheet",
         show_default=True,
-        help="The machine's zero: sheet (its lower-left corner), reference (the reference point), or "
-        "X,Y in mm.",
+        help="The zero of the program: sheet (its lower-left corner), lower-left or centre (of the part that "
+        "is cut: the lines themselves, not the cutter's path), reference (the reference point), or a place "
+        "X,Y on the sheet in mm.",
     ),
+    renamed("--origin", "--zero"),
 )
 
 
@@ -226,7 +230,7 @@ def trace_options(verb: Callable[..., Any]) -> Callable[..., Any]:
             _print_settings(settings)
         return verb(*args, settings=settings, panel=attended.panel(asking=ask), **options)
 
-    return _with((*_LINE, *_HEAD, *_TOOL, *DEPTHS, *_PROGRAM), with_settings)
+    return _with((*_LINE, *_HEAD, *_TOOL, *CUTTING, *DEPTHS, *_PROGRAM), with_settings)
 
 
 def _with(options: tuple[Decorator, ...], verb: Callable[..., Any]) -> Callable[..., Any]:
@@ -238,6 +242,7 @@ def _with(options: tuple[Decorator, ...], verb: Callable[..., Any]) -> Callable[
 
 def _settings(options: dict[str, Any]) -> TraceSettings:
     """The settings of the command line, taken out of all options; wrong use where two do not go together."""
+    kerf_is_cutter(options)
     if options["cutter_mm"] is None and options["side"] is not None:
         raise click.UsageError(
             "--side is the side of the cutter; give its diameter with --cutter, such as 6mm"
@@ -252,7 +257,8 @@ def _settings(options: dict[str, Any]) -> TraceSettings:
         return kind(**{field.name: options.pop(field.name) for field in fields(kind)})
 
     line, head, tool = of(LineSettings), of(HeadSettings), of(ToolSettings)
-    return TraceSettings(line, head, tool, of(ProgramSettings), depth_settings(options))
+    made = depth_settings(options), contour_settings(options)
+    return TraceSettings(line, head, tool, of(ProgramSettings), *made)
 
 
 def _print_settings(settings: TraceSettings) -> NoReturn:

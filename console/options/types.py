@@ -18,6 +18,12 @@ from morfax.motion.units import (
     parse_time_s,
 )
 
+ZEROS = ("sheet", "reference", "lower-left", "centre")
+LEAST_LEAD_MM, MOST_LEAD_MM = (
+    0.1,
+    100.0,
+)  # a shorter lead is none; a longer one is a slip of the pen
+
 
 class Quantity(click.ParamType):
     """A parameter with a unit; what cannot be read is wrong use of the command line."""
@@ -129,16 +135,16 @@ def _axes(text: str) -> tuple[str, ...]:
     return names
 
 
-def _parse_origin(text: str) -> Any:
-    """Where a machine's zero is on the sheet: "sheet", "reference", or a place."""
+def _parse_zero(text: str) -> Any:
+    """Where the zero of a program is: "sheet", "reference", "lower-left", "centre", or a place."""
     word = text.strip().lower()
-    if word in ("sheet", "reference"):
+    if word in ZEROS:
         return word
     try:
         return parse_place_mm(text)
     except ValueError:
         raise ValueError(
-            f"{text!r} is no origin; give sheet, reference, or a place X,Y such as 40,62"
+            f"{text!r} is no zero; give {', '.join(ZEROS)}, or a place X,Y on the sheet such as 40,62"
         ) from None
 
 
@@ -154,6 +160,22 @@ def _parse_stock(text: str) -> tuple[float, float, float | None]:
     if len(sizes) not in (2, 3) or min(sizes) <= 0:
         raise ValueError(f"{text!r} is no stock; give {allowed}, above zero")
     return sizes[0], sizes[1], sizes[2] if len(sizes) == 3 else None
+
+
+def _parse_lead(text: str) -> tuple[float, str]:
+    """A lead of "3mm", "3mm,arc" or "3mm,line": its size in mm, and its kind."""
+    size, _, kind = text.strip().lower().partition(",")
+    kind = kind.strip() or "arc"
+    if kind not in ("arc", "line"):
+        raise ValueError(
+            f"{text!r} is no lead; give its size, such as 3mm for an arc, or 3mm,line"
+        )
+    size_mm = parse_length_mm(size)
+    if not LEAST_LEAD_MM <= size_mm <= MOST_LEAD_MM:
+        raise ValueError(
+            f"{text!r} is no lead; its size may be {LEAST_LEAD_MM:g}mm to {MOST_LEAD_MM:g}mm"
+        )
+    return size_mm, kind
 
 
 def _decades(least_counts: int) -> Callable[[str], float]:
@@ -215,4 +237,5 @@ LINES = Quantity("lines", _parse_lines)
 STOPS = Quantity("stops", _parse_stops)
 TRACKS = Quantity("tracks", _tracks)
 AXES = Quantity("axes", _axes)
-ORIGIN = Quantity("sheet|reference|x,y", _parse_origin)
+ZERO = Quantity("zero", _parse_zero)
+LEAD = Quantity("size[,line]", _parse_lead)

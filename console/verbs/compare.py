@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from morfax.console.options.cutting import KERF, kerf_is_cutter
 from morfax.console.options.desk import desk_options
 from morfax.console.options.drawing import DRAWN_UNIT, drawing_options
 from morfax.console.options.files import FILE, PICTURES, Result
-from morfax.console.options.groups import Verb, given, option
+from morfax.console.options.groups import Verb, given, option, renamed
 from morfax.console.options.systems import Systems
 from morfax.console.options.tape import FOR_MACHINE, tape_options
-from morfax.console.options.types import CUTTER, LENGTH, LINES, ORIGIN, PLACE, SPEED
+from morfax.console.options.types import CUTTER, LENGTH, LINES, PLACE, SPEED, ZERO
 from morfax.jobs.compare import CompareJob
 from morfax.jobs.results import NAMES
 from morfax.jobs.settings import HeadSettings, LineSettings, TraceSettings
@@ -92,14 +93,16 @@ Examples:
     type=CUTTER,
     help="Diameter of the cutter that the path is for: what its edge touches is compared with the drawing.",
 )
+@KERF
 @option(
     "Drawing",
-    "--origin",
-    type=ORIGIN,
+    "--zero",
+    type=ZERO,
     help="Where the path's zero is on the drawing: sheet (its lower-left corner), reference (the drawing's "
-    "reference point), or X,Y in mm.  [default: sheet]",
+    "reference point), or X,Y in mm, as trace told zero_place_mm.  [default: sheet]",
 )
 @DRAWN_UNIT
+@renamed("--origin", "--zero")
 @drawing_options("a")
 @FOR_MACHINE
 @tape_options
@@ -123,6 +126,7 @@ def command(
     With --systems the systems are set side by side: A is a drawing and B is left out; the table has a row for
     each system, and one that refuses or faults says why in its row.
     """
+    kerf_is_cutter(options)
     if options["systems"] is not None:
         within = _systems(a, b, by_hand, options, desk)
     elif b is None:
@@ -147,7 +151,7 @@ def _two(
             param_hint="'-o'",
         )
     compared = {
-        name: options[name] for name in ("tolerance_mm", "cutter_mm", "origin", "drawn_unit")
+        name: options[name] for name in ("tolerance_mm", "cutter_mm", "zero", "drawn_unit")
     }
     result = CompareJob(a, b, picture=picture, by_hand=by_hand, **compared).run(desk)
     if picture is not None:
@@ -164,9 +168,9 @@ def _systems(
     """Set the systems side by side, draw and print; whether all are within the tolerance."""
     if b is not None:
         raise click.UsageError("--systems compares one drawing; leave B out")
-    if options["cutter_mm"] is not None or options["origin"] is not None or by_hand.given():
+    if options["cutter_mm"] is not None or options["zero"] is not None or by_hand.given():
         raise click.UsageError(
-            "--cutter, --origin and what a tape does not say are of B; with --systems leave them out"
+            "--cutter, --zero and what a tape does not say are of B; with --systems leave them out"
         )
     line = LineSettings(start_mm=options["head_mm"], lines=options["lines"])
     settings = TraceSettings(line, HeadSettings(speed_mm_s=options["speed_mm_s"]))

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 EXAMPLES = """\b
 Examples:
   morfax play cam.wav -o cam.csv -o cam.svg -o cam.png
-  morfax play cam.wav --feed-override 120% --motor hydraulic --zero 0,0,-0.05
+  morfax play cam.wav --feed-override 120% --motor hydraulic --zero-adjustment 0,0,-0.05
   morfax play cam.ngc --following servos.png --following servos.csv
   morfax play found.wav --reference-frequency 6kHz --cycles-per-mm 20 --from 40,62 -o found.csv
 """
@@ -101,7 +101,7 @@ Examples:
 )
 @option(
     "Machine",
-    "--zero",
+    "--zero-adjustment",
     "zero_mm",
     type=PLACES,
     help="Zero adjustment of a tape's axes, X,Y or X,Y,Z … in mm: how far the machine stands from where "
@@ -110,6 +110,7 @@ Examples:
 )
 @FOR_MACHINE
 @DRAWN_UNIT
+@renamed("--zero", "--zero-adjustment")
 @tape_options
 @desk_options
 def command(

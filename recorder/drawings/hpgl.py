@@ -69,7 +69,7 @@ def _hpgl(lines: list[CutLine], wanted: Machine) -> str:
     if min(left, low) < -step_mm / 2:
         raise MotionFault(
             f"what is cut reaches to X {left:.2f}, Y {low:.2f} mm, and a plotter begins at 0, 0; "
-            "move the zero with --origin"
+            "move the zero with --zero lower-left"
         )
     if max(right, high) > LARGEST_STEP * step_mm:
         raise MotionFault(

@@ -13,7 +13,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from importlib import resources
 from pathlib import Path as FilePath
-from typing import Any
+from typing import Any, Literal
 
 from morfax.motion.toml_fields import Field, opened, parsed
 from morfax.recorder.gcode.machine_fields import CONTROL, FIELDS, LINES, filled, strings
@@ -42,6 +42,7 @@ class Machine:
     decimals: int = 4
     dwell_unit_s: float = 1.0
     longest_line: int = 252
+    milling: Literal["climb", "conventional"] | None = None  # direction of closed lines
     feeds: bool = True  # whether the program says F
     rapids_have_feed: bool = False  # whether a rapid bears F
     rapid_mm_s: Axes = (50.0, 50.0, 20.0)

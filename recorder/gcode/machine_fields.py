@@ -139,6 +139,7 @@ FIELDS: dict[str, tuple[str, Any]] = {
     "decimals": ("decimals", _decimals),
     "dwell": ("dwell_unit_s", lambda held: 1.0 if held.choice("s", "ms") == "s" else 1e-3),
     "longest_line": ("longest_line", _longest),
+    "direction": ("milling", lambda held: held.choice("climb", "conventional")),
     "feed": ("feeds", lambda held: held.choice("program", "machine") == "program"),
     "rapid": ("rapids_have_feed", lambda held: held.choice("program", "machine") == "program"),
     "rapid_mm_s": ("rapid_mm_s", lambda held: _three(held, "speeds in mm/s")),

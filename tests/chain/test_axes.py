@@ -113,7 +113,9 @@ def test_the_command_line_records_and_plays_them(morfax: Morfax, here: FilePath)
         ).exit_code
         == 0
     )
-    answer = morfax("play", "a.wav", "-o", "b.csv", "--json", "--zero", "0,0,0,0,0.5")
+    answer = morfax(
+        "play", "a.wav", "-o", "b.csv", "--json", "--zero-adjustment", "0,0,0,0,0.5"
+    )
     assert answer.exit_code == 0
     end = read_path("a.csv").positions_mm[-1] * [1, 1, 1, 1, 1]
     assert answer.figures["end_place_mm"] == pytest.approx(

@@ -84,9 +84,9 @@ def test_a_path_that_only_crosses_the_ink_is_no_path_of_that_drawing(
     assert answer.exit_code == 7 and "scale" in answer.fault
 
 
-@pytest.mark.parametrize(("origin", "exit_code"), [("10mm,0", 0), ("10.5,0", 1)])
+@pytest.mark.parametrize(("zero", "exit_code"), [("10mm,0", 0), ("10.5,0", 1)])
 def test_a_path_from_another_zero_is_compared_where_it_was_drawn(
-    morfax: Morfax, here: Path, origin: str, exit_code: int
+    morfax: Morfax, here: Path, zero: str, exit_code: int
 ) -> None:
     morfax("trace", SAMPLES / "cam.png", "-o", "cam.csv")
     path = read_path(here / "cam.csv")
@@ -95,8 +95,8 @@ def test_a_path_from_another_zero_is_compared_where_it_was_drawn(
         "compare",
         SAMPLES / "cam.png",
         "moved.csv",
-        "--origin",
-        origin,
+        "--zero",
+        zero,
         "--tolerance",
         "50um",
         "--json",
@@ -104,15 +104,15 @@ def test_a_path_from_another_zero_is_compared_where_it_was_drawn(
     assert answer.exit_code == exit_code
 
 
-def test_an_origin_without_a_drawing_is_refused(morfax: Morfax, path_file: Path) -> None:
-    answer = morfax("compare", path_file, path_file, "--origin", "reference")
-    assert answer.exit_code == 2 and "--origin is a place on a drawing" in answer.fault
+def test_a_zero_without_a_drawing_is_refused(morfax: Morfax, path_file: Path) -> None:
+    answer = morfax("compare", path_file, path_file, "--zero", "reference")
+    assert answer.exit_code == 2 and "--zero is a place on a drawing" in answer.fault
 
 
 def test_a_reference_point_that_is_not_drawn_is_a_fault(
     morfax: Morfax, path_file: Path
 ) -> None:
-    answer = morfax("compare", SAMPLES / "cam.png", path_file, "--origin", "reference")
+    answer = morfax("compare", SAMPLES / "cam.png", path_file, "--zero", "reference")
     assert (
         answer.exit_code == 4
         and "the drawing has no small cross or ring; give its place" in answer.fault

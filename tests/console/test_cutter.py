@@ -82,7 +82,7 @@ def test_a_drawn_program_is_traced_with_a_cutter_and_begins_and_ends_on_its_refe
         SAMPLES / "program.toml",
         "--cutter",
         "6mm",
-        "--origin",
+        "--zero",
         "reference",
         "-o",
         "beside.wav",

@@ -34,7 +34,10 @@ def test_an_override_runs_the_same_path_in_another_time(
 def test_a_zero_shifts_the_path(morfax: Morfax, here: Path, tape_file: Path) -> None:
     assert morfax("play", tape_file, "-o", "a.csv", "-q").exit_code == 0
     assert (
-        morfax("play", tape_file, "-o", "b.csv", "-q", "--zero", "0.5mm,-1,20um").exit_code == 0
+        morfax(
+            "play", tape_file, "-o", "b.csv", "-q", "--zero-adjustment", "0.5mm,-1,20um"
+        ).exit_code
+        == 0
     )
     ends = [read_path(file).positions_mm[[0, -1]] for file in ("a.csv", "b.csv")]
     assert np.abs(ends[1] - ends[0] - [0.5, -1, 0.02]).max() < 0.1 * UM
@@ -51,9 +54,12 @@ def test_hydraulic_motors_follow_later(morfax: Morfax, here: Path, tape_file: Pa
     [
         (("--feed-override", "300%"), "an override of 300% is none; give 10% to 200%"),
         (("--feed-override", "0"), "'0' is no share; give 120%"),
-        (("--zero", "1"), "is no place"),
-        (("--zero", "1,2,3,4"), "a zero of 4 places does not fit; the tape has 3 axes"),
-        (("--zero", "0,5m"), "a zero of 5000 mm is too far"),
+        (("--zero-adjustment", "1"), "is no place"),
+        (
+            ("--zero-adjustment", "1,2,3,4"),
+            "a zero of 4 places does not fit; the tape has 3 axes",
+        ),
+        (("--zero-adjustment", "0,5m"), "a zero of 5000 mm is too far"),
         (("--motor", "steam"), "'steam' is not one of 'electric', 'hydraulic'"),
     ],
 )
@@ -68,11 +74,14 @@ def test_what_is_refused(
 def test_other_controls_have_none_of_it(morfax: Morfax, here: Path, path_file: Path) -> None:
     assert morfax("record", path_file, "-o", "a.steps", "-q").exit_code == 0
     assert (
-        "--motor, --zero is for tapes"
-        in morfax("play", "a.steps", "--zero", "1,1", "--motor", "electric").fault
+        "--motor, --zero-adjustment is for tapes"
+        in morfax("play", "a.steps", "--zero-adjustment", "1,1", "--motor", "electric").fault
     )
     assert (
         "--feed-override is for tapes and for programs of"
         in morfax("play", "a.steps", "--feed-override", "50%").fault
     )
-    assert "--zero is for files, not for a pipe" in morfax("play", "-", "--zero", "1,1").fault
+    assert (
+        "--zero-adjustment is for files, not for a pipe"
+        in morfax("play", "-", "--zero-adjustment", "1,1").fault
+    )

@@ -138,8 +138,8 @@ def test_junctions_of_several_lines_are_counted_on_each_as_the_card_turns(
     ]
 
 
-def test_origin_reference_puts_the_zero_there(morfax: Morfax, here: Path) -> None:
-    traced(morfax, "--origin", "reference")
+def test_zero_reference_puts_the_zero_there(morfax: Morfax, here: Path) -> None:
+    traced(morfax, "--zero", "reference")
     assert read_path("program.csv").xy_mm[0] == pytest.approx((0, 0), abs=0.001)
 
 

@@ -27,6 +27,9 @@ RENAMED = [
     (("record", "a.csv", "--tolerance", "10um"), "--fit-tolerance"),
     (("age", "a.wav", "-o", "b.wav", "--speed", "1.5%"), "--speed-error"),
     (("play", "a.wav", "--override"), "--feed-override"),
+    (("play", "a.wav", "--zero", "1,1"), "--zero-adjustment"),
+    (("trace", "a.png", "--origin", "sheet"), "--zero"),
+    (("compare", "a.png", "b.csv", "--origin", "1,1"), "--zero"),
 ]
 
 
@@ -45,14 +48,24 @@ def test_an_old_spelling_is_refused_with_the_new_one(
 @pytest.mark.parametrize("verb", ["trace", "run"])
 def test_the_help_has_a_heading_for_each_part_of_the_work(morfax: Morfax, verb: str) -> None:
     said = morfax(verb, "--help").out
-    headings = ["Drawing:", "Line:", "Head:", "Tool:", "Program:", "Output:", "Other options:"]
+    headings = [
+        "Drawing:",
+        "Line:",
+        "Head:",
+        "Tool:",
+        "Cutting:",
+        "Program:",
+        "Output:",
+        "Other options:",
+    ]
     assert re.findall(r"^[A-Z][a-z ]+:$", said, re.MULTILINE) == headings
     under = {
         "Drawing": ("--dpi", "--ink", "--edge"),
         "Line": ("--start", "--lines", "--gap", "--reference-point"),
         "Head": ("--speed", "--head", "--set "),
         "Tool": ("--depth", "--cutter", "--side"),
-        "Program": ("--card", "--stop-override", "--origin", "--mirror"),
+        "Cutting": ("--climb", "--conventional", "--lead-in", "--lead-out", "--start-at"),
+        "Program": ("--card", "--stop-override", "--zero", "--mirror"),
         "Output": ("-o", "--json"),
     }
     for name, options in under.items():
@@ -66,10 +79,15 @@ def test_all_options_but_help_stand_under_a_heading(morfax: Morfax, verb: str) -
     assert rest.split() == ["-h,", "--help", "Show", "this", "message", "and", "exit."]
 
 
-def test_an_origin_is_the_sheet_the_reference_point_or_a_place(morfax: Morfax) -> None:
-    answer = morfax("trace", "a.png", "--origin", "middle")
+def test_a_zero_is_of_the_sheet_of_the_part_the_reference_point_or_a_place(
+    morfax: Morfax,
+) -> None:
+    answer = morfax("trace", "a.png", "--zero", "middle")
     assert answer.exit_code == 2
-    assert "'middle' is no origin; give sheet, reference, or a place X,Y" in answer.fault
+    assert (
+        "'middle' is no zero; give sheet, reference, lower-left, centre, or a place X,Y"
+        in answer.fault
+    )
 
 
 @pytest.mark.parametrize(

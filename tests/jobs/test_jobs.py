@@ -252,8 +252,8 @@ def test_the_panel_is_asked(here: Path) -> None:
 
 
 def test_the_zero_may_be_any_place(here: Path) -> None:
-    for origin, start_mm in (("sheet", (8.5, 23.0)), ((8.0, 20.0), (0.5, 3.0))):
-        settings = TraceSettings(program=ProgramSettings(origin=origin))  # type: ignore[arg-type]
+    for zero, start_mm in (("sheet", (8.5, 23.0)), ((8.0, 20.0), (0.5, 3.0))):
+        settings = TraceSettings(program=ProgramSettings(zero=zero))  # type: ignore[arg-type]
         TraceJob(PROGRAM, TraceOutputs(here / "a.csv"), settings).run()
         assert read_path(here / "a.csv").xy_mm[0] == pytest.approx(start_mm, abs=0.05)
 

@@ -124,7 +124,8 @@ def test_what_a_plotter_cannot_reach_is_refused(tmp_path: Path) -> None:
     path, _ = part()
     left = MotionPath(path.t_s, path.positions_mm - [40, 0, 0])
     with pytest.raises(
-        MotionFault, match=r"reaches to X -22\.5.*, and a plotter begins at 0, 0; .*--origin"
+        MotionFault,
+        match=r"reaches to X -22\.5.*, and a plotter begins at 0, 0; .*--zero lower-left",
     ):
         record(left, tmp_path / "part.plt")
     far = MotionPath(path.t_s, path.positions_mm + np.array([800, 0, 0]))

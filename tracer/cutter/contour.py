@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -39,6 +39,7 @@ from morfax.motion.polyline import (
 from morfax.tracer.following.line import Line
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.operator.work import Halt
+from morfax.tracer.program.program import Trace
 from morfax.tracer.sensing.leg import turn
 
 # All limits below were chosen by trial on the test drawings.
@@ -95,6 +96,17 @@ class Cut:
         return cls(line, first, places_mm, closed, tuple(operator.stops(line, number)), down_at)
 
 
+def planned(trace: Trace) -> list[tuple[Line, Cut | None]]:
+    """The lines with the numbers of their stops, each with what is cut of it."""
+    found, first = list[tuple[Line, Cut | None]](), 1
+    for line in trace.lines:
+        halts = trace.operator.stops(line, first)
+        line = replace(line, numbers=tuple(halt.number or 0 for halt in halts))
+        found.append((line, Cut.of(line, trace.operator, first)))
+        first += len(halts)
+    return found
+
+
 def _places(line: Line, first: int) -> Array:
     """Places of a line from a position on, straight on where guide lines leave it, (n, 2) mm."""
     guides = [guide for guide in line.guides if guide.leave > first]
@@ -132,12 +144,16 @@ def _closed(places_mm: Array) -> Array:
 
 @dataclass(frozen=True, slots=True)
 class Beside:
-    """The paths of a cutter along a contour, on its left or right; a closed path ends where it begins."""
+    """The paths of a cutter along a contour, on its left or right; a closed path ends where it begins.
+
+    Paths that are `turned` run against the contour; without a cutter the contour itself is the path.
+    """
 
     cut: Cut
     left: bool
     radius_mm: float
     paths: list[OffsetPath]
+    turned: bool = False
     _every: Array = field(init=False)  # places of the contour, `APART_MM` from each to the next
 
     def __post_init__(self) -> None:
@@ -155,7 +171,9 @@ class Beside:
             met = list(self.met(way))
             if met and met[0][0] >= (1 - NEAR) / (1 + NEAR) * (len(way) - 1):
                 return met[0][1]
-        nearest = [_nearest(path.points_mm, place_mm, k) for k, path in enumerate(self.paths)]
+        nearest = [
+            nearest_place(path.points_mm, place_mm, k) for k, path in enumerate(self.paths)
+        ]
         return min(nearest, key=lambda found: found[0])[1]
 
     def met(self, line_mm: Array) -> Iterator[tuple[float, PathPlace]]:
@@ -169,26 +187,35 @@ class Beside:
     def _arm(self, place_mm: Array) -> Array | None:
         """The arm from a place of the contour across its heading, (2,) mm; None at a corner."""
         here = int(np.argmin(np.hypot(*(self._every - place_mm).T)))
-        for about_mm in ABOUT_MM:
-            near, at_mm = self._about(here, round(about_mm / APART_MM))
-            if len(near) < 4:
-                return None
-            cubics = polynomial.polyfit(at_mm, near, 3)
-            if np.abs(polynomial.polyval(at_mm, cubics).T - near).max() < STRAIGHT_MM:
-                across = np.array([-cubics[1, 1], cubics[1, 0]]) / np.hypot(*cubics[1])
-                return np.asarray((self.radius_mm if self.left else -self.radius_mm) * across)
-        return None
-
-    def _about(self, here: int, reach: int) -> tuple[Array, Array]:
-        """Places of the contour about one of them, (n, 2) mm, and how far along it they are from that, mm."""
-        index = np.arange(here - reach, here + reach + 1)
-        if not self.cut.closed:
-            index = index[(index >= 0) & (index < len(self._every))]
-        at_mm = APART_MM * (index - here).astype(float)
-        return self._every[index % len(self._every)], at_mm
+        way = heading(self._every, here, self.cut.closed)
+        if way is None:
+            return None
+        across = np.array([-way[1], way[0]])
+        return np.asarray((self.radius_mm if self.left else -self.radius_mm) * across)
 
 
-def _nearest(path_mm: Array, place_mm: Array, number: int) -> tuple[float, PathPlace]:
+def heading(every: Array, here: int, closed: bool) -> Array | None:
+    """The heading of a line at one of its places, which are `APART_MM` apart, (2,); None at a corner."""
+    for about_mm in ABOUT_MM:
+        near, at_mm = _about(every, here, round(about_mm / APART_MM), closed)
+        if len(near) < 4:
+            return None
+        cubics = polynomial.polyfit(at_mm, near, 3)
+        if np.abs(polynomial.polyval(at_mm, cubics).T - near).max() < STRAIGHT_MM:
+            return np.asarray(cubics[1] / np.hypot(*cubics[1]))
+    return None
+
+
+def _about(every: Array, here: int, reach: int, closed: bool) -> tuple[Array, Array]:
+    """Places of a line about one of them, (n, 2) mm, and how far along it they are from that, mm."""
+    index = np.arange(here - reach, here + reach + 1)
+    if not closed:
+        index = index[(index >= 0) & (index < len(every))]
+    at_mm = APART_MM * (index - here).astype(float)
+    return every[index % len(every)], at_mm
+
+
+def nearest_place(path_mm: Array, place_mm: Array, number: int) -> tuple[float, PathPlace]:
     """How far a path is from a place at its nearest, mm, and where that is."""
     steps = np.diff(path_mm, axis=0)
     squared = np.maximum(np.einsum("ij,ij->i", steps, steps), 1e-18)  # no step of length 0

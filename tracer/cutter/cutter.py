@@ -37,8 +37,18 @@ from morfax.motion.faults import LineFault, MotionFault
 from morfax.motion.offset import DriveCurve, OffsetPath, offset
 from morfax.motion.polyline import WITHIN_MM, Nearest, length_mm, plain, with_places
 from morfax.tracer.cutter import sides
-from morfax.tracer.cutter.contour import Beside, Cut
+from morfax.tracer.cutter.contour import Beside, Cut, planned
+from morfax.tracer.cutter.contouring import (
+    AS_FOLLOWED,
+    Contouring,
+    refuse_open,
+    refuse_without_room,
+    turned_round,
+)
+from morfax.tracer.cutter.gouges import refuse_gouges
+from morfax.tracer.cutter.leads import Scrap
 from morfax.tracer.cutter.runs import FeedRate
+from morfax.tracer.cutter.start_places import StartPlaces
 from morfax.tracer.cutter.transfer import transferred
 from morfax.tracer.following.line import Line
 from morfax.tracer.program.program import Trace
@@ -49,8 +59,6 @@ LEFT_MM = 0.002  # where no more than this is left, the cutter has touched the l
 # ... and a stretch where no more is left is not listed: the head wavers as much
 LISTED_MM = 0.01
 EVERY_MM = 0.02  # between the places of a line that are looked at
-GOUGE_MM = 0.005  # nearer to a line than the radius by more is a gouge: WITHIN_MM and the feed's smoothing
-GOUGES = 10  # one position in ten is looked at: every 17 um at 10 mm/s
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,17 +105,21 @@ class Left:
     lines: list[LeftOut] = field(default_factory=list)
 
 
-def with_cutter(trace: Trace, cutter: Cutter, feed_mm_s: float) -> tuple[Trace, Left]:
+def with_cutter(
+    trace: Trace, cutter: Cutter, feed_mm_s: float, contouring: Contouring = AS_FOLLOWED
+) -> tuple[Trace, Left]:
     """The program of a cutter beside the lines, run at a feed; and what the cutter cannot reach.
 
-    Raises MotionFault if the cutter goes nowhere, if a line has no such side, or if the tool would be in the
-    work nearer to a line than its radius; LineFault if all lines were lost, and have no such side.
+    Raises MotionFault if the cutter goes nowhere, if a line has no such side, if the tool would be in the
+    work nearer to a line than its radius, or if nothing can be contoured as is asked for; LineFault if all
+    lines were lost, and have no such side.
     """
     # 1. contours and drive curves
-    planned = _planned(trace, cutter.side)
-    cuts = [cut for _, cut in planned if cut is not None]
+    lines = _planned(trace, cutter.side)
+    cuts = [cut for _, cut in lines if cut is not None]
     if not cuts:
-        return replace(trace, lines=tuple(line for line, _ in planned)), Left()
+        return replace(trace, lines=tuple(line for line, _ in lines)), Left()
+    refuse_open(cuts, trace.lines, contouring)
     curves = _drive_curves(cuts, cutter.side)
     # 2. offset paths, and what they leave
     paths = offset(curves, cutter.radius_mm)
@@ -118,17 +130,20 @@ def with_cutter(trace: Trace, cutter: Cutter, feed_mm_s: float) -> tuple[Trace, 
     near = Nearest([sides.whole(curve) for curve in curves], cutter.radius_mm)
     feed, left_out = FeedRate(feed_mm_s, trace.rate_hz), {out.line for out in left.lines}
     made, number = list[Line](), 0
-    for line, cut in planned:
+    starts = StartPlaces(contouring, Scrap(curves, cutter.radius_mm, near))
+    for line, cut in lines:
         if cut is None:
             made.append(line)
             continue
         own = [path for path in paths if path.guide == number]
         if line.number not in left_out and _has_paths(cut, own, cutter):
             side = Beside(cut, curves[number].left, cutter.radius_mm, own)
-            made += transferred(side, near.distances_mm, feed)
+            side = turned_round(side, contouring)
+            made += transferred(side, near.distances_mm, feed, starts)
         number += 1
+    refuse_without_room(made, contouring)
     beside = replace(trace, lines=tuple(made))
-    _refuse_gouges(beside, near, cutter)
+    refuse_gouges(beside, near, cutter.diameter_mm)
     return beside, left
 
 
@@ -148,19 +163,16 @@ def _planned(trace: Trace, side: CutterSide) -> list[tuple[Line, Cut | None]]:
 
     A line that was lost has no outside and no inside.
     """
-    planned, first = list[tuple[Line, Cut | None]](), 1
-    for line in trace.lines:
-        halts = trace.operator.stops(line, first)
-        line = replace(line, numbers=tuple(halt.number or 0 for halt in halts))
-        if line.ending == "lost" and side in ("outside", "inside"):
-            planned.append((_not_cut(line, side), None))
-        else:
-            planned.append((line, Cut.of(line, trace.operator, first)))
-        first += len(halts)
-    if planned and all(line.ending == "lost" and cut is None for line, cut in planned):
-        lost = replace(trace, lines=tuple(line for line, _ in planned))
+    lines = planned(trace)
+    if side in ("outside", "inside"):
+        lines = [
+            (_not_cut(line, side), None) if line.ending == "lost" else (line, cut)
+            for line, cut in lines
+        ]
+    if lines and all(line.ending == "lost" and cut is None for line, cut in lines):
+        lost = replace(trace, lines=tuple(line for line, _ in lines))
         raise lost.fault or LineFault("no line was followed")
-    return planned
+    return lines
 
 
 def _not_cut(line: Line, side: CutterSide) -> Line:
@@ -198,25 +210,6 @@ def _has_paths(cut: Cut, paths: Sequence[OffsetPath], cutter: Cutter) -> bool:
     return bool(paths)
 
 
-def _refuse_gouges(beside: Trace, near: Nearest, cutter: Cutter) -> None:
-    """Raise MotionFault if the tool cuts into a line, as where a card lowers it on the way to a contour."""
-    nearest_mm = cutter.radius_mm - GOUGE_MM
-    for block in beside:
-        moves = np.any(np.diff(block.positions_mm[:, :2], axis=0) != 0, axis=1)
-        moving = block.positions_mm[:-1][moves]
-        cutting = moving[moving[:, 2] < 0, :2][::GOUGES]
-        if not len(cutting):
-            continue
-        away_mm = near.distances_mm(cutting)
-        if away_mm.min() < nearest_mm:
-            x, y = cutting[int(np.argmin(away_mm))]
-            raise MotionFault(
-                f"a cutter of {cutter.diameter_mm:g} mm would cut into the part at {x:.1f},{y:.1f} mm, where"
-                " a stop's moves leave it in the work; raise it there on the card, or pass the stop by with"
-                " --stop-override"
-            )
-
-
 def _drive_curves(cuts: Sequence[Cut], side: CutterSide) -> list[DriveCurve]:
     """The contours as drive curves, each with the side on which the cutter runs."""
     if side in ("left", "right"):
@@ -232,13 +225,11 @@ def _drive_curves(cuts: Sequence[Cut], side: CutterSide) -> list[DriveCurve]:
     if wrong:
         numbers = [cut.line.number for cut in cuts]
         raise _without_side(wrong, [n for n in numbers if n not in wrong], side)
-    curves = list[DriveCurve]()
-    for cut, line, depth in zip(cuts, places, sides.depths(places, crossed), strict=True):
-        on_inside = (side == "inside") == (depth % 2 == 0)
-        curves.append(
-            DriveCurve(cut.places_mm, True, sides.is_counterclockwise(line) == on_inside)
-        )
-    return curves
+    left = sides.tool_left(places, crossed, inside=side == "inside")
+    return [
+        DriveCurve(cut.places_mm, True, on_left)
+        for cut, on_left in zip(cuts, left, strict=True)
+    ]
 
 
 def _without_side(

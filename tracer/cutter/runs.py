@@ -17,6 +17,8 @@ from morfax.motion.arrays import Array
 from morfax.motion.feed import run_along
 from morfax.motion.polyline import at_places, length_mm, lengths_mm
 from morfax.tracer.cutter.contour import PathPlace
+from morfax.tracer.cutter.start_places import Begin
+from morfax.tracer.following.line import Leads
 from morfax.tracer.junctions.guides import GuideLine
 from morfax.tracer.program import braking
 from morfax.tracer.program.passes import BRAKE_MM_S2
@@ -84,31 +86,54 @@ class Detour:
 @dataclass(slots=True)
 class PathRun:
     """A path as it is run from one of its places on: positions (n, 2) mm, and for positions of the drawn line
-    those that stand for them.
+    those that stand for them. From `first` to `last` it is on the path, before and after that on its leads.
     """
 
     xy_mm: Array
     path_mm: Array
-    begin_mm: float  # along the path
+    begin: Begin
+    first: int
+    last: int
     at: dict[float, float] = field(default_factory=dict)
     guides: list[GuideLine] = field(default_factory=list)
 
     @classmethod
-    def along(cls, path_mm: Array, begin: float, feed: FeedRate) -> PathRun:
-        """Run a path; a closed one from and to a place between its points."""
+    def along(cls, path_mm: Array, begin: Begin, feed: FeedRate) -> PathRun:
+        """Run a path with its leads; a closed one from and to a place between its points."""
+        # 1. the path from its beginning on, between its leads
         points = path_mm
-        if begin > 0:
-            k, place = int(begin), at_places(path_mm, np.array([begin]))
+        if begin.at > 0:
+            k, place = int(begin.at), at_places(path_mm, np.array([begin.at]))
             points = np.vstack([place, path_mm[k + 1 :], path_mm[1 : k + 1], place])
-        begin_mm = np.interp(begin, np.arange(len(path_mm)), lengths_mm(path_mm))
-        return cls(feed.run(points), path_mm, float(begin_mm))
+        before = points[:1] if begin.lead_in is None else begin.lead_in
+        after = points[-1:] if begin.lead_out is None else begin.lead_out
+        way = np.vstack([before[:-1], points, after[1:]])
+        # 2. run as one, and where it comes onto the path and leaves it
+        xy_mm = feed.run(way)
+        share = length_mm(xy_mm) / max(length_mm(way), NOTHING_MM)
+        first, last = 0, len(xy_mm) - 1
+        if begin.lead_in is not None:
+            first = round(position_at(xy_mm, share * length_mm(before)))
+        if begin.lead_out is not None:
+            last = round(position_at(xy_mm, share * (length_mm(way) - length_mm(after))))
+        return cls(xy_mm, path_mm, begin, first, last)
+
+    @property
+    def leads(self) -> Leads | None:
+        """The leads of the line that is run so; None without."""
+        if self.begin.lead_in is None and self.begin.lead_out is None:
+            return None
+        return Leads(self.first, self.last, self.begin.in_mm, self.begin.out_mm)
 
     def position(self, place: PathPlace) -> float:
         """Which position is at a place of the path, fractions included, before any guide line is put in."""
         along = lengths_mm(self.path_mm)
-        mm = float(np.interp(place.at, np.arange(len(along)), along)) - self.begin_mm
-        mm = mm if mm >= 0 else mm + along[-1]
-        return position_at(self.xy_mm, mm / along[-1] * length_mm(self.xy_mm))
+        at_mm, begin_mm = np.interp(
+            [place.at, self.begin.at], np.arange(len(along)), along
+        ).tolist()
+        mm = at_mm - begin_mm if at_mm >= begin_mm else at_mm - begin_mm + along[-1]
+        on_path = self.xy_mm[self.first : self.last + 1]
+        return self.first + position_at(on_path, mm / along[-1] * length_mm(on_path))
 
     def put_in(self, detours: list[Detour]) -> None:
         """Leave the path for guide lines, and come back to it."""
@@ -118,6 +143,7 @@ class PathRun:
             self.guides = [shifted(guide, shift) for guide in self.guides]
             before, after = self.xy_mm[: leave + 1], self.xy_mm[leave:]
             self.xy_mm = np.vstack([before, detour.xy_mm, after])
+            self.last += shift
             self.at |= {drawn: at + leave + 1 for drawn, at in detour.at.items()}
             tip = round(self.at[detour.tip])
             self.guides.insert(0, GuideLine(leave, tip, leave + shift))
@@ -127,6 +153,7 @@ class PathRun:
         shift = len(lead.xy_mm)
         self.at = {**lead.at, **{drawn: at + shift for drawn, at in self.at.items()}}
         self.guides = [shifted(guide, shift) for guide in self.guides]
+        self.first, self.last = self.first + shift, self.last + shift
         self.xy_mm = np.vstack([lead.xy_mm, self.xy_mm])
 
 

@@ -95,6 +95,16 @@ def depths(lines_mm: Sequence[Array], crossed: NDArray[np.bool_]) -> list[int]:
     return [int(n) for n in inside.sum(axis=1)]
 
 
+def tool_left(
+    lines_mm: Sequence[Array], crossed: NDArray[np.bool_], inside: bool = False
+) -> list[bool]:
+    """Whether a tool outside of the part, or inside, is on the left of the travel of each closed line."""
+    return [
+        is_counterclockwise(line) == (inside == (depth % 2 == 0))
+        for line, depth in zip(lines_mm, depths(lines_mm, crossed), strict=True)
+    ]
+
+
 def room(curves: Sequence[DriveCurve], number: int) -> Room | None:
     """The largest circle that goes beside one of the lines, on its side; None if that side is not shut in."""
     own = curves[number]

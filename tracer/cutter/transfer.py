@@ -16,6 +16,7 @@ run instead, mm at the motion rate, each with its lead line, marks and guide lin
     stop mark   at its foot on the path (see `contour`)
     guide line  as drawn, from where it crosses the path; else from its foot, straight to where the drawn one
                 left the contour. Drilled holes are not moved.
+    start       where the lead line joins, else where the path itself begins or `start_places` has it begin
 
 The numbers of the stops stay those of the drawing, also where the cutter comes to them in another order.
 
@@ -35,6 +36,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.polyline import length_mm, lengths_mm
 from morfax.tracer.cutter.contour import Beside, PathPlace
 from morfax.tracer.cutter.runs import Detour, FeedRate, LeadRun, PathRun
+from morfax.tracer.cutter.start_places import StartPlaces
 from morfax.tracer.following.line import Line
 from morfax.tracer.junctions.guides import GuideLine
 
@@ -44,19 +46,24 @@ OBLIQUE = 2.0
 
 
 def transferred(
-    beside: Beside, away_mm: Callable[[Array], Array], feed: FeedRate
+    beside: Beside,
+    away_mm: Callable[[Array], Array],
+    feed: FeedRate,
+    starts: StartPlaces | None = None,
 ) -> list[Line]:
     """The lines that the cutter runs for a line: one for each path, the one with the lead line last.
 
-    `away_mm` gives the distances of places from all contours.
+    `away_mm` gives the distances of places from all contours, `starts` where the paths begin.
     """
     # 1. the lead line, and the paths from where it joins
     cut = beside.cut
     lead = _lead(beside, away_mm, feed) if cut.first > 0 else None
-    begins = {lead.place.path: lead.place.at} if lead is not None else {}
+    joins = {lead.place.path: lead.place.at} if lead is not None else {}
+    starts = starts or StartPlaces()
+    begins = [starts.begin(beside, k, joins.get(k)) for k in range(len(beside.paths))]
     runs = [
-        PathRun.along(path.points_mm, begins.get(k, 0.0), feed)
-        for k, path in enumerate(beside.paths)
+        PathRun.along(path.points_mm, begin, feed)
+        for path, begin in zip(beside.paths, begins, strict=True)
     ]
     # 2. marks on the contour
     for mark in cut.line.marks:
@@ -103,6 +110,10 @@ def _is_clear(
 ) -> bool:
     """Whether the tool can go down at the lead line's tick: from there on no contour is too near."""
     down_at = beside.cut.down_at
+    if (
+        not beside.radius_mm
+    ):  # without a cutter the tool goes down at the tick, as it would on the drawn line
+        return True
     if down_at is None or not down_at <= end < beside.cut.first:
         return False
     nearest_mm = away_mm(rows[int(down_at) : int(end) + 1]).min()
@@ -201,7 +212,8 @@ def _main_line(beside: Beside, run: PathRun, number: int, lead: LeadRun | None) 
 def _with_stops(beside: Beside, run: PathRun, line: Line) -> Line:
     """A line with the positions of its run, and with the guide lines, marks and stops that are on it."""
     drawn, stops = beside.cut.line, beside.cut.stops
-    line = replace(line, xy_mm=run.xy_mm, guides=(*line.guides, *run.guides))
+    guides = (*line.guides, *run.guides)
+    line = replace(line, xy_mm=run.xy_mm, guides=guides, leads=run.leads)
     marks = [replace(mark, at=run.at[mark.at]) for mark in drawn.marks if mark.at in run.at]
     marks = [replace(mark, place_mm=line.place(mark.at)) for mark in marks]
     here = sorted((run.at[stop.at], stop.number or 0) for stop in stops if stop.at in run.at)

@@ -1,0 +1,68 @@
+"""Remarks on contoured lines: leads that are shorter than asked for, and lines that keep their direction.
+
+Signals in: the traced lines, and what was asked for. Signals out: texts, each with what to do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from morfax.tracer.cutter.contouring import Contouring, Lead
+    from morfax.tracer.following.line import Line
+    from morfax.tracer.program.program import Trace
+
+FEW = 6  # lines that are listed with their leads; of more the shortest
+
+
+def of_contouring(trace: Trace, contouring: Contouring) -> Iterator[str]:
+    """Remarks on a program whose closed lines were contoured."""
+    closed = [line for line in trace.lines if line.ending == "closed"]
+    if contouring.lead_in is not None:
+        yield from _of_leads("lead-in", contouring.lead_in, closed)
+    if contouring.lead_out is not None:
+        yield from _of_leads("lead-out", contouring.lead_out, closed)
+    asked = contouring.milling is not None and not contouring.by_machine
+    open_lines = sorted({line.number for line in trace.lines if _is_cut_open(line)})
+    if open_lines and (asked or contouring.moves_start):
+        numbers = ", ".join(map(str, open_lines))
+        are = f"line {numbers} is" if len(open_lines) == 1 else f"lines {numbers} are"
+        yield f"{are} open and cut as traced: direction, start and leads are for closed lines"
+
+
+def _of_leads(name: str, asked: Lead, closed: list[Line]) -> Iterator[str]:
+    """The lines whose leads are shorter than asked for, with what each has."""
+    got = [(_size_mm(name, line), line.number) for line in closed if not line.is_lead]
+    short = sorted(pair for pair in got if pair[0] < asked.size_mm)
+    if not short:
+        return
+    listed = [
+        f"{size_mm:g} mm at line {number}" if size_mm else f"none at line {number}"
+        for size_mm, number in short[:FEW]
+    ]
+    more = (
+        f" and {len(short) - FEW} more lines, which the figures list"
+        if len(short) > FEW
+        else ""
+    )
+    yield (
+        f"there is no room for a {name} of {asked.size_mm:g} mm everywhere: {', '.join(listed)}{more}"
+    )
+
+
+def _size_mm(name: str, line: Line) -> float:
+    """The size of a line's lead, mm; 0 without."""
+    if line.leads is None:
+        return 0.0
+    return round(line.leads.in_mm if name == "lead-in" else line.leads.out_mm, 3)
+
+
+def _is_cut_open(line: Line) -> bool:
+    """Whether a line is cut that does not come round."""
+    return (
+        len(line.xy_mm) > 1
+        and not line.is_guide
+        and not line.is_lead
+        and line.ending != "closed"
+    )

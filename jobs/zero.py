@@ -1,0 +1,87 @@
+"""The zero of a program: where on the sheet, or on the part that is cut, the machine's zero is.
+
+    sheet         the lower-left corner of the sheet
+    lower-left    the lowest X and the lowest Y of the part, as it lies after mirror, scale and turn
+    centre        halfway between the lowest and the highest X and Y of the part
+    reference     the reference point on the drawing
+    X,Y           a place on the sheet
+
+The part is what is cut of the lines themselves: a cutter's path, leads and lead lines do not count.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.jobs.wrong_use import WrongUse
+
+if TYPE_CHECKING:
+    from morfax.jobs.settings import TraceSettings
+    from morfax.motion.placement import Placement
+    from morfax.tracer.drawing.drawing import Drawing
+    from morfax.tracer.program.program import Trace
+
+Place = tuple[float, float]
+Zero = Literal["sheet", "reference", "lower-left", "centre"] | Place
+OF_PART = ("lower-left", "centre")
+
+
+@dataclass(frozen=True, slots=True)
+class ZeroOnSheet:
+    """The zero that is asked for: its place on the sheet, or places (n, 2) mm of the part that has it."""
+
+    asked: Zero
+    place_mm: Place = (0.0, 0.0)
+    part_mm: NDArray[np.float64] | None = None
+
+    @classmethod
+    def of(cls, settings: TraceSettings, drawing: Drawing, followed: Trace) -> ZeroOnSheet:
+        """The zero of a program; raises LineFault without the reference point that is asked for.
+
+        The reference point is the one given, or that from which the program begins, or the only one drawn.
+        """
+        from morfax.tracer.following.start import reference_on
+
+        zero = settings.program.zero
+        if zero == "sheet":
+            return cls(zero)
+        if zero in OF_PART:
+            return cls(zero, part_mm=_part_mm(followed))
+        if not isinstance(zero, str):
+            return cls(zero, zero)
+        given_mm = settings.line.reference_mm
+        return cls(zero, given_mm or followed.reference_mm or reference_on(drawing))
+
+    def origin_mm(self, placement: Placement) -> Place:
+        """What a placement about a known point takes off, so that the zero is where it is asked for."""
+        if self.part_mm is None:
+            return self.place_mm
+        return on_part_mm(self.asked, placement.places(self.part_mm))
+
+
+def _part_mm(trace: Trace) -> NDArray[np.float64]:
+    """Places of what is cut along the lines, (n, 2) mm; of drill points alone the points."""
+    from morfax.tracer.cutter.contour import planned
+
+    cuts = [cut.places_mm for _, cut in planned(trace) if cut is not None]
+    return np.vstack(cuts) if cuts else trace.xy_mm
+
+
+def on_part_mm(zero: Zero, places_mm: NDArray[np.float64]) -> Place:
+    """The lower-left corner or the centre of a part's places (n, 2) mm."""
+    low, high = places_mm.min(axis=0), places_mm.max(axis=0)
+    x, y = low if zero == "lower-left" else 0.5 * (low + high)
+    return float(x), float(y)
+
+
+def refuse_of_part(zero: Zero | None) -> None:
+    """Raise WrongUse for the zero of a part where only the sheet is known."""
+    if zero in OF_PART:
+        raise WrongUse(
+            f"--zero {zero} is of the part that was cut, which a drawing alone does not say; give the place "
+            "that trace told as zero_place_mm, such as --zero 12.3,45.6"
+        )

@@ -1,0 +1,331 @@
+"""Contouring: the way round by nesting and side, leads in the scrap, the start of a cut, and what is drawn on
+the lines, on lines of exact shape.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from shapely import LineString, Point, Polygon
+
+from morfax.jobs.contour_remarks import of_contouring
+from morfax.motion.arrays import Array
+from morfax.motion.faults import MotionFault
+from morfax.motion.motion import join
+from morfax.motion.polyline import Nearest, area_mm2, at_lengths, lengths_mm, plain
+from morfax.tracer.cutter.along_lines import contoured
+from morfax.tracer.cutter.contouring import Contouring, Lead
+from morfax.tracer.cutter.cutter import Cutter, with_cutter
+from morfax.tracer.following.line import Line
+from morfax.tracer.junctions.guides import GuideLine
+from morfax.tracer.marks.marks import Mark
+from morfax.tracer.program.program import Trace
+
+FEED_MM_S = 10.0
+STEP_MM = 10.0 / 6000  # of a head at 10 mm/s
+GOUGE_MM = 0.005  # what the cutter allows itself: smoothing of the feed, and the offset's own precision
+ON_LINE_MM = 0.002  # a step of the head, and a position between two of them
+
+
+def positions(places: Any) -> Array:
+    """Positions of a head that runs along places at 10 mm/s, (n, 2) mm."""
+    way = np.array(places, float)
+    length = lengths_mm(way)[-1]
+    return at_lengths(way, np.linspace(0.0, length, round(length / STEP_MM) + 1))
+
+
+def closed(places: Any, number: int = 1, **drawn: Any) -> Line:
+    """A closed line through some places, as the head followed it."""
+    xy_mm = positions([*places, places[0]])
+    return Line(xy_mm, "closed", 0.5, float(lengths_mm(xy_mm)[-1]), number=number, **drawn)
+
+
+def square(half_mm: float, x_mm: float = 0.0, y_mm: float = 0.0) -> list[tuple[float, float]]:
+    """Corners of a square about a place, counter-clockwise; it begins in the middle of its lower side."""
+    low, high = -half_mm, half_mm
+    round_about = [(0.0, low), (high, low), (high, high), (low, high), (low, low)]
+    return [(x + x_mm, y + y_mm) for x, y in round_about]
+
+
+def circle(radius_mm: float, x_mm: float = 0.0, y_mm: float = 0.0) -> list[tuple[float, float]]:
+    """Places of a circle, counter-clockwise, 1 um true."""
+    count = max(90, math.ceil(math.pi / math.sqrt(2e-3 / radius_mm)))
+    angles = np.linspace(0, 2 * math.pi, count, endpoint=False)
+    return [(x_mm + radius_mm * math.cos(a), y_mm + radius_mm * math.sin(a)) for a in angles]
+
+
+def star(seed: int, tips: int = 9) -> list[tuple[float, float]]:
+    """A shape with tips and hollows of chance sizes, 20 to 40 mm from its middle."""
+    chance = np.random.default_rng(seed)
+    radii, angles = chance.uniform(20, 40, tips), np.arange(tips) * 2 * math.pi / tips
+    return [
+        (float(r * math.cos(a)), float(r * math.sin(a)))
+        for r, a in zip(radii, angles, strict=True)
+    ]
+
+
+def cut(trace: Trace, contouring: Contouring, cutter: Cutter | None) -> Trace:
+    """The lines contoured, with or without a cutter."""
+    if cutter is None:
+        return contoured(trace, contouring, FEED_MM_S)
+    return with_cutter(trace, cutter, FEED_MM_S, contouring)[0]
+
+
+def loop(line: Line) -> Array:
+    """The closed part of a line, without its leads, (n, 2) mm."""
+    return line.xy_mm[line.first : line.last + 1]
+
+
+def outline(xy_mm: Array) -> LineString:
+    """The same line by few places, 0.1 um true."""
+    return LineString(plain(np.ascontiguousarray(xy_mm), 1e-4))
+
+
+def leads(line: Line) -> list[Array]:
+    """The leads of a line, from the cut outwards, (n, 2) mm."""
+    into, out = line.xy_mm[: line.first + 1][::-1], line.xy_mm[line.last :]
+    return [lead for lead in (into, out) if len(lead) > 1]
+
+
+LEVELS = Trace(
+    (
+        closed(
+            square(10)[::-1], 3
+        ),  # an island in a hole of a plate, each followed its own way
+        closed(square(20), 2),
+        closed(square(30), 1),
+    )
+)
+
+
+@pytest.mark.parametrize(
+    ("side", "climbs"),
+    [
+        (None, (-1, 1, -1)),
+        ("outside", (-1, 1, -1)),
+        ("inside", (1, -1, 1)),
+        # by the head's travel: the tool is inside of lines 1 and 2 on their left, outside of 3
+        ("left", (-1, 1, 1)),
+        ("right", (1, -1, -1)),
+    ],
+)
+@pytest.mark.parametrize("milling", ["climb", "conventional"])
+@pytest.mark.parametrize("lead_in", [None, Lead(2.0)])
+def test_of_three_nested_lines_each_turns_by_its_depth_and_the_side_of_the_tool(
+    side: Any, climbs: tuple[int, int, int], milling: Any, lead_in: Lead | None
+) -> None:
+    """In climb milling the tool is on the left of its travel: the signed areas of lines 3, 2, 1."""
+    cutter = None if side is None else Cutter(3.0, side)
+    made = cut(LEVELS, Contouring(milling, lead_in), cutter)
+    ways = [int(np.sign(area_mm2(loop(line)))) for line in made.lines]
+    assert ways == [way if milling == "climb" else -way for way in climbs]
+
+
+def test_a_line_that_turns_the_right_way_already_keeps_the_head_s_own_motion() -> None:
+    made = cut(LEVELS, Contouring("climb"), None)
+    kept = [
+        np.array_equal(a.xy_mm, b.xy_mm) for a, b in zip(made.lines, LEVELS.lines, strict=True)
+    ]
+    assert kept == [True, True, False]  # only line 1 turns
+
+
+def test_lines_turned_round_and_begun_elsewhere_stay_where_they_were() -> None:
+    made = cut(LEVELS, Contouring("conventional", start_at="corner"), None)
+    for before, after in zip(LEVELS.lines, made.lines, strict=True):
+        away = outline(before.xy_mm).hausdorff_distance(outline(loop(after)))
+        assert away < ON_LINE_MM
+        corner = np.abs(np.abs(after.xy_mm[0]) - np.abs(before.xy_mm).max()).max()
+        assert corner < ON_LINE_MM
+
+
+PART = Trace(
+    (
+        closed(circle(5, 0, 8), 4),
+        closed(square(4, 0, -8), 3),
+        closed(circle(2, 9, -4), 2),
+        closed(star(5), 1),
+    )
+)
+SOLID = Polygon(star(5), [circle(5, 0, 8), square(4, 0, -8), circle(2, 9, -4)])
+
+
+@pytest.mark.parametrize("kind", ["arc", "line"])
+@pytest.mark.parametrize("start_at", [None, "corner", "nearest"])
+@pytest.mark.parametrize("milling", ["climb", "conventional"])
+@pytest.mark.parametrize("diameter_mm", [0.0, 2.0])
+def test_leads_lie_in_the_scrap_and_cross_nothing(
+    kind: Any, start_at: Any, milling: Any, diameter_mm: float
+) -> None:
+    cutter = Cutter(diameter_mm) if diameter_mm else None
+    asked = Contouring(milling, Lead(3.0, kind), Lead(2.0, kind), start_at)
+    made = cut(PART, asked, cutter)
+    edges = SOLID.boundary
+    assert len(made.lines) == len(PART.lines)
+    for line in made.lines:
+        assert line.leads is not None and line.leads.in_mm > 0
+        path = outline(loop(line))
+        for lead in leads(line):
+            # 1. outside of the part, and the tool no nearer to it than its radius
+            assert not SOLID.contains(Point(lead[-1]))
+            assert outline(lead).distance(edges) >= 0.5 * diameter_mm - GOUGE_MM
+            # 2. where it has left the line it does not come back to it, nor to another one
+            away = np.hypot(*(lead - lead[0]).T)
+            beyond = outline(lead[away > 0.5 * away[-1]])
+            size_mm = min(line.leads.in_mm, line.leads.out_mm)
+            assert beyond.distance(path) > 0.08 * size_mm
+            assert beyond.distance(edges) > 0.08 * size_mm
+    if cutter is not None:
+        motion = join(made).positions_mm
+        in_work = motion[motion[:, 2] < 0, :2]
+        near = Nearest([line.xy_mm for line in PART.lines], cutter.radius_mm)
+        assert near.distances_mm(in_work).min() >= cutter.radius_mm - GOUGE_MM
+
+
+def test_an_arc_touches_the_cut_and_a_straight_lead_meets_it_at_45_degrees() -> None:
+    for kind, wanted_deg in (("arc", 0.0), ("line", 45.0)):
+        line = cut(
+            Trace((closed(square(20)),)), Contouring("climb", Lead(3.0, kind)), None
+        ).lines[0]  # type: ignore[arg-type]
+        lead, path = line.xy_mm[line.first - 60 : line.first], loop(line)[60:120]
+        arrives, leaves = lead[-1] - lead[0], path[-1] - path[0]
+        turned = math.degrees(
+            math.acos(np.dot(arrives, leaves) / np.hypot(*arrives) / np.hypot(*leaves))
+        )
+        # the chord of the last 0.1 mm of an arc of 3 mm is 1 degree off its end
+        assert turned == pytest.approx(wanted_deg, abs=1.2)
+
+
+def test_the_size_is_the_arc_s_radius_and_the_straight_lead_s_length() -> None:
+    for kind, across_mm in (("arc", 3 * math.sqrt(2)), ("line", 3.0)):
+        line = cut(Trace((closed(square(20)),)), Contouring(None, Lead(3.0, kind)), None).lines[
+            0
+        ]  # type: ignore[arg-type]
+        assert math.dist(line.xy_mm[0], line.place(line.first)) == pytest.approx(
+            across_mm, abs=ON_LINE_MM
+        )
+
+
+def test_a_cut_begins_on_the_longest_straight_at_the_sharpest_corner_or_nearest_to_the_tool() -> (
+    None
+):
+    """The tip of a house is its sharpest corner (53 degrees inside), its floor the longest straight."""
+    house = [(-10.0, 0.0), (10.0, 0.0), (10.0, 12.0), (0.0, 32.0), (-10.0, 12.0)]
+    begins = {}
+    for start_at in ("straight", "corner", "nearest"):
+        lines = Trace((closed(square(2, -30, 6), 2), closed(house)))
+        begins[start_at] = cut(lines, Contouring(start_at=start_at), None).lines[1].start_mm  # type: ignore[arg-type]
+    slope = math.dist((10.0, 12.0), (0.0, 32.0))
+    assert slope > 20.0
+    assert begins["straight"] in (
+        pytest.approx((5, 22), abs=0.05),
+        pytest.approx((-5, 22), abs=0.05),
+    )
+    assert begins["corner"] == pytest.approx((0, 32), abs=0.01)
+    assert begins["nearest"][0] == pytest.approx(-10, abs=0.01)
+
+
+def test_where_there_is_no_room_a_lead_is_shorter_or_missing_and_that_is_told() -> None:
+    """In a hole of 3 mm an arc of 3 mm has no room; in a slot of 0.1 mm there is none at all."""
+    slot = [(12.0, -5.0), (12.1, -5.0), (12.1, 5.0), (12.0, 5.0)]
+    lines = Trace((closed(circle(1.5), 3), closed(slot, 2), closed(square(20), 1)))
+    asked = Contouring("climb", Lead(3.0))
+    made = cut(lines, asked, None)
+    got = {line.number: line.leads.in_mm if line.leads else 0.0 for line in made.lines}
+    assert got[1] == 3.0 and 0.4 < got[3] < 1.0 and got[2] == 0.0
+    (told,) = of_contouring(made, asked)
+    assert "no room for a lead-in of 3 mm" in told
+    assert "none at line 2" in told and f"{got[3]:g} mm at line 3" in told
+
+
+def test_a_lead_that_no_line_has_room_for_is_refused() -> None:
+    pocket, cutter = Trace((closed(circle(0.15)),)), Cutter(0.1, "inside")
+    with pytest.raises(
+        MotionFault, match=r"no room for a lead-in of 3 mm, nor for a shorter one.*--lead-in"
+    ):
+        cut(pocket, Contouring(lead_in=Lead(3.0)), cutter)
+
+
+def test_open_lines_keep_their_direction_and_alone_are_refused() -> None:
+    line = Line(positions([(0, 0), (30, 5)]), "ended", 0.5, 30.4, number=2)
+    made = cut(Trace((line, LEVELS.lines[2])), Contouring("climb", Lead(2.0)), None)
+    assert np.array_equal(made.lines[0].xy_mm, line.xy_mm)
+    (told,) = of_contouring(made, Contouring("climb", Lead(2.0)))
+    assert told.startswith("line 2 is open and cut as traced")
+    with pytest.raises(MotionFault, match="--climb is for closed lines, and the line is open"):
+        cut(Trace((line,)), Contouring("climb"), None)
+    as_it_was = cut(Trace((line,)), Contouring("climb", by_machine=True), None)
+    assert np.array_equal(as_it_was.lines[0].xy_mm, line.xy_mm)
+
+
+def test_a_line_that_crosses_itself_stays_as_it_was() -> None:
+    eight = closed([(0, 0), (20, 10), (20, 0), (0, 10)])
+    made = cut(
+        Trace((eight, closed(square(5, 50, 0), 2))), Contouring("climb", Lead(1.0)), None
+    )
+    assert np.array_equal(made.lines[0].xy_mm, eight.xy_mm)
+    assert made.lines[1].leads is not None
+
+
+def drawn_lead(**more: Any) -> Line:
+    """A lead line with a tick from a reference point to a square, followed counter-clockwise, with a tick and
+    a guide line on it."""
+    way = [
+        (0, -20),
+        (0, -10),
+        (10, -10),
+        (10, 10),
+        (16, 10),
+        (10, 10),
+        (-10, 10),
+        (-10, -10),
+        (0, -10),
+    ]
+    xy_mm = positions(way)
+
+    def at(x: float, y: float, after: int = 0) -> int:
+        return after + int(np.argmin(np.hypot(*(xy_mm[after:] - (x, y)).T)))
+
+    loop_from, leave = at(0, -10), at(10, 10)
+    tip = at(16, 10)
+    marks = (
+        Mark("tick", (0.0, -15.0), float(at(0, -15))),
+        Mark("tick", (-10.0, 0.0), float(at(-10, 0))),
+    )
+    guides = (GuideLine(leave, tip, at(10, 10, tip)),)
+    return Line(
+        xy_mm, "joined", 0.5, 100.0, loop_from=loop_from, marks=marks, guides=guides,
+        reference_mm=(0.0, -23.0), **more,
+    )  # fmt: skip
+
+
+def test_a_drawn_lead_line_goes_before_and_stops_and_guide_lines_come_along() -> None:
+    """The line is turned round: the tool still comes by the lead line; each stop stays where it is drawn."""
+    drawn = Trace((drawn_lead(),))
+    asked = Contouring("climb", Lead(2.0), Lead(2.0))
+    made = cut(drawn, asked, None)
+    (line,) = made.lines
+    assert line.is_lead and line.leads is not None
+    assert line.leads.in_mm == 0.0 and line.leads.out_mm == 2.0
+    assert line.start_mm == drawn.lines[0].start_mm
+    assert area_mm2(loop(line)) < 0 < area_mm2(drawn.lines[0].xy_mm[drawn.lines[0].loop_from :])
+    for trace in (drawn, made):
+        stops = {
+            action.halt.number: action.halt.place_mm
+            for action in trace.actions[0]
+            if action.halt.number is not None
+        }
+        assert stops[1] == pytest.approx((0, -15), abs=ON_LINE_MM)
+        assert stops[2] == pytest.approx(
+            (16, 10), abs=ON_LINE_MM
+        )  # the hole at the guide line's tip
+        assert stops[3] == pytest.approx((-10, 0), abs=0.01)
+    # the hole is drilled with the tool up on the way there, as before
+    motion = join(made).positions_mm
+    on_guide = motion[motion[:, 0] > 10.5]
+    moves = np.any(np.diff(on_guide[:, :2], axis=0) != 0, axis=1)
+    assert np.all(on_guide[1:][moves][:, 2] > 0)
+    # and the program ends where it began
+    assert motion[-1, :2] == pytest.approx(motion[0, :2], abs=1e-9)
