@@ -39,7 +39,7 @@ def remarks(
     yield from _of_stops(trace)
     yield from _of_turns(trace)
     yield from _of_reference(trace, settings)
-    yield from _of_gaps(trace)
+    yield from _of_gaps(trace, gap_mm)
     yield from _of_breaks(trace, gap_mm)
     yield from _of_stems(trace)
     yield from _of_crossing_guides(trace)
@@ -153,10 +153,17 @@ def _of_reference(trace: Trace, settings: TraceSettings) -> Iterator[str]:
     yield f"no line begins within {LEAD_MM:g} mm of the reference point {x:g},{y:g} mm: {use}"
 
 
-def _of_gaps(trace: Trace) -> Iterator[str]:
-    """Lines that end where they began, but for a gap that is wider than allowed."""
+def _of_gaps(trace: Trace, allowed_mm: float) -> Iterator[str]:
+    """Lines that end where they began, but for a gap that is too wide, or that no line leads over."""
     for line in trace.lines:
-        if line.gap_mm is not None:
+        if line.gap_mm is not None and line.gap_mm <= allowed_mm:
+            x, y = line.place(len(line.xy_mm) - 1)
+            yield (
+                f"{_named(line, trace)} ends at {x:.1f},{y:.1f} mm before a gap of {line.gap_mm:.1f} mm, which"
+                f" --gap {allowed_mm:g}mm allows, but neither straight on nor along its bend does it meet"
+                " the line behind it: draw the line on there"
+            )
+        elif line.gap_mm is not None:
             x, y = line.start_mm
             yield (
                 f"{_named(line, trace)} is open, but ends {line.gap_mm:.1f} mm from its beginning at "

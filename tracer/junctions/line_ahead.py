@@ -16,6 +16,7 @@ from dataclasses import replace
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.circle import circle_through
 from morfax.tracer.head.trail import Trail
 from morfax.tracer.sensing.leg import FEWEST, Leg, goes_straight, leg_of, turn
 from morfax.tracer.sensing.photocell import STEP_PX
@@ -27,6 +28,11 @@ AHEAD = math.radians(75)  # a lost line is looked for within this of its heading
 FARTHEST_WIDTHS = 6.0  # how far the heading is held through a blot, in widths of the line
 BEGIN = 0.5  # of the width: a leg begins no further from the place where it is sought
 ARCS_APART = 0.5  # widths
+WIDE_GAP_MM = 1.0  # twice the usual gap: over less a leg's own bend will do
+LOOKS_BACK = 2.0  # gaps: so much of the line shows on what circle it goes on
+OFF_CIRCLE = (
+    0.1  # of the width: the line has been a circle if it lies within this, root mean square
+)
 OFF_PLACE = 1.5  # widths from a place on ink, beyond its own blot: legs leave it there
 
 
@@ -34,10 +40,34 @@ def straight_on(view: View, incoming: Leg, gap_mm: float) -> Leg | None:
     """The clean line straight ahead, through a blot or across a gap no wider than allowed; or None.
 
     The head goes on along the leg's bend, or else with its heading held: the bend of a dash two or three
-    millimetres long is uncertain.
+    millimetres long is uncertain. Across a wide gap it goes on, at last, along the circle of the line before
+    that.
     """
     straight = replace(incoming, bend_per_mm=0.0)
-    return _met(view, incoming, gap_mm) or _met(view, straight, gap_mm)
+    found = _met(view, incoming, gap_mm) or _met(view, straight, gap_mm)
+    if found is not None or gap_mm <= WIDE_GAP_MM:
+        return found
+    round_about = _round_about(view, incoming, gap_mm)
+    return None if round_about is None else _met(view, round_about, gap_mm)
+
+
+def _round_about(view: View, incoming: Leg, gap_mm: float) -> Leg | None:
+    """The leg on the circle that the line has been before its end, over twice a gap; None if it was none."""
+    back_rad = incoming.heading_rad + math.pi
+    seen = view.feel(incoming.end_mm, back_rad, LOOKS_BACK * gap_mm)[::-1]
+    if len(seen) * view.step_mm < gap_mm:
+        return None
+    centre, radius_mm, off_mm = circle_through(seen[:, :2])
+    if off_mm > OFF_CIRCLE * view.width_mm or not radius_mm > gap_mm:
+        return None
+    out = incoming.end_mm - centre
+    ahead = np.array([math.cos(incoming.heading_rad), math.sin(incoming.heading_rad)])
+    side = math.copysign(1.0, out[0] * ahead[1] - out[1] * ahead[0])  # 1: counter-clockwise
+    end_mm = centre + out * (radius_mm / float(np.hypot(*out)))
+    heading_rad = math.atan2(out[1], out[0]) + side * math.pi / 2
+    return replace(
+        incoming, end_mm=end_mm, heading_rad=heading_rad, bend_per_mm=side / radius_mm
+    )
 
 
 def _met(view: View, incoming: Leg, gap_mm: float) -> Leg | None:

@@ -30,6 +30,30 @@ def test_the_gap_of_a_dashed_line_is_told_and_takes_the_head_round(gap_mm: float
     assert trace(drawing, settings=Settings(gap_mm=told_mm + STEP_MM)).ending == "closed"
 
 
+@pytest.mark.parametrize(("radius_mm", "gap_mm"), [(10.0, 4.0), (20.0, 4.0), (20.0, 6.0)])
+def test_a_wide_gap_in_an_arc_is_crossed_along_its_circle(
+    radius_mm: float, gap_mm: float
+) -> None:
+    """A leg of 1.2 mm does not show the bend: 4 mm straight on from an arc of 20 mm are 0.4 mm beside it.
+
+    In the gap the way is the head's own guess, off the circle by no more than an eighth of the line's width.
+    """
+    middle = radius_mm + 4
+    half_deg = np.degrees((gap_mm + 0.5) / 2 / radius_mm)  # the ends of the ink are round
+    drawing = inked(arc((middle, middle), radius_mm, half_deg, 360 - half_deg), seed=2)
+    (line,) = trace(drawing, settings=Settings(gap_mm=gap_mm + 1)).lines
+    assert line.ending == "closed"
+    off_mm = np.hypot(*(line.xy_mm - middle).T) - radius_mm
+    assert np.abs(off_mm).max() < 0.5 / 8
+
+
+def test_a_wide_gap_is_not_crossed_to_ink_beside_the_circle() -> None:
+    """An arc goes on 1.5 mm further out behind the gap: that is another line."""
+    arcs = arc((24, 24), 20, 6, 90), arc((24, 24), 21.5, -90, -6)
+    (line,) = trace(inked(*arcs, seed=2), (24, 44), settings=Settings(gap_mm=5.0)).lines
+    assert line.ending == "ended" and line.length_mm < 31
+
+
 def test_ink_that_does_not_go_on_straight_ahead_is_no_break() -> None:
     """A line that ends before another one across its way, or beside one, or far from one."""
     line = polyline((4, 10), (20, 10))
