@@ -159,7 +159,7 @@ def _of_gaps(trace: Trace, allowed_mm: float) -> Iterator[str]:
         if line.gap_mm is not None and line.gap_mm <= allowed_mm:
             x, y = line.place(len(line.xy_mm) - 1)
             yield (
-                f"{_named(line, trace)} ends at {x:.1f},{y:.1f} mm before a gap of {line.gap_mm:.1f} mm, which"
+                f"{_named(line, trace)} ends at {x:.1f},{y:.1f} mm before a gap of {line.gap_mm:.1f} mm that"
                 f" --gap {allowed_mm:g}mm allows, but neither straight on nor along its bend does it meet"
                 " the line behind it: draw the line on there"
             )

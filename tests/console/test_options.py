@@ -64,7 +64,14 @@ def test_the_help_has_a_heading_for_each_part_of_the_work(morfax: Morfax, verb: 
         "Line": ("--start", "--lines", "--gap", "--reference-point"),
         "Head": ("--speed", "--head", "--set "),
         "Tool": ("--depth", "--cutter", "--side"),
-        "Cutting": ("--climb", "--conventional", "--lead-in", "--lead-out", "--start-at", "--tabs"),
+        "Cutting": (
+            "--climb",
+            "--conventional",
+            "--lead-in",
+            "--lead-out",
+            "--start-at",
+            "--tabs",
+        ),
         "Program": ("--card", "--stop-override", "--zero", "--mirror"),
         "Output": ("-o", "--json"),
     }
