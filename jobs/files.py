@@ -132,6 +132,11 @@ def is_outline(file: FilePath) -> bool:
     return file.suffix.lower() in OUTLINES
 
 
+def has_machine(file: FilePath) -> bool:
+    """Whether a program of this name is written in the words of a machine."""
+    return is_gcode(file) or is_plot(file)
+
+
 def called(file: FilePath) -> str:
     """What a result is called in the figures: a tape, a program in another medium, or a drawing."""
     if is_tape(file):

@@ -60,11 +60,13 @@ class ByHand:
 
     def beside(self, files: Sequence[FilePath]) -> list[ByHand]:
         """What is set for each of some files: the machine for G-code alone; WrongUse if there is none."""
-        if self.machine is not None and not any(map(_has_machine, files)):
+        if self.machine is not None and not any(map(medium.has_machine, files)):
             raise WrongUse(
                 f"--machine is for G-code, {', '.join(medium.BLOCKS)}; there is none here: leave it out"
             )
-        return [self if _has_machine(file) else replace(self, machine=None) for file in files]
+        return [
+            self if medium.has_machine(file) else replace(self, machine=None) for file in files
+        ]
 
     def open_tape(self, file: FilePath) -> Tape:
         """Open a tape for reading; a context manager."""
@@ -81,7 +83,7 @@ class ByHand:
 
         given = self.given()
         if self.machine is not None:
-            if not _has_machine(file):
+            if not medium.has_machine(file):
                 raise WrongUse(
                     f"--machine is for G-code, {', '.join(medium.BLOCKS)}; {file} is none: leave it out"
                 )
@@ -187,11 +189,6 @@ def read_or_play(
     if kind == "outline":
         return outlines.read_path(file, drawn_unit, feed_mm_s, listener)
     return read_path(file, feed_mm_s)
-
-
-def _has_machine(file: FilePath) -> bool:
-    """Whether a program is written in the words of a machine."""
-    return medium.is_gcode(file) or medium.is_plot(file)
 
 
 @contextmanager

@@ -48,7 +48,7 @@ class RecordJob:
         from morfax.motion.contour import length_mm
 
         program = self._program()
-        has_feed = medium.is_gcode(program) or medium.is_plot(program)
+        has_feed = medium.has_machine(program)
         (self.unit if has_feed else replace(self.unit, feed_mm_s=None)).check(program)
         settings = self._recorder_settings(program)
         outlines.check_unit(self.drawn_unit, self.source)

@@ -69,7 +69,7 @@ class RecordingUnit:
                 f"--pickup is for tapes, {', '.join(medium.TAPES)}; give -o such a name, or leave it out"
             )
         self._check_fit(program)
-        if program is not None and _has_machine(program):
+        if program is not None and medium.has_machine(program):
             self.chosen(program)
             return
         for name, value in (
@@ -117,7 +117,7 @@ class RecordingUnit:
         fit: dict[str, Any] = {} if fit_mm is None else {"tolerance_mm": fit_mm}
         if self.lines_only:
             fit["arcs"] = False
-        if not _has_machine(program):
+        if not medium.has_machine(program):
             return fit
         from morfax.recorder.gcode.plan import Feeds
         from morfax.recorder.gcode.program_head import Made
@@ -170,11 +170,6 @@ class RecordingUnit:
             "scale": None if self.scale == 1 else self.scale,
             "turned_deg": round(math.degrees(self.turn_rad), 9) or None,
         }
-
-
-def _has_machine(program: FilePath) -> bool:
-    """Whether a program is written in the words of a machine."""
-    return medium.is_gcode(program) or medium.is_plot(program)
 
 
 def rehearsed(

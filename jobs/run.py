@@ -66,7 +66,7 @@ class RunJob:
         self._make_folder()
         traced = tracing.trace(drawing, listener)
         unit = traced.placed(self.unit)
-        tape = traced.record(self.file(".wav"), unit, listener)
+        tape, _ = traced.record(self.file(".wav"), unit, listener)
         traced_file = traced.write(self.file(".traced.csv"), unit)
         # 2. play
         played = Playing(tape).whole(listener)

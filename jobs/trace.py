@@ -84,10 +84,12 @@ class TraceJob:
         traced = tracing.trace(drawing, listener)
         tool = self.settings.tool
         unit = traced.placed(self.unit).made_from(self.drawing.file.name, tool.described)
-        written: dict[str, Any] = {}
+        written, timed = dict[str, Any](), dict[str, Any]()
         if outputs.program is not None:
-            program = traced.record(outputs.program, unit, listener)
+            program, report = traced.record(outputs.program, unit, listener)
             written[medium.called(outputs.program)] = str(program)
+            if medium.has_machine(outputs.program):  # whose time is not the head's
+                timed["duration_s"] = report.duration_s
         if outputs.path is not None:
             written["path"] = str(traced.write(outputs.path, unit))
         picture = None if outputs.picture is None else traced.name(outputs.picture)
@@ -96,14 +98,13 @@ class TraceJob:
         unit.warn(listener)
         flat = flattening.figures(drawing, picture)
         figures = {"drawing": str(self.drawing.file), **written, **flat, **traced.figures()}
-        figures |= {**traced.zero_figures(unit), **unit.figures()}
+        figures |= {**timed, **traced.zero_figures(unit), **unit.figures()}
         return TraceResult(figures, drawing, traced, picture, traced.fault)
 
     def _tell_what_is_lost(self, program: FilePath | None, listener: Listener) -> None:
         """Warn of what the card or an option asks for and the program's medium cannot hold."""
         if program is None:
             return
-        has_machine = medium.is_gcode(program) or medium.is_plot(program)
-        machine = self.unit.chosen(program) if has_machine else None
+        machine = self.unit.chosen(program) if medium.has_machine(program) else None
         card, tool = self.settings.card(), self.settings.tool
         tell_what_is_lost(card, tool, program, machine, listener)

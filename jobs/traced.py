@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from morfax.jobs.recording import RecordingUnit
     from morfax.motion.faults import Fault
     from morfax.motion.motion import Path
+    from morfax.recorder.media import Report
     from morfax.tracer.cutter.cutter import Cutter, Left
     from morfax.tracer.program.program import Trace
 
@@ -107,10 +108,14 @@ class Traced:
         """The name for a result: marked if the line was lost."""
         return medium.incomplete(file) if self.fault else file
 
-    def record(self, file: FilePath, unit: RecordingUnit, listener: Listener) -> FilePath:
-        """Record the motion on a tape, or in the medium that the name says; the program's name."""
-        unit.record(self.trace, self.name(file), listener)
-        return self.name(file)
+    def record(
+        self, file: FilePath, unit: RecordingUnit, listener: Listener
+    ) -> tuple[FilePath, Report]:
+        """Record the motion on a tape, or in the medium that the name says; the program's name, and what the
+        recorder made.
+        """
+        report = unit.record(self.trace, self.name(file), listener)
+        return self.name(file), report
 
     def write(self, file: FilePath, unit: RecordingUnit) -> FilePath:
         """Write the path file, placed as the tape is; its name."""
