@@ -24,6 +24,7 @@ RAPID, DWELL, WORDS = "G0", "G4", "words"
 ARCS = ("G2", "G3")
 CUTS = ("G1", *ARCS)
 END = "end of the program"  # a comment, where the control has no word for it
+UP_MM = 2.0  # where a motion that never leaves the work ends; as the clearance without a card
 ENDING = ("M2", "M30", "%")
 
 
@@ -48,6 +49,10 @@ def program_text(
     text.begin(start_mm, first_feed_mm_s)
     for block in blocks:
         text.block(block)
+    if machine.z and text.place_mm[2] <= IN_WORK_BELOW_MM:
+        highest_mm = max((block.place_mm[2] for block in blocks), default=0.0)
+        x, y, _ = text.place_mm
+        text.block(Block(RAPID, (x, y, highest_mm if highest_mm > IN_WORK_BELOW_MM else UP_MM)))
     text.lines += machine.end
     if not any(line in ENDING for line in machine.end):
         text.lines.append(machine.comment(END))

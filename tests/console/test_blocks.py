@@ -18,11 +18,14 @@ def bracket(here: Path, morfax: Morfax) -> Path:
 
 def test_a_program_is_inspected_played_and_compared(bracket: Path, morfax: Morfax) -> None:
     found = morfax("inspect", bracket, "--json").figures
-    assert (found["lines"], found["arcs"], found["rapids"]) == (
-        11,
-        4,
-        3,
-    )  # 9 drawn, one down to where the path begins, and one down into the slot
+    assert (
+        (found["lines"], found["arcs"], found["rapids"])
+        == (
+            11,
+            4,
+            4,
+        )
+    )  # 9 drawn, one down to where the path begins, one down into the slot; the last rapid is up at the end
     assert morfax("play", bracket, "-o", "played.csv").exit_code == 0
     figures = morfax("compare", "played.csv", SAMPLES / "bracket.csv", "--json").figures
     assert figures["largest_mm"] < 0.006  # 2 um of the fit, 4 pulses of 1 um

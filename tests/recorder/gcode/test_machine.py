@@ -123,6 +123,8 @@ def test_a_torch_takes_its_feed_from_its_panel(tmp_path: Path) -> None:
     lines = program("qtplasmac", tmp_path)
     assert "F#<_hal[plasmac.cut-feed-rate]>" in lines
     assert lines.count("M3 $0 S1") == lines.count("M5 $0") == 2
+    assert "#<holes> = 0" in lines
+    assert "#<holes> = 4" in machine("qtplasmac", {"holes": 4}).begin
 
 
 def test_feeds_are_the_motion_s_or_those_that_are_asked_for(tmp_path: Path) -> None:
