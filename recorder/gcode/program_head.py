@@ -30,11 +30,11 @@ from morfax.recorder.gcode.arc_places import (
     places_along,
     turned_rad,
 )
+from morfax.recorder.gcode.closing import loop
 from morfax.recorder.gcode.machine import Machine
 from morfax.recorder.gcode.plan import BlockPlan
 from morfax.recorder.gcode.program_text import CUTS, RAPID, WORDS, Block
 
-CLOSED_MM = 0.05  # a closed trace ends within 0.01 mm of its start
 SHARP_RAD = math.radians(20)  # between two blocks of a bend it is less; chosen by trial
 STEP = 1e-3  # of a block's way, for its direction
 
@@ -136,13 +136,14 @@ def drilled_mm(planned: BlockPlan) -> set[tuple[float, float]]:
 
 def smallest_inner_radius_mm(lines: Sequence[list[Block]]) -> float | None:
     """The smallest radius of the inner bends of closed lines, 0 for a sharp corner; None without any."""
-    places = [places_along(line) for line in lines]
-    closed = [
-        bool(math.dist(line[0], line[-1]) <= CLOSED_MM and len(line) > 3) for line in places
+    rounds = [loop(line) for line in lines]
+    rings = [
+        line[at[0] : at[1] + 1] if at else line for line, at in zip(lines, rounds, strict=True)
     ]
+    places, closed = [places_along(ring) for ring in rings], [at is not None for at in rounds]
     depth = nested(places, closed).sum(axis=1)
     found = list[float]()
-    for number, line in enumerate(lines):
+    for number, line in enumerate(rings):
         if closed[number]:
             sense = 1 if area_mm2(places[number]) > 0 else -1
             inner = -sense if depth[number] % 2 == 0 else sense

@@ -19,7 +19,6 @@ overcut.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -28,11 +27,9 @@ from morfax.motion.arrays import Array
 from morfax.motion.motion import IN_WORK_BELOW_MM
 from morfax.motion.nesting import nested
 from morfax.recorder.gcode.arc_places import part_of, places_along
+from morfax.recorder.gcode.closing import loop
 from morfax.recorder.gcode.machine import Machine
 from morfax.recorder.gcode.program_text import CUTS, RAPID, WORDS, Block
-
-# a closed trace ends within 0.01 mm of its start, a fine line's noise on a scan is as wide
-CLOSED_MM = 0.05
 
 Place = tuple[float, float, float]
 
@@ -104,7 +101,7 @@ def _holes(parts: list[list[Block]], machine: Machine) -> set[int]:
     if not machine.hole_begin or widest_mm <= 0:
         return set()
     lines = [places_along(part) for part in parts]
-    closed = [_is_closed(line) for line in lines]
+    closed = [loop(part) is not None for part in parts]
     inside = [bool(row.any()) for row in nested(lines, closed)]
     return {
         number
@@ -113,24 +110,13 @@ def _holes(parts: list[list[Block]], machine: Machine) -> set[int]:
     }
 
 
-def _is_closed(line_mm: Array) -> bool:
-    """Whether the last fifth of a line meets the first; a lead-in and a lead-out lie beside it."""
-    along = np.r_[0.0, np.cumsum(np.hypot(*np.diff(line_mm, axis=0).T))]
-    first, last = line_mm[along <= along[-1] / 5], line_mm[along >= along[-1] * 4 / 5]
-    if along[-1] <= 10 * CLOSED_MM:
-        return False
-    gaps_mm = np.hypot(*(first[:, None] - last[None]).transpose(2, 0, 1))
-    return bool(gaps_mm.min() <= CLOSED_MM)
-
-
 def _overcut(part: list[Block], machine: Machine) -> list[Block]:
     """The words that put the torch off, and the way on along the line from where it closes."""
     left_mm = machine.values.get("overcut_mm", 0.0)
-    end = part[-1].place_mm
-    gaps_mm = [math.dist(block.place_mm, end) for block in part[: len(part) // 2 or 1]]
-    at = int(np.argmin(gaps_mm))
-    if left_mm <= 0 or gaps_mm[at] > CLOSED_MM or not machine.hole_overcut:
+    closes = loop(part)
+    if closes is None or closes[1] < len(part) - 1 or left_mm <= 0 or not machine.hole_overcut:
         return []
+    at, end = closes[0], part[-1].place_mm
     out = [Block(WORDS, end, words=machine.hole_overcut)]
     place = part[at].place_mm
     if place != end:

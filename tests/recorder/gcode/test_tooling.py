@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from morfax.recorder.gcode.arc_places import length_mm, place_at, turned_rad
+from morfax.recorder.gcode.closing import loop
 from morfax.recorder.gcode.machine import Machine, machine
 from morfax.recorder.gcode.program_text import Block, program_text
 from morfax.recorder.gcode.tooling import without_z
@@ -103,3 +104,15 @@ def test_places_along_an_arc() -> None:
     assert place_at((0.0, 0.0, 0.0), arc, 0.5) == pytest.approx((5.0, -5.0))
     whole = Block("G3", (0.0, 0.0, 0.0), (3.0, 0.0), 1.0)
     assert turned_rad((0.0, 0.0, 0.0), whole) == pytest.approx(2 * math.pi)
+
+
+def test_a_line_closes_between_its_leads() -> None:
+    begin, *rest = [
+        line(48, 50, -1),
+        line(45, 50, -1),
+        *ring(50, 50, 5, -1)[2:4],
+        line(44, 48, -1),
+    ]
+    assert loop([begin, *rest]) == (1, 3)
+    assert loop([begin, *rest[:2]]) is None
+    assert loop([begin, line(48.1, 50, -1)]) is None  # a tick is no ring
