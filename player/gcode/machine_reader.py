@@ -37,8 +37,10 @@ from morfax.player.gcode.rs274 import (
     parse_rs274,
     text_of,
 )
+from morfax.player.gcode.tool_state import TORCH, ToolState
 from morfax.recorder.gcode.machine import HPGL, Machine, machine, names
 from morfax.recorder.gcode.program_text import END
+from morfax.recorder.gcode.takes import Code, codes
 
 PLOTS = (".plt", ".hpgl")
 HEAD_LINES = 10  # among which a program of ours says what it is for
@@ -47,8 +49,7 @@ FOR = re.compile(r"^[(;]\s*for ([\w.-]+): ")
 _PARAMETER = re.compile(r"^\s*#<[^>]*>\s*=.*$")
 _PANEL = re.compile(r"F#<[^>]*>", re.IGNORECASE)
 _SPINDLE = re.compile(r"\$\d+")
-_TORCH_OFF, _TORCH_ON, _SLOWER = (62, 64), (63, 65), (67, 68)
-_BY_FAN = {106, 107}
+_SLOWER, _BY_FAN = codes("M67 M68"), codes("M106 M107")
 
 
 def read_program(
@@ -106,7 +107,7 @@ class MachineReader(Reader):
         self.arc_limits = ArcLimits(
             takes.arc_mm, takes.arc_share, takes.arc_most_mm, takes.reach_mm
         )
-        self.is_started, self.s_word, self.torch, self.share = False, 0.0, True, 1.0
+        self.tool, self.share = ToolState(wanted.tool), 1.0
         self.is_whole = takes.end == "none"
         if self.is_whole:
             self.ending = f"the comment {wanted.comment(END)!r}"
@@ -130,9 +131,9 @@ class MachineReader(Reader):
     def obey(self, letters: list[str], numbers: list[str]) -> None:
         """Carry out the words of a line: those of the tool first, then the reader's own."""
         words = list(zip(letters, map(float, numbers), strict=True))
-        codes = {int(number) for letter, number in words if letter == "M"}
-        self._hear_the_tool(dict(words), codes)
-        if codes & {*_TORCH_OFF, *_TORCH_ON, *_SLOWER, *_BY_FAN}:
+        present = {(letter, number) for letter, number in words if letter in "GM"}
+        self._hear_the_tool(dict(words), present)
+        if present & (TORCH | _SLOWER | _BY_FAN):
             return
         kept = [k for k, (letter, _) in enumerate(words) if letter != "Z" or self.machine.z]
         texts = [numbers[k] for k in kept]
@@ -146,26 +147,13 @@ class MachineReader(Reader):
                 slower = self.moves[k].feed_mm_s * self.share
                 self.moves[k] = self.moves[k]._replace(feed_mm_s=slower)
 
-    def _hear_the_tool(self, values: dict[str, float], codes: set[int]) -> None:
+    def _hear_the_tool(self, values: dict[str, float], present: set[Code]) -> None:
         """Follow the words that put the tool in the work, or slow it down; move Z where there is none."""
-        tool = self.machine.tool
-        self.s_word = (
-            values.get("S", self.s_word) if ("G", 4.0) not in values.items() else self.s_word
-        )
-        for code in codes:
-            if ("M", float(code)) in tool.on:
-                self.is_started = True
-            if ("M", float(code)) in tool.off:
-                self.is_started = False
-            if code in (*_TORCH_OFF, *_TORCH_ON):
-                self.torch = code in _TORCH_ON
-            if code in _SLOWER:
-                self.share = (values.get("Q", 0.0) or 100.0) / 100
-        if self.machine.z:
-            return
-        in_work = self.is_started and self.torch and self.s_word >= tool.least_s
-        z_mm = 0.0 if in_work else ABOVE_MM
-        if z_mm != self.place[2]:
+        self.tool.obey(values, present)
+        if present & _SLOWER:
+            self.share = (values.get("Q", 0.0) or 100.0) / 100
+        z_mm = 0.0 if self.tool.in_work else ABOVE_MM
+        if not self.machine.z and z_mm != self.place[2]:
             self.place[2] = z_mm
             place = self.place[0], self.place[1], z_mm
             self.moves.append(Move(self.number, RAPID, place))

@@ -101,7 +101,7 @@ def _check_last_line(taken: Lines, follower: Follower, findings: Findings) -> No
         findings.here("end", "the program has no end", "M2, M30 or %", "get the whole of it")
     elif not ended and taken.takes.end == "usual":
         findings.remark("end", "the program has no M2 or M30", "see that it is whole")
-    if follower.tool.switched_on and follower.tool.on:
+    if follower.tool.runs:
         off = "M5" if ("M", 5.0) in follower.machine.tool.off else "its word for off"
         findings.here(
             "end", "the program ends with the tool on", "the tool off", f"put {off} last"
@@ -112,9 +112,11 @@ def _steps(follower: Follower, surface_mm: float) -> list[Step]:
     """The moves with where each begins, and whether the tool is in the work."""
     x, y, z = (0.0 if place is None else place for place in follower.start)
     begin, steps = (x, y, z), list[Step]()
-    for move, on in zip(follower.moves_from(begin), follower.on, strict=True):
-        low = min(begin[2], move.end_mm[2])
-        in_work = low <= surface_mm + IN_WORK_BELOW_MM if follower.machine.z else on
+    tool = zip(follower.on, follower.working, strict=True)
+    for move, (on, in_work) in zip(follower.moves_from(begin), tool, strict=True):
+        if follower.machine.z:
+            low = min(begin[2], move.end_mm[2])
+            in_work = low <= surface_mm + IN_WORK_BELOW_MM
         steps.append(Step(move, begin, on, in_work))
         begin = move.end_mm
     return steps

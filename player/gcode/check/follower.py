@@ -21,9 +21,9 @@ from morfax.player.gcode.check.cycles import CannedCycle
 from morfax.player.gcode.check.findings import Finding, Findings
 from morfax.player.gcode.check.lines import Words
 from morfax.player.gcode.check.planes import LEVEL, PLANES
-from morfax.player.gcode.check.tool import ToolState
 from morfax.player.gcode.check.words import AXES, CYCLES, MOTIONS, PROBES, called
 from morfax.player.gcode.rs274 import COUNTER_CLOCKWISE, LINE, RAPID, Move, Reader
+from morfax.player.gcode.tool_state import ToolState
 from morfax.recorder.gcode.machine import Machine
 from morfax.recorder.gcode.takes import Code, codes
 
@@ -31,7 +31,6 @@ _READ = codes("G0-G4 G20 G21 G90 G91")  # words that the reader obeys
 _PLAIN = codes("G0-G3")
 _HOME = codes("G28 G30")
 _SETTINGS = codes("G10 G28.1 G30.1 G43.1 G52")  # words whose places are no move
-_FEED_MODES = codes("G93-G95")
 # zeros that are moved, a cutter's compensation, speeds by the turn, commands of the user's own
 _NOT_FOLLOWED = codes(
     "G10 G52 G55-G59 G59.1 G59.2 G59.3 G41 G42 G41.1 G42.1 G95 G96 M100-M105 M108-M199"
@@ -53,14 +52,14 @@ class Follower(Reader):
             ArcLimits(*limits, True),
         )
         self.tool = ToolState(machine.tool)
-        self.on: list[bool] = []  # for each move
+        self.on: list[bool] = []  # for each move, whether the tool runs
+        self.working: list[bool] = []  # and is in the work, where there is no Z
         self.said: list[tuple[int, str]] = []  # words of the tool, before which move
         self.motion: Code | None = None
         self.plane, self.turns = LEVEL, 1
         self.inverse_time = self.absolute_centres = False
         self.offset = [0.0, 0.0, 0.0]  # of G92
-        self.lost: set[str] = set()
-        self.lost_at_begin: set[str] = set()
+        self.lost, self.lost_at_begin = set[str](), set[str]()
         self.k, self.cycle = 0.0, CannedCycle()
 
     def follow(self, words: Words, named: list[Code]) -> None:
@@ -70,7 +69,7 @@ class Follower(Reader):
         present, first = set(named), len(self.moves)
         self._lose_places(words, values)
         self._modes(present, values, words)
-        self.tool.obey(words, named)
+        self.tool.obey(values | dict.fromkeys(words.computed & {"S"}, math.inf), present)
         if any(letter == "M" for letter, _ in named):
             text = " ".join(map("".join, zip(words.letters, words.numbers, strict=True)))
             self.said.append((first, text))
@@ -80,9 +79,11 @@ class Follower(Reader):
             self._refused(fault)
         if self.inverse_time and "F" in values:
             self._in_inverse_time(first, values["F"])
-        self.on += [self.tool.on or bool(present & PROBES)] * (len(self.moves) - first)
+        count = len(self.moves) - first
+        self.on += [self.tool.runs or bool(present & PROBES)] * count
+        self.working += [self.tool.in_work] * count
         self.ended = bool(present & codes("M2 M30 M99"))
-        self.tool.end(named)
+        self.tool.end(present)
 
     def _lose_places(self, words: Words, values: dict[str, float]) -> None:
         """Remember which axes stand at a place that was not read, until they are sent to one that is."""
@@ -101,7 +102,7 @@ class Follower(Reader):
         for _, number in present:
             if number in PLANES:
                 self.plane = number
-        if present & _FEED_MODES:
+        if present & codes("G93-G95"):
             self.inverse_time = ("G", 93.0) in present
         if present & codes("G90.1 G91.1"):
             self.absolute_centres = ("G", 90.1) in present
