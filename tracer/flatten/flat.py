@@ -31,6 +31,8 @@ from morfax.tracer.flatten.wanted import Wanted
 
 WORTH_A_WARNING, TOO_MUCH = 0.002, 0.01  # of size
 REDUCED_PX = 1200  # longer side of the photograph that is kept for a picture
+# standard deviation; a sharp photograph has about 1, and beyond this the reach of the edges measures too little
+BLURRED_PX = 2.5
 STEEPEST = math.radians(60)  # chosen: a sheet tilted further is a strip
 
 
@@ -61,6 +63,11 @@ class Flattening:
             told.append(
                 f"the {self.seen} are up to {self.fit.max_mm:.2f} mm off a flat sheet, which is"
                 f" {100 * self.fit.size_share:.2g} % in size; press the sheet flat and photograph it again"
+            )
+        if self.fit is not None and self.fit.softness_px > BLURRED_PX:
+            told.append(
+                f"the photograph is blurred by more than {BLURRED_PX:g} pixels (standard deviation); hold"
+                " the camera still, and tap on the sheet so that it is sharp"
             )
         corners, photo = self.projection.corners_px(), self.projection.photo
         if ((corners < -1) | (corners > (photo.width + 1, photo.height + 1))).any():

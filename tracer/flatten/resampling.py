@@ -25,13 +25,18 @@ RIM_MM = (
 )
 RING_MM = 1.0  # about a box: the paper with which it is filled
 LIGHTER = 30.0  # percentile of the ring's pixels: what is darker may be ink
+MOST_TIMES = (
+    4.0  # the photograph's pixels: only a sheet tilted beyond 45 degrees would have more
+)
 STRIP_PX = 1 << 20  # that are worked on at a time
 
 
 def resampled(picture: Picture, projection: Projection) -> tuple[Picture, float]:
     """The sheet as pixels, and their pitch, mm: at the finest scale that the photograph has of it."""
     sheet = projection.sheet
-    columns = math.ceil(sheet.width / projection.mm_per_px()[0])
+    room_px = MOST_TIMES * projection.photo.width * projection.photo.height
+    finest_mm = max(projection.mm_per_px()[0], math.sqrt(sheet.width * sheet.height / room_px))
+    columns = math.ceil(sheet.width / finest_mm)
     pitch_mm = sheet.width / columns
     rows = math.ceil(sheet.height / pitch_mm - 1e-6)
     flat = np.empty((rows, columns, 3), np.uint8)

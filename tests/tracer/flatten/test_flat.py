@@ -148,6 +148,12 @@ def test_a_mirrored_photograph_has_no_marks(photograph: Picture) -> None:
         made(np.ascontiguousarray(photograph[:, ::-1]), MARKS)
 
 
+def test_a_blurred_photograph_is_told() -> None:
+    found = made(phone(5, blur_px=4).photograph(blank(A4), A4), parsed("paper=a4"))
+    assert len(found.warnings) == 1
+    assert re.match(r"the photograph is blurred by more than 2\.5 pixels", found.warnings[0])
+
+
 # --- the edges of the sheet
 
 
