@@ -31,7 +31,7 @@ from morfax.tracer.flatten.wanted import Wanted
 
 WORTH_A_WARNING, TOO_MUCH = 0.002, 0.01  # of size
 REDUCED_PX = 1200  # longer side of the photograph that is kept for a picture
-# standard deviation; a sharp photograph has about 1, and beyond this the reach of the edges measures too little
+# standard deviation; a sharp photograph has about 1, and beyond this too little is measured
 BLURRED_PX = 2.5
 STEEPEST = math.radians(60)  # chosen: a sheet tilted further is a strip
 

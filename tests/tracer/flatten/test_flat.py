@@ -148,6 +148,14 @@ def test_a_mirrored_photograph_has_no_marks(photograph: Picture) -> None:
         made(np.ascontiguousarray(photograph[:, ::-1]), MARKS)
 
 
+def test_ink_that_spreads_moves_no_mark() -> None:
+    spread = cv2.erode(marked(), np.ones((5, 5)))  # 0.2 mm on all sides
+    camera = phone(10)
+    found = made(camera.photograph(np.asarray(spread, np.uint8), A4), MARKS)
+    assert found.fit is not None and found.fit.gain_mm == pytest.approx(0.2, abs=0.04)
+    assert rms(off_mm(found, camera, A4)) < 0.03 * MM
+
+
 def test_a_blurred_photograph_is_told() -> None:
     found = made(phone(5, blur_px=4).photograph(blank(A4), A4), parsed("paper=a4"))
     assert len(found.warnings) == 1
@@ -163,6 +171,12 @@ def test_edges_flatten_a_tilted_sheet(tilt_deg: float, k1: float) -> None:
     found = made(camera.photograph(blank(A4), A4), parsed("paper=a4"))
     assert rms(off_mm(found, camera, A4)) < 0.1 * MM  # asked of 12 Mpx: 0.2
     assert math.degrees(found.tilt_rad) == pytest.approx(tilt_deg, abs=0.3)
+
+
+def test_blur_makes_the_sheet_no_larger() -> None:
+    camera = phone(0, blur_px=2)
+    found = made(camera.photograph(blank(A4), A4), parsed("paper=a4"))
+    assert rms(off_mm(found, camera, A4)) < 0.05 * MM  # 0.18 by levels instead of light
 
 
 def thumbed(picture: Picture, place_px: tuple[float, float], across_px: int = 90) -> Picture:
