@@ -55,8 +55,14 @@ def from_path(path: Path, reference: Path, names: tuple[str, str] = ("a", "b")) 
 def from_drawing(
     drawing: Drawing, path: Path, name: str = "path", radius_mm: float = 0.0
 ) -> Comparison:
-    """Compare a path with the ink of its drawing; with a cutter's radius, what the cutter's edge touches."""
+    """Compare a path with the ink of its drawing; with a cutter's radius, what the cutter's edge touches.
+
+    Leads through the scrap are not compared.
+    """
+    from morfax.motion.lead_parts import without_leads
     from morfax.tracer.drawing.deviation import deviation, touched
+
+    path = without_leads(path)
 
     found = (
         deviation(drawing, touched(drawing, path, radius_mm), [path.xy_mm])

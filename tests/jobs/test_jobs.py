@@ -18,6 +18,7 @@ import pytest
 
 from morfax.jobs.age import AgeJob
 from morfax.jobs.compare import CompareJob
+from morfax.jobs.contour_settings import ContourSettings
 from morfax.jobs.inspect import InspectJob
 from morfax.jobs.mend import MendJob
 from morfax.jobs.play import ControlSettings, PlayJob
@@ -45,6 +46,7 @@ from morfax.motion.faults import (
     LockFault,
 )
 from morfax.motion.pathfile import read_path
+from morfax.motion.polyline import area_mm2
 from tests.console.conftest import SAMPLES
 
 UM = 1e-3
@@ -256,6 +258,59 @@ def test_the_zero_may_be_any_place(here: Path) -> None:
         settings = TraceSettings(program=ProgramSettings(zero=zero))  # type: ignore[arg-type]
         TraceJob(PROGRAM, TraceOutputs(here / "a.csv"), settings).run()
         assert read_path(here / "a.csv").xy_mm[0] == pytest.approx(start_mm, abs=0.05)
+
+
+BRACKET = DrawingFile(SAMPLES / "bracket.png")
+PART_MM = np.array([70.0, 50.0])  # its size
+
+
+@pytest.mark.parametrize(
+    ("zero", "turn_deg", "low_mm"),
+    [
+        ("lower-left", 0, (-2.0, -2.0)),
+        ("centre", 0, (-37.0, -27.0)),
+        ("lower-left", 90, (-2.0, -2.0)),
+    ],
+)
+def test_the_zero_may_be_of_the_part_that_is_cut(
+    zero: Any, turn_deg: int, low_mm: tuple[float, float], here: Path
+) -> None:
+    """The part is the lines: the path of a cutter of 4 mm begins 2 mm before it, a lead further still.
+
+    The place of the zero on the sheet, as it is told, puts the program back on the drawing.
+    """
+    settings = TraceSettings(
+        LineSettings(lines="all"),
+        tool=ToolSettings(cutter_mm=4.0),
+        program=ProgramSettings(zero=zero),
+    )
+    unit = RecordingUnit(turn_rad=np.radians(turn_deg))
+    told = TraceJob(BRACKET, TraceOutputs(here / "a.csv"), settings, unit).run().figures
+    cut = np.vstack(read_path(here / "a.csv").runs())
+    size_mm = PART_MM[::-1] if turn_deg else PART_MM
+    # the head follows the lines within some um, the offset's corners are smoothed by 5
+    assert cut.min(axis=0) == pytest.approx(low_mm, abs=0.02)
+    assert np.ptp(cut, axis=0) == pytest.approx(size_mm + 4.0, abs=0.03)
+    if not turn_deg:
+        place = told["zero_place_mm"]
+        compared = CompareJob(BRACKET, here / "a.csv", cutter_mm=4.0, zero=place).run()
+        assert compared.figures["path_to_ink"]["rms_mm"] < 0.01
+
+
+def test_a_machine_s_direction_counts_where_nobody_asks_for_another(here: Path) -> None:
+    """qtplasmac turns the outline clockwise; `--direction` and `--conventional` come before it."""
+    ways = {}
+    for name, line, milling in (
+        ("as the machine", LineSettings(), None),
+        ("as asked", LineSettings(), "conventional"),
+        ("as the head", LineSettings(direction="ccw"), None),
+    ):
+        settings = TraceSettings(line, contour=ContourSettings(milling))  # type: ignore[arg-type]
+        outputs = TraceOutputs(here / "a.ngc", here / "a.csv")
+        TraceJob(BRACKET, outputs, settings, RecordingUnit(machine="qtplasmac")).run()
+        (run,) = read_path(here / "a.csv").runs()
+        ways[name] = area_mm2(run) > 0
+    assert ways == {"as the machine": False, "as asked": True, "as the head": True}
 
 
 def test_what_is_wrong_is_raised(here: Path, path_file: Path) -> None:

@@ -1,0 +1,86 @@
+"""`--climb`, `--lead-in`, `--lead-out`, `--start-at`, `--kerf` by their behaviour."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.console.conftest import SAMPLES, Morfax
+
+BRACKET = (SAMPLES / "bracket.png", "--lines", "all", "-o", "a.csv")
+
+
+def test_leads_are_told_with_what_each_line_has_and_the_path_still_fits_the_drawing(
+    morfax: Morfax, here: Path
+) -> None:
+    """In the slot, 8 mm wide, an arc of 3 mm has no room beside a cut of 4 mm: it is 2.4 mm."""
+    answer = morfax(
+        "trace", *BRACKET, "--kerf", "4mm", "--climb", "--lead-in", "3mm", "--lead-out", "1mm,line",
+        "--zero", "lower-left", "--json",
+    )  # fmt: skip
+    assert answer.exit_code == 0
+    assert answer.figures["cutter_diameter_mm"] == 4
+    rows = {row["of_line"]: row for row in answer.figures["leads"]}
+    assert rows[1]["lead_in_mm"] == 3 and rows[1]["lead_out_mm"] == 1
+    assert rows[2]["lead_in_mm"] == pytest.approx(2.4)
+    assert "no room for a lead-in of 3 mm everywhere: 2.4 mm at line 2" in answer.err
+    x, y = answer.figures["zero_place_mm"]
+    compared = morfax(
+        "compare",
+        SAMPLES / "bracket.png",
+        "a.csv",
+        "--kerf",
+        "4mm",
+        "--zero",
+        f"{x},{y}",
+        "--json",
+    )
+    found = compared.figures["path_to_ink"]
+    # as without leads: leads are not compared
+    assert found["rms_mm"] < 0.007 and found["measured_share"] > 0.97
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (("--climb", "--conventional"), "--climb and --conventional were both given"),
+        (("--climb", "--direction", "cw"), "both say which way round"),
+        (("--kerf", "1mm", "--cutter", "1mm"), "--kerf and --cutter are the same"),
+        (("--kerf", "-1mm"), "'-1mm' is no length here; it may be 0.05mm to 500mm"),
+        (("--lead-in", "-3mm"), "'-3mm' is no lead; its size may be 0.1mm to 100mm"),
+        (("--lead-in", "3mm,spiral"), "'3mm,spiral' is no lead; give its size"),
+        (("--lead-out", "wide"), "'wide' is no length"),
+        (("--start-at", "end"), "'end' is not one of 'corner', 'straight', 'nearest'"),
+        (("--zero", "middle"), "give sheet, reference, lower-left, centre, or a place X,Y"),
+    ],
+)
+def test_what_does_not_go_is_one_line_of_wrong_use(
+    morfax: Morfax, here: Path, options: tuple[str, ...], said: str
+) -> None:
+    answer = morfax("trace", *BRACKET, *options)
+    assert answer.exit_code == 2 and said in answer.fault
+    assert not (here / "a.csv").exists()
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (("--climb",), "--climb is for closed lines, and the line is open"),
+        (("--lead-in", "3mm"), "a lead is for closed lines, and the line is open"),
+    ],
+)
+def test_an_open_line_alone_is_refused_and_nothing_is_written(
+    morfax: Morfax, here: Path, options: tuple[str, ...], said: str
+) -> None:
+    answer = morfax("trace", SAMPLES / "curve.png", "-o", "a.csv", *options)
+    assert answer.exit_code not in (0, 2) and said in answer.fault
+    assert not (here / "a.csv").exists()
+
+
+def test_the_zero_of_a_part_is_not_of_a_drawing(morfax: Morfax, path_file: Path) -> None:
+    answer = morfax("compare", SAMPLES / "cam.png", path_file, "--zero", "centre")
+    assert (
+        answer.exit_code == 2
+        and "give the place that trace told as zero_place_mm" in answer.fault
+    )
