@@ -1,6 +1,7 @@
 """Run all benchmarks, or those named: `python -m benchmarks [tape …]`.
 
-`folder DIR` measures drawings, `flatten [N]` simulated photographs; both take a while and run only if named.
+`folder DIR` measures drawings, `flatten [N]` simulated photographs, `linuxcnc` the times of programs; these
+take a while and run only if named.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ import pkgutil
 import sys
 from pathlib import Path
 
-WITH_WORDS = ("folder", "flatten")  # that take words of their own
+WITH_WORDS = ("folder", "flatten", "linuxcnc")  # that take words of their own
 
 
 def main(names: list[str]) -> None:

@@ -33,7 +33,7 @@ VERBS = {
     "age": "Wear a tape as a real recorder and the years do.",
     "check": "Say whether a machine may be started with a program, and what the program does.",
     "sheet": "Make a sheet with marks to print, draw on and photograph.",
-    "machines": "List the machines that G-code is written for, or print one to change.",
+    "machines": "List the machines that programs are written for, or print one to change.",
     "demo": "Trace a sample drawing, play the tape, compare, and show what came out.",
 }
 

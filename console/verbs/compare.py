@@ -31,7 +31,7 @@ REPORT = ".html"
 
 EXAMPLES = """\b
 Examples:
-  morfax compare scan.png cam.csv
+  morfax compare scan.png part.ngc --machine qtplasmac
   morfax compare scan.png cam.wav --tolerance 50um -o cam-error.png
   morfax compare traced.csv played.csv --json
   morfax compare part.dxf played.csv

@@ -1,4 +1,4 @@
-"""The verb `machines`: which machines G-code is written for, and one of them as a file to change."""
+"""The verb `machines`: which machines programs are written for, and one of them as a file to change."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Examples:
 @click.argument("name", required=False)
 @desk_options
 def command(name: str | None, desk: Desk) -> None:
-    """List the machines that G-code is written for, or print one to change.
+    """List the machines that programs are written for, or print one to change.
 
     With a NAME the machine is printed as a file. Send it to my.toml (`morfax machines
     grbl-router > my.toml`), change it, and give it to trace, record or run with --machine my.toml.

@@ -165,6 +165,9 @@ def test_what_a_medium_cannot_hold_of_a_card_is_told(
     output: str, machine: tuple[str, ...], says: str, morfax: Morfax, here: Path
 ) -> None:
     words = ("trace", SAMPLES / "program.png", "--card", SAMPLES / "program.toml", "-o", output)
-    answer = morfax(*words, *machine)
+    answer = morfax(*words, *machine, "--json")
     assert answer.exit_code == 0
     assert says in answer.err if says else "holds no" not in answer.err
+    # of a program the machine's time is stated, of a drawing the head's
+    seconds = float(str(answer.figures["duration_s"]))
+    assert (seconds > 29) == output.endswith(".dxf")
