@@ -15,9 +15,12 @@ import pytest
 
 from morfax.motion.faults import CardFault, FileFault
 from morfax.motion.motion import Path as MotionPath
+from morfax.player.gcode.hpgl_reader import ABOVE_MM
+from morfax.player.gcode.machine_reader import read_program
 from morfax.player.gcode.rs274 import read_rs274
 from morfax.recorder.gcode.blocks import record_blocks
 from morfax.recorder.gcode.machine import as_toml, gcode_names, machine, names
+from morfax.recorder.gcode.machine_fields import FIELDS
 from morfax.recorder.gcode.plan import Feeds
 
 BUILT_IN = [
@@ -183,6 +186,33 @@ def test_travel_speeds_and_accelerations_are_data(tmp_path: Path) -> None:
     mine = machine(str(file))
     assert mine.travel_mm == (300.0, 180.0, math.inf) and mine.rapid_mm_s == (80.0,) * 3
     assert all(machine(name).travel_mm is None for name in names())  # nobody knows it
+
+
+DOCS = Path(__file__).parents[3] / "docs" / "reference" / "machines.md"
+
+
+def test_the_reference_names_every_field() -> None:
+    text = DOCS.read_text(encoding="utf-8")
+    assert [key for key in FIELDS if f"`{key}`" not in text and f"[{key}]" not in text] == []
+
+
+def test_the_files_of_the_reference_are_machines(tmp_path: Path) -> None:
+    files = re.findall(r"```toml\n(.*?)```", DOCS.read_text(encoding="utf-8"), re.DOTALL)
+    router, torch = (tmp_path / name for name in ("router.toml", "torch.toml"))
+    for file, text in zip((router, torch), files, strict=True):
+        file.write_text(text)
+    assert "M3 S18000" in program(str(router), tmp_path)
+    lines = program(str(torch), tmp_path)
+    at = lines.index("G0 Z3.8")
+    assert lines[at : at + 5] == [
+        "G0 Z3.8",
+        "M3 S1000",
+        "G4 P0.5",
+        "G1 Z1.5 F1000",
+        "G1 X40 F600",
+    ]
+    read = read_program(tmp_path / "part.nc", None, str(torch))
+    assert {move.end_mm[2] for move in read.moves} == {0.0, ABOVE_MM}
 
 
 def test_values_are_changed_by_name() -> None:
