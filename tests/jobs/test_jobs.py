@@ -17,6 +17,7 @@ import numpy as np
 import pytest
 
 from morfax.jobs.age import AgeJob
+from morfax.jobs.check import CheckJob
 from morfax.jobs.compare import CompareJob
 from morfax.jobs.contour_settings import ContourSettings
 from morfax.jobs.inspect import InspectJob
@@ -47,6 +48,7 @@ from morfax.motion.faults import (
 )
 from morfax.motion.pathfile import read_path
 from morfax.motion.polyline import area_mm2
+from morfax.player.gcode.check.motion_rules import Stock
 from tests.console.conftest import SAMPLES
 
 UM = 1e-3
@@ -58,6 +60,7 @@ MODULES = [
     "run",
     "record",
     "play",
+    "check",
     "compare",
     "systems",
     "inspect",
@@ -197,6 +200,15 @@ def test_inspect(here: Path, path_file: Path, tape_file: Path) -> None:
     RecordJob(path_file, here / "circle.steps").run()
     result, _ = worked(InspectJob(here / "circle.steps"))
     assert result.figures["program"].endswith("circle.steps")
+
+
+def test_check(here: Path, path_file: Path) -> None:
+    RecordJob(path_file, here / "circle.nc", unit=RecordingUnit(machine="grbl-pen")).run()
+    result, _ = worked(CheckJob(here / "circle.nc"))
+    assert result.may_start and result.machine.name == "grbl-pen"
+    assert result.figures["cuts"] == 1 and result.figures["findings"] == []
+    beside, _ = worked(CheckJob(here / "circle.nc", stock=Stock(1, 1)))
+    assert not beside.may_start and beside.figures["findings"][0]["kind"] == "stock"
 
 
 def test_age_and_mend(here: Path, tape_file: Path) -> None:

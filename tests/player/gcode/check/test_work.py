@@ -6,10 +6,13 @@ import math
 from dataclasses import replace
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from morfax.player.gcode.check.checked import Checked, check_lines
 from morfax.player.gcode.check.motion_rules import Stock
-from morfax.player.gcode.check.steps import bounds_mm
+from morfax.player.gcode.check.steps import Step, bounds_mm
+from morfax.player.gcode.rs274 import Move
 from morfax.recorder.gcode.machine import Machine, machine
 
 ROUTER, LINUXCNC, LASER = machine("grbl-router"), machine("linuxcnc"), machine("grbl-laser")
@@ -173,3 +176,32 @@ def test_characters_that_grbl_obeys_are_found_even_in_comments(line: str) -> Non
     """Grbl 1.1, serial.c: these never reach the line, and hold or start the machine."""
     assert (5, "character") in rules(check(line))
     assert "character" not in [rule for _, rule in rules(check(line, on=LINUXCNC))]
+
+
+@given(st.floats(0, 6.28), st.floats(-6.28, 6.28).filter(lambda turn: abs(turn) > 0.01))
+def test_the_bounds_of_an_arc_hold_all_of_it_and_no_more(first: float, turned: float) -> None:
+    """Against 3600 places along it, 0.1 degrees apart at most."""
+    radius_mm, apart_mm = 10.0, 10.0 * (1 - math.cos(math.radians(0.1)))
+    angles = [first + turned * k / 3600 for k in range(3601)]
+    places = [(radius_mm * math.cos(a), radius_mm * math.sin(a)) for a in angles]
+    begin, end = (*places[0], 0.0), (*places[-1], 0.0)
+    step = Step(Move(1, "G3", end, 1.0, (0.0, 0.0), turned), begin, True, True)
+    low, high = step.bounds_mm()
+    for axis in (0, 1):
+        along = [place[axis] for place in places]
+        assert low[axis] <= min(along) + ROUNDED_MM and low[axis] >= min(along) - apart_mm
+        assert high[axis] >= max(along) - ROUNDED_MM and high[axis] <= max(along) + apart_mm
+
+
+@pytest.mark.parametrize(
+    ("on", "longest"),
+    [(ROUTER, 79), (LINUXCNC, 252)],
+    ids=["grbl-router", "linuxcnc"],
+)
+def test_the_longest_line_is_taken_and_one_more_is_not(on: Machine, longest: int) -> None:
+    """Grbl counts words alone (protocol.c), LinuxCNC the whole line (interp_read.cc)."""
+    line = "G0X1." + "0" * (longest - 5)
+    assert check(line, on=on).may_start
+    assert rules(check(line + "0", on=on)) == [(5, "length")]
+    spaced = "G0 X1." + "0" * (longest - 5) + " (x)"
+    assert check(spaced, on=on).may_start == (on is ROUTER)
