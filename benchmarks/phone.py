@@ -103,7 +103,9 @@ class Phone:
             ".jpg", levels[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, self.quality]
         )
         assert good
-        return np.ascontiguousarray(cv2.imdecode(packed, cv2.IMREAD_COLOR)[..., ::-1])
+        opened = cv2.imdecode(packed, cv2.IMREAD_COLOR)
+        assert opened is not None
+        return np.ascontiguousarray(opened[..., ::-1], np.uint8)
 
     def write(self, sheet: Picture, size_mm: tuple[float, float], file: Path) -> None:
         """Write the photograph as a JPEG that says that a camera made it."""
