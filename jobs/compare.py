@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from morfax.jobs import comparison, flattening, outlines
 from morfax.jobs import files as medium
 from morfax.jobs.listener import SILENT, Listener
-from morfax.jobs.playing import ByHand, read_or_play
+from morfax.jobs.playing import ByHand, Playing, read_or_play
 from morfax.jobs.settings import DrawingFile
 from morfax.jobs.wrong_use import WrongUse
 from morfax.jobs.zero import Zero, refuse_of_part
@@ -20,6 +20,11 @@ if TYPE_CHECKING:
     from morfax.motion.motion import Path
     from morfax.tracer.drawing.drawing import Drawing
     from morfax.tracer.operator.operator import Panel
+
+
+FASTEST_MM_S = (
+    20.0  # of a program that is compared: the control's servos then stay within 10 um of it
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +66,7 @@ class CompareJob:
             self._refuse_drawing_options()
         drawing = None if drawing_file is None else drawing_file.open(listener)
         paths = [
-            read_or_play(file, by_hand, listener, drawn_unit=self.drawn_unit)
+            self._path(file, by_hand, listener)
             for file, by_hand in zip(files, self.by_hand.beside(files), strict=True)
         ]
         if drawing is None:
@@ -82,6 +87,13 @@ class CompareJob:
             **found.figures,
         }
         return CompareResult(figures, found, tuple(paths), drawing, within)
+
+    def _path(self, file: FilePath, by_hand: ByHand, listener: Listener) -> Path:
+        """The path in a file, or that of the machine: of a program no faster than it is held well."""
+        if medium.has_machine(file):
+            settings = {"fastest_mm_s": FASTEST_MM_S}
+            return Playing(file, by_hand, settings=settings).without_fault(listener)
+        return read_or_play(file, by_hand, listener, drawn_unit=self.drawn_unit)
 
     def _sorted(self) -> tuple[DrawingFile | None, list[FilePath]]:
         """The drawing, if one of the two is one, and the paths and tapes in the order given."""

@@ -84,10 +84,10 @@ class RecordingUnit:
                     f"{name} is for G-code, {', '.join(medium.BLOCKS)}; give -o such a name, or leave it out"
                 )
 
-    def chosen(self, program: FilePath) -> Machine:
+    def chosen(self, program: FilePath | None = None) -> Machine:
         """The machine for a program of G-code or a plotter's; raises WrongUse, CardFault."""
         values = self.machine_values
-        if self.feed_mm_s is not None and medium.is_plot(program):
+        if self.feed_mm_s is not None and program is not None and medium.is_plot(program):
             values = (f"speed={self.feed_mm_s / 10:.3g}", *values)  # HP-GL's VS, cm/s
         return machining.chosen(self.machine, values, self.rapid_mm_s, program)
 

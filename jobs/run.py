@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from morfax.jobs import comparison, flattening
 from morfax.jobs import files as medium
 from morfax.jobs.listener import SILENT, Listener
-from morfax.jobs.playing import Played, Playing
+from morfax.jobs.playing import ByHand, Played, Playing
 from morfax.jobs.recording import RecordingUnit
 from morfax.jobs.settings import DrawingFile, TraceSettings
 from morfax.jobs.tracing import Tracing
@@ -45,7 +45,9 @@ class RunResult:
 
 @dataclass(frozen=True, slots=True)
 class RunJob:
-    """Trace a drawing, play the tape, compare all three; the results go into a folder, under its name."""
+    """Trace a drawing, play the tape or program, compare all three; the results go into a folder, under its
+    name.
+    """
 
     drawing: DrawingFile
     folder: FilePath | None = None  # None: the drawing's name, in the current folder
@@ -61,15 +63,18 @@ class RunJob:
         """Go the whole way; the faults of a lost line and of a drive are in the result, others are raised."""
         # 1. trace and record
         tracing = Tracing.prepared(self.settings, panel)
-        self.unit.check(self.file(".wav"))
+        program_file = self._program_file()
+        self.unit.check(program_file)
         drawing = self.drawing.open(listener)
         self._make_folder()
         traced = tracing.trace(drawing, listener)
         unit = traced.placed(self.unit)
-        tape, _ = traced.record(self.file(".wav"), unit, listener)
+        unit = unit.made_from(self.drawing.file.name, self.settings.tool.described)
+        program, _ = traced.record(program_file, unit, listener)
         traced_file = traced.write(self.file(".traced.csv"), unit)
         # 2. play
-        played = Playing(tape).whole(listener)
+        by_hand = ByHand(machine=unit.machine) if medium.has_machine(program) else ByHand()
+        played = Playing(program, by_hand).whole(listener)
         played_file = self._write(played, traced)
         unit.warn(listener)
         # 3. compare, as the drawing was before it was mirrored, scaled and turned
@@ -79,7 +84,7 @@ class RunJob:
         listener.detail("comparing drawing, traced path and played path")
         from_ink = comparison.from_drawing(drawing, path, "played", _radius_mm(traced))
         written = {
-            "tape": str(tape),
+            medium.called(program): str(program),
             "traced_path": str(traced_file),
             "played_path": str(played_file),
             "picture": str(picture),
@@ -95,6 +100,12 @@ class RunJob:
         faults = tuple(fault for fault in (traced.fault, played.fault) if fault is not None)
         report = traced.name(self.file(".json"))
         return RunResult(figures, drawing, traced, path, from_ink, picture, report, faults)
+
+    def _program_file(self) -> FilePath:
+        """The name of the program: a tape, or in the words of a machine if there is one."""
+        if self.unit.machine is None:
+            return self.file(".wav")
+        return self.file(self.unit.chosen().suffix)
 
     def _make_folder(self) -> None:
         """Make the folder; raises FileFault if it cannot be made, or a result would replace the drawing."""

@@ -52,9 +52,10 @@ def command(
 ) -> None:
     """Go the whole way: trace a drawing, play the tape, compare all three.
 
-    The folder then holds the tape (.wav), the traced and the played path (.csv), the picture of the played
-    path with its error in colour (.png) and the figures (.json). Files of these names are written over.
-    Mirrored, scaled or turned paths are compared with the drawing as they were before.
+    The folder then holds the tape (.wav), or with --machine the program in that machine's words, the traced
+    and the played path (.csv), the picture of the played path with its error in colour (.png) and the figures
+    (.json). Files of these names are written over. Mirrored, scaled or turned paths are compared with the
+    drawing as they were before.
     """
     run_and_show(RunJob(drawing, folder, settings, unit), desk, panel)
 

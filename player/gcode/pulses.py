@@ -86,10 +86,12 @@ def play_pulses(
     true_norm: bool | None = None,
     override: float | None = None,
     machine: str | None = None,
+    fastest_mm_s: float | None = None,
 ) -> PulsePlayback:
     """Put an RS-274 program in the control; `true_norm` and `override` replace those of the settings.
 
-    Without the name of the `machine` that it is for, the program says so itself.
+    Without the name of the `machine` that it is for, the program says so itself. Feeds above the fastest, if
+    it is given, are run at that.
 
     Raises ProgramFault with the line, FileFault, or ValueError for an override that is none, before anything
     moves.
@@ -100,19 +102,17 @@ def play_pulses(
         **{name: value for name, value in asked.items() if value is not None},
     )
     program = read_program(file, start_mm, machine)
-    if not program.machine:
-        return PulsePlayback(program, control, str(file))
-    # a program for a faster machine is run as fast as this one's rapids, which keeps it within 10 um
-    most_mm_s, held_mm_s = (
-        control.recirculations_hz * control.servo.pulse_mm,
-        control.rapid_mm_s,
-    )
+    most_mm_s = held_mm_s = fastest_mm_s or math.inf
+    if program.machine and fastest_mm_s is None:
+        # a program for a faster machine is run as fast as this one's rapids, which keeps it within 10 um
+        most_mm_s = control.recirculations_hz * control.servo.pulse_mm
+        held_mm_s = control.rapid_mm_s
     moves = [
         move._replace(feed_mm_s=held_mm_s) if move.feed_mm_s > most_mm_s else move
         for move in program.moves
     ]
     playback = PulsePlayback(replace(program, moves=moves), control, str(file))
-    if moves != program.moves:
+    if moves != program.moves and fastest_mm_s is None:
         playback.notes = (
             f"{file} asks for feeds above {most_mm_s:g} mm/s, the fastest of this control; they are played "
             f"at {held_mm_s:g} mm/s, along the same path",

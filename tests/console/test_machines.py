@@ -95,6 +95,22 @@ def test_a_program_is_read_back_as_its_machine_reads_it(morfax: Morfax, here: Pa
     assert morfax("play", "a.ngc", "--machine", "mach3").exit_code == 2
 
 
+def test_a_fast_program_is_compared_as_well_as_a_slow_one(morfax: Morfax, here: Path) -> None:
+    words = ("record", CAM, "-o", "a.nc", "--machine", "grbl-laser", "--feed", "3000mm/min")
+    assert morfax(*words).exit_code == 0
+    assert morfax("compare", "a.nc", CAM, "--json").figures["largest_mm"] <= 0.010
+
+
+def test_run_goes_the_whole_way_in_a_machine_s_words(morfax: Morfax, here: Path) -> None:
+    words = ("run", SAMPLES / "curve.png", "-o", "out", "--machine", "grbl-pen", "--json")
+    figures = morfax(*words).figures
+    assert figures["program"] == "out/curve.nc" and "tape" not in figures
+    assert "M3 S90" in (here / "out" / "curve.nc").read_text().split("\n")
+    assert figures["played_to_ink"]["rms_mm"] < 0.01
+    refused = morfax("run", SAMPLES / "curve.png", "-o", "other", "--feed", "1200mm/min")
+    assert refused.exit_code == 2 and "--feed is for G-code" in refused.fault
+
+
 def test_a_machine_is_for_g_code_alone(morfax: Morfax, here: Path) -> None:
     answer = morfax("compare", CAM, CAM, "--machine", "marlin")
     assert answer.exit_code == 2 and "--machine is for G-code, .ngc" in answer.fault
