@@ -15,6 +15,7 @@ from morfax.motion.motion import MOTION_RATE_HZ, join
 from morfax.motion.polyline import lengths_mm, nearest_mm, with_places
 from morfax.tracer.following.line import Leads, Line
 from morfax.tracer.marks.marks import Mark
+from morfax.tracer.operator.card import Card
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.operator.work import Tabs, Work
 from morfax.tracer.program.program import Trace
@@ -281,6 +282,15 @@ def test_with_leads_the_ramp_begins_on_the_lead_in_and_the_lead_out_comes_last()
     assert np.degrees(np.arctan(slopes(positions_mm))) == pytest.approx(-3, abs=0.05)
     assert nearest_mm(round_line.xy_mm, at_depth(positions_mm, 2.0)).max() < 5 * UM
     assert positions_mm[-1] == pytest.approx([20, 5, 2], abs=1 * UM)
+
+
+def test_a_smooth_entry_longer_than_the_line_goes_on_round_until_it_is_down() -> None:
+    card = Card.parse('entry = "200mm"')  # the circle is 125.7 mm round
+    work = Work(2.0)
+    positions_mm = join(Trace((circle(),), Operator(work, card))).positions_mm
+    steps = np.abs(np.diff(positions_mm, axis=0)) * MOTION_RATE_HZ
+    assert steps[:, 2].max() < 1.02 * work.feed_mm_s  # nothing leaps
+    assert nearest_mm(circle().xy_mm, at_depth(positions_mm, 2.0)).max() < 5 * UM
 
 
 # holes
