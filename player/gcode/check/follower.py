@@ -95,23 +95,24 @@ class Follower(Reader):
     def _modes(self, present: set[Code], values: dict[str, float], words: Words) -> None:
         """Set the modes that the reader does not have, and those that it must lose."""
         motion = next((code for code in present if code in MOTIONS), None)
-        if motion is not None:
-            self.motion = motion
-        if ("G", 80.0) in present and motion is None:
+        self.motion = motion or self.motion
+        if present & codes("G93-G95"):
+            self.inverse_time = ("G", 93.0) in present
+        if "F" in words.computed or ("F" in values and self.inverse_time):
+            self.feed_mm_s = self.machine.panel_feed_mm_s
+        if present <= _PLAIN:  # nearly all lines
+            return
+        if ("G", 80.0) in present and not motion:
             self.motion, self.kind = None, ""
         for _, number in present:
             if number in PLANES:
                 self.plane = number
-        if present & codes("G93-G95"):
-            self.inverse_time = ("G", 93.0) in present
         if present & codes("G90.1 G91.1"):
             self.absolute_centres = ("G", 90.1) in present
         if present & codes("G98 G99"):
             self.cycle.returns_to_start = ("G", 98.0) in present
         if "P" in words.computed and ("G", 4.0) in present:
             values["P"] = 0.0  # a time that is not known
-        if "F" in words.computed or ("F" in values and self.inverse_time):
-            self.feed_mm_s = self.machine.panel_feed_mm_s
         self._say_what_is_not_followed(present)
 
     def _say_what_is_not_followed(self, present: set[Code]) -> None:
@@ -234,21 +235,16 @@ class Follower(Reader):
     def _lacks_a_place(self, names: frozenset[str]) -> None:
         """Find an arc that says no place in its plane, where the control wants one."""
         if not self.machine.takes.lone_motion:
-            what, allowed = (
-                f"{self.kind} says no place in its plane",
-                " or ".join(sorted(names)),
-            )
-            self.findings.here("word", what, allowed, "write the place, even if it stays")
+            what, do = f"{self.kind} says no place in its plane", "write it, even if it stays"
+            self.findings.here("word", what, " or ".join(sorted(names)), do)
 
     def _off_the_arc(self, error: WordError, end: Place) -> None:
         """Find an arc whose ends do not lie on it."""
-        what, _, do = str(error).partition("; ")
+        (what, _, do), allowed, limits = str(error).partition("; "), "", self.arc_limits
         if "may differ" in do:
-            share, most = self.arc_limits.share, self.arc_limits.most_mm
-            allowed = f"{do}: {self.arc_limits.least_mm:g} mm, or {share:.1%} of the radius up to {most:g} mm"
+            share = f"{limits.share:.1%} of the radius up to {limits.most_mm:g} mm"
+            allowed = f"{do}: {limits.least_mm:g} mm, or {share}"
             do = "write more decimals, or have the program made anew"
-        else:
-            allowed = ""
         self.findings.add(
             Finding(self.number, "arc", what, allowed, do or "mend the line", place_mm=end)
         )

@@ -18,6 +18,7 @@ from morfax.player.gcode.rs274 import WORD
 from morfax.recorder.gcode.machine import Machine
 
 _COMMENT = re.compile(r"\(([^)]*)(\)|$)|;.*")
+_NUMBER = re.compile(r"^N[\d.]+")  # of a line
 _O_WORD = re.compile(r"O[\d<\[]")
 _SPINDLE = re.compile(r"\$-?[\d.]+")
 _CHECKSUM = re.compile(r"\*\d+$")
@@ -156,9 +157,10 @@ class Lines:
         """The words of a line without blanks, in capitals."""
         computed: frozenset[str] = frozenset()
         if self.takes.expressions:
-            if compact[0] == "#":  # a value is set; nothing moves
+            rest = _NUMBER.sub("", compact)
+            if rest[:1] == "#":  # a value is set; nothing moves
                 return None
-            if _O_WORD.match(compact):
+            if _O_WORD.match(rest):
                 self._not_computed("is a subroutine, a loop or a condition (O)")
                 return None
             compact, computed = without_computed(compact)

@@ -42,16 +42,16 @@ GROUPS: dict[str, frozenset[Code]] = {
 GROUP_OF = {code: name for name, members in GROUPS.items() for code in members}
 ARCS, PROBES = codes("G2 G3"), codes("G38.2 G38.3 G38.4 G38.5")
 CYCLES = codes("G73 G76 G81-G89")
-_USER = codes("M100-M199")
+USERS = codes("M100-M199")  # commands of the user's own
 # the words that a letter belongs to: one of them must be in the line, or hold from before
 BELONGS: dict[str, frozenset[Code]] = {
     "I": ARCS | codes("G5 G5.1 G10 G33.1 G70-G72 G76 G87"),
     "J": ARCS | codes("G5 G5.1 G10 G76 G87"),
     "K": ARCS | codes("G33 G33.1 G76 G87"),
     "R": ARCS | CYCLES | codes("G10 G70-G72"),
-    "P": _USER
+    "P": USERS
     | codes("G4 G5 G5.2 G10 G64 G70 G74 G76 G82 G84 G86 G88 G89 M19 M50-M53 M62-M66 M98"),
-    "Q": _USER | codes("G5 G10 G64 G70-G73 G76 G83 M19 M61 M66-M68"),
+    "Q": USERS | codes("G5 G10 G64 G70-G73 G76 G83 M19 M61 M66-M68"),
     "L": CYCLES | codes("G5.2 G10 G41 G42 M66 M98"),
     "D": codes("G41 G42 G41.1 G42.1 G70-G73 G83 G96"),
     "H": codes("G43 G43.2 G76"),
@@ -65,6 +65,7 @@ class WordRules:
 
     def __init__(self, machine: Machine, findings: Findings) -> None:
         self.machine, self.takes, self.findings = machine, machine.takes, findings
+        self.places = frozenset("XYZIJKR") & set(self.takes.letters)  # may have any value
         self.belongs = dict(BELONGS)
         if self.takes.turns:
             self.belongs["P"] = BELONGS["P"] | ARCS
@@ -72,25 +73,32 @@ class WordRules:
     def check(self, words: Words, motion: Code | None) -> list[Code]:
         """Find what is wrong with the words of a line; the G and M words that the control takes."""
         named: list[Code] = []
+        others: list[tuple[str, str]] = []
         for letter, number in zip(words.letters, words.numbers, strict=True):
-            code = letter, abs(float(number))
             if letter not in "GM":
-                self._letter(letter, number)
-            elif code in self.takes.codes:
+                others.append((letter, number))
+            elif (code := (letter, abs(float(number)))) in self.takes.codes:
                 named.append(code)
             else:
                 self._not_taken(called(code), listed(self.takes.codes, letter))
-        self._groups(words, named)
-        self._beside_a_motion(words, named)
+        is_users = not USERS.isdisjoint(named)
+        for letter, number in others:
+            if letter not in self.places or len(number) > self.takes.digits:
+                self._letter(letter, number, is_users)
+        if len(named) > 1 or self.takes.one_code or len(dict(others)) < len(others):
+            self._groups(words, named)
+        if named:
+            self._beside_a_motion(words, named)
         if not self.takes.one_code:
             self._belongs(words, {*named, *([motion] if motion else [])})
         return named
 
-    def _letter(self, letter: str, number: str) -> None:
+    def _letter(self, letter: str, number: str, is_users: bool) -> None:
         """Find a letter that the control does not take, or a value that it may not have."""
         if letter not in self.takes.letters:
-            self._not_taken(letter + number, f"letters: G M {' '.join(self.takes.letters)}")
-        elif letter in _NEVER_BELOW_ZERO and float(number) < 0:
+            allowed = f"letters: G M {' '.join(self.takes.letters)}"
+            self._not_taken(letter + number, allowed, letter)
+        elif letter in _NEVER_BELOW_ZERO and float(number) < 0 and not is_users:
             self.findings.here(
                 "word", f"{letter}{number} is below zero", "from 0", "give another value"
             )
@@ -109,11 +117,11 @@ class WordRules:
         most = {"N": self.takes.largest_line_number, "T": self.takes.largest_tool}
         return most.get(letter, math.inf)
 
-    def _not_taken(self, word: str, allowed: str) -> None:
-        """Say that the control does not take a word."""
+    def _not_taken(self, word: str, allowed: str, cause: str = "") -> None:
+        """Say that the control does not take a word; those of one letter, or of one code, are one finding."""
         what = f"{self.machine.name} does not take {word}"
         do = "leave it out, or write the program for this machine"
-        self.findings.here("word", what, allowed, do, cause=word)
+        self.findings.here("word", what, allowed, do, cause=cause or word)
 
     def _groups(self, words: Words, named: list[Code]) -> None:
         """Find two words of one group, or one letter twice."""
@@ -155,9 +163,9 @@ class WordRules:
 
     def _belongs(self, words: Words, present: set[Code]) -> None:
         """Find words that no word of the line uses."""
-        for letter in words.letters:
-            users = self.belongs.get(letter)
-            if users is not None and letter in self.takes.letters and not users & present:
+        for letter in self.belongs.keys() & set(words.letters) & set(self.takes.letters):
+            users = self.belongs[letter]
+            if users.isdisjoint(present):
                 self.findings.here(
                     "word",
                     f"{letter} belongs to no word of the line",

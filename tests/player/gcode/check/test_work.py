@@ -205,3 +205,21 @@ def test_the_longest_line_is_taken_and_one_more_is_not(on: Machine, longest: int
     assert rules(check(line + "0", on=on)) == [(5, "length")]
     spaced = "G0 X1." + "0" * (longest - 5) + " (x)"
     assert check(spaced, on=on).may_start == (on is ROUTER)
+
+
+def test_words_with_a_letter_that_is_not_taken_are_one_finding() -> None:
+    found = [each for each in check("G1 X1 E1.5 F9", "G1 X2 E2.5").findings if each.stops]
+    assert [(each.line, each.lines) for each in found] == [(5, 2)]
+    assert "does not take E1.5; allowed: letters: G M F I J K" in found[0].text
+
+
+def test_a_value_that_is_set_moves_nothing() -> None:
+    lines = ["N10 #<holes> = 4", "#1=5", "M190 P-1"]  # a number of the user's own command
+    assert check(*lines, on=LINUXCNC).may_start
+
+
+def test_a_place_after_a_computed_one_is_not_held_against_an_arc() -> None:
+    lost = ["G0 X#1", "G3 X10 Y0 I5 J0 F600"]
+    assert rules(check(*lost, on=LINUXCNC)) == [(5, "not read")]
+    found = check(*lost, "G3 X20 Y0 I5.2 J0", on=LINUXCNC)  # X10 has been read by now
+    assert rules(found) == [(5, "not read"), (7, "arc")]
