@@ -18,6 +18,9 @@ FEW = 6  # lines that are listed with their leads; of more the shortest
 
 def of_contouring(trace: Trace, contouring: Contouring) -> Iterator[str]:
     """Remarks on a program whose closed lines were contoured."""
+    if trace.fault is not None and contouring.asks:
+        yield "a line was lost, so it is not known what lies inside of what: lines may be cut as traced"
+        return
     closed = [line for line in trace.lines if line.ending == "closed"]
     if contouring.lead_in is not None:
         yield from _of_leads("lead-in", contouring.lead_in, closed)
@@ -55,7 +58,7 @@ def _size_mm(name: str, line: Line) -> float:
     """The size of a line's lead, mm; 0 without."""
     if line.leads is None:
         return 0.0
-    return round(line.leads.in_mm if name == "lead-in" else line.leads.out_mm, 3)
+    return round(line.leads.in_mm if name == "lead-in" else line.leads.out_mm, 2)
 
 
 def _is_cut_open(line: Line) -> bool:

@@ -46,6 +46,8 @@ def contoured(trace: Trace, contouring: Contouring, feed_mm_s: float) -> Trace:
     lines = planned(trace)
     cuts = [cut for _, cut in lines if cut is not None]
     refuse_open(cuts, trace.lines, contouring)
+    if trace.fault is not None:  # what lies inside a line that was lost is not known
+        return trace
     curves = _curves(cuts)
     # 2. in the direction, from the place, with the leads that are asked for
     feed = FeedRate(feed_mm_s, trace.rate_hz)
@@ -69,18 +71,23 @@ def contoured(trace: Trace, contouring: Contouring, feed_mm_s: float) -> Trace:
 
 def _curves(cuts: Sequence[Cut]) -> list[DriveCurve]:
     """The contours with the side on which the scrap is; open: lines that are open or cross themselves."""
-    places = [sides.thinned(cut.places_mm) for cut in cuts]
-    crossed = sides.crossing(places)
-    plainly = [
-        cut.closed and not crosses_itself
-        for cut, crosses_itself in zip(cuts, crossed.diagonal(), strict=True)
+    # 1. what may have something inside: closed lines, loops with a stem, lines with a gap
+    stems = [not cut.closed and cut.line.loop_from is not None for cut in cuts]
+    gaps = [cut.line.gap_mm is not None for cut in cuts]
+    places = [
+        cut.line.loop_mm if has_stem else sides.thinned(cut.places_mm)
+        for cut, has_stem in zip(cuts, stems, strict=True)
     ]
-    closed = np.flatnonzero(plainly)
+    crossed = sides.crossing(places)
+    crosses_itself = crossed.diagonal()
+    plainly = [cut.closed for cut in cuts] & ~crosses_itself
+    closed = np.flatnonzero((plainly | stems | gaps) & ~crosses_itself)
+    # 2. the side of each by its depth among them
     among = crossed[np.ix_(closed, closed)]
     left = np.zeros(len(cuts), bool)
     left[closed] = sides.tool_left([places[k] for k in closed], among)
     return [
-        DriveCurve(cut.places_mm, is_plain, bool(on_left))
+        DriveCurve(cut.places_mm, bool(is_plain), bool(on_left))
         for cut, is_plain, on_left in zip(cuts, plainly, left, strict=True)
     ]
 

@@ -5,6 +5,7 @@ the lines, on lines of exact shape.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from shapely import LineString, Point, Polygon
 
 from morfax.jobs.contour_remarks import of_contouring
 from morfax.motion.arrays import Array
-from morfax.motion.faults import MotionFault
+from morfax.motion.faults import LineFault, MotionFault
 from morfax.motion.motion import join
 from morfax.motion.polyline import Nearest, area_mm2, at_lengths, lengths_mm, plain
 from morfax.tracer.cutter.along_lines import contoured
@@ -267,6 +268,34 @@ def test_a_line_that_crosses_itself_stays_as_it_was() -> None:
     )
     assert np.array_equal(made.lines[0].xy_mm, eight.xy_mm)
     assert made.lines[1].leads is not None
+
+
+def test_what_lies_inside_a_line_with_a_stem_or_a_gap_is_a_hole() -> None:
+    """A stem before a loop, and a gap in a line, leave it uncut by leads; but its hole is a hole."""
+    stem = positions([(0, -30), *square(20), (0, -20)])
+    loop_from = int(np.argmin(np.hypot(*(stem - (0, -20)).T)))
+    gap = positions([*square(20)[1:], (-2, -20)])  # from (20, -20) back to 22 mm before it
+    nearly = positions([(2, -20), *square(20)[1:], (0, -20)])  # but for 2 mm
+    hole = closed(circle(8), 2)
+    for outer, is_outline in (
+        (Line(stem, "joined", 0.5, 170.0, loop_from=loop_from), True),
+        (Line(nearly, "ended", 0.5, 158.0), True),
+        (Line(gap, "ended", 0.5, 138.0), False),
+    ):
+        made = cut(Trace((hole, outer)), Contouring("climb", Lead(2.0)), None)
+        assert np.array_equal(made.lines[1].xy_mm, outer.xy_mm)
+        inner = made.lines[0]
+        assert (math.hypot(*inner.xy_mm[0]) < 8) == is_outline
+        assert (area_mm2(loop(inner)) > 0) == is_outline
+
+
+def test_where_a_line_was_lost_all_stay_as_they_were() -> None:
+    lost = replace(LEVELS.lines[2], ending="lost", fault=LineFault("line lost"))
+    trace = Trace((LEVELS.lines[1], lost))
+    asked = Contouring("conventional", Lead(2.0))
+    assert cut(trace, asked, None) is trace
+    (told,) = of_contouring(trace, asked)
+    assert told.startswith("a line was lost")
 
 
 def drawn_lead(**more: Any) -> Line:
