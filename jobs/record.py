@@ -12,6 +12,8 @@ from morfax.jobs.listener import SILENT, Listener, watched
 from morfax.jobs.playing import ByHand, read_or_play
 from morfax.jobs.recording import RecordingUnit, rehearsed
 from morfax.jobs.wrong_use import WrongUse, settings_checked
+from morfax.jobs.zero import Zero, of_path_mm
+from morfax.jobs.zero import figures as zero_figures
 
 if TYPE_CHECKING:
     from morfax.jobs.figures import Figures
@@ -42,6 +44,7 @@ class RecordJob:
     cycles_per_mm: float | None = None  # None: the pick-up's own
     unit: RecordingUnit = field(default_factory=RecordingUnit)
     drawn_unit: str | None = None  # of a drawing from CAD; None: the file's own
+    zero: Zero = "sheet"  # of the program; sheet: the source's own zero
 
     def run(self, listener: Listener = SILENT, panel: Panel | None = None) -> RecordResult:
         """Record; raises WrongUse and every fault."""
@@ -54,8 +57,9 @@ class RecordJob:
         outlines.check_unit(self.drawn_unit, self.source)
         feed_mm_s = self.unit.feed_mm_s or FEED_MM_S
         read = read_or_play(self.source, ByHand(), listener, feed_mm_s, self.drawn_unit)
-        placed = self.unit.placement.path(read)
-        self.unit.warn(listener)
+        unit = self.unit.at(of_path_mm(self.zero, read, self.unit.placement))
+        placed = unit.placement.path(read)
+        unit.warn(listener)
         recording = _recorded(placed, program, settings, listener)
         length = length_mm(placed) if placed.tool.any() else 0.0
         figures = {
@@ -66,7 +70,8 @@ class RecordJob:
             "end_place_mm": placed.positions_mm[-1],
             **_density(recording, program, length),
             **medium.recorder_figures(recording),
-            **self.unit.figures(),
+            **zero_figures(self.zero, unit.placement.about(read.positions_mm[0])),
+            **unit.figures(),
         }
         return RecordResult(figures, program)
 

@@ -9,13 +9,12 @@ from dataclasses import dataclass
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from morfax.jobs import files as medium
-from morfax.jobs import trace_figures
+from morfax.jobs import trace_figures, zero
 from morfax.jobs.zero import ZeroOnSheet
 
 if TYPE_CHECKING:
+    from morfax.jobs.figures import Figures
     from morfax.jobs.listener import Listener
     from morfax.jobs.recording import RecordingUnit
     from morfax.motion.faults import Fault
@@ -76,11 +75,9 @@ class Traced:
         about = unit.placement.about(self.path.positions_mm[0])
         return unit.at(self.zero.origin_mm(about))
 
-    def zero_figures(self, unit: RecordingUnit) -> dict[str, Any]:
+    def zero_figures(self, unit: RecordingUnit) -> Figures:
         """Where on the sheet the zero of the program is, if it is not the sheet's own."""
-        placement = unit.placement.about(self.path.positions_mm[0])
-        x, y = placement.places_back(np.zeros((1, 2)))[0].tolist()
-        return {} if self.zero.asked == "sheet" else {"zero_place_mm": (x, y)}
+        return zero.figures(self.zero.asked, unit.placement.about(self.path.positions_mm[0]))
 
     def figures(self) -> dict[str, Any]:
         """What the head found, as figures."""

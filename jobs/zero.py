@@ -20,7 +20,9 @@ from numpy.typing import NDArray
 from morfax.jobs.wrong_use import WrongUse
 
 if TYPE_CHECKING:
+    from morfax.jobs.figures import Figures
     from morfax.jobs.settings import TraceSettings
+    from morfax.motion.motion import Path
     from morfax.motion.placement import Placement
     from morfax.tracer.drawing.drawing import Drawing
     from morfax.tracer.program.program import Trace
@@ -76,6 +78,33 @@ def on_part_mm(zero: Zero, places_mm: NDArray[np.float64]) -> Place:
     low, high = places_mm.min(axis=0), places_mm.max(axis=0)
     x, y = low if zero == "lower-left" else 0.5 * (low + high)
     return float(x), float(y)
+
+
+def of_path_mm(zero: Zero, path: Path, placement: Placement) -> Place:
+    """What a placement takes off a path, so that its zero is there; raises WrongUse without what it is of.
+
+    The part is what is run with the tool in the work, without leads.
+    """
+    from morfax.motion.lead_parts import without_leads
+
+    if zero == "sheet":
+        return (0.0, 0.0)
+    if zero == "reference":
+        raise WrongUse(
+            "--zero reference is a point on a drawing, and a path has none; give lower-left, centre, or its "
+            "place X,Y"
+        )
+    if not isinstance(zero, str):
+        return zero
+    runs = without_leads(path).runs()
+    places_mm = np.vstack(runs) if runs else path.xy_mm
+    return on_part_mm(zero, placement.about(path.positions_mm[0]).places(places_mm))
+
+
+def figures(zero: Zero, placement: Placement) -> Figures:
+    """Where the zero lies, before a placement about a known point; nothing if that is the sheet's own."""
+    x, y = placement.places_back(np.zeros((1, 2)))[0].tolist()
+    return {} if zero == "sheet" else {"zero_place_mm": (x, y)}
 
 
 def refuse_of_part(zero: Zero | None) -> None:

@@ -13,12 +13,13 @@ from morfax.console.options.files import FILE, Program
 from morfax.console.options.groups import Verb, option, renamed
 from morfax.console.options.placement import unit_options
 from morfax.console.options.tape import CYCLES_PER_MM
-from morfax.console.options.types import FREQUENCY
+from morfax.console.options.types import FREQUENCY, ZERO
 from morfax.jobs.record import RecordJob
 
 if TYPE_CHECKING:
     from morfax.console.terminal.desk import Desk
     from morfax.jobs.recording import RecordingUnit
+    from morfax.jobs.zero import Zero
 
 EXAMPLES = """\b
 Examples:
@@ -61,6 +62,15 @@ Examples:
     is_flag=True,
     help="Without -o: write over a tape that is there already.",
 )
+@option(
+    "Program",
+    "--zero",
+    type=ZERO,
+    default="sheet",
+    show_default=True,
+    help="The zero of the program: sheet (the source's own), lower-left or centre (of what is run with the "
+    "tool in the work, leads aside), or a place X,Y of the source in mm.",
+)
 @DRAWN_UNIT
 @unit_options
 @desk_options
@@ -72,6 +82,7 @@ def command(
     force: bool,
     unit: RecordingUnit,
     drawn_unit: str | None,
+    zero: Zero,
     desk: Desk,
 ) -> None:
     """Record a path file, or another program, in the medium that the name after -o says.
@@ -89,5 +100,6 @@ def command(
         cycles_per_mm,
         unit,
         drawn_unit,
+        zero,
     )
     desk.figures(job.run(desk).figures)

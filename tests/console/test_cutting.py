@@ -84,3 +84,18 @@ def test_the_zero_of_a_part_is_not_of_a_drawing(morfax: Morfax, path_file: Path)
         answer.exit_code == 2
         and "give the place that trace told as zero_place_mm" in answer.fault
     )
+
+
+def test_record_puts_the_zero_where_it_is_asked_for(morfax: Morfax, here: Path) -> None:
+    """A square of 10 mm with its corner at 5,7 and a lead before it: leads do not count."""
+    places = [(2, 7), (5, 7), (15, 7), (15, 17), (5, 17), (5, 7)]
+    rows = ["2,7,2,0", *(f"{x},{y},-1,1" for x, y in places), "5,7,2,0"]
+    (here / "square.csv").write_text("\n".join(["x_mm,y_mm,z_mm,tool", *rows]))
+    for zero, x_mm, y_mm in (("lower-left", 5, 7), ("centre", 10, 12), ("1,2", 1, 2)):
+        answer = morfax("record", "square.csv", "-o", "a.wav", "--zero", zero, "--json")
+        start = answer.figures["start_place_mm"]
+        assert start[:2] == pytest.approx([2 - x_mm, 7 - y_mm], abs=0.01)
+        assert answer.figures["zero_place_mm"] == pytest.approx([x_mm, y_mm], abs=0.01)
+    answer = morfax("record", "square.csv", "-o", "b.wav", "--zero", "reference")
+    assert answer.exit_code == 2 and "--zero reference is a point on a drawing" in answer.fault
+    assert not (here / "b.wav").exists()
