@@ -54,6 +54,14 @@ def blank(size_mm: Size) -> Picture:
     return np.full((rows, columns, 3), PAPER, np.uint8)
 
 
+@cache
+def plain(camera: Phone, size_mm: Size) -> Picture:
+    """A photograph of plain paper; not to be changed."""
+    taken = camera.photograph(blank(size_mm), size_mm)
+    taken.setflags(write=False)
+    return taken
+
+
 def draw(sheet: Picture, line_mm: Array, width_mm: float = 0.8) -> None:
     """Draw a line on a sheet, from the lower left, Y up."""
     x, y = line_mm.T * PX_PER_MM

@@ -32,6 +32,7 @@ from tests.tracer.flatten.photographs import (
     marked,
     off_mm,
     phone,
+    plain,
     rms,
 )
 
@@ -157,7 +158,7 @@ def test_ink_that_spreads_moves_no_mark() -> None:
 
 
 def test_a_blurred_photograph_is_told() -> None:
-    found = made(phone(5, blur_px=4).photograph(blank(A4), A4), parsed("paper=a4"))
+    found = made(plain(phone(5, blur_px=4), A4), parsed("paper=a4"))
     assert len(found.warnings) == 1
     assert re.match(r"the photograph is blurred by more than 2\.5 pixels", found.warnings[0])
 
@@ -168,14 +169,14 @@ def test_a_blurred_photograph_is_told() -> None:
 @pytest.mark.parametrize(("tilt_deg", "k1"), [(0, 0.0), (25, 0.02), (25, -0.02)])
 def test_edges_flatten_a_tilted_sheet(tilt_deg: float, k1: float) -> None:
     camera = phone(tilt_deg, k1)
-    found = made(camera.photograph(blank(A4), A4), parsed("paper=a4"))
+    found = made(plain(camera, A4), parsed("paper=a4"))
     assert rms(off_mm(found, camera, A4)) < 0.1 * MM  # asked of 12 Mpx: 0.2
     assert math.degrees(found.tilt_rad) == pytest.approx(tilt_deg, abs=0.3)
 
 
 def test_blur_makes_the_sheet_no_larger() -> None:
     camera = phone(0, blur_px=2)
-    found = made(camera.photograph(blank(A4), A4), parsed("paper=a4"))
+    found = made(plain(camera, A4), parsed("paper=a4"))
     assert rms(off_mm(found, camera, A4)) < 0.05 * MM  # 0.18 by levels instead of light
 
 
@@ -191,7 +192,7 @@ def thumbed(picture: Picture, place_px: tuple[float, float], across_px: int = 90
 def test_a_thumb_over_a_corner_or_an_edge(place_mm: tuple[float, float]) -> None:
     camera = phone(12, 0.01)
     thumb = camera.to_photo(np.array([place_mm], float), A4)[0]
-    picture = thumbed(camera.photograph(blank(A4), A4), (thumb[0], thumb[1]))
+    picture = thumbed(plain(camera, A4), (thumb[0], thumb[1]))
     found = made(picture, parsed("paper=a4"))
     assert rms(off_mm(found, camera, A4)) < 0.15 * MM
 
@@ -199,7 +200,7 @@ def test_a_thumb_over_a_corner_or_an_edge(place_mm: tuple[float, float]) -> None
 def test_a_sheet_lies_as_it_does_in_the_photograph() -> None:
     camera = phone(8)
     lying: Size = (148.0, 105.0)
-    photograph = camera.photograph(blank(lying), lying)
+    photograph = plain(camera, lying)
     for text in ("paper=148x105mm", "paper=105x148mm", "paper=a6"):
         found = made(photograph, parsed(text))
         assert (found.paper.width_mm, found.paper.height_mm) == lying
@@ -215,7 +216,7 @@ def test_paper_on_a_lighter_table_of_another_colour() -> None:
 
 
 def test_a_format_that_the_sheet_does_not_have_is_refused() -> None:
-    picture = phone(5).photograph(blank(LETTER), LETTER)
+    picture = plain(phone(10, 0.01), LETTER)
     with pytest.raises(
         DrawingFault, match=r"sides of a4 \(210 x 297 mm\); letter would fit; give"
     ):
@@ -227,13 +228,13 @@ def test_a_format_that_the_sheet_does_not_have_is_refused() -> None:
 
 def test_the_one_format_that_fits_is_taken() -> None:
     camera = phone(10, 0.01)
-    found = made(camera.photograph(blank(LETTER), LETTER), AUTO)
+    found = made(plain(camera, LETTER), AUTO)
     assert found.told == "edges of letter, 215.9 x 279.4 mm"
 
 
 def test_sheets_of_the_a_series_cannot_be_told_apart() -> None:
     with pytest.raises(DrawingFault) as refused:
-        made(phone(10).photograph(blank(A4), A4), AUTO)
+        made(plain(phone(20), A4), AUTO)
     said = str(refused.value)
     assert "its sheet can be a4, a3, a5, a2 or a6" in said
     assert "--flatten paper=a4" in said and "--flatten marks" in said and "X,Y X,Y" in said
@@ -244,12 +245,12 @@ def test_a_sheet_of_no_known_format() -> None:
     with pytest.raises(
         DrawingFault, match="its sheet has no known format; give --flatten paper=148"
     ):
-        made(phone(10).photograph(blank(size), size), AUTO)
+        made(plain(phone(10), size), AUTO)
 
 
 @pytest.mark.parametrize("wanted", [AUTO, parsed("paper=a4")], ids=["auto", "paper"])
 def test_a_photograph_without_marks_or_edges_is_refused_with_the_ways(wanted: Wanted) -> None:
-    inside = replace(phone(10), fills=1.6).photograph(blank(A4), A4)
+    inside = plain(replace(phone(10), fills=1.6), A4)
     with pytest.raises(DrawingFault) as refused:
         made(inside, wanted)
     said = str(refused.value)
@@ -264,9 +265,7 @@ def test_four_places_and_the_rectangle_that_they_are() -> None:
     corners = np.array([(40, 240), (170, 240), (170, 60), (40, 60)], float)
     x, y = camera.to_photo(corners, A4).T
     text = " ".join(f"{a:.3f},{b:.3f}" for a, b in zip(x, y, strict=True)) + "=130x180mm"
-    flat, pitch_mm, found = flattened(
-        camera.photograph(blank(A4), A4), parsed(text), focal=FOCAL
-    )
+    flat, pitch_mm, found = flattened(plain(camera, A4), parsed(text), focal=FOCAL)
     assert flat.shape[1] * pitch_mm == pytest.approx(130)
     assert math.degrees(found.tilt_rad) == pytest.approx(20, abs=0.3)
     places = np.array([(50, 70), (160, 230)], float)
@@ -278,7 +277,7 @@ def test_a_place_outside_the_photograph() -> None:
     with pytest.raises(
         DrawingFault, match="a place is outside the photograph, which has 1020 x 1360"
     ):
-        made(phone().photograph(blank(A4), A4), parsed("0,0 4000,0 4000,900 0,900=130x180mm"))
+        made(plain(phone(), A4), parsed("0,0 4000,0 4000,900 0,900=130x180mm"))
 
 
 # --- what a tilt costs
@@ -286,7 +285,7 @@ def test_a_place_outside_the_photograph() -> None:
 
 def test_what_a_tilt_costs_is_told_without_the_format() -> None:
     for tilt_deg in (0, 20):
-        photograph = phone(tilt_deg).photograph(blank(A4), A4)
+        photograph = plain(phone(tilt_deg), A4)
         found = tilt_and_cost(photograph, FOCAL)
         assert found is not None
         finest, coarsest = made(photograph, parsed("paper=a4")).mm_per_px

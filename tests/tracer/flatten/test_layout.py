@@ -11,7 +11,7 @@ import pytest
 
 from morfax.reports.marked_sheet import write_sheet
 from morfax.tracer.flatten.layout import FIRST, Box, Layout, dictionary
-from tests.tracer.flatten.photographs import DPI, PX_PER_MM, marked
+from tests.tracer.flatten.photographs import PX_PER_MM, marked
 
 SHEETS = [Layout.of(name) for name in FIRST]
 
@@ -61,15 +61,12 @@ def test_the_file_has_the_size_of_the_paper(tmp_path: Path, suffix: str) -> None
         b"/MediaBox [ 0 0 612 792 ]" if suffix == ".pdf" else b'width="612pt" height="792pt"'
     )
     assert points in said
-    write_sheet(Layout.of("letter"), tmp_path / f"again{suffix}")
-    assert (tmp_path / f"again{suffix}").read_bytes() == said or suffix == ".svg"  # made-up ids
 
 
-def test_a_sheet_of_300_dpi_has_its_bar_on_the_pixels_that_it_should(tmp_path: Path) -> None:
+def test_the_bar_is_on_the_pixels_that_it_should_be_on() -> None:
     layout = Layout.of("a4")
     (left, y), (right, _) = layout.bar_mm
     row = marked()[round(2970 - y * PX_PER_MM), :, 0] < 128
     inked = np.flatnonzero(row[round(30 * PX_PER_MM) : round(180 * PX_PER_MM)]) + 30 * PX_PER_MM
     assert inked.min() / PX_PER_MM == pytest.approx(left, abs=1 / PX_PER_MM)
     assert (inked.max() + 1) / PX_PER_MM == pytest.approx(right, abs=1 / PX_PER_MM)
-    assert DPI == 254
