@@ -1,4 +1,4 @@
-"""The ledger: the ink that the head has followed is struck off the sheet, and what is left is still to be followed.
+"""The ledger: the ink that the head has followed is struck off; what is left is still to be followed.
 
 Signals: ways of the head in, (n, 2) sheet mm; out the sheet as the cells see it with the ink along those ways
 struck off, and the patches of ink that are left.
@@ -13,9 +13,11 @@ Source: our own; the patent has one contour to a tape.
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 from scipy.ndimage import map_coordinates
 from scipy.spatial import cKDTree
 
@@ -35,18 +37,35 @@ FRINGE_PX = 2.5
 FADING_PX = 1.0  # over which what is struck off goes over into what is left
 WIDEST = 1.6  # of the usual half width: a place that is wider is a junction, and is struck off as the line
 INKED = 0.12  # darkness: paler paper need not be struck off
+BESIDE_WIDTHS = 0.7  # ink nearer to a way than this is that way's
+SPECK_MM = 2.0  # a shorter patch of ink on which no stroke runs is a speck
+FAINT = 0.25  # darkness: paler places were paper before
+TINY = 1e-9  # so that a sheet of nothing but filled shapes has a width
+
+
+class Balance(NamedTuple):
+    """The ink of a sheet, mm of line by its area: followed, left, specks, and the rims of filled shapes."""
+
+    followed_mm: float
+    left_mm: float
+    specks_mm: float
+    solid_mm: float
 
 
 class Ledger:
     """The ink of a drawing that is left to be followed; what has been followed is struck off."""
 
-    def __init__(self, drawing: Drawing) -> None:
-        """Open the ledger of a drawing: all its ink is left."""
-        self.drawing = drawing
-        self.left = replace(drawing, darkness=drawing.darkness.copy())
+    def __init__(self, whole: Sheet, line_width_mm: float | None = None) -> None:
+        """Open the ledger of a sheet: all its ink is left. The width is that of its lines, if it is known."""
+        lengths_mm = np.where(whole.are_solid, 0.0, whole.lengths_mm)
+        measured_mm = float(np.average(whole.widths_mm, weights=np.maximum(lengths_mm, TINY)))
+        self.whole, self.drawing = whole, whole.drawing
+        self.usual_mm = line_width_mm or measured_mm
+        self.ink_mm = float(lengths_mm.sum())
+        self.left = replace(self.drawing, darkness=self.drawing.darkness.copy())
         self._seen: dict[float, Cells] = {}
         self._ways: list[Array] = []
-        self._struck: cKDTree | None = None
+        self._tree: cKDTree | None = None
 
     def sheet(self) -> Sheet | None:
         """The patches of ink that are left; None if nothing is left."""
@@ -69,24 +88,47 @@ class Ledger:
         behind = [self.left.darkness, *(cells.darkness for cells in self._seen.values())]
         _strike(behind, self.drawing.pitch_mm, places, halves_mm)
         self._ways.append(places)
-        self._struck = None
+        self._tree = None
 
-    def is_left(self, places_mm: Array) -> Array:
+    def is_left(self, places_mm: Array) -> NDArray[np.bool_]:
         """Which places (n, 2) mm have ink that is left."""
-        return _darkness(self.left, places_mm) > LEVEL
+        return np.asarray(_darkness(self.left, places_mm) > LEVEL)
 
-    def was_ink(self, places_mm: Array) -> Array:
+    def was_ink(self, places_mm: Array) -> NDArray[np.bool_]:
         """Which places (n, 2) mm had ink before anything was struck off."""
-        return _darkness(self.drawing, places_mm) > LEVEL * LEVEL
+        return np.asarray(_darkness(self.drawing, places_mm) > FAINT)
 
     def nearest_way(self, places_mm: Array) -> tuple[Array, Array]:
-        """How far places (n, 2) mm are from the ways that have been followed, mm, and the nearest places there."""
+        """How far places (n, 2) mm are from the nearest way that was followed, mm, and the places there."""
         if not self._ways:
             return np.full(len(places_mm), np.inf), np.zeros((len(places_mm), 2))
-        if self._struck is None:
-            self._struck = cKDTree(np.vstack(self._ways))
-        away, which = self._struck.query(places_mm)
-        return np.asarray(away), np.asarray(self._struck.data)[which]
+        if self._tree is None:
+            self._tree = cKDTree(np.vstack(self._ways))
+        away, which = self._tree.query(places_mm)
+        return np.asarray(away), np.asarray(self._tree.data)[which]
+
+    def balance(self) -> Balance:
+        """What has been followed, and what was left."""
+        followed_mm = solid_mm = specks_mm = left_mm = 0.0
+        for patch, ink_mm in enumerate(self.whole.lengths_mm.tolist()):
+            share = 0.0 if self.whole.are_solid[patch] else self._share(patch)
+            followed_mm += share * ink_mm
+            if self.whole.are_solid[patch]:
+                solid_mm += ink_mm
+            elif share == 0.0 and ink_mm < SPECK_MM:
+                specks_mm += ink_mm
+            else:
+                left_mm += (1 - share) * ink_mm
+        return Balance(followed_mm, left_mm, specks_mm, solid_mm)
+
+    def _share(self, patch: int) -> float:
+        """The share of a patch along which a stroke runs."""
+        middles = self.whole.stroke(patch).middles_mm
+        if not len(middles):
+            return 0.0
+        away_mm, _ = self.nearest_way(middles)
+        width_mm = max(self.usual_mm, float(self.whole.widths_mm[patch]))
+        return float(np.mean(away_mm < BESIDE_WIDTHS * width_mm))
 
 
 def _evenly(way_mm: Array) -> Array:
@@ -101,7 +143,9 @@ def _half_widths(view: View, places: Array) -> Array:
     ways = np.gradient(places, axis=0)
     headings = np.arctan2(ways[:, 1], ways[:, 0])
     reach_mm = WIDEST * view.width_mm
-    edges = np.array([view.edges(p, h, reach_mm) for p, h in zip(places, headings, strict=True)])
+    edges = np.array(
+        [view.edges(p, h, reach_mm) for p, h in zip(places, headings, strict=True)]
+    )
     halves = np.maximum(edges[:, 1], -edges[:, 0])
     known = np.isfinite(halves)
     usual = float(np.median(halves[known])) if known.any() else 0.5 * view.width_mm
@@ -115,7 +159,10 @@ def _strike(behind: list[Darkness], pitch_mm: float, places: Array, halves_mm: A
     halves = halves_mm / pitch_mm
     margin = int(np.ceil(halves.max() + FRINGE_PX + FADING_PX)) + 1
     left, top = max(0, int(x.min()) - margin), max(0, int(y.min()) - margin)
-    right, bottom = min(columns, int(x.max()) + margin + 2), min(rows, int(y.max()) + margin + 2)
+    right, bottom = (
+        min(columns, int(x.max()) + margin + 2),
+        min(rows, int(y.max()) + margin + 2),
+    )
     # 1. the pixels beside the way
     beside = np.zeros((bottom - top, right - left), np.uint8)
     line = np.round(np.column_stack([x - left, y - top])).astype(np.int32)

@@ -1,231 +1,182 @@
 """Rounds: the head is put down on the ink that is left, again and again, until every line has been followed.
 
-Signals: a drawing and the head's settings in; out strokes, each followed by the head from end to end or round
-about, and the length of ink that it left.
+Signals: a ledger and the head's settings in; out strokes, each a run of the head from end to end or round
+about, (n, 2) sheet mm at the motion rate.
 
-    ──────┬──────         round 1: the long line, straight on over everything; its ink is struck off
-          │               round 2: what is left of the others, which cross the struck piece as a gap; a line that
-          │                        ends there is led on to the middle of the line that it meets
+    ──────┬──────     round 1   one line of each patch, straight on through crossings; its ink is struck off
+          │           round 2   one line of each patch that is left, and so on
 
-In each round the head follows one line of each patch of ink that is left, from an open end if there is one.
-It crosses what has been struck off as it crosses a gap. Where the paper was white before, the stroke ends.
+In each round the head begins at an open end of a patch if it has one, or else at its plainest place. It goes
+across what has been struck off as it goes across a gap; where the paper was white before, the stroke ends.
 
-Source: our own; the patent has one contour to a tape.
+Source: our own; the patent has one contour to a tape. Questions: a patch on which the head can nowhere be put
+down is left. So are the rims of filled shapes.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from itertools import chain, islice
 
 import numpy as np
 
-from morfax.motion import ramp
 from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault
-from morfax.motion.motion import MOTION_RATE_HZ
-from morfax.motion.polyline import lengths_mm
-from morfax.tracer.drawing.drawing import Drawing
+from morfax.motion.polyline import length_mm, lengths_mm
 from morfax.tracer.drawing.strokes import Sheet, Stroke
-from morfax.tracer.following.attempts import Attempts, longest_mm
+from morfax.tracer.following.attempts import Attempts
 from morfax.tracer.following.direction import turned_about
 from morfax.tracer.following.followed import THINNED, Followed
-from morfax.tracer.following.line import Line
 from morfax.tracer.following.open_ends import stances_at
-from morfax.tracer.following.plain_places import ABOUT_WIDTHS, plainness, places_of, stances
+from morfax.tracer.following.plain_places import places_of, plainness, stances
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance, turned_round
 from morfax.tracer.ink.ledger import Ledger
+from morfax.tracer.ink.meeting import InkStroke, led_on
+from morfax.tracer.sensing.view import View
 
 # All limits below were chosen by trial on drawings of nets.
-ROUNDS = 60
-ACROSS_WIDTHS = 3.0  # a line of the usual width is crossed at 20 degrees
+ROUNDS = 100
+ACROSS_WIDTHS = 3.0  # a line as wide is crossed at 20 degrees
 LEAST_MM, LEAST_WIDTHS = 1.0, 2.5  # shorter patches are fringes, burrs and specks: the larger
-THIN = 0.45  # of the usual width: a thinner patch beside a way is what its edge has left
-ENDS = 3  # open ends that are tried
-PLACES = 4  # plain places that are tried
-GOES_FAR = 0.5  # of a patch: a run as long as this is not tried again from elsewhere
-MEETS_WIDTHS = 1.6  # a stroke that ends so near to a line ends on that line
+FRINGE = (
+    0.45  # of the usual width: a thinner patch beside a way is what the line's edge has left
+)
+STILL_LEFT = 0.5  # of a patch: less was struck off in this round by a run on another patch
+ENDS, PLACES = 3, 4  # open ends, and plain places, that are tried
+GOES_FAR = 0.5  # of a patch: after a run as long the head is not put down elsewhere
+LONGEST, LONGEST_MM = (
+    4.0,
+    20.0,
+)  # times all the ink, and this: a longer run is going round in circles
 
-
-@dataclass(frozen=True, slots=True)
-class InkFollowed:
-    """The strokes of a sheet, and the length of ink that no stroke runs along, mm."""
-
-    lines: list[Line]
-    left_mm: float
-    specks: int
+Key = tuple[float, float, float]
 
 
 @dataclass(slots=True)
 class Rounds:
-    """The head on a sheet, with its ledger."""
+    """The head on a sheet, with the ledger of what it has followed."""
 
     ledger: Ledger
     settings: Settings
-    usual_mm: float  # width of the line
+    _in_vain: set[Key] = field(
+        default_factory=set
+    )  # patches on which the head cannot be put down
 
-    def strokes(self) -> Iterator[Line]:
-        """Strokes of the sheet, the longest patches first, until nothing is left that can be followed."""
-        in_vain, number = set[tuple[float, ...]](), 0
+    def strokes(self) -> Iterator[InkStroke]:
+        """Strokes of the sheet, those of the longest patches first, until the head finds no more."""
         for _ in range(ROUNDS):
             sheet, followed = self.ledger.sheet(), 0
-            for stroke, key in self._to_follow(sheet, in_vain):
-                line = self._follow(stroke, number + 1)
-                if line is None:
-                    in_vain.add(key)
+            for stroke in () if sheet is None else self._patches(sheet):
+                found = self._follow(stroke)
+                if found is None:
+                    self._in_vain.add(_key(stroke))
                     continue
-                number, followed = number + 1, followed + 1
-                yield line
+                followed += 1
+                yield found
             if not followed:
                 return
 
-    def _to_follow(
-        self, sheet: Sheet | None, in_vain: set[tuple[float, ...]]
-    ) -> Iterator[tuple[Stroke, tuple[float, ...]]]:
-        """The patches that are to be followed in a round, the longest first, each with what it is known by."""
-        if sheet is None:
-            return
+    def _patches(self, sheet: Sheet) -> Iterator[Stroke]:
+        """The patches that are to be followed in a round, the longest first."""
         least_mm = np.maximum(LEAST_MM, LEAST_WIDTHS * sheet.widths_mm)
         long_enough = (sheet.lengths_mm > least_mm) & ~sheet.are_solid
-        for patch in np.argsort(-sheet.lengths_mm):
-            if not long_enough[patch]:
-                continue
-            key = (*np.round(sheet.middle_mm(patch), 1), round(sheet.lengths_mm[patch], 1))
-            if key in in_vain:
-                continue
+        patches = np.flatnonzero(long_enough)
+        for patch in patches[np.argsort(-sheet.lengths_mm[patches], kind="stable")]:
             stroke = sheet.stroke(int(patch))
-            if np.mean(self.ledger.is_left(stroke.middles_mm)) > 0.5 and not self._is_fringe(
-                stroke
-            ):
-                yield stroke, key
+            if not len(stroke.middles_mm) or _key(stroke) in self._in_vain:
+                continue
+            is_left = np.mean(self.ledger.is_left(stroke.middles_mm)) > STILL_LEFT
+            if is_left and not self._is_fringe(stroke):
+                yield stroke
 
     def _is_fringe(self, stroke: Stroke) -> bool:
         """Whether a patch is what the edge of a line has left beside its way."""
-        if stroke.width_mm > THIN * self.usual_mm:
+        usual_mm = self.ledger.usual_mm
+        if stroke.width_mm > FRINGE * usual_mm:
             return False
-        away, _ = self.ledger.nearest_way(stroke.middles_mm)
-        return bool(np.median(away) < self.usual_mm)
+        away_mm, _ = self.ledger.nearest_way(stroke.middles_mm)
+        return bool(np.median(away_mm) < usual_mm)
 
-    def _follow(self, stroke: Stroke, number: int) -> Line | None:
+    def _follow(self, stroke: Stroke) -> InkStroke | None:
         """The head's best run along a patch, struck off; None if the head can be put down nowhere on it."""
-        width_mm = self.settings.line_width_mm or stroke.width_mm
-        gap_mm = max(self.settings.gap_mm, ACROSS_WIDTHS * self.usual_mm)
-        attempts = Attempts(
-            self.ledger.left,
-            replace(self.settings, gap_mm=gap_mm),
-            self._longest_mm(stroke),
-            other_turns=False,
-        )
+        run = self._best_run(stroke)
+        if run is None:
+            return None
+        way = self._on_ink(run.positions_mm)
+        if length_mm(way) < LEAST_MM:
+            return None
+        closed = run.ending == "closed" and len(way) == len(run.positions_mm)
+        way = way if closed else led_on(way, self.ledger, self.settings.speed_mm_s)
+        self.ledger.strike_off(way[::THINNED], run.view)
+        return InkStroke(way, closed, run.view.width_mm)
+
+    def _best_run(self, stroke: Stroke) -> Followed | None:
+        """The longest run along a patch from some of its ends and places, or the first that goes far."""
+        gap_mm = max(self.settings.gap_mm, ACROSS_WIDTHS * self.ledger.usual_mm)
+        settings = replace(self.settings, gap_mm=gap_mm)
+        longest_mm = LONGEST * self.ledger.ink_mm + LONGEST_MM
+        attempts = Attempts(self.ledger.left, settings, longest_mm, other_turns=False)
+        view = self.ledger.view(settings.line_width_mm or stroke.width_mm, settings.aperture_mm)
         best: Followed | None = None
-        for stance in self._stances(stroke, width_mm, gap_mm):
-            run = self._run(attempts, stance)
+        for stance in _stances(view, stroke, gap_mm):
+            run = _run(attempts, stance)
             if run is not None and (best is None or run.travel_mm > best.travel_mm):
                 best = run
-            if best is not None and (
-                best.ending == "closed" or best.travel_mm > GOES_FAR * stroke.length_mm
-            ):
+            if best is not None and _is_enough(best, stroke):
                 break
-        if best is None:
-            return None
-        way = self._on_ink(best.positions_mm)
-        if len(way) < 2 * THINNED or lengths_mm(way)[-1] < LEAST_MM:
-            return None
-        closed = best.ending == "closed" and len(way) == len(best.positions_mm)
-        whole = way if closed else self._led_on(way)
-        self.ledger.strike_off(whole[::THINNED], best.view)
-        return Line(
-            whole,
-            "closed" if closed else "ended",
-            best.view.width_mm,
-            float(lengths_mm(whole)[-1]),
-            number=number,
-            ink_mm=stroke.length_mm,
-        )
-
-    def _longest_mm(self, stroke: Stroke) -> float:
-        """How far a run may go before it is going round in circles."""
-        return longest_mm(self.ledger.left, self.usual_mm)
-
-    def _stances(self, stroke: Stroke, width_mm: float, gap_mm: float) -> Iterator[Stance]:
-        """Where the head is put down on a patch: at its open ends, then at its plainest places."""
-        view = self.ledger.view(width_mm, self.settings.aperture_mm)
-        ends = stances_at(view, stroke.ends_mm(), gap_mm)
-        for _, stance in zip(range(ENDS), ends, strict=False):
-            yield stance
-        places = places_of(stroke, None)
-        found = stances(view, places)
-        found.sort(key=plainness, reverse=True)
-        for scored in found[:PLACES]:
-            yield scored.stance
-
-    def _run(self, attempts: Attempts, stance: Stance) -> Followed | None:
-        """A run from a stance; from a place in the middle of an open line from end to end."""
-        try:
-            run = attempts.run(stance)
-            if stance.at_end or run.ending == "closed":
-                return run
-            if run.ending == "ended":
-                back = turned_round(run.positions_mm[-1], run.heading_rad, run.view)
-                other = attempts.run(back)
-            else:
-                other = attempts.run(turned_about(stance))
-        except LineFault:
-            return None
-        return max(run, other, key=lambda some: some.travel_mm)
+        return best
 
     def _on_ink(self, way: Array) -> Array:
-        """A way as far as it runs on ink: it may have gone over a gap in the paper for what was struck off."""
+        """A way as far as it runs on ink.
+
+        The head may have gone across a gap in the paper, which it took for a piece that was struck off.
+        """
         places = way[::THINNED]
-        inked = self.ledger.was_ink(places)
-        if inked.all():
-            return way
-        come_mm = lengths_mm(places)
-        begins = np.flatnonzero(np.diff(np.r_[False, ~inked]) & ~inked)
-        for begin in begins:
-            inked_on = np.flatnonzero(inked[begin:])
-            last = begin + (inked_on[0] if len(inked_on) else len(inked) - 1 - begin)
-            if come_mm[last] - come_mm[begin] > self.settings.gap_mm:
+        inked, come_mm = self.ledger.was_ink(places), lengths_mm(places)
+        edges = np.flatnonzero(np.diff(np.r_[True, inked, True]))
+        for begin, end in edges.reshape(-1, 2):
+            if come_mm[min(end, len(places) - 1)] - come_mm[begin] > self.settings.gap_mm:
                 return way[: max(1, begin - 1) * THINNED + 1]
         return way
 
-    def _led_on(self, way: Array) -> Array:
-        """A way led on, at both its ends, to the middle of a line that was followed before and is met there."""
-        way = self._led_on_from_end(way)
-        return self._led_on_from_end(way[::-1])[::-1]
 
-    def _led_on_from_end(self, way: Array) -> Array:
-        """A way led on, at its end, straight to the middle of the line that it meets."""
-        end = way[-1]
-        reach_mm = MEETS_WIDTHS * self.usual_mm
-        # 1. straight ahead, as the way comes
-        behind = way[np.hypot(*(way - end).T) > self.usual_mm]
-        if not len(behind):
-            return way
-        heading = (end - behind[-1]) / np.hypot(*(end - behind[-1]))
-        steps = np.arange(0.0, reach_mm, 0.1 * self.usual_mm)
-        ahead = end + steps[:, None] * heading
-        away, met = self.ledger.nearest_way(ahead)
-        nearest = int(np.argmin(away))
-        if away[nearest] > 0.5 * self.usual_mm:
-            return way
-        # 2. as long as there was ink
-        there = met[nearest]
-        between = end + np.linspace(0, 1, 12)[:, None] * (there - end)
-        if np.mean(self.ledger.was_ink(between)) < 0.8 or math.dist(end, there) < 1e-6:
-            return way
-        on = ramp.positions_mm(end, there, self.settings.speed_mm_s, rate_hz=MOTION_RATE_HZ)
-        return np.vstack([way, on[1:]])
+def _key(stroke: Stroke) -> Key:
+    """What a patch is known by from round to round: where it is, and how long."""
+    x, y = np.round(stroke.middles_mm.mean(axis=0), 1)
+    return float(x), float(y), round(stroke.length_mm, 1)
 
 
-def all_ink(drawing: Drawing, settings: Settings) -> InkFollowed:
-    """Follow every stretch of line on a drawing."""
-    ledger = Ledger(drawing)
-    sheet = Sheet.of(drawing)
-    usual = float(np.average(sheet.widths_mm, weights=sheet.lengths_mm))
-    rounds = Rounds(ledger, settings, settings.line_width_mm or usual)
-    lines = list(rounds.strokes())
-    rest = ledger.sheet()
-    left_mm = 0.0 if rest is None else float(rest.lengths_mm.sum())
-    return InkFollowed(lines, left_mm, 0 if rest is None else rest.patches.count)
+def _stances(view: View, stroke: Stroke, gap_mm: float) -> Iterator[Stance]:
+    """Where the head is put down on a patch: at its open ends, then at its plainest places."""
+    return chain(
+        islice(stances_at(view, stroke.ends_mm(), gap_mm), ENDS), _plain_stances(view, stroke)
+    )
+
+
+def _plain_stances(view: View, stroke: Stroke) -> Iterator[Stance]:
+    """The plainest stances along a patch, the plainest first."""
+    found = sorted(stances(view, places_of(stroke, None)), key=plainness, reverse=True)
+    for scored in found[:PLACES]:
+        yield scored.stance
+
+
+def _run(attempts: Attempts, stance: Stance) -> Followed | None:
+    """A run from a stance: of a line that does not come round, from end to end or the longer way."""
+    try:
+        run = attempts.run(stance)
+        if stance.at_end or run.ending == "closed":
+            return run
+        if run.ending == "ended":
+            other = attempts.run(turned_round(run.positions_mm[-1], run.heading_rad, run.view))
+        else:
+            other = attempts.run(turned_about(stance))
+    except LineFault:
+        return None
+    return max(run, other, key=lambda some: some.travel_mm)
+
+
+def _is_enough(run: Followed, stroke: Stroke) -> bool:
+    """Whether a run needs no other tried beside it: it comes round, or goes along most of the patch."""
+    return run.ending == "closed" or run.travel_mm > GOES_FAR * stroke.length_mm
