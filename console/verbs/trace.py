@@ -28,8 +28,8 @@ EXAMPLES = """\b
 Examples:
   morfax trace samples/cam.png
   morfax trace scan.png --width 120mm --start 40,62 -o cam.wav --path cam.csv
-  morfax trace samples/bracket.png --lines all --picture bracket-lines.png
-  morfax trace scans/*.png --width 210mm --lines all -o parts/{}.ngc
+  morfax trace samples/bracket.png --lines contours --picture bracket-lines.png
+  morfax trace scans/*.png --width 210mm --lines contours -o parts/{}.ngc
 """
 
 

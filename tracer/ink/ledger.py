@@ -43,13 +43,25 @@ FAINT = 0.25  # darkness: paler places were paper before
 TINY = 1e-9  # so that a sheet of nothing but filled shapes has a width
 
 
+Patch = tuple[float, float, float]  # about where its middle is, and its length, mm
+
+
 class Balance(NamedTuple):
-    """The ink of a sheet, mm of line by its area: followed, left, specks, and the rims of filled shapes."""
+    """The ink of a sheet, mm of line by its area: followed, left, specks, and the rims of filled shapes.
+
+    `lost`: patches on which the head could not be put down, (place X, place Y, length) mm, the longest first.
+    """
 
     followed_mm: float
     left_mm: float
     specks_mm: float
     solid_mm: float
+    lost: tuple[Patch, ...] = ()
+
+    @property
+    def followed_share(self) -> float:
+        """Share of the lines' ink along which strokes run; specks and filled shapes apart."""
+        return self.followed_mm / max(self.followed_mm + self.left_mm, TINY)
 
 
 class Ledger:

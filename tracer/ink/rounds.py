@@ -32,7 +32,7 @@ from morfax.tracer.following.open_ends import stances_at
 from morfax.tracer.following.plain_places import places_of, plainness, stances
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance, turned_round
-from morfax.tracer.ink.ledger import Ledger
+from morfax.tracer.ink.ledger import Ledger, Patch
 from morfax.tracer.ink.meeting import InkStroke, led_on
 from morfax.tracer.sensing.view import View
 
@@ -51,8 +51,6 @@ LONGEST, LONGEST_MM = (
     20.0,
 )  # times all the ink, and this: a longer run is going round in circles
 
-Key = tuple[float, float, float]
-
 
 @dataclass(slots=True)
 class Rounds:
@@ -60,7 +58,7 @@ class Rounds:
 
     ledger: Ledger
     settings: Settings
-    _in_vain: set[Key] = field(
+    _in_vain: set[Patch] = field(
         default_factory=set
     )  # patches on which the head cannot be put down
 
@@ -77,6 +75,15 @@ class Rounds:
                 yield found
             if not followed:
                 return
+
+    def lost(self) -> tuple[Patch, ...]:
+        """The patches on which the head could not be put down and no other run has passed, longest first."""
+        places_mm = np.array([patch[:2] for patch in self._in_vain]).reshape(-1, 2)
+        away_mm, _ = self.ledger.nearest_way(places_mm)
+        left = [
+            p for p, mm in zip(self._in_vain, away_mm, strict=True) if mm > self.ledger.usual_mm
+        ]
+        return tuple(sorted(left, key=lambda patch: -patch[2]))
 
     def _patches(self, sheet: Sheet) -> Iterator[Stroke]:
         """The patches that are to be followed in a round, the longest first."""
@@ -142,7 +149,7 @@ class Rounds:
         return way
 
 
-def _key(stroke: Stroke) -> Key:
+def _key(stroke: Stroke) -> Patch:
     """What a patch is known by from round to round: where it is, and how long."""
     x, y = np.round(stroke.middles_mm.mean(axis=0), 1)
     return float(x), float(y), round(stroke.length_mm, 1)

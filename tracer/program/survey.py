@@ -114,7 +114,7 @@ class Survey:
 def survey(setup: Setup) -> Survey:
     """Look at a sheet without following a line."""
     sheet = setup.sheet
-    contours, _ = selection.plan(sheet, "all")
+    contours, _ = selection.plan(sheet, "contours")
     letters = lettering(sheet)
     # 1. patches that are lines
     crosses_mm = _references_mm(setup)

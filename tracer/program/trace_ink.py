@@ -42,7 +42,8 @@ def trace_ink(
     # 1. strokes, until no ink is left
     ledger = Ledger(Sheet.of(drawing), settings.line_width_mm)
     strokes, come_mm = list[InkStroke](), 0.0
-    for stroke in Rounds(ledger, settings).strokes():
+    rounds = Rounds(ledger, settings)
+    for stroke in rounds.strokes():
         strokes.append(stroke)
         come_mm += length_mm(stroke.way_mm)
         if progress is not None:
@@ -56,7 +57,7 @@ def trace_ink(
     strokes = joined(strokes, ledger, settings.speed_mm_s)
     strokes.sort(key=lambda stroke: -length_mm(stroke.way_mm))
     lines = _in_order([_line(stroke, k) for k, stroke in enumerate(strokes, 1)])
-    balance = ledger.balance()
+    balance = ledger.balance()._replace(lost=rounds.lost())
     return Trace(tuple(lines), operator or Operator(), left_out_mm=balance.left_mm, ink=balance)
 
 
