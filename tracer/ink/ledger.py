@@ -102,6 +102,11 @@ class Ledger:
         self._ways.append(places)
         self._tree = None
 
+    @property
+    def has_ways(self) -> bool:
+        """Whether anything has been struck off."""
+        return bool(self._ways)
+
     def is_left(self, places_mm: Array) -> NDArray[np.bool_]:
         """Which places (n, 2) mm have ink that is left."""
         return np.asarray(_darkness(self.left, places_mm) > LEVEL)

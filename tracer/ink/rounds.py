@@ -3,11 +3,12 @@
 Signals: a ledger and the head's settings in; out strokes, each a run of the head from end to end or round
 about, (n, 2) sheet mm at the motion rate.
 
-    ──────┬──────     round 1   one line of each patch, straight on through crossings; its ink is struck off
-          │           round 2   one line of each patch that is left, and so on
+    ──────┬──────     round 1   lines of each patch, straight on through crossings; their ink is struck off
+          │           round 2   lines of each patch that is left, and so on
 
-In each round the head begins at an open end of a patch if it has one, or else at its plainest place. It goes
-across what has been struck off as it goes across a gap; where the paper was white before, the stroke ends.
+In each round the head begins at the open ends of a patch and at plain places that no run has passed. Of runs
+that go along each other only the longer is kept. The head goes across what has been struck off as it goes
+across a gap; where the paper was white before, the stroke ends.
 
 Source: our own; the patent has one contour to a tape. Questions: a patch on which the head can nowhere be put
 down is left. So are the rims of filled shapes.
@@ -32,20 +33,20 @@ from morfax.tracer.following.open_ends import stances_at
 from morfax.tracer.following.plain_places import places_of, plainness, stances
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance, turned_round
-from morfax.tracer.ink.ledger import Ledger, Patch
+from morfax.tracer.ink.ledger import FRINGE_PX, Ledger, Patch
 from morfax.tracer.ink.meeting import InkStroke, led_on
 from morfax.tracer.sensing.view import View
 
 # All limits below were chosen by trial on drawings of nets.
 ROUNDS = 100
-ACROSS_WIDTHS = 3.0  # a line as wide is crossed at 20 degrees
+ACROSS = 2.9  # widths of a line across which the way is as long, at 20 degrees
+AGAIN_WIDTHS = 0.5  # a place nearer to a way has been passed by it
 LEAST_MM, LEAST_WIDTHS = 1.0, 2.5  # shorter patches are fringes, burrs and specks: the larger
 FRINGE = (
     0.45  # of the usual width: a thinner patch beside a way is what the line's edge has left
 )
 STILL_LEFT = 0.5  # of a patch: less was struck off in this round by a run on another patch
-ENDS, PLACES = 3, 4  # open ends, and plain places, that are tried
-GOES_FAR = 0.5  # of a patch: after a run as long the head is not put down elsewhere
+ENDS, PLACES = 24, 12  # open ends, and plain places, that are tried on a patch
 LONGEST, LONGEST_MM = (
     4.0,
     20.0,
@@ -68,11 +69,10 @@ class Rounds:
             sheet, followed = self.ledger.sheet(), 0
             for stroke in () if sheet is None else self._patches(sheet):
                 found = self._follow(stroke)
-                if found is None:
+                if not found:
                     self._in_vain.add(_key(stroke))
-                    continue
-                followed += 1
-                yield found
+                followed += len(found)
+                yield from found
             if not followed:
                 return
 
@@ -106,34 +106,48 @@ class Rounds:
         away_mm, _ = self.ledger.nearest_way(stroke.middles_mm)
         return bool(np.median(away_mm) < usual_mm)
 
-    def _follow(self, stroke: Stroke) -> InkStroke | None:
-        """The head's best run along a patch, struck off; None if the head can be put down nowhere on it."""
-        run = self._best_run(stroke)
-        if run is None:
-            return None
-        way = self._on_ink(run.positions_mm)
-        if length_mm(way) < LEAST_MM:
-            return None
-        closed = run.ending == "closed" and len(way) == len(run.positions_mm)
-        way = way if closed else led_on(way, self.ledger, self.settings.speed_mm_s)
-        self.ledger.strike_off(way[::THINNED], run.view)
-        return InkStroke(way, closed, run.view.width_mm)
+    def _follow(self, stroke: Stroke) -> list[InkStroke]:
+        """The lines of a patch that the head tells apart, struck off; none if it cannot be put down on it."""
+        made = list[InkStroke]()
+        for run in self._runs(stroke):
+            way = self._on_ink(run.positions_mm)
+            if length_mm(way) < LEAST_MM or self._goes_again(way):
+                continue
+            closed = run.ending == "closed" and len(way) == len(run.positions_mm)
+            way = way if closed else led_on(way, self.ledger, self.settings.speed_mm_s)
+            self.ledger.strike_off(way[::THINNED], run.view)
+            made.append(InkStroke(way, closed, run.view.width_mm))
+        return made
 
-    def _best_run(self, stroke: Stroke) -> Followed | None:
-        """The longest run along a patch from some of its ends and places, or the first that goes far."""
-        gap_mm = max(self.settings.gap_mm, ACROSS_WIDTHS * self.ledger.usual_mm)
+    def _runs(self, stroke: Stroke) -> list[Followed]:
+        """Runs along a patch, from its ends and from places that none has passed; closed ones, then the longest."""
+        gap_mm = max(self.settings.gap_mm, self._across_mm if self.ledger.has_ways else 0.0)
         settings = replace(self.settings, gap_mm=gap_mm)
         longest_mm = LONGEST * self.ledger.ink_mm + LONGEST_MM
         attempts = Attempts(self.ledger.left, settings, longest_mm, other_turns=False)
         view = self.ledger.view(settings.line_width_mm or stroke.width_mm, settings.aperture_mm)
-        best: Followed | None = None
+        runs = list[Followed]()
         for stance in _stances(view, stroke, gap_mm):
+            if any(_passes(run, stance) for run in runs):
+                continue
             run = _run(attempts, stance)
-            if run is not None and (best is None or run.travel_mm > best.travel_mm):
-                best = run
-            if best is not None and _is_enough(best, stroke):
-                break
-        return best
+            if run is not None:
+                runs.append(run)
+        return sorted(runs, key=lambda run: (run.ending != "closed", -run.travel_mm))
+
+    @property
+    def _across_mm(self) -> float:
+        """How far it is at most across a line that has been struck off."""
+        struck_mm = self.ledger.usual_mm + 2 * FRINGE_PX * self.ledger.drawing.pitch_mm
+        return ACROSS * struck_mm
+
+    def _goes_again(self, way: Array) -> bool:
+        """Whether a way goes along what has been followed for longer than it takes to cross it."""
+        places = way[::THINNED]
+        away_mm, _ = self.ledger.nearest_way(places)
+        come_mm, again = lengths_mm(places), away_mm < AGAIN_WIDTHS * self.ledger.usual_mm
+        edges = np.flatnonzero(np.diff(np.r_[False, again, False])).reshape(-1, 2)
+        return any(come_mm[b - 1] - come_mm[a] > self._across_mm for a, b in edges)
 
     def _on_ink(self, way: Array) -> Array:
         """A way as far as it runs on ink.
@@ -184,6 +198,7 @@ def _run(attempts: Attempts, stance: Stance) -> Followed | None:
     return max(run, other, key=lambda some: some.travel_mm)
 
 
-def _is_enough(run: Followed, stroke: Stroke) -> bool:
-    """Whether a run needs no other tried beside it: it comes round, or goes along most of the patch."""
-    return run.ending == "closed" or run.travel_mm > GOES_FAR * stroke.length_mm
+def _passes(run: Followed, stance: Stance) -> bool:
+    """Whether a run has passed a stance."""
+    away_mm = np.hypot(*(run.positions_mm[::THINNED] - stance.place_mm).T)
+    return bool(away_mm.min() < AGAIN_WIDTHS * stance.view.width_mm)
