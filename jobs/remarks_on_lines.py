@@ -1,5 +1,5 @@
-"""Remarks on what is on a drawing beside its table: which numbers are uncertain, what --lines contours leaves out,
-and what it takes though that may not be meant.
+"""Remarks on what is on a drawing beside its table: which numbers are uncertain, what --lines contours leaves
+out, and what it takes though that may not be meant.
 
 Signals in: a survey. Signals out: texts, each with what to do.
 """

@@ -129,7 +129,7 @@ def test_one_line_of_several_that_cross_is_told_to_be_one_of_several(
     Image.fromarray(grey).save("rings.png", dpi=DPI)
     one = morfax("trace", "rings.png", "-o", "rings.csv")
     said = re.search(
-        r"about (\d+) mm of ink that is joined to the line was not followed: --lines contours",
+        r"about (\d+) mm of ink that is joined to the line was not followed: --lines all",
         one.err,
     )
     assert said is not None and int(said[1]) == pytest.approx(2 * 2 * np.pi * 10.2, rel=0.1)
@@ -226,7 +226,10 @@ def test_lines_that_there_are_not_are_refused(morfax: Morfax, here: Path) -> Non
     answer = morfax("trace", bracket, "--lines", "1,3")
     assert answer.exit_code == 4 and "no line 3: the drawing has lines 1, 2" in answer.fault
     answer = morfax("trace", bracket, "--lines", "inner")
-    assert answer.exit_code == 2 and "give all, outer, or numbers such as 1,3" in answer.fault
+    assert (
+        answer.exit_code == 2
+        and "give all, contours, outer, or numbers such as 1,3" in answer.fault
+    )
     answer = morfax("trace", bracket, "--lines", "contours", "--start", "1,1")
     assert answer.exit_code == 2 and "--start picks one line, --lines several" in answer.fault
     assert list(here.iterdir()) == []

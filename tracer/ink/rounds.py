@@ -120,7 +120,7 @@ class Rounds:
         return made
 
     def _runs(self, stroke: Stroke) -> list[Followed]:
-        """Runs along a patch, from its ends and from places that none has passed; closed ones, then the longest."""
+        """Runs along a patch, from its ends and from places that none has passed; closed ones first."""
         gap_mm = max(self.settings.gap_mm, self._across_mm if self.ledger.has_ways else 0.0)
         settings = replace(self.settings, gap_mm=gap_mm)
         longest_mm = LONGEST * self.ledger.ink_mm + LONGEST_MM
