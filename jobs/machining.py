@@ -15,7 +15,8 @@ from morfax.motion.faults import CardFault
 
 if TYPE_CHECKING:
     from morfax.jobs.listener import Listener
-    from morfax.jobs.settings import ToolSettings
+    from morfax.jobs.recording import RecordingUnit
+    from morfax.jobs.settings import ToolSettings, TraceSettings
     from morfax.recorder.gcode.machine import Machine
     from morfax.tracer.operator.card import Card
 
@@ -66,16 +67,14 @@ def _numbers(values: tuple[str, ...]) -> dict[str, float]:
 
 
 def tell_what_is_lost(
-    card: Card,
-    tool: ToolSettings,
-    program: FilePath,
-    machine: Machine | None,
-    listener: Listener,
+    settings: TraceSettings, unit: RecordingUnit, program: FilePath, listener: Listener
 ) -> None:
     """Warn, before anything moves, of what the card or an option asks for and the medium cannot hold.
 
     Raises WrongUse for tabs and ramps where there is no Z.
     """
+    machine = unit.chosen(program) if medium.has_machine(program) else None
+    card, tool = settings.card(), settings.tool
     if machine is None and program.suffix.lower() in medium.DRAWN:
         refuse_without_z(card, f"a drawing ({program.suffix})")
     if machine is not None and not machine.z:
