@@ -176,7 +176,7 @@ def test_a_plotter_file_has_its_speed_and_force_and_is_played(
         (
             "a.dxf",
             (),
-            "a.dxf holds what is cut, and no depth, pecks: set these where it is read",
+            "a.dxf holds what is cut, and no depth, pecks, dwells: set these where it is read",
         ),
         ("a.ngc", (), ""),
     ],
