@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import TapeFault
-from morfax.motion.files import for_soundfile
 
 WINDOW_FRAMES = 4096  # 85 ms at 48 kHz: bins of 12 Hz
 BLOCK_FRAMES = 16 * WINDOW_FRAMES
@@ -48,7 +47,7 @@ def listen(file: FilePath, fault: TapeFault | None) -> tuple[dict[str, Any], lis
     import soundfile
 
     try:
-        with soundfile.SoundFile(for_soundfile(file)) as sound:
+        with soundfile.SoundFile(file) as sound:
             kind = {"kind": f"{sound.format} {sound.subtype}", "tracks": sound.channels}
             blocks = sound.blocks(BLOCK_FRAMES, dtype="float32", always_2d=True)
             carriers = _carriers(blocks, sound.samplerate, sound.channels)

@@ -149,13 +149,11 @@ class Playing:
         if order := getattr(playback, "found_order", None):
             tracks = ",".join(map(str, order))
             listener.warning(
-                f"{self.file.name} has its tracks in another order; its end tells that it is --tracks "
-                f"{tracks}"
+                f"{self.file.name} has its tracks in another order; its check signal or its end tells that "
+                f"it is --tracks {tracks}"
             )
-        for note in playback.notes:
-            listener.note(note)
         met: list[Fault] = []
-        motion = _until_fault(playback, met)
+        motion = _until_fault(_noting(playback, listener), met)
         what = f"playing {self.file.name}"
         return playback, watched(motion, listener, what, playback.duration_s), met
 
@@ -215,6 +213,18 @@ def _whole(stream: Iterable[Motion]) -> Iterator[Path]:
     for block in stream:
         if len(block.positions_mm):
             yield Path(block.times_s, block.positions_mm, block.axes)
+
+
+def _noting(playback: Playback, listener: Listener) -> Iterator[Motion]:
+    """The motion; the notes on the program come before it, or when its first block is read."""
+    noted = playback.notes
+    for note in noted:
+        listener.note(note)
+    for block in playback:
+        for note in playback.notes[len(noted) :]:
+            listener.note(note)
+        noted = playback.notes
+        yield block
 
 
 def _until_fault(stream: Iterable[Motion], met: list[Fault]) -> Iterator[Motion]:

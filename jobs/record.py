@@ -56,6 +56,10 @@ class RecordJob:
         settings = self._recorder_settings(program)
         outlines.check_unit(self.drawn_unit, self.source)
         feed_mm_s = self.unit.feed_mm_s or FEED_MM_S
+        if "fmt" in settings and not settings["fmt"].checked and not self.unit.plain:
+            listener.note(
+                f"a reference of {self.reference_hz:g} Hz has no room for the check signal: the tape is bare"
+            )
         read = read_or_play(self.source, ByHand(), listener, feed_mm_s, self.drawn_unit)
         unit = self.unit.at(of_path_mm(self.zero, read, self.unit.placement))
         placed = unit.placement.path(read)

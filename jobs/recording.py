@@ -33,6 +33,7 @@ class RecordingUnit:
     """
 
     pickup: str | None = None
+    plain: bool = False  # a tape of bare tracks, without a check signal
     machine: str | None = None  # name of a built-in one, or a .toml file
     feed_mm_s: float | None = None  # of the cut
     plunge_mm_s: float | None = None  # of Z into the work
@@ -67,6 +68,10 @@ class RecordingUnit:
         if self.pickup is not None and (program is None or not medium.is_tape(program)):
             raise WrongUse(
                 f"--pickup is for tapes, {', '.join(medium.TAPES)}; give -o such a name, or leave it out"
+            )
+        if self.plain and (program is None or not medium.is_tape(program)):
+            raise WrongUse(
+                f"--plain is for tapes, {', '.join(medium.TAPES)}; give -o such a name, or leave it out"
             )
         self._check_fit(program)
         if program is not None and medium.has_machine(program):
@@ -160,7 +165,8 @@ class RecordingUnit:
         pickup = self.pickup or pickups.DEFAULT_PICK_UP
         own = pickups.PICK_UPS[pickup].cycles_per_mm
         density = own if cycles_per_mm is None else cycles_per_mm
-        return TapeFormat(pickup=pickup, cycles_per_mm=density, **entries)
+        bare = TapeFormat(pickup=pickup, cycles_per_mm=density, **entries)
+        return bare if self.plain or not bare.can_be_checked else replace(bare, checked=True)
 
     def figures(self) -> dict[str, Any]:
         """What was set."""

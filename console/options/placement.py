@@ -31,6 +31,12 @@ def unit_options(verb: Callable[..., Any]) -> Callable[..., Any]:
     )
     @option(
         GROUP,
+        "--plain",
+        is_flag=True,
+        help="Record a tape of bare tracks, without the check signal by which it vouches for itself.",
+    )
+    @option(
+        GROUP,
         "--machine",
         help="The machine that G-code or a plotter file is for: a name that `morfax machines` lists, or a "
         ".toml file of your own.  [default: linuxcnc; hpgl for .plt]",

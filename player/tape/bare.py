@@ -19,12 +19,15 @@ only; one that starts above it and never comes down makes nothing, whichever way
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
-from morfax.motion.faults import TapeFault
+from morfax.motion.arrays import Array
+from morfax.motion.faults import Fault, TapeFault
 from morfax.motion.motion import IN_WORK_BELOW_MM
+from morfax.player.tape.discriminator import Phases
 from morfax.recorder.tape.format import TapeFormat
 from morfax.recorder.tape.own_motion import OWN_CYCLES, STATED_CYCLES, OwnMotion
+from morfax.recorder.tape.tape import Stored
 
 TOOL = "z"
 NOT_VOUCHED = (
@@ -33,13 +36,40 @@ NOT_VOUCHED = (
 )
 
 
-def demand_own_motion(
-    own: OwnMotion, fmt: TapeFormat, start_mm: Sequence[float], time_s: float
-) -> None:
-    """Raise TapeFault for tracks that may be copies, or a tape that runs backwards."""
-    _demand_moving(own, fmt, time_s)
-    _demand_apart(own, fmt, time_s)
-    _demand_forwards(own, fmt, start_mm, time_s)
+class BareTape:
+    """What warrants the rows of a bare tape: nothing but its own motion, at the end."""
+
+    is_checked = False
+    zero_cycles: Array | None = None
+
+    def __init__(self, fmt: TapeFormat, start_mm: Array) -> None:
+        self._format, self._start_mm = fmt, start_mm
+        self._own = OwnMotion(len(fmt.axes))
+
+    def hear(self, frames: Stored) -> None:
+        """Take the next frames of the tape, in which nothing is to be heard."""
+
+    def begin(self, rows: Phases) -> Phases:
+        """The first rows of the tape, as they are."""
+        return rows
+
+    def feed(
+        self,
+        rows: Phases,
+        fault: tuple[int, Fault] | None,
+        stands_mm: Callable[[], Sequence[float]],
+        *,
+        last: bool = False,
+    ) -> tuple[Phases, tuple[int, Fault] | None]:
+        """Take the next rows and the fault behind them; give them on as they are."""
+        self._own.feed(rows.cycles)
+        return rows, fault
+
+    def end(self, time_s: float) -> None:
+        """Raise TapeFault for tracks that may be copies, or a tape that runs backwards."""
+        _demand_moving(self._own, self._format, time_s)
+        _demand_apart(self._own, self._format, time_s)
+        _demand_forwards(self._own, self._format, self._start_mm.tolist(), time_s)
 
 
 def _demand_moving(own: OwnMotion, fmt: TapeFormat, time_s: float) -> None:

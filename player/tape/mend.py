@@ -24,7 +24,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -96,15 +96,15 @@ def mend(
             "returns to its start, say so "
             f"(--closed)"
         )
-    reader.told = {}
+    reader.told, reader.trusts_counts = {}, False
     missing = (np.array(fmt.end_mm) - _end_mm(playback)) * fmt.cycles_per_mm
     doubtful = dict(reader.doubtful)
-    reader.told = _lost(doubtful, missing, fmt)
+    reader.told, reader.trusts_counts = _lost(doubtful, missing, fmt), True
     total_s = playback.duration_s
     recording = record(
         _motion(playback),
         mended,
-        fmt,
+        replace(fmt, checked=reader.is_checked),
         None if progress is None else lambda done_s, _: progress(done_s, total_s),
     )
     mends = tuple(_mend(gap, doubtful[gap], reader.told[gap], fmt) for gap in sorted(doubtful))

@@ -182,7 +182,7 @@ class Playback(Supervised):
         self.end_mm: Array = self.start_mm.copy()
         self.end_error_mm: Array | None = None
         self.found_order: tuple[int, ...] | None = None
-        self.notes = (NOT_VOUCHED,)
+        self.notes: tuple[str, ...] = ()  # a bare tape gives one when its first block is read
         self.conditions = [SOUND] * len(fmt.axes)
         self.limit = following_limit(
             self.settings, fmt.mm_per_cycle, self.rate_hz * self._steps
@@ -210,6 +210,7 @@ class Playback(Supervised):
         rest_mm = self.start_mm - self._zero_mm  # where the screws stood before that
         monitor, self.end_error_mm = self.supervise(fmt.axes, self.rate_hz), None
         for phases, bearings, gap in self.reader.read(lambda: self.end_mm.tolist()):
+            self.notes = () if self.reader.is_checked else (NOT_VOUCHED,)
             found = (
                 bearings.first_fault(phases, fmt.motion_rate_hz, self.end_mm.tolist()) or gap
             )

@@ -1,8 +1,9 @@
 """The reader: all that stands between a tape and the drives, read through from its start or from a place on
 it.
 
-    tape ──► discriminator ──► levels evened ──► gaps bridged ──► watch ──► rows that are certain, or a fault
-                  └── first block ──► bearings: zero, levels, reference
+    tape ─┬► discriminator ──► levels evened ──► gaps bridged ──► warrant ──► watch ──► certain rows, a fault
+          │       └── first block ──► bearings: zero, levels, reference      │
+          └► check signal, where there is one ───────────────────────────────┘
 
 Signals in: the tape's frames in blocks. Signals out: rows of phases at the motion rate, the bearings they
 count from, and the row of the block from which nothing is certain, with its fault. One block of tape is held
@@ -24,12 +25,13 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import Fault, TapeFault
-from morfax.player.tape.bare import demand_own_motion
+from morfax.player.tape.bare import BareTape
+from morfax.player.tape.check_reader import read_ahead, read_check
 from morfax.player.tape.discriminator import Discriminator, Phases, discriminate
 from morfax.player.tape.dropouts import Bridge, Gaps, under_way
 from morfax.player.tape.standstill import STANDSTILL_S, Bearings, evened, take_bearings
+from morfax.player.tape.vouching import Vouching
 from morfax.player.tape.watch import Watch, demand_apart
-from morfax.recorder.tape.own_motion import OwnMotion
 from morfax.recorder.tape.pipe import Pipe
 from morfax.recorder.tape.tape import Stored, Tape, TapeFormat, full_scale
 
@@ -60,6 +62,9 @@ class Reader:
         self.bridged: dict[tuple[float, str], float] = {}
         self.told: dict[tuple[int, int], int] | None = None
         self.doubtful: dict[tuple[int, int], Bridge] = {}
+        self.is_checked = False  # whether the tape has a check signal
+        # whether a count that differs from what a track says is a fault; mending counts anew
+        self.trusts_counts = True
 
     def read(self, stands_mm: Callable[[], Sequence[float]]) -> Iterator[Read]:
         """Rows, bearings, and the first uncertain row of a block; `stands_mm`: the machine's place.
@@ -71,60 +76,74 @@ class Reader:
             fmt.sample_rate_hz, fmt.reference_hz, fmt.samples_per_motion, fmt.tracks
         )
         first_row = round(self._resume_at_s * rate_hz)
+        # rows that the filter needs
+        lead = min(first_row, discriminator.filter_frames // fmt.samples_per_motion)
         with self._open_tape() as tape:
-            # rows that the filter needs
-            lead = min(first_row, discriminator.filter_frames // fmt.samples_per_motion)
-            blocks = iter(
-                tape.stored_blocks(BLOCK_FRAMES, (first_row - lead) * fmt.samples_per_motion)
+            # 1. the first blocks tell whether the tape has a check signal
+            blocks = tape.stored_blocks(
+                BLOCK_FRAMES, (first_row - lead) * fmt.samples_per_motion
             )
-            first = next(blocks, np.zeros((0, fmt.tracks), np.float32))
-            held = [first]
-
-            def noted() -> Iterator[Stored]:
-                for block in chain([held[0]], blocks):
-                    held[0] = block
-                    yield block
-
+            ahead = read_ahead(blocks, fmt)
+            warrant = self._warrant(ahead, first_row - lead)
+            held: list[Stored] = []
             rows = (
                 evened(rows.moved(first_row - lead), fmt)
-                for rows in discriminate(noted(), discriminator)
+                for rows in discriminate(_noted(ahead, blocks, warrant, held), discriminator)
             )
+            # 2. the first rows tell where the axes stand
             start = next(rows, None)
             if start is None:
                 raise _too_short(tape.frames, discriminator.filter_frames)
             start = start.cut(lead if first_row else 0, len(start))
-            bearings = self._bearings(full_scale(first), start, discriminator)
+            still = warrant.begin(start)
+            bearings = self._bearings(full_scale(held[-1]), start, still, discriminator)
+            warrant.zero_cycles = None if first_row else bearings.zero_cycles
             gaps, watch = self._gaps(discriminator, bearings), Watch(fmt, bearings)
-            own = OwnMotion(len(fmt.axes))
+            # a check signal says which track is which, and how late
+            watch.takes_skew = not warrant.is_checked
+            watched = not (first_row or warrant.is_checked)
+            # 3. row by row, to the end
             for phases in chain([start], rows):
-                out, fault = gaps.feed(phases)
-                own.feed(out.cycles)
-                wrong = (
-                    None if first_row else watch.wrong_reference(held[0], self._time_s(phases))
-                )
+                out, fault = warrant.feed(*gaps.feed(phases), stands_mm)
+                time_s = self._time_s(phases)
+                wrong = watch.wrong_reference(held[-1], time_s) if watched else None
                 if wrong is not None:
                     raise wrong
                 yield out, bearings, watch.first_fault(out, stands_mm()) or fault
-            out, fault = gaps.feed(phases.cut(len(phases), len(phases)), last=True)
+            rest = gaps.feed(phases.cut(len(phases), len(phases)), last=True)
+            out, fault = warrant.feed(*rest, stands_mm, last=True)
             yield out, bearings, fault
             if first_row:
                 return  # what was before is not known
-            own.feed(out.cycles)
-            ended_s = self._time_s(phases)
-            doubt = watch.doubtful_reference(ended_s)
+            doubt = watch.doubtful_reference(self._time_s(phases)) if watched else None
             if doubt is not None:
                 raise doubt
-            demand_own_motion(own, fmt, self._start_mm.tolist(), ended_s)
+            warrant.end(self._time_s(phases))
+
+    def _warrant(self, ahead: list[Stored], first_row: int) -> Vouching | BareTape:
+        """What vouches for the rows of this tape: its check signal, or what can be found out without."""
+        check = read_check(ahead, self._format, first_row)
+        self.is_checked = check is not None
+        if check is None:
+            return BareTape(self._format, self._start_mm)
+        return Vouching(self._format, check, trusts_counts=self.trusts_counts)
 
     def _bearings(
-        self, first: NDArray[np.float32], start: Phases, discriminator: Discriminator
+        self,
+        first: NDArray[np.float32],
+        start: Phases,
+        still: Phases,
+        discriminator: Discriminator,
     ) -> Bearings:
-        """The bearings from the first block; on a resumed tape the zero is the machine's stated place."""
+        """The bearings from the first block; on a resumed tape the zero is the machine's stated place.
+
+        `still`: the first rows without the delays of their tracks.
+        """
         fmt = self._format
         if self._resume_at_s:
             places = under_way(start, discriminator)
             return replace(take_bearings(first, start, fmt), zero_cycles=places)
-        bearings = take_bearings(first, start, fmt)
+        bearings = take_bearings(first, still, fmt)
         demand_apart(
             first[: round(STANDSTILL_S * fmt.sample_rate_hz)], bearings.levels, fmt.axes
         )
@@ -155,6 +174,22 @@ class Reader:
     def _time_s(self, phases: Phases) -> float:
         """Tape time after some rows, s."""
         return (phases.first_row + len(phases)) / self._format.motion_rate_hz
+
+
+def _noted(
+    ahead: list[Stored],
+    blocks: Iterator[Stored],
+    warrant: Vouching | BareTape,
+    held: list[Stored],
+) -> Iterator[Stored]:
+    """All blocks of the tape; the last one is held, and the check signal is read from those not yet read."""
+    for block in ahead or [np.zeros((0, 1), np.float32)]:
+        held[:] = [block]
+        yield block
+    for block in blocks:
+        warrant.hear(block)
+        held[:] = [block]
+        yield block
 
 
 def _too_short(frames: int, filter_frames: int) -> TapeFault:

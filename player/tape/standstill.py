@@ -53,6 +53,7 @@ UNSTEADY_CYCLES = 0.009
 REFERENCE_BAND = 0.1  # a tape's speed may be this much off
 # half of the half cycle at which a phase would be counted as another turn
 SURPRISE_CYCLES = 0.25
+FEWEST_FRAMES = 8  # of which a spectrum has a peak between two other lines
 SPECTRUM_FRAMES = 16384  # 0.34 s at 48 kHz: lines of 2.9 Hz
 
 Float32s = NDArray[np.float32]
@@ -185,6 +186,8 @@ def evened(phases: Phases, fmt: TapeFormat) -> Phases:
 def strongest_hz(samples: Float32s, sample_rate_hz: float) -> float:
     """Frequency of the strongest tone in the first samples, true to a tenth of a spectral line, Hz."""
     samples = samples[:SPECTRUM_FRAMES]
+    if len(samples) < FEWEST_FRAMES or not np.isfinite(samples).all():
+        return 0.0
     spectrum = np.abs(np.fft.rfft((samples - samples.mean()) * np.hanning(len(samples))))
     peak = min(max(int(np.argmax(spectrum)), 1), len(spectrum) - 2)
     left, middle, right = np.log(spectrum[peak - 1 : peak + 2] + 1e-30)

@@ -4,9 +4,10 @@ Signals in: the tape's first seconds, until something moves; where the reference
 another track, its phases to the end. Out: the order of the tracks, where it is certain; a fault, where the
 reference is elsewhere and the rest is not certain; nothing, where track 1 may be the reference.
 
-The reference is the track that stands when the others move (watch.py). Which of the others is X, Y or Z is
-not to be seen on them: only if the tape states an end that differs from its start on some axes, and just one
-order of the tracks ends there on all, is it known.
+With a check signal each track says which it is. On a bare tape, the reference is the track that stands when
+the others move (watch.py). Which of the others is X, Y or Z is not to be seen on them: only if the tape
+states an end that differs from its start on some axes, and just one order of the tracks ends there on all, is
+it known.
 
 Source: patent ES 361967, figure 5; the patent's tracks lie in the order in which the tape is wired.
 Questions: X and Y in each other's places make a mirror image, so an order that is only likely is not taken.
@@ -20,6 +21,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import TapeFault
+from morfax.player.tape.check_reader import read_ahead, read_check
 from morfax.player.tape.discriminator import Discriminator, discriminate
 from morfax.player.tape.standstill import Bearings, strongest_hz, take_bearings
 from morfax.player.tape.watch import Watch
@@ -35,6 +37,9 @@ MOST_AXES = 6  # whose orders are gone through
 def found_order(tape: Tape) -> tuple[int, ...] | None:
     """The tracks with reference, X, Y … if in another order than these; raises TapeFault if unknown."""
     fmt = tape.format
+    check = read_check(read_ahead(tape.stored_blocks(), fmt), fmt)
+    if check is not None:
+        return _told_order(check.tracks)
     watch: Watch | None = None
     time_s = 0.0
     for block in tape.stored_blocks():
@@ -50,6 +55,14 @@ def found_order(tape: Tape) -> tuple[int, ...] | None:
         if watch.reference_is_steady or time_s > SEARCHED_S:
             return None
     return None
+
+
+def _told_order(says: list[int | None]) -> tuple[int, ...] | None:
+    """The order that the tracks say; None if it is the usual one, or two say the same: later a fault."""
+    usual = list(range(len(says)))
+    if says == usual or any(track not in says for track in usual):
+        return None
+    return tuple(says.index(track) + 1 for track in usual)
 
 
 def _demand_tape(tape: Tape) -> None:

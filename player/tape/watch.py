@@ -54,6 +54,7 @@ class Watch:
         re, im = translating_taps(fmt.sample_rate_hz, fmt.reference_hz, fmt.samples_per_motion)
         self._taps = re.astype(np.float64) + 1j * im
         self._still_hz = bearings.reference_hz
+        self.takes_skew = True  # False: the check signal tells it, and it is taken out
         self._sums, self._apart, self._moments = np.zeros(fmt.tracks), np.zeros(fmt.tracks), 0
         # mean square of a frequency less that of track 1, at standstill
         self._noise: Array | None = None
@@ -142,7 +143,9 @@ class Watch:
 
     def skewed(self, phases: Phases, positions_mm: Sequence[float]) -> tuple[int, Fault] | None:
         """The first row with an axis too fast for the skew of its track, and the fault."""
-        if len(phases) < 2 or not self._format.dwell_s:  # another's tape may start at any phase
+        if (
+            not self.takes_skew or len(phases) < 2 or not self._format.dwell_s
+        ):  # another's tape may start at any phase
             return None
         offset = np.abs(self._bearings.zero_cycles - np.round(self._bearings.zero_cycles))
         skew_s = np.minimum(offset, np.abs(0.5 - offset)) / self._bearings.reference_hz

@@ -21,7 +21,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, field, fields
 from typing import Any, TypeGuard
 
 from morfax.motion.faults import TapeFault
@@ -32,6 +32,8 @@ VERSION = 3  # the latest
 _NEW_ENTRIES = {"pickup": 2, "still": 3, "alike": 3}  # the first version that has it
 LARGEST_TEXT_BYTES = 2000  # libsndfile 1.2 reads no text chunk of a WAV from 2048 bytes on
 LARGEST_DEVIATION = 1.0 / 3.0  # of the reference
+LEAST_CHECKED_HZ = 5000.0  # of the reference: a frame of the check signal is then 0.58 s
+CHECK_SHARE = 0.2  # of the carrier: the amplitude of the check signal, 14 dB down
 _MOST_AXES = 15  # with the reference sixteen tracks; chosen here
 
 _AGAIN = "record the tape again"
@@ -41,7 +43,8 @@ _AGAIN = "record the tape again"
 class TapeFormat:
     """Format of a tape; raises ValueError if it cannot be. `level`: amplitude of a carrier, full scale 1.
 
-    `still`: axes that are meant to stand from start to end; `alike`: axes that are meant to run alike.
+    `still`: axes that are meant to stand from start to end; `alike`: axes that are meant to run alike;
+    `checked`: whether a check signal is recorded.
 
     Without `start_mm` the start is zero on all axes; `end_mm` is None where it is not known. The version is
     the lowest that can say it.
@@ -60,17 +63,25 @@ class TapeFormat:
     pickup: str = DEFAULT_PICK_UP
     still: tuple[str, ...] = ()
     alike: tuple[str, ...] = ()
+    # the check signal is recorded; the text does not say so, the tracks do
+    checked: bool = field(default=False, compare=False)
 
     def __post_init__(self) -> None:
         _check_numbers(self)
         _check_axes(self)
         _demand(self.pickup in PICK_UPS, "pickup", self.pickup, f"one of {', '.join(PICK_UPS)}")
-        most = 1 / self.sensor.largest
+        most = 1 / (self.sensor.largest + CHECK_SHARE * self.checked)
         _demand(
             self.level <= most,
             "level",
             self.level,
             f"at most {most:.3g}, where a {self.pickup} reaches full scale",
+        )
+        _demand(
+            self.can_be_checked or not self.checked,
+            "reference_hz",
+            self.reference_hz,
+            f"at least {LEAST_CHECKED_HZ:g} Hz for a check signal; record a lower one bare (--plain)",
         )
         for name in ("still", "alike"):
             _check_some_axes(self, name)
@@ -86,6 +97,11 @@ class TapeFormat:
             self.reference_hz,
             f"so low that a third more is below half the sample rate of {self.sample_rate_hz} Hz",
         )
+
+    @property
+    def can_be_checked(self) -> bool:
+        """Whether the reference leaves room for the check signal."""
+        return self.reference_hz >= LEAST_CHECKED_HZ
 
     @property
     def tracks(self) -> int:
@@ -200,7 +216,7 @@ def _entries(version: object) -> set[str]:
     number = version if _is_number(version) else 1
     return {
         field.name for field in fields(TapeFormat) if _NEW_ENTRIES.get(field.name, 1) <= number
-    }
+    } - {"checked"}
 
 
 def _check_numbers(fmt: TapeFormat) -> None:

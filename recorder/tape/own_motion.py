@@ -43,12 +43,14 @@ class OwnMotion:
             return
         if self._first is None:
             self._first = cycles[0].copy()
-        cycles = cycles - self._first
-        self._low = np.minimum(self._low, cycles.min(axis=0))
-        self._high = np.maximum(self._high, cycles.max(axis=0))
+        columns = cycles.T
+        for axis, column in enumerate(columns):
+            place = self._first[axis]
+            self._low[axis] = min(self._low[axis], column.min() - place)
+            self._high[axis] = max(self._high[axis], column.max() - place)
         open_ = np.flatnonzero(self._apart_high - self._apart_low < STATED_CYCLES)
         for pair in open_.tolist():
-            apart = cycles[:, self._one[pair]] - cycles[:, self._other[pair]]
+            apart = columns[self._one[pair]] - columns[self._other[pair]]
             self._apart_low[pair] = min(self._apart_low[pair], float(apart.min()))
             self._apart_high[pair] = max(self._apart_high[pair], float(apart.max()))
 

@@ -31,6 +31,7 @@ from morfax.motion.files import disk_full_fault, written_beside
 from morfax.motion.motion import AXES, Motion, Path
 from morfax.recorder.report import Written
 from morfax.recorder.tape.carrier import Carrier, Frames
+from morfax.recorder.tape.check_signal import CheckWriter
 from morfax.recorder.tape.format import LARGEST_TEXT_BYTES, TapeFormat
 from morfax.recorder.tape.own_motion import OwnMotion
 from morfax.recorder.tape.riff import make_plain, replace_text
@@ -77,13 +78,13 @@ def record(
     """Record a motion as a tape: .wav (RF64 inside from 4 GiB on), .rf64, .w64, .flac or .aiff.
 
     Start and end in `fmt` are those of the motion, whatever is given; without `fmt` it is the usual one for
-    its axes. `progress(done_s, total_s)` is called after each block; the total is None where a stream does
-    not tell. Raises MotionFault for a motion that is empty, of another rate, not finite or too fast, and
-    FileFault; nothing is left under the name then.
+    its axes, with the check signal. `progress(done_s, total_s)` is called after each block; the total is None
+    where a stream does not tell. Raises MotionFault for a motion that is empty, of another rate, not finite
+    or too fast, and FileFault; nothing is left under the name then.
     """
     if fmt is None:
         stream, axes = _axes_of(stream)
-        fmt = TapeFormat(axes=axes)
+        fmt = TapeFormat(axes=axes, checked=True)
     kind = medium(FilePath(file), sample)
     blocks = _blocks(stream, fmt)
     first = next(blocks, None)
@@ -125,23 +126,41 @@ class _Take:
         self.last_mm = first_mm
         self.largest_speed_mm_s = np.zeros(len(first_mm))
         self.own = OwnMotion(len(first_mm))
+        self._first_mm = first_mm
+        self._check = CheckWriter(fmt) if fmt.checked else None
 
     def frames(self, blocks: Iterable[Array]) -> Iterator[Frames]:
         """All frames of the tape, standstill included."""
         yield from self._standstill()
         for positions in blocks:
             self._gauge(positions)
-            yield self._counted(self._carrier.frames(positions))
+            yield from self._laid(positions)
             self._tell()
         yield from self._standstill()
-        yield self._counted(self._carrier.rest())
+        yield from self._checked(self._counted(self._carrier.rest()))
+        if self._check is not None:
+            yield from self._check.rest()
 
     def _standstill(self) -> Iterator[Frames]:
         """The frames of a standstill where the screws are."""
         samples = _dwell_samples(self._format)
         for first in range(0, samples, _BLOCK_SAMPLES):
             still = np.tile(self.last_mm, (min(_BLOCK_SAMPLES, samples - first), 1))
-            yield self._counted(self._carrier.frames(still))
+            yield from self._laid(still)
+
+    def _laid(self, positions: Array) -> Iterator[Frames]:
+        """The frames of the next positions, as far as they are finished."""
+        frames = self._counted(self._carrier.frames(positions))
+        if self._check is not None:
+            self._check.positions((positions - self._first_mm) * self._format.cycles_per_mm)
+        yield from self._checked(frames)
+
+    def _checked(self, frames: Frames) -> Iterator[Frames]:
+        """The frames with the check signal, where the tape has one."""
+        if self._check is None:
+            yield frames
+        else:
+            yield from self._check.frames(frames)
 
     def _counted(self, frames: Frames) -> Frames:
         """The frames, counted."""

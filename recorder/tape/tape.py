@@ -18,7 +18,6 @@ import soundfile
 from numpy.typing import NDArray
 
 from morfax.motion.faults import FileFault, TapeFault
-from morfax.motion.files import for_soundfile
 from morfax.recorder.tape.carrier import Frames
 from morfax.recorder.tape.format import TapeFormat, columns_of
 from morfax.recorder.tape.recording import Recording, record
@@ -169,7 +168,7 @@ def _open_sound(file: FilePath) -> soundfile.SoundFile:
     if empty:
         raise TapeFault(f"{file} is empty; a tape is a WAV, RF64 or FLAC file")
     try:
-        return soundfile.SoundFile(for_soundfile(file))
+        return soundfile.SoundFile(file)
     except (
         soundfile.SoundFileError,
         TypeError,

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import soundfile
 
+from morfax.console.cli import main
 from tests.console.conftest import Morfax
 
 RATE_HZ = 48000
@@ -21,6 +22,14 @@ BY_HAND = ("--reference-frequency", "6kHz", "--cycles-per-mm", "20")
 def frames(tape_file: Path) -> np.ndarray:
     """The frames of the tape."""
     return np.asarray(soundfile.read(tape_file, dtype="float32")[0])
+
+
+@pytest.fixture
+def bare_frames(path_file: Path, tmp_path_factory: pytest.TempPathFactory) -> np.ndarray:
+    """The frames of the same tape without a check signal."""
+    file = tmp_path_factory.mktemp("bare") / "bare.wav"
+    assert main(["record", str(path_file), "-o", str(file), "--plain", "--quiet"]) == 0
+    return np.asarray(soundfile.read(file, dtype="float32")[0])
 
 
 def written(frames: np.ndarray, text: str = "", rate_hz: int = RATE_HZ) -> str:
@@ -71,8 +80,9 @@ def test_a_mono_tape_has_no_reference(morfax: Morfax, here: Path, frames: np.nda
 
 
 def test_a_tape_without_its_reference_cannot_be_known(
-    morfax: Morfax, here: Path, frames: np.ndarray
+    morfax: Morfax, here: Path, bare_frames: np.ndarray
 ) -> None:
+    frames = bare_frames
     said = refused(
         morfax, written(frames[:, 1:]), *BY_HAND
     )  # X, Y, Z: the first of them is taken for the reference
@@ -115,11 +125,12 @@ def test_a_tape_at_another_speed_says_which_reference_it_has(
 
 
 def test_a_tape_backwards_is_no_other_tape_but_the_tool_goes_up(
-    morfax: Morfax, here: Path, frames: np.ndarray
+    morfax: Morfax, here: Path, bare_frames: np.ndarray
 ) -> None:
     """Backwards every track turns the other way, so it ends where it should: only Z, which rises, is to be
     seen.
     """
+    frames = bare_frames
     answer = morfax(
         "play", written(frames[::-1].copy(), tape_text(here, frames)), "-o", "bad.csv"
     )
@@ -170,8 +181,9 @@ def test_a_text_chunk_of_ten_megabytes(morfax: Morfax, here: Path, frames: np.nd
 
 
 def test_two_tracks_with_one_signal_are_told(
-    morfax: Morfax, here: Path, frames: np.ndarray
+    morfax: Morfax, here: Path, bare_frames: np.ndarray
 ) -> None:
+    frames = bare_frames
     noisy = frames + np.random.default_rng(1).normal(0, 1e-3, frames.shape).astype(np.float32)
     noisy[:, 2] = noisy[:, 1]
     said = refused(morfax, written(noisy, tape_text(here, frames)))
@@ -220,3 +232,24 @@ def test_every_rate_and_kind_of_sample_is_played(
     played = join(play("a.wav")).positions_mm[rows : rows + len(told)]
     # mm: the following error of 0.5 m/s², four times as large where the loop is half as fast
     assert np.abs(played - told).max() < (2.5e-3 if rate_hz == 22050 else 0.7e-3)
+
+
+@pytest.mark.parametrize(
+    ("tracks", "told"),
+    [
+        ([1, 2, 3], "track 1 says that it is the X, and should be the reference"),
+        ([0, 1, 1, 3], "track 3 says that it is the X, and should be the Y"),
+    ],
+)
+def test_tracks_with_a_check_signal_say_which_they_are(
+    morfax: Morfax, here: Path, frames: np.ndarray, tracks: list[int], told: str
+) -> None:
+    said = refused(morfax, written(frames[:, tracks]), *BY_HAND)
+    assert told in said and "--tracks" in said
+
+
+def test_a_tape_with_a_check_signal_does_not_run_backwards(
+    morfax: Morfax, here: Path, frames: np.ndarray
+) -> None:
+    said = refused(morfax, written(frames[::-1].copy(), tape_text(here, frames)))
+    assert "the tape runs backwards" in said

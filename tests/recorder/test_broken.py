@@ -77,7 +77,7 @@ def test_nonsense_in_an_entry_is_told(value: object) -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ('{"version": 99, "what": 1}', "version 99; this program reads 2"),
+        ('{"version": 99, "what": 1}', "version 99; this program reads 3"),
         ('{"a": "' + "x" * 10_000_000 + '"}', "at most 2000"),
         ("{" * 1999, "no JSON object"),
     ],

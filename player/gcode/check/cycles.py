@@ -33,9 +33,6 @@ class Runner(Protocol):
         """Go to places in mm."""
 
 
-MOST_REPEATS = 1000  # of L; more are a mistake, and only take time here
-
-
 @dataclass(slots=True)
 class CannedCycle:
     """R and Z as they hold, mm; whether the tool comes up to where it was (G98), or to R (G99)."""
@@ -54,8 +51,7 @@ class CannedCycle:
         clear_mm = max(start_mm, self.r_mm) if self.returns_to_start else self.r_mm
         if start_mm < self.r_mm:
             runner.run(RAPID, {"Z": self.r_mm})
-        repeats = min(max(values.get("L", 1.0), 0.0), MOST_REPEATS) if runner.relative else 1
-        for _ in range(round(repeats)):
+        for _ in range(round(values.get("L", 1.0)) if runner.relative else 1):
             across = {
                 letter: values[letter] * runner.scale
                 + (runner.place if runner.relative else runner.offset)[axis]

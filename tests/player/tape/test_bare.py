@@ -16,7 +16,7 @@ from morfax.player.tape.bare import NOT_VOUCHED
 from morfax.player.tape.mend import mend
 from morfax.player.tape.playback import play, play_pipe
 from morfax.recorder.tape.own_motion import OWN_CYCLES, STATED_CYCLES, OwnMotion
-from morfax.recorder.tape.tape import Tape, record
+from morfax.recorder.tape.tape import Tape, TapeFormat, record
 from morfax.recorder.wear.settings import Wear
 from morfax.recorder.wear.transport import age
 from tests.player.worn import program
@@ -31,7 +31,7 @@ def tape(tmp_path_factory: pytest.TempPathFactory) -> Path:
     positions = program(3.0)
     positions[:, 2] = 2 - 1.5 * positions[:, 1] / 3.0
     file = tmp_path_factory.mktemp("bare") / "circle.wav"
-    record(Motion(positions), file)
+    record(Motion(positions), file, TapeFormat())
     return file
 
 

@@ -51,7 +51,7 @@ def displacement_cycles(frames: np.ndarray, samples_per_motion: int = 8) -> np.n
 @pytest.mark.parametrize("name", ["a.wav", "a.WAV", "a.rf64", "a.flac"])
 def test_the_motion_comes_back_between_two_standstills(tmp_path: Path, name: str) -> None:
     motion = circle()[0].positions_mm
-    recording = record([Motion(motion)], tmp_path / name)
+    recording = record([Motion(motion)], tmp_path / name, TapeFormat())
     cycles = displacement_cycles(read_frames(tmp_path / name))
     assert len(cycles) == len(motion) + 2 * RATE_HZ
     wanted = np.vstack(
@@ -153,7 +153,7 @@ def test_the_text_chunk_says_the_format_with_start_and_end(tmp_path: Path, name:
 def test_kinds_of_file_and_sample(
     tmp_path: Path, name: str, sample: str, kinds: tuple[str, str]
 ) -> None:
-    record(circle(), tmp_path / name, sample=sample)
+    record(circle(), tmp_path / name, TapeFormat(), sample=sample)
     with Tape.open(tmp_path / name) as tape:
         assert (tape.container, tape.sample) == kinds
         peak = max(float(np.abs(block).max()) for block in tape.blocks())

@@ -1,0 +1,106 @@
+"""The faults that the check signal tells: which track, at which tape time, what is wrong, what to do next.
+
+Signals in: tracks from 0, names of the axes, s and cycles; out: faults, to be raised or given out.
+
+Source: patent ES 361967, figure 5 (fault circuit 162) asks for a stop. Questions: none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from morfax.motion.faults import LockFault, TapeFault
+from morfax.player.tape.standstill import track_name
+
+Names = Sequence[str]  # of the axes
+
+
+def _called(track: int, names: Names) -> str:
+    """Number and name of a track."""
+    name = track_name(track, names) if track <= len(names) else "none of this tape"
+    return f"track {track + 1} ({name})"
+
+
+def wrong_track(track: int, says: int, names: Names, time_s: float) -> TapeFault:
+    """The fault of a track that says to be another."""
+    what = (
+        track_name(says, names) if says <= len(names) else f"track {says + 1} of another tape"
+    )
+    return TapeFault(
+        f"track {track + 1} says that it is the {what}, and should be the {track_name(track, names)}: the "
+        "tracks are in another order, or one is a copy of another; say which tracks are reference, "
+        f"{', '.join(name.upper() for name in names)} (--tracks)",
+        time_s=time_s,
+    )
+
+
+def silent_track(track: int, names: Names) -> TapeFault:
+    """The fault of a track that says nothing at the start, while others do."""
+    return TapeFault(
+        f"the check signal of {_called(track, names)} cannot be read at the tape's start, though others can; "
+        "copy the tape again",
+        time_s=0.0,
+    )
+
+
+def unreadable(track: int, names: Names, time_s: float) -> TapeFault:
+    """The fault of a check signal that cannot be read for too long."""
+    return TapeFault(
+        f"the check signal of {_called(track, names)} cannot be read from {max(time_s, 0.0):.3f} s on: a "
+        "stretch of the tape is lost or damaged there; copy the tape again",
+        time_s=max(time_s, 0.0),
+    )
+
+
+def disordered(track: int, names: Names, off_s: float, time_s: float) -> TapeFault:
+    """The fault of a frame that is not the next: later by `off_s`, or earlier."""
+    what = "are missing" if off_s > 0 else "come a second time"
+    return TapeFault(
+        f"{abs(off_s):.2f} s of {_called(track, names)} {what} before {time_s:.3f} s; copy the tape again",
+        time_s=time_s,
+    )
+
+
+def too_late(
+    track: int, names: Names, late_s: float, allowed_s: float, time_s: float
+) -> TapeFault:
+    """The fault of a track that is later than can be put right."""
+    return TapeFault(
+        f"{_called(track, names)} is {abs(late_s) * 1e6:.0f} us off the reference at {time_s:.3f} s, "
+        f"{allowed_s * 1e6:.0f} is allowed: its head is not straight, or samples were lost or repeated; copy "
+        "the tape again",
+        time_s=time_s,
+    )
+
+
+def stepped(track: int, names: Names, step_s: float, time_s: float) -> TapeFault:
+    """The fault of a delay that makes a step."""
+    return TapeFault(
+        f"the delay of {_called(track, names)} steps by {step_s * 1e6:.0f} us at about {time_s:.3f} s: "
+        "samples were lost or repeated there; copy the tape again",
+        time_s=time_s,
+    )
+
+
+def miscounted(
+    axis: str, off_cycles: float, allowed_cycles: float, time_s: float, place_mm: float
+) -> LockFault:
+    """The fault of a count that differs from what the track says."""
+    return LockFault(
+        f"{axis.upper()} is {off_cycles:+.2f} cycles off what its check signal says at {time_s:.3f} s, "
+        f"{allowed_cycles:g} is allowed; last certain position {place_mm:.3f} mm: cycles were lost shortly "
+        "before; copy the tape again, or mend it (morfax mend)",
+        axis=axis,
+        time_s=time_s,
+        error_cycles=off_cycles,
+        position_mm=place_mm,
+    )
+
+
+def no_end(time_s: float) -> TapeFault:
+    """The fault of a tape whose last frames are missing."""
+    return TapeFault(
+        f"the tape's end is missing: the check signal says after {time_s:.3f} s that more is to come; get "
+        "the whole tape",
+        time_s=time_s,
+    )

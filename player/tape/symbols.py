@@ -1,0 +1,103 @@
+"""The symbols of the check signal: 120 to a frame, read early, on time and late.
+
+Signals in: points of the subcarrier with the cycles of the reference beside them, and where a frame begins.
+Signals out, track by track: +1 or -1 of each symbol, how late they are, and the phase of the subcarrier in
+each part of the frame; and, for the search, how like the sync word what follows each place is.
+
+    early  on  late          a quarter of a symbol to either side of where a symbol is due
+       ╲    |    ╱
+        ╲_-~~~-_╱            late = (late - early) / 2 (2 on - early - late),   the top of a parabola
+         ╱     ╲
+
+Source: R. E. Ziemer and W. H. Tranter, Principles of Communications (coherent detection, early and late
+gates). Questions: none.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from morfax.motion.arrays import Array
+from morfax.player.tape.subcarrier import Complexes, Subcarrier
+from morfax.recorder.tape.check_frame import SYMBOLS, SYNC, SYNC_SYMBOLS, Bits
+from morfax.recorder.tape.check_signal import CYCLES_PER_SYMBOL
+
+QUARTER = CYCLES_PER_SYMBOL / 4  # of a symbol, in cycles of the reference
+PARTS = 4  # of a frame, each with its own phase
+_WORD = SYNC.astype(np.float64)
+
+
+class Gates(NamedTuple):
+    """Symbols of a frame, +1 or -1; how late they are, in cycles of the reference; phases, in turns."""
+
+    bits: Bits
+    late: Array
+    turns: Array
+
+
+def likeness(seen: Complexes) -> tuple[Complexes, Array]:
+    """How like the sync word each quarter of a symbol and those after it are: sum, and share of the power."""
+    starts = max(len(seen) - 4 * SYMBOLS, 0)
+    alike, power = np.zeros(starts, complex), np.zeros(starts)
+    strength = np.abs(seen) ** 2
+    for symbol, sign in enumerate(SYNC.tolist()):
+        alike += sign * seen[4 * symbol : 4 * symbol + starts]
+        power += strength[4 * symbol : 4 * symbol + starts]
+    return alike, np.abs(alike) ** 2 / np.maximum(power * SYNC_SYMBOLS, 1e-30)
+
+
+def read_symbols(points: Subcarrier, begins: float) -> Gates:
+    """Read the symbols of the frame of all tracks that begins at a count of the reference."""
+    tracks = len(points.points)
+    gates = Gates(
+        np.empty((tracks, SYMBOLS), np.int8), np.empty(tracks), np.empty((tracks, PARTS))
+    )
+    _read(np.ascontiguousarray(points.points), points.theta, begins, _WORD, *gates)
+    return gates
+
+
+@njit(cache=True, nogil=True)
+def _read(points, theta, begins, word, bits, late, turns):  # type: ignore[no-untyped-def]
+    """Read one frame of all tracks, whose symbols are 24 cycles of theta apart; see `Gates`."""
+    tracks, symbols = bits.shape
+    gates = np.empty((tracks, 3, symbols), np.complex128)
+    # 1. early, on and late of each symbol, between the two points beside it
+    for gate in range(3):
+        at = 0
+        for symbol in range(symbols):
+            place = begins + symbol * CYCLES_PER_SYMBOL + (gate - 1) * QUARTER
+            while at < len(theta) - 2 and theta[at + 1] < place:
+                at += 1
+            share = (place - theta[at]) / (theta[at + 1] - theta[at])
+            share = min(max(share, 0.0), 1.0)
+            for track in range(tracks):
+                before, after = points[track, at], points[track, at + 1]
+                gates[track, gate, symbol] = before + share * (after - before)
+    part = symbols // turns.shape[1]
+    for track in range(tracks):
+        # 2. the sync word tells the phase, and so the sign of each symbol
+        alike = 0j
+        for symbol in range(len(word)):
+            alike += gates[track, 1, symbol] * word[symbol]
+        for symbol in range(symbols):
+            seen = gates[track, 1, symbol]
+            along = seen.real * alike.real + seen.imag * alike.imag
+            bits[track, symbol] = 1 if along >= 0 else -1
+        # 3. with the signs known: how late, by a parabola through three gates; and the phase, part by part
+        sums = np.zeros(3)
+        for gate in range(3):
+            whole = 0j
+            for symbol in range(symbols):
+                whole += gates[track, gate, symbol] * bits[track, symbol]
+            sums[gate] = abs(whole)
+        bend = 2 * sums[1] - sums[0] - sums[2]
+        late[track] = QUARTER * (sums[2] - sums[0]) / (2 * bend) if bend > 0 else 0.0
+        for number in range(turns.shape[1]):
+            whole = 0j
+            for symbol in range(number * part, (number + 1) * part):
+                whole += gates[track, 1, symbol] * bits[track, symbol]
+            turns[track, number] = math.atan2(whole.imag, whole.real) / (2 * math.pi)

@@ -1,0 +1,93 @@
+"""Frames of the check signal: what is told comes back, and what is damaged is not taken for right."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from morfax.recorder.tape.check_frame import (
+    COUNTS_PER_CYCLE,
+    NUMBERS,
+    SYMBOLS,
+    SYNC,
+    SYNC_SYMBOLS,
+    CheckFrame,
+    from_bits,
+    to_bits,
+)
+
+OCTAVE_STEP = 2 ** (1 / 8)  # speeds and accelerations are rounded up to this
+
+
+@given(
+    track=st.integers(0, 15),
+    number=st.integers(0, 5 * NUMBERS),
+    cycles=st.floats(-2e6, 2e6),
+    speed=st.floats(0.5, 2e4),
+    acceleration=st.floats(32, 1e6),
+    last=st.booleans(),
+)
+def test_what_is_told_comes_back(
+    track: int, number: int, cycles: float, speed: float, acceleration: float, last: bool
+) -> None:
+    bits = to_bits(CheckFrame(track, number, cycles, speed, acceleration, last))
+    assert bits.shape == (SYMBOLS,)
+    assert set(np.unique(bits)) == {-1, 1}
+    found = from_bits(bits[None])[0]
+    assert found is not None
+    assert (found.track, found.number, found.last) == (track, number % NUMBERS, last)
+    assert found.cycles == pytest.approx(cycles, abs=0.5 / COUNTS_PER_CYCLE)
+    assert speed * (1 - 1e-6) <= found.speed <= speed * OCTAVE_STEP * (1 + 1e-6)
+    assert acceleration * (1 - 1e-6) <= found.acceleration
+    assert found.acceleration <= acceleration * OCTAVE_STEP * (1 + 1e-6)
+
+
+def test_rest_is_told_as_rest_and_too_much_as_no_bound() -> None:
+    found = from_bits(to_bits(CheckFrame(1, 0, 0.0, 0.0, 0.0))[None])[0]
+    assert found is not None
+    assert (found.speed, found.acceleration) == (0.0, 0.0)
+    found = from_bits(to_bits(CheckFrame(1, 0, 0.0, 1e9, 1e12))[None])[0]
+    assert found is not None
+    assert (found.speed, found.acceleration) == (math.inf, math.inf)
+
+
+@pytest.mark.parametrize(
+    ("frame", "what"),
+    [(CheckFrame(1, 0, 3e6), "3000000 cycles"), (CheckFrame(16, 0, 0.0), "track 16")],
+)
+def test_what_has_no_room_is_refused(frame: CheckFrame, what: str) -> None:
+    with pytest.raises(ValueError, match=f"{what} .*no room"):
+        to_bits(frame)
+
+
+def test_one_and_two_wrong_symbols_are_always_found() -> None:
+    """A CRC-32 finds every error of one and two bits in 96."""
+    bits = to_bits(CheckFrame(2, 77, 1234.5, 200.0, 1e4))
+    places = range(SYNC_SYMBOLS, SYMBOLS)
+    pairs = [(one, other) for one in places for other in places if one <= other]
+    wrong = np.tile(bits, (len(pairs), 1))
+    for row, (one, other) in zip(wrong, pairs, strict=True):
+        row[one] *= -1
+        if other != one:
+            row[other] *= -1
+    assert from_bits(wrong) == [None] * len(pairs)
+
+
+def test_random_symbols_are_no_frame() -> None:
+    """20 000 here, 10 million in benchmarks.check_signal; one in 4e9 is expected to pass, if that."""
+    random = np.random.default_rng(14)
+    symbols = random.integers(0, 2, (20_000, SYMBOLS), dtype=np.int8) * 2 - 1
+    assert not any(from_bits(symbols))
+
+
+def test_the_sync_word_is_like_itself_only() -> None:
+    """A third of its symbols at most agree at any other place, or from behind."""
+    word = SYNC.astype(float)
+    full = np.correlate(word, word, "full")
+    full[SYNC_SYMBOLS - 1] = 0
+    assert np.abs(full).max() <= SYNC_SYMBOLS / 3
+    assert abs(word @ word[::-1]) <= SYNC_SYMBOLS / 2

@@ -1,0 +1,112 @@
+"""The check signal on the tape: where its power lies, that it adds nothing else, and what it says."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import soundfile
+
+from morfax.motion.motion import Motion
+from morfax.player.tape.check_reader import read_ahead, read_check
+from morfax.recorder.tape.format import CHECK_SHARE
+from morfax.recorder.tape.tape import Tape, TapeFormat, record
+from tests.player.worn import program
+
+RATE_HZ = 48000
+FRAME_ROWS = 2880  # at 6 kHz
+
+
+@pytest.fixture(scope="module")
+def positions() -> np.ndarray:
+    return program(10.0, 60.0)
+
+
+@pytest.fixture(scope="module")
+def tape(tmp_path_factory: pytest.TempPathFactory, positions: np.ndarray) -> Path:
+    """A circle at 60 mm/s, bare and with the check signal beside it."""
+    folder = tmp_path_factory.mktemp("check")
+    record(Motion(positions), folder / "bare.wav", TapeFormat(), sample="float")
+    record(Motion(positions), folder / "a.wav", TapeFormat(checked=True), sample="float")
+    return folder / "a.wav"
+
+
+def only_check(tape: Path) -> np.ndarray:
+    """What the check signal adds to the bare tape."""
+    return np.asarray(
+        soundfile.read(tape)[0] - soundfile.read(tape.with_name("bare.wav"))[0], float
+    )
+
+
+def test_its_power_lies_about_a_sixth_of_the_reference(tape: Path) -> None:
+    signal = only_check(tape)[:, 1]
+    assert np.abs(signal).max() == pytest.approx(0.5 * CHECK_SHARE, rel=0.01)
+    power = np.abs(np.fft.rfft(signal * np.hanning(len(signal)))) ** 2
+    hz = np.fft.rfftfreq(len(signal), 1 / RATE_HZ)
+    total = power.sum()
+    assert power[(hz > 750) & (hz < 1250)].sum() / total > 0.999
+    # beyond 1.5 kHz, where the player's filter begins to let it pass: 40 dB down and more
+    assert power[hz > 1500].sum() / total < 1e-4
+    assert power[hz > 3000].sum() / total < 1e-6
+
+
+def test_tracks_change_over_at_the_same_moments(tape: Path) -> None:
+    """At the middle of each symbol the subcarrier has its full amplitude on all tracks."""
+    signal = only_check(tape)
+    # a quarter of a cycle of the subcarrier behind the middle of a symbol
+    at = np.arange(1, 400) * 192 + 12
+    full = 0.5 * CHECK_SHARE * np.cos(np.pi * 12 / 192 / 2) ** 2
+    assert (np.abs(signal[at]) > 0.9 * full).all()
+
+
+def test_each_track_says_what_its_axis_does(tape: Path, positions: np.ndarray) -> None:
+    with Tape.open(tape) as opened:
+        blocks = opened.stored_blocks()
+        check = read_check(read_ahead(blocks, opened.format), opened.format)
+        assert check is not None
+        for block in blocks:
+            check.feed(block)
+        check.finish()
+        reports = check.reports()
+    assert check.tracks == [0, 1, 2, 3]
+    assert [report.number for report in reports] == list(range(len(reports)))
+    still = np.concatenate([np.tile(positions[:1], (6000, 1)), positions])
+    still = np.concatenate([still, np.tile(positions[-1:], (6000, 1))])
+    cycles = (still - still[0]) * 20
+    speed = np.abs(np.diff(cycles, axis=0)) * 6000
+    for report in reports:
+        first = report.number * FRAME_ROWS
+        assert report.row == pytest.approx(first, abs=0.1)  # rows: 17 us
+        span = slice(first, first + 2 * FRAME_ROWS)
+        for axis, said in enumerate(report.said[1:]):
+            assert said is not None
+            assert said.cycles == pytest.approx(cycles[first, axis], abs=1 / 16)
+            fastest = speed[span, axis].max()
+            assert fastest <= said.speed * (1 + 1e-6)
+            assert said.speed <= max(1.2 * fastest, 0.6)
+        assert np.abs(report.delay_s).max() < 0.5e-6
+    ends = [report.said[1].last for report in reports if report.said[1]]
+    assert ends[-2:] == [True, True]
+    assert not any(ends[:-2])
+
+
+def test_frames_do_not_depend_on_the_blocks_of_the_motion(
+    tmp_path: Path, positions: np.ndarray, tape: Path
+) -> None:
+    parts = [Motion(part) for part in np.array_split(positions, 37)]
+    record(parts, tmp_path / "b.wav", TapeFormat(checked=True), sample="float")
+    whole, split = soundfile.read(tape)[0], soundfile.read(tmp_path / "b.wav")[0]
+    assert np.abs(whole - split).max() < 1e-6
+
+
+def test_a_level_without_room_for_it_is_refused() -> None:
+    TapeFormat(level=0.83, checked=True)
+    with pytest.raises(ValueError, match=r"level is 0\.9; it must be at most 0\.833"):
+        TapeFormat(level=0.9, checked=True)
+
+
+def test_a_tape_shorter_than_a_frame_is_whole(tmp_path: Path) -> None:
+    motion = Motion(np.zeros((100, 3)))
+    report = record(motion, tmp_path / "a.wav", TapeFormat(dwell_s=0.0, checked=True))
+    assert report.frames == 800
