@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import TapeFault
+from morfax.motion.files import for_soundfile
 
 WINDOW_FRAMES = 4096  # 85 ms at 48 kHz: bins of 12 Hz
 BLOCK_FRAMES = 16 * WINDOW_FRAMES
@@ -47,7 +48,7 @@ def listen(file: FilePath, fault: TapeFault | None) -> tuple[dict[str, Any], lis
     import soundfile
 
     try:
-        with soundfile.SoundFile(file) as sound:
+        with soundfile.SoundFile(for_soundfile(file)) as sound:
             kind = {"kind": f"{sound.format} {sound.subtype}", "tracks": sound.channels}
             blocks = sound.blocks(BLOCK_FRAMES, dtype="float32", always_2d=True)
             carriers = _carriers(blocks, sound.samplerate, sound.channels)

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Literal
 
 from morfax.jobs.figures import Figures
 from morfax.motion.faults import FileFault
+from morfax.motion.files import check_name, check_regular
 
 if TYPE_CHECKING:
     from morfax.recorder.media import Report
@@ -66,6 +67,7 @@ _SUFFIXES: dict[str, Kind] = {
 
 def kind_of(file: FilePath) -> Kind:
     """Tell which kind of file this is; raises FileFault if it cannot be read or is of no known kind."""
+    check_regular(file)
     try:
         with file.open("rb") as opened:
             first = opened.read(_HEAD_BYTES)
@@ -84,6 +86,7 @@ def kind_of(file: FilePath) -> Kind:
 
 def outgoing(file: FilePath, *made_from: FilePath) -> FilePath:
     """Check, before the work starts, that a result can go under this name; raises FileFault if not."""
+    check_name(file)
     folder = file.parent
     if not folder.is_dir():
         raise FileFault(

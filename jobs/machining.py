@@ -15,9 +15,10 @@ from morfax.motion.faults import CardFault
 
 if TYPE_CHECKING:
     from morfax.jobs.listener import Listener
-    from morfax.jobs.settings import ToolSettings
+    from morfax.jobs.recording import RecordingUnit
+    from morfax.jobs.settings import ToolSettings, TraceSettings
     from morfax.recorder.gcode.machine import Machine
-    from morfax.tracer.operator.card import Card
+    from morfax.tracer.operator.card import Card, Stop
 
 
 def chosen(
@@ -66,21 +67,19 @@ def _numbers(values: tuple[str, ...]) -> dict[str, float]:
 
 
 def tell_what_is_lost(
-    card: Card,
-    tool: ToolSettings,
-    program: FilePath,
-    machine: Machine | None,
-    listener: Listener,
+    settings: TraceSettings, unit: RecordingUnit, program: FilePath, listener: Listener
 ) -> None:
     """Warn, before anything moves, of what the card or an option asks for and the medium cannot hold.
 
     Raises WrongUse for tabs and ramps where there is no Z.
     """
+    machine = unit.chosen(program) if medium.has_machine(program) else None
+    card, tool = settings.card(), settings.tool
     if machine is None and program.suffix.lower() in medium.DRAWN:
         refuse_without_z(card, f"a drawing ({program.suffix})")
     if machine is not None and not machine.z:
         refuse_without_z(card, f"the machine {machine.name}")
-    lost = _asked(card, tool)
+    lost = _asked(card, tool, has_dwells=machine is not None and not machine.is_hpgl)
     if not lost:
         return
     asked = ", ".join(lost)
@@ -96,8 +95,8 @@ def tell_what_is_lost(
         )
 
 
-def _asked(card: Card, tool: ToolSettings) -> list[str]:
-    """What Z is asked to do, by its names."""
+def _asked(card: Card, tool: ToolSettings, *, has_dwells: bool) -> list[str]:
+    """What Z is asked to do, by its names; dwells where the medium has none."""
     stops = card.stops
     drills = [stop.drill for stop in stops if stop.drill is not None]
     deep = tool.depth_mm or card.depths_mm or any(stop.passes_mm for stop in stops)
@@ -108,5 +107,12 @@ def _asked(card: Card, tool: ToolSettings) -> list[str]:
         "pecks": card.peck_mm is not None
         or any(drill.peck_counts < drill.depth_counts for drill in drills),
         "feed of Z": card.feed_mm_s is not None,
+        "dwells": not has_dwells and any(map(_dwells, stops)),
     }
     return [name for name, is_asked in asked.items() if is_asked]
+
+
+def _dwells(stop: Stop) -> bool:
+    """Whether the card asks for a wait at a stop."""
+    waits_s = [stop.dwell_s, *(move.dwell_s for move in stop.moves)]
+    return any(waits_s) or (stop.drill is not None and stop.drill.dwell_s > 0)

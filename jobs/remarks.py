@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 # chosen by trial on the test drawings
 UNEVEN = 1.25  # the widest gap of a dashed line against the widest that was met
 UNCUT_SHARE = 0.2  # of a line; corners alone leave less
+LEFT_SHARE = 0.01  # of all the ink: more that was not followed is worth a remark
 # of the ink that is joined to a line: if the line is less, the rest is worth a remark
 FEW_SHARE = 0.7
 STEP_PER_MM = 10  # a gap is suggested in whole tenths of a mm
@@ -35,6 +36,7 @@ def remarks(
             f"edges are close together: traced at {enlarged} times the scale, so the machine goes {enlarged} "
             "times slower than the head"
         )
+    yield from _of_ink(trace)
     yield from _of_solids(trace)
     yield from _of_stops(trace)
     yield from _of_turns(trace)
@@ -90,6 +92,24 @@ def numbered(what: str, numbers: list[int]) -> str:
     if len(numbers) == 1:
         return f"{what} {numbers[0]} is"
     return f"{what}s {', '.join(map(str, numbers))} are"
+
+
+def _of_ink(trace: Trace) -> Iterator[str]:
+    """Ink that was left out, where all of it was asked for."""
+    if trace.ink is None:
+        return
+    left = 1 - trace.ink.followed_share
+    if left > LEFT_SHARE:
+        yield (
+            f"{trace.ink.left_mm:.0f} mm of ink ({100 * left:.0f} %) could not be followed: stretches that "
+            "are too short or too unclear to put the head down; the figures list their places, and "
+            "--picture marks them; scan at a higher resolution"
+        )
+    if trace.ink.solid_mm > 0:
+        yield (
+            f"{trace.ink.solid_mm:.0f} mm of ink are the rims of filled shapes, and left out; --edge follows "
+            "the outlines of filled shapes"
+        )
 
 
 def _of_solids(trace: Trace) -> Iterator[str]:

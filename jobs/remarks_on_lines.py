@@ -1,5 +1,5 @@
-"""Remarks on what is on a drawing beside its table: which numbers are uncertain, what --lines all leaves out,
-and what it takes though that may not be meant.
+"""Remarks on what is on a drawing beside its table: which numbers are uncertain, what --lines contours leaves
+out, and what it takes though that may not be meant.
 
 Signals in: a survey. Signals out: texts, each with what to do.
 """
@@ -41,7 +41,7 @@ def _of_several(seen: Survey) -> Iterator[str]:
 
 
 def _of_left_out(seen: Survey) -> Iterator[str]:
-    """What --lines all leaves out."""
+    """What --lines contours leaves out."""
     left = []
     if seen.left_out:
         left.append(
@@ -56,11 +56,11 @@ def _of_left_out(seen: Survey) -> Iterator[str]:
     if seen.not_followed_mm and seen.not_followed_mm >= 1.0:
         left.append(f"{seen.not_followed_mm:.0f} mm of ink that only connects lines")
     if left:
-        yield f"--lines all leaves out {'; '.join(left)}"
+        yield f"--lines contours leaves out {'; '.join(left)}"
 
 
 def _of_lettering(seen: Survey) -> Iterator[str]:
-    """Likely letters that --lines all traces."""
+    """Likely letters that --lines contours traces."""
     traced = [e.number for e in seen.entries if e.is_lettering and e.is_in_all]
     if traced:
         others = [e.number for e in seen.entries if e.is_in_all and not e.is_lettering]
@@ -69,7 +69,7 @@ def _of_lettering(seen: Survey) -> Iterator[str]:
             if 0 < len(others) < 30
             else ""
         )
-        yield f"{numbered('line', traced)} likely lettering, and --lines all traces them{give}"
+        yield f"{numbered('line', traced)} likely lettering, and --lines contours traces them{give}"
 
 
 def _of_solids(seen: Survey) -> Iterator[str]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from morfax.jobs import comparison, flattening
 from morfax.jobs import files as medium
 from morfax.jobs.listener import SILENT, Listener
+from morfax.jobs.machining import tell_what_is_lost
 from morfax.jobs.playing import ByHand, Played, Playing
 from morfax.jobs.recording import RecordingUnit
 from morfax.jobs.settings import DrawingFile, TraceSettings
@@ -65,6 +66,8 @@ class RunJob:
         tracing = Tracing.prepared(self.settings, panel)
         program_file = self._program_file()
         self.unit.check(program_file)
+        tracing = tracing.on_machine(self.unit.milling(program_file))
+        tell_what_is_lost(self.settings, self.unit, program_file, listener)
         drawing = self.drawing.open(listener)
         self._make_folder()
         traced = tracing.trace(drawing, listener)

@@ -41,9 +41,7 @@ class DrawingFile:
     ink: str | None = None
     edge: bool = False
     page: int | None = None  # of a file of several; None: the first, and it is said
-    known: Known | None = (
-        None  # two places and the length between them, instead of dpi or width
-    )
+    known: Known | None = None  # two places and their distance, instead of dpi or width
     flatten: FlattenSettings = field(default_factory=FlattenSettings)
 
     def open(self, listener: Listener = SILENT) -> Drawing:

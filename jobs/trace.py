@@ -80,7 +80,8 @@ class TraceJob:
         drawing = self.drawing.open(listener)
         size = f"{drawing.width_mm:.2f} x {drawing.height_mm:.2f} mm"
         listener.detail(f"{self.drawing.file}: sheet of {size}")
-        self._tell_what_is_lost(outputs.program, listener)
+        if outputs.program is not None:
+            tell_what_is_lost(self.settings, self.unit, outputs.program, listener)
         traced = tracing.trace(drawing, listener)
         tool = self.settings.tool
         unit = traced.placed(self.unit).made_from(self.drawing.file.name, tool.described)
@@ -100,11 +101,3 @@ class TraceJob:
         figures = {"drawing": str(self.drawing.file), **written, **flat, **traced.figures()}
         figures |= {**timed, **traced.zero_figures(unit), **unit.figures()}
         return TraceResult(figures, drawing, traced, picture, traced.fault)
-
-    def _tell_what_is_lost(self, program: FilePath | None, listener: Listener) -> None:
-        """Warn of what the card or an option asks for and the program's medium cannot hold."""
-        if program is None:
-            return
-        machine = self.unit.chosen(program) if medium.has_machine(program) else None
-        card, tool = self.settings.card(), self.settings.tool
-        tell_what_is_lost(card, tool, program, machine, listener)

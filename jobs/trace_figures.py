@@ -25,7 +25,26 @@ def lines(trace: Trace) -> dict[str, Any]:
         "idle_mm": trace.idle_mm,
         "patches_left_out": trace.left_out,
         "ink_left_out_mm": trace.left_out_mm,
+        **ink(trace),
         "lines": rows,
+    }
+
+
+def ink(trace: Trace) -> dict[str, Any]:
+    """How much of the ink was followed, and what was left out, where all of it was asked for."""
+    if trace.ink is None:
+        return {}
+    balance = trace.ink
+    return {
+        "ink_followed_share": balance.followed_share,
+        "ink_followed_mm": balance.followed_mm,
+        "specks_left_out_mm": balance.specks_mm,
+        "filled_shapes_left_out_mm": balance.solid_mm,
+        "places_left_out": [
+            {"left_out_place_mm": (x, y), "left_out_mm": length_mm}
+            for x, y, length_mm in balance.lost
+        ]
+        or None,
     }
 
 

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from morfax.tracer.program.program import Trace
 
 Place = tuple[float, float]
+MARKED = 30  # of the places that the head left out, the longest are marked in the picture
 SHEET = ZeroOnSheet("sheet")
 
 
@@ -60,6 +61,9 @@ class Traced:
         stops_mm |= {
             f"tab {row['tab']}": row["tab_place_mm"] for row in trace_figures.tabs(self.trace)
         }
+        if self.trace.ink is not None:
+            lost = self.trace.ink.lost[:MARKED]
+            stops_mm |= {f"left {k}": (x, y) for k, (x, y, _) in enumerate(lost, 1)}
         if self.left is None:
             return stops_mm
         lines_mm = {

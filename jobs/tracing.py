@@ -46,6 +46,7 @@ class Tracing:
             raise WrongUse("more_starts_mm are further places; give the first one as start_mm")
         settings.contour.check(settings.line.direction)
         card = settings.card()
+        _refuse_marks(settings, card)
         if panel is None and waits(card):
             raise CardFault(
                 'restart = "manual" waits for the operator\'s button, and there is no terminal and no '
@@ -103,6 +104,7 @@ class Tracing:
     def _followed(self, drawing: Drawing, listener: Listener) -> Trace:
         """The line that the head followed, or the lines."""
         from morfax.tracer.program.trace import trace
+        from morfax.tracer.program.trace_ink import trace_ink
         from morfax.tracer.program.trace_lines import trace_lines, trace_places
 
         line = self.settings.line
@@ -116,7 +118,29 @@ class Tracing:
                 return trace_places(drawing, starts_mm, self.of_head, self.operator, tell)
             if line.lines is None:
                 return trace(drawing, line.start_mm, self.of_head, self.operator, tell)
-            return trace_lines(drawing, line.lines, self.of_head, self.operator, tell)
+            if line.lines != "all":
+                return trace_lines(drawing, line.lines, self.of_head, self.operator, tell)
+            if drawing.edges_mm:  # of filled shapes: every edge is a contour
+                return trace_lines(drawing, "contours", self.of_head, self.operator, tell)
+            return trace_ink(drawing, self.of_head, self.operator, tell)
+
+
+def _refuse_marks(settings: TraceSettings, card: Card) -> None:
+    """Raise WrongUse if all the ink is to be followed, and crosses, ticks or dots of it are to be marks."""
+    if settings.line.lines != "all":
+        return
+    asked = {
+        "the card's stops": card.stops,
+        "the card's turns": card.turns,
+        "--reference-point": settings.line.reference_mm,
+        "--direction": settings.line.direction,
+    }
+    for what, given in asked.items():
+        if given:
+            raise WrongUse(
+                f"--lines all follows crosses, ticks and dots as lines, so {what} cannot be served; give"
+                " --lines contours"
+            )
 
 
 def waits(card: Card) -> bool:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import errno
 import os
 import secrets
+import stat
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -20,6 +21,42 @@ _DISK_FULL = {
     errno.EDQUOT: "the quota is used up",
     errno.EFBIG: "files may not be so large here",
 }
+
+
+_KINDS = {
+    stat.S_IFIFO: "a pipe",
+    stat.S_IFCHR: "a device",
+    stat.S_IFBLK: "a device",
+    stat.S_IFSOCK: "a socket",
+}
+
+
+def check_name(file: str | os.PathLike[str]) -> None:
+    """Raise FileFault for a name that no system has."""
+    if "\0" in str(file):
+        name = printable(str(file)).replace("\0", "\\0")
+        raise FileFault(f"{name} is no name of a file: it holds a byte of 0; give another")
+
+
+def check_regular(file: str | os.PathLike[str]) -> None:
+    """Raise FileFault for what cannot be opened and read again, such as a pipe; a folder is the caller's."""
+    check_name(file)
+    try:
+        kind = stat.S_IFMT(Path(file).stat().st_mode)
+    except OSError:
+        return  # whoever opens it says why it cannot be read
+    if kind in _KINDS:
+        raise FileFault(f"cannot read {file}: it is {_KINDS[kind]}; write it to a file first")
+
+
+def for_soundfile(file: str | os.PathLike[str]) -> str | bytes:
+    """The name of a file as libsndfile takes it: its own bytes, which need be no UTF-8."""
+    return os.fsencode(file) if os.name == "posix" else os.fspath(file)
+
+
+def printable(text: str) -> str:
+    """A text with the bytes of a name that are no UTF-8 written out: \\udcff."""
+    return text.encode("utf-8", "backslashreplace").decode("utf-8")
 
 
 @contextmanager
@@ -34,6 +71,7 @@ def written_beside(
     full.
     """
     final = Path(file)
+    check_name(final)
     beside = _create_beside(final)
     try:
         yield beside

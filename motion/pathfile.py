@@ -35,7 +35,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.faults import MotionFault
 from morfax.motion.files import written_beside
 from morfax.motion.motion import AXES, IN_WORK_BELOW_MM, Path
-from morfax.motion.pathtable import PathTable, read_table
+from morfax.motion.pathtable import LONGEST_S, PathTable, read_table
 
 CLEARANCE_MM = 2.0  # where the tool stands when it is up, docs/design.md
 FEED_MM_S = 10.0  # the head's own speed
@@ -78,6 +78,11 @@ def at_feed(table: PathTable, feed_mm_s: float, name: str) -> Path:
         raise ValueError(f"a feed of {feed_mm_s} mm/s does not move; give one above zero")
     rows = _with_z_moves(table)
     t_s = rows.times_s(feed_mm_s)
+    if t_s[-1] - t_s[0] > LONGEST_S:
+        raise MotionFault(
+            f"{name} takes {(t_s[-1] - t_s[0]) / 3600:.4g} h; a program may take a day: check the unit, "
+            "or run it faster with --feed"
+        )
     keep = np.r_[True, np.diff(t_s) > 0]  # points that take no time are doubled points
     if np.count_nonzero(keep) < 2:
         raise MotionFault(

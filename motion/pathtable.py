@@ -21,7 +21,9 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import FileFault, MotionFault
+from morfax.motion.files import check_regular
 from morfax.motion.motion import AXES, FURTHER_AXES
+from morfax.motion.units import LONGEST_MM
 
 # short names of the columns
 _NAMES = {"t": "t_s", "time_s": "t_s", "x": "x_mm", "y": "y_mm", "z": "z_mm"}
@@ -31,6 +33,10 @@ _OTHER_UNITS = {"", "in", "inch", "cm", "m", "um", "deg", "rad", "ms", "us", "mi
 _UP = {"0", "0.0", "false", "up"}
 _DOWN = {"1", "1.0", "true", "down"}
 _EXPECTED = "a line of names such as t_s,x_mm,y_mm,z_mm,tool"
+
+LARGEST_MM = LONGEST_MM  # of a place; as long as a length may be that is given by hand
+LONGEST_S = 86_400.0  # a day; a tape of it would have 33 GB
+LONGEST_LINE = 10_000  # characters; a row of ten axes has 150
 
 File = str | os.PathLike[str]
 Lines = list[tuple[int, str]]  # the number of each line in the file, and the line
@@ -72,6 +78,12 @@ def read_table(file: File) -> PathTable:
             f"{file}: {max(0, len(lines) - 1)} points in it; a path needs {_EXPECTED}, then two or more"
         )
     (number, header), rows = lines[0], lines[1:]
+    long = next((n for n, line in lines if len(line) > LONGEST_LINE), None)
+    if long is not None:
+        raise MotionFault(
+            f"{file}, line {long}: longer than {LONGEST_LINE} characters; a path file is CSV and starts with "
+            f"{_EXPECTED}"
+        )
     separator = max(",;\t", key=header.count)
     where = _find_columns(header, separator, f"{file}, line {number}")
     # all rows at once; the culprit is looked for only when that fails
@@ -80,12 +92,14 @@ def read_table(file: File) -> PathTable:
         raise MotionFault(f"{file}{_culprit(rows, where, separator)}")
     columns = {name: values[:, i] for i, name in enumerate(where)}
     table = PathTable(columns, np.array([number for number, _ in rows]))
+    _check_places(table, file)
     _check_times(table, file)
     return table
 
 
 def _read_text(file: File) -> str:
     """The file's text; a byte-order mark is dropped."""
+    check_regular(file)
     try:
         return FilePath(file).read_bytes().decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -171,6 +185,19 @@ def _is_good(name: str, field: str) -> bool:
         return bool(np.isfinite(_tool(field) if name == "tool" else float(field)))
     except ValueError:
         return False
+
+
+def _check_places(table: PathTable, file: File) -> None:
+    """Raise MotionFault for a place that is on no machine, or a time that no program takes."""
+    for name, values in table.columns.items():
+        is_time = name == "t_s"
+        most, allowed = (LONGEST_S, "s") if is_time else (LARGEST_MM, "mm")
+        far = np.flatnonzero(np.abs(values - (values[0] if is_time else 0.0)) > most)
+        if len(far):
+            raise MotionFault(
+                f"{file}, line {table.lines[far[0]]}: {name} is {values[far[0]]:g}; it may be up to "
+                f"{most:g} {allowed}{' after the first' if is_time else ''}; check the unit"
+            )
 
 
 def _check_times(table: PathTable, file: File) -> None:

@@ -21,11 +21,14 @@ from pathlib import Path as FilePath
 from typing import Any, NoReturn, TypeVar
 
 from morfax.motion.faults import CardFault, FileFault
-from morfax.motion.toml_lines import Path, lines_of
+from morfax.motion.files import check_regular
+from morfax.motion.toml_lines import Path, lines_of, too_deep
 from morfax.motion.units import parse_speed_mm_s, parse_time_s
 
 SLOWEST_MM_S, FASTEST_MM_S = 0.01, 100.0  # of the feeds, see Questions
 LONGEST_DWELL_S = 600.0  # our own figure
+LARGEST_BYTES = 1_000_000  # of a file; a card of a hundred stops has 10 000
+DEEPEST = 8  # parts of a key, and brackets in one another; the deepest field of ours has 5
 _LONGEST_SHOWN = 40  # characters: a fault is one line
 _AT = re.compile(r"\(at line (\d+), column (\d+)\)")
 
@@ -134,12 +137,17 @@ class Field:
 
 def opened(file: FilePath, called: str = "the card", option: str = "--card") -> Field:
     """The whole card in a file; raises FileFault if it cannot be read, CardFault if it is no TOML."""
+    check_regular(file)
     try:
-        raw = file.read_bytes()
+        with file.open("rb") as stream:
+            raw = stream.read(LARGEST_BYTES + 1)
     except OSError as error:
         raise FileFault(
             f"cannot read {called} {file}: {error.strerror}; give another one with {option}"
         ) from error
+    if len(raw) > LARGEST_BYTES:
+        whole = Field(None, (), Page(file.name, {(): 1}, called))
+        whole.refuse(f"it may hold {LARGEST_BYTES} bytes at most", "more than that")
     try:
         return parsed(raw.decode("utf-8-sig"), file.name, called)
     except UnicodeDecodeError as error:
@@ -151,13 +159,13 @@ def opened(file: FilePath, called: str = "the card", option: str = "--card") -> 
 
 
 def parsed(text: str, name: str = "card", called: str = "the card") -> Field:
-    """The whole card in a text; raises CardFault if it is no TOML."""
+    """The whole card in a text; raises CardFault if it is no TOML, or too deep."""
+    deep = too_deep(text, DEEPEST)
+    if deep is not None:
+        line, what = deep
+        Field(None, (), Page(name, {(): line}, called)).refuse(f"it may hold {DEEPEST}", what)
     try:
         return Field(tomllib.loads(text), (), Page(name, lines_of(text), called))
-    except RecursionError:
-        return Field(None, (), Page(name, {}, called)).refuse(
-            "it may hold a few", "too many brackets in one another"
-        )
     except ValueError as error:
         refused = str(error)
     at = _AT.search(refused)

@@ -30,6 +30,25 @@ def lines_of(text: str) -> dict[Path, int]:
     return _Reader(text.replace("\r\n", "\n")).read()
 
 
+def too_deep(text: str, deepest: int) -> tuple[int, str] | None:
+    """The line of a key of more parts than this, or of as many brackets in one another, and which it is.
+
+    tomllib goes down by recursion, and takes the square of the time for a key of many parts.
+    """
+    dots = brackets = 0
+    for word in _WORD.finditer(text):
+        kind, mark = word.lastgroup, word[0]
+        if kind == "comment":
+            continue
+        dots = dots + 1 if kind == "dot" else 0 if kind == "mark" else dots
+        brackets = max(0, brackets + (mark in ("[", "{")) - (mark in ("]", "}")))
+        if dots >= deepest:
+            return text.count("\n", 0, word.start()) + 1, "a key of too many parts"
+        if brackets > deepest:
+            return text.count("\n", 0, word.start()) + 1, "too many brackets in one another"
+    return None
+
+
 class _Reader:
     """Goes through the words of a file: (kind, text, line)."""
 

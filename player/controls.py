@@ -18,6 +18,7 @@ from pathlib import Path as FilePath
 from typing import Any, Protocol
 
 from morfax.motion.arrays import Array
+from morfax.motion.files import check_name
 from morfax.motion.motion import Motion
 from morfax.player.monitor.chart import Chart
 from morfax.player.monitor.monitor import FollowingLimit, Monitor
@@ -93,4 +94,5 @@ def control_of(file: str | os.PathLike[str]) -> Control:
 
 def play(file: str | os.PathLike[str], **by_hand: Any) -> Playback:
     """Put a program in the machine under its own control; raises TapeFault, ProgramFault, FileFault."""
+    check_name(file)
     return control_of(file).player()(file, **by_hand)

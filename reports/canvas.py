@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from morfax.motion.files import written_beside
+from morfax.motion.files import printable, written_beside
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -41,6 +41,12 @@ def new_figure(
 
 def save(figure: Figure, file: FilePath) -> None:
     """Write a figure whole or not at all."""
+    from matplotlib.text import Text
+
+    for words in figure.findobj(Text):
+        assert isinstance(words, Text)
+        words.set_text(printable(words.get_text()))  # a file's name may hold any bytes
+        words.set_parse_math(False)
     made = io.BytesIO()  # since not every kind of picture notices a full disk
     kind = file.suffix[1:].lower()
     figure.savefig(made, format=kind, dpi=DPI, bbox_inches="tight", pad_inches=0.15)

@@ -14,13 +14,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.reports.canvas import new_figure, save
+from morfax.reports.canvas import View, new_figure, save
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from morfax.jobs.check import CheckResult
     from morfax.player.gcode.check.findings import Finding
+    from morfax.player.gcode.check.motion_rules import Stock
     from morfax.player.gcode.check.steps import Step
 
 CUT, RAPID, PLUNGE = "#222222", "#1f5fbf", "#2a7f3f"
@@ -28,7 +29,9 @@ STOPS, REMARK = "#c1121f", "#b08000"
 WOOD, TRAVEL = "#f3e3c3", "#8a8a8a"
 CHORD_RAD = math.radians(4)  # of an arc that is drawn
 ARROWS = 60  # along the whole cut
+ARROW_IN = 0.12  # its length
 MOST_MARKED = 30  # findings with their line; further ones would hide the drawing
+MARGIN_SHARE = 0.06  # of the larger side, round what is shown
 WIDTH_IN = 8.5
 SIDE_IN = 1.8  # height of the view along the way
 
@@ -37,7 +40,8 @@ def draw_checked(result: CheckResult, name: str, file: FilePath) -> None:
     """Write the picture, of the kind that the suffix says (.png, .svg, .pdf)."""
     steps = [step for step in result.checked.steps if step.moves]
     figure = new_figure(layout="constrained")
-    shape = _shape(steps)
+    view = _view(steps, result.stock)
+    shape = (view[3] - view[2]) / (view[1] - view[0])
     above_in = min(max(WIDTH_IN * shape, 3.0), 10.0)
     if result.machine.z and steps:
         figure.set_size_inches(WIDTH_IN, above_in + 1.2 + SIDE_IN)
@@ -58,7 +62,7 @@ def draw_checked(result: CheckResult, name: str, file: FilePath) -> None:
         title=f"{name}, {result.machine.name}: {verdict}",
     )
     above.title.set_color(CUT if result.may_start else STOPS)
-    above.margins(0.06)
+    above.set(xlim=view[:2], ylim=view[2:])
     if above.get_legend_handles_labels()[0]:
         figure.legend(
             *above.get_legend_handles_labels(), loc="outside lower center", ncols=6, fontsize=8
@@ -85,17 +89,23 @@ def way_mm(step: Step) -> Array:
     return places
 
 
-def _shape(steps: Sequence[Step]) -> float:
-    """Height to width of the program."""
-    if not steps:
-        return 0.5
-    places = np.vstack([way_mm(step) for step in steps])[:, :2]
-    width, height = np.ptp(places, axis=0) + 1.0
-    return float(height / width)
+def _view(steps: Sequence[Step], stock: Stock | None) -> View:
+    """The part that is shown, mm: the program, the stock, and the zero if it is not far away."""
+    places = [way_mm(step)[:, :2] for step in steps] or [np.zeros((1, 2))]
+    if stock is not None and stock.width_mm is not None and stock.height_mm is not None:
+        size, corner = np.array([stock.width_mm, stock.height_mm]), np.array(stock.corner_mm)
+        places.append(np.vstack([corner, corner + size]))
+    every = np.vstack(places)
+    low, high = every.min(axis=0), every.max(axis=0)
+    span = max(float((high - low).max()), 1.0)
+    if (low - span < 0).all() and (high + span > 0).all():
+        low, high = np.minimum(low, 0.0), np.maximum(high, 0.0)
+    low, high = low - MARGIN_SHARE * span, high + MARGIN_SHARE * span
+    return float(low[0]), float(high[0]), float(low[1]), float(high[1])
 
 
 def _ground(axes: Axes, steps: Sequence[Step], result: CheckResult) -> None:
-    """Draw the stock, the machine's travel, and the zero."""
+    """Draw the stock, the zero, and the travel from the lowest place on: where it lies is not known."""
     from matplotlib.patches import Rectangle
 
     stock = result.stock
@@ -165,19 +175,10 @@ def _arrows(axes: Axes, steps: Sequence[Step]) -> None:
             waiting_mm = 0.0
         before = step
     if places:
-        look: dict[str, Any] = {
-            "pivot": "mid",
-            "color": CUT,
-            "scale": 1,
-            "scale_units": "inches",
-        }
-        head: dict[str, Any] = {
-            "headwidth": 9,
-            "headlength": 9,
-            "headaxislength": 8,
-            "width": 0.0012,
-        }
-        axes.quiver(*np.array(places).T, *(0.12 * np.array(ways)).T, zorder=3, **look, **head)
+        look: dict[str, Any] = {"pivot": "mid", "color": CUT, "zorder": 3, "units": "inches"}
+        head: dict[str, Any] = {"headwidth": 9, "headlength": 9, "headaxislength": 8}
+        arrows = *np.array(places).T, *(ARROW_IN * np.array(ways)).T
+        axes.quiver(*arrows, scale_units="inches", scale=1, width=ARROW_IN / 11, **look, **head)
 
 
 def _marked(axes: Axes, findings: Sequence[Finding]) -> None:

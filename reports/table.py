@@ -19,6 +19,7 @@ from typing import Any
 
 from morfax.jobs.figures import Figures
 from morfax.motion import units
+from morfax.motion.files import printable
 
 Row = tuple[str, Figures]  # of a table: its name, and its figures
 
@@ -41,7 +42,7 @@ _UNITS: dict[str, Callable[[Any], str]] = {
 
 def as_json(figures: Figures) -> str:
     """The figures as one JSON object; numbers to seven significant figures, no None."""
-    return json.dumps(_plain(figures), indent=2, ensure_ascii=False)
+    return printable(json.dumps(_plain(figures), indent=2, ensure_ascii=False))
 
 
 def as_text(figures: Figures) -> str:
@@ -63,7 +64,7 @@ def as_text(figures: Figures) -> str:
     for listing in (*lists, rows):
         if listing:
             console.print(_grid(listing))
-    return "\n".join(line.rstrip() for line in out.getvalue().splitlines())
+    return printable("\n".join(line.rstrip() for line in out.getvalue().splitlines()))
 
 
 def _is_listing(value: Any) -> bool:

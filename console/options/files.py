@@ -7,7 +7,23 @@ from typing import Any
 
 import click
 
-FILE = click.Path(path_type=FilePath)
+from morfax.motion.files import printable
+
+
+class FileName(click.Path):
+    """The name of a file that is put in."""
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> Any:
+        """The name as a path; wrong use for one that no system has."""
+        if "\0" in str(value):
+            self.fail(NO_NAME.format(printable(str(value)).replace("\0", "\\0")), param, ctx)
+        return super().convert(value, param, ctx)
+
+
+NO_NAME = "{} is no name of a file: it holds a byte of 0"
+FILE = FileName(path_type=FilePath)
 
 PICTURES = (".png", ".svg", ".pdf")
 PATHS = (".csv",)
@@ -25,6 +41,8 @@ class Result(click.ParamType):
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> FilePath:
         """The name as a path; wrong use if its suffix is another one."""
+        if "\0" in str(value):
+            self.fail(NO_NAME.format(printable(str(value)).replace("\0", "\\0")), param, ctx)
         file = FilePath(value)
         if file.suffix.lower() not in self.suffixes:
             self.fail(f"{str(file)!r} must end in {', '.join(self.suffixes)}", param, ctx)

@@ -55,9 +55,9 @@ SEVERAL = option(
     "Line",
     "--lines",
     type=LINES,
-    help="Several lines as one program, inner before outer: all, outer (those inside no other), or "
-    "numbers such "
-    "as 1,3; 1 is the longest.  [default: one line, the longest or that at --start]",
+    help="Several lines as one program: all (every stretch of line, each once), contours (lines to be cut, "
+    "inner before outer, without the bars between them), outer (contours inside no other), or numbers "
+    "such as 1,3; 1 is the longest.  [default: one line, the longest or that at --start]",
 )
 LINE_WIDTH = option(
     "Line",

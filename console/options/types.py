@@ -94,15 +94,15 @@ def _parse_pixels(text: str) -> tuple[float, float]:
 
 
 def _parse_lines(text: str) -> str | tuple[int, ...]:
-    """Which lines of a drawing: "all", "outer", or their numbers."""
+    """Which lines of a drawing: "all", "contours", "outer", or their numbers."""
     word = text.strip().lower()
-    if word in ("all", "outer"):
+    if word in ("all", "contours", "outer"):
         return word
     try:
         return tuple(int(number) for number in word.split(","))
     except ValueError:
         raise ValueError(
-            f"{text!r} names no lines; give all, outer, or numbers such as 1,3"
+            f"{text!r} names no lines; give all, contours, outer, or numbers such as 1,3"
         ) from None
 
 

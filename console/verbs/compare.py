@@ -172,6 +172,8 @@ def _systems(
         raise click.UsageError(
             "--cutter, --zero and what a tape does not say are of B; with --systems leave them out"
         )
+    if options["drawn_unit"] is not None:
+        raise click.UsageError("--unit is for drawings from CAD; with --systems leave it out")
     line = LineSettings(start_mm=options["head_mm"], lines=options["lines"])
     settings = TraceSettings(line, HeadSettings(speed_mm_s=options["speed_mm_s"]))
     output: FilePath | None = options["output"]

@@ -57,8 +57,8 @@ def command(
 
     Nothing is traced. The numbers are those that `morfax trace --lines 1,3` takes, with the same options of
     the drawing and of the line: lines that stand apart, the longest first; dots; then, with --follow, the
-    other lines of those that cross or touch. The notes say what --lines all leaves out, and what is wrong
-    with the scale, if anything is.
+    other lines of those that cross or touch. The notes say what --lines contours leaves out, and what is
+    wrong with the scale, if anything is.
     """
     line = LineSettings(line_width_mm=line_width_mm, gap_mm=gap_mm)
     result = LinesJob(drawing, line, follow, picture).run(desk)

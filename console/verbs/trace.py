@@ -28,8 +28,8 @@ EXAMPLES = """\b
 Examples:
   morfax trace samples/cam.png
   morfax trace scan.png --width 120mm --start 40,62 -o cam.wav --path cam.csv
-  morfax trace samples/bracket.png --lines all --picture bracket-lines.png
-  morfax trace scans/*.png --width 210mm --lines all -o parts/{}.ngc
+  morfax trace samples/bracket.png --lines contours --picture bracket-lines.png
+  morfax trace scans/*.png --width 210mm --lines contours -o parts/{}.ngc
 """
 
 
@@ -81,7 +81,7 @@ def command(
 ) -> None:
     """Follow the line of a drawing and record the head's motion on a tape.
 
-    DRAWING is an image file (PNG, JPEG, TIFF) of known resolution. A closed line is followed until it closes,
+    DRAWING is a scan or photo (PNG, JPEG, TIFF, HEIC, …) or a PDF. A closed line is followed until it closes,
     an open one from end to end. If the line is lost, what was traced before is kept, with `.incomplete` in
     the names; of several lines (--lines) the others are cut all the same. The picture numbers them. If the
     head finds no line to start on, --picture shows the sheet, so that a place for --start can be read off it.

@@ -27,7 +27,7 @@ def made(folder: Path) -> tuple[str, morfax.Path]:
     """Trace and play the sample by its commands; the text of the program, and the played path."""
     program, played = folder / "bracket.ngc", folder / "played.csv"
     for words in (
-        ["trace", str(SAMPLE), "--lines", "all", "-o", str(program), "--quiet"],
+        ["trace", str(SAMPLE), "--lines", "contours", "-o", str(program), "--quiet"],
         ["play", str(program), "-o", str(played), "--quiet"],
     ):
         if code := command(words):

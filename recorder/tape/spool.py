@@ -20,6 +20,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from morfax.motion.faults import FileFault, TapeFault
+from morfax.motion.files import for_soundfile
 
 CONTAINERS = {
     ".wav": "RF64",
@@ -80,7 +81,9 @@ class Spool:
         self._file, self._name, self._container = file, name or file, container
         self._subtype = subtype
         self._frame_bytes = tracks * _SAMPLE_BYTES[subtype]
-        self._sound = soundfile.SoundFile(file, "w", rate_hz, tracks, subtype, format=container)
+        self._sound = soundfile.SoundFile(
+            for_soundfile(file), "w", rate_hz, tracks, subtype, format=container
+        )
         self.frames = 0
         if text and container != "W64":
             self._sound.comment = text
@@ -114,7 +117,7 @@ class Spool:
         """Raise SoundFileError unless the last frame is there: a FLAC meets a full disk only on closing."""
         if not self.frames:
             return
-        with soundfile.SoundFile(self._file) as written:
+        with soundfile.SoundFile(for_soundfile(self._file)) as written:
             written.seek(self.frames - 1)
             if written.frames != self.frames or len(written.read(1)) != 1:
                 raise soundfile.SoundFileRuntimeError("the last frame is missing")

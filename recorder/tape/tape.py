@@ -18,6 +18,7 @@ import soundfile
 from numpy.typing import NDArray
 
 from morfax.motion.faults import FileFault, TapeFault
+from morfax.motion.files import for_soundfile
 from morfax.recorder.tape.carrier import Frames
 from morfax.recorder.tape.format import TapeFormat, columns_of
 from morfax.recorder.tape.recording import Recording, record
@@ -168,7 +169,7 @@ def _open_sound(file: FilePath) -> soundfile.SoundFile:
     if empty:
         raise TapeFault(f"{file} is empty; a tape is a WAV, RF64 or FLAC file")
     try:
-        return soundfile.SoundFile(file)
+        return soundfile.SoundFile(for_soundfile(file))
     except (
         soundfile.SoundFileError,
         TypeError,

@@ -29,7 +29,7 @@ import soundfile
 from numpy.typing import NDArray
 
 from morfax.motion.faults import FileFault, TapeFault
-from morfax.motion.files import disk_full_fault, written_beside
+from morfax.motion.files import disk_full_fault, for_soundfile, written_beside
 from morfax.recorder.tape.format import LARGEST_TEXT_BYTES
 from morfax.recorder.tape.riff import make_plain
 from morfax.recorder.tape.spool import Spool, medium, sidecar
@@ -89,7 +89,7 @@ def age(
     """Wear a tape; raises FileFault or TapeFault for a bad file, ValueError for bad settings."""
     source, target = FilePath(file), FilePath(worn)
     try:
-        with soundfile.SoundFile(source) as sound:
+        with soundfile.SoundFile(for_soundfile(source)) as sound:
             return _aged(sound, source, target, wear, seed, sample, progress)
     except FileNotFoundError:
         raise FileFault(

@@ -47,7 +47,7 @@ def test_a_line_too_small_for_the_cutter_is_told_of_and_listed(
     options = (
         SAMPLES / "bracket.png",
         "--lines",
-        "all",
+        "contours",
         "-o",
         "bracket.csv",
         "--json",

@@ -133,7 +133,7 @@ def test_one_line_of_several_that_cross_is_told_to_be_one_of_several(
         one.err,
     )
     assert said is not None and int(said[1]) == pytest.approx(2 * 2 * np.pi * 10.2, rel=0.1)
-    every = morfax("trace", "rings.png", "-o", "rings.csv", "--lines", "all", "--json")
+    every = morfax("trace", "rings.png", "-o", "rings.csv", "--lines", "contours", "--json")
     assert [line["ending"] for line in every.figures["lines"]] == [
         "closed"
     ] * 3 and every.err == ""
@@ -191,7 +191,7 @@ def test_a_plain_trace_says_what_else_is_on_the_sheet(morfax: Morfax, here: Path
 
 def test_all_lines_are_one_program_listed_and_numbered(morfax: Morfax, here: Path) -> None:
     """The bracket's slot, then its outline; the table has a row for each, the JSON an entry."""
-    call = ("trace", SAMPLES / "bracket.png", "--lines", "all", "-o", "bracket.csv")
+    call = ("trace", SAMPLES / "bracket.png", "--lines", "contours", "-o", "bracket.csv")
     answer = morfax(*call, "--picture", "lines.svg", "--json")
     assert answer.exit_code == 0 and answer.figures["patches_left_out"] == 0
     slot, outline = answer.figures["lines"]
@@ -214,7 +214,9 @@ def test_all_lines_are_one_program_listed_and_numbered(morfax: Morfax, here: Pat
 
 
 def test_run_plays_all_lines_off_one_tape(morfax: Morfax, here: Path) -> None:
-    answer = morfax("run", SAMPLES / "bracket.png", "--lines", "all", "-o", "results", "--json")
+    answer = morfax(
+        "run", SAMPLES / "bracket.png", "--lines", "contours", "-o", "results", "--json"
+    )
     assert answer.exit_code == 0 and answer.figures["missed_ink_share"] < 0.01
     assert answer.figures["played_to_traced"]["max_mm"] < PLAYED_WITHIN_MM
 
@@ -224,8 +226,11 @@ def test_lines_that_there_are_not_are_refused(morfax: Morfax, here: Path) -> Non
     answer = morfax("trace", bracket, "--lines", "1,3")
     assert answer.exit_code == 4 and "no line 3: the drawing has lines 1, 2" in answer.fault
     answer = morfax("trace", bracket, "--lines", "inner")
-    assert answer.exit_code == 2 and "give all, outer, or numbers such as 1,3" in answer.fault
-    answer = morfax("trace", bracket, "--lines", "all", "--start", "1,1")
+    assert (
+        answer.exit_code == 2
+        and "give all, contours, outer, or numbers such as 1,3" in answer.fault
+    )
+    answer = morfax("trace", bracket, "--lines", "contours", "--start", "1,1")
     assert answer.exit_code == 2 and "--start picks one line, --lines several" in answer.fault
     assert list(here.iterdir()) == []
 
@@ -238,7 +243,15 @@ def test_a_lost_line_among_several_leaves_the_others_cut(morfax: Morfax, here: P
     cv2.circle(grey, (200, 150), 100, 0, 6, cv2.LINE_AA)
     Image.fromarray(grey).save("bar.png", dpi=DPI)
     answer = morfax(
-        "trace", "bar.png", "--lines", "all", "--line-width", "0.5mm", "-o", "bar.csv", "--json"
+        "trace",
+        "bar.png",
+        "--lines",
+        "contours",
+        "--line-width",
+        "0.5mm",
+        "-o",
+        "bar.csv",
+        "--json",
     )
     assert answer.exit_code == 4 and answer.figures["incomplete"] is True
     endings = {line["line"]: line["ending"] for line in answer.figures["lines"]}

@@ -24,7 +24,9 @@ def test_the_edge_is_traced_and_compared(morfax: Morfax, here: Path) -> None:
 def test_all_lines_takes_the_holes_before_the_outside(morfax: Morfax, here: Path) -> None:
     holes = arc((12, 16), 2), arc((20, 16), 2)
     sheet = filled(here / "plate.png", CIRCLE, holes=holes)
-    answer = morfax("trace", sheet, "--edge", "--lines", "all", "-o", "plate.csv", "--json")
+    answer = morfax(
+        "trace", sheet, "--edge", "--lines", "contours", "-o", "plate.csv", "--json"
+    )
     assert answer.exit_code == 0
     path = read_path(here / "plate.csv")
     assert distance(path, [CIRCLE, *holes]).hausdorff_mm < 30 * UM
@@ -36,7 +38,9 @@ def test_all_lines_takes_the_holes_before_the_outside(morfax: Morfax, here: Path
 def test_fine_details_are_followed_enlarged_and_told_of(morfax: Morfax, here: Path) -> None:
     hole = arc((15, 16), 0.5)
     sheet = filled(here / "plate.png", CIRCLE, holes=(hole,))
-    answer = morfax("trace", sheet, "--edge", "--lines", "all", "-o", "plate.csv", "--json")
+    answer = morfax(
+        "trace", sheet, "--edge", "--lines", "contours", "-o", "plate.csv", "--json"
+    )
     assert answer.exit_code == 0 and "traced at 2 times the scale" in answer.err
     path = read_path(here / "plate.csv")
     assert distance(path, [CIRCLE, hole]).hausdorff_mm < 45 * UM  # as in test_silhouette

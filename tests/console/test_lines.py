@@ -58,7 +58,7 @@ def test_the_table_says_what_each_number_is_and_inside_which(
     assert rows[max(rows)]["kind"] == "dot" and rows[max(rows)]["inside"] == 1
     assert answer.figures["likely_letters"] == 3 and answer.figures["patches_left_out"] >= 1
     assert f"the others from {max(rows) + 1} on" in answer.err
-    assert "--lines all leaves out" in answer.err
+    assert "--lines contours leaves out" in answer.err
 
 
 def test_every_number_of_the_table_is_taken_by_trace(morfax: Morfax, plate: str) -> None:
@@ -101,7 +101,7 @@ def test_a_line_with_gaps_is_several_numbers_and_following_says_of_which(
     assert [row["remark"] for row in pieces] == [f"piece of line {whole['line']}"] * 2
     assert whole["length_mm"] == pytest.approx(770 / PX_PER_MM, abs=1.0)
     numbers = ", ".join(str(row["line"]) for row in pieces)
-    assert f"--lines all leaves out lines {numbers} (pieces of another line)" in answer.err
+    assert f"--lines contours leaves out lines {numbers} (pieces of another line)" in answer.err
 
 
 def test_a_likely_wrong_scale_is_told_with_what_would_mend_it(

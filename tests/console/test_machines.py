@@ -107,6 +107,10 @@ def test_run_goes_the_whole_way_in_a_machine_s_words(morfax: Morfax, here: Path)
     assert figures["program"] == "out/curve.nc" and "tape" not in figures
     assert "M3 S90" in (here / "out" / "curve.nc").read_text().split("\n")
     assert figures["played_to_ink"]["rms_mm"] < 0.01
+    tabs = ("--machine", "grbl-pen", "--tabs", "2")
+    assert (
+        "tabs need a Z axis" in morfax("run", SAMPLES / "cam.png", "-o", "other", *tabs).fault
+    )
     refused = morfax("run", SAMPLES / "curve.png", "-o", "other", "--feed", "1200mm/min")
     assert refused.exit_code == 2 and "--feed is for G-code" in refused.fault
 
@@ -172,7 +176,7 @@ def test_a_plotter_file_has_its_speed_and_force_and_is_played(
         (
             "a.dxf",
             (),
-            "a.dxf holds what is cut, and no depth, pecks: set these where it is read",
+            "a.dxf holds what is cut, and no depth, pecks, dwells: set these where it is read",
         ),
         ("a.ngc", (), ""),
     ],

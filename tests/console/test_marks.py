@@ -127,9 +127,9 @@ def test_junctions_of_several_lines_are_counted_on_each_as_the_card_turns(
     monkeypatch.setattr(
         "morfax.tracer.program.trace_lines.trace_lines", lambda *_, **__: Trace(lines)
     )
-    rows = morfax("trace", PROGRAM, "-o", "program.csv", "--lines", "all", "--json").figures[
-        "junctions"
-    ]
+    rows = morfax(
+        "trace", PROGRAM, "-o", "program.csv", "--lines", "contours", "--json"
+    ).figures["junctions"]
     assert [(row["of_line"], row["junction"]) for row in rows] == [
         (2, 1),
         (2, 2),
@@ -188,7 +188,7 @@ def test_a_lead_line_that_goes_on_beyond_the_contour_is_told_to_be_a_guide_line(
         cv2.line(grey, (40, 150), end, 30, 6, cv2.LINE_AA)
     cv2.line(grey, (60, 125), (60, 175), 30, 6, cv2.LINE_AA)
     Image.fromarray(grey).save("beyond.png", dpi=(300, 300))
-    answer = morfax("trace", "beyond.png", "-o", "beyond.csv", "--lines", "all")
+    answer = morfax("trace", "beyond.png", "-o", "beyond.csv", "--lines", "contours")
     assert re.search(
         r"reference point 5.1,12.7 crosses another and ends at 30.\d,12.7 mm: it is taken for a guide",
         answer.err,

@@ -82,6 +82,8 @@ def test_a_drawing_without_a_unit_is_refused_and_takes_one(here: Path, morfax: M
 def test_a_unit_is_for_drawings_from_cad(path_file: Path, here: Path, morfax: Morfax) -> None:
     answer = morfax("record", path_file, "-o", "x.wav", "--unit", "in")
     assert answer.exit_code == 2 and "--unit is for drawings from CAD, .dxf" in answer.fault
+    systems = morfax("compare", SAMPLES / "curve.png", "--systems", "all", "--unit", "in")
+    assert systems.exit_code == 2 and "with --systems leave it out" in systems.fault
 
 
 def test_nothing_of_a_dxf_is_traced(part: Path, morfax: Morfax) -> None:

@@ -329,7 +329,7 @@ def test_what_is_wrong_is_raised(here: Path, path_file: Path) -> None:
     nowhere = TraceSettings(LineSettings(start_mm=(1.0, 1.0)))
     with pytest.raises(LineFault):
         TraceJob(CURVE, TraceOutputs(here / "a.csv"), nowhere).run()
-    both = TraceSettings(LineSettings(start_mm=(1.0, 1.0), lines="all"))
+    both = TraceSettings(LineSettings(start_mm=(1.0, 1.0), lines="contours"))
     with pytest.raises(WrongUse, match="--lines several"):
         TraceJob(CURVE, TraceOutputs(here / "a.csv"), both).run()
     with pytest.raises(WrongUse, match="--pickup is for tapes"):

@@ -120,6 +120,8 @@ def with_cutter(
     if not cuts:
         return replace(trace, lines=tuple(line for line, _ in lines)), Left()
     refuse_open(cuts, trace.lines, contouring)
+    if trace.fault is not None:  # what lies inside a line that was lost is not known
+        contouring = AS_FOLLOWED
     curves = _drive_curves(cuts, cutter.side)
     # 2. offset paths, and what they leave
     paths = offset(curves, cutter.radius_mm)

@@ -29,21 +29,13 @@ from morfax.tracer.cutter import sides
 from morfax.tracer.cutter.contouring import Lead
 
 CLEAR_MM = 0.001  # a place is clear if it is no nearer to a line than the radius less this
-# a lead without a cutter stays so far from other lines: half of a fine torch's kerf is 0.4 mm, a laser's less
+# a lead without a cutter stays so far from other lines: our own choice, for thin cuts; a kerf can be given
 KEPT_MM = 0.25
 EVERY_MM = 0.05  # between the places that stand for lines, where there is no cutter
 AWAY = 0.5  # of a lead's depth: the tool goes down so far from every cut; by trial
 TOUCHES_MM = 0.02  # so deep in the scrap a lead has left the line that it touches
-SIZES = (
-    1.0,
-    0.8,
-    0.6,
-    0.45,
-    0.3,
-    0.2,
-    0.13,
-    0.08,
-)  # of the size asked for, tried one after the other
+# of the size asked for, tried one after the other, down to 9 %; by trial
+SIZES = tuple(0.85**k for k in range(16))
 LEAST_MM = 0.1  # a smaller lead is none
 ACROSS = math.radians(45)  # at which a straight lead meets the path
 

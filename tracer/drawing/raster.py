@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.faults import DrawingFault, FileFault
+from morfax.motion.files import check_regular
 from morfax.tracer.drawing import exif
 from morfax.tracer.drawing import memory as room
 from morfax.tracer.drawing.components import strips
@@ -57,6 +58,7 @@ def read(
     """
     from PIL import UnidentifiedImageError
 
+    check_regular(file)
     try:
         with warnings.catch_warnings(), file.open("rb") as stream:
             warnings.simplefilter("ignore")

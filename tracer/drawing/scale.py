@@ -22,6 +22,7 @@ from morfax.tracer.drawing.scan import MM_PER_INCH, Scan
 
 # chosen far beyond any scan: a scale outside is a slip
 LEAST_PITCH_MM, LARGEST_PITCH_MM = 0.001, 10.0
+MOST_OBLONG = 4.0  # sides of a pixel; a fax has 204 x 98 dpi, at its coarsest 204 x 51
 LEAST_APART_PX = (
     100.0  # a pixel is then 1 % of the scale; a part is no use with a greater error
 )
@@ -93,6 +94,8 @@ def _known_mm(known: Known, scan: Scan) -> tuple[float, float]:
             " apart, better the sheet's whole length: a pixel counts for less then"
         )
     oblong = 1.0 if scan.stated is None else scan.stated.dpi[0] / scan.stated.dpi[1]
+    if not 1 / MOST_OBLONG <= oblong <= MOST_OBLONG:
+        oblong = 1.0  # what the file states cannot be
     right, down = (b - a for a, b in zip(known.first_px, known.second_px, strict=True))
     pitch_mm = known.length_mm / math.hypot(right, down * oblong)
     return _checked("--known", known.length_mm, pitch_mm), pitch_mm * oblong
@@ -122,4 +125,11 @@ def _stated_mm(scan: Scan) -> tuple[float, float]:
             f"{scan.file} states {stated.dpi[0]:g} dpi, {stated.doubt}; give the sheet's width with"
             f" --width 120mm, or --known X,Y X,Y 100mm, or --dpi {stated.dpi[0]:g} if that is true"
         )
-    return MM_PER_INCH / stated.dpi[0], MM_PER_INCH / stated.dpi[1]
+    x_mm, y_mm = (MM_PER_INCH / dpi for dpi in stated.dpi)
+    every = all(LEAST_PITCH_MM <= pitch_mm <= LARGEST_PITCH_MM for pitch_mm in (x_mm, y_mm))
+    if not every or not 1 / MOST_OBLONG <= x_mm / y_mm <= MOST_OBLONG:
+        raise DrawingFault(
+            f"{scan.file} states {stated.dpi[0]:g} x {stated.dpi[1]:g} dpi, which no scanner has; "
+            "give --dpi 300, or the sheet's width with --width 120mm"
+        )
+    return x_mm, y_mm

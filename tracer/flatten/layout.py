@@ -35,6 +35,7 @@ BAR_MM = 100.0  # as printed at 100 %
 BAR_THICK_MM, BAR_END_MM = 0.6, 3.0  # the bar, and the strokes at its ends
 BAR_CLEAR_MM = 0.8  # white below the bar
 BAND_MM = 7.0  # height of the band with the bar and its words, above the lower marks
+BESIDE_BAR_MM = 8.0  # of the band: the words are longer than the bar
 GRID_MM = 10.0
 # of each format: its first mark, and how many stand along the upper edge and down one side
 FIRST = {"a4": (0, 4, 5), "letter": (14, 4, 5), "a3": (28, 5, 6)}
@@ -85,7 +86,8 @@ class Layout:
         """The band in which the bar stands."""
         bottom = MARGIN_MM + MARK_MM + QUIET_MM
         middle = self.paper.width_mm / 2
-        return middle - BAR_MM / 2 - 3, bottom, middle + BAR_MM / 2 + 3, bottom + BAND_MM
+        half = BAR_MM / 2 + BESIDE_BAR_MM
+        return middle - half, bottom, middle + half, bottom + BAND_MM
 
     @property
     def bar_mm(self) -> Array:

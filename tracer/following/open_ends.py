@@ -37,6 +37,7 @@ LEAD_LEGS = 1.5  # lengths of a leg: a lead line is longer than this
 RING_WIDTHS, RING_PX = 1.5, 6.0  # radius of the ring of cells about an end: the larger
 WIDTH_OFF, WIDTH_OFF_PX = 0.25, 0.5  # of the width, and pixels: the end is as wide as the line
 SPUR_WIDTHS = 2.7  # a line that ends sooner is a burr
+FEWEST = 4  # stations, of which the middle half shows whether the line widens
 BEYOND_WIDTHS = 2.0  # ink that reaches no further beyond an end leaves a stop mark on one side
 # the tip of two lines widens so much, in widths or pixels, along half of what is felt of it
 GROWS, GROWS_PX = 0.08, 0.4
@@ -161,7 +162,8 @@ def _at_end(view: View, place: Array, gap_mm: float) -> Stance | None:
 def _is_end(view: View, inward: Array, heading: float, radius: float) -> bool:
     """Whether a line goes on from its end: it is no burr, no tip of two lines that part, no mark."""
     seen = view.feel(inward, heading, max(4 * view.width_mm, view.leg_mm))
-    if len(seen) * view.step_mm < SPUR_WIDTHS * view.width_mm - radius:
+    long_mm = len(seen) * view.step_mm
+    if len(seen) < FEWEST or long_mm < SPUR_WIDTHS * view.width_mm - radius:
         return False
     widths = seen[len(seen) // 4 : -len(seen) // 4, 2]
     grows_mm = np.median(widths[-4:]) - np.median(widths[:4])

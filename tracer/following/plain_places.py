@@ -19,6 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Sheet, Stroke
 from morfax.tracer.head.course import FELT_LEGS
 from morfax.tracer.head.stance import Stance
@@ -52,13 +53,13 @@ class Scored(NamedTuple):
 
 def view_of(sheet: Sheet, aperture_mm: float | None, width_mm: float) -> View:
     """The sheet through cells for a line of a width."""
-    aperture_mm = aperture_mm or aperture_for(sheet, width_mm)
+    aperture_mm = aperture_mm or aperture_for(sheet.drawing, width_mm)
     return View(photocell.behind_aperture(sheet.drawing, aperture_mm), width_mm)
 
 
-def aperture_for(sheet: Sheet, width_mm: float) -> float:
-    """The aperture of cells for a line of a width, mm."""
-    least_mm = LEAST_APERTURE_MM / sheet.drawing.enlarged
+def aperture_for(drawing: Drawing, width_mm: float) -> float:
+    """The aperture of the cells for a line of a width, mm."""
+    least_mm = LEAST_APERTURE_MM / drawing.enlarged
     return min(max(APERTURE * width_mm, least_mm), LARGEST_APERTURE_MM)
 
 

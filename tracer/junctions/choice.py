@@ -73,7 +73,7 @@ class Choice(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class WayIn:
-    """The way into a junction: how the line is seen, its leg and the trail and legs found about places there.
+    """The way into a junction: how the line is seen, its leg, the trail, and legs found about places there.
 
     Several surveys of one junction look about the same places: their legs are felt once.
     """

@@ -26,6 +26,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault
 from morfax.motion.motion import MOTION_RATE_HZ, Motion
 from morfax.tracer.following.line import Line
+from morfax.tracer.ink.ledger import Balance
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.operator.work import Action, Work
 from morfax.tracer.program.passes import Passes
@@ -39,7 +40,8 @@ class Trace:
     """What the head did: a stream of Motion over its lines, in the order in which they are cut.
 
     `left_out` patches of ink were too short to be lines; `left_out_mm` of ink is joined to lines, but none.
-    `others`: further lines of a sheet whose longest line was asked for.
+    `others`: further lines of a sheet whose longest line was asked for. `ink`: how much of the ink of a sheet
+    the strokes run along, where all of it was asked for.
     """
 
     lines: tuple[Line, ...]
@@ -48,6 +50,7 @@ class Trace:
     left_out: int = 0
     left_out_mm: float = 0.0
     others: int = 0
+    ink: Balance | None = None
 
     @property
     def work(self) -> Work:

@@ -1,7 +1,7 @@
 """The selection: which lines of a drawing are asked for, and where the head can be put down on each.
 
-Signals: a Sheet and what is asked for ("all", "outer" or numbers) in; contours out, each a stroke of ink with
-its number (mm on the sheet).
+Signals: a Sheet and what is asked for ("contours", "outer" or numbers) in; contours out, each a stroke of ink
+with its number (mm on the sheet).
 
     ┌───────────────┐        numbers: 1 is the longest line, then as they get shorter
     │  ( 2 )   ( 3 )│        the order in which they are cut: see `order`
@@ -30,7 +30,7 @@ from morfax.motion.polyline import nearest_mm
 from morfax.tracer.drawing.strokes import Sheet, Stroke
 from morfax.tracer.marks.reference import LARGEST_MM
 
-Which = str | tuple[int, ...]  # "all", "outer", or the numbers of lines
+Which = str | tuple[int, ...]  # "contours", "outer", or the numbers of lines
 
 LEAST_MM, LEAST_WIDTHS = 4.0, 6.0  # a shorter patch is a speck, a letter or a burr, ...
 LETTER_MM = 12.0  # ... unless it reaches as far as this
@@ -145,8 +145,10 @@ def _reach_mm(sheet: Sheet) -> Array:
 def _numbers(which: Which, lines: int) -> list[int]:
     """Numbers of the lines to follow; raises LineFault for a number that no line has."""
     if isinstance(which, str):
-        if which not in ("all", "outer"):
-            raise ValueError(f"{which!r} names no lines; give 'all', 'outer', or their numbers")
+        if which not in ("contours", "outer"):
+            raise ValueError(
+                f"{which!r} names no lines; give 'contours', 'outer', or their numbers"
+            )
         return list(range(1, lines + 1))
     numbers = sorted(set(which))
     for number in numbers:
@@ -160,7 +162,7 @@ def no_line(number: int, have: Sequence[int]) -> LineFault:
     lines = f"{'line' if len(have) == 1 else 'lines'} {_listed(have)}" if have else "none"
     return LineFault(
         f"no line {number}: the drawing has {lines}, numbered from the longest on (no specks, letters, pieces"
-        " of a line with gaps); give --lines all and a --picture to see them"
+        " of a line with gaps); give --lines contours and a --picture to see them"
     )
 
 

@@ -114,7 +114,7 @@ class Survey:
 def survey(setup: Setup) -> Survey:
     """Look at a sheet without following a line."""
     sheet = setup.sheet
-    contours, _ = selection.plan(sheet, "all")
+    contours, _ = selection.plan(sheet, "contours")
     letters = lettering(sheet)
     # 1. patches that are lines
     crosses_mm = _references_mm(setup)
@@ -146,7 +146,7 @@ def _viewed(setup: Setup, contours: list[Contour]) -> Iterator[tuple[Contour, Vi
     view, seen_mm = None, 0.0
     for contour in sorted(contours, key=lambda contour: contour.stroke.width_mm):
         width_mm = setup.settings.line_width_mm or contour.stroke.width_mm
-        aperture_mm = setup.settings.aperture_mm or aperture_for(setup.sheet, width_mm)
+        aperture_mm = setup.settings.aperture_mm or aperture_for(setup.sheet.drawing, width_mm)
         if view is None or abs(aperture_mm - seen_mm) > APERTURE_MM:
             view, seen_mm = view_of(setup.sheet, aperture_mm, width_mm), aperture_mm
         yield contour, replace(view, width_mm=width_mm)

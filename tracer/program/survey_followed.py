@@ -28,9 +28,9 @@ KINDS: dict[str, Kind] = {
 
 def followed(seen: Survey, setup: Setup) -> Survey:
     """The survey with all lines followed; raises LineFault for what none can be followed on."""
-    found = found_lines(setup, "all")
+    found = found_lines(setup, "contours")
     lines = {line.number: line for line in found.lines}
-    contours, _ = selection.plan(seen.sheet, "all")
+    contours, _ = selection.plan(seen.sheet, "contours")
     strokes = {contour.number: contour for contour in contours}
     entries = dict[int, Entry]()
     # 1. what was seen

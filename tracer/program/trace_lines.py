@@ -54,12 +54,12 @@ class FoundLines:
 
 def trace_lines(
     drawing: Drawing,
-    which: Which = "all",
+    which: Which = "contours",
     settings: Settings | None = None,
     operator: Operator | None = None,
     progress: HeadProgress | None = None,
 ) -> Trace:
-    """Follow several lines of the drawing: "all", those that lie inside no other ("outer"), or some by their
+    """Follow several lines of the drawing: "contours", those inside no other ("outer"), or some by their
     numbers (1 is the longest).
 
     `progress` hears how far the head has come and the length of all the lines, mm. Raises LineFault if no
@@ -107,12 +107,12 @@ def found_lines(setup: Setup, which: Which) -> FoundLines:
     Numbers: patches, the longest first; dots that stand alone; lines that are joined to another.
     """
     patches, holes = len(selection.lines_of(setup.sheet)), list[Line]()
-    if which == "all" or (not isinstance(which, str) and max(which) > patches):
+    if which == "contours" or (not isinstance(which, str) and max(which) > patches):
         holes = [line for _, line in dots_alone(setup)]
     beyond = not isinstance(which, str) and max(which) > patches + len(holes)
     # 1. one line of each patch; only a line joined to another has a number beyond patches and dots
     numbered = which if isinstance(which, str) else tuple(n for n in which if n <= patches)
-    asked, left_out = selection.plan(setup.sheet, "all" if beyond else numbered)
+    asked, left_out = selection.plan(setup.sheet, "contours" if beyond else numbered)
     lines, letters = one_of_each(setup, asked, which)
     # 2. the other lines of those patches
     joined, left_mm = _joined(setup, asked, lines)
@@ -124,7 +124,7 @@ def found_lines(setup: Setup, which: Which) -> FoundLines:
         lines += [line for line in others if which != "outer" or not is_inside(line, lines)]
     # 3. dots that stand alone
     lines += holes
-    if beyond or (holes and which != "all"):
+    if beyond or (holes and which != "contours"):
         lines = _of_numbers(lines, which)
     return FoundLines(lines, left_out + letters - len(holes), left_mm, patch_of)
 

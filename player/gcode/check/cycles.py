@@ -33,6 +33,9 @@ class Runner(Protocol):
         """Go to places in mm."""
 
 
+MOST_REPEATS = 1000  # of L; more are a mistake, and only take time here
+
+
 @dataclass(slots=True)
 class CannedCycle:
     """R and Z as they hold, mm; whether the tool comes up to where it was (G98), or to R (G99)."""
@@ -51,7 +54,8 @@ class CannedCycle:
         clear_mm = max(start_mm, self.r_mm) if self.returns_to_start else self.r_mm
         if start_mm < self.r_mm:
             runner.run(RAPID, {"Z": self.r_mm})
-        for _ in range(round(values.get("L", 1.0)) if runner.relative else 1):
+        repeats = min(max(values.get("L", 1.0), 0.0), MOST_REPEATS) if runner.relative else 1
+        for _ in range(round(repeats)):
             across = {
                 letter: values[letter] * runner.scale
                 + (runner.place if runner.relative else runner.offset)[axis]

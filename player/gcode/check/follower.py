@@ -27,6 +27,7 @@ from morfax.player.gcode.tool_state import ToolState
 from morfax.recorder.gcode.machine import Machine
 from morfax.recorder.gcode.takes import Code, codes
 
+MOST_TURNS = 1000  # of a helix; more are a mistake, and only take time here
 _READ = codes("G0-G4 G20 G21 G90 G91")  # words that the reader obeys
 _PLAIN = codes("G0-G3")
 _HOME = codes("G28 G30")
@@ -163,7 +164,8 @@ class Follower(Reader):
         letters = set(_OUR_LETTERS)
         if self.motion in codes("G2 G3"):
             letters |= set("IJR")
-            self.turns = round(values.get("P", 1.0)) if self.machine.takes.turns else 1
+            turns = values.get("P", 1.0) if self.machine.takes.turns else 1.0
+            self.turns = round(min(max(turns, 1.0), MOST_TURNS))
             if "K" in values and not {"I", "J", "R"} & values.keys():
                 values = {**values, "I": 0.0}
         self.k = values.get("K", 0.0)

@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from morfax.player.gcode.arc_words import Place
+from morfax.player.gcode.arc_words import TURN, Place
 from morfax.player.gcode.rs274 import DWELL, RAPID, Move
 
 _QUARTER = math.pi / 2
@@ -60,7 +60,9 @@ class Step(NamedTuple):
             return (low[0], low[1], low[2]), (high[0], high[1], high[2])
         (x, y), radius = self.move.centre_mm, math.dist(self.begin_mm[:2], self.move.centre_mm)
         first = math.atan2(self.begin_mm[1] - y, self.begin_mm[0] - x)
-        last = first + self.move.turned_rad
+        last = first + max(
+            -TURN, min(self.move.turned_rad, TURN)
+        )  # more turns reach no further
         first, last = min(first, last), max(first, last)
         quarters = range(math.ceil(first / _QUARTER), math.floor(last / _QUARTER) + 1)
         xs = [low[0], high[0], *(x + radius * math.cos(k * _QUARTER) for k in quarters)]

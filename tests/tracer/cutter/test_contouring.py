@@ -238,7 +238,7 @@ def test_where_there_is_no_room_a_lead_is_shorter_or_missing_and_that_is_told() 
     assert got[1] == 3.0 and 0.4 < got[3] < 1.0 and got[2] == 0.0
     (told,) = of_contouring(made, asked)
     assert "no room for a lead-in of 3 mm" in told
-    assert "none at line 2" in told and f"{got[3]:g} mm at line 3" in told
+    assert "none at line 2" in told and f"{round(got[3], 2):g} mm at line 3" in told
 
 
 def test_a_lead_that_no_line_has_room_for_is_refused() -> None:

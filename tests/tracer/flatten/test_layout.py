@@ -70,3 +70,12 @@ def test_the_bar_is_on_the_pixels_that_it_should_be_on() -> None:
     inked = np.flatnonzero(row[round(30 * PX_PER_MM) : round(180 * PX_PER_MM)]) + 30 * PX_PER_MM
     assert inked.min() / PX_PER_MM == pytest.approx(left, abs=1 / PX_PER_MM)
     assert (inked.max() + 1) / PX_PER_MM == pytest.approx(right, abs=1 / PX_PER_MM)
+
+
+@pytest.mark.parametrize("name", list(FIRST))
+def test_all_that_is_black_lies_in_the_boxes_that_become_paper(name: str) -> None:
+    sheet = marked(name)
+    for left, bottom, right, top in Layout.of(name).printed_mm():
+        a, b = (len(sheet) - round(edge * PX_PER_MM) for edge in (top, bottom))
+        sheet[a:b, round(left * PX_PER_MM) : round(right * PX_PER_MM)] = 255
+    assert sheet[..., 1:].min() > 200  # levels of green and blue: the grid alone is left

@@ -145,7 +145,7 @@ def test_what_lies_inside_what() -> None:
 def test_specks_letters_and_burrs_are_counted_and_left_out() -> None:
     speck = np.array([(28, 8), (29, 8), (29, 9), (28, 9)])
     letter = polyline((8, 6), (10.5, 6))
-    contours, left_out = plan(Sheet.of(inked(FRAME, HOLE, letter, specks=[speck])), "all")
+    contours, left_out = plan(Sheet.of(inked(FRAME, HOLE, letter, specks=[speck])), "contours")
     assert [c.number for c in contours] == [1, 2] and left_out == 2
     assert contours[1].stroke.length_mm == pytest.approx(6 * np.pi, rel=0.1)
 
@@ -237,7 +237,7 @@ def test_a_run_from_a_chord_does_not_hide_the_contour_that_it_went_along() -> No
     it.
     """
     sheet = Sheet.of(inked(OUTLINE, UPRIGHT, BAR, width_mm=0.3, seed=2))
-    (contour,), _ = plan(sheet, "all")
+    (contour,), _ = plan(sheet, "contours")
     bar = Line(np.linspace(*BAR, 6000), "ended", 0.3, 24.0)
     (outline,), left_mm = joined_to(bar, contour, Setup(sheet))
     assert distance(outline.places_mm, OUTLINE).hausdorff_mm < 40 * UM

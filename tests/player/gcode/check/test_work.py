@@ -223,3 +223,12 @@ def test_a_place_after_a_computed_one_is_not_held_against_an_arc() -> None:
     assert rules(check(*lost, on=LINUXCNC)) == [(5, "not read")]
     found = check(*lost, "G3 X20 Y0 I5.2 J0", on=LINUXCNC)  # X10 has been read by now
     assert rules(found) == [(5, "not read"), (7, "arc")]
+
+
+def test_a_helix_has_its_turns_and_a_slip_of_the_finger_does_not_take_for_ever() -> None:
+    deep = check("G1 Z0 F100", "G3 X0 Y0 Z-6 I5 P3", "G0 Z5", on=LINUXCNC)
+    length_mm = sum(step.length_mm for step in deep.steps if step.move.line == 6)
+    # chords of 5 degrees are shorter than their arc by 0.03 %
+    assert length_mm == pytest.approx(math.hypot(3 * 10 * math.pi, 6), rel=1e-3)
+    for line in ("G3 X0 Y0 I5 P1000000000 F100", "G91 G81 X1 R0 Z-1 L1000000000 F100"):
+        assert check(line, on=LINUXCNC).steps

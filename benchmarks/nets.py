@@ -1,0 +1,222 @@
+"""Nets of lines: how much of the ink is followed, how often, and in how few strokes.
+
+    python -m benchmarks nets [COUNT [FIRST]]    COUNT drawings of each kind (2), their numbers from FIRST (0)
+
+Drawings are made with known truth: chords, circles laid over each other, Voronoi cells, grids, trees and
+Lissajous figures, as a pen of 0.4 mm draws them, scanned at 300 dpi with noise. For each kind: the share of
+the true lines that strokes run along (all, and the worst drawing), the length that is run more than once,
+strokes against the least that the net allows (half of its odd junctions), the distance of strokes from the
+true lines outside of junctions, and processor time. Beside it the pieces into which scikit-image's skeleton
+falls at its junctions.
+"""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+import cv2
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from PIL import Image
+from scipy.ndimage import convolve, label
+from scipy.spatial import Voronoi, cKDTree
+from skimage.morphology import skeletonize
+
+from morfax.motion.polyline import evenly, length_mm
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.program.trace_ink import trace_ink
+
+Points = NDArray[np.float64]
+Strokes = list[Points]
+
+SHEET_MM, MARGIN_MM = 100.0, 8.0
+PEN_MM, DPI, FINER, NOISE = 0.4, 300.0, 4, 4.0
+ON_IT_MM = 0.5 * PEN_MM  # a true place is followed if a stroke comes as near
+AT_JUNCTION_MM = 2.0  # places nearer to a junction are left out of the RMS
+STEP_MM = 0.05
+UM = 1000.0
+
+
+def chords(rng: np.random.Generator) -> Strokes:
+    """Straight lines across each other."""
+    ends = rng.uniform(MARGIN_MM, SHEET_MM - MARGIN_MM, (60, 2, 2))
+    return [e for e in ends if np.hypot(*(e[1] - e[0])) > 25][:20]
+
+
+def circles(rng: np.random.Generator) -> Strokes:
+    """Circles laid over each other."""
+    turns = np.linspace(0, 2 * np.pi, 1500)
+    round_one = np.column_stack([np.cos(turns), np.sin(turns)])
+    return [rng.uniform(32, 68, 2) + radius * round_one for radius in rng.uniform(8, 24, 8)]
+
+
+def cells(rng: np.random.Generator) -> Strokes:
+    """The walls of Voronoi cells."""
+    found = Voronoi(rng.uniform(MARGIN_MM, SHEET_MM - MARGIN_MM, (40, 2)))
+    walls = [found.vertices[[a, b]] for a, b in found.ridge_vertices if a >= 0 and b >= 0]
+    inside = [w for w in walls if (w > 5).all() and (w < SHEET_MM - 5).all()]
+    return [w for w in inside if np.hypot(*(w[1] - w[0])) > 1.5]
+
+
+def grid(rng: np.random.Generator) -> Strokes:
+    """Lines at right angles, at uneven distances."""
+    at = np.sort(10 + np.cumsum(rng.uniform(6, 12, 8)))
+    low, high = at[0], at[-1]
+    across = [np.array([[low, y], [high, y]]) for y in at]
+    return [*across, *(np.array([[x, low], [x, high]]) for x in at)]
+
+
+def tree(rng: np.random.Generator) -> Strokes:
+    """Branches that fork."""
+    out: Strokes = []
+
+    def grow(root: Points, heading: float, long_mm: float, forks: int) -> None:
+        tip = root + long_mm * np.array([np.cos(heading), np.sin(heading)])
+        out.append(np.array([root, tip]))
+        for turned in (-0.5, 0.45) if forks else ():
+            grow(tip, heading + turned + rng.normal(0, 0.1), 0.72 * long_mm, forks - 1)
+
+    grow(np.array([50.0, 6.0]), np.pi / 2, 24.0, 4)
+    return out
+
+
+def lissajous(rng: np.random.Generator) -> Strokes:
+    """One line that crosses itself."""
+    turns, phase = np.linspace(0, 2 * np.pi, 3000), rng.uniform(0.2, 0.5)
+    a, b = [(3, 4), (3, 5), (4, 5)][rng.integers(3)]
+    return [50 + 40 * np.column_stack([np.sin(a * turns + phase), np.sin(b * turns)])]
+
+
+KINDS: dict[str, Callable[[np.random.Generator], Strokes]] = {
+    kind.__name__: kind for kind in (chords, circles, cells, grid, tree, lissajous)
+}
+
+
+class Found(NamedTuple):
+    """What one drawing came to: mm, strokes, um, s; and the pieces of a skeleton."""
+
+    true_mm: float
+    followed_mm: float
+    twice_mm: float
+    strokes: int
+    least: int
+    rms_um: float
+    took_s: float
+    pieces: int
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Print the table."""
+    count, first = (*map(int, arguments or []), *(2, 0)[len(arguments or []) :])
+    print("kind        share  worst  twice  strokes/least  RMS um  skeleton pieces/stroke  s/m")
+    every = list[Found]()
+    with tempfile.TemporaryDirectory() as folder:
+        for name, kind in KINDS.items():
+            found = [
+                measured(
+                    kind(np.random.default_rng([k, len(name)])), Path(folder) / "net.png", k
+                )
+                for k in range(first, first + count)
+            ]
+            every += found
+            _tell(name, found)
+    _tell("all", every)
+
+
+def measured(strokes: Strokes, file: Path, seed: int) -> Found:
+    """Draw a net, follow it, and hold what was followed against what was drawn."""
+    drawn(strokes, file, seed)
+    drawing, begun = Drawing.open(file), time.process_time()
+    lines = [line.xy_mm for line in trace_ink(drawing).lines]
+    took_s = time.process_time() - begun
+    # 1. the truth: each stretch once
+    net = shapely.unary_union([shapely.LineString(stroke) for stroke in strokes])
+    edges = [np.asarray(edge.coords) for edge in getattr(net, "geoms", [net])]
+    truth = np.vstack([evenly(edge, STEP_MM) for edge in edges])
+    least, junctions = least_strokes(edges)
+    # 2. what was followed of it
+    run = np.vstack([evenly(line[::10], STEP_MM) for line in lines])
+    near = cKDTree(run).query(truth)[0] < ON_IT_MM
+    run_mm = sum(length_mm(line) for line in lines)
+    # 3. how far the strokes are from it
+    away = np.array(shapely.distance(shapely.points(run), net))
+    if len(junctions):
+        away = away[cKDTree(junctions).query(run)[0] > AT_JUNCTION_MM]
+    rms_um = UM * float(np.sqrt(np.mean(away**2)))
+    twice_mm = max(0.0, run_mm - net.length * float(near.mean()))
+    return Found(
+        net.length,
+        net.length * float(near.mean()),
+        twice_mm,
+        len(lines),
+        least,
+        rms_um,
+        took_s,
+        skeleton_pieces(drawing),
+    )
+
+
+def drawn(strokes: Strokes, file: Path, seed: int) -> None:
+    """A net as a pen draws it, scanned."""
+    pixels = round(SHEET_MM * DPI / 25.4)
+    scale = pixels / SHEET_MM * FINER
+    fine = np.zeros((pixels * FINER,) * 2, np.uint8)
+    for stroke in strokes:
+        x, y = stroke[:, 0] * scale - 0.5, pixels * FINER - stroke[:, 1] * scale - 0.5
+        places = np.round(16 * np.column_stack([x, y])).astype(np.int32)
+        cv2.polylines(fine, [places], False, 255, round(PEN_MM * scale), cv2.LINE_AA, 4)
+    ink = cv2.resize(fine, (pixels, pixels), interpolation=cv2.INTER_AREA) / 255.0
+    ink = cv2.GaussianBlur(ink, (0, 0), 0.6)
+    grey = 235 - 195 * ink + np.random.default_rng(seed).normal(0, NOISE, ink.shape)
+    Image.fromarray(np.clip(grey, 0, 255).astype(np.uint8)).save(file, dpi=(DPI, DPI))
+
+
+def least_strokes(edges: Strokes) -> tuple[int, Points]:
+    """The fewest strokes that go along every edge once, and the junctions (n, 2) mm."""
+    ends = np.vstack([edge[[0, -1]] for edge in edges])
+    tree = cKDTree(ends)
+    node = np.full(len(ends), -1)
+    for k in range(len(ends)):
+        if node[k] < 0:
+            node[tree.query_ball_point(ends[k], 1e-6)] = k
+    degree = np.bincount(node, minlength=len(ends))
+    part = np.arange(len(ends))
+    for a, b in node.reshape(-1, 2):
+        part[part == part[a]] = part[b]
+    odd = [int(np.sum(degree[node == n][:1] % 2)) for n in np.unique(node)]
+    by_part = dict[int, int]()
+    for n, is_odd in zip(np.unique(node), odd, strict=True):
+        by_part[int(part[n])] = by_part.get(int(part[n]), 0) + is_odd
+    return sum(max(1, count // 2) for count in by_part.values()), ends[degree[node] > 2]
+
+
+def skeleton_pieces(drawing: Drawing) -> int:
+    """Into how many pieces a skeleton of the ink falls at its junctions."""
+    thin = skeletonize(drawing.darkness > 0.5)
+    neighbours = convolve(thin.astype(np.uint8), np.ones((3, 3), np.uint8)) - 1
+    return int(label(thin & (neighbours < 3), np.ones((3, 3)))[1])
+
+
+def _tell(name: str, found: list[Found]) -> None:
+    """Print one row."""
+    true_mm, followed_mm = sum(f.true_mm for f in found), sum(f.followed_mm for f in found)
+    strokes, least = sum(f.strokes for f in found), sum(f.least for f in found)
+    worst = min(f.followed_mm / f.true_mm for f in found)
+    rms_um = float(np.sqrt(np.mean([f.rms_um**2 for f in found])))
+    print(
+        f"{name:10s} {followed_mm / true_mm:6.1%} {worst:6.1%} "
+        f"{sum(f.twice_mm for f in found) / true_mm:6.1%} {strokes:5d}/{least:<5d} {strokes / least:5.2f}"
+        f"{rms_um:8.1f} {sum(f.pieces for f in found) / strokes:14.1f}"
+        f"{1000 * sum(f.took_s for f in found) / true_mm:16.1f}",
+        flush=True,
+    )
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,114 @@
+"""All the ink: every stretch followed once, straight on through crossings, up to what it meets."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import shapely
+
+from morfax.motion.polyline import length_mm
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.strokes import Sheet
+from morfax.tracer.following.line import Line
+from morfax.tracer.head.settings import Settings
+from morfax.tracer.ink.ledger import Ledger
+from morfax.tracer.ink.rounds import Rounds
+from morfax.tracer.program.trace_ink import trace_ink
+from tests.tracer.inked import UM, WIDTH_MM, Points, arc, inked, polyline
+
+TWICE = 0.01  # of the length: what may be run more than once
+BESIDE_MM = (
+    60 * UM
+)  # strokes from the true line, junctions included, where they are led on; asked: 30
+LED_ON_MM = (
+    0.1  # from the end of a stroke to the middle of the line that it meets: a fifth of the pen
+)
+SQUARE = polyline((6, 6), (36, 6), (36, 36), (6, 36), (6, 6))
+BAR = polyline((6, 20), (36, 20))
+SPUR = polyline((36, 28), (44, 28))
+
+
+def all_of(*lines: Points, seed: int = 1) -> list[Line]:
+    """The strokes of lines that are inked."""
+    return list(trace_ink(inked(*lines, seed=seed)).lines)
+
+
+def held_against(strokes: list[Line], lines: list[Points]) -> tuple[float, float, float]:
+    """Share of the true lines followed, share run more than once, largest distance from them (mm)."""
+    truth = shapely.unary_union([shapely.LineString(line) for line in lines])
+    run = shapely.unary_union([shapely.LineString(stroke.xy_mm[::5]) for stroke in strokes])
+    followed = shapely.intersection(truth, shapely.buffer(run, 0.5 * WIDTH_MM)).length
+    run_mm = sum(length_mm(stroke.xy_mm) for stroke in strokes)
+    away = shapely.distance(shapely.points(np.vstack([s.xy_mm for s in strokes])), truth)
+    return followed / truth.length, (run_mm - followed) / truth.length, float(away.max())
+
+
+def test_a_bar_and_a_spur_are_followed_beside_the_outline() -> None:
+    strokes = all_of(SQUARE, BAR, SPUR)
+    share, twice, away_mm = held_against(strokes, [SQUARE, BAR, SPUR])
+    assert share > 0.999 and twice < TWICE and away_mm < BESIDE_MM
+    # the square's five corners of odd order: at most half as many strokes, and one for what is even
+    assert len(strokes) <= 3
+
+
+def test_lines_that_cross_go_straight_on() -> None:
+    lines = [
+        polyline((5, 5), (45, 30)),
+        polyline((5, 30), (45, 5)),
+        polyline((5, 24), (45, 26)),
+    ]
+    strokes = all_of(*lines)
+    assert sorted(round(s.length_mm) for s in strokes) == sorted(
+        round(length_mm(a)) for a in lines
+    )
+    share, twice, away_mm = held_against(strokes, lines)
+    assert share > 0.999 and twice < TWICE and away_mm < BESIDE_MM
+
+
+def test_circles_laid_over_each_other_come_round() -> None:
+    circles = [arc((18, 18), 10), arc((28, 20), 9), arc((22, 28), 8)]
+    strokes = all_of(*circles)
+    assert [stroke.ending for stroke in strokes] == ["closed"] * 3
+    assert held_against(strokes, circles)[0] > 0.999
+
+
+def test_a_stroke_ends_on_the_middle_of_the_line_that_it_meets() -> None:
+    strokes = all_of(BAR, polyline((20, 20), (20, 34)))
+    short = min(strokes, key=lambda stroke: stroke.length_mm)
+    ends = short.xy_mm[[0, -1]]
+    assert abs(ends[:, 1] - 20).min() < LED_ON_MM
+
+
+def test_white_paper_is_not_crossed_for_struck_ink() -> None:
+    """Two dashes 1.4 mm apart: nearer than a struck line may be wide, and wider than the allowed gap."""
+    dashes = [polyline((5, 10), (20, 10)), polyline((21.4 + WIDTH_MM, 10), (36, 10))]
+    assert len(all_of(*dashes)) == 2
+
+
+def test_what_cannot_be_followed_is_in_the_balance() -> None:
+    speck = polyline((40, 30), (40.8, 30), (40.8, 30.6), (40, 30.6), (40, 30))
+    trace = trace_ink(inked(SQUARE, specks=[speck], seed=1))
+    assert trace.ink is not None
+    assert trace.ink.followed_share > 0.995
+    assert 0 < trace.ink.specks_mm < 2
+    assert trace.ink.followed_mm == pytest.approx(
+        length_mm(SQUARE), rel=0.03
+    )  # by the area of the ink
+
+
+def test_struck_off_ink_is_gone_and_the_drawing_is_as_it_was() -> None:
+    drawing = inked(SQUARE, BAR)
+    before = drawing.darkness.copy()
+    ledger = Ledger(Sheet.of(drawing))
+    rounds = Rounds(ledger, Settings())
+    first = next(rounds.strokes())
+    on_it = first.way_mm[::50]
+    assert not ledger.is_left(on_it).any() and ledger.was_ink(on_it).all()
+    assert np.array_equal(drawing.darkness, before)
+
+
+def test_the_same_strokes_on_a_sheet_that_is_mirrored() -> None:
+    drawing = inked(SQUARE, BAR, SPUR, seed=3)
+    mirrored = Drawing(np.ascontiguousarray(drawing.darkness[:, ::-1]), drawing.pitch_mm)
+    lengths = [sorted(s.length_mm for s in trace_ink(d).lines) for d in (drawing, mirrored)]
+    assert sum(lengths[0]) == pytest.approx(sum(lengths[1]), abs=0.3)

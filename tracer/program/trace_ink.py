@@ -1,0 +1,82 @@
+"""All the ink of a drawing as one program: every stretch of line, in few long strokes and short idle ways.
+
+Signals: a Drawing in; out a Trace over its strokes. Crosses, ticks and dots are ink like all other: nothing
+stops the head.
+
+Source: our own (see `tracer.ink`); patent ES 361967 has one contour to a tape.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from morfax.motion.faults import LineFault
+from morfax.motion.polyline import length_mm
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.strokes import Sheet
+from morfax.tracer.following.line import Line
+from morfax.tracer.head.settings import Settings
+from morfax.tracer.ink.ledger import Ledger
+from morfax.tracer.ink.meeting import InkStroke, joined
+from morfax.tracer.ink.rounds import Rounds
+from morfax.tracer.operator.operator import Operator
+from morfax.tracer.program import order
+from morfax.tracer.program.program import Trace
+from morfax.tracer.program.setup import HeadProgress
+
+
+def trace_ink(
+    drawing: Drawing,
+    settings: Settings | None = None,
+    operator: Operator | None = None,
+    progress: HeadProgress | None = None,
+) -> Trace:
+    """Follow every stretch of line of a drawing, each once.
+
+    `progress` hears how far the head has come and the length of all the ink, mm. Raises LineFault if the head
+    can be put down nowhere.
+    """
+    settings = settings or Settings()
+    # 1. strokes, until no ink is left
+    ledger = Ledger(Sheet.of(drawing), settings.line_width_mm)
+    strokes, come_mm = list[InkStroke](), 0.0
+    rounds = Rounds(ledger, settings)
+    for stroke in rounds.strokes():
+        strokes.append(stroke)
+        come_mm += length_mm(stroke.way_mm)
+        if progress is not None:
+            progress(min(come_mm, ledger.ink_mm), ledger.ink_mm)
+    if not strokes:
+        raise LineFault(
+            "no line can be begun: the ink on the sheet is too short, or is filled shapes; follow the edges"
+            " of these with --edge, or scan the drawing at a higher resolution"
+        )
+    # 2. as a pen would go on, the longest first
+    strokes = joined(strokes, ledger, settings.speed_mm_s)
+    strokes.sort(key=lambda stroke: -length_mm(stroke.way_mm))
+    lines = _in_order([_line(stroke, k) for k, stroke in enumerate(strokes, 1)])
+    balance = ledger.balance()._replace(lost=rounds.lost())
+    return Trace(tuple(lines), operator or Operator(), left_out_mm=balance.left_mm, ink=balance)
+
+
+def _line(stroke: InkStroke, number: int) -> Line:
+    """A stroke as a line of the program."""
+    ending = "closed" if stroke.closed else "ended"
+    return Line(stroke.way_mm, ending, stroke.width_mm, length_mm(stroke.way_mm), number=number)
+
+
+def _in_order(lines: list[Line]) -> list[Line]:
+    """The strokes in an order with a short idle way, open ones begun at either end."""
+    begins = np.array([line.begin_mm for line in lines])
+    ends = np.array([line.end_mm for line in lines])
+    may_turn = np.array([line.is_open for line in lines])
+    anyhow = np.zeros((len(lines), len(lines)), bool)
+    sequence, turned = order.in_order_and_turned(begins, ends, anyhow, may_turn)
+    return [_turned_round(lines[i]) if turned[i] else lines[i] for i in sequence]
+
+
+def _turned_round(line: Line) -> Line:
+    """A stroke run from its other end."""
+    return replace(line, xy_mm=line.xy_mm[::-1])
