@@ -45,83 +45,79 @@ def rounded(left: float, bottom: float, right: float, top: float, radius: float)
 
 
 def base_plate() -> list[Points]:
-    """A plate of 90 x 60 mm with a bore, four holes and two slots."""
-    holes = [circle(x, y, 7) for x in (9, 81) for y in (9, 51)]
-    slots = [rounded(left, 24, left + 8, 44, 4) for left in (14, 68)]
-    return [rounded(0, 0, 90, 60, 8), circle(45, 30, 24), *holes, *slots]
+    """A plate of 60 x 40 mm with a bore and four holes."""
+    holes = [circle(x, y, 6) for x in (8, 52) for y in (8, 32)]
+    return [rounded(0, 0, 60, 40, 6), circle(30, 20, 16), *holes]
 
 
 def shelf_bracket() -> list[Points]:
-    """A bracket for a shelf, 80 x 70 mm, with a hollow in its slope and two holes."""
+    """A bracket for a shelf, 52 x 46 mm, with a hollow in its slope and two holes."""
     outline = closed(
-        np.array([[0.0, 0.0], [80.0, 0.0], [80.0, 14.0]]),
-        arc((80, 80), 66, -90 - 4, -180 + 12),
-        np.array([[14.0, 70.0], [0.0, 70.0]]),
+        np.array([[0.0, 0.0], [52.0, 0.0], [52.0, 10.0]]),
+        arc((52, 52), 42, -94, -168),
+        np.array([[10.0, 46.0], [0.0, 46.0]]),
     )
-    return [outline, circle(8, 60, 5), circle(68, 7, 5)]
+    return [outline, circle(6, 38, 5), circle(44, 5.5, 5)]
 
 
 def name_tag() -> list[Points]:
-    """A tag of 70 x 30 mm with a hole for a string and a star in it."""
+    """A tag of 50 x 22 mm with a hole for a string and a star in it."""
     turn = np.radians(90 + 36 * np.arange(10))
-    radius = np.tile([9.0, 4.0], 5)
-    star = closed(
-        np.column_stack([38 + radius * np.cos(turn), 14.5 + radius * np.sin(turn)])
-    )
-    return [rounded(0, 0, 70, 30, 6), circle(8, 15, 5), star]
+    radius = np.tile([7.5, 3.5], 5)
+    star = closed(np.column_stack([28 + radius * np.cos(turn), 10.5 + radius * np.sin(turn)]))
+    return [rounded(0, 0, 50, 22, 5), circle(6, 11, 4), star]
 
 
 def figure() -> list[Points]:
-    """A figure of Lissajous that crosses itself seven times, drawn in one line, and a frame round it."""
+    """A figure of Lissajous that crosses itself seven times, drawn in one line."""
     turn = np.linspace(0, 2 * math.pi, 1500)
-    curve = np.column_stack([28 * np.sin(2 * turn + 0.5), 20 * np.sin(3 * turn)])
-    return [curve, rounded(-34, -26, 34, 26, 5)]
+    return [np.column_stack([24 * np.sin(2 * turn), 17 * np.sin(3 * turn)])]
 
 
 def leaf() -> Grey:
-    """A filled leaf with three veins left white, 60 x 40 mm."""
-    grey = np.full((round(54 * PX_PER_MM), round(74 * PX_PER_MM)), 255, np.uint8)
+    """A filled leaf of 40 x 24 mm with two veins left white."""
+    grey = np.full((round(34 * PX_PER_MM), round(50 * PX_PER_MM)), 255, np.uint8)
     along = np.linspace(0, 1, 200)
-    width = 18 * np.sin(math.pi * along**0.8)
-    upper = np.column_stack([7 + 60 * along, 27 + width])
-    _fill(grey, np.vstack([upper, np.column_stack([7 + 60 * along, 27 - width])[::-1]]), 20)
-    for x in (22.0, 34.0, 46.0):
-        _fill(grey, rounded(x - 1.5, 20, x + 1.5, 34, 1.4), 255)
+    width = 12 * np.sin(math.pi * along**0.8)
+    upper, lower = (
+        np.column_stack([5 + 40 * along, 17 + side * width]) for side in (1, -1)
+    )
+    _fill(grey, np.vstack([upper, lower[::-1]]), 20)
+    for x in (18.0, 29.0):
+        _fill(grey, rounded(x - 1.5, 12, x + 1.5, 22, 1.4), 255)
     return _softened(grey)
 
 
 def lever() -> Grey:
-    """A worn lever on a scanner's glass: two bores, 60 mm apart, and an edge that has lost a piece."""
-    grey = np.full((round(50 * PX_PER_MM), round(100 * PX_PER_MM)), 235, np.uint8)
-    outline = closed(arc((20, 25), 14, 60, 300), arc((80, 25), 9, -120, 120))
-    _fill(grey, outline, 35)
-    for x, diameter in ((20, 12), (80, 8)):
-        _fill(grey, circle(x, 25, diameter), 235)
-    _fill(grey, circle(52, 36, 7), 235)
+    """A worn lever on a scanner's glass: two bores, 40 mm apart, and an edge that has lost a piece."""
+    grey = np.full((round(34 * PX_PER_MM), round(68 * PX_PER_MM)), 235, np.uint8)
+    _fill(grey, closed(arc((15, 17), 11, 60, 300), arc((55, 17), 8, -120, 120)), 35)
+    for x, diameter in ((15, 10), (55, 7)):
+        _fill(grey, circle(x, 17, diameter), 235)
+    _fill(grey, circle(36, 26, 5), 235)
     return _softened(grey)
 
 
-def archive() -> Grey:
-    """A faded flange in brown ink on yellowed paper, with centre lines and a scale bar of 50 mm."""
-    bolts = [circle(45 + 22 * math.cos(t), 45 + 22 * math.sin(t), 5) for t in (0.8, 2.3, 3.9, 5.5)]
-    centre = [np.array([[45.0, 6.0], [45.0, 84.0]]), np.array([[6.0, 45.0], [84.0, 45.0]])]
-    bar = [np.array([[100.0, 10.0], [150.0, 10.0]])]
-    ticks = [np.array([[x, 8.0], [x, 12.0]]) for x in (100.0, 150.0)]
-    loops = [circle(45, 45, 62), circle(45, 45, 26), *bolts, *centre, *bar, *ticks]
+def flange() -> Grey:
+    """A faded flange on grey paper, with centre lines, a number, and a scale bar of 30 mm."""
+    bolts = [circle(26 + 14 * math.cos(t), 26 + 14 * math.sin(t), 5) for t in (0.8, 3.9)]
+    centre = [np.array([[26.0, 2.0], [26.0, 50.0]]), np.array([[2.0, 26.0], [50.0, 26.0]])]
+    bar = [np.array([[58.0, 6.0], [88.0, 6.0]])]
+    ticks = [np.array([[x, 4.0], [x, 8.0]]) for x in (58.0, 88.0)]
+    loops = [circle(26, 26, 40), circle(26, 26, 16), *bolts, *centre, *bar, *ticks]
     grey = scanned(coverage(*placed(loops)), seed=8)
     rows, columns = np.mgrid[: grey.shape[0], : grey.shape[1]]
-    stain = 12 * np.exp(-(((rows - 300) / 250) ** 2) - ((columns - 1500) / 300) ** 2)
+    stain = 12 * np.exp(-(((rows - 150) / 150) ** 2) - ((columns - 900) / 200) ** 2)
     faded = (150 + (grey.astype(float) - 40) * 0.35 - stain).astype(np.uint8)
-    cv2.putText(faded, "FLANGE No. 7", (1190, 420), 2, 2.0, 165, 5, cv2.LINE_AA)
+    cv2.putText(faded, "No. 7", (820, 260), 2, 1.4, 165, 4, cv2.LINE_AA)
     return faded
 
 
 def gasket(file: Path) -> None:
     """A gasket drawn on a sheet with marks, photographed from aslant."""
     sheet = picture(Layout.of("a4"), 25.4 * PHONE_PX_PER_MM)
-    outline = closed(arc((80, 150), 26, 90, 270), arc((130, 150), 26, -90, 90))
-    bolts = [circle(x, y, 6) for x, y in ((59.5, 150), (150.5, 150), (105, 132), (105, 168))]
-    for line in (outline, circle(80, 150, 30), circle(130, 150, 30), *bolts):
+    outline = closed(arc((85, 150), 18, 90, 270), arc((125, 150), 18, -90, 90))
+    for line in (outline, circle(105, 150, 26), circle(80, 150, 8), circle(130, 150, 8)):
         x, y = line.T * PHONE_PX_PER_MM
         places = np.round(16 * np.column_stack([x - 0.5, len(sheet) - y - 0.5]))
         pen = round(0.6 * PHONE_PX_PER_MM)
@@ -155,7 +151,7 @@ LINES: dict[str, Callable[[], list[Points]]] = {
     "name-tag": name_tag,
     "figure": figure,
 }
-SHEETS: dict[str, Callable[[], Grey]] = {"leaf": leaf, "lever": lever, "flange": archive}
+SHEETS: dict[str, Callable[[], Grey]] = {"leaf": leaf, "lever": lever, "flange": flange}
 
 
 def main(folder: Path) -> None:
