@@ -1,6 +1,6 @@
 """Run the commands of the recipes, and put their pictures and the ends of their programs into the pages.
 
-    python -m docs.figures.recipes          after a change of a recipe, a drawing or what a program looks like
+    python -m docs.figures.recipes [NAMES]  after a change of a recipe, a drawing or what a program looks like
 
 A command is an indented line that begins with `morfax`; a block of text with a program's name as its title
 holds the first and the last lines of that program. `tests/packaging/test_recipes.py` runs the same.
@@ -14,6 +14,7 @@ import os
 import re
 import shlex
 import shutil
+import sys
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -65,17 +66,21 @@ def run(text: str, folder: Path) -> None:
                 raise RuntimeError(f"{shlex.join(words)}: exit code {code}: {told.getvalue()}")
 
 
-def main(folder: Path = RECIPES) -> None:
-    """Make pictures and excerpts of all pages anew."""
-    for page in pages():
+def main(names: list[str]) -> None:
+    """Make pictures and excerpts anew, of all pages or of some by their names."""
+    for page in [page for page in pages() if not names or page.stem in names]:
         text = page.read_text(encoding="utf-8")
         with tempfile.TemporaryDirectory() as aside:
             run(text, Path(aside))
             for name in PICTURE.findall(text):
-                shutil.copy(Path(aside) / name, folder / "pictures" / name)
-            for name, shown in excerpts(text).items():
-                text = text.replace(shown, excerpt(Path(aside) / name))
+                shutil.copy(Path(aside) / name, RECIPES / "pictures" / name)
+            for name in excerpts(text):
+                begin = text.index(f'```text title="{name}"\n')
+                first = text.index("\n", begin) + 1
+                end = text.index("```", first)
+                text = text[:first] + excerpt(Path(aside) / name) + text[end:]
         page.write_text(text, encoding="utf-8")
+        print(page.name)  # each takes some seconds
 
 
 @contextmanager
@@ -90,4 +95,4 @@ def _inside(folder: Path) -> Iterator[None]:
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])
