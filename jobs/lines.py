@@ -98,7 +98,7 @@ def _row(entry: Entry) -> dict[str, Any]:
         "line_width_mm": entry.width_mm,
         "joined_to": entry.joined_to,
         "place_mm": entry.place_mm,
-        "in_all": entry.is_in_all,
+        "in_contours": entry.is_in_contours,
         "remark": ", ".join(_said_of(entry)) or None,
     }
 

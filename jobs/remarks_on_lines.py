@@ -61,9 +61,9 @@ def _of_left_out(seen: Survey) -> Iterator[str]:
 
 def _of_lettering(seen: Survey) -> Iterator[str]:
     """Likely letters that --lines contours traces."""
-    traced = [e.number for e in seen.entries if e.is_lettering and e.is_in_all]
+    traced = [e.number for e in seen.entries if e.is_lettering and e.is_in_contours]
     if traced:
-        others = [e.number for e in seen.entries if e.is_in_all and not e.is_lettering]
+        others = [e.number for e in seen.entries if e.is_in_contours and not e.is_lettering]
         give = (
             f"; --lines {','.join(map(str, others))} leaves them out"
             if 0 < len(others) < 30

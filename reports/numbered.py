@@ -66,7 +66,7 @@ def _painted(seen: Survey) -> NDArray[np.uint8]:
     of_patch = np.full((patches.count, 3), _rgb(LEFT_OUT), np.uint8)
     of_patch[list(seen.lettering)] = _rgb(LETTERING)
     for entry in seen.entries:
-        if entry.joined_to is None and entry.is_in_all and not entry.is_lettering:
+        if entry.joined_to is None and entry.is_in_contours and not entry.is_lettering:
             of_patch[entry.patch] = _rgb(LEFT_OUT if seen.lines else _colour(entry.number))
     down = max(1, -(-max(rows, columns) // LARGEST_IMAGE_PX))
     image = np.full((-(-rows // down), -(-columns // down), 3), 255, np.uint8)
@@ -88,7 +88,7 @@ def _rgb(colour: str) -> tuple[int, ...]:
 
 def _number(axes: Axes, entry: Entry) -> None:
     """Write a number beside a place of its line."""
-    colour = _colour(entry.number) if entry.is_in_all else REFERENCE
+    colour = _colour(entry.number) if entry.is_in_contours else REFERENCE
     if entry.kind == "dot":
         axes.plot(
             *entry.place_mm, marker="o", markersize=9, markerfacecolor="none", color=colour
@@ -99,7 +99,7 @@ def _number(axes: Axes, entry: Entry) -> None:
         "edgecolor": colour,
         "alpha": 0.85,
     }
-    text = str(entry.number) if entry.is_in_all else f"({entry.number})"
+    text = str(entry.number) if entry.is_in_contours else f"({entry.number})"
     axes.annotate(
         text,
         entry.place_mm,

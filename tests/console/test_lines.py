@@ -69,7 +69,7 @@ def test_every_number_of_the_table_is_taken_by_trace(morfax: Morfax, plate: str)
     assert followed[-1]["joined_to"] == 2
     for row in followed:
         number = row["line"]
-        if not row["in_all"]:
+        if not row["in_contours"]:
             continue
         call = ("trace", plate, "--lines", number, "-o", "one.csv", "--json")
         answer = morfax(*call)
@@ -96,8 +96,8 @@ def test_a_line_with_gaps_is_several_numbers_and_following_says_of_which(
     assert [row["kind"] for row in seen] == ["open"] * 3
     answer = morfax("lines", "dashed.png", "--follow", "--json")
     rows = answer.figures["lines"]
-    (whole,) = (row for row in rows if row["in_all"])
-    pieces = [row for row in rows if not row["in_all"]]
+    (whole,) = (row for row in rows if row["in_contours"])
+    pieces = [row for row in rows if not row["in_contours"]]
     assert [row["remark"] for row in pieces] == [f"piece of line {whole['line']}"] * 2
     assert whole["length_mm"] == pytest.approx(770 / PX_PER_MM, abs=1.0)
     numbers = ", ".join(str(row["line"]) for row in pieces)

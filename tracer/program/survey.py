@@ -81,7 +81,7 @@ class Entry:
         return self.is_small and not self.can_begin
 
     @property
-    def is_in_all(self) -> bool:
+    def is_in_contours(self) -> bool:
         """Whether all lines have it: no letter, no reference point, and no piece of another line."""
         return not (self.is_letter or self.is_reference or self.piece_of is not None)
 
