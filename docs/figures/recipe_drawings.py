@@ -1,7 +1,8 @@
 """Draw the drawings of the recipes: `python -m docs.figures.recipe_drawings` writes them all anew.
 
-Each is a sheet as somebody would bring it: a scan in 300 dpi of lines of 0.5 mm (as those of `samples/draw.py`),
-a filled shape, a part on a scanner's glass, a faded sheet, a photograph by a simulated phone. Lengths are mm.
+Each is a sheet as somebody would bring it: a scan in 300 dpi of lines of 0.5 mm (as `samples/draw.py` draws
+them), a filled shape, a part on a scanner's glass, a faded sheet, a photograph by a simulated phone. Lengths
+are mm.
 """
 
 from __future__ import annotations
@@ -79,9 +80,7 @@ def leaf() -> Grey:
     grey = np.full((round(34 * PX_PER_MM), round(50 * PX_PER_MM)), 255, np.uint8)
     along = np.linspace(0, 1, 200)
     width = 12 * np.sin(math.pi * along**0.8)
-    upper, lower = (
-        np.column_stack([5 + 40 * along, 17 + side * width]) for side in (1, -1)
-    )
+    upper, lower = (np.column_stack([5 + 40 * along, 17 + side * width]) for side in (1, -1))
     _fill(grey, np.vstack([upper, lower[::-1]]), 20)
     for x in (18.0, 29.0):
         _fill(grey, rounded(x - 1.5, 12, x + 1.5, 22, 1.4), 255)
@@ -121,7 +120,9 @@ def gasket(file: Path) -> None:
         x, y = line.T * PHONE_PX_PER_MM
         places = np.round(16 * np.column_stack([x - 0.5, len(sheet) - y - 0.5]))
         pen = round(0.6 * PHONE_PX_PER_MM)
-        cv2.polylines(sheet, [places.astype(np.int32)], False, (45, 40, 60), pen, cv2.LINE_AA, 4)
+        cv2.polylines(
+            sheet, [places.astype(np.int32)], False, (45, 40, 60), pen, cv2.LINE_AA, 4
+        )
     Phone(
         columns=1500,
         rows=2000,

@@ -75,5 +75,7 @@ def test_linuxcnc_s_own_reader_takes_the_program_of_its_recipe(
     for name in recipes.excerpts(text):
         if name.endswith(".ngc"):
             call = ["rs274", "-t", "tool.tbl", "-g", name]
-            done = subprocess.run(call, cwd=tmp_path, capture_output=True, text=True, timeout=60)
+            done = subprocess.run(
+                call, cwd=tmp_path, capture_output=True, text=True, timeout=60
+            )
             assert done.returncode == 0 and "PROGRAM_END" in done.stdout, done.stderr

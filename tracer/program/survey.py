@@ -82,7 +82,7 @@ class Entry:
 
     @property
     def is_in_contours(self) -> bool:
-        """Whether all lines have it: no letter, no reference point, and no piece of another line."""
+        """Whether it is one of the contours: no letter, no reference point, and no piece of another line."""
         return not (self.is_letter or self.is_reference or self.piece_of is not None)
 
 
