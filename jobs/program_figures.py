@@ -63,8 +63,8 @@ def _of_cubic(file: FilePath) -> dict[str, Any]:
 
 def _of_blocks(file: FilePath) -> dict[str, Any]:
     """A program of lines and arcs: what it holds, its feeds, and where it goes."""
+    from morfax.player.gcode.moves import DWELL, RAPID
     from morfax.player.gcode.pulses import play_pulses
-    from morfax.player.gcode.rs274 import DWELL, RAPID
 
     playback = play_pulses(file)
     moves = playback.program.moves

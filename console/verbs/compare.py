@@ -33,7 +33,6 @@ EXAMPLES = """\b
 Examples:
   morfax compare scan.png part.ngc --machine qtplasmac
   morfax compare scan.png cam.wav --tolerance 50um -o cam-error.png
-  morfax compare traced.csv played.csv --json
   morfax compare part.dxf played.csv
   morfax compare scan.png --systems all -o five-machines.html
 """

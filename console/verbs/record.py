@@ -25,7 +25,6 @@ EXAMPLES = """\b
 Examples:
   morfax record cam.csv -o cam.wav
   morfax record cam.wav -o cam.steps --fit-tolerance 20um
-  morfax record outline.csv -o slow.wav --feed 300mm/min
   morfax record part.dxf -o part.wav
   morfax record cam.wav -o left-hand.wav --mirror x --pickup photocell
 """

@@ -39,9 +39,9 @@ from morfax.motion.faults import FollowingFault, ProgramFault
 from morfax.motion.motion import AXES, MOTION_RATE_HZ, Motion
 from morfax.player.gcode.feed_control import feed_number, override_number
 from morfax.player.gcode.machine_reader import read_program
+from morfax.player.gcode.moves import DWELL, RAPID, Move, Program, length_mm, reached
 from morfax.player.gcode.pulse_servo import PulseServo, PulseServos
 from morfax.player.gcode.residues import LINE, Feed, Interpolator
-from morfax.player.gcode.rs274 import DWELL, RAPID, Move, Program
 from morfax.player.monitor.monitor import FollowingLimit, Supervised
 
 LARGEST_ARC = math.radians(170)  # below the half turn that the residue loops take
@@ -140,11 +140,11 @@ class PulsePlayback(Supervised):
         """Approximate running time, s."""
         place, seconds = self.program.start_mm, 2 * STANDSTILL_S
         for move, (feed, _) in zip(self.program.moves, self._jobs, strict=True):
-            length_mm = _length_mm(place, move)
+            long_mm = length_mm(place, move)
             seconds += move.dwell_s
-            if length_mm > 0:
+            if long_mm > 0:
                 approach_s = self.settings.servo_constant / self.settings.recirculations_hz * 6
-                seconds += length_mm / (feed * self.settings.override or math.inf) + approach_s
+                seconds += long_mm / (feed * self.settings.override or math.inf) + approach_s
             place = move.end_mm
         return seconds
 
@@ -226,7 +226,7 @@ class PulsePlayback(Supervised):
         if servo.travel_mm < TRAVEL_MM:
             travel_mm, remedy = servo.travel_mm, "move the zero, or use longer ones"
             what = f"the registers of {servo.register_bits} bits hold"
-        for place in _reached(move):
+        for place in reached(move):
             for axis, place_mm in zip(AXES, place, strict=False):
                 if not abs(place_mm) <= travel_mm:
                     raise ProgramFault(
@@ -281,30 +281,3 @@ class PulsePlayback(Supervised):
             actual_mm=actual_mm,
             limit_mm=limit_mm,
         )
-
-
-def _reached(move: Move) -> Iterator[tuple[float, ...]]:
-    """The places that the registers must hold: the end; of an arc the centre and the furthest points too."""
-    yield move.end_mm
-    if not move.turned_rad:
-        return
-    x, y = move.centre_mm
-    yield x, y
-    radius = math.dist(move.centre_mm, move.end_mm[:2])
-    last = math.atan2(move.end_mm[1] - y, move.end_mm[0] - x)
-    for quarter in range(4):
-        before = (
-            math.copysign(1, move.turned_rad) * (last - quarter * math.pi / 2) % (2 * math.pi)
-        )
-        if before <= abs(move.turned_rad):
-            yield (
-                x + radius * (quarter == 0) - radius * (quarter == 2),
-                y + radius * (quarter == 1) - radius * (quarter == 3),
-            )
-
-
-def _length_mm(place: tuple[float, float, float], move: Move) -> float:
-    """Length of a move from a place, mm."""
-    if move.turned_rad:
-        return abs(move.turned_rad) * math.dist(move.centre_mm, move.end_mm[:2])
-    return math.dist(place, move.end_mm)

@@ -27,15 +27,21 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from pathlib import Path as FilePath
-from typing import NamedTuple
 
 from morfax.motion.faults import FileFault, ProgramFault
 from morfax.player.gcode.arc_words import OURS, ArcWords, Place, WordError
 from morfax.player.gcode.modal_groups import BLENDING, CODES, DISTANCE, MOTION, READ, UNITS
+from morfax.player.gcode.moves import (
+    CLOCKWISE,
+    COUNTER_CLOCKWISE,
+    DWELL,
+    LINE,
+    RAPID,
+    Move,
+    Program,
+)
 
-RAPID, LINE, CLOCKWISE, COUNTER_CLOCKWISE, DWELL = "G0", "G1", "G2", "G3", "G4"
 INCH_MM = 25.4
 LONGEST_DWELL_S = 86400.0  # a day: more is a mistake of the unit
 
@@ -44,27 +50,6 @@ WORD = re.compile(f"([A-Z])({_NUMBER})")
 COMMENT = re.compile(r"\([^()]*\)|;.*")
 _KINDS = {0.0: RAPID, 1.0: LINE, 2.0: CLOCKWISE, 3.0: COUNTER_CLOCKWISE}
 _PLAIN, _MOVING, _ARC_WORDS = frozenset("GXYZIJRFPSTN"), frozenset("XYZIJR"), frozenset("IJR")
-
-
-class Move(NamedTuple):
-    """A move: end; for an arc centre and angle turned, rad; feed in mm/s; for a dwell its time, s."""
-
-    line: int
-    kind: str
-    end_mm: Place
-    feed_mm_s: float = 0.0
-    centre_mm: tuple[float, float] = (0.0, 0.0)
-    turned_rad: float = 0.0
-    dwell_s: float = 0.0
-
-
-@dataclass(frozen=True, slots=True)
-class Program:
-    """A program as read: start of the machine, moves, and the machine that it is for, '' if not known."""
-
-    start_mm: Place
-    moves: list[Move]
-    machine: str = ""
 
 
 def read_rs274(

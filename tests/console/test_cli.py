@@ -8,6 +8,7 @@ import re
 import signal
 import subprocess
 import sys
+import time
 from functools import partial
 from pathlib import Path
 
@@ -136,23 +137,23 @@ def test_a_lack_of_memory_says_what_to_do(
 def test_ctrl_c_or_being_asked_to_end_stops_the_work_and_leaves_no_half_file(
     tmp_path: Path, number: signal.Signals
 ) -> None:
-    """A pipe that nobody writes to holds the command at the reading of its path file."""
-    os.mkfifo(tmp_path / "never.csv")
-    command = [*MORFAX, "record", "never.csv", "-o", "half.wav"]
+    """An hour of standing still takes some seconds to record: its unfinished file is there meanwhile."""
+    hour = "t_s,x_mm,y_mm,z_mm,tool\n0,1,1,2,0\n3600,1,1,2,0\n"
+    (tmp_path / "hour.csv").write_text(hour, encoding="ascii")
+    command = [*MORFAX, "record", "hour.csv", "-o", "half.wav"]
     heeded = partial(
         signal.signal, number, signal.SIG_DFL
     )  # a shell has its background jobs ignore Ctrl-C
-    with (
-        subprocess.Popen(
-            command,
-            cwd=tmp_path,
-            stderr=subprocess.PIPE,
-            text=True,
-            env=_with_house(),
-            preexec_fn=heeded,
-        ) as process,
-        (tmp_path / "never.csv").open("w"),  # opens when the command does
-    ):
+    with subprocess.Popen(
+        command,
+        cwd=tmp_path,
+        stderr=subprocess.PIPE,
+        text=True,
+        env=_with_house(),
+        preexec_fn=heeded,
+    ) as process:
+        while len(list(tmp_path.iterdir())) == 1 and process.poll() is None:
+            time.sleep(0.02)
         process.send_signal(number)
         _, err = process.communicate(timeout=20)
     assert process.returncode == 128 + number
@@ -160,7 +161,7 @@ def test_ctrl_c_or_being_asked_to_end_stops_the_work_and_leaves_no_half_file(
         "morfax: interrupted; no unfinished file was left under its final name",
         "",
     ]
-    assert [file.name for file in tmp_path.iterdir()] == ["never.csv"]
+    assert [file.name for file in tmp_path.iterdir()] == ["hour.csv"]
 
 
 def test_a_reader_that_goes_away_is_no_fault(path_file: Path) -> None:

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from morfax.player.gcode.check.findings import Findings
-from morfax.player.gcode.rs274 import LINE, RAPID
+from morfax.player.gcode.moves import LINE, RAPID
 
 
 class Runner(Protocol):

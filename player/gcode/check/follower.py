@@ -22,7 +22,8 @@ from morfax.player.gcode.check.findings import Finding, Findings
 from morfax.player.gcode.check.lines import Words
 from morfax.player.gcode.check.planes import LEVEL, PLANES
 from morfax.player.gcode.check.words import AXES, CYCLES, MOTIONS, PROBES, called
-from morfax.player.gcode.rs274 import COUNTER_CLOCKWISE, LINE, RAPID, Move, Reader
+from morfax.player.gcode.moves import COUNTER_CLOCKWISE, LINE, RAPID, Move
+from morfax.player.gcode.rs274 import Reader
 from morfax.player.gcode.tool_state import ToolState
 from morfax.recorder.gcode.machine import Machine
 from morfax.recorder.gcode.takes import Code, codes

@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from morfax.player.gcode.arc_words import TURN, Place
-from morfax.player.gcode.rs274 import DWELL, RAPID, Move
+from morfax.player.gcode.moves import DWELL, RAPID, Move
 
 _QUARTER = math.pi / 2
 

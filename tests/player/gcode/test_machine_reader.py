@@ -12,8 +12,9 @@ from morfax.motion.contour import distance
 from morfax.motion.faults import ProgramFault
 from morfax.motion.motion import IN_WORK_BELOW_MM, thin
 from morfax.player.gcode.machine_reader import ABOVE_MM, MachineReader, machine_of, read_program
+from morfax.player.gcode.moves import DWELL, Move
 from morfax.player.gcode.pulses import play_pulses
-from morfax.player.gcode.rs274 import DWELL, Move, parse_rs274
+from morfax.player.gcode.rs274 import parse_rs274
 from morfax.recorder.gcode.blocks import record_blocks
 from morfax.recorder.gcode.machine import as_toml, gcode_names, machine
 from morfax.recorder.gcode.plan import Feeds

@@ -11,16 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from morfax.motion.faults import FileFault, ProgramFault
-from morfax.player.gcode.rs274 import (
-    CLOCKWISE,
-    COUNTER_CLOCKWISE,
-    DWELL,
-    LINE,
-    RAPID,
-    Move,
-    parse_rs274,
-    read_rs274,
-)
+from morfax.player.gcode.moves import CLOCKWISE, COUNTER_CLOCKWISE, DWELL, LINE, RAPID, Move
+from morfax.player.gcode.rs274 import parse_rs274, read_rs274
 
 WRITTEN_MM = 1e-4  # what four decimals of a program leave
 

@@ -20,7 +20,8 @@ from morfax.motion.faults import MotionFault
 from morfax.motion.motion import MOTION_RATE_HZ, Motion, thin
 from morfax.motion.motion import Path as MotionPath
 from morfax.motion.pathfile import read_path
-from morfax.player.gcode.rs274 import Move, Program, read_rs274
+from morfax.player.gcode.moves import Move, Program
+from morfax.player.gcode.rs274 import read_rs274
 from morfax.recorder.gcode.arcs import fit
 from morfax.recorder.gcode.blocks import TOLERANCE_MM, record_blocks
 from morfax.recorder.gcode.pieces import (

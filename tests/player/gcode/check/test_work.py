@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from morfax.player.gcode.check.checked import Checked, check_lines
 from morfax.player.gcode.check.motion_rules import Stock
 from morfax.player.gcode.check.steps import Step, bounds_mm
-from morfax.player.gcode.rs274 import Move
+from morfax.player.gcode.moves import Move
 from morfax.recorder.gcode.machine import Machine, machine
 
 ROUTER, LINUXCNC, LASER = machine("grbl-router"), machine("linuxcnc"), machine("grbl-laser")
