@@ -114,7 +114,7 @@ MISTAKES = [
         1,
         "the card",
         "too many brackets in one another",
-        "it may hold a few",
+        "it may hold 8",
     ),
     ("a = " + "9" * 5000, 1, "the card", '"a = ' + "9" * 35 + "…", TOML),
     (
