@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from docs.figures import commands, head, photograph, pulses, readme, tape
+from docs.figures import all_ink, commands, head, photograph, pulses, readme, tape
 
 PICTURES = Path(__file__).parents[1] / "pictures"
 
@@ -13,7 +13,7 @@ PICTURES = Path(__file__).parents[1] / "pictures"
 def main(folder: Path) -> None:
     """Draw all pictures into a folder."""
     folder.mkdir(parents=True, exist_ok=True)
-    for figures in (readme, head, pulses, tape, commands, photograph):
+    for figures in (readme, head, pulses, tape, commands, photograph, all_ink):
         figures.main(folder)
 
 
