@@ -13,24 +13,11 @@ if TYPE_CHECKING:
 
 # mm; ISO 128-2 has lines of 0.13 to 2 mm, and a scan may give them somewhat thinner
 THINNEST_MM, BROADEST_MM = 0.1, 2.0
-FEWEST_PX = (
-    3.0  # of a line's width: below it the head sees fewer than one pixel between the edges
-)
-# shorter and longer side, mm; ISO 216 and ANSI Y14.1
-FORMATS = {
-    "A5": (148.0, 210.0),
-    "A4": (210.0, 297.0),
-    "A3": (297.0, 420.0),
-    "A2": (420.0, 594.0),
-    "letter": (215.9, 279.4),
-    "legal": (215.9, 355.6),
-    "tabloid": (279.4, 431.8),
-}
+# of a line's width: below it the head sees fewer than one pixel between the edges
+FEWEST_PX = 3.0
 ALIKE = 0.007  # share by which the ratio of a format's sides is met: 2 mm on 297; by trial
-SAME, NEAR = (
-    0.012,
-    0.1,
-)  # share by which both sides are off: a scanner's margin, or a wrong scale; by trial
+# share by which both sides are off: a scanner's margin, or a wrong scale; by trial
+SAME, NEAR = 0.012, 0.1
 
 
 def scale_doubts(drawing: Drawing, line_width_mm: float | None) -> Iterator[str]:
@@ -56,8 +43,12 @@ def _of_line_width(width_mm: float, pitch_mm: float) -> Iterator[str]:
 
 def _of_format(width_mm: float, height_mm: float) -> Iterator[str]:
     """A sheet with the shape of a known format, but a few per cent larger or smaller."""
+    from morfax.tracer.flatten.formats import FORMATS
+
     shorter_mm, longer_mm = sorted((width_mm, height_mm))
-    for name, (short_mm, long_mm) in FORMATS.items():
+    for each in FORMATS.values():
+        short_mm, long_mm = sorted((each.width_mm, each.height_mm))
+        name = each.name.upper() if each.name[1:].isdigit() else each.name
         times = shorter_mm / short_mm
         alike = abs(longer_mm / shorter_mm / (long_mm / short_mm) - 1) < ALIKE
         if alike and SAME < abs(times - 1) < NEAR:
