@@ -42,15 +42,12 @@ ROUNDS = 100
 ACROSS = 2.9  # widths of a line across which the way is as long, at 20 degrees
 AGAIN_WIDTHS = 0.5  # a place nearer to a way has been passed by it
 LEAST_MM, LEAST_WIDTHS = 1.0, 2.5  # shorter patches are fringes, burrs and specks: the larger
-FRINGE = (
-    0.45  # of the usual width: a thinner patch beside a way is what the line's edge has left
-)
+# of the usual width: a thinner patch beside a way is what the line's edge has left
+FRINGE = 0.45
 STILL_LEFT = 0.5  # of a patch: less was struck off in this round by a run on another patch
 ENDS, PLACES = 24, 12  # open ends, and plain places, that are tried on a patch
-LONGEST, LONGEST_MM = (
-    4.0,
-    20.0,
-)  # times all the ink, and this: a longer run is going round in circles
+# times all the ink, and this: a longer run is going round in circles
+LONGEST, LONGEST_MM = 4.0, 20.0
 
 
 @dataclass(slots=True)
@@ -59,9 +56,8 @@ class Rounds:
 
     ledger: Ledger
     settings: Settings
-    _in_vain: set[Patch] = field(
-        default_factory=set
-    )  # patches on which the head cannot be put down
+    # patches on which the head cannot be put down
+    _in_vain: set[Patch] = field(default_factory=set)
 
     def strokes(self) -> Iterator[InkStroke]:
         """Strokes of the sheet, those of the longest patches first, until the head finds no more."""
