@@ -57,22 +57,6 @@ class Result(click.ParamType):
         return [CompletionItem(incomplete, type="file")]
 
 
-class ProgramOrFolder(click.ParamType):
-    """The name for a program or a drawing (see `Program`), or a folder that is there."""
-
-    name = "file"
-
-    def __init__(self, *suffixes: str) -> None:
-        self.suffixes = suffixes
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> FilePath:
-        """The name as a path; wrong use if it is neither."""
-        file = FilePath(value)
-        return file if file.is_dir() else Program(*self.suffixes).convert(value, param, ctx)
-
-
 class Program(Result):
     """The name for a program or a drawing, which says its medium; or for one of some other results."""
 
@@ -83,3 +67,14 @@ class Program(Result):
         from morfax.recorder.media import DRAWINGS, MEDIA
 
         return Result(*MEDIA, *DRAWINGS, *self.suffixes).convert(value, param, ctx)
+
+
+class ProgramOrFolder(Program):
+    """The name for a program or a drawing, or a folder that is there."""
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> FilePath:
+        """The name as a path; wrong use if it is neither."""
+        file = FilePath(value)
+        return file if file.is_dir() else super().convert(value, param, ctx)

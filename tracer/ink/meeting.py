@@ -33,6 +33,7 @@ MEETS_WIDTHS = 2.0  # beyond the fringe, a stroke that ends so near to a line en
 ON_IT = 0.35  # of the width: the way ahead has come to the line
 HEADING_WIDTHS = 1.5  # of the end of a way show its heading
 STEPS_PER_WIDTH = 10
+NOTHING_MM = 1e-6  # a shorter way is rounding
 INKED = 0.8  # of the places between: the ink goes on
 GOES_ON = math.radians(35)  # two ends within this of one line are one line
 
@@ -88,7 +89,7 @@ def _led_on_from_end(way_mm: Array, ledger: Ledger, speed_mm_s: float) -> Array:
 
 def straight(start_mm: Array, end_mm: Array, speed_mm_s: float) -> Array:
     """Positions from a place, which is left out, straight to another, from rest to rest, (n, 2) mm."""
-    if math.dist(start_mm, end_mm) < 1e-6:
+    if math.dist(start_mm, end_mm) < NOTHING_MM:
         return np.empty((0, 2))
     return ramp.positions_mm(start_mm, end_mm, speed_mm_s, rate_hz=MOTION_RATE_HZ)[1:]
 

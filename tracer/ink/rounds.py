@@ -26,7 +26,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault
 from morfax.motion.polyline import length_mm, lengths_mm
 from morfax.tracer.drawing.strokes import Sheet, Stroke
-from morfax.tracer.following.attempts import Attempts
+from morfax.tracer.following.attempts import LONGEST, LONGEST_MM, Attempts
 from morfax.tracer.following.direction import turned_about
 from morfax.tracer.following.followed import THINNED, Followed
 from morfax.tracer.following.open_ends import stances_at
@@ -46,8 +46,6 @@ LEAST_MM, LEAST_WIDTHS = 1.0, 2.5  # shorter patches are fringes, burrs and spec
 FRINGE = 0.45
 STILL_LEFT = 0.5  # of a patch: less was struck off in this round by a run on another patch
 ENDS, PLACES = 24, 12  # open ends, and plain places, that are tried on a patch
-# times all the ink, and this: a longer run is going round in circles
-LONGEST, LONGEST_MM = 4.0, 20.0
 
 
 @dataclass(slots=True)
