@@ -36,6 +36,10 @@ class GroupedOption(click.Option):
 class Verb(click.Command):
     """A command that lists its options under headings, and takes a job's wrong use for its own."""
 
+    def get_help_option_names(self, ctx: click.Context) -> list[str]:
+        """-h and --help, also where no group stands above the verb: click keeps the first answer."""
+        return ["-h", "--help"]
+
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the options, a section for each group."""
         sections: dict[str, list[tuple[str, str]]] = {name: [] for name in (*ORDER, REST)}
