@@ -12,10 +12,10 @@ from collections.abc import Callable
 
 import numpy as np
 
-from morfax.player.cubics.interpolator import Interpolator
+from morfax.player.cubics.interpolator import CubicInterpolator
 from morfax.player.steps.motor import Motors
 from morfax.player.steps.stepping import decode, pulses_of, tick_table
-from morfax.recorder.steps.file import Program, StepFormat
+from morfax.recorder.steps.file import StepFormat, StepProgram
 
 ROUNDS = 5
 STEP_ROWS = 160 * 600  # ten minutes
@@ -33,14 +33,14 @@ def best_s(task: Callable[[], object]) -> float:
     return min(times)
 
 
-def step_program() -> Program:
+def step_program() -> StepProgram:
     """Speed up to six steps along X, then go round the ring."""
     rows = np.full(STEP_ROWS, 0b00010, np.uint8)
     rows[:6] = 0b10001
-    return Program(StepFormat(vectors=1), rows)
+    return StepProgram(StepFormat(vectors=1), rows)
 
 
-def steps_per_second(program: Program) -> float:
+def steps_per_second(program: StepProgram) -> float:
     """Rows to positions of the motors, steps/s of all axes together."""
     ticks = tick_table()
 
@@ -56,7 +56,11 @@ def steps_per_second(program: Program) -> float:
 def points_per_second(axes: int) -> float:
     """Words to registers, points/s of each axis."""
     words = np.random.default_rng(1).integers(-(10**6), 10**6, (INTERVALS, axes, 3))
-    return INTERVALS * POINTS / best_s(lambda: Interpolator(np.zeros(axes), POINTS).run(words))
+    return (
+        INTERVALS
+        * POINTS
+        / best_s(lambda: CubicInterpolator(np.zeros(axes), POINTS).run(words))
+    )
 
 
 def points_per_second_in_numpy(axes: int) -> float:

@@ -19,7 +19,7 @@ from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.motion.ramp import positions_mm
 from morfax.player.gcode.feed_control import feed_number
 from morfax.player.gcode.pulse_servo import PulseServos
-from morfax.player.gcode.residues import COUNTER_CLOCKWISE, Feed, Interpolator
+from morfax.player.gcode.residues import COUNTER_CLOCKWISE, Feed, ResidueInterpolator
 from morfax.player.gcode.rs274 import parse_rs274
 from morfax.player.monitor.monitor import FollowingLimit, Monitor
 from morfax.player.monitor.position_servo import PositionServos
@@ -31,7 +31,7 @@ AXES = 3
 
 def line() -> np.ndarray:
     """Pulses of a line of 37 mm on three axes at 10 mm/s."""
-    return Interpolator().line(
+    return ResidueInterpolator().line(
         (30_000, 20_000, 10_000), Feed(feed_number(10_000, RECIRCULATIONS_HZ))
     )
 
@@ -39,7 +39,9 @@ def line() -> np.ndarray:
 def quarter() -> np.ndarray:
     """Pulses of a quarter turn of 20 mm at 10 mm/s."""
     feed = Feed(feed_number(10_000, RECIRCULATIONS_HZ))
-    return Interpolator((20_000, 0, 0)).arc((0, 20_000, 0), (0, 0), COUNTER_CLOCKWISE, feed)
+    return ResidueInterpolator((20_000, 0, 0)).arc(
+        (0, 20_000, 0), (0, 0), COUNTER_CLOCKWISE, feed
+    )
 
 
 def watched_servo(demand: np.ndarray) -> int:

@@ -26,7 +26,7 @@ SILENT_DB = -80.0  # under this level a track has no carrier whose frequency cou
 
 
 @dataclass(frozen=True, slots=True)
-class Carrier:
+class CarrierReading:
     """The carrier of one track: level and frequency of each window, dB and Hz (not a number where silent)."""
 
     level_db: Array
@@ -43,7 +43,9 @@ class Carrier:
         }
 
 
-def listen(file: FilePath, fault: TapeFault | None) -> tuple[dict[str, Any], list[Carrier]]:
+def listen(
+    file: FilePath, fault: TapeFault | None
+) -> tuple[dict[str, Any], list[CarrierReading]]:
     """Kind and length of the file, and the carrier of each track; raises the fault if it is no sound file."""
     import soundfile
 
@@ -67,7 +69,7 @@ def listen(file: FilePath, fault: TapeFault | None) -> tuple[dict[str, Any], lis
 
 def _carriers(
     blocks: Iterable[NDArray[np.float32]], rate_hz: float, tracks: int
-) -> list[Carrier]:
+) -> list[CarrierReading]:
     """Measure the tracks window by window; a rest that is shorter than a window is left out."""
     levels, frequencies = [np.full((1, tracks), -np.inf)], [np.full((1, tracks), np.nan)]
     for block in blocks:
@@ -81,7 +83,7 @@ def _carriers(
                 np.where(level_db > SILENT_DB, _peak_hz(windows, rate_hz), np.nan)
             )
     level, frequency = (np.vstack(rows[1:] or rows) for rows in (levels, frequencies))
-    return [Carrier(level[:, track], frequency[:, track]) for track in range(tracks)]
+    return [CarrierReading(level[:, track], frequency[:, track]) for track in range(tracks)]
 
 
 def _peak_hz(windows: NDArray[np.float32], rate_hz: float) -> Array:

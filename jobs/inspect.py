@@ -14,7 +14,7 @@ import numpy as np
 
 from morfax.jobs import files as medium
 from morfax.jobs import program_figures
-from morfax.jobs.carriers import BLOCK_FRAMES, Carrier, listen
+from morfax.jobs.carriers import BLOCK_FRAMES, CarrierReading, listen
 from morfax.jobs.figures import Figures
 from morfax.jobs.listener import SILENT, Listener
 from morfax.jobs.playing import ByHand
@@ -76,7 +76,7 @@ class InspectJob:
         return InspectResult({"tape": str(self.tape), **file, **stated, **tracks}, fault)
 
 
-def _tracks(carriers: list[Carrier], travels: dict[str, Figures]) -> dict[str, Figures]:
+def _tracks(carriers: list[CarrierReading], travels: dict[str, Figures]) -> dict[str, Figures]:
     """Figures of each track: its carrier, and the travel of its axis where that is known."""
     known = ("reference", *travels)[: len(carriers)]
     names = [*known, *("" for _ in carriers[1 + len(travels) :])]

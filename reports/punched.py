@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 from morfax.motion.files import written_beside
 
 if TYPE_CHECKING:
-    from morfax.recorder.steps.file import Program
+    from morfax.recorder.steps.file import StepProgram
 
 SUFFIXES = (".png", ".svg")
 
@@ -50,7 +50,7 @@ class Strip:
     first_row: int
 
 
-def draw_tape(program: Program, file: FilePath) -> int:
+def draw_tape(program: StepProgram, file: FilePath) -> int:
     """Draw a program's tape as what the suffix says; the number of rows that are shown."""
     if file.suffix.lower() == ".svg":
         _write_svg(program, file)
@@ -59,7 +59,7 @@ def draw_tape(program: Program, file: FilePath) -> int:
     return min(len(program.rows), MOST_ROWS)
 
 
-def strips(program: Program) -> list[Strip]:
+def strips(program: StepProgram) -> list[Strip]:
     """The strips that the tape is cut into; one at least."""
     rows, width_mm = min(len(program.rows), MOST_ROWS), WIDTHS_MM[program.format.channels]
     firsts = range(0, max(1, rows), ROWS_PER_STRIP)
@@ -74,7 +74,7 @@ def strips(program: Program) -> list[Strip]:
     ]
 
 
-def holes(program: Program) -> Iterator[Hole]:
+def holes(program: StepProgram) -> Iterator[Hole]:
     """All holes that are shown, feed holes too."""
     channels, codes = program.format.channels, program.rows[:MOST_ROWS].tolist()
     for strip in strips(program):
@@ -99,7 +99,7 @@ def _size_mm(parts: list[Strip]) -> tuple[float, float]:
     ].length_mm + BETWEEN_MM
 
 
-def _write_svg(program: Program, file: FilePath) -> None:
+def _write_svg(program: StepProgram, file: FilePath) -> None:
     """Draw in true size: one unit is one mm."""
     parts = strips(program)
     width, height = _size_mm(parts)
@@ -121,7 +121,7 @@ def _write_svg(program: Program, file: FilePath) -> None:
         )
 
 
-def _write_png(program: Program, file: FilePath) -> None:
+def _write_png(program: StepProgram, file: FilePath) -> None:
     """Draw as an image that states its resolution."""
     from PIL import Image, ImageDraw
 

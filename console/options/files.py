@@ -57,7 +57,7 @@ class Result(click.ParamType):
         return [CompletionItem(incomplete, type="file")]
 
 
-class Program(Result):
+class ProgramPath(Result):
     """The name for a program or a drawing, which says its medium; or for one of some other results."""
 
     def convert(
@@ -69,7 +69,7 @@ class Program(Result):
         return Result(*MEDIA, *DRAWINGS, *self.suffixes).convert(value, param, ctx)
 
 
-class ProgramOrFolder(Program):
+class ProgramOrFolder(ProgramPath):
     """The name for a program or a drawing, or a folder that is there."""
 
     def convert(

@@ -21,7 +21,7 @@ from morfax.motion.units import format_length_mm, format_time_s
 if TYPE_CHECKING:
     from morfax.tracer.operator.card import Stop
     from morfax.tracer.operator.work import Halt
-    from morfax.tracer.operator.zunit import Move
+    from morfax.tracer.operator.zunit import QuillMove
 
 # of the drill above its hole: any speed serves to try whether the counters can show a move
 ANY_MM_S = 50.0
@@ -34,7 +34,7 @@ class Attended:
     def __init__(self, *, asking: bool) -> None:
         self._asking = asking
 
-    def ask(self, halt: Halt, z_mm: float, usual: Sequence[Move]) -> Stop | None:
+    def ask(self, halt: Halt, z_mm: float, usual: Sequence[QuillMove]) -> Stop | None:
         """Ask for the moves at a stop; None without an answer: the usual ones."""
         if not self._asking:
             return None
@@ -91,7 +91,7 @@ def _stop(halt: Halt) -> str:
     return f"stop {halt.number} ({halt.kind}) at {x:.2f}, {y:.2f} mm"
 
 
-def _told(z_mm: float, moves: Sequence[Move]) -> str:
+def _told(z_mm: float, moves: Sequence[QuillMove]) -> str:
     """Moves from a height of Z, as the operator reads them."""
     said = []
     for move in moves:

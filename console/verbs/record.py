@@ -9,7 +9,7 @@ import click
 
 from morfax.console.options.desk import desk_options
 from morfax.console.options.drawing import DRAWN_UNIT
-from morfax.console.options.files import FILE, Program
+from morfax.console.options.files import FILE, ProgramPath
 from morfax.console.options.groups import Verb, option, renamed
 from morfax.console.options.placement import unit_options
 from morfax.console.options.tape import CYCLES_PER_MM
@@ -36,7 +36,7 @@ Examples:
     "Output",
     "-o",
     "output",
-    type=Program(),
+    type=ProgramPath(),
     help="The program (.wav, .steps, .cubic, .ngc).  [default: the source's name with .wav, here]",
 )
 @option(

@@ -15,7 +15,7 @@ from morfax.motion.drive import Condition
 from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.motion.ramp import Ramp, positions_mm
 from morfax.player.gcode.feed_control import feed_number
-from morfax.player.gcode.residues import Feed, Interpolator
+from morfax.player.gcode.residues import Feed, ResidueInterpolator
 from morfax.player.monitor.chart import Chart
 from morfax.player.monitor.monitor import FollowingLimit, Monitor
 from morfax.player.monitor.position_servo import PositionServos
@@ -28,7 +28,7 @@ DPI = 95
 def held(direction: Array, true_norm: bool) -> float:
     """Speed along a line over the programmed one, off the approach to its end."""
     feed = Feed(feed_number(10_000, RECIRCULATIONS_HZ), true_norm=true_norm)
-    pulses = Interpolator().line(np.rint(direction * 15_000).astype(np.int64), feed)
+    pulses = ResidueInterpolator().line(np.rint(direction * 15_000).astype(np.int64), feed)
     half = len(pulses) // 2
     return float(np.linalg.norm(pulses[:half].sum(axis=0)) / half * RECIRCULATIONS_HZ / 10_000)
 

@@ -37,7 +37,7 @@ from morfax.motion.axis import TRAVEL_MM
 from morfax.motion.drive import SOUND, Drive, as_rows, conditioned_step
 from morfax.motion.faults import LockFault, ProgramFault
 from morfax.motion.motion import AXES, Motion
-from morfax.player.cubics.interpolator import Interpolator, ends, slopes
+from morfax.player.cubics.interpolator import CubicInterpolator, ends, slopes
 from morfax.player.cubics.scales import Scales, measured
 from morfax.player.monitor.monitor import FollowingLimit, Supervised
 from morfax.recorder.cubics.file import STEPS_PER_CONSTANT, CubicProgram, read_program
@@ -157,7 +157,7 @@ class CubicPlayback(Supervised):
     def _predicted(self, start: NDArray[np.int64]) -> Iterator[NDArray[np.int64]]:
         """The interpolated places in counts, in blocks, and the last one held."""
         fmt = self.format
-        interpolator = Interpolator(start, fmt.points, fmt.linear)
+        interpolator = CubicInterpolator(start, fmt.points, fmt.linear)
         for first in range(0, len(self.program.words), _BLOCK_INTERVALS):
             yield interpolator.counts(
                 interpolator.run(self.program.words[first : first + _BLOCK_INTERVALS])

@@ -78,12 +78,12 @@ class TimeBase:
         return self.steps_per_block / self.step_hz
 
 
-class Interpolator:
+class CubicInterpolator:
     """The interpolators of all axes; register I is carried from block to block."""
 
     def __init__(self, start: Words, points: int, linear: int = 1) -> None:
         self._points, self._linear = points, linear
-        self._digits = Interpolator.digits_for(points)
+        self._digits = CubicInterpolator.digits_for(points)
         self._first = np.array(start, np.int64) << self._digits
 
     @staticmethod
@@ -134,7 +134,7 @@ def truncated_end(
 
     The words are given with 3 log2(steps) digits, as ever.
     """
-    full = Interpolator.digits_for(steps)
+    full = CubicInterpolator.digits_for(steps)
     held = [
         start << digits[0],
         *(_moved(word, full, own) for word, own in zip(words, digits[1:], strict=True)),

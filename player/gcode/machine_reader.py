@@ -29,7 +29,7 @@ from morfax.motion.faults import ProgramFault
 from morfax.player.gcode.arc_words import ArcLimits
 from morfax.player.gcode.hpgl_reader import ABOVE_MM, read_hpgl
 from morfax.player.gcode.moves import RAPID, Move, Program
-from morfax.player.gcode.rs274 import COMMENT, Reader, parse_rs274, text_of
+from morfax.player.gcode.rs274 import COMMENT, GcodeReader, parse_rs274, text_of
 from morfax.player.gcode.tool_state import TORCH, ToolState
 from morfax.recorder.gcode.machine import HPGL, Machine, machine, names
 from morfax.recorder.gcode.program_text import END
@@ -90,7 +90,7 @@ def machine_of(lines: Sequence[str], name: str = "program") -> Machine | None:
     return machine("grbl-laser" if re.search(r"^M4", text, re.MULTILINE) else "grbl-pen")
 
 
-class MachineReader(Reader):
+class MachineReader(GcodeReader):
     """The modal state of a program and of the machine's tool, and the moves so far."""
 
     def __init__(self, name: str, start_mm: Sequence[float] | None, wanted: Machine) -> None:

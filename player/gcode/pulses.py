@@ -41,7 +41,7 @@ from morfax.player.gcode.feed_control import feed_number, override_number
 from morfax.player.gcode.machine_reader import read_program
 from morfax.player.gcode.moves import DWELL, RAPID, Move, Program, length_mm, reached
 from morfax.player.gcode.pulse_servo import PulseServo, PulseServos
-from morfax.player.gcode.residues import LINE, Feed, Interpolator
+from morfax.player.gcode.residues import LINE, Feed, ResidueInterpolator
 from morfax.player.monitor.monitor import FollowingLimit, Supervised
 
 LARGEST_ARC = math.radians(170)  # below the half turn that the residue loops take
@@ -152,7 +152,7 @@ class PulsePlayback(Supervised):
         """Play; raises FollowingFault after the last good sample."""
         control = self.settings
         start = self._pulses(self.start_mm)
-        interpolator = Interpolator(start, control.servo_constant)
+        interpolator = ResidueInterpolator(start, control.servo_constant)
         servos = PulseServos(start, control.recirculations_hz, control.servo, self._sampled)
         servos.conditions = self.conditions
         monitor, self.end_error_mm, samples = self.supervise(AXES, MOTION_RATE_HZ), None, 0
@@ -175,7 +175,7 @@ class PulsePlayback(Supervised):
         """Recirculations to a sample of the motion."""
         return round(self.settings.recirculations_hz / MOTION_RATE_HZ)
 
-    def _all_pulses(self, interpolator: Interpolator) -> Iterator[Pulses]:
+    def _all_pulses(self, interpolator: ResidueInterpolator) -> Iterator[Pulses]:
         """Command pulses of the whole program, standstill included."""
         yield from self._stand(STANDSTILL_S)
         for move, (_, run) in zip(self.program.moves, self._jobs, strict=True):
@@ -184,7 +184,9 @@ class PulsePlayback(Supervised):
 
     def run_moves(self) -> Iterator[tuple[float, Iterator[Pulses]]]:
         """Programmed speed in mm/s and command pulses of each move but dwells, to be run in this order."""
-        interpolator = Interpolator(self._pulses(self.start_mm), self.settings.servo_constant)
+        interpolator = ResidueInterpolator(
+            self._pulses(self.start_mm), self.settings.servo_constant
+        )
         for move, (speed_mm_s, run) in zip(self.program.moves, self._jobs, strict=True):
             if move.kind != DWELL:
                 yield speed_mm_s, run(interpolator)
@@ -196,7 +198,9 @@ class PulsePlayback(Supervised):
             yield np.zeros((min(left, _DWELL_AT_ONCE), len(AXES)), np.int8)
             left -= _DWELL_AT_ONCE
 
-    def _job(self, move: Move) -> tuple[float, Callable[[Interpolator], Iterator[Pulses]]]:
+    def _job(
+        self, move: Move
+    ) -> tuple[float, Callable[[ResidueInterpolator], Iterator[Pulses]]]:
         """The speed of a move in mm/s, and the function that runs it; raises ProgramFault."""
         control = self.settings
         speed_mm_s = control.rapid_mm_s if move.kind == RAPID else move.feed_mm_s
@@ -235,7 +239,9 @@ class PulsePlayback(Supervised):
                         line=move.line,
                     )
 
-    def _run(self, move: Move, feed: Feed, interpolator: Interpolator) -> Iterator[Pulses]:
+    def _run(
+        self, move: Move, feed: Feed, interpolator: ResidueInterpolator
+    ) -> Iterator[Pulses]:
         """Command pulses of a line or an arc."""
         end = self._pulses(move.end_mm)
         if not move.turned_rad:

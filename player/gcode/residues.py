@@ -70,7 +70,7 @@ class Feed:
     gate_period: int = 0
 
 
-class Interpolator:
+class ResidueInterpolator:
     """The three residue loops with the feed counter; registers are carried from block to block."""
 
     def __init__(

@@ -76,10 +76,10 @@ def parse_rs274(
     lines: Iterable[str],
     name: str = "program",
     start_mm: Sequence[float] | None = None,
-    reader: Reader | None = None,
+    reader: GcodeReader | None = None,
 ) -> Program:
     """The program of some lines of text, by a reader of one's own; raises ProgramFault."""
-    reader = reader or Reader(name, start_mm)
+    reader = reader or GcodeReader(name, start_mm)
     for number, text in enumerate(lines, 1):
         reader.number = number
         reader.read(text)
@@ -99,7 +99,7 @@ def parse_rs274(
     return Program((x_mm, y_mm, z_mm), reader.moves_from((x_mm, y_mm, z_mm)))
 
 
-class Reader:
+class GcodeReader:
     """The modal state of a program, and the moves so far."""
 
     is_whole = False  # whether the end of the file may be the end of the program

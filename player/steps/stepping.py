@@ -38,7 +38,7 @@ from morfax.motion.faults import ProgramFault
 from morfax.motion.motion import AXES, Motion
 from morfax.player.monitor.monitor import FollowingLimit, Supervised
 from morfax.player.steps.motor import SOUND, Motor, Motors
-from morfax.recorder.steps.file import TICKS, Program, StepFormat, read_program
+from morfax.recorder.steps.file import TICKS, StepFormat, StepProgram, read_program
 from morfax.recorder.steps.rings import RINGS
 from morfax.recorder.textfile import note_of_no_sum
 
@@ -75,7 +75,7 @@ def ring_memory() -> NDArray[np.uint8]:
     return memory
 
 
-def decode(program: Program) -> tuple[Counts, NDArray[np.int64]]:
+def decode(program: StepProgram) -> tuple[Counts, NDArray[np.int64]]:
     """Counts (k, 3) of all intervals, and the row of each."""
     counts = np.empty((2 * len(program.rows), 3), np.int8)
     source = np.empty(len(counts), np.int64)
@@ -113,7 +113,7 @@ class StepPlayback(Supervised):
     the program states. `conditions`: what is wrong with the motors.
     """
 
-    def __init__(self, program: Program, motor: Motor, travel_mm: float, name: str) -> None:
+    def __init__(self, program: StepProgram, motor: Motor, travel_mm: float, name: str) -> None:
         self.format, self._motor, self._program, self._name = (
             program.format,
             motor,

@@ -65,7 +65,7 @@ class Found:
 
 
 @dataclass(frozen=True, slots=True)
-class Report:
+class FrameReport:
     """A frame of all tracks: its number, its first row, rows in the middle of its parts.
 
     `said`: what each track says, None where its check sum is wrong; `late_s` against the clock of the
@@ -158,7 +158,7 @@ class CheckReader:
         self._points.feed(np.zeros((3 * hop, self._format.tracks), self._kind))
         self._reach = -CYCLES_PER_SYMBOL / 2
 
-    def reports(self) -> list[Report]:
+    def reports(self) -> list[FrameReport]:
         """The frames that are whole by now."""
         told = []
         theta = self._points.theta
@@ -223,7 +223,7 @@ class CheckReader:
             self._zero_turns[track] = first.turns + halves / 2
         self._turns[:] = [found[0].turns if found else 0.0 for found in self.found]
 
-    def _report(self) -> Report:
+    def _report(self) -> FrameReport:
         """Read the next frame of all tracks."""
         bits, late, turns = read_symbols(self._points, self._theta)
         said = from_bits(bits)
@@ -236,7 +236,7 @@ class CheckReader:
         turns -= self._zero_turns[:, None]
         apart = np.concatenate([-turns[:1], turns[:1] - turns[1:]])
         rows = self._rows(self._theta + MIDDLES)
-        return Report(
+        return FrameReport(
             self._number,
             rows[0],
             rows[1:],

@@ -32,7 +32,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.faults import LockFault, TapeFault
 from morfax.motion.motion import Motion
 from morfax.player.tape.dropouts import COUNT_MARGIN, Bridge
-from morfax.player.tape.playback import Playback, play
+from morfax.player.tape.playback import TapePlayback, play
 from morfax.player.tape.track_order import END_CYCLES
 from morfax.recorder.tape.format import TapeFormat
 from morfax.recorder.tape.recording import Progress, Recording, record
@@ -119,7 +119,7 @@ def _mend(gap: Gap, found: Bridge, cycles: int, fmt: TapeFormat) -> Mend:
     )
 
 
-def _read(playback: Playback) -> Iterator[tuple[int, Array]]:
+def _read(playback: TapePlayback) -> Iterator[tuple[int, Array]]:
     """Read the tape: blocks of places in mm with their first row; raises the tape's faults."""
     place_mm, fmt = playback.start_mm.copy(), playback.format
     for phases, bearings, fault in playback.reader.read(lambda: place_mm.tolist()):
@@ -134,7 +134,7 @@ def _read(playback: Playback) -> Iterator[tuple[int, Array]]:
             yield phases.first_row, places_mm
 
 
-def _end_mm(playback: Playback) -> Array:
+def _end_mm(playback: TapePlayback) -> Array:
     """The stated end of the tape, mm."""
     rows = max(round(END_S * playback.format.motion_rate_hz), 1)
     last = np.zeros((0, len(playback.format.axes)))
@@ -143,7 +143,7 @@ def _end_mm(playback: Playback) -> Array:
     return np.asarray(np.median(last, axis=0))
 
 
-def _motion(playback: Playback) -> Iterator[Motion]:
+def _motion(playback: TapePlayback) -> Iterator[Motion]:
     """The motion between the standstills at both ends; the recorder makes the standstills anew."""
     fmt, rate_hz = playback.format, playback.format.motion_rate_hz
     still = round((1 - KEPT_DWELL) * fmt.dwell_s * rate_hz)

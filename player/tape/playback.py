@@ -33,7 +33,7 @@ from morfax.motion.motion import AXES, Motion
 from morfax.player.monitor.monitor import Supervised
 from morfax.player.tape.bare import NOT_VOUCHED
 from morfax.player.tape.phase_lock import Drives, PhaseLock, following_limit
-from morfax.player.tape.reader import Reader
+from morfax.player.tape.reader import TapeReader
 from morfax.player.tape.setting import Setting
 from morfax.player.tape.track_order import END_CYCLES, found_order
 from morfax.recorder.tape.pipe import Pipe, Samples
@@ -55,7 +55,7 @@ def play(
     resume_at_s: float = 0.0,
     zero_mm: Sequence[float] = (),
     override: float = 1.0,
-) -> Playback:
+) -> TapePlayback:
     """Put a tape in the machine; values given by hand override its text chunk. Raises TapeFault, FileFault.
 
     `order`: on which tracks of the file reference, X, Y … are. `closed`: it returns to its start, if it does
@@ -92,7 +92,7 @@ def play(
             fmt = replace(fmt, end_mm=tape.format.end_mm)
     setting = Setting(settings or PhaseLock(), tuple(zero_mm), override)
     _check_resumption(resume_at_s, start_mm, frames / fmt.sample_rate_hz)
-    playback = Playback(open_tape, fmt, frames, setting, acceleration_mm_s2, resume_at_s)
+    playback = TapePlayback(open_tape, fmt, frames, setting, acceleration_mm_s2, resume_at_s)
     playback.found_order = found
     return playback
 
@@ -108,7 +108,7 @@ def play_pipe(
     alike: Sequence[str] | None = None,
     closed: bool = False,
     samples: Samples | None = None,
-) -> Playback:
+) -> TapePlayback:
     """Put a tape from a pipe in the machine; it can be played once. Raises TapeFault."""
     start = None if start_mm is None else tuple(start_mm)
     pipe = Pipe.open(
@@ -121,7 +121,7 @@ def play_pipe(
         alike=alike,
         samples=samples,
     )
-    return Playback(lambda: pipe, _ending(pipe.format, closed), 0, Setting())
+    return TapePlayback(lambda: pipe, _ending(pipe.format, closed), 0, Setting())
 
 
 def _ending(fmt: TapeFormat, closed: bool) -> TapeFormat:
@@ -143,7 +143,7 @@ def _check_resumption(
         )
 
 
-class Playback(Supervised):
+class TapePlayback(Supervised):
     """A tape in the machine: iterate for the machine's motion, as often as wanted.
 
     Known beforehand: `format`, `frames`, `duration_s`, `start_mm`. Figures of the last time through, one per
@@ -176,7 +176,7 @@ class Playback(Supervised):
         self._zero_mm = setting.zeros_mm(fmt.axes)
         self._rows = 0
         self.start_mm: Array = np.array(fmt.start_mm, dtype=np.float64) + self._zero_mm
-        self.reader = Reader(
+        self.reader = TapeReader(
             open_tape, fmt, self.start_mm, self.acceleration_mm_s2, resume_at_s
         )
         self.end_mm: Array = self.start_mm.copy()

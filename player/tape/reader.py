@@ -41,7 +41,7 @@ BLOCK_FRAMES = 65536  # 1.4 s at 48 kHz, a megabyte of four tracks
 Read = tuple[Phases, Bearings, tuple[int, Fault] | None]
 
 
-class Reader:
+class TapeReader:
     """Reads one tape, as often as wanted.
 
     Of the last time through: `bridged`, the dropouts that were ridden over (tape time in s, axis: length in

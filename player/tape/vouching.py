@@ -28,7 +28,7 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.faults import Fault
 from morfax.player.tape import check_faults as faults
-from morfax.player.tape.check_reader import CheckReader, Report
+from morfax.player.tape.check_reader import CheckReader, FrameReport
 from morfax.player.tape.delays import Delay
 from morfax.player.tape.discriminator import Phases
 from morfax.recorder.tape.check_frame import NUMBERS, CheckFrame
@@ -151,7 +151,7 @@ class Vouching:
         settled = min(delay.settled_row for delay in self._delays)
         return min(settled, *self._counted)
 
-    def _take(self, report: Report) -> None:
+    def _take(self, report: FrameReport) -> None:
         """Take the report of one frame."""
         expected = report.number if self._number is None else self._number
         self._number = report.number + 1
@@ -171,7 +171,7 @@ class Vouching:
                 return
             self._note(track, said.cycles, report)
 
-    def _note(self, track: int, cycles: float, report: Report) -> None:
+    def _note(self, track: int, cycles: float, report: FrameReport) -> None:
         """Note the count and the delays of one track."""
         delays_s = report.delay_s[track]
         if not all(map(math.isfinite, delays_s)):
@@ -213,7 +213,7 @@ class Vouching:
                 return
 
     def _misplaced(
-        self, track: int, said: CheckFrame, expected: int, report: Report
+        self, track: int, said: CheckFrame, expected: int, report: FrameReport
     ) -> Fault | None:
         """The fault of a track that says to be another, or whose frame is not the next."""
         names, time_s = self._format.axes, report.row / self._rate_hz
@@ -222,7 +222,7 @@ class Vouching:
         off = (said.number - expected + NUMBERS // 2) % NUMBERS - NUMBERS // 2
         return faults.disordered(track, names, off * self._frame_s, time_s) if off else None
 
-    def _too_late(self, track: int, report: Report) -> Fault | None:
+    def _too_late(self, track: int, report: FrameReport) -> Fault | None:
         """The fault of a track whose delay is too long, or makes a step: samples were lost or repeated."""
         names, time_s = self._format.axes, report.row / self._rate_hz
         late_s = report.late_s[track]

@@ -27,7 +27,7 @@ from morfax.motion.faults import MotionFault
 from morfax.motion.segments import Source, as_path
 from morfax.recorder.gcode.arcs import fit
 from morfax.recorder.gcode.program_text import Block
-from morfax.recorder.gcode.spline import Segment
+from morfax.recorder.gcode.spline import LineOrArc
 from morfax.recorder.gcode.stretches import Stretch, stretches
 
 # of an arc: its centre has to lie within the travel of the machine, +-2 m; a flatter one becomes lines
@@ -157,7 +157,7 @@ class _Planner:
         )
         return stretch.speed_mm_s if stretch.rapid or asked_mm_s is None else asked_mm_s
 
-    def _segment(self, segment: Segment, feed_mm_s: float, off_mm: float) -> None:
+    def _segment(self, segment: LineOrArc, feed_mm_s: float, off_mm: float) -> None:
         """BlockPlan a line or an arc; an arc too flat for a centre becomes lines within the tolerance."""
         place: Array = np.array(
             [*np.round(segment.end_mm, self.writing.decimals), self.place[2]]

@@ -31,7 +31,7 @@ _STEP = 1e-7  # mm and rad, of the slopes by differences
 
 
 @dataclass(frozen=True, slots=True)
-class Segment:
+class LineOrArc:
     """A line or an arc: begin, heading there, length, and curvature (0 for a line, positive to the left)."""
 
     begin_mm: tuple[float, float]
@@ -59,7 +59,7 @@ class Segment:
 class Chain:
     """Segments from corner to corner, and their largest distance from the path."""
 
-    segments: list[Segment]
+    segments: list[LineOrArc]
     deviation_mm: float
 
 
@@ -194,10 +194,11 @@ class Spline:
         return rows_of(np.column_stack([self.joints[:-1], self.joints[1:], self.halves]))
 
 
-def segments(rows: Array) -> list[Segment]:
+def segments(rows: Array) -> list[LineOrArc]:
     """Rows as segments."""
     return [
-        Segment((x, y), heading, length, bend) for x, y, heading, length, bend in rows.tolist()
+        LineOrArc((x, y), heading, length, bend)
+        for x, y, heading, length, bend in rows.tolist()
     ]
 
 

@@ -101,7 +101,7 @@ class StepFormat:
 
 
 @dataclass(frozen=True, slots=True)
-class Program:
+class StepProgram:
     """A step program: format, rows as bytes (bit 1 the lowest), the line of the file of each row.
 
     `summed` says whether the file has a check sum.
@@ -113,12 +113,12 @@ class Program:
     summed: bool = True
 
 
-def write_program(program: Program, file: str | os.PathLike[str]) -> None:
+def write_program(program: StepProgram, file: str | os.PathLike[str]) -> None:
     """Write a program; equal rows that follow each other stand in one line."""
     write_lines(file, _lines(program))
 
 
-def read_program(file: str | os.PathLike[str]) -> Program:
+def read_program(file: str | os.PathLike[str]) -> StepProgram:
     """Read a program; raises ProgramFault with the line that is wrong, FileFault for an unreadable file."""
     lines = Lines(file, KIND, VERSION)
     fmt, count = _read_header(lines)
@@ -130,7 +130,7 @@ def holes(code: int, channels: int) -> str:
     return "".join("o" if code >> bit & 1 else "." for bit in range(channels - 1, -1, -1))
 
 
-def _lines(program: Program) -> Iterator[str]:
+def _lines(program: StepProgram) -> Iterator[str]:
     """The lines of a program but the last."""
     yield f"morfax {KIND} {VERSION}"
     for entry in fields(StepFormat):
@@ -180,7 +180,7 @@ def _single(
     return got[0]
 
 
-def _read_rows(lines: Lines, fmt: StepFormat, count: int) -> Program:
+def _read_rows(lines: Lines, fmt: StepFormat, count: int) -> StepProgram:
     """The rows up to the last line, as many as the header states."""
     codes: list[int] = []
     times: list[int] = []
@@ -200,4 +200,4 @@ def _read_rows(lines: Lines, fmt: StepFormat, count: int) -> Program:
             raise lines.fault(f"more than the {count} rows stated")
     lines.check_whole(total, count, "rows")
     rows = np.repeat(np.array(codes, np.uint8), times)
-    return Program(fmt, rows, np.repeat(np.array(places, np.int64), times), lines.summed)
+    return StepProgram(fmt, rows, np.repeat(np.array(places, np.int64), times), lines.summed)

@@ -34,7 +34,13 @@ from morfax.motion.faults import MotionFault
 from morfax.motion.motion import IN_WORK_BELOW_MM
 from morfax.motion.segments import Limits, Segment, Source, as_path, segments
 from morfax.recorder.report import WrittenIntervals
-from morfax.recorder.steps.file import MOST_ROWS, STEP_MM, Program, StepFormat, write_program
+from morfax.recorder.steps.file import (
+    MOST_ROWS,
+    STEP_MM,
+    StepFormat,
+    StepProgram,
+    write_program,
+)
 from morfax.recorder.steps.lengths import cut
 from morfax.recorder.steps.rings import LARGEST, SAME, commands
 
@@ -97,7 +103,7 @@ def record_steps(
         raise MotionFault(
             f"the program has {len(rows)} rows; at most {MOST_ROWS} are allowed: record it in parts"
         )
-    write_program(Program(fmt, rows), file)
+    write_program(StepProgram(fmt, rows), file)
     vectors = len(lengths) - int(np.count_nonzero(rows & AXIS_ROW))
     steps = int(np.abs(lengths).sum())
     return StepReport(FilePath(file), fmt, len(lengths), off_mm, len(rows), vectors, steps)

@@ -13,7 +13,7 @@ from morfax.motion.faults import FileFault
 from morfax.motion.pathfile import read_path
 from morfax.player.controls import CONTROLS
 from morfax.recorder.media import MEDIA, record
-from morfax.recorder.steps.file import Program, StepFormat, read_program
+from morfax.recorder.steps.file import StepFormat, StepProgram, read_program
 from morfax.reports import punched
 from tests.console.conftest import SAMPLES, Morfax
 
@@ -177,7 +177,9 @@ def test_inspect_tells_what_is_in_a_cubic_program(
 
 
 def test_holes_stand_where_their_bits_are() -> None:
-    found = list(punched.holes(Program(StepFormat(), np.array([0b1000_0001, 0b100], np.uint8))))
+    found = list(
+        punched.holes(StepProgram(StepFormat(), np.array([0b1000_0001, 0b100], np.uint8)))
+    )
     assert [hole.diameter_mm for hole in found] == [1.17, 1.83, 1.83, 1.17, 1.83]
     feed, first, eighth = found[:3]
     assert first.x_mm - feed.x_mm == pytest.approx(
@@ -186,7 +188,7 @@ def test_holes_stand_where_their_bits_are() -> None:
     assert found[4].x_mm - found[3].x_mm == pytest.approx(2.54) and found[
         3
     ].y_mm - feed.y_mm == pytest.approx(2.54)
-    (strip,) = punched.strips(Program(StepFormat(channels=5), np.zeros(3, np.uint8)))
+    (strip,) = punched.strips(StepProgram(StepFormat(channels=5), np.zeros(3, np.uint8)))
     assert strip.width_mm == 17.46 and strip.length_mm == pytest.approx(4 * 2.54)
 
 

@@ -15,7 +15,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.contour import distances_mm
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import Path
-from morfax.player.cubics.interpolator import Interpolator
+from morfax.player.cubics.interpolator import CubicInterpolator
 from morfax.player.gcode.rs274 import read_rs274
 from morfax.player.steps.stepping import decode, pulses_of
 from morfax.recorder.cubics import file as cubic_file
@@ -49,7 +49,7 @@ def interpolated_mm(file: FilePath) -> Array:
     """The places through which the words of a cubic program lead."""
     program = cubic_file.read_program(file)
     points, start = program.format.points, np.array(program.checks[0])
-    ran = Interpolator(start, points, program.format.linear).run(program.words) / points**3
+    ran = CubicInterpolator(start, points, program.format.linear).run(program.words) / points**3
     return np.vstack([start, ran]) / program.format.counts_per_mm
 
 

@@ -38,7 +38,7 @@ from morfax.tracer.head.state import Home
 from morfax.tracer.operator.card import Card, Stop
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.operator.work import Halt, Work
-from morfax.tracer.operator.zunit import Counters, Move, Preset, counts_of
+from morfax.tracer.operator.zunit import Counters, Preset, QuillMove, counts_of
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.trace import trace
 from morfax.tracer.sensing.photocell import behind_aperture, sweep
@@ -392,7 +392,7 @@ def test_claim_13_the_operator_sets_the_tool_s_movement_by_hand(
     asked: list[int | None] = []
 
     class AtThePanel:
-        def ask(self, halt: Halt, z_mm: float, usual: Sequence[Move]) -> Stop | None:
+        def ask(self, halt: Halt, z_mm: float, usual: Sequence[QuillMove]) -> Stop | None:
             asked.append(halt.number)
             return (
                 Stop(moves=(Preset(counts_of(z_mm) + 325, "down", 4.0),))

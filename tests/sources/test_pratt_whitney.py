@@ -33,7 +33,13 @@ from morfax.player.gcode.feed_control import (
 )
 from morfax.player.gcode.pulse_servo import PulseServo, PulseServos, lag, unit_circuit
 from morfax.player.gcode.pulses import PulseControl, PulsePlayback
-from morfax.player.gcode.residues import CLOCKWISE, COUNTER_CLOCKWISE, LINE, Feed, Interpolator
+from morfax.player.gcode.residues import (
+    CLOCKWISE,
+    COUNTER_CLOCKWISE,
+    LINE,
+    Feed,
+    ResidueInterpolator,
+)
 from morfax.player.gcode.rs274 import parse_rs274
 
 Vectors = Callable[[str], Any]
@@ -60,7 +66,7 @@ def residues(
 ) -> list[tuple[int, int]]:
     """Residue of X and its pulse after each of the first recirculations, of the compiled loop."""
     found = []
-    whole = Interpolator(servo_constant=constant, guard=False).line(end, feed, residue)
+    whole = ResidueInterpolator(servo_constant=constant, guard=False).line(end, feed, residue)
     at, total = residue, constant + max(map(abs, end))
     place = np.zeros(3, np.int64)
     for cycle in range(1, cycles + 1):
@@ -113,7 +119,7 @@ def test_one_axis_never_pulses_the_wrong_way_and_always_arrives() -> None:
 
 def test_linear_runs(vectors: Vectors) -> None:
     for case in vectors("pw_linear")["cases"]:
-        pulses = Interpolator(servo_constant=case["L"], guard=False).line(
+        pulses = ResidueInterpolator(servo_constant=case["L"], guard=False).line(
             tuple(case["target"]), ALWAYS, case["R0"]
         )
         assert len(pulses) == case["cycles"]
@@ -129,7 +135,7 @@ def test_linear_runs(vectors: Vectors) -> None:
 def test_circular_runs(vectors: Vectors) -> None:
     for case in vectors("pw_circular")["cases"]:
         start, sense = (*case["start"], 0), COUNTER_CLOCKWISE if case["ccw"] else CLOCKWISE
-        pulses = Interpolator(start, case["L"]).arc(
+        pulses = ResidueInterpolator(start, case["L"]).arc(
             (*case["end"], 0), tuple(case["centre"]), sense, ALWAYS
         )
         way = ways(pulses[pulses.any(axis=1)], start)[:, :2]
@@ -173,7 +179,7 @@ def test_the_unit_circuit(vectors: Vectors) -> None:
 
 def rates(end: tuple[int, int, int], constant: int = 16) -> np.ndarray:
     """Pulses per recirculation at the start of a line, while the errors have hardly changed."""
-    pulses = Interpolator(servo_constant=constant).line(end, ALWAYS)
+    pulses = ResidueInterpolator(servo_constant=constant).line(end, ALWAYS)
     few = max(map(abs, end)) // 20
     return np.abs(pulses[:few]).mean(axis=0)
 
@@ -188,7 +194,7 @@ def test_claim_1_pulse_frequencies_from_each_error_and_the_largest() -> None:
 
 def test_claim_2_the_frequencies_are_in_the_ratio_of_the_errors() -> None:
     end = (30_000, 20_000, -10_000)
-    pulses = Interpolator().line(end, ALWAYS)
+    pulses = ResidueInterpolator().line(end, ALWAYS)
     way = np.abs(ways(pulses))
     for place in way[:: len(way) // 50]:
         assert place == pytest.approx(np.abs(end) * place[0] / 30_000, abs=2)
@@ -207,7 +213,7 @@ def test_claim_4_feed_pulses_count_up_command_pulses_down_and_the_count_opens_th
     None
 ):
     feed = Feed(feed_number(9_000, RECIRCULATIONS_HZ))
-    interpolator = Interpolator()
+    interpolator = ResidueInterpolator()
     weights = resultant_weights(np.array([8_000, 3_000, 0]), true_norm=False)
     pulses = next(interpolator.recirculate((8_000, 3_000, 0), (0, 0), LINE, feed))[:4_000]
     taken = int(np.abs(pulses).sum(axis=0) @ weights) // EIGHTH
@@ -222,7 +228,7 @@ def test_claim_4_feed_pulses_count_up_command_pulses_down_and_the_count_opens_th
 def held(end: tuple[int, int, int], **how: Any) -> float:
     """The speed along a line over what was programmed, off the approach."""
     override = override_number(how.pop("override", 1.0))
-    pulses = Interpolator().line(
+    pulses = ResidueInterpolator().line(
         end, Feed(feed_number(9_000, RECIRCULATIONS_HZ), override, **how)
     )
     half = len(pulses) // 2
@@ -252,7 +258,7 @@ def test_claims_7_and_8_the_speed_of_each_part_is_its_error_over_the_largest_and
     None
 ):
     for constant in (16, 400, 4_000):
-        pulses = Interpolator(servo_constant=constant).line((9_000, 4_500, 0), ALWAYS)
+        pulses = ResidueInterpolator(servo_constant=constant).line((9_000, 4_500, 0), ALWAYS)
         left = np.array([9_000, 4_500, 0]) - ways(pulses)
         for first in range(0, len(pulses) - 400, 300):
             error = left[first : first + 200].mean(axis=0)
@@ -263,7 +269,9 @@ def test_claims_7_and_8_the_speed_of_each_part_is_its_error_over_the_largest_and
 
 
 def test_claim_9_the_largest_error_is_found_whichever_axis_has_it() -> None:
-    runs = [Interpolator().line(tuple(np.roll([900, 300, 100], k)), ALWAYS) for k in range(3)]
+    runs = [
+        ResidueInterpolator().line(tuple(np.roll([900, 300, 100], k)), ALWAYS) for k in range(3)
+    ]
     for k, run in enumerate(runs):
         assert (np.roll(run, -k, axis=1) == runs[0]).all()
 
@@ -272,7 +280,7 @@ def test_claim_10_the_constant_is_added_to_the_largest_error() -> None:
     # one axis from a residue that alternates evenly: a pulse needs RR + E - (L + E_m) >= 0 after so many
     # openings
     for constant in (1, 7, 60):
-        pulses = Interpolator(servo_constant=constant, guard=False).line(
+        pulses = ResidueInterpolator(servo_constant=constant, guard=False).line(
             (100, 0, 0), ALWAYS, residue=0
         )
         residue, cycle = 0, 0
@@ -296,7 +304,7 @@ def test_claim_11_errors_enter_in_selected_recirculations_and_a_sign_that_stays_
 
 
 def test_claim_12_a_train_of_pulses_for_each_axis() -> None:
-    pulses = Interpolator().line((3_000, -2_000, 1_000), ALWAYS)
+    pulses = ResidueInterpolator().line((3_000, -2_000, 1_000), ALWAYS)
     assert set(np.unique(pulses)) == {-1, 0, 1}
     assert pulses.sum(axis=0).tolist() == [3_000, -2_000, 1_000]
 
@@ -319,7 +327,9 @@ def test_claim_14_the_sum_added_twice_with_one_sign_is_found() -> None:
 
 
 def test_claim_15_a_count_of_feed_pulses_lets_the_interpolators_run() -> None:
-    pulses = Interpolator().line((4_000, 0, 0), Feed(feed_number(6_000, RECIRCULATIONS_HZ)))
+    pulses = ResidueInterpolator().line(
+        (4_000, 0, 0), Feed(feed_number(6_000, RECIRCULATIONS_HZ))
+    )
     first = int(np.flatnonzero(pulses[:, 0])[0])
     fed = count_feed(first + 1, feed_number(6_000, RECIRCULATIONS_HZ), override_number(1.0))
     # nothing moves before the count has reached stage 6
@@ -392,7 +402,9 @@ def test_claim_23_the_tangent_is_the_chord_and_twice_the_perpendicular() -> None
         tangent = chord + ratio * np.array([chord[1], -chord[0]])
         assert tangent @ here == pytest.approx(0, abs=1e-6 * radius**2)
     # and as it is run
-    pulses = Interpolator((2_000, 0, 0)).arc((0, 2_000, 0), (0, 0), COUNTER_CLOCKWISE, ALWAYS)
+    pulses = ResidueInterpolator((2_000, 0, 0)).arc(
+        (0, 2_000, 0), (0, 0), COUNTER_CLOCKWISE, ALWAYS
+    )
     way = ways(pulses, (2_000, 0, 0))
     for first in range(0, len(way) - 300, 100):
         (x, y, _), step_by = way[first + 50], way[first + 100] - way[first]
@@ -404,7 +416,7 @@ def test_claim_23_the_tangent_is_the_chord_and_twice_the_perpendicular() -> None
 @pytest.mark.parametrize("sense", [COUNTER_CLOCKWISE, CLOCKWISE])
 def test_claim_24_errors_are_added_or_taken_by_the_sense_of_rotation(sense: int) -> None:
     start, end = (1_500, 0, 0), (0, 1_500 * sense, 0)
-    pulses = Interpolator(start).arc(end, (0, 0), sense, ALWAYS)
+    pulses = ResidueInterpolator(start).arc(end, (0, 0), sense, ALWAYS)
     way = ways(pulses, start)
     turning = np.unwrap(np.arctan2(way[:, 1], way[:, 0]))
     assert turning[-1] == pytest.approx(sense * math.pi / 2)
@@ -414,7 +426,7 @@ def test_claim_24_errors_are_added_or_taken_by_the_sense_of_rotation(sense: int)
 def parts_of_an_arc() -> tuple[list[bool], list[int], list[int]]:
     """Loop Q along an arc, worked out beside the compiled one: whether straight, E_m taken, 2h added."""
     start, end, centre = (1_000, 0, 0), (0, 1_000, 0), (0, 0)
-    way = ways(Interpolator(start).arc(end, centre, COUNTER_CLOCKWISE, ALWAYS), start)
+    way = ways(ResidueInterpolator(start).arc(end, centre, COUNTER_CLOCKWISE, ALWAYS), start)
     ratio, straight, taken, added = 0, [], [], []
     for x, y, _ in way[:-1].tolist():
         error, largest = (end[0] - x, end[1] - y), max(abs(end[0] - x), abs(end[1] - y))
@@ -455,10 +467,12 @@ def test_claims_27_and_28_straight_where_it_is_positive_crossed_and_one_negative
     assert straight[:2] == [True, False]
     # straight (-1000, 1000), then crossed (1000, 1000): X has none left, Y twice as much, the tangent at
     # (1000, 0)
-    pulses = Interpolator((1_000, 0, 0)).arc((0, 1_000, 0), (0, 0), COUNTER_CLOCKWISE, ALWAYS)[
-        :40
-    ]
+    pulses = ResidueInterpolator((1_000, 0, 0)).arc(
+        (0, 1_000, 0), (0, 0), COUNTER_CLOCKWISE, ALWAYS
+    )[:40]
     assert abs(int(pulses[:, 0].sum())) <= 2 and int(pulses[:, 1].sum()) >= 35
     # the other way round the other one is negative
-    other = Interpolator((1_000, 0, 0)).arc((0, -1_000, 0), (0, 0), CLOCKWISE, ALWAYS)[:40]
+    other = ResidueInterpolator((1_000, 0, 0)).arc((0, -1_000, 0), (0, 0), CLOCKWISE, ALWAYS)[
+        :40
+    ]
     assert abs(int(other[:, 0].sum())) <= 2 and int(other[:, 1].sum()) <= -35

@@ -19,7 +19,13 @@ from morfax.motion.contour import distance
 from morfax.motion.faults import LockFault
 from morfax.motion.motion import join, thin
 from morfax.player.cubics.cubic import Servo, play_cubic
-from morfax.player.cubics.interpolator import Interpolator, TimeBase, ends, table, truncated_end
+from morfax.player.cubics.interpolator import (
+    CubicInterpolator,
+    TimeBase,
+    ends,
+    table,
+    truncated_end,
+)
 from morfax.player.cubics.scales import Scales, gated_pulses, joined, read_scales
 from morfax.player.cubics.stores import Store, Stores
 from morfax.recorder.cubics.cubics import differences, record_cubics
@@ -80,8 +86,8 @@ def test_the_differences_of_a_cubic_are_exact_in_3_log2_p_digits(
     sample = np.array([[[told["x1"], told["tangent1"]]], [[told["x2"], told["tangent2"]]]])
     words = differences(sample, told["steps"])
     assert words[0, 0].tolist() == [told["D1"], told["D2"], told["D3"]]
-    assert Interpolator.digits_for(told["steps"]) == told["frac_bits"]
-    run = Interpolator(np.array([told["x1"]]), told["steps"]).run(words)[:, 0]
+    assert CubicInterpolator.digits_for(told["steps"]) == told["frac_bits"]
+    run = CubicInterpolator(np.array([told["x1"]]), told["steps"]).run(words)[:, 0]
     exact = [Fraction(int(one), 2 ** told["frac_bits"]) for one in run]
     assert [float(x) for x in exact] == told["x_at_p"][1:]
     assert exact[-1] == told["end"]
@@ -160,7 +166,7 @@ def test_claim_2_a_switch_makes_all_steps_cubic_or_one_in_q(tmp_path: Path) -> N
     bends = {}
     for q, file in files.items():
         program = read_program(file)
-        run = Interpolator(np.array(program.checks[0]), 64, q).run(program.words)
+        run = CubicInterpolator(np.array(program.checks[0]), 64, q).run(program.words)
         bends[q] = np.diff(run, 2, axis=0)[:60, 0] != 0
         assert (run[63::64][-1] >> 18 == program.checks[len(program.words)]).all()
     assert bends[1].all() and bends[4].sum() == 15  # one step in four changes the speed
@@ -222,7 +228,9 @@ def test_claim_9_each_store_needs_fewer_digits_than_the_one_before(orbit: Path) 
     program = read_program(orbit)
     largest = [
         np.abs(
-            Interpolator(np.array(program.checks[0]), program.format.points).run(program.words)
+            CubicInterpolator(np.array(program.checks[0]), program.format.points).run(
+                program.words
+            )
         ).max()
     ]
     largest += np.abs(program.words).max(axis=(0, 1)).tolist()

@@ -22,7 +22,7 @@ from morfax.player.steps.stepping import (
     ring_memory,
     tick_table,
 )
-from morfax.recorder.steps.file import Program, StepFormat, write_program
+from morfax.recorder.steps.file import StepFormat, StepProgram, write_program
 from morfax.recorder.steps.rings import RINGS
 from morfax.recorder.steps.steps import encode
 
@@ -34,9 +34,11 @@ PREVIOUS, NEXT, REPEAT = 0b00001, 0b00010, 0b00000
 INTO_RING_OF_SIX = [X_UP] * 6  # to (6, 0)
 
 
-def program(rows: list[int], **fmt: Any) -> Program:
+def program(rows: list[int], **fmt: Any) -> StepProgram:
     """Rows of a tape of five channels, one vector command in each unless told otherwise."""
-    return Program(StepFormat(**{"vectors": 1, "channels": 5, **fmt}), np.array(rows, np.uint8))
+    return StepProgram(
+        StepFormat(**{"vectors": 1, "channels": 5, **fmt}), np.array(rows, np.uint8)
+    )
 
 
 def counts(rows: list[int], **fmt: Any) -> list[list[int]]:

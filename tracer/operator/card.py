@@ -32,7 +32,14 @@ from morfax.motion.toml_fields import Field, opened, parsed, read
 from morfax.tracer.operator.counts_field import counts_in
 from morfax.tracer.operator.depth_fields import length_mm, passes_mm, ramp_rad, start_mm, tabs
 from morfax.tracer.operator.work import Tabs
-from morfax.tracer.operator.zunit import COUNTS_PER_MM, Counters, Move, Preset, counts_of, moves
+from morfax.tracer.operator.zunit import (
+    COUNTS_PER_MM,
+    Counters,
+    Preset,
+    QuillMove,
+    counts_of,
+    moves,
+)
 
 Restart = Literal["automatic", "manual"]
 Turn = Literal["straight", "left", "right"]
@@ -89,9 +96,9 @@ class Stop:
         made = self.moves if self.drill is None else self.drill.presets(at, rapid_mm_s)
         return (*made, Preset(0, dwell_s=self.dwell_s)) if self.dwell_s > 0 else made
 
-    def motor_moves(self, z_mm: float, rapid_mm_s: float, where: str) -> list[Move]:
+    def motor_moves(self, z_mm: float, rapid_mm_s: float, where: str) -> list[QuillMove]:
         """What the motor does from a height; raises CardFault for a move that cannot be set."""
-        made = list[Move]()
+        made = list[QuillMove]()
         try:
             at = Counters(counts_of(z_mm))
             for preset in self.presets(at, rapid_mm_s):

@@ -28,8 +28,8 @@ from morfax.motion.faults import CardFault
 from morfax.tracer.following.direction import Direction
 from morfax.tracer.following.line import Line
 from morfax.tracer.operator.card import Card, Drill, Stop
-from morfax.tracer.operator.work import Action, Entry, Halt, Work
-from morfax.tracer.operator.zunit import COUNTS_PER_MM, Move
+from morfax.tracer.operator.work import Action, Descent, Halt, Work
+from morfax.tracer.operator.zunit import COUNTS_PER_MM, QuillMove
 from morfax.tracer.sensing.side import Side
 
 STAND_S = 0.5  # at a stop without an entry on the card: our own figure
@@ -40,7 +40,7 @@ NEAR_WIDTHS = 3.0
 class Panel(Protocol):
     """An operator who is present during the run."""
 
-    def ask(self, halt: Halt, z_mm: float, usual: Sequence[Move]) -> Stop | None:
+    def ask(self, halt: Halt, z_mm: float, usual: Sequence[QuillMove]) -> Stop | None:
         """What to do at a stop; None: the usual moves."""
 
     def wait(self, halt: Halt) -> float:
@@ -199,17 +199,17 @@ class Operator:
             return action
         entry = self.work.ramp(0.0, -to_mm)
         if entry is None and self.card.entry_mm is not None:
-            entry = Entry(-to_mm, self.card.entry_mm)
+            entry = Descent(-to_mm, self.card.entry_mm)
         if entry is None:
             return action
         to_surface = replace(action.moves[0], to_mm=0.0)
         return replace(action, moves=(to_surface,), entry=entry)
 
-    def _to(self, z_mm: float) -> tuple[Move, ...]:
+    def _to(self, z_mm: float) -> tuple[QuillMove, ...]:
         """One move of Z at the work's feed."""
-        return (Move(z_mm, self.work.feed_mm_s),)
+        return (QuillMove(z_mm, self.work.feed_mm_s),)
 
-    def _at_stop(self, halt: Halt, z_mm: float, *, is_down: bool) -> tuple[Move, ...]:
+    def _at_stop(self, halt: Halt, z_mm: float, *, is_down: bool) -> tuple[QuillMove, ...]:
         """What is done at a stop, or where the line begins: what the card says, or what is usual."""
         if halt.number is None:
             return self._to(-self.work.depths_mm[0]) if is_down else ()
@@ -220,27 +220,30 @@ class Operator:
             stop, moves = answer, self._moves(halt, answer, z_mm, is_down=is_down)
         return tuple(self._restarted(halt, stop, moves))
 
-    def _moves(self, halt: Halt, stop: Stop, z_mm: float, *, is_down: bool) -> list[Move]:
+    def _moves(self, halt: Halt, stop: Stop, z_mm: float, *, is_down: bool) -> list[QuillMove]:
         """The moves that an entry of the card gives, or the usual ones."""
         feed_mm_s = self.work.feed_mm_s
         moves = self._from_card(halt, stop, z_mm)
         if moves:
             return moves
         if is_down:
-            return [Move(-self._depths(halt)[0], feed_mm_s, stop.dwell_s)]
+            return [QuillMove(-self._depths(halt)[0], feed_mm_s, stop.dwell_s)]
         if halt.kind in ("dot", "hole") and z_mm > 0:
             if self.work.peck_mm is not None:
                 return self._pecks(halt, stop, z_mm, self.work.peck_mm)
-            return [Move(-self.work.depth_mm, feed_mm_s, stop.dwell_s), Move(z_mm, feed_mm_s)]
-        return [Move(z_mm, feed_mm_s, stop.dwell_s or STAND_S)]
+            return [
+                QuillMove(-self.work.depth_mm, feed_mm_s, stop.dwell_s),
+                QuillMove(z_mm, feed_mm_s),
+            ]
+        return [QuillMove(z_mm, feed_mm_s, stop.dwell_s or STAND_S)]
 
-    def _pecks(self, halt: Halt, stop: Stop, z_mm: float, peck_mm: float) -> list[Move]:
+    def _pecks(self, halt: Halt, stop: Stop, z_mm: float, peck_mm: float) -> list[QuillMove]:
         """The moves that drill a hole peck by peck."""
         depth, peck = (round(mm * COUNTS_PER_MM) for mm in (self.work.depth_mm, peck_mm))
         drill = Drill(depth, peck, feed_mm_s=self.work.feed_mm_s, dwell_s=stop.dwell_s)
         return self._from_card(halt, Stop(stop.number, drill=drill), z_mm)
 
-    def _from_card(self, halt: Halt, stop: Stop, z_mm: float) -> list[Move]:
+    def _from_card(self, halt: Halt, stop: Stop, z_mm: float) -> list[QuillMove]:
         """The moves that an entry of the card gives; none for a dwell alone."""
         if not stop.moves and stop.drill is None:
             return []
@@ -248,7 +251,7 @@ class Operator:
         where = f"at stop {halt.number}, {x:.2f},{y:.2f} mm"
         return stop.motor_moves(z_mm, self.work.rapid_mm_s, where)
 
-    def _restarted(self, halt: Halt, stop: Stop, moves: list[Move]) -> list[Move]:
+    def _restarted(self, halt: Halt, stop: Stop, moves: list[QuillMove]) -> list[QuillMove]:
         """The moves, the last with the time that the operator takes to press the button."""
         if (stop.restart or self.card.restart) == "automatic":
             return moves

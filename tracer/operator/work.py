@@ -14,7 +14,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.tracer.operator.zunit import ACCELERATION_MM_S2, Move
+from morfax.tracer.operator.zunit import ACCELERATION_MM_S2, QuillMove
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,12 +52,12 @@ class Work:
         """Depths at which each line is run, one after the other, mm."""
         return (*self.passes_mm, self.depth_mm)
 
-    def ramp(self, from_mm: float, depth_mm: float) -> Entry | None:
+    def ramp(self, from_mm: float, depth_mm: float) -> Descent | None:
         """The ramp from one depth to another, mm; None without ramps."""
         if self.ramp_rad is None or depth_mm <= from_mm:
             return None
         length_mm = (depth_mm - from_mm) / math.tan(self.ramp_rad)
-        return Entry(depth_mm, length_mm, from_mm, is_straight=True)
+        return Descent(depth_mm, length_mm, from_mm, is_straight=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +70,7 @@ class Halt:
     number: int | None = None
 
 
-class Entry(NamedTuple):
+class Descent(NamedTuple):
     """Z goes down while X and Y move: from one depth to another over a length of the line, all mm.
 
     Straight down a slope, from rest to rest; or smoothly at both ends, 3s² - 2s³, while X and Y run on.
@@ -96,8 +96,8 @@ class Action:
     """
 
     halt: Halt
-    moves: tuple[Move, ...]
-    entry: Entry | None = None
+    moves: tuple[QuillMove, ...]
+    entry: Descent | None = None
     depths_mm: tuple[float, ...] = ()
 
     @property

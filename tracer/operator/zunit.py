@@ -112,7 +112,7 @@ class Counters:
 
 
 @dataclass(frozen=True, slots=True)
-class Move:
+class QuillMove:
     """What the motor 125 does: go to a place in mm at a feed, then stand."""
 
     to_mm: float
@@ -130,18 +130,18 @@ def counts_of(length_mm: float) -> int:
     return counts
 
 
-def moves(start: Counters, presets: Iterable[Preset]) -> list[Move]:
+def moves(start: Counters, presets: Iterable[Preset]) -> list[QuillMove]:
     """What the motor does for presets run one after the other; raises ValueError beyond five digits."""
     made, counters = [], start
     for preset in presets:
         counters = counters.after(preset)
-        made.append(Move(counters.z_mm, preset.feed_mm_s, preset.dwell_s))
+        made.append(QuillMove(counters.z_mm, preset.feed_mm_s, preset.dwell_s))
     return made
 
 
 def z_moves(
     start_mm: float,
-    moves: Sequence[Move],
+    moves: Sequence[QuillMove],
     acceleration_mm_s2: float = ACCELERATION_MM_S2,
     rate_hz: float = MOTION_RATE_HZ,
 ) -> Array:
@@ -164,7 +164,7 @@ def coincidence(z_mm: Array, start: Counters, preset: Preset) -> int | None:
     return int(there[0]) if len(there) else None
 
 
-def _one(start_mm: float, move: Move, acceleration_mm_s2: float, rate_hz: float) -> Array:
+def _one(start_mm: float, move: QuillMove, acceleration_mm_s2: float, rate_hz: float) -> Array:
     """Z of one move and of the dwell after it, mm."""
     how = ramp.Ramp(acceleration_mm_s2, COUNT_MM)
     way = ramp.positions_mm([start_mm], [move.to_mm], move.feed_mm_s, how, rate_hz=rate_hz)

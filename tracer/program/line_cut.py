@@ -26,8 +26,8 @@ from morfax.motion.faults import MotionFault
 from morfax.motion.motion import BLOCK_SAMPLES
 from morfax.tracer.following.line import Line
 from morfax.tracer.operator.operator import Operator
-from morfax.tracer.operator.work import Action, Entry, Work
-from morfax.tracer.operator.zunit import Move, z_moves
+from morfax.tracer.operator.work import Action, Descent, Work
+from morfax.tracer.operator.zunit import QuillMove, z_moves
 from morfax.tracer.program import braking
 from morfax.tracer.program.tabs import Tab
 from morfax.tracer.program.tool_height import ToolHeight, slowed
@@ -205,7 +205,7 @@ class LineCut:
         after = [action.halt.at for action in self.actions if action.halt.at > down.halt.at]
         return self.line.comes_round and all(self.whole.mm_at(at) > ends_mm for at in after)
 
-    def _to_and_fro(self, at: float, entry: Entry) -> Iterator[Array]:
+    def _to_and_fro(self, at: float, entry: Descent) -> Iterator[Array]:
         """Down a ramp to and fro between a position and the next at which something is done, (n, 3) mm."""
         line = self.line
         others = [action.halt.at for action in self.actions]
@@ -235,7 +235,7 @@ class LineCut:
         tool.top_mm = self.top_mm if rest.tab == "first" else None
         from_mm, to_mm = heights_mm if rest.tab == "first" else heights_mm[::-1]
         if tool.z_mm < self.top_mm:
-            move = Move(to_mm, self.work.feed_mm_s)
+            move = QuillMove(to_mm, self.work.feed_mm_s)
             yield standing(self.work, place_mm, from_mm, [move], self.rate_hz)
 
     def _tab_rests(self, lowest_mm: float) -> list[Rest]:
@@ -245,7 +245,7 @@ class LineCut:
         first = [Rest(tab.first, tab="first") for tab in self.tabs]
         return [*first, *(Rest(tab.last, tab="last") for tab in self.tabs)]
 
-    def _slope_rests(self, entry: Entry, way: Way, begin_mm: float) -> list[Rest]:
+    def _slope_rests(self, entry: Descent, way: Way, begin_mm: float) -> list[Rest]:
         """Where a straight slope that begins at a length of a way ends, and where it comes to a tab's top."""
         if not entry.is_straight:
             return []
@@ -264,7 +264,7 @@ class LineCut:
 
     def _z_to(self, place_mm: Array, z_mm: float) -> Iterator[Array]:
         """To a height while X and Y stand, (n, 3) mm."""
-        move = Move(z_mm, self.work.feed_mm_s)
+        move = QuillMove(z_mm, self.work.feed_mm_s)
         yield standing(self.work, place_mm, self.tool.z_mm, [move], self.rate_hz)
         self.tool.z_mm = z_mm
 
@@ -284,7 +284,7 @@ def rapid(work: Work, start_mm: PlaceMm, end_mm: PlaceMm, rate_hz: float) -> Arr
 
 
 def standing(
-    work: Work, xy_mm: Array, from_mm: float, moves: Sequence[Move], rate_hz: float
+    work: Work, xy_mm: Array, from_mm: float, moves: Sequence[QuillMove], rate_hz: float
 ) -> Array:
     """X and Y stand while Z makes its moves, (n, 3) mm."""
     z_mm = z_moves(from_mm, moves, work.acceleration_mm_s2, rate_hz)

@@ -23,7 +23,7 @@ from morfax.motion.arrays import Array
 from morfax.tracer.following.line import Line
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.operator.work import Action, Work
-from morfax.tracer.operator.zunit import Move
+from morfax.tracer.operator.zunit import QuillMove
 from morfax.tracer.program import braking
 from morfax.tracer.program.line_cut import (
     BRAKE_MM_S2,
@@ -59,7 +59,7 @@ class Passes:
             yield block
             at = block[-1]
         if at[2] != self.work.clearance_mm:
-            up = Move(self.work.clearance_mm, self.work.feed_mm_s)
+            up = QuillMove(self.work.clearance_mm, self.work.feed_mm_s)
             yield standing(self.work, at[:2], float(at[2]), [up], self.rate_hz)
         yield from self._home(line, at[:2])
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import lengths_mm
-from morfax.tracer.operator.work import Entry
+from morfax.tracer.operator.work import Descent
 
 ROUNDED = 1e-9  # of the feed, and of a period: what rounding adds
 ARRIVED_MM = 1e-9  # of a slope: what rounding leaves of it
@@ -29,7 +29,7 @@ class ToolHeight:
     """
 
     z_mm: float
-    entry: Entry | None = None
+    entry: Descent | None = None
     come_mm: float = 0.0
     top_mm: float | None = None
 
@@ -43,7 +43,7 @@ class ToolHeight:
         """How much of the slope is left, mm."""
         return 0.0 if self.entry is None else self.entry.length_mm - self.come_mm
 
-    def go_down(self, entry: Entry | None) -> None:
+    def go_down(self, entry: Descent | None) -> None:
         """Begin a slope, or none."""
         self.entry, self.come_mm = entry, 0.0
 

@@ -20,8 +20,8 @@ from morfax.motion.faults import FileFault, ProgramFault
 from morfax.motion.motion import IN_WORK_BELOW_MM
 from morfax.player.gcode.check import motion_rules
 from morfax.player.gcode.check.findings import Finding, Findings
-from morfax.player.gcode.check.follower import Follower
-from morfax.player.gcode.check.lines import Lines
+from morfax.player.gcode.check.follower import CheckingReader
+from morfax.player.gcode.check.lines import ControlInput
 from morfax.player.gcode.check.motion_rules import Stock
 from morfax.player.gcode.check.steps import Step
 from morfax.player.gcode.check.words import WordRules
@@ -61,8 +61,8 @@ def check_program(file: FilePath, machine: Machine, stock: Stock | None = None) 
 def check_lines(lines: Iterable[str], machine: Machine, stock: Stock | None = None) -> Checked:
     """Check some lines of text."""
     findings = Findings()
-    taken, rules = Lines(machine, findings), WordRules(machine, findings)
-    follower = Follower("program", machine, findings)
+    taken, rules = ControlInput(machine, findings), WordRules(machine, findings)
+    follower = CheckingReader("program", machine, findings)
     count, is_ours, is_whole = 0, False, False
     for count, raw in enumerate(lines, 1):
         findings.line = count
@@ -90,7 +90,7 @@ def check_lines(lines: Iterable[str], machine: Machine, stock: Stock | None = No
     return Checked(count, steps, findings.in_order(), follower.said)
 
 
-def _check_last_line(taken: Lines, follower: Follower, findings: Findings) -> None:
+def _check_last_line(taken: ControlInput, follower: CheckingReader, findings: Findings) -> None:
     """Find a program without an end, and a tool that it leaves on."""
     ended = taken.ended or follower.ended
     if not taken.begun:
@@ -108,7 +108,7 @@ def _check_last_line(taken: Lines, follower: Follower, findings: Findings) -> No
         )
 
 
-def _steps(follower: Follower, surface_mm: float) -> list[Step]:
+def _steps(follower: CheckingReader, surface_mm: float) -> list[Step]:
     """The moves with where each begins, and whether the tool is in the work."""
     x, y, z = (0.0 if place is None else place for place in follower.start)
     begin, steps = (x, y, z), list[Step]()

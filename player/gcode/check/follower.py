@@ -23,7 +23,7 @@ from morfax.player.gcode.check.lines import Words
 from morfax.player.gcode.check.planes import LEVEL, PLANES
 from morfax.player.gcode.check.words import AXES, CYCLES, MOTIONS, PROBES, called
 from morfax.player.gcode.moves import COUNTER_CLOCKWISE, LINE, RAPID, Move
-from morfax.player.gcode.rs274 import Reader
+from morfax.player.gcode.rs274 import GcodeReader
 from morfax.player.gcode.tool_state import ToolState
 from morfax.recorder.gcode.machine import Machine
 from morfax.recorder.gcode.takes import Code, codes
@@ -41,7 +41,7 @@ _NOT_READ = (MOTIONS - codes("G0-G3") - CYCLES - PROBES) | codes("M98 M99")
 _OUR_LETTERS = frozenset("XYZF")
 
 
-class Follower(Reader):
+class CheckingReader(GcodeReader):
     """The modal state of a program as the machine's control has it, and the moves so far."""
 
     def __init__(self, name: str, machine: Machine, findings: Findings) -> None:

@@ -40,7 +40,7 @@ class Words(NamedTuple):
     computed: frozenset[str] = frozenset()
 
 
-class Lines:
+class ControlInput:
     """Lines as the machine's control takes them in."""
 
     def __init__(self, machine: Machine, findings: Findings) -> None:

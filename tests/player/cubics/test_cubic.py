@@ -15,7 +15,7 @@ from morfax.motion.faults import FollowingFault, LockFault, ProgramFault
 from morfax.motion.motion import join, thin
 from morfax.player.cubics import cubic, interpolator, scales
 from morfax.player.cubics.cubic import Servo, play_cubic
-from morfax.player.cubics.interpolator import Interpolator, TimeBase, table, truncated_end
+from morfax.player.cubics.interpolator import CubicInterpolator, TimeBase, table, truncated_end
 from morfax.player.cubics.scales import Scales, joined, read_scales
 from morfax.recorder.cubics.cubics import record_cubics
 from morfax.recorder.cubics.file import CubicFormat
@@ -34,26 +34,26 @@ def round_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_the_interpolator_is_table_i_for_any_words() -> None:
     words = np.array([[[37, -5, 2]]])
-    run = Interpolator(np.array([0]), 8).run(words)[:, 0]
+    run = CubicInterpolator(np.array([0]), 8).run(words)[:, 0]
     assert run.tolist() == [row[0] for row in table(0, (37, -5, 2), 8)][1:]
 
 
 def test_registers_carry_on_from_block_to_block() -> None:
     words = np.random.default_rng(2).integers(-(10**6), 10**6, (10, 3, 3))
-    whole = Interpolator(np.array([1, 2, 3]), 16).run(words)
-    parts = Interpolator(np.array([1, 2, 3]), 16)
+    whole = CubicInterpolator(np.array([1, 2, 3]), 16).run(words)
+    parts = CubicInterpolator(np.array([1, 2, 3]), 16)
     assert (np.vstack([parts.run(words[:4]), parts.run(words[4:])]) == whole).all()
 
 
 @pytest.mark.parametrize("points", [1, 12, 0])
 def test_steps_that_are_no_power_of_two_are_refused(points: int) -> None:
     with pytest.raises(ValueError, match="power of two"):
-        Interpolator(np.zeros(3), points)
+        CubicInterpolator(np.zeros(3), points)
 
 
 def test_words_of_another_shape_are_refused() -> None:
     with pytest.raises(ValueError, match=r"\(k, 3, 3\)"):
-        Interpolator(np.zeros(3), 16).run(np.zeros((4, 2, 3), np.int64))
+        CubicInterpolator(np.zeros(3), 16).run(np.zeros((4, 2, 3), np.int64))
 
 
 def test_full_digits_end_exactly_and_fewer_do_not() -> None:

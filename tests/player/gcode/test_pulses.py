@@ -24,7 +24,7 @@ from morfax.player.gcode.feed_control import (
 )
 from morfax.player.gcode.pulse_servo import HISTORIC, PulseServo, PulseServos, lag, unit_circuit
 from morfax.player.gcode.pulses import PulseControl, PulsePlayback, play_pulses
-from morfax.player.gcode.residues import Feed, Interpolator
+from morfax.player.gcode.residues import Feed, ResidueInterpolator
 from morfax.player.gcode.rs274 import parse_rs274
 
 RECIRCULATIONS_HZ = 8 * MOTION_RATE_HZ
@@ -53,7 +53,7 @@ def test_10_000_random_moves_end_exactly_and_keep_to_their_line_or_arc() -> None
         end = tuple(
             int(v) for v in random.integers(-1, 2, 3) * np.exp(random.uniform(0, 8.5, 3))
         )
-        interpolator = Interpolator(servo_constant=int(random.choice([16, 240])))
+        interpolator = ResidueInterpolator(servo_constant=int(random.choice([16, 240])))
         way = ways(interpolator.line(end, feed), (0, 0, 0))
         assert tuple(way[-1]) == end
         along = np.array(end) / max(math.hypot(*end), 1.0)
@@ -70,7 +70,7 @@ def test_10_000_random_moves_end_exactly_and_keep_to_their_line_or_arc() -> None
         (x0, y0), (x1, y1) = np.rint(
             centre + radius * np.column_stack([np.cos(angles), np.sin(angles)])
         ).astype(int)
-        interpolator = Interpolator((x0, y0, 7))
+        interpolator = ResidueInterpolator((x0, y0, 7))
         pulses = (
             interpolator.arc((x1, y1, 7), centre, sense, feed)
             if (x0, y0) != (x1, y1)
@@ -103,7 +103,7 @@ def measured(end: tuple[int, int, int], speed: float, **how: float | bool) -> fl
     feed = Feed(
         feed_number(speed, RECIRCULATIONS_HZ), override, bool(how.get("true_norm", False))
     )
-    way = ways(Interpolator(servo_constant=16).line(end, feed), (0, 0, 0))
+    way = ways(ResidueInterpolator(servo_constant=16).line(end, feed), (0, 0, 0))
     half = len(way) // 2
     return float(np.linalg.norm(way[half]) / half * RECIRCULATIONS_HZ / speed)
 
@@ -133,7 +133,7 @@ def test_the_speed_is_held_all_round_a_circle(true_norm: bool) -> None:
             int
         )
         for (x, y), (end_x, end_y), sense in ((first, last, 1), (last, first, -1)):
-            pulses = Interpolator((x, y, 0)).arc((end_x, end_y, 0), (0, 0), sense, feed)
+            pulses = ResidueInterpolator((x, y, 0)).arc((end_x, end_y, 0), (0, 0), sense, feed)
             way = ways(pulses, (x, y, 0))
             quarter, half = len(way) // 4, len(way) // 2  # off the start and the approach
             speed = math.dist(way[quarter], way[half]) / (half - quarter) * RECIRCULATIONS_HZ
@@ -148,7 +148,7 @@ def test_the_override_lowers_the_speed() -> None:
 
 
 def test_the_approach_depends_on_the_error_alone() -> None:
-    interpolator = Interpolator(servo_constant=240)
+    interpolator = ResidueInterpolator(servo_constant=240)
     way = ways(
         interpolator.line((20_000, 0, 0), Feed(feed_number(10_000, RECIRCULATIONS_HZ))),
         (0, 0, 0),
@@ -161,13 +161,13 @@ def test_the_approach_depends_on_the_error_alone() -> None:
 
 def test_the_guard_keeps_idle_axes_still() -> None:
     feed = Feed(gate_period=1)
-    bare = Interpolator(guard=False).line((700, -300, 0), feed, residue=0)
-    guarded = Interpolator().line((700, -300, 0), feed, residue=0)
+    bare = ResidueInterpolator(guard=False).line((700, -300, 0), feed, residue=0)
+    guarded = ResidueInterpolator().line((700, -300, 0), feed, residue=0)
     assert np.count_nonzero(bare[:, 2]) > 0 == np.count_nonzero(guarded[:, 2])
 
 
 def test_residues_stay_within_one_bit_more_than_the_sum() -> None:
-    interpolator = Interpolator()
+    interpolator = ResidueInterpolator()
     for part in interpolator.recirculate((9000, -4000, 77), (0, 0), 0, Feed(gate_period=3)):
         assert np.abs(part).max() <= 1
         assert np.abs(interpolator.residues).max() <= 2 * (9000 + 16)
@@ -297,11 +297,11 @@ def test_a_speed_without_a_feed_number_is_refused(speed: float) -> None:
 
 def test_arcs_that_are_none_are_refused() -> None:
     with pytest.raises(ValueError, match="helix"):
-        Interpolator().arc((1, 1, 1), (0, 1), 1, Feed())
+        ResidueInterpolator().arc((1, 1, 1), (0, 1), 1, Feed())
     with pytest.raises(ValueError, match="not 0"):
-        Interpolator().arc((1, 1, 0), (0, 1), 0, Feed())
+        ResidueInterpolator().arc((1, 1, 0), (0, 1), 0, Feed())
     with pytest.raises(ValueError, match="L = 0"):
-        Interpolator(servo_constant=0)
+        ResidueInterpolator(servo_constant=0)
 
 
 def test_a_file_is_played(tmp_path: Path) -> None:
@@ -318,7 +318,7 @@ def test_the_compiled_kernels_are_the_plain_ones(monkeypatch: pytest.MonkeyPatch
             monkeypatch.setattr(residues, "_recirculate", residues._recirculate.py_func)
             monkeypatch.setattr(pulse_servo, "_follow", pulse_servo._follow.py_func)
             monkeypatch.setattr(residues, "AT_ONCE", 4096)
-        interpolator = Interpolator()
+        interpolator = ResidueInterpolator()
         pulses = np.vstack(
             [
                 interpolator.line((120, -30, 4), feed),

@@ -24,7 +24,7 @@ from morfax.player.steps.stepping import (
     ring_memory,
     tick_table,
 )
-from morfax.recorder.steps.file import TICKS, Program, StepFormat, write_program
+from morfax.recorder.steps.file import TICKS, StepFormat, StepProgram, write_program
 from morfax.recorder.steps.rings import RINGS
 
 INTERVAL_S = 1 / 160
@@ -60,7 +60,7 @@ def test_no_tape_of_any_content_asks_for_more_than_the_motor_can_do(
     content: bytes, fmt: StepFormat
 ) -> None:
     rows = np.frombuffer(content, np.uint8) & (2**fmt.channels - 1)
-    counts, _ = decode(Program(fmt, rows))
+    counts, _ = decode(StepProgram(fmt, rows))
     assert ((counts >= 1) & (counts <= 15)).all()
     pulses = pulses_of(counts, fmt.rates)
     assert (
@@ -77,7 +77,7 @@ def test_a_file_of_any_rows_plays_without_loss_or_is_refused(
 ) -> None:
     rows = np.frombuffer(content, np.uint8) & (2**fmt.channels - 1)
     file = tmp_path_factory.mktemp("any") / "any.steps"
-    write_program(Program(fmt, rows), file)
+    write_program(StepProgram(fmt, rows), file)
     try:
         playback = play_steps(file)
     except stepping.ProgramFault as refused:
@@ -104,7 +104,7 @@ def test_a_stronger_motor_takes_the_same_jump() -> None:
 def test_rates_need_not_be_linear(tmp_path: Path) -> None:
     fmt = StepFormat(rates=(1, 3, 5, 7, 8, 9, 10), end_mm=(0.25, 0, 0))
     rows = [0b10001] * 4 + [0b10010] * 4
-    write_program(Program(fmt, np.array(rows, np.uint8)), tmp_path / "a.steps")
+    write_program(StepProgram(fmt, np.array(rows, np.uint8)), tmp_path / "a.steps")
     with pytest.raises(stepping.ProgramFault, match="ask for changes of 51200"):
         play_steps(tmp_path / "a.steps")
     playback = play_steps(tmp_path / "a.steps", motor=Motor(51200))
@@ -116,7 +116,7 @@ def test_rates_need_not_be_linear(tmp_path: Path) -> None:
 def test_the_oscillator_sets_the_interval(tmp_path: Path, oscillator_hz: float) -> None:
     fmt = StepFormat(oscillator_hz=oscillator_hz, end_mm=(0.04, 0, 0))
     write_program(
-        Program(fmt, np.array([0b10001, 0b10001, 0b10010, 0b10010], np.uint8)),
+        StepProgram(fmt, np.array([0b10001, 0b10001, 0b10010, 0b10010], np.uint8)),
         tmp_path / "a.steps",
     )
     playback = play_steps(tmp_path / "a.steps")
@@ -131,7 +131,7 @@ def test_the_blocks_of_a_long_program_join_without_a_gap(tmp_path: Path) -> None
     rows = np.full(9000, 0b10000, np.uint8)
     rows[0], rows[-1] = 0b10001, 0b10010
     fmt = StepFormat(end_mm=(89.99, 0, 0))
-    write_program(Program(fmt, rows), tmp_path / "a.steps")
+    write_program(StepProgram(fmt, rows), tmp_path / "a.steps")
     playback = play_steps(tmp_path / "a.steps")
     blocks = list(playback)
     ends_s = [block.start_s + block.duration_s for block in blocks[:-1]]
@@ -148,10 +148,10 @@ def test_the_kernels_do_as_plain_python_what_they_do_compiled(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     rows = np.random.default_rng(1).integers(0, 256, 500).astype(np.uint8)
-    compiled = decode(Program(StepFormat(), rows))
+    compiled = decode(StepProgram(StepFormat(), rows))
     monkeypatch.setattr(stepping, "_counted", stepping._counted.py_func)
     monkeypatch.setattr(stepping, "_decode", stepping._decode.py_func)
-    plain = decode(Program(StepFormat(), rows.astype(np.int64)))
+    plain = decode(StepProgram(StepFormat(), rows.astype(np.int64)))
     assert (compiled[0] == plain[0]).all() and (compiled[1] == plain[1]).all()
     pulses = pulses_of(plain[0], (1, 3, 5, 7, 8, 9, 10))
     runs = []

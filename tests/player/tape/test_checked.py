@@ -14,7 +14,7 @@ import soundfile
 from morfax.motion.faults import Fault, LockFault, TapeFault
 from morfax.motion.motion import Motion, join
 from morfax.player.tape.mend import mend
-from morfax.player.tape.playback import Playback, play, play_pipe
+from morfax.player.tape.playback import TapePlayback, play, play_pipe
 from morfax.recorder.tape.tape import Tape, TapeFormat, record
 from morfax.recorder.wear.settings import Wear
 from morfax.recorder.wear.transport import age
@@ -58,7 +58,7 @@ class Bench:
         return float(np.abs(went - self.clean[: len(went)]).max(initial=0.0) / UM)
 
 
-def run(playback: Playback) -> tuple[np.ndarray, Fault | None]:
+def run(playback: TapePlayback) -> tuple[np.ndarray, Fault | None]:
     """Play to the end or to a fault."""
     blocks = []
     try:

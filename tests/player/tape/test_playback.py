@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from morfax.motion.contour import distance
 from morfax.motion.faults import LockFault, TapeFault
 from morfax.motion.motion import Motion, join
-from morfax.player.tape.playback import Playback, play
+from morfax.player.tape.playback import TapePlayback, play
 from morfax.recorder.tape.tape import TapeFormat, record
 from tests.player.carriers import (
     CYCLES_PER_MM,
@@ -40,7 +40,7 @@ def tape(file: Path, frames: np.ndarray, rate_hz: int = RATE_HZ) -> Path:
     return file
 
 
-def by_hand(file: Path, start_mm: tuple[float, ...] | None = None) -> Playback:
+def by_hand(file: Path, start_mm: tuple[float, ...] | None = None) -> TapePlayback:
     """Play such a tape."""
     return play(file, reference_hz=REFERENCE_HZ, cycles_per_mm=CYCLES_PER_MM, start_mm=start_mm)
 

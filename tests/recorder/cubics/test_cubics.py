@@ -14,7 +14,7 @@ from morfax.motion.faults import MotionFault, ProgramFault
 from morfax.motion.motion import Path, thin
 from morfax.motion.segments import Limits
 from morfax.player.cubics.cubic import play_cubic
-from morfax.player.cubics.interpolator import Interpolator
+from morfax.player.cubics.interpolator import CubicInterpolator
 from morfax.recorder.cubics.cubics import differences, hermite, record_cubics
 from morfax.recorder.cubics.file import CubicFormat, CubicProgram, read_program, write_program
 from tests.recorder.steps.test_steps import SQUARE, STAR, TOOL, circle
@@ -80,7 +80,7 @@ def test_ends_and_slopes_meet_to_the_digit(rows: list, steps: tuple[int, int]) -
 
     samples, (points, linear) = np.array(rows, np.int64), steps
     words = differences(samples, points, linear)
-    interpolator = Interpolator(samples[0, :, 0], points, linear)
+    interpolator = CubicInterpolator(samples[0, :, 0], points, linear)
     ran = interpolator.run(words)[points - 1 :: points]
     assert (ran == samples[1:, :, 0] * points**3).all()
     assert (
@@ -94,7 +94,7 @@ def test_ends_and_slopes_meet_to_the_digit(rows: list, steps: tuple[int, int]) -
 @given(SAMPLES)
 def test_the_registers_run_along_the_closed_form(rows: list) -> None:  # type: ignore[type-arg]
     samples = np.array(rows, np.int64)
-    ran = Interpolator(samples[0, :, 0], 16).run(differences(samples, 16)) / 16**3
+    ran = CubicInterpolator(samples[0, :, 0], 16).run(differences(samples, 16)) / 16**3
     at = np.arange(1, len(ran) + 1) / 16
     assert ran == pytest.approx(hermite(samples, at), rel=1e-12, abs=1e-6)
 

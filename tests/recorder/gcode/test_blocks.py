@@ -31,11 +31,10 @@ from morfax.recorder.gcode.pieces import (
     off_line_mm,
     resample,
 )
-from morfax.recorder.gcode.spline import BREAK_RAD, Segment
+from morfax.recorder.gcode.spline import BREAK_RAD, LineOrArc
 from morfax.recorder.gcode.stretches import DWELL_S
 from morfax.recorder.media import record
-from morfax.tracer.operator.zunit import Move as ZMove
-from morfax.tracer.operator.zunit import z_moves
+from morfax.tracer.operator.zunit import QuillMove, z_moves
 
 SAMPLES = Path(__file__).parents[3] / "samples"
 FEWEST = {
@@ -96,7 +95,7 @@ def _drawn(place: np.ndarray, move: Move) -> np.ndarray:
     return arc(radius, first, first + move.turned_rad, move.centre_mm)
 
 
-def segments(points: np.ndarray, tolerance_mm: float = TOLERANCE_MM) -> list[list[Segment]]:
+def segments(points: np.ndarray, tolerance_mm: float = TOLERANCE_MM) -> list[list[LineOrArc]]:
     return [chain.segments for chain in fit(points, tolerance_mm)]
 
 
@@ -197,12 +196,12 @@ def test_a_smooth_line_is_run_tangent_at_every_joint_within_the_tolerance(seed: 
     assert len(chain.segments) <= max(ASKED * fewest, fewest + 2)
 
 
-def _drawn_segment(segment: Segment) -> np.ndarray:
+def _drawn_segment(segment: LineOrArc) -> np.ndarray:
     return np.array(
         [
             segment.begin_mm,
             *(
-                Segment(
+                LineOrArc(
                     segment.begin_mm,
                     segment.heading_rad,
                     share * segment.length_mm,
@@ -256,7 +255,7 @@ def z_program(*moves: tuple[float, float, float]) -> MotionPath:
     """
     t_s, z_mm = [0.0], [2.0]
     for to_mm, feed_mm_s, dwell_s in moves:
-        motion = z_moves(z_mm[-1], [ZMove(to_mm, feed_mm_s, dwell_s)])
+        motion = z_moves(z_mm[-1], [QuillMove(to_mm, feed_mm_s, dwell_s)])
         t_s += (t_s[-1] + np.arange(1, len(motion) + 1) / MOTION_RATE_HZ).tolist()
         z_mm += motion.tolist()
     points = np.column_stack([np.full(len(z_mm), 10.0), np.full(len(z_mm), 20.0), z_mm])

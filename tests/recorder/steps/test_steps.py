@@ -16,7 +16,13 @@ from morfax.motion.motion import Path, thin
 from morfax.motion.segments import Limits, segments
 from morfax.player.steps.stepping import play_steps
 from morfax.recorder.steps import lengths as lengths_module
-from morfax.recorder.steps.file import Program, StepFormat, holes, read_program, write_program
+from morfax.recorder.steps.file import (
+    StepFormat,
+    StepProgram,
+    holes,
+    read_program,
+    write_program,
+)
 from morfax.recorder.steps.rings import RINGS, command, commands
 from morfax.recorder.steps.steps import encode, record_steps
 
@@ -112,7 +118,7 @@ def test_what_is_encoded_is_decoded(changes: list[tuple[int, int, int]], vectors
         else lengths
     )
     fmt = StepFormat(vectors=vectors)
-    counts, _ = decode(Program(fmt, encode(lengths, np.zeros(len(lengths), bool), fmt)))
+    counts, _ = decode(StepProgram(fmt, encode(lengths, np.zeros(len(lengths), bool), fmt)))
     assert (pulses_of(counts, fmt.rates) == lengths).all()
 
 
@@ -159,7 +165,7 @@ def test_a_rest_is_kept(tmp_path: FilePath) -> None:
 
 def test_a_program_comes_back_from_its_file(tmp_path: FilePath) -> None:
     fmt = StepFormat(0.0254, 7680, (1, 3, 5, 7, 8, 9, 10), 1, 5, (1.5, -2, 0), (1.5, -2, 0))
-    written = Program(fmt, np.array([0b10001, 0b10001, 0, 0b11111], np.uint8))
+    written = StepProgram(fmt, np.array([0b10001, 0b10001, 0, 0b11111], np.uint8))
     write_program(written, tmp_path / "a.steps")
     read = read_program(tmp_path / "a.steps")
     assert read.format == fmt and (read.rows == written.rows).all()

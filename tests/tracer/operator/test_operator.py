@@ -16,7 +16,7 @@ from morfax.tracer.marks.marks import Mark
 from morfax.tracer.operator.card import Card, Stop
 from morfax.tracer.operator.operator import STAND_S, Operator
 from morfax.tracer.operator.work import Halt, Work
-from morfax.tracer.operator.zunit import Move
+from morfax.tracer.operator.zunit import QuillMove
 
 Z = list[tuple[float, ...]]
 WAY = np.column_stack([np.linspace(0, 100, 1001), np.zeros(1001)])  # position k is at k / 10 mm
@@ -176,7 +176,7 @@ class Present:
 
     asked: list[int | None] = field(default_factory=list)
 
-    def ask(self, halt: Halt, z_mm: float, usual: Sequence[Move]) -> Stop | None:
+    def ask(self, halt: Halt, z_mm: float, usual: Sequence[QuillMove]) -> Stop | None:
         self.asked.append(halt.number)
         return Card.parse('[[stop]]\nmoves = [{ up = "1mm" }]\n').stop(1)
 

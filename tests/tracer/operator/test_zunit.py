@@ -12,8 +12,8 @@ from morfax.tracer.operator.zunit import (
     COUNT_MM,
     LARGEST_COUNT,
     Counters,
-    Move,
     Preset,
+    QuillMove,
     coincidence,
     counted,
     counts_of,
@@ -134,7 +134,7 @@ def test_a_dwell_stands_for_its_time() -> None:
 
 
 def test_a_place_between_two_counts_is_reached_exactly_too() -> None:
-    z_mm = z_moves(1 / 3, [Move(-np.pi, 5.0), Move(1 / 3, 5.0)])
+    z_mm = z_moves(1 / 3, [QuillMove(-np.pi, 5.0), QuillMove(1 / 3, 5.0)])
     assert z_mm.min() == -np.pi and z_mm[-1] == 1 / 3
 
 
