@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
-from morfax.jobs import comparison, flattening
+from morfax.jobs import comparison, flattening, following
 from morfax.jobs import files as medium
 from morfax.jobs.listener import SILENT, Listener
 from morfax.jobs.machining import tell_what_is_lost
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from morfax.jobs.traced import Traced
     from morfax.motion.faults import Fault
     from morfax.motion.motion import Path
+    from morfax.player.monitor.chart import Chart
     from morfax.tracer.drawing.drawing import Drawing
     from morfax.tracer.operator.operator import Panel
 
@@ -42,6 +43,7 @@ class RunResult:
     picture: FilePath
     report: FilePath
     faults: tuple[Fault, ...]
+    chart: Chart | None = None  # of the following errors, where it was asked for
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +56,7 @@ class RunJob:
     folder: FilePath | None = None  # None: the drawing's name, in the current folder
     settings: TraceSettings = field(default_factory=TraceSettings)
     unit: RecordingUnit = field(default_factory=RecordingUnit)
+    charted: bool = False  # take down the following errors
 
     def file(self, ending: str) -> FilePath:
         """The name of a result."""
@@ -63,10 +66,7 @@ class RunJob:
     def run(self, listener: Listener = SILENT, panel: Panel | None = None) -> RunResult:
         """Go the whole way; the faults of a lost line and of a drive are in the result, others are raised."""
         # 1. trace and record
-        tracing = Tracing.prepared(self.settings, panel)
-        program_file = self._program_file()
-        self.unit.check(program_file)
-        tracing = tracing.on_machine(self.unit.milling(program_file))
+        program_file, tracing = self.prepared(panel)
         tell_what_is_lost(self.settings, self.unit, program_file, listener)
         drawing = self.drawing.open(listener)
         self._make_folder()
@@ -77,7 +77,8 @@ class RunJob:
         traced_file = traced.write(self.file(".traced.csv"), unit)
         # 2. play
         by_hand = ByHand(machine=unit.machine) if medium.has_machine(program) else ByHand()
-        played = Playing(program, by_hand).whole(listener)
+        chart = following.new_chart(raw=False) if self.charted else None
+        played = Playing(program, by_hand, chart=chart).whole(listener)
         played_file = self._write(played, traced)
         unit.warn(listener)
         # 3. compare, as the drawing was before it was mirrored, scaled and turned
@@ -102,7 +103,15 @@ class RunJob:
         }
         faults = tuple(fault for fault in (traced.fault, played.fault) if fault is not None)
         report = traced.name(self.file(".json"))
-        return RunResult(figures, drawing, traced, path, from_ink, picture, report, faults)
+        return RunResult(
+            figures, drawing, traced, path, from_ink, picture, report, faults, chart
+        )
+
+    def prepared(self, panel: Panel | None = None) -> tuple[FilePath, Tracing]:
+        """The program's name, and the head as it is set; raises WrongUse, CardFault and FileFault."""
+        tracing, program_file = Tracing.prepared(self.settings, panel), self._program_file()
+        self.unit.check(program_file)
+        return program_file, tracing.on_machine(self.unit.milling(program_file))
 
     def _program_file(self) -> FilePath:
         """The name of the program: a tape, or in the words of a machine if there is one."""

@@ -73,16 +73,25 @@ class TraceJob:
 
     def run(self, listener: Listener = SILENT, panel: Panel | None = None) -> TraceResult:
         """Trace and write; raises WrongUse and every fault but that of a line that was lost on its way."""
-        tracing = Tracing.prepared(self.settings, panel)
-        outputs = self.outputs.checked(self.drawing.file)
-        self.unit.check(outputs.program)
-        tracing = tracing.on_machine(self.unit.milling(outputs.program))
+        outputs, tracing = self.prepared(panel)
         drawing = self.drawing.open(listener)
         size = f"{drawing.width_mm:.2f} x {drawing.height_mm:.2f} mm"
         listener.detail(f"{self.drawing.file}: sheet of {size}")
         if outputs.program is not None:
             tell_what_is_lost(self.settings, self.unit, outputs.program, listener)
-        traced = tracing.trace(drawing, listener)
+        return self.written(outputs, drawing, tracing.trace(drawing, listener), listener)
+
+    def prepared(self, panel: Panel | None = None) -> tuple[TraceOutputs, Tracing]:
+        """The names for the results, and the head as it is set; raises WrongUse, CardFault and FileFault."""
+        tracing = Tracing.prepared(self.settings, panel)
+        outputs = self.outputs.checked(self.drawing.file)
+        self.unit.check(outputs.program)
+        return outputs, tracing.on_machine(self.unit.milling(outputs.program))
+
+    def written(
+        self, outputs: TraceOutputs, drawing: Drawing, traced: Traced, listener: Listener
+    ) -> TraceResult:
+        """Write what was traced, also by an equal tracing before this one; raises the recorders' faults."""
         tool = self.settings.tool
         unit = traced.placed(self.unit).made_from(self.drawing.file.name, tool.described)
         written, timed = dict[str, Any](), dict[str, Any]()

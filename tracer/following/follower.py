@@ -101,6 +101,7 @@ class Follower:
 
     def _through_junction(self) -> Followed | None:
         """Take the head through the junction ahead; returns what the head did, if that was the end."""
+        self.carriage.says("at a junction")
         # 1. feel the line ahead; the axis has been on the line even where none is clean behind it
         seen = self._feel_ahead()
         if len(seen) < FEWEST_STATIONS or self.carriage.ahead(seen[-1, :2]) < 0:
@@ -162,6 +163,7 @@ class Follower:
 
     def _out_of_tangle(self, incoming: Leg, plan: Plan | None) -> tuple[Plan | None, bool]:
         """The way out of a tangle, or the plan if this is none; and whether the tangle explains the way."""
+        self.carriage.says("in a tangle")
         number = self._ways_out.junctions.next(self.carriage.travel_mm)
         way_in, rank = self.carriage.stands(), self._ways_out.turns.other.count(number)
         approach = Approach(incoming, self.carriage.trail, way_in, plan, number, rank)
@@ -295,6 +297,7 @@ class Follower:
         (x, y), heading = self.carriage.stands()
         times = self.view.enlarged
         place = float(x / times), float(y / times)
+        self.carriage.says(f"lost: {why}")
         because = f"{why}; look at the drawing there, {instead}"
         fault = line_lost(place, heading, self.carriage.travel_mm / times, because)
         return self._done("lost", fault)

@@ -18,7 +18,7 @@ import numpy as np
 from morfax.motion import curves
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import lengths_mm
-from morfax.tracer.head import kernel, screws
+from morfax.tracer.head import kernel, screws, watched
 from morfax.tracer.head.settings import Settings, tune
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.state import Home, at_rest
@@ -43,6 +43,10 @@ class Carriage:
         self.state = at_rest(stance.place_mm)
         self._parts: list[Array] = [stance.place_mm[None].copy()]
         self.count = 1  # positions so far
+        self.enlarged = stance.view.enlarged  # of the positions: so many times the drawing's mm
+        self._watcher = watched.watcher()
+        if self._watcher is not None:
+            self._watcher.put_down(self)
 
     @property
     def travel_mm(self) -> float:
@@ -78,6 +82,7 @@ class Carriage:
     def follow(self, view: View, home: Home) -> int:
         """Follow the line until something happens, or for a while; why it stopped (see `state`)."""
         out = np.empty((CHUNK, 2))
+        self.says("following")
         n, why = kernel.follow(view.cells, self.state, self.tuning, home, out)
         self._keep(out[:n])
         return int(why)
@@ -108,6 +113,7 @@ class Carriage:
 
     def swivel(self, heading: float) -> None:
         """Turn the standing head to a heading."""
+        self.says("turning at a corner")
         angle = abs(turn(self.heading_rad, heading))
         self._stand(angle / self.settings.swivel_rad_s)
         self.state.heading_rad = heading
@@ -166,6 +172,13 @@ class Carriage:
         self._parts.append(positions.copy())
         self.count += len(positions)
         self.trail.add(positions)
+        if self._watcher is not None:
+            self._watcher.moved(self, positions)
+
+    def says(self, what: str) -> None:
+        """Tell whoever watches what the head does, in words."""
+        if self._watcher is not None:
+            self._watcher.says(what)
 
 
 def _heading(step: Array) -> float:
