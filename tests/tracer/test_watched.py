@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.head.watched import watching
 from morfax.tracer.program.trace import trace

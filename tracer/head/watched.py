@@ -1,13 +1,13 @@
 """The window on the head: whoever watches the head at work.
 
-Signals in: what the carriage does: put down at a place, moved over positions (n, 2) mm at the motion rate, and what the
-follower says of it in words. Signals out: the same, to the watcher, if there is one.
+Signals in: what the carriage does: put down at a place, moved over positions (n, 2) mm at the motion rate,
+and what the follower says of it in words. Signals out: the same, to the watcher, if there is one.
 
-The head does not know who watches. A watcher may hold the head up by not returning, and end the run by raising
-KeyboardInterrupt, which passes through the head as it does through a job.
+The head does not know who watches. A watcher may hold the head up by not returning, and end the run by
+raising KeyboardInterrupt, which passes through the head as it does through a job.
 
-Source: our own; the patent's operator stands beside the head and sees it. Questions: a run is watched in the thread in
-which `watching` was entered, and in no other.
+Source: our own; the patent's operator stands beside the head and sees it. Questions: a run is watched in the
+thread in which `watching` was entered, and in no other.
 """
 
 from __future__ import annotations
