@@ -18,6 +18,7 @@ def lines(trace: Trace) -> dict[str, Any]:
             "length_mm": line.length_mm,
             "line_width_mm": line.width_mm,
             "start_place_mm": line.start_mm,
+            "cell_share": line.cell_share,
         }
         for line in trace.lines
     ]

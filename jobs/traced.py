@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from morfax.jobs.figures import Figures
     from morfax.jobs.listener import Listener
     from morfax.jobs.recording import RecordingUnit
+    from morfax.jobs.who_led import WhoLed
     from morfax.motion.faults import Fault
     from morfax.motion.motion import Path
     from morfax.recorder.media import Report
@@ -38,6 +39,7 @@ class Traced:
     zero: ZeroOnSheet = SHEET  # of the program
     cutter: Cutter | None = None
     left: Left | None = None  # by the cutter
+    led: WhoLed | None = None  # who led the head along the lines
 
     @property
     def fault(self) -> Fault | None:
@@ -94,6 +96,7 @@ class Traced:
             "line_width_mm": trace.line_width_mm,
             "start_place_mm": trace.start_mm,
             "reference_place_mm": trace.reference_mm,
+            **(self.led.figures() if self.led else {}),
             **(trace_figures.lines(trace) if self.several else {}),
             "leads": trace_figures.leads(trace) or None,
             "stops": trace_figures.stops(trace) or None,

@@ -13,6 +13,7 @@ from morfax.jobs.contour_remarks import of_contouring
 from morfax.jobs.depths import of_tabs
 from morfax.jobs.remarks import of_cutter, remarks
 from morfax.jobs.traced import Traced
+from morfax.jobs.who_led import WhoLed
 from morfax.jobs.wrong_use import WrongUse
 from morfax.jobs.zero import ZeroOnSheet
 from morfax.motion.faults import CardFault
@@ -68,6 +69,9 @@ class Tracing:
         followed = self._followed(drawing, listener)
         for text in remarks(followed, self.settings, self.of_head.gap_mm, drawing.enlarged):
             listener.warning(text)
+        led = WhoLed.along(followed)
+        for text in () if led is None else led.remarks():
+            listener.warning(text)
         # 2. the zero of the program
         zero = ZeroOnSheet.of(self.settings, drawing, followed)
         # 3. the cutter beside the lines, or the tool along them
@@ -81,7 +85,7 @@ class Tracing:
         for text in of_tabs(beside):
             listener.warning(text)
         several = self.settings.line.are_several
-        return Traced(beside, thin(beside), several, zero, cutter, left)
+        return Traced(beside, thin(beside), several, zero, cutter, left, led)
 
     def on_machine(self, milling: Milling | None) -> Tracing:
         """The same with the direction of closed lines that a machine asks for, if nobody asks for another."""

@@ -18,12 +18,14 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.motion import Path
+from morfax.reports import leaders
 from morfax.reports.canvas import REFERENCE, UM_PER_MM, View, new_figure, save, show_drawing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from morfax.jobs.who_led import WhoLed
     from morfax.tracer.drawing.drawing import Drawing
 
 COLOURS = ("#1f5fa8", "#5fa8d3", "#f2a65a", "#c1121f")  # no error … largest error
@@ -52,6 +54,7 @@ class Picture:
     # numbers of lines, and where each begins; where the head stops, by name
     numbers_mm: Sequence[tuple[str, tuple[float, float]]] = ()
     stops_mm: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    led: WhoLed | None = None  # who led the head, in colours
 
 
 def draw(picture: Picture, file: FilePath) -> None:
@@ -89,6 +92,8 @@ def _fill(figure: Figure, axes: Axes, picture: Picture, view: View) -> None:
     """Draw the whole contour, with its marks and the scale of the colours."""
     ground(axes, picture, view)
     coloured = _contour(axes, picture, line_pt=1.8)
+    if picture.led is not None:
+        leaders.draw(axes, picture.led)
     _ends(axes, picture.path)
     _numbers(axes, picture)
     _stops(axes, picture)

@@ -47,6 +47,7 @@ def draw_traced(result: TraceResult) -> None:
         result.drawing,
         numbers_mm=traced.places_mm,
         stops_mm=traced.marked_mm,
+        led=traced.led,
     )
     draw(picture, result.picture)
     _draw_flat(result.drawing, result.picture)

@@ -12,11 +12,12 @@ the same, a run into its own way cut off there.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault
 from morfax.motion.polyline import lengths_mm
+from morfax.tracer.head.leaders import Led
 from morfax.tracer.head.loop import loop_in
 from morfax.tracer.junctions.guides import GuideLine
 from morfax.tracer.sensing.view import View
@@ -40,6 +41,7 @@ class Followed:
     at_tip: bool = False  # another line, not followed yet, ends in the same tip
     # junctions where another way out fits as well: the junction's number, and the rank of that way
     doubts: tuple[tuple[int, int], ...] = ()
+    led: Led = field(default_factory=Led)
 
     @property
     def loop_mm(self) -> Array:

@@ -32,6 +32,7 @@ from morfax.tracer.following.ways_out import (
 )
 from morfax.tracer.head import course
 from morfax.tracer.head.carriage import Carriage
+from morfax.tracer.head.leaders import STATIONS
 from morfax.tracer.head.plan import Plan
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance
@@ -70,7 +71,7 @@ class Follower:
         self._tangles = Tangles()
         by_lead_mm = AWAY_LEADS * self.carriage.tuning.lead_mm
         self._home = WayHome(stance, max(by_lead_mm, AWAY_WIDTHS * self.view.width_mm))
-        self._aim(self._first_leg(stance))
+        self._aim(stance.leg_ahead())
 
     def follow(
         self, longest_mm: float, told: Callable[[float], None] | None = None
@@ -122,7 +123,7 @@ class Follower:
         # 4. clean line
         nodes, leg = course.nodes_along(self.view, self.carriage.stands(), seen)
         if leg is not None:
-            return self._pass(Plan([course.through_nodes(nodes)], leg, seen))
+            return self._pass(Plan([course.through_nodes(nodes)], leg, seen, STATIONS))
         return self._through_legs(leg_of(seen, True, self.view.leg_mm))
 
     def _through_legs(self, incoming: Leg) -> Followed | None:
@@ -212,13 +213,14 @@ class Follower:
             return self._lost("no clean line leads on through the ink ahead")
         if self._home.is_across(incoming, end, self.settings.recatch_mm):
             # across the paper, to the end at which the head began
-            self.carriage.run([self._to_end(incoming, end)], self.settings.speed_mm_s)
+            way = [self._to_end(incoming, end)]
+            self.carriage.run(way, self.settings.speed_mm_s, STATIONS)
             return self._go_home()
         return self._end(incoming, end, joined=choices > 0)
 
     def _end(self, incoming: Leg, end_mm: float, *, joined: bool = False) -> Followed | None:
         """Run to an end of the line; and back, if it is a guide line's end, or a tip where two lines end."""
-        self.carriage.run([self._to_end(incoming, end_mm)])
+        self.carriage.run([self._to_end(incoming, end_mm)], leader=STATIONS)
         self._at_tip = self._tangles.goes_back(
             self.carriage.stands()[0], self.carriage.trail, self.view.width_mm
         )
@@ -229,7 +231,8 @@ class Follower:
         if not on_guide and not to_tip:
             return self._done("ended")
         self.carriage.swivel(incoming.heading_at(end_mm) + math.pi)
-        self.carriage.run([course.along_leg(incoming, end_mm, 0.0)], self.settings.speed_mm_s)
+        way_back = [course.along_leg(incoming, end_mm, 0.0)]
+        self.carriage.run(way_back, self.settings.speed_mm_s, STATIONS)
         self._aim(incoming.turned_round())
         return None
 
@@ -247,9 +250,9 @@ class Follower:
         """Run a course and go on following at its end; or stop at home if the course passes home."""
         cut = self._home.on_course(plan.stretches, self.carriage.travel_mm, self.view.width_mm)
         if cut is not None:
-            self.carriage.run(cut)
+            self.carriage.run(cut, leader=plan.leader)
             return self._done("closed")
-        self.carriage.run(plan.stretches, self.settings.speed_mm_s)
+        self.carriage.run(plan.stretches, self.settings.speed_mm_s, plan.leader)
         clean = None if plan.seen is None else self._clean_from(plan.leg, plan.seen)
         self._aim(plan.leg, clean)
         return None
@@ -261,14 +264,6 @@ class Follower:
         way = seen[i + 2, :2] - seen[i, :2]
         travel_mm = self.carriage.travel_mm - (here - i) * self.view.step_mm
         return seen[i, :2], math.atan2(way[1], way[0]), travel_mm
-
-    def _first_leg(self, stance: Stance) -> Leg:
-        """The line ahead of a stance, as felt."""
-        place, heading = stance.place_mm, stance.heading_rad
-        seen = self.view.feel(place, heading, self.view.leg_mm)
-        leg = leg_of(seen, False, self.view.leg_mm) if len(seen) >= FEWEST_STATIONS else None
-        bend = leg.bend_per_mm if leg is not None else 0.0
-        return Leg(place, heading, bend, self.view.width_mm, seen)
 
     def _aim(self, leg: Leg, clean_from: Anchor | None = None) -> None:
         """Follow from the clean end of a leg; the line is clean from there, or from further back."""
@@ -288,6 +283,7 @@ class Follower:
             fault,
             guides=junctions.guides(positions),
             at_tip=self._at_tip,
+            led=self.carriage.led,
             doubts=self._tangles.doubts(self.carriage.trail, self.view.width_mm),
         )
         return done if ending != "joined" else without_repeat(done)

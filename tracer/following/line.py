@@ -13,7 +13,7 @@ Source: patent ES 361967, section on use: reference point, lead line, guide line
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -21,6 +21,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.following.followed import THINNED, Followed
+from morfax.tracer.head.leaders import CELL, Led
 from morfax.tracer.junctions.gaps import Break, breaks
 from morfax.tracer.junctions.guides import GuideLine
 from morfax.tracer.marks.marks import Mark, marks_along
@@ -71,6 +72,7 @@ class Line:
     is_solid: bool = False  # the patch is the rim of a filled shape
     numbers: tuple[int, ...] | None = None  # of its stops; None: on from the line before
     breaks: tuple[Break, ...] = ()  # where it ends, and ink goes on
+    led: Led = field(default_factory=Led)  # who led the head along it
     leads: Leads | None = None  # that a cut was given; those drawn on paper are `loop_from`
 
     @classmethod
@@ -97,6 +99,7 @@ class Line:
             reference_mm,
             run.junctions_mm,
             breaks=found,
+            led=run.led,
         )
 
     @classmethod
@@ -105,6 +108,14 @@ class Line:
         dot = Mark("dot", (float(centre_mm[0]), float(centre_mm[1])), 0.0)
         twice_mm = np.tile(centre_mm, (2, 1))
         return cls(twice_mm, "ended", width_mm, 0.0, number=number, marks=(dot,))
+
+    @property
+    def cell_share(self) -> float | None:
+        """The share of its way that the swinging cell led the head; None if nothing says who led."""
+        if not self.led.firsts:
+            return None
+        lengths_mm = self.led.lengths_mm(self.xy_mm)
+        return float(lengths_mm[CELL] / max(lengths_mm.sum(), 1e-9))
 
     @property
     def start_mm(self) -> tuple[float, float]:

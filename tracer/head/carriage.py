@@ -19,6 +19,7 @@ from morfax.motion import curves
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.head import kernel, screws, watched
+from morfax.tracer.head.leaders import CELL, MEMORY, STATIONS, Led, Log
 from morfax.tracer.head.settings import Settings, tune
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.state import Home, at_rest
@@ -47,6 +48,9 @@ class Carriage:
         self._watcher = watched.watcher()
         if self._watcher is not None:
             self._watcher.put_down(self)
+        # who leads, from which position on, and up to which travel the drum holds what was felt
+        self._log, self._leads, self._cell_from_mm = Log(), STATIONS, 0.0
+        self._log.add(0, STATIONS)
 
     @property
     def travel_mm(self) -> float:
@@ -68,6 +72,11 @@ class Carriage:
         """Every position of the screws so far, (n, 2) mm."""
         return np.vstack(self._parts)
 
+    @property
+    def led(self) -> Led:
+        """Who led the head to each of its positions."""
+        return self._log.led()
+
     def stands(self) -> tuple[Array, float]:
         """Where the drives' demand stands, and the heading."""
         owed, s = screws.owed_s(self.tuning.drive_gain, self.tuning.period_s), self.state
@@ -83,12 +92,21 @@ class Carriage:
         """Follow the line until something happens, or for a while; why it stopped (see `state`)."""
         out = np.empty((CHUNK, 2))
         self.says("following")
+        felt_mm = self._cell_from_mm - self.travel_mm
         n, why = kernel.follow(view.cells, self.state, self.tuning, home, out)
+        first = 0
+        if felt_mm > 0:
+            come_mm = lengths_mm(np.vstack([self._parts[-1][-1], out[:n]]))[1:]
+            first = int(np.searchsorted(come_mm, felt_mm))
+        if first < n:
+            self._log.add(self.count + first, CELL)
         self._keep(out[:n])
         return int(why)
 
-    def run(self, stretches: list[Array], end_mm_s: float = 0.0) -> None:
-        """Run along stretches, swivelling between them, and end at a speed."""
+    def run(self, stretches: list[Array], end_mm_s: float = 0.0, leader: int = MEMORY) -> None:
+        """Run along stretches, swivelling between them, and end at a speed; `leader` laid them."""
+        self._leads = leader
+        self._log.add(self.count, leader)
         speed, acceleration = self.settings.speed_mm_s, self.settings.acceleration_mm_s2
         for k, stretch in enumerate(stretches):
             way = curves.distinct(stretch)
@@ -131,6 +149,8 @@ class Carriage:
         """
         stance = Stance(leg.end_mm, leg.heading_rad, view)
         self.tuning = tune(stance, self.settings, self.rate_hz)
+        self._log.add(self.count, self._leads)
+        self._cell_from_mm = self.travel_mm + self.tuning.lead_mm - self.tuning.point_mm
         felt = leg.seen[np.hypot(*(leg.seen[:, :2] - leg.end_mm).T) < self.tuning.lead_mm, :2]
         s = self.state
         s.heading_rad, s.bend_per_mm = leg.heading_rad, leg.bend_per_mm

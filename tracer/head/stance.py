@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from morfax.motion.arrays import Array
+from morfax.tracer.sensing.leg import FEWEST_STATIONS, Leg, leg_of
 from morfax.tracer.sensing.view import View
 
 
@@ -20,6 +21,14 @@ class Stance:
     reference_mm: tuple[float, float] | None = (
         None  # the reference point that the line starts from
     )
+
+    def leg_ahead(self) -> Leg:
+        """The line ahead, as felt."""
+        place, heading, view = self.place_mm, self.heading_rad, self.view
+        seen = view.feel(place, heading, view.leg_mm)
+        leg = leg_of(seen, False, view.leg_mm) if len(seen) >= FEWEST_STATIONS else None
+        bend = leg.bend_per_mm if leg is not None else 0.0
+        return Leg(place, heading, bend, view.width_mm, seen)
 
 
 def turned_round(end_mm: Array, heading_rad: float, view: View) -> Stance:

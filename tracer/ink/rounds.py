@@ -21,6 +21,7 @@ from dataclasses import dataclass, field, replace
 from itertools import chain, islice
 
 import numpy as np
+from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault
@@ -56,6 +57,8 @@ class Rounds:
     settings: Settings
     # patches on which the head cannot be put down
     _in_vain: set[Patch] = field(default_factory=set)
+    # places of all runs, and who led the head there
+    led: list[tuple[Array, NDArray[np.int8]]] = field(default_factory=list)
 
     def strokes(self) -> Iterator[InkStroke]:
         """Strokes of the sheet, those of the longest patches first, until the head finds no more."""
@@ -109,6 +112,7 @@ class Rounds:
                 continue
             closed = run.ending == "closed" and len(way) == len(run.positions_mm)
             way = way if closed else led_on(way, self.ledger, self.settings.speed_mm_s)
+            self.led.append(run.led.thinned(run.positions_mm, THINNED))
             self.ledger.strike_off(way[::THINNED], run.view)
             made.append(InkStroke(way, closed, run.view.width_mm))
         return made

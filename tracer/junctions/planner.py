@@ -16,6 +16,7 @@ import numpy as np
 from morfax.motion import curves
 from morfax.motion.arrays import Array
 from morfax.tracer.head import course
+from morfax.tracer.head.leaders import STATIONS
 from morfax.tracer.head.plan import Plan
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.trail import Trail
@@ -60,7 +61,8 @@ class Planner:
         if choice.leg is not None:
             plan = self._by_choice(incoming, choice.leg, choice.corner)
             if plan is not None:
-                return plan, count
+                only_on = count <= 1 and goes_straight(incoming, choice.leg)
+                return (plan._replace(leader=STATIONS) if only_on else plan), count
             count = 0
         # 2. straight on
         outgoing = self._straight_on(incoming, others=count > 0)
@@ -69,7 +71,9 @@ class Planner:
         # 3. to the line that is met first
         if outgoing is None and self.settings.recatch_mm > 0:
             outgoing = caught_again(self.view, incoming, self.trail, self.settings.recatch_mm)
-        return None if outgoing is None else self.through(incoming, outgoing, None), count
+        if outgoing is None:
+            return None, count
+        return self.through(incoming, outgoing, None)._replace(leader=STATIONS), count
 
     def _by_choice(self, incoming: Leg, outgoing: Leg, corner: Corner | None) -> Plan | None:
         """The way by the leg that was chosen; None if there is no ink all along it."""
@@ -179,7 +183,7 @@ class Planner:
         return (
             None
             if curves.bends_per_mm(felt).max() * averaged_mm > 1
-            else Plan([felt], leg, there)
+            else Plan([felt], leg, there, STATIONS)
         )
 
     def _is_round(self, corner: Corner | None) -> bool:
@@ -193,7 +197,8 @@ class Planner:
         there = np.vstack([incoming.seen, run.seen])
         if run.back is None:
             nodes, leg = course.nodes_along(self.view, self.stands, there)
-            return None if leg is None else Plan([course.through_nodes(nodes)], leg, run.seen)
+            way = course.through_nodes(nodes)
+            return None if leg is None else Plan([way], leg, run.seen, STATIONS)
         to_tip, felt = course.nodes_along(self.view, self.stands, there, 0.0)
         tip, onto_tip_rad = run.back[0, :2], to_tip[-1][1]
         from_tip, leg = course.nodes_along(

@@ -16,7 +16,9 @@ from morfax.motion.faults import LineFault
 from morfax.motion.polyline import length_mm
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Sheet
+from morfax.tracer.following.followed import THINNED
 from morfax.tracer.following.line import Line
+from morfax.tracer.head.leaders import led_alike
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.ledger import Ledger
 from morfax.tracer.ink.meeting import InkStroke, joined
@@ -57,6 +59,7 @@ def trace_ink(
     strokes = joined(strokes, ledger, settings.speed_mm_s)
     strokes.sort(key=lambda stroke: -length_mm(stroke.way_mm))
     lines = _in_order([_line(stroke, k) for k, stroke in enumerate(strokes, 1)])
+    lines = [replace(line, led=led_alike(line.xy_mm, rounds.led, THINNED)) for line in lines]
     balance = ledger.balance()._replace(lost=rounds.lost())
     return Trace(tuple(lines), operator or Operator(), left_out_mm=balance.left_mm, ink=balance)
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.tracer.head.course import ahead_mm
+from morfax.tracer.head.leaders import REDRAWN
 from morfax.tracer.head.plan import Plan
 from morfax.tracer.head.trail import Trail
 from morfax.tracer.marks.marks import longest_mm
@@ -102,7 +103,8 @@ class Tangles:
                     continue
                 if not approach.trail.holds(last, width_mm):
                     begin = first if ahead_mm(place, first) > LEAST_AHEAD_MM else incoming
-                    return Plan(stretches_over(approach.stands, begin, vertices, last), last)
+                    stretches = stretches_over(approach.stands, begin, vertices, last)
+                    return Plan(stretches, last, leader=REDRAWN)
         return None
 
 

@@ -20,6 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.tracer.head.leaders import REDRAWN
 from morfax.tracer.head.plan import Plan
 from morfax.tracer.head.trail import Trail
 from morfax.tracer.marks.marks import longest_mm
@@ -61,7 +62,8 @@ class Approach(NamedTuple):
 
     def over(self, vertices: Array, leg: Leg) -> Plan:
         """The plan by some vertices to a leg."""
-        return Plan(stretches_over(self.stands, self.incoming, vertices, leg), leg)
+        way = stretches_over(self.stands, self.incoming, vertices, leg)
+        return Plan(way, leg, leader=REDRAWN)
 
 
 class Solution(NamedTuple):

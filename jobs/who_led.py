@@ -1,0 +1,83 @@
+"""Who led the head: the share of its way by the swinging cell, by stations, from memory and by redrawn ink.
+
+Signals in: the traced lines, as the head followed them. Signals out: figures, a remark, and the runs of each
+leader for the picture.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from morfax.motion.arrays import Array
+    from morfax.tracer.following.line import Line
+    from morfax.tracer.program.program import Trace
+
+LEAST_CELL_SHARE = (
+    0.6  # of the way: below that the operator is told; the figure that was asked for
+)
+THINNED = 30  # one position in 30 is drawn: every 50 um at 10 mm/s
+
+
+@dataclass(frozen=True, slots=True)
+class WhoLed:
+    """How far each of the `LEADERS` led the head, mm, and the runs of each with their places (n, 2) mm."""
+
+    lengths_mm: tuple[float, ...]
+    runs_mm: tuple[tuple[int, Array], ...] = ()
+
+    @classmethod
+    def along(cls, trace: Trace) -> WhoLed | None:
+        """Who led along the lines that the head followed; None if it went nowhere."""
+        lines = [line for line in trace.lines if len(line.xy_mm) > 1 and line.led.firsts]
+        if not lines:
+            return None
+        lengths_mm = np.sum([line.led.lengths_mm(line.xy_mm) for line in lines], axis=0)
+        if not lengths_mm.sum() > 0:
+            return None
+        runs = [run for line in lines for run in _runs(line)]
+        return cls(tuple(lengths_mm.tolist()), tuple(runs))
+
+    @property
+    def cell_share(self) -> float:
+        """The share of the way that the swinging cell led."""
+        return self.lengths_mm[0] / sum(self.lengths_mm)
+
+    @property
+    def cell_on_lines_share(self) -> float:
+        """The share that it led outside of corners, junctions and tangles."""
+        cell_mm, stations_mm = self.lengths_mm[:2]
+        return cell_mm / max(cell_mm + stations_mm, 1e-9)
+
+    def figures(self) -> dict[str, Any]:
+        """The shares, and how far each leader led."""
+        from morfax.tracer.head.leaders import LEADERS
+
+        all_mm = sum(self.lengths_mm)
+        return {
+            "cell_share": self.cell_share,
+            "cell_on_lines_share": self.cell_on_lines_share,
+            "led_by": [
+                {"led_by": name, "led_mm": mm, "led_share": mm / all_mm}
+                for name, mm in zip(LEADERS, self.lengths_mm, strict=True)
+            ],
+        }
+
+    def remarks(self) -> Iterator[str]:
+        """A remark if the cell led less than it should."""
+        if self.cell_share < LEAST_CELL_SHARE:
+            yield (
+                f"the swinging cell led the head only {100 * self.cell_share:.0f} % of the way, stations and"
+                " memory the rest: --picture shows where; check the path there, or scan at a higher"
+                " resolution"
+            )
+
+
+def _runs(line: Line) -> Iterator[tuple[int, Array]]:
+    """The thinned runs of each leader along a line."""
+    for leader, positions in line.led.runs(line.xy_mm):
+        yield leader, np.vstack([positions[:-1:THINNED], positions[-1:]])

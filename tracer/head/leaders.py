@@ -1,0 +1,98 @@
+"""Who led: for each position of a run, whether the swinging cell, stations or memory brought the head there.
+
+Signals: positions by number and who led the head to them in; runs of one leader, and shares of the way, out.
+
+    swinging cell   the cell's own places on the drum, more than half of the window
+    stations        the line felt ahead of the head, or the places felt with which the drum was filled
+    memory          a course through a corner or a junction, or onto home
+    redrawn ink     a course through a tangle
+
+A course leads on after its end, until the places that the cell has seen since then fill half of the window.
+
+Source: our own; the patent's head has its cell alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from morfax.motion.arrays import Array
+
+CELL, STATIONS, MEMORY, REDRAWN = range(4)
+NEAR_MM = 0.1  # twice the distance of the places of a thinned way
+LEADERS = ("swinging cell", "stations", "memory", "redrawn ink")
+
+
+@dataclass(frozen=True, slots=True)
+class Led:
+    """Runs of positions under one leader: the first position of each run, and its leader."""
+
+    firsts: tuple[int, ...] = ()
+    leaders: tuple[int, ...] = ()
+
+    def of(self, count: int) -> NDArray[np.int8]:
+        """The leader of each of the first `count` positions."""
+        bounds = np.minimum(np.append(self.firsts, count), count).astype(int)
+        return np.repeat(np.array(self.leaders, np.int8), np.diff(bounds))
+
+    def thinned(self, positions: Array, every: int) -> tuple[Array, NDArray[np.int8]]:
+        """One position in so many, (n, 2) mm, and the leader of each."""
+        return positions[::every], self.of(len(positions))[::every]
+
+    @classmethod
+    def along(cls, leaders: NDArray[np.int8]) -> Led:
+        """The runs of a leader for each position."""
+        firsts = np.flatnonzero(np.diff(leaders, prepend=-1))
+        return cls(tuple(firsts.tolist()), tuple(leaders[firsts].tolist()))
+
+    def lengths_mm(self, positions: Array) -> Array:
+        """How far each of the `LEADERS` led along positions (n, 2) mm."""
+        steps_mm = np.hypot(*np.diff(positions, axis=0).T)
+        leaders = self.of(len(positions))[1:]
+        led_mm = np.bincount(leaders, steps_mm[: len(leaders)], minlength=len(LEADERS))
+        return np.asarray(led_mm, float)
+
+    def runs(self, positions: Array) -> Iterator[tuple[int, Array]]:
+        """Each run's leader and its positions, with the one before them."""
+        bounds = [*self.firsts, len(positions)]
+        for leader, first, end in zip(self.leaders, bounds, bounds[1:], strict=False):
+            if first < len(positions):
+                yield leader, positions[max(0, first - 1) : end]
+
+
+def led_alike(
+    positions: Array, ways: Sequence[tuple[Array, NDArray[np.int8]]], every: int
+) -> Led:
+    """The runs of a leader along positions that were put together of ways, each with its leaders.
+
+    Each of `every` positions has the leader of the nearest place of a way; memory leads where none is near.
+    """
+    places = positions[::every]
+    away_mm, nearest = cKDTree(np.vstack([way for way, _ in ways])).query(places)
+    leaders = np.concatenate([leaders for _, leaders in ways])[nearest]
+    leaders[away_mm > NEAR_MM] = MEMORY
+    led = Led.along(leaders)
+    return replace(led, firsts=tuple(every * first for first in led.firsts))
+
+
+@dataclass(slots=True)
+class Log:
+    """The carriage's log of who led it."""
+
+    _firsts: list[int] = field(default_factory=list)
+    _leaders: list[int] = field(default_factory=list)
+
+    def add(self, first: int, leader: int) -> None:
+        """Write down who leads from a position on."""
+        if not self._leaders or self._leaders[-1] != leader:
+            self._firsts.append(first)
+            self._leaders.append(leader)
+
+    def led(self) -> Led:
+        """The log so far."""
+        return Led(tuple(self._firsts), tuple(self._leaders))
