@@ -12,6 +12,7 @@ from morfax.tracer.program.trace_ink import trace_ink
 from tests.tracer.inked import UM, arc, inked, polyline
 
 STEPS = np.column_stack([np.arange(6.0), np.zeros(6)])  # positions 1 mm apart
+FAR = np.array([20.0, 0.0])
 LED = Led((0, 2, 5), (STATIONS, CELL, MEMORY))
 
 
@@ -25,8 +26,8 @@ def test_each_leader_has_the_way_to_its_positions() -> None:
 
 
 def test_a_way_put_together_has_the_leaders_of_its_pieces() -> None:
-    ways = [(STEPS, LED.of(6)), (STEPS + [20, 0], LED.of(6))]
-    there = np.vstack([STEPS[::-1], STEPS[-1:] + [7, 0], STEPS + [20, 0]])
+    ways = [(STEPS, LED.of(6)), (STEPS + FAR, LED.of(6))]
+    there = np.vstack([STEPS[::-1], STEPS[-1:] + 0.35 * FAR, STEPS + FAR])
     found = led_alike(there, ways, 1).of(len(there))
     assert found.tolist() == [*LED.of(6)[::-1], MEMORY, *LED.of(6)]
 
