@@ -23,8 +23,8 @@ os.environ["NUMBA_DISABLE_JIT"] = "1"  # numba cannot compile code that atheris 
 with atheris.instrument_imports(include=["morfax.recorder", "morfax.motion.faults"]):
     from morfax.motion.faults import Fault
     from morfax.motion.motion import Motion
+    from morfax.recorder.sound.pipe import PipeSource
     from morfax.recorder.tape.format import TapeFormat
-    from morfax.recorder.tape.pipe import Pipe
     from morfax.recorder.tape.tape import Tape, record
 
 TEXT, PIPE, TAPE = b"\0", b"\x60", b"\xff"  # first bytes
@@ -50,7 +50,8 @@ def one(data: bytes) -> None:
         if kind < b"\x55":
             TapeFormat.from_json(body.decode("utf-8", "replace"))
         elif kind < b"\xaa":
-            with Pipe.open(io.BytesIO(body), reference_hz=6000, cycles_per_mm=20) as pipe:
+            pipe_source = PipeSource(io.BytesIO(body))
+            with Tape.of(pipe_source, reference_hz=6000, cycles_per_mm=20) as pipe:
                 list(islice(pipe.blocks(1000), 20))
         else:
             FILE.write_bytes(body)

@@ -22,7 +22,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import replace
 from os import PathLike
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 import numpy as np
 
@@ -36,12 +36,13 @@ from morfax.player.tape.phase_lock import Drives, PhaseLock, following_limit
 from morfax.player.tape.reader import TapeReader
 from morfax.player.tape.setting import Setting
 from morfax.player.tape.track_order import END_CYCLES, found_order
-from morfax.recorder.tape.pipe import Pipe, Samples
+from morfax.recorder.sound.pipe import PipeSource, Samples
+from morfax.recorder.sound.source import FileSource, Source
 from morfax.recorder.tape.tape import Tape, TapeFormat
 
 
 def play(
-    file: str | PathLike[str],
+    file: str | PathLike[str] | Callable[[], Source],
     *,
     reference_hz: float | None = None,
     cycles_per_mm: float | None = None,
@@ -58,6 +59,8 @@ def play(
 ) -> TapePlayback:
     """Put a tape in the machine; values given by hand override its text chunk. Raises TapeFault, FileFault.
 
+    `file`: its name, or what opens its source, each time that it is called.
+
     `order`: on which tracks of the file reference, X, Y … are. `closed`: it returns to its start, if it does
     not say where it ends. `still`, `alike`: axes that may stand from start to end, and that may run alike.
 
@@ -70,9 +73,11 @@ def play(
     stands at `start_mm`.
     """
 
+    opened = file if callable(file) else lambda: FileSource(file)
+
     def open_tape() -> Tape:
-        return Tape.open(
-            file,
+        return Tape.of(
+            opened(),
             reference_hz=reference_hz,
             cycles_per_mm=cycles_per_mm,
             start_mm=start_mm,
@@ -88,7 +93,7 @@ def play(
     if (
         resume_at_s and fmt.end_mm is not None
     ):  # the place is not the tape's start, so the end does not go along
-        with Tape.open(file, reference_hz=reference_hz, cycles_per_mm=cycles_per_mm) as tape:
+        with Tape.of(opened(), reference_hz=reference_hz, cycles_per_mm=cycles_per_mm) as tape:
             fmt = replace(fmt, end_mm=tape.format.end_mm)
     setting = Setting(settings or PhaseLock(), tuple(zero_mm), override)
     _check_resumption(resume_at_s, start_mm, frames / fmt.sample_rate_hz)
@@ -97,31 +102,18 @@ def play(
     return playback
 
 
-def play_pipe(
-    stream: BinaryIO,
-    *,
-    reference_hz: float | None = None,
-    cycles_per_mm: float | None = None,
-    start_mm: Sequence[float] | None = None,
-    order: Sequence[int] | None = None,
-    still: Sequence[str] | None = None,
-    alike: Sequence[str] | None = None,
-    closed: bool = False,
-    samples: Samples | None = None,
-) -> TapePlayback:
-    """Put a tape from a pipe in the machine; it can be played once. Raises TapeFault."""
-    start = None if start_mm is None else tuple(start_mm)
-    pipe = Pipe.open(
-        stream,
-        reference_hz=reference_hz,
-        cycles_per_mm=cycles_per_mm,
-        start_mm=start,
-        order=order,
-        still=still,
-        alike=alike,
-        samples=samples,
-    )
-    return TapePlayback(lambda: pipe, _ending(pipe.format, closed), 0, Setting())
+def play_pipe(stream: BinaryIO, *, samples: Samples | None = None, **by_hand: Any) -> TapePlayback:
+    """Put a tape from a pipe in the machine, as `play_live` does."""
+    return play_live(PipeSource(stream, samples), **by_hand)
+
+
+def play_live(source: Source, *, closed: bool = False, **by_hand: Any) -> TapePlayback:
+    """Put a tape that comes once, through a pipe or from a device, in the machine. Raises TapeFault.
+
+    `by_hand`: what `Tape.of` takes.
+    """
+    tape = Tape.of(source, **by_hand)
+    return TapePlayback(lambda: tape, _ending(tape.format, closed), 0, Setting())
 
 
 def _ending(fmt: TapeFormat, closed: bool) -> TapeFormat:
@@ -156,7 +148,7 @@ class TapePlayback(Supervised):
 
     def __init__(
         self,
-        open_tape: Callable[[], AbstractContextManager[Tape | Pipe]],
+        open_tape: Callable[[], AbstractContextManager[Tape]],
         fmt: TapeFormat,
         frames: int,
         setting: Setting,

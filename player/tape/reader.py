@@ -32,7 +32,6 @@ from morfax.player.tape.dropouts import Bridge, Gaps, under_way
 from morfax.player.tape.standstill import STANDSTILL_S, Bearings, evened, take_bearings
 from morfax.player.tape.vouching import Vouching
 from morfax.player.tape.watch import Watch, demand_apart
-from morfax.recorder.tape.pipe import Pipe
 from morfax.recorder.tape.tape import Stored, Tape, TapeFormat, full_scale
 
 BLOCK_FRAMES = 65536  # 1.4 s at 48 kHz, a megabyte of four tracks
@@ -51,7 +50,7 @@ class TapeReader:
 
     def __init__(
         self,
-        open_tape: Callable[[], AbstractContextManager[Tape | Pipe]],
+        open_tape: Callable[[], AbstractContextManager[Tape]],
         fmt: TapeFormat,
         start_mm: Array,
         acceleration_mm_s2: float,

@@ -30,12 +30,13 @@ from morfax.motion.faults import MotionFault
 from morfax.motion.files import disk_full_fault, written_beside
 from morfax.motion.motion import AXES, Motion, Path
 from morfax.recorder.report import Written
+from morfax.recorder.sound.riff import make_plain, replace_text
+from morfax.recorder.sound.source import sidecar
+from morfax.recorder.sound.spool import Spool, medium
 from morfax.recorder.tape.carrier import Carrier, Frames
 from morfax.recorder.tape.check_signal import CheckWriter
 from morfax.recorder.tape.format import LARGEST_TEXT_BYTES, TapeFormat
 from morfax.recorder.tape.own_motion import OwnMotion
-from morfax.recorder.tape.riff import make_plain, replace_text
-from morfax.recorder.tape.spool import Spool, medium, sidecar
 
 _BLOCK_SAMPLES = 8192  # a megabyte of frames, which stays in the processor's cache
 _PLACE_DECIMALS = 6  # of the start and end in the text chunk: a nanometre

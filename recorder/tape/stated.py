@@ -1,8 +1,8 @@
 """The format of a tape as its file states it, or as the operator gives it by hand.
 
-Signals: a sound file with its text chunk, or with a text beside it, in; its format out. Figures given by hand
-override the text. A tape that states nothing needs reference and cycles per mm by hand; its axes are then X,
-Y, Z … in the order of the tracks, and start at zero.
+Signals: a source of sound (a file, a pipe, a device) with the text that came with it, in; its format out.
+Figures given by hand override the text. A tape that states nothing needs reference and cycles per mm by hand;
+its axes are then X, Y, Z … in the order of the tracks, and start at zero.
 
 Questions: a file that a sound program has resampled keeps its text; its own sample rate counts.
 """
@@ -11,15 +11,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path as FilePath
 from typing import Any
-
-import soundfile
 
 from morfax.motion.faults import TapeFault
 from morfax.motion.motion import MOTION_RATE_HZ
-from morfax.recorder.tape.format import LARGEST_TEXT_BYTES, TapeFormat, is_format_text
-from morfax.recorder.tape.spool import sidecar
+from morfax.recorder.sound.source import Source
+from morfax.recorder.tape.format import TapeFormat, is_format_text
 
 _UNNAMED_AXES = ("x", "y", "z", "a", "b", "c", "u", "v", "w")
 _EXAMPLES = {
@@ -28,57 +25,42 @@ _EXAMPLES = {
 }
 
 
-def format_of(
-    file: FilePath, sound: soundfile.SoundFile, by_hand: dict[str, float | None]
-) -> TapeFormat:
-    """The tape's format, from its text chunk or by hand; raises TapeFault."""
+def format_of(source: Source, by_hand: dict[str, float | None]) -> TapeFormat:
+    """The tape's format, from its text or by hand; raises TapeFault."""
     given: dict[str, Any] = {
         name: value for name, value in by_hand.items() if value is not None
     }
-    stated = _stated(file, sound)
+    stated = _stated(source)
     if stated is None and len(given) < len(by_hand):
         lacks = " ".join(example for name, example in _EXAMPLES.items() if name not in given)
         raise TapeFault(
-            f"{file} does not say its format (no text chunk); give {lacks}, or whatever the tape has"
+            f"{source.name} does not say its format (no text chunk); give {lacks}, or whatever the tape has"
         )
     try:
         if stated is None:
-            return unnamed(sound.samplerate, sound.channels, given)
+            return unnamed(source.rate_hz, source.tracks, given)
         if given.get("cycles_per_mm", stated.cycles_per_mm) != stated.cycles_per_mm:
             # another travel for the same phase ends elsewhere
             stated = replace(stated, end_mm=None)
-        return replace(stated, sample_rate_hz=sound.samplerate, **given)
+        return replace(stated, sample_rate_hz=source.rate_hz, **given)
     except ValueError as error:
-        raise TapeFault(f"{file} cannot be played so: {error}") from None
+        raise TapeFault(f"{source.name} cannot be played so: {error}") from None
 
 
-def _stated(file: FilePath, sound: soundfile.SoundFile) -> TapeFormat | None:
-    """The format in the text chunk; None without one."""
-    text = text_of(file, sound)
-    if not is_format_text(text):
+def _stated(source: Source) -> TapeFormat | None:
+    """The format in the text; None without one."""
+    if not is_format_text(source.text):
         return None
     try:
-        fmt = TapeFormat.from_json(text)
+        fmt = TapeFormat.from_json(source.text)
     except TapeFault as fault:
-        raise TapeFault(f"{file}: {fault}") from None
-    if fmt.tracks != sound.channels:
+        raise TapeFault(f"{source.name}: {fault}") from None
+    if fmt.tracks != source.tracks:
         raise TapeFault(
-            f"{file} has {sound.channels} tracks, but its text chunk speaks of {fmt.tracks}: reference, "
-            f"{', '.join(fmt.axes)}; take the file as it was recorded"
+            f"{source.name} has {source.tracks} tracks, but its text chunk speaks of {fmt.tracks}: "
+            f"reference, {', '.join(fmt.axes)}; take it as it was recorded"
         )
     return fmt
-
-
-def text_of(file: FilePath, sound: soundfile.SoundFile) -> str:
-    """The text chunk, or the text of the file beside the tape (a W64 has no text chunk)."""
-    text = str(sound.comment)
-    if text.strip():
-        return text
-    try:
-        with sidecar(file).open("rb") as beside:
-            return beside.read(LARGEST_TEXT_BYTES + 1).decode("utf-8", "replace")
-    except OSError:
-        return ""
 
 
 def unnamed(sample_rate_hz: int, tracks: int, given: dict[str, Any]) -> TapeFormat:

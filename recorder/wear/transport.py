@@ -28,11 +28,11 @@ import numpy as np
 import soundfile
 from numpy.typing import NDArray
 
-from morfax.motion.faults import FileFault, TapeFault
-from morfax.motion.files import disk_full_fault, for_soundfile, written_beside
-from morfax.recorder.tape.format import LARGEST_TEXT_BYTES
-from morfax.recorder.tape.riff import make_plain
-from morfax.recorder.tape.spool import Spool, medium, sidecar
+from morfax.motion.faults import TapeFault
+from morfax.motion.files import disk_full_fault, written_beside
+from morfax.recorder.sound.riff import make_plain
+from morfax.recorder.sound.source import open_sound, sidecar, text_of
+from morfax.recorder.sound.spool import Spool, medium
 from morfax.recorder.wear.settings import Wear, check
 from morfax.recorder.wear.signal import (
     Bandwidth,
@@ -88,21 +88,8 @@ def age(
 ) -> Aged:
     """Wear a tape; raises FileFault or TapeFault for a bad file, ValueError for bad settings."""
     source, target = FilePath(file), FilePath(worn)
-    try:
-        with soundfile.SoundFile(for_soundfile(source)) as sound:
-            return _aged(sound, source, target, wear, seed, sample, progress)
-    except FileNotFoundError:
-        raise FileFault(
-            f"cannot read {source}: there is no such file; check the name"
-        ) from None
-    except soundfile.SoundFileError as error:
-        if not source.is_file():
-            raise FileFault(
-                f"cannot read {source}: it is no file that is there; check the name"
-            ) from error
-        raise TapeFault(
-            f"{source} is no tape: it is not a sound file that can be read; give a WAV or FLAC"
-        ) from error
+    with open_sound(source) as sound:
+        return _aged(sound, source, target, wear, seed, sample, progress)
 
 
 def _aged(
@@ -117,7 +104,7 @@ def _aged(
     """Run an open tape through the transport into a file."""
     kind, deck = medium(target, sample), Deck(wear, sound.samplerate, sound.channels, seed)
     rate_hz, total_s = wear.stamped_hz or sound.samplerate, sound.frames / sound.samplerate
-    text = str(sound.comment) or _sidecar_text(source)
+    text = text_of(source, sound)
     with written_beside(target) as beside:
         with (
             _written(target),
@@ -285,11 +272,3 @@ def _written(target: FilePath) -> Iterator[None]:
         yield
     except soundfile.SoundFileError as error:
         raise disk_full_fault(target) from error
-
-
-def _sidecar_text(source: FilePath) -> str:
-    """The text beside a tape without a text chunk."""
-    try:
-        return sidecar(source).read_text("utf-8")[:LARGEST_TEXT_BYTES]
-    except (OSError, ValueError):
-        return ""

@@ -19,8 +19,8 @@ from hypothesis import strategies as st
 
 from morfax.motion.faults import Fault, TapeFault
 from morfax.motion.motion import Motion
+from morfax.recorder.sound.pipe import PipeSource
 from morfax.recorder.tape.format import TapeFormat
-from morfax.recorder.tape.pipe import Pipe
 from morfax.recorder.tape.tape import Tape, record
 
 BY_HAND = {"reference_hz": 6000.0, "cycles_per_mm": 20.0}
@@ -51,7 +51,7 @@ def test_a_broken_file_is_taken_or_told(
     except Fault as fault:
         assert "\n" not in str(fault)
     try:
-        with Pipe.open(io.BytesIO(bytes(data)), **BY_HAND) as pipe:
+        with Tape.of(PipeSource(io.BytesIO(bytes(data))), **BY_HAND) as pipe:
             list(islice(pipe.blocks(1000), 20))
     except Fault as fault:
         assert "\n" not in str(fault)

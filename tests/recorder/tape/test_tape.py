@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from morfax.motion.faults import FileFault, MotionFault, TapeFault
 from morfax.motion.motion import Motion
 from morfax.motion.motion import Path as ThinnedPath
-from morfax.recorder.tape import riff
+from morfax.recorder.sound import riff
 from morfax.recorder.tape.tape import Tape, TapeFormat, record
 
 RATE_HZ = 6000

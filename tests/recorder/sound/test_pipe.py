@@ -13,8 +13,8 @@ import soundfile
 from morfax.motion.faults import TapeFault
 from morfax.motion.motion import Motion, join
 from morfax.player.tape.playback import play, play_pipe
-from morfax.recorder.tape.pipe import Pipe, Samples
-from morfax.recorder.tape.tape import record
+from morfax.recorder.sound.pipe import PipeSource, Samples
+from morfax.recorder.tape.tape import Tape, record
 from tests.player.worn import program
 
 BY_HAND = {"reference_hz": 6000.0, "cycles_per_mm": 20.0}
@@ -31,7 +31,7 @@ def tape(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.parametrize("sample", ["16", "24", "32", "float"])
 def test_a_wav_in_a_pipe_is_the_wav(tmp_path: Path, sample: str) -> None:
     record(Motion(program(1.0)), tmp_path / "a.wav", sample=sample)
-    with Pipe.open(io.BytesIO((tmp_path / "a.wav").read_bytes())) as pipe:
+    with Tape.of(PipeSource(io.BytesIO((tmp_path / "a.wav").read_bytes()))) as pipe:
         frames = np.vstack(list(pipe.blocks(10_000)))
     assert np.array_equal(frames, soundfile.read(tmp_path / "a.wav", dtype="float32")[0])
 
@@ -71,7 +71,7 @@ def test_raw_samples_play_with_what_is_given_by_hand(tape: Path) -> None:
 )
 def test_what_is_no_tape(data: bytes, said: str) -> None:
     with pytest.raises(TapeFault, match=said):
-        Pipe.open(io.BytesIO(data))
+        Tape.of(PipeSource(io.BytesIO(data)))
 
 
 def test_samples_of_a_frame() -> None:

@@ -1,7 +1,7 @@
-"""A tape that comes through a pipe: WAV or raw samples from any recorder program, as they come.
+"""Sound through a pipe: WAV or raw samples from any recorder program, as they come; and a WAV put out.
 
-Signals: bytes in; float32 frames (n, tracks) out, full scale 1, as soon as a block of them is there. Nothing
-but one block is held, so a pipe may run for hours.
+Signals: bytes in; frames (n, tracks) out, full scale 1, as soon as a block of them is there; and the other
+way round. Nothing but one block is held, so a pipe may run for hours.
 
 A WAV through a pipe states no length, or a wrong one: it ends where the pipe ends. Chunks before its data are
 read, and the text chunk with them; raw samples are 16 bit, little-endian, interleaved, at 48 kHz with four
@@ -15,22 +15,21 @@ from __future__ import annotations
 
 import io
 import struct
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
-from pathlib import Path as FilePath
+from collections.abc import Iterator
+from dataclasses import dataclass
 from types import TracebackType
-from typing import Any, BinaryIO
+from typing import BinaryIO
 
 import numpy as np
 
 from morfax.motion.faults import TapeFault
-from morfax.recorder.tape.carrier import Frames
-from morfax.recorder.tape.format import TapeFormat, columns_of, is_format_text
-from morfax.recorder.tape.stated import allowed, unnamed
+from morfax.recorder.sound.source import BLOCK_FRAMES, Frames, Stored
 
-PIPE_FRAMES = 65536  # 1.4 s at 48 kHz
 LARGEST_CHUNK_BYTES = 1 << 20  # of a header: more is no tape
+FEWEST_TRACKS, MOST_TRACKS = 3, 64  # reference, X, Y; more is no tape
 _PCM, _FLOAT, _EXTENSIBLE = 1, 3, 0xFFFE
+_UNKNOWN = 0xFFFFFFFF  # a length that is not known yet
+_FULL_SCALE = 32767  # of 16 bit, as libsndfile writes
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,64 +61,32 @@ class Samples:
         return np.asarray(values.reshape(-1, self.tracks), np.float32)
 
 
-class Pipe:
-    """A tape in a pipe, with the interface of a Tape; it can be read once."""
+class PipeSource:
+    """Sound that comes through a pipe; it can be read once.
 
-    def __init__(
-        self,
-        stream: BinaryIO,
-        samples: Samples,
-        fmt: TapeFormat,
-        begun: bytes,
-        columns: list[int] | None = None,
-    ) -> None:
-        self.format, self._stream, self._samples, self._begun = fmt, stream, samples, begun
-        self._columns = columns
-        self.file, self.frames = FilePath("-"), 0
+    Raises TapeFault where nothing comes, or a WAV's header cannot be read.
+    """
 
-    @classmethod
-    def open(
-        cls,
-        stream: BinaryIO,
-        *,
-        reference_hz: float | None = None,
-        cycles_per_mm: float | None = None,
-        start_mm: tuple[float, ...] | None = None,
-        order: Sequence[int] | None = None,
-        still: Sequence[str] | None = None,
-        alike: Sequence[str] | None = None,
-        samples: Samples | None = None,
-    ) -> Pipe:
-        """Read the header, if there is one; raises TapeFault for no tape, or for an unknown format."""
-        begun = _whole(stream, 12)
-        if not begun:
+    name = "the pipe"
+    container = "pipe"
+
+    def __init__(self, stream: BinaryIO, samples: Samples | None = None) -> None:
+        self._stream, self._begun, self.text = stream, _whole(stream, 12), ""
+        if not self._begun:
             raise TapeFault("nothing came through the pipe; give a WAV or raw 16-bit samples")
-        text = ""
-        if begun[:4] in (b"RIFF", b"RF64") and begun[8:] == b"WAVE":
-            samples, text = _header(stream)
-            begun = b""
-        samples = samples or Samples()
-        fmt = _format(text, samples, reference_hz, cycles_per_mm)
-        if start_mm is not None:
-            fmt = replace(
-                fmt, start_mm=tuple(start_mm) + fmt.start_mm[len(start_mm) :], end_mm=None
-            )
-        fmt = allowed(fmt, still, alike)
-        return cls(stream, samples, fmt, begun, columns_of(order, fmt.tracks))
+        if self._begun[:4] in (b"RIFF", b"RF64") and self._begun[8:] == b"WAVE":
+            samples, self.text = _header(stream)
+            self._begun = b""
+        self._samples = samples or Samples()
+        self.tracks, self.rate_hz = self._samples.tracks, self._samples.sample_rate_hz
+        self.sample = "FLOAT" if self._samples.is_float else f"PCM_{self._samples.bits}"
+        self.frames = 0  # that have come
 
-    def __enter__(self) -> Pipe:
-        return self
+    def close(self) -> None:
+        """Leave the pipe open: it is the caller's."""
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        at: TracebackType | None,
-    ) -> None:
-        return None
-
-    def blocks(self, frames: int = PIPE_FRAMES, first: int = 0) -> Iterator[Frames]:
-        """The tape in blocks from frame `first` on; an incomplete frame at the end is dropped."""
+    def stored_blocks(self, frames: int = BLOCK_FRAMES, first: int = 0) -> Iterator[Stored]:
+        """The frames in blocks from frame `first` on; an incomplete frame at the end is dropped."""
         step, held = self._samples.frame_bytes, self._begun
         skip = first * step
         while True:
@@ -132,12 +99,40 @@ class Pipe:
                 data, whole, skip = data[gone:], whole - gone, skip - gone
             if whole:
                 self.frames += whole // step
-                block = self._samples.frames(data[:whole])
-                yield block if self._columns is None else block[:, self._columns]
+                yield self._samples.frames(data[:whole])
 
-    def stored_blocks(self, frames: int = PIPE_FRAMES, first: int = 0) -> Iterator[Frames]:
-        """The same as `blocks`: a pipe converts its samples to full scale at once."""
-        return self.blocks(frames, first)
+
+class PipeSink:
+    """A WAV of 16 bit put into a pipe; its header states no length, and its text stands in front."""
+
+    def __init__(self, stream: BinaryIO, rate_hz: int, tracks: int, text: str) -> None:
+        self._stream = stream
+        words = text.encode() + b"\0" * (1 + (len(text.encode()) + 1) % 2)
+        comment = b"INFO" + struct.pack("<4sI", b"ICMT", len(words)) + words
+        kind = struct.pack(
+            "<HHIIHH", _PCM, tracks, rate_hz, 2 * tracks * rate_hz, 2 * tracks, 16
+        )
+        stream.write(struct.pack("<4sI4s", b"RIFF", _UNKNOWN, b"WAVE"))
+        for name, body in ((b"fmt ", kind), (b"LIST", comment)):
+            stream.write(struct.pack("<4sI", name, len(body)) + body)
+        stream.write(struct.pack("<4sI", b"data", _UNKNOWN))
+
+    def __enter__(self) -> PipeSink:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        at: TracebackType | None,
+    ) -> None:
+        if error is None:
+            self._stream.flush()
+
+    def put(self, frames: Frames) -> None:
+        """Write frames; raises BrokenPipeError where nobody reads any more."""
+        whole = np.clip(np.rint(frames * _FULL_SCALE), -_FULL_SCALE - 1, _FULL_SCALE)
+        self._stream.write(whole.astype("<i2").tobytes())
 
 
 def _whole(stream: BinaryIO, size: int) -> bytes:
@@ -184,7 +179,7 @@ def _samples(body: bytes) -> Samples:
     if kind == _EXTENSIBLE and len(body) >= 26:
         kind = struct.unpack("<H", body[24:26])[0]
     good = (kind == _PCM and bits in (16, 24, 32)) or (kind == _FLOAT and bits in (32, 64))
-    if not good or not 3 <= tracks <= 64 or not rate_hz:
+    if not good or not FEWEST_TRACKS <= tracks <= MOST_TRACKS or not rate_hz:
         raise TapeFault(
             f"the WAV in the pipe has {tracks} tracks of {bits} bits (kind {kind}) at {rate_hz} Hz; "
             "a tape has 3 or more of "
@@ -202,33 +197,3 @@ def _comment(body: bytes) -> str:
         if name == b"ICMT":
             return words[:size].rstrip(b"\0 ").decode("utf-8", "replace")
     return ""
-
-
-def _format(
-    text: str, samples: Samples, reference_hz: float | None, cycles_per_mm: float | None
-) -> TapeFormat:
-    """The format from the text, or from the figures given by hand."""
-    given = {"reference_hz": reference_hz, "cycles_per_mm": cycles_per_mm}
-    by_hand: dict[str, Any] = {
-        name: value for name, value in given.items() if value is not None
-    }
-    rate_hz = samples.sample_rate_hz
-    try:
-        if is_format_text(text):
-            stated = TapeFormat.from_json(text)
-            if stated.tracks != samples.tracks:
-                raise TapeFault(
-                    f"the pipe has {samples.tracks} tracks, its text speaks of {stated.tracks}; "
-                    "record it again"
-                )
-            return replace(stated, sample_rate_hz=rate_hz, **by_hand)
-        if len(by_hand) < 2:
-            raise TapeFault(
-                "the pipe does not say its format; give --reference-frequency 6kHz --cycles-per-mm "
-                "20, or what it has"
-            )
-        return unnamed(rate_hz, samples.tracks, by_hand)
-    except TapeFault:
-        raise
-    except ValueError as error:
-        raise TapeFault(f"the pipe cannot be played so: {error}") from None

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import soundfile
 
-from morfax.recorder.tape import riff
+from morfax.recorder.sound import riff
 
 FRAMES = (np.arange(4000).reshape(1000, 4) / 8000).astype(np.float32)
 

@@ -2,7 +2,7 @@
 
 Signals: frames float32 (n, tracks), full scale 1, in blocks in; a WAV (RF64 inside while it grows), RF64,
 W64, FLAC or AIFF out. The text goes into the header before the first frame, as a FLAC takes it nowhere else.
-A W64 has no place for a text: it goes into a file beside it, `cam.w64.json` (see `sidecar`).
+A W64 has no place for a text: it goes into a file beside it, `cam.w64.json` (source.sidecar).
 
 Source: EBU Tech 3306 (RF64); Apple, Audio Interchange File Format 1.3; Sonic Foundry, Wave64 file format 2.
 Questions: a plain WAV and an AIFF count their bytes with 32 bits. The first is written as an RF64 until it is
@@ -17,10 +17,10 @@ from types import TracebackType
 import numpy as np
 import soundfile
 from numba import njit
-from numpy.typing import NDArray
 
 from morfax.motion.faults import FileFault, TapeFault
 from morfax.motion.files import for_soundfile
+from morfax.recorder.sound.source import Frames
 
 CONTAINERS = {
     ".wav": "RF64",
@@ -34,8 +34,6 @@ SUBTYPES = {"16": "PCM_16", "24": "PCM_24", "32": "PCM_32", "float": "FLOAT"}
 MOST_FLAC_TRACKS = 8  # FLAC, format specification: channels 1 to 8
 LARGEST_AIFF_BYTES = 2**31 - 2**16  # sizes in an AIFF are signed
 _SAMPLE_BYTES = {"PCM_16": 2, "PCM_24": 3, "PCM_32": 4, "FLOAT": 4}
-
-Frames = NDArray[np.float32]
 
 
 def medium(file: FilePath, sample: str) -> tuple[str, str]:
@@ -52,11 +50,6 @@ def medium(file: FilePath, sample: str) -> tuple[str, str]:
             f"a FLAC has no samples of {sample}; it takes 16 or 24 bit: write a .wav for more"
         )
     return CONTAINERS[suffix], SUBTYPES[sample]
-
-
-def sidecar(file: FilePath) -> FilePath:
-    """The file beside a W64 that holds its text."""
-    return file.with_name(file.name + ".json")
 
 
 class Spool:
