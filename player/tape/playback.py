@@ -102,7 +102,9 @@ def play(
     return playback
 
 
-def play_pipe(stream: BinaryIO, *, samples: Samples | None = None, **by_hand: Any) -> TapePlayback:
+def play_pipe(
+    stream: BinaryIO, *, samples: Samples | None = None, **by_hand: Any
+) -> TapePlayback:
     """Put a tape from a pipe in the machine, as `play_live` does."""
     return play_live(PipeSource(stream, samples), **by_hand)
 
