@@ -5,12 +5,14 @@ Signals in: the traced lines, and what was asked for. Signals out: texts, each w
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from morfax.tracer.cutter.contouring import Contouring, Lead
+    from morfax.tracer.cutter.cutter import Cutter
     from morfax.tracer.following.line import Line
+    from morfax.tracer.program.around import Around
     from morfax.tracer.program.program import Trace
 
 FEW = 6  # lines that are listed with their leads; of more the shortest
@@ -32,6 +34,24 @@ def of_contouring(trace: Trace, contouring: Contouring) -> Iterator[str]:
         numbers = ", ".join(map(str, open_lines))
         are = f"line {numbers} is" if len(open_lines) == 1 else f"lines {numbers} are"
         yield f"{are} open and cut as traced: direction, start and leads are for closed lines"
+
+
+def of_around(
+    found: Sequence[Around], cutter: Cutter | None, contouring: Contouring
+) -> Iterator[str]:
+    """Lines that look like the outline of a part only because the line round them was not asked for."""
+    inner = [each for each in found if not each.is_lost]
+    on_side = contouring.has_leads or contouring.milling is not None
+    if not inner or (cutter.side != "outside" if cutter is not None else not on_side):
+        return
+    lines = ", ".join(str(each.line) for each in inner)
+    outer = ", ".join(str(number) for number in sorted({each.outer for each in inner}))
+    do = "" if cutter is None else "give --side inside for a hole, or "
+    are = f"line {lines} lies" if len(inner) == 1 else f"lines {lines} lie"
+    yield (
+        f"{are} inside line {outer}, which is not asked for: what is cut is taken for the outline of a part,"
+        f" not for a hole; {do}ask for line {outer} too"
+    )
 
 
 def _of_leads(name: str, asked: Lead, closed: list[Line]) -> Iterator[str]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from morfax.jobs.contour_remarks import of_contouring
+from morfax.jobs.contour_remarks import of_around, of_contouring
 from morfax.jobs.depths import of_tabs
 from morfax.jobs.remarks import of_cutter, remarks
 from morfax.jobs.traced import Traced
@@ -75,7 +75,7 @@ class Tracing:
         # 2. the zero of the program
         zero = ZeroOnSheet.of(self.settings, drawing, followed)
         # 3. the cutter beside the lines, or the tool along them
-        beside, left = self._cut(followed)
+        beside, left = self._cut(drawing, followed, listener)
         cutter, contouring = self.settings.tool.cutter(), self.settings.contour.contouring()
         if cutter is not None and left is not None:
             for text in of_cutter(beside, left, cutter):
@@ -92,18 +92,29 @@ class Tracing:
         contour = self.settings.contour.on_machine(milling, self.settings.line.direction)
         return replace(self, settings=replace(self.settings, contour=contour))
 
-    def _cut(self, followed: Trace) -> tuple[Trace, Left | None]:
+    def _cut(
+        self, drawing: Drawing, followed: Trace, listener: Listener
+    ) -> tuple[Trace, Left | None]:
         """The program as the tool runs it, and what a cutter leaves."""
         cutter, contouring = self.settings.tool.cutter(), self.settings.contour.contouring()
+        if cutter is None and not contouring.asks:
+            return followed, None
+        in_lost = dict[int, int]()
+        if followed.fault is not None or self.settings.line.lines not in ("contours", "all"):
+            from morfax.tracer.program.around import around
+
+            found = around(drawing, followed.lines)
+            in_lost = {each.line: each.outer for each in found if each.is_lost}
+            for text in of_around(found, cutter, contouring):
+                listener.warning(text)
         if cutter is not None:
             from morfax.tracer.cutter.cutter import with_cutter
 
-            return with_cutter(followed, cutter, self.of_head.speed_mm_s, contouring)
-        if contouring.asks:
-            from morfax.tracer.cutter.along_lines import contoured
+            speed_mm_s = self.of_head.speed_mm_s
+            return with_cutter(followed, cutter, speed_mm_s, contouring, in_lost)
+        from morfax.tracer.cutter.along_lines import contoured
 
-            return contoured(followed, contouring, self.of_head.speed_mm_s), None
-        return followed, None
+        return contoured(followed, contouring, self.of_head.speed_mm_s), None
 
     def _followed(self, drawing: Drawing, listener: Listener) -> Trace:
         """The line that the head followed, or the lines."""

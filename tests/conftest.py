@@ -10,11 +10,19 @@ from typing import Any
 import pytest
 from hypothesis import settings
 
+from tests.programs import NO_CONTROL, Programs
+
 SHARED = Path(__file__).parents[2] / "shared"
 
 # no deadline, as a first example compiles kernels; derandomized, so that a red test is red for everybody
 settings.register_profile("house", deadline=None, derandomize=True, print_blob=True)
 settings.load_profile("house")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Have every program that the tests write read by the controls' own rules."""
+    config.addinivalue_line("markers", f"{NO_CONTROL}: its programs are spoilt on purpose")
+    config.pluginmanager.register(Programs())
 
 
 @pytest.fixture(scope="session")

@@ -145,3 +145,24 @@ def test_what_cannot_be_is_one_line_and_nothing_is_written(
 ) -> None:
     answer = morfax("trace", SAMPLES / "cam.png", *options)
     assert answer.exit_code == exit_code and said in answer.fault and not list(here.iterdir())
+
+
+def test_a_hole_that_is_asked_for_alone_is_not_cut_as_an_outline_without_a_word(
+    morfax: Morfax, here: Path
+) -> None:
+    options = (
+        "trace",
+        SAMPLES / "bracket.png",
+        "--lines",
+        "2",
+        "--cutter",
+        "3mm",
+        "-o",
+        "a.csv",
+    )
+    answer = morfax(*options)
+    assert answer.exit_code == 0
+    assert "line 2 lies inside line 1, which is not asked for" in answer.err
+    assert "give --side inside for a hole, or ask for line 1 too" in answer.err
+    for further in (("--side", "inside"), ("--side", "left"), ("--lines", "1,2")):
+        assert "which is not asked for" not in morfax(*options, *further).err

@@ -20,24 +20,25 @@ as edges, and no drilled hole is moved.
 
 Source: patent ES 361967, section on use, has the draughtsman draw the contour larger by the cutter's radius;
 the arm is our own, as on steered copying heads. Questions: a line that was lost is open so far as it was
-traced: it is cut on the left or the right of its travel, and has no outside. A card may have the tool down
+traced: it is cut on the left or the right of its travel, and has no outside. Nor has a line round which the
+lost one may go, as nobody knows whether it is a hole. A card may have the tool down
 where no line is cut; a move that would cut into a contour is refused.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Literal
 
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.motion.faults import LineFault, MotionFault
+from morfax.motion.faults import MotionFault
+from morfax.motion.nesting import lies_inside
 from morfax.motion.offset import DriveCurve, OffsetPath, offset
 from morfax.motion.polyline import WITHIN_MM, Nearest, length_mm, plain, with_places
 from morfax.tracer.cutter import sides
-from morfax.tracer.cutter.contour import Beside, Cut, planned
+from morfax.tracer.cutter.contour import Beside, Cut
 from morfax.tracer.cutter.contouring import (
     AS_FOLLOWED,
     Contouring,
@@ -47,17 +48,17 @@ from morfax.tracer.cutter.contouring import (
 )
 from morfax.tracer.cutter.gouges import refuse_gouges
 from morfax.tracer.cutter.leads import Scrap
+from morfax.tracer.cutter.lost_lines import CutterSide, with_sides
 from morfax.tracer.cutter.runs import FeedRate
 from morfax.tracer.cutter.start_places import StartPlaces
 from morfax.tracer.cutter.transfer import transferred
 from morfax.tracer.following.line import Line
 from morfax.tracer.program.program import Trace
 
-CutterSide = Literal["outside", "inside", "left", "right"]
-
 LEFT_MM = 0.002  # where no more than this is left, the cutter has touched the line, ...
 # ... and a stretch where no more is left is not listed: the head wavers as much
 LISTED_MM = 0.01
+OPEN = "is open"  # and so has neither outside nor inside
 EVERY_MM = 0.02  # between the places of a line that are looked at
 
 
@@ -106,16 +107,21 @@ class Left:
 
 
 def with_cutter(
-    trace: Trace, cutter: Cutter, feed_mm_s: float, contouring: Contouring = AS_FOLLOWED
+    trace: Trace,
+    cutter: Cutter,
+    feed_mm_s: float,
+    contouring: Contouring = AS_FOLLOWED,
+    in_lost: Mapping[int, int] | None = None,
 ) -> tuple[Trace, Left]:
     """The program of a cutter beside the lines, run at a feed; and what the cutter cannot reach.
 
+    `in_lost` has the lines round which a lost line may go, by their numbers: they have no side either.
     Raises MotionFault if the cutter goes nowhere, if a line has no such side, if the tool would be in the
     work nearer to a line than its radius, or if nothing can be contoured as is asked for; LineFault if all
     lines were lost, and have no such side.
     """
     # 1. contours and drive curves
-    lines = _planned(trace, cutter.side)
+    lines = with_sides(trace, cutter.side, in_lost or {})
     cuts = [cut for _, cut in lines if cut is not None]
     if not cuts:
         return replace(trace, lines=tuple(line for line, _ in lines)), Left()
@@ -160,38 +166,6 @@ def _goes_nowhere(curves: Sequence[DriveCurve], cutter: Cutter) -> MotionFault:
     )
 
 
-def _planned(trace: Trace, side: CutterSide) -> list[tuple[Line, Cut | None]]:
-    """The lines with the numbers of their stops, each with what is cut of it.
-
-    A line that was lost has no outside and no inside.
-    """
-    lines = planned(trace)
-    if side in ("outside", "inside"):
-        lines = [
-            (_not_cut(line, side), None) if line.ending == "lost" else (line, cut)
-            for line, cut in lines
-        ]
-    if lines and all(line.ending == "lost" and cut is None for line, cut in lines):
-        lost = replace(trace, lines=tuple(line for line, _ in lines))
-        raise lost.fault or LineFault("no line was followed")
-    return lines
-
-
-def _not_cut(line: Line, side: CutterSide) -> Line:
-    """A line that was lost, with nothing of it to be run, and a fault that says so."""
-    lost = line.fault or LineFault("the line was lost")
-    fault = LineFault(
-        f"{lost}; the traced part is open and has no {side}, so it is not cut;"
-        " --side left or right cuts it, by its travel",
-        x_mm=lost.x_mm,
-        y_mm=lost.y_mm,
-        heading_rad=lost.heading_rad,
-    )
-    return replace(
-        line, xy_mm=line.xy_mm[:1], loop_from=None, marks=(), guides=(), numbers=(), fault=fault
-    )
-
-
 def _has_paths(cut: Cut, paths: Sequence[OffsetPath], cutter: Cutter) -> bool:
     """Whether the cutter runs along a line.
 
@@ -221,12 +195,11 @@ def _drive_curves(cuts: Sequence[Cut], side: CutterSide) -> list[DriveCurve]:
     wrong = dict[int, str]()
     for cut, crosses_itself in zip(cuts, crossed.diagonal(), strict=True):
         if not cut.closed:
-            wrong[cut.line.number] = "is open"
+            wrong[cut.line.number] = OPEN
         elif crosses_itself:
             wrong[cut.line.number] = "crosses itself"
     if wrong:
-        numbers = [cut.line.number for cut in cuts]
-        raise _without_side(wrong, [n for n in numbers if n not in wrong], side)
+        raise _without_side(wrong, cuts, side)
     left = sides.tool_left(places, crossed, inside=side == "inside")
     return [
         DriveCurve(cut.places_mm, True, on_left)
@@ -234,16 +207,30 @@ def _drive_curves(cuts: Sequence[Cut], side: CutterSide) -> list[DriveCurve]:
     ]
 
 
-def _without_side(
-    wrong: dict[int, str], others: Sequence[int], side: CutterSide
-) -> MotionFault:
+def _without_side(wrong: dict[int, str], cuts: Sequence[Cut], side: CutterSide) -> MotionFault:
     """The fault of lines that have no outside and no inside, with the numbers of those that have."""
     number = min(wrong)
-    listed = ",".join(map(str, sorted(others)))
-    alone = f", or {side} of the others alone by --lines {listed}" if others else ""
+    odd_mm = [cut.places_mm for cut in cuts if cut.line.number in wrong]
+    others, shut_in = list[int](), list[int]()
+    for cut in cuts:
+        if cut.line.number not in wrong:
+            may_be_hole = any(lies_inside(cut.places_mm, line_mm) for line_mm in odd_mm)
+            (shut_in if may_be_hole else others).append(cut.line.number)
+    mend = "close it, on paper or by --gap; or " if wrong[number] == OPEN else ""
+    alone = f", or {side} of the others alone by --lines {_listed(others)}" if others else ""
+    if shut_in:
+        alone += (
+            f"; what may be a hole in it, alone by --lines {_listed(shut_in)} --side inside"
+        )
     return MotionFault(
-        f"line {number} {wrong[number]}: it has no {side}; give --side left or right, by its travel{alone}"
+        f"line {number} {wrong[number]}: it has no {side}; {mend}give --side left or right, by its travel"
+        f"{alone}"
     )
+
+
+def _listed(numbers: Sequence[int]) -> str:
+    """Numbers of lines as --lines takes them."""
+    return ",".join(map(str, sorted(numbers)))
 
 
 def _left(

@@ -116,8 +116,12 @@ class Sheet:
 
     def is_solid_at(self, place_mm: Array) -> bool:
         """Whether the ink nearest to a place is the rim of a filled shape."""
+        return bool(self.are_solid[self.patch_at(place_mm)])
+
+    def patch_at(self, place_mm: Array) -> int:
+        """The number of the patch of a line whose ink is nearest to a place."""
         _, _, patch = self._nearest_ink((float(place_mm[0]), float(place_mm[1])))
-        return bool(self.are_solid[patch])
+        return patch
 
     def _long_enough(self) -> NDArray[np.bool_]:
         """Which patches are long enough to be lines."""

@@ -139,14 +139,15 @@ class Trace:
 
 def _incomplete(lost: list[Line], lines: int) -> LineFault:
     """The fault of the first of several lines that were lost, with the numbers of all."""
-    numbers = ", ".join(str(line.number) for line in lost)
+    numbers = ", ".join(str(number) for number in sorted(line.number for line in lost))
     first = lost[0].fault
     assert first is not None
     are = (
         f"line {numbers} of {lines} is" if len(lost) == 1 else f"lines {numbers} of {lines} are"
     )
+    rest = "no line is whole" if len(lost) == lines else "the others are cut"
     return LineFault(
-        f"{are} incomplete, the others are cut; line {lost[0].number}: {first}",
+        f"{are} incomplete, {rest}; line {lost[0].number}: {first}",
         x_mm=first.x_mm,
         y_mm=first.y_mm,
         heading_rad=first.heading_rad,

@@ -87,7 +87,8 @@ def test_a_cutter_wider_than_the_hole_is_refused_in_one_line() -> None:
 def test_an_open_line_has_a_left_and_a_right_and_no_outside() -> None:
     line = trace(inked(polyline((4, 6), (24, 9)), seed=1))
     with pytest.raises(
-        MotionFault, match="line 1 is open: it has no outside; give --side left or right"
+        MotionFault,
+        match="line 1 is open: it has no outside; close it, on paper or by --gap; or give",
     ):
         with_cutter(line, Cutter(4), FEED_MM_S)
     plate = closed(run_through((0, 0), (20, 0), (20, 20), (0, 20), (0, 0)))
@@ -104,6 +105,11 @@ def test_an_open_line_has_a_left_and_a_right_and_no_outside() -> None:
     middle = 0.5 * (ways["left"].runs()[0].mean(axis=0) + ways["right"].runs()[0].mean(axis=0))
     assert middle == pytest.approx([14, 7.5], abs=0.3)
     assert distance(ways["left"], ways["right"]).hausdorff_mm == pytest.approx(4, abs=0.05)
+    round_it = closed(run_through((4, 4), (6, 4), (6, 5), (4, 5), (4, 4)))
+    odd = replace(line.lines[0], xy_mm=run_through((0, 0), (9, 0), (9, 9), (0, 9)), number=2)
+    inner = Trace((plate, replace(round_it, number=3), odd))
+    with pytest.raises(MotionFault, match=r"line 2 .*alone by --lines 3 --side inside$"):
+        with_cutter(inner, Cutter(4), FEED_MM_S)
 
 
 def test_a_hole_too_small_is_left_out_and_listed_with_the_cutter_that_would_go_in() -> None:

@@ -275,6 +275,32 @@ def test_of_a_lost_line_what_was_traced_is_cut_on_a_side_of_its_travel() -> None
     assert str(in_pieces.fault).startswith("line lost at")
 
 
+def circle_of(x_mm: float, y_mm: float, number: int) -> Line:
+    turn = np.linspace(0, math.tau, 2000)
+    places = np.column_stack([x_mm + 5 * np.cos(turn), y_mm + 5 * np.sin(turn)])
+    return Line(places, "closed", 0.5, 31.4, number=number)
+
+
+def test_a_line_that_may_be_a_hole_of_a_lost_one_is_not_cut_on_the_wrong_side() -> None:
+    fault = LineFault("line lost at 40.00,0.00 mm", x_mm=40.0, y_mm=0.0, heading_rad=0.0)
+    outline = Line(run_through((0, 0), (40, 0)), "lost", 0.5, 40.0, fault, number=1)
+    hole, apart = circle_of(20, 9, 2), circle_of(60, 9, 3)
+    trace = Trace((hole, apart, outline), Operator(WORK))
+    made, _ = with_cutter(trace, Cutter(2.0), FEED_MM_S, in_lost={2: 1})
+    assert [len(line.xy_mm) > 1 for line in made.lines] == [False, True, False]
+    assert str(made.fault).startswith(
+        "lines 1, 2 of 3 are incomplete, the others are cut; line 2:"
+    )
+    assert "line 2 may be a hole of line 1, which was lost" in str(made.fault)
+    assert "--lines 2 --side inside" in str(made.fault)
+    beside_travel, _ = with_cutter(trace, Cutter(2.0, "left"), FEED_MM_S, in_lost={2: 1})
+    assert all(len(line.xy_mm) > 1 for line in beside_travel.lines)
+    with pytest.raises(LineFault, match=r"lines 1, 2 of 2 are incomplete, no line is whole"):
+        with_cutter(
+            replace(trace, lines=(hole, outline)), Cutter(2.0), FEED_MM_S, in_lost={2: 1}
+        )
+
+
 def program(angle_deg: float, radius_mm: float = 12.0) -> tuple[list[Array], list[Array]]:
     """A circle about (30, 20) with a cross, a lead line and its tick, a tick on the circle, a guide line
     inwards and its dot.
