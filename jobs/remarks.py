@@ -44,6 +44,7 @@ def remarks(
     yield from _of_gaps(trace, gap_mm)
     yield from _of_breaks(trace, gap_mm)
     yield from _of_stems(trace)
+    yield from _of_unread(trace)
     yield from _of_crossing_guides(trace)
     if not settings.line.are_several and trace.fault is None:
         yield from _of_rest(trace.lines[0])
@@ -215,14 +216,26 @@ def _of_breaks(trace: Trace, gap_mm: float) -> Iterator[str]:
 
 def _of_stems(trace: Trace) -> Iterator[str]:
     """Lines that lead to a loop and are cut with it, because nothing marks them as lead lines."""
-    for line in trace.lines:
-        if line.loop_from is not None and not line.is_lead:
-            (x, y), (u, v) = line.start_mm, line.place(line.loop_from)
-            yield (
-                f"the line from {x:.1f},{y:.1f} to the contour at {u:.1f},{v:.1f} mm is cut too; to have it "
-                "followed with the tool up, as a lead line, mark it by a cross or ring at its beginning, by "
-                "--reference-point X,Y there, or by a tick across it"
-            )
+    stems = [line for line in trace.lines if line.loop_from is not None and not line.is_lead]
+    if not stems:
+        return
+    (x, y), (u, v) = stems[0].start_mm, stems[0].place(stems[0].loop_from or 0)
+    others = f", and {len(stems) - 1} more such lines" if len(stems) > 1 else ""
+    yield (
+        f"the line from {x:.1f},{y:.1f} to the contour at {u:.1f},{v:.1f} mm is cut too{others}; to have a "
+        "line followed with the tool up, as a lead line, mark it by a cross or ring at its beginning, by "
+        "--reference-point X,Y there, or by a tick across it and --marks on"
+    )
+
+
+def _of_unread(trace: Trace) -> Iterator[str]:
+    """Ticks and dots that were taken for ink."""
+    if trace.unread and trace.operator.marks == "auto":
+        what = "1 tick or dot" if trace.unread == 1 else f"{trace.unread} ticks and dots"
+        yield (
+            f"{what} on the lines did not stop the head: without a reference point or a card they are ink; "
+            "if they are stops or holes, give --marks on"
+        )
 
 
 def _of_crossing_guides(trace: Trace) -> Iterator[str]:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from morfax.tracer.following.direction import Direction
     from morfax.tracer.head.settings import Settings
     from morfax.tracer.operator.card import Card, Override
-    from morfax.tracer.operator.operator import Operator, Panel
+    from morfax.tracer.operator.operator import Marks, Operator, Panel
     from morfax.tracer.operator.work import Work
 
 
@@ -142,6 +142,7 @@ class ProgramSettings:
     card_file: FilePath | None = None
     stop_override: Override | None = None  # None: the card's
     zero: Zero = "sheet"
+    marks: Marks = "auto"  # a card or an override is for marks
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,7 +189,11 @@ class TraceSettings:
         from morfax.tracer.operator.operator import Operator
 
         line = self.line
-        return Operator(self._work(card), card, panel, line.reference_mm, line.direction)
+        program = self.program
+        for_marks = program.card_file is not None or program.stop_override is not None
+        marks = "on" if program.marks == "auto" and for_marks else program.marks
+        work = self._work(card)
+        return Operator(work, card, panel, line.reference_mm, line.direction, marks)
 
     def _filed(self) -> dict[str, float]:
         """Settings of the head in the file, by name."""

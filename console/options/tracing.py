@@ -201,6 +201,15 @@ _PROGRAM = (
     renamed("--override", "--stop-override"),
     option(
         "Program",
+        "--marks",
+        type=click.Choice(["auto", "on", "off"]),
+        default="auto",
+        show_default=True,
+        help="Whether ticks across a line and dots are stop marks and holes (on) or ink (off). auto: marks "
+        "with a card, with a reference point, and on a sheet of nothing but dots.",
+    ),
+    option(
+        "Program",
         "--ask",
         is_flag=True,
         help="Stop at every mark and ask for the Z moves, at a terminal.",
@@ -225,6 +234,8 @@ def trace_options(verb: Callable[..., Any]) -> Callable[..., Any]:
     @functools.wraps(verb)
     def with_settings(*args: Any, **options: Any) -> Any:
         ask, print_settings = options.pop("ask"), options.pop("print_settings")
+        if ask and options["marks"] == "auto":
+            options["marks"] = "on"
         settings = _settings(options)
         if print_settings:
             _print_settings(settings)

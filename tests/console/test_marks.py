@@ -71,6 +71,27 @@ def test_override_passes_marks_by(morfax: Morfax, here: Path) -> None:
     assert places(traced(morfax, "--stop-override", "all")) == []
 
 
+def test_ticks_without_a_reference_point_stop_nothing_until_they_are_called_marks(
+    morfax: Morfax, here: Path
+) -> None:
+    sheet = np.full((500, 500), 255, np.uint8)
+    cv2.circle(sheet, (250, 250), 150, 0, 6)
+    cv2.line(sheet, (380, 250), (420, 250), 0, 6)
+    Image.fromarray(sheet).save("plate.png", dpi=(300, 300))
+    plain = morfax("trace", "plate.png", "-o", "plate.csv", "--json")
+    assert (
+        places(plain) == [] and "1 tick or dot on the lines did not stop the head" in plain.err
+    )
+    assert "--marks on" in plain.err
+    marked = morfax("trace", "plate.png", "-o", "marked.csv", "--json", "--marks", "on")
+    assert [stop["mark"] for stop in marked.figures["stops"]] == ["tick"]
+    assert "did not stop" not in marked.err
+
+
+def test_marks_of_a_drawn_program_may_be_taken_for_ink(morfax: Morfax, here: Path) -> None:
+    assert places(traced(morfax, "--marks", "off")) == []
+
+
 def test_a_stop_that_is_not_there_is_told_of(morfax: Morfax, here: Path) -> None:
     answer = morfax("trace", PROGRAM, "-o", "program.csv", "--stop-override", "2,7")
     assert answer.exit_code == 0 and "the drawing has no stop 7: 2 were found" in answer.err

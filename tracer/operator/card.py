@@ -145,6 +145,12 @@ class Card:
         """Read a card from a text; raises CardFault for a mistake."""
         return _card(parsed(text, name))
 
+    @property
+    def is_about_stops(self) -> bool:
+        """Whether it says something of stops, holes or junctions: such a card belongs to a drawn program."""
+        named = self.stops or self.turns or self.override != "none" or self.restart == "manual"
+        return bool(named) or self.peck_mm is not None
+
     def stop(self, number: int) -> Stop:
         """What to do at a stop, counted from 1."""
         own = [stop for stop in self.stops if stop.number == number]

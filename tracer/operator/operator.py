@@ -13,6 +13,9 @@ A lead line begins at a reference point, or bears a tick, and runs into a loop. 
 reference point and ends is a guide line. Any other line is cut from its start. Stops are numbered along the
 way, over all the lines; the head passes those that the operator overrides.
 
+Ticks and dots are marks where a program is drawn: a line begins at a reference point, the card says what to
+do at stops, there are dots and nothing else, or the operator says so. On any other sheet they are ink.
+
 Source: patent ES 361967, section on use, and figure 3; override button of figure 1. Questions: the patent's
 operator knows what a line is for; here its marks show it.
 """
@@ -22,7 +25,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import Protocol
+from typing import Literal, Protocol
 
 from morfax.motion.faults import CardFault
 from morfax.tracer.following.direction import Direction
@@ -31,6 +34,8 @@ from morfax.tracer.operator.card import Card, Drill, Stop
 from morfax.tracer.operator.work import Action, Descent, Halt, Work
 from morfax.tracer.operator.zunit import COUNTS_PER_MM, QuillMove
 from morfax.tracer.sensing.side import Side
+
+Marks = Literal["auto", "on", "off"]
 
 STAND_S = 0.5  # at a stop without an entry on the card: our own figure
 # a dot as near to the end of a guide line is the hole drilled there; by trial
@@ -56,11 +61,21 @@ class Operator:
     panel: Panel | None = None
     reference_mm: tuple[float, float] | None = None  # None: the reference point is looked for
     direction: Direction | None = None  # in which the head takes the line
+    marks: Marks = "auto"  # whether ticks and dots are marks; auto: where a program is drawn
 
     @property
     def sides(self) -> tuple[Side | None, ...]:
         """Where the head turns off at the junctions."""
         return tuple(None if side == "straight" else side for side in self.card.turns)
+
+    def reads_marks(self, lines: Sequence[Line]) -> bool:
+        """Whether ticks and dots on some lines of a drawing are marks, and not ink."""
+        if self.marks != "auto":
+            return self.marks == "on"
+        has_reference = any(line.reference_mm is not None for line in lines)
+        are_dots = all(line.is_dot for line in lines)
+        named = self.reference_mm is not None or self.card.is_about_stops
+        return has_reference or are_dots or named
 
     def actions(self, lines: Sequence[Line]) -> list[list[Action]]:
         """The actions along each of several lines, in the order in which the lines are cut.

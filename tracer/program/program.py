@@ -41,7 +41,7 @@ class Trace:
 
     `left_out` patches of ink were too short to be lines; `left_out_mm` of ink is joined to lines, but none.
     `others`: further lines of a sheet whose longest line was asked for. `ink`: how much of the ink of a sheet
-    the strokes run along, where all of it was asked for.
+    the strokes run along, where all of it was asked for. `unread`: ticks and dots that were taken for ink.
     """
 
     lines: tuple[Line, ...]
@@ -51,6 +51,7 @@ class Trace:
     left_out_mm: float = 0.0
     others: int = 0
     ink: Balance | None = None
+    unread: int = 0
 
     @property
     def work(self) -> Work:

@@ -29,6 +29,7 @@ from morfax.tracer.following.start import ends_of, put_down
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance, turned_round
 from morfax.tracer.operator.operator import Operator
+from morfax.tracer.program.marks_read import with_marks_read
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.selection import others_than
 from morfax.tracer.program.setup import HeadProgress, Setup
@@ -57,7 +58,8 @@ def trace(
     others = 0
     if start_mm is None:
         others = others_than(setup.sheet, line.places_mm, line.reference_mm)
-    return Trace((line,), operator, others=others)
+    lines, unread = with_marks_read([line], operator)
+    return Trace(tuple(lines), operator, others=others, unread=unread)
 
 
 def followed(

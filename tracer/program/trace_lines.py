@@ -30,6 +30,7 @@ from morfax.tracer.marks import dots
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program import order, selection
 from morfax.tracer.program.joined_lines import joined_to
+from morfax.tracer.program.marks_read import with_marks_read
 from morfax.tracer.program.one_of_each import are_of_reference, is_inside, one_of_each
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.selection import Contour, Which
@@ -68,10 +69,14 @@ def trace_lines(
     operator = operator or Operator()
     setup = Setup(Sheet.of(drawing), settings or Settings(), operator, progress)
     found = found_lines(setup, which)
-    _refuse_none_begun(found.lines)
-    in_order = _in_order(setup, found.lines)
+    lines, unread = with_marks_read(found.lines, operator)
+    _refuse_none_begun(lines)
     return Trace(
-        tuple(in_order), operator, left_out=found.left_out, left_out_mm=found.left_out_mm
+        tuple(_in_order(setup, lines)),
+        operator,
+        left_out=found.left_out,
+        left_out_mm=found.left_out_mm,
+        unread=unread,
     )
 
 
@@ -98,7 +103,8 @@ def trace_places(
         if progress is not None:
             progress(float(number), float(len(starts_mm)))
     _refuse_none_begun(lines)
-    return Trace(tuple(_in_order(setup, lines)), operator)
+    lines, unread = with_marks_read(lines, operator)
+    return Trace(tuple(_in_order(setup, lines)), operator, unread=unread)
 
 
 def found_lines(setup: Setup, which: Which) -> FoundLines:

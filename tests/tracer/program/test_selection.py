@@ -20,6 +20,7 @@ from morfax.motion.nesting import nested
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.settings import Settings
+from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program import one_of_each
 from morfax.tracer.program.joined_lines import joined_to
 from morfax.tracer.program.order import idle_way_mm, in_order, in_order_and_turned
@@ -250,7 +251,8 @@ def test_marks_guide_lines_and_the_ring_of_the_reference_point_are_no_lines_join
     ring, lead = arc((7, 14), 2), polyline((7, 14), (18, 14))
     ticks = [polyline((14, 12.5), (14, 15.5)), polyline((26, 4.5), (26, 7.5))]
     program = trace_lines(
-        inked(ring, lead, *ticks, arc((26, 14), 8), polyline((26, 22), (26, 30)))
+        inked(ring, lead, *ticks, arc((26, 14), 8), polyline((26, 22), (26, 30))),
+        operator=Operator(marks="on"),
     )
     assert [(line.number, line.is_lead) for line in program.lines] == [(1, True)]
 
@@ -363,7 +365,7 @@ def test_a_lead_line_is_begun_at_its_reference_point_and_the_cross_is_no_line() 
 def test_a_dot_alone_is_drilled_on_the_way() -> None:
     """The hole goes down at the dot's middle, to a tenth of a pixel, and is no patch left out."""
     dots = [arc((34, 8), 0.8), arc((34, 20), 1.5)]
-    program = trace_lines(inked(arc((14, 14), 8), specks=dots))
+    program = trace_lines(inked(arc((14, 14), 8), specks=dots), operator=Operator(marks="on"))
     places = sorted(
         (action.halt.kind, action.halt.place_mm)
         for actions in program.actions
