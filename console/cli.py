@@ -23,6 +23,7 @@ from morfax.motion.faults import DrawingFault, Fault, FileFault
 
 VERBS = {
     "lines": "Say what is on a drawing: a numbered table of its lines, dots and likely lettering.",
+    "correct": "Put right what the head got wrong: rub out, bridge, turn, stop.",
     "trace": "Follow the line of a drawing and record the head's motion on a tape.",
     "play": "Play a tape into the simulated machine and write the path it runs.",
     "compare": "Say how far two contours are apart: paths, tapes, or one of them a drawing.",

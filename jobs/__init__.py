@@ -14,6 +14,7 @@ from typing import Any
 _DOORS = {
     "LinesJob": "lines",
     "TraceJob": "trace",
+    "CorrectJob": "correct",
     "RunJob": "run",
     "RecordJob": "record",
     "PlayJob": "play",

@@ -10,8 +10,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING
 
-from morfax.jobs import flattening
+from morfax.jobs import correction_settings, flattening
 from morfax.jobs.contour_settings import ContourSettings
+from morfax.jobs.correction_settings import CorrectionSettings
 from morfax.jobs.depths import DepthSettings, passes_mm
 from morfax.jobs.flattening import FlattenSettings
 from morfax.jobs.listener import SILENT, Listener
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
     from morfax.jobs.zero import Zero
     from morfax.tracer.cutter.cutter import Cutter, CutterSide
     from morfax.tracer.drawing.drawing import Drawing
-    from morfax.tracer.drawing.scale import Known
+    from morfax.tracer.drawing.scale import Known, Scale
     from morfax.tracer.drawing.scan import Scan
     from morfax.tracer.flatten.flat import Flattening
     from morfax.tracer.following.direction import Direction
@@ -43,23 +44,56 @@ class DrawingFile:
     page: int | None = None  # of a file of several; None: the first, and it is said
     known: Known | None = None  # two places and their distance, instead of dpi or width
     flatten: FlattenSettings = field(default_factory=FlattenSettings)
+    corrections: CorrectionSettings = field(default_factory=CorrectionSettings)
 
     def open(self, listener: Listener = SILENT) -> Drawing:
-        """Open the drawing; raises WrongUse for two scales, DrawingFault and FileFault for a bad file."""
-        from morfax.tracer.drawing import inks, raster
+        """Open the drawing with its corrections; raises WrongUse for two scales, DrawingFault and FileFault
+        for a bad file, CardFault for corrections that are not its own.
+        """
+        from morfax.tracer.drawing import inks
         from morfax.tracer.drawing.drawing import Drawing
+
+        ink = None if self.ink is None else inks.parsed(self.ink)
+        scan, made = self._scanned(listener)
+        drawing = replace(Drawing.of(scan, self.scale(), ink, self.edge), flattening=made)
+        for note in drawing.notes:
+            listener.note(note)
+        return self._corrected(drawing, scan, listener)
+
+    def scale(self) -> Scale:
+        """The scale that is given; raises WrongUse for two."""
         from morfax.tracer.drawing.scale import Scale
 
         scale = Scale(self.dpi, self.width_mm, self.known)
         if len(scale.given()) > 1:
             raise WrongUse(f"{' and '.join(scale.given())} were both given; give one of them")
-        ink = None if self.ink is None else inks.parsed(self.ink)
-        self.flatten.check(bool(scale.given()))
-        scan = raster.read(self.file, coloured=ink is not None, page=self.page, dpi=self.dpi)
-        scan, made = self._flattened(scan, bool(scale.given()), listener)
-        drawing = replace(Drawing.of(scan, scale, ink, self.edge), flattening=made)
-        for note in drawing.notes:
-            listener.note(note)
+        return scale
+
+    def scanned(self, listener: Listener = SILENT) -> Scan:
+        """The picture as it is read, made flat if it is a photograph."""
+        return self._scanned(listener)[0]
+
+    def _scanned(self, listener: Listener) -> tuple[Scan, Flattening | None]:
+        """The picture as it is read, made flat if it is a photograph, and how well."""
+        from morfax.tracer.drawing import raster
+
+        scale_given = bool(self.scale().given())
+        self.flatten.check(scale_given)
+        scan = raster.read(
+            self.file, coloured=self.ink is not None, page=self.page, dpi=self.dpi
+        )
+        return self._flattened(scan, scale_given, listener)
+
+    def _corrected(self, drawing: Drawing, scan: Scan, listener: Listener) -> Drawing:
+        """The drawing with its corrections, if it has any."""
+        corrections = self.corrections.of(self.file, scan.page, listener)
+        if corrections is None:
+            return drawing
+        from morfax.tracer.drawing.corrected import corrected
+
+        drawing = corrected(drawing, corrections, (scan.columns, scan.rows))
+        if drawing.corrected is not None:
+            correction_settings.tell(drawing.corrected, listener)
         return drawing
 
     def _flattened(

@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from morfax.console.options.files import FILE
 from morfax.console.options.groups import Decorator, option
 from morfax.console.options.types import BAR, FLATTEN, LENGTH, PIXELS
+from morfax.jobs.correction_settings import CorrectionSettings
 from morfax.jobs.flattening import FlattenSettings
 from morfax.jobs.settings import DrawingFile
 from morfax.recorder.drawings.drawn_units import UNITS_MM
@@ -97,11 +99,28 @@ def drawing_options(argument: str) -> Decorator:
             type=BAR,
             help="Length of the bar on a printed sheet with marks, such as 99.6mm.  [default: 100mm]",
         )
+        @option(
+            "Drawing",
+            "--corrections",
+            "corrections_file",
+            type=FILE,
+            metavar="FILE",
+            help="Corrections of the drawing (.morfax.toml), see morfax correct.  [default: the drawing's "
+            "name with .morfax.toml beside it, if it is there]",
+        )
+        @option(
+            "Drawing",
+            "--no-corrections",
+            is_flag=True,
+            help="Read the drawing without its corrections.",
+        )
         @functools.wraps(verb)
         def with_drawing(*args: Any, **options: Any) -> Any:
             names = ("dpi", "width_mm", "ink", "edge", "page", "known")
             how = {name: options.pop(name) for name in names}
             how["flatten"] = FlattenSettings(options.pop("wanted"), options.pop("bar_mm"))
+            used = not options.pop("no_corrections")
+            how["corrections"] = CorrectionSettings(options.pop("corrections_file"), used)
             files = options[argument]
             if isinstance(files, tuple):
                 options[argument] = tuple(DrawingFile(file, **how) for file in files)

@@ -10,6 +10,7 @@ import click
 from morfax.jobs.wrong_use import WrongUse
 
 ORDER = (
+    "Correction",
     "Drawing",
     "Line",
     "Head",

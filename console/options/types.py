@@ -211,6 +211,28 @@ def _flatten(text: str) -> Any:
     return parsed(text)
 
 
+def _correction_place(text: str) -> Any:
+    """One place of a correction."""
+    from morfax.tracer.corrections.corrections import Place
+
+    return Place.parse(text)
+
+
+def _correction_places(text: str) -> Any:
+    """Places of a correction, with blanks between: "812px,1004px 850px,1010px"."""
+    parts = text.split()
+    if not parts:
+        raise ValueError("no place is given; give X,Y, or several in quotes")
+    return tuple(map(_correction_place, parts))
+
+
+def _correction_width(text: str) -> Any:
+    """A width of a correction."""
+    from morfax.tracer.corrections.corrections import Span
+
+    return Span.parse(text)
+
+
 STOCK = Quantity("stock", _parse_stock)
 LENGTH = Quantity("length", parse_length_mm, above_zero=True)
 REACH = Quantity("length", parse_length_mm)  # of the head; may be 0
@@ -239,3 +261,6 @@ TRACKS = Quantity("tracks", _tracks)
 AXES = Quantity("axes", _axes)
 ZERO = Quantity("zero", _parse_zero)
 LEAD = Quantity("size[,line]", _parse_lead)
+CORRECTED = Quantity("x,y", _correction_place)
+CORRECTED_ALONG = Quantity("x,y x,y …", _correction_places)
+CORRECTION_WIDTH = Quantity("length", _correction_width)

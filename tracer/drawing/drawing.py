@@ -38,6 +38,7 @@ from morfax.tracer.drawing.scan import Grey, Scan
 from morfax.tracer.drawing.shapes import outlined
 
 if TYPE_CHECKING:
+    from morfax.tracer.corrections.on_sheet import OnSheet
     from morfax.tracer.drawing.noise import Noise
     from morfax.tracer.flatten.flat import Flattening
 
@@ -59,7 +60,7 @@ class Drawing:
     Of filled shapes whose edges are asked for: `edges_mm`, closed polylines (n, 2) to which a run has to
     keep, and how many times `enlarged` the head sees the line along them. Otherwise `shapes` tells where
     filled shapes are, on the picture reduced by a whole number. `notes` on the file are for the operator;
-    `flattening` is how well a photograph was made flat.
+    `flattening` is how well a photograph was made flat; `corrected` what the operator has put right.
     """
 
     darkness: Darkness
@@ -70,6 +71,7 @@ class Drawing:
     shapes: Shapes | None = None
     notes: tuple[str, ...] = ()
     flattening: Flattening | None = None
+    corrected: OnSheet | None = None
 
     @property
     def width_mm(self) -> float:
