@@ -39,7 +39,9 @@ def _placed(name: str, text: str, kind: Any = CORRECTED) -> Decorator:
     "Rub out ink: under the rubber at a place, or along several, in quotes.",
     CORRECTED_ALONG,
 )
-@_placed("--rub-area", "Rub out all ink inside three or more places, in quotes.", CORRECTED_ALONG)
+@_placed(
+    "--rub-area", "Rub out all ink inside three or more places, in quotes.", CORRECTED_ALONG
+)
 @_placed(
     "--bridge",
     "Draw ink from place to place, in quotes; one place is a dot. From line to line the stroke is as wide "
@@ -104,10 +106,17 @@ def _placed(name: str, text: str, kind: Any = CORRECTED) -> Decorator:
 )
 @option("Correction", "--why", default="", help="A word on why, which is kept with them.")
 @option(
-    "Correction", "--remove", type=click.IntRange(min=1), multiple=True, help="Take one away by its number."
+    "Correction",
+    "--remove",
+    type=click.IntRange(min=1),
+    multiple=True,
+    help="Take one away by its number.",
 )
 @option(
-    "Correction", "--undo", count=True, help="Take the last one away; several times for several."
+    "Correction",
+    "--undo",
+    count=True,
+    help="Take the last one away; several times for several.",
 )
 @option("Correction", "--list", "listed", is_flag=True, help="Only say which there are.")
 @drawing_options("drawing")
@@ -132,7 +141,11 @@ def _corrections(options: dict[str, Any]) -> tuple[Correction, ...]:
     from morfax.tracer.corrections.corrections import Correction
 
     why, made = options["why"], list[Correction]()
-    for kind, width in (("rub", options["rubber"]), ("rub_area", None), ("bridge", options["pen"])):
+    for kind, width in (
+        ("rub", options["rubber"]),
+        ("rub_area", None),
+        ("bridge", options["pen"]),
+    ):
         do: Any = kind.replace("_", "-")
         made += [Correction(do, places, width, why=why) for places in options[kind]]
     made += [
@@ -162,4 +175,6 @@ def _refuse_idle(options: dict[str, Any], any_made: bool) -> None:
     }
     for name, (given, there, what) in goes_with.items():
         if given and not there:
-            raise click.UsageError(f"{name} goes with {what}; give that too, or leave {name} out")
+            raise click.UsageError(
+                f"{name} goes with {what}; give that too, or leave {name} out"
+            )
