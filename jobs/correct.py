@@ -48,6 +48,10 @@ class CorrectJob:
         """Edit the file, whole or not at all; raises WrongUse, CardFault, FileFault and DrawingFault."""
         from morfax.tracer.corrections.correction_file import parse_corrections
 
+        if not self.drawing.corrections.used:
+            raise WrongUse(
+                "corrections cannot be made without corrections; leave --no-corrections out"
+            )
         file = self.drawing.corrections.file_of(self.drawing.file)
         scan = self.drawing.scanned(listener)
         size, has_scale = self._size(scan)
@@ -95,14 +99,12 @@ class CorrectJob:
     def _taken(self, before: Corrections) -> tuple[int, ...]:
         """The numbers of the corrections that are taken away."""
         count = len(before.each)
+        has = f"there {'is' if count == 1 else 'are'} {count or 'none'}"
         if self.undo > count:
-            raise WrongUse(
-                f"there are {count} corrections to undo, and {self.undo} were asked for"
-            )
+            raise WrongUse(f"{self.undo} corrections were to be undone, and {has}")
         last = range(count - self.undo + 1, count + 1)
         for number in self.remove:
             if not 1 <= number <= count:
-                has = f"there are {count}" if count else "there is none"
                 raise WrongUse(f"there is no correction {number}: {has}")
         return tuple(sorted({*self.remove, *last}))
 
