@@ -33,6 +33,7 @@ OPTIONS = {
     "zero_mm": "--zero-adjustment",
     "norm": "--norm",
     "feed_override": "--feed-override",
+    "historic": "--historic",
 }
 FOR_TAPES = {"resume_at_s", "acceleration_mm_s2", "motor", "zero_mm"}
 
@@ -47,10 +48,15 @@ class ControlSettings:
     feed_override: float | None = None
     motor: str | None = None
     zero_mm: tuple[float, ...] | None = None
+    historic: bool = False  # the patent's own pulses, registers and scales
 
     def given(self) -> dict[str, Any]:
         """What was set."""
-        return {name: value for name, value in asdict(self).items() if value is not None}
+        return {
+            name: value
+            for name, value in asdict(self).items()
+            if value is not None and value is not False
+        }
 
     def for_file(self, file: FilePath, by_hand: ByHand) -> dict[str, Any]:
         """The settings as the control of a file takes them; raises WrongUse for one that it does not take."""
@@ -68,6 +74,10 @@ class ControlSettings:
             from morfax.player.tape.phase_lock import MOTORS as LOCKS
 
             given["settings"] = LOCKS[given.pop("motor")]
+        if given.pop("historic", False):
+            from morfax.player.gcode.pulses import HISTORIC_CONTROL
+
+            given["settings"] = HISTORIC_CONTROL
         return given
 
 
@@ -166,6 +176,8 @@ def _refuse_foreign(tape: FilePath, given: dict[str, Any]) -> None:
         raise WrongUse(f"{_options(given.keys() & FOR_TAPES)} is for tapes; {tape} is none")
     if control != pulses and "norm" in given:
         raise WrongUse(f"--norm is for programs of lines and arcs, .ngc; {tape} is none")
+    if control != pulses and "historic" in given:
+        raise WrongUse(f"--historic is for programs of lines and arcs, .ngc; {tape} is none")
     if control not in (TAPE, pulses) and "feed_override" in given:
         raise WrongUse(
             f"--feed-override is for tapes and for programs of lines and arcs, .ngc; {tape} is none"

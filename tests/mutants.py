@@ -225,7 +225,8 @@ class Copy:
     def __init__(self, folder: Path, tests: list[str]) -> None:
         hidden = shutil.ignore_patterns(".*", "__pycache__", "demo", "site")
         self.root = folder / "tree"
-        shutil.copytree(ROOT, self.root, symlinks=True, ignore=hidden)
+        if not self.root.exists():
+            shutil.copytree(ROOT, self.root, symlinks=True, ignore=hidden)
         self._command = [
             sys.executable,
             "-m",

@@ -92,6 +92,12 @@ Examples:
     "0% to 100%.  "
     "[default: 100%]",
 )
+@option(
+    "Machine",
+    "--historic",
+    is_flag=True,
+    help="Play an .ngc program in the units of 1967: pulses of 12.7 um, registers of 16 bits.",
+)
 @renamed("--override", "--feed-override")
 @option(
     "Machine",

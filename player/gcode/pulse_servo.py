@@ -28,8 +28,8 @@ Questions: with an ICR of 5 bits the unit circuit is right for lags of -15 … +
 example, 24, is not); beyond that is a fault here. The lag counts half position counts, as the command does:
 with the whole counts of the text an axis told to stand between two counts would never rest. The text says
 that the lag stays in proportion to the speed; its counter adds up lag pulses, so here the lag goes to nothing
-at constant speed. A lag register of 5 stages asks for a servo faster than the motor; chosen: 10 stages, and a
-gain of 500 1/s.
+at constant speed. A lag register of 5 stages is right at 6000 recirculations per s, as the historic control
+has; at 48 000 it asks for a servo faster than the motor, so there 10 stages. The gain is 500 1/s.
 """
 
 from __future__ import annotations
@@ -77,7 +77,10 @@ class PulseServo:
         return float((1 << (self.register_bits - 1)) - 1) * PULSES_PER_COUNT * self.pulse_mm
 
 
-HISTORIC = PulseServo(pulse_mm=0.0127, register_bits=16, icr_bits=5, lag_stages=5)
+# the gain is ours: a faster loop asks the drive for more than its 5 m/s² where 13 pulses come at once
+HISTORIC = PulseServo(
+    pulse_mm=0.0127, register_bits=16, icr_bits=5, lag_stages=5, gain_per_s=120.0
+)
 
 
 class PulseServos:
@@ -114,6 +117,16 @@ class PulseServos:
         return self._registers[:, COUNT].copy()
 
     @property
+    def lag_register(self) -> Counts:
+        """Lag register 117 of each axis: the lags added up since its last overflow, pulses."""
+        return self._registers[:, LAG].copy()
+
+    @property
+    def position(self) -> Counts:
+        """The place of each axis by its quantizer 47, pulses."""
+        return self._registers[:, QUANTA] // QUANTA_PER_PULSE
+
+    @property
     def command(self) -> Counts:
         """The commanded place of each axis, pulses."""
         return self._registers[:, COMMAND].copy()
@@ -144,23 +157,19 @@ class PulseServos:
         return commands[:kept], places[:kept], done
 
 
-def unit_circuit(position: int, icr: int, icr_bits: int = 5) -> int:
-    """The interpolated position from position register and command register, for claim 19 (`_unit`)."""
-    return int(_unit(position, icr, icr_bits))
-
-
-def lag(position: int, icr: int, icr_bits: int = 5) -> int:
-    """The lag behind the command in position counts, from the low bits of both, for claim 20 (`_lag`)."""
-    return int(_lag(position, icr, icr_bits))
+@njit(cache=True, inline="always")
+def subtracted(position, icr, bits):  # type: ignore[no-untyped-def]
+    """Figure 20, subtractor 116: the position's low bits less the ICR, in as many bits, and the borrow."""
+    mask = (1 << bits) - 1
+    low = position & mask
+    return (low - icr) & mask, low < icr
 
 
 @njit(cache=True, inline="always")
-def _unit(position, icr, bits):  # type: ignore[no-untyped-def]
+def unit_circuit(position, icr, bits):  # type: ignore[no-untyped-def]
     """Figure 20: the high bits of the position, one more or less by borrow and sign, joined to the ICR."""
-    mask = (1 << bits) - 1
-    low = position & mask
-    borrow = low < icr
-    negative = ((low - icr) & mask) >> (bits - 1)
+    difference, borrow = subtracted(position, icr, bits)
+    negative = difference >> (bits - 1)
     high = position >> bits
     if negative and not borrow:
         high += 1
@@ -170,10 +179,9 @@ def _unit(position, icr, bits):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, inline="always")
-def _lag(position, icr, bits):  # type: ignore[no-untyped-def]
-    """Figure 21: ICR less position, as a signed number of that many bits."""
-    mask = (1 << bits) - 1
-    difference = (position - icr) & mask
+def lag(position, icr, bits):  # type: ignore[no-untyped-def]
+    """Figure 21: the lag behind the command in position counts, a signed number of that many bits."""
+    difference, _ = subtracted(position, icr, bits)
     return -(difference - ((difference >> (bits - 1)) << bits))
 
 
@@ -195,9 +203,9 @@ def _follow(pulses, analogue, timing, conditions, registers, tables, commands, p
             icr = (icr + (half >> 1)) & mask
             half &= 1
             position = quanta >> 2
-            behind = _lag(position, icr, bits)
+            behind = lag(position, icr, bits)
             largest = max(largest, abs(behind))
-            if _unit(position, icr, bits) != command >> 1:
+            if unit_circuit(position, icr, bits) != command >> 1:
                 done = row
                 break
             lags += 2 * behind + half - ((quanta >> 1) & 1)

@@ -17,8 +17,11 @@ at a time.
 
 Source: patent from US application 631 214 of 1967, figures 3, 7 and 9. Questions: the patent gives no rate
 and no L. Chosen: 48 000 recirculations per s (8 to a sample), L = 480 (10 ms), pulses of 1 um, rapids at 20
-mm/s, which the servos start to at once within their lag. The cut of long arcs is ours; arcs up to 170 degrees
-are run whole.
+mm/s, which the servos start to at once within their lag. The historic control has the patent's pulses,
+registers and lag stages; 6000 recirculations per s (a clock of 96 kHz) and L = 60 (10 ms) are ours. At the
+end of a move counter 81 is full, and the next begins with up to 13 pulses at once (256 eighths in pulses of
+20): 13 um, but 0.17 mm of the historic pulses, which its limit allows. The cut of long arcs is ours; arcs up
+to 170 degrees are run whole.
 """
 
 from __future__ import annotations
@@ -40,7 +43,7 @@ from morfax.motion.motion import AXES, MOTION_RATE_HZ, Motion
 from morfax.player.gcode.feed_control import feed_number, override_number
 from morfax.player.gcode.machine_reader import read_program
 from morfax.player.gcode.moves import DWELL, RAPID, Move, Program, length_mm, reached
-from morfax.player.gcode.pulse_servo import PulseServo, PulseServos
+from morfax.player.gcode.pulse_servo import HISTORIC, PulseServo, PulseServos
 from morfax.player.gcode.residues import LINE, Feed, ResidueInterpolator
 from morfax.player.monitor.monitor import FollowingLimit, Supervised
 
@@ -63,6 +66,7 @@ class PulseControl:
     rapid_mm_s: float = 20.0
     override: float = 1.0
     true_norm: bool = False
+    limit_pulses: int = 4  # that a sound drive may be off beside its lag
 
     @property
     def limit(self) -> FollowingLimit:
@@ -75,7 +79,12 @@ class PulseControl:
         speeds = np.linspace(0, self.recirculations_hz * self.servo.pulse_mm, 17)
         errors_mm = lag_s * speeds + speeds**2 / (2 * most_mm_s2)
         points = list(zip(speeds.tolist(), errors_mm.tolist(), strict=True))
-        return FollowingLimit.table(points, 0.05 + 4 * self.servo.pulse_mm, settle_s=2 * lag_s)
+        return FollowingLimit.table(
+            points, 0.05 + self.limit_pulses * self.servo.pulse_mm, settle_s=2 * lag_s
+        )
+
+
+HISTORIC_CONTROL = PulseControl(HISTORIC, MOTION_RATE_HZ, servo_constant=60, limit_pulses=13)
 
 
 def play_pulses(

@@ -41,6 +41,13 @@ def test_the_norm_and_the_override_change_the_time(bracket: Path, morfax: Morfax
     )  # the weights make it up to 7 % slow
 
 
+def test_a_program_is_played_in_the_units_of_1967(bracket: Path, morfax: Morfax) -> None:
+    assert morfax("play", bracket, "--historic", "-o", "played.csv").exit_code == 0
+    figures = morfax("compare", "played.csv", SAMPLES / "bracket.csv", "--json").figures
+    # 3 pulses of 12.7 um, as much as arcs are off; measured 0.022, and below 0.006 with pulses of 1 um
+    assert 0.006 < figures["largest_mm"] < 3 * 0.0127
+
+
 def test_what_is_for_another_control_is_refused(bracket: Path, morfax: Morfax) -> None:
     assert "is for tapes" in morfax("play", bracket, "--acceleration", "3000").fault
     assert (
@@ -49,6 +56,9 @@ def test_what_is_for_another_control_is_refused(bracket: Path, morfax: Morfax) -
     assert (
         "is for programs of lines and arcs"
         in morfax("play", "bracket.wav", "--norm", "true").fault
+    )
+    assert (
+        "is for programs of lines and arcs" in morfax("play", "bracket.wav", "--historic").fault
     )
     assert "an override of 3 is none" in morfax("play", bracket, "--feed-override", "3").fault
 

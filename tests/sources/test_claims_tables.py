@@ -1,4 +1,4 @@
-"""The claims tables name files that are there."""
+"""The claims tables name files and tests that are there, and lines that can be broken."""
 
 from __future__ import annotations
 
@@ -7,8 +7,17 @@ from pathlib import Path
 
 import pytest
 
+from tests.broken_lines import broken_lines
+from tests.broken_lines import test_file as file_of_tests
+
 ROOT = Path(__file__).parents[2]
 TABLES = sorted(path.name for path in (ROOT / "docs" / "background").glob("claims-*.md"))
+BROKEN = ["pratt-whitney"]
+
+
+def table_of(name: str) -> str:
+    """The text of a table."""
+    return (ROOT / "docs" / "background" / name).read_text(encoding="utf-8")
 
 
 def test_each_patent_has_a_table() -> None:
@@ -17,7 +26,17 @@ def test_each_patent_has_a_table() -> None:
 
 @pytest.mark.parametrize("table", TABLES)
 def test_every_file_that_a_table_names_is_there(table: str) -> None:
-    named = re.findall(
-        r"`([\w/]+\.py)`", (ROOT / "docs" / "background" / table).read_text(encoding="utf-8")
-    )
+    named = re.findall(r"`([\w/]+\.py)`", table_of(table))
     assert named and [name for name in named if not (ROOT / name).is_file()] == []
+
+
+@pytest.mark.parametrize("patent", BROKEN)
+def test_every_claim_has_a_test_and_a_line_that_can_be_broken(patent: str) -> None:
+    text = table_of(f"claims-{patent}.md")
+    tests = (ROOT / file_of_tests(text)).read_text(encoding="utf-8")
+    rows = [line for line in text.splitlines() if re.match(r"\| \d+ \|", line)]
+    broken = broken_lines(patent)
+    assert len(broken) == len(rows) == len({line.claim for line in broken})
+    for line in broken:
+        assert f"def {line.test}(" in tests
+        assert line.mutant().new != line.before

@@ -178,13 +178,13 @@ def test_the_unit_circuit_is_right_for_every_lag_of_its_range(
     position: int, behind: int
 ) -> None:
     command = position + behind
-    assert unit_circuit(position, command & 31) == command
-    assert lag(position, command & 31) == behind
+    assert unit_circuit(position, command & 31, 5) == command
+    assert lag(position, command & 31, 5) == behind
 
 
 @pytest.mark.parametrize("behind", [-16, 17, 24, -24])  # 24: the text's own example
 def test_and_wrong_beyond(behind: int) -> None:
-    assert unit_circuit(99_999, (99_999 + behind) & 31) != 99_999 + behind
+    assert unit_circuit(99_999, (99_999 + behind) & 31, 5) != 99_999 + behind
 
 
 def test_a_lag_out_of_range_is_a_fault_and_not_a_wrong_position() -> None:
