@@ -39,7 +39,13 @@ from morfax.player.gcode.pulse_servo import (
     unit_circuit,
 )
 from morfax.player.gcode.pulses import HISTORIC_CONTROL
-from morfax.player.gcode.residues import CLOCKWISE, COUNTER_CLOCKWISE, LINE, Feed, ResidueInterpolator
+from morfax.player.gcode.residues import (
+    CLOCKWISE,
+    COUNTER_CLOCKWISE,
+    LINE,
+    Feed,
+    ResidueInterpolator,
+)
 from tests.console.conftest import Morfax
 from tests.sources.pulse_registers import Block, played, read
 
@@ -337,14 +343,18 @@ def test_claims_7_and_8_the_speed_of_each_part_is_its_error_over_the_largest_and
 
 
 def test_claim_9_the_largest_error_is_found_whichever_axis_has_it() -> None:
-    runs = [ResidueInterpolator().line(tuple(np.roll([900, 300, 100], k)), ALWAYS) for k in range(3)]
+    runs = [
+        ResidueInterpolator().line(tuple(np.roll([900, 300, 100], k)), ALWAYS) for k in range(3)
+    ]
     for k, run in enumerate(runs):
         assert (np.roll(run, -k, axis=1) == runs[0]).all()
 
 
 def test_claim_10_the_constant_is_added_to_the_largest_error() -> None:
     for constant in (1, 7, 60):
-        block = read(ResidueInterpolator(servo_constant=constant), (100, -40, 0), Feed(gate_period=4))
+        block = read(
+            ResidueInterpolator(servo_constant=constant), (100, -40, 0), Feed(gate_period=4)
+        )
         closed = ~block.was_open & (block.error[:, 0] != 0)
         changed = np.abs(np.diff(block.residue[:, 0]))[closed]
         assert (changed == constant + np.abs(block.error).max(axis=1)[closed]).all()
@@ -391,7 +401,9 @@ def test_claim_14_the_sum_added_twice_with_one_sign_is_found() -> None:
 
 
 def test_claim_15_a_count_of_feed_pulses_lets_the_interpolators_run() -> None:
-    pulses = ResidueInterpolator().line((4_000, 0, 0), Feed(feed_number(6_000, RECIRCULATIONS_HZ)))
+    pulses = ResidueInterpolator().line(
+        (4_000, 0, 0), Feed(feed_number(6_000, RECIRCULATIONS_HZ))
+    )
     first = int(np.flatnonzero(pulses[:, 0])[0])
     fed = count_feed(first + 1, feed_number(6_000, RECIRCULATIONS_HZ), override_number(1.0))
     # nothing moves before the count has reached stage 6
