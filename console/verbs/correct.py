@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 
 EXAMPLES = """\b
 Examples:
-  morfax correct scan.png --bridge "812px,1004px 850px,1010px" --why "the pen skipped"
-  morfax correct scan.png --rub 40mm,62mm --rubber 3mm
+  morfax correct scan.png --rub 40mm,62mm --rubber 3mm --why coffee
   morfax correct scan.png --turn straight 512px,300px
+  morfax correct scan.png --not-stop 300px,220px
   morfax correct scan.png --undo
 """
 
@@ -44,8 +44,8 @@ def _placed(name: str, text: str, kind: Any = CORRECTED) -> Decorator:
 )
 @_placed(
     "--bridge",
-    "Draw ink from place to place, in quotes; one place is a dot. From line to line the stroke is as wide "
-    "and dark as they are, and leaves them in their own direction.",
+    "Draw ink from place to place, in quotes: '812px,1004px 850px,1010px'; one place is a dot. From line to "
+    "line the stroke is as wide and dark as they are, and leaves them in their own direction.",
     CORRECTED_ALONG,
 )
 @option(
@@ -122,12 +122,13 @@ def _placed(name: str, text: str, kind: Any = CORRECTED) -> Decorator:
 @drawing_options("drawing")
 @desk_options
 def command(drawing: DrawingFile, desk: Desk, listed: bool, undo: int, **options: Any) -> None:
-    """Put right what the head got wrong on a drawing; trace, run, lines and compare use it from then on.
+    """Put right what the head got wrong: rub out, bridge, turn, stop.
 
-    The corrections are kept beside the drawing, in its name with .morfax.toml (--corrections: in another
-    file), a text that may be edited. Places are X,Y: with px columns from the left and rows from the top of
-    the picture, as picture viewers show; in mm from the sheet's lower-left corner. Without anything to do the
-    corrections are listed. Ink is rubbed out and drawn in the order of the file.
+    trace, run, lines and compare of the drawing use the corrections from then on. They are kept beside it, in
+    its name with .morfax.toml (--corrections: in another file), a text that may be edited. Places are X,Y:
+    with px columns from the left and rows from the top of the picture, as picture viewers show; in mm from
+    the sheet's lower-left corner. Without anything to do the corrections are listed. Ink is rubbed out and
+    drawn in the order of the file.
     """
     remove = options.pop("remove")
     add = () if listed else _corrections(options)

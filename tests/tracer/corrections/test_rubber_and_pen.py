@@ -51,7 +51,7 @@ def test_an_area_is_rubbed_out_to_its_edges() -> None:
     gone_mm2 = (drawing.darkness - rubbed.darkness).sum() * drawing.pitch_mm**2
     # two lines: half of a column's ink is the lower one's
     across_mm = drawing.darkness[:, round(8 / drawing.pitch_mm)].sum() * drawing.pitch_mm / 2
-    a_pixel_mm2 = drawing.pitch_mm * across_mm
+    a_pixel_mm2 = float(drawing.pitch_mm * across_mm)
     assert gone_mm2 == pytest.approx(10 * across_mm, abs=2 * a_pixel_mm2)  # one at each edge
 
 
