@@ -32,6 +32,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.faults import DrawingFault
 from morfax.tracer.drawing import inks, paper, raster
+from morfax.tracer.drawing.border import without_border
 from morfax.tracer.drawing.components import Patches, runs_of, strips
 from morfax.tracer.drawing.scale import Scale
 from morfax.tracer.drawing.scan import Grey, Scan
@@ -141,6 +142,9 @@ class Drawing:
                 notes=notes,
             )
         darkness, shapes = levelled(grey, pitch[0])
+        edges = without_border(darkness)
+        if edges:
+            notes = (*notes, _border_note(edges))
         return cls(darkness, pitch[0], scan.file, shapes=shapes, notes=notes)
 
 
@@ -160,6 +164,15 @@ def levelled(grey: Grey, pitch_mm: float) -> tuple[Darkness, Shapes]:
     ink = _ink_contrast(contrast, pitch_mm)
     contrast /= np.float32(ink)
     return contrast, level.shapes(ink)
+
+
+def _border_note(edges: tuple[str, ...]) -> str:
+    """What the operator should know of a border that was left out."""
+    which = f"{', '.join(edges)} edge" + ("s" if len(edges) > 1 else "")
+    return (
+        f"the ink along the {which} of the picture is its border, and is left out; if it is a line of the "
+        "drawing, give the picture a margin of paper"
+    )
 
 
 def _ink_contrast(contrast: Darkness, pitch_mm: float) -> float:
