@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from pathlib import Path as FilePath
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from morfax.jobs import files as medium
 from morfax.jobs import outlines
@@ -45,6 +45,9 @@ class RecordJob:
     unit: RecordingUnit = field(default_factory=RecordingUnit)
     drawn_unit: str | None = None  # of a drawing from CAD; None: the file's own
     zero: Zero = "sheet"  # of the program; sheet: the source's own zero
+    orders: Literal["differences", "counts"] | None = (
+        None  # of a step program; None: differences
+    )
 
     def run(self, listener: Listener = SILENT, panel: Panel | None = None) -> RecordResult:
         """Record; raises WrongUse and every fault."""
@@ -88,8 +91,13 @@ class RecordJob:
 
     def _recorder_settings(self, program: FilePath) -> dict[str, Any]:
         """Settings as the recorder of this medium takes them."""
+        steps = {} if self.orders is None else {"orders": self.orders}
+        if steps and program.suffix.lower() != ".steps":
+            raise WrongUse(
+                "--orders is for step programs, .steps; give -o such a name, or leave it out"
+            )
         if not medium.is_tape(program):
-            return self.unit.made_from(self.source.name).program_settings(program)
+            return steps | self.unit.made_from(self.source.name).program_settings(program)
         try:
             fmt = self.unit.tape_format(
                 reference_hz=self.reference_hz, cycles_per_mm=self.cycles_per_mm

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path as FilePath
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import click
 
@@ -70,6 +70,13 @@ Examples:
     help="The zero of the program: sheet (the source's own), lower-left or centre (of what is run with the "
     "tool in the work, leads aside), or a place X,Y of the source in mm.",
 )
+@option(
+    "Program",
+    "--orders",
+    type=click.Choice(["differences", "counts"]),
+    help="Orders of a .steps program: differences of the counts (5 to 8 holes a row), or the counts "
+    "themselves (13), of which a wrong hole spoils one row only.  [default: differences]",
+)
 @DRAWN_UNIT
 @unit_options
 @desk_options
@@ -82,6 +89,7 @@ def command(
     unit: RecordingUnit,
     drawn_unit: str | None,
     zero: Zero,
+    orders: Literal["differences", "counts"] | None,
     desk: Desk,
 ) -> None:
     """Record a path file, or another program, in the medium that the name after -o says.
@@ -100,5 +108,6 @@ def command(
         unit,
         drawn_unit,
         zero,
+        orders,
     )
     desk.figures(job.run(desk).figures)

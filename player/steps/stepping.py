@@ -11,6 +11,9 @@ to the interval.
            bit 5 = 0: ring memory (figure 9)    ─┴─► UP, DOWN ─► counters ─► gates ─► pulses ─┬─► motors
                                                                                          └──► monitor
 
+Where the orders are the counts themselves (claim 8), each row sets the counters; a tape whose counts differ
+by more than one is refused before anything moves.
+
 The counters go up or down by one, and never above 15 or below 1: no tape of any content can ask a motor for a
 change of more than one rate in an interval. The ring memory has nine inputs, both counts and the direction,
 and gives nothing where the counts are no vector of a ring. The control never learns what the motors did; the
@@ -38,11 +41,18 @@ from morfax.motion.faults import ProgramFault
 from morfax.motion.motion import AXES, Motion
 from morfax.player.monitor.monitor import FollowingLimit, Supervised
 from morfax.player.steps.motor import SOUND, Motor, Motors
-from morfax.recorder.steps.file import TICKS, StepFormat, StepProgram, read_program
+from morfax.recorder.steps.file import (
+    HIGHEST,
+    LOWEST,
+    STANDSTILL,
+    TICKS,
+    StepFormat,
+    StepProgram,
+    read_program,
+)
 from morfax.recorder.steps.rings import RINGS
 from morfax.recorder.textfile import note_of_no_sum
 
-STANDSTILL, LOWEST, HIGHEST = 8, 1, 15  # counts
 UP_X, DOWN_X, UP_Y, DOWN_Y = 1, 2, 4, 8  # outputs of the ring memory
 MEMORY_ENTRIES = 512  # four bits of each count, and the direction
 SAMPLES_PER_INTERVAL = 8  # of the motion: 1280 Hz at the usual oscillator
@@ -123,6 +133,7 @@ class StepPlayback(Supervised):
         self.notes = () if program.summed else (note_of_no_sum(name),)
         _check_motor(name, program.format, motor)
         self.counts, self._rows = decode(program)
+        self._check_counts()
         self.pulses = pulses_of(self.counts, program.format.rates)
         self.start_mm: Array = np.array(program.format.start_mm)
         self.end_mm: Array = self.start_mm.copy()
@@ -141,8 +152,8 @@ class StepPlayback(Supervised):
 
     @property
     def tool_changes(self) -> list[ToolChange]:
-        """The changes of bit 8, from the first interval on."""
-        down = (self._program.rows[self._rows] & 0x80) != 0
+        """The changes of the tool's hole, from the first interval on."""
+        down = (self._program.rows[self._rows] & self.format.tool_bit) != 0
         at = np.flatnonzero(np.diff(down, prepend=False)).tolist()
         return [ToolChange(k * self.format.interval_s, bool(down[k])) for k in at]
 
@@ -173,6 +184,19 @@ class StepPlayback(Supervised):
             if rows < len(places_mm):
                 raise monitor.warnings[-1]
         self.end_error_mm = self.end_mm - np.array(fmt.end_mm)
+
+    def _check_counts(self) -> None:
+        """Raise ProgramFault for a count that is none, or is further than one from the count before."""
+        counts = self.counts.astype(np.int64)
+        change = np.abs(np.diff(counts, axis=0, prepend=STANDSTILL))
+        bad = np.flatnonzero(((counts < LOWEST) + (change > 1)).any(axis=1))
+        if len(bad):
+            line = self._line(int(bad[0]))
+            raise ProgramFault(
+                f"{self._name}{_place(line)}: counts {counts[bad[0]].tolist()}; they must be {LOWEST} to "
+                f"{HIGHEST}, one more or less than before at most: copy it again or record it again",
+                line=line,
+            )
 
     def _check(self, travel_mm: float) -> None:
         """Raise ProgramFault for a program that leaves the travel, ends at speed, or misses its end."""
@@ -261,6 +285,11 @@ def _decode(rows, vectors, has_z, memory, counts, source):  # type: ignore[no-un
     k = 0
     for row in range(len(rows)):
         code = rows[row]
+        if vectors == 0:  # the order is the count itself: the counters are set
+            counts[k, 0], counts[k, 1], counts[k, 2] = code & 15, code >> 4 & 15, code >> 8 & 15
+            source[k] = row
+            k += 1
+            continue
         if has_z:
             z = _counted(z, code >> 5 & 1, code >> 6 & 1)
         if code >> 4 & 1:  # axis extension: figure 4, once for each axis

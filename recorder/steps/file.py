@@ -15,12 +15,13 @@
     end crc32 8f3a09c1     check sum of all lines before (see textfile.py)
 
 `rates` are the pulses of an interval for each count from the middle; `vectors` the vector commands in one row
-(1 as in figure 6, 2 as in figure 11); `rows` counts repeated rows each time. Blank lines and lines that begin
+(1 as in figure 6, 2 as in figure 11; 0: the orders are the counts themselves, in 13 channels, claim 8); `rows` counts repeated rows each time. Blank lines and lines that begin
 with # are passed over.
 
 Source: patent ES 443122, figures 3, 6 and 11; page 23 (a succession of like commands may be stored shorter,
 further bits may command a tool). Questions: the patent has five channels, for two axes. Bits 7 and 6 are the
-Z counter's here, in the code of figure 3, and bit 8 says that the tool is in the work. What a program starts
+Z counter's here, in the code of figure 3, and bit 8 says that the tool is in the work. Of 13 channels the
+first four hold the count of X, the next those of Y and Z, and the last the tool. What a program starts
 from and how large its steps are was set at the machine; here the file says it.
 """
 
@@ -41,10 +42,11 @@ VERSION = 1
 KIND = "steps"
 STEP_MM = 0.01  # chosen here; the patent gives no size of a step
 TICKS = 64  # oscillator pulses in an interval
+STANDSTILL, LOWEST, HIGHEST = 8, 1, 15  # counts of an axis
 MOST_ROWS = 2_000_000  # three and a half hours at 160 rows/s
 _MOST_MM = 1e6  # of a place in the header: a km
 
-Rows = NDArray[np.uint8]
+Rows = NDArray[np.uint16]
 _ROW = re.compile(r"([o.]+)(?:\s+x\s*(\d{1,9}))?")
 
 
@@ -70,8 +72,15 @@ class StepFormat:
         )
         good = len(self.rates) == 7 and all(0 < n <= TICKS for n in self.rates)
         demand(good, "rates", self.rates, f"7 whole numbers of pulses from 1 to {TICKS}")
-        demand(self.vectors in (1, 2), "vectors", self.vectors, "1 (figure 6) or 2 (figure 11)")
-        demand(self.channels in (5, 8), "channels", self.channels, "5 or 8")
+        demand(
+            self.vectors in (0, 1, 2),
+            "vectors",
+            self.vectors,
+            "1 (figure 6) or 2 (figure 11), or 0 (counts)",
+        )
+        allowed = (5, 8) if self.vectors else (13,)
+        said = "5 or 8" if self.vectors else "13 for counts"
+        demand(self.channels in allowed, "channels", self.channels, said)
         for name in ("start_mm", "end_mm"):
             place = getattr(self, name)
             demand(
@@ -80,6 +89,16 @@ class StepFormat:
                 place,
                 "three numbers of mm",
             )
+
+    @property
+    def holds_counts(self) -> bool:
+        """Whether an order is the count itself, and not the difference from the one before."""
+        return self.vectors == 0
+
+    @property
+    def tool_bit(self) -> int:
+        """The hole that says that the tool is in the work: the last channel; none of five channels."""
+        return 1 << self.channels - 1 if self.channels > 5 else 0
 
     @property
     def interval_s(self) -> float:
@@ -102,7 +121,7 @@ class StepFormat:
 
 @dataclass(frozen=True, slots=True)
 class StepProgram:
-    """A step program: format, rows as bytes (bit 1 the lowest), the line of the file of each row.
+    """A step program: format, rows as words (bit 1 the lowest), the line of the file of each row.
 
     `summed` says whether the file has a check sum.
     """
@@ -199,5 +218,5 @@ def _read_rows(lines: Lines, fmt: StepFormat, count: int) -> StepProgram:
         if total > count:
             raise lines.fault(f"more than the {count} rows stated")
     lines.check_whole(total, count, "rows")
-    rows = np.repeat(np.array(codes, np.uint8), times)
+    rows = np.repeat(np.array(codes, np.uint16), times)
     return StepProgram(fmt, rows, np.repeat(np.array(places, np.int64), times), lines.summed)

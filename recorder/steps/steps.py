@@ -12,6 +12,9 @@ two bits for both.
 With two vector commands in a row (figure 11) a vector row lasts two intervals, an axis row one. What is left
 over of a run of vectors is punched as an axis row, which every change can be.
 
+Instead, the orders may be the counts themselves, four bits an axis (claim 8): a tape nearly twice as large, on
+which a wrong hole spoils one interval and not all that follow.
+
 Source: patent ES 443122, figures 1, 3, 6 and 11. Questions: which bit of a pair is printed first the figures
 leave open; "01" is read as the higher bit 0, the lower bit
 1. In a row with two vector commands the Z bits hold for the first interval, and the recorder pairs no
@@ -36,7 +39,9 @@ from morfax.motion.segments import Limits, Segment, Source, as_path, segments
 from morfax.recorder.report import WrittenIntervals
 from morfax.recorder.steps.file import (
     MOST_ROWS,
+    STANDSTILL,
     STEP_MM,
+    Rows,
     StepFormat,
     StepProgram,
     write_program,
@@ -45,6 +50,11 @@ from morfax.recorder.steps.lengths import cut
 from morfax.recorder.steps.rings import LARGEST, SAME, commands
 
 AXIS_ROW, TOOL_DOWN = 0b0001_0000, 0b1000_0000
+# how the orders are punched: entries of the format
+ORDERS: dict[str, dict[str, Any]] = {
+    "differences": {"vectors": 2, "channels": 8},
+    "counts": {"vectors": 0, "channels": 13},
+}
 _UP_DOWN_SAME = {0: 0b00, 1: 0b01, -1: 0b10}
 _SLOWER = (1.0, 0.7, 0.5, 0.3)  # shares of the speed that are tried in turn
 _MARGIN = 0.98  # of the largest rate, so that the fractions of a step find room
@@ -79,8 +89,11 @@ def record_steps(
     *,
     tolerance_mm: float | None = None,
     fmt: StepFormat | None = None,
+    orders: str = "differences",
 ) -> StepReport:
     """Record a motion as a step program within a tolerance of it, by default one step.
+
+    `orders`, where no format is given: differences of the counts, or the counts themselves.
 
     Without a format the step is the tolerance. Raises MotionFault for a motion that is empty, or cannot be
     had within the tolerance; nothing is left under the name then.
@@ -89,7 +102,7 @@ def record_steps(
         raise ValueError(
             f"a tolerance of {tolerance_mm} mm leaves no room; give one above zero"
         )
-    fmt = fmt or StepFormat(step_mm=min(tolerance_mm or STEP_MM, 1.0))
+    fmt = fmt or StepFormat(step_mm=min(tolerance_mm or STEP_MM, 1.0), **ORDERS[orders])
     path = as_path(stream)
     tolerance_mm = tolerance_mm or fmt.step_mm
     lengths, down, off_mm = _within(tolerance_mm, path, fmt)
@@ -104,12 +117,13 @@ def record_steps(
             f"the program has {len(rows)} rows; at most {MOST_ROWS} are allowed: record it in parts"
         )
     write_program(StepProgram(fmt, rows), file)
-    vectors = len(lengths) - int(np.count_nonzero(rows & AXIS_ROW))
+    axis_rows = len(rows) if fmt.holds_counts else int(np.count_nonzero(rows & AXIS_ROW))
+    vectors = len(lengths) - axis_rows
     steps = int(np.abs(lengths).sum())
     return StepReport(FilePath(file), fmt, len(lengths), off_mm, len(rows), vectors, steps)
 
 
-def encode(lengths: Steps, down: NDArray[np.bool_], fmt: StepFormat) -> NDArray[np.uint8]:
+def encode(lengths: Steps, down: NDArray[np.bool_], fmt: StepFormat) -> Rows:
     """The rows for steps (k, 3) of the intervals, the first after standstill; raises ValueError.
 
     A program of five channels holds X and Y only.
@@ -121,7 +135,10 @@ def encode(lengths: Steps, down: NDArray[np.bool_], fmt: StepFormat) -> NDArray[
         )
     if fmt.channels == 5 and changes[:, 2].any():
         raise ValueError("the motion moves Z, and five channels hold X and Y only; take eight")
-    return np.array(list(_rows(lengths, changes, down, fmt)), np.uint8) & (2**fmt.channels - 1)
+    if fmt.holds_counts:
+        counts = lengths + STANDSTILL
+        return np.asarray(counts @ [1, 16, 256] + fmt.tool_bit * down, np.uint16)
+    return np.array(list(_rows(lengths, changes, down, fmt)), np.uint16) & (2**fmt.channels - 1)
 
 
 def _rows(

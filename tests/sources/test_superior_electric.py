@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -22,9 +21,16 @@ from morfax.player.steps.stepping import (
     ring_memory,
     tick_table,
 )
-from morfax.recorder.steps.file import StepFormat, StepProgram, write_program
+from morfax.recorder.steps.file import (
+    TICKS,
+    StepFormat,
+    StepProgram,
+    read_program,
+    write_program,
+)
 from morfax.recorder.steps.rings import RINGS
 from morfax.recorder.steps.steps import encode
+from tests.console.conftest import SAMPLES, Morfax
 
 Vectors = Callable[[str], Any]
 
@@ -37,7 +43,7 @@ INTO_RING_OF_SIX = [X_UP] * 6  # to (6, 0)
 def program(rows: list[int], **fmt: Any) -> StepProgram:
     """Rows of a tape of five channels, one vector command in each unless told otherwise."""
     return StepProgram(
-        StepFormat(**{"vectors": 1, "channels": 5, **fmt}), np.array(rows, np.uint8)
+        StepFormat(**{"vectors": 1, "channels": 5, **fmt}), np.array(rows, np.uint16)
     )
 
 
@@ -46,7 +52,7 @@ def counts(rows: list[int], **fmt: Any) -> list[list[int]]:
     return [count[:2] for count in decode(program(rows, **fmt))[0].tolist()]
 
 
-def pulses(rows: list[int], **fmt: Any) -> list[list[int]]:
+def pulses_in(rows: list[int], **fmt: Any) -> list[list[int]]:
     """Pulses to X and Y in each interval."""
     tape = program(rows, **fmt)
     return [steps[:2] for steps in pulses_of(decode(tape)[0], tape.format.rates).tolist()]
@@ -59,9 +65,12 @@ def test_figures_7_and_8_give_the_printed_counts_in_all_15_intervals(vectors: Ve
     orders = vectors("se_fig8")["orders"]
     rows = [int(order["tape5"], 2) for order in orders]
     assert len(orders) == 15
+    assert [order["mode"] for order in orders] == [
+        "axis" if row & 0b10000 else "vec" for row in rows
+    ]
     assert counts(rows) == [[order["count_x"], order["count_y"]] for order in orders]
-    assert pulses(rows) == [[order["steps_x"], order["steps_y"]] for order in orders]
-    assert np.cumsum(pulses(rows), axis=0).tolist() == [
+    assert pulses_in(rows) == [[order["steps_x"], order["steps_y"]] for order in orders]
+    assert np.cumsum(pulses_in(rows), axis=0).tolist() == [
         [order["sum_x"], order["sum_y"]] for order in orders
     ]
 
@@ -71,9 +80,9 @@ def test_figure_8_ends_at_53_and_minus_9_after_93_75_ms(
 ) -> None:
     rows = [int(order["tape5"], 2) for order in vectors("se_fig8")["orders"]]
     write_program(program(rows, end_mm=(0.53, -0.09, 0)), tmp_path / "fig8.steps")
-    playback = play_steps(tmp_path / "fig8.steps")
-    assert playback.duration_s == pytest.approx(0.09375)
-    assert join(playback).positions_mm[-1] == pytest.approx([0.53, -0.09, 0])
+    motion = join(play_steps(tmp_path / "fig8.steps"))
+    assert motion.times_s[-1] == pytest.approx(0.09375)
+    assert motion.positions_mm[-1] == pytest.approx([0.53, -0.09, 0])
 
 
 def test_the_recorder_punches_figure_8_as_it_is_printed(vectors: Vectors) -> None:
@@ -116,6 +125,9 @@ def test_the_clock_and_the_printed_pulses(vectors: Vectors) -> None:
             fmt.interval_s == pytest.approx(case["interval_s"]) and fmt.rate_hz == case["K_hz"]
         )
         assert fmt.acceleration_steps_s2 == case["accel_steps_s2"]
+        assert case["divide"] == TICKS
+        if "speed_6_steps_in_per_s" in case:  # of 0.001 in
+            assert 6 * fmt.rate_hz * 0.001 == pytest.approx(case["speed_6_steps_in_per_s"])
     for rate, ticks in told["pulse_counts_printed"].items():
         assert list(pulse_ticks(int(rate[0]))) == ticks
     ticks = pulse_ticks(3)
@@ -133,7 +145,7 @@ def test_the_guards_of_figure_4(vectors: Vectors) -> None:
 
 
 def test_claim_1_pulses_at_the_rate_that_the_order_names_until_the_next_order() -> None:
-    assert pulses([X_UP, X_UP, X_DOWN]) == [[1, 0], [2, 0], [1, 0]]
+    assert pulses_in([X_UP, X_UP, X_DOWN]) == [[1, 0], [2, 0], [1, 0]]
     assert (
         len({pulses_of(np.array([[count]], np.int8), LINEAR)[0, 0] for count in range(1, 16)})
         == 15
@@ -173,8 +185,27 @@ def test_claims_6_and_7_each_rate_has_one_count_of_a_counter() -> None:
     assert by_count.tolist() == list(range(-7, 8))
 
 
-def test_claim_8_the_count_itself_can_be_the_order() -> None:
-    assert pulses_of(np.array([[11, 8, 3]], np.int8), LINEAR).tolist() == [[3, 0, -5]]
+def test_claim_8_the_count_itself_can_be_the_order(here: Path, morfax: Morfax) -> None:
+    """A path recorded with counts for orders: what is punched is each count, and it plays as told."""
+    assert morfax("record", SAMPLES / "cam.csv", "-o", "d.steps").exit_code == 0
+    made = morfax(
+        "record", SAMPLES / "cam.csv", "-o", "c.steps", "--orders", "counts", "--json"
+    )
+    with_counts, with_differences = read_program("c.steps"), read_program("d.steps")
+    told, _ = decode(with_differences)
+    assert (decode(with_counts)[0] == told).all()
+    nibbles = with_counts.rows[:, None] >> np.array([0, 4, 8]) & 15
+    assert (nibbles == told).all() and len(np.unique(told)) > 10
+    played = [morfax("play", name, "--json").figures for name in ("c.steps", "d.steps")]
+    assert played[0]["end_place_mm"] == played[1]["end_place_mm"]
+    assert played[0]["duration_s"] == played[1]["duration_s"]
+    assert made.figures["end_place_mm"] == pytest.approx(played[0]["end_place_mm"], abs=0.01)
+
+
+def test_claim_8_a_count_beyond_its_neighbour_is_refused(here: Path, morfax: Morfax) -> None:
+    rows = [0x889, 0x88A, 0x88C, 0x88A, 0x889, 0x888]
+    write_program(program(rows, vectors=0, channels=13), "jump.steps")
+    assert "counts [12, 8, 8]; they must be 1 to 15" in morfax("play", "jump.steps").fault
 
 
 def test_claim_9_the_next_order_is_the_difference_of_the_counts() -> None:
@@ -192,7 +223,7 @@ def test_claim_10_the_choice_is_one_up_one_down_or_the_same() -> None:
 
 
 def test_claim_11_two_axes_run_in_the_same_interval() -> None:
-    assert pulses([0b11001]) == [[1, -1]]
+    assert pulses_in([0b11001]) == [[1, -1]]
 
 
 def test_claim_12_orders_of_both_axes_are_stored_together_and_taken_at_the_end_of_the_pulses(
@@ -207,16 +238,32 @@ def test_claim_12_orders_of_both_axes_are_stored_together_and_taken_at_the_end_o
     )  # all pulses of an order before the next
 
 
-@pytest.mark.parametrize("oscillator_hz", [10240, 7680])
+ALL_RATES = [X_UP] * 7 + [SAME] * 90 + [X_DOWN] * 7
+
+
+def steps_by_time(
+    rows: list[int], interval_s: float, morfax: Morfax, oscillator_hz: float = 10240
+) -> list[int]:
+    """Steps of X that the machine has made in each stretch of that many seconds, by the times of its path."""
+    end_mm = (0.01 * sum(pulses[0] for pulses in pulses_in(rows)), 0, 0)
+    write_program(program(rows, end_mm=end_mm, oscillator_hz=oscillator_hz), "a.steps")
+    assert morfax("play", "a.steps", "--raw", "-o", "a.csv").exit_code == 0
+    t_s, x_mm = np.loadtxt("a.csv", delimiter=",", skiprows=1, usecols=(0, 1)).T
+    made = np.rint(np.diff(x_mm) / 0.01).astype(int)
+    # a step in a sample came before it; half a tick for the rounding of the times
+    stretch = np.ceil((t_s[1:] - interval_s / 128) / interval_s).astype(int) - 1
+    found = np.bincount(stretch, made, minlength=len(rows))
+    return np.rint(found).astype(int).tolist()
+
+
+@pytest.mark.parametrize("clock", [0, 1])
 def test_claim_13_the_interval_is_the_same_for_every_order(
-    tmp_path: Path, oscillator_hz: float
+    vectors: Vectors, clock: int, here: Path, morfax: Morfax
 ) -> None:
-    rows = [X_UP, X_UP, SAME, X_DOWN, X_DOWN]
-    write_program(
-        program(rows, end_mm=(0.06, 0, 0), oscillator_hz=oscillator_hz), tmp_path / "a.steps"
-    )
-    playback = play_steps(tmp_path / "a.steps")
-    assert playback.duration_s == pytest.approx(len(rows) * 64 / oscillator_hz)
+    """By the path's own times: each order's pulses come within its stretch of 1/160 s (1/120 s)."""
+    told = vectors("se_clock")["cases"][clock]
+    found = steps_by_time(ALL_RATES, told["interval_s"], morfax, told["oscillator_hz"])
+    assert found == [*range(1, 8), *[7] * 90, *range(6, -1, -1)]
 
 
 def test_claim_14_each_rate_gives_a_whole_number_of_pulses() -> None:
@@ -225,17 +272,19 @@ def test_claim_14_each_rate_gives_a_whole_number_of_pulses() -> None:
     assert table.dtype == np.int64
 
 
-def test_claim_15_the_rates_differ_by_one_pulse() -> None:
-    assert {b - a for a, b in pairwise(StepFormat().rates)} == {1}
+def test_claim_15_the_rates_differ_by_one_pulse(here: Path, morfax: Morfax) -> None:
+    found = steps_by_time(ALL_RATES, 1 / 160, morfax)
+    assert np.diff([0, *found[:7]]).tolist() == [1] * 7  # each rate gives one pulse more
+    assert np.diff(found[-8:]).tolist() == [-1] * 7
 
 
 def test_claim_16_an_order_of_a_vector_gives_its_extents_on_both_axes() -> None:
-    assert pulses([*INTO_RING_OF_SIX, NEXT, NEXT, NEXT])[-3:] == [[6, -1], [6, -2], [5, -3]]
+    assert pulses_in([*INTO_RING_OF_SIX, NEXT, NEXT, NEXT])[-3:] == [[6, -1], [6, -2], [5, -3]]
 
 
 def test_claim_17_an_order_is_a_difference_of_places_in_the_endless_series() -> None:
     ring = RINGS[6]
-    run = pulses([*INTO_RING_OF_SIX, *[NEXT] * 40])[6:]
+    run = pulses_in([*INTO_RING_OF_SIX, *[NEXT] * 40])[6:]
     assert run == [
         list(ring[(k + 1) % len(ring)]) for k in range(40)
     ]  # past the end it begins again
@@ -243,7 +292,7 @@ def test_claim_17_an_order_is_a_difference_of_places_in_the_endless_series() -> 
 
 def test_claim_18_the_same_vector_the_one_before_or_the_one_after() -> None:
     present = [*INTO_RING_OF_SIX, NEXT]
-    after = [pulses([*present, order])[-1] for order in (PREVIOUS, REPEAT, NEXT, 0b00011)]
+    after = [pulses_in([*present, order])[-1] for order in (PREVIOUS, REPEAT, NEXT, 0b00011)]
     assert after == [[6, 0], [6, -1], [6, -2], [6, -1]]
 
 
@@ -260,33 +309,33 @@ def test_claim_20_no_vector_is_like_any_other() -> None:
 
 
 def test_claim_21_bit_5_tells_a_vector_from_extents() -> None:
-    assert pulses([*INTO_RING_OF_SIX, NEXT])[-1] == [6, -1]
-    assert pulses([*INTO_RING_OF_SIX, NEXT | 0b10000])[-1] == [5, 0]
+    assert pulses_in([*INTO_RING_OF_SIX, NEXT])[-1] == [6, -1]
+    assert pulses_in([*INTO_RING_OF_SIX, NEXT | 0b10000])[-1] == [5, 0]
 
 
 def test_claim_22_a_vector_is_only_taken_where_the_extents_are_one() -> None:
-    assert pulses([X_UP, NEXT, PREVIOUS, REPEAT])[1:] == [[1, 0]] * 3  # (1, 0) is in no ring
-    assert pulses([X_UP, X_UP, NEXT])[-1] == [2, -1]
+    assert pulses_in([X_UP, NEXT, PREVIOUS, REPEAT])[1:] == [[1, 0]] * 3  # (1, 0) is in no ring
+    assert pulses_in([X_UP, X_UP, NEXT])[-1] == [2, -1]
 
 
 @pytest.mark.parametrize("speed", [2, 3, 4, 5, 6, 7])
 def test_claim_23_the_present_vector_tells_the_ring(speed: int) -> None:
-    assert pulses([*[X_UP] * speed, NEXT])[-1] == list(RINGS[speed][1])
-    assert pulses([*[X_UP] * speed, PREVIOUS])[-1] == list(RINGS[speed][-1])
+    assert pulses_in([*[X_UP] * speed, NEXT])[-1] == list(RINGS[speed][1])
+    assert pulses_in([*[X_UP] * speed, PREVIOUS])[-1] == list(RINGS[speed][-1])
 
 
 def test_claim_24_a_second_vector_waits_while_the_first_is_run() -> None:
     """Figure 11: bits 2, 1 are the first vector's, bits 4, 3 the second's; a row lasts two intervals."""
-    both = pulses([*INTO_RING_OF_SIX, NEXT | NEXT << 2, PREVIOUS << 2], vectors=2)
+    both = pulses_in([*INTO_RING_OF_SIX, NEXT | NEXT << 2, PREVIOUS << 2], vectors=2)
     assert both[6:] == [[6, -1], [6, -2], [6, -2], [6, -1]]
 
 
 def test_claim_25_two_bits_for_the_same_a_lower_and_a_higher_speed() -> None:
-    assert pulses([X_UP, X_UP, SAME, X_DOWN]) == [[1, 0], [2, 0], [2, 0], [1, 0]]
+    assert pulses_in([X_UP, X_UP, SAME, X_DOWN]) == [[1, 0], [2, 0], [2, 0], [1, 0]]
 
 
 def test_claim_28_the_difference_is_a_whole_number_of_increments() -> None:
-    steps = np.array(pulses([X_UP, X_UP, X_UP, 0b11001, X_DOWN, 0b10110]))
+    steps = np.array(pulses_in([X_UP, X_UP, X_UP, 0b11001, X_DOWN, 0b10110]))
     assert steps.dtype.kind == "i" and set(np.diff(steps, axis=0).ravel().tolist()) <= {
         -1,
         0,
@@ -296,11 +345,11 @@ def test_claim_28_the_difference_is_a_whole_number_of_increments() -> None:
 
 def test_claims_29_and_32_the_difference_is_one_of_places_in_the_order_of_the_rates() -> None:
     rates = (1, 3, 5, 7, 8, 9, 10)
-    assert [x for x, _ in pulses([X_UP] * 7 + [X_DOWN], rates=rates)] == [*rates, 9]
+    assert [x for x, _ in pulses_in([X_UP] * 7 + [X_DOWN], rates=rates)] == [*rates, 9]
 
 
 def test_claim_30_the_rates_may_differ_by_a_constant_number() -> None:
-    assert [x for x, _ in pulses([X_UP] * 7, rates=(2, 4, 6, 8, 10, 12, 14))] == [
+    assert [x for x, _ in pulses_in([X_UP] * 7, rates=(2, 4, 6, 8, 10, 12, 14))] == [
         2,
         4,
         6,
@@ -312,7 +361,7 @@ def test_claim_30_the_rates_may_differ_by_a_constant_number() -> None:
 
 
 def test_claim_33_the_rates_are_in_the_order_of_their_speed() -> None:
-    faster = [x for x, _ in pulses([X_UP] * 7)]
+    faster = [x for x, _ in pulses_in([X_UP] * 7)]
     assert faster == sorted(faster)
 
 
