@@ -15,8 +15,8 @@
     end crc32 8f3a09c1     check sum of all lines before (see textfile.py)
 
 `rates` are the pulses of an interval for each count from the middle; `vectors` the vector commands in one row
-(1 as in figure 6, 2 as in figure 11; 0: the orders are the counts themselves, in 13 channels, claim 8); `rows` counts repeated rows each time. Blank lines and lines that begin
-with # are passed over.
+(1 as in figure 6, 2 as in figure 11; 0: the orders are the counts themselves, in 13 channels, claim 8);
+`rows` counts repeated rows each time. Blank lines and lines that begin with # are passed over.
 
 Source: patent ES 443122, figures 3, 6 and 11; page 23 (a succession of like commands may be stored shorter,
 further bits may command a tool). Questions: the patent has five channels, for two axes. Bits 7 and 6 are the

@@ -12,8 +12,8 @@ two bits for both.
 With two vector commands in a row (figure 11) a vector row lasts two intervals, an axis row one. What is left
 over of a run of vectors is punched as an axis row, which every change can be.
 
-Instead, the orders may be the counts themselves, four bits an axis (claim 8): a tape nearly twice as large, on
-which a wrong hole spoils one interval and not all that follow.
+Instead, the orders may be the counts themselves, four bits an axis (claim 8): a larger tape, on which a wrong
+hole spoils one interval and not all that follow.
 
 Source: patent ES 443122, figures 1, 3, 6 and 11. Questions: which bit of a pair is printed first the figures
 leave open; "01" is read as the higher bit 0, the lower bit
