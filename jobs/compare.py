@@ -12,7 +12,7 @@ from morfax.jobs.listener import SILENT, Listener
 from morfax.jobs.playing import ByHand, Playing, read_or_play
 from morfax.jobs.settings import DrawingFile
 from morfax.jobs.wrong_use import WrongUse
-from morfax.jobs.zero import Zero, refuse_of_part
+from morfax.jobs.zero import OF_PART, Zero, refuse_of_part, said_by
 
 if TYPE_CHECKING:
     from morfax.jobs.comparison import Comparison
@@ -57,13 +57,13 @@ class CompareJob:
 
     def run(self, listener: Listener = SILENT, panel: Panel | None = None) -> CompareResult:
         """Compare; raises WrongUse and every fault."""
-        refuse_of_part(self.zero)
         drawing_file, files = self._sorted()
         outlines.check_unit(self.drawn_unit, *files)
         if self.picture is not None:
             medium.outgoing(self.picture, self.a.file, self.b)
         if drawing_file is None:
             self._refuse_drawing_options()
+        zero = None if drawing_file is None else self._zero(files[0], listener)
         drawing = None if drawing_file is None else drawing_file.open(listener)
         paths = [
             self._path(file, by_hand, listener)
@@ -72,10 +72,15 @@ class CompareJob:
         if drawing is None:
             found = comparison.from_path(paths[0], paths[1])
         else:
-            paths = [self._on_sheet(drawing, paths[0])]
+            paths = [_on_sheet(drawing, paths[0], zero)]
             radius_mm = (self.cutter_mm or 0.0) / 2
             found = comparison.from_drawing(drawing, paths[0], radius_mm=radius_mm)
-        within = None if self.tolerance_mm is None else found.largest_mm <= self.tolerance_mm
+        if found.is_elsewhere:
+            listener.warning(
+                f"only {100 * found.measured_share:.0f} % of the path lies along the drawing's ink: it is"
+                " placed elsewhere, or is another drawing's; say by --zero X,Y where its zero lies"
+            )
+        within = None if self.tolerance_mm is None else found.is_within(self.tolerance_mm)
         figures: dict[str, Any] = {
             "a": str(self.a.file),
             "b": str(self.b),
@@ -114,12 +119,26 @@ class CompareJob:
         if self.cutter_mm is not None:
             raise WrongUse("--cutter is for a path beside a drawing's line; leave it out")
 
-    def _on_sheet(self, drawing: Drawing, path: Path) -> Path:
-        """The path in the sheet's own coordinates."""
-        if self.zero is None or self.zero == "sheet":
-            return path
-        from morfax.motion.placement import Placement
-        from morfax.tracer.following.start import reference_on
+    def _zero(self, file: FilePath, listener: Listener) -> Zero | None:
+        """Where the path's zero is on the drawing: as asked for, or as the program's own head says it."""
+        is_named = self.zero in OF_PART
+        if self.zero is not None and not is_named:
+            return self.zero
+        said_mm = said_by(file)
+        if said_mm is None:
+            refuse_of_part(self.zero, file)
+            return self.zero
+        x_mm, y_mm = said_mm
+        listener.note(f"{file.name} says that its zero is at {x_mm:g},{y_mm:g} mm of the sheet")
+        return said_mm
 
-        place_mm = reference_on(drawing) if isinstance(self.zero, str) else self.zero
-        return Placement(origin_mm=(-place_mm[0], -place_mm[1])).path(path)
+
+def _on_sheet(drawing: Drawing, path: Path, zero: Zero | None) -> Path:
+    """The path in the sheet's own coordinates."""
+    if zero is None or zero == "sheet":
+        return path
+    from morfax.motion.placement import Placement
+    from morfax.tracer.following.start import reference_on
+
+    place_mm = reference_on(drawing) if isinstance(zero, str) else zero
+    return Placement(origin_mm=(-place_mm[0], -place_mm[1])).path(path)

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from morfax.motion.motion import Path
     from morfax.tracer.drawing.drawing import Drawing
 
+LEAST_SHARE = 0.5  # of a path along ink: corners, crossings and gaps take less; by trial
 SAMPLE_MM = 0.05  # between the points that a picture shows
 
 
@@ -33,6 +34,16 @@ class Comparison:
     points_mm: NDArray[np.float64]
     error_mm: NDArray[np.float64]
     missed: dict[str, Any] | None = None
+    measured_share: float = 1.0  # of the path; the rest has no ink's centre beside it
+
+    @property
+    def is_elsewhere(self) -> bool:
+        """Whether so little of the path lies along ink that its distances say nothing."""
+        return self.measured_share < LEAST_SHARE
+
+    def is_within(self, tolerance_mm: float) -> bool:
+        """Whether no place is further off than a tolerance."""
+        return not self.is_elsewhere and self.largest_mm <= tolerance_mm
 
     @property
     def figures(self) -> dict[str, Any]:
@@ -73,7 +84,12 @@ def from_drawing(
     row["measured_share"] = found.measured_share
     missed = {"missed_ink_mm": found.missed_mm, "missed_ink_share": found.missed_share}
     return Comparison(
-        {f"{name}_to_ink": row}, found.max_mm, found.points_mm, found.error_mm, missed
+        {f"{name}_to_ink": row},
+        found.max_mm,
+        found.points_mm,
+        found.error_mm,
+        missed,
+        found.measured_share,
     )
 
 

@@ -15,6 +15,7 @@ from morfax.jobs import following, outlines
 from morfax.jobs.listener import SILENT, Listener
 from morfax.jobs.passage import Passage
 from morfax.jobs.playing import PIPE, ByHand, Playing
+from morfax.jobs.recording import RecordingUnit
 from morfax.jobs.wrong_use import WrongUse, settings_checked
 
 if TYPE_CHECKING:
@@ -35,6 +36,7 @@ OPTIONS = {
     "feed_override": "--feed-override",
     "historic": "--historic",
 }
+PICTURES = (".png", ".svg", ".pdf")
 FOR_TAPES = {"resume_at_s", "acceleration_mm_s2", "motor", "zero_mm"}
 
 
@@ -85,8 +87,9 @@ class ControlSettings:
 class PlayResult:
     """What a playing gave: figures, names for path and charts, and the fault that ended it early.
 
-    The job has written the path files (.csv). A face draws the others of `paths` from `path`, which is there
-    if pictures are wanted, and writes `charts` from the chart of the following errors and the speeds held.
+    The job has written the path files (.csv) and the programs. A face draws the pictures among `paths` from
+    `path`, which is there if some are wanted, and writes `charts` from the chart of the following errors and
+    the speeds held.
     """
 
     figures: Figures
@@ -103,7 +106,8 @@ class PlayJob:
     """Play a tape or a program on its own control, a drawing from CAD by way of a tape."""
 
     tape: FilePath  # or the pipe
-    outputs: tuple[FilePath, ...] = ()  # for the machine's path: .csv, .svg, .png
+    # for the machine's path: .csv, .svg, .png, or a program or drawing in any other medium
+    outputs: tuple[FilePath, ...] = ()
     charts: tuple[FilePath, ...] = ()  # for the following errors: .csv and pictures
     raw: bool = False
     control: ControlSettings = field(default_factory=ControlSettings)
@@ -143,8 +147,8 @@ class PlayJob:
     def _played(
         self, playing: Playing, listener: Listener
     ) -> tuple[Passage, Playback, Fault | None, Path | None]:
-        """Play and write the path as it comes; keep the whole of it only where a picture wants it."""
-        if not _has_picture(self.outputs):
+        """Play and write the path as it comes; keep the whole of it only for a picture or a program."""
+        if all(file.suffix.lower() in medium.PATHS for file in self.outputs):
             return *playing.into(self.outputs, listener), None
         played = playing.whole(listener)
         from morfax.motion.pathfile import write_path
@@ -152,7 +156,21 @@ class PlayJob:
         for file in _marked(self.outputs, played.fault):
             if file.suffix.lower() in medium.PATHS:
                 write_path(played.path, file)
+            elif not is_picture(file):
+                self._record(played.path, file, listener)
         return Passage.of(played.path), played.playback, played.fault, played.path
+
+    def _record(self, path: Path, file: FilePath, listener: Listener) -> None:
+        """Record the machine's path in the medium that a name says, for the usual machine of that."""
+        from morfax.recorder.gcode.program_head import Made
+
+        unit = RecordingUnit(made=Made(f"{self.tape.name}, played"))
+        unit.record(path.motion(), file, listener)
+
+
+def is_picture(file: FilePath) -> bool:
+    """Whether a file of this name shows a path or a chart, and is not a path file or a program."""
+    return file.suffix.lower() in PICTURES
 
 
 def _marked(files: tuple[FilePath, ...], fault: Fault | None) -> tuple[FilePath, ...]:
@@ -162,7 +180,7 @@ def _marked(files: tuple[FilePath, ...], fault: Fault | None) -> tuple[FilePath,
 
 def _has_picture(files: tuple[FilePath, ...]) -> bool:
     """Whether there is a picture among files for a path or a chart."""
-    return any(file.suffix.lower() not in medium.PATHS for file in files)
+    return any(map(is_picture, files))
 
 
 def _refuse_foreign(tape: FilePath, given: dict[str, Any]) -> None:

@@ -82,19 +82,19 @@ class ByHand:
         from morfax.player.controls import TAPE, control_of
 
         given = self.given()
-        if self.machine is not None:
+        machine = given.pop("machine", None)
+        if machine is not None:
             if not medium.has_machine(file):
                 raise WrongUse(
                     f"--machine is for G-code, {', '.join(medium.BLOCKS)}; {file} is none: leave it out"
                 )
-            chosen(self.machine, program=file)
-            given.pop("machine")
+            chosen(machine, program=file)
         if given and control_of(file) != TAPE:
             raise WrongUse(
                 "--reference-frequency, --cycles-per-mm, --from, --tracks, --still, --alike and --closed are "
                 f"for tapes; {file} is none"
             )
-        return given
+        return given if machine is None else {"machine": machine}
 
 
 @dataclass(frozen=True, slots=True)

@@ -97,7 +97,10 @@ class RecordJob:
                 "--orders is for step programs, .steps; give -o such a name, or leave it out"
             )
         if not medium.is_tape(program):
-            return steps | self.unit.made_from(self.source.name).program_settings(program)
+            from morfax.recorder.gcode.program_head import Made
+
+            unit = replace(self.unit, made=Made(self.source.name))
+            return steps | unit.program_settings(program)
         try:
             fmt = self.unit.tape_format(
                 reference_hz=self.reference_hz, cycles_per_mm=self.cycles_per_mm

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from morfax.motion.motion import Motion
     from morfax.motion.placement import Placement
     from morfax.recorder.gcode.machine import Machine
+    from morfax.recorder.gcode.program_head import Made
     from morfax.recorder.media import Report
     from morfax.recorder.tape.tape import TapeFormat
     from morfax.tracer.cutter.contouring import Milling
@@ -47,10 +48,7 @@ class RecordingUnit:
     turn_rad: float = 0.0
     about_mm: tuple[float, float] | None = None  # None: the start of the motion
     origin_mm: tuple[float, float] = (0.0, 0.0)
-    source: str = (
-        ""  # the drawing's or path's name, and the tool as text: for the head of a program
-    )
-    tool: str = ""
+    made: Made | None = None  # what the head of a program says of its origin
 
     @property
     def placement(self) -> Placement:
@@ -96,10 +94,6 @@ class RecordingUnit:
             values = (f"speed={self.feed_mm_s / 10:.3g}", *values)  # HP-GL's VS, cm/s
         return machining.chosen(self.machine, values, self.rapid_mm_s, program)
 
-    def made_from(self, source: str, tool: str = "") -> RecordingUnit:
-        """The same with what the head of a program says of its source and its tool."""
-        return replace(self, source=source, tool=tool)
-
     def _check_fit(self, program: FilePath | None) -> None:
         """Raise WrongUse for a tolerance or lines only where nothing is fitted."""
         is_exact = program is None or medium.is_tape(program)
@@ -125,10 +119,9 @@ class RecordingUnit:
         if not medium.has_machine(program):
             return fit
         from morfax.recorder.gcode.plan import Feeds
-        from morfax.recorder.gcode.program_head import Made
 
-        feeds, made = Feeds(self.feed_mm_s, self.plunge_mm_s), Made(self.source, self.tool)
-        return {**fit, "machine_name": self.chosen(program), "feeds": feeds, "made": made}
+        feeds = Feeds(self.feed_mm_s, self.plunge_mm_s)
+        return {**fit, "machine_name": self.chosen(program), "feeds": feeds, "made": self.made}
 
     def milling(self, program: FilePath | None) -> Milling | None:
         """The way round in which the machine cuts closed lines, if it asks for one."""

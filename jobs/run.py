@@ -71,8 +71,7 @@ class RunJob:
         drawing = self.drawing.open(listener)
         self._make_folder()
         traced = tracing.trace(drawing, listener)
-        unit = traced.placed(self.unit)
-        unit = unit.made_from(self.drawing.file.name, self.settings.tool.described)
+        unit = traced.placed(self.unit, self.drawing.file.name, self.settings.tool.described)
         program, _ = traced.record(program_file, unit, listener)
         traced_file = traced.write(self.file(".traced.csv"), unit)
         # 2. play

@@ -92,8 +92,7 @@ class TraceJob:
         self, outputs: TraceOutputs, drawing: Drawing, traced: Traced, listener: Listener
     ) -> TraceResult:
         """Write what was traced, also by an equal tracing before this one; raises the recorders' faults."""
-        tool = self.settings.tool
-        unit = traced.placed(self.unit).made_from(self.drawing.file.name, tool.described)
+        unit = traced.placed(self.unit, self.drawing.file.name, self.settings.tool.described)
         written, timed = dict[str, Any](), dict[str, Any]()
         if outputs.program is not None:
             program, report = traced.record(outputs.program, unit, listener)

@@ -5,7 +5,7 @@ When the head loses the line, the files hold what it traced before, with `.incom
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
@@ -76,10 +76,18 @@ class Traced:
         stretches_mm = {f"left {k}": u.place_mm for k, u in enumerate(self.left.stretches, 1)}
         return {**stops_mm, **lines_mm, **stretches_mm}
 
-    def placed(self, unit: RecordingUnit) -> RecordingUnit:
-        """The recording unit with the zero of this program."""
-        about = unit.placement.about(self.path.positions_mm[0])
-        return unit.at(self.zero.origin_mm(about))
+    def placed(self, unit: RecordingUnit, source: str = "", tool: str = "") -> RecordingUnit:
+        """The recording unit with the zero of this program, and with what its head says: the drawing's name
+        and the tool as text, the size of the part, and where the zero is.
+        """
+        from morfax.recorder.gcode.program_head import Made
+
+        start_mm = self.path.positions_mm[0]
+        placed = unit.at(self.zero.origin_mm(unit.placement.about(start_mm)))
+        placement = placed.placement.about(start_mm)
+        zero_mm = zero.on_sheet_mm(self.zero.asked, placement)
+        made = Made(source, tool, self.zero.part_size_mm(placement), zero_mm)
+        return replace(placed, made=made)
 
     def zero_figures(self, unit: RecordingUnit) -> Figures:
         """Where on the sheet the zero of the program is, if it is not the sheet's own."""

@@ -12,11 +12,13 @@ The part is what is cut of the lines themselves: a cutter's path, leads and lead
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.jobs import files as medium
 from morfax.jobs.wrong_use import WrongUse
 
 if TYPE_CHECKING:
@@ -34,7 +36,7 @@ OF_PART = ("lower-left", "centre")
 
 @dataclass(frozen=True, slots=True)
 class ZeroOnSheet:
-    """The zero that is asked for: its place on the sheet, or places (n, 2) mm of the part that has it."""
+    """The zero that is asked for, its place on the sheet, and places (n, 2) mm of the part, if any."""
 
     asked: Zero
     place_mm: Place = (0.0, 0.0)
@@ -48,21 +50,26 @@ class ZeroOnSheet:
         """
         from morfax.tracer.following.start import reference_on
 
-        zero = settings.program.zero
-        if zero == "sheet":
-            return cls(zero)
-        if zero in OF_PART:
-            return cls(zero, part_mm=_part_mm(followed))
-        if not isinstance(zero, str):
-            return cls(zero, zero)
-        given_mm = settings.line.reference_mm
-        return cls(zero, given_mm or followed.reference_mm or reference_on(drawing))
+        zero, place_mm = settings.program.zero, (0.0, 0.0)
+        if zero == "reference":
+            given_mm = settings.line.reference_mm or followed.reference_mm
+            place_mm = given_mm or reference_on(drawing)
+        elif not isinstance(zero, str):
+            place_mm = zero
+        return cls(zero, place_mm, _part_mm(followed))
 
     def origin_mm(self, placement: Placement) -> Place:
         """What a placement about a known point takes off, so that the zero is where it is asked for."""
-        if self.part_mm is None:
+        if self.asked not in OF_PART or self.part_mm is None:
             return self.place_mm
         return on_part_mm(self.asked, placement.places(self.part_mm))
+
+    def part_size_mm(self, placement: Placement) -> Place | None:
+        """Width and height of the part as it is placed, mm; None if it is not known."""
+        if self.part_mm is None:
+            return None
+        width_mm, height_mm = np.ptp(placement.places(self.part_mm), axis=0).tolist()
+        return width_mm, height_mm
 
 
 def _part_mm(trace: Trace) -> NDArray[np.float64]:
@@ -101,16 +108,34 @@ def of_path_mm(zero: Zero, path: Path, placement: Placement) -> Place:
     return on_part_mm(zero, placement.about(path.positions_mm[0]).places(places_mm))
 
 
+def on_sheet_mm(zero: Zero, placement: Placement) -> Place | None:
+    """Where the zero lies, before a placement about a known point; None if that is the sheet's own."""
+    if zero == "sheet":
+        return None
+    x_mm, y_mm = placement.places_back(np.zeros((1, 2)))[0].tolist()
+    return x_mm, y_mm
+
+
 def figures(zero: Zero, placement: Placement) -> Figures:
-    """Where the zero lies, before a placement about a known point; nothing if that is the sheet's own."""
-    x, y = placement.places_back(np.zeros((1, 2)))[0].tolist()
-    return {} if zero == "sheet" else {"zero_place_mm": (x, y)}
+    """Where the zero lies, as a figure."""
+    place_mm = on_sheet_mm(zero, placement)
+    return {} if place_mm is None else {"zero_place_mm": place_mm}
 
 
-def refuse_of_part(zero: Zero | None) -> None:
+def said_by(program: FilePath) -> Place | None:
+    """Where on the sheet the zero of a program of ours is, as its head says; None if it does not say so."""
+    from morfax.player.gcode.rs274 import text_of
+    from morfax.recorder.gcode.program_head import zero_on_sheet_mm
+
+    if not medium.is_gcode(program):
+        return None
+    return zero_on_sheet_mm(text_of(program).splitlines())
+
+
+def refuse_of_part(zero: Zero | None, program: FilePath) -> None:
     """Raise WrongUse for the zero of a part where only the sheet is known."""
     if zero in OF_PART:
         raise WrongUse(
-            f"--zero {zero} is of the part that was cut, which a drawing alone does not say; give the place "
-            "that trace told as zero_place_mm, such as --zero 12.3,45.6"
+            f"--zero {zero} is of the part that was cut, and neither the drawing nor {program.name} says "
+            "where that is; give the place that trace told as zero_place_mm, such as --zero 12.3,45.6"
         )

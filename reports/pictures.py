@@ -108,10 +108,11 @@ def draw_compared(result: CompareResult, names: str, file: FilePath) -> None:
 
 def draw_played(result: PlayResult, name: str) -> None:
     """Draw the machine's path, and write its following errors, where they are asked for."""
-    for file in result.paths:
-        if file.suffix.lower() != ".csv":
-            assert result.path is not None
-            _draw_path(result.path, file, f"{name}, played")
+    from morfax.jobs.play import is_picture
+
+    for file in filter(is_picture, result.paths):
+        assert result.path is not None
+        _draw_path(result.path, file, f"{name}, played")
     for file in result.charts:
         assert result.chart is not None
         title = f"{name}: following error against its limit"

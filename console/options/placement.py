@@ -14,7 +14,7 @@ from morfax.console.options.types import ANGLE, FEED, LENGTH, NUMBER, PLACE
 from morfax.jobs.recording import PICK_UPS, RecordingUnit
 
 GROUP = "Program"
-_OF_THE_JOB = ("origin_mm", "source", "tool")  # no options
+_OF_THE_JOB = ("origin_mm", "made")  # no options
 _NAMES = tuple(field.name for field in fields(RecordingUnit) if field.name not in _OF_THE_JOB)
 
 

@@ -1,7 +1,7 @@
 """The operator's desk: the Listener of a terminal, which also prints the figures of a result.
 
-Figures go to stdout, as text or as JSON; notes, details and progress bars to stderr. A bar shows on a
-terminal only.
+Figures go to stdout, as JSON, or as text unless quiet; notes, details and progress bars to stderr. A bar
+shows on a terminal only.
 """
 
 from __future__ import annotations
@@ -38,8 +38,9 @@ class Desk:
             click.echo(text, err=True)
 
     def figures(self, figures: Figures) -> None:
-        """Print the result on stdout."""
-        click.echo(table.as_json(figures) if self.json else table.as_text(figures))
+        """Print the result on stdout; unless quiet, or where JSON is asked for."""
+        if self.json or not self.quiet:
+            click.echo(table.as_json(figures) if self.json else table.as_text(figures))
 
     def warning(self, text: str) -> None:
         """Say a line on stderr, unless quiet."""

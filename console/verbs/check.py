@@ -124,6 +124,8 @@ def _show(result: CheckResult, picture: FilePath | None, desk: Desk) -> None:
     figures.pop("findings")
     desk.figures(figures)
     findings = sorted(result.checked.findings, key=lambda each: not each.stops)
+    if desk.quiet:
+        findings = [finding for finding in findings if finding.stops]
     for finding in findings[:SHOWN]:
         click.echo(("" if finding.stops else "remark: ") + finding.text)
     if len(findings) > SHOWN:

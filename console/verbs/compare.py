@@ -98,7 +98,8 @@ Examples:
     "--zero",
     type=ZERO,
     help="Where the path's zero is on the drawing: sheet (its lower-left corner), reference (the drawing's "
-    "reference point), or X,Y in mm, as trace told zero_place_mm.  [default: sheet]",
+    "reference point), lower-left or centre (of the part, where G-code of ours says that place at its head), "
+    "or X,Y in mm, as trace told zero_place_mm.  [default: what the program says, or sheet]",
 )
 @DRAWN_UNIT
 @renamed("--origin", "--zero")

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import click
 
 from morfax.console.options.desk import desk_options
 from morfax.console.options.groups import Verb
-
-if TYPE_CHECKING:
-    from morfax.console.terminal.desk import Desk
+from morfax.console.terminal.desk import Desk
 
 EXAMPLES = """\b
 Examples:
@@ -31,7 +27,7 @@ def command(name: str | None, desk: Desk) -> None:
     from morfax.recorder.gcode.machine import as_toml, machine, names
 
     if name is None:
-        desk.figures({each: machine(each).what for each in names()})
+        Desk(json=desk.json).figures({each: machine(each).what for each in names()})
         return
     try:
         click.echo(as_toml(name), nl=False)

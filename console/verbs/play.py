@@ -10,7 +10,7 @@ import click
 
 from morfax.console.options.desk import desk_options
 from morfax.console.options.drawing import DRAWN_UNIT
-from morfax.console.options.files import FILE, PATHS, PICTURES, Result
+from morfax.console.options.files import FILE, PATHS, PICTURES, ProgramPath, Result
 from morfax.console.options.groups import Verb, option, renamed
 from morfax.console.options.tape import FOR_MACHINE, tape_options
 from morfax.console.options.types import NUMBER, PLACES, SHARE, TIME
@@ -35,9 +35,10 @@ Examples:
     "Output",
     "-o",
     "outputs",
-    type=Result(".csv", ".svg", ".png"),
+    type=ProgramPath(".csv", ".svg", ".png"),
     multiple=True,
-    help="Write the machine's path: .csv, .svg (true size) or .png.",
+    help="Write the machine's path: .csv, .svg (true size) or .png; or record it in another medium: a tape "
+    "(.wav), .steps, .cubic, G-code (.ngc), .dxf, .plt.",
 )
 @option(
     "Output",

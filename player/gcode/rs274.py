@@ -103,7 +103,7 @@ class GcodeReader:
     """The modal state of a program, and the moves so far."""
 
     is_whole = False  # whether the end of the file may be the end of the program
-    ending = "M2, M30 or %"
+    ending = "M2, M30 or % (for Marlin, with --machine marlin, anywhere)"
 
     def __init__(self, name: str, start_mm: Sequence[float] | None) -> None:
         self.name, self.number, self.ended = name, 0, False

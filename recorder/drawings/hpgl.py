@@ -69,7 +69,8 @@ def _hpgl(lines: list[CutLine], wanted: Machine) -> str:
     if min(left, low) < -step_mm / 2:
         raise MotionFault(
             f"what is cut reaches to X {left:.2f}, Y {low:.2f} mm, and a plotter begins at 0, 0; "
-            "move the zero with --zero lower-left"
+            "give --zero lower-left, or, where a cutter's path and leads reach beyond the part, a place X,Y "
+            "left of and below all of it; without --zero it is the sheet's corner"
         )
     if max(right, high) > LARGEST_STEP * step_mm:
         raise MotionFault(

@@ -14,9 +14,10 @@ smaller by the cutter's radius than those of the part.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+import re
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import islice, pairwise
 
 import numpy as np
 
@@ -33,18 +34,29 @@ from morfax.recorder.gcode.arc_places import (
 from morfax.recorder.gcode.closing import loop
 from morfax.recorder.gcode.machine import Machine
 from morfax.recorder.gcode.plan import BlockPlan
-from morfax.recorder.gcode.program_text import CUTS, RAPID, WORDS, Block
+from morfax.recorder.gcode.program_text import CUTS, RAPID, WORDS, Block, digits
 
+HEAD_LINES = 10  # among which the head says where the zero is
+SAME_MM = 0.02  # of two sizes that are told in hundredths
+ZERO_LINE = re.compile(r"^[(;] ?zero at (-?[\d.]+),(-?[\d.]+) mm of the sheet")
 SHARP_RAD = math.radians(20)  # between two blocks of a bend it is less; chosen by trial
 STEP = 1e-3  # of a block's way, for its direction
+
+Place2 = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)
 class Made:
-    """What a program is made from: the drawing's or path's name, and the tool, as text; '' not known."""
+    """What a program is made from: the drawing's or path's name, and the tool, as text; '' not known.
+
+    Width and height of the part, mm, and where on the sheet the program's zero is, mm; None: not known, or
+    that of the sheet.
+    """
 
     source: str = ""
     tool: str = ""
+    part_mm: tuple[float, float] | None = None
+    zero_mm: Place2 | None = None
 
 
 def head(
@@ -55,11 +67,14 @@ def head(
     told = [f"for {machine.name}: {machine.what}"]
     told += [f"from {made.source}"] if made.source else []
     told += [f"tool: {made.tool}"] if made.tool else []
+    told += [zero_line(*made.zero_mm)] if made.zero_mm else []
     if not lines:
         return [*told, f"about {seconds:.0f} s, nothing is cut"]
     places = np.vstack([places_along(line) for line in lines])
     x_mm, y_mm = np.ptp(places, axis=0)
     deepest_mm = min(block.place_mm[2] for line in lines for block in line)
+    if made.part_mm is not None and not _same(made.part_mm, (x_mm, y_mm)):
+        told.append(f"part {made.part_mm[0]:.2f} x {made.part_mm[1]:.2f} mm")
     down = f", Z down to {deepest_mm:.2f} mm" if machine.z else ""
     way_mm = sum(
         length_mm(before.place_mm, block) for line in lines for before, block in pairwise(line)
@@ -78,6 +93,23 @@ def head(
             f"smallest inner radius {inner_mm:.2f} mm" if inner_mm else "sharp inner corners"
         )
     return [*told, f"within {planned.deviation_mm:.4f} mm of the traced path"]
+
+
+def zero_line(x_mm: float, y_mm: float) -> str:
+    """The line of the head that says where on the sheet the program's zero is."""
+    return f"zero at {digits(x_mm, 4)},{digits(y_mm, 4)} mm of the sheet"
+
+
+def zero_on_sheet_mm(lines: Iterable[str]) -> Place2 | None:
+    """Where the head of a program says that its zero is on the sheet, mm; None if it does not."""
+    found = (ZERO_LINE.match(line) for line in islice(lines, HEAD_LINES))
+    said = next(filter(None, found), None)
+    return None if said is None else (float(said[1]), float(said[2]))
+
+
+def _same(size_mm: tuple[float, float], other_mm: tuple[float, float]) -> bool:
+    """Whether two sizes are one as they are told."""
+    return all(abs(a - b) < SAME_MM for a, b in zip(size_mm, other_mm, strict=True))
 
 
 def _many(number: int, what: str) -> str:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from morfax.motion.pathfile import read_path
 from tests.console.conftest import SAMPLES, Morfax
 
 BRACKET = (SAMPLES / "bracket.png", "--lines", "all", "-o", "a.csv")
@@ -99,3 +102,41 @@ def test_record_puts_the_zero_where_it_is_asked_for(morfax: Morfax, here: Path) 
     answer = morfax("record", "square.csv", "-o", "b.wav", "--zero", "reference")
     assert answer.exit_code == 2 and "--zero reference is a point on a drawing" in answer.fault
     assert not (here / "b.wav").exists()
+
+
+def test_a_program_says_its_zero_and_the_size_of_the_part_and_compare_takes_them(
+    morfax: Morfax, here: Path
+) -> None:
+    words = (
+        SAMPLES / "bracket.png",
+        "--lines",
+        "contours",
+        "--cutter",
+        "4mm",
+        "--lead-in",
+        "2mm",
+    )
+    answer = morfax("trace", *words, "-o", "a.ngc", "--zero", "lower-left", "--json")
+    assert answer.exit_code == 0, answer.err
+    drawn_mm = read_path(SAMPLES / "bracket.csv").xy_mm  # the sample's own truth
+    head = "\n".join((here / "a.ngc").read_text().split("\n")[:9])
+    place_mm = re.search(r"\(zero at ([\d.]+),([\d.]+) mm of the sheet\)", head)
+    size_mm = re.search(r"\(part ([\d.]+) x ([\d.]+) mm\)", head)
+    assert place_mm and size_mm
+    zero_mm = [float(number) for number in place_mm.groups()]
+    assert zero_mm == pytest.approx(
+        drawn_mm.min(axis=0), abs=0.02
+    )  # as well as the head follows
+    assert zero_mm == pytest.approx(answer.figures["zero_place_mm"], abs=0.0001)
+    assert [float(number) for number in size_mm.groups()] == pytest.approx(
+        np.ptp(drawn_mm, axis=0), abs=0.03
+    )
+    told = (SAMPLES / "bracket.png", "a.ngc", "--cutter", "4mm", "--json")
+    for zero in ((), ("--zero", "lower-left")):
+        compared = morfax("compare", *told, *zero)
+        assert compared.figures["path_to_ink"]["rms_mm"] < 0.015
+        assert "a.ngc says that its zero is at" in compared.err
+    # 7 mm away hardly any of it lies on ink, and what does is no measure
+    far = morfax("compare", *told, "--zero", "sheet", "--tolerance", "5mm")
+    assert far.exit_code == 1 and far.figures["within_tolerance"] is False
+    assert "% of the path lies along the drawing's ink: it is placed elsewhere" in far.err

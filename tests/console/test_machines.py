@@ -191,3 +191,36 @@ def test_what_a_medium_cannot_hold_of_a_card_is_told(
     # of a program the machine's time is stated, of a drawing the head's
     seconds = float(str(answer.figures["duration_s"]))
     assert (seconds > 29) == output.endswith(".dxf")
+
+
+def test_a_machine_that_is_given_reads_the_program_that_is_played(
+    morfax: Morfax, here: Path
+) -> None:
+    """A program of one's own machine, and one of Marlin that ends with its file, need --machine."""
+    mine = as_toml("grbl-pen").replace('"M3 S{down}"', '"M4 S{down}"')
+    (here / "mine.toml").write_text(mine)
+    assert morfax("record", CAM, "-o", "a.nc", "--machine", "mine.toml").exit_code == 0
+    assert "give its file with --machine" in morfax("compare", "a.nc", CAM).fault
+    compared = morfax("compare", "a.nc", CAM, "--machine", "mine.toml", "--json")
+    assert compared.figures["largest_mm"] <= 0.010  # um of what was written
+    moves = ["G0 Z2 F600", "G0 X5 Y5 F3000", "G1 Z-1 F200", "G1 X20 F600", "G0 Z2", "M5"]
+    (here / "b.gcode").write_text("\n".join(["G21", "G90", "M3 S1000", *moves, ""]))
+    assert "for Marlin, with --machine marlin" in morfax("play", "b.gcode").fault
+    played = morfax("play", "b.gcode", "--machine", "marlin", "-o", "b.csv", "--json")
+    assert played.exit_code == 0
+    assert played.figures["end_place_mm"] == pytest.approx([20, 5, 2], abs=0.01)
+
+
+def test_what_was_played_is_recorded_in_another_medium(morfax: Morfax, here: Path) -> None:
+    assert morfax("record", CAM, "-o", "a.ngc").exit_code == 0
+    words = [
+        word for name in ("b.dxf", "b.plt", "b.nc", "b.csv", "b.png") for word in ("-o", name)
+    ]
+    answer = morfax("play", "a.ngc", *words, "--json")
+    assert answer.exit_code == 0, answer.err
+    assert answer.figures["paths"] == words[1::2]
+    assert "from a.ngc, played" in (here / "b.nc").read_text()
+    # um: 10 of what is written, 10 of the servos
+    for name, most_mm in (("b.dxf", 0.020), ("b.nc", 0.020), ("b.plt", 0.040)):
+        assert morfax("compare", name, CAM, "--json").figures["largest_mm"] <= most_mm, name
+    assert "must end in" in morfax("play", "a.ngc", "-o", "b.txt").fault

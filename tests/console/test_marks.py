@@ -58,7 +58,7 @@ def test_where_z_goes_at_a_stop_is_told_in_numbers(morfax: Morfax, here: Path) -
     down, hole, stand = (stop["z_mm"] for stop in traced(morfax, *CARD).figures["stops"])
     assert (down, stand) == ([-5.0], [-5.0])
     assert min(hole) == -8.0 and hole[-1] > 0
-    answer = morfax("trace", PROGRAM, "-o", "program.csv", "--force", "--quiet")
+    answer = morfax("trace", PROGRAM, "-o", "program.csv", "--force")
     assert "-5 mm" in answer.out
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from morfax.console.cli import VERBS
-from tests.console.conftest import Morfax
+from tests.console.conftest import SAMPLES, Morfax
 
 RENAMED = [
     (("trace", "a.png", "--override", "2"), "--stop-override"),
@@ -123,3 +123,15 @@ def test_the_shell_completes_verbs_options_and_choices(
     )
     assert offered in [line.partition(",")[2] for line in done.stdout.splitlines()]
     assert done.stderr == ""
+
+
+def test_quiet_says_only_what_went_wrong(morfax: Morfax, here: Path) -> None:
+    words = ("record", SAMPLES / "cam.csv", "-o", "cam.ngc", "--quiet")
+    answer = morfax(*words)
+    assert (answer.exit_code, answer.out, answer.err) == (0, "", "")
+    assert morfax(*words, "--json").figures["machine"] == "linuxcnc"
+    assert "grbl-router" in morfax("machines", "--quiet").out
+    assert morfax("check", "cam.ngc", "--quiet").out == ""
+    (here / "bad.ngc").write_text((here / "cam.ngc").read_text().replace("M5", "G64 X"))
+    told = morfax("check", "bad.ngc", "--quiet")
+    assert told.exit_code == 1 and told.out.startswith("line ")
