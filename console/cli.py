@@ -34,6 +34,7 @@ VERBS = {
     "age": "Wear a tape as a real recorder and the years do.",
     "check": "Say whether a machine may be started with a program, and what the program does.",
     "sheet": "Make a sheet with marks to print, draw on and photograph.",
+    "devices": "List the sound devices; play a test tone, and show the levels of its tracks.",
     "machines": "List the machines that programs are written for, or print one to change.",
     "demo": "Trace a sample drawing, play the tape, compare, and show what came out.",
 }
@@ -50,6 +51,7 @@ Exit codes:
   7  a motion that cannot be recorded
   8  a file that cannot be read or written
   9  a mistake in the operator's card, or in a file of settings
+ 10  a sound device that is not there, or that left out samples
  70  a mistake in morfax itself
 130  interrupted by Ctrl-C (143: asked to end, 129: the terminal was closed)
 

@@ -9,8 +9,10 @@
     ├── FollowingFault            6      a drive lags more than its speed explains: axis, time, places, limit
     ├── MotionFault               7      no motion to be recorded: axis, time, speed (also a ValueError)
     ├── FileFault                 8      a file that cannot be read or written (also an OSError)
-    └── CardFault                 9      a mistake in a card or a file of settings: line, field
-                                         (also a ValueError)
+    ├── CardFault                 9      a mistake in a card or a file of settings: line, field
+    │                                    (also a ValueError)
+    └── DeviceFault              10      a sound device is not there, or left out samples: device, tape time
+                                         (also an OSError)
 
 A message is one line: what was wrong, the value got, the values allowed, what to do next.
 """
@@ -149,6 +151,16 @@ class CardFault(Fault, ValueError):
     ) -> None:
         super().__init__(message)
         self.line, self.field, self.holds = line, field, holds
+
+
+class DeviceFault(Fault, OSError):
+    """A sound device that is not there, stopped, or left out samples `time_s` into the tape."""
+
+    exit_code = 10
+
+    def __init__(self, message: str, *, device: str = "", time_s: float | None = None) -> None:
+        super().__init__(message)
+        self.device, self.time_s = device, time_s
 
 
 def _unpacked(kind: type[Fault], args: tuple[Any, ...], carried: dict[str, Any]) -> Fault:

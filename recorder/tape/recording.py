@@ -31,7 +31,7 @@ from morfax.motion.files import disk_full_fault, written_beside
 from morfax.motion.motion import AXES, Motion, Path
 from morfax.recorder.report import Written
 from morfax.recorder.sound.riff import make_plain, replace_text
-from morfax.recorder.sound.source import sidecar
+from morfax.recorder.sound.source import Sink, sidecar
 from morfax.recorder.sound.spool import Spool, medium
 from morfax.recorder.tape.carrier import Carrier, Frames
 from morfax.recorder.tape.check_signal import CheckWriter
@@ -50,9 +50,9 @@ _ENTRY_CHARACTERS = 60
 Progress = Callable[[float, float | None], None]
 
 
-@dataclass(frozen=True, slots=True)
-class Recording(Written):
-    """What was recorded: format with start and end, length, and the largest speed of each axis."""
+@dataclass(frozen=True)  # without slots: two bases with slots cannot be joined in Recording
+class LiveRecording:
+    """What was put out: format with start and end, length, and the largest speed of each axis."""
 
     format: TapeFormat
     frames: int
@@ -69,6 +69,11 @@ class Recording(Written):
         return {"largest_speed_mm_s": max(self.largest_speed_mm_s)}
 
 
+@dataclass(frozen=True, slots=True)
+class Recording(LiveRecording, Written):
+    """What was recorded in a file."""
+
+
 def record(
     stream: Iterable[Motion] | Motion | Path,
     file: str | os.PathLike[str],
@@ -83,35 +88,52 @@ def record(
     where a stream does not tell. Raises MotionFault for a motion that is empty, of another rate, not finite
     or too fast, and FileFault; nothing is left under the name then.
     """
+    kind = medium(FilePath(file), sample)
+    with written_beside(file) as beside:
+
+        def spool(begun: TapeFormat) -> Sink:
+            return Spool(
+                beside,
+                begun.sample_rate_hz,
+                begun.tracks,
+                kind,
+                _placeholder(begun),
+                name=FilePath(file),
+            )
+
+        try:
+            done = record_live(stream, spool, fmt, progress)
+        except soundfile.SoundFileError as error:
+            raise disk_full_fault(file) from error
+        _finish(beside, done.format, FilePath(file))
+    return Recording(FilePath(file), done.format, done.frames, done.largest_speed_mm_s)
+
+
+def record_live(
+    stream: Iterable[Motion] | Motion | Path,
+    open_sink: Callable[[TapeFormat], Sink],
+    fmt: TapeFormat | None = None,
+    progress: Progress | None = None,
+) -> LiveRecording:
+    """Record a motion into any sink, which is opened with the format as it is known at the start.
+
+    Raises what `record` raises, and the sink's own faults.
+    """
     if fmt is None:
         stream, axes = _axes_of(stream)
         fmt = TapeFormat(axes=axes, checked=True)
-    kind = medium(FilePath(file), sample)
     blocks = _blocks(stream, fmt)
     first = next(blocks, None)
     if first is None:
         raise MotionFault("the motion is empty; a tape needs at least one position")
     fmt = replace(fmt, start_mm=_place(first[0]), end_mm=None, still=(), alike=())
     tape = _Take(fmt, first[0], progress, _total_s(stream))
-    with written_beside(file) as beside:
-        try:
-            spool = Spool(
-                beside,
-                fmt.sample_rate_hz,
-                fmt.tracks,
-                kind,
-                _placeholder(fmt),
-                name=FilePath(file),
-            )
-            with spool as out:
-                for frames in tape.frames(chain([first], blocks)):
-                    out.put(frames)
-        except soundfile.SoundFileError as error:
-            raise disk_full_fault(file) from error
-        still, alike = tape.own.told(fmt.axes)
-        fmt = replace(fmt, end_mm=_place(tape.last_mm), still=still, alike=alike)
-        _finish(beside, fmt, FilePath(file))
-    return Recording(FilePath(file), fmt, tape.count, tuple(tape.largest_speed_mm_s.tolist()))
+    with open_sink(fmt) as out:
+        for frames in tape.frames(chain([first], blocks)):
+            out.put(frames)
+    still, alike = tape.own.told(fmt.axes)
+    fmt = replace(fmt, end_mm=_place(tape.last_mm), still=still, alike=alike)
+    return LiveRecording(fmt, tape.count, tuple(tape.largest_speed_mm_s.tolist()))
 
 
 class _Take:

@@ -1,0 +1,86 @@
+"""The programme: what stands between two silences of sound that comes from a recorder.
+
+    silence, hiss      carriers on all tracks                     silence, hiss
+    ______________/‾‾‾|‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾\\_______________
+                  0.2 s                                   |   0.5 s
+                      the programme                       |
+
+Signals: frames (n, tracks) of full scale 1 in blocks in; those of the programme out, without a hole. It
+begins 0.2 s after all tracks have come up, when the recorder's own levels and speed have settled, and ends
+40 ms before all tracks fall by 12 dB and stay there for half a second; what is shorter is a dropout, and is
+given out.
+
+Source: our own. Questions: a gap of half a second on all tracks ends the tape; its check signal, or its end,
+then says that it is not whole.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from morfax.motion.arrays import Array
+from morfax.motion.faults import DeviceFault
+from morfax.recorder.sound.source import Frames
+
+WINDOW_S = 0.02  # in which a level is told: 100 cycles of a carrier
+SETTLING = 10  # windows of carriers before the programme begins, 0.2 s: chosen
+GONE = 25  # windows of silence that end it, 0.5 s
+MARGIN = 2  # windows before the silence that are left out: the carriers fade in one of them
+LEAST_LEVEL = 0.005  # RMS of a track that has a carrier, -46 dB of full scale: below lies hiss
+GONE_SHARE = 0.25  # of the level: 12 dB down
+
+
+def between_silences(
+    blocks: Iterator[Frames], rate_hz: int, wait_s: float, name: str
+) -> Iterator[Frames]:
+    """The frames of the programme; raises DeviceFault if no carriers come within `wait_s`."""
+    window = round(WINDOW_S * rate_hz)
+    left: Frames | None = None
+    up, waited, silent = 0, 0, 0
+    level: Array | None = None
+    for block in blocks:
+        # 1. whole windows, and the level of each track in each
+        frames = block if left is None else np.concatenate([left, block])
+        count = len(frames) // window
+        left, begin = frames[count * window :], 0 if level is not None else count
+        rms = _levels(frames[: count * window], window)
+        for at in range(count):
+            if level is None:
+                # 2. wait for the carriers
+                up = up + 1 if (rms[at] > LEAST_LEVEL).all() else 0
+                waited += 1
+                if up > SETTLING:
+                    level, begin = rms[at], at
+                elif waited * WINDOW_S > wait_s:
+                    raise DeviceFault(_nothing(name, wait_s, rms[at]), device=name)
+            else:
+                # 3. until they are gone
+                silent = silent + 1 if (rms[at] < GONE_SHARE * level).all() else 0
+                if silent >= GONE:
+                    yield frames[begin * window : max(at + 1 - GONE - MARGIN, begin) * window]
+                    return
+        # 4. what may be the beginning of the last silence waits for the next block
+        held = 0 if level is None else min(silent + MARGIN, count - begin)
+        silent, end = 0, (count - held) * window
+        out, left = frames[begin * window : end], frames[end:]
+        if len(out):
+            yield out
+    if level is not None and left is not None and len(left):
+        yield left
+
+
+def _levels(frames: Frames, window: int) -> Array:
+    """Root mean square of each track in each window (windows, tracks)."""
+    windows = frames.reshape(-1, window, frames.shape[1]).astype(np.float64)
+    return np.asarray(np.sqrt((windows**2).mean(axis=1)))
+
+
+def _nothing(name: str, wait_s: float, rms: Array) -> str:
+    """What to say when no carriers come: the levels tell which track is silent."""
+    levels = ", ".join(f"{20 * np.log10(max(each, 1e-5)):.0f}" for each in rms * np.sqrt(2))
+    return (
+        f"no tape came from {name} in {wait_s:g} s: its tracks are at {levels} dB of full scale, and a "
+        "carrier is above -43 dB; start the recorder, check cables and levels (morfax devices --meters)"
+    )
