@@ -23,6 +23,7 @@ _DOORS = {
     "InspectJob": "inspect",
     "MendJob": "mend",
     "AgeJob": "age",
+    "DevicesJob": "devices",
     "Listener": "listener",
 }
 

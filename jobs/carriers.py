@@ -67,6 +67,11 @@ def listen(
         ) from None
 
 
+def measured(frames: NDArray[np.float32], rate_hz: float) -> list[CarrierReading]:
+    """The carrier of each track of some frames (n, tracks)."""
+    return _carriers([frames], rate_hz, frames.shape[1])
+
+
 def _carriers(
     blocks: Iterable[NDArray[np.float32]], rate_hz: float, tracks: int
 ) -> list[CarrierReading]:

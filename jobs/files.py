@@ -23,7 +23,7 @@ from morfax.motion.faults import FileFault
 from morfax.motion.files import check_name, check_regular
 
 if TYPE_CHECKING:
-    from morfax.recorder.media import Report
+    pass
 
 Kind = Literal["tape", "program", "drawing", "outline", "path"]
 
@@ -142,14 +142,14 @@ def has_machine(file: FilePath) -> bool:
 
 def called(file: FilePath) -> str:
     """What a result is called in the figures: a tape, a program in another medium, or a drawing."""
-    if is_tape(file):
+    if is_tape(file) or not file.suffix:  # a pipe, a device
         return "tape"
     if file.suffix.lower() in DRAWN:
         return "drawn"
     return "program" if _SUFFIXES.get(file.suffix.lower()) == "program" else "drawn"
 
 
-def recorder_figures(report: Report) -> Figures:
+def recorder_figures(report: object) -> Figures:
     """Figures of a recorder beyond size and time, where it has more."""
     figures: Figures = getattr(report, "figures", {})
     return figures

@@ -39,6 +39,7 @@ class MendJob:
         from morfax.player.tape.mend import mend
 
         medium.outgoing(self.output, self.tape)
+        self.by_hand.refuse_label("mend")
         listener.compiling("the controls", ("motion", "player", "recorder"))
         with listener.progress(f"mending {self.tape.name}", 1.0) as advance:
             mended = mend(

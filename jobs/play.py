@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING, Any, Literal
 from morfax.jobs import files as medium
 from morfax.jobs import following, outlines
 from morfax.jobs.listener import SILENT, Listener
+from morfax.jobs.live import PIPE, Intake
 from morfax.jobs.passage import Passage
-from morfax.jobs.playing import PIPE, ByHand, Playing
+from morfax.jobs.playing import ByHand, Playing
 from morfax.jobs.recording import RecordingUnit
 from morfax.jobs.wrong_use import WrongUse, settings_checked
 
@@ -113,25 +114,27 @@ class PlayJob:
     control: ControlSettings = field(default_factory=ControlSettings)
     by_hand: ByHand = field(default_factory=ByHand)
     drawn_unit: str | None = None  # of a drawing from CAD; None: the file's own
+    intake: Intake = field(default_factory=Intake)  # of the pipe: it may be a device
 
     def run(self, listener: Listener = SILENT, panel: Panel | None = None) -> PlayResult:
         """Play and write; raises WrongUse, and the fault if nothing was played before it."""
         # 1. what is set
         for file in (*self.outputs, *self.charts):
             medium.outgoing(file, self.tape)
-        if str(self.tape) != PIPE:
+        is_live = str(self.tape) == PIPE
+        if not is_live:
             outlines.check_unit(self.drawn_unit, self.tape)
         settings = self.control.for_file(self.tape, self.by_hand)
         chart = following.new_chart(self.raw) if self.charts else None
         # 2. the machine runs
         with settings_checked(), outlines.as_tape(self.tape, self.drawn_unit, listener) as tape:
-            playing = Playing(tape, self.by_hand, self.raw, chart, settings)
+            playing = Playing(tape, self.by_hand, self.raw, chart, settings, self.intake)
             passage, playback, fault, path = self._played(playing, listener)
         # 3. what it ran
         paths, charts = _marked(self.outputs, fault), _marked(self.charts, fault)
         speeds = following.speeds_held(playback) if _has_picture(charts) else None
         figures = {
-            medium.called(self.tape): str(self.tape),
+            medium.called(self.tape): self.intake.called if is_live else str(self.tape),
             "paths": [str(file) for file in paths] or None,
             "following": [str(file) for file in charts] or None,
             **_figures(passage, playback, fault),
@@ -189,7 +192,7 @@ def _refuse_foreign(tape: FilePath, given: dict[str, Any]) -> None:
 
     control, pulses = control_of(tape), CONTROLS[".ngc"]
     if str(tape) == PIPE and given:
-        raise WrongUse(f"{_options(given)} is for files, not for a pipe")
+        raise WrongUse(f"{_options(given)} is for files, not for a pipe or a device")
     if control != TAPE and not given.keys().isdisjoint(FOR_TAPES):
         raise WrongUse(f"{_options(given.keys() & FOR_TAPES)} is for tapes; {tape} is none")
     if control != pulses and "norm" in given:

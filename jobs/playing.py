@@ -6,8 +6,7 @@ fault.
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path as FilePath
@@ -15,6 +14,7 @@ from typing import TYPE_CHECKING, Any, TextIO
 
 from morfax.jobs import files as medium
 from morfax.jobs.listener import Listener, watched
+from morfax.jobs.live import PIPE, Intake
 from morfax.jobs.machining import chosen
 from morfax.jobs.passage import Passage
 from morfax.jobs.wrong_use import WrongUse
@@ -25,9 +25,8 @@ if TYPE_CHECKING:
     from morfax.motion.motion import Motion, Path
     from morfax.player.controls import Playback
     from morfax.player.monitor.chart import Chart
+    from morfax.recorder.sound.source import Source
     from morfax.recorder.tape.tape import Tape
-
-PIPE = "-"  # instead of a file's name: what comes through standard input
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,10 +52,44 @@ class ByHand:
     machine: str | None = (
         None  # that a G-code program is for: a built-in one's name, or a .toml file
     )
+    label: FilePath | None = (
+        None  # a file that says what a text chunk would, or a tape that has one
+    )
 
     def given(self) -> dict[str, Any]:
-        """What was set."""
-        return {name: value for name, value in asdict(self).items() if value is not None}
+        """What was set of the tape itself."""
+        values = asdict(self)
+        del values["label"]
+        return {name: value for name, value in values.items() if value is not None}
+
+    def refuse_label(self, verb: str) -> None:
+        """Raise WrongUse for a label where a verb takes none."""
+        if self.label is not None:
+            raise WrongUse(
+                f"{verb} takes no --label; give --reference-frequency, --cycles-per-mm and --from"
+            )
+
+    def labelled(self) -> str:
+        """What the label says; empty without one. Raises TapeFault, FileFault."""
+        if self.label is None:
+            return ""
+        from morfax.recorder.tape.stated import label_of
+
+        return label_of(self.label)
+
+    def opener(self, file: FilePath) -> Callable[[], Source] | None:
+        """What opens the source of a tape that is more than its file; None: the file says all."""
+        text = self.labelled()
+        if not text:
+            return None
+        from morfax.recorder.sound.source import FileSource
+
+        def opened() -> Source:
+            source = FileSource(file)
+            source.text = text
+            return source
+
+        return opened
 
     def beside(self, files: Sequence[FilePath]) -> list[ByHand]:
         """What is set for each of some files: the machine for G-code alone; WrongUse if there is none."""
@@ -75,7 +108,8 @@ class ByHand:
         given = self.given()
         given.pop("closed", None)
         given.pop("machine", None)
-        return Tape.open(file, **given)
+        opener = self.opener(file)
+        return Tape.open(file, **given) if opener is None else Tape.of(opener(), **given)
 
     def for_file(self, file: FilePath) -> dict[str, Any]:
         """What was set; raises WrongUse where the file is no tape, or no G-code for a machine."""
@@ -89,10 +123,10 @@ class ByHand:
                     f"--machine is for G-code, {', '.join(medium.BLOCKS)}; {file} is none: leave it out"
                 )
             chosen(machine, program=file)
-        if given and control_of(file) != TAPE:
+        if (given or self.label) and control_of(file) != TAPE:
             raise WrongUse(
-                "--reference-frequency, --cycles-per-mm, --from, --tracks, --still, --alike and --closed are "
-                f"for tapes; {file} is none"
+                "--reference-frequency, --cycles-per-mm, --from, --tracks, --still, --alike, --closed and "
+                f"--label are for tapes; {file} is none"
             )
         return given if machine is None else {"machine": machine}
 
@@ -106,6 +140,7 @@ class Playing:
     raw: bool = False  # keep every sample
     chart: Chart | None = None  # to take down the following errors
     settings: Mapping[str, Any] = field(default_factory=dict)  # as the control takes them
+    intake: Intake = field(default_factory=Intake)  # of the pipe: it may be a device
 
     def whole(self, listener: Listener) -> Played:
         """Play to the end or to a fault; raises the fault if nothing was played before it."""
@@ -154,20 +189,23 @@ class Playing:
             )
         met: list[Fault] = []
         motion = _until_fault(_noting(playback, listener), met)
-        what = f"playing {self.file.name}"
+        name = self.intake.called if str(self.file) == PIPE else self.file.name
+        what = f"playing {name}"
         return playback, watched(motion, listener, what, playback.duration_s), met
 
     def _put_in(self) -> Playback:
         """Put the file, or the pipe, in its machine."""
         from morfax.player.controls import play
 
+        by_hand = self.by_hand
         if str(self.file) != PIPE:
-            return play(self.file, **self.by_hand.for_file(self.file), **self.settings)
-        if self.by_hand.machine is not None:
+            given, opener = by_hand.for_file(self.file), by_hand.opener(self.file)
+            return play(self.file if opener is None else opener, **given, **self.settings)
+        if by_hand.machine is not None:
             raise WrongUse("--machine is for files of G-code, not for a pipe; leave it out")
-        from morfax.player.tape.playback import play_pipe
+        from morfax.player.tape.playback import play_live
 
-        return play_pipe(sys.stdin.buffer, **self.by_hand.given())
+        return play_live(self.intake.source(by_hand.labelled()), **by_hand.given())
 
 
 def read_or_play(

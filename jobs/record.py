@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any, Literal
@@ -9,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from morfax.jobs import files as medium
 from morfax.jobs import outlines
 from morfax.jobs.listener import SILENT, Listener, watched
+from morfax.jobs.live import PIPE, Outlet
 from morfax.jobs.playing import ByHand, read_or_play
 from morfax.jobs.recording import RecordingUnit, rehearsed
 from morfax.jobs.wrong_use import WrongUse, settings_checked
@@ -17,12 +19,15 @@ from morfax.jobs.zero import figures as zero_figures
 
 if TYPE_CHECKING:
     from morfax.jobs.figures import Figures
-    from morfax.motion.motion import Path
+    from morfax.motion.motion import Motion, Path
     from morfax.recorder.media import Report
+    from morfax.recorder.tape.recording import LiveRecording
     from morfax.tracer.operator.operator import Panel
 
 FEED_MM_S = 10.0  # of a path without times, as motion.pathfile has it
 REFERENCE_HZ = 6000.0  # as recorder.tape.format has it
+MOTION_RATE_HZ = 6000.0  # as motion.motion has it
+LIVE_TAPE = FilePath("live.wav")  # no file: it says that what goes out is a tape
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +43,8 @@ class RecordJob:
     """Record a path file, a drawing from CAD or another program in the medium that the output's name says."""
 
     source: FilePath
-    output: FilePath | None = None  # None: the source's name with .wav, in the current folder
+    # or the pipe; None: a device, or the source's name with .wav, in the current folder
+    output: FilePath | None = None
     force: bool = False  # write over a name that nobody gave
     reference_hz: float = REFERENCE_HZ
     cycles_per_mm: float | None = None  # None: the pick-up's own
@@ -48,11 +54,13 @@ class RecordJob:
     orders: Literal["differences", "counts"] | None = (
         None  # of a step program; None: differences
     )
+    outlet: Outlet = field(default_factory=Outlet)  # where a tape goes, if it is not one file
 
     def run(self, listener: Listener = SILENT, panel: Panel | None = None) -> RecordResult:
         """Record; raises WrongUse and every fault."""
         from morfax.motion.contour import length_mm
 
+        # 1. what is set
         program = self._program()
         has_feed = medium.has_machine(program)
         (self.unit if has_feed else replace(self.unit, feed_mm_s=None)).check(program)
@@ -63,14 +71,16 @@ class RecordJob:
             listener.note(
                 f"a reference of {self.reference_hz:g} Hz has no room for the check signal: the tape is bare"
             )
+        # 2. the recording
         read = read_or_play(self.source, ByHand(), listener, feed_mm_s, self.drawn_unit)
         unit = self.unit.at(of_path_mm(self.zero, read, self.unit.placement))
         placed = unit.placement.path(read)
         unit.warn(listener)
-        recording = _recorded(placed, program, settings, listener)
+        recording = self._recorded(placed, program, settings, listener)
+        # 3. what was recorded
         length = length_mm(placed) if placed.tool.any() else 0.0
         figures = {
-            medium.called(program): str(program),
+            **self._called(program),
             "duration_s": recording.duration_s,
             "length_mm": length,
             "start_place_mm": placed.positions_mm[0],
@@ -82,12 +92,29 @@ class RecordJob:
         }
         return RecordResult(figures, program)
 
+    @property
+    def _is_live(self) -> bool:
+        """Whether the tape goes into a pipe or to a device."""
+        return self.outlet.device is not None or str(self.output) == PIPE
+
     def _program(self) -> FilePath:
-        """The name for the program; raises FileFault if it cannot be written."""
+        """The name for the program; raises FileFault if it cannot be written, WrongUse for two places."""
+        self.outlet.check(self.output)
+        if self._is_live:
+            return LIVE_TAPE
         if self.output is None:
             name = FilePath(f"{self.source.stem}.wav")
             return medium.made_up(name, self.source, force=self.force)
         return medium.outgoing(self.output, self.source)
+
+    def _called(self, program: FilePath) -> dict[str, Any]:
+        """Where the program is."""
+        outlet = self.outlet
+        label = {"label": None if outlet.label is None else str(outlet.label)}
+        if self._is_live:
+            where = "the pipe" if outlet.device is None else f"device {outlet.device}"
+            return {"tape": where, **label}
+        return {medium.called(program): str(program), **label}
 
     def _recorder_settings(self, program: FilePath) -> dict[str, Any]:
         """Settings as the recorder of this medium takes them."""
@@ -109,29 +136,49 @@ class RecordJob:
             raise WrongUse(f"such a tape cannot be recorded: {refused}") from None
         return {"fmt": fmt}
 
+    def _recorded(
+        self, path: Path, program: FilePath, settings: dict[str, Any], listener: Listener
+    ) -> Report | LiveRecording:
+        """Record a path; what the recorder made."""
+        from morfax.recorder.media import record
 
-def _recorded(
-    path: Path, program: FilePath, settings: dict[str, Any], listener: Listener
-) -> Report:
-    """Record a path; what the recorder made."""
-    from morfax.recorder.media import record
+        listener.compiling("the recorder", ("motion", "recorder"))
+        if "fmt" not in settings:
+            with settings_checked():  # such as a tolerance finer than the last decimal
+                return record(_told(path, program.name, listener), program, **settings)
+        fmt = replace(settings["fmt"], axes=path.axes, start_mm=())
+        with settings_checked():
+            fmt = self.outlet.suited(fmt)
+        name = next(iter(self._called(program).values()))
+        stream = _told(path, FilePath(name).name, listener, fmt.motion_rate_hz)
+        stream = rehearsed(stream, fmt, listener)
+        if self._is_live:
+            done = self.outlet.record(stream, fmt)
+        else:
+            from morfax.recorder.tape.tape import record as record_tape
 
-    listener.compiling("the recorder", ("motion", "recorder"))
+            done = record_tape(stream, program, fmt)
+        self.outlet.write_label(done.format)
+        return done
+
+
+def _told(
+    path: Path, name: str, listener: Listener, rate_hz: float = MOTION_RATE_HZ
+) -> Iterable[Motion]:
+    """The motion of a path; the listener hears how far it is."""
     lasts_s = float(path.t_s[-1] - path.t_s[0])
-    stream = watched(path.motion(), listener, f"recording {program.name}", lasts_s)
-    if "fmt" not in settings:
-        with settings_checked():  # such as a tolerance finer than the last decimal
-            return record(stream, program, **settings)
-    fmt = replace(settings["fmt"], axes=path.axes, start_mm=())
-    return record(rehearsed(stream, fmt, listener), program, fmt=fmt)
+    return watched(path.motion(rate_hz), listener, f"recording {name}", lasts_s)
 
 
-def _density(recording: Report, program: FilePath, length_mm: float) -> dict[str, Any]:
-    """Bits per mm of the program, and of a tape of the same motion beside it."""
-    if not length_mm:
+def _density(
+    recording: Report | LiveRecording, program: FilePath, length_mm: float
+) -> dict[str, Any]:
+    """Bits per mm of a program in a file, and of a tape of the same motion beside it."""
+    size = getattr(recording, "bytes", None)
+    if not length_mm or size is None:
         return {"bits_per_mm": None, "as_tape_bits_per_mm": None}
     as_tape = None if medium.is_tape(program) else _tape_bits(recording.duration_s) / length_mm
-    return {"bits_per_mm": 8 * recording.bytes / length_mm, "as_tape_bits_per_mm": as_tape}
+    return {"bits_per_mm": 8 * size / length_mm, "as_tape_bits_per_mm": as_tape}
 
 
 def _tape_bits(duration_s: float) -> float:

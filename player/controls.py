@@ -15,13 +15,16 @@ import os
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path as FilePath
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from morfax.motion.arrays import Array
 from morfax.motion.files import check_name
 from morfax.motion.motion import Motion
 from morfax.player.monitor.chart import Chart
 from morfax.player.monitor.monitor import FollowingLimit, Monitor
+
+if TYPE_CHECKING:
+    from morfax.recorder.sound.source import Source
 
 
 class Playback(Protocol):
@@ -92,7 +95,12 @@ def control_of(file: str | os.PathLike[str]) -> Control:
     return CONTROLS.get(FilePath(file).suffix.lower(), TAPE)
 
 
-def play(file: str | os.PathLike[str], **by_hand: Any) -> Playback:
-    """Put a program in the machine under its own control; raises TapeFault, ProgramFault, FileFault."""
+def play(file: str | os.PathLike[str] | Callable[[], Source], **by_hand: Any) -> Playback:
+    """Put a program in the machine under its own control; raises TapeFault, ProgramFault, FileFault.
+
+    `file`: its name; of a tape also what opens its source.
+    """
+    if callable(file):
+        return TAPE.player()(file, **by_hand)
     check_name(file)
     return control_of(file).player()(file, **by_hand)

@@ -69,6 +69,16 @@ class ProgramPath(Result):
         return Result(*MEDIA, *DRAWINGS, *self.suffixes).convert(value, param, ctx)
 
 
+class ProgramOrPipe(ProgramPath):
+    """The name for a program or a drawing, or `-`, a pipe for a tape."""
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> FilePath:
+        """The name as a path; wrong use if it is neither."""
+        return FilePath(value) if str(value) == "-" else super().convert(value, param, ctx)
+
+
 class ProgramOrFolder(ProgramPath):
     """The name for a program or a drawing, or a folder that is there."""
 

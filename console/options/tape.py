@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import fields
 from typing import Any
 
+from morfax.console.options.files import FILE
 from morfax.console.options.groups import option, renamed
 from morfax.console.options.types import AXES, FREQUENCY, NUMBER, PLACES, TRACKS
 from morfax.jobs.playing import ByHand
@@ -46,6 +47,13 @@ def tape_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         type=PLACES,
         help="Where the machine stands at the start, mm: X,Y or X,Y,Z …  [default: what the tape says, "
         "else 0,0]",
+    )
+    @option(
+        "Tape",
+        "--label",
+        type=FILE,
+        help="Take what the tape does not say from a label (.json, see record --label), or from another "
+        "copy of the tape.",
     )
     @option(
         "Tape",

@@ -37,10 +37,14 @@ class Desk:
         if self.verbose and not self.quiet:
             click.echo(text, err=True)
 
-    def figures(self, figures: Figures) -> None:
-        """Print the result on stdout; unless quiet, or where JSON is asked for."""
+    def figures(self, figures: Figures, *, aside: bool = False) -> None:
+        """Print the result on stdout; unless quiet, or where JSON is asked for.
+
+        `aside`: on stderr, as the result itself takes stdout.
+        """
         if self.json or not self.quiet:
-            click.echo(table.as_json(figures) if self.json else table.as_text(figures))
+            said = table.as_json(figures) if self.json else table.as_text(figures)
+            click.echo(said, err=aside)
 
     def warning(self, text: str) -> None:
         """Say a line on stderr, unless quiet."""

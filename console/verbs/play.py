@@ -12,12 +12,15 @@ from morfax.console.options.desk import desk_options
 from morfax.console.options.drawing import DRAWN_UNIT
 from morfax.console.options.files import FILE, PATHS, PICTURES, ProgramPath, Result
 from morfax.console.options.groups import Verb, option, renamed
+from morfax.console.options.sound import intake_options
 from morfax.console.options.tape import FOR_MACHINE, tape_options
 from morfax.console.options.types import NUMBER, PLACES, SHARE, TIME
 from morfax.jobs.play import MOTORS, ControlSettings, PlayJob
+from morfax.jobs.wrong_use import WrongUse
 
 if TYPE_CHECKING:
     from morfax.console.terminal.desk import Desk
+    from morfax.jobs.live import Intake
     from morfax.jobs.playing import ByHand
 
 EXAMPLES = """\b
@@ -26,11 +29,12 @@ Examples:
   morfax play cam.wav --feed-override 120% --motor hydraulic --zero-adjustment 0,0,-0.05
   morfax play cam.ngc --following servos.png --following servos.csv
   morfax play found.wav --reference-frequency 6kHz --cycles-per-mm 20 --from 40,62 -o found.csv
+  morfax play --device "USB Audio" --label cam.json -o cam.csv
 """
 
 
 @click.command("play", cls=Verb, epilog=EXAMPLES)
-@click.argument("tape", type=FILE)
+@click.argument("tape", type=FILE, required=False)
 @option(
     "Output",
     "-o",
@@ -115,34 +119,40 @@ Examples:
     "the tape "
     "has it.",
 )
+@intake_options
 @FOR_MACHINE
 @DRAWN_UNIT
 @renamed("--zero", "--zero-adjustment")
 @tape_options
 @desk_options
 def command(
-    tape: FilePath,
+    tape: FilePath | None,
     outputs: tuple[FilePath, ...],
     path_file: FilePath | None,
     charts: tuple[FilePath, ...],
     raw: bool,
     by_hand: ByHand,
     drawn_unit: str | None,
+    intake: Intake,
     desk: Desk,
     **control: Any,
 ) -> None:
     """Play a tape into the simulated machine and write the path it runs.
 
     The path is that of the machine's own lead screws, phase-locked to the tape. Without -o the verb only
-    prints figures. TAPE may be -, a pipe: a WAV, or raw 16-bit samples of four tracks. A drawing from CAD
+    prints figures. TAPE may be -, a pipe: a WAV, or raw 16-bit samples of four tracks. With --device
+    the tape comes from a sound device, as a recorder plays it. A drawing from CAD
     (.dxf, .svg) is recorded on a tape first, as `morfax record` does it, and that tape is played. If
     the machine faults, the path before the fault is kept, with `.incomplete` in its name.
     """
+    if (tape is None) == (intake.device is None):
+        raise WrongUse("give a TAPE, or a --device that it comes from")
+    tape = FilePath("-") if tape is None else tape
     paths = outputs if path_file is None else (*outputs, path_file)
     settings = ControlSettings(
         **{field.name: control[field.name] for field in fields(ControlSettings)}
     )
-    result = PlayJob(tape, paths, charts, raw, settings, by_hand, drawn_unit).run(desk)
+    result = PlayJob(tape, paths, charts, raw, settings, by_hand, drawn_unit, intake).run(desk)
     if result.path is not None or result.chart is not None:
         from morfax.reports.pictures import draw_played
 

@@ -9,15 +9,17 @@ import click
 
 from morfax.console.options.desk import desk_options
 from morfax.console.options.drawing import DRAWN_UNIT
-from morfax.console.options.files import FILE, ProgramPath
+from morfax.console.options.files import FILE, ProgramOrPipe
 from morfax.console.options.groups import Verb, option, renamed
 from morfax.console.options.placement import unit_options
+from morfax.console.options.sound import outlet_options
 from morfax.console.options.tape import CYCLES_PER_MM
 from morfax.console.options.types import FREQUENCY, ZERO
 from morfax.jobs.record import RecordJob
 
 if TYPE_CHECKING:
     from morfax.console.terminal.desk import Desk
+    from morfax.jobs.live import Outlet
     from morfax.jobs.recording import RecordingUnit
     from morfax.jobs.zero import Zero
 
@@ -27,6 +29,8 @@ Examples:
   morfax record cam.wav -o cam.steps --fit-tolerance 20um
   morfax record part.dxf -o part.wav
   morfax record cam.wav -o left-hand.wav --mirror x --pickup photocell
+  morfax record cam.csv --device "USB Audio" --label cam.json
+  morfax record cam.csv -o - | morfax play - -o played.csv
 """
 
 
@@ -36,9 +40,11 @@ Examples:
     "Output",
     "-o",
     "output",
-    type=ProgramPath(),
-    help="The program (.wav, .steps, .cubic, .ngc).  [default: the source's name with .wav, here]",
+    type=ProgramOrPipe(),
+    help="The program (.wav, .steps, .cubic, .ngc), or - for a tape through a pipe.  [default: the "
+    "source's name with .wav, here]",
 )
+@outlet_options
 @option(
     "Tape",
     "--reference-frequency",
@@ -90,6 +96,7 @@ def command(
     drawn_unit: str | None,
     zero: Zero,
     orders: Literal["differences", "counts"] | None,
+    outlet: Outlet,
     desk: Desk,
 ) -> None:
     """Record a path file, or another program, in the medium that the name after -o says.
@@ -98,6 +105,7 @@ def command(
     without times the path is run at the feed), and u_mm, v_mm … for further axes (A, B, C, U, V, W), which
     only a tape takes; a drawing from CAD (.dxf, .svg), whose lines are run at the feed with the tool up
     between them, inner ones first; or a program in any medium, which is first played on its own control.
+    With --device the tape is played out of a sound device as it is made, for a recorder to take.
     """
     job = RecordJob(
         source,
@@ -109,5 +117,6 @@ def command(
         drawn_unit,
         zero,
         orders,
+        outlet,
     )
-    desk.figures(job.run(desk).figures)
+    desk.figures(job.run(desk).figures, aside=str(output) == "-")

@@ -30,7 +30,12 @@ from morfax.recorder.sound.source import BLOCK_FRAMES, Frames, Stored
 
 AHEAD_S = 2.0  # of sound held for a device, and made before it starts: a stall of the machine is shorter
 LONGEST_BEHIND_S = 300.0  # of sound from a device that nobody has taken: 230 MB of four tracks
-LATENCY_S = 0.2  # of the device's own buffer; chosen by trial: 0.05 underran beside other work
+# of the device's own buffer; chosen by trial: beside other work 0.2 ran out of samples on the way out
+OUT_LATENCY_S, IN_LATENCY_S = 0.5, 0.2
+LEAD_S = 1.0  # of silence before the tape: some drivers report an underrun as they start, or stop again
+LONGEST_START_S = 2.0
+STARTS = 5  # tried in all
+POLL_S = 0.02
 TAIL_S = 1.0  # of silence behind the tape: some drivers lose the end, and a player waits for half a second
 STOPPED_S = 5.0  # without a callback: the device has stopped
 PIECE_FRAMES = 8192  # of frames put in one piece into the queue, 0.17 s
@@ -117,6 +122,7 @@ class DeviceSink:
         self._ahead = 0  # frames in the queue
         self._begun: Frames | None = np.zeros((0, tracks), np.float32)  # None: all is played
         self._played, self._fault = 0, ""
+        self._lead = 0  # frames of silence that are still to go out
         self._done = threading.Event()
         self._lock = threading.Lock()
         self._stream: Any = None
@@ -155,20 +161,38 @@ class DeviceSink:
                 self._wait(lambda: self._ahead < AHEAD_S * self._rate_hz)
 
     def _start(self) -> None:
-        """Start the device, once there is enough to play."""
+        """Start the device, once there is enough to play; the silence in front shows that it runs."""
         if self._stream is not None:
             return
-        with _as_faults(self._device):
-            self._stream = _sounddevice().OutputStream(
-                device=self._device.number,
-                channels=self._tracks,
-                samplerate=self._rate_hz,
-                dtype="float32",
-                latency=LATENCY_S,
-                callback=self._fill,
-                finished_callback=self._done.set,
-            )
-            self._stream.start()
+        for _ in range(STARTS):
+            self._lead = round(LEAD_S * self._rate_hz)
+            with _as_faults(self._device):
+                self._stream = _sounddevice().OutputStream(
+                    device=self._device.number,
+                    channels=self._tracks,
+                    samplerate=self._rate_hz,
+                    dtype="float32",
+                    latency=OUT_LATENCY_S,
+                    callback=self._fill,
+                    finished_callback=self._done.set,
+                )
+                self._stream.start()
+                if self._has_led():
+                    return
+                self._stream.abort()
+                self._stream.close()
+                self._done.clear()
+        raise DeviceFault(
+            f"the device {self._device.name!r} does not start; try another",
+            device=self._device.name,
+        )
+
+    def _has_led(self) -> bool:
+        """Whether the silence in front has gone out, soon enough for a device that runs."""
+        for _ in range(round((LEAD_S + LONGEST_START_S) / POLL_S)):
+            if not self._lead or self._done.wait(POLL_S):
+                break
+        return not self._lead
 
     def _wait(self, ready: Any) -> None:
         """Wait for the device; raises DeviceFault for its fault, or if it has stopped."""
@@ -178,8 +202,8 @@ class DeviceSink:
                 raise DeviceFault(
                     self._fault, device=self._device.name, time_s=self._played / self._rate_hz
                 )
-            self._done.wait(0.02)
-            still = 0.0 if self._played != played else still + 0.02
+            self._done.wait(POLL_S)
+            still = 0.0 if self._played != played else still + POLL_S
             played = self._played
             if still > STOPPED_S or (self._done.is_set() and not ready()):
                 self._fault = (
@@ -189,7 +213,11 @@ class DeviceSink:
     def _fill(self, out: Any, count: int, time: Any, status: Any) -> None:
         """PortAudio's callback: hand it the next frames; what is missing ends the tape."""
         sounddevice = _sounddevice()
-        if status.output_underflow and self._played:
+        if self._lead:
+            out[:] = 0
+            self._lead = max(self._lead - count, 0)
+            return
+        if status.output_underflow:
             self._fault = _underrun(self._device.name, self._played / self._rate_hz)
             raise sounddevice.CallbackAbort
         filled = 0
@@ -230,6 +258,7 @@ class DeviceSource:
         self.text, self._device, self._wait_s = text, device, wait_s
         self.frames = 0  # that have come
         self._queue: queue.SimpleQueue[Frames | str] = queue.SimpleQueue()
+        self._taken = 0  # frames that the callback has had
         self._stream: Any = None
 
     def close(self) -> None:
@@ -275,11 +304,10 @@ class DeviceSource:
                 channels=self.tracks,
                 samplerate=self.rate_hz,
                 dtype="float32",
-                latency=LATENCY_S,
+                latency=IN_LATENCY_S,
                 callback=self._take,
             )
             self._stream.start()
-        self._taken = 0
 
     def _take(self, frames: Any, count: int, time: Any, status: Any) -> None:
         """PortAudio's callback: keep the frames; what it has lost ends the tape."""

@@ -11,12 +11,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path as FilePath
 from typing import Any
 
-from morfax.motion.faults import TapeFault
+from morfax.motion.faults import FileFault, TapeFault
 from morfax.motion.motion import MOTION_RATE_HZ
-from morfax.recorder.sound.source import Source
-from morfax.recorder.tape.format import TapeFormat, is_format_text
+from morfax.recorder.sound.source import FileSource, Source
+from morfax.recorder.tape.format import LARGEST_TEXT_BYTES, TapeFormat, is_format_text
 
 _UNNAMED_AXES = ("x", "y", "z", "a", "b", "c", "u", "v", "w")
 _EXAMPLES = {
@@ -61,6 +62,26 @@ def _stated(source: Source) -> TapeFormat | None:
             f"reference, {', '.join(fmt.axes)}; take it as it was recorded"
         )
     return fmt
+
+
+def label_of(file: FilePath) -> str:
+    """The text of a label: a file of JSON, or a tape that has a text chunk; raises TapeFault, FileFault."""
+    try:
+        with file.open("rb") as opened:
+            text = opened.read(LARGEST_TEXT_BYTES + 1).decode("utf-8", "replace")
+    except OSError as error:
+        raise FileFault(f"cannot read {file}: {error.strerror}; check the name") from error
+    if not is_format_text(text):
+        source = FileSource(file)
+        text = source.text
+        source.close()
+    if not is_format_text(text):
+        raise TapeFault(f"{file} is no label: it does not say a tape's format; give another")
+    try:
+        TapeFormat.from_json(text)
+    except TapeFault as fault:
+        raise TapeFault(f"{file}: {fault}") from None
+    return text
 
 
 def unnamed(sample_rate_hz: int, tracks: int, given: dict[str, Any]) -> TapeFormat:
