@@ -70,7 +70,7 @@ def command(
     reference_hz: float,
     desk: Desk,
 ) -> None:
-    """List the sound devices of this machine; play a test tone, and show levels.
+    """List the sound devices; play a test tone, and show the levels of its tracks.
 
     A device is named by its number, its name or a part of it. With --test-tone the recorder is set to
     record at its usual level; with --meters its playback is set to about -6 dB on every track.
