@@ -46,9 +46,13 @@ def remarks(
     yield from _of_stems(trace)
     yield from _of_unread(trace)
     yield from _of_crossing_guides(trace)
+    rest = tuple[str, ...]()
     if not settings.line.are_several and trace.fault is None:
-        yield from _of_rest(trace.lines[0])
+        rest = tuple(_of_rest(trace.lines[0]))
+        yield from rest
         yield from _of_others(trace)
+    if not rest:
+        yield from _of_unexplained(trace)
 
 
 def of_cutter(beside: Trace, left: Left, cutter: Cutter) -> Iterator[str]:
@@ -257,6 +261,26 @@ def _of_rest(line: Line) -> Iterator[str]:
             f"about {line.ink_mm - line.length_mm:.0f} mm of ink that is joined to the line was not "
             "followed: "
             "--lines all also follows the lines that cross or touch it, --start X,Y another one"
+        )
+
+
+def _of_unexplained(trace: Trace) -> Iterator[str]:
+    """Closed lines that may be other lines than those drawn."""
+    beside = [place for place in trace.unexplained if place.is_ink]
+    bare = [place for place in trace.unexplained if not place.is_ink]
+    if beside:
+        (x, y), long_mm, _ = beside[0]
+        many = "1 piece of ink" if len(beside) == 1 else f"{len(beside)} pieces of ink"
+        yield (
+            f"{many} joined to the closed line beside its way, up to {long_mm:.1f} mm from it, at "
+            f"{x:.1f},{y:.1f} mm: a tip or a bay that is narrower than two lines, or another line; --picture "
+            "marks it, and --lines all follows other lines too"
+        )
+    if bare:
+        (x, y), long_mm, _ = bare[0]
+        yield (
+            f"the closed line runs over {long_mm:.1f} mm of bare paper at {x:.1f},{y:.1f} mm, where no ink "
+            "leads: look at --picture, and draw the line there"
         )
 
 

@@ -49,6 +49,18 @@ def ink(trace: Trace) -> dict[str, Any]:
     }
 
 
+def unexplained(trace: Trace) -> list[dict[str, Any]]:
+    """Places at which closed lines are not what is drawn."""
+    return [
+        {
+            "unexplained_place_mm": place.place_mm,
+            "unexplained_mm": place.length_mm,
+            "what": "ink beside the way" if place.is_ink else "way without ink",
+        }
+        for place in trace.unexplained
+    ]
+
+
 def leads(trace: Trace) -> list[dict[str, Any]]:
     """The leads that closed lines were given: where the tool comes onto the line, and their sizes."""
     return [

@@ -66,6 +66,8 @@ class Traced:
         if self.trace.ink is not None:
             lost = self.trace.ink.lost[:MARKED]
             stops_mm |= {f"left {k}": (x, y) for k, (x, y, _) in enumerate(lost, 1)}
+        beside = enumerate(self.trace.unexplained[:MARKED], 1)
+        stops_mm |= {f"unexplained {k}": place.place_mm for k, place in beside}
         if self.left is None:
             return stops_mm
         lines_mm = {
@@ -106,6 +108,7 @@ class Traced:
             "reference_place_mm": trace.reference_mm,
             **(self.led.figures() if self.led else {}),
             **(trace_figures.lines(trace) if self.several else {}),
+            "unexplained": trace_figures.unexplained(trace) or None,
             "leads": trace_figures.leads(trace) or None,
             "stops": trace_figures.stops(trace) or None,
             "tabs": trace_figures.tabs(trace) or None,

@@ -151,6 +151,14 @@ class Sheet:
         columns = 0.5 * (patches.begin[runs] + patches.end[runs] - 1)
         return self._mm(patches.row[runs], columns)
 
+    def run_begins_mm(self, runs: Pixels) -> Array:
+        """First pixels of some runs of ink, (n, 2) sheet mm."""
+        return self._mm(self.patches.row[runs], self.patches.begin[runs])
+
+    def run_ends_mm(self, runs: Pixels) -> Array:
+        """Last pixels of some runs of ink, (n, 2) sheet mm."""
+        return self._mm(self.patches.row[runs], self.patches.end[runs] - 1)
+
     def _mm(self, rows: Pixels, columns: Pixels) -> Array:
         """Centres of pixels, (n, 2) sheet mm."""
         up = self.drawing.darkness.shape[0] - rows

@@ -31,6 +31,7 @@ from morfax.tracer.operator.operator import Operator
 from morfax.tracer.operator.work import Action, Work
 from morfax.tracer.program.passes import Passes
 from morfax.tracer.program.tabs import Tab, tabs_of
+from morfax.tracer.program.unexplained import Unexplained
 
 ENDINGS = ("lost", "joined", "ended", "closed")  # the one to be told first comes first
 
@@ -42,6 +43,7 @@ class Trace:
     `left_out` patches of ink were too short to be lines; `left_out_mm` of ink is joined to lines, but none.
     `others`: further lines of a sheet whose longest line was asked for. `ink`: how much of the ink of a sheet
     the strokes run along, where all of it was asked for. `unread`: ticks and dots that were taken for ink.
+    `unexplained`: places at which closed lines are not what is drawn.
     """
 
     lines: tuple[Line, ...]
@@ -52,6 +54,7 @@ class Trace:
     others: int = 0
     ink: Balance | None = None
     unread: int = 0
+    unexplained: tuple[Unexplained, ...] = ()
 
     @property
     def work(self) -> Work:

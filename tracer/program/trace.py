@@ -33,6 +33,7 @@ from morfax.tracer.program.marks_read import with_marks_read
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.selection import others_than
 from morfax.tracer.program.setup import HeadProgress, Setup
+from morfax.tracer.program.unexplained import unexplained
 
 # of the ink that is joined to it: a shorter run is along another line, which crosses this one; by trial
 SHORT = 0.5
@@ -59,7 +60,8 @@ def trace(
     if start_mm is None:
         others = others_than(setup.sheet, line.places_mm, line.reference_mm)
     lines, unread = with_marks_read([line], operator)
-    return Trace(tuple(lines), operator, others=others, unread=unread)
+    beside = unexplained(setup, lines)
+    return Trace(tuple(lines), operator, others=others, unread=unread, unexplained=beside)
 
 
 def followed(

@@ -36,6 +36,7 @@ from morfax.tracer.program.program import Trace
 from morfax.tracer.program.selection import Contour, Which
 from morfax.tracer.program.setup import HeadProgress, Setup
 from morfax.tracer.program.trace import followed
+from morfax.tracer.program.unexplained import unexplained
 
 SAME = 0.8  # of a line's way along another: they are one line; by trial
 ALIKE = 0.02  # a line is as long from its other end, within this share; by trial
@@ -77,6 +78,7 @@ def trace_lines(
         left_out=found.left_out,
         left_out_mm=found.left_out_mm,
         unread=unread,
+        unexplained=unexplained(setup, lines) if which == "contours" else (),
     )
 
 

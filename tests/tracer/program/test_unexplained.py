@@ -1,0 +1,80 @@
+"""A closed path that is not what is drawn is told of, with its place."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from morfax.motion.polyline import at_lengths, length_mm, nearest_mm
+from morfax.tracer.drawing.strokes import Sheet
+from morfax.tracer.following.line import Line
+from morfax.tracer.operator.operator import Operator
+from morfax.tracer.program.setup import Setup
+from morfax.tracer.program.trace import trace
+from morfax.tracer.program.trace_lines import trace_lines
+from morfax.tracer.program.unexplained import unexplained
+from tests.tracer.inked import Points, arc, inked, polyline
+
+WIDTH_MM = 0.5
+STEP_MM = 0.0017  # of the motion: 10 mm/s at 6 kHz
+# the ink begins to count beyond two widths of the way, and is seen to a pixel or two: 85 um at 300 dpi
+PIXEL_MM = 0.17
+
+
+def with_tip(long_mm: float) -> Points:
+    """A circle with a tip on its right, narrower than the line."""
+    circle = arc((20, 20), 12)
+    return np.vstack(
+        [circle[:-1], [[32.0, 20.0], [32.0 + long_mm, 20.05], [32.0, 20.1]], circle[-1:]]
+    )
+
+
+def closed(places_mm: Points) -> Line:
+    """A line as if the head had come round along some places."""
+    whole_mm = length_mm(places_mm)
+    positions_mm = at_lengths(places_mm, np.arange(0.0, whole_mm, STEP_MM))
+    return Line(positions_mm, "closed", WIDTH_MM, whole_mm)
+
+
+@pytest.mark.parametrize("long_mm", [2.5, 6.0])
+def test_ink_beside_a_closed_way_is_told_with_its_place_and_how_far_it_reaches(
+    long_mm: float,
+) -> None:
+    drawing = inked(with_tip(long_mm), seed=1)
+    (left,) = unexplained(Setup(Sheet.of(drawing)), [closed(arc((20, 20), 12))])
+    assert left.is_ink
+    assert left.place_mm == pytest.approx((32 + long_mm + WIDTH_MM / 2, 20.05), abs=PIXEL_MM)
+    assert left.length_mm == pytest.approx(long_mm + WIDTH_MM / 2, abs=PIXEL_MM)
+
+
+def test_a_tip_shorter_than_a_width_and_a_half_is_not_told() -> None:
+    drawing = inked(with_tip(1.4 * WIDTH_MM), seed=1)
+    assert unexplained(Setup(Sheet.of(drawing)), [closed(arc((20, 20), 12))]) == ()
+
+
+def test_a_way_over_bare_paper_is_told_unless_it_is_a_gap_that_may_be_crossed() -> None:
+    drawing = inked(arc((20, 20), 12, 17.2, 360), seed=1)  # 3.6 mm are missing
+    setup = Setup(Sheet.of(drawing))
+    (bare,) = unexplained(setup, [closed(arc((20, 20), 12))])
+    assert not bare.is_ink and bare.length_mm == pytest.approx(3.6 - WIDTH_MM, abs=2 * PIXEL_MM)
+    assert nearest_mm(np.array([bare.place_mm]), arc((20, 20), 12))[0] < PIXEL_MM
+    allowing = replace(setup, settings=replace(setup.settings, gap_mm=4.0))
+    assert unexplained(allowing, [closed(arc((20, 20), 12))]) == ()
+
+
+def test_only_of_closed_lines_and_not_of_a_drawn_program() -> None:
+    setup = Setup(Sheet.of(inked(with_tip(6.0), seed=1)))
+    circle = closed(arc((20, 20), 12))
+    assert unexplained(setup, [replace(circle, ending="ended")]) == ()
+    assert unexplained(replace(setup, operator=Operator(marks="on")), [circle]) == ()
+
+
+def test_a_clean_outline_explains_its_ink_and_a_bar_from_it_does_not() -> None:
+    outline = polyline((10, 10), (50, 10), (50, 40), (10, 40), (10, 10))
+    assert trace(inked(outline, seed=1)).unexplained == ()
+    with_bar = inked(outline, polyline((50, 25), (58, 25)), seed=1)
+    (bar,) = trace(with_bar, (30, 10)).unexplained
+    assert bar.place_mm == pytest.approx((58 + WIDTH_MM / 2, 25), abs=2 * PIXEL_MM)
+    assert trace_lines(inked(outline, arc((30, 25), 6), seed=1)).unexplained == ()
