@@ -38,6 +38,7 @@ OPTIONS = {
     "historic": "--historic",
 }
 PICTURES = (".png", ".svg", ".pdf")
+CUBIC = ".cubic"
 FOR_TAPES = {"resume_at_s", "acceleration_mm_s2", "motor", "zero_mm"}
 
 
@@ -77,10 +78,11 @@ class ControlSettings:
             from morfax.player.tape.phase_lock import MOTORS as LOCKS
 
             given["settings"] = LOCKS[given.pop("motor")]
-        if given.pop("historic", False):
+        if "historic" in given and file.suffix.lower() != CUBIC:
             from morfax.player.gcode.pulses import HISTORIC_CONTROL
 
             given["settings"] = HISTORIC_CONTROL
+            given.pop("historic")
         return given
 
 
@@ -197,8 +199,10 @@ def _refuse_foreign(tape: FilePath, given: dict[str, Any]) -> None:
         raise WrongUse(f"{_options(given.keys() & FOR_TAPES)} is for tapes; {tape} is none")
     if control != pulses and "norm" in given:
         raise WrongUse(f"--norm is for programs of lines and arcs, .ngc; {tape} is none")
-    if control != pulses and "historic" in given:
-        raise WrongUse(f"--historic is for programs of lines and arcs, .ngc; {tape} is none")
+    if control not in (pulses, CONTROLS[CUBIC]) and "historic" in given:
+        raise WrongUse(
+            f"--historic is for programs of lines and arcs, .ngc, and for .cubic; {tape} is none"
+        )
     if control not in (TAPE, pulses) and "feed_override" in given:
         raise WrongUse(
             f"--feed-override is for tapes and for programs of lines and arcs, .ngc; {tape} is none"

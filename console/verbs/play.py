@@ -100,7 +100,8 @@ Examples:
     "Machine",
     "--historic",
     is_flag=True,
-    help="Play an .ngc program in the units of 1967: pulses of 12.7 um, registers of 16 bits.",
+    help="The patents' own units: of an .ngc program pulses of 12.7 um and registers of 16 bits (1967), of "
+    "a .cubic program stores whose digits come round, 64 counts to a pitch and 6.8 points per second (1957).",
 )
 @renamed("--override", "--feed-override")
 @option(

@@ -5,9 +5,7 @@ Signals: a `.cubic` file in; the machine's own motion out, one sample for each i
     tape ─► interpolator 32 ─► predicted ─┐
                                           ├─► difference 29 ─► register 34 ─► decoder 35 ─► servo 36, motor 9
     scales ─► counters 18, 19 ─► present ─┘        counts  │   limited           × modulus    mm/s
-                                                           └─► monitor
-
-    speed demand = modulus · (predicted place of the next point - present place)
+        time base 14: one reading and one step of all      └─► monitor
 
 The difference carries the speed and the correction both: at a constant speed v the machine lags by v /
 modulus, on all axes alike, so that straight lines stay straight and a circle of radius r shrinks by about v²
@@ -16,9 +14,10 @@ smoother (fine). Dropping the lowest digits of the difference makes a rough pass
 that the speed explains, and no more.
 
 Source: patent US 3062995, figures 1 and 3, claims 1 to 10. Questions: the patent gives no modulus; 200 mm/s
-for each mm here. Register 34 has 12 digits and a sign: 4095 counts, 2 mm at 2000 counts per mm; beyond, the
-drive is lost, and the patent's register would have been full. At the end the last place is held until the lag
-is run off, 15 / modulus. A start at speed and a corner are refused when the program is read.
+for each mm here, and in the historic control as much as its 6.8 points per s allow. That control has figure
+3's time base, so that a program takes hundreds of times as long, 64 counts in a pitch, and stores whose
+digits come round one by one. At the end the last place is held until the lag is run off, 15 / modulus. A
+start at speed and a corner are refused when the program is read.
 """
 
 from __future__ import annotations
@@ -26,62 +25,45 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.axis import TRAVEL_MM
-from morfax.motion.drive import SOUND, Drive, as_rows, conditioned_step
+from morfax.motion.drive import SOUND, as_rows
 from morfax.motion.faults import LockFault, ProgramFault
 from morfax.motion.motion import AXES, Motion
 from morfax.player.cubics.interpolator import CubicInterpolator, ends, slopes
-from morfax.player.cubics.scales import Scales, measured
-from morfax.player.monitor.monitor import FollowingLimit, Supervised
+from morfax.player.cubics.scales import Scales
+from morfax.player.cubics.servo import Servo, run_servos
+from morfax.player.cubics.stores import too_long
+from morfax.player.cubics.time_base import TimeBase
+from morfax.player.monitor.monitor import Supervised
 from morfax.recorder.cubics.file import STEPS_PER_CONSTANT, CubicProgram, read_program
 from morfax.recorder.textfile import note_of_no_sum
 
-REGISTER_DIGITS = 12  # of register 34, sign apart
 _SETTLING = 15.0  # time constants of the servo: the lag falls to 3e-7 of itself
 _BLOCK_INTERVALS = 256  # of the program in memory at a time
 _LARGEST_WORD = 2**62  # of register I with its digits
-_TOLERANCE_MM = 0.005  # of following: a tenth of the lag at 10 mm/s
 
 
-@dataclass(frozen=True, slots=True)
-class Servo:
-    """Settings: modulus in mm/s per mm (None: the program's), lowest digits dropped, scales, motor."""
-
-    modulus_per_s: float | None = None
-    dropped_digits: int = 0
-    register_digits: int = REGISTER_DIGITS
-    scales: Scales = field(default_factory=Scales)
-    drive: Drive = field(default_factory=Drive)
-    seed: int = 0
-
-    def limit(
-        self, modulus_per_s: float, counts_per_mm: float, point_rate_hz: float
-    ) -> FollowingLimit:
-        """The allowed following error.
-
-        It is the lag of modulus, motor and one point, as the next one is predicted, and what scales and
-        dropped digits add.
-        """
-        lag_s, settle_s = (
-            1 / modulus_per_s + self.drive.lag_s + 1 / point_rate_hz,
-            1 / modulus_per_s,
-        )
-        added = 2**self.dropped_digits + 2 * self.scales.fine_noise_counts
-        return FollowingLimit.linear(lag_s, _TOLERANCE_MM + added / counts_per_mm, settle_s)
+HISTORIC = Servo(scales=Scales(pitch_counts=TimeBase().counts_per_period))
 
 
 def play_cubic(
-    file: str | os.PathLike[str], *, servo: Servo | None = None, travel_mm: float = TRAVEL_MM
+    file: str | os.PathLike[str],
+    *,
+    servo: Servo | None = None,
+    travel_mm: float = TRAVEL_MM,
+    historic: bool = False,
 ) -> CubicPlayback:
-    """Put a cubic program in the machine; raises ProgramFault and FileFault before anything moves."""
-    return CubicPlayback(read_program(file), servo or Servo(), travel_mm, str(file))
+    """Put a cubic program in the machine; raises ProgramFault and FileFault before anything moves.
+
+    `historic`: with the stores, the scales (unless a servo is given) and the time base of the patent.
+    """
+    servo = servo or (HISTORIC if historic else Servo())
+    return CubicPlayback(read_program(file), servo, travel_mm, str(file), historic)
 
 
 class CubicPlayback(Supervised):
@@ -93,48 +75,62 @@ class CubicPlayback(Supervised):
     """
 
     def __init__(
-        self, program: CubicProgram, servo: Servo, travel_mm: float, name: str
+        self,
+        program: CubicProgram,
+        servo: Servo,
+        travel_mm: float,
+        name: str,
+        historic: bool = False,
     ) -> None:
         self.program, self.servo, self._name, self.format = program, servo, name, program.format
         self.notes = () if program.summed else (note_of_no_sum(name),)
-        self._modulus_per_s = servo.modulus_per_s or program.format.modulus_per_s
+        self.historic = historic
+        self.base = (
+            TimeBase.historic(self.format)
+            if historic
+            else TimeBase.of(self.format, servo.scales.pitch_counts)
+        )
+        most_per_s = self.base.step_hz / STEPS_PER_CONSTANT
+        told_per_s = program.format.modulus_per_s
+        self._modulus_per_s = servo.modulus_per_s or (
+            min(told_per_s, most_per_s) if historic else told_per_s
+        )
         self.start_mm: Array = np.array(program.checks[0]) / self.format.counts_per_mm
         self.end_mm: Array = self.start_mm.copy()
         self.end_error_mm: Array | None = None
         self.conditions = [SOUND] * len(AXES)
-        if self._modulus_per_s * STEPS_PER_CONSTANT > self.format.point_rate_hz:
+        if self._modulus_per_s > most_per_s:
             raise ProgramFault(
                 f"{name}: a speed modulus of {self._modulus_per_s:g} per s is too much for "
-                f"{self.format.point_rate_hz:g} "
-                f"points per s; give at most {self.format.point_rate_hz / STEPS_PER_CONSTANT:g}, or "
-                "record more points"
+                f"{self.base.step_hz:g} points per s; give at most {most_per_s:g}, or record more points"
             )
         self._check(travel_mm)
         self.limit = servo.limit(
-            self._modulus_per_s, self.format.counts_per_mm, self.format.point_rate_hz
+            self._modulus_per_s, self.format.counts_per_mm, self.base.step_hz
         )
-        self.supervise(AXES, self.format.point_rate_hz)
+        self.supervise(AXES, self.base.step_hz)
 
     @property
     def duration_s(self) -> float:
         """Running time of the machine, s: the program, and the time in which the lag runs off."""
         return (
-            len(self.program.words) * self.format.interval_s
-            + self._settling_points / self.format.point_rate_hz
+            len(self.program.words) * self.base.block_s
+            + self._settling_points / self.base.step_hz
         )
 
     @property
     def _settling_points(self) -> int:
-        return math.ceil(_SETTLING / self._modulus_per_s * self.format.point_rate_hz)
+        return math.ceil(_SETTLING / self._modulus_per_s * self.base.step_hz)
 
     def __iter__(self) -> Iterator[Motion]:
         """Play: the motion in blocks; raises LockFault or FollowingFault after the last good sample."""
         fmt, start = self.format, np.array(self.program.checks[0], np.int64)
+        rate_hz = self.base.step_hz
         state = np.zeros((len(AXES), 2))
         state[:, 0] = self.start_mm
-        monitor, self.end_error_mm = self.supervise(AXES, fmt.point_rate_hz), None
+        monitor, self.end_error_mm = self.supervise(AXES, rate_hz), None
         noise = np.random.default_rng(self.servo.seed)
-        yield Motion(self.start_mm[None], fmt.point_rate_hz, 0.0)
+        yield Motion(self.start_mm[None], rate_hz, 0.0)
         done = 0
         for predicted in self._predicted(start):
             moved, present = self._follow(predicted, state, noise)
@@ -143,7 +139,7 @@ class CubicPlayback(Supervised):
             )
             if rows:
                 self.end_mm = moved[rows - 1].copy()
-                yield Motion(moved[:rows], fmt.point_rate_hz, (done + 1) / fmt.point_rate_hz)
+                yield Motion(moved[:rows], rate_hz, (done + 1) / rate_hz)
             done += rows
             if rows < len(moved):
                 raise monitor.warnings[-1]
@@ -157,7 +153,7 @@ class CubicPlayback(Supervised):
     def _predicted(self, start: NDArray[np.int64]) -> Iterator[NDArray[np.int64]]:
         """The interpolated places in counts, in blocks, and the last one held."""
         fmt = self.format
-        interpolator = CubicInterpolator(start, fmt.points, fmt.linear)
+        interpolator = CubicInterpolator(start, fmt.points, fmt.linear, historic=self.historic)
         for first in range(0, len(self.program.words), _BLOCK_INTERVALS):
             yield interpolator.counts(
                 interpolator.run(self.program.words[first : first + _BLOCK_INTERVALS])
@@ -172,7 +168,7 @@ class CubicPlayback(Supervised):
         Fewer rows where a difference was too large for its register.
         """
         servo, fmt = self.servo, self.format
-        dt_s = 1 / fmt.point_rate_hz
+        dt_s = 1 / self.base.step_hz
         moved, present = np.empty(predicted.shape), np.empty(predicted.shape)
         jitter = (
             noise.uniform(-1, 1, (*predicted.shape, 2))
@@ -185,10 +181,10 @@ class CubicPlayback(Supervised):
         gain, most = servo.drive.gain(dt_s), servo.drive.acceleration_mm_s2 * dt_s
         drive = np.array([self._modulus_per_s, gain, most, dt_s])
         wrong = as_rows(self.conditions)
-        rows = _servo(
+        rows = run_servos(
             predicted,
             jitter,
-            servo.scales.table(),
+            servo.scales.table(self.base),
             register,
             drive,
             wrong,
@@ -209,7 +205,7 @@ class CubicPlayback(Supervised):
         error_mm = predicted / self.format.counts_per_mm - self.end_mm
         axis = int(np.argmax(np.abs(error_mm)))
         allowed_mm = 2**self.servo.register_digits / self.format.counts_per_mm
-        time_s, position_mm = row / self.format.point_rate_hz, float(self.end_mm[axis])
+        time_s, position_mm = row / self.base.step_hz, float(self.end_mm[axis])
         return LockFault(
             f"the drive of {AXES[axis].upper()} lags {error_mm[axis]:+.3f} mm at {time_s:.3f} s, position "
             f"{position_mm:.3f} mm; allowed ±{allowed_mm:g} mm: take a larger speed modulus, or "
@@ -230,6 +226,8 @@ class CubicPlayback(Supervised):
                 int(np.argmax(reach.max(axis=1))), "its words are too large for the registers"
             )
         start = np.array(self.program.checks[0], np.int64) << digits
+        if self.historic:
+            self._check_stores(start)
         places = np.vstack(
             [start[None], start + np.cumsum(ends(words, fmt.points, fmt.linear), axis=0)]
         )
@@ -243,6 +241,20 @@ class CubicPlayback(Supervised):
                     f"the interpolator comes to {', '.join(got)}; the program states {stated}",
                 )
         self._check_slopes(*slopes(words, fmt.points, fmt.linear))
+
+    def _check_stores(self, start: NDArray[np.int64]) -> None:
+        """Raise ProgramFault for words that a store has too few digits for; the stores are the patent's."""
+        n, size = self.format.points, np.abs(self.program.words)
+        third = (
+            size[..., 1] + n * size[..., 2]
+        )  # the most that III and II come to in an interval
+        second = size[..., 0] + n * third
+        for store, held in enumerate((start[None], second, third, size[..., 2])):
+            if too_long(held, store):
+                raise self._fault(
+                    int(np.argmax(held.max(axis=1))),
+                    f"its words have more digits than store {['I', 'II', 'III', 'IV'][store]}",
+                )
 
     def _check_travel(self, places: NDArray[np.int64], travel_mm: float) -> None:
         """Raise ProgramFault for a sample outside the travel."""
@@ -271,27 +283,3 @@ class CubicPlayback(Supervised):
         return ProgramFault(
             f"{self._name}{place}: {what}; copy it again or record it again", line=line
         )
-
-
-@njit(cache=True)
-def _servo(predicted, noise, scales, register, drive, conditions, state, seen, moved_mm):  # type: ignore[no-untyped-def]
-    """Run the servos of all axes through a block; the rows done before a difference was too large."""
-    counts_per_mm, largest, dropped = register
-    modulus, gain, change, dt_s = drive
-    for row in range(len(predicted)):
-        for axis in range(len(state)):
-            jitter = noise[min(row, len(noise) - 1), axis]
-            present = measured(
-                state[axis, 0] * counts_per_mm + 0.5, jitter[0], jitter[1], scales
-            )
-            difference = predicted[row, axis] - present  # adder 29
-            if abs(difference) >= largest:  # register 34 is full
-                return row
-            seen[row, axis] = present
-            kept = np.trunc(difference / dropped) * dropped
-            demand = modulus * kept / counts_per_mm  # decoder 35 at its reference voltage
-            speed = conditioned_step(state[axis, 1], demand, gain, change, conditions[axis])
-            state[axis, 0] += (state[axis, 1] + speed) / 2 * dt_s
-            state[axis, 1] = speed
-            moved_mm[row, axis] = state[axis, 0]
-    return len(predicted)

@@ -15,21 +15,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from morfax.motion.contour import distance
-from morfax.motion.faults import LockFault
-from morfax.motion.motion import join, thin
-from morfax.player.cubics.cubic import Servo, play_cubic
-from morfax.player.cubics.interpolator import (
-    CubicInterpolator,
-    TimeBase,
-    ends,
-    table,
-    truncated_end,
-)
+from morfax.motion.faults import Fault, LockFault
+from morfax.motion.motion import join
+from morfax.player.cubics.cubic import HISTORIC, play_cubic
+from morfax.player.cubics.interpolator import CubicInterpolator, ends
 from morfax.player.cubics.scales import Scales, gated_pulses, joined, read_scales
-from morfax.player.cubics.stores import Store, Stores
+from morfax.player.cubics.servo import Servo
+from morfax.player.cubics.stores import LENGTHS, circulate, content, write
+from morfax.player.cubics.time_base import TimeBase
 from morfax.recorder.cubics.cubics import differences, record_cubics
 from morfax.recorder.cubics.file import CubicFormat, read_program
+from tests.console.conftest import Morfax
+from tests.player.cubics.registers import table, truncated_end
 from tests.recorder.steps.test_steps import circle
 
 Vectors = Callable[[str], Any]
@@ -46,6 +43,22 @@ def orbit(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return file
 
 
+def loaded(words: tuple[int, ...]) -> np.ndarray:
+    """The four stores of the historic control with these words."""
+    stores = np.zeros((4, LENGTHS[0]), np.int64)
+    for i, word in enumerate(words):
+        write(stores[i], LENGTHS[i], word)
+    return stores
+
+
+def circulated(
+    stores: np.ndarray, gates: tuple[bool, bool, bool] = (True, True, True)
+) -> list[int]:
+    """What the stores hold when their digits have come round once."""
+    circulate(stores, np.array(LENGTHS), gates)
+    return [int(content(stores[i], LENGTHS[i])) for i in range(4)]
+
+
 # worked examples
 
 
@@ -54,21 +67,31 @@ def test_table_i(vectors: Vectors) -> None:
     words = (told["D1"], told["D2"], told["D3"])
     rows = table(told["x"], words, 8)
     assert [list(row) for row in rows] == told["rows"]
-    stores = Stores((told["x"], *words), width=16)
+    stores = loaded((told["x"], *words))
     for row in told["rows"][1:]:
-        stores.round()
-        assert list(stores.words) == row
+        assert circulated(stores) == row
 
 
-def test_the_order_of_the_text_is_not_table_i(vectors: Vectors) -> None:
-    """IV into III, and the new III into II: the rows that the text's order would give."""
-    told = vectors("sea_table1")["order_error"]["rows_literal_order"]
-    one, two, three, four = told[0]
-    for row in told[1:]:
+@pytest.mark.parametrize(
+    ("rows", "before"), [("rows_literal_order", 0), ("rows_literal_with_D2_minus_D3", 1)]
+)
+def test_the_order_of_the_text_is_not_table_i(vectors: Vectors, rows: str, before: int) -> None:
+    """IV into III, and the new III into II: other rows than the stores', and the same places only if the
+    tape held A² less A³.
+    """
+    told = vectors("sea_table1")
+    literal = told["order_error"][rows]
+    one, two, three, four = literal[0]
+    for row in literal[1:]:
         one, three = one + two, three + four
         two += three
         assert [one, two, three, four] == row
-    assert told != vectors("sea_table1")["rows"]
+    stores = loaded((told["x"], told["D1"], told["D2"], told["D3"]))
+    built = [[told["x"], told["D1"], told["D2"], told["D3"]]]
+    built += [circulated(stores) for _ in literal[1:]]
+    assert built == told["rows"] != literal
+    assert ([row[0] for row in built] == [row[0] for row in literal]) is bool(before)
+    assert told["order_error"]["equal_x"]
 
 
 def test_relation_vi_is_the_table(vectors: Vectors) -> None:
@@ -126,36 +149,46 @@ def test_the_time_base_of_figure_3(vectors: Vectors) -> None:
     assert base.block_s == pytest.approx(told["tape_block_period_s"])
 
 
+def codes(positions: np.ndarray, scales: Scales) -> np.ndarray:
+    """What the historic control reads at positions in counts, each in the middle of its count."""
+    settings = scales.table(TimeBase())
+    found = [read_scales(x + 0.5, 0.0, 0.0, settings) for x in positions]
+    return np.array([(*both, joined(*both, scales.pitch_counts)) for both in found])
+
+
 def test_coarse_and_fine_are_joined_as_told(vectors: Vectors) -> None:
     for case in vectors("sea_coarse_fine")["cases"]:
-        fine, coarse = read_scales(np.array([float(case["X"])]), Scales(64))
-        assert (fine[0], coarse[0]) == (case["fine"], case["coarse_read"])
-        assert fine[0] >> 5 == case["fine_msb"]
-        assert joined(fine, coarse, 64)[0] == case["combined"] == case["X"]
+        ((fine, coarse, code),) = codes(np.array([float(case["X"])]), HISTORIC.scales)
+        assert (fine, coarse) == (case["fine"], case["coarse_read"])
+        assert fine >> 5 == case["fine_msb"]
+        assert code == case["combined"] == case["X"]
 
 
 def test_the_coarse_scale_may_be_late_by_one_digit_at_most(vectors: Vectors) -> None:
     position = np.arange(0, 39 * 64, dtype=float)
     for lag, right in vectors("sea_coarse_fine")["lag_in_coarse_LSB_vs_correct"].items():
-        codes = joined(*read_scales(position, Scales(64, lag_digits=float(lag))), 64)
-        assert (codes == position).all() == right, lag
+        # half a count less, as a count is read in its middle
+        late = float(lag) + (0.5 / 32 if float(lag) in (0.0, 1.0) else 0)
+        read = codes(position, Scales(64, lag_digits=late))
+        assert (read[:, 2] == position).all() == right, lag
 
 
 # claims
 
 
-def test_claim_1_program_interpolator_measurement_comparison_and_drive(orbit: Path) -> None:
-    """The whole loop runs the curve; four stores in cascade, p in the program; smooth from one set to the
-    next.
-    """
-    playback = play_cubic(orbit)
-    assert distance(thin(playback), ORBIT).hausdorff_mm < 4 * UM
-    assert playback.format.points in (16, 32, 64, 128, 256, 512, 1024, 2048)
-    stores = Stores((1000, 37, -5, 2), width=16)
-    stores.round(gate_2=False, gate_3=False)
-    assert stores.words == (1037, 37, -5, 2)
-    stores.round(gate_1=False, gate_3=False)
-    assert stores.words == (1037, 32, -5, 2)
+def test_claim_1_program_interpolator_measurement_comparison_and_drive(
+    orbit: Path, here: Path, morfax: Morfax
+) -> None:
+    """The whole loop of the patent runs the curve; the program holds p, which is the points run."""
+    assert morfax("play", orbit, "--historic", "--raw", "-o", "orbit.csv").exit_code == 0
+    t_s, x_mm, y_mm = np.loadtxt("orbit.csv", delimiter=",", skiprows=1, usecols=(0, 1, 2)).T
+    program = read_program(orbit)
+    step_s = 16 * 2 * 16 / 3500  # figure 3
+    assert np.diff(t_s) == pytest.approx(step_s, rel=1e-6)
+    rests = 60  # the lag runs off: 15 time constants of 4 points
+    assert len(t_s) == 1 + len(program.words) * program.format.points + rests
+    off = np.abs(np.hypot(x_mm, y_mm - 5) - 5)
+    assert off.max() < 3 * UM  # two of the fit, two counts of half a um
 
 
 def test_claim_2_a_switch_makes_all_steps_cubic_or_one_in_q(tmp_path: Path) -> None:
@@ -172,31 +205,40 @@ def test_claim_2_a_switch_makes_all_steps_cubic_or_one_in_q(tmp_path: Path) -> N
     assert bends[1].all() and bends[4].sum() == 15  # one step in four changes the speed
 
 
-def test_claim_3_a_coarse_and_a_fine_encoder_make_one_code() -> None:
+def played_with(scales: Scales, orbit: Path) -> np.ndarray:
+    """Places of the historic machine along the orbit with these scales."""
+    return join(play_cubic(orbit, servo=Servo(scales=scales), historic=True)).positions_mm
+
+
+def test_claim_3_a_coarse_and_a_fine_encoder_make_one_code(orbit: Path) -> None:
     position = np.arange(-5000.0, 5000.0)
-    fine, coarse = read_scales(position, Scales(64))
+    fine, coarse, code = codes(position, HISTORIC.scales).T
     assert fine.max() == 63 and np.ptp(coarse) == pytest.approx(10000 / 32, abs=1)
-    assert (joined(fine, coarse, 64) == position).all()
+    assert (code == position).all()
+    # and the machine runs on them: 313 pitches of 32 um in 10 mm
+    places = played_with(HISTORIC.scales, orbit)
+    assert np.ptp(places[:, 0]) == pytest.approx(10, abs=3 * UM)
 
 
-def test_claim_4_one_is_added_to_the_coarse_code_where_the_digits_differ() -> None:
-    assert (
-        joined(np.array([32]), np.array([20]), 64)
-        == joined(np.array([32]), np.array([21]), 64)
-        == 672
-    )
-    assert (
-        joined(np.array([31]), np.array([19]), 64)
-        == joined(np.array([31]), np.array([20]), 64)
-        == 671
-    )
+def test_claim_4_one_is_added_to_the_coarse_code_where_the_digits_differ(orbit: Path) -> None:
+    assert joined(32, 20, 64) == joined(32, 21, 64) == 672
+    assert joined(31, 19, 64) == joined(31, 20, 64) == 671
+    # so a coarse scale may be late by up to a digit, and beyond it the machine is lost
+    right = played_with(HISTORIC.scales, orbit)
+    assert (played_with(Scales(64, lag_digits=0.1), orbit) == right).all()
+    assert (played_with(Scales(64, lag_digits=0.9), orbit) == right).all()
+    with pytest.raises(Fault):
+        played_with(Scales(64, lag_digits=1.4), orbit)
 
 
-def test_claim_5_a_gate_passes_fast_pulses_as_long_as_the_phase_is() -> None:
-    base = TimeBase()
-    counted = [gated_pulses(place / 64, base) for place in range(64)]
+def test_claim_5_a_gate_passes_fast_pulses_as_long_as_the_phase_is(orbit: Path) -> None:
+    base = play_cubic(orbit, historic=True).base
+    counted = [gated_pulses(place / 64, base.carrier_hz, base.fast_hz) for place in range(64)]
     assert counted == list(range(64))
-    assert gated_pulses(1.25, base) == 16
+    assert gated_pulses(1.25, base.carrier_hz, base.fast_hz) == 16
+    # the machine's readings are those of its time base: half the pulses a second, half the counts
+    slow = TimeBase(fast_hz=1750.0)
+    assert [gated_pulses(x / 64, base.carrier_hz, slow.fast_hz) for x in (8, 40)] == [4, 20]
 
 
 def test_claim_6_the_register_of_the_difference_has_few_digits(orbit: Path) -> None:
@@ -225,30 +267,31 @@ def test_claim_8_the_program_holds_the_ratio(tmp_path: Path) -> None:
 
 
 def test_claim_9_each_store_needs_fewer_digits_than_the_one_before(orbit: Path) -> None:
-    program = read_program(orbit)
-    largest = [
-        np.abs(
-            CubicInterpolator(np.array(program.checks[0]), program.format.points).run(
-                program.words
-            )
-        ).max()
-    ]
-    largest += np.abs(program.words).max(axis=(0, 1)).tolist()
-    digits = [int(word).bit_length() for word in largest]
-    assert digits == sorted(digits, reverse=True) and len(set(digits)) == 4
+    assert list(LENGTHS) == sorted(set(LENGTHS), reverse=True)
+    program, fmt = read_program(orbit), play_cubic(orbit).format
+    whole, stores = (
+        CubicInterpolator(np.array(program.checks[0]), fmt.points, historic=historic)
+        for historic in (False, True)
+    )
+    # the shorter stores run the program as whole words of 64 bits do, to the last digit
+    assert (stores.run(program.words) == whole.run(program.words)).all()
+    assert (program.words < 0).any()  # a shorter store hands on its sign
 
 
 @given(st.tuples(*[st.integers(-(2**20), 2**20)] * 4), st.integers(1, 20))
 def test_claim_10_the_stores_recirculate(words: tuple[int, int, int, int], steps: int) -> None:
-    stores = Stores(words, width=64)
-    for _ in range(3):
-        stores.round(False, False, False)
-        assert stores.words == words  # nothing but time has passed
-    for _ in range(steps):
-        stores.round()
-    assert stores.words == table(words[0], words[1:], steps)[-1]
-    with pytest.raises(ValueError, match="does not fit in 8 digits"):
-        Store.of(128, 8)
+    stores = loaded(words)
+    for _ in range(3):  # nothing but time has passed
+        assert circulated(stores, (False, False, False)) == list(words)
+    found = [circulated(stores) for _ in range(steps)][-1]
+    assert tuple(found) == table(words[0], words[1:], steps)[-1]
+
+
+def test_claim_10_each_gate_lets_one_store_into_the_next() -> None:
+    stores = loaded((1000, 37, -5, 2))
+    assert circulated(stores, (True, False, False)) == [1037, 37, -5, 2]
+    assert circulated(stores, (False, True, False)) == [1037, 32, -5, 2]
+    assert circulated(stores, (False, False, True)) == [1037, 32, -3, 2]
 
 
 def test_every_claim_stands_in_the_table() -> None:

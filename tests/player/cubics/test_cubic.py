@@ -13,12 +13,15 @@ from morfax.motion.contour import distance
 from morfax.motion.drive import Condition
 from morfax.motion.faults import FollowingFault, LockFault, ProgramFault
 from morfax.motion.motion import join, thin
-from morfax.player.cubics import cubic, interpolator, scales
-from morfax.player.cubics.cubic import Servo, play_cubic
-from morfax.player.cubics.interpolator import CubicInterpolator, TimeBase, table, truncated_end
-from morfax.player.cubics.scales import Scales, joined, read_scales
+from morfax.player.cubics import cubic, interpolator, servo
+from morfax.player.cubics.cubic import play_cubic
+from morfax.player.cubics.interpolator import CubicInterpolator
+from morfax.player.cubics.scales import Scales, joined, measured, read_scales
+from morfax.player.cubics.servo import Servo
+from morfax.player.cubics.time_base import TimeBase
 from morfax.recorder.cubics.cubics import record_cubics
-from morfax.recorder.cubics.file import CubicFormat
+from morfax.recorder.cubics.file import CubicFormat, CubicProgram, write_program
+from tests.player.cubics.registers import table, truncated_end
 from tests.recorder.steps.test_steps import SQUARE, circle
 
 UM = 1e-3
@@ -72,9 +75,11 @@ def test_the_joined_code_is_the_position_wherever_the_coarse_scale_is_late_by_le
     position: float, late: float, pitch: int
 ) -> None:
     scale = Scales(pitch, lag_digits=late)
-    fine, coarse = read_scales(np.array([position]), scale)
-    assert joined(fine, coarse, pitch)[0] == np.floor(position)
-    assert scales.measured.py_func(position, 0.0, 0.0, scale.table()) == np.floor(position)
+    settings = scale.table(TimeBase.of(CubicFormat(), pitch))
+    place = np.floor(position) + 0.5  # in the middle of a count, as the servo has it
+    fine, coarse = read_scales(place, 0.0, 0.0, settings)
+    assert joined(fine, coarse, pitch) == np.floor(position)
+    assert measured.py_func(place, 0.0, 0.0, settings) == np.floor(position)
 
 
 def test_noise_is_harmless_in_the_middle_of_the_margin_and_not_at_its_edge() -> None:
@@ -84,8 +89,10 @@ def test_noise_is_harmless_in_the_middle_of_the_margin_and_not_at_its_edge() -> 
         scale = Scales(
             64, misaligned_digits=misaligned, fine_noise_counts=2, coarse_noise_digits=0.3
         )
-        off = joined(*read_scales(position, scale), 64) - np.floor(position)
-        wrong[misaligned] = np.abs(off).max()
+        settings = scale.table(TimeBase())
+        noise = np.random.default_rng(0).uniform(-1, 1, (len(position), 2))
+        codes = [measured(x, *n, settings) for x, n in zip(position, noise, strict=True)]
+        wrong[misaligned] = np.abs(codes - np.floor(position)).max()
     assert wrong[0.0] <= 3 and wrong[-0.5] >= 32 and wrong[0.45] >= 32  # counts: a pitch is 64
 
 
@@ -190,7 +197,29 @@ def test_the_kernels_do_as_plain_python_what_they_do_compiled(
     shaken = Servo(scales=Scales(fine_noise_counts=1), dropped_digits=1)
     compiled = join(play_cubic(short, servo=shaken)).positions_mm
     monkeypatch.setattr(interpolator, "_interpolate", interpolator._interpolate.py_func)
-    monkeypatch.setattr(cubic, "_servo", cubic._servo.py_func)
+    monkeypatch.setattr(cubic, "run_servos", servo.run_servos.py_func)
     assert join(play_cubic(short, servo=shaken)).positions_mm == pytest.approx(
         compiled, abs=1e-9
     )
+
+
+def test_the_historic_control_interpolates_as_the_usual_one_and_takes_longer(
+    round_file: Path,
+) -> None:
+    usual, historic = play_cubic(round_file), play_cubic(round_file, historic=True)
+    off = distance(thin(historic), circle(5, 10))
+    assert off.path_to_reference.max_mm < 3 * UM  # two of the fit, two counts of half a um
+    assert historic.base.block_s == usual.format.points * 16 * 2 * 16 / 3500
+    assert historic.duration_s > 100 * usual.duration_s
+
+
+def test_a_program_whose_words_are_longer_than_a_store_is_refused(tmp_path: Path) -> None:
+    words = np.array(
+        [[[1 << 47, 0, 0], [0, 0, 0], [0, 0, 0]]]
+    )  # store II has 48 digits, one its sign
+    file = tmp_path / "long.cubic"
+    write_program(CubicProgram(CubicFormat(), words, {0: (0, 0, 0), 1: (0, 0, 0)}), file)
+    with pytest.raises(ProgramFault, match="more digits than store II;"):
+        play_cubic(file, historic=True)
+    with pytest.raises(ProgramFault, match="X goes to"):
+        play_cubic(file)

@@ -1,0 +1,40 @@
+"""Registers worked out beside the compiled ones: table I, and registers that drop their lower digits."""
+
+from __future__ import annotations
+
+from morfax.player.cubics.interpolator import CubicInterpolator
+
+
+def table(
+    start: int, words: tuple[int, int, int], steps: int
+) -> list[tuple[int, int, int, int]]:
+    """Table I: the four registers before the first step and after each, in whole units."""
+    one, two, three, four = start, *words
+    rows = [(one, two, three, four)]
+    for _ in range(steps):
+        one, two, three = one + two, two + three, three + four
+        rows.append((one, two, three, four))
+    return rows
+
+
+def truncated_end(
+    start: int, words: tuple[int, int, int], steps: int, digits: tuple[int, int, int, int]
+) -> float:
+    """End of an interval, in counts, in registers of these digits; lower digits are dropped on the way.
+
+    The words are given with 3 log2(steps) digits, as ever.
+    """
+    full = CubicInterpolator.digits_for(steps)
+    held = [
+        start << digits[0],
+        *(_moved(word, full, own) for word, own in zip(words, digits[1:], strict=True)),
+    ]
+    for _ in range(steps):
+        for i in range(3):
+            held[i] += _moved(held[i + 1], digits[i + 1], digits[i])
+    return held[0] / 2 ** digits[0]
+
+
+def _moved(word: int, digits: int, to_digits: int) -> int:
+    """A word with other digits behind the point; lower digits are dropped."""
+    return word << to_digits - digits if to_digits >= digits else word >> digits - to_digits
