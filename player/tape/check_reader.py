@@ -26,6 +26,8 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import TapeFault
+from morfax.player.tape.erasures import recovered
+from morfax.player.tape.slips import slip
 from morfax.player.tape.standstill import REFERENCE_BAND, strongest_hz
 from morfax.player.tape.subcarrier import Subcarrier
 from morfax.player.tape.symbols import PARTS, QUARTER, likeness, read_symbols
@@ -130,6 +132,7 @@ class CheckReader:
         self._turns = np.zeros(fmt.tracks)
         self._zero_turns = np.zeros(fmt.tracks)
         self._number, self._theta = 0, 0.0  # the next frame, and where it begins
+        self._sound_from = -1.0  # the last point before which the reference is counted right
         if self.is_checked:
             self._begin()
         elif any(self._search(track, backwards=True) for track in range(fmt.tracks)):
@@ -225,9 +228,13 @@ class CheckReader:
 
     def _report(self) -> FrameReport:
         """Read the next frame of all tracks."""
-        bits, late, turns = read_symbols(self._points, self._theta)
+        self._put_right()
+        bits, strengths, late, turns = read_symbols(self._points, self._theta)
         said = from_bits(bits)
         for track, frame in enumerate(said):
+            if frame is None:
+                frame = recovered(bits[track], strengths[track], track, self._number)
+                said[track] = frame
             if frame is None or not np.isfinite(turns[track]).all():
                 said[track], late[track], turns[track] = None, np.nan, np.nan
                 continue
@@ -244,6 +251,18 @@ class CheckReader:
             (late / self._reference_hz).tolist(),
             (apart * CYCLES_PER_SUBCARRIER / self._reference_hz).tolist(),
         )
+
+    def _put_right(self) -> None:
+        """Put right what was miscounted of the reference while it failed, at the first frame behind that."""
+        ended = self._points.lost[1]
+        if ended <= self._sound_from or self._points.theta_at(ended) >= self._theta:
+            return
+        slipped = slip(self._points, self._theta, self._number)
+        if slipped is None:
+            return  # the next frame may be read
+        self._sound_from = ended
+        if slipped:
+            self._points.slip(slipped)
 
     def _rows(self, theta: Array) -> list[float]:
         """The rows of the tape at some counts of the reference."""

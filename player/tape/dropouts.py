@@ -6,25 +6,15 @@ ms later, with the gaps filled and the cycles beyond them counted on; or the row
 certain, with its fault.
 
 A row is lost while the level of its track (or of the reference) is a fifth off what it was 20 ms ago, or
-below a fifth of its level at standstill, and as long as the discriminator's filter reaches into such rows. A
-parabola through the 6 ms before the gap (p0, v0, a0: held, as rewound past the filter) and one through the 6
-ms after it (p1, v1, a1) then give
+below a fifth of its level at standstill, and as long as the discriminator's filter reaches into such rows.
+What the rows on both sides say of the gap is in bridges.py.
 
-    d      = T (v0 + v1) / 2 + T² (a0 - a1) / 12      travel over the gap of a motion of even jerk
-    r      = (p1 - p0) - d,  less the nearest whole   what was measured against what was held
-    dv     = (v1 - v0) - T (a0 + a1) / 2              change of speed that the accelerations do not explain
-    H      = A T² / 4 + |dv| T / 2                    furthest that a motion of acceleration A may lie off d
-
-The count is certain where no other whole number is possible:      H < 1 - |r| - 0.1     (cycles)
-and the way between where it lies within a twentieth of a cycle:   |r| / 2 + |dv| T / 8 < 0.05
-
-    ________  p0                                       v0  _/\\_  longest way there and back that begins and
-            \\ ................ /  what may have been       \\/   ends with the same speed: A T² / 4 of travel
-                gap, T          p1 _______
+    bare       a gap that is not certain by its sides is a fault; so is one of more than 0.1 s
+    checked    every gap up to 1.1 s is bridged and told of; what vouches for the rows decides
 
 Source: patent ES 361967, figure 5 (fault circuit 162) asks for it; the bounds: docs/background/player.md.
-Questions: A is not on the tape: it is taken as what the machine's own motors can do, 5 m/s², and may be given
-where the program is known to be smoother.
+Questions: A is not on a bare tape: it is taken as what the machine's own motors can do, 5 m/s², and may be
+given where the program is known to be smoother. A check signal tells it.
 """
 
 from __future__ import annotations
@@ -38,82 +28,19 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import Fault, LockFault, TapeFault
+from morfax.player.tape.bridges import Bound, Bridge, Gap, Side, bridge, side
 from morfax.player.tape.discriminator import Discriminator, Phases
 from morfax.player.tape.predictor import recount
-from morfax.player.tape.standstill import ALLOWED_CYCLES, LEVEL_STEADY
+from morfax.player.tape.standstill import LEVEL_STEADY
+from morfax.recorder.tape.format import TapeFormat
 
 LEVEL_KEPT = 0.2  # of the level at standstill
 STEADY_S = 0.02  # ago: the level that a row is compared with
 SIDE_S = 0.006  # of sound tape on each side
 SIDE_ROWS = 36  # the same at 6 kHz
 LONGEST_S = 0.1  # a track that is away longer has ended
-COUNT_MARGIN = 0.1  # cycles, for noise
-ROUGH_CYCLES = 0.04  # what is left of the parabola; 26 dB of noise leave 0.015
-
-
-@dataclass(frozen=True, slots=True)
-class Side:
-    """Motion at the edge of a gap, in cycles and rows: place, speed, half the acceleration, worst misfit."""
-
-    place: float
-    speed: float
-    bend: float
-    misfit: float
-
-
-@dataclass(frozen=True, slots=True)
-class Bridge:
-    """A gap and what its sides say, in cycles: `reach` is H, `off` is r, `between` the error in the gap."""
-
-    travel: float
-    off: float
-    reach: float
-    between: float
-    misfit: float
-
-    @property
-    def certain(self) -> bool:
-        """Whether only one number of whole cycles is possible, and the way between is known."""
-        sure = self.reach < 1 - abs(self.off) - COUNT_MARGIN
-        return sure and self.between < ALLOWED_CYCLES and self.misfit < ROUGH_CYCLES
-
-
-def side(cycles: Array, at: int) -> Side:
-    """Parabola through the rows beside a gap, taken at row `at` (the nearest to the gap)."""
-    steps = np.arange(len(cycles)) - at
-    bend, speed, place = np.polyfit(steps, cycles - cycles[at], 2)
-    misfit = np.abs(cycles - cycles[at] - np.polyval([bend, speed, place], steps)).max()
-    return Side(float(place + cycles[at]), float(speed), float(bend), float(misfit))
-
-
-def bridge(before: Side, after: Side, rows: int, acceleration: float) -> Bridge:
-    """A gap of this many rows between two sides; the acceleration in cycles per row²."""
-    travel = rows * (before.speed + after.speed) / 2 + rows**2 * (before.bend - after.bend) / 6
-    off = after.place - before.place - travel
-    off -= round(off)
-    jolt = abs(after.speed - before.speed - rows * (before.bend + after.bend))
-    reach = acceleration * rows**2 / 4 + jolt * rows / 2
-    return Bridge(
-        travel + off,
-        off,
-        reach,
-        abs(off) / 2 + jolt * rows / 8,
-        max(before.misfit, after.misfit),
-    )
-
-
-def longest_s(acceleration_mm_s2: float, cycles_per_mm: float) -> float:
-    """The longest gap with a certain count if both sides agree, with filter, s: A T² / 4 = 0.9 cycle."""
-    return float(np.sqrt(4 * (1 - COUNT_MARGIN) / (acceleration_mm_s2 * cycles_per_mm)))
-
-
-def filled(before: Side, after: Side, travel: float, rows: int) -> Array:
-    """The rows within a gap: a cubic with the place and speed of both sides."""
-    u = np.arange(1, rows) / rows
-    v0, v1, way = before.speed * rows, after.speed * rows, travel
-    return np.asarray(
-        before.place + v0 * u + (3 * way - 2 * v0 - v1) * u**2 + (v0 + v1 - 2 * way) * u**3
-    )
+# the same with a check signal: 1 s is asked, and the filter reaches 2 ms further; levels need some time
+LONGEST_CHECKED_S = 1.1
 
 
 def under_way(rows: Phases, discriminator: Discriminator) -> Array:
@@ -138,6 +65,19 @@ def _count_on(
     discriminator.state[axis] = recount(cycles, discriminator.gains, state, surprise)
 
 
+@dataclass(frozen=True, slots=True)
+class Riding:
+    """How gaps are ridden over: the most that the machine's motors can do, cycles/row and cycles/row².
+
+    `bound`: what the program asks for at most between two rows of an axis, as far as the tape tells it; None
+    on a bare tape. `told`: whole cycles to add at a gap (row, axis), if what is not certain is no fault.
+    """
+
+    motors: Bound
+    bound: Callable[[int, int, int], Bound | None] | None = None
+    told: dict[tuple[int, int], int] | None = None
+
+
 class Gaps:
     """Bridges the gaps of one tape; holds rows back that the next rows may show to be lost."""
 
@@ -145,26 +85,30 @@ class Gaps:
         self,
         discriminator: Discriminator,
         levels: Array,
-        rate_hz: float,
-        acceleration: float,
+        fmt: TapeFormat,
+        riding: Riding,
         place_mm: Callable[[int, float], float],
-        names: Sequence[str],
-        told: dict[tuple[int, int], int] | None = None,
     ) -> None:
-        self._told = told  # whole cycles to add at a gap (row, axis); None: what is not certain is a fault
+        self._riding, self._discriminator = riding, discriminator
         self.doubtful: dict[tuple[int, int], Bridge] = {}
-        self._discriminator, self._rate_hz = discriminator, rate_hz
-        self._place_mm, self._names = place_mm, names
+        self._new: list[Gap] = []
+        self._rate_hz, self._names = fmt.motion_rate_hz, fmt.axes
+        self._place_mm = place_mm
         self._levels, self._tracked = levels, levels.copy()
-        self._acceleration = acceleration  # cycles/row²
-        self._side = max(round(SIDE_S * rate_hz), 6)
+        self._side = max(round(SIDE_S * self._rate_hz), 6)
         self._spread = -(-discriminator.filter_frames // (2 * discriminator.decimation))
+        self._longest_s = LONGEST_S if riding.bound is None else LONGEST_CHECKED_S
         # from `side` rows before the first that is not yet given out
         self._rows: Phases | None = None
         self._lost = np.zeros((0, len(levels)), bool)
         self._given: int | None = None  # the row up to which rows were given out
         # tape time in s and axis: length in s
         self.bridged: dict[tuple[float, str], float] = {}
+
+    def found(self) -> list[Gap]:
+        """The gaps that were bridged since this was asked last."""
+        found, self._new = self._new, []
+        return found
 
     def feed(
         self, phases: Phases, *, last: bool = False
@@ -202,7 +146,7 @@ class Gaps:
                 if (
                     b + self._side + self._spread > len(rows)
                     and not last
-                    and b - a <= LONGEST_S * self._rate_hz
+                    and b - a <= self._longest_s * self._rate_hz
                 ):
                     ready = min(ready, a)  # what comes after it is not yet there
                     break
@@ -232,25 +176,34 @@ class Gaps:
     def _bridge(self, rows: Phases, axis: int, a: int, b: int) -> Fault | None:
         """Fill a gap and count on behind it; the fault if it is too long to be certain."""
         cycles, time_s = rows.cycles[:, axis], (rows.first_row + a) / self._rate_hz
-        if b + self._side > len(rows) or b - a > LONGEST_S * self._rate_hz:
+        if b + self._side > len(rows) or b - a > self._longest_s * self._rate_hz:
             return self._ended(rows, axis, a, time_s)
         if a < self._side:
             return self._uncertain(axis, cycles[max(a - 1, 0)], time_s, (b - a) / self._rate_hz)
+        gap = self._joined(rows, axis, a, b)
+        if self._riding.bound is None and not gap.bridge.certain:
+            if self._riding.told is None:
+                return self._uncertain(axis, gap.before.place, time_s, (b - a) / self._rate_hz)
+            self.doubtful[gap.first, axis] = gap.bridge
+            gap = gap.ending(self._riding.told.get((gap.first, axis), 0))
+        cycles[a:b] = gap.laid()
+        rows.surprise[a:b, axis] = 0
+        _count_on(self._discriminator, axis, gap.after, cycles[b:], rows.surprise[b:, axis])
+        self.bridged[time_s, self._names[axis]] = (b - a) / self._rate_hz
+        self._new.append(gap)
+        return None
+
+    def _joined(self, rows: Phases, axis: int, a: int, b: int) -> Gap:
+        """A gap as its sides suggest it."""
+        cycles, motors = rows.cycles[:, axis], self._riding.motors
         before = side(cycles[a - self._side : a], self._side - 1)
         after = side(np.unwrap(cycles[b : b + self._side], period=1.0), 0)
-        found = bridge(before, after, b - a + 1, self._acceleration)
-        if not found.certain:
-            if self._told is None:
-                return self._uncertain(axis, before.place, time_s, (b - a) / self._rate_hz)
-            gap = rows.first_row + a, axis
-            self.doubtful[gap] = found
-            found = replace(found, travel=found.travel + self._told.get(gap, 0))
-        cycles[a:b] = filled(before, after, found.travel, b - a + 1)
+        first, last = rows.first_row + a, rows.first_row + b
+        told = None if self._riding.bound is None else self._riding.bound(axis, first, last)
+        most = min(motors.acceleration, told.acceleration if told else np.inf)
+        found = bridge(before, after, b - a + 1, most)
         after = replace(after, place=before.place + found.travel)
-        rows.surprise[a:b, axis] = 0
-        _count_on(self._discriminator, axis, after, cycles[b:], rows.surprise[b:, axis])
-        self.bridged[time_s, self._names[axis]] = (b - a) / self._rate_hz
-        return None
+        return Gap(axis, first, last, before, after, found, told or motors)
 
     def _ended(self, rows: Phases, axis: int, a: int, time_s: float) -> TapeFault:
         """The fault of a track that does not come back."""
@@ -259,7 +212,7 @@ class Gaps:
         name = "reference" if track == 0 else self._names[track - 1].upper()
         return TapeFault(
             f"track {track + 1} ({name}) lost its carrier at {time_s:.3f} s, for more than "
-            f"{LONGEST_S * 1e3:g} ms or to "
+            f"{self._longest_s * 1e3:g} ms or to "
             f"the tape's end; record or copy the tape again",
             time_s=time_s,
         )

@@ -31,7 +31,7 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.faults import LockFault, TapeFault
 from morfax.motion.motion import Motion
-from morfax.player.tape.dropouts import COUNT_MARGIN, Bridge
+from morfax.player.tape.bridges import COUNT_MARGIN, Bridge
 from morfax.player.tape.playback import TapePlayback, play
 from morfax.player.tape.track_order import END_CYCLES
 from morfax.recorder.tape.format import TapeFormat

@@ -10,7 +10,7 @@ and the cycles of the reference since the start of the tape (theta).
 The window has its zeros at every half of 1 / hop from the subcarrier on, and a carrier at standstill lies on
 one; it is 55 dB down from 3 kHz beside it, where the carriers begin. As the phase is told against the
 reference, the speed of the tape and its flutter fall out. Where the reference fails for a moment, theta goes
-on as fast as before.
+on as fast as before, and may be whole cycles off behind it: `slip` puts them right (slips.py finds them).
 
 Source: F. J. Harris, On the Use of Windows, Proc. IEEE 66, 1978 (Hann). Questions: none.
 """
@@ -50,7 +50,8 @@ class Subcarrier:
         self._rows_of_taps = taps.reshape(4 * (tracks + 1), -1)
         self._tail: Stored = np.zeros((0, tracks), np.float32)  # frames of the next hops
         self._next = 0  # the next point
-        self._state = np.array([math.nan, 0.0, 0.0])  # turns, turns per point, level
+        # turns, turns per point, level; the first and last point of the last loss of the reference
+        self._state = np.array([math.nan, 0.0, 0.0, -1.0, -1.0])
         self.first = 0  # the first point that is held
         self.points: Complexes = np.zeros((tracks, 0), complex)
         self.theta: Array = np.zeros(0)
@@ -81,12 +82,32 @@ class Subcarrier:
         """The frame of the tape in the middle of a point's window."""
         return np.asarray(self.hop * (points + 1) - 0.5, np.float64)
 
+    def theta_at(self, point: float) -> float:
+        """The cycles of the reference at a point; before the first that is held, those of that."""
+        numbers = self.first + np.arange(len(self.theta))
+        return float(np.interp(point, numbers, self.theta))
+
     def frames_at(self, theta: Array) -> Array:
         """The frames of the tape at some counts of the reference."""
         numbers = np.interp(theta, self.theta, np.arange(len(self.theta)))
         # beyond the first point and the last, at the nominal rate
         off = np.minimum(theta - self.theta[0], 0) + np.maximum(theta - self.theta[-1], 0)
         return self.frame_of(self.first + numbers) + off / self._step
+
+    @property
+    def lost(self) -> tuple[float, float]:
+        """The first and last point at which the reference last failed; -1 where it never did."""
+        return float(self._state[3]), float(self._state[4])
+
+    def slip(self, cycles: int) -> None:
+        """Count so many cycles of the reference less from its last loss on; the loss takes them up."""
+        first, last = self.lost
+        numbers = self.first + np.arange(len(self.theta))
+        share = np.clip((numbers - first + 1) / (last - first + 2), 0.0, 1.0)
+        self.theta = self.theta - cycles * share
+        turn = np.exp(2j * np.pi * cycles * (numbers > last) / CYCLES_PER_SUBCARRIER)
+        self.points = self.points * turn
+        self._state[0] -= cycles
 
     def forget(self, theta: float) -> None:
         """Drop the points before a count of the reference."""
@@ -125,7 +146,7 @@ def _turn_back(halves, first, per_point, state, turns, points):  # type: ignore[
 
     `per_point`: cycles of the reference from point to point, and to one of the subcarrier.
     """
-    place, rate, level = state
+    place, rate, level, first_lost, last_lost = state
     tracks = len(points)
     for k in range(len(turns)):
         nominal = (first + k) * per_point[0]
@@ -138,6 +159,8 @@ def _turn_back(halves, first, per_point, state, turns, points):  # type: ignore[
             place, rate, level = turn - np.floor(turn), 0.0, strength
         elif not strength >= LEVEL_HELD * level:
             place += rate
+            first_lost = first_lost if last_lost == first + k - 1 else first + k
+            last_lost = first + k
             if strength >= 0:  # and is a number
                 level += LOST_SHARE * (strength - level)
         else:
@@ -156,3 +179,4 @@ def _turn_back(halves, first, per_point, state, turns, points):  # type: ignore[
             im = float(halves[track, 1, k]) + halves[track, 3, k + 1]
             points[track, k] = complex(re, im) * turned
     state[0], state[1], state[2] = place, rate, level
+    state[3], state[4] = first_lost, last_lost

@@ -1,8 +1,9 @@
 """The symbols of the check signal: 120 to a frame, read early, on time and late.
 
 Signals in: points of the subcarrier with the cycles of the reference beside them, and where a frame begins.
-Signals out, track by track: +1 or -1 of each symbol, how late they are, and the phase of the subcarrier in
-each part of the frame; and, for the search, how like the sync word what follows each place is.
+Signals out, track by track: +1 or -1 of each symbol and how strong it is, how late they are, and the phase of
+the subcarrier in each part of the frame; and, for the search, how like the sync word what follows each place
+is.
 
     early  on  late          a quarter of a symbol to either side of where a symbol is due
        ╲    |    ╱
@@ -32,9 +33,10 @@ _WORD = SYNC.astype(np.float64)
 
 
 class Gates(NamedTuple):
-    """Symbols of a frame, +1 or -1; how late they are, in cycles of the reference; phases, in turns."""
+    """Symbols of a frame, +1 or -1, and how strong they are; how late, in cycles; phases, in turns."""
 
     bits: Bits
+    strengths: Array
     late: Array
     turns: Array
 
@@ -54,14 +56,17 @@ def read_symbols(points: Subcarrier, begins: float) -> Gates:
     """Read the symbols of the frame of all tracks that begins at a count of the reference."""
     tracks = len(points.points)
     gates = Gates(
-        np.empty((tracks, SYMBOLS), np.int8), np.empty(tracks), np.empty((tracks, PARTS))
+        np.empty((tracks, SYMBOLS), np.int8),
+        np.empty((tracks, SYMBOLS)),
+        np.empty(tracks),
+        np.empty((tracks, PARTS)),
     )
     _read(np.ascontiguousarray(points.points), points.theta, begins, _WORD, *gates)
     return gates
 
 
 @njit(cache=True, nogil=True)
-def _read(points, theta, begins, word, bits, late, turns):  # type: ignore[no-untyped-def]
+def _read(points, theta, begins, word, bits, strengths, late, turns):  # type: ignore[no-untyped-def]
     """Read one frame of all tracks, whose symbols are 24 cycles of theta apart; see `Gates`."""
     tracks, symbols = bits.shape
     gates = np.empty((tracks, 3, symbols), np.complex128)
@@ -87,6 +92,7 @@ def _read(points, theta, begins, word, bits, late, turns):  # type: ignore[no-un
             seen = gates[track, 1, symbol]
             along = seen.real * alike.real + seen.imag * alike.imag
             bits[track, symbol] = 1 if along >= 0 else -1
+            strengths[track, symbol] = abs(along)
         # 3. with the signs known: how late, by a parabola through three gates; and the phase, part by part
         sums = np.zeros(3)
         for gate in range(3):

@@ -10,7 +10,7 @@ import soundfile
 
 from morfax.motion.faults import LockFault
 from morfax.motion.motion import Motion, join
-from morfax.player.tape.dropouts import Bridge, bridge, filled, longest_s, side
+from morfax.player.tape.bridges import Bridge, bridge, filled, longest_s, side
 from morfax.player.tape.playback import play
 from morfax.recorder.tape.tape import record
 from tests.player.worn import program

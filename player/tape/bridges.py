@@ -1,0 +1,217 @@
+"""Bridges: what the sound tape on both sides of a gap says of the motion within it, and how far off it may
+be.
+
+Signals in: rows of phases beside a gap, cycles, and the bound of the program there (cycles/row², cycles/row).
+Signals out: the travel over the gap, the rows within it, and what is not known of them, cycles.
+
+A parabola through the 6 ms before the gap (p0, v0, a0: held, as rewound past the filter) and one through the
+6 ms after it (p1, v1, a1) give
+
+    d      = T (v0 + v1) / 2 + T² (a0 - a1) / 12      travel over the gap of a motion of even jerk
+    r      = (p1 - p0) - d,  less the nearest whole   what was measured against what was held
+    dv     = (v1 - v0) - T (a0 + a1) / 2              change of speed that the accelerations do not explain
+    H      = A T² / 4 + |dv| T / 2                    furthest that a motion of acceleration A may lie off d
+
+The count is certain where no other whole number is possible:      H < 1 - |r| - 0.1     (cycles)
+and the way between where it lies within a twentieth of a cycle:   |r| / 2 + |dv| T / 8 < 0.05
+
+The way is laid as the cubic that joins both sides: of all motions the one with the least acceleration, root
+mean square. Any other motion between them that keeps to A, and to the largest speed V, lies between an upper
+and a lower edge; `freedom` is the furthest that an edge lies off what is laid.
+
+    p      ___                  upper edge, at each t: the highest place from which one can still arrive
+      0 __/   \\__ 1             speed s there, with  L(s) from the left and R(s) from the right:
+        \\__ __/                    L(s) = p0 + v0 t + A t²/2 - (v0 + A t - s)² / 4A
+           ‾                     R(s) the same, back from p1;  the highest of min(L, R), where L(s) = R(s)
+
+Source: patent ES 361967, figure 5 (fault circuit 162) asks for it; the bounds: docs/background/player.md; the
+edges: motion that keeps to an acceleration is quickest with all of it, one way and then the other (A. E.
+Bryson and Y.-C. Ho, Applied Optimal Control, 1975, section 3.9).
+Questions: a motion that changes its acceleration several times within the 6 ms of a side is no parabola; so
+what both sides do not agree in (`between`) is added to the freedom before a gap is called known.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from morfax.motion.arrays import Array
+from morfax.player.tape.standstill import ALLOWED_CYCLES
+
+COUNT_MARGIN = 0.1  # cycles, for noise
+ROUGH_CYCLES = 0.04  # what is left of the parabola; 26 dB of noise leave 0.015
+LEAST_ACCELERATION = 1e-12  # cycles/row²: of an axis at rest; keeps it from dividing by zero
+
+
+@dataclass(frozen=True, slots=True)
+class Bound:
+    """The most that a program asks of an axis: cycles/row² and cycles/row."""
+
+    acceleration: float
+    speed: float
+
+
+@dataclass(frozen=True, slots=True)
+class Side:
+    """Motion at the edge of a gap, in cycles and rows: place, speed, half the acceleration, worst misfit."""
+
+    place: float
+    speed: float
+    bend: float
+    misfit: float
+
+
+@dataclass(frozen=True, slots=True)
+class Bridge:
+    """A gap and what its sides say, in cycles: `reach` is H, `off` is r, `between` the error in the gap."""
+
+    travel: float
+    off: float
+    reach: float
+    between: float
+    misfit: float
+
+    @property
+    def counted(self) -> bool:
+        """Whether only one number of whole cycles is possible."""
+        return self.reach < 1 - abs(self.off) - COUNT_MARGIN
+
+    @property
+    def certain(self) -> bool:
+        """Whether only one number of whole cycles is possible, and the way between is known."""
+        return (
+            self.counted and self.between < ALLOWED_CYCLES and self.misfit < ROUGH_CYCLES
+        )
+
+
+def side(cycles: Array, at: int) -> Side:
+    """Parabola through the rows beside a gap, taken at row `at` (the nearest to the gap)."""
+    steps = np.arange(len(cycles)) - at
+    bend, speed, place = np.polyfit(steps, cycles - cycles[at], 2)
+    misfit = np.abs(cycles - cycles[at] - np.polyval([bend, speed, place], steps)).max()
+    return Side(float(place + cycles[at]), float(speed), float(bend), float(misfit))
+
+
+def bridge(before: Side, after: Side, rows: int, acceleration: float) -> Bridge:
+    """A gap of this many rows between two sides; the acceleration in cycles per row²."""
+    travel = rows * (before.speed + after.speed) / 2 + rows**2 * (before.bend - after.bend) / 6
+    off = after.place - before.place - travel
+    off -= round(off)
+    jolt = abs(after.speed - before.speed - rows * (before.bend + after.bend))
+    reach = acceleration * rows**2 / 4 + jolt * rows / 2
+    return Bridge(
+        travel + off,
+        off,
+        reach,
+        abs(off) / 2 + jolt * rows / 8,
+        max(before.misfit, after.misfit),
+    )
+
+
+def longest_s(acceleration_mm_s2: float, cycles_per_mm: float) -> float:
+    """The longest gap with a certain count if both sides agree, with filter, s: A T² / 4 = 0.9 cycle."""
+    return float(np.sqrt(4 * (1 - COUNT_MARGIN) / (acceleration_mm_s2 * cycles_per_mm)))
+
+
+def filled(before: Side, after: Side, travel: float, rows: int) -> Array:
+    """The rows within a gap: a cubic with the place and speed of both sides."""
+    u = np.arange(1, rows) / rows
+    v0, v1, way = before.speed * rows, after.speed * rows, travel
+    return np.asarray(
+        before.place + v0 * u + (3 * way - 2 * v0 - v1) * u**2 + (v0 + v1 - 2 * way) * u**3
+    )
+
+
+
+
+@dataclass(frozen=True, slots=True)
+class Gap:
+    """A gap of an axis from row `first` to before `last` of the tape, as it was bridged.
+
+    `after.place` is where the axis is behind it as it was counted. `bound` is what the program asks for there
+    at most, as far as the tape tells it.
+    """
+
+    axis: int
+    first: int
+    last: int
+    before: Side
+    after: Side
+    bridge: Bridge
+    bound: Bound
+
+    @property
+    def rows(self) -> int:
+        """Rows from the one before the gap to the first behind it."""
+        return self.last - self.first + 1
+
+    @property
+    def freedom(self) -> float:
+        """The furthest that the motion may lie off what was laid, if the count is right, cycles."""
+        return freedom(self.before, self.after, self.rows, self.bound)
+
+    @property
+    def known(self) -> bool:
+        """Whether the way between is known, if the count behind it is vouched for."""
+        found = self.bridge
+        known = self.freedom + found.between < ALLOWED_CYCLES
+        return known and found.misfit < ROUGH_CYCLES
+
+    @property
+    def certain(self) -> bool:
+        """Whether it may be ridden over: with its own count, or with one that is vouched for later."""
+        return self.bridge.certain or self.known
+
+    def moved(self, cycles: float) -> Gap:
+        """The same gap of an axis that stands some cycles further on."""
+        before = replace(self.before, place=self.before.place + cycles)
+        return replace(self, before=before).ending(cycles)
+
+    def ending(self, cycles: float) -> Gap:
+        """The same gap with some cycles more behind it."""
+        return replace(self, after=replace(self.after, place=self.after.place + cycles))
+
+    def upto(self, later: Gap) -> Gap:
+        """One gap from the start of this to the end of a later one."""
+        acceleration = max(self.bound.acceleration, later.bound.acceleration)
+        speed = max(self.bound.speed, later.bound.speed)
+        return replace(
+            self, last=later.last, after=later.after, bound=Bound(acceleration, speed)
+        )
+
+    def laid(self) -> Array:
+        """The rows within."""
+        travel = self.after.place - self.before.place
+        return filled(self.before, self.after, travel, self.rows)
+
+
+def freedom(before: Side, after: Side, rows: int, bound: Bound) -> float:
+    """The furthest that a motion within a bound may lie off the cubic between two sides, cycles."""
+    ends = np.array([before.place, before.speed, after.place, after.speed])
+    laid = filled(before, after, after.place - before.place, rows)
+    above = _upper(ends, rows, bound) - laid
+    below = _upper(-ends, rows, bound) + laid
+    return float(max(np.abs(above).max(initial=0.0), np.abs(below).max(initial=0.0)))
+
+
+def _upper(ends: Array, rows: int, bound: Bound) -> Array:
+    """The upper edge of all motions between two ends (place, speed, place, speed) at the rows between."""
+    p0, v0, p1, v1 = ends.tolist()
+    # at least what the two ends ask for as they were measured, with their noise
+    swerve = p1 - p0 - rows * (v0 + v1) / 2
+    asked = abs(v1 - v0) / rows + 4 * abs(swerve) / rows**2
+    most = max(bound.acceleration, asked, LEAST_ACCELERATION)
+    t = np.arange(1, rows)
+    left = rows - t
+    # 1. the fastest that it may be going, and how high it is then: from the left, and back from the right
+    s0, top0 = v0 + most * t, p0 + v0 * t + most * t**2 / 2
+    s1, top1 = v1 - most * left, p1 - v1 * left + most * left**2 / 2
+    # 2. the speed at which both are as high
+    apart = np.maximum(s0 - s1, LEAST_ACCELERATION)
+    s = (s0**2 - s1**2 - 4 * most * (top0 - top1)) / (2 * apart)
+    s = np.clip(s, np.minimum(s0, s1), np.maximum(s0, s1))
+    edge = np.minimum(top0 - (s - s0) ** 2 / (4 * most), top1 - (s - s1) ** 2 / (4 * most))
+    # 3. no faster than the program runs
+    return np.asarray(np.minimum(edge, np.minimum(p0 + bound.speed * t, p1 + bound.speed * left)))

@@ -1,0 +1,78 @@
+"""Lost ways: gaps of a checked tape that the next count settles.
+
+Signals in: the gaps as they were bridged, and how far each count lies off what the track says, cycles. Signals
+out: whether the count vouches for the way until there, or which gap lost it.
+
+    gap       count k       gap         count k + 1
+    certain      0        certain            0            vouched for
+                          not certain      0, N           the way within is not known: the machine holds before
+                                                          it, or mending lays it with N cycles more
+                          certain            N            the same: N cycles were lost in it after all
+                          none               N            a fault: cycles were lost where nothing shows it
+
+Between two counts the gaps of an axis are one where any of them lost its way, since nothing tells which of
+them lost the cycles.
+
+Source: our own. Questions: none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from morfax.motion.arrays import Array
+from morfax.player.tape.bridges import Gap
+from morfax.player.tape.discriminator import Phases
+
+COUNT_CYCLES = 0.25  # as the end is checked
+
+
+class LostWays:
+    """The gaps of the axes of one tape that no count has settled yet.
+
+    `shift_cycles` is what mending has put back so far, by which the rows to come lie off.
+    """
+
+    def __init__(self, axes: int) -> None:
+        self._open: list[list[Gap]] = [[] for _ in range(axes)]
+        self.shift_cycles: Array = np.zeros(axes)
+
+    def take(self, gaps: Sequence[Gap]) -> None:
+        """Take the gaps that lie in the next rows, as they were counted."""
+        for gap in gaps:
+            self._open[gap.axis].append(gap.moved(float(self.shift_cycles[gap.axis])))
+
+    def covers(self, axis: int, row: float) -> bool:
+        """Whether a row lies within a gap."""
+        return any(gap.first - 1 <= row <= gap.last for gap in self._open[axis])
+
+    def lost(self, axis: int, row: float, off_cycles: float) -> Gap | None:
+        """The gap that lost its way before a count at a row; None where the count vouches for all."""
+        before = [gap for gap in self._open[axis] if gap.last <= row]
+        doubtful = [gap for gap in before if not gap.certain]
+        if abs(off_cycles) > COUNT_CYCLES and not doubtful:
+            doubtful = before
+        if not doubtful or abs(off_cycles - round(off_cycles)) > COUNT_CYCLES:
+            return None
+        return doubtful[0].upto(doubtful[-1]) if len(doubtful) > 1 else doubtful[0]
+
+    def settle(self, axis: int, row: float, cycles: float = 0.0) -> None:
+        """Drop the gaps before a row; those behind it, and all rows to come, are some cycles further on."""
+        self._open[axis] = [gap.moved(cycles) for gap in self._open[axis] if gap.last > row]
+        self.shift_cycles[axis] += cycles
+
+    def unsettled(self) -> Gap | None:
+        """The first gap that only a count could have settled, at the tape's end."""
+        left = [gap for gaps in self._open for gap in gaps if not gap.bridge.certain]
+        return min(left, key=lambda gap: gap.first, default=None)
+
+
+def laid(held: Phases, gap: Gap, cycles: int) -> Phases:
+    """Rows whose gap is laid anew, with some cycles more behind it."""
+    changed = held.cycles.copy()
+    first, last = gap.first - held.first_row, gap.last - held.first_row
+    changed[last:, gap.axis] += cycles
+    changed[first:last, gap.axis] = gap.ending(cycles).laid()
+    return Phases(held.first_row, changed, held.surprise, held.levels)
