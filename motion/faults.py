@@ -6,6 +6,7 @@
     ├── TapeFault                 5      not a tape, cut short, silent, format unknown (also a ValueError)
     │   └── ProgramFault          5      not a program of its kind, cut short, garbled: line of the file
     ├── LockFault                 6      a drive left the comparator's range: axis, tape time, positions
+    │   └── DropoutFault          6      the way within a dropout is not known: its length, where to go on
     ├── FollowingFault            6      a drive lags more than its speed explains: axis, time, places, limit
     ├── MotionFault               7      no motion to be recorded: axis, time, speed (also a ValueError)
     ├── FileFault                 8      a file that cannot be read or written (also an OSError)
@@ -96,6 +97,36 @@ class LockFault(Fault):
             error_cycles,
             position_mm,
         )
+
+
+class DropoutFault(LockFault):
+    """The way within a dropout is not known; `resume_mm` is where all axes are behind it, at `resume_at_s`.
+
+    Both are None where the tape does not tell it. The length of the dropout includes the filter's reach.
+    """
+
+    def __init__(
+        self,
+        message: str,
+        *,
+        axis: str,
+        time_s: float,
+        position_mm: float,
+        length_s: float,
+        resumes: tuple[float, tuple[float, ...]] | None = None,
+    ) -> None:
+        super().__init__(
+            message,
+            axis=axis,
+            time_s=time_s,
+            error_cycles=float("nan"),
+            position_mm=position_mm,
+        )
+        self.length_s = length_s
+        self.resume_at_s: float | None = None
+        self.resume_mm: tuple[float, ...] | None = None
+        if resumes is not None:
+            self.resume_at_s, self.resume_mm = resumes
 
 
 class FollowingFault(Fault):

@@ -19,12 +19,14 @@ only; one that starts above it and never comes down makes nothing, whichever way
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 from morfax.motion.arrays import Array
-from morfax.motion.faults import Fault, TapeFault
+from morfax.motion.faults import TapeFault
 from morfax.motion.motion import IN_WORK_BELOW_MM
+from morfax.player.tape.bridges import Bound
 from morfax.player.tape.discriminator import Phases
+from morfax.player.tape.warrant import Certain, Given, PlaceMm, StandsMm
 from morfax.recorder.tape.format import TapeFormat
 from morfax.recorder.tape.own_motion import OWN_CYCLES, STATED_CYCLES, OwnMotion
 from morfax.recorder.tape.tape import Stored
@@ -40,7 +42,6 @@ class BareTape:
     """What warrants the rows of a bare tape: nothing but its own motion, at the end."""
 
     is_checked = False
-    zero_cycles: Array | None = None
 
     def __init__(self, fmt: TapeFormat, start_mm: Array) -> None:
         self._format, self._start_mm = fmt, start_mm
@@ -53,17 +54,17 @@ class BareTape:
         """The first rows of the tape, as they are."""
         return rows
 
-    def feed(
-        self,
-        rows: Phases,
-        fault: tuple[int, Fault] | None,
-        stands_mm: Callable[[], Sequence[float]],
-        *,
-        last: bool = False,
-    ) -> tuple[Phases, tuple[int, Fault] | None]:
+    def bear(self, zero_cycles: Array | None, place_mm: PlaceMm) -> None:
+        """Take the zeros of the axes, which nothing vouches for."""
+
+    def bound(self, axis: int, first: int, last: int) -> Bound | None:
+        """Nothing tells what the program asks for."""
+        return None
+
+    def feed(self, certain: Certain, stands_mm: StandsMm, *, last: bool = False) -> Given:
         """Take the next rows and the fault behind them; give them on as they are."""
-        self._own.feed(rows.cycles)
-        return rows, fault
+        self._own.feed(certain.rows.cycles)
+        return certain.rows, certain.fault
 
     def end(self, time_s: float) -> None:
         """Raise TapeFault for tracks that may be copies, or a tape that runs backwards."""

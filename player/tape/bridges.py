@@ -81,9 +81,7 @@ class Bridge:
     @property
     def certain(self) -> bool:
         """Whether only one number of whole cycles is possible, and the way between is known."""
-        return (
-            self.counted and self.between < ALLOWED_CYCLES and self.misfit < ROUGH_CYCLES
-        )
+        return self.counted and self.between < ALLOWED_CYCLES and self.misfit < ROUGH_CYCLES
 
 
 def side(cycles: Array, at: int) -> Side:
@@ -122,8 +120,6 @@ def filled(before: Side, after: Side, travel: float, rows: int) -> Array:
     return np.asarray(
         before.place + v0 * u + (3 * way - 2 * v0 - v1) * u**2 + (v0 + v1 - 2 * way) * u**3
     )
-
-
 
 
 @dataclass(frozen=True, slots=True)
@@ -214,4 +210,6 @@ def _upper(ends: Array, rows: int, bound: Bound) -> Array:
     s = np.clip(s, np.minimum(s0, s1), np.maximum(s0, s1))
     edge = np.minimum(top0 - (s - s0) ** 2 / (4 * most), top1 - (s - s1) ** 2 / (4 * most))
     # 3. no faster than the program runs
-    return np.asarray(np.minimum(edge, np.minimum(p0 + bound.speed * t, p1 + bound.speed * left)))
+    return np.asarray(
+        np.minimum(edge, np.minimum(p0 + bound.speed * t, p1 + bound.speed * left))
+    )

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from morfax.motion.faults import LockFault, TapeFault
+from morfax.motion.faults import DropoutFault, LockFault, TapeFault
+from morfax.player.tape.bridges import Gap
 from morfax.player.tape.standstill import track_name
 
 Names = Sequence[str]  # of the axes
@@ -103,4 +104,31 @@ def no_end(time_s: float) -> TapeFault:
         f"the tape's end is missing: the check signal says after {time_s:.3f} s that more is to come; get "
         "the whole tape",
         time_s=time_s,
+    )
+
+
+def lost_way(
+    gap: Gap,
+    axis: str,
+    rate_hz: float,
+    position_mm: float,
+    resumes: tuple[float, tuple[float, ...]] | None,
+) -> DropoutFault:
+    """The fault of a gap whose way is not known; `resumes`: tape time and places behind it, s and mm."""
+    time_s, length_s = gap.first / rate_hz, (gap.last - gap.first) / rate_hz
+    behind = "and the tape does not say where it is behind that: mend it (morfax mend) or copy it again"
+    if resumes is not None:
+        places = ",".join(f"{place_mm:.4f}" for place_mm in resumes[1])
+        behind = (
+            f"it is picked up again at {resumes[0]:.3f} s: have the way laid (morfax mend), copy the tape "
+            f"again, or go on there (--resume-at {resumes[0]:.6f}s --from={places})"
+        )
+    return DropoutFault(
+        f"{axis.upper()} was lost for {length_s * 1e3:.1f} ms at {time_s:.3f} s, last certain position "
+        f"{position_mm:.3f} mm: the way within is not known, {behind}",
+        axis=axis,
+        time_s=time_s,
+        position_mm=position_mm,
+        length_s=length_s,
+        resumes=resumes,
     )

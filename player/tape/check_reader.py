@@ -26,7 +26,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import TapeFault
-from morfax.player.tape.erasures import recovered
+from morfax.player.tape.erasures import Erasures
 from morfax.player.tape.slips import slip
 from morfax.player.tape.standstill import REFERENCE_BAND, strongest_hz
 from morfax.player.tape.subcarrier import Subcarrier
@@ -132,6 +132,7 @@ class CheckReader:
         self._turns = np.zeros(fmt.tracks)
         self._zero_turns = np.zeros(fmt.tracks)
         self._number, self._theta = 0, 0.0  # the next frame, and where it begins
+        self._erasures = Erasures(fmt.tracks)
         self._sound_from = -1.0  # the last point before which the reference is counted right
         if self.is_checked:
             self._begin()
@@ -230,11 +231,8 @@ class CheckReader:
         """Read the next frame of all tracks."""
         self._put_right()
         bits, strengths, late, turns = read_symbols(self._points, self._theta)
-        said = from_bits(bits)
+        said = self._erasures.read(bits, strengths, self._number)
         for track, frame in enumerate(said):
-            if frame is None:
-                frame = recovered(bits[track], strengths[track], track, self._number)
-                said[track] = frame
             if frame is None or not np.isfinite(turns[track]).all():
                 said[track], late[track], turns[track] = None, np.nan, np.nan
                 continue

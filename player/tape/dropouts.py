@@ -19,7 +19,7 @@ given where the program is known to be smoother. A check signal tells it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np

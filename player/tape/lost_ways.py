@@ -1,12 +1,12 @@
 """Lost ways: gaps of a checked tape that the next count settles.
 
-Signals in: the gaps as they were bridged, and how far each count lies off what the track says, cycles. Signals
-out: whether the count vouches for the way until there, or which gap lost it.
+Signals in: the gaps as they were bridged, and how far each count lies off what the track says, cycles.
+Signals out: whether the count vouches for the way until there, or which gap lost it.
 
     gap       count k       gap         count k + 1
     certain      0        certain            0            vouched for
-                          not certain      0, N           the way within is not known: the machine holds before
-                                                          it, or mending lays it with N cycles more
+                          not certain      0, N           the way within is not known: the machine holds
+                                                          before it, or mending lays it, N cycles more
                           certain            N            the same: N cycles were lost in it after all
                           none               N            a fault: cycles were lost where nothing shows it
 

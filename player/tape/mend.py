@@ -1,13 +1,16 @@
-"""Mending: where the end of a tape tells how many whole cycles were lost in which dropout, the tape is
-recorded anew.
+"""Mending: where a tape tells how many whole cycles were lost in which dropout, it is recorded anew.
 
 Signals: a tape in; a tape out whose dropouts are gone, and what was found of each that the player would stop
 at.
 
-The tape is read through with every dropout bridged as the motion on both sides suggests. A travel over a
-dropout may still be wrong by whole cycles N, within what the acceleration A allows (dropouts.py: |r + N| < H
-+ 0.1). Each axis then ends whole cycles off the end that the tape states, or off its start where the program
-is closed:
+On a checked tape the next frame behind a dropout tells where the axis is. The way until there is laid as the
+motion with the least acceleration, and `unknown_mm` is how far off it may be, as the program's acceleration
+and speed are told (bridges.py).
+
+A bare tape is read through with every dropout bridged as the motion on both sides suggests. A travel over a
+dropout may still be wrong by whole cycles N, within what the acceleration A allows (bridges.py: |r + N| < H +
+0.1). Each axis then ends whole cycles off the end that the tape states, or off its start where the program is
+closed:
 
     N of the first doubtful dropout + N of the second + ...  =  cycles missing at the end
 
@@ -16,8 +19,8 @@ dropouts that could each have lost the cycle), or none, or what is missing is no
 known.
 
 Source: patent ES 361967 (a program is a tape, and may be copied); fault circuit 162 asks for it. Questions:
-within a dropout the way between both sides is laid as a cubic; `unknown_mm` says how far off it may be. What
-the tape's noise did to the motion is recorded with it.
+what the tape's noise did to the motion is recorded with it. Where nothing tells the program's acceleration
+within a dropout, that of the motors is taken, and `unknown_mm` is large.
 """
 
 from __future__ import annotations
@@ -29,28 +32,29 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.motion.faults import LockFault, TapeFault
+from morfax.motion.faults import TapeFault
 from morfax.motion.motion import Motion
-from morfax.player.tape.bridges import COUNT_MARGIN, Bridge
+from morfax.player.tape.bridges import Bridge, Gap
+from morfax.player.tape.end_count import Place, lost_cycles, not_whole
 from morfax.player.tape.playback import TapePlayback, play
+from morfax.player.tape.reader import TapeReader
 from morfax.player.tape.track_order import END_CYCLES
 from morfax.recorder.tape.format import TapeFormat
 from morfax.recorder.tape.recording import Progress, Recording, record
 
 END_S = 0.05  # of the standstill at the end, over which the place is averaged
 KEPT_DWELL = 0.1  # of the standstills: the tape may have run this much fast, and gets new ones
-MANY = 2  # sets of numbers that fulfil the end: more need not be counted
-
-
-Gap = tuple[int, int]  # first row, axis
 
 
 @dataclass(frozen=True, slots=True)
 class Mend:
-    """A dropout that would have stopped the player: time, whole cycles put back, largest error within it."""
+    """A dropout that would have stopped the player: start and length on the tape (with the filter's reach),
+    whole cycles put back, and the largest possible error of the way laid within it.
+    """
 
     axis: str
     time_s: float
+    length_s: float
     cycles: int
     unknown_mm: float
 
@@ -90,16 +94,15 @@ def mend(
     limits = {"closed": closed, "acceleration_mm_s2": acceleration_mm_s2}
     playback = play(file, **by_hand, **limits)  # type: ignore[arg-type]
     fmt, reader = playback.format, playback.reader
-    if fmt.end_mm is None:
-        raise TapeFault(
-            f"{file} does not state where it ends, so nothing tells what was lost; if its program "
-            "returns to its start, say so "
-            f"(--closed)"
-        )
-    reader.told, reader.trusts_counts = {}, False
-    missing = (np.array(fmt.end_mm) - _end_mm(playback)) * fmt.cycles_per_mm
-    doubtful = dict(reader.doubtful)
-    reader.told, reader.trusts_counts = _lost(doubtful, missing, fmt), True
+    if is_checked(playback):
+        reader.mends = True
+    else:
+        if fmt.end_mm is None:
+            raise _no_end(file)
+        reader.told = {}
+        missing = (np.array(fmt.end_mm) - _end_mm(playback)) * fmt.cycles_per_mm
+        doubtful = dict(reader.doubtful)
+        reader.told = lost_cycles(doubtful, missing, fmt)
     total_s = playback.duration_s
     recording = record(
         _motion(playback),
@@ -107,16 +110,39 @@ def mend(
         replace(fmt, checked=reader.is_checked),
         None if progress is None else lambda done_s, _: progress(done_s, total_s),
     )
-    mends = tuple(_mend(gap, doubtful[gap], reader.told[gap], fmt) for gap in sorted(doubtful))
-    return Mended(recording, mends, len(reader.bridged))
+    if reader.told is None:
+        mends = [_laid(gap, cycles, fmt) for gap, cycles in reader.mended]
+    else:
+        mends = [_mend(place, found, reader, fmt) for place, found in doubtful.items()]
+    mends.sort(key=lambda one: (one.time_s, fmt.axes.index(one.axis)))
+    return Mended(recording, tuple(mends), len(reader.bridged))
 
 
-def _mend(gap: Gap, found: Bridge, cycles: int, fmt: TapeFormat) -> Mend:
-    """The mend of a dropout; a motion of acceleration A in it may swing out by A T² / 16."""
-    unknown_cycles = abs(found.off + cycles) / 2 + found.reach / 4
+def is_checked(playback: TapePlayback) -> bool:
+    """Whether the tape has a check signal, as its first rows tell."""
+    next(playback.reader.read(lambda: playback.start_mm.tolist()), None)
+    return playback.reader.is_checked
+
+
+def _laid(gap: Gap, cycles: int, fmt: TapeFormat) -> Mend:
+    """The mend of a dropout whose way was laid to the place that the next frame tells."""
+    rate_hz = fmt.motion_rate_hz
     return Mend(
-        fmt.axes[gap[1]], gap[0] / fmt.motion_rate_hz, cycles, unknown_cycles * fmt.mm_per_cycle
+        fmt.axes[gap.axis],
+        gap.first / rate_hz,
+        (gap.last - gap.first) / rate_hz,
+        cycles,
+        gap.freedom * fmt.mm_per_cycle,
     )
+
+
+def _mend(place: Place, found: Bridge, reader: TapeReader, fmt: TapeFormat) -> Mend:
+    """The mend of a dropout; a motion of acceleration A in it may swing out by A T² / 16."""
+    cycles = (reader.told or {})[place]
+    unknown_cycles = abs(found.off + cycles) / 2 + found.reach / 4
+    time_s, axis = place[0] / fmt.motion_rate_hz, fmt.axes[place[1]]
+    length_s = reader.bridged[time_s, axis]
+    return Mend(axis, time_s, length_s, cycles, unknown_cycles * fmt.mm_per_cycle)
 
 
 def _read(playback: TapePlayback) -> Iterator[tuple[int, Array]]:
@@ -134,6 +160,14 @@ def _read(playback: TapePlayback) -> Iterator[tuple[int, Array]]:
             yield phases.first_row, places_mm
 
 
+def _no_end(file: object) -> TapeFault:
+    """The fault of a bare tape that does not state where it ends."""
+    return TapeFault(
+        f"{file} does not state where it ends, so nothing tells what was lost; if its program returns to its "
+        "start, say so (--closed)"
+    )
+
+
 def _end_mm(playback: TapePlayback) -> Array:
     """The stated end of the tape, mm."""
     rows = max(round(END_S * playback.format.motion_rate_hz), 1)
@@ -148,88 +182,14 @@ def _motion(playback: TapePlayback) -> Iterator[Motion]:
     fmt, rate_hz = playback.format, playback.format.motion_rate_hz
     still = round((1 - KEPT_DWELL) * fmt.dwell_s * rate_hz)
     end = -(-playback.frames // fmt.samples_per_motion) - still
+    ends_mm = np.full(len(fmt.axes), np.nan)
     for first, places_mm in _read(playback):
+        ends_mm = places_mm[-1]
         kept = places_mm[max(still - first, 0) : max(end - first, 0)]
         if len(kept):
             yield Motion(kept, rate_hz, max(first, still) / rate_hz, fmt.axes)
-
-
-def _lost(doubtful: dict[Gap, Bridge], missing: Array, fmt: TapeFormat) -> dict[Gap, int]:
-    """Whole cycles to put back at each doubtful dropout; raises TapeFault or LockFault if unknown."""
-    told: dict[Gap, int] = {}
-    for axis, cycles in enumerate(missing.tolist()):
-        gaps = [gap for gap in sorted(doubtful) if gap[1] == axis]
-        if abs(cycles - round(cycles)) > END_CYCLES:
-            raise _not_whole(axis, cycles, fmt)
-        sets = _sets([_candidates(doubtful[gap]) for gap in gaps], round(cycles))
-        if len(sets) != 1:
-            raise _unknown(
-                axis,
-                round(cycles),
-                [gap[0] / fmt.motion_rate_hz for gap in gaps],
-                len(sets),
-                fmt,
-            )
-        told |= dict(zip(gaps, sets[0], strict=True))
-    return told
-
-
-def _candidates(found: Bridge) -> range:
-    """Whole cycles by which the travel over a dropout may be wrong."""
-    most = found.reach + COUNT_MARGIN + found.misfit
-    return range(int(np.ceil(-most - found.off)), int(np.floor(most - found.off)) + 1)
-
-
-def _sets(candidates: list[range], total: int) -> list[tuple[int, ...]]:
-    """Sets of one number from each range with this sum; at most two, as two are ambiguous already."""
-    if not candidates:
-        return [()] if total == 0 else []
-    found: list[tuple[int, ...]] = []
-    rest_low, rest_high = (
-        sum(r[0] for r in candidates[1:] if r),
-        sum(r[-1] for r in candidates[1:] if r),
-    )
-    for number in candidates[0]:
-        if rest_low <= total - number <= rest_high:
-            found += [(number, *rest) for rest in _sets(candidates[1:], total - number)]
-        if len(found) >= MANY:
-            return found[:MANY]
-    return found
-
-
-def _unknown(
-    axis: int, cycles: int, times_s: list[float], sets: int, fmt: TapeFormat
-) -> TapeFault:
-    """The fault of cycles that no dropout, or one of several, has lost."""
-    name, places = (
-        fmt.axes[axis].upper(),
-        ", ".join(f"{time_s:.3f} s" for time_s in times_s[:6]),
-    )
-    if sets and not cycles:
-        why = (
-            f"where it should, but what one of the {len(times_s)} dropouts at {places} lost another may "
-            "have put back"
-        )
-    elif sets:
-        why = (
-            f"{cycles:+d} cycles off, and the {len(times_s)} dropouts at {places} could have lost them "
-            "in more than one way"
-        )
-    elif times_s:
-        why = f"{cycles:+d} cycles off, and the dropouts at {places} are too short for it"
-    else:
-        why = f"{cycles:+d} cycles off, and there is no dropout that could have lost them; look for a splice"
-    return TapeFault(f"{name} ends {why}: it cannot be known; get another copy")
-
-
-def _not_whole(axis: int, cycles: float, fmt: TapeFormat) -> LockFault:
-    """The fault of an end that is off by more than whole cycles."""
-    return LockFault(
-        f"{fmt.axes[axis].upper()} ends {cycles:+.2f} cycles off, which is no whole number within "
-        f"{END_CYCLES:g}: more than "
-        f"cycles was lost, or it is cut short; get another copy",
-        axis=fmt.axes[axis],
-        time_s=0.0,
-        error_cycles=cycles,
-        position_mm=float(fmt.end_mm[axis] if fmt.end_mm else 0.0),
-    )
+    if fmt.end_mm is not None:
+        missing = (np.array(fmt.end_mm) - ends_mm) * fmt.cycles_per_mm
+        axis = int(np.argmax(np.abs(missing)))
+        if abs(missing[axis]) > END_CYCLES:
+            raise not_whole(axis, float(missing[axis]), fmt)

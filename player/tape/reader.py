@@ -19,6 +19,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import replace
 from itertools import chain
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,11 +27,13 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.faults import Fault, TapeFault
 from morfax.player.tape.bare import BareTape
+from morfax.player.tape.bridges import Bound, Bridge, Gap
 from morfax.player.tape.check_reader import read_ahead, read_check
 from morfax.player.tape.discriminator import Discriminator, Phases, discriminate
-from morfax.player.tape.dropouts import Bridge, Gaps, under_way
+from morfax.player.tape.dropouts import Gaps, Riding, under_way
 from morfax.player.tape.standstill import STANDSTILL_S, Bearings, evened, take_bearings
 from morfax.player.tape.vouching import Vouching
+from morfax.player.tape.warrant import Certain, Warrant
 from morfax.player.tape.watch import Watch, demand_apart
 from morfax.recorder.tape.tape import Stored, Tape, TapeFormat, full_scale
 
@@ -40,12 +43,22 @@ BLOCK_FRAMES = 65536  # 1.4 s at 48 kHz, a megabyte of four tracks
 Read = tuple[Phases, Bearings, tuple[int, Fault] | None]
 
 
+class _Run(NamedTuple):
+    """What keeps watch over one time through a tape."""
+
+    warrant: Warrant
+    bearings: Bearings
+    gaps: Gaps
+    watch: Watch
+
+
 class TapeReader:
     """Reads one tape, as often as wanted.
 
     Of the last time through: `bridged`, the dropouts that were ridden over (tape time in s, axis: length in
-    s). With `told`, whole cycles to add at dropouts (row, axis), none is too uncertain to be ridden over;
-    those that would have been are then in `doubtful`.
+    s). With `told`, whole cycles to add at dropouts (row, axis) of a bare tape, none is too uncertain to be
+    ridden over; those that would have been are then in `doubtful`. If it `mends`, those of a checked tape are
+    laid anew, and are in `mended` with the whole cycles put back.
     """
 
     def __init__(
@@ -62,8 +75,10 @@ class TapeReader:
         self.told: dict[tuple[int, int], int] | None = None
         self.doubtful: dict[tuple[int, int], Bridge] = {}
         self.is_checked = False  # whether the tape has a check signal
-        # whether a count that differs from what a track says is a fault; mending counts anew
-        self.trusts_counts = True
+        self.mends = (
+            False  # whether the way of dropouts is laid anew, where counts behind them tell it
+        )
+        self.mended: list[tuple[Gap, int]] = []
 
     def read(self, stands_mm: Callable[[], Sequence[float]]) -> Iterator[Read]:
         """Rows, bearings, and the first uncertain row of a block; `stands_mm`: the machine's place.
@@ -94,38 +109,79 @@ class TapeReader:
             if start is None:
                 raise _too_short(tape.frames, discriminator.filter_frames)
             start = start.cut(lead if first_row else 0, len(start))
-            still = warrant.begin(start)
-            bearings = self._bearings(full_scale(held[-1]), start, still, discriminator)
-            warrant.zero_cycles = None if first_row else bearings.zero_cycles
-            gaps, watch = self._gaps(discriminator, bearings), Watch(fmt, bearings)
-            # a check signal says which track is which, and how late
-            watch.takes_skew = not warrant.is_checked
-            watched = not (first_row or warrant.is_checked)
+            run = self._run(warrant, start, full_scale(held[-1]), discriminator)
             # 3. row by row, to the end
-            for phases in chain([start], rows):
-                out, fault = warrant.feed(*gaps.feed(phases), stands_mm)
-                time_s = self._time_s(phases)
-                wrong = watch.wrong_reference(held[-1], time_s) if watched else None
-                if wrong is not None:
-                    raise wrong
-                yield out, bearings, watch.first_fault(out, stands_mm()) or fault
-            rest = gaps.feed(phases.cut(len(phases), len(phases)), last=True)
-            out, fault = warrant.feed(*rest, stands_mm, last=True)
-            yield out, bearings, fault
-            if first_row:
-                return  # what was before is not known
-            doubt = watch.doubtful_reference(self._time_s(phases)) if watched else None
-            if doubt is not None:
-                raise doubt
-            warrant.end(self._time_s(phases))
+            yield from self._through(chain([start], rows), run, held, stands_mm)
 
-    def _warrant(self, ahead: list[Stored], first_row: int) -> Vouching | BareTape:
+    def _run(
+        self,
+        warrant: Warrant,
+        start: Phases,
+        first: NDArray[np.float32],
+        discriminator: Discriminator,
+    ) -> _Run:
+        """What keeps watch over this time through the tape, as its first rows and frames tell."""
+        bearings = self._bearings(first, start, warrant.begin(start), discriminator)
+        fmt, start_mm = self._format, self._start_mm
+
+        def place_mm(axis: int, cycles: float) -> float:
+            travel = cycles - bearings.zero_cycles[axis]
+            return float(start_mm[axis] + travel * fmt.mm_per_cycle)
+
+        warrant.bear(None if self._resume_at_s else bearings.zero_cycles, place_mm)
+        riding = self._riding(warrant)
+        gaps = Gaps(discriminator, bearings.levels, fmt, riding, place_mm)
+        self.bridged, self.doubtful = gaps.bridged, gaps.doubtful
+        watch = Watch(fmt, bearings)
+        # a check signal says which track is which, and how late
+        watch.takes_skew = not warrant.is_checked
+        return _Run(warrant, bearings, gaps, watch)
+
+    def _through(
+        self,
+        rows: Iterator[Phases],
+        run: _Run,
+        held: list[Stored],
+        stands_mm: Callable[[], Sequence[float]],
+    ) -> Iterator[Read]:
+        """All rows of the tape through its gaps, its warrant and the watch; `held`: the last block of it."""
+        warrant, bearings, gaps, watch = run
+        watched = not (self._resume_at_s or warrant.is_checked)
+        for phases in rows:
+            out, fault = warrant.feed(_certain(gaps, phases), stands_mm)
+            time_s = self._time_s(phases)
+            wrong = watch.wrong_reference(held[-1], time_s) if watched else None
+            if wrong is not None:
+                raise wrong
+            yield out, bearings, watch.first_fault(out, stands_mm()) or fault
+        rest = _certain(gaps, phases.cut(len(phases), len(phases)), last=True)
+        out, fault = warrant.feed(rest, stands_mm, last=True)
+        yield out, bearings, fault
+        if self._resume_at_s:
+            return  # what was before is not known
+        doubt = watch.doubtful_reference(time_s) if watched else None
+        if doubt is not None:
+            raise doubt
+        warrant.end(time_s)
+
+    def _warrant(self, ahead: list[Stored], first_row: int) -> Warrant:
         """What vouches for the rows of this tape: its check signal, or what can be found out without."""
         check = read_check(ahead, self._format, first_row)
         self.is_checked = check is not None
         if check is None:
             return BareTape(self._format, self._start_mm)
-        return Vouching(self._format, check, trusts_counts=self.trusts_counts)
+        vouching = Vouching(self._format, check, mends=self.mends)
+        self.mended = vouching.mended
+        return vouching
+
+    def _riding(self, warrant: Warrant) -> Riding:
+        """How the dropouts of this tape are ridden over."""
+        fmt, rate_hz = self._format, self._format.motion_rate_hz
+        motors = Bound(
+            self._acceleration_mm_s2 * fmt.cycles_per_mm / rate_hz**2,
+            fmt.largest_deviation_hz / rate_hz,
+        )
+        return Riding(motors, warrant.bound if warrant.is_checked else None, self.told)
 
     def _bearings(
         self,
@@ -148,37 +204,21 @@ class TapeReader:
         )
         return bearings
 
-    def _gaps(self, discriminator: Discriminator, bearings: Bearings) -> Gaps:
-        """The bridge builder for the dropouts of this tape."""
-        fmt, start_mm = self._format, self._start_mm
-
-        def place_mm(axis: int, cycles: float) -> float:
-            return float(
-                start_mm[axis] + (cycles - bearings.zero_cycles[axis]) * fmt.mm_per_cycle
-            )
-
-        most = self._acceleration_mm_s2 * fmt.cycles_per_mm / fmt.motion_rate_hz**2
-        gaps = Gaps(
-            discriminator,
-            bearings.levels,
-            fmt.motion_rate_hz,
-            most,
-            place_mm,
-            fmt.axes,
-            self.told,
-        )
-        self.bridged, self.doubtful = gaps.bridged, gaps.doubtful
-        return gaps
-
     def _time_s(self, phases: Phases) -> float:
         """Tape time after some rows, s."""
         return (phases.first_row + len(phases)) / self._format.motion_rate_hz
 
 
+def _certain(gaps: Gaps, phases: Phases, *, last: bool = False) -> Certain:
+    """The rows that the dropouts leave certain, and the gaps bridged in them."""
+    rows, fault = gaps.feed(phases, last=last)
+    return Certain(rows, fault, gaps.found())
+
+
 def _noted(
     ahead: list[Stored],
     blocks: Iterator[Stored],
-    warrant: Vouching | BareTape,
+    warrant: Warrant,
     held: list[Stored],
 ) -> Iterator[Stored]:
     """All blocks of the tape; the last one is held, and the check signal is read from those not yet read."""

@@ -1,7 +1,7 @@
 """Slips: cycles of the reference that were miscounted while it failed.
 
-Signals in: points of the subcarrier, where the next frame should begin, and its number. Signals out: the whole
-cycles by which it begins later, or nothing where no frame of the reference's track can be read.
+Signals in: points of the subcarrier, where the next frame should begin, and its number. Signals out: the
+whole cycles by which it begins later, or nothing where no frame of the reference's track can be read.
 
     theta goes on at the last rate of the tape while the reference fails: 0.5 s of a tape that then runs 0.2 %
     faster are 6 cycles. The frame is looked for at every quarter of a symbol, up to two symbols to either

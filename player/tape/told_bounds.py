@@ -1,7 +1,7 @@
 """Told bounds: what the check signal tells of the speed and acceleration to come.
 
-Signals in: what each track says, frame by frame, and the rows of the frame. Signals out: the most that an axis
-is asked for between two rows of the tape, cycles/row and cycles/row².
+Signals in: what each track says, frame by frame, and the rows of the frame. Signals out: the most that an
+axis is asked for between two rows of the tape, cycles/row and cycles/row².
 
     frame k tells     |- frame k -|- frame k + 1 -|        the largest of both
     known between two rows where frames that were read cover all of them

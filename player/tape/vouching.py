@@ -3,24 +3,21 @@
 Signals in: rows of phases that the dropouts have left certain, and the reports of the check reader. Signals
 out: rows that are vouched for, about a second later, and the first that is not, with its fault.
 
-    identity    each track says which it is                      another order: a fault
-    number      frames follow one another, at their time         a lost or repeated stretch: a fault
-    late        symbols lie within 0.25 ms of the clock          the same, where it is less than a frame
-    delay       of a track against the reference                 above 200 us, or a step: a fault
-                                                                 below: taken out of the phase
-    count       cycles of the axis at the start of each frame    a quarter of a cycle off: a fault
-    last        the last two frames say that the tape ends       the end is missing: a fault
+    order       frames of each track are its own and follow one another      frame_order.py
+    delay       of a track against the reference                             delays.py: taken out of the phase
+    count       cycles of the axis at the start of each frame                a quarter of a cycle off: a fault
+    last        the last two frames say that the tape ends                   the end is missing: a fault
 
-A frame of a track may be missing, in a dropout, if one of the next vouches for what was between.
+A frame of a track may be missing, in a dropout, if one of the next vouches for what was between. A dropout
+whose way the sides and the told acceleration do not tell is a fault at its start, once the next count says
+where the axes are behind it; or, in mending, its way is laid to that place (lost_ways.py).
 
-Source: our own. Questions: a delay that drifts by 50 us/s moves 12 us in two parts of a frame; one lost
-sample moves 21. A sample that is lost on all tracks alike moves nothing but the time.
+Source: our own. Questions: none.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -28,47 +25,44 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.faults import Fault
 from morfax.player.tape import check_faults as faults
+from morfax.player.tape.bridges import Bound, Gap
 from morfax.player.tape.check_reader import CheckReader, FrameReport
 from morfax.player.tape.delays import Delay
 from morfax.player.tape.discriminator import Phases
-from morfax.recorder.tape.check_frame import NUMBERS, CheckFrame
+from morfax.player.tape.frame_order import FrameOrder
+from morfax.player.tape.lost_ways import COUNT_CYCLES, LostWays, laid
+from morfax.player.tape.told_bounds import ToldBounds
+from morfax.player.tape.warrant import Certain, Given, PlaceMm, StandsMm
 from morfax.recorder.tape.check_signal import CYCLES_PER_FRAME
 from morfax.recorder.tape.format import TapeFormat
 from morfax.recorder.tape.tape import Stored
-
-LARGEST_DELAY_S = 200e-6  # what is asked; half a cycle of the subcarrier is 500
-LARGEST_LATE_S = 250e-6  # of the symbols: the delay, and 50 us for the gates
-LARGEST_STEP_S = 16e-6  # of a delay in two parts of a frame, 0.24 s: 50 us/s of drift are 12
-COUNT_CYCLES = 0.25  # as the end is checked
-MOST_MISSING = 3  # frames in a row of one track
-
-Vouched = tuple[Phases, tuple[int, Fault] | None]
 
 
 class Vouching:
     """Holds the rows of one tape until they are vouched for.
 
-    `zero_cycles` is where the count of each axis begins; None: at its first frame, on a tape that is resumed.
-    Unless it `trusts_counts`, a count that differs is let pass.
+    With `mends` the way of dropouts that the player would stop at is laid; `mended` are these, with the whole
+    cycles that were put back.
     """
 
     is_checked = True
 
-    def __init__(
-        self, fmt: TapeFormat, check: CheckReader, *, trusts_counts: bool = True
-    ) -> None:
-        self._format, self._check, self._trusts_counts = fmt, check, trusts_counts
-        self.zero_cycles: Array | None = None
-        self._rate_hz, self._reference_hz = fmt.motion_rate_hz, fmt.reference_hz
+    def __init__(self, fmt: TapeFormat, check: CheckReader, *, mends: bool = False) -> None:
+        self._format, self._check, self._mends = fmt, check, mends
+        self._rate_hz, frame_s = fmt.motion_rate_hz, CYCLES_PER_FRAME / fmt.reference_hz
+        self._zero_cycles: Array = np.full(len(fmt.axes), np.nan)
+        self._place_mm: PlaceMm = lambda axis, cycles: math.nan
         self._delays = [Delay(fmt.reference_hz, fmt.motion_rate_hz) for _ in fmt.axes]
+        self._bounds = [ToldBounds(fmt.motion_rate_hz, frame_s) for _ in fmt.axes]
+        self._ways = LostWays(len(fmt.axes))
+        self._lost: dict[int, Gap] = {}  # by axis: a gap at which the machine stops
+        self.mended: list[tuple[Gap, int]] = []
         self._held: Phases | None = None
         self._given = 0  # rows that were given out and are still held, to lend their speed
-        self._counts: list[tuple[float, int, float]] = []  # row, axis, cycles: not yet checked
-        self._told: list[list[float]] = [[] for _ in range(fmt.tracks)]  # delays of a frame, s
-        self._missing = np.zeros(fmt.tracks, int)
-        self._number: int | None = None  # of the next frame
+        # row, and by axis the cycles that it tells there: not yet checked
+        self._counts: list[tuple[float, dict[int, float]]] = []
         self._counted = [0.0] * len(fmt.axes)  # the last row at which the count was right
-        self._is_last = np.zeros(fmt.tracks, bool)
+        self._order = FrameOrder(fmt)
         self._fault: Fault | None = None
 
     def hear(self, frames: Stored) -> None:
@@ -80,6 +74,17 @@ class Vouching:
         self._demand_all_tracks()
         self._take_reports()
         return self._corrected(rows)
+
+    def bear(self, zero_cycles: Array | None, place_mm: PlaceMm) -> None:
+        """Take the zeros of the axes; None: where their counts begin is told by the first frames."""
+        self._place_mm = place_mm
+        if zero_cycles is not None:
+            self._zero_cycles = zero_cycles.copy()
+
+    def bound(self, axis: int, first: int, last: int) -> Bound | None:
+        """The most that the program asks of an axis between two rows, as its track tells it."""
+        self._take_reports()
+        return self._bounds[axis].between(first, last)
 
     def end(self, time_s: float) -> None:
         """The tape ends, and has said so."""
@@ -109,34 +114,52 @@ class Vouching:
         ]
         return replace(rows, cycles=np.column_stack(columns))
 
-    def feed(
-        self,
-        rows: Phases,
-        fault: tuple[int, Fault] | None,
-        stands_mm: Callable[[], Sequence[float]],
-        *,
-        last: bool = False,
-    ) -> Vouched:
+    def feed(self, certain: Certain, stands_mm: StandsMm, *, last: bool = False) -> Given:
         """Take the next rows and the fault behind them; the rows that are vouched for, and the fault."""
-        self._held = held = rows if self._held is None else self._held.joined(rows)
+        self._hold(certain)
         if last:
             self._check.finish()
         self._take_reports()
-        self._check_counts(held, stands_mm)
-        ended = last and fault is None and self._fault is None
-        if ended and not self._is_last.all():
-            self._fault = faults.no_end(self._vouched / self._rate_hz)
-            ended = False
+        self._check_counts(stands_mm)
+        if last:
+            self._check_end(certain)
+        ended = last and certain.fault is None and self._fault is None
+        held = self._rows
         upto = len(held) if ended else min(int(self._vouched) - held.first_row, len(held))
         upto = max(upto, self._given)
         out = self._cut(held, upto)
         if self._fault is not None:
             return out, (len(out), self._fault)
-        if fault is not None:
-            return out, (len(out), fault[1])
+        if certain.fault is not None:
+            return out, (len(out), certain.fault[1])
         keep = max(upto - self._delays[0].span, 0)
         self._held, self._given = held.cut(keep, len(held)), upto - keep
         return out, None
+
+    def _hold(self, certain: Certain) -> None:
+        """Hold the next rows, further on by what mending has put back."""
+        self._ways.take(certain.gaps)
+        rows = certain.rows
+        if self._ways.shift_cycles.any():
+            rows = replace(rows, cycles=rows.cycles + self._ways.shift_cycles)
+        self._held = rows if self._held is None else self._held.joined(rows)
+
+    @property
+    def _rows(self) -> Phases:
+        """The rows that are held."""
+        assert self._held is not None, "no rows were taken yet"
+        return self._held
+
+    def _check_end(self, certain: Certain) -> None:
+        """Note the fault of a tape that ends where it does not say so, or in a dropout."""
+        if self._fault is not None or certain.fault is not None:
+            return
+        left = min(self._lost.values(), key=lambda gap: gap.first, default=None)
+        left = left or self._ways.unsettled()
+        if left is not None:
+            self._fault = self._lost_way(left, None)
+        elif not self._order.ended:
+            self._fault = faults.no_end(self._vouched / self._rate_hz)
 
     def _cut(self, held: Phases, upto: int) -> Phases:
         """The rows up to one that are not yet given out, put right; those around them lend their speed."""
@@ -153,90 +176,84 @@ class Vouching:
 
     def _take(self, report: FrameReport) -> None:
         """Take the report of one frame."""
-        expected = report.number if self._number is None else self._number
-        self._number = report.number + 1
-        for track, said in enumerate(report.said):
-            if said is None:
-                self._missing[track] += 1
-                if self._missing[track] > MOST_MISSING:
-                    time_s = report.row / self._rate_hz - MOST_MISSING * self._frame_s
-                    self._fault = faults.unreadable(track, self._format.axes, time_s)
-                continue
-            self._missing[track] = 0
-            self._is_last[track] = said.last
-            fault = self._misplaced(track, said, expected, report)
-            fault = fault or self._too_late(track, report)
-            if fault is not None:
-                self._fault = self._fault or fault
-                return
-            self._note(track, said.cycles, report)
-
-    def _note(self, track: int, cycles: float, report: FrameReport) -> None:
-        """Note the count and the delays of one track."""
-        delays_s = report.delay_s[track]
-        if not all(map(math.isfinite, delays_s)):
-            return  # the reference says nothing
-        self._told[track] = (self._told[track] + delays_s)[-4:]
-        if not track:
+        self._fault = self._order.fault(report)
+        if self._fault is not None:
             return
-        axis = track - 1
-        self._counts.append((report.row, axis, cycles))
+        self._counts.append((report.row, {}))
+        for axis in range(len(self._delays)):
+            self._note(axis, report)
+
+    def _note(self, axis: int, report: FrameReport) -> None:
+        """Note the count, the bounds and the delays of one axis."""
+        delays_s, said = report.delay_s[axis + 1], report.said[axis + 1]
+        if said is None or not all(map(math.isfinite, delays_s)):
+            return  # the reference says nothing
+        self._counts[-1][1][axis] = said.cycles
+        self._bounds[axis].add(report, axis + 1)
         self._delays[axis].add(report.part_rows, delays_s)
 
-    def _check_counts(self, held: Phases, stands_mm: Callable[[], Sequence[float]]) -> None:
-        """Compare the axes' counts with what their tracks say; note the first that differs."""
-        ends = held.first_row + len(held) - 1
-        due = [count for count in self._counts if count[0] <= ends]
-        self._counts = [count for count in self._counts if count[0] > ends]
-        if self.zero_cycles is None:
-            self.zero_cycles = np.full(len(self._delays), np.nan)
-        for row, axis, told in due:
-            at = max(int(row) - held.first_row, 0)
-            first, reach = (
-                max(at - 2 * self._delays[axis].span, 0),
-                at + 2 * self._delays[axis].span,
+    def _check_counts(self, stands_mm: StandsMm) -> None:
+        """Compare the axes' counts with what their tracks say, as far as rows are held."""
+        ends = self._rows.first_row + len(self._rows) - 1
+        while self._counts and self._counts[0][0] <= ends and self._fault is None:
+            row, told = self._counts.pop(0)
+            open_ = [axis for axis in told if not self._ways.covers(axis, row)]
+            off = {axis: self._off(axis, row, told[axis]) for axis in open_}
+            for axis in open_:
+                self._settle(axis, row, off[axis], stands_mm)
+            if self._lost and len(open_) == len(self._delays) and self._fault is None:
+                first = min(self._lost.values(), key=lambda gap: gap.first)
+                self._fault = self._lost_way(first, (row, off))
+
+    def _off(self, axis: int, row: float, told: float) -> float:
+        """How far the count of an axis lies off what its track says at a row, cycles."""
+        found = self._place(axis, row)
+        if math.isnan(self._zero_cycles[axis]):
+            self._zero_cycles[axis] = found - told
+        return found - float(self._zero_cycles[axis]) - told
+
+    def _place(self, axis: int, row: float) -> float:
+        """Where an axis is at a row that is held, cycles, without the delay of its track."""
+        held, span = self._rows, 2 * self._delays[axis].span
+        at = max(int(row) - held.first_row, 0)
+        first = max(at - span, 0)
+        near = self._delays[axis].corrected(
+            held.cycles[first : at + span + 1, axis], held.first_row + first
+        )
+        return float(np.interp(row - held.first_row - first, np.arange(len(near)), near))
+
+    def _settle(self, axis: int, row: float, off: float, stands_mm: StandsMm) -> None:
+        """Let a count vouch for the way until there; or note which gap lost it, or lay that gap anew."""
+        gap, whole = self._ways.lost(axis, row, off), round(off)
+        if gap is not None and not self._mends:
+            self._lost.setdefault(axis, gap)
+            if not whole:  # then it vouches for the way until the gap
+                self._counted[axis] = max(self._counted[axis], float(gap.first))
+            return
+        if gap is not None:
+            self._held = laid(self._rows, gap, -whole)
+            self.mended.append((gap.ending(-whole), -whole))
+        elif abs(off) > COUNT_CYCLES:
+            name, time_s = self._format.axes[axis], row / self._rate_hz
+            self._fault = faults.miscounted(name, off, COUNT_CYCLES, time_s, stands_mm()[axis])
+            return
+        self._ways.settle(axis, row, 0.0 if gap is None else float(-whole))
+        self._counted[axis] = row
+
+    def _lost_way(self, gap: Gap, behind: tuple[float, dict[int, float]] | None) -> Fault:
+        """The fault of a gap; `behind`: a row at which all axes are known again, and how far off each is."""
+        resumes = None
+        if behind is not None:
+            row = math.ceil(behind[0])
+            places = tuple(
+                self._place_mm(axis, self._place(axis, row) - round(off))
+                for axis, off in sorted(behind[1].items())
             )
-            near = self._delays[axis].corrected(
-                held.cycles[first : reach + 1, axis], held.first_row + first
-            )
-            found = float(np.interp(row - held.first_row - first, np.arange(len(near)), near))
-            if math.isnan(self.zero_cycles[axis]):
-                self.zero_cycles[axis] = found - told
-            off = found - float(self.zero_cycles[axis]) - told
-            if abs(off) <= COUNT_CYCLES or not self._trusts_counts:
-                self._counted[axis] = row
-            elif self._fault is None:
-                name, time_s = self._format.axes[axis], row / self._rate_hz
-                self._fault = faults.miscounted(
-                    name, off, COUNT_CYCLES, time_s, stands_mm()[axis]
-                )
-                return
-
-    def _misplaced(
-        self, track: int, said: CheckFrame, expected: int, report: FrameReport
-    ) -> Fault | None:
-        """The fault of a track that says to be another, or whose frame is not the next."""
-        names, time_s = self._format.axes, report.row / self._rate_hz
-        if said.track != track:
-            return faults.wrong_track(track, said.track, names, time_s)
-        off = (said.number - expected + NUMBERS // 2) % NUMBERS - NUMBERS // 2
-        return faults.disordered(track, names, off * self._frame_s, time_s) if off else None
-
-    def _too_late(self, track: int, report: FrameReport) -> Fault | None:
-        """The fault of a track whose delay is too long, or makes a step: samples were lost or repeated."""
-        names, time_s = self._format.axes, report.row / self._rate_hz
-        late_s = report.late_s[track]
-        told = self._told[track] + [
-            delay for delay in report.delay_s[track] if math.isfinite(delay)
-        ]
-        longest_s = max(map(abs, told), default=0.0)
-        if abs(late_s) > LARGEST_LATE_S or longest_s > LARGEST_DELAY_S:
-            late_s = late_s if abs(late_s) > LARGEST_LATE_S else longest_s
-            return faults.too_late(track, names, late_s, LARGEST_DELAY_S, time_s)
-        step_s = max((abs(b - a) for a, b in zip(told, told[2:], strict=False)), default=0.0)
-        return faults.stepped(track, names, step_s, time_s) if step_s > LARGEST_STEP_S else None
-
-    @property
-    def _frame_s(self) -> float:
-        """Length of a frame of the check signal, s."""
-        return CYCLES_PER_FRAME / self._reference_hz
+            resumes = row / self._rate_hz, places
+        return faults.lost_way(
+            gap,
+            self._format.axes[gap.axis],
+            self._rate_hz,
+            self._place_mm(gap.axis, gap.before.place),
+            resumes,
+        )

@@ -1,7 +1,7 @@
 """The warrant: what stands between the certain rows of a tape and the drives, bare or checked.
 
-Signals in: certain rows, the gaps that were bridged in them, and the fault behind them. Signals out: rows that
-may be given out, and the first that may not, with its fault.
+Signals in: certain rows, the gaps that were bridged in them, and the fault behind them. Signals out: rows
+that may be given out, and the first that may not, with its fault.
 
     bare       bare.py       gives rows on at once; what can be found out is told at the end
     checked    vouching.py   holds rows until the check signal has vouched for them

@@ -12,7 +12,7 @@ from morfax.motion.faults import LockFault
 from morfax.motion.motion import Motion, join
 from morfax.player.tape.bridges import Bridge, bridge, filled, longest_s, side
 from morfax.player.tape.playback import play
-from morfax.recorder.tape.tape import record
+from morfax.recorder.tape.tape import TapeFormat, record
 from tests.player.worn import program
 
 RATE_HZ = 48000
@@ -66,8 +66,8 @@ def test_sides_that_do_not_agree_are_not_certain(bad: str) -> None:
 
 @pytest.fixture
 def tape(tmp_path: Path) -> Path:
-    """A circle of 10 mm at 10 mm/s."""
-    record(Motion(program()), tmp_path / "a.wav")
+    """A bare tape: a circle of 10 mm at 10 mm/s."""
+    record(Motion(program()), tmp_path / "a.wav", TapeFormat())
     return tmp_path / "a.wav"
 
 

@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 
 from morfax.motion.faults import LockFault, TapeFault
 from morfax.motion.motion import Motion, join
-from morfax.player.tape.mend import _sets, mend
+from morfax.player.tape.end_count import _sets
+from morfax.player.tape.mend import mend
 from morfax.player.tape.playback import play
 from morfax.recorder.tape.tape import TapeFormat, record
 from tests.player.worn import program
@@ -24,8 +25,8 @@ UM = 1e-3
 
 @pytest.fixture
 def tape(tmp_path: Path) -> Path:
-    """A circle of 3 mm at 40 mm/s, entered and left with 0.5 m/s²."""
-    record(Motion(program(3.0, 40.0)), tmp_path / "a.wav")
+    """A bare tape: a circle of 3 mm at 40 mm/s, entered and left with 0.5 m/s²."""
+    record(Motion(program(3.0, 40.0)), tmp_path / "a.wav", TapeFormat())
     return tmp_path / "a.wav"
 
 
@@ -81,7 +82,7 @@ def test_the_end_tells_how_many_cycles_were_lost(tmp_path: Path) -> None:
         return np.column_stack([jump, 0 * t_s, 0 * t_s])
 
     told = course(np.arange(6000) / 6000)
-    record(Motion(told), tmp_path / "a.wav")
+    record(Motion(told), tmp_path / "a.wav", TapeFormat())
     broken = holed(tmp_path / "a.wav", (1.498,), 24.0)
     mended = mend(broken, tmp_path / "m.wav")
     assert [(one.axis, one.cycles) for one in mended.mends] == [("x", 3)]

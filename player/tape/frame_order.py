@@ -1,0 +1,102 @@
+"""Frame order: whether each track's frames of the check signal are its own, follow one another, and are not
+late.
+
+Signals in: the reports of the check reader, frame by frame. Signals out: nothing, or a fault.
+
+    identity    each track says which it is                      another order: a fault
+    number      frames follow one another, at their time         a lost or repeated stretch: a fault
+    late        symbols lie within 0.25 ms of the clock          the same, where it is less than a frame
+    delay       of a track against the reference                 above 200 us, or a step: a fault
+    missing     four frames in a row of one track                one more: a fault
+
+Source: our own. Questions: a delay that drifts by 50 us/s moves 12 us in two parts of a frame; one lost
+sample moves 21. A sample that is lost on all tracks alike moves nothing but the time.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from morfax.motion.faults import Fault
+from morfax.player.tape import check_faults as faults
+from morfax.player.tape.check_reader import FrameReport
+from morfax.recorder.tape.check_frame import NUMBERS, CheckFrame
+from morfax.recorder.tape.check_signal import CYCLES_PER_FRAME
+from morfax.recorder.tape.format import TapeFormat
+
+LARGEST_DELAY_S = 200e-6  # what is asked; half a cycle of the subcarrier is 500
+LARGEST_LATE_S = 250e-6  # of the symbols: the delay, and 50 us for the gates
+LARGEST_STEP_S = 16e-6  # of a delay in two parts of a frame, 0.24 s: 50 us/s of drift are 12
+MOST_MISSING = 4  # frames in a row of one track: 1 s of dropout reaches into four
+STEP_PARTS = 4  # of a frame, whose delays are held against the next
+
+
+class FrameOrder:
+    """Keeps watch over the frames of one tape."""
+
+    def __init__(self, fmt: TapeFormat) -> None:
+        self._names, self._rate_hz = fmt.axes, fmt.motion_rate_hz
+        self._frame_s = CYCLES_PER_FRAME / fmt.reference_hz
+        self._told: list[list[float]] = [[] for _ in range(fmt.tracks)]  # delays of a frame, s
+        self._missing = np.zeros(fmt.tracks, int)
+        self._is_last = np.zeros(fmt.tracks, bool)
+        self._number: int | None = None  # of the next frame
+
+    @property
+    def ended(self) -> bool:
+        """Whether the last frame of every track said that the tape ends."""
+        return bool(self._is_last.all())
+
+    def fault(self, report: FrameReport) -> Fault | None:
+        """Take the next frame; the fault of the first track in which it is not as it should be."""
+        expected = report.number if self._number is None else self._number
+        self._number = report.number + 1
+        found: Fault | None = None
+        for track, said in enumerate(report.said):
+            if said is None:
+                found = found or self._unreadable(track, report)
+                continue
+            self._missing[track], self._is_last[track] = 0, said.last
+            found = found or self._misplaced(track, said, expected, report)
+            found = found or self._too_late(track, report)
+            told = report.delay_s[track]
+            if all(map(math.isfinite, told)):
+                self._told[track] = told[-STEP_PARTS:]
+        return found
+
+    def _unreadable(self, track: int, report: FrameReport) -> Fault | None:
+        """The fault of a track that says nothing for too long."""
+        self._missing[track] += 1
+        if self._missing[track] <= MOST_MISSING:
+            return None
+        time_s = report.row / self._rate_hz - MOST_MISSING * self._frame_s
+        return faults.unreadable(track, self._names, time_s)
+
+    def _misplaced(
+        self, track: int, said: CheckFrame, expected: int, report: FrameReport
+    ) -> Fault | None:
+        """The fault of a track that says to be another, or whose frame is not the next."""
+        time_s = report.row / self._rate_hz
+        if said.track != track:
+            return faults.wrong_track(track, said.track, self._names, time_s)
+        off = (said.number - expected + NUMBERS // 2) % NUMBERS - NUMBERS // 2
+        if not off:
+            return None
+        return faults.disordered(track, self._names, off * self._frame_s, time_s)
+
+    def _too_late(self, track: int, report: FrameReport) -> Fault | None:
+        """The fault of a track whose delay is too long, or makes a step: samples were lost or repeated."""
+        time_s, late_s = report.row / self._rate_hz, report.late_s[track]
+        told = self._told[track] + [
+            delay for delay in report.delay_s[track] if math.isfinite(delay)
+        ]
+        longest_s = max(map(abs, told), default=0.0)
+        if abs(late_s) > LARGEST_LATE_S or longest_s > LARGEST_DELAY_S:
+            late_s = late_s if abs(late_s) > LARGEST_LATE_S else longest_s
+            return faults.too_late(track, self._names, late_s, LARGEST_DELAY_S, time_s)
+        step_s = max((abs(b - a) for a, b in zip(told, told[2:], strict=False)), default=0.0)
+        if step_s <= LARGEST_STEP_S:
+            return None
+        return faults.stepped(track, self._names, step_s, time_s)
