@@ -1,6 +1,7 @@
 """Run all benchmarks, or those named: `python -m benchmarks [tape …]`.
 
-`folder DIR` measures drawings, `flatten [N]` simulated photographs, `linuxcnc` the times of programs; these
+`folder DIR` measures drawings, `flatten [N]` simulated photographs, `linuxcnc` the times of programs,
+`dropouts [N]` dropouts of each kind; these
 take a while and run only if named.
 """
 
@@ -11,7 +12,7 @@ import pkgutil
 import sys
 from pathlib import Path
 
-WITH_WORDS = ("folder", "flatten", "linuxcnc")  # that take words of their own
+WITH_WORDS = ("folder", "flatten", "linuxcnc", "dropouts")  # that take words of their own
 
 
 def main(names: list[str]) -> None:

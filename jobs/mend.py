@@ -1,4 +1,4 @@
-"""The job `mend`: a tape whose end tells what its dropouts lost is recorded anew."""
+"""The job `mend`: a tape that tells what its dropouts lost is recorded anew."""
 
 from __future__ import annotations
 
@@ -54,8 +54,10 @@ class MendJob:
                 "dropout": number,
                 "axis": one.axis,
                 "time_s": one.time_s,
+                "length_s": one.length_s,
                 "cycles": one.cycles,
                 "unknown_mm": one.unknown_mm,
+                "likely_mm": one.likely_mm,
             }
             for number, one in enumerate(mended.mends, 1)
         ]

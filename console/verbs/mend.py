@@ -1,4 +1,4 @@
-"""The verb `mend`: a tape whose end tells what its dropouts lost is recorded anew."""
+"""The verb `mend`: a tape that tells what its dropouts lost is recorded anew."""
 
 from __future__ import annotations
 
@@ -54,10 +54,12 @@ def command(
     by_hand: ByHand,
     desk: Desk,
 ) -> None:
-    """Record a tape anew whose end tells which dropout lost how many whole cycles.
+    """Record a tape anew without its dropouts.
 
-    The end is the one that the tape states, or with --closed the tape's start. Where cycles could have been
-    lost in more than one way, nothing is written and the exit code is 5.
+    A check signal says where the axes are behind each dropout; the way within is laid with the least
+    acceleration, and its largest possible error is reported. A bare tape is mended where its end tells which
+    dropout lost how many whole cycles: the end that it states, or with --closed its start. Where cycles could
+    have been lost in more than one way, nothing is written and the exit code is 5.
     """
     job = MendJob(tape, output, acceleration_mm_s2, by_hand)
     desk.figures(job.run(desk).figures)

@@ -42,6 +42,8 @@ from morfax.player.tape.standstill import ALLOWED_CYCLES
 
 COUNT_MARGIN = 0.1  # cycles, for noise
 ROUGH_CYCLES = 0.04  # what is left of the parabola; 26 dB of noise leave 0.015
+# the same of sides on which a changing acceleration would show: one of 0.5 m/s² that turns over leaves 0.008
+SMOOTH_CYCLES = 0.003
 LEAST_ACCELERATION = 1e-12  # cycles/row²: of an axis at rest; keeps it from dividing by zero
 
 
@@ -127,7 +129,8 @@ class Gap:
     """A gap of an axis from row `first` to before `last` of the tape, as it was bridged.
 
     `after.place` is where the axis is behind it as it was counted. `bound` is what the program asks for there
-    at most, as far as the tape tells it.
+    at most, as far as the tape tells it. `short`: the count is certain even if the program asks for all that
+    the motors can do, as on a bare tape.
     """
 
     axis: int
@@ -137,6 +140,7 @@ class Gap:
     after: Side
     bridge: Bridge
     bound: Bound
+    short: bool = False
 
     @property
     def rows(self) -> int:
@@ -157,8 +161,13 @@ class Gap:
 
     @property
     def certain(self) -> bool:
-        """Whether it may be ridden over: with its own count, or with one that is vouched for later."""
-        return self.bridge.certain or self.known
+        """Whether it may be ridden over, if the count behind it is vouched for.
+
+        Either no motion within the bound lies further off; or both sides agree and are smooth, so that a
+        motion which turns its acceleration over there and back within the gap alone is left out.
+        """
+        agreed = self.bridge.certain and (self.short or self.bridge.misfit < SMOOTH_CYCLES)
+        return self.known or agreed
 
     def moved(self, cycles: float) -> Gap:
         """The same gap of an axis that stands some cycles further on."""

@@ -202,8 +202,9 @@ class Gaps:
         told = None if self._riding.bound is None else self._riding.bound(axis, first, last)
         most = min(motors.acceleration, told.acceleration if told else np.inf)
         found = bridge(before, after, b - a + 1, most)
+        short = bridge(before, after, b - a + 1, motors.acceleration).counted
         after = replace(after, place=before.place + found.travel)
-        return Gap(axis, first, last, before, after, found, told or motors)
+        return Gap(axis, first, last, before, after, found, told or motors, short)
 
     def _ended(self, rows: Phases, axis: int, a: int, time_s: float) -> TapeFault:
         """The fault of a track that does not come back."""

@@ -19,14 +19,24 @@ Source: our own. Questions: none.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.player.tape.bridges import Gap
+from morfax.player.tape.bridges import Bound, Gap
 from morfax.player.tape.discriminator import Phases
 
 COUNT_CYCLES = 0.25  # as the end is checked
+HALF_CYCLE = 0.5  # less travel than this cannot be another count
+
+
+class Laid(NamedTuple):
+    """A gap whose way was laid, the whole cycles put back, and what the program likely asks for there."""
+
+    gap: Gap
+    cycles: int
+    likely: Bound
 
 
 class LostWays:
@@ -65,8 +75,13 @@ class LostWays:
 
     def unsettled(self) -> Gap | None:
         """The first gap that only a count could have settled, at the tape's end."""
-        left = [gap for gaps in self._open for gap in gaps if not gap.bridge.certain]
+        left = [gap for gaps in self._open for gap in gaps if not _sure(gap)]
         return min(left, key=lambda gap: gap.first, default=None)
+
+
+def _sure(gap: Gap) -> bool:
+    """Whether a gap needs no count behind it: its sides tell it, or its axis hardly moves."""
+    return gap.certain and (gap.bridge.counted or gap.bound.speed * gap.rows < HALF_CYCLE)
 
 
 def laid(held: Phases, gap: Gap, cycles: int) -> Phases:

@@ -34,8 +34,9 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.faults import TapeFault
 from morfax.motion.motion import Motion
-from morfax.player.tape.bridges import Bridge, Gap
+from morfax.player.tape.bridges import Bridge
 from morfax.player.tape.end_count import Place, lost_cycles, not_whole
+from morfax.player.tape.lost_ways import Laid
 from morfax.player.tape.playback import TapePlayback, play
 from morfax.player.tape.reader import TapeReader
 from morfax.player.tape.track_order import END_CYCLES
@@ -49,7 +50,8 @@ KEPT_DWELL = 0.1  # of the standstills: the tape may have run this much fast, an
 @dataclass(frozen=True, slots=True)
 class Mend:
     """A dropout that would have stopped the player: start and length on the tape (with the filter's reach),
-    whole cycles put back, and the largest possible error of the way laid within it.
+    whole cycles put back, the largest possible error of the way laid within it, and the largest if the
+    program asks for no more there than the frames around it tell.
     """
 
     axis: str
@@ -57,6 +59,7 @@ class Mend:
     length_s: float
     cycles: int
     unknown_mm: float
+    likely_mm: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,7 +114,7 @@ def mend(
         None if progress is None else lambda done_s, _: progress(done_s, total_s),
     )
     if reader.told is None:
-        mends = [_laid(gap, cycles, fmt) for gap, cycles in reader.mended]
+        mends = [_laid(one, fmt) for one in reader.mended]
     else:
         mends = [_mend(place, found, reader, fmt) for place, found in doubtful.items()]
     mends.sort(key=lambda one: (one.time_s, fmt.axes.index(one.axis)))
@@ -124,25 +127,26 @@ def is_checked(playback: TapePlayback) -> bool:
     return playback.reader.is_checked
 
 
-def _laid(gap: Gap, cycles: int, fmt: TapeFormat) -> Mend:
+def _laid(laid: Laid, fmt: TapeFormat) -> Mend:
     """The mend of a dropout whose way was laid to the place that the next frame tells."""
-    rate_hz = fmt.motion_rate_hz
+    gap, rate_hz, mm = laid.gap, fmt.motion_rate_hz, fmt.mm_per_cycle
     return Mend(
         fmt.axes[gap.axis],
         gap.first / rate_hz,
         (gap.last - gap.first) / rate_hz,
-        cycles,
-        gap.freedom * fmt.mm_per_cycle,
+        laid.cycles,
+        gap.freedom * mm,
+        replace(gap, bound=laid.likely).freedom * mm,
     )
 
 
 def _mend(place: Place, found: Bridge, reader: TapeReader, fmt: TapeFormat) -> Mend:
     """The mend of a dropout; a motion of acceleration A in it may swing out by A T² / 16."""
     cycles = (reader.told or {})[place]
-    unknown_cycles = abs(found.off + cycles) / 2 + found.reach / 4
+    unknown_mm = (abs(found.off + cycles) / 2 + found.reach / 4) * fmt.mm_per_cycle
     time_s, axis = place[0] / fmt.motion_rate_hz, fmt.axes[place[1]]
     length_s = reader.bridged[time_s, axis]
-    return Mend(axis, time_s, length_s, cycles, unknown_cycles * fmt.mm_per_cycle)
+    return Mend(axis, time_s, length_s, cycles, unknown_mm, unknown_mm)
 
 
 def _read(playback: TapePlayback) -> Iterator[tuple[int, Array]]:

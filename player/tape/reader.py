@@ -27,10 +27,11 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.faults import Fault, TapeFault
 from morfax.player.tape.bare import BareTape
-from morfax.player.tape.bridges import Bound, Bridge, Gap
+from morfax.player.tape.bridges import Bound, Bridge
 from morfax.player.tape.check_reader import read_ahead, read_check
 from morfax.player.tape.discriminator import Discriminator, Phases, discriminate
 from morfax.player.tape.dropouts import Gaps, Riding, under_way
+from morfax.player.tape.lost_ways import Laid
 from morfax.player.tape.standstill import STANDSTILL_S, Bearings, evened, take_bearings
 from morfax.player.tape.vouching import Vouching
 from morfax.player.tape.warrant import Certain, Warrant
@@ -78,7 +79,7 @@ class TapeReader:
         self.mends = (
             False  # whether the way of dropouts is laid anew, where counts behind them tell it
         )
-        self.mended: list[tuple[Gap, int]] = []
+        self.mended: list[Laid] = []
 
     def read(self, stands_mm: Callable[[], Sequence[float]]) -> Iterator[Read]:
         """Rows, bearings, and the first uncertain row of a block; `stands_mm`: the machine's place.

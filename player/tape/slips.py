@@ -17,6 +17,7 @@ from morfax.player.tape.subcarrier import Subcarrier
 from morfax.player.tape.symbols import QUARTER, read_symbols
 from morfax.recorder.tape.check_frame import NUMBERS, from_bits
 
+CENTRING = 3  # times: what is left after each is a tenth
 # quarters of a symbol, nearest first: 48 cycles to either side
 TRIED = (0, 1, -1, 2, -2, 3, -3, 4, -4, 5, -5, 6, -6, 7, -7, 8, -8)
 
@@ -27,6 +28,10 @@ def slip(points: Subcarrier, begins: float, number: int) -> int | None:
         at = begins + quarters * QUARTER
         gates = read_symbols(points, at)
         said = from_bits(gates.bits[:1])[0]
-        if said is not None and not said.track and said.number == number % NUMBERS:
-            return round(at + float(gates.late[0]) - begins)
+        if said is None or said.track or said.number != number % NUMBERS:
+            continue
+        for _ in range(CENTRING):
+            at += float(gates.late[0])
+            gates = read_symbols(points, at)
+        return round(at - begins)
     return None

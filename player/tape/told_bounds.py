@@ -5,6 +5,7 @@ axis is asked for between two rows of the tape, cycles/row and cycles/row².
 
     frame k tells     |- frame k -|- frame k + 1 -|        the largest of both
     known between two rows where frames that were read cover all of them
+    likely between two rows: what the frames before and behind tell
 
 A tape that runs fast by a share makes its speeds greater by that share, and its accelerations twice. Flutter
 adds to the acceleration of an axis that runs: 0.5 % at 10 Hz changes a speed by 0.3 of it in a second.
@@ -41,6 +42,15 @@ class ToldBounds:
         acceleration = said.acceleration * fast**2 + FLUTTER_HZ * said.speed
         bound = Bound(acceleration / self._rate_hz**2, said.speed * fast / self._rate_hz)
         self._told = [*self._told[1 - KEPT :], (report.row, report.row + 2 * rows, bound)]
+
+    def around(self, first: int, last: int) -> Bound | None:
+        """The bound that the frames before, between and behind two rows tell, even if they do not reach."""
+        before = [bound for starts, _, bound in self._told if starts < first][-1:]
+        behind = [bound for starts, _, bound in self._told if starts >= first]
+        if not before or not behind:
+            return None
+        near = before + behind
+        return Bound(max(one.acceleration for one in near), max(one.speed for one in near))
 
     def between(self, first: int, last: int) -> Bound | None:
         """The bound between two rows, or None where no frame tells it."""

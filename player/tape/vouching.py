@@ -30,7 +30,7 @@ from morfax.player.tape.check_reader import CheckReader, FrameReport
 from morfax.player.tape.delays import Delay
 from morfax.player.tape.discriminator import Phases
 from morfax.player.tape.frame_order import FrameOrder
-from morfax.player.tape.lost_ways import COUNT_CYCLES, LostWays, laid
+from morfax.player.tape.lost_ways import COUNT_CYCLES, Laid, LostWays, laid
 from morfax.player.tape.told_bounds import ToldBounds
 from morfax.player.tape.warrant import Certain, Given, PlaceMm, StandsMm
 from morfax.recorder.tape.check_signal import CYCLES_PER_FRAME
@@ -56,7 +56,7 @@ class Vouching:
         self._bounds = [ToldBounds(fmt.motion_rate_hz, frame_s) for _ in fmt.axes]
         self._ways = LostWays(len(fmt.axes))
         self._lost: dict[int, Gap] = {}  # by axis: a gap at which the machine stops
-        self.mended: list[tuple[Gap, int]] = []
+        self.mended: list[Laid] = []
         self._held: Phases | None = None
         self._given = 0  # rows that were given out and are still held, to lend their speed
         # row, and by axis the cycles that it tells there: not yet checked
@@ -195,7 +195,7 @@ class Vouching:
     def _check_counts(self, stands_mm: StandsMm) -> None:
         """Compare the axes' counts with what their tracks say, as far as rows are held."""
         ends = self._rows.first_row + len(self._rows) - 1
-        while self._counts and self._counts[0][0] <= ends and self._fault is None:
+        while self._counts and self._counts[0][0] <= ends:
             row, told = self._counts.pop(0)
             open_ = [axis for axis in told if not self._ways.covers(axis, row)]
             off = {axis: self._off(axis, row, told[axis]) for axis in open_}
@@ -232,10 +232,12 @@ class Vouching:
             return
         if gap is not None:
             self._held = laid(self._rows, gap, -whole)
-            self.mended.append((gap.ending(-whole), -whole))
+            near = self._bounds[axis].around(gap.first, gap.last)
+            self.mended.append(Laid(gap.ending(-whole), -whole, near or gap.bound))
         elif abs(off) > COUNT_CYCLES:
             name, time_s = self._format.axes[axis], row / self._rate_hz
-            self._fault = faults.miscounted(name, off, COUNT_CYCLES, time_s, stands_mm()[axis])
+            fault = faults.miscounted(name, off, COUNT_CYCLES, time_s, stands_mm()[axis])
+            self._fault = self._fault or fault
             return
         self._ways.settle(axis, row, 0.0 if gap is None else float(-whole))
         self._counted[axis] = row

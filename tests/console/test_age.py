@@ -101,12 +101,18 @@ def test_a_tape_through_a_pipe(here: Path, tape_file: Path) -> None:
 
 
 def test_a_tape_is_mended_or_told_why_not(morfax: Morfax, here: Path, tape_file: Path) -> None:
-    frames, rate_hz = soundfile.read(tape_file, dtype="int16")
-    for name, places_s in (("one.wav", (2.5,)), ("two.wav", (2.5, 3.5))):
+    assert morfax("record", str(tape_file), "-o", "plain.wav", "--plain").exit_code == 0
+    tapes = {"one.wav": tape_file, "two.wav": here / "plain.wav", "both.wav": tape_file}
+    for name, places_s in (
+        ("one.wav", (2.5,)),
+        ("two.wav", (2.5, 3.5)),
+        ("both.wav", (2.5, 3.5)),
+    ):
+        frames, rate_hz = soundfile.read(tapes[name], dtype="int16")
         for at_s in places_s:
             frames[round(at_s * rate_hz) :][: round(0.04 * rate_hz), 1] = 0
         with soundfile.SoundFile(here / name, "w", rate_hz, 4, "PCM_16") as worn:
-            worn.comment = soundfile.SoundFile(tape_file).comment
+            worn.comment = soundfile.SoundFile(tapes[name]).comment
             worn.write(frames)
     answer = morfax("mend", "one.wav", "-o", "mended.wav", "--json")
     assert answer.exit_code == 0 and answer.figures["dropouts"] == 1
@@ -119,6 +125,9 @@ def test_a_tape_is_mended_or_told_why_not(morfax: Morfax, here: Path, tape_file:
         and "cannot be known" in told.fault
         and not (here / "other.wav").exists()
     )
+    # its check signal says what each of them lost
+    both = morfax("mend", "both.wav", "-o", "other.wav", "--json")
+    assert [round(one["time_s"], 1) for one in both.figures["mends"]] == [2.5, 3.5]
 
 
 def test_tracks_in_another_order_are_put_right_by_hand(
