@@ -36,6 +36,7 @@ VERBS = {
     "sheet": "Make a sheet with marks to print, draw on and photograph.",
     "devices": "List the sound devices; play a test tone, and show the levels of its tracks.",
     "machines": "List the machines that programs are written for, or print one to change.",
+    "panel": "Open the operator's panel in a browser: see the sheet, choose lines, run, watch, save.",
     "demo": "Trace a sample drawing, play the tape, compare, and show what came out.",
 }
 

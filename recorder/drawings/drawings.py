@@ -97,6 +97,8 @@ def _dxf(lines: list[CutLine]) -> str:
     import ezdxf
     from ezdxf import units
 
+    # no time, no random name in the file: the same motion gives the same bytes
+    ezdxf.options.write_fixed_meta_data_for_testing = True
     document = ezdxf.new("R2010", units=units.MM)
     space = document.modelspace()
     for line in lines:
@@ -111,6 +113,8 @@ def _dxf(lines: list[CutLine]) -> str:
             bulges.append(0.0)
         corners = [(x, y, bulge) for (x, y), bulge in zip(places, bulges, strict=True)]
         space.add_lwpolyline(corners, format="xyb", close=line.closed)
+    for kind in sorted(document.entitydb.dxf_types_in_use()):
+        document.classes.add_class(kind)  # ezdxf would list them in the order of a set
     text = io.StringIO()
     document.write(text)
     return text.getvalue()

@@ -1,0 +1,313 @@
+"""The bench: one drawing, what is set for it, the run that is under way, and its result.
+
+Signals in: the operator's actions (see `actions`), and what the worker says. Signals out: the state of all
+this as plain values, to as many pages as look on; each page is told when there is something new, and asks
+for it when it is ready: a slow page gets fewer frames, and holds nothing up.
+
+Questions: one drawing lies on the bench at a time; another server on another port has a bench of its own.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from collections import deque
+from collections.abc import Callable, Mapping
+from pathlib import Path as FilePath
+from typing import Any
+
+from morfax.motion.files import written_beside
+from morfax.panel import commands, sheet_picture
+from morfax.panel.commands import CommandLine
+from morfax.panel.head_path import HeadPath
+from morfax.panel.history import History, Step
+from morfax.panel.tiles import LineMap, Picture
+from morfax.panel.workshop import Heard, Workshop
+
+MESSAGES = 40  # lines of notes and warnings that are kept
+OWN = ("state.json", "result.json")  # files of the folder that are no results
+HIDDEN = ("numbers", "picture")  # of what the worker says of a drawing: arrays, for the tiles
+
+
+class Bench:
+    """What lies on the bench."""
+
+    def __init__(
+        self,
+        folder: FilePath,
+        sources: Mapping[str, FilePath],
+        command_line: CommandLine,
+        workshop: Callable[[Heard], Workshop] = Workshop,
+    ) -> None:
+        self.folder, self.command_line = folder, command_line
+        self.sources = {**sources, **_taken_in(folder)}  # by the names that pages know them by
+        self.history = History(folder / "state.json")
+        self.workshop = workshop(self.heard)
+        self.path = HeadPath()
+        self.picture: Picture | None = None
+        self.line_map: LineMap | None = None
+        self.sheet: dict[str, Any] | None = None
+        self.refused: str | None = (
+            None  # why the drawing cannot be looked at: no scale, no line
+        )
+        self.busy: dict[str, Any] | None = None
+        self.messages = deque[dict[str, Any]](maxlen=MESSAGES)
+        self.result: dict[str, Any] | None = None
+        self.result_of: list[str] | None = None  # the words that made the result
+        self.version = 0  # grows with each change of the state
+        self._waiting = set[asyncio.Event]()
+        self._job, self._picture_of, self._looked_at = 0, "", list[str]()
+        self.picture_id = 0
+        self._tasks = set[asyncio.Task[Any]]()
+        self._read_result()
+
+    @property
+    def drawing(self) -> FilePath | None:
+        """The drawing's file; None if none lies there."""
+        return self.sources.get(self.history.now.drawing or "")
+
+    def words(self) -> list[str]:
+        """The words of the run as it is set now."""
+        assert self.drawing is not None
+        return commands.run_words(self.drawing, self.history.now.options, self.folder)
+
+    async def begin(self) -> None:
+        """Take up the work where it was; a run that was cut off begins anew."""
+        await self.workshop.start()
+        was_running = self.history.running
+        self.look()
+        if was_running and self.drawing is not None:
+            self.tell(
+                "note", "the server was ended in the middle of this run, which has begun anew"
+            )
+            self.run()
+
+    async def close(self) -> None:
+        """End the worker; what is on disk stays."""
+        await self.workshop.close()
+
+    # pages
+    def look_on(self) -> asyncio.Event:
+        """A new page looks on: the event is set whenever there is something new."""
+        event = asyncio.Event()
+        event.set()
+        self._waiting.add(event)
+        return event
+
+    def look_away(self, event: asyncio.Event) -> None:
+        """A page looks on no more."""
+        self._waiting.discard(event)
+
+    def changed(self, *, state: bool = True) -> None:
+        """Tell all pages that there is something new: the state, or the head's path alone."""
+        self.version += state
+        for event in self._waiting:
+            event.set()
+
+    # what the operator does
+    def step(self, step: Step) -> None:
+        """Take a step, and look at the drawing again if that changed what is seen on it."""
+        self.history.add(step)
+        self.look()
+
+    def look(self) -> None:
+        """Show the drawing that lies there, and have its lines looked at if they were not."""
+        self.changed()
+        if self.drawing is None:
+            return
+        shown = sheet_picture.key(self.drawing, self.history.now.options)
+        words = commands.lines_words(self.drawing, self.history.now.options)
+        if shown != self._picture_of:
+            self._picture_of, self.line_map, self.sheet = shown, None, None
+            self._in_background(self._show())
+        if words != self._looked_at:
+            self._looked_at, self.refused = words, None
+            self.send("lines", self.command_line.lines(words))
+
+    def run(self) -> None:
+        """Begin a run as it is set; raises WrongUse for settings that do not go together."""
+        job = self.command_line.run(self.words())
+        self.path.clear()
+        self.result, self.result_of = None, self.words()
+        self.history.mark_running(True)
+        self.send("run", job)
+
+    def save(self, job: Any) -> None:
+        """Have a program written."""
+        self.send("save", job)
+
+    def send(self, kind: str, job: Any) -> None:
+        """Give the worker a job."""
+        self._job += 1
+        if kind != "lines" or self.busy is None:
+            self.busy = {
+                "number": self._job,
+                "kind": kind,
+                "what": "waiting",
+                "share": 0.0,
+                "held": False,
+            }
+        self.changed()
+        self._in_background(self.workshop.send("job", self._job, kind, job))
+
+    def control(self, what: str, *more: Any) -> None:
+        """Hold, resume, step, stop, or another pace for what is under way."""
+        if self.busy is not None and what in ("hold", "resume", "step", "stop"):
+            self.busy["held"] = what == "hold"
+        self.changed()
+        self._in_background(self.workshop.send(what, *more))
+
+    # what the worker says
+    def heard(self, message: dict[str, Any]) -> None:
+        """Take in a message of the worker."""
+        what = message.pop("say")
+        if what == "head":
+            self.path.add(message)
+            self.changed(state=False)
+            return
+        {
+            "begun": self._begun,
+            "progress": self._progress,
+            "note": lambda m: self.tell("note", m["text"]),
+            "warning": lambda m: self.tell("warning", m["text"]),
+            "done": self._done,
+            "failed": self._failed,
+            "stopped": lambda m: self._end(
+                m, "stopped at the panel; nothing unfinished was written"
+            ),
+            "ended": self._ended,
+        }[what](message)
+        self.changed()
+
+    def tell(self, kind: str, text: str, place_mm: Any = None) -> None:
+        """Put a line among the messages, once."""
+        line = {"kind": kind, "text": text, "place_mm": place_mm}
+        if line not in self.messages:
+            self.messages.append(line)
+
+    def _begun(self, message: dict[str, Any]) -> None:
+        """A job has begun."""
+        self.busy = {**message, "what": "", "share": 0.0, "held": False}
+
+    def _progress(self, message: dict[str, Any]) -> None:
+        """A job has come further."""
+        if self.busy is not None:
+            self.busy |= message
+
+    def _done(self, message: dict[str, Any]) -> None:
+        """A job is done."""
+        kind, result = message["kind"], message["result"]
+        if kind == "lines":
+            if (
+                message["number"] == self._job
+                or self.busy is None
+                or self.busy["kind"] == "lines"
+            ):
+                self._seen(result)
+        elif kind == "run":
+            self.result = result
+            self._keep_result()
+            for text in result["faults"]:
+                self.tell("fault", text, result["fault_place_mm"])
+        else:
+            self.tell("saved", f"saved {FilePath(result['file']).name}")
+            if result["fault"]:
+                self.tell("fault", result["fault"])
+        self._free(kind)
+
+    def _seen(self, seen: dict[str, Any]) -> None:
+        """The drawing was looked at."""
+        self.line_map = LineMap(seen["numbers"])
+        if seen["picture"] is not None:
+            self.picture = Picture(seen["picture"])
+            self.picture_id += 1
+        self.sheet = {name: value for name, value in seen.items() if name not in HIDDEN}
+        self.refused = None
+
+    def _failed(self, message: dict[str, Any]) -> None:
+        """A job went wrong."""
+        if message["kind"] == "lines":
+            self.refused, self.sheet, self.line_map = message["text"], None, None
+        else:
+            self.tell("fault", message["text"], message["place_mm"])
+        self._free(message["kind"])
+
+    def _end(self, message: dict[str, Any], text: str) -> None:
+        """A job was stopped."""
+        self.tell("note", text)
+        self._free(message["kind"])
+
+    def _ended(self, message: dict[str, Any]) -> None:
+        """The worker ended by itself, or was ended by the operator."""
+        if self.busy is not None:
+            why = (
+                "the memory may have been too small"
+                if message["code"] in (-9, 137)
+                else f"code {message['code']}"
+            )
+            self.tell(
+                "fault",
+                f"the worker ended before the work was done ({why}); what is set is kept: run again",
+            )
+        self._looked_at = []
+        self._free("run")
+
+    def _free(self, kind: str) -> None:
+        """Nothing is under way any more."""
+        self.busy = None
+        if kind == "run":
+            self.history.mark_running(False)
+
+    # the disk
+    def files(self) -> list[str]:
+        """The names of the results in the folder."""
+        if not self.folder.is_dir():
+            return []
+        every = (f for f in self.folder.iterdir() if f.is_file() and not f.name.startswith("."))
+        return sorted(file.name for file in every if file.name not in OWN)
+
+    def _keep_result(self) -> None:
+        """Put the result on disk, so that it is there after a new start."""
+        with written_beside(self.folder / OWN[1]) as beside:
+            kept = {"words": self.result_of, "result": self.result}
+            beside.write_text(json.dumps(kept), encoding="utf-8")
+
+    def _read_result(self) -> None:
+        """Take up the last result, if it can be read."""
+        try:
+            kept = json.loads((self.folder / OWN[1]).read_text(encoding="utf-8"))
+            self.result, self.result_of = kept["result"], kept["words"]
+        except (OSError, ValueError, KeyError):
+            self.result = self.result_of = None
+
+    # work beside the answers
+    async def _show(self) -> None:
+        """Read the picture that is shown, beside the worker, so that it is there at once."""
+        shown, drawing = self._picture_of, self.drawing
+        assert drawing is not None
+        try:
+            picture = await asyncio.to_thread(
+                sheet_picture.read, drawing, self.history.now.options
+            )
+        except Exception as error:
+            self.picture, self.refused = None, " ".join(str(error).split())
+        else:
+            if shown == self._picture_of:
+                self.picture = picture
+        self.picture_id += 1
+        self.changed()
+
+    def _in_background(self, work: Any) -> None:
+        """Do work beside the answers."""
+        task = asyncio.get_running_loop().create_task(work)
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+
+def _taken_in(folder: FilePath) -> dict[str, FilePath]:
+    """The drawings that pages have sent before."""
+    return {
+        file.name: file
+        for file in sorted((folder / "drawings").glob("[!.]*"))
+        if file.is_file()
+    }

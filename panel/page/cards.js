@@ -1,0 +1,99 @@
+// The cards of the operator's column: lines, result, files, notes.
+
+import { element, length, place, time } from "./format.js";
+import { colourOf } from "./sheet.js";
+
+const WHICH = [["", "Longest"], ["contours", "Contours"], ["all", "All ink"]];
+const SAVES = [["program", "Program for the machine"], [".wav", "Tape"], [".ngc", "G-code"], [".dxf", "DXF"], [".svg", "SVG"], [".csv", "Path"], [".html", "Page"]];
+
+export function chosenNumbers(options) {
+  const text = options["--lines"] ?? "";
+  return /^[\d,\s]+$/.test(text) ? text.split(",").map(Number) : [];
+}
+
+// Whether a line is among those that are set to be followed.
+export function isChosen(options, lines, number) {
+  const numbers = chosenNumbers(options);
+  if (numbers.length) return numbers.includes(number);
+  const line = lines.find((row) => row.line === number);
+  if (options["--lines"] === "all") return true;
+  if (options["--lines"] === "contours") return line?.in_contours ?? false;
+  if (options["--lines"] === "outer") return (line?.in_contours && line.inside === null) ?? false;
+  return options["--start"] ? true : number === 1;
+}
+
+export function toggled(options, number) {
+  const numbers = chosenNumbers(options);
+  const next = numbers.includes(number) ? numbers.filter((n) => n !== number) : [...numbers, number];
+  return next.length ? next.sort((a, b) => a - b).join(",") : null;
+}
+
+export function showWhich(host, options, set) {
+  const now = options["--start"] ? "start" : (options["--lines"] ?? "");
+  host.replaceChildren(...WHICH.map(([value, text]) =>
+    element("button", { "aria-pressed": String(now === value), onclick: () => set({ "--lines": value || null, "--start": null }) }, text)));
+}
+
+export function showLines(host, state, set, under) {
+  const lines = state.sheet?.figures.lines ?? [];
+  const focused = document.activeElement?.dataset?.line;
+  host.replaceChildren(...lines.map((row) => {
+    const checked = isChosen(state.options, lines, row.line);
+    const box = element("input", {
+      type: "checkbox", checked, "data-line": row.line,
+      onchange: () => set({ "--lines": toggled(state.options, row.line), "--start": null }),
+    });
+    box.checked = checked;
+    const swatch = element("span", { class: "swatch", "aria-hidden": "true" });
+    swatch.style.color = colourOf(row.line);
+    const what = [row.kind, row.kind === "dot" ? null : length(row.length_mm), row.inside ? `in ${row.inside}` : null, row.remark];
+    return element("li", { onpointerenter: () => under(row.line), onpointerleave: () => under(0), "data-row": row.line },
+      element("label", {}, box, swatch, element("span", { class: "no" }, String(row.line)), element("span", { class: "what" }, what.filter(Boolean).join(", "))));
+  }));
+  if (focused) host.querySelector(`[data-line="${focused}"]`)?.focus();
+}
+
+export function lineText(state, number) {
+  const row = state.sheet?.figures.lines.find((line) => line.line === number);
+  if (!row) return "";
+  const parts = [`line ${number}`, row.kind, row.kind === "dot" ? null : length(row.length_mm), row.line_width_mm ? `${length(row.line_width_mm)} wide` : null];
+  return parts.filter(Boolean).join(" · ");
+}
+
+export function showResult(result, goTo) {
+  const figures = result.figures, ink = figures.played_to_ink ?? {}, traced = figures.traced_to_ink ?? {};
+  const rows = [
+    ["Length", length(figures.length_mm)],
+    ["Time on the machine", time(result.played.t_s.at(-1) - result.played.t_s[0])],
+    ["Ending", figures.ending + (figures.incomplete ? ", incomplete" : "")],
+    ["Machine from the ink's middle, RMS", length(ink.rms_mm)],
+    ["the same, largest", length(ink.max_mm)],
+    ["Head from the ink's middle, RMS", length(traced.rms_mm)],
+    ["Ink not covered", length(figures.missed_ink_mm)],
+  ];
+  document.getElementById("figures").replaceChildren(...rows.flatMap(([name, value]) => [element("dt", {}, name), element("dd", {}, value)]));
+  document.getElementById("worst").replaceChildren(...result.worst.map((worst, i) =>
+    element("li", {}, element("button", { onclick: () => goTo(worst) }, `${i + 1}.  at ${place(worst.x_mm, worst.y_mm)}`, element("b", {}, length(worst.error_mm))))));
+  document.getElementById("all-figures").textContent = JSON.stringify(figures, null, 1);
+}
+
+export function showSaves(host, state, save) {
+  const can = ([kind]) => kind === ".html" || kind in state.commands;
+  const list = SAVES.filter(can).filter(([kind]) => kind !== "program" || state.options["--machine"]).filter(([kind]) => kind !== ".ngc" || !state.options["--machine"]);
+  host.replaceChildren(...list.map(([kind, text]) => element("button", { "data-save": kind, onclick: () => save(kind), disabled: state.busy !== null && state.busy.kind !== "lines" }, text)));
+}
+
+export function showFiles(host, files) {
+  const shown = host.dataset.shown, now = files.join("/");
+  if (shown === now) return;
+  host.dataset.shown = now;
+  host.replaceChildren(...files.map((name) => element("li", {}, element("a", { href: `/file/${encodeURIComponent(name)}`, download: name }, name))));
+}
+
+export function showMessages(host, messages, goTo) {
+  const now = JSON.stringify(messages);
+  if (host.dataset.shown === now) return;
+  host.dataset.shown = now;
+  host.replaceChildren(...messages.map((message) => element("li", { class: message.kind }, message.text,
+    message.place_mm ? element("button", { class: "plain", onclick: () => goTo({ x_mm: message.place_mm[0], y_mm: message.place_mm[1] }) }, "Show") : null)));
+}

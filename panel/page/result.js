@@ -1,0 +1,79 @@
+// A result on the sheet: the played contour in the colours of its error, the machine's place at a time, marks.
+
+export const RAMP = ["#2b6ca3", "#3a8fa0", "#5aa56b", "#b3a52e", "#d98323", "#cf5027", "#ad1f2d"];
+
+// The error in seven colours, a Path2D each; in mm of the sheet.
+export function errorPaths(error, largest) {
+  const paths = RAMP.map(() => new Path2D());
+  const { x_mm: x, y_mm: y, error_mm: e } = error;
+  for (let i = 1; i < x.length; i++) {
+    if (e[i] === null || Math.hypot(x[i] - x[i - 1], y[i] - y[i - 1]) > 1.5) continue;
+    const path = paths[Math.min(RAMP.length - 1, Math.floor((RAMP.length * e[i]) / largest))];
+    path.moveTo(x[i - 1], y[i - 1]);
+    path.lineTo(x[i], y[i]);
+  }
+  return paths;
+}
+
+// The largest error that the colours tell apart: 98 of 100 places are below it.
+export function errorScale(error) {
+  const known = error.error_mm.filter((e) => e !== null).sort((a, b) => a - b);
+  return known[Math.floor(0.98 * (known.length - 1))] || 1e-3;
+}
+
+export function drawErrors(context, paths, width) {
+  context.lineWidth = width;
+  context.lineCap = "round";
+  paths.forEach((path, i) => {
+    context.strokeStyle = RAMP[i];
+    context.stroke(path);
+  });
+}
+
+// The machine at a time: the row before it, and its place between that row and the next.
+export function machineAt(path, t) {
+  const times = path.t_s;
+  let low = 0, high = times.length - 1;
+  while (high - low > 1) {
+    const middle = (low + high) >> 1;
+    if (times[middle] <= t) low = middle;
+    else high = middle;
+  }
+  const share = Math.min(1, Math.max(0, (t - times[low]) / (times[high] - times[low] || 1)));
+  const at = (column) => path[column][low] + share * (path[column][high] - path[column][low]);
+  const way = Math.hypot(path.x_mm[high] - path.x_mm[low], path.y_mm[high] - path.y_mm[low]);
+  return { row: low, x: at("x_mm"), y: at("y_mm"), z: at("z_mm"), feed: way / (times[high] - times[low] || 1), down: path.tool[low] === 1 };
+}
+
+// The way up to a row, where the tool is in the work; drawn in mm.
+export function drawMachine(context, path, now, unit, colours) {
+  context.lineWidth = 1.6 * unit;
+  context.strokeStyle = colours.way;
+  context.beginPath();
+  for (let i = Math.max(0, now.row - 4000); i <= now.row; i++) {
+    if (i === 0 || !path.tool[i]) context.moveTo(path.x_mm[i], path.y_mm[i]);
+    else context.lineTo(path.x_mm[i], path.y_mm[i]);
+  }
+  context.lineTo(now.x, now.y);
+  context.stroke();
+  context.beginPath();
+  context.arc(now.x, now.y, 7 * unit, 0, 7);
+  context.fillStyle = now.down ? colours.down : colours.up;
+  context.globalAlpha = 0.9;
+  context.fill();
+  context.globalAlpha = 1;
+  context.strokeStyle = "#fff";
+  context.lineWidth = 2 * unit;
+  context.stroke();
+}
+
+// Worst places and other marks as rings with numbers.
+export function drawWorst(context, worst, unit, colour) {
+  context.strokeStyle = colour;
+  context.lineWidth = 1.6 * unit;
+  for (const place of worst) {
+    context.beginPath();
+    context.arc(place.x_mm, place.y_mm, 9 * unit, 0, 7);
+    context.stroke();
+  }
+}

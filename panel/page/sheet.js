@@ -1,0 +1,355 @@
+// The sheet: tiles of the picture and of its lines on a canvas, with zoom, pan and a ruler.
+//
+// Coordinates: "px" are the picture's own pixels from the upper left; "mm" are the sheet's, from the lower left.
+
+export const COLOURS = ["#1f5fa8", "#c1121f", "#2a8f4f", "#8a3fa0", "#c26a10", "#0f8b8d", "#b5338a", "#6b4f1d"];
+const LEFT_OUT = 65535, LETTERING = 65534;
+const MOST_TILES = 400;
+const LARGEST_SCALE = 40; // screen pixels to a pixel of the picture
+
+export function colourOf(number) {
+  return COLOURS[(number - 1) % COLOURS.length];
+}
+
+export class Sheet {
+  constructor(canvas, tile) {
+    this.canvas = canvas;
+    this.context = canvas.getContext("2d", { alpha: false });
+    this.tile = tile;
+    this.tiles = new Map();
+    this.layers = [];
+    this.picture = null;
+    this.pitch = null;
+    this.view = { x: 0, y: 0, scale: 1 };
+    this.chosen = () => true;
+    this.strength = 1; // of the colours of the lines
+    this.asked = false;
+    new ResizeObserver(() => this.resize()).observe(canvas);
+    this.listen();
+  }
+
+  // picture: {id, rows, columns, levels, has_lines}; pitch: mm to a pixel, or null
+  show(picture, pitch) {
+    const other = !this.picture || !picture || picture.rows !== this.picture.rows || picture.columns !== this.picture.columns;
+    if (!picture || !this.picture || picture.id !== this.picture.id) this.tiles.clear();
+    else if (picture.has_lines !== this.picture.has_lines) this.forget("lines");
+    this.picture = picture;
+    this.pitch = pitch;
+    if (other) this.all();
+    this.ask();
+  }
+
+  forget(kind) {
+    for (const key of [...this.tiles.keys()]) if (key.startsWith(kind)) this.tiles.delete(key);
+  }
+
+  recolour(chosen) {
+    this.chosen = chosen;
+    for (const tile of this.tiles.values()) tile.painted = null;
+    this.ask();
+  }
+
+  toMm(px) {
+    return this.pitch && [px[0] * this.pitch, (this.picture.rows - px[1]) * this.pitch];
+  }
+
+  toPx(mm) {
+    return [mm[0] / this.pitch, this.picture.rows - mm[1] / this.pitch];
+  }
+
+  toScreen(px) {
+    return [(px[0] - this.view.x) * this.view.scale, (px[1] - this.view.y) * this.view.scale];
+  }
+
+  fromScreen(x, y) {
+    return [x / this.view.scale + this.view.x, y / this.view.scale + this.view.y];
+  }
+
+  all() {
+    if (!this.picture) return;
+    const { width, height } = this.canvas;
+    const margin = 36 * devicePixelRatio;
+    const scale = Math.min((width - 2 * margin) / this.picture.columns, (height - 2 * margin) / this.picture.rows);
+    this.view.scale = Math.max(scale, 1e-4);
+    this.view.x = this.picture.columns / 2 - width / 2 / this.view.scale;
+    this.view.y = this.picture.rows / 2 - height / 2 / this.view.scale;
+    this.whole = true;
+    this.ask();
+  }
+
+  goTo(mm, perMm) {
+    const px = this.toPx(mm);
+    if (perMm) this.view.scale = Math.min(perMm * this.pitch * devicePixelRatio, LARGEST_SCALE);
+    this.view.x = px[0] - this.canvas.width / 2 / this.view.scale;
+    this.view.y = px[1] - this.canvas.height / 2 / this.view.scale;
+    this.whole = false;
+    this.ask();
+  }
+
+  zoom(by, x = this.canvas.width / 2, y = this.canvas.height / 2) {
+    if (!this.picture) return;
+    const [px, py] = this.fromScreen(x, y);
+    const least = 0.2 * Math.min(this.canvas.width / this.picture.columns, this.canvas.height / this.picture.rows);
+    this.view.scale = Math.min(Math.max(this.view.scale * by, least), LARGEST_SCALE);
+    this.view.x = px - x / this.view.scale;
+    this.view.y = py - y / this.view.scale;
+    this.whole = false;
+    this.ask();
+  }
+
+  pan(dx, dy) {
+    this.view.x -= dx / this.view.scale;
+    this.view.y -= dy / this.view.scale;
+    this.whole = false;
+    this.ask();
+  }
+
+  resize() {
+    const { clientWidth, clientHeight } = this.canvas;
+    const [width, height] = [clientWidth * devicePixelRatio, clientHeight * devicePixelRatio].map(Math.round);
+    if (!width || (this.canvas.width === width && this.canvas.height === height)) return;
+    const middle = this.picture ? this.fromScreen(this.canvas.width / 2, this.canvas.height / 2) : [0, 0];
+    this.canvas.width = width;
+    this.canvas.height = height;
+    if (this.whole) this.all();
+    else {
+      this.view.x = middle[0] - width / 2 / this.view.scale;
+      this.view.y = middle[1] - height / 2 / this.view.scale;
+    }
+    this.draw();
+  }
+
+  ask() {
+    if (this.asked) return;
+    this.asked = true;
+    requestAnimationFrame(() => { this.asked = false; this.draw(); });
+  }
+
+  draw() {
+    const { context, canvas } = this;
+    const style = getComputedStyle(canvas);
+    context.setTransform(1, 0, 0, 1, 0, 0);
+    context.fillStyle = style.getPropertyValue("--bench");
+    context.fillRect(0, 0, canvas.width, canvas.height);
+    if (!this.picture) return;
+    const [left, top] = this.toScreen([0, 0]);
+    const [width, height] = [this.picture.columns * this.view.scale, this.picture.rows * this.view.scale];
+    context.save();
+    context.shadowColor = style.getPropertyValue("--shade");
+    context.shadowBlur = 18 * devicePixelRatio;
+    context.shadowOffsetY = 3 * devicePixelRatio;
+    context.fillStyle = style.getPropertyValue("--paper");
+    context.fillRect(left, top, width, height);
+    context.restore();
+    this.drawTiles(context, this.view, canvas.width, canvas.height);
+    for (const layer of this.layers) {
+      context.save();
+      layer(context, this);
+      context.restore();
+    }
+    this.drawRuler(style);
+  }
+
+  // Also for the inset, which has a view of its own.
+  drawTiles(context, view, width, height) {
+    const level = Math.min(Math.max(0, Math.floor(-Math.log2(view.scale) + 0.25)), this.picture.levels - 1);
+    const size = this.tile * 2 ** level;
+    const first = [Math.max(0, Math.floor(view.x / size)), Math.max(0, Math.floor(view.y / size))];
+    const last = [
+      Math.min(Math.ceil(this.picture.columns / size), Math.ceil((view.x + width / view.scale) / size)),
+      Math.min(Math.ceil(this.picture.rows / size), Math.ceil((view.y + height / view.scale) / size)),
+    ];
+    context.imageSmoothingEnabled = view.scale < 3;
+    for (const kind of this.picture.has_lines ? ["sheet", "lines"] : ["sheet"]) {
+      context.globalAlpha = kind === "lines" ? this.strength : 1;
+      for (let row = first[1]; row < last[1]; row++)
+        for (let column = first[0]; column < last[0]; column++)
+          this.drawTile(context, view, kind, level, column, row);
+    }
+    context.globalAlpha = 1;
+  }
+
+  drawTile(context, view, kind, level, column, row) {
+    const tile = this.tileOf(kind, level, column, row);
+    if (tile.image) {
+      this.place(context, view, kind, tile, level, column, row, 0, 0, tile.image.width, tile.image.height);
+      return;
+    }
+    // until it is there: the part of a coarser one that is
+    for (let up = 1; level + up < this.picture.levels; up++) {
+      const coarse = this.tiles.get(`${kind} ${level + up} ${column >> up} ${row >> up}`);
+      if (!coarse?.image) continue;
+      const part = this.tile / 2 ** up;
+      const [sx, sy] = [(column % 2 ** up) * part, (row % 2 ** up) * part];
+      const w = Math.min(part, coarse.image.width - sx), h = Math.min(part, coarse.image.height - sy);
+      if (w > 0 && h > 0) this.place(context, view, kind, coarse, level, column, row, sx, sy, w, h, 2 ** up);
+      return;
+    }
+  }
+
+  place(context, view, kind, tile, level, column, row, sx, sy, w, h, times = 1) {
+    const size = this.tile * 2 ** level, unit = 2 ** level * times;
+    const x = Math.floor((column * size - view.x) * view.scale), y = Math.floor((row * size - view.y) * view.scale);
+    const right = Math.floor((column * size + w * unit - view.x) * view.scale);
+    const bottom = Math.floor((row * size + h * unit - view.y) * view.scale);
+    const image = kind === "lines" ? this.painted(tile) : tile.image;
+    context.drawImage(image, sx, sy, w, h, x, y, right - x, bottom - y);
+  }
+
+  tileOf(kind, level, column, row) {
+    const key = `${kind} ${level} ${column} ${row}`;
+    let tile = this.tiles.get(key);
+    if (tile) {
+      this.tiles.delete(key); // the newest stands last
+      this.tiles.set(key, tile);
+      return tile;
+    }
+    tile = { image: null, numbers: null, painted: null };
+    this.tiles.set(key, tile);
+    if (this.tiles.size > MOST_TILES) this.tiles.delete(this.tiles.keys().next().value);
+    this.load(tile, `/tile/${this.picture.id}/${kind}/${level}/${column}/${row}`, kind);
+    return tile;
+  }
+
+  async load(tile, address, kind) {
+    const answer = await fetch(address).catch(() => null);
+    if (!answer?.ok) return;
+    const options = { premultiplyAlpha: "none", colorSpaceConversion: "none" };
+    const image = await createImageBitmap(await answer.blob(), options);
+    if (kind === "lines") {
+      const canvas = new OffscreenCanvas(image.width, image.height);
+      const context = canvas.getContext("2d", { willReadFrequently: true });
+      context.drawImage(image, 0, 0);
+      tile.numbers = context.getImageData(0, 0, image.width, image.height);
+    }
+    tile.image = image;
+    this.ask();
+  }
+
+  // A tile of lines in colours: chosen lines full, the others pale, what has no number grey.
+  painted(tile) {
+    if (tile.painted) return tile.painted;
+    const { width, height, data } = tile.numbers;
+    const made = new ImageData(width, height);
+    const colours = new Map();
+    for (let i = 0; i < data.length; i += 4) {
+      if (!data[i + 3]) continue;
+      const number = data[i] + 256 * data[i + 1];
+      let rgba = colours.get(number);
+      if (!rgba) colours.set(number, (rgba = this.rgba(number)));
+      made.data.set(rgba, i);
+    }
+    const canvas = new OffscreenCanvas(width, height);
+    canvas.getContext("2d").putImageData(made, 0, 0);
+    return (tile.painted = canvas);
+  }
+
+  rgba(number) {
+    if (number === LEFT_OUT) return [150, 150, 150, 170];
+    if (number === LETTERING) return [200, 160, 20, 170];
+    const colour = parseInt(colourOf(number).slice(1), 16);
+    return [colour >> 16, (colour >> 8) & 255, colour & 255, this.chosen(number) ? 235 : 90];
+  }
+
+  // The number of the line nearest to a place on the screen, within so many of its pixels; 0 for none.
+  numberAt(x, y, within = 7 * devicePixelRatio) {
+    if (!this.picture?.has_lines) return 0;
+    const level = Math.min(Math.max(0, Math.floor(-Math.log2(this.view.scale) + 0.25)), this.picture.levels - 1);
+    const unit = 2 ** level, [px, py] = this.fromScreen(x, y).map((v) => v / unit);
+    const reach = Math.max(1, Math.ceil(within / this.view.scale / unit));
+    let best = 0, near = Infinity;
+    for (let dy = -reach; dy <= reach; dy++)
+      for (let dx = -reach; dx <= reach; dx++) {
+        const far = dx * dx + dy * dy;
+        if (far >= near) continue;
+        const number = this.numberOf(level, Math.floor(px + dx), Math.floor(py + dy));
+        if (number && number < LETTERING) [best, near] = [number, far];
+      }
+    return best;
+  }
+
+  numberOf(level, x, y) {
+    if (x < 0 || y < 0) return 0;
+    const numbers = this.tiles.get(`lines ${level} ${Math.floor(x / this.tile)} ${Math.floor(y / this.tile)}`)?.numbers;
+    const [u, v] = [x % this.tile, y % this.tile];
+    if (!numbers || u >= numbers.width || v >= numbers.height) return 0;
+    const i = 4 * (v * numbers.width + u);
+    return numbers.data[i + 3] ? numbers.data[i] + 256 * numbers.data[i + 1] : 0;
+  }
+
+  drawRuler(style) {
+    const { context, canvas } = this, ratio = devicePixelRatio;
+    const perUnit = this.view.scale / (this.pitch ?? 1); // screen pixels to a mm, or to a pixel of the picture
+    const step = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000].find((s) => s * perUnit > 7 * ratio) ?? 1000;
+    const height = 20 * ratio;
+    context.fillStyle = style.getPropertyValue("--ruler");
+    context.fillRect(0, 0, canvas.width, height);
+    context.fillStyle = context.strokeStyle = style.getPropertyValue("--soft");
+    context.font = `${10 * ratio}px system-ui, sans-serif`;
+    context.lineWidth = ratio;
+    context.beginPath();
+    const first = Math.ceil((this.view.x * (this.pitch ?? 1)) / step);
+    for (let k = first; ; k++) {
+      const x = Math.round(k * step * perUnit - this.view.x * this.view.scale) + 0.5;
+      if (x > canvas.width) break;
+      const major = k % 10 === 0, half = k % 5 === 0;
+      context.moveTo(x, height);
+      context.lineTo(x, height - (major ? 9 : half ? 6 : 3) * ratio);
+      if (major) context.fillText(`${+(k * step).toFixed(1)}${k === 0 ? (this.pitch ? " mm" : " px") : ""}`, x + 3 * ratio, 11 * ratio);
+    }
+    context.stroke();
+  }
+
+  listen() {
+    const { canvas } = this, held = new Map();
+    const at = (event) => {
+      const box = canvas.getBoundingClientRect();
+      return [(event.clientX - box.left) * devicePixelRatio, (event.clientY - box.top) * devicePixelRatio];
+    };
+    let far = 0;
+    canvas.addEventListener("wheel", (event) => {
+      event.preventDefault();
+      this.zoom(Math.exp(-event.deltaY * (event.ctrlKey ? 0.01 : 0.0015)), ...at(event));
+    }, { passive: false });
+    canvas.addEventListener("pointerdown", (event) => {
+      canvas.setPointerCapture(event.pointerId);
+      held.set(event.pointerId, at(event));
+      far = 0;
+      if (held.size === 1) this.tool?.down?.(...at(event));
+    });
+    canvas.addEventListener("pointermove", (event) => {
+      const now = at(event), before = held.get(event.pointerId);
+      if (!before) return this.onHover?.(...now);
+      if (held.size === 2) {
+        const other = [...held].find(([id]) => id !== event.pointerId)[1];
+        const apart = (p) => Math.hypot(p[0] - other[0], p[1] - other[1]);
+        this.zoom(apart(now) / Math.max(apart(before), 1), ...other);
+      } else {
+        far += Math.hypot(now[0] - before[0], now[1] - before[1]);
+        if (!this.tool?.move?.(...now)) this.pan(now[0] - before[0], now[1] - before[1]);
+      }
+      held.set(event.pointerId, now);
+    });
+    const up = (event) => {
+      const last = held.get(event.pointerId);
+      held.delete(event.pointerId);
+      if (!last || held.size) return;
+      if (far < 5 * devicePixelRatio) this.tool?.click?.(...last);
+      this.tool?.up?.(...last);
+    };
+    canvas.addEventListener("pointerup", up);
+    canvas.addEventListener("pointercancel", (event) => held.delete(event.pointerId));
+    canvas.addEventListener("pointerleave", () => this.onHover?.(-1, -1));
+    canvas.addEventListener("keydown", (event) => {
+      const far = 60 * devicePixelRatio;
+      const keys = {
+        ArrowLeft: () => this.pan(far, 0), ArrowRight: () => this.pan(-far, 0),
+        ArrowUp: () => this.pan(0, far), ArrowDown: () => this.pan(0, -far),
+        "+": () => this.zoom(1.4), "=": () => this.zoom(1.4), "-": () => this.zoom(1 / 1.4), 0: () => this.all(),
+      };
+      if (event.ctrlKey || event.metaKey || !keys[event.key]) return;
+      event.preventDefault();
+      keys[event.key]();
+    });
+  }
+}

@@ -1,0 +1,223 @@
+"""The bench: steps on disk, undo and redo, pages that contradict each other, pages that stop reading."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from typing import Any
+
+import pytest
+from starlette.testclient import TestClient
+
+from morfax.console.verbs.panel import _command_line
+from morfax.motion.faults import FileFault
+from morfax.panel.app import _Pages
+from morfax.panel.bench import Bench
+from morfax.panel.history import History, Step
+from tests.panel.conftest import ORIGIN, Idle
+
+
+def does(page: TestClient, bench: Bench, **action: Any) -> str:
+    """Do an action as a page that has seen the newest state; the refusal, or nothing."""
+    answer = page.post("/do", json={"seen": bench.history.revision, **action}, headers=ORIGIN)
+    return str(answer.json().get("refused") or "")
+
+
+def command(page: TestClient) -> str:
+    """The command that the page shows for a run."""
+    text: str = page.get("/state").json()["state"]["commands"]["run"]
+    return text
+
+
+def test_each_setting_is_in_the_command_that_is_shown(page: TestClient, bench: Bench) -> None:
+    assert not does(page, bench, do="set", option="--cutter", value="3mm")
+    assert not does(page, bench, do="set", option="--side", value="inside")
+    assert not does(page, bench, do="set", option="--climb", value=True)
+    assert "--cutter 3mm --side inside --climb" in command(page)
+    assert not does(page, bench, do="set", option="--climb", value=None)
+    assert "--climb" not in command(page)
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "said"),
+    [
+        ("--cutter", "3 apples", "3 apples"),
+        ("--cutter", "900mm", "0.05mm to 500mm"),
+        ("--depth", "-1mm", "five decades"),
+        ("--lines", "1,x", "names no lines"),
+        ("--start", "40", "40"),
+        ("--machine", "../../etc/passwd", "may be"),
+        ("--machine", "/tmp/my.toml", "may be"),
+        ("--card", "card.toml", "no option"),
+        ("--settings", "/etc/passwd", "no option"),
+        ("-o", "/tmp/x.wav", "no option"),
+        ("--print-settings", True, "no option"),
+        ("--edge", "yes", "cannot be"),
+        ("--cutter", "--help", "--help"),
+        ("--cutter", 3, "cannot be"),
+        ("--cutter", "3" * 300, "cannot be"),
+    ],
+)
+def test_nonsense_is_refused_as_a_terminal_refuses_it(
+    page: TestClient, bench: Bench, option: str, value: Any, said: str
+) -> None:
+    before = bench.history.now
+    assert said in does(page, bench, do="set", option=option, value=value)
+    assert bench.history.now == before
+
+
+@pytest.mark.parametrize(
+    "action",
+    [
+        {},
+        {"do": "fly"},
+        {"do": ["run"]},
+        {"do": "open", "drawing": "/etc/passwd"},
+        {"do": "save", "as": "../x.wav"},
+        {"do": "pace", "times": 1e9},
+        {"do": "hold"},
+    ],
+)
+def test_what_cannot_be_done_is_refused_in_words(
+    page: TestClient, bench: Bench, action: dict[str, Any]
+) -> None:
+    assert does(page, bench, **action)
+    assert page.post("/do", content=b"{" * 200_000, headers=ORIGIN).status_code == 413
+    assert page.post("/do", content=b"[" * 50_000, headers=ORIGIN).status_code == 400
+
+
+def test_undo_and_redo_go_all_the_way(page: TestClient, bench: Bench) -> None:
+    for mm in range(1, 30):
+        does(page, bench, do="set", option="--cutter", value=f"{mm}mm")
+    for mm in range(28, 0, -1):
+        does(page, bench, do="undo")
+        assert bench.history.now.options == {"--cutter": f"{mm}mm"}
+    for _ in range(40):
+        does(page, bench, do="redo")
+    assert bench.history.now.options == {"--cutter": "29mm"} and not bench.history.can_redo
+
+
+def test_of_two_pages_the_one_that_has_not_seen_the_others_change_is_refused(
+    page: TestClient, bench: Bench
+) -> None:
+    seen = bench.history.revision
+    first = page.post(
+        "/do",
+        json={"do": "set", "option": "--cutter", "value": "3mm", "seen": seen},
+        headers=ORIGIN,
+    )
+    second = page.post(
+        "/do",
+        json={"do": "set", "option": "--cutter", "value": "6mm", "seen": seen},
+        headers=ORIGIN,
+    )
+    assert first.status_code == 200 and second.status_code == 409
+    assert "another page" in second.json()["refused"]
+    assert bench.history.now.options == {"--cutter": "3mm"}
+
+
+def test_the_state_comes_back_after_the_server_was_killed(
+    page: TestClient, bench: Bench
+) -> None:
+    does(page, bench, do="set", option="--cutter", value="3mm")
+    again = Bench(bench.folder, bench.sources, _command_line(), Idle)  # nothing was closed
+    assert again.history.now == bench.history.now and again.history.can_undo
+    assert again.history.revision == bench.history.revision
+
+
+def test_a_run_that_was_cut_off_begins_anew(page: TestClient, bench: Bench) -> None:
+    bench.sheet = {"figures": {}}
+    assert not does(page, bench, do="run")
+    assert "a run is under way" in does(page, bench, do="run")
+    again = Bench(bench.folder, bench.sources, _command_line(), Idle)
+
+    async def begins() -> None:
+        await again.begin()
+        await asyncio.sleep(0.01)
+
+    asyncio.run(begins())
+    kinds = [message[2] for message in again.workshop.sent if message[0] == "job"]  # type: ignore[attr-defined]
+    assert kinds == ["lines", "run"]
+
+
+def test_a_file_that_holds_no_state_is_refused_and_left_alone(tmp_path: Any) -> None:
+    file = tmp_path / "state.json"
+    for text in (
+        "",
+        "{}",
+        '{"version": 1}',
+        '{"version": 99, "at": 0, "revision": 0, "running": false, "steps": []}',
+    ):
+        file.write_text(text)
+        with pytest.raises(FileFault, match="no state of the panel"):
+            History(file)
+        assert file.read_text() == text
+
+
+def test_a_step_is_whole_on_disk(tmp_path: Any) -> None:
+    history = History(tmp_path / "state.json")
+    history.add(Step("a.png", {"--width": "120mm"}))
+    kept = json.loads((tmp_path / "state.json").read_text())
+    assert kept["steps"][kept["at"]] == {"drawing": "a.png", "options": {"--width": "120mm"}}
+    assert [file.name for file in tmp_path.iterdir()] == ["state.json"]
+
+
+class Socket:
+    """A page's end of the stream; one that has stopped reading never takes the first frame off."""
+
+    def __init__(self, reads: bool) -> None:
+        self.reads, self.frames, self.waiting = reads, list[dict[str, Any]](), 0
+
+    async def send_text(self, text: str) -> None:
+        self.waiting += 1
+        if not self.reads:
+            await asyncio.Event().wait()
+        self.waiting -= 1
+        self.frames.append(json.loads(text))
+
+
+def test_a_page_that_stops_reading_holds_nothing_up_and_gathers_nothing(bench: Bench) -> None:
+    quick, stuck = Socket(True), Socket(False)
+
+    async def runs() -> None:
+        pages = _Pages(bench)
+        tasks = [
+            asyncio.create_task(pages._tell(socket, bench.look_on()))
+            for socket in (quick, stuck)
+        ]
+        for k in range(200):
+            fresh = [[k + i / 10, 0.0] for i in range(10)]
+            bench.heard(
+                {"say": "head", "fresh": fresh, "head": {}, "words": "following", "run": 1}
+            )
+            await asyncio.sleep(0.001)
+        await asyncio.sleep(0.1)
+        for task in tasks:
+            task.cancel()
+
+    asyncio.run(runs())
+    come = [place for frame in quick.frames for place in frame["head"]["fresh"]]
+    assert len(come) == 2000 and come[-1] == [199.9, 0.0]  # nothing left out, nothing twice
+    assert len(quick.frames) < 40  # 0.3 s at 30 a second, not one for each of the 200
+    assert stuck.waiting == 1 and not stuck.frames  # one frame, however long it waits
+
+
+def test_a_page_that_comes_later_gets_the_whole_path(bench: Bench) -> None:
+    bench.heard(
+        {"say": "head", "fresh": ["down", [0, 0], [1, 0]], "head": {}, "words": "", "run": 1}
+    )
+    assert bench.path.since(-1, 0)["fresh"] == ["down", [0, 0], [1, 0]]
+    assert bench.path.since(bench.path.life, 2)["fresh"] == [[1, 0]]
+
+
+def test_the_path_of_a_long_run_has_a_bound(
+    monkeypatch: pytest.MonkeyPatch, bench: Bench
+) -> None:
+    monkeypatch.setattr("morfax.panel.head_path.MOST", 1000)
+    for k in range(500):
+        bench.path.add(
+            {"fresh": [[k, i] for i in range(20)], "head": {}, "words": "", "run": 1}
+        )
+    assert (
+        len(bench.path.places) <= 1020 and bench.path.places[-1] == [499, 19]
+    ) or bench.path.places[-1] == [499, 18]

@@ -1,0 +1,242 @@
+"""The whole way in a browser: open, scale, choose, run, save; reload, kill, a second page; and what a screen
+reader needs.
+
+Chromium is Debian's (or the one that MORFAX_CHROMIUM names); without it these tests are left out. axe-core
+comes from npm: `.ci/run` fetches it, and MORFAX_AXE names its axe.min.js.
+"""
+
+from __future__ import annotations
+
+import os
+import shlex
+import shutil
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+CHROMIUM = os.environ.get("MORFAX_CHROMIUM") or shutil.which("chromium")
+AXE = os.environ.get("MORFAX_AXE")
+if CHROMIUM is None:
+    pytest.skip(
+        "no chromium: install Debian's, or name one with MORFAX_CHROMIUM",
+        allow_module_level=True,
+    )
+
+ROOT = Path(__file__).parents[2]
+RUN_MS = 150_000  # a run, where the kernels are compiled first
+
+
+class Server:
+    """`morfax panel` in a folder of its own."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        folder.mkdir(exist_ok=True)
+        shutil.copy(ROOT / "samples" / "bracket.png", folder)
+        self.start()
+
+    def start(self) -> None:
+        """Start the server, and take its address."""
+        words = [sys.executable, "-m", "morfax", "panel", "bracket.png", "--no-browser"]
+        environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+        self.process = subprocess.Popen(
+            words, cwd=self.folder, env=environment, stdout=subprocess.PIPE, text=True
+        )
+        assert self.process.stdout is not None
+        self.url = self.process.stdout.readline().strip()
+
+    def end(self, how: int = signal.SIGINT) -> None:
+        """End the server."""
+        self.process.send_signal(how)
+        self.process.wait(20)
+        assert self.process.stdout is not None
+        self.process.stdout.close()
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    """One server for all."""
+    server = Server(tmp_path_factory.mktemp("panel") / "page")
+    yield server
+    server.end()
+
+
+@pytest.fixture(scope="module")
+def chromium() -> Iterator[Any]:
+    """One browser for all."""
+    with api.sync_playwright() as playwright:
+        sandbox = ["--no-sandbox"] if hasattr(os, "getuid") and os.getuid() == 0 else []
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=sandbox)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture
+def page(server: Server, chromium: Any) -> Iterator[Any]:
+    """The page, opened by its address; what it complains of is a failure."""
+    page = chromium.new_page(viewport={"width": 1280, "height": 800})
+    complaints = list[str]()
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.on(
+        "console", lambda said: complaints.append(said.text) if said.type == "error" else None
+    )
+    opened(page, server)
+    yield page
+    page.close()
+    assert not [
+        text
+        for text in complaints
+        if "ERR_CONNECTION_REFUSED" not in text and "409" not in text
+    ]
+
+
+def opened(page: Any, server: Server) -> None:
+    """Open the page, and wait until the lines are there."""
+    page.goto(server.url)
+    page.wait_for_selector("#lines li", timeout=RUN_MS)
+
+
+def morfax(folder: Path, typed: str) -> None:
+    """Run a command as the page shows it."""
+    words = shlex.split(typed)
+    assert words.pop(0) == "morfax"
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    subprocess.run(
+        [sys.executable, "-m", "morfax", *words, "-q"],
+        cwd=folder,
+        env=environment,
+        check=True,
+        stdout=subprocess.DEVNULL,
+    )
+
+
+def ran(page: Any) -> None:
+    """Wait until a run is done."""
+    page.wait_for_selector("#run-button:not([disabled])", timeout=RUN_MS)
+    page.wait_for_selector("#result-card:not([hidden])", timeout=RUN_MS)
+
+
+def test_what_the_page_saves_is_byte_for_byte_what_its_commands_write(
+    server: Server, page: Any, tmp_path: Path
+) -> None:
+    # 1. scale, lines, machine, cutter
+    page.fill("#field--width", "80mm")
+    page.press("#field--width", "Enter")
+    page.wait_for_selector("text=80.0 ×")
+    page.click("#which >> text=Contours")
+    page.select_option("#field--machine", "grbl-router")
+    page.fill("#field--cutter", "3 apples")
+    page.press("#field--cutter", "Enter")
+    page.wait_for_selector("#field--cutter-refused:has-text('apples')")
+    page.fill("#field--cutter", "2mm")
+    page.press("#field--cutter", "Enter")
+    page.wait_for_selector("#command:has-text('--cutter 2mm')")
+    # 2. run and save
+    page.click("#run-button")
+    page.wait_for_selector("#stop:not([disabled])")
+    ran(page)
+    page.click("[data-save='.dxf']")
+    page.wait_for_selector("#files a >> text=bracket.dxf", timeout=RUN_MS)
+    typed = list[str]()
+    for kind in ("run", ".dxf"):
+        page.select_option("#command-kind", kind)
+        typed.append(page.inner_text("#command"))
+    # 3. the same commands, typed
+    shutil.copy(server.folder / "bracket.png", tmp_path)
+    for command in typed:
+        morfax(tmp_path, command)
+    written = {file.name: file.read_bytes() for file in (tmp_path / "bracket.panel").iterdir()}
+    assert {
+        "bracket.dxf",
+        "bracket.traced.csv",
+        "bracket.played.csv",
+        "bracket.png",
+    } < written.keys()
+    for name, content in written.items():
+        assert (server.folder / "bracket.panel" / name).read_bytes() == content, name
+        # and what the browser downloads
+        with page.expect_download() as download:
+            page.click(f"#files a >> text='{name}'")
+        assert Path(download.value.path()).read_bytes() == content
+
+
+def test_a_reload_a_second_page_and_a_killed_server_lose_nothing(
+    server: Server, page: Any, chromium: Any
+) -> None:
+    page.select_option("#pace", "1")
+    page.click("#run-button")
+    page.wait_for_selector("#words:has-text('the head is')", timeout=RUN_MS)
+    page.click("#hold")
+    page.wait_for_selector("#words:has-text('held')")
+    # 1. a reload in mid run, and a second page
+    page.reload()
+    page.wait_for_selector("#words:has-text('held')")
+    second = chromium.new_page()
+    opened(second, server)
+    second.wait_for_selector("#words:has-text('held')")
+    assert second.input_value("#field--cutter") == page.input_value("#field--cutter")
+    # 2. the server killed in mid run: it is started again, and so is the run
+    command = page.inner_text("#command")
+    server.end(signal.SIGKILL)
+    server.start()
+    opened(second, server)
+    second.wait_for_selector("#stop:not([disabled])", timeout=RUN_MS)
+    second.select_option("#command-kind", "run")
+    assert second.inner_text("#command") == command
+    ran(second)
+    assert "begun anew" in second.inner_text("#messages")
+    second.close()
+
+
+@pytest.mark.skipif(AXE is None, reason="no axe-core: MORFAX_AXE names its axe.min.js")
+@pytest.mark.parametrize("theme", ["light", "dark"])
+@pytest.mark.parametrize("width", [1280, 390])
+def test_axe_finds_no_serious_fault(page: Any, theme: str, width: int) -> None:
+    assert AXE is not None
+    page.set_viewport_size({"width": width, "height": 800})
+    if page.get_attribute("html", "data-theme") != theme:
+        page.click("#theme")
+    for summary in page.query_selector_all("details:not([open]) > summary"):
+        summary.click()
+    page.evaluate(Path(AXE).read_text(encoding="utf-8"))
+    found = page.evaluate("axe.run()")
+    serious = [
+        (v["id"], v["nodes"][0]["html"][:90])
+        for v in found["violations"]
+        if v["impact"] in ("serious", "critical")
+    ]
+    assert not serious
+
+
+def test_the_keyboard_reaches_everything_and_runs_the_panel(page: Any) -> None:
+    page.evaluate("document.activeElement.blur()")
+    reached = set[str]()
+    for _ in range(90):
+        page.keyboard.press("Tab")
+        reached.add(
+            page.evaluate(
+                "document.activeElement.id || document.activeElement.dataset.tool || ''"
+            )
+        )
+    assert {
+        "sheet",
+        "undo",
+        "sources",
+        "upload",
+        "field--width",
+        "field--machine",
+        "run-button",
+        "copy",
+        "measure",
+    } <= reached
+    page.focus("#sheet")
+    page.keyboard.press("m")
+    assert page.get_attribute("[data-tool=measure]", "aria-pressed") == "true"
+    page.keyboard.press("v")
+    page.keyboard.press("+")
