@@ -18,7 +18,17 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-ROOMS = ("motion", "tracer", "recorder", "player", "jobs", "reports", "panel", "console", "samples")
+ROOMS = (
+    "motion",
+    "tracer",
+    "recorder",
+    "player",
+    "jobs",
+    "reports",
+    "panel",
+    "console",
+    "samples",
+)
 # of a checkout, what makes the wheel; the links in morfax/ are copied as links
 SOURCES = ("morfax", *ROOMS, "pyproject.toml", "README.md", "LICENSE")
 
