@@ -23,7 +23,7 @@ from pathlib import Path
 from morfax.console.cli import main as morfax
 
 RECIPES = Path(__file__).parents[1] / "recipes"
-FIRST, LAST = 10, 6  # lines of a program that a page shows
+FIRST, LAST = 13, 6  # lines of a program that a page shows
 LEFT_OUT = "…"
 COMMAND = re.compile(r"^ +(morfax (?:.*\\\n)*.*)$", re.MULTILINE)
 EXCERPT = re.compile(r'```text title="([\w.-]+)"\n(.*?)```', re.DOTALL)

@@ -7,10 +7,12 @@ program of lines, the pen down on the paper at Z 0, up at 2 mm above it.
     PU PD           pen up, pen down, and on to places if there are some
     PA PR           places, or distances from the place before
     AA AR CI        arcs about a place, by degrees, and circles about the pen: as chords within 1 um
+    IP SC           units of the user's own: SC names the places that two plotter places of IP have then
 
-Source: Hewlett-Packard, HP-GL reference. Questions: the file says nowhere that it is whole; one that does not
-end with the pen up is taken for cut short. Without VS the pen runs at 10 cm/s. Units of the user's own (SC),
-words (LB) and coded lines (PE) are refused; other programs can turn them into lines.
+Source: Hewlett-Packard, HP-GL and HP-GL/2 references. Questions: the file says nowhere that it is whole; one
+that does not end with the pen up is taken for cut short. Without VS the pen runs at 10 cm/s. SC without IP
+hangs on the paper that is loaded, and is refused, as are words (LB) and coded lines (PE); other programs can
+turn them into lines.
 """
 
 from __future__ import annotations
@@ -37,7 +39,9 @@ _COMMAND = re.compile(r"([A-Z]{2})\s*([-+\d.,\s]*)")
 _ESCAPES = re.compile(r"\x1b(?:\.[@-Z()](?:[-\d;]*:)?|[^A-Za-z@]*[A-Za-z@])")
 _PASSED = ("IN", "SP", "FS", "DF", "LT", "PT", "PW", "AS")
 _PLACES, _ARCS = ("PU", "PD", "PA", "PR"), ("AA", "AR")
-_READ = "IN SP VS FS PU PD PA PR AA AR CI"
+_READ = "IN SP VS FS PU PD PA PR AA AR CI IP SC"
+PLOTTER_MM = 0.025  # the unit of IP, and of all places without SC
+SQUARE = 1e-6  # share by which units in X and Y may differ: what whole numbers of IP leave
 
 
 def read_hpgl(file: str | os.PathLike[str], machine: Machine) -> Program:
@@ -60,7 +64,9 @@ class _Pen:
     """Where the pen is, and its moves so far."""
 
     def __init__(self, name: str, machine: Machine) -> None:
-        self.name, self.step_mm = name, machine.step_mm
+        self.name, self.machine_step_mm = name, machine.step_mm
+        self.step_mm, self.zero_mm = machine.step_mm, (0.0, 0.0)
+        self.corners: list[float] | None = None  # of IP, in plotter units
         self.moves: list[Move] = []
         self.is_down, self.feed_mm_s = False, 10 * USUAL_CM_S
         self.place, self.by_steps = (0.0, 0.0), False
@@ -68,7 +74,7 @@ class _Pen:
     def obey(self, number: int, command: str) -> None:
         """Carry out a command; raises ProgramFault for one that is not read."""
         found = _COMMAND.fullmatch(command)
-        if not found or found[1] not in ("VS", "CI", *_PLACES, *_ARCS, *_PASSED):
+        if not found or found[1] not in ("VS", "CI", "IP", "SC", *_PLACES, *_ARCS, *_PASSED):
             raise ProgramFault(
                 f"{self.name}, line {number}: {command[:20]!r} is not played; this control reads {_READ}",
                 line=number,
@@ -77,7 +83,12 @@ class _Pen:
         if code == "VS" and values:
             self.feed_mm_s = 10 * values[0]
         if code in ("IN", "DF"):
-            self.by_steps = False
+            self.by_steps, self.corners = False, None
+            self._scale(number, [])
+        if code == "IP":
+            self.corners = values
+        if code == "SC":
+            self._scale(number, values)
         if code in _PLACES:
             self._row(number, code, values)
         if code in _ARCS:
@@ -87,7 +98,9 @@ class _Pen:
 
     def _values(self, number: int, code: str, text: str) -> list[float]:
         """The numbers of a command; raises ProgramFault for half a place, or half an arc."""
-        wanted = {"CI": (1, 2), "AA": (3, 4), "AR": (3, 4)}.get(code)
+        wanted = {"CI": (1, 2), "AA": (3, 4), "AR": (3, 4), "IP": (4,), "SC": (4, 0, 5)}.get(
+            code
+        )
         try:
             values = [float(part) for part in re.split(r"[,\s]+", text.strip()) if part]
         except ValueError:
@@ -101,6 +114,35 @@ class _Pen:
             )
         return values
 
+    def _scale(self, number: int, values: list[float]) -> None:
+        """Take units of the user's own, or the machine's again without values."""
+        if not values:
+            self.step_mm, self.zero_mm = self.machine_step_mm, (0.0, 0.0)
+            return
+        if self.corners is None:
+            raise ProgramFault(
+                f"{self.name}, line {number}: SC without IP: its units hang on the paper in the plotter;"
+                " have the program written in plotter units",
+                line=number,
+            )
+        left, low, right, high = (PLOTTER_MM * unit for unit in self.corners)
+        from_x, to_x, from_y, to_y = values[:4]
+        steps_mm = [
+            wide_mm / count if count else 0.0
+            for wide_mm, count in ((right - left, to_x - from_x), (high - low, to_y - from_y))
+        ]
+        if (
+            steps_mm[0] <= 0
+            or abs(steps_mm[1] / steps_mm[0] - 1) > SQUARE
+            or values[4:] not in ([], [0.0], [1.0])
+        ):
+            raise ProgramFault(
+                f"{self.name}, line {number}: SC has no one unit in X and Y; have it written in square units",
+                line=number,
+            )
+        self.step_mm = steps_mm[0]
+        self.zero_mm = left - from_x * self.step_mm, low - from_y * self.step_mm
+
     def _row(self, number: int, code: str, values: list[float]) -> None:
         """To places, by the pen that is up or down."""
         if code in ("PU", "PD"):
@@ -108,14 +150,17 @@ class _Pen:
         else:
             self.by_steps = code == "PR"
         for x, y in zip(values[::2], values[1::2], strict=True):
-            from_x, from_y = self.place if self.by_steps else (0.0, 0.0)
+            from_x, from_y = self.place if self.by_steps else self.zero_mm
             self._to(number, (from_x + x * self.step_mm, from_y + y * self.step_mm))
 
     def _arc(self, number: int, values: list[float], *, about_pen: bool) -> None:
         """Along an arc about a centre, by degrees, in two halves: a whole turn has no chord."""
         x_mm, y_mm = (value * self.step_mm for value in values[:2])
-        centre = complex(x_mm, y_mm) + (complex(*self.place) if about_pen else 0)
-        half_rad = math.radians(values[2]) / 2
+        centre = complex(x_mm, y_mm) + complex(*(self.place if about_pen else self.zero_mm))
+        self._turn(number, centre, math.radians(values[2]) / 2)
+
+    def _turn(self, number: int, centre: complex, half_rad: float) -> None:
+        """Along an arc about a centre, mm, by twice an angle."""
         for _ in range(2):
             begin = complex(*self.place)
             end = centre + (begin - centre) * complex(math.cos(half_rad), math.sin(half_rad))
@@ -131,7 +176,7 @@ class _Pen:
         self._pen(number, down=False)
         self._to(number, (centre[0] + radius_mm, centre[1]))
         self._pen(number, down=True)
-        self._arc(number, [*(value / self.step_mm for value in centre), 360.0], about_pen=False)
+        self._turn(number, complex(*centre), math.pi)
         self._pen(number, down=False)
         self._to(number, centre)
         self._pen(number, down=was_down)

@@ -8,9 +8,11 @@
 Signals: a stream of Motion or a Path in, a file and a report out. Places are whole steps of the machine,
 0.025 mm, arcs are chords within a quarter of a step.
 
-Source: Hewlett-Packard, HP-GL reference (plotter units of 0.025 mm; VS in cm/s, FS from 1 to 8). Questions:
-whole steps put a place off by up to 0.018 mm; places left of or below zero are refused by many plotters, and
-so are told here. A dwell of the card has no word in HP-GL, and is left out.
+Source: Hewlett-Packard, HP-GL reference (plotter units of 0.025 mm; VS in cm/s, FS from 1 to 8); HP-GL/2,
+units of the user's own by IP and SC, with which a machine's file may begin. Questions: whole steps of 0.025
+mm put a place off by up to 0.018 mm, which no tolerance of 0.010 mm holds; with finer steps the lines are
+fitted closer by as much. Places left of or below zero are refused by many plotters, and so are told here. A
+dwell of the card has no word in HP-GL, and is left out.
 """
 
 from __future__ import annotations
@@ -32,7 +34,9 @@ from morfax.recorder.gcode.program_head import Made
 from morfax.recorder.gcode.running_time import running_time_s
 from morfax.recorder.gcode.tooling import without_z
 
-LARGEST_STEP = 32767  # HP-GL's plotter units are numbers of 16 bit
+LARGEST_MM = (
+    32767 * 0.025
+)  # HP-GL's plotter units are numbers of 16 bit; those of HP-GL/2 are longer
 
 
 def record_hpgl(
@@ -52,13 +56,18 @@ def record_hpgl(
     wanted = machine_name if isinstance(machine_name, Machine) else machine(machine_name)
     feed_mm_s = (feeds.cut_mm_s if feeds else None) or 10 * wanted.values.get("speed", 1.0)
     wanted = replace(wanted, feeds=False, panel_feed_mm_s=feed_mm_s)
-    lines, planned = cut_lines_of(stream, Writing(tolerance_mm))
+    off_steps_mm = wanted.step_mm * (
+        0.25 + math.sqrt(0.5)
+    )  # chords, and whole steps in X and Y
+    is_fine = off_steps_mm <= tolerance_mm / 2
+    fit_mm = tolerance_mm - off_steps_mm if is_fine else tolerance_mm
+    lines, planned = cut_lines_of(stream, Writing(fit_mm))
     text = _hpgl(lines, wanted)
     with written_beside(file) as beside:
         beside.write_text(text, encoding="ascii")
     blocks = without_z(planned.start_mm, planned.blocks, wanted)
     seconds = float(running_time_s(planned.start_mm, blocks, wanted))
-    off_mm = planned.deviation_mm + wanted.step_mm * (0.25 + math.sqrt(0.5))
+    off_mm = planned.deviation_mm + off_steps_mm
     closed = sum(line.closed for line in lines)
     return DrawingReport(FilePath(file), len(lines), closed, seconds, off_mm)
 
@@ -72,10 +81,10 @@ def _hpgl(lines: list[CutLine], wanted: Machine) -> str:
             "give --zero lower-left, or, where a cutter's path and leads reach beyond the part, a place X,Y "
             "left of and below all of it; without --zero it is the sheet's corner"
         )
-    if max(right, high) > LARGEST_STEP * step_mm:
+    if max(right, high) > LARGEST_MM:
         raise MotionFault(
             f"what is cut reaches to X {right:.1f}, Y {high:.1f} mm, and a plotter file to "
-            f"{LARGEST_STEP * step_mm:.0f} mm; cut it in parts"
+            f"{LARGEST_MM:.0f} mm; cut it in parts"
         )
     text = list(wanted.begin)
     for line in lines:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -224,3 +225,30 @@ def test_what_was_played_is_recorded_in_another_medium(morfax: Morfax, here: Pat
     for name, most_mm in (("b.dxf", 0.020), ("b.nc", 0.020), ("b.plt", 0.040)):
         assert morfax("compare", name, CAM, "--json").figures["largest_mm"] <= most_mm, name
     assert "must end in" in morfax("play", "a.ngc", "-o", "b.txt").fault
+
+
+PAGE = (Path(__file__).parents[2] / "docs" / "reference" / "machines.md").read_text("utf-8")
+
+
+@pytest.mark.parametrize(
+    ("what", "name", "most_mm"),
+    [
+        # um: what is written is within 10 of the path, in steps of 5 too
+        ("my router", "a.nc", 0.010),
+        ("Grbl with a plasma torch", "a.nc", 0.010),
+        ("HP-GL/2 in steps of 5 um", "a.plt", 0.010),
+    ],
+)
+def test_the_machine_files_of_the_page_write_programs_that_are_read_back(
+    morfax: Morfax, here: Path, what: str, name: str, most_mm: float
+) -> None:
+    blocks = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
+    (text,) = (block for block in blocks if f'what = "{what}"' in block)
+    (here / "mine.toml").write_text(text)
+    assert morfax("record", CAM, "-o", name, "--machine", "mine.toml").exit_code == 0
+    compared = morfax("compare", name, CAM, "--machine", "mine.toml", "--json")
+    assert compared.figures["largest_mm"] <= most_mm
+    if name == "a.plt":  # which says its units itself
+        assert morfax("compare", name, CAM, "--json").figures == compared.figures
+        return
+    assert morfax("check", name, "--machine", "mine.toml").exit_code == 0

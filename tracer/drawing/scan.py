@@ -86,8 +86,10 @@ def page_asked_for(file: Path, page: int | None, pages: int) -> int:
     Raises DrawingFault for a page that the file does not have.
     """
     if page is not None and not 1 <= page <= pages:
-        has = "one page" if pages == 1 else f"pages 1 to {pages}"
-        raise DrawingFault(f"{file} has no page {page}; it has {has}; give --page one of them")
+        has = "it has one page; leave --page out"
+        if pages > 1:
+            has = f"it has pages 1 to {pages}; give --page one of them"
+        raise DrawingFault(f"{file} has no page {page}; {has}")
     return page or 1
 
 

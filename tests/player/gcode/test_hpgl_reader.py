@@ -41,6 +41,18 @@ def test_places_and_distances_with_a_port_s_escapes_and_without_semicolons(
     assert hole.tolist() == [[25, 25]]
 
 
+def test_units_of_the_user_s_own(tmp_path: Path) -> None:
+    """100 mm from 10 mm on are 1000 units of 0.1 mm from -50 on; SC alone takes the plotter's again."""
+    text = (
+        "IN;IP400,400,4400,4400;SC-50,950,-50,950;PU-50,-50;PD950,-50;PR0,100;PU;"
+        "PA450,450;CI100;SC;PU400,0;PD800,0;PU;"
+    )
+    square, circle, line = lines(tmp_path / "a.plt", text)
+    assert square == pytest.approx(np.array([[10, 10], [110, 10], [110, 20]]), abs=ROUNDED)
+    assert off_circle(circle, (60, 60), 10) <= FLAT_MM + ROUNDED
+    assert line.tolist() == [[10, 0], [20, 0]]
+
+
 @pytest.mark.parametrize(("code", "about"), [("AA", (0, 0)), ("AR", (-4000, 0))])
 @pytest.mark.parametrize("turned_deg", [360, -270, 90, 200])
 def test_arcs_are_within_a_micrometre(
@@ -65,7 +77,10 @@ def test_a_circle_is_drawn_about_the_pen_which_comes_back(tmp_path: Path) -> Non
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ("IN;SC0,100,0,100;PU;", "'SC0,100,0,100' is not played"),
+        ("IN;SC0,100,0,100;PU;", "line 1: SC without IP"),
+        ("IN;IP0,0,4000,4000;SC0,100,0,200;PU;", "SC has no one unit in X and Y"),
+        ("IN;IP0,0,4000,4000;SC0,0,0,100;PU;", "SC has no one unit in X and Y"),
+        ("IN;IP0,0,4000;PU;", "is no IP of 4 numbers"),
         ("IN;PE<=abc;PU;", "is not played; this control reads IN SP"),
         ("IN;LBM6\x03;PU;", "is not played"),
         ("IN;AA0,0;PU;", "line 1: '0,0' is no AA of 3 numbers"),
