@@ -21,8 +21,8 @@ EXAMPLES = """\b
 Examples:
   morfax devices
   morfax devices --json
-  morfax devices --test-tone "USB Audio" --for 60s
-  morfax devices --meters "USB Audio" --for 60s
+  morfax devices --test-tone usb --for 60s
+  morfax devices --meters usb --for 60s
 """
 
 

@@ -28,7 +28,7 @@ Examples:
   morfax play cam.wav -o cam.csv -o cam.svg -o cam.png
   morfax play cam.wav --feed-override 120% --motor hydraulic --zero-adjustment 0,0,-0.05
   morfax play found.wav --reference-frequency 6kHz --cycles-per-mm 20 --from 40,62 -o found.csv
-  morfax play --device "USB Audio" --label cam.json -o cam.csv
+  morfax play --device usb --label cam.json -o cam.csv
 """
 
 

@@ -28,7 +28,7 @@ Examples:
   morfax record cam.csv -o cam.wav
   morfax record cam.wav -o cam.steps --fit-tolerance 20um
   morfax record part.dxf -o left-hand.wav --mirror x --pickup photocell
-  morfax record cam.csv --device "USB Audio" --label cam.json
+  morfax record cam.csv --device usb --label cam.json
 """
 
 
