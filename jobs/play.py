@@ -36,9 +36,11 @@ OPTIONS = {
     "norm": "--norm",
     "feed_override": "--feed-override",
     "historic": "--historic",
+    "control": "--control",
 }
 PICTURES = (".png", ".svg", ".pdf")
 CUBIC = ".cubic"
+FOR_PULSES = {"norm", "feed_override", "historic"}
 FOR_TAPES = {"resume_at_s", "acceleration_mm_s2", "motor", "zero_mm"}
 
 
@@ -53,6 +55,7 @@ class ControlSettings:
     motor: str | None = None
     zero_mm: tuple[float, ...] | None = None
     historic: bool = False  # the patent's own pulses, registers and scales
+    control: Literal["herbert"] | None = None  # None: the file's own
 
     def given(self) -> dict[str, Any]:
         """What was set."""
@@ -197,6 +200,14 @@ def _refuse_foreign(tape: FilePath, given: dict[str, Any]) -> None:
         raise WrongUse(f"{_options(given)} is for files, not for a pipe or a device")
     if control != TAPE and not given.keys().isdisjoint(FOR_TAPES):
         raise WrongUse(f"{_options(given.keys() & FOR_TAPES)} is for tapes; {tape} is none")
+    if control != pulses and "control" in given:
+        raise WrongUse(
+            f"--control {given['control']} is for programs of lines and arcs, .ngc; {tape} is none"
+        )
+    if "control" in given and not given.keys().isdisjoint(FOR_PULSES):
+        raise WrongUse(
+            f"{_options(given.keys() & FOR_PULSES)} is for the pulse control; leave --control out"
+        )
     if control != pulses and "norm" in given:
         raise WrongUse(f"--norm is for programs of lines and arcs, .ngc; {tape} is none")
     if control not in (pulses, CONTROLS[CUBIC]) and "historic" in given:

@@ -76,6 +76,15 @@ PULSES = Control(
     "pulse interpolator and pulse servos", "morfax.player.gcode.pulses", "play_pulses"
 )
 
+# controls that somebody asks for, whose files have another of their own
+ASKED_FOR = {
+    "herbert": Control(
+        "position servos and a ramp counter",
+        "morfax.player.gcode.positioning",
+        "play_positions",
+    ),
+}
+
 CONTROLS: dict[str, Control] = {
     ".wav": TAPE,
     ".rf64": TAPE,
@@ -95,12 +104,18 @@ def control_of(file: str | os.PathLike[str]) -> Control:
     return CONTROLS.get(FilePath(file).suffix.lower(), TAPE)
 
 
-def play(file: str | os.PathLike[str] | Callable[[], Source], **by_hand: Any) -> Playback:
-    """Put a program in the machine under its own control; raises TapeFault, ProgramFault, FileFault.
+def play(
+    file: str | os.PathLike[str] | Callable[[], Source],
+    *,
+    control: str | None = None,
+    **by_hand: Any,
+) -> Playback:
+    """Put a program in the machine, under its own control or one asked for by name (`ASKED_FOR`).
 
-    `file`: its name; of a tape also what opens its source.
+    `file`: its name; of a tape also what opens its source. Raises TapeFault, ProgramFault, FileFault.
     """
     if callable(file):
         return TAPE.player()(file, **by_hand)
     check_name(file)
-    return control_of(file).player()(file, **by_hand)
+    chosen = control_of(file) if control is None else ASKED_FOR[control]
+    return chosen.player()(file, **by_hand)

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 EXAMPLES = """\b
 Examples:
   morfax play cam.wav -o cam.csv -o cam.svg -o cam.png
-  morfax play cam.wav --feed-override 120% --motor hydraulic --zero-adjustment 0,0,-0.05
+  morfax play cam.ngc --control herbert --following servos.png
   morfax play found.wav --reference-frequency 6kHz --cycles-per-mm 20 --from 40,62 -o found.csv
   morfax play --device usb --label cam.json -o cam.csv
 """
@@ -95,6 +95,13 @@ Examples:
     help="Speed against the program's, along the same path: of a tape 10% to 200%, of an .ngc program "
     "0% to 100%.  "
     "[default: 100%]",
+)
+@option(
+    "Machine",
+    "--control",
+    type=click.Choice(["herbert"]),
+    help="Play an .ngc program on another control: herbert, position servos whose ramps are counted by the "
+    "transducers' increments; each line and arc is run from rest to rest.  [default: the pulse control]",
 )
 @option(
     "Machine",

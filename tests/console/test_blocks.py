@@ -48,6 +48,14 @@ def test_a_program_is_played_in_the_units_of_1967(bracket: Path, morfax: Morfax)
     assert 0.006 < figures["largest_mm"] < 3 * 0.0127
 
 
+def test_a_program_is_played_on_herbert_s_control(bracket: Path, morfax: Morfax) -> None:
+    asked = "play", bracket, "--control", "herbert", "-o", "played.csv"
+    assert morfax(*asked).exit_code == 0
+    figures = morfax("compare", "played.csv", SAMPLES / "bracket.csv", "--json").figures
+    assert figures["largest_mm"] < 0.006  # 2 um of the fit, 3 increments of 1 um
+    assert "leave --control out" in morfax(*asked, "--norm", "true").fault
+
+
 def test_what_is_for_another_control_is_refused(bracket: Path, morfax: Morfax) -> None:
     assert "is for tapes" in morfax("play", bracket, "--acceleration", "3000").fault
     assert (
@@ -59,6 +67,10 @@ def test_what_is_for_another_control_is_refused(bracket: Path, morfax: Morfax) -
     )
     assert (
         "is for programs of lines and arcs" in morfax("play", "bracket.wav", "--historic").fault
+    )
+    assert (
+        "is for programs of lines"
+        in morfax("play", "bracket.wav", "--control", "herbert").fault
     )
     assert "an override of 3 is none" in morfax("play", bracket, "--feed-override", "3").fault
 
