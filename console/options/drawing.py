@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from morfax.console.options.files import FILE
-from morfax.console.options.groups import Decorator, option
+from morfax.console.options.groups import Decorator, given_all, option
 from morfax.console.options.types import BAR, FLATTEN, LENGTH, PIXELS
 from morfax.jobs.correction_settings import CorrectionSettings
 from morfax.jobs.flattening import FlattenSettings
@@ -28,109 +28,6 @@ DRAWN_UNIT = option(
     type=click.Choice(tuple(UNITS_MM)),
     help="Unit of a drawing from CAD (.dxf, .svg).  [default: what the file says]",
 )
-
-
-def drawing_options(argument: str) -> Decorator:
-    """Give a verb the options of a drawing, and hand it the drawing of an argument, or each of several, as a
-    DrawingFile.
-    """
-
-    def with_options(verb: Callable[..., Any]) -> Callable[..., Any]:
-        @option(
-            "Drawing",
-            "--dpi",
-            type=click.FloatRange(min=0, min_open=True),
-            help="Resolution of the drawing, dots per inch; of a PDF's drawn lines: how finely they are "
-            "rendered.  [default: what the file states; 600]",
-        )
-        @option(
-            "Drawing",
-            "--width",
-            "width_mm",
-            type=LENGTH,
-            help="Width of the whole sheet, such as 120mm; instead of --dpi.",
-        )
-        @option(
-            "Drawing",
-            "--known",
-            nargs=3,
-            type=(PIXELS, PIXELS, LENGTH),
-            callback=_known,
-            metavar="X,Y X,Y LENGTH",
-            help="Two places in pixels (columns from the left, rows from the top, as picture viewers show) "
-            "and the length between them, such as 210,305 2572,310 200mm; instead of --dpi.",
-        )
-        @option(
-            "Drawing",
-            "--page",
-            type=click.IntRange(min=1),
-            help="Page of a PDF, of a TIFF of several, or of moving pictures.  [default: the first]",
-        )
-        @option(
-            "Drawing",
-            "--ink",
-            callback=_colour,
-            metavar="COLOUR",
-            help="Colour of the line, such as blue or '#0000c0': other colours, such as a printed grid, "
-            "count "
-            "as paper.  [default: all that is dark]",
-        )
-        @option(
-            "Drawing",
-            "--edge",
-            is_flag=True,
-            help="Filled shapes: the head follows their edges.",
-        )
-        @option(
-            "Drawing",
-            "--flatten",
-            "wanted",
-            type=FLATTEN,
-            metavar="WAY",
-            help="Make a photograph flat and to scale: by the marks of a printed sheet (marks), by the "
-            "edges of the sheet (paper=a4, letter, a3, 148x105mm), or by four places of a rectangle, in "
-            'pixels from the upper left, clockwise ("X,Y X,Y X,Y X,Y=200x100mm"); auto takes marks, else the '
-            "one format that fits.  [default: auto for a picture that a camera made]",
-        )
-        @option(
-            "Drawing",
-            "--bar",
-            "bar_mm",
-            type=BAR,
-            help="Length of the bar on a printed sheet with marks, such as 99.6mm.  [default: 100mm]",
-        )
-        @option(
-            "Drawing",
-            "--corrections",
-            "corrections_file",
-            type=FILE,
-            metavar="FILE",
-            help="Corrections of the drawing (.morfax.toml), see morfax correct.  [default: the drawing's "
-            "name with .morfax.toml beside it, if it is there]",
-        )
-        @option(
-            "Drawing",
-            "--no-corrections",
-            is_flag=True,
-            help="Read the drawing without its corrections.",
-        )
-        @functools.wraps(verb)
-        def with_drawing(*args: Any, **options: Any) -> Any:
-            names = ("dpi", "width_mm", "ink", "edge", "page", "known")
-            how = {name: options.pop(name) for name in names}
-            how["flatten"] = FlattenSettings(options.pop("wanted"), options.pop("bar_mm"))
-            used = not options.pop("no_corrections")
-            how["corrections"] = CorrectionSettings(options.pop("corrections_file"), used)
-            files = options[argument]
-            if isinstance(files, tuple):
-                options[argument] = tuple(DrawingFile(file, **how) for file in files)
-            else:
-                options[argument] = DrawingFile(files, **how)
-            return verb(*args, **options)
-
-        return with_drawing
-
-    return with_options
 
 
 def _known(
@@ -154,3 +51,110 @@ def _colour(ctx: click.Context, param: click.Parameter, value: str | None) -> st
         except ValueError as error:
             raise click.BadParameter(str(error)) from None
     return value
+
+
+_DRAWING = (
+    option(
+        "Drawing",
+        "--dpi",
+        type=click.FloatRange(min=0, min_open=True),
+        help="Resolution of the drawing, dots per inch; of a PDF's drawn lines: how finely they are "
+        "rendered.  [default: what the file states; 600]",
+    ),
+    option(
+        "Drawing",
+        "--width",
+        "width_mm",
+        type=LENGTH,
+        help="Width of the whole sheet, such as 120mm; instead of --dpi.",
+    ),
+    option(
+        "Drawing",
+        "--known",
+        nargs=3,
+        type=(PIXELS, PIXELS, LENGTH),
+        callback=_known,
+        metavar="X,Y X,Y LENGTH",
+        help="Two places in pixels (columns from the left, rows from the top, as picture viewers show) "
+        "and the length between them, such as 210,305 2572,310 200mm; instead of --dpi.",
+    ),
+    option(
+        "Drawing",
+        "--page",
+        type=click.IntRange(min=1),
+        help="Page of a PDF, of a TIFF of several, or of moving pictures.  [default: the first]",
+    ),
+    option(
+        "Drawing",
+        "--ink",
+        callback=_colour,
+        metavar="COLOUR",
+        help="Colour of the line, such as blue or '#0000c0': other colours, such as a printed grid, "
+        "count "
+        "as paper.  [default: all that is dark]",
+    ),
+    option(
+        "Drawing",
+        "--edge",
+        is_flag=True,
+        help="Filled shapes: the head follows their edges.",
+    ),
+    option(
+        "Drawing",
+        "--flatten",
+        "wanted",
+        type=FLATTEN,
+        metavar="WAY",
+        help="Make a photograph flat and to scale: by the marks of a printed sheet (marks), by the "
+        "edges of the sheet (paper=a4, letter, a3, 148x105mm), or by four places of a rectangle, in "
+        'pixels from the upper left, clockwise ("X,Y X,Y X,Y X,Y=200x100mm"); auto takes marks, else the '
+        "one format that fits.  [default: auto for a picture that a camera made]",
+    ),
+    option(
+        "Drawing",
+        "--bar",
+        "bar_mm",
+        type=BAR,
+        help="Length of the bar on a printed sheet with marks, such as 99.6mm.  [default: 100mm]",
+    ),
+    option(
+        "Drawing",
+        "--corrections",
+        "corrections_file",
+        type=FILE,
+        metavar="FILE",
+        help="Corrections of the drawing (.morfax.toml), see morfax correct.  [default: the drawing's "
+        "name with .morfax.toml beside it, if it is there]",
+    ),
+    option(
+        "Drawing",
+        "--no-corrections",
+        is_flag=True,
+        help="Read the drawing without its corrections.",
+    ),
+)
+
+
+def drawing_options(argument: str) -> Decorator:
+    """Give a verb the options of a drawing, and hand it the drawing of an argument, or each of several, as a
+    DrawingFile.
+    """
+
+    def with_options(verb: Callable[..., Any]) -> Callable[..., Any]:
+        @functools.wraps(verb)
+        def with_drawing(*args: Any, **options: Any) -> Any:
+            names = ("dpi", "width_mm", "ink", "edge", "page", "known")
+            how = {name: options.pop(name) for name in names}
+            how["flatten"] = FlattenSettings(options.pop("wanted"), options.pop("bar_mm"))
+            used = not options.pop("no_corrections")
+            how["corrections"] = CorrectionSettings(options.pop("corrections_file"), used)
+            files = options[argument]
+            if isinstance(files, tuple):
+                options[argument] = tuple(DrawingFile(file, **how) for file in files)
+            else:
+                options[argument] = DrawingFile(files, **how)
+            return verb(*args, **options)
+
+        return given_all(_DRAWING, with_drawing)
+
+    return with_options

@@ -70,6 +70,13 @@ def option(group: str, *names: str, **entries: Any) -> Decorator:
     return click.option(*names, cls=GroupedOption, group=group, **entries)
 
 
+def given_all(options: tuple[Decorator, ...], verb: Callable[..., Any]) -> Callable[..., Any]:
+    """A verb with options, in their order."""
+    for one in reversed(options):
+        verb = one(verb)
+    return verb
+
+
 def renamed(old: str, new: str) -> Decorator:
     """Refuse an old spelling of an option, and name the new one."""
 

@@ -12,7 +12,7 @@ import click
 from morfax.console.options.cutting import CUTTING, KERF, contour_settings, kerf_is_cutter
 from morfax.console.options.depths import DEPTHS, depth_settings
 from morfax.console.options.files import FILE
-from morfax.console.options.groups import Decorator, option, renamed
+from morfax.console.options.groups import given_all, option, renamed
 from morfax.console.options.types import (
     CLEARANCE,
     CUTTER,
@@ -241,14 +241,7 @@ def trace_options(verb: Callable[..., Any]) -> Callable[..., Any]:
             _print_settings(settings)
         return verb(*args, settings=settings, panel=attended.panel(asking=ask), **options)
 
-    return _with((*_LINE, *_HEAD, *_TOOL, *CUTTING, *DEPTHS, *_PROGRAM), with_settings)
-
-
-def _with(options: tuple[Decorator, ...], verb: Callable[..., Any]) -> Callable[..., Any]:
-    """A verb with options, in their order."""
-    for one in reversed(options):
-        verb = one(verb)
-    return verb
+    return given_all((*_LINE, *_HEAD, *_TOOL, *CUTTING, *DEPTHS, *_PROGRAM), with_settings)
 
 
 def _settings(options: dict[str, Any]) -> TraceSettings:
