@@ -36,6 +36,7 @@ PANEL_FEED = "#<_hal[plasmac.cut-feed-rate]>"  # rs274 by itself has no panel to
 AS_AT_THE_START = ("M5", "F0", "S0", "M65 P3", "M68 E3 Q0", "G90", "G0 X0 Y0 Z0")
 ENDS = ("M2", "M30")
 READER_S = 300.0  # for all programs together, which take a second or two
+_NUMBER = re.compile(r"^N\d+ ")
 _READING = re.compile(r'COMMENT\("program (\d+)"\)')
 
 
@@ -129,7 +130,9 @@ def refused(programs: Sequence[Written]) -> list[str]:
     """What rs274 says of the programs that are in its language; nothing where it is not installed."""
     if shutil.which("rs274") is None:
         return []
-    left = [each for each in programs if not each.machine.semicolon and each.lines[-1] in ENDS]
+    left = [
+        each for each in programs if not each.machine.semicolon and _words(each)[-1] in ENDS
+    ]
     found = list[str]()
     while left:
         read, words = _rs274(left)
@@ -140,12 +143,18 @@ def refused(programs: Sequence[Written]) -> list[str]:
     return found
 
 
+def _words(program: Written) -> list[str]:
+    """The lines of a program without % and without their numbers."""
+    lines = (_NUMBER.sub("", line) for line in program.lines)
+    return [line.replace(PANEL_FEED, "3000") for line in lines if line != "%"]
+
+
 def _rs274(programs: Sequence[Written]) -> tuple[int, str]:
     """How many programs rs274 takes before the first that it does not, and what it says of that one."""
     lines = list[str]()
     for number, program in enumerate(programs):
         lines.append(f"(program {number})")
-        lines += (line.replace(PANEL_FEED, "3000") for line in program.lines[:-1])
+        lines += _words(program)[:-1]
         lines += AS_AT_THE_START
     with tempfile.TemporaryDirectory() as folder:
         Path(

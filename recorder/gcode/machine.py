@@ -16,7 +16,15 @@ from pathlib import Path as FilePath
 from typing import Any, Literal
 
 from morfax.motion.toml_fields import Field, opened, parsed
-from morfax.recorder.gcode.machine_fields import CONTROL, FIELDS, LINES, filled, strings
+from morfax.recorder.gcode.machine_fields import (
+    CONTROL,
+    FIELDS,
+    LINES,
+    NUMBER_LONG,
+    SHORTEST_LINE,
+    filled,
+    strings,
+)
 from morfax.recorder.gcode.takes import Takes, ToolWords
 
 DEFAULT = "linuxcnc"
@@ -42,6 +50,7 @@ class Machine:
     decimals: int = 4
     dwell_unit_s: float = 1.0
     longest_line: int = 252
+    line_numbers: int = 0  # step from one to the next; 0: none are written
     milling: Literal["climb", "conventional"] | None = None  # direction of closed lines
     feeds: bool = True  # whether the program says F
     rapids_have_feed: bool = False  # whether a rapid bears F
@@ -121,10 +130,15 @@ def _machine(name: str, whole: Field, changed: Mapping[str, float]) -> Machine:
         if key in fields:
             said[key] = tuple(filled(element, values) for element in strings(fields[key]))
     made = Machine(name, **{"what": name, **said})
+    room = made.longest_line - NUMBER_LONG * bool(made.line_numbers)
+    if room < SHORTEST_LINE:
+        fields["line_numbers"].refuse(
+            f"with line numbers longest_line must be {SHORTEST_LINE + NUMBER_LONG} or more"
+        )
     for key in LINES:
         for number, line in enumerate(getattr(made, key), 1):
-            if len(line) > made.longest_line:
+            if len(line) > room:
                 fields[key].refuse(
-                    f"its line {number} may hold {made.longest_line} characters, as longest_line says"
+                    f"its line {number} may hold {room} characters, as longest_line says"
                 )
     return made

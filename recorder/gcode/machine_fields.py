@@ -17,6 +17,9 @@ from morfax.recorder.gcode.takes import read_takes, read_tool
 SUFFIXES = (".ngc", ".nc", ".gcode", ".tap", ".cnc", ".plt", ".hpgl")
 CONTROL = re.compile(r"[^\x20-\x7e]")  # what is no printable character of ASCII
 PLACEHOLDER = re.compile(r"\{(\w+)\}")
+SHORTEST_LINE = 64  # characters; an arc with its feed has up to 60
+NUMBER_LONG = 7  # characters of a line number, such as "N99990 "
+LARGEST_STEP = 100  # of line numbers; chosen: tens are usual
 LINES = (
     "begin",
     "end",
@@ -76,8 +79,15 @@ def _decimals(held: Field) -> int:
 
 def _longest(held: Field) -> int:
     """The longest line: an arc with its feed has up to 60 characters."""
-    if held.number() < 64:
-        held.refuse("it may hold 64 characters or more: an arc needs up to 60")
+    if held.number() < SHORTEST_LINE:
+        held.refuse(f"it may hold {SHORTEST_LINE} characters or more: an arc needs up to 60")
+    return held.number()
+
+
+def _line_numbers(held: Field) -> int:
+    """The step of line numbers; 0: none."""
+    if held.number() not in range(LARGEST_STEP + 1):
+        held.refuse(f"it may hold the step of line numbers, 1 to {LARGEST_STEP}, or 0 for none")
     return held.number()
 
 
@@ -139,6 +149,7 @@ FIELDS: dict[str, tuple[str, Any]] = {
     "decimals": ("decimals", _decimals),
     "dwell": ("dwell_unit_s", lambda held: 1.0 if held.choice("s", "ms") == "s" else 1e-3),
     "longest_line": ("longest_line", _longest),
+    "line_numbers": ("line_numbers", _line_numbers),
     "direction": ("milling", lambda held: held.choice("climb", "conventional")),
     "feed": ("feeds", lambda held: held.choice("program", "machine") == "program"),
     "rapid": ("rapids_have_feed", lambda held: held.choice("program", "machine") == "program"),

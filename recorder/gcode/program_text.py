@@ -25,7 +25,9 @@ ARCS = ("G2", "G3")
 CUTS = ("G1", *ARCS)
 END = "end of the program"  # a comment, where the control has no word for it
 UP_MM = 2.0  # where a motion that never leaves the work ends; as the clearance without a card
-ENDING = ("M2", "M30", "%")
+PERCENT = "%"
+ENDING = ("M2", "M30", PERCENT)
+LARGEST_NUMBER = 99999  # of a line: LinuxCNC takes five digits
 
 
 class Block(NamedTuple):
@@ -43,8 +45,9 @@ def program_text(
     start_mm: Array, blocks: Sequence[Block], machine: Machine, comments: Iterable[str]
 ) -> list[str]:
     """The lines of a program; the blocks are as the machine runs them."""
-    text = _Text(machine, [machine.comment(line) for line in comments])
-    text.lines += machine.begin
+    opening = machine.begin[: machine.begin[:1] == (PERCENT,)]  # stands before any comment
+    text = _Text(machine, [*opening, *(machine.comment(line) for line in comments)])
+    text.lines += machine.begin[len(opening) :]
     first_feed_mm_s = next((block.feed_mm_s for block in blocks if block.code in CUTS), 0.0)
     text.begin(start_mm, first_feed_mm_s)
     for block in blocks:
@@ -56,7 +59,19 @@ def program_text(
     text.lines += machine.end
     if not any(line in ENDING for line in machine.end):
         text.lines.append(machine.comment(END))
-    return text.lines
+    return _numbered(text.lines, machine.line_numbers) if machine.line_numbers else text.lines
+
+
+def _numbered(lines: Sequence[str], step: int) -> list[str]:
+    """The lines with their numbers, but for comments and %; after the largest number they begin anew."""
+    numbered, number = list[str](), 0
+    for line in lines:
+        if line.startswith(("(", ";", PERCENT)):
+            numbered.append(line)
+            continue
+        number = number + step if number + step <= LARGEST_NUMBER else step
+        numbered.append(f"N{number} {line}")
+    return numbered
 
 
 class _Text:

@@ -15,6 +15,7 @@ import pytest
 
 from morfax.motion.faults import CardFault, FileFault
 from morfax.motion.motion import Path as MotionPath
+from morfax.player.gcode.check.checked import check_lines
 from morfax.player.gcode.hpgl_reader import ABOVE_MM
 from morfax.player.gcode.machine_reader import read_program
 from morfax.player.gcode.rs274 import read_rs274
@@ -198,9 +199,12 @@ def test_the_reference_names_every_field() -> None:
 
 def test_the_files_of_the_reference_are_machines(tmp_path: Path) -> None:
     files = re.findall(r"```toml\n(.*?)```", DOCS.read_text(encoding="utf-8"), re.DOTALL)
-    router, torch = (tmp_path / name for name in ("router.toml", "torch.toml"))
-    for file, text in zip((router, torch), files, strict=True):
+    router, torch, plotter = (
+        tmp_path / name for name in ("router.toml", "torch.toml", "plotter.toml")
+    )
+    for file, text in zip((router, torch, plotter), files, strict=True):
         file.write_text(text)
+    assert machine(str(plotter)).is_hpgl and machine(str(plotter)).step_mm == 0.005
     assert "M3 S18000" in program(str(router), tmp_path)
     lines = program(str(torch), tmp_path)
     at = lines.index("G0 Z3.8")
@@ -256,3 +260,37 @@ def test_linuxcnc_reads_every_program_to_its_end(name: str, tmp_path: Path) -> N
     assert "PROGRAM_END" in told.stdout
     cuts = [line for line in lines if re.match(r"G[123] ", line)]
     assert told.stdout.count("STRAIGHT_FEED") + told.stdout.count("ARC_FEED") == len(cuts)
+
+
+def test_lines_have_numbers_and_percent_stands_first_where_the_machine_wants_it(
+    tmp_path: Path,
+) -> None:
+    """As a Fanuc control has it: %, numbers, home at the end, %."""
+    text = as_toml("linuxcnc").replace(
+        "longest_line = 252", "longest_line = 80\nline_numbers = 10"
+    )
+    text = text.replace('begin = ["G21', 'begin = ["%", "G21').replace(
+        'end = ["M5", "M2"]', 'end = ["M5", "G0 X0 Y0", "M30", "%"]'
+    )
+    (tmp_path / "fanuc.toml").write_text(text)
+    record_blocks(part(), tmp_path / "a.nc", machine_name=str(tmp_path / "fanuc.toml"))
+    lines = (tmp_path / "a.nc").read_text().splitlines()
+    assert lines[0] == lines[-1] == "%" and lines[1].startswith("(for fanuc")
+    words = [line for line in lines if not line.startswith(("(", "%"))]
+    assert words[0] == "N10 G21 G17 G40 G49 G54 G80 G90 G94"
+    assert [line.split()[0] for line in words] == [
+        f"N{10 * k}" for k in range(1, len(words) + 1)
+    ]
+    read = read_rs274(tmp_path / "a.nc")
+    assert read.moves[-1].end_mm[:2] == (0, 0) and read.moves[-1].end_mm[2] > 0
+    assert check_lines(lines, machine(str(tmp_path / "fanuc.toml"))).may_start
+
+
+def test_a_step_of_line_numbers_that_cannot_be_is_refused(tmp_path: Path) -> None:
+    for said, mistake in (
+        ("line_numbers = 500", "the step of line numbers, 1 to 100, or 0 for none"),
+        ("longest_line = 64\nline_numbers = 5", "longest_line must be 71 or more"),
+    ):
+        (tmp_path / "mine.toml").write_text(f'what = "mine"\n{said}\n')
+        with pytest.raises(CardFault, match=mistake):
+            machine(str(tmp_path / "mine.toml"))
