@@ -39,7 +39,7 @@ from morfax.tracer.drawing.scan import Grey, Scan
 from morfax.tracer.drawing.shapes import outlined
 
 if TYPE_CHECKING:
-    from morfax.tracer.corrections.on_sheet import OnSheet
+    from morfax.tracer.corrections.on_sheet import OnSheet, StopAt, TurnAt
     from morfax.tracer.drawing.noise import Noise
     from morfax.tracer.flatten.flat import Flattening
 
@@ -73,6 +73,16 @@ class Drawing:
     notes: tuple[str, ...] = ()
     flattening: Flattening | None = None
     corrected: OnSheet | None = None
+
+    @property
+    def told_turns(self) -> tuple[TurnAt, ...]:
+        """The turns of the operator's corrections."""
+        return () if self.corrected is None else self.corrected.turns
+
+    @property
+    def told_stops(self) -> tuple[StopAt, ...]:
+        """The stops of the operator's corrections."""
+        return () if self.corrected is None else self.corrected.stops
 
     @property
     def width_mm(self) -> float:

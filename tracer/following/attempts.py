@@ -73,11 +73,12 @@ class Attempts:
     def run(self, stance: Stance, turns: tuple[int, ...] = ()) -> Followed:
         """Follow from a stance, with other turns at the junctions of those numbers."""
         times, told = self.drawing.enlarged, self.told
+        told_turns = tuple(turn.enlarged(times) for turn in self.drawing.told_turns)
         follower = Follower(
             enlarged(stance, times),
             self.settings,
             MOTION_RATE_HZ,
-            Turns(turns, self.sides, self.tips),
+            Turns(turns, self.sides, self.tips, told_turns),
         )
         reduced_told = None if told is None else lambda come_mm: told(come_mm / times)
         run = reduced(follower.follow(times * self.longest_mm, reduced_told))

@@ -41,6 +41,8 @@ class Followed:
     at_tip: bool = False  # another line, not followed yet, ends in the same tip
     # junctions where another way out fits as well: the junction's number, and the rank of that way
     doubts: tuple[tuple[int, int], ...] = ()
+    # numbers of the corrections that the head went by at junctions
+    served: frozenset[int] = frozenset()
     led: Led = field(default_factory=Led)
 
     @property

@@ -29,6 +29,7 @@ from morfax.tracer.following.ways_out import (
     leads_to_dot,
     nearest_station,
     station_before,
+    trail_behind,
 )
 from morfax.tracer.head import course
 from morfax.tracer.head.carriage import Carriage
@@ -84,9 +85,8 @@ class Follower:
                 told(self.carriage.travel_mm)
             if why == HOME:
                 return self._go_home()
-            if self.carriage.trail.comes_again(
-                self.view.width_mm
-            ):  # before a junction that is known
+            # before a junction that is known
+            if self.carriage.trail.comes_again(self.view.width_mm):
                 return self._done("joined")
             if why == CHANGED:
                 self.view = self.view.like(*self.carriage.stands(), follows=SWELLS)
@@ -106,12 +106,13 @@ class Follower:
         # 1. feel the line ahead; the axis has been on the line even where none is clean behind it
         seen = self._feel_ahead()
         if len(seen) < FEWEST_STATIONS or self.carriage.ahead(seen[-1, :2]) < 0:
-            seen = self._trail_behind()
+            seen = trail_behind(self.view, self.carriage)
         here = nearest_station(seen, self.carriage.stands()[0])
         if (len(seen) - here) * self.view.step_mm <= self.view.leg_mm:
             return self._through_legs(leg_of(seen, True, self.view.leg_mm))
-        # 2. a fork, or ink beside the line
-        fork = fork_in(self.view, seen, here)
+        # 2. a place of which the operator has said how to go on, a fork, or ink beside the line
+        told = self._ways_out.told_station(self.view, seen, here)
+        fork = fork_in(self.view, seen, here) if told is None else told
         if fork is None and self.carriage.ink_beside:
             fork = self._turn_off(seen, here)
         if fork is not None:
@@ -128,6 +129,9 @@ class Follower:
 
     def _through_legs(self, incoming: Leg) -> Followed | None:
         """Take the head from an incoming leg out of the junction; returns what it did, if no leg leads on."""
+        told = self._ways_out.as_told(self._planner(), incoming, self.carriage)
+        if told is not None:
+            return self._pass(told)
         choice, asked = self._ways_out.chosen(self.view, incoming, self.carriage)
         outgoing, corner, _ = choice
         # 1. a dot at the end of the line, and a line drawn with another pen
@@ -189,13 +193,6 @@ class Follower:
             if len(seen) >= FEWEST_STATIONS:
                 break
         return seen
-
-    def _trail_behind(self) -> Array:
-        """The last stretch of the trail as stations of the line, (n, 3)."""
-        stations = round(self.view.leg_mm / self.view.step_mm)
-        trail = self.carriage.trail.recent()[-stations:]
-        places = np.vstack([trail, self.carriage.stands()[0]])
-        return np.column_stack([places, np.full(len(places), self.view.width_mm)])
 
     def _turn_off(self, seen: Array, here: int) -> int | None:
         """The station before ink beside a clean line, if the head is to leave the line there; else None."""
@@ -284,6 +281,7 @@ class Follower:
             guides=junctions.guides(positions),
             at_tip=self._at_tip,
             led=self.carriage.led,
+            served=frozenset(self._ways_out.served),
             doubts=self._tangles.doubts(self.carriage.trail, self.view.width_mm),
         )
         return done if ending != "joined" else without_repeat(done)

@@ -20,7 +20,9 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault
 from morfax.motion.polyline import lengths_mm
+from morfax.tracer.corrections.on_sheet import StopAt
 from morfax.tracer.following.followed import THINNED, Followed
+from morfax.tracer.following.told_stops import with_told
 from morfax.tracer.head.leaders import CELL, Led
 from morfax.tracer.junctions.gaps import Break, breaks
 from morfax.tracer.junctions.guides import GuideLine
@@ -73,16 +75,24 @@ class Line:
     numbers: tuple[int, ...] | None = None  # of its stops; None: on from the line before
     breaks: tuple[Break, ...] = ()  # where it ends, and ink goes on
     led: Led = field(default_factory=Led)  # who led the head along it
+    served: frozenset[int] = frozenset()  # numbers of the corrections that it went by
     leads: Leads | None = None  # that a cut was given; those drawn on paper are `loop_from`
 
     @classmethod
     def of(
-        cls, run: Followed, number: int = 1, reference_mm: tuple[float, float] | None = None
+        cls,
+        run: Followed,
+        number: int = 1,
+        reference_mm: tuple[float, float] | None = None,
+        stops: tuple[StopAt, ...] = (),
     ) -> Line:
-        """What the head did, as a line of the drawing with its marks, but for the reference point's."""
+        """What the head did, as a line of the drawing with its marks, but for the reference point's, and with
+        the stops of the operator's corrections.
+        """
         marks = marks_along(run.view, run.positions_mm)
         if reference_mm is not None:
             marks = [m for m in marks if math.dist(m.place_mm, reference_mm) >= REFERENCE_MM]
+        told, served = with_told(marks, run.positions_mm, run.view.width_mm, stops)
         found = tuple[Break, ...]()
         if run.ending in ("ended", "lost"):
             found = breaks(run.view, run.positions_mm, run.ending == "ended")
@@ -94,12 +104,13 @@ class Line:
             run.fault,
             number,
             run.loop_from,
-            tuple(marks),
+            told,
             run.guides,
             reference_mm,
             run.junctions_mm,
             breaks=found,
             led=run.led,
+            served=run.served | served,
         )
 
     @classmethod

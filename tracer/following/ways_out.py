@@ -16,16 +16,22 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.tracer.corrections.on_sheet import REACH_MM, REACH_WIDTHS, TurnAt
 from morfax.tracer.head.carriage import Carriage
-from morfax.tracer.junctions.choice import Asked, Choice, WayIn, survey
+from morfax.tracer.head.plan import Plan
+from morfax.tracer.junctions.choice import Asked, Choice, WayIn, is_aside, survey
 from morfax.tracer.junctions.guides import Junctions
+from morfax.tracer.junctions.planner import Planner
 from morfax.tracer.marks.dots import disc, dot_ahead
-from morfax.tracer.sensing.leg import Leg, goes_straight, leg_of, turns_off
+from morfax.tracer.sensing.leg import FEWEST_STATIONS, Leg, goes_straight, leg_of, turns_off
 from morfax.tracer.sensing.side import SIDES, Side
 from morfax.tracer.sensing.view import View
 
 # a junction that the head comes back to is no further ahead: a speck may end the clean line before it
 BACK_MM = 4.0
+COMES_FROM = (
+    0.5  # cosine of 60 degrees: a head so far off the side that a correction names is another's
+)
 
 
 class Turns(NamedTuple):
@@ -33,12 +39,14 @@ class Turns(NamedTuple):
 
     At the junctions in `other` it takes the second straightest leg, the third where a number stands twice. At
     the first, the second … it turns off to its side in `sides`, where there is one, and comes back if the
-    line that it takes ends; with `back_from_tips` also from where two lines end together.
+    line that it takes ends; with `back_from_tips` also from where two lines end together. At the places `at`
+    it goes as the operator's corrections say, and comes back from nowhere.
     """
 
     other: tuple[int, ...] = ()
     sides: tuple[Side | None, ...] = ()
     back_from_tips: bool = False
+    at: tuple[TurnAt, ...] = ()
 
 
 STRAIGHT_ON = Turns()
@@ -51,6 +59,43 @@ class WaysOut:
     turns: Turns
     from_reference: bool  # the head sets out from a reference point
     junctions: Junctions = field(default_factory=Junctions)
+    served: set[int] = field(
+        default_factory=set
+    )  # numbers of the corrections that the head went by
+
+    def told_station(self, view: View, seen: Array, here: int) -> int | None:
+        """The station of a felt line (n, 3), ahead of `here`, at which a leg ends before a junction of which
+        the operator has said how to go through; None without one.
+        """
+        back = round(view.width_mm / view.step_mm)
+        for turn_at in self.turns.at:
+            station = nearest_station(seen, np.array(turn_at.place_mm))
+            before = max(station - back, FEWEST_STATIONS)
+            is_ahead = here < station and before < len(seen)
+            if is_ahead and _told_by(
+                view, leg_of(seen[: before + 1], True, view.leg_mm), turn_at
+            ):
+                return before
+        return None
+
+    def as_told(self, planner: Planner, incoming: Leg, carriage: Carriage) -> Plan | None:
+        """The way out of a junction of which the operator has said how to go through; None without one."""
+        view = planner.view
+        told = [one for one in self.turns.at if _told_by(view, incoming, one)]
+        if not told:
+            return None
+        one = min(told, key=lambda each: math.dist(each.place_mm, incoming.end_mm))
+        side: Side | None = None if one.do not in SIDES else one.do
+        way_in = WayIn(view, incoming, carriage.trail)
+        found = survey(way_in, Asked(side=side, straight=side is None))
+        if side is not None and (found.leg is None or not is_aside(incoming, found.leg, side)):
+            return None
+        plan = planner.as_told(incoming, found, straight=side is None)
+        if plan is not None:
+            self.served.add(one.number)
+            if found.choices > 1:
+                self.junctions.come_to(_place_of(way_in, found), carriage.travel_mm)
+        return plan
 
     def chosen(self, view: View, incoming: Leg, carriage: Carriage) -> tuple[Choice, bool]:
         """The way out of a junction, and whether the operator asked for it."""
@@ -98,6 +143,27 @@ def _place_of(way_in: WayIn, found: Choice) -> Array:
         if corner is not None and leg is not None and turns_off(incoming, leg):
             return corner.vertex_mm
     return incoming.end_mm
+
+
+def _told_by(view: View, incoming: Leg, turn_at: TurnAt) -> bool:
+    """Whether a correction is about the junction ahead of a leg, and about a head that comes by that leg."""
+    reach_mm = max(REACH_MM, REACH_WIDTHS * view.width_mm)
+    way = turn_at.place_mm - incoming.end_mm
+    ahead = np.array([math.cos(incoming.heading_rad), math.sin(incoming.heading_rad)])
+    along, aside = float(way @ ahead), abs(float(way[1] * ahead[0] - way[0] * ahead[1]))
+    if not -view.width_mm < along < 2 * reach_mm or aside > reach_mm:
+        return False
+    if turn_at.coming_from_mm is None:
+        return True
+    come = np.subtract(turn_at.place_mm, turn_at.coming_from_mm)
+    return bool(come @ ahead > COMES_FROM * float(np.hypot(*come)))
+
+
+def trail_behind(view: View, carriage: Carriage) -> Array:
+    """The last stretch of the trail as stations of the line, (n, 3)."""
+    stations = round(view.leg_mm / view.step_mm)
+    places = np.vstack([carriage.trail.recent()[-stations:], carriage.stands()[0]])
+    return np.column_stack([places, np.full(len(places), view.width_mm)])
 
 
 def station_before(view: View, seen: Array, here: int, guard_mm: float) -> tuple[int, Leg]:

@@ -50,11 +50,13 @@ class Asked(NamedTuple):
 
     `rank` 1 asks for the second straightest leg, `side` for the straightest that turns off to that side, if
     there is one. A line that `leads` ends at the line that it comes to, though the pen ran on a little.
+    `straight` asks for the straightest leg whatever else is there: the operator has said so.
     """
 
     rank: int = 0
     side: Side | None = None
     leads: bool = False
+    straight: bool = False
 
 
 STRAIGHTEST = Asked()
@@ -110,7 +112,7 @@ def survey(way_in: WayIn, asked: Asked = STRAIGHTEST) -> Choice:
     if asked.side is not None:
         for widths in SIDEWAYS_WIDTHS:
             aside = around.look(incoming.at(near + widths * view.width_mm))
-            if aside.leg is not None and _is_aside(incoming, aside.leg, asked.side):
+            if aside.leg is not None and is_aside(incoming, aside.leg, asked.side):
                 return aside
     # 3. at the tip
     if ink is not None and ink - half > near and not goes_straight(incoming, found.leg):
@@ -164,10 +166,12 @@ class _Survey:
         rank, side = self.asked.rank, self.asked.side
         # 1. by side
         if side is not None:
-            aside = [leg for leg in legs if _is_aside(self.incoming, leg, side)]
+            aside = [leg for leg in legs if is_aside(self.incoming, leg, side)]
             if aside:
                 return min(aside, key=lambda leg: abs(self._turn(leg)))
         # 2. by how straight
+        if self.asked.straight:
+            return min(legs, key=lambda leg: abs(self._turn(leg)))
         if rank == 0:
             legs = self._without_passing(legs, every) or legs
         legs = sorted(legs, key=lambda leg: abs(self._turn(leg)))
@@ -257,7 +261,7 @@ def _passing(legs: Sequence[Leg]) -> bool:
     return any(_bent(a, b) < SQUARE for a, b in combinations(legs, 2))
 
 
-def _is_aside(incoming: Leg, leg: Leg, side: Side) -> bool:
+def is_aside(incoming: Leg, leg: Leg, side: Side) -> bool:
     """Whether a leg turns off to a side."""
     to_left = turn(incoming.heading_rad, leg.heading_rad) > 0
     return to_left == (side == "left") and turns_off(incoming, leg)

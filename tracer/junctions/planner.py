@@ -9,7 +9,7 @@ Source: our own (see `rings`, `course` and `edge_following`).
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -29,7 +29,7 @@ from morfax.tracer.junctions.corner import (
     through_corner,
 )
 from morfax.tracer.junctions.edge_following import EdgeRun, follow_edge, to_vertex
-from morfax.tracer.junctions.line_ahead import caught_again, straight_on
+from morfax.tracer.junctions.line_ahead import FARTHEST_WIDTHS, caught_again, straight_on
 from morfax.tracer.junctions.width_change import Onward
 from morfax.tracer.sensing.leg import Leg, goes_straight, leg_of, turn
 from morfax.tracer.sensing.photocell import STEP_PX
@@ -74,6 +74,21 @@ class Planner:
         if outgoing is None:
             return None, count
         return self.through(incoming, outgoing, None)._replace(leader=STATIONS), count
+
+    def as_told(self, incoming: Leg, choice: Choice, *, straight: bool) -> Plan | None:
+        """The way by the leg that the operator asks for, or straight on across what lies there; None if there
+        is no such way.
+        """
+        leg = choice.leg
+        if leg is not None and (goes_straight(incoming, leg) or not straight):
+            return self._by_choice(incoming, leg, choice.corner)
+        if not straight:
+            return None
+        farthest_mm = FARTHEST_WIDTHS * self.view.width_mm
+        gap_mm = max(self.settings.gap_mm, farthest_mm)
+        wider = replace(self, settings=replace(self.settings, gap_mm=gap_mm))
+        outgoing = wider._straight_on(incoming, others=False)
+        return None if outgoing is None else self.through(incoming, outgoing, None)
 
     def _by_choice(self, incoming: Leg, outgoing: Leg, corner: Corner | None) -> Plan | None:
         """The way by the leg that was chosen; None if there is no ink all along it."""

@@ -40,11 +40,15 @@ TOUCHES_DOT = 3.0  # widths: a tick nearer to a dot is the dot's own ink
 
 @dataclass(frozen=True, slots=True)
 class Mark:
-    """A mark: the place on which the axis stands, mm, and which position of the path that is (a fraction)."""
+    """A mark: the place on which the axis stands, mm, and which position of the path that is (a fraction).
+
+    `correction` is the number of the correction that says so; 0: the ink does.
+    """
 
     kind: Literal["tick", "dot"]
     place_mm: tuple[float, float]
     at: float
+    correction: int = 0
 
 
 def longest_mm(view: View, *, across: bool = True) -> float:

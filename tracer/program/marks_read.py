@@ -22,5 +22,7 @@ def with_marks_read(lines: Sequence[Line], operator: Operator) -> tuple[list[Lin
     """Some lines of a drawing as the operator takes them, and how many ticks and dots were taken for ink."""
     if operator.reads_marks(lines):
         return list(lines), 0
-    unread = sum(len(line.marks) for line in lines)
-    return [replace(line, marks=()) for line in lines if not line.is_dot], unread
+    unread = sum(mark.correction == 0 for line in lines for mark in line.marks)
+    told = [tuple(mark for mark in line.marks if mark.correction) for line in lines]
+    kept = [replace(line, marks=marks) for line, marks in zip(lines, told, strict=True)]
+    return [line for line in kept if not line.is_dot], unread

@@ -104,7 +104,7 @@ def followed_through(setup: Setup, stance: Stance) -> list[Line]:
         runs.append(attempts.run(back))
     elif first.ending != "closed" or wrong_way:
         runs.append(attempts.run(turned_about(stance)))
-    return [Line.of(run) for run in runs]
+    return [Line.of(run, stops=drawing.told_stops) for run in runs]
 
 
 class Run(NamedTuple):
@@ -173,7 +173,8 @@ class _Target:
                 raise
             attempts = replace(attempts, other_turns=True)
             run = attempts.asked_for(stance, operator.direction, self.start_mm)
-        line = Line.of(run, self.number, stance.reference_mm)
+        stops = sheet.drawing.told_stops
+        line = Line.of(run, self.number, stance.reference_mm, stops)
         is_solid = sheet.is_solid_at(stance.place_mm)
         return Run(replace(line, ink_mm=ink_mm, is_solid=is_solid), stance, ink_mm)
 
