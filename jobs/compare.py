@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
-from morfax.jobs import comparison, flattening, outlines
+from morfax.jobs import comparison, correction_settings, flattening, outlines
 from morfax.jobs import files as medium
 from morfax.jobs.listener import SILENT, Listener
 from morfax.jobs.playing import ByHand, Playing, read_or_play
@@ -89,6 +89,7 @@ class CompareJob:
             "within_tolerance": within,
             "largest_mm": found.largest_mm,
             **flattening.figures(drawing, self.picture),
+            **correction_settings.figures(drawing),
             **found.figures,
         }
         return CompareResult(figures, found, tuple(paths), drawing, within)

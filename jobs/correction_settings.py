@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING
@@ -15,6 +16,8 @@ if TYPE_CHECKING:
     from morfax.jobs.listener import Listener
     from morfax.tracer.corrections.corrections import Corrections
     from morfax.tracer.corrections.on_sheet import OnSheet
+    from morfax.tracer.drawing.drawing import Drawing
+    from morfax.tracer.following.line import Line
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,8 +95,31 @@ def without_effect(laid: OnSheet, number: int, why: str) -> str:
     return f"{which}, changed nothing: {why}"
 
 
-def figures(laid: OnSheet | None) -> Figures:
+def not_served(laid: OnSheet, lines: Sequence[Line] | None) -> Iterator[str]:
+    """One line for each turn or stop that no line that was followed went by; `lines` None: all the ink."""
+    served = frozenset[int]().union(*(line.served for line in lines or ()))
+    turns = {turn.number for turn in laid.turns}
+    for number in sorted({*turns, *(stop.number for stop in laid.stops)} - served):
+        why = "no line that the head followed has a mark to strike out there"
+        if laid.corrections.each[number - 1].do != "not-stop":
+            why = "no line that the head followed is there"
+        if number in turns:
+            why = "the head came to no junction there with such a way out"
+        if lines is None:
+            why = "--lines all follows crosses and ticks as lines; give --lines contours"
+        yield without_effect(laid, number, why)
+
+
+def named(name: str, laid: OnSheet | None) -> str:
+    """A drawing's name in the head of a program, with the fingerprint of its corrections."""
+    if laid is None or not laid.corrections.each:
+        return name
+    return f"{name} with corrections {laid.fingerprint}"
+
+
+def figures(drawing: Drawing | None) -> Figures:
     """What a result says of the corrections that it was made with; nothing without any."""
+    laid = None if drawing is None else drawing.corrected
     if laid is None or not laid.corrections.each:
         return {}
     return {

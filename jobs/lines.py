@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
+from morfax.jobs import correction_settings
 from morfax.jobs import files as medium
 from morfax.jobs.listener import SILENT, Listener
 from morfax.jobs.remarks_on_lines import remarks_on_lines
@@ -57,7 +58,9 @@ class LinesJob:
         for text in (*scale_doubts(drawing, seen.width_mm), *remarks_on_lines(seen)):
             listener.warning(text)
         written = {} if self.picture is None else {"picture": str(self.picture)}
-        figures = {"drawing": str(self.drawing.file), **written, **_figures(drawing, seen)}
+        corrected = correction_settings.figures(drawing)
+        figures = {"drawing": str(self.drawing.file), **written, **corrected}
+        figures |= _figures(drawing, seen)
         return LinesResult(figures, drawing, seen, self.picture)
 
 

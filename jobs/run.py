@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
-from morfax.jobs import comparison, flattening, following
+from morfax.jobs import comparison, correction_settings, flattening, following
 from morfax.jobs import files as medium
 from morfax.jobs.listener import SILENT, Listener
 from morfax.jobs.machining import tell_what_is_lost
@@ -71,7 +71,8 @@ class RunJob:
         drawing = self.drawing.open(listener)
         self._make_folder()
         traced = tracing.trace(drawing, listener)
-        unit = traced.placed(self.unit, self.drawing.file.name, self.settings.tool.described)
+        source = correction_settings.named(self.drawing.file.name, drawing.corrected)
+        unit = traced.placed(self.unit, source, self.settings.tool.described)
         program, _ = traced.record(program_file, unit, listener)
         traced_file = traced.write(self.file(".traced.csv"), unit)
         # 2. play
@@ -96,6 +97,7 @@ class RunJob:
             "drawing": str(self.drawing.file),
             **written,
             **flattening.figures(drawing, picture),
+            **correction_settings.figures(drawing),
             **_compared(drawing, traced, path, from_ink),
             **traced.zero_figures(unit),
             **unit.figures(),

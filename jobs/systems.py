@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from morfax.jobs import comparison, flattening, following
+from morfax.jobs import comparison, correction_settings, flattening, following
 from morfax.jobs import files as medium
 from morfax.jobs.listener import SILENT, Listener
 from morfax.jobs.playing import Playing
@@ -95,6 +95,7 @@ class SystemsJob:
             "drawing": str(file),
             "report": None if self.output is None else str(self.output),
             **flattening.figures(drawing),
+            **correction_settings.figures(drawing),
             "tolerance_mm": self.tolerance_mm,
             "within_tolerance": within,
             "ending": traced.trace.ending,

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from morfax.jobs import files as medium
 from morfax.jobs import flattening
+from morfax.jobs.correction_settings import figures as figures_of
+from morfax.jobs.correction_settings import named
 from morfax.jobs.listener import SILENT, Listener
 from morfax.jobs.machining import tell_what_is_lost
 from morfax.jobs.recording import RecordingUnit
@@ -88,11 +90,15 @@ class TraceJob:
         self.unit.check(outputs.program)
         return outputs, tracing.on_machine(self.unit.milling(outputs.program))
 
+    def _source(self, drawing: Drawing) -> str:
+        """What the program's head says that it was made from."""
+        return named(self.drawing.file.name, drawing.corrected)
+
     def written(
         self, outputs: TraceOutputs, drawing: Drawing, traced: Traced, listener: Listener
     ) -> TraceResult:
         """Write what was traced, also by an equal tracing before this one; raises the recorders' faults."""
-        unit = traced.placed(self.unit, self.drawing.file.name, self.settings.tool.described)
+        unit = traced.placed(self.unit, self._source(drawing), self.settings.tool.described)
         written, timed = dict[str, Any](), dict[str, Any]()
         if outputs.program is not None:
             program, report = traced.record(outputs.program, unit, listener)
@@ -105,7 +111,7 @@ class TraceJob:
         if picture is not None:
             written["picture"] = str(picture)
         unit.warn(listener)
-        flat = flattening.figures(drawing, picture)
+        flat = {**flattening.figures(drawing, picture), **figures_of(drawing)}
         figures = {"drawing": str(self.drawing.file), **written, **flat, **traced.figures()}
         figures |= {**timed, **traced.zero_figures(unit), **unit.figures()}
         return TraceResult(figures, drawing, traced, picture, traced.fault)

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from morfax.jobs import correction_settings
 from morfax.jobs.contour_remarks import of_around, of_contouring
 from morfax.jobs.depths import of_tabs
 from morfax.jobs.remarks import of_cutter, remarks
@@ -62,11 +63,20 @@ class Tracing:
 
         Raises LineFault if there is no line to start on.
         """
+        return self._on(drawing)._traced(drawing, listener)
+
+    def _traced(self, drawing: Drawing, listener: Listener) -> Traced:
+        """Follow the drawing, and put the tool along or beside its lines."""
         from morfax.motion.motion import thin
 
         # 1. the head follows
         listener.compiling("the head", ("motion", "tracer", "recorder"))
         followed = self._followed(drawing, listener)
+        if drawing.corrected is not None:
+            is_all = self.settings.line.lines == "all"
+            lines = None if is_all else followed.lines
+            for text in correction_settings.not_served(drawing.corrected, lines):
+                listener.warning(text)
         for text in remarks(followed, self.settings, self.of_head.gap_mm, drawing.enlarged):
             listener.warning(text)
         led = WhoLed.along(followed)
@@ -86,6 +96,24 @@ class Tracing:
             listener.warning(text)
         several = self.settings.line.are_several
         return Traced(beside, thin(beside), several, zero, cutter, left, led)
+
+    def _on(self, drawing: Drawing) -> Tracing:
+        """The same with the start, the direction and the reference point of the drawing's corrections, where
+        nobody has asked for others.
+        """
+        laid, line = drawing.corrected, self.settings.line
+        if laid is None or line.lines == "all":
+            return self
+        if line.reference_mm is None:
+            line = replace(line, reference_mm=laid.reference_mm)
+        if line.start_mm is None and not line.are_several:
+            line = replace(
+                line, start_mm=laid.start_mm, direction=line.direction or laid.direction
+            )
+        operator = replace(
+            self.operator, reference_mm=line.reference_mm, direction=line.direction
+        )
+        return replace(self, settings=replace(self.settings, line=line), operator=operator)
 
     def on_machine(self, milling: Milling | None) -> Tracing:
         """The same with the direction of closed lines that a machine asks for, if nobody asks for another."""
@@ -137,7 +165,10 @@ class Tracing:
                 return trace_lines(drawing, line.lines, self.of_head, self.operator, tell)
             if drawing.edges_mm:  # of filled shapes: every edge is a contour
                 return trace_lines(drawing, "contours", self.of_head, self.operator, tell)
-            return trace_ink(drawing, self.of_head, self.operator, tell)
+            # crosses and ticks are lines then: no turns and no stops
+            return trace_ink(
+                replace(drawing, corrected=None), self.of_head, self.operator, tell
+            )
 
 
 def _refuse_marks(settings: TraceSettings, card: Card) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.reports.canvas import LARGEST_IMAGE_PX, REFERENCE, new_figure, save
+from morfax.reports.corrected import draw_corrections
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -49,6 +50,8 @@ def draw_numbered(result: LinesResult) -> None:
     for entry in seen.entries:
         _number(axes, entry)
     axes.set(xlim=extent[:2], ylim=extent[2:], xlabel="X, mm", ylabel="Y, mm", aspect="equal")
+    if drawing.corrected is not None:
+        draw_corrections(axes, drawing.corrected)
     _legend(axes, seen)
     name = drawing.file.name if drawing.file else "drawing"
     axes.set_title(f"{name}: numbers for --lines", fontsize=10)

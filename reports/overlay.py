@@ -20,6 +20,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.motion import Path
 from morfax.reports import leaders
 from morfax.reports.canvas import REFERENCE, UM_PER_MM, View, new_figure, save, show_drawing
+from morfax.reports.corrected import draw_corrections
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -97,6 +98,8 @@ def _fill(figure: Figure, axes: Axes, picture: Picture, view: View) -> None:
     _ends(axes, picture.path)
     _numbers(axes, picture)
     _stops(axes, picture)
+    if picture.drawing is not None and picture.drawing.corrected is not None:
+        draw_corrections(axes, picture.drawing.corrected)
     axes.set(xlim=view[:2], ylim=view[2:], xlabel="X, mm", ylabel="Y, mm", aspect="equal")
     axes.set_title(picture.title, fontsize=10)
     if coloured is not None:
