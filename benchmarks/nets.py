@@ -165,7 +165,7 @@ def measured(strokes: Strokes, file: Path, seed: int) -> Found:
 def drawn(strokes: Strokes, file: Path, seed: int) -> None:
     """A net as a pen draws it, scanned."""
     pixels = round(SHEET_MM * DPI / 25.4)
-    scale = pixels / SHEET_MM * FINER
+    scale = DPI / 25.4 * FINER  # the sheet is as large as its whole pixels
     fine = np.zeros((pixels * FINER,) * 2, np.uint8)
     for stroke in strokes:
         x, y = stroke[:, 0] * scale - 0.5, pixels * FINER - stroke[:, 1] * scale - 0.5

@@ -12,6 +12,7 @@ Source: patent ES 361967, figure 1: lead screws 111 with their motors 17 and 12,
 from __future__ import annotations
 
 import math
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -22,7 +23,7 @@ from morfax.tracer.head import kernel, screws, watched
 from morfax.tracer.head.leaders import CELL, MEMORY, STATIONS, Led, Log
 from morfax.tracer.head.settings import Settings, tune
 from morfax.tracer.head.stance import Stance
-from morfax.tracer.head.state import Home, at_rest
+from morfax.tracer.head.state import Home, Tuning, at_rest
 from morfax.tracer.head.trail import Trail
 from morfax.tracer.sensing.leg import Leg, turn
 from morfax.tracer.sensing.view import View
@@ -32,6 +33,17 @@ SETTLE_LAGS = 7  # a stop lasts this many lags of the drives: 1/1000 of the last
 # of the lead: what was felt of a leg this far ahead tells where the cell will see it
 FELT_ENOUGH = 0.5
 SPARE = 1000  # samples beside those that a course takes at the slowest
+
+
+class Mark(NamedTuple):
+    """What a carriage was at a moment: the head's state and tuning, and how much it had recorded."""
+
+    state: Any
+    tuning: Tuning
+    parts: int
+    positions: int
+    leads: int
+    cell_from_mm: float
 
 
 class Carriage:
@@ -88,9 +100,9 @@ class Carriage:
         stands, heading = self.stands()
         return float((place - stands) @ np.array([math.cos(heading), math.sin(heading)]))
 
-    def follow(self, view: View, home: Home) -> int:
-        """Follow the line until something happens, or for a while; why it stopped (see `state`)."""
-        out = np.empty((CHUNK, 2))
+    def follow(self, view: View, home: Home, samples: int = CHUNK) -> int:
+        """Follow the line until something happens, or for so many samples; why it stopped (see `state`)."""
+        out = np.empty((samples, 2))
         self.says("following")
         felt_mm = self._cell_from_mm - self.travel_mm
         n, why = kernel.follow(view.cells, self.state, self.tuning, home, out)
@@ -102,6 +114,30 @@ class Carriage:
             self._log.add(self.count + first, CELL)
         self._keep(out[:n])
         return int(why)
+
+    def mark(self) -> Mark:
+        """What the carriage is known by now, so that it can be brought back here."""
+        return Mark(
+            self.state.copy(),
+            self.tuning,
+            len(self._parts),
+            self.count,
+            self._leads,
+            self._cell_from_mm,
+        )
+
+    def back_to(self, mark: Mark) -> None:
+        """Bring the carriage back to a mark, as if it had gone no further."""
+        self.state, self.tuning = mark.state.copy(), mark.tuning
+        del self._parts[mark.parts :]
+        self.count = mark.positions
+        self._leads, self._cell_from_mm = mark.leads, mark.cell_from_mm
+        self._log.back_to(self.count)
+
+    def since(self, mark: Mark) -> Array:
+        """The positions since a mark, (n, 2) mm."""
+        newest = self._parts[mark.parts :]
+        return np.vstack(newest) if newest else np.empty((0, 2))
 
     def run(self, stretches: list[Array], end_mm_s: float = 0.0, leader: int = MEMORY) -> None:
         """Run along stretches, swivelling between them, and end at a speed; `leader` laid them."""

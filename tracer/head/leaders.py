@@ -14,17 +14,15 @@ Source: our own; the patent's head has its cell alone.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterator
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from morfax.motion.arrays import Array
 
 CELL, STATIONS, MEMORY, REDRAWN = range(4)
-NEAR_MM = 0.1  # twice the distance of the places of a thinned way
 LEADERS = ("swinging cell", "stations", "memory", "redrawn ink")
 
 
@@ -50,6 +48,10 @@ class Led:
         firsts = np.flatnonzero(np.diff(leaders, prepend=-1))
         return cls(tuple(firsts.tolist()), tuple(leaders[firsts].tolist()))
 
+    def turned_round(self, count: int) -> Led:
+        """The same for the way back over so many positions."""
+        return Led.along(self.of(count)[::-1])
+
     def lengths_mm(self, positions: Array) -> Array:
         """How far each of the `LEADERS` led along positions (n, 2) mm."""
         steps_mm = np.hypot(*np.diff(positions, axis=0).T)
@@ -65,21 +67,6 @@ class Led:
                 yield leader, positions[max(0, first - 1) : end]
 
 
-def led_alike(
-    positions: Array, ways: Sequence[tuple[Array, NDArray[np.int8]]], every: int
-) -> Led:
-    """The runs of a leader along positions that were put together of ways, each with its leaders.
-
-    Each of `every` positions has the leader of the nearest place of a way; memory leads where none is near.
-    """
-    places = positions[::every]
-    away_mm, nearest = cKDTree(np.vstack([way for way, _ in ways])).query(places)
-    leaders = np.concatenate([leaders for _, leaders in ways])[nearest]
-    leaders[away_mm > NEAR_MM] = MEMORY
-    led = Led.along(leaders)
-    return replace(led, firsts=tuple(every * first for first in led.firsts))
-
-
 @dataclass(slots=True)
 class Log:
     """The carriage's log of who led it."""
@@ -92,6 +79,11 @@ class Log:
         if not self._leaders or self._leaders[-1] != leader:
             self._firsts.append(first)
             self._leaders.append(leader)
+
+    def back_to(self, count: int) -> None:
+        """Strike out what was written of positions from one on."""
+        while len(self._firsts) > 1 and self._firsts[-1] >= count:
+            del self._firsts[-1], self._leaders[-1]
 
     def led(self) -> Led:
         """The log so far."""

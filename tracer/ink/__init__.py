@@ -1,4 +1,4 @@
-"""All the ink of a sheet: the ledger of what has been followed, and rounds of the head over what is left.
+"""All the ink of a sheet: its net of lines, each junction of it solved once, and the head along every chain.
 
-The room asks `following` for runs of the head; `program` puts its strokes in order.
+The room asks the head and the junctions' ways; `program` puts its strokes in order.
 """

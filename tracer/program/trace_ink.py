@@ -8,6 +8,7 @@ Source: our own (see `tracer.ink`); patent ES 361967 has one contour to a tape.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -16,13 +17,12 @@ from morfax.motion.faults import LineFault
 from morfax.motion.polyline import length_mm
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Sheet
-from morfax.tracer.following.followed import THINNED
 from morfax.tracer.following.line import Line
-from morfax.tracer.head.leaders import led_alike
 from morfax.tracer.head.settings import Settings
-from morfax.tracer.ink.ledger import Ledger
-from morfax.tracer.ink.meeting import InkStroke, joined
-from morfax.tracer.ink.rounds import Rounds
+from morfax.tracer.ink.chains import Junctions, solved
+from morfax.tracer.ink.ledger import balance
+from morfax.tracer.ink.stretches import FeltSheet
+from morfax.tracer.ink.track import InkStroke, stroke_along
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program import order
 from morfax.tracer.program.program import Trace
@@ -41,33 +41,51 @@ def trace_ink(
     can be put down nowhere.
     """
     settings = settings or Settings()
-    # 1. strokes, until no ink is left
-    ledger = Ledger(Sheet.of(drawing), settings.line_width_mm)
-    strokes, come_mm = list[InkStroke](), 0.0
-    rounds = Rounds(ledger, settings)
-    for stroke in rounds.strokes():
-        strokes.append(stroke)
-        come_mm += length_mm(stroke.way_mm)
-        if progress is not None:
-            progress(min(come_mm, ledger.ink_mm), ledger.ink_mm)
+    # 1. the lines and their junctions, and the head along each
+    sheet = Sheet.of(drawing)
+    felt = FeltSheet.of(sheet, settings)
+    junctions = solved(felt)
+    strokes = list(_strokes(junctions, settings, progress))
     if not strokes:
         raise LineFault(
             "no line can be begun: the ink on the sheet is too short, or is filled shapes; follow the edges"
             " of these with --edge, or scan the drawing at a higher resolution"
         )
-    # 2. as a pen would go on, the longest first
-    strokes = joined(strokes, ledger, settings.speed_mm_s)
+    # 2. the longest first, and in an order with short idle ways
     strokes.sort(key=lambda stroke: -length_mm(stroke.way_mm))
     lines = _in_order([_line(stroke, k) for k, stroke in enumerate(strokes, 1)])
-    lines = [replace(line, led=led_alike(line.xy_mm, rounds.led, THINNED)) for line in lines]
-    balance = ledger.balance()._replace(lost=rounds.lost())
-    return Trace(tuple(lines), operator or Operator(), left_out_mm=balance.left_mm, ink=balance)
+    ink = balance(sheet, felt.graph, [stroke.way_mm for stroke in strokes])
+    return Trace(tuple(lines), operator or Operator(), left_out_mm=ink.left_mm, ink=ink)
+
+
+def _strokes(
+    junctions: Junctions, settings: Settings, progress: HeadProgress | None
+) -> Iterator[InkStroke]:
+    """The strokes of a net, one chain of lines after the other."""
+    all_mm, before_mm = sum(line.length_mm for line in junctions.net.lines), 0.0
+
+    def told(come_mm: float) -> None:
+        if progress is not None:
+            progress(min(before_mm + come_mm, all_mm), all_mm)
+
+    for chain in junctions.chains():
+        stroke = stroke_along(chain, junctions, settings, told)
+        before_mm += length_mm(stroke.way_mm)
+        told(0.0)
+        yield stroke
 
 
 def _line(stroke: InkStroke, number: int) -> Line:
     """A stroke as a line of the program."""
     ending = "closed" if stroke.closed else "ended"
-    return Line(stroke.way_mm, ending, stroke.width_mm, length_mm(stroke.way_mm), number=number)
+    return Line(
+        stroke.way_mm,
+        ending,
+        stroke.width_mm,
+        length_mm(stroke.way_mm),
+        number=number,
+        led=stroke.led,
+    )
 
 
 def _in_order(lines: list[Line]) -> list[Line]:
@@ -82,4 +100,4 @@ def _in_order(lines: list[Line]) -> list[Line]:
 
 def _turned_round(line: Line) -> Line:
     """A stroke run from its other end."""
-    return replace(line, xy_mm=line.xy_mm[::-1])
+    return replace(line, xy_mm=line.xy_mm[::-1], led=line.led.turned_round(len(line.xy_mm)))

@@ -2,27 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import shapely
 
 from morfax.motion.polyline import length_mm
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.settings import Settings
-from morfax.tracer.ink.ledger import Ledger
-from morfax.tracer.ink.rounds import Rounds
 from morfax.tracer.program.trace_ink import trace_ink
 from tests.tracer.inked import UM, WIDTH_MM, Points, arc, inked, polyline
 
-TWICE = 0.01  # of the length: what may be run more than once
-BESIDE_MM = (
-    60 * UM
-)  # strokes from the true line, junctions included, where they are led on; asked: 30
-LED_ON_MM = (
-    0.1  # from the end of a stroke to the middle of the line that it meets: a fifth of the pen
-)
+TWICE = 0.001  # of the length: what may be run more than once
+BESIDE_MM = 30 * UM  # strokes from the true line, junctions included
+LED_ON_MM = 0.02  # from the end of a stroke to the middle of the line that it meets
 SQUARE = polyline((6, 6), (36, 6), (36, 36), (6, 36), (6, 6))
 BAR = polyline((6, 20), (36, 20))
 SPUR = polyline((36, 28), (44, 28))
@@ -99,15 +94,53 @@ def test_what_cannot_be_followed_is_in_the_balance() -> None:
     )  # by the area of the ink
 
 
-def test_struck_off_ink_is_gone_and_the_drawing_is_as_it_was() -> None:
-    drawing = inked(SQUARE, BAR)
-    before = drawing.darkness.copy()
-    ledger = Ledger(Sheet.of(drawing))
-    rounds = Rounds(ledger, Settings())
-    first = next(rounds.strokes())
-    on_it = first.way_mm[::50]
-    assert not ledger.is_left(on_it).any() and ledger.was_ink(on_it).all()
-    assert np.array_equal(drawing.darkness, before)
+def test_three_lines_through_one_place_keep_their_partners() -> None:
+    lines = [
+        polyline((5, 20), (45, 20)),
+        polyline((15, 3), (35, 37)),
+        polyline((17, 38), (33, 2)),
+    ]
+    strokes = all_of(*lines)
+    assert len(strokes) == 3
+    assert held_against(strokes, lines)[2] < BESIDE_MM
+    for stroke in strokes:
+        straight_mm = np.hypot(*(stroke.xy_mm[-1] - stroke.xy_mm[0]))
+        assert stroke.length_mm == pytest.approx(straight_mm, abs=0.05)
+
+
+def test_a_sharp_crossing_is_one_junction() -> None:
+    """At 6 degrees two lines of 0.5 mm share their ink for 10 mm."""
+    lines = [polyline((5, 20), (55, 20)), polyline((5, 17.4), (55, 22.6))]
+    strokes = all_of(*lines)
+    assert len(strokes) == 2
+    share, _twice, away_mm = held_against(strokes, lines)
+    assert share > 0.999 and away_mm < BESIDE_MM
+
+
+def test_a_short_bar_between_two_lines_is_a_stroke() -> None:
+    """Its ink is hardly longer than the junctions at its ends."""
+    lines = [
+        polyline((5, 10), (35, 10)),
+        polyline((5, 11.2), (35, 11.2)),
+        polyline((20, 10), (20, 11.2)),
+    ]
+    strokes = all_of(*lines)
+    assert sorted(round(s.length_mm) for s in strokes) == [1, 30, 30]
+
+
+def test_a_gap_is_crossed_up_to_the_head_s_own(gap_mm: float = 0.4) -> None:
+    dashes = [polyline((5, 10), (20, 10)), polyline((20 + gap_mm + WIDTH_MM, 10), (36, 10))]
+    drawing = inked(*dashes, seed=1)
+    assert len(trace_ink(drawing).lines) == 1
+    assert len(trace_ink(drawing, replace(Settings(), gap_mm=0.2)).lines) == 2
+
+
+def test_progress_is_told_within_a_line() -> None:
+    heard = list[float]()
+    trace_ink(
+        inked(SQUARE, seed=1), progress=lambda come_mm, all_mm: heard.append(come_mm / all_mm)
+    )
+    assert len(heard) > 5 and heard == sorted(heard) and heard[-1] == pytest.approx(1, abs=0.02)
 
 
 def test_the_same_strokes_on_a_sheet_that_is_mirrored() -> None:

@@ -1,0 +1,83 @@
+"""Partners at a junction: all legs at once, by the least turning."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from morfax.tracer.ink.partners import meeting_place, partners
+from morfax.tracer.sensing.leg import Leg
+
+WIDTH_MM = 0.5
+NOISE_RAD = math.radians(1.0)  # more than felt legs are off
+NO_STATIONS = np.empty((0, 3))
+
+
+def leg(
+    from_deg: float, away_mm: float = 0.8, aside_mm: float = 0.0, bend_per_mm: float = 0.0
+) -> Leg:
+    """A leg that comes in from a direction, its clean end so far from the origin."""
+    outward = math.radians(from_deg)
+    way = np.array([math.cos(outward), math.sin(outward)])
+    end = away_mm * way + aside_mm * np.array([-way[1], way[0]])
+    return Leg(
+        end, math.remainder(outward + math.pi, math.tau), bend_per_mm, WIDTH_MM, NO_STATIONS
+    )
+
+
+def paired(legs: list[Leg]) -> set[frozenset[int]]:
+    return {frozenset(pair) for pair in partners(legs, WIDTH_MM)}
+
+
+@pytest.mark.parametrize("apart_deg", [12.0, 25.0, 60.0])
+def test_three_lines_through_one_place(apart_deg: float) -> None:
+    turns = [0.0, apart_deg, 2 * apart_deg]
+    legs = [leg(turn, 1.5) for turn in turns] + [leg(turn + 180, 1.5) for turn in turns]
+    assert paired(legs) == {frozenset({k, k + 3}) for k in range(3)}
+
+
+def test_a_line_that_ends_on_another_has_no_partner() -> None:
+    assert paired([leg(0), leg(90), leg(180)]) == {frozenset({0, 2})}
+
+
+def test_lines_that_end_on_both_sides_of_another_are_no_line() -> None:
+    """They miss each other by more than half a width."""
+    legs = [leg(0, 2.0), leg(180, 2.0), leg(90, aside_mm=0.35), leg(-90, aside_mm=0.35)]
+    assert paired(legs) == {frozenset({0, 1})}
+
+
+def test_three_walls_that_meet_are_a_corner_and_an_end() -> None:
+    assert len(paired([leg(0), leg(120), leg(240)])) == 1
+
+
+def test_bends_are_allowed_for() -> None:
+    """Two circles of 5 mm that touch from outside: each goes on round, neither onto the other."""
+    bend = 1 / 5.0
+    up = 0.1  # where the circles are 1 mm before they touch, from the line between them
+    legs = [
+        Leg(
+            np.array([-1.0, side * up]),
+            -side * math.atan(0.2),
+            side * bend,
+            WIDTH_MM,
+            NO_STATIONS,
+        )
+        for side in (1, -1)
+    ]
+    legs += [
+        Leg(
+            np.array([1.0, side * up]),
+            math.pi + side * math.atan(0.2),
+            -side * bend,
+            WIDTH_MM,
+            NO_STATIONS,
+        )
+        for side in (1, -1)
+    ]
+    assert paired(legs) == {frozenset({0, 2}), frozenset({1, 3})}
+
+
+def test_the_meeting_place_is_nearest_to_all_lines() -> None:
+    assert meeting_place([leg(10), leg(100), leg(250)]) == pytest.approx([0, 0], abs=1e-9)

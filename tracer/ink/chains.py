@@ -1,0 +1,212 @@
+"""Chains: lines that go on into each other at their junctions, as a pen would have drawn them in one stroke.
+
+Signals: a net in; out chains, each its lines in order and the way each is run, and where it begins and ends.
+
+Each junction is solved once, with all its legs (see `partners`), so that every stroke through it agrees. A
+leg without a partner ends on the middle of the lines that pass, or where the pen was lifted.
+
+Source: our own.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from morfax.motion.arrays import Array
+from morfax.tracer.head.settings import Settings
+from morfax.tracer.head.trail import Trail
+from morfax.tracer.ink.net import COVERED, Inner, Net, end_leg, net_of, trimmed
+from morfax.tracer.ink.partners import Pair, meeting_place, partners, way_through
+from morfax.tracer.ink.stretches import FeltSheet
+from morfax.tracer.junctions.planner import Planner
+from morfax.tracer.sensing.leg import Leg
+from morfax.tracer.sensing.probe import end_of
+
+# Chosen by trial on drawings of nets.
+FOOT_WIDTHS = 4.0  # as far ahead a line that ends on others is sought
+ON_IT = 0.5  # widths: its straight way on has come to them
+FOOT_STEP_MM = 0.01
+# widths: legs of a wider junction are taken from further off, by a share of its size, and longer
+WIDE_WIDTHS, TRIM, LEGS = 4.0, 0.1, 0.5
+COVERED_SHARE = 0.7  # of a stretch within a junction, along which ways go
+SOLVED_AGAIN = 3  # times at most, with more lines
+
+
+def solved(sheet: FeltSheet) -> Junctions:
+    """The junctions of a sheet. A stretch within one along which no way goes is a line of its own."""
+    own = set[int]()
+    for _ in range(SOLVED_AGAIN):
+        junctions = Junctions(net_of(sheet, own), sheet.settings)
+        more = {inner.stretch for inner in junctions.net.inner if not junctions.covers(inner)}
+        if not more:
+            break
+        own |= more
+    return junctions
+
+
+class Side(NamedTuple):
+    """An end of a line: the line's number, and whether it is its last place."""
+
+    line: int
+    last: bool
+
+
+class Link(NamedTuple):
+    """A line of a chain: its number, and whether it is run from its last place to its first."""
+
+    line: int
+    back: bool
+
+
+class Chain(NamedTuple):
+    """Lines run one after the other; a closed chain goes on from its last into its first."""
+
+    links: list[Link]
+    closed: bool
+
+
+@dataclass
+class Junction:
+    """The sides of lines that meet, with their legs as they come in."""
+
+    sides: list[Side]
+    legs: list[Leg]
+    is_free: bool  # an end of the ink
+
+    @cached_property
+    def pairs(self) -> list[Pair]:
+        """The sides, by their numbers here, that are one line."""
+        width_mm = float(np.median([leg.width_mm for leg in self.legs]))
+        if len(self.sides) == 2:
+            return [(0, 1)]
+        return partners(self.legs, width_mm)
+
+    def leg(self, side: Side) -> Leg:
+        """The leg of a side as it comes in."""
+        return self.legs[self.sides.index(side)]
+
+    def partner(self, side: Side) -> Side | None:
+        """The side onto which a side goes on; None if it ends here."""
+        k = self.sides.index(side)
+        for a, b in self.pairs:
+            if k in (a, b):
+                return self.sides[b if k == a else a]
+        return None
+
+
+@dataclass
+class Junctions:
+    """All junctions of a net, each solved once."""
+
+    net: Net
+    settings: Settings
+
+    @cached_property
+    def by_number(self) -> dict[int, Junction]:
+        """The junctions by their numbers."""
+        self._trim()
+        found = dict[int, Junction]()
+        for n, line in enumerate(self.net.lines):
+            for last in (False, True):
+                number = line.junctions[last]
+                there = found.setdefault(number, Junction([], [], number in self.net.free_ends))
+                there.sides.append(Side(n, last))
+                there.legs.append(end_leg(line, last))
+        return found
+
+    def _trim(self) -> None:
+        """Take the legs of wide junctions from further off, and longer: near to where two lines run together
+        each has felt the other's rim.
+        """
+        ends = dict[int, list[tuple[Side, Leg]]]()
+        for n, line in enumerate(self.net.lines):
+            for last in (False, True):
+                ends.setdefault(line.junctions[last], []).append(
+                    (Side(n, last), end_leg(line, last))
+                )
+        for there in ends.values():
+            places = np.array([leg.end_mm for _, leg in there])
+            wide_mm = float(np.hypot(*np.ptp(places, axis=0))) if len(there) > 2 else 0.0
+            if wide_mm > WIDE_WIDTHS * there[0][1].width_mm:
+                for side, _ in there:
+                    trim_mm, legs_mm = TRIM * wide_mm, LEGS * wide_mm
+                    trimmed(self.net.lines[side.line], side.last, trim_mm, legs_mm)
+
+    def at(self, side: Side) -> Junction:
+        """The junction at a side."""
+        return self.by_number[self.net.lines[side.line].junctions[side.last]]
+
+    def chains(self) -> list[Chain]:
+        """All lines, each in one chain."""
+        done, made = set[int](), list[Chain]()
+        sides = [Side(n, last) for n in range(len(self.net.lines)) for last in (False, True)]
+        # chains from where they end first; what is left are closed
+        for only_ends in (True, False):
+            for side in sides:
+                if side.line in done or (only_ends and self.at(side).partner(side) is not None):
+                    continue
+                made.append(self._chain(side))
+                done |= {link.line for link in made[-1].links}
+        return made
+
+    def _chain(self, first: Side) -> Chain:
+        """The chain that begins at a side."""
+        links, side = list[Link](), first
+        while True:
+            links.append(Link(side.line, side.last))
+            far = Side(side.line, not side.last)
+            onto = self.at(far).partner(far)
+            if onto is None:
+                return Chain(links, False)
+            if onto == first:
+                return Chain(links, True)
+            side = onto
+
+    def covers(self, inner: Inner) -> bool:
+        """Whether ways through a junction go along a stretch within it."""
+        there = self.by_number.get(inner.junction)
+        if there is None or not there.pairs:
+            return False
+        passing = np.vstack([self._passing(there, pair) for pair in there.pairs])
+        away_mm, _ = cKDTree(passing).query(inner.places_mm)
+        return bool(np.mean(away_mm < COVERED * there.legs[0].width_mm) > COVERED_SHARE)
+
+    def end_mm(self, side: Side) -> float:
+        """How far beyond its leg's clean end a line ends that has no partner, mm."""
+        there, leg = self.at(side), self.at(side).leg(side)
+        view = self.net.lines[side.line].runs[-1 if side.last else 0].view
+        if there.pairs:
+            foot = self._foot_mm(there, leg)
+            if foot is not None:
+                return foot
+        if there.is_free or len(there.sides) == 1:
+            lifted = end_of(view, leg)
+            return max(0.0, lifted or 0.0)
+        way = np.array([np.cos(leg.heading_rad), np.sin(leg.heading_rad)])
+        return max(0.0, float((meeting_place(there.legs) - leg.end_mm) @ way))
+
+    def _foot_mm(self, there: Junction, leg: Leg) -> float | None:
+        """How far from its clean end a leg comes onto the lines that pass, mm; None if it does not."""
+        ahead_mm = np.arange(0.0, FOOT_WIDTHS * leg.width_mm + 1.0, FOOT_STEP_MM)
+        places = leg.at(ahead_mm)
+        passing = np.vstack([self._passing(there, pair) for pair in there.pairs])
+        gaps = places[:, None] - passing[None]
+        away = np.sqrt(np.min(np.sum(gaps * gaps, axis=2), axis=1))
+        come = np.flatnonzero(away < ON_IT * leg.width_mm)
+        if not len(come):
+            return None
+        near = away[come[0] : come[0] + round(2 * leg.width_mm / FOOT_STEP_MM)]
+        return float(ahead_mm[come[0] + int(np.argmin(near))])
+
+    def _passing(self, there: Junction, pair: Pair) -> Array:
+        """The way of a pair through a junction, (n, 2) mm."""
+        one, other = there.legs[pair[0]], there.legs[pair[1]].turned_round()
+        view = self.net.lines[there.sides[pair[0]].line].runs[0].view
+        stands = one.end_mm, one.heading_rad
+        planner = Planner(view, stands, Trail(one.end_mm, view.step_mm), self.settings)
+        return np.vstack(way_through(planner, one, other, None))

@@ -1,0 +1,189 @@
+"""Felt stretches: where the middle of the ink is along a stretch, and where the line there is clean.
+
+Signals: the cells and a guide, places (n, 2) mm about on a line, in; stations a step apart out, each with its
+place on the middle of the line (mm), heading (rad), bend (1/mm) and width (mm), and the runs of them between
+which the line is not clean: junctions' ink, corners, blots.
+
+Every station is felt twice, across the guide and then across what was felt, so that the guide's own places do
+not matter. Then a parabola is laid through the stations about each, as the head does with its drum.
+
+Source: our own (see `sensing.scout`, which feels ahead where nothing is known yet; here the whole stretch is
+known before the head goes along it).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from morfax.motion.arrays import Array
+from morfax.motion.polyline import lengths_mm
+from morfax.tracer.ink.run import Run, smooth
+from morfax.tracer.sensing.leg import ROBUST
+from morfax.tracer.sensing.ray import edges
+from morfax.tracer.sensing.scout import CLEAN, CLEAN_PX, LEAP, LEAP_PX, SPECK_MM, SPECK_PX
+from morfax.tracer.sensing.view import View
+
+Flags = NDArray[np.bool_]
+
+# All limits below were chosen by trial on drawings of nets.
+REACH, REACH_PX = 1.0, 3.0  # widths and pixels within which the edges are looked for
+GUIDED_WIDTHS = 0.75  # to either side of a place: what its heading is taken over
+ROUGHER = 2.5  # standard deviations of a rough line's own width: so far a station may differ
+FEWEST_STATIONS, LEAST_WIDTHS = 5, 0.8  # of a clean run
+MARGIN = 2  # stations at the ends of a run that may have felt what ends it
+CORNER = math.radians(20)  # turned between the chords before and after a corner, and ...
+SUDDEN = math.radians(14)  # ... by so much more than before and behind it
+CHORD, SKIPPED = 7, 3  # stations of a chord, and between the chords and the corner
+MEANT = 2.0  # lengths of a leg: a longer line's own width counts, and not its neighbours'
+
+
+Parted = tuple[
+    list[Run], list[Array]
+]  # clean runs, and places (n, 2) mm felt from each to the next
+
+
+class Felt(NamedTuple):
+    """What was felt along a guide: all stations, and which of them are those of clean line."""
+
+    stations: Run
+    clean: Flags
+
+    def runs(self) -> Parted:
+        """The clean runs, cut at corners, and what was felt between them."""
+        found, cuts_at = list[Run](), list[tuple[int, int]]()
+        for first, last in _runs_of(self.clean, self.stations.view):
+            run = self.stations.part(first, last)
+            cuts = [0, *_corners(run.places_mm), len(run)]
+            for k, (begin, end) in enumerate(pairwise(cuts)):
+                a = begin + (SKIPPED if k else 0)
+                b = end - (SKIPPED if k < len(cuts) - 2 else 0)
+                if _is_long_enough(b - a, run.view):
+                    found.append(smooth(run.part(a, b)))
+                    cuts_at.append((first + a, first + b))
+        places = self.stations.places_mm
+        parted = [places[b:a] for (_, b), (a, _) in pairwise(cuts_at)]
+        return found, parted
+
+
+def feel_along(view: View, guide_mm: Array) -> Run:
+    """Stations along a guide (n, 2) mm, with NaN for the width where the ink has no two edges."""
+    reach_mm = REACH * view.width_mm + REACH_PX * view.pitch_mm
+    reach_stations = max(2, round(GUIDED_WIDTHS * view.width_mm / view.step_mm))
+    places = _evenly(guide_mm, view.step_mm)
+    for _ in range(2):
+        headings = _headings(places, reach_stations)
+        found = _felt_across(view.cells, places, headings, reach_mm)
+        aside, widths = 0.5 * (found[:, 0] + found[:, 1]), found[:, 1] - found[:, 0]
+        usual_mm = float(np.nanmedian(widths)) if np.isfinite(widths).any() else view.width_mm
+        on_it = np.abs(widths - usual_mm) < CLEAN * usual_mm + CLEAN_PX * view.pitch_mm
+        on_it &= np.abs(aside) < LEAP * usual_mm + 2 * view.pitch_mm
+        aside = np.where(on_it, aside, 0.0)
+        normals = np.column_stack([-np.sin(headings), np.cos(headings)])
+        places = places + aside[:, None] * normals
+    return Run(places, headings, np.zeros(len(places)), widths, view)
+
+
+def judged(stations: Run, width_mm: float) -> Felt:
+    """Which stations are those of clean line, if a line is as wide as this."""
+    view, widths = stations.view, stations.widths_mm
+    off = np.abs(widths - width_mm)
+    known = np.isfinite(widths)
+    within_mm = CLEAN * width_mm + CLEAN_PX * view.pitch_mm
+    if stations.length_mm > MEANT * view.leg_mm and known.any():
+        usual_mm = float(np.median(widths[known]))
+        spread_mm = ROBUST * float(np.median(np.abs(widths[known] - usual_mm)))
+        if abs(usual_mm - width_mm) < within_mm:
+            within_mm = max(within_mm, ROUGHER * spread_mm)
+    clean = known & (off < within_mm)
+    steps = np.hypot(*np.diff(stations.places_mm, axis=0).T)
+    leaps = np.abs(steps - view.step_mm) > LEAP * width_mm + LEAP_PX * view.pitch_mm
+    clean[1:] &= ~leaps
+    return Felt(stations, clean)
+
+
+def whole(stations: Run) -> Run:
+    """All the stations as one run, though the line is clean nowhere."""
+    usual_mm = stations.view.width_mm
+    widths = np.where(np.isfinite(stations.widths_mm), stations.widths_mm, usual_mm)
+    return smooth(replace(stations, widths_mm=widths))
+
+
+def _runs_of(clean: Flags, view: View) -> list[tuple[int, int]]:
+    """First station, and the one after the last, of each clean run; a speck does not part a run."""
+    passed_over = int(max(SPECK_MM, SPECK_PX * view.pitch_mm) / view.step_mm)
+    edges_at = np.flatnonzero(np.diff(np.r_[False, clean, False].astype(np.int8)))
+    merged: list[list[int]] = []
+    for first, last in edges_at.reshape(-1, 2).tolist():
+        if merged and first - merged[-1][1] <= passed_over:
+            merged[-1][1] = last
+        else:
+            merged.append([first, last])
+    kept = []
+    for first, last in merged:
+        a = first + (MARGIN if first else 0)
+        b = last - (MARGIN if last < len(clean) else 0)
+        if _is_long_enough(b - a, view):
+            kept.append((a, b))
+    return kept
+
+
+def _is_long_enough(stations: int, view: View) -> bool:
+    """Whether so many stations are a run, and no chance."""
+    return stations >= max(FEWEST_STATIONS, LEAST_WIDTHS * view.width_mm / view.step_mm)
+
+
+def _corners(places: Array) -> list[int]:
+    """The stations at which a line that was felt clean turns suddenly."""
+    reach = CHORD + SKIPPED
+    middle = np.arange(reach, len(places) - reach)
+    if not len(middle):
+        return []
+    before = places[middle - SKIPPED] - places[middle - reach]
+    after = places[middle + reach] - places[middle + SKIPPED]
+    cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
+    turned = np.arctan2(cross, np.sum(before * after, axis=1))
+    # how the line bends before and behind, each a chord and a half away
+    beside = np.pad(turned, 2 * reach, mode="edge")
+    bends = 0.5 * (beside[: len(turned)] + beside[4 * reach :][: len(turned)])
+    sudden = np.abs(turned - bends)
+    found = []
+    while len(sudden):
+        k = int(np.argmax(sudden))
+        if sudden[k] < SUDDEN:
+            break
+        if abs(turned[k]) > CORNER:
+            found.append(int(middle[k]))
+        sudden[max(0, k - 2 * reach) : k + 2 * reach] = 0.0
+    return sorted(found)
+
+
+def _evenly(guide_mm: Array, step_mm: float) -> Array:
+    """Places of a guide a step apart, its ends among them, (n, 2) mm."""
+    come_mm = lengths_mm(guide_mm)
+    steps = max(1, round(float(come_mm[-1]) / step_mm))
+    at_mm = np.linspace(0.0, come_mm[-1], steps + 1)
+    return np.column_stack([np.interp(at_mm, come_mm, column) for column in guide_mm.T])
+
+
+def _headings(places: Array, reach: int) -> Array:
+    """Headings of a line at its places, each by the chord from so many places before it to as many behind."""
+    at = np.arange(len(places))
+    chords = places[np.minimum(at + reach, len(places) - 1)] - places[np.maximum(at - reach, 0)]
+    return np.arctan2(chords[:, 1], chords[:, 0])
+
+
+@njit(cache=True)
+def _felt_across(cells, places, headings, reach_mm):  # type: ignore[no-untyped-def]
+    """Where the ink ends to the right and to the left of each place and heading, (n, 2) mm (see `ray`)."""
+    found = np.empty((len(places), 2))
+    for n in range(len(places)):
+        right, left = edges(cells, places[n, 0], places[n, 1], headings[n], reach_mm)
+        found[n, 0], found[n, 1] = right, left
+    return found

@@ -1,0 +1,186 @@
+"""The graph of a sheet's ink: which stretches of line there are, and at which nodes they hang together.
+
+Signals: a mask of ink in; out stretches between nodes, each a list of thinned pixels (`drawing.thinning`).
+The graph only says where the head is to be put down and what leads where; the path is felt by the cells.
+
+    ──────┬──────     three stretches that meet at a node; a node is an end of ink or a fork of it
+          │           a ring without a node is a stretch from a place of it round to that place
+
+A stretch that leaves a fork and ends within the line's own ink is a burr of its edge, and is taken off. Where
+two stretches are left at a fork they are one.
+
+Source: our own.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numba import njit
+
+from morfax.motion.arrays import Array
+from morfax.tracer.drawing.components import Mask
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.thinning import Indices, neighbours, thinned
+
+# of the depth of the ink at its fork: a stretch that ends as near to it is a burr; by trial on nets
+BURR_DEPTHS, BURR_PX = 2.0, 2.0
+RING = -1  # in the place of a node: a stretch that comes round without one
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """A stretch of ink between two nodes (`RING` for both if there is none): its pixels, numbered as in the
+    graph, from the first node to the second.
+    """
+
+    nodes: tuple[int, int]
+    pixels: Indices
+
+
+@dataclass(frozen=True, slots=True)
+class Graph:
+    """Thinned pixels of a sheet, their depth in the ink (pixels from the paper), and the stretches."""
+
+    rows: Indices
+    columns: Indices
+    depths_px: Array
+    stretches: list[Stretch]
+
+    @classmethod
+    def of(cls, ink: Mask) -> Graph:
+        """The graph of some ink."""
+        rows, columns = thinned(ink)
+        depth = cv2.distanceTransform(ink, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+        graph = cls(rows, columns, np.asarray(depth[rows, columns], float), [])
+        order, begins, ends = _stretches(neighbours(rows, columns))
+        for begin, end in zip(begins, ends, strict=True):
+            pixels = order[begin:end]
+            is_ring = pixels[0] == pixels[-1] and not graph._is_fork(
+                pixels[0], order, begins, ends
+            )
+            nodes = (RING, RING) if is_ring else (int(pixels[0]), int(pixels[-1]))
+            graph.stretches.append(Stretch(nodes, pixels))
+        graph._take_off_burrs()
+        return graph
+
+    def _is_fork(self, pixel: int, order: Indices, begins: Indices, ends: Indices) -> bool:
+        """Whether another stretch than a single ring begins or ends at a pixel."""
+        return bool(np.sum(order[begins] == pixel) + np.sum(order[ends - 1] == pixel) > 2)
+
+    def places_mm(self, drawing: Drawing) -> Array:
+        """The middles of its pixels, (n, 2) sheet mm."""
+        rows = drawing.darkness.shape[0]
+        places = np.column_stack([self.columns + 0.5, rows - self.rows - 0.5])
+        return np.asarray(places * drawing.pitch_mm)
+
+    def at_nodes(self) -> dict[int, list[int]]:
+        """The stretches (their numbers, twice if both ends) at each node."""
+        at = dict[int, list[int]]()
+        for number, stretch in enumerate(self.stretches):
+            for node in stretch.nodes if stretch.nodes[0] != RING else ():
+                at.setdefault(node, []).append(number)
+        return at
+
+    def _take_off_burrs(self) -> None:
+        """Take off burrs, the shortest of a fork first; two stretches that are left at a fork are one."""
+        while True:
+            at = self.at_nodes()
+            burrs = {
+                n for n, stretch in enumerate(self.stretches) if self._is_burr(stretch, at)
+            }
+            taken = {
+                self._one_of(at[fork], burrs) for fork in at if burrs.intersection(at[fork])
+            }
+            if not taken:
+                break
+            self.stretches[:] = [s for n, s in enumerate(self.stretches) if n not in taken]
+            self._join_pairs()
+
+    def _one_of(self, numbers: list[int], burrs: set[int]) -> int:
+        """The shortest burr of those at a node."""
+        return min(
+            (n for n in numbers if n in burrs), key=lambda n: len(self.stretches[n].pixels)
+        )
+
+    def _is_burr(self, stretch: Stretch, at: dict[int, list[int]]) -> bool:
+        """Whether a stretch leaves a fork and ends within the ink of the line there."""
+        if stretch.nodes[0] == RING:
+            return False
+        counts = [len(at[node]) for node in stretch.nodes]
+        if sorted(counts)[0] != 1 or sorted(counts)[1] < 3:
+            return False
+        fork = stretch.pixels[0 if counts[0] > 1 else -1]
+        return len(stretch.pixels) - 1 < BURR_DEPTHS * self.depths_px[fork] + BURR_PX
+
+    def _join_pairs(self) -> None:
+        """Make one stretch of two that are alone at a node."""
+        for node, numbers in self.at_nodes().items():
+            if len(numbers) != 2:
+                continue
+            # the numbers may have changed
+            two = [s for s in self.stretches if node in s.nodes]
+            self.stretches[:] = [s for s in self.stretches if node not in s.nodes]
+            self.stretches.append(_joined(two, node))
+
+
+def _joined(two: list[Stretch], node: int) -> Stretch:
+    """One stretch of two that meet at a node, or the ring of one that comes back to it."""
+    if len(two) == 1:
+        return Stretch((RING, RING), two[0].pixels)
+    one, other = two
+    first = one.pixels if one.nodes[1] == node else one.pixels[::-1]
+    last = other.pixels if other.nodes[0] == node else other.pixels[::-1]
+    pixels = np.concatenate([first, last[1:]])
+    return Stretch((int(pixels[0]), int(pixels[-1])), pixels)
+
+
+@njit(cache=True)
+def _stretches(beside):  # type: ignore[no-untyped-def]
+    """Pixels along each stretch, one after the other, and where each begins and ends among them."""
+    count = len(beside)
+    links = np.zeros(count, np.int64)
+    for n in range(count):
+        for k in range(8):
+            links[n] += beside[n, k] >= 0
+    order = np.empty(4 * count + 8, np.int64)
+    begins, ends = np.empty(2 * count + 1, np.int64), np.empty(2 * count + 1, np.int64)
+    walked = np.zeros(beside.shape, np.bool_)
+    used = np.zeros(count, np.bool_)
+    written = made = 0
+    # 1. from every node along each of its links; 2. what is left are rings
+    for turn in range(2):
+        for start in range(count):
+            if (turn == 0 and links[start] == 2) or (
+                turn == 1 and (used[start] or links[start] != 2)
+            ):
+                continue
+            for k in range(8):
+                if beside[start, k] < 0 or walked[start, k]:
+                    continue
+                begins[made] = written
+                order[written] = start
+                written += 1
+                at, link = start, k
+                while True:
+                    walked[at, link] = True
+                    here = beside[at, link]
+                    walked[here, (link + 4) % 8] = True
+                    order[written] = here
+                    written += 1
+                    used[here] = True
+                    if links[here] != 2 or here == start:
+                        break
+                    back = (link + 4) % 8
+                    for other in range(8):
+                        if beside[here, other] >= 0 and other != back:
+                            at, link = here, other
+                            break
+                ends[made] = written
+                made += 1
+                if turn == 1:
+                    used[start] = True
+                    break
+    return order[:written].copy(), begins[:made].copy(), ends[:made].copy()

@@ -1,0 +1,214 @@
+"""The net: the lines of a sheet as they were felt, and the junctions at which they hang together.
+
+Signals: a drawing in; out lines, each with its clean runs, and for both its ends the junction there.
+
+    ────╮         ╭────      a stretch on which nothing can be felt clean lies within a junction: where two
+        ├─────────┤          lines share their ink for a while the graph has two forks; they are one
+    ────╯         ╰────      junction, from which four lines leave
+
+Ends of lines that face each other across a gap are a junction of two lines.
+
+Source: our own.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from morfax.motion.arrays import Array
+from morfax.tracer.head.settings import Settings
+from morfax.tracer.ink.felt import Parted, judged, whole
+from morfax.tracer.ink.graph import RING
+from morfax.tracer.ink.run import Run
+from morfax.tracer.ink.stretches import FeltSheet, felt_mm, with_width
+from morfax.tracer.sensing.leg import Leg, turn
+from morfax.tracer.sensing.probe import end_of
+from morfax.tracer.sensing.view import View
+
+# All limits below were chosen by trial on drawings of nets.
+INNER_WIDTHS = 40.0  # a stretch between forks that is no longer may lie within a junction
+CLEAN_SHARE = 0.5  # of its length: more of it is clean line of its own
+SHARED = 1.15  # times the line's width: ink that two lines share is wider
+OWN_WIDTHS = 1.2  # a shorter one has no ink that is not the junction's
+COVERED = 0.6  # widths: ink nearer to a way through the junction is that way's
+LEAST_MM, LEAST_WIDTHS = (
+    1.0,
+    2.5,
+)  # a shorter line that hangs together with nothing is a speck: the larger
+TRIMMED_SHARE = 0.3  # of a run is left out at an end at most
+FACING = math.radians(35)  # ends whose headings are so near to one line face each other
+ASIDE = 0.6  # widths: and miss each other by no more
+
+
+@dataclass(slots=True)
+class FeltLine:
+    """A line between two junctions: its clean runs in order, and the numbers of the junctions at its ends.
+
+    A ring has the same junction at both, where it was cut open. `length_mm` is that of its ink, and `parted`
+    holds what was felt between one run and the next, (n, 2) mm.
+    """
+
+    runs: list[Run]
+    parted: list[Array]
+    junctions: tuple[int, int]
+    width_mm: float
+    length_mm: float
+
+
+class Inner(NamedTuple):
+    """A stretch of one line's width within a junction: its number, the junction's, and places along it."""
+
+    stretch: int
+    junction: int
+    places_mm: Array
+
+
+@dataclass(slots=True)
+class Net:
+    """Lines, which junctions are ends of the ink (there the pen was lifted), and stretches within one."""
+
+    lines: list[FeltLine]
+    free_ends: set[int] = field(default_factory=set)
+    inner: list[Inner] = field(default_factory=list)
+    left_mm: float = 0.0  # length of stretches that are too short to be lines
+
+
+def net_of(sheet: FeltSheet, own: set[int]) -> Net:
+    """The net of felt stretches; some are lines of their own in any case."""
+    graph, felt, widths = sheet.graph, sheet.felt, sheet.widths_mm
+    at, net, kept = graph.at_nodes(), Net([]), list[tuple[int, Parted]]()
+    same, inner = _Same(), list[int]()
+    for n, stretch in enumerate(graph.stretches):
+        run, width_mm = with_width(felt[n], widths[n]), widths[n]
+        ends = [len(at.get(node, ())) for node in stretch.nodes]
+        is_ring = stretch.nodes[0] == RING
+        short = felt_mm(run) < max(LEAST_MM, LEAST_WIDTHS * width_mm)
+        some, parted = judged(run, width_mm).runs()
+        # 1. specks, and stretches within a junction: they make one of the nodes at their ends
+        if not is_ring and ends == [1, 1] and short:
+            net.left_mm += felt_mm(run)
+        elif n not in own and not is_ring and _is_inner(run, some, width_mm, min(ends)):
+            same.join(*stretch.nodes)
+            inner.append(n)
+        else:
+            kept.append((n, (some, parted) if some else ([whole(run)], [])))
+    # 2. the others are lines
+    for n, (runs, parted) in kept:
+        stretch = graph.stretches[n]
+        one, other = (
+            ((-1 - n,) * 2) if stretch.nodes[0] == RING else map(same.of, stretch.nodes)
+        )
+        net.lines.append(FeltLine(runs, parted, (one, other), widths[n], felt_mm(felt[n])))
+    free = {node for node, numbers in at.items() if len(numbers) == 1}
+    net.free_ends = {node for node in free if not same.has_joined(node)}
+    for n in inner:
+        known = felt[n].widths_mm[np.isfinite(felt[n].widths_mm)]
+        single = len(known) > 0 and np.median(known) < SHARED * widths[n]
+        if single and felt_mm(felt[n]) > OWN_WIDTHS * widths[n]:
+            junction = same.of(graph.stretches[n].nodes[0])
+            net.inner.append(Inner(n, junction, felt[n].places_mm))
+    _bridge_gaps(net, sheet.settings)
+    return net
+
+
+def _is_inner(run: Run, clean: list[Run], width_mm: float, fewest: int) -> bool:
+    """Whether a stretch lies within a junction; `fewest` stretches meet at one of its ends."""
+    length_mm = felt_mm(run)
+    clean_mm = sum(some.length_mm for some in clean)
+    if length_mm > INNER_WIDTHS * width_mm or clean_mm > CLEAN_SHARE * length_mm:
+        return False
+    known = run.widths_mm[np.isfinite(run.widths_mm)]
+    shared = len(known) < 0.5 * len(run) or float(np.median(known)) > SHARED * width_mm
+    # one that ends in no other is the tip of two lines that run together, or a stub
+    return shared if fewest == 1 else shared or length_mm < 3 * width_mm
+
+
+class _Same:
+    """Which nodes are one junction."""
+
+    def __init__(self) -> None:
+        self._first: dict[int, int] = {}
+
+    def of(self, node: int) -> int:
+        """The node by which a junction is known."""
+        while self._first.get(node, node) != node:
+            node = self._first[node]
+        return node
+
+    def join(self, one: int, other: int) -> None:
+        """Make one junction of those of two nodes."""
+        a, b = self.of(one), self.of(other)
+        self._first[max(a, b)] = min(a, b)
+        self._first.setdefault(min(a, b), min(a, b))
+
+    def has_joined(self, node: int) -> bool:
+        """Whether a node is one with another."""
+        return node in self._first
+
+
+def _bridge_gaps(net: Net, settings: Settings) -> None:
+    """Make one junction of two free ends that face each other across a gap."""
+    ends = [
+        (n, last) for n, line in enumerate(net.lines) for last in (False, True)
+        if line.junctions[last] in net.free_ends
+    ]  # fmt: skip
+    if len(ends) < 2:
+        return
+    legs = [end_leg(net.lines[n], last) for n, last in ends]
+    pitch_mm = legs[0].width_mm if not net.lines else net.lines[0].runs[0].view.pitch_mm
+    reach_mm = max(settings.gap_mm, 2.5 * pitch_mm) + 4 * max(leg.width_mm for leg in legs)
+    near = cKDTree([leg.end_mm for leg in legs]).query_pairs(reach_mm)
+    lifted = [
+        leg.at(end_of(_view_at(net, end), leg) or 0.0)
+        for leg, end in zip(legs, ends, strict=True)
+    ]
+    found = sorted(
+        (math.dist(lifted[a], lifted[b]), a, b) for a, b in near if _faces(legs[a], legs[b])
+    )
+    taken = set[int]()
+    for apart_mm, a, b in found:
+        width_mm = 0.5 * (legs[a].width_mm + legs[b].width_mm)
+        blank_mm = apart_mm - width_mm
+        if blank_mm > settings.gap_mm or taken & {a, b}:
+            continue
+        taken |= {a, b}
+        (one, last), (other, other_last) = ends[a], ends[b]
+        old = net.lines[other].junctions[other_last]
+        new = net.lines[one].junctions[last]
+        net.free_ends -= {old, new}
+        joined = list(net.lines[other].junctions)
+        joined[other_last] = new
+        net.lines[other].junctions = (joined[0], joined[1])
+
+
+def _view_at(net: Net, end: tuple[int, bool]) -> View:
+    """How the head sees a line at an end of it."""
+    return net.lines[end[0]].runs[-1 if end[1] else 0].view
+
+
+def end_leg(line: FeltLine, last: bool) -> Leg:
+    """The leg at an end of a line as it comes in there."""
+    return line.runs[-1].leg_in() if last else line.runs[0].leg_out().turned_round()
+
+
+def trimmed(line: FeltLine, last: bool, trim_mm: float, legs_mm: float) -> None:
+    """Leave out the stations at an end of a line that may have felt the junction, and make its leg longer."""
+    k = len(line.runs) - 1 if last else 0
+    run = line.runs[k]
+    off = round(min(trim_mm, TRIMMED_SHARE * run.length_mm) / run.view.step_mm)
+    kept = run.part(0, len(run) - off) if last else run.part(off, len(run))
+    line.runs[k] = replace(kept, legs_mm=max(run.legs_mm, min(legs_mm, kept.length_mm)))
+
+
+def _faces(one: Leg, other: Leg) -> bool:
+    """Whether two legs run towards each other on about one line."""
+    way = other.end_mm - one.end_mm
+    along = math.atan2(way[1], way[0])
+    aside = abs(way[1] * math.cos(one.heading_rad) - way[0] * math.sin(one.heading_rad))
+    turned = (turn(one.heading_rad, along), turn(along, other.heading_rad + math.pi))
+    return max(map(abs, turned)) < FACING and aside < ASIDE * one.width_mm

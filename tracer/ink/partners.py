@@ -1,0 +1,154 @@
+"""Partners: which legs of a junction are one line, all chosen at once, and the way from one to the other.
+
+Signals: the legs of a junction, each as it comes in, in; pairs of legs out, and the stretches (n, 2) mm from
+one leg's clean end to the other's.
+
+    smooth    the way bends little between two legs, what they bend themselves apart
+    vertex    two legs meet where the junction's lines meet: a corner
+
+Every pairing of the legs is weighed as a whole; the one that joins the most legs with the least turning
+holds. So three lines through one place keep their partners: a leg takes another's partner only if both are
+the better for it. The turning of a way is the bending of the cubic over it, less what its legs bend:
+
+    turning² = a² - a·b + b²       a, b: the turns at either end of the chord, each less half of bend · chord
+
+Source: our own; a cubic's energy of bending over a chord c is 4/c · (a² - a·b + b²).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from morfax.motion.arrays import Array
+from morfax.motion.curves import hermite
+from morfax.tracer.head.course import SMOOTH, on_ink, through_nodes
+from morfax.tracer.junctions.corner import Corner, sharp_corner
+from morfax.tracer.junctions.planner import BEYOND_MM, Planner
+from morfax.tracer.sensing.leg import Leg, turn
+
+# All limits below were chosen by trial on drawings of nets.
+SMOOTHLY = math.radians(22)  # a way that turns by no more between two legs is smooth
+AT_VERTEX = 0.6  # widths from where all legs meet: two legs that meet there may be a corner
+CORNERED = math.radians(30)  # a corner counts as turning so much more: a smooth way is likelier
+STRETCHED = math.radians(0.3)  # a way that is a width longer counts as turning so much more
+NOT_JOINED = 10.0  # rad: leaving two legs that may be joined costs more than any way
+FELT_NODES = 6  # places felt between two legs that a way goes through, where nothing else fits
+MOST_LEGS = 10  # 945 pairings; of more legs the straightest pairs are taken one after the other
+
+Pair = tuple[int, int]
+
+
+def partners(legs: Sequence[Leg], width_mm: float) -> list[Pair]:
+    """The pairs of legs that are one line; of an odd number one is left."""
+    count = len(legs)
+    costs = np.full((count, count), math.inf)
+    middle = meeting_place(legs)
+    for a in range(count):
+        for b in range(a + 1, count):
+            costs[a, b] = costs[b, a] = _turning(legs[a], legs[b], middle, width_mm)
+    if count > MOST_LEGS:
+        return _straightest_first(costs)
+    best = min(_pairings(tuple(range(count))), key=lambda pairs: _cost(pairs, costs))
+    return [pair for pair in best if math.isfinite(costs[pair])]
+
+
+def meeting_place(legs: Sequence[Leg]) -> Array:
+    """The place nearest to the lines of all legs, (x, y) mm; the mean of their ends if they are one line."""
+    ends = np.array([leg.end_mm for leg in legs])
+    headings = np.array([leg.heading_rad for leg in legs])
+    normals = np.column_stack([-np.sin(headings), np.cos(headings)])
+    sums = normals.T @ normals
+    middle = ends.mean(axis=0)
+    if np.linalg.eigvalsh(sums)[0] < SMOOTH**2:
+        return np.asarray(middle)
+    return np.asarray(np.linalg.solve(sums, normals.T @ np.sum(normals * ends, axis=1)))
+
+
+def way_through(
+    planner: Planner, incoming: Leg, outgoing: Leg, between: Array | None
+) -> list[Array]:
+    """Stretches (n, 2) mm from where the planner's head stands to the outgoing leg's clean end, or beyond.
+
+    `between` holds places that were felt between two legs that are alone there, if they are: then their ink
+    shows whether their corner is round.
+    """
+    onto = outgoing.end_mm, outgoing.heading_rad
+    smooth, corner = [hermite(*planner.stands, *onto)], Corner.of(incoming, outgoing)
+    ways = list[list[Array]]()
+    if between is not None:
+        ways.append(planner.through(incoming, outgoing, corner).stretches)
+    elif corner is not None and _is_corner(corner, planner.view.width_mm):
+        end_mm = max(0.0, BEYOND_MM - corner.before_mm)
+        ways.append(sharp_corner(planner.stands, corner, end_mm))
+    ways.append(smooth)
+    if between is not None and len(between) > 2:
+        some = between[:: max(1, len(between) // FELT_NODES)]
+        ways.append([_through_places(planner.stands, some, onto)])
+    return next((way for way in ways if on_ink(planner.view, way)), smooth)
+
+
+def _is_corner(corner: Corner, width_mm: float) -> bool:
+    """Whether two legs of a junction turn at a vertex, and do not go on smoothly."""
+    return corner.deflection_rad > SMOOTH and corner.nearest_mm > -width_mm
+
+
+def _through_places(
+    begin: tuple[Array, float], places: Array, end: tuple[Array, float]
+) -> Array:
+    """Cubics from a place and heading through places to another place and heading, (n, 2) mm."""
+    every = np.vstack([begin[0], places, end[0]])
+    chords = every[2:] - every[:-2]
+    headings = np.arctan2(chords[:, 1], chords[:, 0])
+    return through_nodes([begin, *zip(places, headings.tolist(), strict=True), end])
+
+
+def _turning(one: Leg, other: Leg, middle: Array, width_mm: float) -> float:
+    """By how much a way turns from one incoming leg onto another, rad; infinite if they are no line."""
+    out = other.turned_round()
+    chord = out.end_mm - one.end_mm
+    long = float(np.hypot(*chord))
+    if long < 1e-6:
+        return abs(turn(one.heading_rad, out.heading_rad))
+    along = math.atan2(chord[1], chord[0])
+    natural = 0.25 * long * (one.bend_per_mm + out.bend_per_mm)
+    a, b = turn(one.heading_rad, along) - natural, turn(along, out.heading_rad) - natural
+    # a + b is the whole turn; a - b tells by how far the legs miss each other
+    turning = math.sqrt(max(a * a + b * b - a * b, 0.0))
+    longer = STRETCHED * long / width_mm
+    if turning < SMOOTHLY:
+        return turning + longer
+    corner = Corner.of(one, out)
+    if corner is None or np.hypot(*(corner.vertex_mm - middle)) > AT_VERTEX * width_mm:
+        return math.inf
+    return CORNERED + corner.deflection_rad + longer
+
+
+def _pairings(left: tuple[int, ...]) -> Iterator[tuple[Pair, ...]]:
+    """All ways to make pairs of some, one left over if they are odd."""
+    if len(left) < 2:
+        yield ()
+        return
+    first, rest = left[0], left[1:]
+    for k, other in enumerate(rest):
+        for pairs in _pairings(rest[:k] + rest[k + 1 :]):
+            yield ((first, other), *pairs)
+    if len(left) % 2:
+        yield from _pairings(rest)
+
+
+def _cost(pairs: tuple[Pair, ...], costs: Array) -> float:
+    """What a pairing costs, rad; pairs that are no line are left out of it."""
+    return sum(min(costs[pair] ** 2, NOT_JOINED) for pair in pairs)
+
+
+def _straightest_first(costs: Array) -> list[Pair]:
+    """Pairs taken one after the other, the straightest first."""
+    left, pairs = costs.copy(), list[Pair]()
+    while np.isfinite(left).any():
+        a, b = np.unravel_index(int(np.argmin(left)), left.shape)
+        pairs.append((int(a), int(b)))
+        left[[a, b]] = left[:, [a, b]] = math.inf
+    return pairs

@@ -1,0 +1,139 @@
+"""Runs: clean stations of a line in the order of travel, and the legs at their ends.
+
+Signals: stations in, each with its place on the middle of the line (mm), heading (rad), bend (1/mm) and width
+(mm); the same along the parabolas through the stations about each out, as the head does with its drum.
+
+Source: our own.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numba import njit
+
+from morfax.motion.arrays import Array
+from morfax.tracer.head.course import FELT_LEGS
+from morfax.tracer.sensing.leg import Leg, leg_of
+from morfax.tracer.sensing.view import View
+
+LEAST_PLACES = 5  # for a parabola of their own; by trial
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """Clean stations of a line in the order of travel: places (n, 2) mm, headings rad, bends 1/mm, widths mm.
+
+    The view is the head's of that line.
+    """
+
+    places_mm: Array
+    headings_rad: Array
+    bends_per_mm: Array
+    widths_mm: Array
+    view: View
+    legs_mm: float = 0.0  # how long the legs at its ends are, if longer than the view's
+
+    def __len__(self) -> int:
+        return len(self.places_mm)
+
+    @property
+    def length_mm(self) -> float:
+        """Its length."""
+        return (len(self) - 1) * self.view.step_mm
+
+    def turned_round(self) -> Run:
+        """The same, to be run the other way."""
+        about = np.remainder(self.headings_rad[::-1] + 2 * math.pi, 2 * math.pi) - math.pi
+        return Run(
+            self.places_mm[::-1],
+            about,
+            -self.bends_per_mm[::-1],
+            self.widths_mm[::-1],
+            self.view,
+            self.legs_mm,
+        )
+
+    def part(self, first: int, last: int) -> Run:
+        """Its stations from one on up to another, that not included."""
+        part = slice(first, last)
+        return Run(
+            self.places_mm[part],
+            self.headings_rad[part],
+            self.bends_per_mm[part],
+            self.widths_mm[part],
+            self.view,
+            self.legs_mm,
+        )
+
+    def stations(self) -> Array:
+        """Centres and widths, (n, 3)."""
+        return np.column_stack([self.places_mm, self.widths_mm])
+
+    def leg_in(self) -> Leg:
+        """The leg that its last stations make."""
+        return leg_of(self.stations()[-self._leg_stations :], True, self._leg_mm)
+
+    def leg_out(self) -> Leg:
+        """The leg that its first stations make."""
+        return leg_of(self.stations()[: self._leg_stations], False, self._leg_mm)
+
+    @property
+    def _leg_mm(self) -> float:
+        return max(self.legs_mm, self.view.leg_mm)
+
+    @property
+    def _leg_stations(self) -> int:
+        return round(self._leg_mm / self.view.step_mm) + 1
+
+
+def smooth(run: Run) -> Run:
+    """A run whose places lie on the parabolas through the stations about each, with headings and bends."""
+    half_mm = FELT_LEGS * run.view.leg_mm
+    places, headings, bends = _parabolas(run.places_mm, half_mm, run.view.step_mm)
+    return replace(run, places_mm=places, headings_rad=headings, bends_per_mm=bends)
+
+
+@njit(cache=True)
+def _parabolas(places, half_mm, step_mm):  # type: ignore[no-untyped-def]
+    """Places, headings and bends of the parabolas through the places about each, weighted to the middle.
+
+    They solve for y = p0 + p1·x + p2·x² as the head's kernel does; few places make a straight line.
+    """
+    count, reach = len(places), int(half_mm / step_mm) + 1
+    smooth, headings, bends = np.empty((count, 2)), np.empty(count), np.zeros(count)
+    for n in range(count):
+        first, last = max(0, n - reach), min(count - 1, n + reach)
+        dx, dy = places[last, 0] - places[first, 0], places[last, 1] - places[first, 1]
+        long = max(math.hypot(dx, dy), 1e-9)
+        c, s = dx / long, dy / long
+        # the window is as long at the ends of the line, but to one side
+        half = max(half_mm, max(last - n, n - first) * step_mm * 1.01)
+        s0 = s1 = s2 = s3 = s4 = b0 = b1 = b2 = 0.0
+        for k in range(first, last + 1):
+            x = (places[k, 0] - places[n, 0]) * c + (places[k, 1] - places[n, 1]) * s
+            y = (places[k, 1] - places[n, 1]) * c - (places[k, 0] - places[n, 0]) * s
+            w = max(1.0 - (x / half) ** 2, 0.01)
+            xx = x * x
+            s0, s1, s2 = s0 + w, s1 + w * x, s2 + w * xx
+            s3, s4 = s3 + w * xx * x, s4 + w * xx * xx
+            b0, b1, b2 = b0 + w * y, b1 + w * x * y, b2 + w * xx * y
+        d0, d1, d2 = s2 * s4 - s3 * s3, s2 * s3 - s1 * s4, s1 * s3 - s2 * s2
+        det = s0 * d0 + s1 * d1 + s2 * d2
+        one_sided = n - first < 2 or last - n < 2
+        if last - first + 1 < LEAST_PLACES or one_sided or det <= 1e-12 * s0 * s2 * s4:
+            flat = s0 * s2 - s1 * s1
+            p2 = 0.0
+            p1 = (s0 * b1 - s1 * b0) / flat if flat > 0 else 0.0
+            p0 = (b0 - p1 * s1) / s0
+        else:
+            d11, d12, d22 = s0 * s4 - s2 * s2, s1 * s2 - s0 * s3, s0 * s2 - s1 * s1
+            p0 = (d0 * b0 + d1 * b1 + d2 * b2) / det
+            p1 = (d1 * b0 + d11 * b1 + d12 * b2) / det
+            p2 = (d2 * b0 + d12 * b1 + d22 * b2) / det
+        smooth[n, 0], smooth[n, 1] = places[n, 0] - p0 * s, places[n, 1] + p0 * c
+        headings[n] = math.atan2(s, c) + math.atan(p1)
+        bends[n] = 2.0 * p2 / (1.0 + p1 * p1) ** 1.5
+    return smooth, headings, bends

@@ -1,0 +1,163 @@
+"""Felt stretches of a sheet: its graph, what the cells felt along every stretch, and how wide each line is.
+
+Signals: the patches of a sheet in; stations along each stretch of its ink out (see `felt`).
+
+The sheet is seen through a few apertures, and each of these pictures is made once.
+
+Source: our own.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import cv2
+import numpy as np
+
+from morfax.motion.arrays import Array
+from morfax.motion.polyline import length_mm
+from morfax.tracer.drawing.components import Mask
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.strokes import INK, Sheet
+from morfax.tracer.following.plain_places import FAINTEST, aperture_for
+from morfax.tracer.head.settings import Settings
+from morfax.tracer.ink.felt import feel_along
+from morfax.tracer.ink.graph import RING, Graph
+from morfax.tracer.ink.run import Run
+from morfax.tracer.sensing import photocell
+from morfax.tracer.sensing.photocell import LEVEL, Cells
+from morfax.tracer.sensing.view import View
+
+# All limits below were chosen by trial on drawings of nets.
+SOFTENED_PX = 0.7  # as patches are found (see `drawing.strokes`)
+APERTURES_MM = 0.02  # cells of about one aperture are the same cells
+SHORT_WIDTHS = 30.0  # a shorter stretch is judged by the widths of those beside it, too
+STEADY_WIDTHS, STEADY = 4.0, 0.15  # as long, and so evenly wide: that is the line's own width
+
+
+@dataclass(frozen=True, slots=True)
+class FeltSheet:
+    """The stretches of a sheet as they were felt: what nets are made of."""
+
+    graph: Graph
+    felt: list[Run]
+    widths_mm: list[float]
+    settings: Settings
+
+    @classmethod
+    def of(cls, whole_sheet: Sheet, settings: Settings) -> FeltSheet:
+        """Find and feel the stretches of a sheet."""
+        seen = _Seen(whole_sheet.drawing, settings)
+        graph = Graph.of(_ink(whole_sheet))
+        felt = _felt(graph, seen)
+        return cls(graph, felt, _line_widths(graph, felt, graph.at_nodes(), settings), settings)
+
+
+@dataclass(slots=True)
+class _Seen:
+    """The sheet through its cells: those of an aperture are made once."""
+
+    drawing: Drawing
+    settings: Settings
+    made: dict[float, Cells] = field(default_factory=dict)
+
+    def view(self, guide_mm: Array, width_mm: float) -> View:
+        """How the head sees a line along a guide."""
+        spot_mm = self.settings.aperture_mm or aperture_for(self.drawing, width_mm)
+        spot_mm = APERTURES_MM * round(spot_mm / APERTURES_MM)
+        if spot_mm not in self.made:
+            self.made[spot_mm] = photocell.behind_aperture(self.drawing, spot_mm)
+        view = View(self.made[spot_mm], width_mm)
+        some = guide_mm[:: max(1, len(guide_mm) // 50)]
+        dark = float(np.median([view.darkness_at(place) for place in some]))
+        return view.at_level(LEVEL * max(dark, FAINTEST))
+
+
+def _ink(sheet: Sheet) -> Mask:
+    """The ink of a sheet's lines: without filled shapes."""
+    soft = cv2.GaussianBlur(sheet.drawing.darkness, (0, 0), SOFTENED_PX)
+    ink = (soft > INK).view(np.uint8)
+    if sheet.are_solid.any():
+        rows, columns = ink.shape
+        ink &= 1 - sheet.patches.painted(sheet.are_solid, 0, rows, 0, columns)
+    return ink
+
+
+def _felt(graph: Graph, seen: _Seen) -> list[Run]:
+    """What the cells feel along every stretch."""
+    drawing = seen.drawing
+    places = graph.places_mm(drawing)
+    felt = []
+    for stretch in graph.stretches:
+        half_px = max(float(np.median(graph.depths_px[stretch.pixels])) - 0.5, 0.5)
+        width_mm = 2 * half_px * drawing.pitch_mm
+        guide = _softened(places[stretch.pixels], round(2 * half_px))
+        felt.append(feel_along(seen.view(guide, width_mm), guide))
+    return felt
+
+
+def _softened(places: Array, reach: int) -> Array:
+    """Places each averaged with as many before as behind it, fewer near the ends, which stay."""
+    count = len(places)
+    at = np.arange(count)
+    reaches = np.minimum(np.minimum(at, count - 1 - at), reach)
+    sums = np.vstack([np.zeros(2), np.cumsum(places, axis=0)])
+    return np.asarray(
+        (sums[at + reaches + 1] - sums[at - reaches]) / (2 * reaches + 1)[:, None]
+    )
+
+
+def with_width(run: Run, width_mm: float) -> Run:
+    """A run as a head sees it that knows the line's width."""
+    return replace(run, view=replace(run.view, width_mm=width_mm))
+
+
+def felt_mm(run: Run) -> float:
+    """Length of a felt stretch."""
+    return length_mm(run.places_mm)
+
+
+def _line_widths(
+    graph: Graph, felt: list[Run], at: dict[int, list[int]], settings: Settings
+) -> list[float]:
+    """The width of the line of each stretch, mm: its own, and of a short one that of those beside it."""
+    own = []
+    for run in felt:
+        known = run.widths_mm[np.isfinite(run.widths_mm)]
+        own.append(float(np.median(known)) if len(known) else run.view.width_mm)
+    if settings.line_width_mm:
+        return [settings.line_width_mm] * len(own)
+    lengths = [felt_mm(run) for run in felt]
+    found = []
+    for n, stretch in enumerate(graph.stretches):
+        if (
+            lengths[n] > SHORT_WIDTHS * own[n]
+            or stretch.nodes[0] == RING
+            or _is_steady(felt[n])
+        ):
+            found.append(own[n])
+            continue
+        beside = {n, *(m for node in stretch.nodes for m in at[node])}
+        further = {
+            m for k in beside for node in graph.stretches[k].nodes for m in at.get(node, ())
+        }
+        found.append(_weighted_median([own[m] for m in further], [lengths[m] for m in further]))
+    return found
+
+
+def _is_steady(run: Run) -> bool:
+    """Whether a line is as wide everywhere, but near its ends: ink that two lines share is not."""
+    fifth = len(run) // 5
+    widths = run.widths_mm[fifth : len(run) - fifth]
+    known = widths[np.isfinite(widths)]
+    if run.length_mm < STEADY_WIDTHS * run.view.width_mm or len(known) < len(widths):
+        return False
+    narrow_mm, wide_mm = np.percentile(known, (10, 90))
+    return bool(wide_mm - narrow_mm < STEADY * wide_mm)
+
+
+def _weighted_median(values: list[float], weights: list[float]) -> float:
+    """The value below which lies half of the weight."""
+    order = np.argsort(values)
+    sums = np.cumsum(np.asarray(weights)[order])
+    return float(np.asarray(values)[order][np.searchsorted(sums, 0.5 * sums[-1])])

@@ -1,0 +1,256 @@
+"""The head on a chain of lines: it follows each clean run, and runs through what lies between from memory.
+
+Signals: a chain and the junctions it goes through in; a stroke out, positions of the screws (n, 2) mm at the
+motion rate.
+
+    clean run ───── junction ───── clean run ───── corner ───── …
+     kernel          way            kernel          way
+
+The head follows by its swinging cell up to its lead before a run's end, and where its guard cells see what is
+no clean line it goes on for a while along what was felt there. It never has to search: all junctions are
+known. If its path leaves the line that was felt it goes back to where it was on it, and runs that piece from
+memory.
+
+Source: our own; see `tracer.head` for the head itself.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from morfax.motion.arrays import Array
+from morfax.motion.motion import MOTION_RATE_HZ
+from morfax.tracer.head import course
+from morfax.tracer.head.carriage import CHUNK, Carriage, Mark
+from morfax.tracer.head.leaders import STATIONS, Led
+from morfax.tracer.head.settings import Settings
+from morfax.tracer.head.stance import Stance
+from morfax.tracer.head.state import CHANGED, MORE, Home
+from morfax.tracer.ink.chains import Chain, Junctions, Side
+from morfax.tracer.ink.partners import way_through
+from morfax.tracer.ink.run import Run
+from morfax.tracer.junctions.planner import Planner
+from morfax.tracer.sensing.leg import Leg
+from morfax.tracer.sensing.view import View
+
+# All limits below were chosen by trial on drawings of nets.
+NODES_MM = 0.25  # between the felt places that a course goes through
+ONTO_MM, ONTO_SHARE = (
+    0.3,
+    0.4,
+)  # from the last of them onto a leg: so far, or this share of its run
+LEAST_MM = 0.15  # a shorter way before that is none
+NEAR_MM = 2.0  # a head further from a leg's end is before it, however the line has come round
+BEYOND_LEADS = 0.5  # leads: a piece that is no longer beyond its lead is run from memory
+STRAYED = 0.3  # widths: a head so far beside what was felt has left the line
+LOOKED_AT = 60  # one position in so many is held against what was felt
+SWELLS = 0.5  # the share of a change of a line's width that the head takes over at once
+NOTHING = np.empty((0, 2))  # was felt between
+NEVER_HOME = Home(0.0, 0.0, 0.0, math.inf)
+
+Told = Callable[[float], None]
+
+
+class InkStroke(NamedTuple):
+    """A stroke: its way (n, 2) mm at the motion rate, whether it closes, the line's width in mm, who led."""
+
+    way_mm: Array
+    closed: bool
+    width_mm: float
+    led: Led = Led()
+
+
+class Piece(NamedTuple):
+    """A clean run of a chain, and what was felt between it and the one before, (n, 2) mm.
+
+    None if other lines meet there.
+    """
+
+    run: Run
+    between: Array | None
+
+
+def stroke_along(
+    chain: Chain, junctions: Junctions, settings: Settings, told: Told | None = None
+) -> InkStroke:
+    """Run the head along a chain; `told` hears the travel, mm."""
+    pieces = _pieces(chain, junctions)
+    longest = max(pieces, key=lambda piece: len(piece.run)).run
+    if chain.closed:
+        pieces = _cut_open(pieces)
+    first, last = pieces[0].run, pieces[-1].run
+    begins, ends = (
+        (first.places_mm[0], first.headings_rad[0]),
+        (last.places_mm[-1], last.headings_rad[-1]),
+    )
+    if not chain.closed:
+        begin, end = chain.links[0], chain.links[-1]
+        back_mm = junctions.end_mm(Side(begin.line, begin.back))
+        on_mm = junctions.end_mm(Side(end.line, not end.back))
+        out, into = first.leg_out(), last.leg_in()
+        begins = out.at(-back_mm), out.heading_at(-back_mm)
+        ends = into.at(on_mm), into.heading_at(on_mm)
+    head = InkHead(
+        Carriage(Stance(*begins, first.view), settings, MOTION_RATE_HZ), settings, told
+    )
+    head.set_out(first, *begins)
+    for k, piece in enumerate(pieces):
+        head.follow(piece.run)
+        if k + 1 < len(pieces):
+            head.through(piece.run, pieces[k + 1])
+    head.arrive(last, ends)
+    return InkStroke(
+        head.carriage.positions_mm, chain.closed, longest.view.width_mm, head.carriage.led
+    )
+
+
+def _pieces(chain: Chain, junctions: Junctions) -> list[Piece]:
+    """The clean runs of a chain in the order and the sense in which they are run."""
+    pieces = list[Piece]()
+    for link in chain.links:
+        line = junctions.net.lines[link.line]
+        alone = len(junctions.at(Side(link.line, link.back)).sides) == 2
+        runs = [run.turned_round() for run in line.runs[::-1]] if link.back else line.runs
+        parted = [places[::-1] for places in line.parted[::-1]] if link.back else line.parted
+        pieces.append(Piece(runs[0], NOTHING if alone else None))
+        pieces += [Piece(run, places) for run, places in zip(runs[1:], parted, strict=True)]
+    return pieces
+
+
+def _cut_open(pieces: list[Piece]) -> list[Piece]:
+    """The pieces of a closed chain from the middle of its longest run round to there."""
+    k = max(range(len(pieces)), key=lambda n: len(pieces[n].run))
+    run, between = pieces[k]
+    middle = len(run) // 2
+    later, sooner = run.part(middle, len(run)), run.part(0, middle + 1)
+    return [Piece(later, NOTHING), *pieces[k + 1 :], *pieces[:k], Piece(sooner, between)]
+
+
+@dataclass
+class InkHead:
+    """The head on its carriage."""
+
+    carriage: Carriage
+    settings: Settings
+    told: Told | None = None
+    at: int = 0  # the station at which it left off following the newest run
+
+    def set_out(self, run: Run, place_mm: Array, heading_rad: float) -> None:
+        """Stand at the beginning of a stroke, aimed along it."""
+        self.carriage.aim(
+            run.view, Leg(place_mm, heading_rad, 0.0, run.view.width_mm, run.stations())
+        )
+
+    def follow(self, run: Run) -> None:
+        """Follow a run, from about its first station, up to the lead before its end."""
+        at, view, carriage = 0, run.view, self.carriage
+        while True:
+            self.at = at = self._station(run, at)
+            left_mm = (len(run) - 1 - at) * view.step_mm - carriage.tuning.lead_mm
+            if left_mm < BEYOND_LEADS * carriage.tuning.lead_mm:
+                return
+            view, at = self._chunk(run, view, at, left_mm)
+            if self.told is not None:
+                self.told(carriage.travel_mm)
+
+    def _chunk(self, run: Run, view: View, at: int, left_mm: float) -> tuple[View, int]:
+        """Follow for a while; from memory where the cells see no clean line, or have left it."""
+        carriage = self.carriage
+        mark = carriage.mark()
+        samples = math.ceil(left_mm / self.settings.speed_mm_s * MOTION_RATE_HZ)
+        why = carriage.follow(view, NEVER_HOME, min(samples, CHUNK))
+        if self._strayed(run, at, mark):
+            carriage.back_to(mark)
+        elif why == MORE:
+            return view, at
+        elif why == CHANGED:
+            view = view.like(*carriage.stands(), follows=SWELLS)
+            carriage.retune(view)
+            return view, at
+        at = self._station(run, at)
+        on = min(len(run) - 1, at + round(view.leg_mm / view.step_mm))
+        self._from_memory(run, at, on)
+        carriage.aim(view, _leg_at(run, on))
+        return view, on
+
+    def _strayed(self, run: Run, at: int, mark: Mark) -> bool:
+        """Whether the newest positions have left what was felt."""
+        newest = self.carriage.since(mark)[::LOOKED_AT]
+        if not len(newest):
+            return False
+        beyond = round(
+            (len(newest) * LOOKED_AT / MOTION_RATE_HZ * self.settings.speed_mm_s + 1)
+            / run.view.step_mm
+        )
+        felt = run.places_mm[max(0, at - 20) : at + beyond]
+        gaps = newest[:, None] - felt[None]
+        away = np.sqrt(np.min(np.sum(gaps * gaps, axis=2), axis=1))
+        return bool(away.max() > STRAYED * run.view.width_mm)
+
+    def through(self, run: Run, onward: Piece) -> None:
+        """From a run's end through what parts it from the next, and aimed at that."""
+        incoming, outgoing = run.leg_in(), onward.run.leg_out()
+        back_mm = min(ONTO_MM, ONTO_SHARE * run.length_mm)
+        stands, before = self.carriage.stands(), list[Array]()
+        if self._ahead_mm(incoming) > back_mm + LEAST_MM:
+            onto = incoming.at(-back_mm), incoming.heading_at(-back_mm)
+            before, stands = [self._course(run, self._station(run, self.at), onto)], onto
+        planner = Planner(run.view, stands, self.carriage.trail, self.settings)
+        way = way_through(planner, incoming, outgoing, onward.between)
+        self.carriage.run([np.vstack([*before, way[0]]), *way[1:]], self.settings.speed_mm_s)
+        # aimed at the line where the way has come onto it
+        along_mm = max(0.0, -course.ahead_mm(way[-1][-1], outgoing))
+        leg = outgoing.shifted(along_mm, onward.run.stations())
+        self.carriage.aim(onward.run.view, leg)
+
+    def _ahead_mm(self, leg: Leg) -> float:
+        """How far the head is before a leg's clean end, mm along the leg."""
+        place, _ = self.carriage.stands()
+        ahead_mm = course.ahead_mm(place, leg)
+        return ahead_mm if math.dist(place, leg.end_mm) < NEAR_MM else math.inf
+
+    def arrive(self, run: Run, end: tuple[Array, float]) -> None:
+        """From a run's end to the end of the stroke."""
+        self.carriage.run([self._course(run, self._station(run, self.at), end)])
+
+    def _from_memory(self, run: Run, first: int, last: int) -> None:
+        """Run along what was felt from one station to another."""
+        end = run.places_mm[last], float(run.headings_rad[last])
+        self.carriage.run([self._course(run, first, end)], self.settings.speed_mm_s, STATIONS)
+
+    def _course(self, run: Run, at: int, end: tuple[Array, float]) -> Array:
+        """From where the head stands along a run's stations to a place and heading, (n, 2) mm."""
+        stands = self.carriage.stands()
+        spacing = max(1, round(NODES_MM / run.view.step_mm))
+        nodes = [stands]
+        way = np.array([math.cos(end[1]), math.sin(end[1])])
+        for k in range(at + spacing, len(run), spacing):
+            place = run.places_mm[k]
+            if (end[0] - place) @ way < 0.5 * NODES_MM and math.dist(end[0], place) < 2.0:
+                break
+            nodes.append((place, float(run.headings_rad[k])))
+        return course.through_nodes([*nodes, end])
+
+    def _station(self, run: Run, at: int) -> int:
+        """The station of a run, from one on, at which the head stands."""
+        place, _ = self.carriage.stands()
+        away = np.hypot(*(run.places_mm[at:] - place).T)
+        # the nearest of those before the run comes by again
+        near = int(np.argmin(away[: 1 + round((away[0] + 12.0) / run.view.step_mm)]))
+        return at + near
+
+
+def _leg_at(run: Run, at: int) -> Leg:
+    """A leg that begins at a station of a run."""
+    return Leg(
+        run.places_mm[at],
+        float(run.headings_rad[at]),
+        float(run.bends_per_mm[at]),
+        run.view.width_mm,
+        run.stations()[at:],
+    )
