@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from morfax.player.gcode.rs274 import read_rs274
-from morfax.recorder.gcode.machine import as_toml, names
+from morfax.recorder.gcode.machine import as_toml, machine, names
 from tests.console.conftest import SAMPLES, Morfax
 
 CAM = SAMPLES / "cam.csv"
@@ -90,10 +90,21 @@ def test_a_pen_needs_no_depth(morfax: Morfax, here: Path) -> None:
 def test_a_program_is_read_back_as_its_machine_reads_it(morfax: Morfax, here: Path) -> None:
     words = ("record", CAM, "-o", "a.ngc", "--machine", "qtplasmac")
     assert morfax(*words).exit_code == 0
-    for machine in ((), ("--machine", "qtplasmac")):
-        figures = morfax("compare", "a.ngc", CAM, *machine, "--json").figures
+    for given in ((), ("--machine", "qtplasmac")):
+        figures = morfax("compare", "a.ngc", CAM, *given, "--json").figures
         assert figures["largest_mm"] <= 0.010  # um of what was written
     assert morfax("play", "a.ngc", "--machine", "mach3").exit_code == 2
+
+
+@pytest.mark.parametrize("name", names())
+def test_what_was_written_for_a_machine_is_read_back_within_10_um(
+    name: str, morfax: Morfax, here: Path
+) -> None:
+    program = f"a{machine(name).suffix}"
+    assert morfax("record", CAM, "-o", program, "--machine", name).exit_code == 0
+    compared = morfax("compare", program, CAM, "--machine", name, "--json")
+    # um: of G-code; whole steps of a plotter, 25, put a place off by up to 18
+    assert compared.figures["largest_mm"] <= (0.025 if name == "hpgl" else 0.010)
 
 
 def test_a_fast_program_is_compared_as_well_as_a_slow_one(morfax: Morfax, here: Path) -> None:

@@ -66,6 +66,15 @@ def test_a_dxf_becomes_g_code_at_the_feed(part: Path, morfax: Morfax) -> None:
     assert morfax("compare", part, "part.ngc", "--json").figures["largest_mm"] < 0.012
 
 
+def test_a_program_with_z_of_a_drawing_without_depths_says_so(
+    morfax: Morfax, here: Path
+) -> None:
+    assert morfax("record", SAMPLES / "cam.csv", "-o", "part.dxf").exit_code == 0
+    told = "part.dxf says no depth: the tool runs along its lines at Z0"
+    assert told in morfax("record", "part.dxf", "-o", "a.ngc").err
+    assert told not in morfax("record", "part.dxf", "-o", "a.nc", "--machine", "grbl-pen").err
+
+
 def test_a_drawing_without_a_unit_is_refused_and_takes_one(here: Path, morfax: Morfax) -> None:
     svg = '<svg xmlns="http://www.w3.org/2000/svg" width="90" height="90"><path d="M 0 0 L 9 0"/></svg>'
     Path("part.svg").write_text(svg)
