@@ -8,12 +8,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from morfax.jobs.correct import CorrectJob
 from morfax.jobs.correction_settings import CorrectionSettings
-from morfax.jobs.settings import DrawingFile
+from morfax.jobs.lines import LinesJob
+from morfax.jobs.settings import DrawingFile, LineSettings, ProgramSettings, TraceSettings
+from morfax.jobs.trace import TraceJob, TraceOutputs
 from morfax.jobs.wrong_use import WrongUse
 from morfax.motion.faults import CardFault, DrawingFault
+from morfax.motion.polyline import area_mm2
+from morfax.reports.numbered import draw_numbered
 from morfax.tracer.corrections.corrections import Correction, Place, Span
 from tests.console.conftest import SAMPLES
 from tests.jobs.test_jobs import Recording
@@ -97,8 +102,6 @@ def test_corrections_of_another_picture(bracket: DrawingFile) -> None:
 
 
 def test_a_drawing_without_a_scale_is_corrected_in_pixels(here: Path) -> None:
-    from PIL import Image
-
     with Image.open(SAMPLES / "bracket.png") as image:
         Image.fromarray(np.asarray(image)).save("bare.png")
     bare = DrawingFile(Path("bare.png"))
@@ -116,3 +119,63 @@ def test_a_file_that_cannot_be_edited_is_left_as_it_is(bracket: DrawingFile) -> 
     with pytest.raises(CardFault, match="cannot be edited"):
         CorrectJob(bracket, undo=1).run()
     assert file.read_text() == text
+
+
+def test_start_direction_and_reference_point_are_those_of_the_corrections(
+    bracket: DrawingFile,
+) -> None:
+    """The hole of the bracket is not its longest line; a start that is asked for goes first."""
+    hole = Correction("start", (Place(50.5, 26.04, "mm"),), direction="cw")
+    CorrectJob(bracket, (hole, Correction("reference", (Place(5, 5, "mm"),)))).run()
+    outputs = TraceOutputs(path=Path("a.csv"), program=Path("a.ngc"))
+    settings = TraceSettings(program=ProgramSettings(zero="reference"))
+    result = TraceJob(bracket, outputs, settings).run()
+    assert result.figures["length_mm"] == pytest.approx(2 * np.pi * 11, abs=0.02)
+    assert area_mm2(result.traced.trace.lines[0].xy_mm) < 0  # clockwise
+    assert result.figures["corrections"] == 2
+    laid = result.drawing.corrected
+    assert laid is not None
+    head = Path("a.ngc").read_text().splitlines()[1]
+    assert head == f"(from bracket.png with corrections {laid.fingerprint})"
+    own = TraceSettings(LineSettings(start_mm=(42.8, 6.99)))
+    asked = TraceJob(bracket, TraceOutputs(Path("b.csv")), own).run()
+    assert asked.figures["length_mm"] == pytest.approx(227.5, abs=0.1)
+
+
+def test_turns_and_stops_that_served_nothing_are_told(bracket: DrawingFile) -> None:
+    each = (
+        Correction("left", (Place(60, 7, "mm"),)),
+        Correction("stop", (Place(42.8, 7.5, "mm"),)),
+        Correction("not-stop", (Place(42.8, 20, "mm"),)),
+    )
+    CorrectJob(bracket, each).run()
+    heard = Recording()
+    result = TraceJob(bracket, TraceOutputs(Path("a.csv"))).run(heard)
+    told = [text for _, text in heard.said if "changed nothing" in text]
+    assert told == [
+        "correction 1 of bracket.morfax.toml, left at 60.00, 7.00 mm, changed nothing:"
+        " the head came to no junction there with such a way out",
+        "correction 3 of bracket.morfax.toml, not-stop at 42.80, 20.00 mm, changed nothing:"
+        " no line that the head followed has a mark to strike out there",
+    ]
+    assert len(result.figures["stops"]) == 1
+
+
+def test_a_picture_shows_the_corrections(bracket: DrawingFile) -> None:
+    CorrectJob(bracket, (RUB, STOP, Correction("left", (Place(500, 300),)))).run()
+    picture = Path("lines.png")
+    draw_numbered(LinesJob(bracket, picture=picture).run())
+    with Image.open(picture) as image:
+        seen = np.asarray(image.convert("RGB")).astype(int)
+    magenta = np.array([0xD1, 0x00, 0xB8])
+    assert np.count_nonzero(np.abs(seen - magenta).sum(axis=2) < 30) > 50  # pixels of the marks
+
+
+def test_edges_of_filled_shapes_take_no_ink(here: Path) -> None:
+    levels = np.full((300, 300), 255, np.uint8)
+    levels[100:200, 100:200] = 0
+    Image.fromarray(levels).save("square.png", dpi=(300, 300))
+    square = DrawingFile(Path("square.png"), edge=True)
+    CorrectJob(square, (Correction("rub", (Place(100, 100),)),)).run()
+    with pytest.raises(CardFault, match="cannot be served with --edge"):
+        square.open()
