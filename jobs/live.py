@@ -128,6 +128,8 @@ class Outlet:
             raise WrongUse(
                 f"a tape goes to a device or to a file: leave out --device, or -o {output}"
             )
+        if self.stereo and output is None:
+            raise WrongUse("--stereo writes two files; give -o a name such as cam.wav")
         if self.stereo and (self.device is not None or str(output) == PIPE):
             raise WrongUse("--stereo is for files; give -o a name such as cam.wav")
 

@@ -52,6 +52,7 @@ class ByHand:
     machine: str | None = (
         None  # that a G-code program is for: a built-in one's name, or a .toml file
     )
+    second: FilePath | None = None  # the other file of a tape in two stereo files
     label: FilePath | None = (
         None  # a file that says what a text chunk would, or a tape that has one
     )
@@ -59,14 +60,14 @@ class ByHand:
     def given(self) -> dict[str, Any]:
         """What was set of the tape itself."""
         values = asdict(self)
-        del values["label"]
+        del values["label"], values["second"]
         return {name: value for name, value in values.items() if value is not None}
 
     def refuse_label(self, verb: str) -> None:
-        """Raise WrongUse for a label where a verb takes none."""
-        if self.label is not None:
+        """Raise WrongUse for a label or a second file where a verb takes none."""
+        if self.label is not None or self.second is not None:
             raise WrongUse(
-                f"{verb} takes no --label; give --reference-frequency, --cycles-per-mm and --from"
+                f"{verb} takes no --label and no --second; give one file that says its format"
             )
 
     def labelled(self) -> str:
@@ -80,13 +81,21 @@ class ByHand:
     def opener(self, file: FilePath) -> Callable[[], Source] | None:
         """What opens the source of a tape that is more than its file; None: the file says all."""
         text = self.labelled()
-        if not text:
+        if not text and self.second is None:
             return None
         from morfax.recorder.sound.source import FileSource
 
+        second, reference_hz = self.second, self.reference_hz
+
         def opened() -> Source:
-            source = FileSource(file)
-            source.text = text
+            source: Source = FileSource(file)
+            if second is not None:
+                from morfax.player.tape.stereo import StereoSource
+                from morfax.recorder.tape.stated import stated_hz
+
+                hz = reference_hz or stated_hz(text or source.text)
+                source = StereoSource(source, FileSource(second), hz)
+            source.text = text or source.text
             return source
 
         return opened
@@ -123,10 +132,10 @@ class ByHand:
                     f"--machine is for G-code, {', '.join(medium.BLOCKS)}; {file} is none: leave it out"
                 )
             chosen(machine, program=file)
-        if (given or self.label) and control_of(file) != TAPE:
+        if (given or self.label or self.second) and control_of(file) != TAPE:
             raise WrongUse(
-                "--reference-frequency, --cycles-per-mm, --from, --tracks, --still, --alike, --closed and "
-                f"--label are for tapes; {file} is none"
+                "--reference-frequency, --cycles-per-mm, --from, --tracks, --still, --alike, --closed, "
+                f"--label and --second are for tapes; {file} is none"
             )
         return given if machine is None else {"machine": machine}
 
@@ -203,6 +212,8 @@ class Playing:
             return play(self.file if opener is None else opener, **given, **self.settings)
         if by_hand.machine is not None:
             raise WrongUse("--machine is for files of G-code, not for a pipe; leave it out")
+        if by_hand.second is not None:
+            raise WrongUse("--second is for files, not for a pipe or a device; leave it out")
         from morfax.player.tape.playback import play_live
 
         return play_live(self.intake.source(by_hand.labelled()), **by_hand.given())

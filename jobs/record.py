@@ -110,6 +110,10 @@ class RecordJob:
         if self.output is None:
             name = FilePath(f"{self.source.stem}.wav")
             return medium.made_up(name, self.source, force=self.force)
+        if self.outlet.stereo:
+            for half in self._halves(self.output):
+                medium.outgoing(half, self.source)
+            return self.output
         return medium.outgoing(self.output, self.source)
 
     def _called(self, program: FilePath) -> dict[str, Any]:
@@ -119,7 +123,20 @@ class RecordJob:
         if self._is_live:
             where = "the pipe" if outlet.device is None else f"device {outlet.device}"
             return {"tape": where, **label}
+        if outlet.stereo:
+            return {"tapes": [str(half) for half in self._halves(program)], **label}
         return {medium.called(program): str(program), **label}
+
+    @staticmethod
+    def _halves(program: FilePath) -> tuple[FilePath, FilePath]:
+        """The names of two stereo files; raises WrongUse where the medium is no tape."""
+        from morfax.recorder.tape.halves import half_names
+
+        if not medium.is_tape(program):
+            raise WrongUse(
+                f"--stereo is for tapes, {', '.join(medium.TAPES)}; give -o such a name, or leave it out"
+            )
+        return half_names(program)
 
     def _recorder_settings(self, program: FilePath) -> dict[str, Any]:
         """Settings as the recorder of this medium takes them."""
@@ -154,11 +171,15 @@ class RecordJob:
         fmt = replace(settings["fmt"], axes=path.axes, start_mm=())
         with settings_checked():
             fmt = self.outlet.suited(fmt)
-        name = next(iter(self._called(program).values()))
-        stream = _told(path, FilePath(name).name, listener, fmt.motion_rate_hz)
+        name = self.outlet.device or program.name
+        stream = _told(path, name, listener, fmt.motion_rate_hz)
         stream = rehearsed(stream, fmt, listener)
         if self._is_live:
             done = self.outlet.record(stream, fmt)
+        elif self.outlet.stereo:
+            from morfax.recorder.tape.halves import record_halves
+
+            done = record_halves(stream, program, fmt)
         else:
             from morfax.recorder.tape.tape import record as record_tape
 

@@ -49,6 +49,12 @@ def outlet_options(verb: Callable[..., Any]) -> Callable[..., Any]:
     )
     @option(
         "Tape",
+        "--stereo",
+        is_flag=True,
+        help="Record two stereo files, of -o cam.wav: cam.1-2.wav (reference, X) and cam.3-4.wav (Y, Z).",
+    )
+    @option(
+        "Tape",
         "--standstill",
         "standstill_s",
         type=TIME,
@@ -58,11 +64,12 @@ def outlet_options(verb: Callable[..., Any]) -> Callable[..., Any]:
     def with_outlet(
         *args: Any,
         device: str | None,
+        stereo: bool,
         label: FilePath | None,
         standstill_s: float | None,
         **options: Any,
     ) -> Any:
-        outlet = Outlet(device, False, label, standstill_s)
+        outlet = Outlet(device, stereo, label, standstill_s)
         return verb(*args, outlet=outlet, **options)
 
     return with_outlet

@@ -50,6 +50,12 @@ def tape_options(verb: Callable[..., Any]) -> Callable[..., Any]:
     )
     @option(
         "Tape",
+        "--second",
+        type=FILE,
+        help="The other file of a tape in two stereo files; their check signal joins them.",
+    )
+    @option(
+        "Tape",
         "--label",
         type=FILE,
         help="Take what the tape does not say from a label (.json, see record --label), or from another "

@@ -22,7 +22,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import DeviceFault
-from morfax.recorder.sound.source import Frames
+from morfax.recorder.sound.source import Frames, Stored, full_scale
 
 WINDOW_S = 0.02  # in which a level is told: 100 cycles of a carrier
 SETTLING = 10  # windows of carriers before the programme begins, 0.2 s: chosen
@@ -84,3 +84,25 @@ def _nothing(name: str, wait_s: float, rms: Array) -> str:
         f"no tape came from {name} in {wait_s:g} s: its tracks are at {levels} dB of full scale, and a "
         "carrier is above -43 dB; start the recorder, check cables and levels (morfax devices --meters)"
     )
+
+
+def programme_within(blocks: Iterator[Stored], rate_hz: int) -> tuple[int, int] | None:
+    """The first frame of a recording's programme and the one behind its last; None for silence."""
+    window, left, levels = round(WINDOW_S * rate_hz), None, []
+    for block in blocks:
+        frames = full_scale(block)
+        frames = frames if left is None else np.concatenate([left, frames])
+        count = len(frames) // window
+        left = frames[count * window :]
+        levels.append(_levels(frames[: count * window], window))
+    level = np.concatenate(levels) if levels else np.zeros((0, 1))
+    up = np.asarray((level > LEAST_LEVEL).all(axis=1))
+    runs = np.flatnonzero(np.convolve(up, np.ones(SETTLING), "valid") == SETTLING)
+    if not len(runs):
+        return None
+    first, last = int(runs[0]), int(np.flatnonzero(up)[-1]) + 1
+    first += (
+        SETTLING if first else 0
+    )  # a recording that begins with carriers has no silence to leave
+    last -= MARGIN if last < len(up) else 0
+    return first * window, max(last, first) * window

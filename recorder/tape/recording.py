@@ -97,7 +97,7 @@ def record(
                 begun.sample_rate_hz,
                 begun.tracks,
                 kind,
-                _placeholder(begun),
+                placeholder(begun),
                 name=FilePath(file),
             )
 
@@ -105,7 +105,7 @@ def record(
             done = record_live(stream, spool, fmt, progress)
         except soundfile.SoundFileError as error:
             raise disk_full_fault(file) from error
-        _finish(beside, done.format, FilePath(file))
+        finish(beside, done.format, FilePath(file))
     return Recording(FilePath(file), done.format, done.frames, done.largest_speed_mm_s)
 
 
@@ -268,18 +268,18 @@ def _too_fast(fmt: TapeFormat, axis: int, time_s: float, speed_mm_s: float) -> M
     return MotionFault(message, axis=fmt.axes[axis], time_s=time_s, speed_mm_s=speed_mm_s)
 
 
-def _finish(beside: FilePath, fmt: TapeFormat, file: FilePath) -> None:
+def finish(beside: FilePath, fmt: TapeFormat, file: FilePath) -> None:
     """Write the end position; turn an RF64 that is small enough into a plain WAV where a .wav is asked."""
     if file.suffix.lower() == ".w64":
         with written_beside(sidecar(file)) as text:
             text.write_text(fmt.to_json() + "\n", encoding="utf-8")
         return
-    replace_text(beside, _placeholder(fmt), fmt.to_json())
+    replace_text(beside, placeholder(fmt), fmt.to_json())
     if file.suffix.lower() == ".wav":
         make_plain(beside)
 
 
-def _placeholder(fmt: TapeFormat) -> str:
+def placeholder(fmt: TapeFormat) -> str:
     """The text chunk with room for the end position, which is not known yet."""
     text = replace(fmt, end_mm=None, still=(), alike=()).to_json()
     room = _ENTRY_CHARACTERS + (_PLACE_CHARACTERS + _AXIS_CHARACTERS) * len(fmt.axes)

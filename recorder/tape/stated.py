@@ -84,6 +84,12 @@ def label_of(file: FilePath) -> str:
     return text
 
 
+def stated_hz(text: str) -> float:
+    """The reference frequency that a text states; the usual one where it states none."""
+    is_stated = is_format_text(text)
+    return TapeFormat.from_json(text).reference_hz if is_stated else TapeFormat().reference_hz
+
+
 def unnamed(sample_rate_hz: int, tracks: int, given: dict[str, Any]) -> TapeFormat:
     """The format of a tape that states none: axes by the order of the tracks, from zero on all of them."""
     return TapeFormat(

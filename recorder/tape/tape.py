@@ -156,5 +156,6 @@ def _check_tracks(source: Source) -> None:
         return
     tracks = "one track" if source.tracks == 1 else f"{source.tracks} tracks"
     raise TapeFault(
-        f"{source.name} has {tracks}; a tape has at least {_FEWEST_TRACKS}: reference, X, Y"
+        f"{source.name} has {tracks}; a tape has at least {_FEWEST_TRACKS}: reference, X, Y (give the other "
+        "file of two stereo files with --second)"
     )
