@@ -1,13 +1,14 @@
 """The lines that the tables of claims break: each is put into a copy of the tree, and its test must fail.
 
     python -m tests.broken_lines pratt-whitney
-    python -m tests.broken_lines superior-electric sea alfred-herbert
+    python -m tests.broken_lines superior-electric sea alfred-herbert mutants
 
-A row of docs/background/claims-*.md ends with its test and the line that is broken for it:
+A row of docs/background/claims-*.md, or of mutants.md, ends with its test and the line that is broken for it:
 
     | 14 | … | `test_claim_14_…` | `player/gcode/residues.py`: `(now < 0) != (before < 0)` → `… == …` |
 
-The text before the arrow stands once in the file. Nothing here is changed; the first run of a test, without
+The test is one of the file that the page names, or `tests/….py::test_…`. The text before the arrow stands
+once in the file. Nothing here is changed; the first run of a test, without
 a broken line, compiles its kernels and must pass.
 """
 
@@ -50,17 +51,23 @@ class Broken:
 
 
 def test_file(table: str) -> str:
-    """The file of tests that a table names."""
+    """The file of tests that a table of claims names."""
     found = re.search(r"`(tests/sources/test_\w+\.py)`", table)
     if not found:
         raise ValueError("the table names no file of tests in tests/sources/")
     return found[1]
 
 
-def broken_lines(patent: str) -> list[Broken]:
-    """The broken lines of the table of a patent, in its order."""
+def page_of(name: str) -> str:
+    """The text of the page of a patent's claims, or of `mutants`."""
+    file = f"{name}.md" if name == "mutants" else f"claims-{name}.md"
+    return (TABLES / file).read_text(encoding="utf-8")
+
+
+def broken_lines(name: str) -> list[Broken]:
+    """The broken lines of the table of a patent, or of `mutants`, in its order."""
     found = []
-    for line in (TABLES / f"claims-{patent}.md").read_text(encoding="utf-8").splitlines():
+    for line in page_of(name).splitlines():
         cells = [cell.strip() for cell in line.split("|")]
         broken = _BREAK.fullmatch(cells[-2]) if len(cells) > 2 else None
         if broken:
@@ -72,20 +79,18 @@ def broken_lines(patent: str) -> list[Broken]:
 def main() -> None:
     """Break the lines of the tables named, one by one, and list those that their test does not notice."""
     left = 0
-    for patent in sys.argv[1:]:
-        tests = test_file((TABLES / f"claims-{patent}.md").read_text(encoding="utf-8"))
+    for name in sys.argv[1:]:
+        lines = list(dict.fromkeys(broken_lines(name)))
+        own = "" if name == "mutants" else test_file(page_of(name)) + "::"
+        tests = {line: line.test if "::" in line.test else own + line.test for line in lines}
         with tempfile.TemporaryDirectory() as folder:
-            if not Copy(Path(folder), [tests]).passes():
-                sys.exit(f"{tests} fails as it is; mend it first")
-            for broken in dict.fromkeys(broken_lines(patent)):
-                copy = Copy(Path(folder), [f"{tests}::{broken.test}"])
-                noticed = copy.notices(broken.mutant(), LIMIT_S)
+            if not Copy(Path(folder), sorted(set(tests.values()))).passes():
+                sys.exit(f"the tests of {name} fail as they are; mend them first")
+            for line in lines:
+                noticed = Copy(Path(folder), [tests[line]]).notices(line.mutant(), LIMIT_S)
                 left += not noticed
                 said = "noticed" if noticed else "NOT NOTICED"
-                print(
-                    f"{patent} {broken.claim}: {said}: {broken.before} → {broken.after}",
-                    flush=True,
-                )
+                print(f"{name} {line.claim}: {said}: {line.before} → {line.after}", flush=True)
     sys.exit(f"{left} broken lines were not noticed" if left else 0)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,9 @@ from hypothesis import settings
 from tests.programs import NO_CONTROL, Programs
 
 SHARED = Path(__file__).parents[2] / "shared"
+NO_SHARED = (
+    "no folder ../shared beside the repository: its drawings and vectors are not part of it"
+)
 
 # no deadline, as a first example compiles kernels; derandomized, so that a red test is red for everybody
 settings.register_profile("house", deadline=None, derandomize=True, print_blob=True)
@@ -25,14 +29,19 @@ def pytest_configure(config: pytest.Config) -> None:
     config.pluginmanager.register(Programs())
 
 
+def beside(place: Path) -> Path:
+    """A file or folder of ../shared: where it is absent the test is skipped, and in `.ci/run` it fails."""
+    if not place.exists():
+        if os.environ.get("MORFAX_NEEDS_SHARED"):
+            pytest.fail(f"{NO_SHARED}; {place} is needed here")
+        pytest.skip(NO_SHARED)
+    return place
+
+
 @pytest.fixture(scope="session")
 def shared() -> Path:
-    """The folder of drawings, specifications and vectors beside the repository; skips where it is absent."""
-    if not SHARED.is_dir():
-        pytest.skip(
-            "no folder ../shared beside the repository: its drawings and vectors are not part of it"
-        )
-    return SHARED
+    """The folder of drawings, specifications and vectors beside the repository (`beside`)."""
+    return beside(SHARED)
 
 
 @pytest.fixture(scope="session")

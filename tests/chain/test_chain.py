@@ -28,15 +28,13 @@ from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.trace import trace
 from morfax.tracer.program.trace_lines import trace_lines
+from tests.conftest import SHARED, beside
 from tests.tracer.inked import UM, inked, polyline
 
 SAMPLES = FilePath(__file__).parents[2] / "samples"
 # issue 0.5/3 um (0.07/0.8, the following error where it stops)
 PLAYED_RMS_MM, PLAYED_MAX_MM = (0.15 * UM, 1.5 * UM)
 CLOSED_WITHIN_MM = 20 * UM
-SKIPPED = (
-    "no folder ../shared beside the repository: its drawings and vectors are not part of it"
-)
 
 
 @dataclass(frozen=True)
@@ -157,9 +155,7 @@ PARTS = [
 @pytest.fixture(scope="module")
 def render() -> ModuleType:
     """The script that draws the parts."""
-    file = FilePath(__file__).parents[3] / "shared" / "drawings" / "render.py"
-    if not file.is_file():
-        pytest.skip(SKIPPED)
+    file = beside(SHARED / "drawings" / "render.py")
     spec = importlib.util.spec_from_file_location("render", file)
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)

@@ -40,3 +40,12 @@ def test_every_claim_has_a_test_and_a_line_that_can_be_broken(patent: str) -> No
     for line in broken:
         assert f"def {line.test}(" in tests
         assert line.mutant().new != line.before
+
+
+def test_the_lines_that_nobody_noticed_can_be_broken() -> None:
+    broken = broken_lines("mutants")
+    assert len(broken) == 12
+    for line in broken:
+        file, _, test = line.test.partition("::")
+        assert f"def {test}" in (ROOT / file).read_text(encoding="utf-8")
+        assert line.mutant().new != line.before

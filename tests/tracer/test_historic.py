@@ -13,6 +13,7 @@ import pytest
 
 from morfax.motion.drive import Drive
 from morfax.tracer.following.start import put_down
+from morfax.tracer.head import kernel
 from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.settings import HISTORIC, Settings
 from morfax.tracer.head.stance import Stance
@@ -65,12 +66,58 @@ def test_steering_is_stable_just_where_the_theory_says(vectors: Callable[[str], 
     """
     for row in vectors("mf_steering")["stability"]:
         if row["routh_stable"] not in (True, False):
-            continue  # the boundary itself
+            # the boundary itself, of which the vectors say so
+            assert "do not test" in row["simulated_stable"]
+            continue
+        assert row["simulated_stable"] == row["routh_stable"]
         settings = direct(row["a_mm"], row["k_rad_s_mm"], row["tau_s"], row["v_mm_s"])
         aside = np.abs(offsets_on_a_straight(settings, 0.02, 60.0))
         fifth = len(aside) // 5
         grows = len(aside) < 1000 or aside[-fifth:].max() > 0.5 * aside[:fifth].max()
         assert grows != row["routh_stable"], row
+
+
+def test_an_ideal_pursuit_round_a_corner_runs_a_tractrix(vectors: Callable[[str], Any]) -> None:
+    """The cell goes along both legs, as with a gain without end; how near the axis comes to the corner."""
+    told, lead_mm = vectors("mf_steering")["corner_90deg"], 2.0
+    drawing = inked(polyline((2, 6), (20, 6)), width_mm=0.7)
+    settings = direct(lead_mm, 1000.0, 0.0, 2.0)
+    stance, _ = next(put_down(drawing, (4, 6), settings))
+    carriage = Carriage(Stance(np.array([-6.0, 0.0]), 0.0, stance.view), settings, RATE_HZ)
+    state, tuning = carriage.state, carriage.tuning._replace(steering_gain=1.0)
+    state.speed_mm_s, nearest_mm = 2.0, math.inf
+    while state.y_mm < 4.0:
+        ahead_x = state.x_mm + lead_mm * math.cos(state.heading_rad)
+        ahead_y = state.y_mm + lead_mm * math.sin(state.heading_rad)
+        # the line stands at y = 0 up to the corner 0,0, and at x = 0 from there on
+        state.aside_mm = -ahead_y if ahead_x < 0 and ahead_y < 0.5 else ahead_x
+        kernel._steer(state, tuning)
+        nearest_mm = min(nearest_mm, math.hypot(state.x_mm, state.y_mm))
+    assert nearest_mm / lead_mm == pytest.approx(told["closest_over_a"], abs=0.005)
+
+
+@pytest.mark.parametrize("row", range(6))
+def test_the_price_of_the_lead_on_a_circle_is_the_vectors(
+    vectors: Callable[[str], Any], row: int
+) -> None:
+    """The steering itself on each of the vectors' circles, from the place where the theory has it."""
+    told = vectors("mf_steering")["circle_cut_in"][row]
+    lead_mm, radius_mm = float(told["a"]), float(told["R"])
+    drawing = inked(polyline((2, 6), (20, 6)), width_mm=0.7)
+    settings = direct(lead_mm, 1000.0, 0.0, 5.0)
+    stance, _ = next(put_down(drawing, (4, 6), settings))
+    carriage = Carriage(Stance(np.array([radius_mm, 0.0]), 0.0, stance.view), settings, RATE_HZ)
+    state, tuning = carriage.state, carriage.tuning._replace(steering_gain=1.0)
+    state.heading_rad, state.speed_mm_s = math.pi / 2, 5.0
+    for _ in range(round(6 * RATE_HZ)):  # 30 mm, fifteen leads and more
+        ahead_x = state.x_mm + lead_mm * math.cos(state.heading_rad)
+        ahead_y = state.y_mm + lead_mm * math.sin(state.heading_rad)
+        state.aside_mm = math.hypot(ahead_x, ahead_y) - radius_mm
+        kernel._steer(state, tuning)
+    run_mm = math.hypot(state.x_mm, state.y_mm)
+    assert run_mm == pytest.approx(told["pivot_radius"], abs=0.01 * told["inward_error"])
+    assert radius_mm - run_mm == pytest.approx(told["inward_error"], rel=0.01)
+    assert told["approx_a2_2R"] == pytest.approx(lead_mm**2 / (2 * radius_mm))
 
 
 @pytest.mark.parametrize("radius_mm", [10.0, 25.0])

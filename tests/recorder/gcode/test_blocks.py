@@ -20,7 +20,7 @@ from morfax.motion.faults import MotionFault
 from morfax.motion.motion import MOTION_RATE_HZ, Motion, thin
 from morfax.motion.motion import Path as MotionPath
 from morfax.motion.pathfile import read_path
-from morfax.player.gcode.moves import Move, Program
+from morfax.player.gcode.moves import LINE, Move, Program
 from morfax.player.gcode.rs274 import read_rs274
 from morfax.recorder.gcode.arcs import fit
 from morfax.recorder.gcode.blocks import TOLERANCE_MM, record_blocks
@@ -376,3 +376,27 @@ def test_linuxcnc_takes_every_program(name: str, tmp_path: Path) -> None:
     assert "PROGRAM_END" in told.stdout
     moves = [move for move in read_rs274(file).moves if move.kind not in ("G0", "G4")]
     assert told.stdout.count("STRAIGHT_FEED") + told.stdout.count("ARC_FEED") == len(moves)
+
+
+@pytest.mark.parametrize("tolerance_mm", [0.005, 0.02])
+def test_a_bend_that_slopes_stays_within_the_tolerance(
+    tolerance_mm: float, tmp_path: Path
+) -> None:
+    """A helix of 10 mm that falls 3 mm in a half turn: its places against the lines in the file, in space."""
+    turn = np.linspace(0, np.pi, 2001)
+    points = np.column_stack([10 * np.cos(turn), 10 * np.sin(turn), -3 * turn / np.pi])
+    path = MotionPath(turn, points)
+    report = record_blocks(path, tmp_path / "part.ngc", tolerance_mm=tolerance_mm)
+    ends = np.array(
+        [move.end_mm for move in read_rs274(report.file).moves if move.kind == LINE]
+    )
+    begins, along = ends[:-1], np.diff(ends, axis=0)
+    squared = np.maximum((along**2).sum(axis=1), 1e-12)
+    off_mm = 0.0
+    for place in points[::10]:
+        share = np.clip(((place - begins) * along).sum(axis=1) / squared, 0, 1)
+        nearest = begins + share[:, None] * along
+        off_mm = max(off_mm, float(np.linalg.norm(place - nearest, axis=1).min()))
+    assert (
+        0.3 * tolerance_mm < off_mm <= tolerance_mm + 0.0005
+    )  # a digit of the file, in three axes

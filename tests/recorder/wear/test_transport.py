@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 import soundfile
 
+from morfax.motion.axis import LeadScrew
 from morfax.motion.faults import FileFault, TapeFault
 from morfax.recorder.wear import transport
 from morfax.recorder.wear.settings import SETS, Wear
@@ -162,3 +165,19 @@ def test_what_cannot_be_worn(tmp_path: Path) -> None:
         age(tmp_path / "b.wav", tmp_path / "w.wav", Wear())
     assert not (tmp_path / "w.wav").exists()
     assert transport.BLOCK_FRAMES > 0
+
+
+def test_skew_is_an_error_of_the_axis_as_worked_out(vectors: Callable[[str], Any]) -> None:
+    """600 urad of azimuth between tracks 5 mm apart at 7.5 in/s: 15.75 us, 0.0063 cycle, 0.787 um."""
+    worked = vectors("mf_tape")
+    told, given = worked["skew"], worked["params"]
+    skew_s = 600e-6 * told["track_spacing_mm"] / (told["tape_ips"] * 25.4)
+    assert skew_s == pytest.approx(told["time_us"] * 1e-6, rel=1e-3)
+    out, _ = worn(Wear(skew_s=skew_s))
+    t_s = np.arange(RATE_HZ, 2 * RATE_HZ) / RATE_HZ
+    turns = np.exp(-2j * np.pi * HZ * t_s) @ out[RATE_HZ : 2 * RATE_HZ, :2]
+    late_s = -np.angle(turns[1] / turns[0]) / (2 * np.pi * HZ)
+    cycles = late_s * given["f_ref_hz"]
+    assert cycles == pytest.approx(told["cycles_at_400Hz"], rel=0.005)
+    error_um = 1e3 * cycles * LeadScrew(given["pitch_mm"], given["sectors"]).mm_per_cycle
+    assert error_um == pytest.approx(told["axis_error_um"], rel=0.005)

@@ -326,6 +326,17 @@ def test_the_relay_holds_for_its_time_and_the_speed_changes_by_the_acceleration(
     assert state.speed_mm_s == pytest.approx(SPEED_MM_S - 8 * step)
 
 
+def test_the_relay_holds_for_a_tenth_of_a_second(tuning: Tuning) -> None:
+    """From where cell 102 has lost the line to the first period in which the speed grows again."""
+    state, periods = moving(), 0
+    state.slow_periods, state.point_x_mm, state.point_y_mm = tuning.slow_periods, 1e3, PLACE[1]
+    before = math.inf
+    while state.speed_mm_s <= before:
+        before, periods = state.speed_mm_s, periods + 1
+        kernel._steer(state, tuning)
+    assert periods / MOTION_RATE_HZ == pytest.approx(0.1, abs=2 / MOTION_RATE_HZ)
+
+
 # the screws
 
 

@@ -13,11 +13,13 @@ from morfax.motion.faults import MotionFault
 from morfax.motion.feed import run_along
 from morfax.motion.motion import MOTION_RATE_HZ, join
 from morfax.motion.polyline import lengths_mm, nearest_mm, with_places
+from morfax.motion.ramp import Ramp
 from morfax.tracer.following.line import Leads, Line
 from morfax.tracer.marks.marks import Mark
 from morfax.tracer.operator.card import Card
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.operator.work import Tabs, Work
+from morfax.tracer.program.line_cut import rapid
 from morfax.tracer.program.program import Trace
 
 UM = 1e-3
@@ -305,3 +307,18 @@ def test_a_hole_is_drilled_in_pecks_and_the_drill_comes_up_in_between() -> None:
     )
     heights = z_mm[np.r_[True, np.diff(z_mm) != 0]][turns]
     assert heights == pytest.approx([-2, 2, -4, 2, -5], abs=1e-9)
+
+
+def test_a_rapid_takes_as_long_as_its_speed_and_its_ramps() -> None:
+    work = Work(5.0, rapid_mm_s=40.0)
+    way = rapid(work, (0.0, 0.0, 2.0), (80.0, 60.0, 2.0), MOTION_RATE_HZ)
+    lasts_s = 100 / 40 + 40 / Ramp().acceleration_mm_s2
+    assert (len(way) - 1) / MOTION_RATE_HZ == pytest.approx(lasts_s, abs=0.002)
+    assert (
+        100 / 50
+        < (
+            len(rapid(Work(5.0), (0.0, 0.0, 2.0), (80.0, 60.0, 2.0), MOTION_RATE_HZ))
+            / MOTION_RATE_HZ
+        )
+        < 100 / 50 + 0.2
+    )
