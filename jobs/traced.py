@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from morfax.jobs import files as medium
 from morfax.jobs import trace_figures, zero
 from morfax.jobs.zero import ZeroOnSheet
+from morfax.motion.faults import MotionFault
 
 if TYPE_CHECKING:
     from morfax.jobs.figures import Figures
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 
 Place = tuple[float, float]
 MARKED = 30  # of the places that the head left out, the longest are marked in the picture
+REACHED_MM = 0.0125  # half a step of a plotter: so far below 0 a place is written as 0
 SHEET = ZeroOnSheet("sheet")
 
 
@@ -127,10 +129,28 @@ class Traced:
         self, file: FilePath, unit: RecordingUnit, listener: Listener
     ) -> tuple[FilePath, Report]:
         """Record the motion on a tape, or in the medium that the name says; the program's name, and what the
-        recorder made.
+        recorder made. Raises MotionFault for a plotter that cannot come to all that is cut.
         """
+        if medium.is_plot(file):
+            self._refuse_beyond_corner(unit)
         report = unit.record(self.trace, self.name(file), listener)
         return self.name(file), report
+
+    def _refuse_beyond_corner(self, unit: RecordingUnit) -> None:
+        """Raise MotionFault for what is cut left of a plotter's corner or below it, with a zero that goes."""
+        import numpy as np
+
+        runs = unit.placement.path(self.path).runs()
+        low_mm = np.vstack(runs).min(axis=0) if runs else np.zeros(2)
+        if low_mm.min() >= -REACHED_MM:
+            return
+        placement = unit.placement.about(self.path.positions_mm[0])
+        corner_mm = np.minimum(np.floor(low_mm), 0.0)  # the next whole mm
+        x_mm, y_mm = placement.places_back(corner_mm[None])[0].tolist()
+        raise MotionFault(
+            f"the tool reaches to X {low_mm[0]:.2f}, Y {low_mm[1]:.2f} mm, with its leads and beside the lines,"
+            f" and a plotter begins at 0, 0; give --zero {x_mm:.1f},{y_mm:.1f}"
+        )
 
     def write(self, file: FilePath, unit: RecordingUnit) -> FilePath:
         """Write the path file, placed as the tape is; its name."""

@@ -140,3 +140,16 @@ def test_a_program_says_its_zero_and_the_size_of_the_part_and_compare_takes_them
     far = morfax("compare", *told, "--zero", "sheet", "--tolerance", "5mm")
     assert far.exit_code == 1 and far.figures["within_tolerance"] is False
     assert "% of the path lies along the drawing's ink: it is placed elsewhere" in far.err
+
+
+def test_a_plotter_that_cannot_come_to_a_lead_is_told_the_zero_that_goes(
+    morfax: Morfax, here: Path
+) -> None:
+    words = ("trace", SAMPLES / "bracket.png", "--lines", "contours", "--kerf", "1mm")
+    plot = (*words, "--lead-in", "3mm", "-o", "a.plt", "--zero")
+    refused = morfax(*plot, "lower-left")
+    assert refused.exit_code == 7 and not (here / "a.plt").exists()
+    zero = re.search(
+        r"and a plotter begins at 0, 0; give --zero ([-\d.]+,[-\d.]+)$", refused.fault
+    )
+    assert zero and morfax(*plot, zero[1]).exit_code == 0
