@@ -148,7 +148,7 @@ class Traced:
         corner_mm = np.minimum(np.floor(low_mm), 0.0)  # the next whole mm
         x_mm, y_mm = placement.places_back(corner_mm[None])[0].tolist()
         raise MotionFault(
-            f"the tool reaches to X {low_mm[0]:.2f}, Y {low_mm[1]:.2f} mm, with its leads and beside the lines,"
+            f"the tool reaches to X {low_mm[0]:.2f}, Y {low_mm[1]:.2f} mm, beside the lines and on leads,"
             f" and a plotter begins at 0, 0; give --zero {x_mm:.1f},{y_mm:.1f}"
         )
 
