@@ -1,6 +1,7 @@
 // The cards of the operator's column: lines, result, files, notes.
 
-import { element, length, place, time } from "./format.js";
+import { element, length } from "./format.js";
+import { figureRows, worstRows } from "./result.js";
 import { colourOf } from "./sheet.js";
 
 const WHICH = [["", "Longest"], ["contours", "Contours"], ["all", "All ink"]];
@@ -61,20 +62,9 @@ export function lineText(state, number) {
 }
 
 export function showResult(result, goTo) {
-  const figures = result.figures, ink = figures.played_to_ink ?? {}, traced = figures.traced_to_ink ?? {};
-  const rows = [
-    ["Length", length(figures.length_mm)],
-    ["Time on the machine", time(result.played.t_s.at(-1) - result.played.t_s[0])],
-    ["Ending", figures.ending + (figures.incomplete ? ", incomplete" : "")],
-    ["Machine from the ink's middle, RMS", length(ink.rms_mm)],
-    ["the same, largest", length(ink.max_mm)],
-    ["Head from the ink's middle, RMS", length(traced.rms_mm)],
-    ["Ink not covered", length(figures.missed_ink_mm)],
-  ];
-  document.getElementById("figures").replaceChildren(...rows.flatMap(([name, value]) => [element("dt", {}, name), element("dd", {}, value)]));
-  document.getElementById("worst").replaceChildren(...result.worst.map((worst, i) =>
-    element("li", {}, element("button", { onclick: () => goTo(worst) }, `${i + 1}.  at ${place(worst.x_mm, worst.y_mm)}`, element("b", {}, length(worst.error_mm))))));
-  document.getElementById("all-figures").textContent = JSON.stringify(figures, null, 1);
+  document.getElementById("figures").replaceChildren(...figureRows(result).flatMap(([name, value]) => [element("dt", {}, name), element("dd", {}, value)]));
+  document.getElementById("worst").replaceChildren(...worstRows(result, goTo));
+  document.getElementById("all-figures").textContent = JSON.stringify(result.figures, null, 1);
 }
 
 export function showSaves(host, state, save) {

@@ -1,5 +1,7 @@
 // A result on the sheet: the played contour in the colours of its error, the machine's place at a time, marks.
 
+import { element, length, place, time } from "./format.js";
+
 export const RAMP = ["#2b6ca3", "#3a8fa0", "#5aa56b", "#b3a52e", "#d98323", "#cf5027", "#ad1f2d"];
 
 // The error in seven colours, a Path2D each; in mm of the sheet.
@@ -76,4 +78,24 @@ export function drawWorst(context, worst, unit, colour) {
     context.arc(place.x_mm, place.y_mm, 9 * unit, 0, 7);
     context.stroke();
   }
+}
+
+// The figures that say how good a run is, as pairs of name and text.
+export function figureRows(result) {
+  const figures = result.figures, ink = figures.played_to_ink ?? {}, traced = figures.traced_to_ink ?? {};
+  return [
+    ["Length", length(figures.length_mm)],
+    ["Time on the machine", time(result.played.t_s.at(-1) - result.played.t_s[0])],
+    ["Ending", figures.ending + (figures.incomplete ? ", incomplete" : "")],
+    ["Machine off the ink's middle, RMS", length(ink.rms_mm)],
+    ["at most", length(ink.max_mm)],
+    ["Head off the ink's middle, RMS", length(traced.rms_mm)],
+    ["Ink not covered", length(figures.missed_ink_mm)],
+  ];
+}
+
+// The worst places as rows of a list, each a button that goes there.
+export function worstRows(result, goTo) {
+  return result.worst.map((worst, i) =>
+    element("li", {}, element("button", { onclick: () => goTo(worst) }, `${i + 1}.  at ${place(worst.x_mm, worst.y_mm)}`, element("b", {}, length(worst.error_mm)))));
 }

@@ -1,0 +1,51 @@
+// The keepsake: a result that opens without a server. The picture is in the file; the rest is the panel's own.
+
+import { element, length } from "./format.js";
+import { Replay } from "./replay.js";
+import { drawErrors, drawMachine, drawWorst, errorPaths, errorScale, figureRows, RAMP, worstRows } from "./result.js";
+import { Sheet } from "./sheet.js";
+
+class Still extends Sheet {
+  drawTiles(context, view) {
+    if (!this.image) return;
+    const { columns, rows } = this.picture;
+    context.drawImage(this.image, -view.x * view.scale, -view.y * view.scale, columns * view.scale, rows * view.scale);
+  }
+}
+
+const data = JSON.parse(document.getElementById("data").textContent), { result, picture } = data;
+const root = document.documentElement, by = (id) => document.getElementById(id);
+root.dataset.theme = matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
+const still = new Still(by("sheet"), 512);
+let machine = null;
+const scale = errorScale(result.error), paths = errorPaths(result.error, scale);
+still.layers.push((context) => {
+  const perMm = still.view.scale / still.pitch, unit = devicePixelRatio / perMm;
+  context.setTransform(perMm, 0, 0, -perMm, ...still.toScreen(still.toPx([0, 0])));
+  const hot = getComputedStyle(still.canvas).getPropertyValue("--head");
+  drawErrors(context, paths, 3 * unit);
+  drawWorst(context, result.worst, unit, hot);
+  if (machine) drawMachine(context, result.played, machine, unit, { way: "#20211f", down: hot, up: "#4a7fae" });
+});
+still.image = new Image();
+still.image.onload = () => still.ask();
+still.image.src = picture.address;
+still.resize();
+still.show({ id: 1, rows: picture.rows, columns: picture.columns, levels: 1, has_lines: false }, picture.mm_per_px);
+const onTime = (now) => { machine = now; still.ask(); };
+let again = new Replay(by("machine"), result, onTime);
+
+by("theme").addEventListener("click", () => {
+  root.dataset.theme = root.dataset.theme === "dark" ? "light" : "dark";
+  again.close();
+  again = new Replay(by("machine"), result, onTime);
+});
+by("figures").replaceChildren(...figureRows(result).flatMap(([name, value]) => [element("dt", {}, name), element("dd", {}, value)]));
+by("worst").replaceChildren(...worstRows(result, (worst) => still.goTo([worst.x_mm, worst.y_mm], 24)));
+by("messages").replaceChildren(...(result.faults.length ? result.faults : ["nothing went wrong"]).map((text) => element("li", {}, text)));
+by("all-figures").textContent = JSON.stringify(result.figures, null, 1);
+by("command").textContent = data.command;
+by("legend").replaceChildren("distance from the ink's middle",
+  element("div", { class: "ramp", "aria-hidden": "true" }, ...RAMP.map((colour) => { const cell = element("i"); cell.style.background = colour; return cell; })),
+  element("div", { class: "ends" }, element("span", {}, "0"), element("span", {}, `${length(scale)} and more`)));
+root.dataset.ready = "true";
