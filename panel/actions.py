@@ -2,6 +2,7 @@
 
     {"do": "open", "drawing": "scan.png"}          {"do": "set", "option": "--cutter", "value": "3mm"}
     {"do": "undo"}, "redo", "run", "hold", "resume", "step", "stop"
+    {"do": "correct", "as": "rub", "at": [[812, 1004], [820, 1010]], "width": "2mm"}
     {"do": "pace", "times": 2}                     {"do": "save", "as": ".dxf"}
 
 What changes the settings says which revision the page has `seen`: an older one is refused, because another
@@ -18,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 from morfax.jobs.wrong_use import WrongUse
 from morfax.panel import commands, keepsake
+from morfax.panel.corrected import asked_words
 from morfax.panel.history import Step
 
 if TYPE_CHECKING:
@@ -30,7 +32,7 @@ PROGRAM = "program"  # in the words of the machine that is set
 SAVED_AS = (".wav", ".steps", ".cubic", ".ngc", ".dxf", ".svg", ".plt", ".csv", PROGRAM, PAGE)
 PACES = (0.1, 100.0)  # times the head's own speed
 LONGEST_VALUE = 200  # characters of an option
-OF_SETTINGS = ("open", "set", "undo", "redo")
+OF_SETTINGS = ("open", "set", "correct", "undo", "redo")
 
 
 def do(bench: Bench, action: dict[str, Any]) -> None:
@@ -117,7 +119,20 @@ def _save(bench: Bench, action: dict[str, Any]) -> None:
         bench.tell("saved", f"saved {bench.drawing.stem}{PAGE}")
         bench.changed()
         return
-    bench.save(bench.command_line.trace(save_words(bench, wanted)))
+    bench.send("save", bench.command_line.trace(save_words(bench, wanted)))
+
+
+def _correct(bench: Bench, action: dict[str, Any]) -> None:
+    """Put right what the head got wrong, in the file beside the drawing."""
+    _refuse_busy(bench)
+    if bench.drawing is None:
+        raise WrongUse("no drawing lies on the bench; open one first")
+    words = commands.correct_words(
+        bench.drawing, bench.history.now.options, asked_words(action)
+    )
+    job = bench.command_line.correct(words)
+    bench.corrected_by = words
+    bench.send("correct", job)
 
 
 def save_words(bench: Bench, wanted: str) -> list[str]:
@@ -156,16 +171,6 @@ def _control(what: str) -> Callable[[Bench, dict[str, Any]], None]:
     return control
 
 
-def _again(what: str) -> Callable[[Bench, dict[str, Any]], None]:
-    """Undo or redo."""
-
-    def again(bench: Bench, action: dict[str, Any]) -> None:
-        getattr(bench.history, what)()
-        bench.look()
-
-    return again
-
-
 def _refuse_busy(bench: Bench) -> None:
     """Raise WrongUse while a run or a saving is under way."""
     if bench.busy is not None and bench.busy["kind"] != "lines":
@@ -175,8 +180,9 @@ def _refuse_busy(bench: Bench) -> None:
 _ACTIONS: dict[str, Callable[[Bench, dict[str, Any]], None]] = {
     "open": _open,
     "set": _set,
-    "undo": _again("undo"),
-    "redo": _again("redo"),
+    "correct": _correct,
+    "undo": lambda bench, _: bench.again("undo"),
+    "redo": lambda bench, _: bench.again("redo"),
     "run": _run,
     "save": _save,
     "pace": _pace,

@@ -143,14 +143,14 @@ class _Pages:
 
     async def result(self, request: Request) -> Response:
         """The curves of the last run."""
-        if self._bench.result is None:
+        if self._bench.kept.result is None:
             raise HTTPException(404, "there is no result yet")
-        return JSONResponse(self._bench.result)
+        return JSONResponse(self._bench.kept.result)
 
     async def file(self, request: Request) -> Response:
         """A result to keep."""
         name = request.path_params["name"]
-        if name not in self._bench.files():
+        if name not in self._bench.kept.files():
             raise HTTPException(404, "there is no such result")
         return FileResponse(
             self._bench.folder / name, filename=name, media_type="application/octet-stream"

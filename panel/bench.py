@@ -10,22 +10,22 @@ Questions: one drawing lies on the bench at a time; another server on another po
 from __future__ import annotations
 
 import asyncio
-import json
 from collections import deque
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path as FilePath
 from typing import Any
 
-from morfax.motion.files import written_beside
 from morfax.panel import commands, sheet_picture
 from morfax.panel.commands import CommandLine
+from morfax.panel.corrected import corrections_text, lay_corrections
 from morfax.panel.head_path import HeadPath
 from morfax.panel.history import History, Step
+from morfax.panel.kept_result import STATE, KeptResult
 from morfax.panel.tiles import LineMap, Picture
 from morfax.panel.workshop import Heard, Workshop
 
 MESSAGES = 40  # lines of notes and warnings that are kept
-OWN = ("state.json", "result.json")  # files of the folder that are no results
 HIDDEN = ("numbers", "picture")  # of what the worker says of a drawing: arrays, for the tiles
 
 
@@ -41,7 +41,7 @@ class Bench:
     ) -> None:
         self.folder, self.command_line = folder, command_line
         self.sources = {**sources, **_taken_in(folder)}  # by the names that pages know them by
-        self.history = History(folder / "state.json")
+        self.history = History(folder / STATE)
         self.workshop = workshop(self.heard)
         self.path = HeadPath()
         self.picture: Picture | None = None
@@ -52,14 +52,13 @@ class Bench:
         )
         self.busy: dict[str, Any] | None = None
         self.messages = deque[dict[str, Any]](maxlen=MESSAGES)
-        self.result: dict[str, Any] | None = None
-        self.result_of: list[str] | None = None  # the words that made the result
+        self.kept = KeptResult(folder)
+        self.corrected_by: list[str] | None = None  # the words of the last correction
         self.version = 0  # grows with each change of the state
         self._waiting = set[asyncio.Event]()
         self._job, self._picture_of, self._looked_at = 0, "", list[str]()
         self.picture_id = 0
         self._tasks = set[asyncio.Task[Any]]()
-        self._read_result()
 
     @property
     def drawing(self) -> FilePath | None:
@@ -107,7 +106,20 @@ class Bench:
     # what the operator does
     def step(self, step: Step) -> None:
         """Take a step, and look at the drawing again if that changed what is seen on it."""
-        self.history.add(step)
+        drawing = self.sources.get(step.drawing or "")
+        self.history.add(replace(step, corrections=corrections_text(drawing)))
+        self.look()
+
+    def again(self, what: str) -> None:
+        """Undo or redo a step, and lay its corrections beside the drawing; an edit by hand is a step too."""
+        if (
+            self.drawing is not None
+            and corrections_text(self.drawing) != self.history.now.corrections
+        ):
+            self.step(self.history.now)
+        getattr(self.history, what)()
+        if self.drawing is not None:
+            lay_corrections(self.drawing, self.history.now.corrections)
         self.look()
 
     def look(self) -> None:
@@ -117,24 +129,21 @@ class Bench:
             return
         shown = sheet_picture.key(self.drawing, self.history.now.options)
         words = commands.lines_words(self.drawing, self.history.now.options)
+        looked_at = [*words, corrections_text(self.drawing)]
         if shown != self._picture_of:
             self._picture_of, self.line_map, self.sheet = shown, None, None
             self._in_background(self._show())
-        if words != self._looked_at:
-            self._looked_at, self.refused = words, None
+        if looked_at != self._looked_at:
+            self._looked_at, self.refused = looked_at, None
             self.send("lines", self.command_line.lines(words))
 
     def run(self) -> None:
         """Begin a run as it is set; raises WrongUse for settings that do not go together."""
         job = self.command_line.run(self.words())
         self.path.clear()
-        self.result, self.result_of = None, self.words()
+        self.kept.begin(self.words())
         self.history.mark_running(True)
         self.send("run", job)
-
-    def save(self, job: Any) -> None:
-        """Have a program written."""
-        self.send("save", job)
 
     def send(self, kind: str, job: Any) -> None:
         """Give the worker a job."""
@@ -205,10 +214,13 @@ class Bench:
             ):
                 self._seen(result)
         elif kind == "run":
-            self.result = result
-            self._keep_result()
+            self.kept.keep(result)
             for text in result["faults"]:
                 self.tell("fault", text, result["fault_place_mm"])
+        elif kind == "correct":
+            self.busy = None
+            self.step(self.history.now)
+            return
         else:
             self.tell("saved", f"saved {FilePath(result['file']).name}")
             if result["fault"]:
@@ -257,28 +269,6 @@ class Bench:
         self.busy = None
         if kind == "run":
             self.history.mark_running(False)
-
-    # the disk
-    def files(self) -> list[str]:
-        """The names of the results in the folder."""
-        if not self.folder.is_dir():
-            return []
-        every = (f for f in self.folder.iterdir() if f.is_file() and not f.name.startswith("."))
-        return sorted(file.name for file in every if file.name not in OWN)
-
-    def _keep_result(self) -> None:
-        """Put the result on disk, so that it is there after a new start."""
-        with written_beside(self.folder / OWN[1]) as beside:
-            kept = {"words": self.result_of, "result": self.result}
-            beside.write_text(json.dumps(kept), encoding="utf-8")
-
-    def _read_result(self) -> None:
-        """Take up the last result, if it can be read."""
-        try:
-            kept = json.loads((self.folder / OWN[1]).read_text(encoding="utf-8"))
-            self.result, self.result_of = kept["result"], kept["words"]
-        except (OSError, ValueError, KeyError):
-            self.result = self.result_of = None
 
     # work beside the answers
     async def _show(self) -> None:

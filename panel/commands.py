@@ -17,6 +17,7 @@ from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Literal, Protocol
 
 if TYPE_CHECKING:
+    from morfax.jobs.correct import CorrectJob
     from morfax.jobs.lines import LinesJob
     from morfax.jobs.run import RunJob
     from morfax.jobs.trace import TraceJob
@@ -108,6 +109,9 @@ class CommandLine(Protocol):
     def trace(self, words: list[str]) -> TraceJob:
         """The job of `morfax trace WORDS`."""
 
+    def correct(self, words: list[str]) -> CorrectJob:
+        """The job of `morfax correct WORDS`."""
+
 
 def lines_words(drawing: FilePath, options: Options) -> list[str]:
     """The words after `morfax lines`."""
@@ -123,6 +127,12 @@ def run_words(drawing: FilePath, options: Options, folder: FilePath) -> list[str
 def trace_words(drawing: FilePath, options: Options, program: FilePath) -> list[str]:
     """The words after `morfax trace` that write a program, without the options that it does not take."""
     return [str(drawing), *_words(_fitting(options, program)), "-o", str(program)]
+
+
+def correct_words(drawing: FilePath, options: Options, asked: list[str]) -> list[str]:
+    """The words after `morfax correct`: what is put right, on the drawing as it is read."""
+    of_drawing = tuple(name for name in OFFERED["Drawing"] if name != "--edge")
+    return [str(drawing), *_words(options, only=of_drawing), *asked]
 
 
 def as_typed(verb: str, words: list[str]) -> str:

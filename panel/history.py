@@ -22,10 +22,11 @@ VERSION = 1  # of the file
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """What is set: the key of the drawing on the bench, and the options as text."""
+    """What is set: the key of the drawing on the bench, the options as text, and its corrections."""
 
     drawing: str | None = None
     options: dict[str, str | bool] = field(default_factory=dict)
+    corrections: str = ""  # the text of the file beside the drawing; empty: there is none
 
 
 class History:
@@ -96,7 +97,10 @@ class History:
         """Take up a history from disk; raises FileFault for a file that holds none."""
         try:
             kept = json.loads(self.file.read_text(encoding="utf-8"))
-            steps = [Step(row["drawing"], dict(row["options"])) for row in kept["steps"]]
+            steps = [
+                Step(row["drawing"], dict(row["options"]), str(row["corrections"]))
+                for row in kept["steps"]
+            ]
             at, revision, running = (
                 int(kept["at"]),
                 int(kept["revision"]),

@@ -33,7 +33,7 @@ POLICY = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inli
 def write(bench: Bench) -> None:
     """Write the page of the last result; raises WrongUse if there is none."""
     if (
-        bench.result is None
+        bench.kept.result is None
         or bench.picture is None
         or bench.drawing is None
         or bench.sheet is None
@@ -43,8 +43,8 @@ def write(bench: Bench) -> None:
     picture["mm_per_px"] = bench.sheet["width_mm"] / picture["columns"]
     data = {
         "drawing": bench.drawing.name,
-        "command": " ".join(["morfax run", *(bench.result_of or [])]),
-        "result": bench.result,
+        "command": " ".join(["morfax run", *(bench.kept.words or [])]),
+        "result": bench.kept.result,
         "picture": picture,
     }
     with written_beside(bench.folder / f"{bench.drawing.stem}.html") as beside:
@@ -70,7 +70,7 @@ def _picture(picture: Picture) -> dict[str, Any]:
     level = next(pixels for pixels in picture.levels if max(pixels.shape) <= MOST_PX)
     done, packed = cv2.imencode(".jpg", level, QUALITY)
     assert done
-    address = "data:image/jpeg;base64," + base64.b64encode(packed).decode("ascii")
+    address = "data:image/jpeg;base64," + base64.b64encode(packed.tobytes()).decode("ascii")
     return {"address": address, "rows": level.shape[0], "columns": level.shape[1]}
 
 

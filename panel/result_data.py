@@ -9,9 +9,12 @@ Source: our own.
 
 from __future__ import annotations
 
+from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from morfax.panel.tape_levels import levels
 
 if TYPE_CHECKING:
     from morfax.jobs.run import RunResult
@@ -39,6 +42,7 @@ def of_run(result: RunResult) -> dict[str, Any]:
         "worst": worst_places(error.points_mm, error.error_mm),
         "largest_error_mm": error.largest_mm,
         "following": _following_rows(result),
+        "tape": levels(FilePath(program)) if (program := result.figures.get("tape")) else None,
         "marks_mm": {
             name: [float(x) for x in place] for name, place in traced.marked_mm.items()
         },

@@ -28,7 +28,7 @@ WHITE = 255
 def of_lines(result: LinesResult) -> dict[str, Any]:
     """The drawing and its lines for the page."""
     drawing = result.drawing
-    is_scan = drawing.flattening is None and drawing.enlarged == 1
+    is_scan = drawing.flattening is None and drawing.enlarged == 1 and drawing.corrected is None
     return {
         "figures": result.figures,
         "pitch_mm": drawing.pitch_mm,
@@ -36,9 +36,26 @@ def of_lines(result: LinesResult) -> dict[str, Any]:
         "height_mm": drawing.height_mm,
         "rows": drawing.darkness.shape[0],
         "columns": drawing.darkness.shape[1],
+        "corrections": corrections_of(drawing),
         "numbers": numbers_of_pixels(result.survey),
         "picture": None if is_scan else picture_of(drawing),
     }
+
+
+def corrections_of(drawing: Drawing) -> list[dict[str, Any]]:
+    """The corrections by number: what each does, and where."""
+    laid = drawing.corrected
+    if laid is None:
+        return []
+    return [
+        {
+            "number": number,
+            "do": one.do,
+            "place_mm": list(laid.place_of(number)),
+            "why": one.why,
+        }
+        for number, one in enumerate(laid.corrections.each, 1)
+    ]
 
 
 def numbers_of_pixels(seen: Survey) -> NDArray[np.uint16]:

@@ -35,7 +35,7 @@ def state(bench: Bench) -> dict[str, Any]:
         "busy": bench.busy,
         "messages": list(bench.messages),
         "commands": _commands(bench),
-        "files": bench.files(),
+        "files": bench.kept.files(),
         "result": _result(bench),
     }
 
@@ -68,6 +68,8 @@ def _commands(bench: Bench) -> dict[str, str]:
         ),
         "run": commands.as_typed("run", bench.words()),
     }
+    if bench.corrected_by is not None:
+        typed["correct"] = commands.as_typed("correct", bench.corrected_by)
     for suffix in actions.SAVED_AS:
         if suffix == actions.PAGE or (
             suffix == actions.PROGRAM and "--machine" not in bench.history.now.options
@@ -82,7 +84,7 @@ def _commands(bench: Bench) -> dict[str, str]:
 
 def _result(bench: Bench) -> dict[str, Any] | None:
     """Whether there is a result, and whether it is one of what is set now."""
-    if bench.result is None:
+    if bench.kept.result is None:
         return None
-    is_of_now = bench.drawing is not None and bench.result_of == bench.words()
-    return {"of": bench.result_of, "is_of_now": is_of_now}
+    is_of_now = bench.drawing is not None and bench.kept.words == bench.words()
+    return {"of": bench.kept.words, "is_of_now": is_of_now}

@@ -18,6 +18,7 @@ import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
 
 from morfax.jobs import kernels
@@ -88,7 +89,7 @@ class Worker:
     def __init__(self, out: BinaryIO) -> None:
         self.lookout = Lookout()
         self.teller = Teller(out, self.lookout)
-        self._traced: tuple[DrawingFile, Tracing, Drawing, Traced] | None = None
+        self._traced: tuple[Any, Tracing, Drawing, Traced] | None = None
 
     def do(self, number: int, kind: str, job: Any) -> None:
         """Do a job, and say how it ended."""
@@ -124,18 +125,23 @@ class Worker:
         from morfax.tracer.head.watched import watching
 
         _, tracing = job.prepared()
+        stamp = _stamp(job.drawing)
         with watching(self.lookout):
             result = job.run(self.teller)
-        self._traced = job.drawing, tracing, result.drawing, result.traced
+        self._traced = stamp, tracing, result.drawing, result.traced
         self.teller.say("progress", what="drawing the picture", share=0.0)
         draw_run(result)
         write_figures(result)
         return of_run(result)
 
+    def _correct(self, job: Any) -> dict[str, Any]:
+        """Write a correction into the file beside the drawing."""
+        return dict(job.run(self.teller).figures)
+
     def _save(self, job: TraceJob) -> dict[str, Any]:
         """Write a program of what was traced, or trace it first where it was not."""
         outputs, tracing = job.prepared()
-        if self._traced is not None and self._traced[:2] == (job.drawing, tracing):
+        if self._traced is not None and self._traced[:2] == (_stamp(job.drawing), tracing):
             from morfax.jobs.machining import tell_what_is_lost
 
             if outputs.program is not None:
@@ -150,6 +156,16 @@ class Worker:
         assert written is not None
         fault = None if result.fault is None else str(result.fault)
         return {"file": str(result.traced.name(written)), "fault": fault}
+
+
+def _stamp(drawing: DrawingFile) -> tuple[Any, ...]:
+    """What a drawing hangs on: how it is read, and the newest state of its file and of its corrections."""
+
+    def newest(file: Path) -> tuple[int, int] | None:
+        return (file.stat().st_mtime_ns, file.stat().st_size) if file.exists() else None
+
+    corrections = drawing.corrections.file_of(drawing.file)
+    return drawing, newest(drawing.file), newest(corrections)
 
 
 def _told(error: Exception) -> dict[str, Any]:

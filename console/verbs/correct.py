@@ -131,13 +131,13 @@ def command(drawing: DrawingFile, desk: Desk, listed: bool, undo: int, **options
     drawn in the order of the file.
     """
     remove = options.pop("remove")
-    add = () if listed else _corrections(options)
+    add = () if listed else asked_corrections(options)
     if listed and (undo or remove):
         raise click.UsageError("--list changes nothing; leave --undo and --remove out")
     desk.figures(CorrectJob(drawing, add, remove, undo).run(desk).figures)
 
 
-def _corrections(options: dict[str, Any]) -> tuple[Correction, ...]:
+def asked_corrections(options: dict[str, Any]) -> tuple[Correction, ...]:
     """The corrections that are asked for; wrong use where width, side or direction has nothing to go with."""
     from morfax.tracer.corrections.corrections import Correction
 

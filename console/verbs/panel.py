@@ -12,7 +12,7 @@ from morfax.console.options.groups import GroupedOption, Verb, option
 from morfax.motion.faults import DrawingFault, FileFault
 
 if TYPE_CHECKING:
-    from morfax.console.options.as_jobs import WordsAsJobs
+    from morfax.console.verbs.as_jobs import WordsAsJobs
     from morfax.panel.commands import Field
     from morfax.panel.server import Address
 
@@ -145,10 +145,11 @@ def _said(address: Address) -> None:
 
 def _command_line() -> _OfVerbs:
     """The command line's own parser, for the page."""
-    from morfax.console.options.as_jobs import WordsAsJobs
-    from morfax.console.verbs import lines, run, trace
+    from morfax.console.verbs import correct, lines, run, trace
+    from morfax.console.verbs.as_jobs import WordsAsJobs
 
     verbs = {"lines": lines.command, "run": run.command, "trace": trace.command}
+    verbs["correct"] = correct.command
     return _OfVerbs(WordsAsJobs(verbs))
 
 
@@ -157,6 +158,7 @@ class _OfVerbs:
 
     def __init__(self, words: WordsAsJobs) -> None:
         self.lines, self.run, self.trace = words.lines, words.run, words.trace
+        self.correct = words.correct
         params = words.verbs["trace"].params
         self._options = {p.opts[0]: p for p in params if isinstance(p, GroupedOption)}
 

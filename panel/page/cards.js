@@ -1,6 +1,6 @@
 // The cards of the operator's column: lines, result, files, notes.
 
-import { element, length } from "./format.js";
+import { element, length, place } from "./format.js";
 import { figureRows, worstRows } from "./result.js";
 import { colourOf } from "./sheet.js";
 
@@ -86,4 +86,13 @@ export function showMessages(host, messages, goTo) {
   host.dataset.shown = now;
   host.replaceChildren(...messages.map((message) => element("li", { class: message.kind }, message.text,
     message.place_mm ? element("button", { class: "plain", onclick: () => goTo({ x_mm: message.place_mm[0], y_mm: message.place_mm[1] }) }, "Show") : null)));
+}
+
+// The corrections of the drawing, each with a button that takes it away.
+export function showCorrections(host, state, goTo, remove) {
+  const corrections = state.sheet?.corrections ?? [];
+  host.parentElement.hidden = !corrections.length;
+  host.replaceChildren(...corrections.map((one) => element("li", {},
+    element("button", { class: "plain", onclick: () => goTo({ x_mm: one.place_mm[0], y_mm: one.place_mm[1] }) }, `${one.number}  ${one.do} at ${place(...one.place_mm)}`),
+    element("button", { class: "plain", "aria-label": `Take correction ${one.number} away`, onclick: () => remove(one.number) }, "✕"))));
 }

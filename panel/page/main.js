@@ -1,9 +1,10 @@
 // The panel: what the server says is shown, what the operator does is sent. It decides nothing of its own.
 
-import { chosenNumbers, isChosen, lineText, showFiles, showLines, showMessages, showResult, showSaves, showWhich, toggled } from "./cards.js";
+import { isChosen, lineText, showCorrections, showFiles, showLines, showMessages, showResult, showSaves, showWhich, toggled } from "./cards.js";
 import { Fields } from "./fields.js";
 import { element, length } from "./format.js";
 import { Head } from "./head.js";
+import { drawCorrections, drawMarks, drawNumbers, drawStart } from "./layers.js";
 import { Link } from "./link.js";
 import { Replay } from "./replay.js";
 import { drawErrors, drawMachine, drawWorst, errorPaths, errorScale, RAMP } from "./result.js";
@@ -28,7 +29,9 @@ async function begin() {
   head = new Head(sheet, by("inset"), by("inset-canvas"));
   tools = new Tools(sheet, link, new Ask(), say);
   tools.onChoose = (number) => number && set({ "--lines": toggled(state.options, number), "--start": null });
-  sheet.layers.push(drawResult, drawStart);
+  tools.onRefused = say;
+  const calm = () => !result && !(state?.busy && state.busy.kind !== "lines");
+  sheet.layers.push(drawResult, (c) => !head.busy && drawMarks(c, sheet, result), (c) => drawStart(c, sheet, state), (c) => drawCorrections(c, sheet, state), (c) => calm() && drawNumbers(c, sheet, state));
   sheet.onHover = hover;
   placeFields(first.fields);
   wire();
@@ -82,7 +85,7 @@ function keys(event) {
   const pressed = { n: "step", Escape: "stop", r: "run-button" }[event.key];
   if (pressed) return press(pressed);
   if (event.key === " " && !event.target.closest("button, summary, input, a")) return press("hold");
-  const tool = { v: "look", m: "measure", c: "corners", s: "start" }[event.key];
+  const tool = { v: "look", m: "measure", c: "corners", s: "start", x: "rub", b: "bridge" }[event.key];
   if (tool) tools.take(tool);
 }
 
@@ -113,6 +116,7 @@ function show(next) {
     sheet.recolour((number) => isChosen(state.options, lines, number));
     showWhich(by("which"), state.options, set);
     showLines(by("lines"), state, set, under);
+    showCorrections(by("corrections"), state, goTo, async (number) => say((await link.do({ do: "correct", remove: number })) ?? ""));
   }
   showBusy();
   showCommands();
@@ -174,7 +178,7 @@ function showCommands() {
   if (list.dataset.shown !== now) {
     const before = list.value || "run";
     list.dataset.shown = now;
-    list.replaceChildren(...kinds.map((kind) => element("option", { value: kind }, { run: "run", lines: "look", program: "save program" }[kind] ?? `save ${kind}`)));
+    list.replaceChildren(...kinds.map((kind) => element("option", { value: kind }, { run: "run", lines: "look", correct: "correct", program: "save program" }[kind] ?? `save ${kind}`)));
     list.value = kinds.includes(before) ? before : (kinds[1] ?? "");
   }
   showCommand();
@@ -234,19 +238,6 @@ function drawResult(context) {
   drawErrors(context, result.paths, 3 * unit);
   drawWorst(context, result.worst, unit, style.getPropertyValue("--head"));
   if (drawResult.now) drawMachine(context, result.played, drawResult.now, unit, { way: "#20211f", down: style.getPropertyValue("--head"), up: "#4a7fae" });
-}
-
-function drawStart(context) {
-  const start = state?.options["--start"];
-  if (!start || !sheet.pitch) return;
-  const mm = start.split(",").map(parseFloat), [x, y] = sheet.toScreen(sheet.toPx(mm)), r = 9 * devicePixelRatio;
-  context.strokeStyle = getComputedStyle(sheet.canvas).getPropertyValue("--head");
-  context.lineWidth = 2 * devicePixelRatio;
-  context.beginPath();
-  context.arc(x, y, r, 0, 7);
-  context.moveTo(x - 1.6 * r, y); context.lineTo(x + 1.6 * r, y);
-  context.moveTo(x, y - 1.6 * r); context.lineTo(x, y + 1.6 * r);
-  context.stroke();
 }
 
 function hover(x, y) {

@@ -11,6 +11,7 @@ export class Replay {
   constructor(host, result, onTime) {
     this.path = result.played;
     this.following = result.following;
+    this.tape = result.tape;
     this.onTime = onTime;
     this.first = this.path.t_s[0];
     this.last = this.path.t_s.at(-1);
@@ -31,13 +32,13 @@ export class Replay {
     this.clock = element("output", {}, "");
     this.dials = Object.fromEntries(["X", "Y", "Z", "feed", "tool", "error", "left"].map((name) => [name, element("b", {}, "–")]));
     const dial = (name) => element("span", {}, `${name === "left" ? "time left" : name === "error" ? "following error" : name} `, this.dials[name]);
-    this.scopes = element("div", { class: "scopes" });
+    this.scopes = element("div", { class: this.tape ? "scopes four" : "scopes" });
     host.replaceChildren(
       element("div", { class: "bar" }, this.play, this.speed, this.slider, this.clock),
       element("div", { class: "dro" }, ...Object.keys(this.dials).map(dial)),
       this.scopes,
     );
-    this.plots = [this.positions(), this.errors(), this.feeds()].filter(Boolean);
+    this.plots = [this.positions(), this.errors(), this.feeds(), this.levels()].filter(Boolean);
     this.resizing = new ResizeObserver(() => this.fit());
     this.resizing.observe(this.scopes);
   }
@@ -85,6 +86,13 @@ export class Replay {
     const { t_s, x_mm, y_mm } = this.path, feeds = [0];
     for (let i = 1; i < t_s.length; i++) feeds.push(Math.hypot(x_mm[i] - x_mm[i - 1], y_mm[i] - y_mm[i - 1]) / (t_s[i] - t_s[i - 1] || 1));
     return this.plot("feed in mm/s", t_s, [{ label: "feed", values: feeds, colour: AXES[0] }], "mm/s");
+  }
+
+  levels() {
+    if (!this.tape) return null;
+    const { t_s, tracks, level } = this.tape;
+    const series = tracks.map((label, i) => ({ label, values: level[i], colour: AXES[(i + 4) % 5] }));
+    return this.plot("tape: levels of its tracks", t_s, series, "");
   }
 
   mark(u) {

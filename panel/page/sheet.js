@@ -341,7 +341,7 @@ export class Sheet {
     canvas.addEventListener("pointercancel", (event) => held.delete(event.pointerId));
     canvas.addEventListener("pointerleave", () => this.onHover?.(-1, -1));
     canvas.addEventListener("keydown", (event) => {
-      const far = 60 * devicePixelRatio;
+      const far = (event.shiftKey ? 4 : 60) * devicePixelRatio;
       const keys = {
         ArrowLeft: () => this.pan(far, 0), ArrowRight: () => this.pan(-far, 0),
         ArrowUp: () => this.pan(0, far), ArrowDown: () => this.pan(0, -far),

@@ -1,6 +1,14 @@
 // The tools of the sheet: choose lines, measure a known length, drag the four corners of a sheet, begin somewhere.
 
 const MAGNIFIED = 5; // times, in the magnifier
+const WAYS = {
+  left: "Click on the junction where the head is to turn left as it comes.",
+  straight: "Click on the junction where the head is to go straight on.",
+  right: "Click on the junction where the head is to turn right as it comes.",
+  stop: "Click on the line where the head is to stop.",
+  "not-stop": "Click on what is no stop.",
+  drill: "Click where a hole is to be drilled.",
+};
 
 export class Tools {
   constructor(sheet, link, ask, say) {
@@ -10,6 +18,12 @@ export class Tools {
     sheet.layers.push((context) => this.draw(context));
     for (const button of document.querySelectorAll("[data-tool]"))
       button.addEventListener("click", () => this.take(button.dataset.tool));
+    const help = document.getElementById("help"), open = document.getElementById("help-open");
+    open.addEventListener("click", () => {
+      help.hidden = !help.hidden;
+      open.setAttribute("aria-expanded", String(!help.hidden));
+      if (help.hidden) this.take("look");
+    });
     this.take("look");
   }
 
@@ -17,12 +31,16 @@ export class Tools {
     this.name = name;
     this.places = [];
     this.magnified = null;
+    this.armed = false;
     for (const button of document.querySelectorAll("[data-tool]"))
       button.setAttribute("aria-pressed", String(button.dataset.tool === name));
     this.sheet.canvas.classList.toggle("aim", name !== "look");
-    this.sheet.tool = this[name]();
+    this.sheet.tool = name in WAYS ? this.mark(name) : this[name]();
+    if (name in WAYS) this.say(WAYS[name]);
     this.ask.close();
     if (name === "corners" && this.sheet.picture) this.beginCorners();
+    if (name === "rub") this.say("Drag over the ink that is to go.");
+    if (name === "bridge") this.say("Drag from one end of the line to the other.");
     if (name === "measure") this.say("Drag over a length that you know, then type it.");
     if (name === "start") this.say("Click on the line where the head is to begin.");
     this.sheet.ask();
@@ -49,6 +67,42 @@ export class Tools {
         }, () => this.take("look"));
       },
     };
+  }
+
+  // Rub out along the way of the pointer.
+  rub() {
+    const at = (x, y) => this.sheet.fromScreen(x, y);
+    return {
+      down: (x, y) => { this.places = [at(x, y)]; },
+      move: (x, y) => {
+        const next = at(x, y), last = this.places.at(-1);
+        const far = Math.hypot(next[0] - last[0], next[1] - last[1]) * this.sheet.view.scale;
+        if (far > 6 * devicePixelRatio && this.places.length < 150) this.places.push(next);
+        this.sheet.ask();
+        return true;
+      },
+      up: () => this.correct({ as: "rub", at: this.places, width: document.getElementById("rubber").value }),
+    };
+  }
+
+  bridge() {
+    const at = (x, y) => this.sheet.fromScreen(x, y);
+    return {
+      down: (x, y) => { this.places = [at(x, y), at(x, y)]; },
+      move: (x, y) => { this.places[1] = at(x, y); this.magnified = [x, y]; this.sheet.ask(); return true; },
+      up: () => { this.magnified = null; this.correct({ as: "bridge", at: this.places }); },
+    };
+  }
+
+  mark(name) {
+    return { click: (x, y) => this.correct({ as: name, at: [this.sheet.fromScreen(x, y)] }) };
+  }
+
+  async correct(what) {
+    const why = await this.link.do({ do: "correct", ...what });
+    this.places = [];
+    this.say(why ?? "corrected; run again");
+    this.sheet.ask();
   }
 
   start() {
@@ -96,8 +150,39 @@ export class Tools {
     };
   }
 
+  // Enter does at the middle of the view what a click does there; a drag begins and ends with it.
+  enter() {
+    const { canvas, tool } = this.sheet, middle = [canvas.width / 2, canvas.height / 2];
+    if (!tool.down || this.name === "corners") tool.click?.(...middle);
+    else if (!this.armed) {
+      tool.down(...middle);
+      this.armed = true;
+    } else {
+      this.armed = false;
+      tool.move(...middle);
+      tool.up(...middle);
+    }
+    this.sheet.ask();
+  }
+
+  // The cross in the middle, for those who use the keys.
+  drawCross(context) {
+    const { canvas } = this.sheet, r = 14 * devicePixelRatio;
+    if (document.activeElement !== canvas || !canvas.matches(":focus-visible")) return;
+    const [x, y] = [canvas.width / 2, canvas.height / 2];
+    if (this.armed) this.sheet.tool.move(x, y);
+    this.magnified = null;
+    context.strokeStyle = getComputedStyle(canvas).getPropertyValue("--focus");
+    context.lineWidth = 1.4 * devicePixelRatio;
+    context.beginPath();
+    context.moveTo(x - r, y); context.lineTo(x + r, y);
+    context.moveTo(x, y - r); context.lineTo(x, y + r);
+    context.stroke();
+  }
+
   // Keys 1 to 4 choose a corner, arrows move it by a pixel, with Shift by twenty.
   key(event) {
+    if (event.key === "Enter") { this.enter(); return true; }
     if (this.name !== "corners") return false;
     if ("1234".includes(event.key)) { this.corner = Number(event.key) - 1; this.sheet.ask(); return true; }
     const step = event.shiftKey ? 20 : 1;
@@ -111,6 +196,7 @@ export class Tools {
   }
 
   draw(context) {
+    this.drawCross(context);
     if (!this.places.length) return;
     const { sheet } = this, ratio = devicePixelRatio, at = this.places.map((p) => sheet.toScreen(p));
     const colour = getComputedStyle(sheet.canvas).getPropertyValue("--head");

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import shlex
 from typing import Any
 
 import pytest
@@ -86,6 +87,66 @@ def test_what_cannot_be_done_is_refused_in_words(
     assert page.post("/do", content=b"[" * 50_000, headers=ORIGIN).status_code == 400
 
 
+@pytest.mark.parametrize(
+    ("asked", "words"),
+    [
+        (
+            {"as": "rub", "at": [[1, 2], [3.04, 4]], "width": "3mm"},
+            ["--rub", "1.0px,2.0px 3.0px,4.0px", "--rubber", "3mm"],
+        ),
+        ({"as": "bridge", "at": [[1, 2], [3, 4]]}, ["--bridge", "1.0px,2.0px 3.0px,4.0px"]),
+        ({"as": "left", "at": [[1, 2]]}, ["--turn", "left", "1.0px,2.0px"]),
+        ({"as": "not-stop", "at": [[1, 2]]}, ["--not-stop", "1.0px,2.0px"]),
+        ({"remove": 2}, ["--remove", "2"]),
+    ],
+)
+def test_a_correction_is_words_of_morfax_correct(
+    page: TestClient, bench: Bench, asked: dict[str, Any], words: list[str]
+) -> None:
+    assert not does(page, bench, do="correct", **asked)
+    shown = page.get("/state").json()["state"]["commands"]["correct"]
+    assert shlex.split(shown) == ["morfax", "correct", str(bench.drawing), *words]
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [
+        {"as": "burn", "at": [[1, 2]]},
+        {"as": "rub", "at": []},
+        {"as": "rub", "at": [[1, 2]] * 500},
+        {"as": "rub", "at": [["1", "--undo"]]},
+        {"as": "rub", "at": [[1, float("nan")]]},
+        {"as": "rub", "at": [[1, 2]], "width": "--undo"},
+        {"as": "rub", "at": [[1, 2]], "width": "3 apples"},
+        {"remove": "1 --undo"},
+        {},
+    ],
+)
+def test_what_is_no_correction_is_refused(
+    page: TestClient, bench: Bench, asked: dict[str, Any]
+) -> None:
+    body = json.dumps({"seen": bench.history.revision, "do": "correct", **asked})
+    assert page.post("/do", content=body, headers=ORIGIN).json()["refused"]
+
+
+def test_undo_lays_the_former_corrections_beside_the_drawing(
+    page: TestClient, bench: Bench
+) -> None:
+    assert bench.drawing is not None
+    file = bench.drawing.with_name("cam.morfax.toml")
+    file.write_text("# first\n")
+    does(page, bench, do="set", option="--cutter", value="3mm")
+    # somebody edits the file by hand
+    file.write_text("# by hand\n")
+    does(page, bench, do="undo")
+    assert file.read_text() == "# first\n"
+    does(page, bench, do="undo")
+    assert not file.exists()
+    for text in ("# first\n", "# by hand\n"):
+        does(page, bench, do="redo")
+        assert file.read_text() == text
+
+
 def test_undo_and_redo_go_all_the_way(page: TestClient, bench: Bench) -> None:
     for mm in range(1, 30):
         does(page, bench, do="set", option="--cutter", value=f"{mm}mm")
@@ -158,7 +219,8 @@ def test_a_step_is_whole_on_disk(tmp_path: Any) -> None:
     history = History(tmp_path / "state.json")
     history.add(Step("a.png", {"--width": "120mm"}))
     kept = json.loads((tmp_path / "state.json").read_text())
-    assert kept["steps"][kept["at"]] == {"drawing": "a.png", "options": {"--width": "120mm"}}
+    step = {"drawing": "a.png", "options": {"--width": "120mm"}, "corrections": ""}
+    assert kept["steps"][kept["at"]] == step
     assert [file.name for file in tmp_path.iterdir()] == ["state.json"]
 
 

@@ -13,7 +13,8 @@ import shutil
 import signal
 import subprocess
 import sys
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -116,6 +117,14 @@ def morfax(folder: Path, typed: str) -> None:
     )
 
 
+def soon(holds: Callable[[], bool]) -> None:
+    """Wait until something holds, ten seconds at most."""
+    late_s = time.monotonic() + 10
+    while not holds():
+        assert time.monotonic() < late_s
+        time.sleep(0.05)
+
+
 def ran(page: Any) -> None:
     """Wait until a run is done."""
     page.wait_for_selector("#run-button:not([disabled])", timeout=RUN_MS)
@@ -143,6 +152,9 @@ def test_what_the_page_saves_is_byte_for_byte_what_its_commands_write(
     ran(page)
     page.click("[data-save='.dxf']")
     page.wait_for_selector("#files a >> text=bracket.dxf", timeout=RUN_MS)
+    page.wait_for_selector("#run-button:not([disabled])")
+    page.click("[data-save='.html']")
+    page.wait_for_selector("#files a >> text=bracket.html", timeout=RUN_MS)
     typed = list[str]()
     for kind in ("run", ".dxf"):
         page.select_option("#command-kind", kind)
@@ -164,6 +176,38 @@ def test_what_the_page_saves_is_byte_for_byte_what_its_commands_write(
         with page.expect_download() as download:
             page.click(f"#files a >> text='{name}'")
         assert Path(download.value.path()).read_bytes() == content
+
+
+def test_a_correction_on_the_page_is_the_one_that_its_command_writes(
+    server: Server, page: Any, tmp_path: Path
+) -> None:
+    box = page.locator("#sheet").bounding_box()
+    x, y = box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"]
+    page.click("#help-open")
+    page.click("[data-tool=rub]")
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 30, y + 10, steps=4)
+    page.mouse.up()
+    page.wait_for_selector("#corrections li", timeout=RUN_MS)
+    page.select_option("#command-kind", "correct")
+    shutil.copy(server.folder / "bracket.png", tmp_path)
+    morfax(tmp_path, page.inner_text("#command"))
+    file = server.folder / "bracket.morfax.toml"
+    assert file.read_bytes() == (tmp_path / "bracket.morfax.toml").read_bytes()
+    # by the keyboard as well: the cross in the middle of the sheet
+    page.focus("#sheet")
+    page.keyboard.press("b")
+    page.keyboard.press("Enter")
+    page.keyboard.press("ArrowLeft")
+    page.keyboard.press("Enter")
+    page.wait_for_selector("#corrections li:nth-child(2)", timeout=RUN_MS)
+    assert "bridge" in file.read_text()
+    # undone, one after the other
+    page.click("#undo")
+    soon(lambda: "bridge" not in file.read_text())
+    page.click("#undo")
+    soon(lambda: not file.exists())
 
 
 def test_a_reload_a_second_page_and_a_killed_server_lose_nothing(
@@ -192,6 +236,25 @@ def test_a_reload_a_second_page_and_a_killed_server_lose_nothing(
     ran(second)
     assert "begun anew" in second.inner_text("#messages")
     second.close()
+
+
+def test_the_saved_page_opens_without_a_network_and_can_be_scrubbed(
+    server: Server, chromium: Any
+) -> None:
+    context = chromium.new_context(offline=True)
+    page = context.new_page()
+    asked, complaints = list[str](), list[str]()
+    page.on("request", lambda request: asked.append(request.url[:20]))
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.goto((server.folder / "bracket.panel" / "bracket.html").as_uri())
+    page.wait_for_selector("html[data-ready]")
+    before = page.inner_text("#machine .dro")
+    page.fill("#machine input[type=range]", "9")
+    assert page.inner_text("#machine .dro") != before
+    assert not complaints and not [
+        url for url in asked if not url.startswith(("file:", "data:"))
+    ]
+    context.close()
 
 
 @pytest.mark.skipif(AXE is None, reason="no axe-core: MORFAX_AXE names its axe.min.js")

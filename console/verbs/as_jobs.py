@@ -19,6 +19,8 @@ from morfax.console.options.drawing import drawing_options
 from morfax.console.options.groups import Verb
 from morfax.console.options.placement import unit_options
 from morfax.console.options.tracing import trace_options
+from morfax.console.verbs.correct import asked_corrections
+from morfax.jobs.correct import CorrectJob
 from morfax.jobs.lines import LinesJob
 from morfax.jobs.run import RunJob
 from morfax.jobs.settings import LineSettings
@@ -40,6 +42,11 @@ class WordsAsJobs:
     def run(self, words: list[str]) -> RunJob:
         """The job of `morfax run WORDS`, which takes down the following errors."""
         parsed: RunJob = self._parsed("run", _RUN, words)
+        return parsed
+
+    def correct(self, words: list[str]) -> CorrectJob:
+        """The job of `morfax correct WORDS`."""
+        parsed: CorrectJob = self._parsed("correct", _CORRECT, words)
         return parsed
 
     def trace(self, words: list[str]) -> TraceJob:
@@ -91,6 +98,15 @@ def _of_lines(
     return LinesJob(drawing, line, follow, picture)
 
 
+def _of_correct(
+    drawing: Any, undo: int, remove: tuple[int, ...], listed: bool, **options: Any
+) -> CorrectJob:
+    """The job that edits the corrections of a drawing."""
+    options.pop("desk")
+    return CorrectJob(drawing, asked_corrections(options), remove, undo)
+
+
 _TRACE = drawing_options("drawings")(trace_options(unit_options(desk_options(_of_trace))))
 _RUN = drawing_options("drawing")(trace_options(unit_options(desk_options(_of_run))))
+_CORRECT = drawing_options("drawing")(desk_options(_of_correct))
 _LINES = drawing_options("drawing")(desk_options(_of_lines))
