@@ -22,6 +22,7 @@ class ContourSettings:
     lead_out: Leading | None = None
     start_at: StartAt | None = None
     by_machine: bool = False  # the direction is the machine's: nobody asked for it
+    mirrored: bool = False  # the program is mirrored when it is recorded
 
     def check(self, direction: str | None) -> None:
         """Raise WrongUse for two directions at once."""
@@ -30,11 +31,14 @@ class ContourSettings:
                 f"--direction {direction} and --{self.milling} both say which way round; give one of them"
             )
 
-    def on_machine(self, milling: Milling | None, direction: str | None) -> ContourSettings:
+    def on_machine(
+        self, milling: Milling | None, direction: str | None, mirrored: bool
+    ) -> ContourSettings:
         """The same with the direction that a machine asks for, where nobody asked for another one."""
+        settings = replace(self, mirrored=mirrored)
         if self.milling is not None or direction is not None or milling is None:
-            return self
-        return replace(self, milling=milling, by_machine=True)
+            return settings
+        return replace(settings, milling=milling, by_machine=True)
 
     def contouring(self) -> Contouring:
         """What the tracer is asked for."""
@@ -47,4 +51,5 @@ class ContourSettings:
             return Lead(size_mm, "line" if kind == "line" else "arc")
 
         leads = lead(self.lead_in), lead(self.lead_out)
-        return Contouring(self.milling, *leads, self.start_at, self.by_machine)
+        asked = self.milling, *leads, self.start_at
+        return Contouring(*asked, self.by_machine, self.mirrored)

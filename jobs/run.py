@@ -112,7 +112,7 @@ class RunJob:
         """The program's name, and the head as it is set; raises WrongUse, CardFault and FileFault."""
         tracing, program_file = Tracing.prepared(self.settings, panel), self._program_file()
         self.unit.check(program_file)
-        return program_file, tracing.on_machine(self.unit.milling(program_file))
+        return program_file, tracing.on_machine(self.unit, program_file)
 
     def _program_file(self) -> FilePath:
         """The name of the program: a tape, or in the words of a machine if there is one."""

@@ -88,7 +88,7 @@ class TraceJob:
         tracing = Tracing.prepared(self.settings, panel)
         outputs = self.outputs.checked(self.drawing.file)
         self.unit.check(outputs.program)
-        return outputs, tracing.on_machine(self.unit.milling(outputs.program))
+        return outputs, tracing.on_machine(self.unit, outputs.program)
 
     def _source(self, drawing: Drawing) -> str:
         """What the program's head says that it was made from."""

@@ -20,9 +20,11 @@ from morfax.jobs.zero import ZeroOnSheet
 from morfax.motion.faults import CardFault
 
 if TYPE_CHECKING:
+    from pathlib import Path as FilePath
+
     from morfax.jobs.listener import Listener
+    from morfax.jobs.recording import RecordingUnit
     from morfax.jobs.settings import TraceSettings
-    from morfax.tracer.cutter.contouring import Milling
     from morfax.tracer.cutter.cutter import Left
     from morfax.tracer.drawing.drawing import Drawing
     from morfax.tracer.head.settings import Settings
@@ -115,9 +117,13 @@ class Tracing:
         )
         return replace(self, settings=replace(self.settings, line=line), operator=operator)
 
-    def on_machine(self, milling: Milling | None) -> Tracing:
-        """The same with the direction of closed lines that a machine asks for, if nobody asks for another."""
-        contour = self.settings.contour.on_machine(milling, self.settings.line.direction)
+    def on_machine(self, unit: RecordingUnit, program: FilePath | None) -> Tracing:
+        """The same with the direction of closed lines that a machine asks for, if nobody asks for another; and
+        as it must be on the drawing of a program that is mirrored.
+        """
+        contour = self.settings.contour.on_machine(
+            unit.milling(program), self.settings.line.direction, bool(unit.mirror)
+        )
         return replace(self, settings=replace(self.settings, contour=contour))
 
     def _cut(

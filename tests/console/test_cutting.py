@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from morfax.motion.pathfile import read_path
+from morfax.motion.polyline import area_mm2
 from tests.console.conftest import SAMPLES, Morfax
 
 BRACKET = (SAMPLES / "bracket.png", "--lines", "all", "-o", "a.csv")
@@ -153,3 +154,15 @@ def test_a_plotter_that_cannot_come_to_a_lead_is_told_the_zero_that_goes(
         r"and a plotter begins at 0, 0; give --zero ([-\d.]+,[-\d.]+)$", refused.fault
     )
     assert zero and morfax(*plot, zero[1]).exit_code == 0
+
+
+@pytest.mark.parametrize("mirror", [(), ("--mirror", "x"), ("--mirror", "y")])
+def test_a_mirrored_program_climbs_too(
+    morfax: Morfax, here: Path, mirror: tuple[str, ...]
+) -> None:
+    """The tool on the left of its travel: the hole counter-clockwise, then the outline clockwise."""
+    words = ("trace", SAMPLES / "bracket.png", "--lines", "contours", "--climb", "-o", "a.csv")
+    assert morfax(*words, *mirror).exit_code == 0
+    areas_mm2 = [area_mm2(run) for run in read_path(here / "a.csv").runs()]
+    hole_mm2, outline_mm2 = areas_mm2
+    assert hole_mm2 > 0 > outline_mm2

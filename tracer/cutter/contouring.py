@@ -50,6 +50,7 @@ class Contouring:
     by_machine: bool = (
         False  # the direction is the machine's, and counts only where a line has one
     )
+    mirrored: bool = False  # the program is mirrored afterwards, which turns every line round
 
     @property
     def has_leads(self) -> bool:
@@ -68,7 +69,8 @@ class Contouring:
 
     def turns(self, tool_left: bool) -> bool:
         """Whether a closed line is turned round that has the tool on the left of its travel, or not."""
-        return self.milling is not None and tool_left != (self.milling == "climb")
+        on_left = (self.milling == "climb") != self.mirrored
+        return self.milling is not None and tool_left != on_left
 
 
 AS_FOLLOWED = Contouring()
