@@ -118,8 +118,9 @@ class Tracing:
         return replace(self, settings=replace(self.settings, line=line), operator=operator)
 
     def on_machine(self, unit: RecordingUnit, program: FilePath | None) -> Tracing:
-        """The same with the direction of closed lines that a machine asks for, if nobody asks for another; and
-        as it must be on the drawing of a program that is mirrored.
+        """The same with the direction of closed lines that a machine asks for, if nobody asks for another.
+
+        Of a program that is mirrored the lines run the other way round on the drawing.
         """
         contour = self.settings.contour.on_machine(
             unit.milling(program), self.settings.line.direction, bool(unit.mirror)
