@@ -6,8 +6,8 @@ Drawings are made with known truth: chords, circles laid over each other, Vorono
 Lissajous figures, as a pen of 0.4 mm draws them, scanned at 300 dpi with noise. For each kind: the share of
 the true lines that strokes run along (all, and the worst drawing), the length that is run more than once,
 strokes against the least that the net allows (half of its odd junctions), the distance of strokes from the
-true lines outside of junctions, and processor time. Beside it the pieces into which scikit-image's skeleton
-falls at its junctions.
+true lines outside of junctions and at them, how often a true line that passes a junction is one stroke there,
+and processor time. Beside it the pieces into which scikit-image's skeleton falls at its junctions.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 from PIL import Image
-from scipy.ndimage import convolve, label
+from scipy.ndimage import convolve, label, minimum_filter1d
 from scipy.spatial import Voronoi, cKDTree
 from skimage.morphology import skeletonize
 
@@ -40,6 +40,7 @@ PEN_MM, DPI, FINER, NOISE = 0.4, 300.0, 4, 4.0
 ON_IT_MM = 0.5 * PEN_MM  # a true place is followed if a stroke comes as near
 AT_JUNCTION_MM = 2.0  # places nearer to a junction are left out of the RMS
 STEP_MM = 0.05
+PASSED_MM = 2.0  # before and behind a junction, where the partners are looked up
 UM = 1000.0
 
 
@@ -107,6 +108,9 @@ class Found(NamedTuple):
     strokes: int
     least: int
     rms_um: float
+    at_junctions_um: float
+    passes: int
+    right: int
     took_s: float
     pieces: int
 
@@ -114,7 +118,10 @@ class Found(NamedTuple):
 def main(arguments: list[str] | None = None) -> None:
     """Print the table."""
     count, first = (*map(int, arguments or []), *(2, 0)[len(arguments or []) :])
-    print("kind        share  worst  twice  strokes/least  RMS um  skeleton pieces/stroke  s/m")
+    print(
+        "kind        share  worst  twice  strokes/least  RMS um, at junctions  right partners"
+        "  skeleton pieces/stroke  s/m"
+    )
     every = list[Found]()
     with tempfile.TemporaryDirectory() as folder:
         for name, kind in KINDS.items():
@@ -146,9 +153,10 @@ def measured(strokes: Strokes, file: Path, seed: int) -> Found:
     run_mm = sum(length_mm(line) for line in lines)
     # 3. how far the strokes are from it
     away = np.array(shapely.distance(shapely.points(run), net))
+    there = np.zeros(len(run), bool)
     if len(junctions):
-        away = away[cKDTree(junctions).query(run)[0] > AT_JUNCTION_MM]
-    rms_um = UM * float(np.sqrt(np.mean(away**2)))
+        there = cKDTree(junctions).query(run)[0] < AT_JUNCTION_MM
+    right = partners(strokes, junctions, lines)
     twice_mm = max(0.0, run_mm - net.length * float(near.mean()))
     return Found(
         net.length,
@@ -156,10 +164,41 @@ def measured(strokes: Strokes, file: Path, seed: int) -> Found:
         twice_mm,
         len(lines),
         least,
-        rms_um,
+        rms_um(away[~there]),
+        rms_um(away[there]),
+        len(right),
+        sum(right),
         took_s,
         skeleton_pieces(drawing),
     )
+
+
+def rms_um(away_mm: Points) -> float:
+    """Root of the mean square of distances, um; 0 of none."""
+    return UM * float(np.sqrt(np.mean(away_mm**2))) if len(away_mm) else 0.0
+
+
+def partners(strokes: Strokes, junctions: Points, lines: Strokes) -> list[bool]:
+    """For each true stroke that passes a junction, whether one line goes there from before it to behind it."""
+    right = list[bool]()
+    placed = [evenly(line[::10], STEP_MM) for line in lines]
+    tree = cKDTree(np.vstack(placed))
+    which = np.repeat(np.arange(len(placed)), [len(line) for line in placed])
+    at = np.concatenate([np.arange(len(line)) for line in placed])
+    reach = round(PASSED_MM / STEP_MM)
+    for stroke in strokes if len(junctions) else ():
+        truth = evenly(stroke, STEP_MM)
+        away = cKDTree(junctions).query(truth)[0]
+        nearest = (away < STEP_MM) & (away == minimum_filter1d(away, 2 * reach))
+        for k in np.flatnonzero(nearest):
+            if not reach <= k < len(truth) - reach:
+                continue
+            a, b = tree.query(truth[[k - reach, k + reach]])[1]
+            count = len(placed[which[a]])
+            apart = abs(int(at[a]) - int(at[b]))
+            apart = min(apart, abs(count - apart)) if which[a] == which[b] else count
+            right.append(which[a] == which[b] and abs(apart - 2 * reach) < 0.5 * reach)
+    return right
 
 
 def drawn(strokes: Strokes, file: Path, seed: int) -> None:
@@ -208,11 +247,15 @@ def _tell(name: str, found: list[Found]) -> None:
     true_mm, followed_mm = sum(f.true_mm for f in found), sum(f.followed_mm for f in found)
     strokes, least = sum(f.strokes for f in found), sum(f.least for f in found)
     worst = min(f.followed_mm / f.true_mm for f in found)
-    rms_um = float(np.sqrt(np.mean([f.rms_um**2 for f in found])))
+    outside_um, there_um = (
+        float(np.sqrt(np.mean([um**2 for um in ums])))
+        for ums in ([f.rms_um for f in found], [f.at_junctions_um for f in found])
+    )
+    right = sum(f.right for f in found) / max(1, sum(f.passes for f in found))
     print(
         f"{name:10s} {followed_mm / true_mm:6.1%} {worst:6.1%} "
         f"{sum(f.twice_mm for f in found) / true_mm:6.1%} {strokes:5d}/{least:<5d} {strokes / least:5.2f}"
-        f"{rms_um:8.1f} {sum(f.pieces for f in found) / strokes:14.1f}"
+        f"{outside_um:8.1f}{there_um:8.1f}{right:18.2%} {sum(f.pieces for f in found) / strokes:14.1f}"
         f"{1000 * sum(f.took_s for f in found) / true_mm:16.1f}",
         flush=True,
     )

@@ -25,7 +25,7 @@ from morfax.tracer.ink.partners import Pair, meeting_place, partners, way_throug
 from morfax.tracer.ink.stretches import FeltSheet
 from morfax.tracer.junctions.planner import Planner
 from morfax.tracer.sensing.leg import Leg
-from morfax.tracer.sensing.probe import end_of
+from morfax.tracer.sensing.probe import end_of, reach_of_ink
 
 # Chosen by trial on drawings of nets.
 FOOT_WIDTHS = 4.0  # as far ahead a line that ends on others is sought
@@ -188,7 +188,9 @@ class Junctions:
             lifted = end_of(view, leg)
             return max(0.0, lifted or 0.0)
         way = np.array([np.cos(leg.heading_rad), np.sin(leg.heading_rad)])
-        return max(0.0, float((meeting_place(there.legs) - leg.end_mm) @ way))
+        on_mm = float((meeting_place(there.legs) - leg.end_mm) @ way)
+        inked_mm = reach_of_ink(view, leg, max(on_mm, 0.0) + leg.width_mm)
+        return max(0.0, on_mm if inked_mm is None else min(on_mm, inked_mm))
 
     def _foot_mm(self, there: Junction, leg: Leg) -> float | None:
         """How far from its clean end a leg comes onto the lines that pass, mm; None if it does not."""

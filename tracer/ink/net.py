@@ -22,7 +22,7 @@ from scipy.spatial import cKDTree
 
 from morfax.motion.arrays import Array
 from morfax.tracer.head.settings import Settings
-from morfax.tracer.ink.felt import Parted, judged, whole
+from morfax.tracer.ink.felt import Parted, judged, strands, whole
 from morfax.tracer.ink.graph import RING
 from morfax.tracer.ink.run import Run
 from morfax.tracer.ink.stretches import FeltSheet, felt_mm, with_width
@@ -61,7 +61,7 @@ class FeltLine:
 
 
 class Inner(NamedTuple):
-    """A stretch of one line's width within a junction: its number, the junction's, and places along it."""
+    """A stretch within a junction: its number, the junction's, and places along it."""
 
     stretch: int
     junction: int
@@ -96,7 +96,10 @@ def net_of(sheet: FeltSheet, own: set[int]) -> Net:
             same.join(*stretch.nodes)
             inner.append(n)
         else:
-            kept.append((n, (some, parted) if some else ([whole(run)], [])))
+            two = strands(run, width_mm) if n in own and _is_shared(run, width_mm) else []
+            kept += [(n, ([strand], [])) for strand in two]
+            if not two:
+                kept.append((n, (some, parted) if some else ([whole(run)], [])))
     # 2. the others are lines
     for n, (runs, parted) in kept:
         stretch = graph.stretches[n]
@@ -107,9 +110,7 @@ def net_of(sheet: FeltSheet, own: set[int]) -> Net:
     free = {node for node, numbers in at.items() if len(numbers) == 1}
     net.free_ends = {node for node in free if not same.has_joined(node)}
     for n in inner:
-        known = felt[n].widths_mm[np.isfinite(felt[n].widths_mm)]
-        single = len(known) > 0 and np.median(known) < SHARED * widths[n]
-        if single and felt_mm(felt[n]) > OWN_WIDTHS * widths[n]:
+        if felt_mm(felt[n]) > OWN_WIDTHS * widths[n]:
             junction = same.of(graph.stretches[n].nodes[0])
             net.inner.append(Inner(n, junction, felt[n].places_mm))
     _bridge_gaps(net, sheet.settings)
@@ -122,10 +123,15 @@ def _is_inner(run: Run, clean: list[Run], width_mm: float, fewest: int) -> bool:
     clean_mm = sum(some.length_mm for some in clean)
     if length_mm > INNER_WIDTHS * width_mm or clean_mm > CLEAN_SHARE * length_mm:
         return False
-    known = run.widths_mm[np.isfinite(run.widths_mm)]
-    shared = len(known) < 0.5 * len(run) or float(np.median(known)) > SHARED * width_mm
+    shared = _is_shared(run, width_mm)
     # one that ends in no other is the tip of two lines that run together, or a stub
     return shared if fewest == 1 else shared or length_mm < 3 * width_mm
+
+
+def _is_shared(run: Run, width_mm: float) -> bool:
+    """Whether the ink along a run is that of two lines."""
+    known = run.widths_mm[np.isfinite(run.widths_mm)]
+    return len(known) < 0.5 * len(run) or float(np.median(known)) > SHARED * width_mm
 
 
 class _Same:
