@@ -10,6 +10,7 @@ Source: our own.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -24,7 +25,7 @@ from morfax.tracer.ink.net import COVERED, Inner, Net, end_leg, net_of, trimmed
 from morfax.tracer.ink.partners import Pair, meeting_place, partners, way_through
 from morfax.tracer.ink.stretches import FeltSheet
 from morfax.tracer.junctions.planner import Planner
-from morfax.tracer.sensing.leg import Leg
+from morfax.tracer.sensing.leg import Leg, turn
 from morfax.tracer.sensing.probe import end_of, reach_of_ink
 
 # Chosen by trial on drawings of nets.
@@ -33,6 +34,8 @@ ON_IT = 0.5  # widths: its straight way on has come to them
 FOOT_STEP_MM = 0.01
 # widths: legs of a wider junction are taken from further off, by a share of its size, and longer
 WIDE_WIDTHS, TRIM, LEGS = 4.0, 0.1, 0.5
+# of a line's width: two that go on from both its ends, so narrow and so straight on, run together in it
+NARROWER, TOGETHER = 0.8, math.radians(25)
 COVERED_SHARE = 0.7  # of a stretch within a junction, along which ways go
 SOLVED_AGAIN = 3  # times at most, with more lines
 
@@ -43,6 +46,11 @@ def solved(sheet: FeltSheet) -> Junctions:
     for _ in range(SOLVED_AGAIN):
         junctions = Junctions(net_of(sheet, own), sheet.settings)
         more = {inner.stretch for inner in junctions.net.inner if not junctions.covers(inner)}
+        for n, line in enumerate(junctions.net.lines):
+            width_mm = None if line.stretch in own else junctions.single_mm(n)
+            if width_mm is not None:
+                sheet.widths_mm[line.stretch] = width_mm
+                more.add(line.stretch)
         if not more:
             break
         own |= more
@@ -77,6 +85,7 @@ class Junction:
     sides: list[Side]
     legs: list[Leg]
     is_free: bool  # an end of the ink
+    passing: cKDTree | None = None
 
     @cached_property
     def pairs(self) -> list[Pair]:
@@ -172,9 +181,31 @@ class Junctions:
         there = self.by_number.get(inner.junction)
         if there is None or not there.pairs:
             return False
-        passing = np.vstack([self._passing(there, pair) for pair in there.pairs])
-        away_mm, _ = cKDTree(passing).query(inner.places_mm)
+        away_mm, _ = self._passing(there).query(inner.places_mm)
         return bool(np.mean(away_mm < COVERED * there.legs[0].width_mm) > COVERED_SHARE)
+
+    def single_mm(self, number: int) -> float | None:
+        """The width of each of two lines that run together as one line, mm; None if that is one line.
+
+        At both its ends two narrower lines go on from it.
+        """
+        line, widths = self.net.lines[number], list[float]()
+        for last in (False, True):
+            there, leg = (
+                self.at(Side(number, last)),
+                self.at(Side(number, last)).leg(Side(number, last)),
+            )
+            onward = [
+                other.width_mm
+                for other in there.legs
+                if other.width_mm < NARROWER * line.width_mm
+                and abs(turn(leg.heading_rad, other.heading_rad + math.pi)) < TOGETHER
+            ]
+            if len(onward) != 2:
+                return None
+            widths += onward
+        width_mm = float(np.mean(widths))
+        return width_mm if line.width_mm < 2 * width_mm else None
 
     def end_mm(self, side: Side) -> float:
         """How far beyond its leg's clean end a line ends that has no partner, mm."""
@@ -196,16 +227,20 @@ class Junctions:
         """How far from its clean end a leg comes onto the lines that pass, mm; None if it does not."""
         ahead_mm = np.arange(0.0, FOOT_WIDTHS * leg.width_mm + 1.0, FOOT_STEP_MM)
         places = leg.at(ahead_mm)
-        passing = np.vstack([self._passing(there, pair) for pair in there.pairs])
-        gaps = places[:, None] - passing[None]
-        away = np.sqrt(np.min(np.sum(gaps * gaps, axis=2), axis=1))
+        away, _ = self._passing(there).query(places)
         come = np.flatnonzero(away < ON_IT * leg.width_mm)
         if not len(come):
             return None
         near = away[come[0] : come[0] + round(2 * leg.width_mm / FOOT_STEP_MM)]
         return float(ahead_mm[come[0] + int(np.argmin(near))])
 
-    def _passing(self, there: Junction, pair: Pair) -> Array:
+    def _passing(self, there: Junction) -> cKDTree:
+        """Places of the lines that pass a junction, from clean end to clean end."""
+        if there.passing is None:
+            there.passing = cKDTree(np.vstack([self._way(there, pair) for pair in there.pairs]))
+        return there.passing
+
+    def _way(self, there: Junction, pair: Pair) -> Array:
         """The way of a pair through a junction, (n, 2) mm."""
         one, other = there.legs[pair[0]], there.legs[pair[1]].turned_round()
         view = self.net.lines[there.sides[pair[0]].line].runs[0].view

@@ -109,7 +109,7 @@ def judged(stations: Run, width_mm: float) -> Felt:
 
 
 def strands(stations: Run, width_mm: float) -> list[Run]:
-    """The two lines of a width whose ink runs together along some stations: each is half a width within its rim."""
+    """The two lines of a width whose ink runs together along some stations: half a width within its rims."""
     known = np.isfinite(stations.widths_mm)
     if known.sum() < FEWEST_STATIONS:
         return []

@@ -22,7 +22,7 @@ from scipy.spatial import cKDTree
 
 from morfax.motion.arrays import Array
 from morfax.tracer.head.settings import Settings
-from morfax.tracer.ink.felt import Parted, judged, strands, whole
+from morfax.tracer.ink.felt import Parted, strands, whole
 from morfax.tracer.ink.graph import RING
 from morfax.tracer.ink.run import Run
 from morfax.tracer.ink.stretches import FeltSheet, felt_mm, with_width
@@ -58,6 +58,7 @@ class FeltLine:
     junctions: tuple[int, int]
     width_mm: float
     length_mm: float
+    stretch: int = -1
 
 
 class Inner(NamedTuple):
@@ -88,7 +89,7 @@ def net_of(sheet: FeltSheet, own: set[int]) -> Net:
         ends = [len(at.get(node, ())) for node in stretch.nodes]
         is_ring = stretch.nodes[0] == RING
         short = felt_mm(run) < max(LEAST_MM, LEAST_WIDTHS * width_mm)
-        some, parted = judged(run, width_mm).runs()
+        some, parted = sheet.runs(n)
         # 1. specks, and stretches within a junction: they make one of the nodes at their ends
         if not is_ring and ends == [1, 1] and short:
             net.left_mm += felt_mm(run)
@@ -106,7 +107,7 @@ def net_of(sheet: FeltSheet, own: set[int]) -> Net:
         one, other = (
             ((-1 - n,) * 2) if stretch.nodes[0] == RING else map(same.of, stretch.nodes)
         )
-        net.lines.append(FeltLine(runs, parted, (one, other), widths[n], felt_mm(felt[n])))
+        net.lines.append(FeltLine(runs, parted, (one, other), widths[n], felt_mm(felt[n]), n))
     free = {node for node, numbers in at.items() if len(numbers) == 1}
     net.free_ends = {node for node in free if not same.has_joined(node)}
     for n in inner:
@@ -208,7 +209,9 @@ def trimmed(line: FeltLine, last: bool, trim_mm: float, legs_mm: float) -> None:
     run = line.runs[k]
     off = round(min(trim_mm, TRIMMED_SHARE * run.length_mm) / run.view.step_mm)
     kept = run.part(0, len(run) - off) if last else run.part(off, len(run))
-    line.runs[k] = replace(kept, legs_mm=max(run.legs_mm, min(legs_mm, kept.length_mm)))
+    line.runs[k] = replace(
+        kept, legs_mm=max(run.legs_mm, min(legs_mm, kept.length_mm)), _legs={}
+    )
 
 
 def _faces(one: Leg, other: Leg) -> bool:

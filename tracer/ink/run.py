@@ -9,7 +9,7 @@ Source: our own.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 from numba import njit
@@ -35,6 +35,10 @@ class Run:
     widths_mm: Array
     view: View
     legs_mm: float = 0.0  # how long the legs at its ends are, if longer than the view's
+    about: Run | None = None  # the same run the other way, if that was there first
+    _legs: dict[bool, Leg] = field(
+        default_factory=dict
+    )  # as they were felt: the last, and the first
 
     def __len__(self) -> int:
         return len(self.places_mm)
@@ -54,6 +58,7 @@ class Run:
             self.widths_mm[::-1],
             self.view,
             self.legs_mm,
+            self,
         )
 
     def part(self, first: int, last: int) -> Run:
@@ -74,11 +79,20 @@ class Run:
 
     def leg_in(self) -> Leg:
         """The leg that its last stations make."""
-        return leg_of(self.stations()[-self._leg_stations :], True, self._leg_mm)
+        return self._leg(True)
 
     def leg_out(self) -> Leg:
         """The leg that its first stations make."""
-        return leg_of(self.stations()[: self._leg_stations], False, self._leg_mm)
+        return self._leg(False)
+
+    def _leg(self, last: bool) -> Leg:
+        if self.about is not None:
+            return self.about._leg(not last).turned_round()
+        if last not in self._legs:
+            count = self._leg_stations
+            near = self.stations()[-count:] if last else self.stations()[:count]
+            self._legs[last] = leg_of(near, last, self._leg_mm)
+        return self._legs[last]
 
     @property
     def _leg_mm(self) -> float:
@@ -93,7 +107,7 @@ def smooth(run: Run) -> Run:
     """A run whose places lie on the parabolas through the stations about each, with headings and bends."""
     half_mm = FELT_LEGS * run.view.leg_mm
     places, headings, bends = _parabolas(run.places_mm, half_mm, run.view.step_mm)
-    return replace(run, places_mm=places, headings_rad=headings, bends_per_mm=bends)
+    return Run(places, headings, bends, run.widths_mm, run.view, run.legs_mm)
 
 
 @njit(cache=True)

@@ -21,7 +21,7 @@ from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import INK, Sheet
 from morfax.tracer.following.plain_places import FAINTEST, aperture_for
 from morfax.tracer.head.settings import Settings
-from morfax.tracer.ink.felt import feel_along
+from morfax.tracer.ink.felt import Parted, feel_along, judged
 from morfax.tracer.ink.graph import RING, Graph
 from morfax.tracer.ink.run import Run
 from morfax.tracer.sensing import photocell
@@ -43,6 +43,15 @@ class FeltSheet:
     felt: list[Run]
     widths_mm: list[float]
     settings: Settings
+    _runs: dict[tuple[int, float], Parted] = field(default_factory=dict)
+
+    def runs(self, number: int) -> Parted:
+        """The clean runs of a stretch, if its line is as wide as it is taken to be."""
+        key = number, self.widths_mm[number]
+        if key not in self._runs:
+            self._runs[key] = judged(with_width(self.felt[number], key[1]), key[1]).runs()
+        runs, parted = self._runs[key]
+        return list(runs), list(parted)
 
     @classmethod
     def of(cls, whole_sheet: Sheet, settings: Settings) -> FeltSheet:
