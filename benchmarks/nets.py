@@ -179,7 +179,7 @@ def rms_um(away_mm: Points) -> float:
 
 
 def partners(strokes: Strokes, junctions: Points, lines: Strokes) -> list[bool]:
-    """For each true stroke that passes a junction, whether one line goes there from before it to behind it."""
+    """For each true stroke at each junction that it passes, whether one line goes on through there."""
     right = list[bool]()
     placed = [evenly(line[::10], STEP_MM) for line in lines]
     tree = cKDTree(np.vstack(placed))
