@@ -83,6 +83,12 @@ class Lookout:
             self._last, self._over_mm, self._carriage = None, 0.0, carriage
         self._news.set()
 
+    def taken_up(self, carriage: Carriage) -> None:
+        """See the head where an earlier run had come, with the way up to there; nobody waits for that."""
+        self.put_down(carriage)
+        self._gather(carriage.positions_mm / carriage.enlarged)
+        self._see(carriage)
+
     def moved(self, carriage: Carriage, positions: Array) -> None:
         """Gather the places of a stretch; wait if the operator holds the head."""
         if len(positions):

@@ -25,6 +25,7 @@ from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.motion.polyline import evenly
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import INK
+from morfax.tracer.following import knots
 from morfax.tracer.following.direction import Direction, goes, turned_about, turned_to
 from morfax.tracer.following.edge_check import kept_to
 from morfax.tracer.following.enlarger import enlarged, reduced
@@ -50,6 +51,7 @@ LONGEST = 4.0  # times all the ink, and ...
 LONGEST_MM = 20.0  # ... this: a run that goes further is going round in circles
 
 Told = Callable[[float], None]
+Keep = Callable[[Follower], None]
 
 
 def longest_mm(drawing: Drawing, width_mm: float) -> float:
@@ -74,15 +76,26 @@ class Attempts:
         """Follow from a stance, with other turns at the junctions of those numbers."""
         times, told = self.drawing.enlarged, self.told
         told_turns = tuple(turn.enlarged(times) for turn in self.drawing.told_turns)
-        follower = Follower(
-            enlarged(stance, times),
-            self.settings,
-            MOTION_RATE_HZ,
-            Turns(turns, self.sides, self.tips, told_turns),
-        )
+        wanted = Turns(turns, self.sides, self.tips, told_turns)
+        follower, keep = self._taken_up(stance, wanted)
+        if follower is None:
+            put_down = enlarged(stance, times)
+            follower = Follower(put_down, self.settings, MOTION_RATE_HZ, wanted)
         reduced_told = None if told is None else lambda come_mm: told(come_mm / times)
-        run = reduced(follower.follow(times * self.longest_mm, reduced_told))
+        run = reduced(follower.follow(times * self.longest_mm, reduced_told, keep))
         return kept_to(self.drawing.edges_mm, run)
+
+    def _taken_up(self, stance: Stance, turns: Turns) -> tuple[Follower | None, Keep | None]:
+        """The head of an earlier run that began as this one will, and what keeps its knots; if anybody asks
+        for that.
+        """
+        memory = knots.memory()
+        if memory is None:
+            return None, None
+        view, place = stance.view, tuple(stance.place_mm.tolist())
+        seen = view.width_mm, view.usual_mm, view.level, view.cells.darkness.shape
+        start = place, stance.heading_rad, stance.reference_mm, seen, repr(self.settings)
+        return memory.head(self.drawing, start, turns)
 
     def asked_for(
         self,

@@ -23,9 +23,11 @@ from morfax.tracer.following.followed import Followed, line_lost, without_repeat
 from morfax.tracer.following.way_home import WayHome
 from morfax.tracer.following.ways_out import (
     STRAIGHT_ON,
+    Anchor,
     Turns,
     WaysOut,
     aimed_at,
+    clean_from,
     leads_to_dot,
     nearest_station,
     station_before,
@@ -52,7 +54,6 @@ from morfax.tracer.tangles.solution import Approach
 SWELLS = 0.5
 FROM_BEHIND = (1.0, 0.6, 0.3)  # legs behind the axis: nearer, if a speck spoils the first place
 AWAY_LEADS, AWAY_WIDTHS = 4.0, 3.0  # the head is away from home after this travel
-Anchor = tuple[Array, float, float]  # where the line begins to be clean: place, heading, travel
 NO_GUARDS = "the swinging cell sees no more ink, and this head has no guard cells to find on by"
 SLOWER = "go slower there with --speed, or follow with --head precise"
 BRIDGE = "bridge a gap with --gap, or scan at a higher resolution"
@@ -74,12 +75,22 @@ class Follower:
         self._home = WayHome(stance, max(by_lead_mm, AWAY_WIDTHS * self.view.width_mm))
         self._aim(stance.leg_ahead())
 
+    def take_up(self, turns: Turns) -> None:
+        """Take up an earlier run where its copy was kept, and tell the head other turns."""
+        self._ways_out.turns = turns
+        self.carriage.taken_up()
+
     def follow(
-        self, longest_mm: float, told: Callable[[float], None] | None = None
+        self,
+        longest_mm: float,
+        told: Callable[[float], None] | None = None,
+        keep: Callable[[Follower], None] | None = None,
     ) -> Followed:
-        """Follow until the line closes, ends or is lost, or `longest_mm`; `told` hears the travel, mm."""
+        """Follow until the line closes, ends or is lost; `told` hears the travel, mm, `keep` may copy."""
         home = self._home.for_kernel()
         while self.carriage.travel_mm < longest_mm:
+            if keep is not None:
+                keep(self)
             why = self.carriage.follow(self.view, home)
             if told is not None:
                 told(self.carriage.travel_mm)
@@ -250,17 +261,9 @@ class Follower:
             self.carriage.run(cut, leader=plan.leader)
             return self._done("closed")
         self.carriage.run(plan.stretches, self.settings.speed_mm_s, plan.leader)
-        clean = None if plan.seen is None else self._clean_from(plan.leg, plan.seen)
+        clean = None if plan.seen is None else clean_from(self.view, self.carriage, plan)
         self._aim(plan.leg, clean)
         return None
-
-    def _clean_from(self, leg: Leg, seen: Array) -> Anchor:
-        """The place about a leg's length behind the end of a course from which the line was felt clean."""
-        here = nearest_station(seen, leg.end_mm)
-        i = max(0, here - round(self.view.leg_mm / self.view.step_mm))
-        way = seen[i + 2, :2] - seen[i, :2]
-        travel_mm = self.carriage.travel_mm - (here - i) * self.view.step_mm
-        return seen[i, :2], math.atan2(way[1], way[0]), travel_mm
 
     def _aim(self, leg: Leg, clean_from: Anchor | None = None) -> None:
         """Follow from the clean end of a leg; the line is clean from there, or from further back."""

@@ -29,6 +29,7 @@ from morfax.tracer.sensing.view import View
 
 # a junction that the head comes back to is no further ahead: a speck may end the clean line before it
 BACK_MM = 4.0
+Anchor = tuple[Array, float, float]  # where the line begins to be clean: place, heading, travel
 COMES_FROM = (
     0.5  # cosine of 60 degrees: a head so far off the side that a correction names is another's
 )
@@ -157,6 +158,17 @@ def _told_by(view: View, incoming: Leg, turn_at: TurnAt) -> bool:
         return True
     come = np.subtract(turn_at.place_mm, turn_at.coming_from_mm)
     return bool(come @ ahead > COMES_FROM * float(np.hypot(*come)))
+
+
+def clean_from(view: View, carriage: Carriage, plan: Plan) -> Anchor:
+    """The place about a leg's length behind the end of a course from which the line was felt clean."""
+    seen = plan.seen
+    assert seen is not None
+    here = nearest_station(seen, plan.leg.end_mm)
+    i = max(0, here - round(view.leg_mm / view.step_mm))
+    way = seen[i + 2, :2] - seen[i, :2]
+    travel_mm = carriage.travel_mm - (here - i) * view.step_mm
+    return seen[i, :2], math.atan2(way[1], way[0]), travel_mm
 
 
 def trail_behind(view: View, carriage: Carriage) -> Array:

@@ -79,6 +79,16 @@ class Carriage:
         """Whether a guard cell sees ink beside the line."""
         return bool(max(self.state.guard_left, self.state.guard_right) > kernel.BESIDE)
 
+    def shared(self) -> list[Any]:
+        """What a copy of the carriage may share with it: it is never changed."""
+        return [self._watcher, *self._parts]
+
+    def taken_up(self) -> None:
+        """Go on as a copy of a carriage: whoever watches now sees it as it stands."""
+        self._watcher = watched.watcher()
+        if self._watcher is not None:
+            self._watcher.taken_up(self)
+
     @property
     def positions_mm(self) -> Array:
         """Every position of the screws so far, (n, 2) mm."""

@@ -46,6 +46,10 @@ class Trail:
         self._places[self._count : self._count + len(kept)] = kept
         self._count += len(kept)
 
+    def places(self) -> Array:
+        """All places so far, (n, 2)."""
+        return self._places[: self._count].copy()
+
     def recent(self) -> Array:
         """The last few mm (n, 2), newest last."""
         return self._places[max(0, self._count - round(MEMORY_MM / self.step_mm)) : self._count]

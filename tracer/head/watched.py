@@ -28,6 +28,9 @@ class Watcher(Protocol):
     def put_down(self, carriage: Carriage) -> None:
         """See the head put down at the beginning of a run; each attempt is a run of its own."""
 
+    def taken_up(self, carriage: Carriage) -> None:
+        """See the head go on from where an earlier run had come; its positions are the carriage's."""
+
     def moved(self, carriage: Carriage, positions: Array) -> None:
         """See the head run over positions (n, 2) mm, enlarged as the head sees them."""
 

@@ -1,0 +1,113 @@
+"""Knots: a run goes on from where an earlier one was the same, and comes to the same."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from morfax.tracer.corrections.corrections import Correction, Corrections, Place
+from morfax.tracer.drawing.corrected import corrected
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.following import knots
+from morfax.tracer.following.knots import Memory, remembering
+from morfax.tracer.head import watched
+from morfax.tracer.head.carriage import Carriage
+from morfax.tracer.program.program import Trace
+from morfax.tracer.program.trace import trace
+from tests.tracer.inked import inked, polyline
+
+# a comb whose back goes on beyond its last tooth
+COMB = inked(
+    polyline((6, 6), (6, 20), (60, 20), (60, 6), (50, 6), (50, 12), (40, 12), (40, 6), (6, 6)),
+    polyline((60, 20), (75, 20)),
+    polyline((30, 6), (30, 2)),  # a tick, and a junction on the way
+    seed=5,
+)
+START = (20.0, 6.0)
+
+
+def told(drawing: Drawing, *each: Correction) -> Drawing:
+    """A drawing with corrections."""
+    return corrected(drawing, Corrections(each))
+
+
+def turn(kind: str, x: float, y: float) -> Correction:
+    """A told turn."""
+    return Correction(kind, (Place(x, y, "mm"),))  # type: ignore[arg-type]
+
+
+def same(one: Trace, other: Trace) -> bool:
+    """Whether two traces are the same to the last bit."""
+    return np.array_equal(one.xy_mm, other.xy_mm) and all(
+        (a.ending, a.junctions_mm, a.marks, a.served)
+        == (b.ending, b.junctions_mm, b.marks, b.served)
+        for a, b in zip(one.lines, other.lines, strict=True)
+    )
+
+
+def test_a_run_goes_on_at_the_last_knot_and_comes_to_what_a_run_from_the_beginning_does() -> (
+    None
+):
+    kept = Memory()
+    changes = [
+        (),
+        (turn("right", 60, 20),),
+        (turn("right", 60, 20), turn("straight", 30, 6)),
+        (),
+    ]
+    replayed = []
+    for corrections in changes:
+        drawing = told(COMB, *corrections)
+        before_mm = kept.replayed_mm
+        with remembering(kept):
+            again = trace(drawing, START)
+        replayed.append(kept.replayed_mm - before_mm)
+        assert same(again, trace(drawing, START))
+    assert replayed[0] == 0
+    assert all(mm > 10 for mm in replayed[1:])  # not from the beginning
+
+
+def test_another_drawing_is_begun_anew() -> None:
+    """A little ink far off changes what the head is put down with: nothing is replayed."""
+    kept = Memory()
+    with remembering(kept):
+        trace(COMB, START)
+        rubbed = told(COMB, Correction("rub", (Place(75, 20, "mm"),)))
+        again = trace(rubbed, START)
+    assert kept.replayed_mm == 0
+    assert same(again, trace(rubbed, START))
+
+
+def test_whoever_watches_sees_the_way_up_to_the_knot() -> None:
+    class Watcher:
+        def __init__(self) -> None:
+            self.places = 0
+
+        def put_down(self, carriage: Carriage) -> None:
+            pass
+
+        def taken_up(self, carriage: Carriage) -> None:
+            self.places += len(carriage.positions_mm)
+
+        def moved(self, carriage: Carriage, positions: np.ndarray) -> None:
+            pass
+
+        def says(self, what: str) -> None:
+            pass
+
+    kept, first, second = Memory(), Watcher(), Watcher()
+    for who, drawing in ((first, COMB), (second, told(COMB, turn("right", 60, 20)))):
+        with remembering(kept), watched.watching(who):
+            trace(drawing, START)
+    assert first.places == 0
+    assert second.places > 6000  # of a second of motion, 10 mm
+
+
+def test_few_knots_serve_as_well(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(knots, "MOST_KNOTS", 5)
+    kept, drawing = Memory(), told(COMB, turn("right", 60, 20))
+    with remembering(kept):
+        trace(COMB, START)
+        again = trace(drawing, START)
+    assert kept.replayed_mm > 0
+    assert same(again, trace(drawing, START))
