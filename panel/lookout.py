@@ -86,8 +86,7 @@ class Lookout:
     def taken_up(self, carriage: Carriage) -> None:
         """See the head where an earlier run had come, with the way up to there; nobody waits for that."""
         self.put_down(carriage)
-        self._gather(carriage.positions_mm / carriage.enlarged)
-        self._see(carriage)
+        self._gather(carriage.positions_mm[::EVERY] / carriage.enlarged)
 
     def moved(self, carriage: Carriage, positions: Array) -> None:
         """Gather the places of a stretch; wait if the operator holds the head."""

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from morfax.jobs.traced import Traced
     from morfax.jobs.tracing import Tracing
     from morfax.tracer.drawing.drawing import Drawing
+    from morfax.tracer.following.knots import Memory
 
 FRAME_S = 1 / 30  # between two frames of the head
 NO_MEMORY = "not enough memory; scan the drawing at a lower resolution, or cut out the part to be traced"
@@ -90,6 +91,7 @@ class Worker:
         self.lookout = Lookout()
         self.teller = Teller(out, self.lookout)
         self._traced: tuple[Any, Tracing, Drawing, Traced] | None = None
+        self._memory: Memory | None = None  # of the head's runs, so that a told turn runs on
 
     def do(self, number: int, kind: str, job: Any) -> None:
         """Do a job, and say how it ended."""
@@ -122,17 +124,26 @@ class Worker:
         """Go the whole way, and keep what the page shows of it."""
         from morfax.panel.result_data import of_run
         from morfax.reports.pictures import draw_run, write_figures
-        from morfax.tracer.head.watched import watching
 
         _, tracing = job.prepared()
         stamp = _stamp(job.drawing)
-        with watching(self.lookout):
+        with self._head():
             result = job.run(self.teller)
         self._traced = stamp, tracing, result.drawing, result.traced
         self.teller.say("progress", what="drawing the picture", share=0.0)
         draw_run(result)
         write_figures(result)
         return of_run(result)
+
+    @contextmanager
+    def _head(self) -> Iterator[None]:
+        """Have the heads from here on watched, and taken up where an earlier run was the same."""
+        from morfax.tracer.following.knots import Memory, remembering
+        from morfax.tracer.head.watched import watching
+
+        self._memory = self._memory or Memory()
+        with watching(self.lookout), remembering(self._memory):
+            yield
 
     def _correct(self, job: Any) -> dict[str, Any]:
         """Write a correction into the file beside the drawing."""
@@ -148,9 +159,7 @@ class Worker:
                 tell_what_is_lost(job.settings, job.unit, outputs.program, self.teller)
             result = job.written(outputs, *self._traced[2:], self.teller)
         else:
-            from morfax.tracer.head.watched import watching
-
-            with watching(self.lookout):
+            with self._head():
                 result = job.run(self.teller)
         written = outputs.program or outputs.path
         assert written is not None

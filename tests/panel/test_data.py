@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from pathlib import Path
 
 import cv2
@@ -76,6 +77,19 @@ def test_the_lookout_keeps_the_way_at_even_steps() -> None:
     # a step is as long as stated but for one position (6 um here), and the millionths of a rounded place
     assert np.abs(steps_mm - STEP_MM).max() < 0.01
     assert np.abs(np.hypot(*places.T) - 5.0).max() < 0.001
+
+
+def test_the_lookout_shows_the_way_of_a_head_that_is_taken_up() -> None:
+    class TakenUp:
+        rate_hz, enlarged = 6000.0, 1.0
+        positions_mm = np.column_stack([np.linspace(0, 10, 6001), np.zeros(6001)])
+
+    lookout = Lookout()
+    lookout.set_pace(0.01)  # at which these positions would be waited for
+    began = time.monotonic()
+    lookout.taken_up(TakenUp())  # type: ignore[arg-type]
+    assert time.monotonic() - began < 1.0
+    assert len(lookout._fresh) == pytest.approx(10 / STEP_MM, abs=2)
 
 
 def test_the_worst_places_are_apart() -> None:
