@@ -83,6 +83,15 @@ def stepped(track: int, names: Names, step_s: float, time_s: float) -> TapeFault
     )
 
 
+def swings(track: int, names: Names, swing_s: float, time_s: float) -> TapeFault:
+    """The fault of a delay that swings faster than can be followed."""
+    return TapeFault(
+        f"the delay of {_called(track, names)} swings by {swing_s * 1e6:.0f} us at about {time_s:.3f} s, "
+        "faster than can be followed: its head or its tape shakes; copy the tape again",
+        time_s=time_s,
+    )
+
+
 def miscounted(
     axis: str, off_cycles: float, allowed_cycles: float, time_s: float, place_mm: float
 ) -> LockFault:

@@ -72,7 +72,8 @@ class FrameReport:
 
     `said`: what each track says, None where its check sum is wrong; `late_s` against the clock of the
     reference, `delay_s` (tracks, parts) against track 1, and that of track 1 against its own carrier; nan
-    where a track says nothing.
+    where a track says nothing. `swing_s` is how far a delay swings within its parts, RMS; `damaged` are
+    tracks that say nothing though their level is right.
     """
 
     number: int
@@ -81,6 +82,8 @@ class FrameReport:
     said: tuple[CheckFrame | None, ...]
     late_s: list[float]
     delay_s: list[list[float]]
+    swing_s: list[float]
+    damaged: tuple[int, ...]
 
 
 def read_ahead(blocks: Iterator[Stored], fmt: TapeFormat) -> list[Stored]:
@@ -230,7 +233,7 @@ class CheckReader:
     def _report(self) -> FrameReport:
         """Read the next frame of all tracks."""
         self._put_right()
-        bits, strengths, late, turns = read_symbols(self._points, self._theta)
+        bits, strengths, late, turns, swings = read_symbols(self._points, self._theta)
         said = self._erasures.read(bits, strengths, self._number)
         for track, frame in enumerate(said):
             if frame is None or not np.isfinite(turns[track]).all():
@@ -248,6 +251,8 @@ class CheckReader:
             tuple(said),
             (late / self._reference_hz).tolist(),
             (apart * CYCLES_PER_SUBCARRIER / self._reference_hz).tolist(),
+            (swings * CYCLES_PER_SUBCARRIER / self._reference_hz).tolist(),
+            tuple(self._erasures.damaged),
         )
 
     def _put_right(self) -> None:

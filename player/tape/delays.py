@@ -5,7 +5,8 @@ out: phases without the delay.
 
     settled   the mean of seven that are told, three before and three behind; at both ends of the tape a
               straight line through seven
-    used      follows what is settled as far as leaves a dead zone of 0.5 us; a straight line between
+    used      follows what is settled as far as leaves a dead zone of 0.5 us; a straight line between, and
+              beyond the first and the last as fast as the seven there change
     cycles   += used · (reference + speed of the axis)        the carrier's own delay, and that of the motion
 
 A tape without delays stays as it is, to the last digit.
@@ -36,12 +37,18 @@ class Delay:
         self._rows: list[float] = []
         self._told: list[float] = []
         self._used: list[float] = []
+        self._is_whole = True  # until the first that were told are no longer held
         self.moves = False  # whether a delay above the dead zone was ever told
 
     @property
     def settled_row(self) -> float:
         """The row up to which the delay will not be told otherwise."""
         return self._rows[len(self._used) - 1] if self._used else 0.0
+
+    @property
+    def told_row(self) -> float:
+        """The last row at which the delay was told."""
+        return self._rows[-1] if self._rows else 0.0
 
     def add(self, rows: list[float], delays_s: list[float]) -> None:
         """Take the next rows at which the delay is told."""
@@ -53,6 +60,7 @@ class Delay:
             settled = self._settled(len(self._used)) if self.moves else 0.0
             self._used.append(_towards(last, settled))
         gone = max(min(len(self._used), len(self._rows) - WINDOW) - KEPT, 0)
+        self._is_whole = self._is_whole and not gone
         del self._rows[:gone], self._told[:gone], self._used[:gone]
 
     def corrected(self, cycles: Array, first_row: int) -> Array:
@@ -64,8 +72,29 @@ class Delay:
         padded = np.pad(cycles, self.span, mode="edge")
         speed = padded[2 * self.span :] - padded[: -2 * self.span]
         speed *= self._rate_hz / (2 * self.span)
-        delay_s = np.interp(numbers, self._rows[: len(used)], used)
+        rows = self._rows[: len(used)]
+        delay_s = np.interp(numbers, rows, used)
+        delay_s += self._slope(-WINDOW) * np.maximum(numbers - rows[-1], 0)
+        if self._is_whole:
+            delay_s += self._slope(0) * np.minimum(numbers - rows[0], 0)
         return np.asarray(cycles + delay_s * (self._reference_hz + speed))
+
+    def off_s(self) -> float:
+        """The largest of what was told last, off the straight line through it, s: what is not followed."""
+        if len(self._told) < WINDOW:
+            return 0.0
+        told = np.array(self._told[-WINDOW:])
+        rows = np.array(self._rows[-WINDOW:])
+        line = told.mean() + self._slope(-WINDOW) * (rows - rows.mean())
+        return float(np.abs(told - line).max())
+
+    def _slope(self, first: int) -> float:
+        """How fast the delay changes in seven that were told, from one on, s per row."""
+        last = first + WINDOW or None
+        told, rows = np.array(self._told[first:last]), np.array(self._rows[first:last])
+        off = rows - rows.mean()
+        spread = float(off @ off)
+        return float(off @ told) / spread if len(told) == WINDOW and spread else 0.0
 
     def _rest(self) -> list[float]:
         """What would be used for those that are not settled, if none came after them."""
@@ -83,10 +112,8 @@ class Delay:
         mean_s = sum(told) / len(told)
         if at - first == HALF or len(told) < WINDOW:
             return mean_s
-        rows = np.array(self._rows[first : first + WINDOW])
-        off = rows - rows.mean()
-        slope = float(off @ np.array(told) / (off @ off))
-        return float(mean_s + slope * (self._rows[at] - rows.mean()))
+        middle = float(np.mean(self._rows[first : first + WINDOW]))
+        return float(mean_s + self._slope(first) * (self._rows[at] - middle))
 
 
 def _towards(used_s: float, settled_s: float) -> float:

@@ -32,10 +32,15 @@ class Erasures:
 
     def __init__(self, tracks: int) -> None:
         self._usual = np.full(tracks, np.nan)
+        self.damaged: list[int] = []
 
     def read(self, bits: Bits, strengths: Array, number: int) -> list[CheckFrame | None]:
-        """What the tracks (tracks, symbols) say in the frame of this number; None where it is lost."""
+        """What the tracks (tracks, symbols) say in the frame of this number; None where it is lost.
+
+        `damaged` are then the tracks that say nothing though none of their symbols is weak.
+        """
         said = from_bits(bits)
+        self.damaged = []
         for track, frame in enumerate(said):
             usual = float(np.median(strengths[track]))
             known = self._usual[track] if np.isfinite(self._usual[track]) else usual
@@ -46,6 +51,8 @@ class Erasures:
                 frame = _recovered(bits[track], weak[weak >= SYNC_SYMBOLS], track, number)
             if frame is not None:
                 self._usual[track] = usual
+            elif not len(weak):
+                self.damaged.append(track)
             said[track] = frame
         return said
 

@@ -7,6 +7,8 @@ Signals in: the reports of the check reader, frame by frame. Signals out: nothin
     number      frames follow one another, at their time         a lost or repeated stretch: a fault
     late        symbols lie within 0.25 ms of the clock          the same, where it is less than a frame
     delay       of a track against the reference                 above 200 us, or a step: a fault
+    swing       of a delay within a quarter of a frame           above 4 us, RMS: a fault
+    damaged     a frame whose level is right cannot be read      the track is not what was recorded: a fault
     missing     four frames in a row of one track                one more: a fault
 
 Source: our own. Questions: a delay that drifts by 50 us/s moves 12 us in two parts of a frame; one lost
@@ -30,6 +32,8 @@ LARGEST_DELAY_S = 200e-6  # what is asked; half a cycle of the subcarrier is 500
 LARGEST_LATE_S = 250e-6  # of the symbols: the delay, and 50 us for the gates
 LARGEST_STEP_S = 16e-6  # of a delay in two parts of a frame, 0.24 s: 50 us/s of drift are 12
 MOST_MISSING = 4  # frames in a row of one track: 1 s of dropout reaches into four
+# RMS, 7 us at most: 0.04 cycle; 26 dB of noise tell up to 1
+LARGEST_SWING_S = 4e-6
 STEP_PARTS = 4  # of a frame, whose delays are held against the next
 
 
@@ -58,6 +62,7 @@ class FrameOrder:
             if said is None:
                 found = found or self._unreadable(track, report)
                 continue
+            found = found or self._swinging(track, report)
             self._missing[track], self._is_last[track] = 0, said.last
             found = found or self._misplaced(track, said, expected, report)
             found = found or self._too_late(track, report)
@@ -69,10 +74,19 @@ class FrameOrder:
     def _unreadable(self, track: int, report: FrameReport) -> Fault | None:
         """The fault of a track that says nothing for too long."""
         self._missing[track] += 1
-        if self._missing[track] <= MOST_MISSING:
+        damaged = track in report.damaged and 0 not in _weak(report)
+        if self._missing[track] <= MOST_MISSING and not damaged:
             return None
-        time_s = report.row / self._rate_hz - MOST_MISSING * self._frame_s
+        gone = 0 if damaged else MOST_MISSING
+        time_s = report.row / self._rate_hz - gone * self._frame_s
         return faults.unreadable(track, self._names, time_s)
+
+    def _swinging(self, track: int, report: FrameReport) -> Fault | None:
+        """The fault of a track whose delay swings faster than can be followed."""
+        swing_s = report.swing_s[track]
+        if not swing_s > LARGEST_SWING_S:
+            return None
+        return faults.swings(track, self._names, swing_s, report.row / self._rate_hz)
 
     def _misplaced(
         self, track: int, said: CheckFrame, expected: int, report: FrameReport
@@ -100,3 +114,9 @@ class FrameOrder:
         if step_s <= LARGEST_STEP_S:
             return None
         return faults.stepped(track, self._names, step_s, time_s)
+
+
+def _weak(report: FrameReport) -> list[int]:
+    """The tracks that say nothing because a dropout took it."""
+    silent = [track for track, said in enumerate(report.said) if said is None]
+    return [track for track in silent if track not in report.damaged]

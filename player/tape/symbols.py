@@ -33,12 +33,15 @@ _WORD = SYNC.astype(np.float64)
 
 
 class Gates(NamedTuple):
-    """Symbols of a frame, +1 or -1, and how strong they are; how late, in cycles; phases, in turns."""
+    """Symbols of a frame, +1 or -1, and how strong they are; how late, in cycles; phases of the parts, in
+    turns, and how far the phase swings about them, RMS, beyond what noise does.
+    """
 
     bits: Bits
     strengths: Array
     late: Array
     turns: Array
+    swings: Array
 
 
 def likeness(seen: Complexes) -> tuple[Complexes, Array]:
@@ -60,13 +63,14 @@ def read_symbols(points: Subcarrier, begins: float) -> Gates:
         np.empty((tracks, SYMBOLS)),
         np.empty(tracks),
         np.empty((tracks, PARTS)),
+        np.empty(tracks),
     )
     _read(np.ascontiguousarray(points.points), points.theta, begins, _WORD, *gates)
     return gates
 
 
 @njit(cache=True, nogil=True)
-def _read(points, theta, begins, word, bits, strengths, late, turns):  # type: ignore[no-untyped-def]
+def _read(points, theta, begins, word, bits, strengths, late, turns, swings):  # type: ignore[no-untyped-def]
     """Read one frame of all tracks, whose symbols are 24 cycles of theta apart; see `Gates`."""
     tracks, symbols = bits.shape
     gates = np.empty((tracks, 3, symbols), np.complex128)
@@ -107,3 +111,27 @@ def _read(points, theta, begins, word, bits, strengths, late, turns):  # type: i
             for symbol in range(number * part, (number + 1) * part):
                 whole += gates[track, 1, symbol] * bits[track, symbol]
             turns[track, number] = math.atan2(whole.imag, whole.real) / (2 * math.pi)
+        # 4. noise moves a symbol along and across alike; what is across beyond that is a swing of the phase
+        swings[track] = _swing(gates[track, 1], bits[track], turns[track], part)
+
+
+@njit(cache=True, nogil=True)
+def _swing(seen, bits, turns, part):  # type: ignore[no-untyped-def]
+    """How far the phases of the symbols swing about those of their parts, in turns, RMS; no weak symbols."""
+    usual = 0.0
+    for symbol in range(len(seen)):
+        usual += abs(seen[symbol]) / len(seen)
+    count, along, alongs, acrosses = 0, 0.0, 0.0, 0.0
+    for symbol in range(part * len(turns)):
+        if abs(seen[symbol]) < 0.5 * usual:
+            continue
+        turn = -2 * math.pi * turns[symbol // part]
+        straight = seen[symbol] * bits[symbol] * complex(math.cos(turn), math.sin(turn)) / usual
+        count += 1
+        along += straight.real
+        alongs += straight.real**2
+        acrosses += straight.imag**2
+    if not count:
+        return 0.0
+    noise = alongs / count - (along / count) ** 2
+    return math.sqrt(max(acrosses / count - noise, 0.0)) / (2 * math.pi)

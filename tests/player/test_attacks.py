@@ -1,0 +1,59 @@
+"""Attacks on checked tapes: never silently wrong by more than 0.05 cycle; right, or a fault, as the table
+says.
+
+One tape of every fourth kind; with MORFAX_SOAK as many of every kind as MORFAX_TAPES says (1 170: 100 000 in
+all).
+"""
+
+from __future__ import annotations
+
+import os
+
+import numpy as np
+import pytest
+
+from tests.player.attacks.bench import Bench, Kind
+from tests.player.attacks.kinds import KINDS
+from tests.player.worn import corners, program
+
+SOAK = bool(os.environ.get("MORFAX_SOAK"))
+TAPES = int(os.environ.get("MORFAX_TAPES", "1170")) if SOAK else 1
+TRIED = KINDS if SOAK else KINDS[::4]
+
+
+@pytest.fixture(scope="module")
+def benches(tmp_path_factory: pytest.TempPathFactory) -> tuple[Bench, Bench]:
+    """A circle at 60 mm/s, and a square that stops at its corners from 40 mm/s; Z moves too."""
+    fast, square = program(10.0, 60.0), corners(6.0, 40.0)
+    fast[:, 2] = 2 - 1.5 * fast[:, 1] / 10.0
+    square[:, 2] = 2 - 2 * np.clip(np.arange(len(square)) / 1500, 0, 1)
+    folder = tmp_path_factory.mktemp("attacks")
+    return Bench(folder, fast), Bench(folder, square)
+
+
+def test_the_table_is_as_long_as_it_should_be() -> None:
+    assert len({kind.name for kind in KINDS}) == len(KINDS) >= 60
+
+
+@pytest.mark.parametrize("kind", TRIED, ids=lambda kind: kind.name)
+def test_an_attack(benches: tuple[Bench, Bench], kind: Kind) -> None:
+    worst, faults = 0.0, 0
+    for seed in range(TAPES):
+        verdict = benches[seed % 2].tried(kind, seed)
+        assert verdict.keeps(kind.must), (seed, verdict.error_cycles, str(verdict.fault))
+        worst, faults = max(worst, verdict.error_cycles), faults + (verdict.fault is not None)
+    if SOAK:
+        print(f"{kind.name}: {TAPES} tapes, {faults} faults, at most {worst:.4f} cycle off")
+
+
+@pytest.mark.parametrize(
+    "name", ["an axis late by up to 195 us", "one sample lost on one track"]
+)
+def test_the_judgement_itself_fails(benches: tuple[Bench, Bench], name: str) -> None:
+    """A tape whose track is exchanged by a longer way is judged wrong; a right one is no fault."""
+    kind = next(kind for kind in KINDS if kind.name == name)
+    verdict = benches[0].tried(kind, 0)
+    assert verdict.keeps(kind.must)
+    assert not verdict.keeps("fault" if kind.must == "right" else "right")
+    off = Kind("other", lambda tape, random: benches[1].frames, "right or fault")
+    assert benches[0].tried(off, 0).silently_wrong
