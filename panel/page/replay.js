@@ -49,7 +49,8 @@ export class Replay {
     for (const plot of this.plots) plot.destroy();
   }
 
-  plot(title, times, series, unit) {
+  // `low`: where the scale begins; null: by the values
+  plot(title, times, series, unit, low = null) {
     const host = element("div", { class: "scope" }, element("h3", {}, title));
     this.scopes.append(host);
     const style = getComputedStyle(document.documentElement);
@@ -57,7 +58,7 @@ export class Replay {
     const axis = { stroke: soft, grid: { stroke: line, width: 1 }, ticks: { show: false }, font: "11px system-ui", size: 22 };
     return new uPlot({
       width: Math.max(200, host.clientWidth), height: SCOPE_HEIGHT,
-      scales: { x: { time: false } },
+      scales: { x: { time: false }, y: low === null ? {} : { range: (u, min, max) => [low, 1.2 * max || 1] } },
       cursor: { y: false, points: { show: false }, drag: { x: false, y: false }, bind: { click: (u) => () => { this.stop(); this.at(u.posToVal(u.cursor.left, "x")); } } },
       axes: [{ ...axis, values: (u, all) => all.map((v) => `${v} s`) }, { ...axis, size: 44, values: (u, all) => all.map((v) => `${+v.toFixed(3)}`) }],
       series: [{}, ...series.map((s) => ({ label: `${s.label} ${unit}`, stroke: s.colour, width: 1.2, dash: s.dash, points: { show: false } }))],
@@ -68,7 +69,7 @@ export class Replay {
   positions() {
     const { t_s, x_mm, y_mm, z_mm } = this.path;
     const series = [["X", x_mm], ["Y", y_mm], ["Z", z_mm]].map(([label, values], i) => ({ label, values, colour: AXES[i] }));
-    return this.plot("X, Y, Z in mm (blue, orange, green)", t_s, series, "mm");
+    return this.plot("X blue, Y orange, Z green, mm", t_s, series, "mm");
   }
 
   errors() {
@@ -79,20 +80,20 @@ export class Replay {
     const least = limit_mm[0].reduce((m, v) => Math.min(m, v), Infinity);
     this.limit = 1000 * least;
     const limits = this.limit < 4 * worst ? [{ label: "limit", values: micro(limit_mm[0]), colour: "#ad1f2d", dash: [4, 4] }] : [];
-    return this.plot(`following error in µm (limit ${length(least)} and more)`, t_s, [...errors, ...limits], "µm");
+    return this.plot(`following error, µm (limit ${length(least)})`, t_s, [...errors, ...limits], "µm");
   }
 
   feeds() {
     const { t_s, x_mm, y_mm } = this.path, feeds = [0];
     for (let i = 1; i < t_s.length; i++) feeds.push(Math.hypot(x_mm[i] - x_mm[i - 1], y_mm[i] - y_mm[i - 1]) / (t_s[i] - t_s[i - 1] || 1));
-    return this.plot("feed in mm/s", t_s, [{ label: "feed", values: feeds, colour: AXES[0] }], "mm/s");
+    return this.plot("feed in mm/s", t_s, [{ label: "feed", values: feeds, colour: AXES[0] }], "mm/s", 0);
   }
 
   levels() {
     if (!this.tape) return null;
     const { t_s, tracks, level } = this.tape;
     const series = tracks.map((label, i) => ({ label, values: level[i], colour: AXES[(i + 4) % 5] }));
-    return this.plot("tape: levels of its tracks", t_s, series, "");
+    return this.plot("levels of the tape's tracks", t_s, series, "", 0);
   }
 
   mark(u) {

@@ -87,9 +87,9 @@ export function figureRows(result) {
     ["Length", length(figures.length_mm)],
     ["Time on the machine", time(result.played.t_s.at(-1) - result.played.t_s[0])],
     ["Ending", figures.ending + (figures.incomplete ? ", incomplete" : "")],
-    ["Machine off the ink's middle, RMS", length(ink.rms_mm)],
+    ["Machine off the ink, RMS", length(ink.rms_mm)],
     ["at most", length(ink.max_mm)],
-    ["Head off the ink's middle, RMS", length(traced.rms_mm)],
+    ["Head off the ink, RMS", length(traced.rms_mm)],
     ["Ink not covered", length(figures.missed_ink_mm)],
   ];
 }

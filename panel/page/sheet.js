@@ -4,7 +4,7 @@
 
 export const COLOURS = ["#1f5fa8", "#c1121f", "#2a8f4f", "#8a3fa0", "#c26a10", "#0f8b8d", "#b5338a", "#6b4f1d"];
 const LEFT_OUT = 65535, LETTERING = 65534;
-const MOST_TILES = 400;
+const MOST_TILES = 160; // 3 MB each at most
 const LARGEST_SCALE = 40; // screen pixels to a pixel of the picture
 
 export function colourOf(number) {
@@ -160,13 +160,32 @@ export class Sheet {
       Math.min(Math.ceil(this.picture.rows / size), Math.ceil((view.y + height / view.scale) / size)),
     ];
     context.imageSmoothingEnabled = view.scale < 3;
-    for (const kind of this.picture.has_lines ? ["sheet", "lines"] : ["sheet"]) {
-      context.globalAlpha = kind === "lines" ? this.strength : 1;
-      for (let row = first[1]; row < last[1]; row++)
-        for (let column = first[0]; column < last[0]; column++)
-          this.drawTile(context, view, kind, level, column, row);
-    }
-    context.globalAlpha = 1;
+    for (let row = first[1]; row < last[1]; row++)
+      for (let column = first[0]; column < last[0]; column++) {
+        const both = this.picture.has_lines ? this.combined(level, column, row) : null;
+        if (both) {
+          this.place(context, view, "sheet", { image: both }, level, column, row, 0, 0, both.width, both.height);
+          continue;
+        }
+        this.drawTile(context, view, "sheet", level, column, row);
+        if (!this.picture.has_lines) continue;
+        context.globalAlpha = this.strength;
+        this.drawTile(context, view, "lines", level, column, row);
+        context.globalAlpha = 1;
+      }
+  }
+
+  // Sheet and lines of a tile in one picture, made once: a pan then draws half as much. Null until both are there.
+  combined(level, column, row) {
+    const sheet = this.tileOf("sheet", level, column, row), lines = this.tileOf("lines", level, column, row);
+    if (!sheet.image || !lines.image) return null;
+    if (sheet.over === lines.painted && lines.painted && sheet.overStrength === this.strength) return sheet.combined;
+    const canvas = new OffscreenCanvas(sheet.image.width, sheet.image.height), context = canvas.getContext("2d", { alpha: false });
+    context.drawImage(sheet.image, 0, 0);
+    context.globalAlpha = this.strength;
+    context.drawImage(this.painted(lines), 0, 0);
+    Object.assign(sheet, { combined: canvas, over: lines.painted, overStrength: this.strength });
+    return canvas;
   }
 
   drawTile(context, view, kind, level, column, row) {
