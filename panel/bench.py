@@ -23,6 +23,7 @@ from morfax.panel.head_path import HeadPath
 from morfax.panel.history import History, Step
 from morfax.panel.kept_result import STATE, KeptResult
 from morfax.panel.tiles import LineMap, Picture
+from morfax.panel.uploads import taken_in
 from morfax.panel.workshop import Heard, Workshop
 
 MESSAGES = 40  # lines of notes and warnings that are kept
@@ -40,7 +41,7 @@ class Bench:
         workshop: Callable[[Heard], Workshop] = Workshop,
     ) -> None:
         self.folder, self.command_line = folder, command_line
-        self.sources = {**sources, **_taken_in(folder)}  # by the names that pages know them by
+        self.sources = {**sources, **taken_in(folder)}  # by the names that pages know them by
         self.history = History(folder / STATE)
         self.workshop = workshop(self.heard)
         self.path = HeadPath()
@@ -292,12 +293,3 @@ class Bench:
         task = asyncio.get_running_loop().create_task(work)
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
-
-
-def _taken_in(folder: FilePath) -> dict[str, FilePath]:
-    """The drawings that pages have sent before."""
-    return {
-        file.name: file
-        for file in sorted((folder / "drawings").glob("[!.]*"))
-        if file.is_file()
-    }

@@ -23,7 +23,15 @@ if TYPE_CHECKING:
     from morfax.panel.bench import Bench
     from morfax.panel.tiles import Picture
 
-MODULES = ("format.js", "sheet.js", "result.js", "replay.js", "keepsake.js")
+MODULES = (
+    "format.js",
+    "tiles.js",
+    "ruler.js",
+    "sheet.js",
+    "result.js",
+    "replay.js",
+    "keepsake.js",
+)
 STYLES = ("uPlot.min.css", "style.css")
 MOST_PX = 3000  # a side of the picture: a sheet of A4 at 250 dpi
 QUALITY = [cv2.IMWRITE_JPEG_QUALITY, 82]

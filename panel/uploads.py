@@ -64,6 +64,15 @@ async def take(
     return file
 
 
+def taken_in(folder: FilePath) -> dict[str, FilePath]:
+    """The drawings that pages have sent to a panel's folder, by name."""
+    return {
+        file.name: file
+        for file in sorted((folder / "drawings").glob("[!.]*"))
+        if file.is_file()
+    }
+
+
 def unused(file: FilePath) -> FilePath:
     """A name that no file has: with -2, -3 … if need be."""
     number, free = 1, file

@@ -2,7 +2,7 @@
 
 import { element, length, place } from "./format.js";
 import { figureRows, worstRows } from "./result.js";
-import { colourOf } from "./sheet.js";
+import { colourOf } from "./tiles.js";
 
 const WHICH = [["", "Longest"], ["contours", "Contours"], ["all", "All ink"]];
 const SAVES = [["program", "Program for the machine"], [".wav", "Tape"], [".ngc", "G-code"], [".dxf", "DXF"], [".svg", "SVG"], [".csv", "Path"], [".html", "Page"]];

@@ -1,8 +1,8 @@
 // The keepsake: a result that opens without a server. The picture is in the file; the rest is the panel's own.
 
-import { element, length } from "./format.js";
+import { element } from "./format.js";
 import { Replay } from "./replay.js";
-import { drawErrors, drawMachine, drawWorst, errorPaths, errorScale, figureRows, RAMP, worstRows } from "./result.js";
+import { drawErrors, drawMachine, drawWorst, errorPaths, errorScale, figureRows, showLegend, worstRows } from "./result.js";
 import { Sheet } from "./sheet.js";
 
 class Still extends Sheet {
@@ -45,7 +45,5 @@ by("worst").replaceChildren(...worstRows(result, (worst) => still.goTo([worst.x_
 by("messages").replaceChildren(...(result.faults.length ? result.faults : ["nothing went wrong"]).map((text) => element("li", {}, text)));
 by("all-figures").textContent = JSON.stringify(result.figures, null, 1);
 by("command").textContent = data.command;
-by("legend").replaceChildren("distance from the ink's middle",
-  element("div", { class: "ramp", "aria-hidden": "true" }, ...RAMP.map((colour) => { const cell = element("i"); cell.style.background = colour; return cell; })),
-  element("div", { class: "ends" }, element("span", {}, "0"), element("span", {}, `${length(scale)} and more`)));
+showLegend(by("legend"), scale);
 root.dataset.ready = "true";

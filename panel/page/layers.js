@@ -1,6 +1,6 @@
 // Layers over the sheet: the numbers of the lines, the start, the corrections.
 
-import { colourOf } from "./sheet.js";
+import { colourOf } from "./tiles.js";
 
 const MOST_NUMBERS = 80; // more would hide the sheet
 

@@ -2,12 +2,12 @@
 
 import { isChosen, lineText, showCorrections, showFiles, showLines, showMessages, showResult, showSaves, showWhich, toggled } from "./cards.js";
 import { Fields } from "./fields.js";
-import { element, length } from "./format.js";
+import { element } from "./format.js";
 import { Head } from "./head.js";
 import { drawCorrections, drawMarks, drawNumbers, drawStart } from "./layers.js";
 import { Link } from "./link.js";
 import { Replay } from "./replay.js";
-import { drawErrors, drawMachine, drawWorst, errorPaths, errorScale, RAMP } from "./result.js";
+import { drawErrors, drawMachine, drawWorst, errorPaths, errorScale, showLegend } from "./result.js";
 import { Sheet } from "./sheet.js";
 import { Ask, Tools } from "./tools.js";
 
@@ -201,7 +201,7 @@ async function takeResult() {
   const same = taken && result && JSON.stringify(taken.figures) === JSON.stringify(result.figures);
   result = taken;
   by("result-card").hidden = by("machine").hidden = !result;
-  showLegend();
+  by("legend").hidden = !result;
   showBusy();
   if (same) return;
   replay?.close();
@@ -210,23 +210,13 @@ async function takeResult() {
   if (result) {
     const largest = errorScale(result.error);
     result.paths = errorPaths(result.error, largest);
-    result.scale = largest;
     showResult(result, goTo);
     if (state.busy === null && before) by("result-card").scrollIntoView({ block: "start", behavior: "smooth" });
-    showLegend();
+    showLegend(by("legend"), largest);
     replay = new Replay(by("machine"), result, (now) => { drawResult.now = now; sheet.ask(); });
   }
   head.isHidden = Boolean(result);
   sheet.ask();
-}
-
-function showLegend() {
-  const legend = by("legend");
-  legend.hidden = !result;
-  if (!result?.scale) return;
-  const ramp = RAMP.map((colour) => { const cell = element("i"); cell.style.background = colour; return cell; });
-  legend.replaceChildren("distance from the ink's middle", element("div", { class: "ramp", "aria-hidden": "true" }, ...ramp),
-    element("div", { class: "ends" }, element("span", {}, "0"), element("span", {}, `${length(result.scale)} and more`)));
 }
 
 function drawResult(context) {

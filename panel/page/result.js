@@ -80,6 +80,13 @@ export function drawWorst(context, worst, unit, colour) {
   }
 }
 
+// What the colours mean.
+export function showLegend(host, scale) {
+  const ramp = RAMP.map((colour) => { const cell = element("i"); cell.style.background = colour; return cell; });
+  host.replaceChildren("distance from the ink's middle", element("div", { class: "ramp", "aria-hidden": "true" }, ...ramp),
+    element("div", { class: "ends" }, element("span", {}, "0"), element("span", {}, `${length(scale)} and more`)));
+}
+
 // The figures that say how good a run is, as pairs of name and text.
 export function figureRows(result) {
   const figures = result.figures, ink = figures.played_to_ink ?? {}, traced = figures.traced_to_ink ?? {};

@@ -2,26 +2,21 @@
 //
 // Coordinates: "px" are the picture's own pixels from the upper left; "mm" are the sheet's, from the lower left.
 
-export const COLOURS = ["#1f5fa8", "#c1121f", "#2a8f4f", "#8a3fa0", "#c26a10", "#0f8b8d", "#b5338a", "#6b4f1d"];
-const LEFT_OUT = 65535, LETTERING = 65534;
-const MOST_TILES = 160; // 3 MB each at most
-const LARGEST_SCALE = 40; // screen pixels to a pixel of the picture
+import { drawRuler } from "./ruler.js";
+import { LETTERING, Tiles } from "./tiles.js";
 
-export function colourOf(number) {
-  return COLOURS[(number - 1) % COLOURS.length];
-}
+const LARGEST_SCALE = 40; // screen pixels to a pixel of the picture
 
 export class Sheet {
   constructor(canvas, tile) {
     this.canvas = canvas;
     this.context = canvas.getContext("2d", { alpha: false });
     this.tile = tile;
-    this.tiles = new Map();
+    this.tiles = new Tiles(tile, () => this.ask());
     this.layers = [];
     this.picture = null;
     this.pitch = null;
     this.view = { x: 0, y: 0, scale: 1 };
-    this.chosen = () => true;
     this.strength = 1; // of the colours of the lines
     this.asked = false;
     new ResizeObserver(() => this.resize()).observe(canvas);
@@ -31,21 +26,16 @@ export class Sheet {
   // picture: {id, rows, columns, levels, has_lines}; pitch: mm to a pixel, or null
   show(picture, pitch) {
     const other = !this.picture || !picture || picture.rows !== this.picture.rows || picture.columns !== this.picture.columns;
-    if (!picture || !this.picture || picture.id !== this.picture.id) this.tiles.clear();
-    else if (picture.has_lines !== this.picture.has_lines) this.forget("lines");
+    if (!picture || !this.picture || picture.id !== this.picture.id) this.tiles.clear(picture?.id);
+    else if (picture.has_lines !== this.picture.has_lines) this.tiles.forget("lines");
     this.picture = picture;
     this.pitch = pitch;
     if (other) this.all();
     this.ask();
   }
 
-  forget(kind) {
-    for (const key of [...this.tiles.keys()]) if (key.startsWith(kind)) this.tiles.delete(key);
-  }
-
   recolour(chosen) {
-    this.chosen = chosen;
-    for (const tile of this.tiles.values()) tile.painted = null;
+    this.tiles.recolour(chosen);
     this.ask();
   }
 
@@ -147,7 +137,7 @@ export class Sheet {
       layer(context, this);
       context.restore();
     }
-    this.drawRuler(style);
+    drawRuler(context, this, style);
   }
 
   // Also for the inset, which has a view of its own.
@@ -177,19 +167,19 @@ export class Sheet {
 
   // Sheet and lines of a tile in one picture, made once: a pan then draws half as much. Null until both are there.
   combined(level, column, row) {
-    const sheet = this.tileOf("sheet", level, column, row), lines = this.tileOf("lines", level, column, row);
+    const sheet = this.tiles.of("sheet", level, column, row), lines = this.tiles.of("lines", level, column, row);
     if (!sheet.image || !lines.image) return null;
     if (sheet.over === lines.painted && lines.painted && sheet.overStrength === this.strength) return sheet.combined;
     const canvas = new OffscreenCanvas(sheet.image.width, sheet.image.height), context = canvas.getContext("2d", { alpha: false });
     context.drawImage(sheet.image, 0, 0);
     context.globalAlpha = this.strength;
-    context.drawImage(this.painted(lines), 0, 0);
+    context.drawImage(this.tiles.painted(lines), 0, 0);
     Object.assign(sheet, { combined: canvas, over: lines.painted, overStrength: this.strength });
     return canvas;
   }
 
   drawTile(context, view, kind, level, column, row) {
-    const tile = this.tileOf(kind, level, column, row);
+    const tile = this.tiles.of(kind, level, column, row);
     if (tile.image) {
       this.place(context, view, kind, tile, level, column, row, 0, 0, tile.image.width, tile.image.height);
       return;
@@ -211,63 +201,8 @@ export class Sheet {
     const x = Math.floor((column * size - view.x) * view.scale), y = Math.floor((row * size - view.y) * view.scale);
     const right = Math.floor((column * size + w * unit - view.x) * view.scale);
     const bottom = Math.floor((row * size + h * unit - view.y) * view.scale);
-    const image = kind === "lines" ? this.painted(tile) : tile.image;
+    const image = kind === "lines" ? this.tiles.painted(tile) : tile.image;
     context.drawImage(image, sx, sy, w, h, x, y, right - x, bottom - y);
-  }
-
-  tileOf(kind, level, column, row) {
-    const key = `${kind} ${level} ${column} ${row}`;
-    let tile = this.tiles.get(key);
-    if (tile) {
-      this.tiles.delete(key); // the newest stands last
-      this.tiles.set(key, tile);
-      return tile;
-    }
-    tile = { image: null, numbers: null, painted: null };
-    this.tiles.set(key, tile);
-    if (this.tiles.size > MOST_TILES) this.tiles.delete(this.tiles.keys().next().value);
-    this.load(tile, `/tile/${this.picture.id}/${kind}/${level}/${column}/${row}`, kind);
-    return tile;
-  }
-
-  async load(tile, address, kind) {
-    const answer = await fetch(address).catch(() => null);
-    if (!answer?.ok) return;
-    const options = { premultiplyAlpha: "none", colorSpaceConversion: "none" };
-    const image = await createImageBitmap(await answer.blob(), options);
-    if (kind === "lines") {
-      const canvas = new OffscreenCanvas(image.width, image.height);
-      const context = canvas.getContext("2d", { willReadFrequently: true });
-      context.drawImage(image, 0, 0);
-      tile.numbers = context.getImageData(0, 0, image.width, image.height);
-    }
-    tile.image = image;
-    this.ask();
-  }
-
-  // A tile of lines in colours: chosen lines full, the others pale, what has no number grey.
-  painted(tile) {
-    if (tile.painted) return tile.painted;
-    const { width, height, data } = tile.numbers;
-    const made = new ImageData(width, height);
-    const colours = new Map();
-    for (let i = 0; i < data.length; i += 4) {
-      if (!data[i + 3]) continue;
-      const number = data[i] + 256 * data[i + 1];
-      let rgba = colours.get(number);
-      if (!rgba) colours.set(number, (rgba = this.rgba(number)));
-      made.data.set(rgba, i);
-    }
-    const canvas = new OffscreenCanvas(width, height);
-    canvas.getContext("2d").putImageData(made, 0, 0);
-    return (tile.painted = canvas);
-  }
-
-  rgba(number) {
-    if (number === LEFT_OUT) return [150, 150, 150, 170];
-    if (number === LETTERING) return [200, 160, 20, 170];
-    const colour = parseInt(colourOf(number).slice(1), 16);
-    return [colour >> 16, (colour >> 8) & 255, colour & 255, this.chosen(number) ? 235 : 90];
   }
 
   // The number of the line nearest to a place on the screen, within so many of its pixels; 0 for none.
@@ -281,42 +216,10 @@ export class Sheet {
       for (let dx = -reach; dx <= reach; dx++) {
         const far = dx * dx + dy * dy;
         if (far >= near) continue;
-        const number = this.numberOf(level, Math.floor(px + dx), Math.floor(py + dy));
+        const number = this.tiles.numberAt(level, Math.floor(px + dx), Math.floor(py + dy));
         if (number && number < LETTERING) [best, near] = [number, far];
       }
     return best;
-  }
-
-  numberOf(level, x, y) {
-    if (x < 0 || y < 0) return 0;
-    const numbers = this.tiles.get(`lines ${level} ${Math.floor(x / this.tile)} ${Math.floor(y / this.tile)}`)?.numbers;
-    const [u, v] = [x % this.tile, y % this.tile];
-    if (!numbers || u >= numbers.width || v >= numbers.height) return 0;
-    const i = 4 * (v * numbers.width + u);
-    return numbers.data[i + 3] ? numbers.data[i] + 256 * numbers.data[i + 1] : 0;
-  }
-
-  drawRuler(style) {
-    const { context, canvas } = this, ratio = devicePixelRatio;
-    const perUnit = this.view.scale / (this.pitch ?? 1); // screen pixels to a mm, or to a pixel of the picture
-    const step = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000].find((s) => s * perUnit > 7 * ratio) ?? 1000;
-    const height = 20 * ratio;
-    context.fillStyle = style.getPropertyValue("--ruler");
-    context.fillRect(0, 0, canvas.width, height);
-    context.fillStyle = context.strokeStyle = style.getPropertyValue("--soft");
-    context.font = `${10 * ratio}px system-ui, sans-serif`;
-    context.lineWidth = ratio;
-    context.beginPath();
-    const first = Math.ceil((this.view.x * (this.pitch ?? 1)) / step);
-    for (let k = first; ; k++) {
-      const x = Math.round(k * step * perUnit - this.view.x * this.view.scale) + 0.5;
-      if (x > canvas.width) break;
-      const major = k % 10 === 0, half = k % 5 === 0;
-      context.moveTo(x, height);
-      context.lineTo(x, height - (major ? 9 : half ? 6 : 3) * ratio);
-      if (major) context.fillText(`${+(k * step).toFixed(1)}${k === 0 ? (this.pitch ? " mm" : " px") : ""}`, x + 3 * ratio, 11 * ratio);
-    }
-    context.stroke();
   }
 
   listen() {
