@@ -14,7 +14,9 @@ if TYPE_CHECKING:
     from morfax.jobs.figures import Figures
     from morfax.tracer.operator.operator import Panel
 
-SETS = ("studio-15ips", "instrumentation", "cassette")  # recorder.wear.transport
+# recorder.wear.settings
+SETS = ("studio-15ips", "instrumentation", "reel", "cassette", "answering-machine", "mp3")
+CODECS = ("mp3-64", "mp3-128", "opus-64")  # recorder.wear.codec
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,14 +12,15 @@ from morfax.console.options.desk import desk_options
 from morfax.console.options.files import FILE
 from morfax.console.options.groups import Verb, option, renamed
 from morfax.console.options.types import FREQUENCY, TIME, TRACKS, Quantity
-from morfax.jobs.age import SETS, AgeJob
+from morfax.jobs.age import CODECS, SETS, AgeJob
+from morfax.motion.units import parse_frequency_hz
 
 if TYPE_CHECKING:
     from morfax.console.terminal.desk import Desk
 
 EXAMPLES = """\b
 Examples:
-  morfax age cam.wav -o worn.wav --as cassette --seed 7
+  morfax age cam.wav -o worn.wav --preset cassette --seed 7
   morfax age cam.wav -o fast.wav --speed-error 1.5% --flutter 0.2%
   morfax age cam.wav -o holes.wav --dropouts 60 --dropout-length 5ms --dropout-depth 40dB
   morfax age cam.wav -o mixed.wav --order 2,1,3,4 --inverted 3
@@ -47,7 +48,17 @@ def _decibels(text: str) -> float:
         ) from None
 
 
+def _band_hz(text: str) -> tuple[float, float]:
+    """The two ends of "300Hz,3.4kHz"."""
+    low, _, high = text.partition(",")
+    ends = parse_frequency_hz(low), parse_frequency_hz(high or low)
+    if not 0 < ends[0] < ends[1]:
+        raise ValueError(f"{text[:40]!r} is no band; give its two ends, such as 300Hz,3.4kHz")
+    return ends
+
+
 SHARE, DECIBELS = Quantity("share", _share), Quantity("dB", _decibels)
+BAND = Quantity("band", _band_hz)
 
 PARTS: tuple[tuple[str, str, Any, str], ...] = (
     ("--speed-error", "speed", SHARE, "Speed error, such as 1.5% or -1.5%."),
@@ -74,6 +85,18 @@ PARTS: tuple[tuple[str, str, Any, str], ...] = (
     ("--dc", "dc", SHARE, "Direct current, share of full scale."),
     ("--distortion", "third", SHARE, "Third harmonic, share of the carrier."),
     ("--bandwidth", "bandwidth_hz", FREQUENCY, "Where the tape is 3 dB down, such as 12.5kHz."),
+    (
+        "--band",
+        "band_hz",
+        BAND,
+        "Steep ends of the band, such as 300Hz,3.4kHz of a telephone.",
+    ),
+    (
+        "--codec",
+        "codec",
+        click.Choice(CODECS),
+        "Coded and decoded, two tracks to a stereo file; the number is kbit/s.",
+    ),
     ("--clip", "clip", SHARE, "Clipped at this share of full scale."),
     ("--stamped", "stamped_hz", FREQUENCY, "A wrong sample rate in the header."),
     ("--order", "order", TRACKS, "The tracks in another order, such as 2,1,3,4."),
@@ -102,10 +125,11 @@ def part_options(verb: Any) -> Any:
 )
 @option(
     "Wear",
-    "--as",
+    "--preset",
     "machine",
     type=click.Choice(SETS),
-    help="All that a kind of machine does; single parts take precedence.",
+    help="All that a kind of machine does, by the figures in docs/background/transport.md; single parts "
+    "take precedence.",
 )
 @option(
     "Wear",
@@ -124,6 +148,7 @@ def part_options(verb: Any) -> Any:
     help="Dropouts on all tracks at once.",
 )
 @part_options
+@renamed("--as", "--preset")
 @renamed("--speed", "--speed-error")
 @desk_options
 def command(

@@ -29,6 +29,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.faults import Fault, LockFault, TapeFault
 from morfax.player.tape.discriminator import Phases
+from morfax.recorder.tape.check_signal import CYCLES_PER_SUBCARRIER
 from morfax.recorder.tape.format import TapeFormat
 from morfax.recorder.tape.pickups import DEFAULT_PICK_UP, PICK_UPS
 
@@ -104,6 +105,12 @@ def take_bearings(frames: Float32s, phases: Phases, fmt: TapeFormat) -> Bearings
     for track, mean_square in enumerate(power):
         _demand_signal(track, float(mean_square), names)
     found_hz = strongest_hz(frames[:, 0], fmt.sample_rate_hz)
+    if abs(found_hz * CYCLES_PER_SUBCARRIER / reference_hz - 1) <= REFERENCE_BAND:
+        raise TapeFault(
+            f"track 1 carries the check signal of {found_hz:.0f} Hz and not the carrier of {reference_hz:g} "
+            f"Hz: the band of its recorder ends below; take one that passes {2 / 3 * reference_hz:.0f} to "
+            f"{4 / 3 * reference_hz:.0f} Hz"
+        )
     if not abs(found_hz / reference_hz - 1) <= REFERENCE_BAND:
         raise TapeFault(
             f"track 1 carries {found_hz:.0f} Hz where the reference of {reference_hz:g} Hz should be, within "

@@ -12,6 +12,8 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
+from morfax.recorder.wear.codec import CODECS
+
 # of wow, flutter and scrape together: the transport reads ahead for no more
 MOST_FLUTTER = 0.05
 LONGEST_TURN_S = 10.0  # of the reel; print-through holds one turn in memory
@@ -45,6 +47,8 @@ class Wear:
     dc: float = 0.0
     third: float = 0.0
     bandwidth_hz: float | None = None
+    band_hz: tuple[float, float] | None = None  # steep, as of a telephone
+    codec: str | None = None  # one of codec.CODECS
     clip: float | None = None
     stamped_hz: int | None = None
     order: tuple[int, ...] = ()
@@ -69,6 +73,17 @@ SETS = {
         noise_db=46, crosstalk_db=40, print_db=50, print_s=1.2, third=0.03, uneven_db=0.7,
         bandwidth_hz=12_500, dropouts_per_min=4, dropout_s=0.001, dropout_db=20, hum_db=55,
     ),
+    "reel": Wear(
+        speed=0.002, wow=5e-4, flutter=6e-4, scrape=5e-4, skew_s=5.4e-6, weave_s=5e-7,
+        noise_db=52, crosstalk_db=45, print_db=54, print_s=1.0, third=0.02, uneven_db=0.3,
+        bandwidth_hz=20_000, dropouts_per_min=1, dropout_s=0.0005, dropout_db=10,
+    ),
+    "answering-machine": Wear(
+        speed=0.03, wow=2e-3, flutter=2e-3, scrape=1e-3, skew_s=2.4e-5, weave_s=2e-6,
+        noise_db=35, third=0.05, uneven_db=1.5, band_hz=(300, 3_400),
+        dropouts_per_min=4, dropout_s=0.001, dropout_db=20,
+    ),
+    "mp3": Wear(codec="mp3-64"),
 }  # fmt: skip
 
 _NEVER_NEGATIVE = (
@@ -89,6 +104,8 @@ def check(wear: Wear, tracks: int) -> None:
     if not all(np.isfinite(n) for n in numbers if isinstance(n, int | float)):
         raise ValueError("a part of the wear is no finite number; give finite numbers")
     _check_ranges(wear)
+    if wear.codec is not None and wear.codec not in CODECS:
+        raise ValueError(f"codec is {wear.codec!r}; it must be one of {', '.join(CODECS)}")
     if wear.order and sorted(wear.order) != list(range(1, tracks + 1)):
         raise ValueError(
             f"order is {wear.order}; it must name each of the tracks 1 to {tracks} once"

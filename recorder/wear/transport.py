@@ -5,7 +5,8 @@ part stands by itself and does nothing at its default; what a maker states of a 
 set.
 
     programme ─► distortion ─► crosstalk ─► print-through ─► dropouts ─► head (speed, flutter, skew)
-              ─► level, unevenness ─► bandwidth ─► hum, DC, noise ─► order, polarity ─► clipping ─► worn tape
+              ─► level, unevenness ─► bandwidth ─► hum, DC, noise ─► order, polarity ─► clipping ─► codec
+              ─► worn tape
 
 The worn tape starts at `cut_start_s` of the programme and ends `cut_end_s` before its end. All chance comes
 from one seed, part by part, so that a part is the same whatever the others are, and however long the blocks.
@@ -33,12 +34,14 @@ from morfax.motion.files import disk_full_fault, written_beside
 from morfax.recorder.sound.riff import make_plain
 from morfax.recorder.sound.source import open_sound, sidecar, text_of
 from morfax.recorder.sound.spool import Spool, medium
+from morfax.recorder.wear.codec import coded
 from morfax.recorder.wear.settings import Wear, check
 from morfax.recorder.wear.signal import (
     Bandwidth,
     Dropout,
     Dropouts,
     PrintThrough,
+    TelephoneBand,
     Unevenness,
     crosstalk,
     distorted,
@@ -110,7 +113,10 @@ def _aged(
             _written(target),
             Spool(beside, rate_hz, sound.channels, kind, text, name=target) as out,
         ):
-            for frames in deck.frames(_cut(sound, wear)):
+            worn = deck.frames(_cut(sound, wear))
+            if wear.codec is not None:
+                worn = coded(worn, sound.samplerate, sound.channels, wear.codec)
+            for frames in worn:
                 out.put(frames)
                 if progress is not None:
                     progress(min(out.frames / sound.samplerate, total_s), total_s)
@@ -153,9 +159,11 @@ class Deck:
             if wear.print_db is not None
             else None
         )
-        self._band = (
-            Bandwidth(wear.bandwidth_hz, rate_hz, tracks) if wear.bandwidth_hz else None
-        )
+        self._bands: list[Bandwidth | TelephoneBand] = []
+        if wear.bandwidth_hz:
+            self._bands.append(Bandwidth(wear.bandwidth_hz, rate_hz, tracks))
+        if wear.band_hz is not None:
+            self._bands.append(TelephoneBand(wear.band_hz, rate_hz, tracks))
         self._head, self._came, self._went, self._peak = Head(tracks), 0, 0, 0.0
 
     @property
@@ -221,8 +229,8 @@ class Deck:
             frames = (frames * self._uneven.gains(first, count, self._rate_hz)).astype(
                 np.float32
             )
-        if self._band is not None:
-            frames = self._band.feed(frames)
+        for band in self._bands:
+            frames = band.feed(frames)
         if wear.hum_db is not None:
             buzz = hum(
                 first, count, self._rate_hz, wear.hum_hz, self._peak * gain(-wear.hum_db)

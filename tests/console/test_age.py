@@ -21,7 +21,7 @@ def test_a_worn_tape_is_written_and_the_same_seed_gives_the_same(
             tape_file,
             "-o",
             name,
-            "--as",
+            "--preset",
             "cassette",
             "--speed-error",
             "-1%",
@@ -43,7 +43,7 @@ def test_a_worn_tape_is_written_and_the_same_seed_gives_the_same(
         (["--noise", "loud"], "no level"),
         (["--order", "1,2"], "each of the tracks"),
         (["--order", "x"], "names no tracks"),
-        (["--as", "gramophone"], "gramophone"),
+        (["--preset", "gramophone"], "gramophone"),
         (["--stamped", "1e12"], "a header holds 1 to"),
     ],
 )

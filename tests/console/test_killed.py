@@ -27,7 +27,7 @@ def words_of(verb: str, tape: Path, path: Path) -> list[str]:
         "trace": ["trace", str(CAM), "-o", "a.wav", "--path", "a.csv", "--picture", "a.png"],
         "play": ["play", str(tape), "-o", "a.csv", "-o", "a.svg", "-o", "a.png"],
         "record": ["record", str(path), "-o", "a.wav"],
-        "age": ["age", str(tape), "-o", "a.wav", "--as", "cassette"],
+        "age": ["age", str(tape), "-o", "a.wav", "--preset", "cassette"],
         "mend": ["mend", str(tape), "-o", "a.wav"],
     }[verb]
 
