@@ -2,20 +2,27 @@
 
 A file is written beside its final name, in the same folder and so on the same disk, and renamed when it is
 complete. A broken run, a full disk or Ctrl-C leaves what stood there before, and no half file.
+
+    .morfax-MACHINE-PROCESS-RANDOM.wav      a hidden file; that of a run that was killed stays, and is removed
+                                            by the next run into the folder, when its process is gone
 """
 
 from __future__ import annotations
 
 import errno
 import os
+import platform
 import secrets
 import stat
+import zlib
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from functools import cache
 from pathlib import Path
 
 from morfax.motion.faults import FileFault
 
+_HIDDEN = ".morfax-"
 _DISK_FULL = {
     errno.ENOSPC: "the disk is full",
     errno.EDQUOT: "the quota is used up",
@@ -99,12 +106,47 @@ def _create_beside(final: Path) -> Path:
         what = "is a folder" if final.is_dir() else "is not a regular file"
         raise FileFault(f"cannot write {final}: it {what}; give the name of a file")
     folder = final.resolve().parent
-    beside = folder / f".morfax-{secrets.token_hex(6)}{final.suffix}"
+    _clear_leftovers(folder)
+    name = f"{_HIDDEN}{_here()}-{os.getpid()}-{secrets.token_hex(6)}{final.suffix}"
+    beside = folder / name
     try:
         os.close(os.open(beside, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
     except OSError as error:
         raise _folder_fault(final, folder, error) from error
     return beside
+
+
+def _clear_leftovers(folder: Path) -> None:
+    """Remove the hidden files of runs on this machine that were killed; those of others are left alone."""
+    if os.name != "posix":
+        return  # there a signal of 0 would end the process
+    for left in folder.glob(f"{_HIDDEN}{_here()}-*"):
+        number = left.name.removeprefix(f"{_HIDDEN}{_here()}-").split("-")[0]
+        if number.isdecimal() and not _is_alive(int(number)):
+            with suppress(OSError):
+                left.unlink()
+
+
+def _is_alive(process: int) -> bool:
+    """Whether there is a process of this number."""
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except (OSError, OverflowError):
+        return True  # somebody else's, or not to be told
+    return True
+
+
+@cache
+def _here() -> str:
+    """What the processes that this one can see have in common: machine, its start, and their numbering."""
+    parts = [platform.node()]
+    with suppress(OSError):
+        parts.append(Path("/proc/sys/kernel/random/boot_id").read_text("ascii"))
+    with suppress(OSError):
+        parts.append(str(Path("/proc/self/ns/pid").readlink()))
+    return f"{zlib.crc32(' '.join(parts).encode('utf-8', 'replace')):08x}"
 
 
 def _folder_fault(final: Path, folder: Path, error: OSError) -> FileFault:

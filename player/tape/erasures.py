@@ -37,7 +37,7 @@ class Erasures:
     def read(self, bits: Bits, strengths: Array, number: int) -> list[CheckFrame | None]:
         """What the tracks (tracks, symbols) say in the frame of this number; None where it is lost.
 
-        `damaged` are then the tracks that say nothing though none of their symbols is weak.
+        `damaged` are then the tracks that say nothing though few of their symbols are weak.
         """
         said = from_bits(bits)
         self.damaged = []
@@ -51,7 +51,7 @@ class Erasures:
                 frame = _recovered(bits[track], weak[weak >= SYNC_SYMBOLS], track, number)
             if frame is not None:
                 self._usual[track] = usual
-            elif not len(weak):
+            elif len(weak) <= MOST_WEAK:
                 self.damaged.append(track)
             said[track] = frame
         return said

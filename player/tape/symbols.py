@@ -121,6 +121,8 @@ def _swing(seen, bits, turns, part):  # type: ignore[no-untyped-def]
     usual = 0.0
     for symbol in range(len(seen)):
         usual += abs(seen[symbol]) / len(seen)
+    if not usual > 0:
+        return 0.0
     count, along, alongs, acrosses = 0, 0.0, 0.0, 0.0
     for symbol in range(part * len(turns)):
         if abs(seen[symbol]) < 0.5 * usual:

@@ -2,6 +2,8 @@
 
 import errno
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -98,3 +100,31 @@ def test_a_link_is_written_through(tmp_path: Path) -> None:
         beside.write_text("after")
     assert (tmp_path / "link").is_symlink()
     assert (tmp_path / "real").read_text() == "after"
+
+
+def test_what_a_killed_run_left_is_cleared_by_the_next(tmp_path: Path) -> None:
+    """A process that is gone; one that lives, one of another machine and an older file are left alone."""
+    gone = subprocess.run(  # its number was a process, and is none
+        [
+            sys.executable,
+            "-c",
+            "import os, sys; from morfax.motion.files import written_beside\n"
+            "with written_beside(sys.argv[1]) as beside:\n"
+            "    beside.write_text('half'); os._exit(9)",
+            str(tmp_path / "a.wav"),
+        ],
+        check=False,
+    )
+    assert gone.returncode == 9
+    (left,) = tmp_path.glob(".morfax-*")
+    machine = left.name.split("-")[1]
+    kept = [
+        left.with_name(f".morfax-{machine}-{os.getpid()}-00ff00ff00ff.wav"),
+        left.with_name(".morfax-00000000-999999999-00ff00ff00ff.wav"),
+        left.with_name(".morfax-00ff00ff00ff.wav"),
+    ]
+    for file in kept:
+        file.write_text("somebody's")
+    with written_beside(tmp_path / "b.wav") as beside:
+        beside.write_text("whole")
+    assert sorted(tmp_path.iterdir()) == sorted([*kept, tmp_path / "b.wav"])
