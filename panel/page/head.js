@@ -83,7 +83,7 @@ export class Head {
     const { sheet, canvas, now } = this, context = canvas.getContext("2d");
     const size = canvas.clientWidth * devicePixelRatio || 400;
     if (canvas.width !== size) canvas.width = canvas.height = size;
-    const perMm = INSET_PX_PER_MM * devicePixelRatio * 0.5; // half of it fits what the cells see on the card
+    const perMm = INSET_PX_PER_MM * devicePixelRatio;
     const px = sheet.toPx([now.x_mm, now.y_mm]), scale = perMm * sheet.pitch;
     const view = { x: px[0] - size / 2 / scale, y: px[1] - size / 2 / scale, scale };
     const style = getComputedStyle(sheet.canvas);
