@@ -24,7 +24,7 @@ from morfax.tracer.ink.ledger import balance
 from morfax.tracer.ink.stretches import FeltSheet
 from morfax.tracer.ink.track import InkStroke, stroke_along
 from morfax.tracer.operator.operator import Operator
-from morfax.tracer.program import order
+from morfax.tracer.program import stroke_order
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.setup import HeadProgress
 
@@ -92,10 +92,11 @@ def _in_order(lines: list[Line]) -> list[Line]:
     """The strokes in an order with a short idle way, open ones begun at either end."""
     begins = np.array([line.begin_mm for line in lines])
     ends = np.array([line.end_mm for line in lines])
-    may_turn = np.array([line.is_open for line in lines])
-    anyhow = np.zeros((len(lines), len(lines)), bool)
-    sequence, turned = order.in_order_and_turned(begins, ends, anyhow, may_turn)
-    return [_turned_round(lines[i]) if turned[i] else lines[i] for i in sequence]
+    way, turned = stroke_order.in_order(begins, ends)
+    return [
+        _turned_round(lines[n]) if about else lines[n]
+        for n, about in zip(way, turned, strict=True)
+    ]
 
 
 def _turned_round(line: Line) -> Line:
