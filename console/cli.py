@@ -30,7 +30,7 @@ VERBS = {
     "run": "Go the whole way: trace a drawing, play the tape, compare all three.",
     "inspect": "Say what is on a tape: tracks, carriers, levels, travel, format.",
     "record": "Record a path file, or another program, in the medium that the name after -o says.",
-    "mend": "Record a tape anew without its dropouts, where it tells what they lost.",
+    "mend": "Record a tape anew without its dropouts.",
     "age": "Wear a tape as a real recorder and the years do.",
     "check": "Say whether a machine may be started with a program, and what the program does.",
     "sheet": "Make a sheet with marks to print, draw on and photograph.",
