@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from morfax.tracer.following.follower import Follower
     from morfax.tracer.following.ways_out import Turns
 
-APART_MM = 3.0  # of travel between two knots: a junction's own length
+APART_MM = 6.0  # of travel between two knots: to keep them takes 3 % of the head's time
 MOST_KNOTS = 64  # of a run, some 60 kB each; beyond, every second one is dropped
 MOST_RUNS = 8  # the last ones that are remembered: a line is tried both ways round, and with a few turns
 # how far ahead of the axis a told turn may count: twice its reach, and the legs that are felt there
