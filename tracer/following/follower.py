@@ -19,6 +19,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault
+from morfax.tracer.following.agreement import Agreement
 from morfax.tracer.following.followed import Followed, line_lost, without_repeat
 from morfax.tracer.following.way_home import WayHome
 from morfax.tracer.following.ways_out import (
@@ -56,6 +57,8 @@ FROM_BEHIND = (1.0, 0.6, 0.3)  # legs behind the axis: nearer, if a speck spoils
 AWAY_LEADS, AWAY_WIDTHS = 4.0, 3.0  # the head is away from home after this travel
 NO_GUARDS = "the swinging cell sees no more ink, and this head has no guard cells to find on by"
 SLOWER = "go slower there with --speed, or follow with --head precise"
+CONTRADICT = "the swinging cell and the line felt ahead disagree"
+CHECK_CELL = "and at the settings of the head's cell, or scan at a higher resolution"
 BRIDGE = "bridge a gap with --gap, or scan at a higher resolution"
 
 
@@ -70,7 +73,7 @@ class Follower:
         self._ways_out = WaysOut(turns, stance.reference_mm is not None)
         self._at_tip = False
         self.carriage = Carriage(stance, settings, rate_hz)
-        self._tangles = Tangles()
+        self._tangles, self._agreement = Tangles(), Agreement()
         by_lead_mm = AWAY_LEADS * self.carriage.tuning.lead_mm
         self._home = WayHome(stance, max(by_lead_mm, AWAY_WIDTHS * self.view.width_mm))
         self._aim(stance.leg_ahead())
@@ -88,6 +91,8 @@ class Follower:
     ) -> Followed:
         """Follow until the line closes, ends or is lost; `told` hears the travel, mm, `keep` may copy."""
         home = self._home.for_kernel()
+        if not (self.carriage.hears(self.view) or self.settings.direct_rad_s_mm > 0):
+            return self._lost(CONTRADICT, CHECK_CELL)
         while self.carriage.travel_mm < longest_mm:
             if keep is not None:
                 keep(self)
@@ -133,6 +138,12 @@ class Follower:
         if corner is not None:
             return self._pass(corner)
         # 4. clean line
+        on_mm = self._agreement.goes_on_mm(self.carriage, self.view, seen)
+        if self._agreement.contradict:
+            return self._lost(CONTRADICT, CHECK_CELL)
+        if on_mm:
+            self.carriage.trust(on_mm)
+            return None
         nodes, leg = course.nodes_along(self.view, self.carriage.stands(), seen)
         if leg is not None:
             return self._pass(Plan([course.through_nodes(nodes)], leg, seen, STATIONS))

@@ -19,9 +19,9 @@ import numpy as np
 from morfax.motion import curves
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import lengths_mm
-from morfax.tracer.head import kernel, screws, watched
+from morfax.tracer.head import kernel, screws, swinging, watched
 from morfax.tracer.head.leaders import CELL, MEMORY, STATIONS, Led, Log
-from morfax.tracer.head.settings import Settings, tune
+from morfax.tracer.head.settings import CALIBRATED_ASIDE, CALIBRATED_STATIONS, Settings, tune
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.state import Home, Tuning, at_rest
 from morfax.tracer.head.trail import Trail
@@ -32,6 +32,7 @@ CHUNK = 6000  # samples that the kernel follows before it reports: a second at t
 SETTLE_LAGS = 7  # a stop lasts this many lags of the drives: 1/1000 of the last speed is left
 # of the lead: what was felt of a leg this far ahead tells where the cell will see it
 FELT_ENOUGH = 0.5
+HEARD = 0.1  # of what the sweep was set off; grain takes away less than the rest
 SPARE = 1000  # samples beside those that a course takes at the slowest
 
 
@@ -63,6 +64,7 @@ class Carriage:
         # who leads, from which position on, and up to which travel the drum holds what was felt
         self._log, self._leads, self._cell_from_mm = Log(), STATIONS, 0.0
         self._log.add(0, STATIONS)
+        self.cell_led_mm = 0.0  # how far the swinging cell has led so far
 
     @property
     def travel_mm(self) -> float:
@@ -99,6 +101,43 @@ class Carriage:
         """Who led the head to each of its positions."""
         return self._log.led()
 
+    @property
+    def cell_mm(self) -> Array:
+        """The place on the sheet where the swinging cell takes the line to be."""
+        place, lead, aside = self.stands()[0], self.tuning.lead_mm, self.state.middle_mm
+        c, s = math.cos(self.heading_rad), math.sin(self.heading_rad)
+        return place + np.array([lead * c - aside * s, lead * s + aside * c])
+
+    def hears(self, view: View) -> bool:
+        """Whether the standing head's sweep, set a little to either side of the line, goes back to it.
+
+        Over a few places ahead, as the tuning was measured.
+        """
+        if self.count > 1:  # a run that is taken up again
+            return True
+        off_mm, back_mm = CALIBRATED_ASIDE * view.width_mm, 0.0
+        for k in range(CALIBRATED_STATIONS):
+            for side in (-1.0, 1.0):
+                state = self.state.copy()
+                state.x_mm += k * view.step_mm * math.cos(self.heading_rad)
+                state.y_mm += k * view.step_mm * math.sin(self.heading_rad)
+                back_mm -= side * swinging.heard(view.cells, state, self.tuning, side * off_mm)
+        return back_mm > HEARD * 2 * CALIBRATED_STATIONS * off_mm
+
+    @property
+    def sees_line(self) -> bool:
+        """Whether the swinging cell sees a line at all."""
+        return bool(self.state.swept_ink > kernel.LOST)
+
+    @property
+    def is_trusted(self) -> bool:
+        """Whether the cell is on its way past what the guard cells say."""
+        return bool(self.state.travel_mm < self.state.trusted_mm)
+
+    def trust(self, length_mm: float) -> None:
+        """Go on by the swinging cell for a length, mm, past what the guard cells say: it was felt clean."""
+        self.state.trusted_mm = self.state.travel_mm + length_mm
+
     def stands(self) -> tuple[Array, float]:
         """Where the drives' demand stands, and the heading."""
         owed, s = screws.owed_s(self.tuning.drive_gain, self.tuning.period_s), self.state
@@ -114,6 +153,7 @@ class Carriage:
         """Follow the line until something happens, or for so many samples; why it stopped (see `state`)."""
         out = np.empty((samples, 2))
         self.says("following")
+        from_mm = max(self.travel_mm, self._cell_from_mm)
         felt_mm = self._cell_from_mm - self.travel_mm
         n, why = kernel.follow(view.cells, self.state, self.tuning, home, out)
         first = 0
@@ -122,6 +162,7 @@ class Carriage:
             first = int(np.searchsorted(come_mm, felt_mm))
         if first < n:
             self._log.add(self.count + first, CELL)
+        self.cell_led_mm += max(self.travel_mm - from_mm, 0.0)
         self._keep(out[:n])
         return int(why)
 
@@ -203,8 +244,9 @@ class Carriage:
         s.turn_rad_s = s.speed_mm_s * leg.bend_per_mm
         s.middle_mm = self._middle_mm(leg, felt)
         s.point_x_mm, s.point_y_mm = leg.at(self.tuning.point_mm)
+        s.trusted_mm = 0.0
         s.guard_left = s.guard_right = 0.0
-        s.guard_ahead = s.ink = 1.0
+        s.guard_ahead = s.ink = s.swept_ink = 1.0
         self._begin_sweep()
         s.drum_mm[: len(felt)] = felt
         s.places = len(felt)

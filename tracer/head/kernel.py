@@ -43,7 +43,7 @@ from numba import njit
 
 from morfax.tracer.head.screws import move, owed_s
 from morfax.tracer.head.state import CHANGED, DRUM, HOME, JUNCTION, MORE, TIGHT
-from morfax.tracer.sensing.photocell import TWO_PI, darkness_at
+from morfax.tracer.head.swinging import detect, seen, swing, way_of
 
 # Shares of the line's ink; all chosen by trial on the test drawings.
 LOST = 0.2  # less over a sweep: the line has gone from under a head without guard cells
@@ -51,10 +51,8 @@ BESIDE = 0.4  # more under a guard cell at the side: there is ink beside the lin
 BLANK = 0.5  # less under a cell on the line: there is paper
 ALTERED = 0.2  # over a sweep: the line has swollen or faded since the head was tuned to it
 
-INK_FOLLOWS = 0.1  # share of a sweep's difference by which the ink is corrected
-PALEST, DARKEST = 0.3, 2.0  # a sweep counts as no less and no more of the ink than this
+BEND_FOLLOWS = 0.1  # share by which the usual bend follows the bend, sweep by sweep
 GUARD_FOLLOWS = 0.5  # share by which a guard cell follows what it sees, sweep by sweep
-FARTHEST_ASIDE = 0.5  # of the amplitude: a sweep that is further off is not on the line
 SINGULAR = 1e-9  # of the moments' product: too few places on the drum for a parabola
 HOME_ASIDE = 0.3  # of the lead: home is on the line
 HOME_COSINE = 0.8  # of the angle between the heading and home's
@@ -65,9 +63,9 @@ SHORTEST = 0.2  # of the distance to the point: the axis may have come so near t
 def follow(cells, state, t, home, out):  # type: ignore[no-untyped-def]
     """Follow the line until something happens or `out` (n, 2) is full; (positions written, why)."""
     for n in range(len(out)):
-        _swing(cells, state, t)
+        swing(cells, state, t)
         if state.sweep_periods >= t.sweep_periods:
-            _detect(state, t)
+            detect(state, t)
             if t.direct_rad_s_mm == 0:
                 _fit(state, t)
             why = _look(cells, state, t)
@@ -80,62 +78,6 @@ def follow(cells, state, t, home, out):  # type: ignore[no-untyped-def]
     return len(out), MORE
 
 
-@njit(cache=True, inline="always")
-def _way(state):  # type: ignore[no-untyped-def]
-    """Unit vector (x, y) along the heading."""
-    return math.cos(state.heading_rad), math.sin(state.heading_rad)
-
-
-@njit(cache=True, inline="always")
-def _seen(cells, state, way, ahead, aside):  # type: ignore[no-untyped-def]
-    """Darkness under a cell so far ahead of the axis and to the left of its way, mm."""
-    x = state.x_mm + ahead * way[0] - aside * way[1]
-    y = state.y_mm + ahead * way[1] + aside * way[0]
-    return darkness_at(cells, x, y)
-
-
-@njit(cache=True)
-def _swing(cells, state, t):  # type: ignore[no-untyped-def]
-    """One period of the swinging cell: its current goes into the synchronous detector."""
-    phase = TWO_PI * (state.sweep_periods + 0.5) / t.sweep_periods
-    swing = math.sin(phase)
-    aside = state.middle_mm + t.amplitude_mm * swing
-    ahead = t.lead_mm + t.along_mm * math.cos(phase)
-    darkness = _seen(cells, state, _way(state), ahead, aside)
-    state.first_sum += darkness * swing
-    state.mean_sum += darkness
-    state.sweep_periods += 1
-    if state.sweep_periods == t.sweep_periods // 2:
-        state.swept_x_mm, state.swept_y_mm = state.x_mm, state.y_mm
-
-
-@njit(cache=True)
-def _detect(state, t):  # type: ignore[no-untyped-def]
-    """End of a sweep: the line's place goes onto the drum, and the next sweep is centred on it."""
-    # 1. what the sweep tells
-    mean = state.mean_sum / t.sweep_periods
-    state.ink += INK_FOLLOWS * (min(max(mean / t.mean, PALEST), DARKEST) - state.ink)
-    aside = 2.0 * state.first_sum / t.sweep_periods / (t.slope_per_mm * state.ink)
-    state.sweep_periods = 0
-    state.first_sum = state.mean_sum = 0.0
-    # 2. without a drum, the mount turns with the head only
-    if t.direct_rad_s_mm > 0:
-        state.aside_mm = aside
-        state.guard_ahead = mean / t.mean
-        state.middle_mm = 0.0
-        return
-    # 3. the line's place, by the heading as it was in the middle of the sweep
-    limit = FARTHEST_ASIDE * t.amplitude_mm
-    state.middle_mm += min(max(aside, -limit), limit)
-    middle = state.heading_rad - 0.5 * t.sweep_periods * t.period_s * state.turn_rad_s
-    c, s = math.cos(middle), math.sin(middle)
-    if abs(aside) < limit:
-        place = state.places % DRUM
-        state.drum_mm[place, 0] = state.swept_x_mm + t.lead_mm * c - state.middle_mm * s
-        state.drum_mm[place, 1] = state.swept_y_mm + t.lead_mm * s + state.middle_mm * c
-        state.places += 1
-
-
 @njit(cache=True)
 def _fit(state, t):  # type: ignore[no-untyped-def]
     """Lay a parabola through the drum's places about the point ahead of the axis: where the line is there,
@@ -144,9 +86,9 @@ def _fit(state, t):  # type: ignore[no-untyped-def]
     Weights fall to nothing at the window's ends: 1 - (x/h)². The sums solve for y = p0 + p1·x + p2·x².
     """
     # 1. the moments of the places, x along the heading and y across it, from the point
-    c, s = _way(state)
+    c, s = way_of(state)
     x0, y0 = state.x_mm + t.point_mm * c, state.y_mm + t.point_mm * s
-    half = t.half_window_mm
+    half = _half_window(state, t)
     s0 = s1 = s2 = s3 = s4 = 0.0
     b0 = b1 = b2 = 0.0
     for k in range(min(state.places, DRUM)):
@@ -177,33 +119,60 @@ def _fit(state, t):  # type: ignore[no-untyped-def]
     state.bend_per_mm = 2.0 * p2 / (1.0 + p1 * p1) ** 1.5
 
 
+@njit(cache=True, inline="always")
+def _bend(state, t):  # type: ignore[no-untyped-def]
+    """The larger bend of the line at the point and of the sweep's curve, 1/mm."""
+    return max(abs(state.bend_per_mm), 2.0 * abs(state.middle_mm) / (t.lead_mm * t.lead_mm))
+
+
+@njit(cache=True, inline="always")
+def _is_trusted(state):  # type: ignore[no-untyped-def]
+    """Whether the cell goes on past what the guard cells say."""
+    return state.travel_mm < state.trusted_mm
+
+
+@njit(cache=True)
+def _half_window(state, t):  # type: ignore[no-untyped-def]
+    """Half of the parabola's window, mm: narrower in tight bends of a line that was felt clean."""
+    bend = state.usual_bend_per_mm
+    if not _is_trusted(state) or bend <= t.tightest_per_mm:
+        return t.half_window_mm
+    return max(t.half_window_mm * (t.tightest_per_mm / bend) ** 2, t.narrow_mm)
+
+
 @njit(cache=True)
 def _look(cells, state, t):  # type: ignore[no-untyped-def]
     """Read the guard cells and the look-ahead cell, once a sweep; why the head must stop following."""
     way, curve = (
-        _way(state),
+        way_of(state),
         state.middle_mm / (t.lead_mm * t.lead_mm),
     )  # aside = curve · ahead²
     # 1. cell 102 and its relay
     far = t.look_ahead_mm
-    if _seen(cells, state, way, far, curve * far * far) < BLANK * state.ink:
+    if seen(cells, state, way, far, curve * far * far) < BLANK * state.ink:
         state.slow_periods = t.slow_periods
     if t.direct_rad_s_mm > 0:
-        return JUNCTION if state.guard_ahead < LOST else MORE
+        return JUNCTION if state.swept_ink < LOST else MORE
     # 2. the guard cells
     ahead = t.guard_lead_mm
     on_line = curve * ahead * ahead
     beside = t.guard_mm * math.hypot(1.0, 2.0 * curve * ahead)
-    left = _seen(cells, state, way, ahead, on_line + beside) / state.ink
-    on = _seen(cells, state, way, ahead, on_line) / state.ink
-    right = _seen(cells, state, way, ahead, on_line - beside) / state.ink
+    left = seen(cells, state, way, ahead, on_line + beside) / state.ink
+    on = seen(cells, state, way, ahead, on_line) / state.ink
+    right = seen(cells, state, way, ahead, on_line - beside) / state.ink
     state.guard_left += GUARD_FOLLOWS * (left - state.guard_left)
     state.guard_ahead += GUARD_FOLLOWS * (on - state.guard_ahead)
     state.guard_right += GUARD_FOLLOWS * (right - state.guard_right)
-    # 3. what they say
+    # 3. what they say, and whether the swinging cell sees a line
+    if state.swept_ink < LOST:
+        return JUNCTION
+    bend = _bend(state, t)
+    state.usual_bend_per_mm += BEND_FOLLOWS * (bend - state.usual_bend_per_mm)
+    if _is_trusted(state):
+        return TIGHT if state.usual_bend_per_mm > t.narrowest_per_mm else MORE
     if max(state.guard_left, state.guard_right) > BESIDE or state.guard_ahead < BLANK:
         return JUNCTION
-    if max(abs(state.bend_per_mm), 2 * abs(curve)) > t.tightest_per_mm:
+    if bend > t.tightest_per_mm:
         return TIGHT
     return CHANGED if abs(state.ink - 1.0) > ALTERED else MORE
 
@@ -215,7 +184,7 @@ def _at_home(state, t, home):  # type: ignore[no-untyped-def]
     if state.travel_mm < from_travel_mm:
         return False
     dx, dy = x_mm - state.x_mm, y_mm - state.y_mm
-    c, s = _way(state)
+    c, s = way_of(state)
     along, aside = dx * c + dy * s, dy * c - dx * s
     on_it = 0.0 < along < t.lead_mm and abs(aside) < HOME_ASIDE * t.lead_mm
     return on_it and math.cos(heading_rad - state.heading_rad) > HOME_COSINE
@@ -234,7 +203,7 @@ def _steer(state, t):  # type: ignore[no-untyped-def]
     owed = owed_s(t.drive_gain, t.period_s)
     dx = state.point_x_mm - state.x_mm - owed * state.vx_mm_s
     dy = state.point_y_mm - state.y_mm - owed * state.vy_mm_s
-    c, s = _way(state)
+    c, s = way_of(state)
     along, aside = max(dx * c + dy * s, SHORTEST * t.point_mm), dy * c - dx * s
     demand = state.speed_mm_s * 2.0 * aside / (along * along + aside * aside)
     if t.direct_rad_s_mm > 0:

@@ -38,6 +38,10 @@ GUARD_AHEAD_MM, GUARD_AHEAD_PX = 0.15, 1.5  # from the swinging cell to the guar
 LOOK_AHEAD_MM = 1.0  # from the swinging cell to cell 102
 # that a line may turn within half the window: a parabola still follows that
 TIGHTEST_RAD = 0.23
+NARROWEST_RAD = 0.36
+NARROW_LEGS = (
+    0.3  # of a leg's length: half of the narrowest window, which averages as stations do
+)
 LEAST_SWEEP_PERIODS = 8  # fewer tell no fundamental
 
 CALIBRATED_ASIDE = 0.1  # of the line's width: the fundamental's slope is measured between these
@@ -92,6 +96,18 @@ class Settings:
         0,
         10_000,
         "steer straight by the swinging cell, turn rate per mm aside; 0: by the drum",
+    )
+    cell_gain: float = _within(
+        1.0, 0, 10, "of the swinging cell's current: 1 as it should be, 0 a blind cell"
+    )
+    detector_gain: float = _within(
+        1.0,
+        -10,
+        10,
+        "of the synchronous detector (FSA): 1 as it should be, -1 wired the wrong way",
+    )
+    cell_noise: float = _within(
+        0.0, 0, 10, "of the cell's current, standard deviation as a share of the ink's"
     )
     drive: Drive = field(default_factory=Drive)
 
@@ -189,6 +205,8 @@ def tune(stance: Stance, settings: Settings, rate_hz: float) -> Tuning:
         lead_mm=lead,
         point_mm=point,
         half_window_mm=half_window,
+        narrow_mm=min(half_window, NARROW_LEGS * stance.view.leg_mm),
+        narrowest_per_mm=NARROWEST_RAD / (NARROW_LEGS * stance.view.leg_mm),
         tightest_per_mm=TIGHTEST_RAD / half_window,
         amplitude_mm=amplitude,
         along_mm=SWING_ALONG * amplitude,
@@ -201,6 +219,9 @@ def tune(stance: Stance, settings: Settings, rate_hz: float) -> Tuning:
         drive_change_mm_s=settings.drive.acceleration_mm_s2 / rate_hz,
         steering_gain=steering_gain,
         direct_rad_s_mm=settings.direct_rad_s_mm,
+        cell_gain=settings.cell_gain,
+        detector_gain=settings.detector_gain,
+        cell_noise=settings.cell_noise,
     )
 
 

@@ -1,6 +1,6 @@
 """What the head's kernels work on: the state of the head, its tuning, and why a kernel returns.
 
-The state is one record that numba and numpy take alike. Its fields hold float64, the two counts int64.
+The state is one record that numba and numpy take alike. Its fields hold float64, the counts int64.
 
 Source: our own layout; the parts are those of patent ES 361967, figure 1.
 """
@@ -21,6 +21,7 @@ FLOATS = (
     *("first_sum", "mean_sum"),  # the sweep so far: sum of darkness·sin(phase), sum of darkness
     "middle_mm",  # of the sweep, to the left of the heading
     *("swept_x_mm", "swept_y_mm"),  # where the axis stood in the middle of the sweep
+    "swept_ink",  # darkness of the last sweep, as a share of what it was when the head was tuned
     "ink",  # the line's darkness, as a share of what it was when the head was tuned
     *(
         "guard_left",
@@ -31,6 +32,8 @@ FLOATS = (
     "travel_mm",
     *("point_x_mm", "point_y_mm"),  # the point that the axis steers for
     "bend_per_mm",  # of the line at that point
+    "trusted_mm",  # up to this travel the line was felt clean: the guard cells do not stop the head
+    "usual_bend_per_mm",  # without its noise, by which the window is narrowed then
     "aside_mm",  # how far to the left the cell of a head without a drum sees the line
 )
 STATE = np.dtype(
@@ -38,7 +41,8 @@ STATE = np.dtype(
     + [
         ("sweep_periods", np.int64),
         ("places", np.int64),
-    ]  # into the sweep; put on the drum so far
+        ("noise_number", np.int64),
+    ]  # into the sweep; put on the drum so far; the last random number
     + [("drum_mm", np.float64, (DRUM, 2))],  # the places of the line seen last, round and round
 )
 
@@ -66,7 +70,11 @@ class Tuning(NamedTuple):
     lead_mm: float
     point_mm: float  # from the axis to the point that it steers for
     half_window_mm: float  # of the parabola about that point
-    tightest_per_mm: float  # a line that bends more is a junction's
+    narrow_mm: (
+        float  # half of the narrowest window, for tight bends of a line that was felt clean
+    )
+    narrowest_per_mm: float  # no window is narrow enough for a line that bends more
+    tightest_per_mm: float  # a line that bends more is a junction's, unless it was felt clean
     amplitude_mm: float
     along_mm: float  # lengthwise half-axis of the sweep's ellipse
     guard_mm: float  # from the middle of the line to the guard cells beside it
@@ -80,11 +88,14 @@ class Tuning(NamedTuple):
         float  # share of the turn rate's error that the servo makes good in one period
     )
     direct_rad_s_mm: float  # turn rate per mm that the cell sees the line aside; 0: by the drum
+    cell_gain: float  # of the swinging cell's current
+    detector_gain: float  # of the synchronous detector
+    cell_noise: float  # of the cell's current, standard deviation
 
 
 def at_rest(place_mm: Array) -> Any:
     """The state of a head that stands at a place (x, y): a record, which the kernels change."""
     state = np.zeros(1, STATE).view(np.recarray)[0]
     state.x_mm, state.y_mm = place_mm
-    state.ink = 1.0
+    state.ink = state.swept_ink = 1.0
     return state

@@ -15,7 +15,7 @@ import pytest
 from morfax.motion.arrays import Array
 from morfax.motion.drive import Drive
 from morfax.motion.motion import MOTION_RATE_HZ
-from morfax.tracer.head import kernel, screws
+from morfax.tracer.head import kernel, screws, swinging
 from morfax.tracer.head.settings import Settings, tune
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.state import CHANGED, JUNCTION, MORE, TIGHT, Home, Tuning, at_rest
@@ -126,8 +126,8 @@ def test_two_places_tell_no_parabola(tuning: Tuning) -> None:
 def swept(state: Any, seen: View, tuning: Tuning) -> None:
     """One whole sweep of a head that stands."""
     for _ in range(tuning.sweep_periods):
-        kernel._swing(seen.cells, state, tuning)
-    kernel._detect(state, tuning)
+        swinging.swing(seen.cells, state, tuning)
+    swinging.detect(state, tuning)
 
 
 @pytest.mark.parametrize("off_mm", [-0.04, 0.02, 0.05])
@@ -164,8 +164,8 @@ def test_a_turning_head_puts_places_where_its_cell_was_in_the_middle_of_the_swee
             state.x_mm += (
                 1.0  # the axis leaps before and after the middle: its place between counts
             )
-        kernel._swing(white(0.5), state, tuning)
-    kernel._detect(state, tuning)
+        swinging.swing(white(0.5), state, tuning)
+    swinging.detect(state, tuning)
     was = -turn_rad_s * half * tuning.period_s
     place = (
         PLACE + np.array([1.0, 0.0]) + tuning.lead_mm * np.array([math.cos(was), math.sin(was)])
@@ -182,8 +182,8 @@ def test_the_ink_follows_a_tenth_of_what_a_sweep_saw_more_or_less(tuning: Tuning
     ):
         state = moving()
         for _ in range(tuning.sweep_periods):
-            kernel._swing(white(darkness), state, tuning)
-        kernel._detect(state, tuning)
+            swinging.swing(white(darkness), state, tuning)
+        swinging.detect(state, tuning)
         assert state.ink == pytest.approx(1 + 0.1 * (ink - 1), abs=1e-6)
 
 
@@ -230,8 +230,28 @@ def test_a_head_without_guard_cells_loses_a_line_of_a_fifth_of_its_ink(tuning: T
     direct = tuning._replace(direct_rad_s_mm=5.0)
     for left, why in ((0.21, MORE), (0.19, JUNCTION)):
         state = moving()
-        state.guard_ahead = left
+        state.swept_ink = left
         assert looked(0.0, state, direct) == why
+
+
+def test_trust_holds_past_ink_beside_but_not_without_a_line_or_in_the_tightest_bends(
+    tuning: Tuning,
+) -> None:
+    """Guard cells do not stop a head that is trusted; a sweep without ink does, or too tight a bend."""
+
+    def trusted(travel_mm: float, **fields: float) -> int:
+        state = moving()
+        state.travel_mm, state.trusted_mm = travel_mm, 1.0
+        for name, value in fields.items():
+            state[name] = value
+        return looked(0.52, state, tuning)
+
+    assert trusted(0.9, guard_left=1.0) == MORE
+    assert trusted(1.1, guard_left=1.0) == JUNCTION
+    assert trusted(0.9, swept_ink=0.19) == JUNCTION
+    tight = tuning.narrowest_per_mm / 0.9  # the usual bend keeps nine tenths of what it was
+    assert trusted(0.9, usual_bend_per_mm=0.98 * tight) == MORE
+    assert trusted(0.9, usual_bend_per_mm=1.02 * tight) == TIGHT
 
 
 @pytest.mark.parametrize("curve_per_mm", [0.0, 0.25, -0.25])

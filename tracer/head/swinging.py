@@ -1,0 +1,133 @@
+"""The swinging cell: one sweep across the line, and its synchronous detector.
+
+Signals: the drawing behind the aperture in; out, once a sweep, the middle of the next sweep (mm to the left
+of the heading) and the place of the line on the drum (sheet mm).
+
+    first = 2/N · sum D·sin(phase)      its sign is the side on which the line is
+    aside = first / (slope · ink)       how far, by the slope that was measured on the line
+
+The mount turns the sweep square to the curve that the sweep is on. Cell and detector may be out of order:
+their gains, and noise in the cell's current, are settings. `heard` tells whether they work.
+
+Source: patent ES 361967, figure 1: cell 101, mount 42, pin 48, motor 45, amplifier FSA. Questions: see
+`kernel`.
+"""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+from morfax.tracer.head.state import DRUM
+from morfax.tracer.sensing.photocell import TWO_PI, darkness_at
+
+# Shares of the line's ink; chosen by trial on the test drawings.
+INK_FOLLOWS = 0.1  # share of a sweep's difference by which the ink is corrected
+PALEST, DARKEST = 0.3, 2.0  # a sweep counts as no less and no more of the ink than this
+FARTHEST_ASIDE = 0.5  # of the amplitude: a sweep that is further off is not on the line
+# of a curve against the heading: a smaller one sets the middle off by less than 0.2 um
+LEAST_SLOPE = 0.1
+# of the random numbers: those of Numerical Recipes, "quick and dirty generators"
+NOISE_FACTOR, NOISE_STEP, NOISE_NUMBERS = 1664525, 1013904223, 2**32
+
+
+@njit(cache=True, inline="always")
+def way_of(state):  # type: ignore[no-untyped-def]
+    """Unit vector (x, y) along the heading."""
+    return math.cos(state.heading_rad), math.sin(state.heading_rad)
+
+
+@njit(cache=True, inline="always")
+def seen(cells, state, towards, ahead, aside):  # type: ignore[no-untyped-def]
+    """Darkness under a cell so far ahead of the axis and to the left of its heading, mm."""
+    x = state.x_mm + ahead * towards[0] - aside * towards[1]
+    y = state.y_mm + ahead * towards[1] + aside * towards[0]
+    return darkness_at(cells, x, y)
+
+
+@njit(cache=True, inline="always")
+def _turned(state, t):  # type: ignore[no-untyped-def]
+    """How far the mount is turned against the head, square to the curve that the sweep is on: cosine, sine.
+
+    Across a line that bends, an oblique cut has its middle beside the line's. A head without a drum has a
+    mount that is fixed to it.
+    """
+    slope = 2.0 * state.middle_mm / t.lead_mm
+    if t.direct_rad_s_mm > 0 or abs(slope) < LEAST_SLOPE:
+        return 1.0, 0.0
+    length = math.sqrt(1.0 + slope * slope)
+    return 1.0 / length, slope / length
+
+
+@njit(cache=True)
+def _hiss(state):  # type: ignore[no-untyped-def]
+    """Noise of standard deviation 1: twelve random numbers of a linear congruential generator, summed."""
+    hiss = -6.0
+    for _ in range(12):
+        state.noise_number = (NOISE_FACTOR * state.noise_number + NOISE_STEP) % NOISE_NUMBERS
+        hiss += state.noise_number / NOISE_NUMBERS
+    return hiss
+
+
+@njit(cache=True)
+def swing(cells, state, t):  # type: ignore[no-untyped-def]
+    """One period of the swinging cell: its current goes into the synchronous detector."""
+    phase = TWO_PI * (state.sweep_periods + 0.5) / t.sweep_periods
+    sine = math.sin(phase)
+    across, along = _turned(state, t)
+    aside = state.middle_mm + t.amplitude_mm * sine * across
+    ahead = t.lead_mm + t.along_mm * math.cos(phase) - t.amplitude_mm * sine * along
+    darkness = t.cell_gain * seen(cells, state, way_of(state), ahead, aside)
+    if t.cell_noise > 0.0:
+        darkness += t.cell_noise * _hiss(state)
+    state.first_sum += darkness * sine
+    state.mean_sum += darkness
+    state.sweep_periods += 1
+    if state.sweep_periods == t.sweep_periods // 2:
+        state.swept_x_mm, state.swept_y_mm = state.x_mm, state.y_mm
+
+
+@njit(cache=True)
+def detect(state, t):  # type: ignore[no-untyped-def]
+    """End of a sweep: the line's place goes onto the drum, and the next sweep is centred on it."""
+    # 1. what the sweep tells
+    mean = state.mean_sum / t.sweep_periods
+    state.swept_ink = mean / t.mean
+    state.ink += INK_FOLLOWS * (min(max(state.swept_ink, PALEST), DARKEST) - state.ink)
+    first = t.detector_gain * 2.0 * state.first_sum / t.sweep_periods
+    aside = first / (t.slope_per_mm * state.ink)
+    state.sweep_periods = 0
+    state.first_sum = state.mean_sum = 0.0
+    # 2. without a drum, the mount turns with the head only
+    if t.direct_rad_s_mm > 0:
+        state.aside_mm = aside
+        state.middle_mm = 0.0
+        return
+    # 3. the line's place, by the heading as it was in the middle of the sweep
+    limit = FARTHEST_ASIDE * t.amplitude_mm
+    across, along = _turned(state, t)
+    off = min(max(aside, -limit), limit)
+    state.middle_mm += off * across
+    ahead = t.lead_mm - off * along
+    middle = state.heading_rad - 0.5 * t.sweep_periods * t.period_s * state.turn_rad_s
+    c, s = math.cos(middle), math.sin(middle)
+    if abs(aside) < limit:
+        place = state.places % DRUM
+        state.drum_mm[place, 0] = state.swept_x_mm + ahead * c - state.middle_mm * s
+        state.drum_mm[place, 1] = state.swept_y_mm + ahead * s + state.middle_mm * c
+        state.places += 1
+
+
+@njit(cache=True)
+def heard(cells, state, t, off_mm):  # type: ignore[no-untyped-def]
+    """By how much a standing head moves its sweep when that is set off to the left by `off_mm`, mm.
+
+    The state is used up. A cell and a detector that work move the sweep back.
+    """
+    state.middle_mm += off_mm
+    set_mm = state.middle_mm
+    for _ in range(t.sweep_periods):
+        swing(cells, state, t)
+    detect(state, t)
+    return state.middle_mm - set_mm
