@@ -85,9 +85,9 @@ def test_the_cell_goes_on_where_it_stands_on_the_line_and_not_beside_it() -> Non
 
 
 def test_a_circle_of_small_radius_is_the_cell_s() -> None:
-    """A circle of 1.6 mm radius: half the old window was too wide, and stations led it."""
-    run = trace(inked(arc((14, 14), 1.6), seed=1))
+    """A circle of 2.2 mm radius: half the old window was too wide, and stations led it."""
+    run = trace(inked(arc((14, 14), 2.2), seed=1))
     line = run.lines[0]
     assert line.cell_share is not None and line.cell_share > 0.7
-    off_mm = np.hypot(*(run.xy_mm - 14).T) - 1.6
+    off_mm = np.hypot(*(run.xy_mm - 14).T) - 2.2
     assert math.sqrt(float(np.mean(off_mm**2))) < 5 * UM
