@@ -52,6 +52,13 @@ class Agreement:
         clear_mm = ahead_mm - guards_mm - LEFT_LEGS * view.leg_mm
         return clear_mm if clear_mm > LEAST_LEGS * view.leg_mm else 0.0
 
+    def goes_on(self, carriage: Carriage, view: View, seen: Array) -> bool:
+        """Whether the cell goes on by itself along stations ahead; the carriage trusts it then."""
+        on_mm = self.goes_on_mm(carriage, view, seen)
+        if on_mm:
+            carriage.trust(on_mm)
+        return on_mm > 0
+
     @property
     def contradict(self) -> bool:
         """Whether cell and stations contradict each other."""

@@ -11,7 +11,6 @@ the same, a run into its own way cut off there.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field, replace
 
 from morfax.motion.arrays import Array
@@ -60,16 +59,3 @@ def without_repeat(run: Followed) -> Followed:
     kept = run.positions_mm[: last + 1]
     travel_mm = float(lengths_mm(kept)[-1])
     return replace(run, positions_mm=kept, travel_mm=travel_mm, loop_from=first)
-
-
-def line_lost(
-    place_mm: tuple[float, float], heading_rad: float, travel_mm: float, why: str
-) -> LineFault:
-    """The fault of a line that was lost at a place, with the reason and what to do."""
-    (x, y), degrees = place_mm, round(math.degrees(heading_rad)) % 360
-    return LineFault(
-        f"line lost at {x:.2f},{y:.2f} mm, heading {degrees} degrees, after {travel_mm:.1f} mm: {why}",
-        x_mm=x,
-        y_mm=y,
-        heading_rad=heading_rad,
-    )

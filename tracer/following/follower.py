@@ -15,12 +15,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-import numpy as np
-
 from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault
+from morfax.tracer.following import lost
 from morfax.tracer.following.agreement import Agreement
-from morfax.tracer.following.followed import Followed, line_lost, without_repeat
+from morfax.tracer.following.followed import Followed, without_repeat
 from morfax.tracer.following.way_home import WayHome
 from morfax.tracer.following.ways_out import (
     STRAIGHT_ON,
@@ -55,11 +54,6 @@ from morfax.tracer.tangles.solution import Approach
 SWELLS = 0.5
 FROM_BEHIND = (1.0, 0.6, 0.3)  # legs behind the axis: nearer, if a speck spoils the first place
 AWAY_LEADS, AWAY_WIDTHS = 4.0, 3.0  # the head is away from home after this travel
-NO_GUARDS = "the swinging cell sees no more ink, and this head has no guard cells to find on by"
-SLOWER = "go slower there with --speed, or follow with --head precise"
-CONTRADICT = "the swinging cell and the line felt ahead disagree"
-CHECK_CELL = "and at the settings of the head's cell, or scan at a higher resolution"
-BRIDGE = "bridge a gap with --gap, or scan at a higher resolution"
 
 
 class Follower:
@@ -92,7 +86,7 @@ class Follower:
         """Follow until the line closes, ends or is lost; `told` hears the travel, mm, `keep` may copy."""
         home = self._home.for_kernel()
         if not (self.carriage.hears(self.view) or self.settings.direct_rad_s_mm > 0):
-            return self._lost(CONTRADICT, CHECK_CELL)
+            return self._lost(lost.CONTRADICT, lost.CHECK_CELL)
         while self.carriage.travel_mm < longest_mm:
             if keep is not None:
                 keep(self)
@@ -110,7 +104,7 @@ class Follower:
             if why in (CHANGED, MORE):
                 continue
             if self.settings.direct_rad_s_mm > 0:
-                return self._lost(NO_GUARDS, SLOWER)
+                return self._lost(lost.NO_GUARDS, lost.SLOWER)
             ending = self._through_junction()
             if ending is not None:
                 return ending
@@ -138,12 +132,10 @@ class Follower:
         if corner is not None:
             return self._pass(corner)
         # 4. clean line
-        on_mm = self._agreement.goes_on_mm(self.carriage, self.view, seen)
-        if self._agreement.contradict:
-            return self._lost(CONTRADICT, CHECK_CELL)
-        if on_mm:
-            self.carriage.trust(on_mm)
+        if self._agreement.goes_on(self.carriage, self.view, seen):
             return None
+        if self._agreement.contradict:
+            return self._lost(lost.CONTRADICT, lost.CHECK_CELL)
         nodes, leg = course.nodes_along(self.view, self.carriage.stands(), seen)
         if leg is not None:
             return self._pass(Plan([course.through_nodes(nodes)], leg, seen, STATIONS))
@@ -232,14 +224,16 @@ class Follower:
             return self._lost("no clean line leads on through the ink ahead")
         if self._home.is_across(incoming, end, self.settings.recatch_mm):
             # across the paper, to the end at which the head began
-            way = [self._to_end(incoming, end)]
+            way = [course.to_end(self.carriage.stands(), incoming, end)]
             self.carriage.run(way, self.settings.speed_mm_s, STATIONS)
             return self._go_home()
         return self._end(incoming, end, joined=choices > 0)
 
     def _end(self, incoming: Leg, end_mm: float, *, joined: bool = False) -> Followed | None:
         """Run to an end of the line; and back, if it is a guide line's end, or a tip where two lines end."""
-        self.carriage.run([self._to_end(incoming, end_mm)], leader=STATIONS)
+        self.carriage.run(
+            [course.to_end(self.carriage.stands(), incoming, end_mm)], leader=STATIONS
+        )
         self._at_tip = self._tangles.goes_back(
             self.carriage.stands()[0], self.carriage.trail, self.view.width_mm
         )
@@ -254,11 +248,6 @@ class Follower:
         self.carriage.run(way_back, self.settings.speed_mm_s, STATIONS)
         self._aim(incoming.turned_round())
         return None
-
-    def _to_end(self, incoming: Leg, end_mm: float) -> Array:
-        """The course from where the head stands along a leg to its end, (n, 2) mm."""
-        way, along = course.onto(*self.carriage.stands(), incoming, end_mm)
-        return np.vstack([way, course.along_leg(incoming, along, end_mm)])
 
     def _go_home(self) -> Followed:
         """Run onto the place where the head began."""
@@ -300,12 +289,12 @@ class Follower:
         )
         return done if ending != "joined" else without_repeat(done)
 
-    def _lost(self, why: str, instead: str = BRIDGE) -> Followed:
+    def _lost(self, why: str, instead: str = lost.BRIDGE) -> Followed:
         """The end of a line that was lost: the fault says where, and what to do instead."""
         (x, y), heading = self.carriage.stands()
         times = self.view.enlarged
         place = float(x / times), float(y / times)
         self.carriage.says(f"lost: {why}")
         because = f"{why}; look at the drawing there, {instead}"
-        fault = line_lost(place, heading, self.carriage.travel_mm / times, because)
+        fault = lost.line_lost(place, heading, self.carriage.travel_mm / times, because)
         return self._done("lost", fault)

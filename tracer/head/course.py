@@ -83,6 +83,12 @@ def through_nodes(nodes: list[tuple[Array, float]]) -> Array:
     return np.vstack([hermite(*a, *b) for a, b in pairwise(nodes)])
 
 
+def to_end(stands: tuple[Array, float], leg: Leg, end_mm: float) -> Array:
+    """The course from where the head stands along a leg to its end, (n, 2) mm."""
+    way, along = onto(*stands, leg, end_mm)
+    return np.vstack([way, along_leg(leg, along, end_mm)])
+
+
 def ahead_mm(place: Array, leg: Leg) -> float:
     """How far ahead of a place a leg's clean end is, mm along the leg."""
     way = np.array([math.cos(leg.heading_rad), math.sin(leg.heading_rad)])

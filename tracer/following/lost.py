@@ -1,0 +1,29 @@
+"""Why a line was lost: the reasons, and what to do instead, as the fault says them.
+
+Signals: the place (mm), heading (rad) and travel (mm) of the head, and a reason in; the fault out.
+"""
+
+from __future__ import annotations
+
+import math
+
+from morfax.motion.faults import LineFault
+
+NO_GUARDS = "the swinging cell sees no more ink, and this head has no guard cells to find on by"
+SLOWER = "go slower there with --speed, or follow with --head precise"
+CONTRADICT = "the swinging cell and the line felt ahead disagree"
+CHECK_CELL = "and at the settings of the head's cell, or scan at a higher resolution"
+BRIDGE = "bridge a gap with --gap, or scan at a higher resolution"
+
+
+def line_lost(
+    place_mm: tuple[float, float], heading_rad: float, travel_mm: float, why: str
+) -> LineFault:
+    """The fault of a line that was lost at a place, with the reason and what to do."""
+    (x, y), degrees = place_mm, round(math.degrees(heading_rad)) % 360
+    return LineFault(
+        f"line lost at {x:.2f},{y:.2f} mm, heading {degrees} degrees, after {travel_mm:.1f} mm: {why}",
+        x_mm=x,
+        y_mm=y,
+        heading_rad=heading_rad,
+    )
