@@ -210,6 +210,64 @@ def test_a_correction_on_the_page_is_the_one_that_its_command_writes(
     soon(lambda: not file.exists())
 
 
+def ring_with_a_gap(file: Path) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Draw a ring of 25 mm with a gap of 6 mm at 300 dpi; the places of its two ends, pixels."""
+    import cv2
+    import numpy as np
+    from PIL import Image
+
+    middle, radius, half = 200, 148, np.degrees(3.0 / 12.5)
+    paper = np.full((400, 400), 245, np.uint8)
+    cv2.ellipse(
+        paper, (middle, middle), (radius, radius), 0, half, 360 - half, 20, 6, cv2.LINE_AA
+    )
+    Image.fromarray(paper).save(file, dpi=(300, 300))
+    x, y = radius * np.cos(np.radians(half)), radius * np.sin(np.radians(half))
+    return (middle + x, middle - y), (middle + x, middle + y)
+
+
+def test_a_gap_of_6_mm_is_bridged_and_the_program_is_the_commands(
+    server: Server, page: Any, tmp_path: Path
+) -> None:
+    # 1. dropped on the page, and run: the line ends at the gap
+    ends = ring_with_a_gap(tmp_path / "ring.png")
+    page.set_input_files("#upload", tmp_path / "ring.png")
+    page.wait_for_selector("#title:has-text('ring.png')")
+    page.wait_for_selector("#lines li:has-text('open')", timeout=RUN_MS)
+    page.click("#run-button")
+    page.wait_for_selector("#figures:has-text('ended')", timeout=RUN_MS)
+    # 2. bridged from end to end, and run again: it closes
+    page.click("#zoom-all")
+    box = page.locator("#sheet").bounding_box()
+    scale = min((box["width"] - 72) / 400, (box["height"] - 72) / 400)
+    left, top = (
+        box["x"] + box["width"] / 2 - 200 * scale,
+        box["y"] + box["height"] / 2 - 200 * scale,
+    )
+    places = [(left + scale * x, top + scale * y) for x, y in ends]
+    page.click("#help-open")
+    page.click("[data-tool=bridge]")
+    page.mouse.move(*places[0])
+    page.mouse.down()
+    page.mouse.move(*places[1], steps=3)
+    page.mouse.up()
+    page.wait_for_selector("#lines li:has-text('closed')", timeout=RUN_MS)
+    typed = [page.inner_text("#command")]
+    page.click("#run-button")
+    page.wait_for_selector("#figures:has-text('closed')", timeout=RUN_MS)
+    # 3. the same commands, typed beside a copy
+    page.select_option("#command-kind", "correct")
+    typed.insert(0, page.inner_text("#command"))
+    folder = tmp_path / "bracket.panel"
+    (folder / "drawings").mkdir(parents=True)
+    shutil.copy(tmp_path / "ring.png", folder / "drawings")
+    for command in typed:
+        morfax(tmp_path, command)
+    for name in ("drawings/ring.morfax.toml", "ring.wav", "ring.traced.csv", "ring.played.csv"):
+        made = (server.folder / "bracket.panel" / name).read_bytes()
+        assert made == (folder / name).read_bytes(), name
+
+
 def test_a_reload_a_second_page_and_a_killed_server_lose_nothing(
     server: Server, page: Any, chromium: Any
 ) -> None:
