@@ -107,7 +107,9 @@ def smooth(run: Run) -> Run:
     """A run whose places lie on the parabolas through the stations about each, with headings and bends."""
     half_mm = FELT_LEGS * run.view.leg_mm
     places, headings, bends = _parabolas(run.places_mm, half_mm, run.view.step_mm)
-    return Run(places, headings, bends, run.widths_mm, run.view, run.legs_mm)
+    # a speck within a run has no width of its own
+    widths = np.where(np.isfinite(run.widths_mm), run.widths_mm, run.view.width_mm)
+    return Run(places, headings, bends, widths, run.view, run.legs_mm)
 
 
 @njit(cache=True)

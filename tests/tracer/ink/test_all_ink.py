@@ -135,6 +135,18 @@ def test_a_gap_is_crossed_up_to_the_head_s_own(gap_mm: float = 0.4) -> None:
     assert len(trace_ink(drawing, replace(Settings(), gap_mm=0.2)).lines) == 2
 
 
+def test_a_speck_of_paper_on_a_line_does_not_part_it() -> None:
+    """It leaves the line without an edge for two pixels."""
+    drawing = inked(SQUARE, BAR, seed=1)
+    row, column = (
+        drawing.darkness.shape[0] - round(20 / drawing.pitch_mm),
+        round(20 / drawing.pitch_mm),
+    )
+    drawing.darkness[row - 1 : row + 1, column - 40 : column + 40 : 20] = 0.0
+    share, _, away_mm = held_against(list(trace_ink(drawing).lines), [SQUARE, BAR])
+    assert share > 0.999 and away_mm < BESIDE_MM
+
+
 def test_progress_is_told_within_a_line() -> None:
     heard = list[float]()
     trace_ink(
