@@ -74,7 +74,7 @@ def read(
     end: Any,
     feed: Feed,
     residue: int | None = None,
-    most: int = 1_000_000,
+    most: int = 60_000,
 ) -> Block:
     """Run a line, or its first recirculations, and read the registers after each."""
     parts = interpolator.recirculate(end, (0, 0), LINE, feed, residue)
@@ -86,7 +86,7 @@ def _read(
     parts: Iterator[NDArray[np.int8]],
     block: tuple[Any, Any, int],
     residue: int | None = None,
-    most: int = 1_000_000,
+    most: int = 60_000,
 ) -> Block:
     """Read the registers after each recirculation of a block: its end, centre and sense."""
     end, centre, sense = np.array(block[0], np.int64), np.array(block[1], np.int64), block[2]
