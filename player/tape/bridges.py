@@ -44,6 +44,7 @@ COUNT_MARGIN = 0.1  # cycles, for noise
 ROUGH_CYCLES = 0.04  # what is left of the parabola; 26 dB of noise leave 0.015
 # the same of sides on which a changing acceleration would show: one of 0.5 m/s² that turns over leaves 0.008
 SMOOTH_CYCLES = 0.003
+SIDE_ROWS = 36  # of sound tape on each side, 6 ms at 6 kHz
 LEAST_ACCELERATION = 1e-12  # cycles/row²: of an axis at rest; keeps it from dividing by zero
 
 
@@ -168,6 +169,12 @@ class Gap:
         """
         agreed = self.bridge.certain and (self.short or self.bridge.misfit < SMOOTH_CYCLES)
         return self.known or agreed
+
+    @property
+    def sound_until(self) -> float:
+        """The row until which the way before it is sound: its side is not, where that is rough."""
+        rough = self.bridge.misfit >= ROUGH_CYCLES
+        return float(self.first - SIDE_ROWS if rough else self.first)
 
     def moved(self, cycles: float) -> Gap:
         """The same gap of an axis that stands some cycles further on."""

@@ -83,6 +83,15 @@ def stepped(track: int, names: Names, step_s: float, time_s: float) -> TapeFault
     )
 
 
+def replaced(track: int, names: Names, time_s: float) -> TapeFault:
+    """The fault of a carrier that stands without its check signal."""
+    return TapeFault(
+        f"{_called(track, names)} loses its check signal at {time_s:.3f} s, and not its carrier: another "
+        "signal stands there; copy the tape again",
+        time_s=time_s,
+    )
+
+
 def swings(track: int, names: Names, swing_s: float, time_s: float) -> TapeFault:
     """The fault of a delay that swings faster than can be followed."""
     return TapeFault(

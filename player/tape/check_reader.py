@@ -73,7 +73,7 @@ class FrameReport:
     `said`: what each track says, None where its check sum is wrong; `late_s` against the clock of the
     reference, `delay_s` (tracks, parts) against track 1, and that of track 1 against its own carrier; nan
     where a track says nothing. `swing_s` is how far a delay swings within its parts, RMS; `damaged` are
-    tracks that say nothing though their level is right.
+    tracks that say nothing though their level is right, `weak_rows` where symbols of each are weak.
     """
 
     number: int
@@ -84,6 +84,7 @@ class FrameReport:
     delay_s: list[list[float]]
     swing_s: list[float]
     damaged: tuple[int, ...]
+    weak_rows: list[list[float]]
 
 
 def read_ahead(blocks: Iterator[Stored], fmt: TapeFormat) -> list[Stored]:
@@ -253,6 +254,10 @@ class CheckReader:
             (apart * CYCLES_PER_SUBCARRIER / self._reference_hz).tolist(),
             (swings * CYCLES_PER_SUBCARRIER / self._reference_hz).tolist(),
             tuple(self._erasures.damaged),
+            [
+                self._rows(self._theta + CYCLES_PER_SYMBOL * at.astype(np.float64))
+                for at in self._erasures.weak
+            ],
         )
 
     def _put_right(self) -> None:

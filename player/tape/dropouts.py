@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import Fault, LockFault, TapeFault
-from morfax.player.tape.bridges import Bound, Bridge, Gap, Side, bridge, side
+from morfax.player.tape.bridges import SIDE_ROWS, Bound, Bridge, Gap, Side, bridge, side
 from morfax.player.tape.discriminator import Discriminator, Phases
 from morfax.player.tape.predictor import recount
 from morfax.player.tape.standstill import LEVEL_STEADY
@@ -37,7 +37,6 @@ from morfax.recorder.tape.format import TapeFormat
 LEVEL_KEPT = 0.2  # of the level at standstill
 STEADY_S = 0.02  # ago: the level that a row is compared with
 SIDE_S = 0.006  # of sound tape on each side
-SIDE_ROWS = 36  # the same at 6 kHz
 LONGEST_S = 0.1  # a track that is away longer has ended
 # the same with a check signal: 1 s is asked, and the filter reaches 2 ms further; levels need some time
 LONGEST_CHECKED_S = 1.1

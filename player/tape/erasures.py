@@ -33,18 +33,21 @@ class Erasures:
     def __init__(self, tracks: int) -> None:
         self._usual = np.full(tracks, np.nan)
         self.damaged: list[int] = []
+        self.weak: list[NDArray[np.int64]] = []
 
     def read(self, bits: Bits, strengths: Array, number: int) -> list[CheckFrame | None]:
         """What the tracks (tracks, symbols) say in the frame of this number; None where it is lost.
 
-        `damaged` are then the tracks that say nothing though few of their symbols are weak.
+        `damaged` are then the tracks that say nothing though few of their symbols are weak, and `weak` the
+        weak symbols of each track.
         """
         said = from_bits(bits)
-        self.damaged = []
+        self.damaged, self.weak = [], []
         for track, frame in enumerate(said):
             usual = float(np.median(strengths[track]))
             known = self._usual[track] if np.isfinite(self._usual[track]) else usual
             weak = np.flatnonzero(strengths[track] < WEAK * known)
+            self.weak.append(weak)
             if len(weak) > MOST_WEAK:
                 frame = None
             elif frame is None:

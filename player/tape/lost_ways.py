@@ -28,6 +28,7 @@ from morfax.player.tape.bridges import Bound, Gap
 from morfax.player.tape.discriminator import Phases
 
 COUNT_CYCLES = 0.25  # as the end is checked
+BESIDE = 1 / 3  # of a symbol: half of the window through which a symbol is seen is a quarter
 HALF_CYCLE = 0.5  # less travel than this cannot be another count
 
 
@@ -45,7 +46,8 @@ class LostWays:
     `shift_cycles` is what mending has put back so far, by which the rows to come lie off.
     """
 
-    def __init__(self, axes: int) -> None:
+    def __init__(self, axes: int, symbol_rows: float) -> None:
+        self._beside = BESIDE * symbol_rows
         self._open: list[list[Gap]] = [[] for _ in range(axes)]
         self.shift_cycles: Array = np.zeros(axes)
 
@@ -57,6 +59,16 @@ class LostWays:
     def covers(self, axis: int, row: float) -> bool:
         """Whether a row lies within a gap."""
         return any(gap.first - 1 <= row <= gap.last for gap in self._open[axis])
+
+    def bare(self, axis: int, rows: Sequence[float]) -> float | None:
+        """The first of some rows that lies in no gap, nor close beside one."""
+        for row in rows:
+            if not any(
+                gap.first - self._beside <= row <= gap.last + self._beside
+                for gap in self._open[axis]
+            ):
+                return row
+        return None
 
     def lost(self, axis: int, row: float, off_cycles: float) -> Gap | None:
         """The gap that lost its way before a count at a row; None where the count vouches for all."""

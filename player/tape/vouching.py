@@ -33,12 +33,14 @@ from morfax.player.tape.frame_order import FrameOrder
 from morfax.player.tape.lost_ways import COUNT_CYCLES, Laid, LostWays, laid
 from morfax.player.tape.told_bounds import ToldBounds
 from morfax.player.tape.warrant import Certain, Given, PlaceMm, StandsMm
+from morfax.recorder.tape.check_frame import SYMBOLS
 from morfax.recorder.tape.check_signal import CYCLES_PER_FRAME
 from morfax.recorder.tape.format import TapeFormat
 from morfax.recorder.tape.tape import Stored
 
-# of a delay off the straight line through seven: 0.036 cycle; 26 dB of noise leave 2
-LARGEST_OFF_S = 6e-6
+LARGEST_OFF_S = (
+    6e-6  # of a delay off the line through seven: 0.036 cycle; 26 dB of noise leave 2
+)
 TAIL_CYCLES = (
     0.04  # that an axis may move behind the last delay told, where it is said to stand
 )
@@ -47,8 +49,7 @@ TAIL_CYCLES = (
 class Vouching:
     """Holds the rows of one tape until they are vouched for.
 
-    With `mends` the way of dropouts that the player would stop at is laid; `mended` are these, with the whole
-    cycles that were put back.
+    With `mends` the way of dropouts that it would stop at is laid; `mended` are these.
     """
 
     is_checked = True
@@ -60,7 +61,10 @@ class Vouching:
         self._place_mm: PlaceMm = lambda axis, cycles: math.nan
         self._delays = [Delay(fmt.reference_hz, fmt.motion_rate_hz) for _ in fmt.axes]
         self._bounds = [ToldBounds(fmt.motion_rate_hz, frame_s) for _ in fmt.axes]
-        self._ways = LostWays(len(fmt.axes))
+        self._ways = LostWays(len(fmt.axes), frame_s / SYMBOLS * self._rate_hz)
+        self._weak: list[list[float]] = [
+            [] for _ in fmt.axes
+        ]  # rows of symbols not yet explained
         self._lost: dict[int, Gap] = {}  # by axis: a gap at which the machine stops
         self.mended: list[Laid] = []
         self._held: Phases | None = None
@@ -204,6 +208,7 @@ class Vouching:
             return
         self._counts.append((report.row, {}))
         for axis in range(len(self._delays)):
+            self._weak[axis] += sorted(report.weak_rows[0] + report.weak_rows[axis + 1])
             self._note(axis, report)
 
     def _note(self, axis: int, report: FrameReport) -> None:
@@ -222,13 +227,14 @@ class Vouching:
     def _check_counts(self, stands_mm: StandsMm) -> None:
         """Compare the axes' counts with what their tracks say, as far as rows are held."""
         ends = self._rows.first_row + len(self._rows) - 1
-        while self._counts and self._counts[0][0] <= ends:
+        known = self._fault  # of a frame further on: what is before it is still compared
+        while self._counts and self._counts[0][0] <= ends and self._fault is known:
             row, told = self._counts.pop(0)
             open_ = [axis for axis in told if not self._ways.covers(axis, row)]
             off = {axis: self._off(axis, row, told[axis]) for axis in open_}
             for axis in open_:
                 self._settle(axis, row, off[axis], stands_mm)
-            if self._lost and len(open_) == len(self._delays) and self._fault is None:
+            if self._lost and len(open_) == len(self._delays) and not self._fault:
                 first = min(self._lost.values(), key=lambda gap: gap.first)
                 self._fault = self._lost_way(first, (row, off))
 
@@ -251,11 +257,18 @@ class Vouching:
 
     def _settle(self, axis: int, row: float, off: float, stands_mm: StandsMm) -> None:
         """Let a count vouch for the way until there; or note which gap lost it, or lay that gap anew."""
+        before = [weak for weak in self._weak[axis] if weak < row]
+        self._weak[axis] = self._weak[axis][len(before) :]
+        replaced = self._ways.bare(axis, before)
+        if replaced is not None:
+            other = faults.replaced(axis + 1, self._format.axes, replaced / self._rate_hz)
+            self._fault = self._fault or other
+            return
         gap, whole = self._ways.lost(axis, row, off), round(off)
         if gap is not None and not self._mends:
             self._lost.setdefault(axis, gap)
             if not whole:  # then it vouches for the way until the gap
-                self._counted[axis] = max(self._counted[axis], float(gap.first))
+                self._counted[axis] = max(self._counted[axis], gap.sound_until)
             return
         if gap is not None:
             self._held = laid(self._rows, gap, -whole)
@@ -263,8 +276,8 @@ class Vouching:
             self.mended.append(Laid(gap.ending(-whole), -whole, near or gap.bound))
         elif abs(off) > COUNT_CYCLES:
             name, time_s = self._format.axes[axis], row / self._rate_hz
-            fault = faults.miscounted(name, off, COUNT_CYCLES, time_s, stands_mm()[axis])
-            self._fault = self._fault or fault
+            found = faults.miscounted(name, off, COUNT_CYCLES, time_s, stands_mm()[axis])
+            self._fault = self._fault or found
             return
         self._ways.settle(axis, row, 0.0 if gap is None else float(-whole))
         self._counted[axis] = row
