@@ -47,14 +47,14 @@ def test_corrections_are_made_listed_and_undone(morfax: Morfax, scan: Path) -> N
 def test_another_file_and_none(morfax: Morfax, scan: Path) -> None:
     morfax("correct", scan, "--corrections", "mine.toml", "--rub", "40,62")
     assert not Path("bracket.morfax.toml").exists()
-    assert morfax("lines", scan).err == ""
+    assert "correction" not in morfax("lines", scan).err
     assert (
         "1 correction of mine.toml: 1 rub"
         in morfax("lines", scan, "--corrections", "mine.toml").err
     )
     Path("mine.toml").rename("bracket.morfax.toml")
     assert "1 correction of bracket.morfax.toml" in morfax("lines", scan).err
-    assert morfax("lines", scan, "--no-corrections").err == ""
+    assert "correction" not in morfax("lines", scan, "--no-corrections").err
 
 
 @pytest.mark.parametrize(
