@@ -92,7 +92,7 @@ def command(
     )
     _make(place)
     bench = Bench(place, sources, _command_line())
-    if drawing is not None and len(sources) == 1 and bench.history.now.drawing not in sources:
+    if len(sources) == 1 and bench.drawing is None:  # else what lay there stays
         from morfax.panel.history import Step
 
         bench.history.add(Step(next(iter(sources)), {}))
