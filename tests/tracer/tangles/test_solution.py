@@ -15,6 +15,7 @@ import pytest
 from morfax.motion.arrays import Array
 from morfax.motion.contour import distance, length_mm
 from morfax.tracer.following.line import Line
+from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.trace import trace
 from tests.tracer.inked import UM, WIDTH_MM, inked, polyline
 
@@ -80,7 +81,9 @@ def test_a_tick_is_no_spike(width_mm: float, slant_degrees: float, seed: int | N
     half = 1.5 * np.array([math.cos(slant), math.sin(slant)])
     middle = np.array([14.0, 10.0])
     tick = polyline(middle - half, middle + half)
-    run = trace(inked(line, tick, width_mm=width_mm, seed=seed)).lines[0]
+    run = trace(
+        inked(line, tick, width_mm=width_mm, seed=seed), operator=Operator(marks="on")
+    ).lines[0]
     assert distance(run.xy_mm[::4], line).path_to_reference.max_mm < 30 * UM
     assert [mark.kind for mark in run.marks] == ["tick"]
 
