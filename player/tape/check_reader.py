@@ -234,8 +234,8 @@ class CheckReader:
     def _report(self) -> FrameReport:
         """Read the next frame of all tracks."""
         self._put_right()
-        bits, strengths, late, turns, swings = read_symbols(self._points, self._theta)
-        said = self._erasures.read(bits, strengths, self._number)
+        bits, strengths, sizes, late, turns, swings = read_symbols(self._points, self._theta)
+        said = self._erasures.read(bits, strengths, sizes, self._number)
         for track, frame in enumerate(said):
             if frame is None or not np.isfinite(turns[track]).all():
                 said[track], late[track], turns[track] = None, np.nan, np.nan

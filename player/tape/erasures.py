@@ -10,6 +10,9 @@ A dropout of 10 ms takes three to five symbols of 120. A wrong way passes the ch
 also say the right track and number: 256 ways are one wrong frame in 2e13. Of a frame with more weak symbols
 nothing is taken, even where what is left of them can be read: its time would be that of its strong symbols.
 
+A dropout that takes the sync word, or the reference by which all are timed, leaves no phase to hold the
+symbols against: all of that frame seem weak. Which of them the dropout took is then told by their sizes.
+
 Source: R. E. Blahut, Theory and Practice of Error Control Codes, 1983 (erasures: symbols known to be bad);
 D. Chase, A class of algorithms for decoding block codes with channel measurement information, IEEE Trans.
 Information Theory 18, 1972 (trying the weakest). Questions: none.
@@ -32,10 +35,13 @@ class Erasures:
 
     def __init__(self, tracks: int) -> None:
         self._usual = np.full(tracks, np.nan)
+        self._size = np.full(tracks, np.nan)  # of a symbol, at the median
         self.damaged: list[int] = []
         self.weak: list[NDArray[np.int64]] = []
 
-    def read(self, bits: Bits, strengths: Array, number: int) -> list[CheckFrame | None]:
+    def read(
+        self, bits: Bits, strengths: Array, sizes: Array, number: int
+    ) -> list[CheckFrame | None]:
         """What the tracks (tracks, symbols) say in the frame of this number; None where it is lost.
 
         `damaged` are then the tracks that say nothing though few of their symbols are weak, and `weak` the
@@ -43,17 +49,22 @@ class Erasures:
         """
         said = from_bits(bits)
         self.damaged, self.weak = [], []
+        small = [
+            np.flatnonzero(sizes[track] < WEAK * self._size[track]) for track in range(len(said))
+        ]
         for track, frame in enumerate(said):
             usual = float(np.median(strengths[track]))
             known = self._usual[track] if np.isfinite(self._usual[track]) else usual
             weak = np.flatnonzero(strengths[track] < WEAK * known)
-            self.weak.append(weak)
+            lost = max(len(small[0]), len(small[track])) > MOST_WEAK
+            self.weak.append(small[track] if lost else weak)
             if len(weak) > MOST_WEAK:
                 frame = None
             elif frame is None:
                 frame = _recovered(bits[track], weak[weak >= SYNC_SYMBOLS], track, number)
             if frame is not None:
                 self._usual[track] = usual
+                self._size[track] = float(np.median(sizes[track]))
             elif len(weak) <= MOST_WEAK:
                 self.damaged.append(track)
             said[track] = frame

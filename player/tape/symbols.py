@@ -35,10 +35,14 @@ _WORD = SYNC.astype(np.float64)
 class Gates(NamedTuple):
     """Symbols of a frame, +1 or -1, and how strong they are; how late, in cycles; phases of the parts, in
     turns, and how far the phase swings about them, RMS, beyond what noise does.
+
+    `strengths` are along the sync word and grow with it; `sizes` are the largest of
+    the three gates of each symbol alone, whatever its phase, and wherever it begins.
     """
 
     bits: Bits
     strengths: Array
+    sizes: Array
     late: Array
     turns: Array
     swings: Array
@@ -61,6 +65,7 @@ def read_symbols(points: Subcarrier, begins: float) -> Gates:
     gates = Gates(
         np.empty((tracks, SYMBOLS), np.int8),
         np.empty((tracks, SYMBOLS)),
+        np.empty((tracks, SYMBOLS)),
         np.empty(tracks),
         np.empty((tracks, PARTS)),
         np.empty(tracks),
@@ -70,7 +75,7 @@ def read_symbols(points: Subcarrier, begins: float) -> Gates:
 
 
 @njit(cache=True, nogil=True)
-def _read(points, theta, begins, word, bits, strengths, late, turns, swings):  # type: ignore[no-untyped-def]
+def _read(points, theta, begins, word, bits, strengths, sizes, late, turns, swings):  # type: ignore[no-untyped-def]
     """Read one frame of all tracks, whose symbols are 24 cycles of theta apart; see `Gates`."""
     tracks, symbols = bits.shape
     gates = np.empty((tracks, 3, symbols), np.complex128)
@@ -97,6 +102,8 @@ def _read(points, theta, begins, word, bits, strengths, late, turns, swings):  #
             along = seen.real * alike.real + seen.imag * alike.imag
             bits[track, symbol] = 1 if along >= 0 else -1
             strengths[track, symbol] = abs(along)
+            ahead, behind = abs(gates[track, 0, symbol]), abs(gates[track, 2, symbol])
+            sizes[track, symbol] = max(ahead, abs(seen), behind)
         # 3. with the signs known: how late, by a parabola through three gates; and the phase, part by part
         sums = np.zeros(3)
         for gate in range(3):

@@ -233,12 +233,12 @@ def test_a_frame_is_read_without_some_of_its_symbols(lost: int, read: bool) -> N
     bits[0] = to_bits(said)
     strengths[0, 50 : 50 + lost] = 0.1
     bits[0, 50 : 50 + lost] = random.choice([-1, 1], lost)
-    found = Erasures(1).read(bits, strengths, 7)[0]
+    found = Erasures(1).read(bits, strengths, strengths, 7)[0]
     assert (found is not None) == read
     if found is not None:
         assert (found.track, found.number, found.cycles) == (0, 7, 12.5)
         # the number is not the one that is due: nothing is made of its weak symbols
-        assert Erasures(1).read(-bits[:, ::-1].copy(), strengths, 8)[0] is None
+        assert Erasures(1).read(-bits[:, ::-1].copy(), strengths, strengths, 8)[0] is None
 
 
 def test_sides_that_agree_are_bridged_with_the_told_acceleration() -> None:
