@@ -396,3 +396,21 @@ def test_a_sample_that_is_no_number_is_ridden_over_or_a_fault(
         out.write(frames)
     went, _ = run(play(tmp_path / "a.wav"))
     assert bench.error_um(went) < RIGHT_UM
+
+
+@pytest.mark.parametrize("length_s", [0.05, 0.3, 0.6])
+def test_a_carrier_without_its_check_signal_is_a_fault(bench: Bench, length_s: float) -> None:
+    """However long: a dropout takes the carrier too, another signal does not."""
+
+    def replaced(frames: Frames) -> Frames:
+        from scipy.signal import butter, sosfiltfilt
+
+        low = sosfiltfilt(butter(6, 2500, fs=RATE_HZ, output="sos"), frames[:, X])
+        end = AT + round(length_s * RATE_HZ)
+        frames[AT:end, X] -= low[AT:end]
+        return frames
+
+    _, fault = bench.played(replaced)
+    assert isinstance(fault, TapeFault)
+    assert "check signal" in str(fault)
+    assert fault.time_s == pytest.approx(AT / RATE_HZ, abs=0.01)
