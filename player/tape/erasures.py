@@ -50,7 +50,8 @@ class Erasures:
         said = from_bits(bits)
         self.damaged, self.weak = [], []
         small = [
-            np.flatnonzero(sizes[track] < WEAK * self._size[track]) for track in range(len(said))
+            np.flatnonzero(sizes[track] < WEAK * self._size[track])
+            for track in range(len(said))
         ]
         for track, frame in enumerate(said):
             usual = float(np.median(strengths[track]))
