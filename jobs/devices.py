@@ -111,7 +111,8 @@ class DevicesJob:
     def _measured(self, listener: Listener) -> Figures:
         """Read the meters until the time is over; what they showed in the middle, track by track."""
         from morfax.jobs.carriers import measured
-        from morfax.recorder.sound.device import DeviceSource, found, rate_for
+        from morfax.recorder.sound.device import found, rate_for
+        from morfax.recorder.sound.device_source import DeviceSource
 
         name = str(self.meters)
         device = found(name, tracks=self.tracks, is_input=True)

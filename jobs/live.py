@@ -46,7 +46,8 @@ class Intake:
             pipe = PipeSource(sys.stdin.buffer)
             pipe.text = text or pipe.text
             return pipe
-        from morfax.recorder.sound.device import DeviceSource, found, rate_for
+        from morfax.recorder.sound.device import found, rate_for
+        from morfax.recorder.sound.device_source import DeviceSource
         from morfax.recorder.tape.format import TapeFormat, is_format_text
 
         tracks, rate_hz = USUAL_TRACKS, USUAL_RATE_HZ
@@ -103,7 +104,8 @@ class Outlet:
             return lambda fmt: PipeSink(
                 sys.stdout.buffer, fmt.sample_rate_hz, fmt.tracks, fmt.to_json()
             )
-        from morfax.recorder.sound.device import DeviceSink, found
+        from morfax.recorder.sound.device import found
+        from morfax.recorder.sound.device_sink import DeviceSink
 
         name = self.device
 

@@ -12,6 +12,7 @@ import soundfile
 from morfax.motion.motion import join
 from morfax.player.tape.playback import play_pipe
 from morfax.recorder.sound import device as devices
+from morfax.recorder.sound import device_sink
 from tests.console.conftest import Morfax
 from tests.recorder.sound.stand_in import Cable
 
@@ -22,9 +23,9 @@ LINE = "x,y\n10,10\n20,10\n20,15\n"
 def cable(monkeypatch: pytest.MonkeyPatch) -> Cable:
     """A cable; it is faster than the recorder, so all is made before it starts."""
     made = Cable()
-    monkeypatch.setattr(devices, "_sounddevice", lambda: made)
+    monkeypatch.setattr(devices, "sounddevice", lambda: made)
     monkeypatch.setattr(devices, "STOPPED_S", 2.0)
-    monkeypatch.setattr(devices, "AHEAD_S", 60.0)
+    monkeypatch.setattr(device_sink, "AHEAD_S", 60.0)
     return made
 
 

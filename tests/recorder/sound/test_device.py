@@ -13,7 +13,10 @@ from morfax.motion.faults import DeviceFault
 from morfax.motion.motion import Motion, join
 from morfax.player.tape.playback import play_live
 from morfax.recorder.sound import device as devices
-from morfax.recorder.sound.device import DeviceSink, DeviceSource, found, rate_for
+from morfax.recorder.sound import device_sink
+from morfax.recorder.sound.device import found, rate_for
+from morfax.recorder.sound.device_sink import DeviceSink
+from morfax.recorder.sound.device_source import DeviceSource
 from morfax.recorder.sound.programme import between_silences
 from morfax.recorder.tape.recording import record_live
 from morfax.recorder.tape.tape import TapeFormat
@@ -29,11 +32,11 @@ RATE_HZ = 48000
 def cable(monkeypatch: pytest.MonkeyPatch) -> Cable:
     """A cable in the place of sounddevice; it stops sooner than a device may."""
     made = Cable()
-    monkeypatch.setattr(devices, "_sounddevice", lambda: made)
+    monkeypatch.setattr(devices, "sounddevice", lambda: made)
     monkeypatch.setattr(devices, "STOPPED_S", 0.3)
-    monkeypatch.setattr(devices, "LONGEST_START_S", 0.1)
-    monkeypatch.setattr(devices, "LEAD_S", 0.2)
-    monkeypatch.setattr(devices, "AHEAD_S", 60.0)  # the cable is faster than the recorder
+    monkeypatch.setattr(device_sink, "LONGEST_START_S", 0.1)
+    monkeypatch.setattr(device_sink, "LEAD_S", 0.2)
+    monkeypatch.setattr(device_sink, "AHEAD_S", 60.0)  # the cable is faster than the recorder
     return made
 
 
@@ -105,7 +108,7 @@ def test_an_underrun_as_a_device_starts_costs_nothing(cable: Cable) -> None:
 def test_a_recorder_that_is_too_slow_is_a_fault(
     cable: Cable, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(devices, "AHEAD_S", 0.1)
+    monkeypatch.setattr(device_sink, "AHEAD_S", 0.1)
     with pytest.raises(DeviceFault, match="underrun"), sink() as out:
         out.put(silence(0.2))
         out._done.wait(0.2)  # the device plays on meanwhile
