@@ -12,6 +12,8 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING
 
+from morfax.jobs.remarks_on_ink import of_ink
+
 if TYPE_CHECKING:
     from morfax.jobs.settings import TraceSettings
     from morfax.tracer.cutter.cutter import Cutter, Left, LeftOut
@@ -21,9 +23,6 @@ if TYPE_CHECKING:
 # chosen by trial on the test drawings
 UNEVEN = 1.25  # the widest gap of a dashed line against the widest that was met
 UNCUT_SHARE = 0.2  # of a line; corners alone leave less
-LEFT_SHARE = 0.01  # of all the ink: more that was not followed is worth a remark
-# of the ink that is joined to a line: if the line is less, the rest is worth a remark
-FEW_SHARE = 0.7
 STEP_PER_MM = 10  # a gap is suggested in whole tenths of a mm
 
 
@@ -36,23 +35,14 @@ def remarks(
             f"edges are close together: traced at {enlarged} times the scale, so the machine goes {enlarged} "
             "times slower than the head"
         )
-    yield from _of_ink(trace)
-    yield from _of_solids(trace)
     yield from _of_stops(trace)
     yield from _of_turns(trace)
     yield from _of_reference(trace, settings)
     yield from _of_gaps(trace, gap_mm)
     yield from _of_breaks(trace, gap_mm)
     yield from _of_stems(trace)
-    yield from _of_unread(trace)
     yield from _of_crossing_guides(trace)
-    rest = tuple[str, ...]()
-    if not settings.line.are_several and trace.fault is None:
-        rest = tuple(_of_rest(trace.lines[0]))
-        yield from rest
-        yield from _of_others(trace)
-    if not rest:
-        yield from _of_unexplained(trace)
+    yield from of_ink(trace, several=settings.line.are_several)
 
 
 def of_cutter(beside: Trace, left: Left, cutter: Cutter) -> Iterator[str]:
@@ -97,36 +87,6 @@ def numbered(what: str, numbers: list[int]) -> str:
     if len(numbers) == 1:
         return f"{what} {numbers[0]} is"
     return f"{what}s {', '.join(map(str, numbers))} are"
-
-
-def _of_ink(trace: Trace) -> Iterator[str]:
-    """Ink that was left out, where all of it was asked for."""
-    if trace.ink is None:
-        return
-    left = 1 - trace.ink.followed_share
-    if left > LEFT_SHARE:
-        yield (
-            f"{trace.ink.left_mm:.0f} mm of ink ({100 * left:.0f} %) could not be followed: stretches that "
-            "are too short or too unclear to put the head down; the figures list their places, and "
-            "--picture marks them; scan at a higher resolution"
-        )
-    if trace.ink.solid_mm > 0:
-        yield (
-            f"{trace.ink.solid_mm:.0f} mm of ink are the rims of filled shapes, and left out; --edge follows "
-            "the outlines of filled shapes"
-        )
-
-
-def _of_solids(trace: Trace) -> Iterator[str]:
-    """A line in the rim of a filled shape."""
-    solid = [line for line in trace.lines if line.is_solid]
-    if solid:
-        x, y = solid[0].start_mm
-        yield (
-            f"the ink at {x:.1f},{y:.1f} mm is the rim of a dark area broader than a line: if that is a "
-            "filled "
-            "shape, --edge follows its outline"
-        )
 
 
 def _of_stops(trace: Trace) -> Iterator[str]:
@@ -232,16 +192,6 @@ def _of_stems(trace: Trace) -> Iterator[str]:
     )
 
 
-def _of_unread(trace: Trace) -> Iterator[str]:
-    """Ticks and dots that were taken for ink."""
-    if trace.unread and trace.operator.marks == "auto":
-        what = "1 tick or dot" if trace.unread == 1 else f"{trace.unread} ticks and dots"
-        yield (
-            f"{what} on the lines did not stop the head: without a reference point or a card they are ink; "
-            "if they are stops or holes, give --marks on"
-        )
-
-
 def _of_crossing_guides(trace: Trace) -> Iterator[str]:
     """Lines from a reference point that cross others and end beyond them: meant as lead lines, perhaps."""
     for line in trace.lines:
@@ -252,46 +202,6 @@ def _of_crossing_guides(trace: Trace) -> Iterator[str]:
                 f"{u:.1f},{v:.1f} mm: it is taken for a guide line to a hole there; end a lead line on the "
                 "contour"
             )
-
-
-def _of_rest(line: Line) -> Iterator[str]:
-    """One line that is the smaller part of the ink in which lines cross or touch."""
-    if line.length_mm < FEW_SHARE * line.ink_mm:
-        yield (
-            f"about {line.ink_mm - line.length_mm:.0f} mm of ink that is joined to the line was not "
-            "followed: "
-            "--lines all also follows the lines that cross or touch it, --start X,Y another one"
-        )
-
-
-def _of_unexplained(trace: Trace) -> Iterator[str]:
-    """Closed lines that may be other lines than those drawn."""
-    beside = [place for place in trace.unexplained if place.is_ink]
-    bare = [place for place in trace.unexplained if not place.is_ink]
-    if beside:
-        (x, y), long_mm, _ = beside[0]
-        many = "1 piece of ink" if len(beside) == 1 else f"{len(beside)} pieces of ink"
-        yield (
-            f"{many} joined to the closed line beside its way, up to {long_mm:.1f} mm from it, at "
-            f"{x:.1f},{y:.1f} mm: a tip or a bay that is narrower than two lines, or another line; --picture "
-            "marks it, and --lines all follows other lines too"
-        )
-    if bare:
-        (x, y), long_mm, _ = bare[0]
-        yield (
-            f"the closed line runs over {long_mm:.1f} mm of bare paper at {x:.1f},{y:.1f} mm, where no ink "
-            "leads: look at --picture, and draw the line there"
-        )
-
-
-def _of_others(trace: Trace) -> Iterator[str]:
-    """Further lines of the sheet, where one was traced and nobody said which."""
-    if trace.others:
-        lines = "1 further line" if trace.others == 1 else f"{trace.others} further lines"
-        yield (
-            f"one line is traced; the sheet has {lines}: `morfax lines` lists them, --lines all "
-            "traces them too"
-        )
 
 
 def _named(line: Line, trace: Trace) -> str:

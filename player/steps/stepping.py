@@ -41,6 +41,7 @@ from morfax.motion.faults import ProgramFault
 from morfax.motion.motion import AXES, Motion
 from morfax.player.monitor.monitor import FollowingLimit, Supervised
 from morfax.player.steps.motor import SOUND, Motor, Motors
+from morfax.player.steps.ring_memory import ring_memory
 from morfax.recorder.steps.file import (
     HIGHEST,
     LOWEST,
@@ -50,11 +51,8 @@ from morfax.recorder.steps.file import (
     StepProgram,
     read_program,
 )
-from morfax.recorder.steps.rings import RINGS
 from morfax.recorder.textfile import note_of_no_sum
 
-UP_X, DOWN_X, UP_Y, DOWN_Y = 1, 2, 4, 8  # outputs of the ring memory
-MEMORY_ENTRIES = 512  # four bits of each count, and the direction
 SAMPLES_PER_INTERVAL = 8  # of the motion: 1280 Hz at the usual oscillator
 _BLOCK_INTERVALS = 4096  # of the program in memory at a time
 _PRINTED_TICKS = {1: (32,), 2: (16, 48), 3: (10, 31, 52)}
@@ -70,19 +68,6 @@ def pulse_ticks(pulses: int) -> tuple[int, ...]:
         )
     spread = tuple((2 * j + 1) * TICKS // (2 * pulses) for j in range(pulses))
     return _PRINTED_TICKS.get(pulses, spread)
-
-
-def ring_memory() -> NDArray[np.uint8]:
-    """The read-only memory 61: changes of the counters, by counts of X and Y and direction (1: next)."""
-    memory = np.zeros(MEMORY_ENTRIES, np.uint8)
-    for ring in RINGS.values():
-        for place, (x, y) in enumerate(ring):
-            for direction, other in ((1, place + 1), (0, place - 1)):
-                to_x, to_y = ring[other % len(ring)]
-                memory[_address(x + STANDSTILL, y + STANDSTILL, direction)] = _outputs(
-                    to_x - x, to_y - y
-                )
-    return memory
 
 
 def decode(program: StepProgram) -> tuple[Counts, NDArray[np.int64]]:
@@ -255,17 +240,6 @@ def _check_motor(name: str, fmt: StepFormat, motor: Motor) -> None:
 def _place(line: int | None) -> str:
     """The line for a message."""
     return "" if line is None else f", line {line}"
-
-
-def _address(count_x: int, count_y: int, direction: int) -> int:
-    """Nine inputs of the memory."""
-    return count_x << 5 | count_y << 1 | direction
-
-
-def _outputs(change_x: int, change_y: int) -> int:
-    """Four outputs of the memory."""
-    x = {1: UP_X, -1: DOWN_X, 0: 0}[change_x]
-    return x | {1: UP_Y, -1: DOWN_Y, 0: 0}[change_y]
 
 
 @njit(cache=True)

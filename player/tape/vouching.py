@@ -38,12 +38,10 @@ from morfax.recorder.tape.check_signal import CYCLES_PER_FRAME
 from morfax.recorder.tape.format import TapeFormat
 from morfax.recorder.tape.tape import Stored
 
-LARGEST_OFF_S = (
-    6e-6  # of a delay off the line through seven: 0.036 cycle; 26 dB of noise leave 2
-)
-TAIL_CYCLES = (
-    0.04  # that an axis may move behind the last delay told, where it is said to stand
-)
+# of a delay off the line through seven: 0.036 cycle; 26 dB of noise leave 2
+LARGEST_OFF_S = 6e-6
+# that an axis may move behind the last delay told, where it is said to stand
+TAIL_CYCLES = 0.04
 
 
 class Vouching:

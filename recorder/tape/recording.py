@@ -41,11 +41,8 @@ from morfax.recorder.tape.own_motion import OwnMotion
 _BLOCK_SAMPLES = 8192  # a megabyte of frames, which stays in the processor's cache
 _PLACE_DECIMALS = 6  # of the start and end in the text chunk: a nanometre
 _PLACE_CHARACTERS = 24  # room for one coordinate of the end
-_AXIS_CHARACTERS = (
-    30  # room for an axis' name among those that stand, and among those that run alike
-)
-# room for all three entries that a text of version 3 has more
-_ENTRY_CHARACTERS = 60
+_AXIS_CHARACTERS = 30  # room for the name of an axis that stands, or runs like another
+_ENTRY_CHARACTERS = 60  # room for the three entries that a text of version 3 has more
 
 Progress = Callable[[float, float | None], None]
 

@@ -13,12 +13,12 @@ import numpy as np
 import pytest
 
 from morfax.motion.motion import join
+from morfax.player.steps.ring_memory import ring_memory
 from morfax.player.steps.stepping import (
     decode,
     play_steps,
     pulse_ticks,
     pulses_of,
-    ring_memory,
     tick_table,
 )
 from morfax.recorder.steps.file import (

@@ -15,13 +15,12 @@ from morfax.motion.motion import join
 from morfax.player.steps import motor as motor_module
 from morfax.player.steps import stepping
 from morfax.player.steps.motor import Motor, Motors
+from morfax.player.steps.ring_memory import MEMORY_ENTRIES, ring_memory
 from morfax.player.steps.stepping import (
-    MEMORY_ENTRIES,
     decode,
     play_steps,
     pulse_ticks,
     pulses_of,
-    ring_memory,
     tick_table,
 )
 from morfax.recorder.steps.file import TICKS, StepFormat, StepProgram, write_program

@@ -1,0 +1,112 @@
+"""Remarks on the ink of a traced drawing: what of it was not followed, taken for a mark, or is not the line.
+
+Signals in: the traced lines. Signals out: texts, each with what to do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from morfax.tracer.following.line import Line
+    from morfax.tracer.program.program import Trace
+
+# chosen by trial on the test drawings
+LEFT_SHARE = 0.01  # of all the ink: more that was not followed is worth a remark
+# of the ink that is joined to a line: if the line is less, the rest is worth a remark
+FEW_SHARE = 0.7
+
+
+def of_ink(trace: Trace, *, several: bool) -> Iterator[str]:
+    """Remarks on the ink of a sheet of which one line was asked for, or several."""
+    yield from _of_all(trace)
+    yield from _of_solids(trace)
+    yield from _of_unread(trace)
+    alone = not several and trace.fault is None
+    rest = tuple(_of_rest(trace.lines[0])) if alone else ()
+    yield from rest
+    if alone:
+        yield from _of_others(trace)
+    if not rest:
+        yield from _of_unexplained(trace)
+
+
+def _of_all(trace: Trace) -> Iterator[str]:
+    """Ink that was left out, where all of it was asked for."""
+    if trace.ink is None:
+        return
+    left = 1 - trace.ink.followed_share
+    if left > LEFT_SHARE:
+        yield (
+            f"{trace.ink.left_mm:.0f} mm of ink ({100 * left:.0f} %) could not be followed: stretches that "
+            "are too short or too unclear to put the head down; the figures list their places, and "
+            "--picture marks them; scan at a higher resolution"
+        )
+    if trace.ink.solid_mm > 0:
+        yield (
+            f"{trace.ink.solid_mm:.0f} mm of ink are the rims of filled shapes, and left out; --edge follows "
+            "the outlines of filled shapes"
+        )
+
+
+def _of_solids(trace: Trace) -> Iterator[str]:
+    """A line in the rim of a filled shape."""
+    solid = [line for line in trace.lines if line.is_solid]
+    if solid:
+        x, y = solid[0].start_mm
+        yield (
+            f"the ink at {x:.1f},{y:.1f} mm is the rim of a dark area broader than a line: if that is a "
+            "filled "
+            "shape, --edge follows its outline"
+        )
+
+
+def _of_unread(trace: Trace) -> Iterator[str]:
+    """Ticks and dots that were taken for ink."""
+    if trace.unread and trace.operator.marks == "auto":
+        what = "1 tick or dot" if trace.unread == 1 else f"{trace.unread} ticks and dots"
+        yield (
+            f"{what} on the lines did not stop the head: without a reference point or a card they are ink; "
+            "if they are stops or holes, give --marks on"
+        )
+
+
+def _of_rest(line: Line) -> Iterator[str]:
+    """One line that is the smaller part of the ink in which lines cross or touch."""
+    if line.length_mm < FEW_SHARE * line.ink_mm:
+        yield (
+            f"about {line.ink_mm - line.length_mm:.0f} mm of ink that is joined to the line was not "
+            "followed: "
+            "--lines all also follows the lines that cross or touch it, --start X,Y another one"
+        )
+
+
+def _of_unexplained(trace: Trace) -> Iterator[str]:
+    """Closed lines that may be other lines than those drawn."""
+    beside = [place for place in trace.unexplained if place.is_ink]
+    bare = [place for place in trace.unexplained if not place.is_ink]
+    if beside:
+        (x, y), long_mm, _ = beside[0]
+        many = "1 piece of ink" if len(beside) == 1 else f"{len(beside)} pieces of ink"
+        yield (
+            f"{many} joined to the closed line beside its way, up to {long_mm:.1f} mm from it, at "
+            f"{x:.1f},{y:.1f} mm: a tip or a bay that is narrower than two lines, or another line; --picture "
+            "marks it, and --lines all follows other lines too"
+        )
+    if bare:
+        (x, y), long_mm, _ = bare[0]
+        yield (
+            f"the closed line runs over {long_mm:.1f} mm of bare paper at {x:.1f},{y:.1f} mm, where no ink "
+            "leads: look at --picture, and draw the line there"
+        )
+
+
+def _of_others(trace: Trace) -> Iterator[str]:
+    """Further lines of the sheet, where one was traced and nobody said which."""
+    if trace.others:
+        lines = "1 further line" if trace.others == 1 else f"{trace.others} further lines"
+        yield (
+            f"one line is traced; the sheet has {lines}: `morfax lines` lists them, --lines all "
+            "traces them too"
+        )
