@@ -10,8 +10,8 @@ import pytest
 from morfax.motion.faults import LineFault
 from morfax.tracer.head.loop import comes_again, loop_in
 from morfax.tracer.operator.operator import Operator
-from morfax.tracer.program.trace import trace
 from tests.tracer.inked import UM, arc, inked, polyline, tick
+from tests.tracer.marked import trace
 
 STEP_MM = 0.01
 WIDTH_MM = 0.5
@@ -73,7 +73,6 @@ def test_coming_again_needs_a_stretch_in_the_same_sense() -> None:
 
 
 CIRCLE = arc((34, 16), 10)
-MARKED = Operator(marks="on")  # ticks are marks, though no reference point is drawn
 
 
 @pytest.mark.parametrize("angle_deg", [90.0, 50.0, 35.0])
@@ -83,7 +82,6 @@ def test_a_lead_line_joins_its_loop_at_any_angle(angle_deg: float) -> None:
     at = (24 - 5 * math.cos(a), 16 - 5 * math.sin(a) * 12 / 16)
     line = trace(
         inked(CIRCLE, polyline(start, (24, 16)), tick(at, math.degrees(a)), seed=5),
-        operator=MARKED,
     ).lines[0]
     assert line.is_lead and line.loop_from is not None
     assert math.dist(line.place(line.loop_from), line.xy_mm[-1]) < 50 * UM  # it closes
@@ -99,7 +97,6 @@ def test_a_guide_line_soon_after_the_join_does_not_lead_off_the_second_time() ->
     guide = polyline(foot, (34 + 3 * math.cos(a), 16 - 3 * math.sin(a)))
     line = trace(
         inked(CIRCLE, polyline((8, 16), (24, 16)), tick((18, 16)), guide, seed=5),
-        operator=MARKED,
     ).lines[0]
     assert line.is_lead and line.length_mm == pytest.approx(16 + 20 * math.pi, abs=1.0)
 
@@ -109,7 +106,6 @@ def test_a_lead_line_in_line_with_the_side_of_a_corner(join: tuple[float, float]
     square = polyline((22, 6), (42, 6), (42, 26), (22, 26), (22, 6))
     line = trace(
         inked(square, polyline((6, join[1]), join), tick((14, join[1])), seed=5),
-        operator=MARKED,
     ).lines[0]
     assert line.is_lead and line.length_mm == pytest.approx(16 + 80, abs=1.0)
     loop = line.xy_mm[line.loop_from :]
@@ -125,7 +121,7 @@ def test_of_several_open_ends_the_lead_line_is_begun_at() -> None:
         polyline((44, 16), (36, 16)),
         polyline((34, 26), (34, 19)),
     ]
-    line = trace(inked(CIRCLE, *lines, seed=5), operator=MARKED).lines[0]
+    line = trace(inked(CIRCLE, *lines, seed=5)).lines[0]
     assert line.is_lead and math.dist(line.start_mm, (8, 16)) < 50 * UM
 
 
@@ -142,11 +138,9 @@ def test_two_lead_lines_without_a_reference_point_are_asked_about() -> None:
         LineFault,
         match=r"2 lines with a tick lead to the contour, .* draw a cross or ring .* --start",
     ):
-        trace(drawing, operator=MARKED)
+        trace(drawing)
     for start in ((8, 16), (60, 16)):
-        assert (
-            math.dist(trace(drawing, start, operator=MARKED).lines[0].start_mm, start) < 50 * UM
-        )
+        assert math.dist(trace(drawing, start).lines[0].start_mm, start) < 50 * UM
         named = trace(drawing, operator=Operator(reference_mm=start))
         assert math.dist(named.lines[0].start_mm, start) < 50 * UM
 
@@ -170,7 +164,7 @@ def test_a_lead_line_with_a_tick_near_its_join_goes_to_the_very_place_and_comes_
         width_mm=width_mm,
         seed=5,
     )
-    line = trace(drawing, operator=MARKED).lines[0]
+    line = trace(drawing).lines[0]
     assert line.is_lead and line.loop_from is not None and len(line.marks) == 1
     assert math.dist(line.marks[0].place_mm, near) < 50 * UM
     assert np.hypot(*(line.xy_mm - join).T).min() < 50 * UM

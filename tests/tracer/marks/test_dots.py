@@ -12,10 +12,10 @@ from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.plain_places import view_of
 from morfax.tracer.marks import dots
-from morfax.tracer.program.trace import trace
 from morfax.tracer.sensing.leg import leg_of
 from morfax.tracer.sensing.view import View
 from tests.tracer.inked import UM, arc, dot, inked, polyline
+from tests.tracer.marked import trace
 
 WITHIN_MM = 20 * UM  # a quarter of a pixel at 300 dpi
 LINE = polyline((4, 12), (24, 12))

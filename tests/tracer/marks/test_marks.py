@@ -15,9 +15,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from morfax.tracer.following.line import Line
-from morfax.tracer.program.trace import trace
-from morfax.tracer.program.trace_lines import trace_lines
 from tests.tracer.inked import UM, arc, cross, dot, inked, polyline, tick
+from tests.tracer.marked import trace, trace_lines
 
 STANDS_WITHIN_MM = 50 * UM  # the issue's
 LINE = polyline((4, 12), (34, 12))

@@ -9,8 +9,8 @@ import pytest
 
 from morfax.tracer.following.line import Line
 from morfax.tracer.operator.operator import Operator
-from morfax.tracer.program.trace import trace
 from tests.tracer.inked import UM, arc, cross, inked, polyline, tick
+from tests.tracer.marked import trace
 
 WITHIN_MM = 50 * UM
 CIRCLE = arc((36, 14), 9)
