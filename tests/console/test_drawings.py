@@ -101,7 +101,7 @@ def test_the_first_dash_of_a_dashed_line_is_told_to_be_one_with_the_option_that_
     whole = morfax("trace", "dashes.png", "-o", "dashes.csv", "--json", "--gap", said[1])
     assert (
         whole.figures["length_mm"] == pytest.approx((584 - 7) * 25.4 / 300, abs=0.1)
-        and whole.err == ""
+        and "ends at" not in whole.err
     )
 
 
@@ -206,7 +206,7 @@ def test_all_lines_are_one_program_listed_and_numbered(morfax: Morfax, here: Pat
     assert answer.figures["idle_mm"] == pytest.approx(np.hypot(*from_slot), abs=0.1)
     assert Path("lines.svg").read_text().count("<!-- 2 -->") == 1  # the axes count in tens
     rows = morfax(*call).out.splitlines()[-3:]
-    assert rows[0].split() == ["ending", "length", "line", "width", "start"]
+    assert rows[0].split() == ["ending", "length", "line", "width", "start", "cell", "share"]
     assert [row.split()[:3] for row in rows[1:]] == [
         ["line", "2", "closed"],
         ["line", "1", "closed"],

@@ -6,8 +6,8 @@ of the heading) and the place of the line on the drum (sheet mm).
     first = 2/N · sum D·sin(phase)      its sign is the side on which the line is
     aside = first / (slope · ink)       how far, by the slope that was measured on the line
 
-The mount turns the sweep square to the curve that the sweep is on. Cell and detector may be out of order:
-their gains, and noise in the cell's current, are settings. `heard` tells whether they work.
+Cell and detector may be out of order: their gains, and noise in the cell's current, are settings. `heard`
+tells whether they work.
 
 Source: patent ES 361967, figure 1: cell 101, mount 42, pin 48, motor 45, amplifier FSA. Questions: see
 `kernel`.
@@ -26,8 +26,6 @@ from morfax.tracer.sensing.photocell import TWO_PI, darkness_at
 INK_FOLLOWS = 0.1  # share of a sweep's difference by which the ink is corrected
 PALEST, DARKEST = 0.3, 2.0  # a sweep counts as no less and no more of the ink than this
 FARTHEST_ASIDE = 0.5  # of the amplitude: a sweep that is further off is not on the line
-# of a curve against the heading: a smaller one sets the middle off by less than 0.2 um
-LEAST_SLOPE = 0.1
 # of the random numbers: those of Numerical Recipes, "quick and dirty generators"
 NOISE_FACTOR, NOISE_STEP, NOISE_NUMBERS = 1664525, 1013904223, 2**32
 
@@ -46,20 +44,6 @@ def seen(cells, state, towards, ahead, aside):  # type: ignore[no-untyped-def]
     return darkness_at(cells, x, y)
 
 
-@njit(cache=True, inline="always")
-def _turned(state, t):  # type: ignore[no-untyped-def]
-    """How far the mount is turned against the head, square to the curve that the sweep is on: cosine, sine.
-
-    Across a line that bends, an oblique cut has its middle beside the line's. A head without a drum has a
-    mount that is fixed to it.
-    """
-    slope = 2.0 * state.middle_mm / t.lead_mm
-    if t.direct_rad_s_mm > 0 or abs(slope) < LEAST_SLOPE:
-        return 1.0, 0.0
-    length = math.sqrt(1.0 + slope * slope)
-    return 1.0 / length, slope / length
-
-
 @njit(cache=True)
 def _hiss(state):  # type: ignore[no-untyped-def]
     """Noise of standard deviation 1: twelve random numbers of a linear congruential generator, summed."""
@@ -75,9 +59,8 @@ def swing(cells, state, t):  # type: ignore[no-untyped-def]
     """One period of the swinging cell: its current goes into the synchronous detector."""
     phase = TWO_PI * (state.sweep_periods + 0.5) / t.sweep_periods
     sine = math.sin(phase)
-    across, along = _turned(state, t)
-    aside = state.middle_mm + t.amplitude_mm * sine * across
-    ahead = t.lead_mm + t.along_mm * math.cos(phase) - t.amplitude_mm * sine * along
+    aside = state.middle_mm + t.amplitude_mm * sine
+    ahead = t.lead_mm + t.along_mm * math.cos(phase)
     darkness = t.cell_gain * seen(cells, state, way_of(state), ahead, aside)
     if t.cell_noise > 0.0:
         darkness += t.cell_noise * _hiss(state)
@@ -106,16 +89,13 @@ def detect(state, t):  # type: ignore[no-untyped-def]
         return
     # 3. the line's place, by the heading as it was in the middle of the sweep
     limit = FARTHEST_ASIDE * t.amplitude_mm
-    across, along = _turned(state, t)
-    off = min(max(aside, -limit), limit)
-    state.middle_mm += off * across
-    ahead = t.lead_mm - off * along
+    state.middle_mm += min(max(aside, -limit), limit)
     middle = state.heading_rad - 0.5 * t.sweep_periods * t.period_s * state.turn_rad_s
     c, s = math.cos(middle), math.sin(middle)
     if abs(aside) < limit:
         place = state.places % DRUM
-        state.drum_mm[place, 0] = state.swept_x_mm + ahead * c - state.middle_mm * s
-        state.drum_mm[place, 1] = state.swept_y_mm + ahead * s + state.middle_mm * c
+        state.drum_mm[place, 0] = state.swept_x_mm + t.lead_mm * c - state.middle_mm * s
+        state.drum_mm[place, 1] = state.swept_y_mm + t.lead_mm * s + state.middle_mm * c
         state.places += 1
 
 

@@ -152,7 +152,10 @@ def test_a_plotter_file_is_played_within_its_steps(tmp_path: Path) -> None:
     ("text", "says"),
     [
         ("IN;SP1;\nPU0,0;\nPD400,0;\n", "ends with the pen down; a plotter file ends with PU"),
-        ("IN;\nSC0,100,0,100;\nPU;", "line 2: 'SC0,100,0,100' is not played"),
+        (
+            "IN;\nSC0,100,0,100;\nPU;",
+            "line 2: SC without IP: its units hang on the paper in the plotter",
+        ),
         ("IN;PU0,0;PD400,0,400;PU;", "line 1: '400,0,400' is no row of places X,Y"),
         ("", "ends with the pen where it stood"),
     ],
