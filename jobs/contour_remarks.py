@@ -36,6 +36,24 @@ def of_contouring(trace: Trace, contouring: Contouring) -> Iterator[str]:
         yield f"{are} open and cut as traced: direction, start and leads are for closed lines"
 
 
+def of_order(trace: Trace, order: Sequence[int]) -> Iterator[str]:
+    """Lines that the operator has put behind one in which they lie."""
+    if not order:
+        return
+    from morfax.motion.nesting import nested
+
+    lines = [line for line in trace.lines if len(line.xy_mm) > 1]
+    inside = nested([line.loop_mm for line in lines], [not line.is_open for line in lines])
+    for outer in range(len(lines)):
+        late = [lines[i].number for i in range(outer + 1, len(lines)) if inside[i, outer]]
+        if late:
+            numbers = ", ".join(map(str, late))
+            yield (
+                f"by --order line {lines[outer].number} is cut before line {numbers} inside it: the part may"
+                " be loose by then"
+            )
+
+
 def of_around(
     found: Sequence[Around], cutter: Cutter | None, contouring: Contouring
 ) -> Iterator[str]:

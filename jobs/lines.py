@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 from morfax.jobs import correction_settings
 from morfax.jobs import files as medium
+from morfax.jobs.line_settings import LineSettings
 from morfax.jobs.listener import SILENT, Listener
 from morfax.jobs.remarks_on_lines import remarks_on_lines
 from morfax.jobs.scale_doubts import scale_doubts
-from morfax.jobs.settings import DrawingFile, LineSettings, TraceSettings
+from morfax.jobs.settings import DrawingFile, TraceSettings
 
 if TYPE_CHECKING:
     from morfax.jobs.figures import Figures

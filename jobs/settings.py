@@ -15,6 +15,7 @@ from morfax.jobs.contour_settings import ContourSettings
 from morfax.jobs.correction_settings import CorrectionSettings
 from morfax.jobs.depths import DepthSettings, passes_mm
 from morfax.jobs.flattening import FlattenSettings
+from morfax.jobs.line_settings import LineSettings
 from morfax.jobs.listener import SILENT, Listener
 from morfax.jobs.wrong_use import WrongUse, settings_checked
 
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
     from morfax.tracer.drawing.scale import Known, Scale
     from morfax.tracer.drawing.scan import Scan
     from morfax.tracer.flatten.flat import Flattening
-    from morfax.tracer.following.direction import Direction
     from morfax.tracer.head.settings import Settings
     from morfax.tracer.operator.card import Card, Override
     from morfax.tracer.operator.operator import Marks, Operator, Panel
@@ -114,27 +114,6 @@ class DrawingFile:
 
 
 @dataclass(frozen=True, slots=True)
-class LineSettings:
-    """Which line is followed, or which lines, and what holds them together."""
-
-    start_mm: tuple[float, float] | None = None
-    # None: the one line at the start, or the longest
-    lines: str | tuple[int, ...] | None = None
-    line_width_mm: float | None = None
-    gap_mm: float | None = None
-    recatch_mm: float | None = None
-    direction: Direction | None = None
-    reference_mm: tuple[float, float] | None = None  # None: looked for on the drawing
-    # further places to start: the line at each is traced as well
-    more_starts_mm: tuple[tuple[float, float], ...] = ()
-
-    @property
-    def are_several(self) -> bool:
-        """Whether lines are asked for, and not one line."""
-        return self.lines is not None or bool(self.more_starts_mm)
-
-
-@dataclass(frozen=True, slots=True)
 class HeadSettings:
     """Which head follows, and what is changed about it: its speed, a file of settings, settings by name."""
 
@@ -220,6 +199,7 @@ class TraceSettings:
 
     def operator(self, card: Card, panel: Panel | None) -> Operator:
         """What is done at the stops, by the card and whoever is at the panel."""
+        from morfax.tracer.following.direction import Arrow
         from morfax.tracer.operator.operator import Operator
 
         line = self.line
@@ -227,7 +207,10 @@ class TraceSettings:
         for_marks = program.card_file is not None or program.stop_override is not None
         marks = "on" if program.marks == "auto" and for_marks else program.marks
         work = self._work(card)
-        return Operator(work, card, panel, line.reference_mm, line.direction, marks)
+        arrows = tuple(Arrow(*each) for each in line.arrows_mm)
+        return Operator(
+            work, card, panel, line.reference_mm, line.direction, marks, arrows, line.order
+        )
 
     def _filed(self) -> dict[str, float]:
         """Settings of the head in the file, by name."""

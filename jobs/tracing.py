@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from morfax.jobs import correction_settings
-from morfax.jobs.contour_remarks import of_around, of_contouring
+from morfax.jobs.contour_remarks import of_around, of_contouring, of_order
 from morfax.jobs.depths import of_tabs
 from morfax.jobs.remarks import of_cutter, remarks
 from morfax.jobs.traced import Traced
@@ -44,10 +44,7 @@ class Tracing:
     @classmethod
     def prepared(cls, settings: TraceSettings, panel: Panel | None = None) -> Tracing:
         """Read the card and the settings; raises WrongUse, CardFault and FileFault for a mistake in them."""
-        if settings.line.lines is not None and settings.line.start_mm is not None:
-            raise WrongUse("--start picks one line, --lines several; give one of them")
-        if settings.line.more_starts_mm and settings.line.start_mm is None:
-            raise WrongUse("more_starts_mm are further places; give the first one as start_mm")
+        settings.line.check()
         settings.contour.check(settings.line.direction)
         card = settings.card()
         _refuse_marks(settings, card)
@@ -81,6 +78,8 @@ class Tracing:
                 listener.warning(text)
         for text in remarks(followed, self.settings, self.of_head.gap_mm, drawing.enlarged):
             listener.warning(text)
+        for text in of_order(followed, self.settings.line.order):
+            listener.warning(text)
         led = WhoLed.along(followed)
         for text in () if led is None else led.remarks():
             listener.warning(text)
@@ -108,7 +107,7 @@ class Tracing:
             return self
         if line.reference_mm is None:
             line = replace(line, reference_mm=laid.reference_mm)
-        if line.start_mm is None and not line.are_several:
+        if line.start_mm is None and not line.are_several and not line.arrows_mm:
             line = replace(
                 line, start_mm=laid.start_mm, direction=line.direction or laid.direction
             )
@@ -163,9 +162,10 @@ class Tracing:
             def tell(come_mm: float, all_mm: float) -> None:
                 advance(come_mm / all_mm)
 
-            if line.more_starts_mm and line.start_mm is not None:
-                starts_mm = (line.start_mm, *line.more_starts_mm)
-                return trace_places(drawing, starts_mm, self.of_head, self.operator, tell)
+            if line.arrows_mm or line.more_starts_mm:
+                starts_mm = line.starts_mm
+                if starts_mm:
+                    return trace_places(drawing, starts_mm, self.of_head, self.operator, tell)
             if line.lines is None:
                 return trace(drawing, line.start_mm, self.of_head, self.operator, tell)
             if line.lines != "all":

@@ -19,6 +19,7 @@ from morfax.console.options.types import (
     DEPTH,
     LENGTH,
     LINES,
+    ORDER,
     PLACE,
     REACH,
     SPEED,
@@ -26,13 +27,8 @@ from morfax.console.options.types import (
     ZERO,
 )
 from morfax.console.terminal import attended
-from morfax.jobs.settings import (
-    HeadSettings,
-    LineSettings,
-    ProgramSettings,
-    ToolSettings,
-    TraceSettings,
-)
+from morfax.jobs.line_settings import LineSettings
+from morfax.jobs.settings import HeadSettings, ProgramSettings, ToolSettings, TraceSettings
 
 # the head's and the tool's own, stated here for --help, which does not wait for the tracer
 DEFAULTS = {
@@ -101,6 +97,26 @@ _LINE = (
         type=click.Choice(["cw", "ccw", "left", "right"]),
         help="Which way round; or to which side the head turns where its lead line, or its way from --start, "
         "meets the line.  [default: as it comes; left from a lead line]",
+    ),
+    option(
+        "Line",
+        "--arrow",
+        "arrows_mm",
+        nargs=2,
+        type=(PLACE, PLACE),
+        multiple=True,
+        metavar="X,Y X,Y",
+        help="Where a line begins, and a place to which the head goes from there, such as 40,26 50,26; "
+        "several times for several lines. With --lines these lines begin so, without it they are the lines. "
+        "It counts before --climb and the machine's own direction.  [default: as it comes]",
+    ),
+    option(
+        "Line",
+        "--order",
+        type=ORDER,
+        default=(),
+        help="Several lines: these are cut first, in this order, such as 3,1.  [default: inner before outer, "
+        "with short ways between them]",
     ),
     option(
         "Line",

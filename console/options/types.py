@@ -106,6 +106,14 @@ def _parse_lines(text: str) -> str | tuple[int, ...]:
         ) from None
 
 
+def _parse_order(text: str) -> tuple[int, ...]:
+    """Numbers of lines in their order."""
+    parts = [part.strip() for part in text.split(",")]
+    if not all(part.isdecimal() and int(part) > 0 for part in parts):
+        raise ValueError(f"{text[:40]!r} is no order of lines; give their numbers, such as 3,1")
+    return tuple(map(int, parts))
+
+
 def _parse_stops(text: str) -> str | tuple[int, ...]:
     """Which stop marks do not stop the head: "none", "all", or their numbers."""
     word = text.strip().lower()
@@ -256,6 +264,7 @@ PIXELS = Quantity("x,y", _parse_pixels)
 PLACES = Quantity("x,y,z", _parse_places_mm)
 TIME = Quantity("time", parse_time_s)
 LINES = Quantity("lines", _parse_lines)
+ORDER = Quantity("lines", _parse_order)
 STOPS = Quantity("stops", _parse_stops)
 TRACKS = Quantity("tracks", _tracks)
 AXES = Quantity("axes", _axes)

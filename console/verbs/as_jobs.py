@@ -21,9 +21,9 @@ from morfax.console.options.placement import unit_options
 from morfax.console.options.tracing import trace_options
 from morfax.console.verbs.correct import asked_corrections
 from morfax.jobs.correct import CorrectJob
+from morfax.jobs.line_settings import LineSettings
 from morfax.jobs.lines import LinesJob
 from morfax.jobs.run import RunJob
-from morfax.jobs.settings import LineSettings
 from morfax.jobs.trace import TraceJob, TraceOutputs
 from morfax.jobs.wrong_use import WrongUse
 

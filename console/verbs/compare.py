@@ -16,8 +16,9 @@ from morfax.console.options.systems import Systems
 from morfax.console.options.tape import FOR_MACHINE, tape_options
 from morfax.console.options.types import CUTTER, LENGTH, LINES, PLACE, SPEED, ZERO
 from morfax.jobs.compare import CompareJob
+from morfax.jobs.line_settings import LineSettings
 from morfax.jobs.results import NAMES
-from morfax.jobs.settings import HeadSettings, LineSettings, TraceSettings
+from morfax.jobs.settings import HeadSettings, TraceSettings
 from morfax.jobs.systems import SystemsJob
 
 if TYPE_CHECKING:

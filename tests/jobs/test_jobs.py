@@ -21,6 +21,7 @@ from morfax.jobs.check import CheckJob
 from morfax.jobs.compare import CompareJob
 from morfax.jobs.contour_settings import ContourSettings
 from morfax.jobs.inspect import InspectJob
+from morfax.jobs.line_settings import LineSettings
 from morfax.jobs.mend import MendJob
 from morfax.jobs.play import ControlSettings, PlayJob
 from morfax.jobs.playing import ByHand
@@ -30,7 +31,6 @@ from morfax.jobs.run import RunJob
 from morfax.jobs.settings import (
     DrawingFile,
     HeadSettings,
-    LineSettings,
     ProgramSettings,
     ToolSettings,
     TraceSettings,

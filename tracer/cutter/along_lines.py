@@ -96,6 +96,8 @@ def _is_changed(cut: Cut, curve: DriveCurve, contouring: Contouring) -> bool:
     """Whether a line is cut otherwise than the head followed it; a drawn lead line says where it begins."""
     if not curve.closed:
         return False
+    if cut.line.as_told:  # where it begins and which way it goes are the operator's
+        return contouring.has_leads
     if cut.first > 0:
         return contouring.turns(curve.left) or contouring.lead_out is not None
     return contouring.turns(curve.left) or contouring.moves_start

@@ -9,7 +9,8 @@ Signals: what somebody asks for in; paths turned round, and refusals, out.
                     side there too
     conventional    the other way round
 
-Open lines, and lines that cross themselves, keep the direction in which the head followed them.
+Open lines, lines that cross themselves, and lines with the operator's arrow keep the direction in which the
+head followed them.
 
 Source: the words and the rule are the trade's, for a spindle that turns clockwise (M3).
 """
@@ -78,7 +79,8 @@ AS_FOLLOWED = Contouring()
 
 def turned_round(beside: Beside, contouring: Contouring) -> Beside:
     """The paths of a closed contour in the direction that is asked for; of an open one as they are."""
-    if not beside.cut.closed or not contouring.turns(beside.left):
+    keeps_direction = not beside.cut.closed or beside.cut.line.as_told
+    if keeps_direction or not contouring.turns(beside.left):
         return beside
     paths = [
         OffsetPath(path.points_mm[::-1].copy(), path.closed, path.guide)

@@ -77,6 +77,8 @@ class StartPlaces:
         places = path.places(self.contouring.start_at, self.tool_mm)
         if joins_at is not None:
             places = iter([joins_at])
+        elif path.told_mm is not None:
+            places = path.from_told()
         lead_in = self.contouring.lead_in if joins_at is None else None
         asked = [lead for lead in (lead_in, self.contouring.lead_out) if lead is not None]
         best, best_share = None, -1.0
@@ -125,6 +127,10 @@ class _Path:
         self.scrap_left = beside.left != beside.turned
         self.scrap_inside = self.scrap_left == is_counterclockwise(self.points_mm)
         self._beside = beside
+        line = beside.cut.line
+        self.told_mm = (
+            np.array(line.start_mm) if line.as_told else None
+        )  # by the operator's arrow
         self._lengths = lengths_mm(self.points_mm)
         self._every = evenly(self.points_mm, APART_MM)
 
@@ -148,6 +154,11 @@ class _Path:
             yield from self._corners(straights[0])
         yield from straights[: TRIED // 2]
         yield from self._all_round(straights[0])
+
+    def from_told(self) -> Iterator[float]:
+        """The place nearest to where the operator's arrow begins."""
+        assert self.told_mm is not None
+        yield nearest_place(self.points_mm, self.told_mm, 0)[1].at
 
     def _straights(self) -> list[float]:
         """Middles of the straight stretches, the longest first."""

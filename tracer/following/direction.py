@@ -4,6 +4,7 @@ Signals: a run, or a stance, in; whether it goes that way round, or the stance t
 
     cw, ccw        clockwise or counter-clockwise round a closed line
     left, right    as the head turns when it comes to the line from the place where it was put down
+    an arrow       the place on a line where it begins, and a place to which the head goes from there
 
 Source: patent ES 361967, section on use: the operator brings the head over the drawing and lets it run.
 """
@@ -12,7 +13,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -24,6 +25,16 @@ from morfax.tracer.sensing.leg import turn
 from morfax.tracer.sensing.side import Side
 
 Direction = Literal["cw", "ccw", "left", "right"]
+
+Place = tuple[float, float]  # mm on the sheet
+
+
+class Arrow(NamedTuple):
+    """Where a line begins, and a place to which the head goes from there, mm on the sheet."""
+
+    place_mm: Place
+    towards_mm: Place
+
 
 ON_LINE_WIDTHS = 0.5  # a head put down nearer to the middle of a line comes from neither side
 

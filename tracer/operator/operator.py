@@ -28,7 +28,7 @@ from dataclasses import dataclass, field, replace
 from typing import Literal, Protocol
 
 from morfax.motion.faults import CardFault
-from morfax.tracer.following.direction import Direction
+from morfax.tracer.following.direction import Arrow, Direction
 from morfax.tracer.following.line import Line
 from morfax.tracer.operator.card import Card, Drill, Stop
 from morfax.tracer.operator.work import Action, Descent, Halt, Work
@@ -62,6 +62,8 @@ class Operator:
     reference_mm: tuple[float, float] | None = None  # None: the reference point is looked for
     direction: Direction | None = None  # in which the head takes the line
     marks: Marks = "auto"  # whether ticks and dots are marks; auto: where a program is drawn
+    arrows: tuple[Arrow, ...] = ()  # where lines begin, and which way
+    order: tuple[int, ...] = ()  # numbers of the lines that are cut first, in this order
 
     @property
     def sides(self) -> tuple[Side | None, ...]:

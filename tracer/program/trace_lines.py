@@ -17,6 +17,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from morfax.motion import nesting
 from morfax.motion.faults import LineFault
@@ -29,6 +30,7 @@ from morfax.tracer.head.settings import Settings
 from morfax.tracer.marks import dots
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program import order, selection
+from morfax.tracer.program.arrows import turned_round, with_arrows
 from morfax.tracer.program.joined_lines import joined_to
 from morfax.tracer.program.marks_read import with_marks_read
 from morfax.tracer.program.one_of_each import are_of_reference, is_inside, one_of_each
@@ -39,7 +41,6 @@ from morfax.tracer.program.trace import followed
 from morfax.tracer.program.unexplained import unexplained
 
 SAME = 0.8  # of a line's way along another: they are one line; by trial
-ALIKE = 0.02  # a line is as long from its other end, within this share; by trial
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +71,7 @@ def trace_lines(
     operator = operator or Operator()
     setup = Setup(Sheet.of(drawing), settings or Settings(), operator, progress)
     found = found_lines(setup, which)
-    lines, unread = with_marks_read(found.lines, operator)
+    lines, unread = with_marks_read(with_arrows(setup, found.lines), operator)
     _refuse_none_begun(lines)
     return Trace(
         tuple(_in_order(setup, lines)),
@@ -89,12 +90,14 @@ def trace_places(
     operator: Operator | None = None,
     progress: HeadProgress | None = None,
 ) -> Trace:
-    """Follow the line at each of several places (sheet mm); they are numbered as the places are given.
+    """Follow the line at each of some places (sheet mm); they are numbered as the places are given.
 
     Raises LineFault if no line is near a place, or two places are on one line.
     """
     operator = operator or Operator()
-    setup, lines = Setup(Sheet.of(drawing), settings or Settings(), operator), list[Line]()
+    alone = len(starts_mm) == 1
+    sheet, heard = Sheet.of(drawing), progress if alone else None
+    setup, lines = Setup(sheet, settings or Settings(), operator, heard), list[Line]()
     for number, start_mm in enumerate(starts_mm, 1):
         line = followed(setup, start_mm, number)
         for other in lines:
@@ -102,11 +105,12 @@ def trace_places(
             if near.mean() > SAME:
                 raise _one_line(starts_mm[other.number - 1], start_mm)
         lines.append(line)
-        if progress is not None:
+        if progress is not None and not alone:
             progress(float(number), float(len(starts_mm)))
     _refuse_none_begun(lines)
-    lines, unread = with_marks_read(lines, operator)
-    return Trace(tuple(_in_order(setup, lines)), operator, unread=unread)
+    lines, unread = with_marks_read(with_arrows(setup, lines), operator)
+    beside = unexplained(setup, lines) if alone else ()
+    return Trace(tuple(_in_order(setup, lines)), operator, unread=unread, unexplained=beside)
 
 
 def found_lines(setup: Setup, which: Which) -> FoundLines:
@@ -214,17 +218,27 @@ def _in_order(setup: Setup, lines: list[Line]) -> list[Line]:
     )
     begins = np.array([line.begin_mm for line in lines])
     ends = np.array([line.end_mm for line in lines])
-    may_turn = np.array([line.is_open and not line.goes_back for line in lines])
-    sequence, turned = order.in_order_and_turned(begins, ends, inner, may_turn)
-    return [_turned_round(setup, lines[i]) if turned[i] else lines[i] for i in sequence]
+    may_turn = np.array(
+        [line.is_open and not line.goes_back and not line.as_told for line in lines]
+    )
+    before = _as_told(inner, [line.number for line in lines], setup.operator.order)
+    sequence, turned = order.in_order_and_turned(begins, ends, before, may_turn)
+    return [turned_round(setup, lines[i]) if turned[i] else lines[i] for i in sequence]
 
 
-def _turned_round(setup: Setup, line: Line) -> Line:
-    """An open line followed from its other end; as it was, if the head goes another way from there."""
-    silent = replace(setup, progress=None)
-    try:
-        other = followed(silent, line.place(len(line.xy_mm) - 1), line.number)
-    except LineFault:
-        return line
-    there = np.hypot(*(other.xy_mm[-1] - line.xy_mm[0])) < line.width_mm
-    return other if there and abs(other.length_mm / line.length_mm - 1) < ALIKE else line
+def _as_told(
+    inner: NDArray[np.bool_], numbers: list[int], told: tuple[int, ...]
+) -> NDArray[np.bool_]:
+    """Which line is cut before which: the told ones first, in their order; the others inner before outer.
+
+    Raises LineFault for a number that no line has.
+    """
+    if not told:
+        return inner
+    for number in told:
+        if number not in numbers:
+            raise selection.no_line(number, sorted(set(numbers)))
+    rank = np.array([told.index(n) if n in told else len(told) for n in numbers])
+    by_rank = np.asarray(rank[:, None] < rank[None])
+    both_free = (rank[:, None] == len(told)) & (rank[None] == len(told))
+    return np.where(both_free, inner, by_rank)

@@ -1,0 +1,67 @@
+"""Settings of the lines: which are followed, where each begins, which way round, and in what order."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from morfax.jobs.wrong_use import WrongUse
+
+if TYPE_CHECKING:
+    from morfax.tracer.following.direction import Direction
+
+Place = tuple[float, float]  # mm on the sheet
+
+
+@dataclass(frozen=True, slots=True)
+class LineSettings:
+    """Which line is followed, or which lines, and what holds them together."""
+
+    start_mm: Place | None = None
+    # None: the one line at the start, or the longest
+    lines: str | tuple[int, ...] | None = None
+    line_width_mm: float | None = None
+    gap_mm: float | None = None
+    recatch_mm: float | None = None
+    direction: Direction | None = None
+    reference_mm: Place | None = None  # None: looked for on the drawing
+    # further places to start: the line at each is traced as well
+    more_starts_mm: tuple[Place, ...] = ()
+    # where lines begin, and a place that way along them; without `lines` they pick the lines
+    arrows_mm: tuple[tuple[Place, Place], ...] = ()
+    order: tuple[int, ...] = ()  # numbers of the lines that are cut first, in this order
+
+    @property
+    def are_several(self) -> bool:
+        """Whether lines are asked for, and not one line."""
+        return self.lines is not None or len(self.starts_mm) > 1
+
+    @property
+    def starts_mm(self) -> tuple[Place, ...]:
+        """The places at which lines are picked, those of arrows too."""
+        if self.start_mm is not None:
+            return (self.start_mm, *self.more_starts_mm)
+        return () if self.lines is not None else tuple(place for place, _ in self.arrows_mm)
+
+    def check(self) -> None:
+        """Raise WrongUse for two that do not go together."""
+        if self.lines is not None and self.start_mm is not None:
+            raise WrongUse("--start picks one line, --lines several; give one of them")
+        if self.more_starts_mm and self.start_mm is None:
+            raise WrongUse("more_starts_mm are further places; give the first one as start_mm")
+        if self.arrows_mm and (self.start_mm is not None or self.direction is not None):
+            other = "--start" if self.start_mm is not None else "--direction"
+            raise WrongUse(
+                f"--arrow and {other} both say how a line begins; give --arrow alone"
+            )
+        if self.lines == "all" and (self.arrows_mm or self.order):
+            what = "--arrow" if self.arrows_mm else "--order"
+            raise WrongUse(
+                f"--lines all puts its strokes in order by itself, so {what} cannot be served; give --lines"
+                " contours, or numbers"
+            )
+        if self.order and not self.are_several:
+            raise WrongUse("--order is for several lines; give them with --lines or --start")
+        twice = sorted({n for n in self.order if self.order.count(n) > 1})
+        if twice:
+            raise WrongUse(f"--order names line {twice[0]} twice; name each once")
