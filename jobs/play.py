@@ -33,6 +33,9 @@ OPTIONS = {
     "acceleration_mm_s2": "--acceleration",
     "motor": "--motor",
     "zero_mm": "--zero-adjustment",
+    "wheel_eccentricity_mm": "--wheel-eccentricity",
+    "wheel_division_mm": "--wheel-division",
+    "lamp": "--lamp",
     "norm": "--norm",
     "feed_override": "--feed-override",
     "historic": "--historic",
@@ -41,7 +44,13 @@ OPTIONS = {
 PICTURES = (".png", ".svg", ".pdf")
 CUBIC = ".cubic"
 FOR_PULSES = {"norm", "feed_override", "historic"}
-FOR_TAPES = {"resume_at_s", "acceleration_mm_s2", "motor", "zero_mm"}
+# fields of player.tape.sector_wheel's SectorWheel
+FOR_WHEELS = {
+    "wheel_eccentricity_mm": "eccentricity_mm",
+    "wheel_division_mm": "division_mm",
+    "lamp": "light",
+}
+FOR_TAPES = {"resume_at_s", "acceleration_mm_s2", "motor", "zero_mm", *FOR_WHEELS}
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +63,9 @@ class ControlSettings:
     feed_override: float | None = None
     motor: str | None = None
     zero_mm: tuple[float, ...] | None = None
+    wheel_eccentricity_mm: float | None = None  # of the sector wheels on the machine's screws
+    wheel_division_mm: float | None = None
+    lamp: float | None = None  # share of its light
     historic: bool = False  # the patent's own pulses, registers and scales
     control: Literal["herbert"] | None = None  # None: the file's own
 
@@ -81,6 +93,11 @@ class ControlSettings:
             from morfax.player.tape.phase_lock import MOTORS as LOCKS
 
             given["settings"] = LOCKS[given.pop("motor")]
+        if wheel := {FOR_WHEELS[name]: given.pop(name) for name in FOR_WHEELS if name in given}:
+            from morfax.player.tape.sector_wheel import SectorWheel
+
+            with settings_checked():
+                given["wheel"] = SectorWheel(**wheel)
         if "historic" in given and file.suffix.lower() != CUBIC:
             from morfax.player.gcode.pulses import HISTORIC_CONTROL
 

@@ -14,7 +14,7 @@ from morfax.console.options.files import FILE, PATHS, PICTURES, ProgramPath, Res
 from morfax.console.options.groups import Verb, option, renamed
 from morfax.console.options.sound import intake_options
 from morfax.console.options.tape import FOR_MACHINE, tape_options
-from morfax.console.options.types import NUMBER, PLACES, SHARE, TIME
+from morfax.console.options.types import NUMBER, PLACES, REACH, SHARE, TIME
 from morfax.jobs.play import MOTORS, ControlSettings, PlayJob
 from morfax.jobs.wrong_use import WrongUse
 
@@ -125,6 +125,28 @@ Examples:
     help="Zero adjustment of a tape's axes, X,Y or X,Y,Z … in mm: how far the machine stands from where "
     "the tape "
     "has it.",
+)
+@option(
+    "Machine",
+    "--wheel-eccentricity",
+    "wheel_eccentricity_mm",
+    type=REACH,
+    help="How far the arm of each pick-up turns off the axis of its sector wheel (radius 30 mm): an error "
+    "once in a turn of the screw.  [default: 0mm]",
+)
+@option(
+    "Machine",
+    "--wheel-division",
+    "wheel_division_mm",
+    type=REACH,
+    help="How far the sectors' edges stand off their places at most, along the rim.  [default: 0mm]",
+)
+@option(
+    "Machine",
+    "--lamp",
+    type=SHARE,
+    help="Light of the pick-ups' lamps: below 10% their cells give no signal, and the drives lose their "
+    "lock.  [default: 100%]",
 )
 @intake_options
 @FOR_MACHINE

@@ -1,15 +1,18 @@
 """Phase lock: the axis drives, from the phase on the tape to the turning of the lead screw, stepped at the
 motion rate.
 
-Signals in: phase of the axis track in cycles (tape against reference, from zero at standstill). Signals out:
-displacement of the machine's screw in mm.
+Signals in: phase of the axis track in cycles (tape against reference, from zero at standstill); the
+reference, in cycles from row to row. Signals out: displacement of the machine's screw in mm.
 
-    tape ──► comparator 153 ──► amplifier 161 ──► integrator 159 ──► motor 163 ──► screw ──┬──► displacement
-                 ▲   (decoder 158)  lead               PI          velocity servo          │
-                 └───────────── pick-up 141, zero 155, trigger 157: displacement / q ──────┘
+    track ─► trigger 152 ─► comparator 153 ─► amplifier 161 ─► integrator 159 ─► motor 163 ─► screw ─┬─►
+                             ▲  decoder 158      lead             PI          velocity servo         │
+    cell 141 ─► trigger 157 ─┘                                                                       │
+       ▲  edges (see sector_wheel)                                                                   │
+       └── wheel 115 ◄── motor 116 ◄── reference track              lamp and cell on the arm 118 ◄───┘
 
-The decoder counts whole cycles, so the error is known over several of them and not over half of one; beyond
-its range fault circuit 162 stops the drive. With e the error in mm, lag T of the motor under its tacho, and s
+The error is the time between the edges of two pulse trains (see comparator); the decoder counts whole cycles,
+so it is known over several of them and not over half of one. Beyond its range fault circuit 162 stops the
+drive. With e the error in mm, lag T of the motor under its tacho, and s
 the complex frequency:
 
     lead    w = e · (1 + T s) / (1 + s/b)            answers the motor's lag
@@ -41,7 +44,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numba import njit
@@ -50,6 +53,8 @@ from morfax.motion.arrays import Array
 from morfax.motion.drive import SOUND, Drive, as_rows, conditioned_step
 from morfax.motion.ramp import positions_mm
 from morfax.player.monitor.monitor import FollowingLimit, learn_table
+from morfax.player.tape.comparator import compared, track_edges
+from morfax.player.tape.sector_wheel import SectorWheel, edges_since, last_edge
 
 TOLERANCE_CYCLES = 0.25  # of following: noise of the phase, and what a dropout leaves unknown
 TRIED_SPEEDS = 16  # points of the table of following errors, up to the top speed
@@ -59,7 +64,8 @@ SETTLING_S = 0.1
 BACK_S = 0.5e-3  # a third of the way in a period of 6 kHz
 STEPS_PER_PERIOD = 20.0  # of the natural frequency, at a low motion rate
 FEWEST_STEPS = 10.0  # per natural period
-POSITION, SPEED, DEMAND, LEAD, ERROR = range(5)  # columns of the state of an axis
+# columns of the state of an axis; SECTOR: the one that its cell saw last, COUNT: of the edges seen
+POSITION, SPEED, DEMAND, LEAD, ERROR, SECTOR, COUNT = range(7)
 
 
 # A DC motor of 3 000/min on a screw of 5 mm.
@@ -122,6 +128,14 @@ def place(settings: PhaseLock, dt_s: float) -> Network:
     return Network(2 * k / (g * dt_s), zero, 1 - g, lead_pole)
 
 
+@dataclass(frozen=True, slots=True)
+class Reference:
+    """What the reference track does at the machine: cycles from row to row, and the wheels that it turns."""
+
+    cycles_per_row: float = 1.0
+    wheel: SectorWheel = field(default_factory=SectorWheel)
+
+
 class Drives:
     """The axis drives; state is carried from block to block. `steps`: loop steps from row to row."""
 
@@ -133,9 +147,14 @@ class Drives:
         settings: PhaseLock | None = None,
         *,
         steps: int = 1,
+        reference: Reference | None = None,
     ) -> None:
         self.settings = settings or PhaseLock()
         self._mm_per_cycle, self._dt_s, self._steps = mm_per_cycle, 1 / (rate_hz * steps), steps
+        reference = reference or Reference()
+        self._wheels = reference.wheel.wheels(axes, mm_per_cycle)
+        self._cycles = reference.cycles_per_row / steps  # of the reference in a step
+        self._stepped = 0
         network = place(self.settings, self._dt_s)
         self._network = np.array(
             [network.gain, network.zero, network.lead_zero, network.lead_pole]
@@ -148,7 +167,9 @@ class Drives:
                 drive.top_speed_mm_s,
             ]
         )
-        self._state = np.zeros((axes, 5))
+        self._state = np.zeros((axes, 7))
+        # before the first edge
+        self._state[:, SECTOR], self._state[:, COUNT] = self._wheels.sectors - 1, -1
         self._last = np.zeros((1, axes))  # row of phases
         self.conditions = [SOUND] * axes
 
@@ -161,6 +182,8 @@ class Drives:
         scale = np.array([self._mm_per_cycle, range_mm, self._dt_s, back])
         rows = _follow(
             cycles,
+            (self._stepped, self._cycles),
+            self._wheels,
             scale,
             self._network,
             self._drive,
@@ -168,6 +191,7 @@ class Drives:
             self._state,
             moved,
         )
+        self._stepped += rows
         return moved[self._steps - 1 : rows : self._steps]
 
     def _between(self, cycles: Array) -> Array:
@@ -186,6 +210,11 @@ class Drives:
         way = positions_mm(np.zeros(len(shift_mm)), shift_mm, ADJUSTING_MM_S, rate_hz=rate_hz)
         still = np.repeat(way[-1:], round(SETTLING_S * rate_hz), axis=0)
         self.follow(np.vstack([way, still]) / self._mm_per_cycle)
+
+    @property
+    def cell_edges(self) -> Array:
+        """The edges that the cells 141 have given since the start, whole numbers."""
+        return self._state[:, COUNT].copy()
 
     @property
     def error_mm(self) -> Array:
@@ -219,19 +248,36 @@ def following_limit(settings: PhaseLock, mm_per_cycle: float, rate_hz: float) ->
 
 
 @njit(cache=True, nogil=True)
-def _follow(cycles, scale, network, drive, conditions, state, moved_mm):  # type: ignore[no-untyped-def]
-    """Step all axes through a block; the rows done before an error was out of range."""
+def _follow(cycles, reference, wheels, scale, network, drive, conditions, state, moved_mm):  # type: ignore[no-untyped-def]
+    """Step all axes through a block; the rows done before an error was out of range.
+
+    `reference`: steps before the block, and cycles of the reference in a step.
+    """
     mm_per_cycle, range_mm, dt_s, back = scale
     gain, zero, lead_zero, lead_pole = network
     # mm/s that a demand may lie off the speed before the current is at its limit
     reach = drive[1] / drive[0]
     top = drive[2]
     for row in range(len(cycles)):
+        # the reference since the wheels' last whole turn; motor 116 turns them by it
+        told = (reference[0] + row) * reference[1]
+        turned = math.floor(told / wheels.sectors)
+        phase = told - turned * wheels.sectors
+        wheel_turned = phase / wheels.sectors
         for axis in range(len(state)):
-            position, speed, demand, lead, error = state[axis]
+            position, speed, demand, lead, error, sector, count = state[axis]
             moved_mm[row, axis] = position
-            now = cycles[row, axis] * mm_per_cycle - position  # comparator 153, decoder 158
+            # 1. the cell's edges (141, 157), the tape's (152), and how far they are apart (153, 158)
+            share = 0.0
+            if wheels.is_lit:
+                seen, share = last_edge(position, wheel_turned, axis, wheels)
+                count += edges_since(seen, int(sector), wheels.sectors)
+                state[axis, SECTOR], state[axis, COUNT] = seen, count
+            tape_count, tape_share = track_edges(phase, cycles[row, axis])
+            tape = tape_count + turned * wheels.sectors, tape_share
+            now = compared(tape, (count, share)) * mm_per_cycle
             state[axis, ERROR] = now
+            # 2. amplifier, integrator, motor
             if not abs(now) <= range_mm:  # fault circuit 162; also where the phase is no number
                 return row
             lead_now = lead_pole * lead + now - lead_zero * error  # amplifier 161

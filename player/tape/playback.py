@@ -32,8 +32,9 @@ from morfax.motion.faults import LockFault
 from morfax.motion.motion import AXES, Motion
 from morfax.player.monitor.monitor import Supervised
 from morfax.player.tape.bare import NOT_VOUCHED
-from morfax.player.tape.phase_lock import Drives, PhaseLock, following_limit
+from morfax.player.tape.phase_lock import Drives, PhaseLock, Reference, following_limit
 from morfax.player.tape.reader import TapeReader
+from morfax.player.tape.sector_wheel import THRESHOLD, SectorWheel
 from morfax.player.tape.setting import Setting
 from morfax.player.tape.track_order import END_CYCLES, found_order
 from morfax.recorder.sound.pipe import PipeSource, Samples
@@ -56,6 +57,7 @@ def play(
     resume_at_s: float = 0.0,
     zero_mm: Sequence[float] = (),
     override: float = 1.0,
+    wheel: SectorWheel | None = None,
 ) -> TapePlayback:
     """Put a tape in the machine; values given by hand override its text chunk. Raises TapeFault, FileFault.
 
@@ -65,8 +67,8 @@ def play(
     not say where it ends. `still`, `alike`: axes that may stand from start to end, and that may run alike.
 
     `settings` are those of the drives (MOTORS). `zero_mm`: by how much the phase changers move each axis;
-    `override`: how fast the tape runs against the speed at which it was recorded. Raises ValueError for what
-    cannot be of these.
+    `override`: how fast the tape runs against the speed at which it was recorded. `wheel`: what is wrong with
+    the sector wheels of the machine's pick-ups. Raises ValueError for what cannot be of these.
 
     `acceleration_mm_s2` is the most that the program asks of an axis (else what the motors can do); a dropout
     is ridden over as long as that makes the count certain. `resume_at_s` is a tape time at which the machine
@@ -95,7 +97,9 @@ def play(
     ):  # the place is not the tape's start, so the end does not go along
         with Tape.of(opened(), reference_hz=reference_hz, cycles_per_mm=cycles_per_mm) as tape:
             fmt = replace(fmt, end_mm=tape.format.end_mm)
-    setting = Setting(settings or PhaseLock(), tuple(zero_mm), override)
+    setting = Setting(
+        settings or PhaseLock(), tuple(zero_mm), override, wheel or SectorWheel()
+    )
     _check_resumption(resume_at_s, start_mm, frames / fmt.sample_rate_hz)
     playback = TapePlayback(open_tape, fmt, frames, setting, acceleration_mm_s2, resume_at_s)
     playback.found_order = found
@@ -143,7 +147,7 @@ class TapePlayback(Supervised):
     Known beforehand: `format`, `frames`, `duration_s`, `start_mm`. Figures of the last time through, one per
     axis of the tape: `following_error_mm` (the largest), `end_mm` (where the machine stands), `end_error_mm`
     (against the end that the tape states; None before the end, or if it states none). `conditions`: what is
-    wrong with the drives. `found_order`: on which tracks reference, X, Y … were found, if that was not as
+    wrong with the drives. `cell_edges`: the edges that the pick-up of each axis has given. `found_order`: on which tracks reference, X, Y … were found, if that was not as
     they should be. The rate and the times of the motion are the machine's, as are those of a drive's fault; a
     tape's fault has tape time.
     """
@@ -175,6 +179,7 @@ class TapePlayback(Supervised):
         )
         self.end_mm: Array = self.start_mm.copy()
         self.end_error_mm: Array | None = None
+        self.cell_edges: Array = np.zeros(len(fmt.axes))
         self.found_order: tuple[int, ...] | None = None
         self.notes: tuple[str, ...] = ()  # a bare tape gives one when its first block is read
         self.conditions = [SOUND] * len(fmt.axes)
@@ -197,7 +202,12 @@ class TapePlayback(Supervised):
         """Play: the motion in blocks; raises TapeFault, LockFault, FollowingFault after its last sample."""
         fmt = self.format
         drives = Drives(
-            len(fmt.axes), fmt.mm_per_cycle, self.rate_hz, self.settings, steps=self._steps
+            len(fmt.axes),
+            fmt.mm_per_cycle,
+            self.rate_hz,
+            self.settings,
+            steps=self._steps,
+            reference=Reference(fmt.reference_hz / fmt.motion_rate_hz, self.setting.wheel),
         )
         drives.adjust(self._zero_mm)
         drives.conditions = self.conditions
@@ -213,6 +223,7 @@ class TapePlayback(Supervised):
                 phases.cycles[:sound] - bearings.zero_cycles + self._zero_mm * fmt.cycles_per_mm
             )
             places_mm = drives.follow(cycles) + rest_mm
+            self.cell_edges = drives.cell_edges
             demand_mm = cycles[: len(places_mm)] * fmt.mm_per_cycle + rest_mm
             monitor.rows_seen = phases.first_row
             rows = monitor.watch(demand_mm, places_mm)
@@ -246,13 +257,19 @@ class TapePlayback(Supervised):
             float(error_mm[axis]) * self.format.cycles_per_mm,
             float(self.end_mm[axis]),
         )
+        why = (
+            f"the tape asks for more than {drive.acceleration_mm_s2:g} mm/s² or "
+            f"{drive.top_speed_mm_s:g} mm/s: play it slower, or record it smoother"
+        )
+        if not self.setting.wheel.is_lit:
+            why = (
+                f"its pick-up gives no signal: the lamp has {self.setting.wheel.light:.0%} of its light, and"
+                f" the trigger needs {THRESHOLD:.0%}"
+            )
         return LockFault(
             f"the drive of {name.upper()} lost its lock at {time_s:.3f} s, position "
             f"{position_mm:.3f} mm: error "
-            f"{error_cycles:+.2f} cycles, allowed ±{self.settings.range_cycles:g}; the tape asks "
-            "for more than "
-            f"{drive.acceleration_mm_s2:g} mm/s² or {drive.top_speed_mm_s:g} mm/s: play it slower, "
-            "or record it smoother",
+            f"{error_cycles:+.2f} cycles, allowed ±{self.settings.range_cycles:g}; {why}",
             axis=name,
             time_s=time_s,
             error_cycles=error_cycles,

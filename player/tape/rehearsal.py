@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import Motion
-from morfax.player.tape.phase_lock import Drives, PhaseLock
+from morfax.player.tape.phase_lock import Drives, PhaseLock, Reference
 from morfax.player.tape.predictor import count_turns, predictor_gains
 from morfax.player.tape.standstill import SURPRISE_CYCLES
 from morfax.player.tape.watch import SHAKE_CYCLES, SHAKE_STRIDE, shake_rows
@@ -50,7 +50,11 @@ class Rehearsal:
         self._format, self._gains = fmt, predictor_gains(rate_hz)
         self._state = np.full((axes, 3), np.nan)
         self._drives = Drives(
-            axes, fmt.mm_per_cycle, rate_hz, (settings or PhaseLock()).suited_to(rate_hz)
+            axes,
+            fmt.mm_per_cycle,
+            rate_hz,
+            (settings or PhaseLock()).suited_to(rate_hz),
+            reference=Reference(fmt.reference_hz / rate_hz),
         )
         self._shown = np.zeros((0, axes), np.float32)  # surprises from the next window on
         self._loud = np.zeros(axes, int)  # windows in a row in which an axis shook

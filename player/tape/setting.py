@@ -1,5 +1,5 @@
 """What is set at the machine before a tape is played: its motors, the zero of each axis, the speed of the
-tape.
+tape, and what is wrong with its pick-ups.
 
 Signals: none; machine.py plays by it.
 
@@ -16,12 +16,13 @@ on the tape turns the wheels.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from morfax.player.tape.phase_lock import MOTORS, PhaseLock
+from morfax.player.tape.sector_wheel import SectorWheel
 
 OVERRIDES = 0.1, 2.0  # what a transport of variable speed does
 LARGEST_ZERO_MM = 1000.0  # half of the machine's travel to either side
@@ -29,11 +30,12 @@ LARGEST_ZERO_MM = 1000.0  # half of the machine's travel to either side
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """Drives, zeros in mm in the order of the axes (missing ones are 0), and the override."""
+    """Drives, zeros in mm in the order of the axes (missing ones are 0), the override, the sector wheels."""
 
     lock: PhaseLock = MOTORS["electric"]
     zero_mm: tuple[float, ...] = ()
     override: float = 1.0
+    wheel: SectorWheel = field(default_factory=SectorWheel)
 
     def __post_init__(self) -> None:
         slowest, fastest = OVERRIDES

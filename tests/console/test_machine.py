@@ -49,6 +49,23 @@ def test_hydraulic_motors_follow_later(morfax: Morfax, here: Path, tape_file: Pa
     assert hydraulic["largest_following_error_mm"] > electric["largest_following_error_mm"]
 
 
+def test_wheels_that_are_wrong_show_in_the_path(
+    morfax: Morfax, here: Path, tape_file: Path
+) -> None:
+    assert morfax("play", tape_file, "-o", "a.csv", "-q").exit_code == 0
+    words = ("--wheel-eccentricity", "0.2mm", "--wheel-division", "0")
+    assert morfax("play", tape_file, "-o", "b.csv", "-q", *words).exit_code == 0
+    apart = distance(read_path("b.csv"), read_path("a.csv")).hausdorff_mm
+    # on each axis 5 mm / 2 pi of 0.2 in 30 mm at most: 5.3 um
+    assert 3 * UM < apart < 5.3 * np.sqrt(2) * UM
+
+
+def test_a_dead_lamp_stops_the_machine(morfax: Morfax, here: Path, tape_file: Path) -> None:
+    answer = morfax("play", tape_file, "-o", "a.csv", "--lamp", "5%")
+    assert answer.exit_code == 6
+    assert "its pick-up gives no signal: the lamp has 5% of its light" in answer.fault
+
+
 @pytest.mark.parametrize(
     ("words", "says"),
     [
@@ -60,6 +77,9 @@ def test_hydraulic_motors_follow_later(morfax: Morfax, here: Path, tape_file: Pa
             "a zero of 4 places does not fit; the tape has 3 axes",
         ),
         (("--zero-adjustment", "0,5m"), "a zero of 5000 mm is too far"),
+        (("--wheel-eccentricity", "5mm"), "5 mm off its axis is broken; give 0 to 3 mm"),
+        (("--wheel-division", "1mm"), "1 mm off their places make no wheel; give 0 to 0.188 mm"),
+        (("--lamp", "150%"), "a lamp of 150% is none; give 0% to 100%"),
         (("--motor", "steam"), "'steam' is not one of 'electric', 'hydraulic'"),
     ],
 )
