@@ -97,9 +97,7 @@ def play(
     ):  # the place is not the tape's start, so the end does not go along
         with Tape.of(opened(), reference_hz=reference_hz, cycles_per_mm=cycles_per_mm) as tape:
             fmt = replace(fmt, end_mm=tape.format.end_mm)
-    setting = Setting(
-        settings or PhaseLock(), tuple(zero_mm), override, wheel or SectorWheel()
-    )
+    setting = Setting(settings or PhaseLock(), tuple(zero_mm), override, wheel or SectorWheel())
     _check_resumption(resume_at_s, start_mm, frames / fmt.sample_rate_hz)
     playback = TapePlayback(open_tape, fmt, frames, setting, acceleration_mm_s2, resume_at_s)
     playback.found_order = found
@@ -146,10 +144,10 @@ class TapePlayback(Supervised):
 
     Known beforehand: `format`, `frames`, `duration_s`, `start_mm`. Figures of the last time through, one per
     axis of the tape: `following_error_mm` (the largest), `end_mm` (where the machine stands), `end_error_mm`
-    (against the end that the tape states; None before the end, or if it states none). `conditions`: what is
-    wrong with the drives. `cell_edges`: the edges that the pick-up of each axis has given. `found_order`: on which tracks reference, X, Y … were found, if that was not as
-    they should be. The rate and the times of the motion are the machine's, as are those of a drive's fault; a
-    tape's fault has tape time.
+    (against the end that the tape states; None before the end, or if it states none), `cell_edges` (given by
+    the pick-up). `conditions`: what is wrong with the drives. `found_order`: on which tracks reference, X, Y …
+    were found, if that was not as they should be. The rate and the times of the motion are the machine's, as
+    are those of a drive's fault; a tape's fault has tape time.
     """
 
     def __init__(

@@ -78,7 +78,10 @@ def test_a_dead_lamp_stops_the_machine(morfax: Morfax, here: Path, tape_file: Pa
         ),
         (("--zero-adjustment", "0,5m"), "a zero of 5000 mm is too far"),
         (("--wheel-eccentricity", "5mm"), "5 mm off its axis is broken; give 0 to 3 mm"),
-        (("--wheel-division", "1mm"), "1 mm off their places make no wheel; give 0 to 0.188 mm"),
+        (
+            ("--wheel-division", "1mm"),
+            "1 mm off their places make no wheel; give 0 to 0.188 mm",
+        ),
         (("--lamp", "150%"), "a lamp of 150% is none; give 0% to 100%"),
         (("--motor", "steam"), "'steam' is not one of 'electric', 'hydraulic'"),
     ],

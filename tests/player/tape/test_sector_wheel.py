@@ -24,7 +24,7 @@ SHARE_MM = 1e-6 * Q_MM  # of the motors' answer: a millionth of a cycle
 
 
 def edges_of(places_mm: np.ndarray, wheels: Wheels) -> np.ndarray:
-    """Edges that a cell has given, with the share since the last, at each row; a cycle of the reference a row."""
+    """Edges that a cell has given, with the share since the last; a cycle of the reference a row."""
     before, count, told = wheels.sectors - 1, -1, []
     for row, place_mm in enumerate(places_mm.tolist()):
         sector, share = last_edge(place_mm, row % wheels.sectors / wheels.sectors, 0, wheels)
@@ -111,7 +111,9 @@ def test_a_lamp_that_is_too_weak_costs_the_lock_within_the_decoder_s_range() -> 
     cycles = np.zeros((600, 1))
     # nothing moves, yet the reference goes on: a cycle in each row, and four are allowed
     for light, rows in ((0.09, 4), (0.11, 600)):
-        drives = Drives(1, Q_MM, MOTION_RATE_HZ, reference=Reference(1.0, SectorWheel(light=light)))
+        drives = Drives(
+            1, Q_MM, MOTION_RATE_HZ, reference=Reference(1.0, SectorWheel(light=light))
+        )
         assert len(drives.follow(cycles)) == rows
 
 
