@@ -146,8 +146,8 @@ class TapePlayback(Supervised):
     axis of the tape: `following_error_mm` (the largest), `end_mm` (where the machine stands), `end_error_mm`
     (against the end that the tape states; None before the end, or if it states none), `cell_edges` (given by
     the pick-up). `conditions`: what is wrong with the drives. `found_order`: on which tracks reference, X,
-    Y … were found, if that was not as they should be. The rate and the times of the motion are the machine's, as
-    are those of a drive's fault; a tape's fault has tape time.
+    Y … were found, if that was not as they should be. The rate and the times of the motion are the machine's,
+    as are those of a drive's fault; a tape's fault has tape time.
     """
 
     def __init__(
