@@ -90,7 +90,7 @@ class SectorWheel:
             late[axis] = np.random.default_rng(SEED + axis).uniform(-1, 1, screw.sectors)
         late -= late.mean(axis=1, keepdims=True)  # zero is set on the wheel as it is
         late *= self.division_mm / width_mm
-        edges = np.arange(-1, screw.sectors + 2) + np.pad(late, ((0, 0), (1, 2)), mode="wrap")
+        edges = np.arange(-1.0, screw.sectors + 2) + np.pad(late, ((0, 0), (1, 2)), mode="wrap")
         wobble_turns = self.eccentricity_mm / (TWO_PI * self.radius_mm)
         return Wheels(edges, screw.sectors, 1 / screw.pitch_mm, wobble_turns, self.is_lit)
 
