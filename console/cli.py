@@ -25,6 +25,7 @@ VERBS = {
     "lines": "Say what is on a drawing: a numbered table of its lines, dots and likely lettering.",
     "correct": "Put right what the head got wrong: rub out, bridge, turn, stop.",
     "trace": "Follow the line of a drawing and record the head's motion on a tape.",
+    "batch": "Trace all drawings of a folder, each into a folder of its own.",
     "play": "Play a tape into the simulated machine and write the path it runs.",
     "compare": "Say how far two contours are apart: paths, tapes, or one of them a drawing.",
     "run": "Go the whole way: trace a drawing, play the tape, compare all three.",
@@ -43,7 +44,7 @@ VERBS = {
 EXIT_CODES = """\b
 Exit codes:
   0  done
-  1  compare: further apart than --tolerance; check: do not start the machine
+  1  compare: further apart than --tolerance; check: do not start the machine; batch: some failed
   2  wrong use of the command line
   3  the drawing cannot be used (or is too large for the memory)
   4  no line at that place, or the line was lost (what was traced is kept)

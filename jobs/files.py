@@ -84,6 +84,11 @@ def kind_of(file: FilePath) -> Kind:
     return kind or "path"
 
 
+def kind_by_name(file: FilePath) -> Kind | None:
+    """Which kind of file this is by its name alone; None if the suffix does not say."""
+    return _SUFFIXES.get(file.suffix.lower())
+
+
 def outgoing(file: FilePath, *made_from: FilePath) -> FilePath:
     """Check, before the work starts, that a result can go under this name; raises FileFault if not."""
     check_name(file)

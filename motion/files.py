@@ -5,6 +5,8 @@ complete. A broken run, a full disk or Ctrl-C leaves what stood there before, an
 
     .morfax-MACHINE-PROCESS-RANDOM.wav      a hidden file; that of a run that was killed stays, and is removed
                                             by the next run into the folder, when its process is gone
+
+A folder of results is written in the same way: in a hidden folder of its own, which is renamed.
 """
 
 from __future__ import annotations
@@ -13,6 +15,7 @@ import errno
 import os
 import platform
 import secrets
+import shutil
 import stat
 import zlib
 from collections.abc import Callable, Iterator
@@ -92,6 +95,31 @@ def written_beside(
         raise
 
 
+@contextmanager
+def folder_written_beside(folder: Path, aside: Path) -> Iterator[Path]:
+    """Give a new folder in the folder `aside`, of the same disk; on success it becomes `folder`, in the place
+    of what stood there, on failure it is removed.
+    """
+    name = f"{_HIDDEN}{_here()}-{os.getpid()}-{secrets.token_hex(6)}"
+    beside, before = aside / name, aside / f"{name}-before"
+    try:
+        beside.mkdir(parents=True)
+    except OSError as error:
+        raise _folder_fault(folder, aside, error) from error
+    try:
+        yield beside
+        if folder.exists():
+            folder.replace(before)
+        beside.replace(folder)
+    except OSError as error:
+        if error.errno in _DISK_FULL:
+            raise disk_full_fault(folder, error.errno) from error
+        raise
+    finally:
+        for left in (beside, before):
+            shutil.rmtree(left, ignore_errors=True)
+
+
 def disk_full_fault(file: str | os.PathLike[str], code: int = errno.ENOSPC) -> FileFault:
     """The fault of a file that the disk would not take whole."""
     reason = _DISK_FULL.get(code, os.strerror(code))
@@ -106,7 +134,7 @@ def _create_beside(final: Path) -> Path:
         what = "is a folder" if final.is_dir() else "is not a regular file"
         raise FileFault(f"cannot write {final}: it {what}; give the name of a file")
     folder = final.resolve().parent
-    _clear_leftovers(folder)
+    clear_leftovers(folder)
     name = f"{_HIDDEN}{_here()}-{os.getpid()}-{secrets.token_hex(6)}{final.suffix}"
     beside = folder / name
     try:
@@ -116,15 +144,18 @@ def _create_beside(final: Path) -> Path:
     return beside
 
 
-def _clear_leftovers(folder: Path) -> None:
-    """Remove the hidden files of runs on this machine that were killed; those of others are left alone."""
+def clear_leftovers(folder: Path) -> None:
+    """Remove what runs on this machine that were killed left hidden; that of others is left alone."""
     if os.name != "posix":
         return  # there a signal of 0 would end the process
     for left in folder.glob(f"{_HIDDEN}{_here()}-*"):
         number = left.name.removeprefix(f"{_HIDDEN}{_here()}-").split("-")[0]
-        if number.isdecimal() and not _is_alive(int(number)):
-            with suppress(OSError):
-                left.unlink()
+        if not number.isdecimal() or _is_alive(int(number)):
+            continue
+        if left.is_dir():
+            shutil.rmtree(left, ignore_errors=True)
+        with suppress(OSError):
+            left.unlink()
 
 
 def _is_alive(process: int) -> bool:

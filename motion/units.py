@@ -43,6 +43,7 @@ _ANGLE_RAD = {
     "turn": 2 * math.pi,
 }
 _SHARE = {"%": 0.01}
+_MEMORY_BYTES = {"mb": 1e6, "gb": 1e9, "tb": 1e12, "mib": 2.0**20, "gib": 2.0**30}
 _NUMBER_AND_UNIT = re.compile(
     r"([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)\s*([a-z/\"°%]*)", re.ASCII
 )
@@ -78,6 +79,14 @@ def parse_time_s(text: str) -> float:
     if time_s < 0:
         raise ValueError(_refusal(text, "time", allowed))
     return time_s
+
+
+def parse_memory_bytes(text: str) -> float:
+    """Memory in bytes of "2GB", "500MB", "1.5GiB"; a bare number is one of GB. Above zero."""
+    allowed = "2GB, 800MB or 1.5GiB, above zero"
+    words = text.strip()
+    words = f"{words}GB" if words[-1:].isdigit() else words
+    return _positive(_parse(words, "memory", _MEMORY_BYTES, allowed), text, "memory", allowed)
 
 
 def parse_angle_rad(text: str) -> float:

@@ -12,6 +12,7 @@ from morfax.motion.units import (
     parse_angle_rad,
     parse_frequency_hz,
     parse_length_mm,
+    parse_memory_bytes,
     parse_place_mm,
     parse_share,
     parse_speed_mm_s,
@@ -263,6 +264,9 @@ PLACE = Quantity("x,y", parse_place_mm)
 PIXELS = Quantity("x,y", _parse_pixels)
 PLACES = Quantity("x,y,z", _parse_places_mm)
 TIME = Quantity("time", parse_time_s)
+LIMIT = Quantity("time", parse_time_s, above_zero=True)
+# with its libraries a worker takes 0.8 GB of addresses before it has a drawing
+MEMORY = Quantity("memory", parse_memory_bytes, within="1GB to 1000TB")
 LINES = Quantity("lines", _parse_lines)
 ORDER = Quantity("lines", _parse_order)
 STOPS = Quantity("stops", _parse_stops)

@@ -26,6 +26,7 @@ ROOMS = (
     "jobs",
     "reports",
     "panel",
+    "batch",
     "console",
     "samples",
 )

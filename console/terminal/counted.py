@@ -1,0 +1,57 @@
+"""A batch at the terminal: drawings done and failed, a minute, and the time that is left.
+
+On a terminal the line is written anew as it changes; elsewhere, such as in a log, once a minute.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Generator, Iterator
+from typing import TYPE_CHECKING
+
+import click
+
+if TYPE_CHECKING:
+    from morfax.batch.row import Row
+    from morfax.batch.tally import Tally
+    from morfax.console.terminal.desk import Desk
+
+EVERY_S = {True: 0.2, False: 60.0}  # on a terminal, and elsewhere
+CLEAR = "\r\x1b[K"  # back to the beginning of the line, and clear it
+
+
+def counted(rows: Generator[Row, None, None], tally: Tally, desk: Desk) -> Iterator[Row]:
+    """Pass rows on, counting them, and say how far the batch is."""
+    live = sys.stderr.isatty()
+    said_s = time.monotonic() if not live else 0.0
+    try:
+        for row in rows:
+            tally.count(row)
+            now_s = time.monotonic()
+            if not desk.quiet and now_s - said_s >= EVERY_S[live]:
+                said_s = now_s
+                click.echo(
+                    f"{CLEAR}{told(tally)}" if live else told(tally), nl=not live, err=True
+                )
+            yield row
+    finally:
+        rows.close()  # ends the drawings that run
+        if live and not desk.quiet:
+            click.echo(CLEAR, nl=False, err=True)
+
+
+def told(tally: Tally) -> str:
+    """How far a batch is, in one line."""
+    of = "" if tally.total is None else f" of {tally.total}"
+    left = "" if tally.left_s is None else f", {_time(tally.left_s)} left"
+    failed = f", {tally.failed} failed" if tally.failed else ""
+    return f"{tally.ended}{of} drawings{failed}, {tally.per_minute:.0f} a minute{left}"
+
+
+def _time(seconds: float) -> str:
+    """A time that nobody needs exactly."""
+    if seconds < 90:
+        return f"{seconds:.0f} s"
+    minutes = seconds / 60
+    return f"{minutes:.0f} min" if minutes < 90 else f"{minutes / 60:.1f} h"
