@@ -93,7 +93,7 @@ class Cluster:
                 f"no scheduler answers at {self.scheduler} ({error}); start one with dask scheduler"
             ) from None
         with client:
-            yield from self._gathered(client, iter(files), as_completed())
+            yield from self._gathered(client, iter(files), as_completed(loop=client.loop))
 
     def _gathered(self, client: Client, rest: Iterator[str], flight: Any) -> Iterator[Row]:
         """Keep some drawings on their way, and give out rows as they come."""

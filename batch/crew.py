@@ -19,15 +19,17 @@ Questions: none.
 from __future__ import annotations
 
 import multiprocessing
+import os
 import sys
 import time
 from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
-from multiprocessing import connection
+from multiprocessing import connection, forkserver
 from multiprocessing.context import ForkServerContext, SpawnContext
 from multiprocessing.process import BaseProcess
+from pathlib import Path
 
 from morfax.batch import worker
 from morfax.batch.row import KILLED, OVER_LIMIT, SPOILT, Row
@@ -38,6 +40,7 @@ DEATHS = 2  # of workers, over one drawing
 FUTILE = (
     20  # workers in a row that died before they had taken up anything: something else is wrong
 )
+WARM = ("morfax.batch.warm",)
 ENDS_WITHIN_S = 5.0  # a worker that was told to end
 
 
@@ -78,12 +81,19 @@ class Worker:
 class Crew:
     """The workers of a batch; `killed` counts those that died, whoever killed them.
 
-    `clear` is called when a worker has gone, to remove what it has left unfinished.
+    `clear` is called when a worker has gone, to remove what it has left unfinished. `preload` is imported
+    once, before the workers are forked; only that of the first crew of a process counts.
     """
 
-    def __init__(self, work: worker.Work, limits: Limits, clear: Callable[[], None]) -> None:
+    def __init__(
+        self,
+        work: worker.Work,
+        limits: Limits,
+        clear: Callable[[], None],
+        preload: tuple[str, ...] | None = None,
+    ) -> None:
         self._work, self._limits, self._clear = work, limits, clear
-        self._context = _context()
+        self._context = _context(WARM if preload is None else preload)
         self._workers: list[Worker] = []
         self._again: deque[str] = deque()
         self._deaths: dict[str, int] = {}  # of drawings that are to be tried again
@@ -221,10 +231,20 @@ class Crew:
         return one
 
 
-def _context() -> SpawnContext | ForkServerContext:
+def _context(preload: tuple[str, ...]) -> SpawnContext | ForkServerContext:
     """How processes are started: forked from one that is warm, where forking is safe; else anew."""
     if sys.platform != "linux":
         return multiprocessing.get_context("spawn")
     context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload(["morfax.batch.warm"])
+    context.set_forkserver_preload(list(preload))
+    before = os.environ.get("PYTHONPATH")
+    # Python up to 3.12 does not hand its search path on
+    os.environ["PYTHONPATH"] = os.pathsep.join(path or str(Path.cwd()) for path in sys.path)
+    try:
+        forkserver.ensure_running()
+    finally:
+        if before is None:
+            del os.environ["PYTHONPATH"]
+        else:
+            os.environ["PYTHONPATH"] = before
     return context

@@ -9,6 +9,7 @@ Source: JSON Lines. Questions: a last line that is cut short (a full disk) is pa
 from __future__ import annotations
 
 import json
+import os
 from array import array
 from bisect import bisect_left
 from collections.abc import Iterator
@@ -29,10 +30,13 @@ class Manifest:
     def __init__(self, folder: Path) -> None:
         self._file = folder / NAME
         self._known = array("Q", sorted(_keys(self._file)))
+        is_cut_short = _is_cut_short(self._file)
         try:
             self._stream = self._file.open("ab", buffering=0)
         except OSError as error:
             raise FileFault(f"cannot write {self._file}: {error.strerror}") from None
+        if is_cut_short:
+            self._stream.write(b"\n")
 
     def __enter__(self) -> Manifest:
         return self
@@ -81,6 +85,15 @@ def _keys(file: Path) -> Iterator[int]:
     for row in rows(file.parent):
         if row.hash and row.folder:
             yield int(row.hash[:_KNOWN_DIGITS], 16)
+
+
+def _is_cut_short(file: Path) -> bool:
+    """Whether the last line of a file has no end."""
+    if not file.exists() or not file.stat().st_size:
+        return False
+    with file.open("rb") as stream:
+        stream.seek(-1, os.SEEK_END)
+        return stream.read() != b"\n"
 
 
 def _read(line: str) -> Row | None:

@@ -1,7 +1,8 @@
 """Warm: imported once by the process that workers are forked from, it loads libraries and kernels for all.
 
 A square with a bar and a dent is traced and written, in a folder that goes again: the kernels of head and
-recorder are then loaded, or compiled on the first run. A worker that replaces one that died starts within some milliseconds.
+recorder are then loaded, or compiled on the first run. A worker that replaces one that died then starts
+within some milliseconds.
 
 Source: our own; `multiprocessing` calls it a preload of its fork server. Questions: libraries that have
 started threads must not be forked, so they are kept to one thread before they are loaded.

@@ -41,7 +41,7 @@ def draw_small(result: TraceResult, file: FilePath) -> None:
     grey = 255 - np.floor(GREYS * np.clip(darkness, 0, 1)) / GREYS * 255 * LIGHT
     picture = cv2.cvtColor(grey.astype(np.uint8), cv2.COLOR_GRAY2BGR)
     places = [_pixels(run, result.drawing, scale) for run in result.traced.path.runs()]
-    cv2.polylines(picture, places, False, LINE_BGR, 1, cv2.LINE_AA, SHIFT)
+    cv2.polylines(picture, places, False, LINE_BGR, 2, cv2.LINE_AA, SHIFT)
     _save(picture, file)
 
 

@@ -1,0 +1,109 @@
+"""The crew: workers that die, hang, eat memory or are killed cost their own drawing, and nothing else."""
+
+from __future__ import annotations
+
+import gc
+import os
+import random
+import signal
+import time
+import tracemalloc
+from collections import Counter
+from collections.abc import Iterator
+from contextlib import suppress
+from itertools import islice
+from pathlib import Path
+
+import pytest
+
+from morfax.batch.crew import Crew, Limits
+from morfax.batch.row import Row
+from morfax.motion.faults import Fault
+from tests.batch.works import Stillborn, Toy
+
+pytestmark = pytest.mark.skipif(os.name != "posix", reason="needs kill -9 and RLIMIT_AS")
+LIGHT = ("morfax.batch.worker", "cv2")  # what these workers need
+
+
+def crew_of(folder: Path, **limits: float) -> Crew:
+    """A crew of toys."""
+    limits = {"workers": 2, "limit_s": 60.0, "memory_bytes": None, **limits}
+    return Crew(Toy(folder), Limits(**limits), lambda: None, LIGHT)  # type: ignore[arg-type]
+
+
+def test_each_fault_costs_its_own_drawing(tmp_path: Path) -> None:
+    names = [f"well-{k}" for k in range(30)]
+    for place, bad in ((3, "dies-1"), (9, "once-1"), (14, "hangs-1"), (20, "eats-1")):
+        names.insert(place, bad)
+    crew = crew_of(tmp_path, limit_s=1.0, memory_bytes=2_000_000_000)
+    rows = {row.file: row for row in crew.rows(names)}
+    assert sorted(rows) == sorted(names)
+    endings = {name: row.ending for name, row in rows.items() if not row.is_well}
+    assert endings == {"dies-1": "killed", "hangs-1": "over limit", "eats-1": "no memory"}
+    assert rows["hangs-1"].code == 124 and 1.0 <= rows["hangs-1"].seconds < 20.0
+    assert rows["dies-1"].code == 137 and crew.killed == 3  # twice, and once by once-1
+    assert crew.processes == []
+
+
+def test_workers_killed_at_random_lose_no_drawing_and_do_none_twice(tmp_path: Path) -> None:
+    names = [f"well-{k}" for k in range(400)]
+    crew, chance = crew_of(tmp_path), random.Random(4)
+    rows = list[Row]()
+    for row in crew.rows(names):
+        rows.append(row)
+        if len(rows) % 5 == 0:
+            time.sleep(chance.uniform(0, 0.003))  # s; about what a toy takes
+            with suppress(ProcessLookupError):
+                os.kill(chance.choice(crew.processes), signal.SIGKILL)
+    assert Counter(row.file for row in rows) == Counter(names)
+    assert crew.killed >= 40
+    assert {row.ending for row in rows} <= {"done", "killed"}
+
+
+def test_whoever_stops_asking_ends_the_workers(tmp_path: Path) -> None:
+    crew = crew_of(tmp_path)
+    rows = crew.rows(["well-1", "hangs-1", "hangs-2", "hangs-3"])
+    assert next(rows).is_well
+    running = crew.processes
+    begun = time.monotonic()
+    rows.close()
+    assert (
+        time.monotonic() - begun < 5.0
+    )  # s; a worker that is free ends at once, others are killed
+    for process in running:
+        with pytest.raises(ProcessLookupError):
+            os.kill(process, 0)
+
+
+def test_workers_that_never_start_are_not_replaced_for_ever(tmp_path: Path) -> None:
+    crew = Crew(Stillborn(), Limits(2), lambda: None, LIGHT)
+    with pytest.raises(Fault, match=r"died as they started; give more with --memory"):
+        list(crew.rows(["well-1", "well-2"]))
+
+
+def test_the_parent_holds_no_more_of_many_drawings_than_of_few(tmp_path: Path) -> None:
+    held_bytes = dict[int, int]()
+    tracemalloc.start()
+    try:
+        for count, _ in enumerate(crew_of(tmp_path).rows(f"well-{k}" for k in range(1501))):
+            if count in (100, 1500):
+                gc.collect()
+                held_bytes[count] = tracemalloc.get_traced_memory()[0]
+    finally:
+        tracemalloc.stop()
+    # a name of each drawing alone would be 70 000 bytes more
+    assert held_bytes[1500] - held_bytes[100] < 10_000
+
+
+def test_names_are_asked_for_as_workers_are_free(tmp_path: Path) -> None:
+    asked = list[int]()
+
+    def names() -> Iterator[str]:
+        for k in range(100):
+            asked.append(k)
+            yield f"well-{k}"
+
+    rows = crew_of(tmp_path).rows(names())
+    taken: list[Row] = list(islice(rows, 5))
+    rows.close()
+    assert len(taken) == 5 and len(asked) <= 5 + 2  # workers
