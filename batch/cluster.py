@@ -26,7 +26,7 @@ from typing import TYPE_CHECKING, Any
 from morfax.batch.one import trace_one
 from morfax.batch.order import Order
 from morfax.batch.results import LocalResults, RemoteResults, Results
-from morfax.batch.row import KILLED, MISTAKE, Row
+from morfax.batch.row import KILLED, MISTAKE, BatchRow
 from morfax.batch.search import is_address
 from morfax.jobs.wrong_use import WrongUse
 from morfax.motion.faults import FileFault
@@ -49,7 +49,7 @@ class There:
     order: Order
     address: str | None
 
-    def __call__(self, file: str, sent: Files | None) -> tuple[Row, Files]:
+    def __call__(self, file: str, sent: Files | None) -> tuple[BatchRow, Files]:
         """Trace a drawing that was sent, or is read from its address; its row and its files."""
         from morfax.batch import worker
 
@@ -78,7 +78,7 @@ class Cluster:
     order: Order
     results: LocalResults | RemoteResults
 
-    def rows(self, files: Iterable[str]) -> Iterator[Row]:
+    def rows(self, files: Iterable[str]) -> Iterator[BatchRow]:
         """Have the drawings traced; a row for each as it ends. Raises WrongUse without dask, FileFault if
         there is no scheduler.
         """
@@ -95,7 +95,7 @@ class Cluster:
         with client:
             yield from self._gathered(client, iter(files), as_completed(loop=client.loop))
 
-    def _gathered(self, client: Client, rest: Iterator[str], flight: Any) -> Iterator[Row]:
+    def _gathered(self, client: Client, rest: Iterator[str], flight: Any) -> Iterator[BatchRow]:
         """Keep some drawings on their way, and give out rows as they come."""
         under_way: dict[str, str] = {}  # names, by the key of what is done with them
         while True:
@@ -116,7 +116,7 @@ class Cluster:
             future = next(flight)
             yield self._row(under_way.pop(future.key), future)
 
-    def _before(self, file: str) -> Row | None:
+    def _before(self, file: str) -> BatchRow | None:
         """The row of a drawing of this computer whose results are here already."""
         if is_address(file) or isinstance(self.results, RemoteResults):
             return None
@@ -140,18 +140,18 @@ class Cluster:
                 found[part.name] = part.read_bytes()
         return found
 
-    def _row(self, file: str, future: Any) -> Row:
+    def _row(self, file: str, future: Any) -> BatchRow:
         """The row of a drawing that has ended; files that were sent back are written."""
         from distributed import KilledWorker
 
         try:
             row, files = future.result()
         except KilledWorker as error:
-            return Row(file, "killed", code=KILLED, fault=str(error))
+            return BatchRow(file, "killed", code=KILLED, fault=str(error))
         except Exception as error:
             told = f"{type(error).__name__}: {error}"
-            return Row(file, "mistake", code=MISTAKE, fault=" ".join(told.split()))
-        assert isinstance(row, Row)
+            return BatchRow(file, "mistake", code=MISTAKE, fault=" ".join(told.split()))
+        assert isinstance(row, BatchRow)
         if files:
             with self.results.folder(row.folder) as folder:
                 for name, held in files.items():

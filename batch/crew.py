@@ -32,7 +32,7 @@ from multiprocessing.process import BaseProcess
 from pathlib import Path
 
 from morfax.batch import worker
-from morfax.batch.row import KILLED, OVER_LIMIT, SPOILT, Row
+from morfax.batch.row import KILLED, OVER_LIMIT, SPOILT, BatchRow
 from morfax.motion.faults import Fault
 from morfax.motion.units import format_time_s
 
@@ -100,7 +100,7 @@ class Crew:
         self._futile = 0
         self.killed = 0
 
-    def rows(self, files: Iterable[str]) -> Generator[Row, None, None]:
+    def rows(self, files: Iterable[str]) -> Generator[BatchRow, None, None]:
         """Have the drawings traced; a row for each as it ends, that of a drawing that killed two workers
         without a hash. Whoever stops asking ends the workers. Raises Fault if no worker stays alive.
         """
@@ -137,7 +137,7 @@ class Crew:
         """Whether there are fewer workers than there may be."""
         return len(self._workers) < self._limits.workers
 
-    def _collected(self) -> Iterator[Row]:
+    def _collected(self) -> Iterator[BatchRow]:
         """Wait until something happens, and see to all workers to which it did."""
         ready = set(connection.wait([one.pipe for one in self._workers], self._patience_s()))
         for one in list(self._workers):
@@ -153,7 +153,7 @@ class Crew:
             return None
         return max(0.0, min(begun_s) + limit_s - time.monotonic())
 
-    def _heard(self, one: Worker) -> Row | None:
+    def _heard(self, one: Worker) -> BatchRow | None:
         """Take what a worker says: that it has begun, a row, or nothing any more."""
         try:
             said = one.pipe.recv()
@@ -162,14 +162,14 @@ class Crew:
         if said == worker.BEGUN:
             one.begun_s, self._futile = time.monotonic(), 0
             return None
-        assert isinstance(said, Row)
+        assert isinstance(said, BatchRow)
         self._deaths.pop(said.file, None)
         one.file = one.begun_s = None
         if said.ending in SPOILT:
             self._dismiss(one)
         return said
 
-    def _late(self, one: Worker) -> Row | None:
+    def _late(self, one: Worker) -> BatchRow | None:
         """The row of a drawing that takes longer than it may; its worker is replaced."""
         limit_s = self._limits.limit_s
         if limit_s is None or one.begun_s is None or one.file is None:
@@ -180,9 +180,11 @@ class Crew:
         file = one.file
         self._dismiss(one)
         told = f"took longer than {format_time_s(limit_s)}; give more with --limit"
-        return Row(file, "over limit", code=OVER_LIMIT, fault=told, seconds=round(seconds, 3))
+        return BatchRow(
+            file, "over limit", code=OVER_LIMIT, fault=told, seconds=round(seconds, 3)
+        )
 
-    def _died(self, one: Worker) -> Row | None:
+    def _died(self, one: Worker) -> BatchRow | None:
         """Replace a worker that died; the row of its drawing if it was the second one over it."""
         file, had_begun = one.file, one.begun_s is not None
         self._dismiss(one)
@@ -202,7 +204,7 @@ class Crew:
         told = (
             f"{DEATHS} workers died over it; trace it alone to see why, or do it with --force"
         )
-        return Row(file, "killed", code=KILLED, fault=told)
+        return BatchRow(file, "killed", code=KILLED, fault=told)
 
     def _count_futile(self) -> None:
         """Give up if worker after worker dies before it takes up anything."""

@@ -20,7 +20,7 @@ from morfax.batch.manifest import Manifest
 from morfax.batch.one import TraceOne, left_out
 from morfax.batch.order import Order
 from morfax.batch.results import LocalResults, RemoteResults
-from morfax.batch.row import Row
+from morfax.batch.row import BatchRow
 from morfax.jobs.listener import SILENT, Listener
 from morfax.jobs.wrong_use import WrongUse
 from morfax.motion.faults import FileFault
@@ -66,7 +66,7 @@ class BatchJob:
             self.out.rstrip("/").rsplit("/", 1)[-1] if search.is_address(self.out) else self.out
         )
 
-    def rows(self, listener: Listener = SILENT) -> Generator[Row, None, None]:
+    def rows(self, listener: Listener = SILENT) -> Generator[BatchRow, None, None]:
         """Trace; each row as it ends. Whoever stops asking ends the drawings that run and leaves the rest.
 
         Raises WrongUse, FileFault, CardFault, and Fault if no worker stays alive.
@@ -82,7 +82,7 @@ class BatchJob:
                 manifest.append(row)
                 yield row
 
-    def _ended(self) -> Generator[Row, None, None]:
+    def _ended(self) -> Generator[BatchRow, None, None]:
         """The rows, from workers here or on a cluster."""
         local = LocalResults(self.folder)
         if self.scheduler is not None:

@@ -16,7 +16,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from types import TracebackType
 
-from morfax.batch.row import Row
+from morfax.batch.row import BatchRow
 from morfax.motion.faults import FileFault
 from morfax.motion.files import printable
 
@@ -49,21 +49,21 @@ class Manifest:
     ) -> None:
         self._stream.close()
 
-    def append(self, row: Row) -> None:
+    def append(self, row: BatchRow) -> None:
         """Write a row, unless the drawing was there already and has one."""
         if row.kept and self._has(row):
             return
         line = printable(json.dumps(row.as_plain(), ensure_ascii=False)) + "\n"
         self._stream.write(line.encode())
 
-    def _has(self, row: Row) -> bool:
+    def _has(self, row: BatchRow) -> bool:
         """Whether there was a row of this hash when the batch began."""
         key = int(row.hash[:_KNOWN_DIGITS], 16)
         place = bisect_left(self._known, key)
         return place < len(self._known) and self._known[place] == key
 
 
-def rows(folder: Path) -> Iterator[Row]:
+def rows(folder: Path) -> Iterator[BatchRow]:
     """The rows of a folder's manifest, as they were written; raises FileFault if there is none."""
     file = folder / NAME
     try:
@@ -96,9 +96,9 @@ def _is_cut_short(file: Path) -> bool:
         return stream.read() != b"\n"
 
 
-def _read(line: str) -> Row | None:
+def _read(line: str) -> BatchRow | None:
     """The row of a line; None of one that was cut short."""
     try:
-        return Row.of(json.loads(line))
+        return BatchRow.of(json.loads(line))
     except (ValueError, TypeError, AttributeError):
         return None

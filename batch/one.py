@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 from morfax.batch.order import Order
 from morfax.batch.results import FIGURES, PATH, PICTURE, Results
-from morfax.batch.row import MISTAKE, NO_MEMORY, Ending, Row
+from morfax.batch.row import MISTAKE, NO_MEMORY, BatchRow, Ending
 from morfax.jobs.listener import Silent
 from morfax.jobs.trace import TraceJob, TraceOutputs
 from morfax.jobs.wrong_use import WrongUse
@@ -41,7 +41,7 @@ class TraceOne:
     order: Order
     results: Results
 
-    def __call__(self, file: str) -> Row:
+    def __call__(self, file: str) -> BatchRow:
         """Trace the drawing of this name."""
         return trace_one(self.order, Path(file), file, self.results)
 
@@ -57,7 +57,7 @@ class Remarks(Silent):
         self.texts.append(text)
 
 
-def trace_one(order: Order, file: Path, called: str, results: Results) -> Row:
+def trace_one(order: Order, file: Path, called: str, results: Results) -> BatchRow:
     """Trace a drawing, whose name in the manifest is `called`; its row."""
     began_s = time.monotonic()
     _count_memory_anew()
@@ -80,7 +80,7 @@ def is_out_of_memory(error: BaseException) -> bool:
     return isinstance(error, MemoryError) or getattr(error, "code", None) == OPENCV_NO_MEMORY
 
 
-def there_already(order: Order, file: Path, called: str, results: Results) -> Row | None:
+def there_already(order: Order, file: Path, called: str, results: Results) -> BatchRow | None:
     """The row of a drawing whose results are whole; None without any. Raises FileFault."""
     if order.force:
         return None
@@ -88,13 +88,13 @@ def there_already(order: Order, file: Path, called: str, results: Results) -> Ro
     before = results.figures(name)
     if before is None:
         return None
-    row = Row.of(before)
+    row = BatchRow.of(before)
     return replace(
         row, file=called, hash=hashed, folder=name, kept=True, figures=_alone(row.figures)
     )
 
 
-def left_out(order: Order, row: Row, results: Results) -> Row:
+def left_out(order: Order, row: BatchRow, results: Results) -> BatchRow:
     """Write down that a drawing killed its workers, so that the next call leaves it out; the row."""
     try:
         name, hashed = order.folder_name(Path(row.file))
@@ -106,7 +106,7 @@ def left_out(order: Order, row: Row, results: Results) -> Row:
     return row
 
 
-def _traced(order: Order, file: Path, called: str, results: Results) -> Row:
+def _traced(order: Order, file: Path, called: str, results: Results) -> BatchRow:
     """The row of a drawing that is there already, or is traced now."""
     before = there_already(order, file, called, results)
     if before is not None:
@@ -131,7 +131,7 @@ def _traced(order: Order, file: Path, called: str, results: Results) -> Row:
     return replace(row, figures=_alone(row.figures))
 
 
-def _ended(result: TraceResult, called: str, folder: Path) -> Row:
+def _ended(result: TraceResult, called: str, folder: Path) -> BatchRow:
     """The row of a drawing that was traced, at least in part; draws its picture."""
     from morfax.reports.small_picture import draw_small, followed_share
 
@@ -144,8 +144,10 @@ def _ended(result: TraceResult, called: str, folder: Path) -> Row:
     figures["drawing"] = called
     fault = result.fault
     if fault is None:
-        return Row(called, "done", figures=figures)
-    return Row(called, "incomplete", code=fault.exit_code, fault=str(fault), figures=figures)
+        return BatchRow(called, "done", figures=figures)
+    return BatchRow(
+        called, "incomplete", code=fault.exit_code, fault=str(fault), figures=figures
+    )
 
 
 def _draw_sheet(job: TraceJob, picture: Path) -> None:
@@ -159,7 +161,7 @@ def _draw_sheet(job: TraceJob, picture: Path) -> None:
     draw_sheet(scan.pixels, picture)
 
 
-def _write(folder: Path, row: Row) -> None:
+def _write(folder: Path, row: BatchRow) -> None:
     """Write a row, with all of its figures, as the folder's figures.json."""
     from morfax.reports.table import as_json
 
@@ -167,9 +169,9 @@ def _write(folder: Path, row: Row) -> None:
         beside.write_text(as_json(row.as_plain()) + "\n", encoding="utf-8")
 
 
-def _failed(called: str, ending: Ending, code: int, fault: str) -> Row:
+def _failed(called: str, ending: Ending, code: int, fault: str) -> BatchRow:
     """The row of a drawing that gave no result."""
-    return Row(called, ending, code=code, fault=" ".join(fault.split()))
+    return BatchRow(called, ending, code=code, fault=" ".join(fault.split()))
 
 
 def _alone(figures: Mapping[str, Any]) -> dict[str, Any]:

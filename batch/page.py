@@ -17,7 +17,7 @@ from urllib.parse import quote
 
 from morfax.batch import manifest
 from morfax.batch.results import FIGURES, PICTURE
-from morfax.batch.row import Row
+from morfax.batch.row import BatchRow
 from morfax.motion.files import written_beside
 
 NAME = "report.html"
@@ -80,7 +80,7 @@ def write_page(folder: Path) -> tuple[Path, int]:
     return folder / NAME, len(rows)
 
 
-def wants_eye(row: Row) -> float:
+def wants_eye(row: BatchRow) -> float:
     """How much a drawing wants a person's eye: 3 without a result, 2 a lost line, 1 remarks; and up to 1
     more for ink that was not followed.
     """
@@ -101,7 +101,7 @@ def _headings() -> Iterator[str]:
         yield f'<th data-kind="{kind}"{mark}><button type="button">{name}</button></th>'
 
 
-def _line(folder: Path, row: Row) -> str:
+def _line(folder: Path, row: BatchRow) -> str:
     """The table's line of one drawing."""
     share = row.figures.get("ink_followed_share")
     length_mm = row.figures.get("length_mm")
@@ -126,7 +126,7 @@ def _figure(value: float | None, shown: str) -> str:
     return f'<td class="figure" data-key="{UNKNOWN if value is None else value}">{shown}</td>'
 
 
-def _picture(folder: Path, row: Row) -> str:
+def _picture(folder: Path, row: BatchRow) -> str:
     """The picture of a drawing, if it has one."""
     if not row.folder or not (folder / row.folder / PICTURE).is_file():
         return ""
@@ -135,7 +135,7 @@ def _picture(folder: Path, row: Row) -> str:
     return f'<a href="{source}"><img src="{source}" loading="lazy" alt="{name}, traced"></a>'
 
 
-def _linked(row: Row) -> str:
+def _linked(row: BatchRow) -> str:
     """The name of a drawing, which leads to its figures."""
     name = escape(row.file)
     return f'<a href="{quote(f"{row.folder}/{FIGURES}")}">{name}</a>' if row.folder else name

@@ -24,7 +24,7 @@ OVER_LIMIT, NO_MEMORY, KILLED, MISTAKE = 124, 3, 137, 70  # exit codes
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class BatchRow:
     """How one drawing ended: `seconds` by the clock, `memory_mb` at most, `folder` beside the manifest."""
 
     file: str
@@ -49,7 +49,7 @@ class Row:
         return {name: value for name, value in asdict(self).items() if value or name == "code"}
 
     @classmethod
-    def of(cls, plain: Mapping[str, Any]) -> Row:
+    def of(cls, plain: Mapping[str, Any]) -> BatchRow:
         """The row of what JSON held; raises TypeError if it is none."""
         known = {entry.name for entry in fields(cls)}
         row = {name: value for name, value in plain.items() if name in known}

@@ -14,7 +14,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from morfax.batch.row import Row
+from morfax.batch.row import BatchRow
 
 
 @dataclass
@@ -30,7 +30,7 @@ class Tally:
     busy_s: float = 0.0
     began_s: float = field(default_factory=time.monotonic)
 
-    def count(self, row: Row) -> None:
+    def count(self, row: BatchRow) -> None:
         """Take down how a drawing ended."""
         self.endings[row.ending] = self.endings.get(row.ending, 0) + 1
         if row.is_well:

@@ -14,9 +14,9 @@ import signal
 from collections.abc import Callable
 from multiprocessing.connection import Connection
 
-from morfax.batch.row import Row
+from morfax.batch.row import BatchRow
 
-Work = Callable[[str], Row]  # of the name of a drawing; can be pickled
+Work = Callable[[str], BatchRow]  # of the name of a drawing; can be pickled
 BEGUN = "begun"
 ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 

@@ -1,7 +1,7 @@
 """Run all benchmarks, or those named: `python -m benchmarks [tape …]`.
 
 `folder DIR` measures drawings, `flatten [N]` simulated photographs, `linuxcnc` the times of programs,
-`dropouts [N]` dropouts of each kind; these
+`dropouts [N]` dropouts of each kind, `batch [N]` many drawings; these
 take a while and run only if named.
 """
 
@@ -12,7 +12,13 @@ import pkgutil
 import sys
 from pathlib import Path
 
-WITH_WORDS = ("folder", "flatten", "linuxcnc", "dropouts")  # that take words of their own
+WITH_WORDS = (
+    "folder",
+    "flatten",
+    "linuxcnc",
+    "dropouts",
+    "batch",
+)  # that take words of their own
 
 
 def main(names: list[str]) -> None:

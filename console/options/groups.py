@@ -22,6 +22,7 @@ ORDER = (
     "Tape",
     "Wear",
     "Output",
+    "Batch",
     "Server",
 )  # of the headings; options without a group come last
 REST = "Other options"

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import click
 
 if TYPE_CHECKING:
-    from morfax.batch.row import Row
+    from morfax.batch.row import BatchRow
     from morfax.batch.tally import Tally
     from morfax.console.terminal.desk import Desk
 
@@ -21,7 +21,9 @@ EVERY_S = {True: 0.2, False: 60.0}  # on a terminal, and elsewhere
 CLEAR = "\r\x1b[K"  # back to the beginning of the line, and clear it
 
 
-def counted(rows: Generator[Row, None, None], tally: Tally, desk: Desk) -> Iterator[Row]:
+def counted(
+    rows: Generator[BatchRow, None, None], tally: Tally, desk: Desk
+) -> Iterator[BatchRow]:
     """Pass rows on, counting them, and say how far the batch is."""
     live = sys.stderr.isatty()
     said_s = time.monotonic() if not live else 0.0

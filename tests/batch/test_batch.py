@@ -21,7 +21,7 @@ from morfax.batch.manifest import Manifest
 from morfax.batch.order import Order
 from morfax.batch.page import wants_eye, write_page
 from morfax.batch.results import LocalResults
-from morfax.batch.row import Row
+from morfax.batch.row import BatchRow
 from morfax.jobs.settings import HeadSettings, TraceSettings
 from morfax.motion.faults import FileFault
 from tests.console.conftest import Morfax, here, morfax
@@ -144,13 +144,13 @@ def test_patterns_choose_files_without_a_list(scans: Path) -> None:
 
 def test_a_manifest_survives_a_line_that_was_cut_short(tmp_path: Path) -> None:
     with Manifest(tmp_path) as written:
-        written.append(Row("a.png", "done", hash="0" * 64, folder="a"))
+        written.append(BatchRow("a.png", "done", hash="0" * 64, folder="a"))
     with (tmp_path / manifest.NAME).open("a") as stream:
         stream.write('{"file": "b.png", "end')
     assert [row.file for row in manifest.rows(tmp_path)] == ["a.png"]
     with Manifest(tmp_path) as written:  # which begins on a line of its own
-        written.append(Row("a.png", "done", hash="0" * 64, folder="a", kept=True))
-        written.append(Row("c.png", "done", hash="1" * 64, folder="c", kept=True))
+        written.append(BatchRow("a.png", "done", hash="0" * 64, folder="a", kept=True))
+        written.append(BatchRow("c.png", "done", hash="1" * 64, folder="c", kept=True))
     assert [row.file for row in manifest.rows(tmp_path)] == ["a.png", "c.png"]
 
 
@@ -171,13 +171,13 @@ def test_a_folder_appears_whole_or_not_at_all(tmp_path: Path) -> None:
 
 
 def test_what_wants_an_eye_comes_first() -> None:
-    well = Row("a", "done", figures={"ink_followed_share": 0.99})
+    well = BatchRow("a", "done", figures={"ink_followed_share": 0.99})
     order = [
         well,
         replace(well, figures={"ink_followed_share": 0.4}),
         replace(well, remarks=("edges are close together",)),
-        Row("a", "incomplete", figures={"ink_followed_share": 0.9}),
-        Row("a", "fault"),
+        BatchRow("a", "incomplete", figures={"ink_followed_share": 0.9}),
+        BatchRow("a", "fault"),
     ]
     grades = [wants_eye(row) for row in order]
     assert grades == sorted(grades) and len(set(grades)) == len(grades)

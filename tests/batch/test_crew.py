@@ -17,7 +17,7 @@ from pathlib import Path
 import pytest
 
 from morfax.batch.crew import Crew, Limits
-from morfax.batch.row import Row
+from morfax.batch.row import BatchRow
 from morfax.motion.faults import Fault
 from tests.batch.works import Stillborn, Toy
 
@@ -48,7 +48,7 @@ def test_each_fault_costs_its_own_drawing(tmp_path: Path) -> None:
 def test_workers_killed_at_random_lose_no_drawing_and_do_none_twice(tmp_path: Path) -> None:
     names = [f"well-{k}" for k in range(400)]
     crew, chance = crew_of(tmp_path), random.Random(4)
-    rows = list[Row]()
+    rows = list[BatchRow]()
     for row in crew.rows(names):
         rows.append(row)
         if len(rows) % 5 == 0:
@@ -104,6 +104,6 @@ def test_names_are_asked_for_as_workers_are_free(tmp_path: Path) -> None:
             yield f"well-{k}"
 
     rows = crew_of(tmp_path).rows(names())
-    taken: list[Row] = list(islice(rows, 5))
+    taken: list[BatchRow] = list(islice(rows, 5))
     rows.close()
     assert len(taken) == 5 and len(asked) <= 5 + 2  # workers

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from morfax.batch.row import Row
+from morfax.batch.row import BatchRow
 
 EATEN = bytearray()
 
@@ -20,7 +20,7 @@ class Toy:
 
     folder: Path
 
-    def __call__(self, file: str) -> Row:
+    def __call__(self, file: str) -> BatchRow:
         """Do what the name's first word says."""
         kind = file.split("-")[0]
         once = self.folder / file
@@ -32,15 +32,15 @@ class Toy:
         if kind == "eats":
             return self._eaten(file)
         time.sleep(0.001)
-        return Row(file, "done", seconds=0.001)
+        return BatchRow(file, "done", seconds=0.001)
 
-    def _eaten(self, file: str) -> Row:
+    def _eaten(self, file: str) -> BatchRow:
         """Ask for more memory than there is."""
         try:
             EATEN.extend(bytes(3_000_000_000))
         except MemoryError:
-            return Row(file, "no memory", code=3)
-        return Row(file, "done")
+            return BatchRow(file, "no memory", code=3)
+        return BatchRow(file, "done")
 
 
 class Stillborn:
@@ -49,6 +49,6 @@ class Stillborn:
     def __reduce__(self) -> tuple[Any, ...]:
         return os._exit, (1,)
 
-    def __call__(self, file: str) -> Row:
+    def __call__(self, file: str) -> BatchRow:
         """Never be called."""
         raise AssertionError(file)
