@@ -45,7 +45,7 @@ ENDS_WITHIN_S = 5.0  # a worker that was told to end
 
 
 @dataclass(frozen=True, slots=True)
-class Limits:
+class WorkerLimits:
     """How many workers, how long one drawing may take, s, and how much memory a worker has, bytes."""
 
     workers: int = 1
@@ -54,7 +54,7 @@ class Limits:
 
 
 @dataclass
-class Worker:
+class BatchWorker:
     """A process, the parent's end of its pipe, and what it does."""
 
     process: BaseProcess
@@ -88,13 +88,13 @@ class Crew:
     def __init__(
         self,
         work: worker.Work,
-        limits: Limits,
+        limits: WorkerLimits,
         clear: Callable[[], None],
         preload: tuple[str, ...] | None = None,
     ) -> None:
         self._work, self._limits, self._clear = work, limits, clear
         self._context = _context(WARM if preload is None else preload)
-        self._workers: list[Worker] = []
+        self._workers: list[BatchWorker] = []
         self._again: deque[str] = deque()
         self._deaths: dict[str, int] = {}  # of drawings that are to be tried again
         self._futile = 0
@@ -153,7 +153,7 @@ class Crew:
             return None
         return max(0.0, min(begun_s) + limit_s - time.monotonic())
 
-    def _heard(self, one: Worker) -> BatchRow | None:
+    def _heard(self, one: BatchWorker) -> BatchRow | None:
         """Take what a worker says: that it has begun, a row, or nothing any more."""
         try:
             said = one.pipe.recv()
@@ -169,7 +169,7 @@ class Crew:
             self._dismiss(one)
         return said
 
-    def _late(self, one: Worker) -> BatchRow | None:
+    def _late(self, one: BatchWorker) -> BatchRow | None:
         """The row of a drawing that takes longer than it may; its worker is replaced."""
         limit_s = self._limits.limit_s
         if limit_s is None or one.begun_s is None or one.file is None:
@@ -184,7 +184,7 @@ class Crew:
             file, "over limit", code=OVER_LIMIT, fault=told, seconds=round(seconds, 3)
         )
 
-    def _died(self, one: Worker) -> BatchRow | None:
+    def _died(self, one: BatchWorker) -> BatchRow | None:
         """Replace a worker that died; the row of its drawing if it was the second one over it."""
         file, had_begun = one.file, one.begun_s is not None
         self._dismiss(one)
@@ -215,20 +215,20 @@ class Crew:
                 "ends them (dmesg)"
             )
 
-    def _dismiss(self, one: Worker) -> None:
+    def _dismiss(self, one: BatchWorker) -> None:
         """Let a worker go, and clear what it has left unfinished."""
         self._workers.remove(one)
         one.end()
         self._clear()
 
-    def _started(self) -> Worker:
+    def _started(self) -> BatchWorker:
         """A new worker."""
         ours, theirs = self._context.Pipe()
         arguments = theirs, self._work, self._limits.memory_bytes
         process = self._context.Process(target=worker.serve, args=arguments, daemon=True)
         process.start()
         theirs.close()  # so that the pipe ends when the worker does
-        one = Worker(process, ours)
+        one = BatchWorker(process, ours)
         self._workers.append(one)
         return one
 

@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from morfax.batch import search
-from morfax.batch.crew import Crew, Limits
+from morfax.batch.crew import Crew, WorkerLimits
 from morfax.batch.manifest import Manifest
 from morfax.batch.one import TraceOne, left_out
 from morfax.batch.order import Order
@@ -36,7 +36,7 @@ class BatchJob:
     out: str
     order: Order = field(default_factory=Order)
     pattern: str | None = None
-    limits: Limits = field(default_factory=Limits)
+    limits: WorkerLimits = field(default_factory=WorkerLimits)
     scheduler: str | None = None
 
     def check(self) -> None:

@@ -27,7 +27,7 @@ import numpy as np
 from PIL import Image
 
 from benchmarks.rows import Row, tell
-from morfax.batch.crew import Crew, Limits
+from morfax.batch.crew import Crew, WorkerLimits
 from morfax.batch.job import BatchJob, cores
 from morfax.batch.manifest import Manifest
 from morfax.batch.one import TraceOne, left_out
@@ -80,7 +80,7 @@ def against_a_loop(scans: Path, here: Path) -> list[Row]:
         subprocess.run([sys.executable, "-c", RUN, "trace", file, *outputs, "-q"], check=True)
     loop_per_minute = 60 * IN_LOOP / (time.monotonic() - began_s)
     tally = Tally(len(files), cores())
-    for one in BatchJob(str(scans), str(here / "out"), limits=Limits(cores())).rows():
+    for one in BatchJob(str(scans), str(here / "out"), limits=WorkerLimits(cores())).rows():
         tally.count(one)
     speed, busy = tally.per_minute, 100 * float(tally.figures()["busy_share"])
     return [
@@ -95,7 +95,7 @@ def killed(scans: Path, here: Path) -> list[Row]:
     names, results = sorted(map(str, scans.iterdir())), LocalResults(here / "killed")
     results.out.mkdir()
     order, chance, rows = Order(), random.Random(1), list[BatchRow]()
-    crew = Crew(TraceOne(order, results), Limits(cores()), results.clear)
+    crew = Crew(TraceOne(order, results), WorkerLimits(cores()), results.clear)
     shots = len(names) // 5
     for one in crew.rows(names):
         rows.append(left_out(order, one, results) if one.ending == "killed" else one)

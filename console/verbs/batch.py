@@ -154,7 +154,7 @@ def _job(
     how: dict[str, Any],
 ) -> BatchJob:
     """The job of the options; wrong use where two do not go together."""
-    from morfax.batch.crew import Limits
+    from morfax.batch.crew import WorkerLimits
     from morfax.batch.order import Order
 
     if where is None or out is None:
@@ -178,7 +178,7 @@ def _job(
         FilePath(how["program"].name),
         how["force"],
     )
-    limits = Limits(how["jobs"] or cores(), how["limit_s"], int(how["memory_bytes"]))
+    limits = WorkerLimits(how["jobs"] or cores(), how["limit_s"], int(how["memory_bytes"]))
     return BatchJob(where, out, order, how["pattern"], limits, how["scheduler"])
 
 

@@ -99,7 +99,7 @@ def test_an_interrupted_batch_goes_on_where_it_was(scans: Path) -> None:
     scans.mkdir()
     for name in "abcd":  # no pictures, which is soon found out
         (scans / f"{name}.png").write_text(name)
-    job = BatchJob("scans", "out", limits=crew.Limits(1))
+    job = BatchJob("scans", "out", limits=crew.WorkerLimits(1))
     rows = job.rows()
     first = next(rows)
     rows.close()

@@ -16,7 +16,7 @@ from pathlib import Path
 
 import pytest
 
-from morfax.batch.crew import Crew, Limits
+from morfax.batch.crew import Crew, WorkerLimits
 from morfax.batch.row import BatchRow
 from morfax.motion.faults import Fault
 from tests.batch.works import Stillborn, Toy
@@ -28,7 +28,7 @@ LIGHT = ("morfax.batch.worker", "cv2")  # what these workers need
 def crew_of(folder: Path, **limits: float) -> Crew:
     """A crew of toys."""
     limits = {"workers": 2, "limit_s": 60.0, "memory_bytes": None, **limits}
-    return Crew(Toy(folder), Limits(**limits), lambda: None, LIGHT)  # type: ignore[arg-type]
+    return Crew(Toy(folder), WorkerLimits(**limits), lambda: None, LIGHT)  # type: ignore[arg-type]
 
 
 def test_each_fault_costs_its_own_drawing(tmp_path: Path) -> None:
@@ -76,7 +76,7 @@ def test_whoever_stops_asking_ends_the_workers(tmp_path: Path) -> None:
 
 
 def test_workers_that_never_start_are_not_replaced_for_ever(tmp_path: Path) -> None:
-    crew = Crew(Stillborn(), Limits(2), lambda: None, LIGHT)
+    crew = Crew(Stillborn(), WorkerLimits(2), lambda: None, LIGHT)
     with pytest.raises(Fault, match=r"died as they started; give more with --memory"):
         list(crew.rows(["well-1", "well-2"]))
 
