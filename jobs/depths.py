@@ -45,11 +45,7 @@ class DepthSettings:
         if self.tabs == 0:
             return None
         if self.tabs is None and of_card is None:
-            if self.tab_width_mm is not None or self.tab_height_mm is not None:
-                name = "--tab-width" if self.tab_width_mm is not None else "--tab-height"
-                raise WrongUse(
-                    f"{name} is for holding tabs; give how many with --tabs, such as 4"
-                )
+            self._refuse_sizes_of_tabs()
             return None
         tabs = of_card or Tabs(self.tabs or 0)
         return Tabs(
@@ -57,6 +53,15 @@ class DepthSettings:
             self.tab_width_mm or tabs.width_mm,
             self.tab_height_mm or tabs.height_mm,
         )
+
+    def _refuse_sizes_of_tabs(self) -> None:
+        """Raise WrongUse for a size of tabs, where there are none."""
+        sizes = {"--tab-width": self.tab_width_mm, "--tab-height": self.tab_height_mm}
+        for name, size_mm in sizes.items():
+            if size_mm is not None:
+                raise WrongUse(
+                    f"{name} is for holding tabs; give how many with --tabs, such as 4"
+                )
 
 
 def passes_mm(card: Card, depth_mm: float) -> tuple[float, ...]:

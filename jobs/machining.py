@@ -73,26 +73,25 @@ def tell_what_is_lost(
 
     Raises WrongUse for tabs and ramps where there is no Z.
     """
-    machine = unit.chosen(program) if medium.has_machine(program) else None
     card, tool = settings.card(), settings.tool
-    if machine is None and program.suffix.lower() in medium.DRAWN:
-        refuse_without_z(card, f"a drawing ({program.suffix})")
-    if machine is not None and not machine.z:
+    if medium.has_machine(program):
+        machine = unit.chosen(program)
+        if machine.z:
+            return
         refuse_without_z(card, f"the machine {machine.name}")
-    lost = _asked(card, tool, has_dwells=machine is not None and not machine.is_hpgl)
-    if not lost:
-        return
-    asked = ", ".join(lost)
-    if machine is None:
-        if program.suffix.lower() in medium.DRAWN:
-            listener.warning(
-                f"{program.name} holds what is cut, and no {asked}: set these where it is read"
-            )
-    elif not machine.z:
-        listener.warning(
-            f"{machine.name} has no Z, so that {program.name} holds no {asked}: each pass runs the line once "
-            "more, and a drilled hole is one dot"
+        lost = _asked(card, tool, has_dwells=not machine.is_hpgl)
+        what = (
+            f"{machine.name} has no Z, so that {program.name} holds no {', '.join(lost)}: each pass runs the "
+            "line once more, and a drilled hole is one dot"
         )
+    elif program.suffix.lower() in medium.DRAWN:
+        refuse_without_z(card, f"a drawing ({program.suffix})")
+        lost = _asked(card, tool, has_dwells=False)
+        what = f"{program.name} holds what is cut, and no {', '.join(lost)}: set these where it is read"
+    else:
+        return
+    if lost:
+        listener.warning(what)
 
 
 def _asked(card: Card, tool: ToolSettings, *, has_dwells: bool) -> list[str]:

@@ -217,23 +217,19 @@ def _refuse_foreign(tape: FilePath, given: dict[str, Any]) -> None:
         raise WrongUse(f"{_options(given)} is for files, not for a pipe or a device")
     if control != TAPE and not given.keys().isdisjoint(FOR_TAPES):
         raise WrongUse(f"{_options(given.keys() & FOR_TAPES)} is for tapes; {tape} is none")
-    if control != pulses and "control" in given:
-        raise WrongUse(
-            f"--control {given['control']} is for programs of lines and arcs, .ngc; {tape} is none"
-        )
+    blocks = "programs of lines and arcs, .ngc"
+    # setting, as it was written, the controls that have it, and in words what they play
+    for name, option, has_it, what in (
+        ("control", f"--control {given.get('control')}", (pulses,), blocks),
+        ("norm", "--norm", (pulses,), blocks),
+        ("historic", "--historic", (pulses, CONTROLS[CUBIC]), f"{blocks}, and for .cubic"),
+        ("feed_override", "--feed-override", (TAPE, pulses), f"tapes and for {blocks}"),
+    ):
+        if name in given and control not in has_it:
+            raise WrongUse(f"{option} is for {what}; {tape} is none")
     if "control" in given and not given.keys().isdisjoint(FOR_PULSES):
         raise WrongUse(
             f"{_options(given.keys() & FOR_PULSES)} is for the pulse control; leave --control out"
-        )
-    if control != pulses and "norm" in given:
-        raise WrongUse(f"--norm is for programs of lines and arcs, .ngc; {tape} is none")
-    if control not in (pulses, CONTROLS[CUBIC]) and "historic" in given:
-        raise WrongUse(
-            f"--historic is for programs of lines and arcs, .ngc, and for .cubic; {tape} is none"
-        )
-    if control not in (TAPE, pulses) and "feed_override" in given:
-        raise WrongUse(
-            f"--feed-override is for tapes and for programs of lines and arcs, .ngc; {tape} is none"
         )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
@@ -63,29 +63,21 @@ class RecordingUnit:
 
     def check(self, program: FilePath | None) -> None:
         """Raise WrongUse where something is set that this medium does not have."""
-        if self.pickup is not None and (program is None or not medium.is_tape(program)):
-            raise WrongUse(
-                f"--pickup is for tapes, {', '.join(medium.TAPES)}; give -o such a name, or leave it out"
-            )
-        if self.plain and (program is None or not medium.is_tape(program)):
-            raise WrongUse(
-                f"--plain is for tapes, {', '.join(medium.TAPES)}; give -o such a name, or leave it out"
-            )
+        if program is None or not medium.is_tape(program):
+            of_tapes = {"--pickup": self.pickup, "--plain": self.plain or None}
+            _refuse_set(of_tapes, f"tapes, {', '.join(medium.TAPES)}")
         self._check_fit(program)
         if program is not None and medium.has_machine(program):
             self.chosen(program)
             return
-        for name, value in (
-            ("--machine", self.machine),
-            ("--machine-value", self.machine_values or None),
-            ("--feed", self.feed_mm_s),
-            ("--plunge", self.plunge_mm_s),
-            ("--rapid", self.rapid_mm_s),
-        ):
-            if value is not None:
-                raise WrongUse(
-                    f"{name} is for G-code, {', '.join(medium.BLOCKS)}; give -o such a name, or leave it out"
-                )
+        of_machines = {
+            "--machine": self.machine,
+            "--machine-value": self.machine_values or None,
+            "--feed": self.feed_mm_s,
+            "--plunge": self.plunge_mm_s,
+            "--rapid": self.rapid_mm_s,
+        }
+        _refuse_set(of_machines, f"G-code, {', '.join(medium.BLOCKS)}")
 
     def chosen(self, program: FilePath | None = None) -> Machine:
         """The machine for a program of G-code or a plotter's; raises WrongUse, CardFault."""
@@ -186,3 +178,10 @@ def rehearsed(
             f"the drive of {lost.axis.upper()} would lose its lock at {place} mm, {lost.time_s:.3f} s into "
             "the motion: play the tape slower (--feed-override 50%), or run the path slower"
         )
+
+
+def _refuse_set(options: Mapping[str, object], media: str) -> None:
+    """Raise WrongUse for the first option that is set, where the result is none of the media that have it."""
+    for name, value in options.items():
+        if value is not None:
+            raise WrongUse(f"{name} is for {media}; give -o such a name, or leave it out")

@@ -102,14 +102,13 @@ class Traced:
         trace = self.trace
         figures = {
             "ending": trace.ending,
-            "incomplete": True if self.fault else None,
+            "incomplete": self.fault is not None or None,
             "length_mm": trace.length_mm,
             "duration_s": float(self.path.t_s[-1] - self.path.t_s[0]),
             "line_width_mm": trace.line_width_mm,
             "start_place_mm": trace.start_mm,
             "reference_place_mm": trace.reference_mm,
-            **(self.led.figures() if self.led else {}),
-            **(trace_figures.lines(trace) if self.several else {}),
+            **self._figures_of_lines(),
             "unexplained": trace_figures.unexplained(trace) or None,
             "leads": trace_figures.leads(trace) or None,
             "stops": trace_figures.stops(trace) or None,
@@ -120,6 +119,11 @@ class Traced:
         if self.cutter is None or self.left is None:
             return figures
         return {**figures, **trace_figures.of_cutter(self.cutter, self.left)}
+
+    def _figures_of_lines(self) -> dict[str, Any]:
+        """Who led the head, and each line where there may be several."""
+        led = self.led.figures() if self.led else {}
+        return led | (trace_figures.lines(self.trace) if self.several else {})
 
     def name(self, file: FilePath) -> FilePath:
         """The name for a result: marked if the line was lost."""

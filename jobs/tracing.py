@@ -6,6 +6,7 @@ the operator should know about the run goes to the listener as warnings (see `re
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -71,17 +72,8 @@ class Tracing:
         # 1. the head follows
         listener.compiling("the head", ("motion", "tracer", "recorder"))
         followed = self._followed(drawing, listener)
-        if drawing.corrected is not None:
-            is_all = self.settings.line.lines == "all"
-            lines = None if is_all else followed.lines
-            for text in correction_settings.not_served(drawing.corrected, lines):
-                listener.warning(text)
-        for text in remarks(followed, self.settings, self.of_head.gap_mm, drawing.enlarged):
-            listener.warning(text)
-        for text in of_order(followed, self.settings.line.order):
-            listener.warning(text)
         led = WhoLed.along(followed)
-        for text in () if led is None else led.remarks():
+        for text in self._remarks(drawing, followed, led):
             listener.warning(text)
         # 2. the zero of the program
         zero = ZeroOnSheet.of(self.settings, drawing, followed)
@@ -91,12 +83,21 @@ class Tracing:
         if cutter is not None and left is not None:
             for text in of_cutter(beside, left, cutter):
                 listener.warning(text)
-        for text in of_contouring(beside, contouring):
-            listener.warning(text)
-        for text in of_tabs(beside):
+        for text in (*of_contouring(beside, contouring), *of_tabs(beside)):
             listener.warning(text)
         several = self.settings.line.are_several
         return Traced(beside, thin(beside), several, zero, cutter, left, led)
+
+    def _remarks(self, drawing: Drawing, followed: Trace, led: WhoLed | None) -> Iterator[str]:
+        """What is to be said of the way that the head has gone."""
+        if drawing.corrected is not None:
+            is_all = self.settings.line.lines == "all"
+            lines = None if is_all else followed.lines
+            yield from correction_settings.not_served(drawing.corrected, lines)
+        yield from remarks(followed, self.settings, self.of_head.gap_mm, drawing.enlarged)
+        yield from of_order(followed, self.settings.line.order)
+        if led is not None:
+            yield from led.remarks()
 
     def _on(self, drawing: Drawing) -> Tracing:
         """The same with the start, the direction and the reference point of the drawing's corrections, where

@@ -82,6 +82,16 @@ class _Pen:
         code, values = found[1], self._values(number, found[1], found[2])
         if code == "VS" and values:
             self.feed_mm_s = 10 * values[0]
+        self._set_scale(number, code, values)
+        if code in _PLACES:
+            self._row(number, code, values)
+        if code in _ARCS:
+            self._arc(number, values, about_pen=code == "AR")
+        if code == "CI":
+            self._circle(number, values[0] * self.step_mm)
+
+    def _set_scale(self, number: int, code: str, values: list[float]) -> None:
+        """Set what a unit is, for the commands that do so."""
         if code in ("IN", "DF"):
             self.by_steps, self.corners = False, None
             self._scale(number, [])
@@ -89,12 +99,6 @@ class _Pen:
             self.corners = values
         if code == "SC":
             self._scale(number, values)
-        if code in _PLACES:
-            self._row(number, code, values)
-        if code in _ARCS:
-            self._arc(number, values, about_pen=code == "AR")
-        if code == "CI":
-            self._circle(number, values[0] * self.step_mm)
 
     def _values(self, number: int, code: str, text: str) -> list[float]:
         """The numbers of a command; raises ProgramFault for half a place, or half an arc."""

@@ -78,7 +78,11 @@ def machine_of(lines: Sequence[str], name: str = "program") -> Machine | None:
                 f"{name} is for the machine {said[1]!r}, which is not built in; give its file with "
                 f"--machine, such as --machine {said[1]}.toml"
             )
-    text = COMMENT.sub("", "\n".join(lines)).upper().replace(" ", "")
+    return _machine_of_words(COMMENT.sub("", "\n".join(lines)).upper().replace(" ", ""))
+
+
+def _machine_of_words(text: str) -> Machine | None:
+    """The machine whose words a program has, comments and spaces left out; None: read as RS-274."""
     if "$0" in text or "#<_HAL[PLASMAC" in text:
         return machine("qtplasmac")
     if re.search(r"[XYF\d]Z|\bZ|Z[-\d.]", text):

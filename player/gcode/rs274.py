@@ -236,25 +236,14 @@ class GcodeReader:
 
     def _go(self, values: dict[str, float]) -> None:
         """G0 to G3: to the place that the axis words give."""
-        kind, place, scale = self.kind, self.place, self.scale
+        kind, place = self.kind, self.place
         if not kind:
-            word = next(
-                f"{letter}{values[letter]:g}" for letter in "XYZIJR" if letter in values
-            )
             raise self._fault(
-                word, "asks for a move, but none of G0 G1 G2 G3 was given; give one first"
+                _first_word("XYZIJR", values),
+                "asks for a move, but none of G0 G1 G2 G3 was given; give one first",
             )
         begin = place[0], place[1], place[2]
-        for axis, letter in enumerate("XYZ"):
-            if letter in values:
-                place[axis] = values[letter] * scale + (place[axis] if self.relative else 0.0)
-                if self.start[axis] is None:
-                    self.unsent[axis] = len(self.moves)
-                    self.start[axis] = (
-                        begin[axis]
-                        if self.relative or kind not in (RAPID, LINE)
-                        else place[axis]
-                    )
+        self._place_axes(values)
         end = place[0], place[1], place[2]
         if kind != RAPID and self.feed_mm_s == 0:
             raise self._fault(
@@ -264,14 +253,25 @@ class GcodeReader:
             self.moves.append(self._arc(values, begin, end))
             return
         if not _ARC_WORDS.isdisjoint(values):
-            letter = next(letter for letter in "IJR" if letter in values)
             raise self._fault(
-                f"{letter}{values[letter]:g}",
+                _first_word("IJR", values),
                 f"belongs to an arc, and {kind} is none; leave it out",
             )
         self.moves.append(
             Move(self.number, kind, end, 0.0 if kind == RAPID else self.feed_mm_s)
         )
+
+    def _place_axes(self, values: dict[str, float]) -> None:
+        """Set the place that the axis words give; where an axis is first sent anywhere, it has started."""
+        keeps = self.relative or self.kind not in (RAPID, LINE)  # starts where it stands
+        for axis, letter in enumerate("XYZ"):
+            if letter not in values:
+                continue
+            before = self.place[axis]
+            self.place[axis] = values[letter] * self.scale + (before if self.relative else 0.0)
+            if self.start[axis] is None:
+                self.unsent[axis] = len(self.moves)
+                self.start[axis] = before if keeps else self.place[axis]
 
     def _arc(self, values: dict[str, float], begin: Place, end: Place) -> Move:
         """G2 and G3: the arc between two places."""
@@ -287,3 +287,9 @@ class GcodeReader:
     def _fault(self, word: str, what: str) -> ProgramFault:
         """A fault at this line."""
         return ProgramFault(f"{self.name}, line {self.number}: {word} {what}", line=self.number)
+
+
+def _first_word(letters: str, values: dict[str, float]) -> str:
+    """The first of some letters that a line has, with its number."""
+    letter = next(letter for letter in letters if letter in values)
+    return f"{letter}{values[letter]:g}"

@@ -10,6 +10,7 @@ run on at several depths is one line, as long as the tool stays down.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -51,26 +52,31 @@ class CutLine:
 def cut_lines_of(source: Source, writing: Writing) -> tuple[list[CutLine], BlockPlan]:
     """What a motion cuts, and the plan; raises MotionFault if it cuts nothing."""
     planned = plan(source, writing)
-    found, begin_mm, pieces = [], None, list[Piece]()
+    lines = list(dict.fromkeys(_cut_of(planned)))  # the pecks of one hole are one place
+    if not lines:
+        raise MotionFault(
+            f"nothing is cut: Z stays above {IN_WORK_BELOW_MM:g} mm; a drawing shows what is cut"
+        )
+    return lines, planned
+
+
+def _cut_of(planned: BlockPlan) -> Iterator[CutLine]:
+    """What a plan cuts, as often as it does."""
+    begin_mm: tuple[float, float] | None = None
+    pieces = list[Piece]()
     place = (float(planned.start_mm[0]), float(planned.start_mm[1]), float(planned.start_mm[2]))
     for block in planned.blocks:
         cuts = block.code != "G0" and min(place[2], block.place_mm[2]) <= IN_WORK_BELOW_MM
         if cuts and begin_mm is None:
             begin_mm = place[:2]
         if not cuts and begin_mm is not None:
-            found.append(CutLine(begin_mm, tuple(pieces)))
+            yield CutLine(begin_mm, tuple(pieces))
             begin_mm, pieces = None, []
         if cuts and block.place_mm[:2] != place[:2]:
             pieces.append(_piece(place, block))
         place = block.place_mm
     if begin_mm is not None:
-        found.append(CutLine(begin_mm, tuple(pieces)))
-    lines = list(dict.fromkeys(found))  # the pecks of one hole are one place
-    if not lines:
-        raise MotionFault(
-            f"nothing is cut: Z stays above {IN_WORK_BELOW_MM:g} mm; a drawing shows what is cut"
-        )
-    return lines, planned
+        yield CutLine(begin_mm, tuple(pieces))
 
 
 def _piece(begin_mm: tuple[float, float, float], block: Block) -> Piece:

@@ -124,13 +124,12 @@ def _scale(file: FilePath, document: Drawing, unit: str | None) -> float:
 
 def _visible(file: FilePath, document: Drawing) -> Iterator[DXFGraphic]:
     """What is shown of the model space, blocks as what they hold."""
-    off, frozen = set[str](), set[str]()
-    for layer in document.layers:
-        name = layer.dxf.name.lower()
-        if layer.is_off():
-            off.add(name)
-        if layer.is_frozen():
-            frozen.add(name)
+    off = {layer.dxf.name.lower() for layer in document.layers if layer.is_off()}
+    frozen = {layer.dxf.name.lower() for layer in document.layers if layer.is_frozen()}
+
+    def hidden(entity: DXFGraphic, layer: str) -> bool:
+        is_off = layer in off and entity.dxftype() != "INSERT"
+        return bool(entity.dxf.get("invisible", 0)) or layer in frozen or is_off
 
     def shown(
         entities: Iterable[DXFGraphic], of_insert: str, depth: int
@@ -142,14 +141,9 @@ def _visible(file: FilePath, document: Drawing) -> Iterator[DXFGraphic]:
         for entity in entities:
             own = entity.dxf.get("layer", "0").lower()
             layer = of_insert if own == "0" and of_insert else own
-            is_block = entity.dxftype() == "INSERT"
-            if (
-                entity.dxf.get("invisible", 0)
-                or layer in frozen
-                or (layer in off and not is_block)
-            ):
+            if hidden(entity, layer):
                 continue
-            if not is_block:
+            if entity.dxftype() != "INSERT":
                 yield entity
                 continue
             for one in _each(entity):

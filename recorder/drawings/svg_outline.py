@@ -113,20 +113,22 @@ def _sheet(file: FilePath, root: ElementTree.Element, unit: str | None) -> _Shee
         left, top, _, high = box or (0.0, 0.0, 0.0, height[0] if height else 0.0)
         sheet = _Sheet(one_mm, one_mm, -left * one_mm, (top + high) * one_mm)
         return _from_zero(root, sheet)
-    if width is None or width[1] not in PHYSICAL_MM or not width[0] > 0:
+    width_mm, high_mm = _physical_mm(width), _physical_mm(height)
+    if width_mm is None or not width_mm > 0:
         got = f"its width is {root.get('width')!r}" if root.get("width") else "it has no width"
         raise DrawingFault(NO_UNIT.format(file=file, why=got))
-    width_mm = width[0] * PHYSICAL_MM[width[1]]
     if box is None:
         px_mm = UNITS_MM["px"]
-        known = height is not None and height[1] in PHYSICAL_MM
-        high_mm = height[0] * PHYSICAL_MM[height[1]] if height and known else 0.0
-        return _from_zero(root, _Sheet(px_mm, px_mm, 0.0, high_mm))
-    known = height is not None and height[1] in PHYSICAL_MM
-    high_mm = (
-        height[0] * PHYSICAL_MM[height[1]] if height and known else width_mm * box[3] / box[2]
-    )
+        return _from_zero(root, _Sheet(px_mm, px_mm, 0.0, high_mm or 0.0))
+    if high_mm is None:
+        high_mm = width_mm * box[3] / box[2]
     return _from_zero(root, _laid(root, box, width_mm, high_mm))
+
+
+def _physical_mm(length: tuple[float, str] | None) -> float | None:
+    """A length of the file, mm; None if there is none, or in a unit that is no length on paper."""
+    known = length is not None and length[1] in PHYSICAL_MM
+    return length[0] * PHYSICAL_MM[length[1]] if length and known else None
 
 
 def _laid(

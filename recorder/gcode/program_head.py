@@ -70,19 +70,10 @@ def head(
     told += [zero_line(*made.zero_mm)] if made.zero_mm else []
     if not lines:
         return [*told, f"about {seconds:.0f} s, nothing is cut"]
-    places = np.vstack([places_along(line) for line in lines])
-    x_mm, y_mm = np.ptp(places, axis=0)
-    deepest_mm = min(block.place_mm[2] for line in lines for block in line)
-    if made.part_mm is not None and not _same(made.part_mm, (x_mm, y_mm)):
-        told.append(f"part {made.part_mm[0]:.2f} x {made.part_mm[1]:.2f} mm")
-    down = f", Z down to {deepest_mm:.2f} mm" if machine.z else ""
+    told += _sizes(planned, lines, machine, made)
     way_mm = sum(
         length_mm(before.place_mm, block) for line in lines for before, block in pairwise(line)
     )
-    many = _many(len(lines), "line")
-    if holes := drilled_mm(planned):
-        many += f", {_many(len(holes), 'drilled hole')}"
-    told.append(f"cut {x_mm:.2f} x {y_mm:.2f} mm, {many}{down}")
     panel = f" at {machine.panel_feed_mm_s * 60:.0f} mm/min from the panel, without piercing"
     told.append(
         f"length {way_mm:.1f} mm, about {_time(seconds)}{'' if machine.feeds else panel}"
@@ -93,6 +84,23 @@ def head(
             f"smallest inner radius {inner_mm:.2f} mm" if inner_mm else "sharp inner corners"
         )
     return [*told, f"within {planned.deviation_mm:.4f} mm of the traced path"]
+
+
+def _sizes(
+    planned: BlockPlan, lines: list[list[Block]], machine: Machine, made: Made
+) -> list[str]:
+    """The comments that say how large the part is, and how much is cut."""
+    told = list[str]()
+    places = np.vstack([places_along(line) for line in lines])
+    x_mm, y_mm = np.ptp(places, axis=0)
+    deepest_mm = min(block.place_mm[2] for line in lines for block in line)
+    if made.part_mm is not None and not _same(made.part_mm, (x_mm, y_mm)):
+        told.append(f"part {made.part_mm[0]:.2f} x {made.part_mm[1]:.2f} mm")
+    down = f", Z down to {deepest_mm:.2f} mm" if machine.z else ""
+    many = _many(len(lines), "line")
+    if holes := drilled_mm(planned):
+        many += f", {_many(len(holes), 'drilled hole')}"
+    return [*told, f"cut {x_mm:.2f} x {y_mm:.2f} mm, {many}{down}"]
 
 
 def zero_line(x_mm: float, y_mm: float) -> str:
@@ -124,6 +132,13 @@ def _time(seconds: float) -> str:
     return f"{int(seconds + 0.5) // 60} min {int(seconds + 0.5) % 60:02d} s"
 
 
+def _cuts(before: Block, block: Block) -> bool:
+    """Whether a block goes across with the tool in the work."""
+    lowest_mm = min(before.place_mm[2], block.place_mm[2])
+    across = before.place_mm[:2] != block.place_mm[:2]
+    return block.code in CUTS and across and lowest_mm <= IN_WORK_BELOW_MM
+
+
 def cut_lines(
     planned: BlockPlan, blocks: Sequence[Block], machine: Machine
 ) -> list[list[Block]]:
@@ -133,13 +148,10 @@ def cut_lines(
     lines, is_open, is_over = list[list[Block]](), False, False
     for block in blocks:
         if block.code == WORDS:  # what runs on after a hole has closed is no part of its line
-            is_over = block.words == machine.hole_overcut or (
-                is_over and block.words != machine.tool_up
-            )
+            goes_on = is_over and block.words != machine.tool_up
+            is_over = goes_on or block.words == machine.hole_overcut
             continue
-        lowest_mm = min(before.place_mm[2], block.place_mm[2])
-        across = before.place_mm[:2] != block.place_mm[:2]
-        cuts = block.code in CUTS and across and lowest_mm <= IN_WORK_BELOW_MM
+        cuts = _cuts(before, block)
         if cuts and not is_over:
             if not is_open:
                 lines.append([before])

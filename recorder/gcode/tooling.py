@@ -59,21 +59,29 @@ def _parts(start_mm: Array, blocks: Sequence[Block]) -> list[tuple[bool, list[Bl
     is_down = z_mm <= IN_WORK_BELOW_MM
     parts = [(is_down, [Block("", place)])]
     for block in blocks:
+        in_work = block.place_mm[2] <= IN_WORK_BELOW_MM
         flat = block._replace(place_mm=(block.place_mm[0], block.place_mm[1], 0.0))
         across = flat.place_mm != place
-        in_work = block.place_mm[2] <= IN_WORK_BELOW_MM
         if across:
             in_work = in_work or z_mm <= IN_WORK_BELOW_MM
-            code = flat.code if flat.code in CUTS else RAPID
-            flat = flat._replace(code=("G1" if code == RAPID else code) if in_work else RAPID)
-        stands_up = block.code == "G4" and not in_work
-        if (in_work and not is_down) or ((across or stands_up) and in_work != is_down):
+            flat = flat._replace(code=_code_across(flat, in_work))
+        stays = not across and block.code != "G4"
+        goes_down = in_work and not is_down
+        goes_up = is_down and not in_work and not stays
+        if goes_down or goes_up:
             is_down = in_work
             parts.append((is_down, [Block("", place)]))
-        if across or block.code == "G4":
+        if not stays:
             parts[-1][1].append(flat)
         place, z_mm = flat.place_mm, block.place_mm[2]
     return parts
+
+
+def _code_across(block: Block, in_work: bool) -> str:
+    """The G word of a way across: a rapid outside of the work; a cut in it, straight if it was a rapid."""
+    if not in_work:
+        return RAPID
+    return block.code if block.code in CUTS else "G1"
 
 
 def _worked(part: list[Block], machine: Machine, *, is_hole: bool) -> list[Block]:

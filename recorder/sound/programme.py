@@ -17,6 +17,7 @@ then says that it is not whole.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -37,38 +38,68 @@ def between_silences(
 ) -> Iterator[Frames]:
     """The frames of the programme; raises DeviceFault if no carriers come within `wait_s`."""
     window = round(WINDOW_S * rate_hz)
+    carriers = _Carriers(wait_s, name)
     left: Frames | None = None
-    up, waited, silent = 0, 0, 0
-    level: Array | None = None
     for block in blocks:
         # 1. whole windows, and the level of each track in each
         frames = block if left is None else np.concatenate([left, block])
         count = len(frames) // window
-        left, begin = frames[count * window :], 0 if level is not None else count
         rms = _levels(frames[: count * window], window)
-        for at in range(count):
-            if level is None:
-                # 2. wait for the carriers
-                up = up + 1 if (rms[at] > LEAST_LEVEL).all() else 0
-                waited += 1
-                if up > SETTLING:
-                    level, begin = rms[at], at
-                elif waited * WINDOW_S > wait_s:
-                    raise DeviceFault(_nothing(name, wait_s, rms[at]), device=name)
-            else:
-                # 3. until they are gone
-                silent = silent + 1 if (rms[at] < GONE_SHARE * level).all() else 0
-                if silent >= GONE:
-                    yield frames[begin * window : max(at + 1 - GONE - MARGIN, begin) * window]
-                    return
-        # 4. what may be the beginning of the last silence waits for the next block
-        held = 0 if level is None else min(silent + MARGIN, count - begin)
-        silent, end = 0, (count - held) * window
+        # 2. wait for the carriers, and follow them until they are gone
+        begin = carriers.begin(rms)
+        gone = carriers.gone(rms[begin:])
+        if gone is not None:
+            yield frames[begin * window : (begin + max(gone - MARGIN, 0)) * window]
+            return
+        # 3. what may be the beginning of the last silence waits for the next block, and is heard again
+        end = (count - carriers.held(count - begin)) * window
         out, left = frames[begin * window : end], frames[end:]
         if len(out):
             yield out
-    if level is not None and left is not None and len(left):
+    if carriers.level is not None and left is not None and len(left):
         yield left
+
+
+@dataclass(slots=True)
+class _Carriers:
+    """The carriers of the tracks, as they come up and go."""
+
+    wait_s: float
+    name: str
+    level: Array | None = None  # RMS of each track (tracks,), since the programme has begun
+    up: int = 0  # windows in a row
+    waited: int = 0  # windows
+    silent: int = 0  # windows in a row, those heard again not counted
+
+    def begin(self, rms: Array) -> int:
+        """The first window of the programme among these (windows, tracks); their number if there is none."""
+        if self.level is not None:
+            return 0
+        for at, levels in enumerate(rms):
+            self.up = self.up + 1 if (levels > LEAST_LEVEL).all() else 0
+            self.waited += 1
+            if self.up > SETTLING:
+                self.level = levels
+                return at
+            if self.waited * WINDOW_S > self.wait_s:
+                raise DeviceFault(_nothing(self.name, self.wait_s, levels), device=self.name)
+        return len(rms)
+
+    def gone(self, rms: Array) -> int | None:
+        """The window at which the carriers have gone for good; None if they go on."""
+        if self.level is None:
+            return None
+        for at, levels in enumerate(rms):
+            self.silent = self.silent + 1 if (levels < GONE_SHARE * self.level).all() else 0
+            if self.silent >= GONE:
+                return at + 1 - GONE
+        return None
+
+    def held(self, count: int) -> int:
+        """How many of the last windows, of so many of the programme, may belong to the silence after it."""
+        held = 0 if self.level is None else min(self.silent + MARGIN, count)
+        self.silent = 0
+        return held
 
 
 def _levels(frames: Frames, window: int) -> Array:

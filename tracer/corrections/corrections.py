@@ -137,6 +137,14 @@ class Correction:
         if not fewest <= len(self.at) <= most:
             allowed = "one place" if most == 1 else f"{fewest} to {most} places"
             raise ValueError(f"{self.do} has {len(self.at)} places; it takes {allowed}")
+        self._check_what_is_beside()
+        if self.width is not None and not self.width.amount > 0:
+            raise ValueError(f"the width is {self.width}; it must be above zero, such as 3mm")
+        if len(self.why) > LONGEST_WHY or not self.why.isprintable():
+            raise ValueError(f"why may be one line of at most {LONGEST_WHY} characters")
+
+    def _check_what_is_beside(self) -> None:
+        """Raise ValueError for a width, a way or a direction that is for other corrections."""
         beside = {
             "width": (self.width, ("rub", "bridge")),
             "from": (self.coming_from, TURNS),
@@ -145,10 +153,6 @@ class Correction:
         for name, (held, kinds) in beside.items():
             if held is not None and self.do not in kinds:
                 raise ValueError(f"{self.do} takes no {name}; that is for {', '.join(kinds)}")
-        if self.width is not None and not self.width.amount > 0:
-            raise ValueError(f"the width is {self.width}; it must be above zero, such as 3mm")
-        if len(self.why) > LONGEST_WHY or not self.why.isprintable():
-            raise ValueError(f"why may be one line of at most {LONGEST_WHY} characters")
 
 
 @dataclass(frozen=True, slots=True)

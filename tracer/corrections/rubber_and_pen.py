@@ -247,12 +247,12 @@ def _profile(seen: Array, aside_mm: Array) -> tuple[float, float, float] | None:
         return None
     places = np.flatnonzero(inked)
     # 1. the run of ink nearest to the middle
-    begin = end = int(places[np.argmin(np.abs(aside_mm[places]))])
-    while begin > 0 and inked[begin - 1]:
-        begin -= 1
-    while end < len(seen) - 1 and inked[end + 1]:
-        end += 1
-    if inked[0] or inked[-1] or end - begin < 2:
+    middle = int(places[np.argmin(np.abs(aside_mm[places]))])
+    paper = np.flatnonzero(~inked)
+    if inked[0] or inked[-1]:
+        return None
+    begin, end = int(paper[paper < middle][-1]) + 1, int(paper[paper > middle][0]) - 1
+    if end - begin < 2:
         return None
     # 2. its soft edges
     while begin > 0 and 0 < seen[begin - 1] < seen[begin]:

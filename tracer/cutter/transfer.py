@@ -65,13 +65,8 @@ def transferred(
         PathRun.along(path.points_mm, begin, feed)
         for path, begin in zip(beside.paths, begins, strict=True)
     ]
-    # 2. marks on the contour
-    for mark in cut.line.marks:
-        on_contour = mark.at > cut.first or lead is None
-        if on_contour and _guide_at(cut.line, mark.at) is None:
-            place = beside.foot(np.array(mark.place_mm))
-            runs[place.path].at[mark.at] = runs[place.path].position(place)
-    # 3. guide lines
+    # 2. marks on the contour, and guide lines
+    _put_marks(beside, runs, has_lead=lead is not None)
     detours: dict[int, list[Detour]] = {}
     for guide in cut.line.guides:
         if guide.leave > cut.first:
@@ -80,6 +75,16 @@ def transferred(
     for path, off_it in detours.items():
         runs[path].put_in(off_it)
     return _lines(beside, runs, lead)
+
+
+def _put_marks(beside: Beside, runs: list[PathRun], *, has_lead: bool) -> None:
+    """Put the marks of the contour on the paths beside it; those of lead and guide lines are left."""
+    cut = beside.cut
+    for mark in cut.line.marks:
+        on_contour = mark.at > cut.first or not has_lead
+        if on_contour and _guide_at(cut.line, mark.at) is None:
+            place = beside.foot(np.array(mark.place_mm))
+            runs[place.path].at[mark.at] = runs[place.path].position(place)
 
 
 def _lead(beside: Beside, away_mm: Callable[[Array], Array], feed: FeedRate) -> LeadRun:

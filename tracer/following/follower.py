@@ -30,7 +30,6 @@ from morfax.tracer.following.ways_out import (
     clean_from,
     leads_to_dot,
     nearest_station,
-    station_before,
     trail_behind,
 )
 from morfax.tracer.head import course
@@ -40,10 +39,10 @@ from morfax.tracer.head.plan import Plan
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.state import CHANGED, HOME, MORE
+from morfax.tracer.junctions.choice import Choice
 from morfax.tracer.junctions.felt_corner import round_corner
 from morfax.tracer.junctions.planner import Planner
-from morfax.tracer.junctions.rings import fork_in
-from morfax.tracer.junctions.width_change import Onward, another_pen, of_another_pen
+from morfax.tracer.junctions.width_change import of_another_pen
 from morfax.tracer.marks.dots import dot_at_end
 from morfax.tracer.sensing.leg import FEWEST_STATIONS, Leg, goes_straight, leg_of
 from morfax.tracer.sensing.probe import end_of
@@ -93,22 +92,26 @@ class Follower:
             why = self.carriage.follow(self.view, home)
             if told is not None:
                 told(self.carriage.travel_mm)
-            if why == HOME:
-                return self._go_home()
-            # before a junction that is known
-            if self.carriage.trail.comes_again(self.view.width_mm):
-                return self._done("joined")
-            if why == CHANGED:
-                self.view = self.view.like(*self.carriage.stands(), follows=SWELLS)
-                self.carriage.retune(self.view)
-            if why in (CHANGED, MORE):
-                continue
-            if self.settings.direct_rad_s_mm > 0:
-                return self._lost(lost.NO_GUARDS, lost.SLOWER)
-            ending = self._through_junction()
+            ending = self._after(why)
             if ending is not None:
                 return ending
         return self._lost("the head has gone round without coming back to its start")
+
+    def _after(self, why: int) -> Followed | None:
+        """What the head does where its carriage has stopped; returns what it did, if that was the end."""
+        if why == HOME:
+            return self._go_home()
+        # before a junction that is known
+        if self.carriage.trail.comes_again(self.view.width_mm):
+            return self._done("joined")
+        if why == CHANGED:
+            self.view = self.view.like(*self.carriage.stands(), follows=SWELLS)
+            self.carriage.retune(self.view)
+        if why in (CHANGED, MORE):
+            return None
+        if self.settings.direct_rad_s_mm > 0:
+            return self._lost(lost.NO_GUARDS, lost.SLOWER)
+        return self._through_junction()
 
     def _through_junction(self) -> Followed | None:
         """Take the head through the junction ahead; returns what the head did, if that was the end."""
@@ -121,10 +124,7 @@ class Follower:
         if (len(seen) - here) * self.view.step_mm <= self.view.leg_mm:
             return self._through_legs(leg_of(seen, True, self.view.leg_mm))
         # 2. a place of which the operator has said how to go on, a fork, or ink beside the line
-        told = self._ways_out.told_station(self.view, seen, here)
-        fork = fork_in(self.view, seen, here) if told is None else told
-        if fork is None and self.carriage.ink_beside:
-            fork = self._turn_off(seen, here)
+        fork = self._ways_out.fork(self.view, seen, here, self.carriage)
         if fork is not None:
             return self._through_legs(leg_of(seen[: fork + 1], True, self.view.leg_mm))
         # 3. a corner that can be felt round
@@ -147,30 +147,35 @@ class Follower:
         if told is not None:
             return self._pass(told)
         choice, asked = self._ways_out.chosen(self.view, incoming, self.carriage)
-        outgoing, corner, _ = choice
         # 1. a dot at the end of the line, and a line drawn with another pen
-        dot = None if goes_straight(incoming, outgoing) else dot_at_end(self.view, incoming)
+        goes_on = goes_straight(incoming, choice.leg)
+        dot = None if goes_on else dot_at_end(self.view, incoming)
         if dot is not None:
             return self._end(aimed_at(incoming, dot), math.dist(incoming.end_mm, dot))
-        plan = None
-        if outgoing is not None and another_pen(self.view, outgoing):
-            plan = self._planner().onward(incoming, Onward(self.view, outgoing, corner))
+        plan = self._planner().by_another_pen(incoming, choice)
         if plan is not None:
             return self._pass(plan)
-        # 2. the way that the legs show, and a better one where they are a tangle
+        # 2. by the legs, or past what they do not explain
+        plan, choices = self._by_legs(incoming, choice, asked=asked)
+        return self._at_end(incoming, choices) if plan is None else self._pass(plan)
+
+    def _by_legs(
+        self, incoming: Leg, choice: Choice, *, asked: bool
+    ) -> tuple[Plan | None, int]:
+        """The way that the legs show, a better one where they are a tangle; and how many legs there were."""
         plan, choices = self._planner().along_legs(incoming, choice)
-        explained = leads_to_dot(self.view, incoming, outgoing)
+        explained = leads_to_dot(self.view, incoming, choice.leg)
         if not (asked or explained):
             plan, explained = self._out_of_tangle(incoming, plan)
-        # 3. nothing leads on with this pen
+        # nothing leads on with this pen
         if plan is None and not choices:
             plan = self._with_another_pen(incoming)
             if plan is not None:
-                return self._pass(plan)
-        # 4. past what nothing explains
+                return plan, choices
+        # past what nothing explains
         if not explained:
             plan = self._planner().past(incoming, choice) or plan
-        return self._at_end(incoming, choices) if plan is None else self._pass(plan)
+        return plan, choices
 
     def _with_another_pen(self, incoming: Leg) -> Plan | None:
         """The way on along a line of another width, which the head takes up, if there is one."""
@@ -207,13 +212,6 @@ class Follower:
             if len(seen) >= FEWEST_STATIONS:
                 break
         return seen
-
-    def _turn_off(self, seen: Array, here: int) -> int | None:
-        """The station before ink beside a clean line, if the head is to leave the line there; else None."""
-        guard_mm = self.carriage.tuning.guard_lead_mm
-        station, incoming = station_before(self.view, seen, here, guard_mm)
-        leaves = self._ways_out.leaves_beside(self.view, incoming, self.carriage)
-        return station if leaves else None
 
     def _at_end(self, incoming: Leg, choices: int) -> Followed | None:
         """Run to the end of the line, or to where it meets what was followed before."""

@@ -22,6 +22,7 @@ from morfax.tracer.head.plan import Plan
 from morfax.tracer.junctions.choice import Asked, Choice, WayIn, is_aside, survey
 from morfax.tracer.junctions.guides import Junctions
 from morfax.tracer.junctions.planner import Planner
+from morfax.tracer.junctions.rings import fork_in
 from morfax.tracer.marks.dots import disc, dot_ahead
 from morfax.tracer.sensing.leg import FEWEST_STATIONS, Leg, goes_straight, leg_of, turns_off
 from morfax.tracer.sensing.side import SIDES, Side
@@ -63,6 +64,17 @@ class WaysOut:
     served: set[int] = field(
         default_factory=set
     )  # numbers of the corrections that the head went by
+
+    def fork(self, view: View, seen: Array, here: int, carriage: Carriage) -> int | None:
+        """The station of a felt line (n, 3), ahead of `here`, from which the head goes on by legs; None if
+        the line runs on clean.
+        """
+        told = self.told_station(view, seen, here)
+        fork = fork_in(view, seen, here) if told is None else told
+        if fork is not None or not carriage.ink_beside:
+            return fork
+        station, incoming = station_before(view, seen, here, carriage.tuning.guard_lead_mm)
+        return station if self.leaves_beside(view, incoming, carriage) else None
 
     def told_station(self, view: View, seen: Array, here: int) -> int | None:
         """The station of a felt line (n, 3), ahead of `here`, at which a leg ends before a junction of which

@@ -30,7 +30,7 @@ from morfax.tracer.junctions.corner import (
 )
 from morfax.tracer.junctions.edge_following import EdgeRun, follow_edge, to_vertex
 from morfax.tracer.junctions.line_ahead import FARTHEST_WIDTHS, caught_again, straight_on
-from morfax.tracer.junctions.width_change import Onward
+from morfax.tracer.junctions.width_change import Onward, another_pen
 from morfax.tracer.sensing.leg import Leg, goes_straight, leg_of, turn
 from morfax.tracer.sensing.photocell import STEP_PX
 from morfax.tracer.sensing.view import View
@@ -69,11 +69,23 @@ class Planner:
         if outgoing is not None and count and self._goes_back(outgoing.seen):
             return None, count
         # 3. to the line that is met first
-        if outgoing is None and self.settings.recatch_mm > 0:
-            outgoing = caught_again(self.view, incoming, self.trail, self.settings.recatch_mm)
+        if outgoing is None:
+            outgoing = self._met_first(incoming)
         if outgoing is None:
             return None, count
         return self.through(incoming, outgoing, None)._replace(leader=STATIONS), count
+
+    def by_another_pen(self, incoming: Leg, choice: Choice) -> Plan | None:
+        """The way onto the leg that was chosen, where another pen has drawn it."""
+        if choice.leg is None or not another_pen(self.view, choice.leg):
+            return None
+        return self.onward(incoming, Onward(self.view, choice.leg, choice.corner))
+
+    def _met_first(self, incoming: Leg) -> Leg | None:
+        """The line that is met first beyond the end of a leg, where the settings have one looked for."""
+        if not self.settings.recatch_mm > 0:
+            return None
+        return caught_again(self.view, incoming, self.trail, self.settings.recatch_mm)
 
     def as_told(self, incoming: Leg, choice: Choice, *, straight: bool) -> Plan | None:
         """The way by the leg that the operator asks for, or straight on across what lies there; None if there

@@ -16,7 +16,7 @@ lies inside one is seen only where the line along it was lost.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import cv2
@@ -48,13 +48,9 @@ def around(drawing: Drawing, lines: Sequence[Line]) -> list[Around]:
     sheet = Sheet.of(drawing)
     # 1. lines that were lost: whatever lies in the hull of their ink
     found = dict[int, Around]()
-    for lost in lines:
-        if lost.fault is not None:
-            hull = cv2.convexHull(_ink_mm(sheet, lost).astype(np.float32))
-            for line in closed:
-                x, y = line.place(0)
-                if cv2.pointPolygonTest(hull, (x, y), False) > 0:
-                    found.setdefault(line.number, Around(line.number, lost.number, True))
+    for lost in (line for line in lines if line.fault is not None):
+        for number in _in_hull(sheet, lost, closed):
+            found.setdefault(number, Around(number, lost.number, True))
     # 2. ink that was not asked for: by the paper that it goes round
     enclosure = Enclosure.of(sheet.patches, len(drawing.darkness))
     numbers = {int(patch): number for number, patch in enumerate(lines_of(sheet), 1)}
@@ -66,6 +62,15 @@ def around(drawing: Drawing, lines: Sequence[Line]) -> list[Around]:
         if patch != NONE:
             found.setdefault(line.number, Around(line.number, numbers[patch], False))
     return sorted(found.values())
+
+
+def _in_hull(sheet: Sheet, lost: Line, closed: Sequence[Line]) -> Iterator[int]:
+    """The numbers of the closed lines that lie in the hull of a lost line's ink."""
+    hull = cv2.convexHull(_ink_mm(sheet, lost).astype(np.float32))
+    for line in closed:
+        x, y = line.place(0)
+        if cv2.pointPolygonTest(hull, (x, y), False) > 0:
+            yield line.number
 
 
 def _patches(sheet: Sheet, line: Line) -> set[int]:

@@ -266,9 +266,7 @@ def _with_other_turns(wanted: _Target, best: Run, smooth: list[Run]) -> Run:
     closes_short = best.line.ending == "closed" and best.line.length_mm < SHORT * best.ink_mm
     if not best.ran_in and not closes_short:
         return best
-    for tried in smooth:
-        if not tried.ran_in:
-            continue
+    for tried in filter(lambda run: run.ran_in, smooth):
         run = wanted.run(tried.stance, tried.ink_mm, other_turns=True)
         is_longer = best.ran_in or run.line.length_mm > best.line.length_mm
         if run.line.ending == "closed" and is_longer:

@@ -77,7 +77,15 @@ def check_lines(lines: Iterable[str], machine: Machine, stock: Stock | None = No
     if is_ours and machine.takes.end == "none" and not is_whole:
         allowed = f"{machine.comment(END)!r} in its last line"
         findings.here("end", "the program breaks off", allowed, "get the whole of it")
-    surface_mm = stock.surface_mm if stock else 0.0
+    steps = _checked_steps(follower, stock, findings)
+    return Checked(count, steps, findings.in_order(), follower.said)
+
+
+def _checked_steps(
+    follower: CheckingReader, stock: Stock | None, findings: Findings
+) -> list[Step]:
+    """The steps of the program, held to the rules of motion."""
+    machine, surface_mm = follower.machine, stock.surface_mm if stock else 0.0
     steps = _steps(follower, surface_mm)
     motion_rules.check_rapids(steps, surface_mm, findings)
     motion_rules.check_tool(steps, machine, findings)
@@ -87,7 +95,7 @@ def check_lines(lines: Iterable[str], machine: Machine, stock: Stock | None = No
     motion_rules.check_travel(steps, machine, findings)
     if stock is not None:
         motion_rules.check_stock(steps, stock, findings)
-    return Checked(count, steps, findings.in_order(), follower.said)
+    return steps
 
 
 def _check_last_line(taken: ControlInput, follower: CheckingReader, findings: Findings) -> None:

@@ -17,6 +17,7 @@ import math
 
 from morfax.motion.faults import ProgramFault
 from morfax.player.gcode.arc_words import TURN, ArcLimits, ArcWords, Place, WordError
+from morfax.player.gcode.check import not_followed
 from morfax.player.gcode.check.cycles import CannedCycle
 from morfax.player.gcode.check.findings import Finding, Findings
 from morfax.player.gcode.check.lines import Words
@@ -33,11 +34,6 @@ _READ = codes("G0-G4 G20 G21 G90 G91")  # words that the reader obeys
 _PLAIN = codes("G0-G3")
 _HOME = codes("G28 G30")
 _SETTINGS = codes("G10 G28.1 G30.1 G43.1 G52")  # words whose places are no move
-# zeros that are moved, a cutter's compensation, speeds by the turn, commands of the user's own
-_NOT_FOLLOWED = codes(
-    "G10 G52 G55-G59 G59.1 G59.2 G59.3 G41 G42 G41.1 G42.1 G95 G96 M100-M105 M108-M199"
-)
-_NOT_READ = (MOTIONS - codes("G0-G3") - CYCLES - PROBES) | codes("M98 M99")
 _OUR_LETTERS = frozenset("XYZF")
 
 
@@ -100,12 +96,24 @@ class CheckingReader(GcodeReader):
         self.motion = motion or self.motion
         if present & codes("G93-G95"):
             self.inverse_time = ("G", 93.0) in present
-        if "F" in words.computed or ("F" in values and self.inverse_time):
-            self.feed_mm_s = self.machine.panel_feed_mm_s
+        self._feed_that_is_not_read(words, values)
         if present <= _PLAIN:  # nearly all lines
             return
         if ("G", 80.0) in present and not motion:
             self.motion, self.kind = None, ""
+        if "P" in words.computed and ("G", 4.0) in present:
+            values["P"] = 0.0  # a time that is not known
+        self._lasting_modes(present)
+        if not_followed.found(present, self.findings):
+            self.lost |= AXES
+
+    def _feed_that_is_not_read(self, words: Words, values: dict[str, float]) -> None:
+        """Have the machine's own feed where the program's is computed, or is a time."""
+        if "F" in words.computed or ("F" in values and self.inverse_time):
+            self.feed_mm_s = self.machine.panel_feed_mm_s
+
+    def _lasting_modes(self, present: set[Code]) -> None:
+        """Set the plane, what an arc's centre counts from, and where a canned cycle returns to."""
         for _, number in present:
             if number in PLANES:
                 self.plane = number
@@ -113,29 +121,6 @@ class CheckingReader(GcodeReader):
             self.absolute_centres = ("G", 90.1) in present
         if present & codes("G98 G99"):
             self.cycle.returns_to_start = ("G", 98.0) in present
-        if "P" in words.computed and ("G", 4.0) in present:
-            values["P"] = 0.0  # a time that is not known
-        self._say_what_is_not_followed(present)
-
-    def _say_what_is_not_followed(self, present: set[Code]) -> None:
-        """Remark on words whose effect is not in the moves."""
-        for code in present & (_NOT_FOLLOWED | PROBES):
-            self.findings.remark(
-                "not followed",
-                f"{called(code)} is taken, but its effect is not followed here",
-                "places and time are as if it were not there",
-                cause=code,
-            )
-        if present & _NOT_READ:
-            self.lost |= AXES
-        for code in present & _NOT_READ:
-            self.findings.here(
-                "not read",
-                f"{called(code)} is a curve, a thread or a subroutine, which are not followed here",
-                "lines, arcs and canned cycles are",
-                "have it written as lines, or check it on the control itself",
-                cause=code,
-            )
 
     def _obey_places(self, present: set[Code], values: dict[str, float]) -> None:
         """Go where the places of a line lead, by the word that takes them."""
@@ -144,15 +129,15 @@ class CheckingReader(GcodeReader):
         elif present & codes("G92.1 G92.2"):
             self.offset = [0.0, 0.0, 0.0]
         elif present & _SETTINGS:
-            self._obey(present, {"F": values["F"]} if "F" in values else {})
+            self._obey(present, _only("F", values))
         elif present & _HOME or ("G", 53.0) in present:
             self._go_home(present, values)
         elif self.motion in CYCLES:
-            self._obey(present - CYCLES, {"F": values["F"]} if "F" in values else {})
+            self._obey(present - CYCLES, _only("F", values))
             if AXES & values.keys():
                 self.cycle.run(self, values)
         elif ("G", 4.0) in present and AXES & values.keys():  # first the dwell, then the way
-            self._obey({("G", 4.0)}, {"P": values["P"]} if "P" in values else {})
+            self._obey({("G", 4.0)}, _only("P", values))
             self._obey(present - codes("G4"), values)
         else:
             self._obey(present, values)
@@ -162,6 +147,19 @@ class CheckingReader(GcodeReader):
         mine = {code for code in present if code in _READ}
         if self.motion not in _PLAIN and self.motion is not None and self.motion in present:
             mine.add(("G", 1.0))  # a probe, or a curve: straight to its end
+        passed = self._letters_of_the_reader(values)
+        if ("G", 4.0) in present:
+            passed |= self._dwell_words(values)
+        if self.inverse_time or values.get("F", 0.0) < 0:
+            passed.pop("F", None)
+        asks = next((called(code) for code in mine if code in codes("G1-G3")), "")
+        if asks and not AXES & values.keys() and "F" not in passed:
+            self._see_a_feed(asks)
+        gs = [f"{number:g}" for _, number in sorted(mine)]
+        self.obey(["G"] * len(gs) + list(passed), gs + list(passed.values()))
+
+    def _letters_of_the_reader(self, values: dict[str, float]) -> dict[str, str]:
+        """The letters that the reader knows, each with its number as text; an arc's turns are kept."""
         letters = set(_OUR_LETTERS)
         if self.motion in codes("G2 G3"):
             letters |= set("IJR")
@@ -170,18 +168,9 @@ class CheckingReader(GcodeReader):
             if "K" in values and not {"I", "J", "R"} & values.keys():
                 values = {**values, "I": 0.0}
         self.k = values.get("K", 0.0)
-        passed = {
+        return {
             letter: f"{value:.17g}" for letter, value in values.items() if letter in letters
         }
-        if ("G", 4.0) in present:
-            passed |= self._dwell_words(values)
-        if self.inverse_time or values.get("F", 0.0) < 0:
-            passed.pop("F", None)
-        asks = next((called(code) for code in mine if code in codes("G1-G3")), "")
-        if asks and self.feed_mm_s == 0 and "F" not in passed and not AXES & values.keys():
-            self._lacks_feed(asks)
-        gs = [f"{number:g}" for _, number in sorted(mine)]
-        self.obey(["G"] * len(gs) + list(passed), gs + list(passed.values()))
 
     def _dwell_words(self, values: dict[str, float]) -> dict[str, str]:
         """The time of a dwell, s."""
@@ -190,8 +179,10 @@ class CheckingReader(GcodeReader):
         seconds = self.machine.takes.one_code and "S" in values  # Marlin: G4 S in s
         return {"P": f"{values['S']:.9f}"} if seconds else {}
 
-    def _lacks_feed(self, kind: str) -> None:
+    def _see_a_feed(self, kind: str) -> None:
         """Find a motion without a feed; the time goes on with the machine's own."""
+        if self.feed_mm_s != 0:
+            return
         allowed = "F before it or with it, in units per minute"
         self.findings.here("feed", f"{kind} has no feed", allowed, "give F")
         self.feed_mm_s = self.machine.panel_feed_mm_s
@@ -203,8 +194,8 @@ class CheckingReader(GcodeReader):
 
     def _go(self, values: dict[str, float]) -> None:
         """Go to the place that the words give, from the zero that holds; a missing feed is found once."""
-        if self.kind not in ("", RAPID) and self.feed_mm_s == 0:
-            self._lacks_feed(self.kind)
+        if self.kind not in ("", RAPID):
+            self._see_a_feed(self.kind)
         if any(self.offset) and not self.relative:
             for axis, letter in enumerate("XYZ"):
                 if letter in values:
@@ -297,3 +288,8 @@ class CheckingReader(GcodeReader):
         self.kind, self.relative, self.offset = kind, False, [0.0, 0.0, 0.0]
         self._go({letter: mm / self.scale for letter, mm in places_mm.items()})
         self.kind, self.relative, self.offset = kept
+
+
+def _only(letter: str, values: dict[str, float]) -> dict[str, float]:
+    """One letter of a line with its value; empty if the line does not have it."""
+    return {letter: values[letter]} if letter in values else {}

@@ -72,6 +72,22 @@ class WordRules:
 
     def check(self, words: Words, motion: Code | None) -> list[Code]:
         """Find what is wrong with the words of a line; the G and M words that the control takes."""
+        named, others = self._sorted(words)
+        is_users = not USERS.isdisjoint(named)
+        for letter, number in others:
+            if letter not in self.places or len(number) > self.takes.digits:
+                self._letter(letter, number, is_users)
+        is_repeated = len(dict(others)) < len(others)
+        if len(named) > 1 or self.takes.one_code or is_repeated:
+            self._groups(words, named)
+        if named:
+            self._beside_a_motion(words, named)
+        if not self.takes.one_code:
+            self._belongs(words, {*named, *([motion] if motion else [])})
+        return named
+
+    def _sorted(self, words: Words) -> tuple[list[Code], list[tuple[str, str]]]:
+        """The G and M words that the control takes, and the other letters; what it does not take is found."""
         named: list[Code] = []
         others: list[tuple[str, str]] = []
         for letter, number in zip(words.letters, words.numbers, strict=True):
@@ -81,17 +97,7 @@ class WordRules:
                 named.append(code)
             else:
                 self._not_taken(called(code), listed(self.takes.codes, letter))
-        is_users = not USERS.isdisjoint(named)
-        for letter, number in others:
-            if letter not in self.places or len(number) > self.takes.digits:
-                self._letter(letter, number, is_users)
-        if len(named) > 1 or self.takes.one_code or len(dict(others)) < len(others):
-            self._groups(words, named)
-        if named:
-            self._beside_a_motion(words, named)
-        if not self.takes.one_code:
-            self._belongs(words, {*named, *([motion] if motion else [])})
-        return named
+        return named, others
 
     def _letter(self, letter: str, number: str, is_users: bool) -> None:
         """Find a letter that the control does not take, or a value that it may not have."""
@@ -140,7 +146,7 @@ class WordRules:
             self.findings.here("group", what, "G1 X5, not X5", "begin it with G", cause="no G")
 
     def _beside_a_motion(self, words: Words, named: list[Code]) -> None:
-        """Find what may not stand beside a motion, or may not stand without places."""
+        """Find what may not stand beside a motion, or not without places."""
         motions = [code for code in named if code in MOTIONS]
         lonely = [code for code in named if code in self.takes.alone]
         if lonely and motions:
@@ -149,6 +155,10 @@ class WordRules:
         if ("G", 53.0) in named and motions and motions[0][1] > 1:
             what = f"G53 stands beside {called(motions[0])}"
             self.findings.here("group", what, "G0 or G1", "go there by G0 or G1")
+        self._without_places(words, named)
+
+    def _without_places(self, words: Words, named: list[Code]) -> None:
+        """Find what may not stand without places."""
         letters = set(words.letters) | words.computed
         needing = codes("G52 G92") | PROBES
         if not self.takes.lone_motion:
