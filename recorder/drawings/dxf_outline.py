@@ -19,6 +19,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
@@ -79,7 +80,7 @@ def _pieces(file: FilePath, unit: str | None) -> tuple[list[Array], Counter[str]
     document = _opened(file)
     scale = _scale(file, document, unit)
     pieces, left_out = list[Array](), Counter[str]()
-    for count, entity in enumerate(_visible(file, document)):
+    for count, entity in enumerate(_Shown.by(file, document).of(document.modelspace())):
         if count > MOST:
             raise DrawingFault(f"{file} holds more than {MOST} entities; save the part alone")
         places = _places(entity, FLAT_MM / scale)
@@ -122,34 +123,44 @@ def _scale(file: FilePath, document: Drawing, unit: str | None) -> float:
         raise DrawingFault(NO_UNIT.format(file=file, why=why)) from None
 
 
-def _visible(file: FilePath, document: Drawing) -> Iterator[DXFGraphic]:
-    """What is shown of the model space, blocks as what they hold."""
-    off = {layer.dxf.name.lower() for layer in document.layers if layer.is_off()}
-    frozen = {layer.dxf.name.lower() for layer in document.layers if layer.is_frozen()}
+@dataclass(frozen=True, slots=True)
+class _Shown:
+    """What a file shows, by its layers that are off (blocks on them are shown) and frozen."""
 
-    def hidden(entity: DXFGraphic, layer: str) -> bool:
-        is_off = layer in off and entity.dxftype() != "INSERT"
-        return bool(entity.dxf.get("invisible", 0)) or layer in frozen or is_off
+    file: FilePath
+    off: frozenset[str]
+    frozen: frozenset[str]
 
-    def shown(
-        entities: Iterable[DXFGraphic], of_insert: str, depth: int
+    @classmethod
+    def by(cls, file: FilePath, document: Drawing) -> _Shown:
+        """By the layers of a document."""
+        off = [layer.dxf.name.lower() for layer in document.layers if layer.is_off()]
+        frozen = [layer.dxf.name.lower() for layer in document.layers if layer.is_frozen()]
+        return cls(file, frozenset(off), frozenset(frozen))
+
+    def of(
+        self, entities: Iterable[DXFGraphic], of_insert: str = "", depth: int = 0
     ) -> Iterator[DXFGraphic]:
+        """What is shown of some entities, blocks as what they hold; `of_insert` is their block's layer."""
         if depth > DEEPEST:
             raise DrawingFault(
-                f"{file} has blocks in one another, more than {DEEPEST} deep; explode them"
+                f"{self.file} has blocks in one another, more than {DEEPEST} deep; explode them"
             )
         for entity in entities:
             own = entity.dxf.get("layer", "0").lower()
             layer = of_insert if own == "0" and of_insert else own
-            if hidden(entity, layer):
+            if self._hides(entity, layer):
                 continue
             if entity.dxftype() != "INSERT":
                 yield entity
                 continue
             for one in _each(entity):
-                yield from shown(one.virtual_entities(), layer, depth + 1)
+                yield from self.of(one.virtual_entities(), layer, depth + 1)
 
-    yield from shown(document.modelspace(), "", 0)
+    def _hides(self, entity: DXFGraphic, layer: str) -> bool:
+        """Whether an entity of a layer is not to be seen."""
+        is_off = layer in self.off and entity.dxftype() != "INSERT"
+        return bool(entity.dxf.get("invisible", 0)) or layer in self.frozen or is_off
 
 
 def _each(insert: Any) -> Iterable[Any]:

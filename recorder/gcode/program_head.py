@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice, pairwise
 
@@ -145,12 +145,8 @@ def cut_lines(
     """What is cut each time the tool is down: a place, and the blocks from there on."""
     x, y, z = (float(mm) for mm in planned.start_mm)
     before = Block("", (x, y, z if machine.z else 0.0))
-    lines, is_open, is_over = list[list[Block]](), False, False
-    for block in blocks:
-        if block.code == WORDS:  # what runs on after a hole has closed is no part of its line
-            goes_on = is_over and block.words != machine.tool_up
-            is_over = goes_on or block.words == machine.hole_overcut
-            continue
+    lines, is_open = list[list[Block]](), False
+    for block, is_over in _with_overcuts(blocks, machine):
         cuts = _cuts(before, block)
         if cuts and not is_over:
             if not is_open:
@@ -159,6 +155,17 @@ def cut_lines(
         is_open = (is_open or cuts) and block.code != RAPID
         before = block if block.code else before
     return lines
+
+
+def _with_overcuts(blocks: Sequence[Block], machine: Machine) -> Iterator[tuple[Block, bool]]:
+    """The blocks but for words, and whether each runs on after a hole has closed: no part of its line."""
+    is_over = False
+    for block in blocks:
+        if block.code == WORDS:
+            goes_on = is_over and block.words != machine.tool_up
+            is_over = goes_on or block.words == machine.hole_overcut
+        else:
+            yield block, is_over
 
 
 def drilled_mm(planned: BlockPlan) -> set[tuple[float, float]]:

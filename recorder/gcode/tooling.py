@@ -65,13 +65,11 @@ def _parts(start_mm: Array, blocks: Sequence[Block]) -> list[tuple[bool, list[Bl
         if across:
             in_work = in_work or z_mm <= IN_WORK_BELOW_MM
             flat = flat._replace(code=_code_across(flat, in_work))
-        stays = not across and block.code != "G4"
-        goes_down = in_work and not is_down
-        goes_up = is_down and not in_work and not stays
-        if goes_down or goes_up:
+        is_told = across or block.code == "G4"
+        if in_work != is_down and (in_work or is_told):
             is_down = in_work
             parts.append((is_down, [Block("", place)]))
-        if not stays:
+        if is_told:
             parts[-1][1].append(flat)
         place, z_mm = flat.place_mm, block.place_mm[2]
     return parts

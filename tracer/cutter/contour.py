@@ -85,15 +85,18 @@ class Cut:
         down_at = operator.down_at(line, number)
         if len(line.xy_mm) < 2 or line.is_dot or (line.is_guide and down_at is None):
             return None
-        first = 0
-        if line.is_guide:
-            first = math.ceil(down_at or 0)
-        elif line.is_lead:
-            first = line.loop_from or 0
+        first = _first_cut(line, down_at)
         closed, places_mm = line.is_lead or line.ending == "closed", _places(line, first)
         if closed:
             places_mm = _closed(places_mm)
         return cls(line, first, places_mm, closed, tuple(operator.stops(line, number)), down_at)
+
+
+def _first_cut(line: Line, down_at: float | None) -> int:
+    """The first position of a line that is cut: where the tool goes down, or the end of the lead line."""
+    if line.is_guide:
+        return math.ceil(down_at or 0)
+    return (line.loop_from or 0) if line.is_lead else 0
 
 
 def planned(trace: Trace) -> list[tuple[Line, Cut | None]]:

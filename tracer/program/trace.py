@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
+from itertools import takewhile
 from typing import NamedTuple
 
 import numpy as np
@@ -241,9 +242,8 @@ def _best(
 def _searched(wanted: _Target, stances: Iterator[tuple[Stance, float]]) -> _Search:
     """The runs from one stance after the other, until no better one need be looked for."""
     search, straight = _Search(), wanted.without_turns()
-    for stance, ink_mm in stances:
-        if search.is_over(stance):
-            break
+    in_reach = takewhile(lambda place: not search.is_over(place[0]), stances)
+    for stance, ink_mm in in_reach:
         if search.has_passed(stance):
             continue
         try:
