@@ -18,7 +18,7 @@ class LineSettings:
     """Which line is followed, or which lines, and what holds them together."""
 
     start_mm: Place | None = None
-    # None: the one line at the start, or the longest
+    # None: the one line at the start, or the longest; with a cutter the contours
     lines: str | tuple[int, ...] | None = None
     line_width_mm: float | None = None
     gap_mm: float | None = None
@@ -30,6 +30,11 @@ class LineSettings:
     # where lines begin, and a place that way along them; without `lines` they pick the lines
     arrows_mm: tuple[tuple[Place, Place], ...] = ()
     order: tuple[int, ...] = ()  # numbers of the lines that are cut first, in this order
+
+    @property
+    def is_asked_for(self) -> bool:
+        """Whether somebody has said which line or lines: by places, by numbers or by their kind."""
+        return self.lines is not None or bool(self.starts_mm)
 
     @property
     def are_several(self) -> bool:

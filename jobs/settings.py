@@ -169,6 +169,15 @@ class TraceSettings:
     depths: DepthSettings = field(default_factory=DepthSettings)
     contour: ContourSettings = field(default_factory=ContourSettings)
 
+    def with_usual_lines(self) -> TraceSettings:
+        """The same, with all contours where a cutter runs beside lines and nobody asks for one line or for some:
+        a part is cut with its holes. A card is for one drawn program.
+        """
+        line, of_card = self.line, self.program.card_file is not None
+        if self.tool.cutter_mm is None or line.is_asked_for or of_card:
+            return self
+        return replace(self, line=replace(line, lines="contours"))
+
     def card(self) -> Card:
         """The operator's card, an empty one if no file is given; raises CardFault for a mistake on it."""
         from morfax.tracer.operator.card import Card

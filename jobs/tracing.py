@@ -45,6 +45,7 @@ class Tracing:
     @classmethod
     def prepared(cls, settings: TraceSettings, panel: Panel | None = None) -> Tracing:
         """Read the card and the settings; raises WrongUse, CardFault and FileFault for a mistake in them."""
+        settings = settings.with_usual_lines()
         settings.line.check()
         settings.contour.check(settings.line.direction)
         card = settings.card()

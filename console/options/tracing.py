@@ -53,7 +53,8 @@ SEVERAL = option(
     type=LINES,
     help="Several lines as one program: all (every stretch of line, each once), contours (lines to be cut, "
     "inner before outer, without the bars between them), outer (contours inside no other), or numbers "
-    "such as 1,3; 1 is the longest.  [default: one line, the longest or that at --start]",
+    "such as 1,3; 1 is the longest.  [default: one line, the longest or that at --start; with --cutter and "
+    "no --card contours]",
 )
 LINE_WIDTH = option(
     "Line",

@@ -166,3 +166,16 @@ def test_a_hole_that_is_asked_for_alone_is_not_cut_as_an_outline_without_a_word(
     assert "give --side inside for a hole, or ask for line 1 too" in answer.err
     for further in (("--side", "inside"), ("--side", "left"), ("--lines", "1,2")):
         assert "which is not asked for" not in morfax(*options, *further).err
+
+
+def test_a_cutter_takes_all_contours_unless_one_line_or_a_card_is_asked_for(
+    morfax: Morfax, here: Path
+) -> None:
+    # a part is cut with its holes: the bracket has an outline and three holes, the card is for a drawn program
+    bracket = ("trace", SAMPLES / "bracket.png", "--cutter", "3mm", "--json")
+    asked = morfax(*bracket, "--lines", "contours", "-o", "asked.csv").figures
+    usual = morfax(*bracket, "-o", "usual.csv").figures
+    assert usual["lines"] == asked["lines"] and len(usual["lines"]) > 1
+    assert Path("usual.csv").read_bytes() == Path("asked.csv").read_bytes()
+    alone = morfax(*bracket, "--start", "5,5", "-o", "one.csv").figures
+    assert "lines" not in alone
