@@ -171,7 +171,7 @@ def test_a_hole_that_is_asked_for_alone_is_not_cut_as_an_outline_without_a_word(
 def test_a_cutter_takes_all_contours_unless_one_line_or_a_card_is_asked_for(
     morfax: Morfax, here: Path
 ) -> None:
-    # a part is cut with its holes: the bracket has an outline and three holes, the card is for a drawn program
+    # a part is cut with its holes: the bracket has an outline and three holes
     bracket = ("trace", SAMPLES / "bracket.png", "--cutter", "3mm", "--json")
     asked = morfax(*bracket, "--lines", "contours", "-o", "asked.csv").figures
     usual = morfax(*bracket, "-o", "usual.csv").figures
