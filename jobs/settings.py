@@ -170,7 +170,7 @@ class TraceSettings:
     contour: ContourSettings = field(default_factory=ContourSettings)
 
     def with_usual_lines(self) -> TraceSettings:
-        """The same, with all contours where a cutter runs beside lines and nobody asks for one line or some: a
+        """The same, with all contours where a cutter runs beside lines and nobody asks for some of them: a
         part is cut with its holes. A card is for one drawn program.
         """
         line, of_card = self.line, self.program.card_file is not None
