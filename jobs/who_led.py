@@ -54,17 +54,17 @@ class WhoLed:
         return cell_mm / max(cell_mm + stations_mm, 1e-9)
 
     def figures(self) -> dict[str, Any]:
-        """The shares, and how far each leader led."""
+        """The share of each leader, and of the cell outside of corners, junctions and tangles."""
         from morfax.tracer.head.leaders import LEADERS
 
         all_mm = sum(self.lengths_mm)
         return {
             "cell_share": self.cell_share,
             "cell_on_lines_share": self.cell_on_lines_share,
-            "led_by": [
-                {"led_by": name, "led_mm": mm, "led_share": mm / all_mm}
+            "led_by": {
+                f"{name.replace(' ', '_')}_share": mm / all_mm
                 for name, mm in zip(LEADERS, self.lengths_mm, strict=True)
-            ],
+            },
         }
 
     def remarks(self) -> Iterator[str]:
