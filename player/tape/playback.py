@@ -208,6 +208,7 @@ class TapePlayback(Supervised):
             reference=Reference(fmt.reference_hz / fmt.motion_rate_hz, self.setting.wheel),
         )
         drives.adjust(self._zero_mm)
+        adjusted_edges = drives.cell_edges
         drives.conditions = self.conditions
         rest_mm = self.start_mm - self._zero_mm  # where the screws stood before that
         monitor, self.end_error_mm = self.supervise(fmt.axes, self.rate_hz), None
@@ -221,7 +222,7 @@ class TapePlayback(Supervised):
                 phases.cycles[:sound] - bearings.zero_cycles + self._zero_mm * fmt.cycles_per_mm
             )
             places_mm = drives.follow(cycles) + rest_mm
-            self.cell_edges = drives.cell_edges
+            self.cell_edges = drives.cell_edges - adjusted_edges
             demand_mm = cycles[: len(places_mm)] * fmt.mm_per_cycle + rest_mm
             monitor.rows_seen = phases.first_row
             rows = monitor.watch(demand_mm, places_mm)

@@ -18,7 +18,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import soundfile
+from numpy.typing import NDArray
 
+from morfax.jobs.who_led import WhoLed
 from morfax.motion.arrays import Array
 from morfax.motion.axis import LeadScrew
 from morfax.motion.contour import distance
@@ -26,7 +28,8 @@ from morfax.motion.drive import Condition, Drive
 from morfax.motion.faults import FollowingFault, LockFault
 from morfax.motion.motion import MOTION_RATE_HZ, Motion, join, thin
 from morfax.motion.ramp import positions_mm
-from morfax.player.tape.playback import play
+from morfax.player.tape.playback import TapePlayback, play
+from morfax.player.tape.sector_wheel import SectorWheel
 from morfax.recorder.tape.pickups import PICK_UPS
 from morfax.recorder.tape.tape import Tape, TapeFormat, record
 from morfax.tracer.drawing.deviation import deviation
@@ -35,10 +38,18 @@ from morfax.tracer.following.start import put_down
 from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.settings import HISTORIC, Settings
 from morfax.tracer.head.state import Home
+from morfax.tracer.operator import zunit
 from morfax.tracer.operator.card import Card, Stop
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.operator.work import Halt, Work
-from morfax.tracer.operator.zunit import Counters, Preset, QuillMove, counts_of
+from morfax.tracer.operator.zunit import (
+    Counters,
+    Preset,
+    QuillMove,
+    coincidence,
+    counts_of,
+    z_moves,
+)
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.trace import trace
 from morfax.tracer.sensing.photocell import behind_aperture, sweep
@@ -144,6 +155,25 @@ def round_the_contour(tape: Taped) -> Iterator[float]:
     return iter((moments[:: len(moments) // 40] / MOTION_RATE_HZ).tolist())
 
 
+def edges_of_the_cells(playback: TapePlayback) -> Iterator[tuple[Array, Array]]:
+    """While a tape plays, block by block: the edges that the cells on the machine's screws have given, and
+    those that the reference's cycles and the screws' places make, (axes).
+    """
+    reference_cycles = playback.format.reference_hz / playback.format.motion_rate_hz
+    rows = 0
+    for motion in playback:
+        rows += len(motion.positions_mm)
+        moved_mm = motion.positions_mm[-1] - playback.start_mm
+        yield playback.cell_edges, rows * reference_cycles + moved_mm / Q_MM
+
+
+def cell_share(run: Trace) -> float:
+    """The share of the head's way outside of corners and junctions that its swinging cell led."""
+    led = WhoLed.along(run)
+    assert led is not None
+    return led.cell_on_lines_share
+
+
 def standing_s(run: Trace, number: int) -> tuple[float, float]:
     """From when to when X and Y stand at a stop, s of the motion."""
     place = next(
@@ -161,6 +191,7 @@ def standing_s(run: Trace, number: int) -> tuple[float, float]:
 def test_claim_1_the_follower_goes_round_the_drawing_and_its_signal_tells_direction_and_speed(
     sheet: Drawing, run: Trace, tape: Taped
 ) -> None:
+    assert cell_share(run) > 0.85  # by its own eye
     loop = run.lines[0].xy_mm[run.lines[0].loop_from :]
     turned = np.unwrap(np.arctan2(*(loop - CENTRE_MM).T[::-1]))
     assert abs(turned[-1] - turned[0]) == pytest.approx(
@@ -208,8 +239,9 @@ def test_claim_2_an_oscillating_cell_steers_and_the_tracks_lie_about_a_recorded_
 
 
 def test_claim_3_the_panel_s_switches_put_the_tool_s_movements_on_a_z_track(
-    run: Trace, tape: Taped
+    run: Trace, tape: Taped, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """The switches are counted down by the disc on the running motor, and coincidence stops it."""
     down = run.actions[0][0]
     assert (down.halt.number, [move.to_mm for move in down.moves]) == (1, [-DEPTH_MM])
     from_s, to_s = standing_s(run, 1)
@@ -222,6 +254,24 @@ def test_claim_3_the_panel_s_switches_put_the_tool_s_movements_on_a_z_track(
     panel, after = Counters(counts_of(2.0)), Counters(counts_of(2.0)).after(Preset(700, "down"))
     assert Preset(700, "down").digits == "00700"  # five decades
     assert after.z_mm - panel.z_mm == pytest.approx(-DEPTH_MM - run.work.clearance_mm)
+    # the running unit: 700 pulses of the disc and 700 on the switches, and the motor is off
+    met: list[tuple[int, int]] = []
+
+    def counting(shown: NDArray[np.int64], counts: int) -> int | None:
+        met.append((abs(int(shown[-1])), counts))
+        return coincidence(shown, counts)
+
+    with monkeypatch.context() as watched:
+        watched.setattr(zunit, "coincidence", counting)
+        z_mm = join(run).positions_mm[:, 2]
+    assert (700, 700) in met and all(shown == counts for shown, counts in met)
+    assert z_mm.min() == -DEPTH_MM and np.array_equal(z_mm, tape.motion.positions_mm[:, 2])
+    # a disc with twice the holes stops the tool half-way down: 2 mm less 3.5, and no plan says that
+    disc = zunit.counted
+    with monkeypatch.context() as finer:
+        finer.setattr(zunit, "counted", lambda come_mm, pulse_mm: disc(come_mm, pulse_mm / 2))
+        stopped = z_moves(run.work.clearance_mm, down.moves[:1])
+    assert stopped[-1] == pytest.approx(-1.5, abs=zunit.COUNT_MM)
 
 
 @pytest.mark.parametrize("pickup", PICK_UPS)
@@ -270,6 +320,9 @@ def test_claim_6_the_reference_on_the_tape_drives_the_wheel_that_each_drive_is_f
     # carriers and reference are both 4 % lower
     assert distance(slower, as_recorded).hausdorff_mm < 1 * UM
     assert slower.t_s[-1] == pytest.approx(as_recorded.t_s[-1] * 48 / 46, rel=1e-4)
+    # each cell sees its wheel come by at the reference, and its own screw's turning on top of it: whole edges
+    for edges, expected in edges_of_the_cells(play(tape.file)):
+        assert np.abs(edges - expected).max() <= 1.1
     # the reference alone runs 0.1 % fast for two seconds: a wheel that turns so turns the screws
     warped = frames.copy()
     t_s = np.arange(len(frames)) / RATE_HZ
@@ -285,8 +338,9 @@ def test_claim_6_the_reference_on_the_tape_drives_the_wheel_that_each_drive_is_f
 
 
 def test_claim_7_the_contour_that_was_drawn_is_the_contour_that_is_cut(
-    sheet: Drawing, tape: Taped
+    sheet: Drawing, run: Trace, tape: Taped
 ) -> None:
+    assert cell_share(run) > 0.85
     found = deviation(sheet, thin(play(tape.file)))
     assert found.rms_mm < 4 * UM
     (cut,) = thin(play(tape.file)).runs()
@@ -318,6 +372,7 @@ def test_claim_8_what_is_recorded_is_the_turning_of_the_follower_s_own_motors(
             for axis in (X, Y):
                 expected = REFERENCE_HZ + tape.speed_mm_s(axis, at_s) / Q_MM
                 assert tape.hz(axis, at_s) == pytest.approx(expected, abs=COUNTED_HZ)
+        assert cell_share(run) > 0.85  # the motors run as the cell steers
         ways.append(thin(run))
     assert distance(ways[1], ways[0]).hausdorff_mm > 2 * UM  # the motors are in it
 
@@ -340,9 +395,10 @@ def test_claim_9_each_drive_turns_a_member_beside_one_of_constant_speed(tmp_path
 
 
 def test_claim_10_one_steering_movement_makes_both_tracks_beside_a_constant_third(
-    tape: Taped,
+    run: Trace, tape: Taped
 ) -> None:
     """In every direction the two shifts make the one tracing speed: sine and cosine of one heading."""
+    assert cell_share(run) > 0.85  # the cell's, on the steered member
     for at_s in round_the_contour(tape):
         shifts = [(tape.hz(track, at_s) - REFERENCE_HZ) * Q_MM for track in (X, Y)]
         chord = math.sin(SPEED_MM_S * COUNTED_S / 2 / RADIUS_MM) / (
@@ -497,6 +553,11 @@ def test_claim_16_the_reference_from_the_tape_turns_the_wheel_of_every_axis(
     assert (played[11_000] - played[5_000]).tolist() == pytest.approx(
         [10.2, -5.1, 0], abs=1 * UM
     )
+    # the feedback is a signal about the reference: 2 s of 6 kHz on Z, which stands; above it on X, below on Y
+    machine = play(high, reference_hz=6000, cycles_per_mm=20)
+    *_, (edges, expected) = edges_of_the_cells(machine)
+    assert np.abs(edges - expected).max() <= 1.1
+    assert edges[2] == pytest.approx(12_000, abs=1) and edges[0] > 12_300 and edges[1] < 11_850
     off = tones(tmp_path / "b.wav", 5980, 6000, 6000, 6000)
     alike = play(off, reference_hz=6000, cycles_per_mm=20, alike=("x", "y", "z"))
     played = join(alike).positions_mm
@@ -515,22 +576,16 @@ def test_claim_17_the_motor_turns_a_member_whose_signal_is_fed_back(tmp_path: Pa
     played = join(weak).positions_mm[6000 : 6000 + len(circle)]
     # an open loop would be 0.5 mm/s and 30 % of 10 mm/s behind: after six seconds some mm
     assert np.abs(played - circle).max() < 3 * UM
+    # it is the cell's signal that is fed back: an arm 0.1 mm off the axis of a wheel of 30 mm radius leads
+    # the screw astray, once in each of its turns of 5 mm, and without light nothing leads it
+    bent = join(play(tmp_path / "a.wav", wheel=SectorWheel(eccentricity_mm=0.1))).positions_mm
+    # 2.7 um; the loop leaves 0.5 um at 0.5 m/s²
+    wobble = 5.0 / (2 * np.pi) * 0.1 / 30 * np.sin(2 * np.pi * circle / 5.0)
+    assert np.abs(bent[6000 : 6000 + len(circle)] - (circle - wobble)).max() < 0.6 * UM
+    with pytest.raises(LockFault, match="its pick-up gives no signal"):
+        join(play(tmp_path / "a.wav", wheel=SectorWheel(light=0.05)))
     stuck = play(tmp_path / "a.wav")
     stuck.conditions[1] = Condition(stuck=True)
     with pytest.raises((LockFault, FollowingFault)) as caught:
         join(stuck)
     assert caught.value.axis == "y"
-
-
-def test_every_claim_stands_in_the_table() -> None:
-    lines = (
-        (Path(__file__).parents[2] / "docs" / "background" / "claims-morfax.md")
-        .read_text(encoding="utf-8")
-        .splitlines()
-    )
-    rows = [line.split("|") for line in lines if line.startswith("| ") and line[2].isdigit()]
-    assert [int(row[1]) for row in rows] == list(range(1, 18))
-    for row in rows:
-        assert row[3].split("`")[1] in globals()
-        modules = [name for name in row[4].split("`") if name.endswith(".py")]
-        assert all((Path(__file__).parents[2] / module).is_file() for module in modules)

@@ -9,8 +9,9 @@ position in mm above the work. Signal out: Z in mm at the motion rate, up positi
     disc 128 ──▶ counters 127 (up and down)                    _____/      \\_____   dwell
        └──── motor 125 ◀── amplifier 135, tacho 136
 
-One pulse of the disc is one count. Each move is run by the ramp counter with the count as its increment: it
-speeds up, holds the feed, and comes to rest on the last pulse, so that coincidence and rest fall together:
+One pulse of the disc is one count. The motor runs each move by the ramp counter with the count as its
+increment: it speeds up, holds the feed, and comes to rest on the last pulse. What switches it off is the
+coincidence of the counted pulses with the switches, so that it never runs past them:
 
     count at rest = count before ± switches,     Z = 0.01 mm · count          (both exact: counts are whole)
 
@@ -18,7 +19,8 @@ Source: patent ES 361967, figure 3 (switches 126, counters 127, disc 128, counti
 motor 125, amplifier 135, tacho 136), claims 3, 13 and 14; the ramp from patent ES 414458, figures 3 and 4
 (see `motion.ramp`). Questions: the patent gives no figures. Chosen: five digits of 0.01 mm, the first preset
 being the start position above the work, and counters that show the sign and five digits too. The patent's
-motor is switched off at coincidence and would run on; the ramp counter brakes before it. Without a card the
+motor is switched off at coincidence and would run on; the ramp counter brakes before it. A move whose pulses
+never come to coincidence is a fault. Without a card the
 depth and clearance need not be whole counts: the move is then divided into a whole number of increments, each
 as near to a count as possible.
 """
@@ -35,6 +37,7 @@ from numpy.typing import NDArray
 
 from morfax.motion import ramp
 from morfax.motion.arrays import Array
+from morfax.motion.faults import MotionFault
 from morfax.motion.motion import MOTION_RATE_HZ
 
 COUNT_MM = 0.01  # one pulse of disc 128
@@ -145,28 +148,47 @@ def z_moves(
     acceleration_mm_s2: float = ACCELERATION_MM_S2,
     rate_hz: float = MOTION_RATE_HZ,
 ) -> Array:
-    """Z of moves one after the other from a place, (n,) mm at the motion rate; each ends exactly."""
+    """Z of moves one after the other from a place, (n,) mm at the motion rate; each ends on its last pulse.
+
+    Raises MotionFault where the counters never agree with the switches.
+    """
     parts, at_mm = [np.empty(0)], start_mm
     for move in moves:
         parts.append(_one(at_mm, move, acceleration_mm_s2, rate_hz))
-        at_mm = move.to_mm
+        at_mm = float(parts[-1][-1])
     return np.concatenate(parts)
 
 
-def counted(z_mm: Array) -> NDArray[np.int64]:
-    """What the counters show at each place of a move: pulses of disc 128 since the surface."""
-    return np.trunc(z_mm * COUNTS_PER_MM + np.copysign(_PULSE, z_mm)).astype(np.int64)
+def counted(come_mm: Array, pulse_mm: float = COUNT_MM) -> NDArray[np.int64]:
+    """What the counters show at each place of a move, from its start: pulses of disc 128, up and down."""
+    return np.trunc(come_mm / pulse_mm + np.copysign(_PULSE, come_mm)).astype(np.int64)
 
 
-def coincidence(z_mm: Array, start: Counters, preset: Preset) -> int | None:
+def coincidence(shown: NDArray[np.int64], counts: int) -> int | None:
     """At which sample of a move the counters agree with the switches (133); None if they never do."""
-    there = np.flatnonzero(np.abs(counted(z_mm - start.z_mm)) >= preset.counts)
+    there = np.flatnonzero(np.abs(shown) >= counts)
     return int(there[0]) if len(there) else None
 
 
 def _one(start_mm: float, move: QuillMove, acceleration_mm_s2: float, rate_hz: float) -> Array:
     """Z of one move and of the dwell after it, mm."""
+    # 1. what the motor would run
     how = ramp.Ramp(acceleration_mm_s2, COUNT_MM)
-    way = ramp.positions_mm([start_mm], [move.to_mm], move.feed_mm_s, how, rate_hz=rate_hz)
-    stands = np.full(round(move.dwell_s * rate_hz), move.to_mm)
-    return np.concatenate([way[:, 0], stands])
+    way = ramp.positions_mm([start_mm], [move.to_mm], move.feed_mm_s, how, rate_hz=rate_hz)[
+        :, 0
+    ]
+    # 2. the counters, from the start of the move; the motor is off where they would pass the switches
+    length_mm = abs(move.to_mm - start_mm)
+    switches = round(length_mm / COUNT_MM)
+    if switches:
+        shown = counted(way - start_mm, length_mm / switches)
+        if coincidence(shown, switches) is None:
+            raise MotionFault(
+                f"Z does not stop: its counters show {abs(int(shown[-1]))} pulses at the end of a move, "
+                f"and the switches {switches}",
+                axis="z",
+                time_s=len(way) / rate_hz,
+            )
+        way = way[np.abs(shown) <= switches]
+    # 3. the dwell, where it came to rest
+    return np.concatenate([way, np.full(round(move.dwell_s * rate_hz), way[-1])])

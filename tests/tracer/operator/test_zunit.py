@@ -7,7 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from morfax.motion.faults import MotionFault
 from morfax.motion.motion import MOTION_RATE_HZ
+from morfax.tracer.operator import zunit
 from morfax.tracer.operator.zunit import (
     COUNT_MM,
     LARGEST_COUNT,
@@ -93,7 +95,7 @@ def test_coincidence_and_rest_fall_together_on_the_count(
     counters, preset = Counters(start), Preset(counts, sense, feed_mm_s)  # type: ignore[arg-type]
     z_mm = run(counters, preset)
     assert z_mm[0] == counters.z_mm and z_mm[-1] == counters.after(preset).z_mm  # exactly
-    met = coincidence(z_mm, counters, preset)
+    met = coincidence(counted(z_mm - counters.z_mm), counts)
     assert (
         met is not None and len(z_mm) - 2 <= met <= len(z_mm) - 1
     )  # the last period may move by less than a rounding
@@ -109,7 +111,28 @@ def test_the_counters_pass_every_count_on_the_way() -> None:
 
 def test_a_move_that_falls_short_has_no_coincidence() -> None:
     z_mm = run(Counters(0), Preset(499))
-    assert coincidence(z_mm, Counters(0), Preset(500)) is None
+    assert coincidence(counted(z_mm), 499) is not None
+    assert coincidence(counted(z_mm), 500) is None
+
+
+def test_the_motor_stops_where_the_counters_agree_and_not_where_its_ramp_ends(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A disc with one hole too many in a hundred: the counters are there early, and so is the stop."""
+    way = Counters(0), Preset(500), Preset(100, "up")
+    monkeypatch.setattr(
+        zunit, "counted", lambda come_mm, pulse_mm: counted(come_mm, pulse_mm / 1.01)
+    )
+    z_mm = run(*way)
+    # 495 true counts of 500; and 1 % short of -4 on the way up from there
+    assert z_mm.min() == pytest.approx(-4.95, abs=COUNT_MM)
+    assert z_mm[-1] == pytest.approx(-4.00, abs=2 * COUNT_MM)
+    # and one too few: the ramp ends before the counters are there
+    monkeypatch.setattr(
+        zunit, "counted", lambda come_mm, pulse_mm: counted(come_mm, pulse_mm / 0.99)
+    )
+    with pytest.raises(MotionFault, match=r"counters show 495 pulses .* and the switches 500"):
+        run(*way)
 
 
 @given(st.lists(st.tuples(st.integers(0, 500), SENSES, FEEDS), min_size=1, max_size=6))
