@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from morfax.jobs.traced import Traced
     from morfax.motion.faults import Fault
     from morfax.motion.motion import Path
+    from morfax.motion.placement import Placement
     from morfax.player.monitor.chart import Chart
     from morfax.tracer.drawing.drawing import Drawing
     from morfax.tracer.operator.operator import Panel
@@ -44,6 +45,8 @@ class RunResult:
     report: FilePath
     faults: tuple[Fault, ...]
     chart: Chart | None = None  # of the following errors, where it was asked for
+    placement: Placement | None = None  # of the drawing on the machine
+    program: FilePath | None = None  # that the machine ran
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +108,10 @@ class RunJob:
         faults = tuple(fault for fault in (traced.fault, played.fault) if fault is not None)
         report = traced.name(self.file(".json"))
         return RunResult(
-            figures, drawing, traced, path, from_ink, picture, report, faults, chart
+            *(figures, drawing, traced, path, from_ink, picture, report, faults),
+            chart=chart,
+            placement=about,
+            program=program,
         )
 
     def prepared(self, panel: Panel | None = None) -> tuple[FilePath, Tracing]:

@@ -4,6 +4,7 @@
     {"do": "undo"}, "redo", "run", "hold", "resume", "step", "stop"
     {"do": "correct", "as": "rub", "at": [[812, 1004], [820, 1010]], "width": "2mm"}
     {"do": "pace", "times": 2}                     {"do": "save", "as": ".dxf"}
+    {"do": "override", "share": 0.5}               of the machine, which runs its program again
 
 What changes the settings says which revision the page has `seen`: an older one is refused, because another
 page has changed them in the meantime.
@@ -21,6 +22,7 @@ from morfax.jobs.wrong_use import WrongUse
 from morfax.panel import commands, keepsake
 from morfax.panel.corrected import asked_words
 from morfax.panel.history import Step
+from morfax.panel.own_files import as_paths
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -30,6 +32,7 @@ if TYPE_CHECKING:
 PAGE = ".html"
 PROGRAM = "program"  # in the words of the machine that is set
 SAVED_AS = (".wav", ".steps", ".cubic", ".ngc", ".dxf", ".svg", ".plt", ".csv", PROGRAM, PAGE)
+OVERRIDES = (0.1, 2.0)  # of the program's feed
 PACES = (0.1, 100.0)  # times the head's own speed
 LONGEST_VALUE = 200  # characters of an option
 OF_SETTINGS = ("open", "set", "correct", "undo", "redo")
@@ -73,22 +76,25 @@ def _set(bench: Bench, action: dict[str, Any]) -> None:
             )
         options.pop(name, None)
         if value is not None and value is not False and value != "":
-            options[name] = _value(known[name], value)
-    words = commands.trace_words(bench.drawing, options, bench.folder / f"x{_suffix(options)}")
+            options[name] = _value(known[name], value, bench)
+    given = as_paths(options, bench.own)
+    words = commands.trace_words(bench.drawing, given, bench.folder / f"x{_suffix(options)}")
     bench.command_line.trace(words)
     bench.step(replace(bench.history.now, options=options))
 
 
-def _value(field: commands.Field, value: Any) -> str | bool:
+def _value(field: commands.Field, value: Any, bench: Bench) -> str | bool:
     """A value as an option holds it; raises WrongUse for one of another kind."""
     if field.kind == "switch" and value is True:
         return True
     if not isinstance(value, str) or field.kind == "switch" or len(value) > LONGEST_VALUE:
         raise WrongUse(f"{field.option} cannot be {str(value)[:40]!r}")
-    if field.choices and value not in field.choices:
-        raise WrongUse(
-            f"{field.option} cannot be {value[:40]!r}; it may be {', '.join(field.choices)}"
+    choices = (*field.choices, *bench.own) if field.kind == "file" else field.choices
+    if (choices or field.kind == "file") and value not in choices:
+        may = (
+            f"it may be {', '.join(choices)}" if choices else "give the page a file of your own"
         )
+        raise WrongUse(f"{field.option} cannot be {value[:40]!r}; {may}")
     return value.strip()
 
 
@@ -127,9 +133,7 @@ def _correct(bench: Bench, action: dict[str, Any]) -> None:
     _refuse_busy(bench)
     if bench.drawing is None:
         raise WrongUse("no drawing lies on the bench; open one first")
-    words = commands.correct_words(
-        bench.drawing, bench.history.now.options, asked_words(action)
-    )
+    words = commands.correct_words(bench.drawing, bench.options, asked_words(action))
     job = bench.command_line.correct(words)
     bench.corrected_by = words
     bench.send("correct", job)
@@ -138,7 +142,7 @@ def _correct(bench: Bench, action: dict[str, Any]) -> None:
 def save_words(bench: Bench, wanted: str) -> list[str]:
     """The words of `morfax trace` that write what is saved."""
     assert bench.drawing is not None
-    options, suffix = bench.history.now.options, wanted
+    options, suffix = bench.options, wanted
     if wanted == PROGRAM:
         machine = bench.command_line.run(bench.words()).unit.chosen()
         suffix = machine.suffix
@@ -158,6 +162,31 @@ def _pace(bench: Bench, action: dict[str, Any]) -> None:
     ):
         raise WrongUse(f"the pace may be {least:g} to {most:g} times the head's own speed")
     bench.control("pace", times)
+
+
+def _override(bench: Bench, action: dict[str, Any]) -> None:
+    """Have the machine run its program again at another feed override."""
+    _refuse_busy(bench)
+    share, (least, most) = action.get("share"), OVERRIDES
+    if (
+        isinstance(share, bool)
+        or not isinstance(share, int | float)
+        or not least <= share <= most
+    ):
+        raise WrongUse(f"the override may be {least:.0%} to {most:.0%} of the program's feed")
+    result = bench.kept.result
+    if result is None or result.get("program") is None:
+        raise WrongUse("the machine has no program yet; run first")
+    words = override_words(bench, float(share))
+    job = bench.command_line.play(words)
+    bench.send("play", (job, result["placed"], float(share)))
+
+
+def override_words(bench: Bench, share: float) -> list[str]:
+    """The words of `morfax play` that run the result's program at an override."""
+    assert bench.kept.result is not None
+    program = bench.folder / str(bench.kept.result["program"])
+    return commands.play_words(program, bench.options, share)
 
 
 def _control(what: str) -> Callable[[Bench, dict[str, Any]], None]:
@@ -186,5 +215,6 @@ _ACTIONS: dict[str, Callable[[Bench, dict[str, Any]], None]] = {
     "run": _run,
     "save": _save,
     "pace": _pace,
+    "override": _override,
     **{name: _control(name) for name in ("hold", "resume", "step", "stop")},
 }

@@ -4,6 +4,7 @@
     GET  /page/NAME           its files               GET  /result            curves of the last run, JSON
     GET  /state               the state               GET  /file/NAME         a result to keep
     POST /do                  an action               POST /upload/NAME       a drawing
+                                                      POST /own/OPTION/NAME   a card, settings, a machine
     WS   /watch               news, at most 30 a second
 
 Whatever is refused is answered in one line of words.
@@ -26,7 +27,7 @@ from starlette.websockets import WebSocketDisconnect
 
 from morfax.jobs.wrong_use import WrongUse
 from morfax.motion.faults import Fault
-from morfax.panel import actions, state, uploads
+from morfax.panel import actions, own_files, state, uploads
 
 if TYPE_CHECKING:
     from starlette.requests import Request
@@ -62,6 +63,7 @@ def routes(bench: Bench) -> Starlette:
             Route("/state", pages.state),
             Route("/do", pages.do, methods=["POST"]),
             Route("/upload/{name}", pages.upload, methods=["POST"]),
+            Route("/own/{option}/{name}", pages.own, methods=["POST"]),
             Route("/tile/{picture:int}/{kind}/{level:int}/{column:int}/{row:int}", pages.tile),
             Route("/result", pages.result),
             Route("/file/{name}", pages.file),
@@ -128,6 +130,27 @@ class _Pages:
         self._bench.sources[file.name] = file
         self._bench.changed()
         return JSONResponse({"drawing": file.name})
+
+    async def own(self, request: Request) -> Response:
+        """Take in a card, settings or a machine; 409 with words if the command line would refuse it."""
+        bench, at = self._bench, request.path_params
+        option = "any" if at["option"] == "any" else f"--{at['option']}"
+        content = b""
+        async for piece in request.stream():
+            content += piece
+            if len(content) > own_files.MOST_BYTES:
+                break
+        try:
+            if option != "any" and option not in own_files.CALLED:
+                raise WrongUse("this server takes cards, settings and machines")
+            option, file = own_files.take(
+                bench.folder, at["name"], content, option, bench.command_line
+            )
+        except (WrongUse, Fault) as refused:
+            return _refused(" ".join(str(refused).split()), 409)
+        bench.own[file.name] = file
+        bench.changed()
+        return JSONResponse({"option": option, "name": file.name})
 
     async def tile(self, request: Request) -> Response:
         """A square of the sheet, or of its lines."""

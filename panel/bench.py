@@ -17,11 +17,12 @@ from pathlib import Path as FilePath
 from typing import Any
 
 from morfax.panel import commands, sheet_picture
-from morfax.panel.commands import CommandLine
+from morfax.panel.commands import CommandLine, Options
 from morfax.panel.corrected import corrections_text, lay_corrections
 from morfax.panel.head_path import HeadPath
 from morfax.panel.history import History, Step
 from morfax.panel.kept_result import STATE, KeptResult
+from morfax.panel.own_files import as_paths, own_files
 from morfax.panel.tiles import LineMap, Picture
 from morfax.panel.uploads import taken_in
 from morfax.panel.workshop import Heard, Workshop
@@ -42,15 +43,14 @@ class Bench:
     ) -> None:
         self.folder, self.command_line = folder, command_line
         self.sources = {**sources, **taken_in(folder)}  # by the names that pages know them by
+        self.own = own_files(folder)  # cards, settings and machines, by name
         self.history = History(folder / STATE)
         self.workshop = workshop(self.heard)
         self.path = HeadPath()
         self.picture: Picture | None = None
         self.line_map: LineMap | None = None
         self.sheet: dict[str, Any] | None = None
-        self.refused: str | None = (
-            None  # why the drawing cannot be looked at: no scale, no line
-        )
+        self.refused: str | None = None  # why the drawing cannot be looked at
         self.busy: dict[str, Any] | None = None
         self.messages = deque[dict[str, Any]](maxlen=MESSAGES)
         self.kept = KeptResult(folder)
@@ -69,17 +69,20 @@ class Bench:
     def words(self) -> list[str]:
         """The words of the run as it is set now."""
         assert self.drawing is not None
-        return commands.run_words(self.drawing, self.history.now.options, self.folder)
+        return commands.run_words(self.drawing, self.options, self.folder)
+
+    @property
+    def options(self) -> Options:
+        """The options as they are set now, with paths for the operator's own files."""
+        return as_paths(self.history.now.options, self.own)
 
     async def begin(self) -> None:
-        """Take up the work where it was; a run that was cut off begins anew."""
+        """Take up the work where it was, also a run that was cut off (see `kept_knots`)."""
         await self.workshop.start()
         was_running = self.history.running
         self.look()
         if was_running and self.drawing is not None:
-            self.tell(
-                "note", "the server was ended in the middle of this run, which has begun anew"
-            )
+            self.tell("note", "the server was ended in the middle of this run; it goes on")
             self.run()
 
     async def close(self) -> None:
@@ -128,8 +131,8 @@ class Bench:
         self.changed()
         if self.drawing is None:
             return
-        shown = sheet_picture.key(self.drawing, self.history.now.options)
-        words = commands.lines_words(self.drawing, self.history.now.options)
+        shown = sheet_picture.key(self.drawing, self.options)
+        words = commands.lines_words(self.drawing, self.options)
         looked_at = [*words, corrections_text(self.drawing)]
         if shown != self._picture_of:
             self._picture_of, self.line_map, self.sheet = shown, None, None
@@ -218,6 +221,10 @@ class Bench:
             self.kept.keep(result)
             for text in result["faults"]:
                 self.tell("fault", text, result["fault_place_mm"])
+        elif kind == "play":
+            self.kept.play_again(result)
+            for text in result["faults"]:
+                self.tell("fault", text)
         elif kind == "correct":
             self.busy = None
             self.step(self.history.now)
@@ -253,11 +260,8 @@ class Bench:
     def _ended(self, message: dict[str, Any]) -> None:
         """The worker ended by itself, or was ended by the operator."""
         if self.busy is not None:
-            why = (
-                "the memory may have been too small"
-                if message["code"] in (-9, 137)
-                else f"code {message['code']}"
-            )
+            is_killed = message["code"] in (-9, 137)
+            why = "too little memory, maybe" if is_killed else f"code {message['code']}"
             self.tell(
                 "fault",
                 f"the worker ended before the work was done ({why}); what is set is kept: run again",
@@ -277,9 +281,7 @@ class Bench:
         shown, drawing = self._picture_of, self.drawing
         assert drawing is not None
         try:
-            picture = await asyncio.to_thread(
-                sheet_picture.read, drawing, self.history.now.options
-            )
+            picture = await asyncio.to_thread(sheet_picture.read, drawing, self.options)
         except Exception as error:
             self.picture, self.refused = None, " ".join(str(error).split())
         else:

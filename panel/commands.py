@@ -4,8 +4,8 @@ Signals: options as text in ("--width": "120mm"); words as one would type them, 
 the command line's own, handed in by the verb: what the page refuses is what a terminal refuses, in the same
 words.
 
-Questions: options that name files (--card, --settings, a machine's file) are not on the page: a name from a
-page is never a path.
+Questions: options that name files (--card, --settings, a machine's file) hold the name of a file that was
+given to the page (see `own_files`), which is no path: it becomes one when words are made.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Literal, Protocol
 if TYPE_CHECKING:
     from morfax.jobs.correct import CorrectJob
     from morfax.jobs.lines import LinesJob
+    from morfax.jobs.play import PlayJob
     from morfax.jobs.run import RunJob
     from morfax.jobs.trace import TraceJob
 
@@ -40,6 +41,8 @@ OFFERED: dict[str, tuple[str, ...]] = {
         "--lines",
         "--start",
         "--direction",
+        "--arrow",
+        "--order",
         "--gap",
         "--recatch",
         "--line-width",
@@ -59,7 +62,8 @@ OFFERED: dict[str, tuple[str, ...]] = {
         ),
         *("--tabs", "--tab-width", "--tab-height", "--peck"),
     ),
-    "Head": ("--speed", "--head", "--stop-override"),
+    "Head": ("--speed", "--head", "--settings"),
+    "Card": ("--card", "--stop-override", "--marks"),
     "Placement": (
         "--mirror",
         "--scale",
@@ -81,6 +85,8 @@ FOR_MACHINES = (
 FOR_TAPES = ("--pickup", "--plain")
 FOR_FITS = ("--fit-tolerance", "--lines-only")
 PAIRS = ("--known",)  # several words in one field
+MANY = ("--arrow",)  # several times, with ; between them in one field
+OWN_FILES = ("--card", "--settings", "--machine")  # that a page may be given
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,7 +95,7 @@ class Field:
 
     option: str
     group: str
-    kind: Literal["text", "choice", "switch"]
+    kind: Literal["text", "choice", "switch", "file"]
     help: str
     choices: tuple[str, ...] = ()
 
@@ -112,6 +118,9 @@ class CommandLine(Protocol):
     def correct(self, words: list[str]) -> CorrectJob:
         """The job of `morfax correct WORDS`."""
 
+    def play(self, words: list[str]) -> PlayJob:
+        """The job of `morfax play WORDS`."""
+
 
 def lines_words(drawing: FilePath, options: Options) -> list[str]:
     """The words after `morfax lines`."""
@@ -133,6 +142,13 @@ def correct_words(drawing: FilePath, options: Options, asked: list[str]) -> list
     """The words after `morfax correct`: what is put right, on the drawing as it is read."""
     of_drawing = tuple(name for name in OFFERED["Drawing"] if name != "--edge")
     return [str(drawing), *_words(options, only=of_drawing), *asked]
+
+
+def play_words(program: FilePath, options: Options, override: float) -> list[str]:
+    """The words after `morfax play` that run a program at an override, 1 being the program's own feed."""
+    machine = options.get("--machine") if program.suffix.lower() != ".wav" else None
+    of_machine = ["--machine", machine] if isinstance(machine, str) else []
+    return [str(program), *of_machine, "--feed-override", f"{100 * override:g}%"]
 
 
 def as_typed(verb: str, words: list[str]) -> str:
@@ -160,6 +176,10 @@ def _words(options: Options, only: tuple[str, ...] | None = None) -> list[str]:
     for name in (name for group in OFFERED.values() for name in group):
         value = options.get(name)
         if value is None or value is False or (only is not None and name not in only):
+            continue
+        if name in MANY and isinstance(value, str):
+            for one in value.split(";"):
+                words += [name, *one.split()]
             continue
         words.append(name)
         if isinstance(value, str):

@@ -10,10 +10,13 @@ left out, also for the pages, which then begin anew: so the memory of a run has 
 
 from __future__ import annotations
 
+from array import array
 from typing import Any
 
 AT_ONCE = 5_000  # places to a frame: 60 kB of text
 MOST = 400_000
+PER_MM = 1000  # a place is kept in whole um, 4 bytes each way: an hour takes 3 MB
+DOWN = -(2**31)  # in place of X: the head was put down anew
 
 
 class HeadPath:
@@ -26,25 +29,37 @@ class HeadPath:
     def clear(self) -> None:
         """Begin a run."""
         self.life += 1
-        self.places = list[Any]()
+        self._x, self._y = array("i"), array("i")
         self.now: dict[str, Any] = {}
+
+    def __len__(self) -> int:
+        return len(self._x)
 
     def add(self, frame: dict[str, Any]) -> None:
         """Take in a frame of the worker."""
-        self.places += frame["fresh"]
+        for place in frame["fresh"]:
+            x, y = (DOWN, 0) if place == "down" else (round(PER_MM * v) for v in place)
+            self._x.append(x)
+            self._y.append(y)
         self.now = {"head": frame["head"], "words": frame["words"], "run": frame["run"]}
-        if len(self.places) > MOST:
-            self.places = [p for i, p in enumerate(self.places) if i % 2 == 0 or p == "down"]
+        if len(self) > MOST:
+            kept = [i for i, x in enumerate(self._x) if i % 2 == 0 or x == DOWN]
+            self._x = array("i", (self._x[i] for i in kept))
+            self._y = array("i", (self._y[i] for i in kept))
             self.life += 1
 
     def since(self, life: int, at: int) -> dict[str, Any]:
         """What a page has not seen yet."""
         at = at if life == self.life else 0
-        fresh = self.places[at : at + AT_ONCE]
+        some = slice(at, at + AT_ONCE)
+        fresh = [
+            "down" if x == DOWN else [x / PER_MM, y / PER_MM]
+            for x, y in zip(self._x[some], self._y[some], strict=True)
+        ]
         return {
             "life": self.life,
             "from": at,
             "fresh": fresh,
-            "more": at + len(fresh) < len(self.places),
+            "more": at + len(fresh) < len(self),
             **self.now,
         }

@@ -71,7 +71,7 @@ class History:
             self._go(self.at + 1)
 
     def mark_running(self, running: bool) -> None:
-        """Keep whether a run is under way: a server that is started again begins it anew."""
+        """Keep whether a run is under way: a server that is started again goes on with it."""
         if running != self.running:
             self.running = running
             self.write()

@@ -27,8 +27,10 @@ MODULES = (
     "format.js",
     "tiles.js",
     "ruler.js",
+    "ground.js",
     "sheet.js",
     "result.js",
+    "tape.js",
     "replay.js",
     "keepsake.js",
 )

@@ -38,6 +38,11 @@ class KeptResult:
                 json.dumps({"words": self.words, "result": result}), encoding="utf-8"
             )
 
+    def play_again(self, played: dict[str, Any]) -> None:
+        """Take the machine's run of the same program at another override into the result."""
+        if self.result is not None:
+            self.keep({**self.result, **{k: v for k, v in played.items() if k != "faults"}})
+
     def files(self) -> list[str]:
         """The names of the results in the folder."""
         if not self.folder.is_dir():

@@ -9,6 +9,7 @@ Source: our own.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from morfax.jobs.run import RunResult
     from morfax.motion.arrays import Array
     from morfax.motion.motion import Path
+    from morfax.player.monitor.chart import Chart
 
 MOST = 40_000  # rows of a curve on the page: a browser draws these within a frame
 WORST, APART_MM = (
@@ -41,7 +43,10 @@ def of_run(result: RunResult) -> dict[str, Any]:
         "error": _error_rows(error.points_mm, error.error_mm),
         "worst": worst_places(error.points_mm, error.error_mm),
         "largest_error_mm": error.largest_mm,
-        "following": _following_rows(result),
+        "following": following_rows(result.chart),
+        "override": 1.0,  # at which the machine ran
+        "placed": _placed(result),
+        "program": None if result.program is None else result.program.name,
         "tape": levels(FilePath(program)) if (program := result.figures.get("tape")) else None,
         "marks_mm": {
             name: [float(x) for x in place] for name, place in traced.marked_mm.items()
@@ -51,6 +56,16 @@ def of_run(result: RunResult) -> dict[str, Any]:
         "files": sorted(
             file.name for file in result.picture.parent.glob(f"{result.picture.stem}.*")
         ),
+    }
+
+
+def of_play(path: Path, chart: Chart | None, placed: list[list[float]]) -> dict[str, Any]:
+    """What is other in a run that the machine ran again: its path back on the drawing, and its errors."""
+    moved = np.array(path.positions_mm, np.float64)
+    moved[:, :2] = moved[:, :2] @ np.array(placed)[:, :2].T + np.array(placed)[:, 2]
+    return {
+        "played": path_rows(replace(path, positions_mm=moved)),
+        "following": following_rows(chart),
     }
 
 
@@ -86,18 +101,31 @@ def _error_rows(points_mm: Array, error_mm: Array) -> dict[str, list[Any]]:
     return {"x_mm": x, "y_mm": y, "error_mm": error}
 
 
-def _following_rows(result: RunResult) -> dict[str, Any] | None:
-    """Following errors and limits of the machine's axes over time; None if none were taken down."""
-    chart = result.chart
+def following_rows(chart: Chart | None) -> dict[str, Any] | None:
+    """What the machine's axes were told, where they were, and the limit of their following errors, over time;
+    None if nothing was taken down.
+    """
     if chart is None or not len(chart.t_s):
         return None
     rows = _some(len(chart.t_s))
     return {
         "axes": list(chart.axes),
         "t_s": np.round(chart.t_s[rows], DECIMALS).tolist(),
+        "demand_mm": np.round(chart.demand_mm[rows].T, DECIMALS).tolist(),
         "error_mm": np.round(chart.error_mm[rows].T, 5).tolist(),
         "limit_mm": np.round(chart.limit_mm[rows].T, 5).tolist(),
     }
+
+
+def _placed(result: RunResult) -> list[list[float]]:
+    """How a place of the machine is moved back onto the drawing: x and y from (x, y, 1); (2, 3)."""
+    about = result.placement
+    if about is None:
+        return [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
+    corners = about.places_back(np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]))
+    moved = np.column_stack([corners[1] - corners[0], corners[2] - corners[0], corners[0]])
+    rows: list[list[float]] = moved.tolist()
+    return rows
 
 
 def _place_of(result: RunResult) -> list[float] | None:

@@ -36,6 +36,7 @@ def state(bench: Bench) -> dict[str, Any]:
         "messages": list(bench.messages),
         "commands": _commands(bench),
         "files": bench.kept.files(),
+        "own": sorted(bench.own),
         "result": _result(bench),
     }
 
@@ -63,13 +64,15 @@ def _commands(bench: Bench) -> dict[str, str]:
     if drawing is None:
         return {}
     typed = {
-        "lines": commands.as_typed(
-            "lines", commands.lines_words(drawing, bench.history.now.options)
-        ),
+        "lines": commands.as_typed("lines", commands.lines_words(drawing, bench.options)),
         "run": commands.as_typed("run", bench.words()),
     }
     if bench.corrected_by is not None:
         typed["correct"] = commands.as_typed("correct", bench.corrected_by)
+    result = bench.kept.result
+    if result is not None and result.get("program") is not None:
+        share = float(result.get("override", 1.0))
+        typed["play"] = commands.as_typed("play", actions.override_words(bench, share))
     for suffix in actions.SAVED_AS:
         if suffix == actions.PAGE or (
             suffix == actions.PROGRAM and "--machine" not in bench.history.now.options
@@ -87,4 +90,5 @@ def _result(bench: Bench) -> dict[str, Any] | None:
     if bench.kept.result is None:
         return None
     is_of_now = bench.drawing is not None and bench.kept.words == bench.words()
-    return {"of": bench.kept.words, "is_of_now": is_of_now}
+    override = bench.kept.result.get("override", 1.0)
+    return {"of": bench.kept.words, "is_of_now": is_of_now, "override": override}

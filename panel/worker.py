@@ -24,9 +24,11 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 from morfax.jobs import kernels
 from morfax.jobs.listener import Advance
 from morfax.panel import pipe
+from morfax.panel.kept_knots import KeptKnots
 from morfax.panel.lookout import Lookout
 
 if TYPE_CHECKING:
+    from morfax.jobs.play import PlayJob
     from morfax.jobs.run import RunJob
     from morfax.jobs.settings import DrawingFile
     from morfax.jobs.trace import TraceJob
@@ -35,6 +37,7 @@ if TYPE_CHECKING:
     from morfax.tracer.drawing.drawing import Drawing
     from morfax.tracer.following.knots import Memory
 
+KNOTS = ".knots"  # the folder of the knots on disk, in the panel's
 FRAME_S = 1 / 30  # between two frames of the head
 NO_MEMORY = "not enough memory; scan the drawing at a lower resolution, or cut out the part to be traced"
 
@@ -91,7 +94,8 @@ class Worker:
         self.lookout = Lookout()
         self.teller = Teller(out, self.lookout)
         self._traced: tuple[Any, Tracing, Drawing, Traced] | None = None
-        self._memory: Memory | None = None  # of the head's runs, so that a told turn runs on
+        # of the head's runs, so that the head goes on where something was put right
+        self._memory: Memory | None = None
 
     def do(self, number: int, kind: str, job: Any) -> None:
         """Do a job, and say how it ended."""
@@ -127,7 +131,7 @@ class Worker:
 
         _, tracing = job.prepared()
         stamp = _stamp(job.drawing)
-        with self._head():
+        with self._head(job.file(KNOTS), repr((stamp, tracing))):
             result = job.run(self.teller)
         self._traced = stamp, tracing, result.drawing, result.traced
         self.teller.say("progress", what="drawing the picture", share=0.0)
@@ -136,18 +140,48 @@ class Worker:
         return of_run(result)
 
     @contextmanager
-    def _head(self) -> Iterator[None]:
-        """Have the heads from here on watched, and taken up where an earlier run was the same."""
+    def _head(self, folder: Path | None = None, stamp: str = "") -> Iterator[None]:
+        """Have the heads from here on watched, and taken up where an earlier run was the same: one in the
+        memory, or one that was cut off and whose knots are in the folder.
+        """
         from morfax.tracer.following.knots import Memory, remembering
         from morfax.tracer.head.watched import watching
 
         self._memory = self._memory or Memory()
-        with watching(self.lookout), remembering(self._memory):
-            yield
+        knots = None if folder is None else KeptKnots(folder)
+        if knots is not None:
+            come_mm = knots.take_up(stamp, self._memory)
+            if come_mm:
+                self.teller.note(f"the head goes on where it was, {come_mm:.0f} mm on its way")
+            else:
+                knots.begin(stamp)
+        self._memory.kept = None if knots is None else knots.keep
+        try:
+            with watching(self.lookout), remembering(self._memory):
+                yield
+        finally:  # not where the worker is killed
+            self._memory.kept = None
+            if knots is not None:
+                knots.end()
 
     def _correct(self, job: Any) -> dict[str, Any]:
         """Write a correction into the file beside the drawing."""
         return dict(job.run(self.teller).figures)
+
+    def _play(self, job: tuple[PlayJob, list[list[float]], float]) -> dict[str, Any]:
+        """Have the machine run a program again, at another feed override."""
+        from morfax.jobs.following import new_chart
+        from morfax.jobs.playing import Playing
+        from morfax.jobs.wrong_use import settings_checked
+        from morfax.panel.result_data import of_play
+
+        play, placed, share = job
+        chart, settings = new_chart(raw=False), play.control.for_file(play.tape, play.by_hand)
+        with settings_checked():
+            playing = Playing(play.tape, play.by_hand, chart=chart, settings=settings)
+            played = playing.whole(self.teller)
+        faults = [] if played.fault is None else [str(played.fault)]
+        return {**of_play(played.path, chart, placed), "override": share, "faults": faults}
 
     def _save(self, job: TraceJob) -> dict[str, Any]:
         """Write a program of what was traced, or trace it first where it was not."""

@@ -8,7 +8,7 @@ show. The panel asks this, so that a page and a terminal refuse the same.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path as FilePath
 from typing import Any
 
@@ -18,11 +18,14 @@ from morfax.console.options.desk import desk_options
 from morfax.console.options.drawing import drawing_options
 from morfax.console.options.groups import Verb
 from morfax.console.options.placement import unit_options
+from morfax.console.options.tape import tape_options
 from morfax.console.options.tracing import trace_options
 from morfax.console.verbs.correct import asked_corrections
 from morfax.jobs.correct import CorrectJob
 from morfax.jobs.line_settings import LineSettings
 from morfax.jobs.lines import LinesJob
+from morfax.jobs.play import ControlSettings, PlayJob
+from morfax.jobs.playing import ByHand
 from morfax.jobs.run import RunJob
 from morfax.jobs.trace import TraceJob, TraceOutputs
 from morfax.jobs.wrong_use import WrongUse
@@ -30,7 +33,7 @@ from morfax.jobs.wrong_use import WrongUse
 
 @dataclass(frozen=True, slots=True)
 class WordsAsJobs:
-    """The parsers of the verbs `lines`, `run` and `trace`, by their parameters."""
+    """The parsers of the verbs `lines`, `run`, `trace`, `correct` and `play`, by their parameters."""
 
     verbs: Mapping[str, click.Command]
 
@@ -47,6 +50,11 @@ class WordsAsJobs:
     def correct(self, words: list[str]) -> CorrectJob:
         """The job of `morfax correct WORDS`."""
         parsed: CorrectJob = self._parsed("correct", _CORRECT, words)
+        return parsed
+
+    def play(self, words: list[str]) -> PlayJob:
+        """The job of `morfax play WORDS`."""
+        parsed: PlayJob = self._parsed("play", _PLAY, words)
         return parsed
 
     def trace(self, words: list[str]) -> TraceJob:
@@ -106,7 +114,24 @@ def _of_correct(
     return CorrectJob(drawing, asked_corrections(options), remove, undo)
 
 
+def _of_play(
+    tape: FilePath,
+    outputs: tuple[FilePath, ...],
+    charts: tuple[FilePath, ...],
+    raw: bool,
+    by_hand: ByHand,
+    drawn_unit: str | None,
+    **options: Any,
+) -> PlayJob:
+    """The job that plays a program."""
+    control = ControlSettings(
+        **{each.name: options[each.name] for each in fields(ControlSettings)}
+    )
+    return PlayJob(tape, outputs, charts, raw, control, by_hand, drawn_unit)
+
+
 _TRACE = drawing_options("drawings")(trace_options(unit_options(desk_options(_of_trace))))
 _RUN = drawing_options("drawing")(trace_options(unit_options(desk_options(_of_run))))
 _CORRECT = drawing_options("drawing")(desk_options(_of_correct))
+_PLAY = tape_options(desk_options(_of_play))
 _LINES = drawing_options("drawing")(desk_options(_of_lines))

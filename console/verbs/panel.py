@@ -145,11 +145,11 @@ def _said(address: Address) -> None:
 
 def _command_line() -> _OfVerbs:
     """The command line's own parser, for the page."""
-    from morfax.console.verbs import correct, lines, run, trace
+    from morfax.console.verbs import correct, lines, play, run, trace
     from morfax.console.verbs.as_jobs import WordsAsJobs
 
     verbs = {"lines": lines.command, "run": run.command, "trace": trace.command}
-    verbs["correct"] = correct.command
+    verbs["correct"], verbs["play"] = correct.command, play.command
     return _OfVerbs(WordsAsJobs(verbs))
 
 
@@ -158,7 +158,7 @@ class _OfVerbs:
 
     def __init__(self, words: WordsAsJobs) -> None:
         self.lines, self.run, self.trace = words.lines, words.run, words.trace
-        self.correct = words.correct
+        self.correct, self.play = words.correct, words.play
         params = words.verbs["trace"].params
         self._options = {p.opts[0]: p for p in params if isinstance(p, GroupedOption)}
 
@@ -175,7 +175,7 @@ class _OfVerbs:
 
     def _field(self, group: str, name: str) -> Field:
         """An option as a field."""
-        from morfax.panel.commands import Field
+        from morfax.panel.commands import OWN_FILES, Field
         from morfax.recorder.gcode.machine import names
 
         param = self._options[name]
@@ -184,7 +184,8 @@ class _OfVerbs:
         told = " ".join((record[1] if record else "").split())
         if param.is_flag:
             return Field(name, group, "switch", told)
+        if name in OWN_FILES:
+            choices = tuple(names()) if name == "--machine" else ()
+            return Field(name, group, "file", told, choices)
         choices = tuple(map(str, getattr(param.type, "choices", ())))
-        if name == "--machine":
-            choices = tuple(names())
         return Field(name, group, "choice" if choices else "text", told, choices)

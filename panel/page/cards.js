@@ -1,6 +1,7 @@
 // The cards of the operator's column: lines, result, files, notes.
 
 import { element, length, place } from "./format.js";
+import { handle, inOrder, orderOf } from "./orders.js";
 import { figureRows, worstRows } from "./result.js";
 import { colourOf } from "./tiles.js";
 
@@ -20,7 +21,7 @@ export function isChosen(options, lines, number) {
   if (options["--lines"] === "all") return true;
   if (options["--lines"] === "contours") return line?.in_contours ?? false;
   if (options["--lines"] === "outer") return (line?.in_contours && line.inside === null) ?? false;
-  return options["--start"] ? true : number === 1;
+  return options["--start"] || options["--arrow"] ? true : number === 1;
 }
 
 export function toggled(options, number) {
@@ -30,27 +31,39 @@ export function toggled(options, number) {
 }
 
 export function showWhich(host, options, set) {
-  const now = options["--start"] ? "start" : (options["--lines"] ?? "");
+  const now = options["--start"] || (options["--arrow"] && !options["--lines"]) ? "start" : (options["--lines"] ?? "");
   host.replaceChildren(...WHICH.map(([value, text]) =>
-    element("button", { "aria-pressed": String(now === value), onclick: () => set({ "--lines": value || null, "--start": null }) }, text)));
+    element("button", { "aria-pressed": String(now === value), onclick: () => set({ "--lines": value || null, "--start": null, "--order": null, ...(value === "contours" ? {} : { "--arrow": null }) }) }, text)));
+}
+
+// What is set when a line is chosen or left out: it has no place in the order then.
+export function choosing(options, number) {
+  const lines = toggled(options, number), left = (lines ?? "").split(",").map(Number);
+  const order = orderOf(options).filter((n) => left.includes(n));
+  return { "--lines": lines, "--start": null, "--order": order.length > 1 ? order.join(",") : null };
 }
 
 export function showLines(host, state, set, under) {
-  const lines = state.sheet?.figures.lines ?? [];
-  const focused = document.activeElement?.dataset?.line;
+  if (host.dataset.dragging) return;
+  const lines = inOrder(state.options, state.sheet?.figures.lines ?? []);
+  const { line: focused, handle: held } = document.activeElement?.dataset ?? {};
+  const chosen = state.options["--lines"] === "all" ? [] : lines.filter((row) => isChosen(state.options, lines, row.line)).map((row) => row.line);
+  const place = (numbers) => set({ "--order": numbers.join(",") });
   host.replaceChildren(...lines.map((row) => {
     const checked = isChosen(state.options, lines, row.line);
     const box = element("input", {
       type: "checkbox", checked, "data-line": row.line,
-      onchange: () => set({ "--lines": toggled(state.options, row.line), "--start": null }),
+      onchange: () => set(choosing(state.options, row.line)),
     });
     box.checked = checked;
     const swatch = element("span", { class: "swatch", "aria-hidden": "true" });
     swatch.style.color = colourOf(row.line);
     const what = [row.kind, row.kind === "dot" ? null : length(row.length_mm), row.inside ? `in ${row.inside}` : null, row.remark];
     return element("li", { onpointerenter: () => under(row.line), onpointerleave: () => under(0), "data-row": row.line },
-      element("label", {}, box, swatch, element("span", { class: "no" }, String(row.line)), element("span", { class: "what" }, what.filter(Boolean).join(", "))));
+      element("label", {}, box, swatch, element("span", { class: "no" }, String(row.line)), element("span", { class: "what" }, what.filter(Boolean).join(", "))),
+      chosen.length > 1 && chosen.includes(row.line) ? handle(row.line, chosen, place) : null);
   }));
+  if (held) host.querySelector(`[data-handle="${held}"]`)?.focus();
   if (focused) host.querySelector(`[data-line="${focused}"]`)?.focus();
 }
 

@@ -19,16 +19,21 @@ root.dataset.theme = matchMedia("(prefers-color-scheme: dark)").matches ? "dark"
 const still = new Still(by("sheet"), 512);
 let machine = null;
 const scale = errorScale(result.error), paths = errorPaths(result.error, scale);
+still.ground.layers.push((context) => {
+  const perMm = still.view.scale / still.pitch, unit = devicePixelRatio / perMm;
+  context.setTransform(perMm, 0, 0, -perMm, ...still.toScreen(still.toPx([0, 0])));
+  const hot = getComputedStyle(still.canvas).getPropertyValue("--head");
+  drawErrors(context, paths, unit);
+  drawWorst(context, result.worst, unit, hot);
+});
 still.layers.push((context) => {
   const perMm = still.view.scale / still.pitch, unit = devicePixelRatio / perMm;
   context.setTransform(perMm, 0, 0, -perMm, ...still.toScreen(still.toPx([0, 0])));
   const hot = getComputedStyle(still.canvas).getPropertyValue("--head");
-  drawErrors(context, paths, 3 * unit);
-  drawWorst(context, result.worst, unit, hot);
   if (machine) drawMachine(context, result.played, machine, unit, { way: "#20211f", down: hot, up: "#4a7fae" });
 });
 still.image = new Image();
-still.image.onload = () => still.ask();
+still.image.onload = () => still.renew();
 still.image.src = picture.address;
 still.resize();
 still.show({ id: 1, rows: picture.rows, columns: picture.columns, levels: 1, has_lines: false }, picture.mm_per_px);
@@ -38,6 +43,7 @@ let again = new Replay(by("machine"), result, onTime);
 by("theme").addEventListener("click", () => {
   root.dataset.theme = root.dataset.theme === "dark" ? "light" : "dark";
   again.close();
+  still.renew();
   again = new Replay(by("machine"), result, onTime);
 });
 by("figures").replaceChildren(...figureRows(result).flatMap(([name, value]) => [element("dt", {}, name), element("dd", {}, value)]));

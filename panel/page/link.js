@@ -50,6 +50,14 @@ export class Link {
     return said.refused ?? null;
   }
 
+  // A card, settings or a machine of the operator's own; `option`: what it is to be, or "any".
+  async own(file, option) {
+    const answer = await fetch(`/own/${option.replace(/^--/, "")}/${encodeURIComponent(file.name)}`, { method: "POST", body: file });
+    const said = await answer.json().catch(() => ({ refused: `the server answers ${answer.status}` }));
+    if (said.refused) return said.refused;
+    return this.do({ do: "set", option: said.option, value: said.name });
+  }
+
   async upload(file) {
     const answer = await fetch(`/upload/${encodeURIComponent(file.name)}`, { method: "POST", body: file });
     const said = await answer.json().catch(() => ({ refused: `the server answers ${answer.status}` }));

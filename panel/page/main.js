@@ -1,13 +1,13 @@
 // The panel: what the server says is shown, what the operator does is sent. It decides nothing of its own.
 
-import { isChosen, lineText, showCorrections, showFiles, showLines, showMessages, showResult, showSaves, showWhich, toggled } from "./cards.js";
+import { choosing, isChosen, lineText, showCorrections, showFiles, showLines, showMessages, showSaves, showWhich } from "./cards.js";
 import { Fields } from "./fields.js";
 import { element } from "./format.js";
 import { Head } from "./head.js";
-import { drawCorrections, drawMarks, drawNumbers, drawStart } from "./layers.js";
+import { drawCorrections, drawNumbers, drawStart } from "./layers.js";
 import { Link } from "./link.js";
-import { Replay } from "./replay.js";
-import { drawErrors, drawMachine, drawWorst, errorPaths, errorScale, showLegend } from "./result.js";
+import { arrowText, drawArrows, showArrows, withArrow } from "./orders.js";
+import { Outcome } from "./outcome.js";
 import { Sheet } from "./sheet.js";
 import { Ask, Tools } from "./tools.js";
 
@@ -17,7 +17,7 @@ const by = (id) => document.getElementById(id);
 
 const link = new Link(onFrame, (is) => { by("connection").textContent = is ? "" : "no connection"; });
 const fields = new Fields(link);
-let sheet, head, tools, replay, state = null, result = null, shownResult = "";
+let sheet, head, tools, outcome, state = null;
 
 begin();
 
@@ -26,15 +26,19 @@ async function begin() {
   const first = await link.begin().catch((error) => say(error.message));
   if (!first) return;
   sheet = new Sheet(by("sheet"), first.tile);
+  sheet.below = 68; // the tools
   head = new Head(sheet, by("inset"), by("inset-canvas"));
   tools = new Tools(sheet, link, new Ask(), say);
-  tools.onChoose = (number) => number && set({ "--lines": toggled(state.options, number), "--start": null });
-  tools.onRefused = say;
-  const calm = () => !result && !(state?.busy && state.busy.kind !== "lines");
-  sheet.layers.push(drawResult, (c) => !head.busy && drawMarks(c, sheet, result), (c) => drawStart(c, sheet, state), (c) => drawCorrections(c, sheet, state), (c) => calm() && drawNumbers(c, sheet, state));
+  tools.onChoose = (number) => number && set(choosing(state.options, number));
+  tools.onArrow = arrow;
+  outcome = new Outcome(sheet, goTo, () => { head.isHidden = Boolean(outcome.result); showBusy(); }, (share) => act({ do: "override", share }));
+  const calm = () => !outcome.result && !runs();
+  sheet.ground.layers.push((c) => drawCorrections(c, sheet, state), (c) => calm() && drawNumbers(c, sheet, state));
+  sheet.layers.push((c) => drawStart(c, sheet, state), (c) => state && drawArrows(c, sheet, state.options));
   sheet.onHover = hover;
   placeFields(first.fields);
   wire();
+  globalThis.panel = { sheet, link }; // for whoever looks at the page from its console
   onFrame({ state: first.state });
   document.documentElement.dataset.ready = "true";
 }
@@ -48,18 +52,16 @@ function placeFields(every) {
   fields.place(by("fields-main"), take(MAIN));
   fields.place(by("fields-machine"), group("Machine", MAIN));
   fields.place(by("fields-cutting"), [...group("Tool", MAIN), ...group("Cutting", [])]);
+  fields.place(by("fields-card"), group("Card", []));
   fields.place(by("fields-rest"), [...group("Head", []), ...group("Placement", [])]);
   by("pace").append(...PACES.map(([times, text]) => element("option", { value: times ?? "" }, text)));
 }
 
 function wire() {
-  const act = (id, action) => by(id).addEventListener("click", async () => { const why = await link.do(action()); if (why) say(why); });
-  act("run-button", () => ({ do: "run" }));
-  act("hold", () => ({ do: state.busy?.held ? "resume" : "hold" }));
-  act("step", () => ({ do: "step" }));
-  act("stop", () => ({ do: "stop" }));
-  act("undo", () => ({ do: "undo" }));
-  act("redo", () => ({ do: "redo" }));
+  const press = (id, action) => by(id).addEventListener("click", () => act(action()));
+  press("run-button", () => ({ do: "run" }));
+  press("hold", () => ({ do: state.busy?.held ? "resume" : "hold" }));
+  for (const id of ["step", "stop", "undo", "redo"]) press(id, () => ({ do: id }));
   by("pace").addEventListener("change", () => link.do({ do: "pace", times: by("pace").value ? Number(by("pace").value) : null }));
   by("sources").addEventListener("change", () => open(by("sources").value));
   by("upload").addEventListener("change", () => upload(by("upload").files[0]));
@@ -85,7 +87,7 @@ function keys(event) {
   const pressed = { n: "step", Escape: "stop", r: "run-button" }[event.key];
   if (pressed) return press(pressed);
   if (event.key === " " && !event.target.closest("button, summary, input, a")) return press("hold");
-  const tool = { v: "look", m: "measure", c: "corners", s: "start", x: "rub", b: "bridge" }[event.key];
+  const tool = { v: "look", m: "measure", c: "corners", s: "start", a: "arrow", x: "rub", b: "bridge" }[event.key];
   if (tool) tools.take(tool);
 }
 
@@ -93,7 +95,7 @@ function onFrame(frame) {
   if (!sheet) return;
   if (frame.state) show(frame.state);
   if (frame.head) {
-    head.busy = Boolean(state?.busy && state.busy.kind !== "lines");
+    head.busy = follows();
     if (frame.head.fresh.length || frame.head.life !== head.life || head.busy !== head.was || frame.head.words) head.add(frame.head);
     head.was = head.busy;
     showWords(frame.head.words);
@@ -107,7 +109,7 @@ function show(next) {
   by("empty").hidden = state.drawing !== null;
   by("undo").disabled = !state.can_undo;
   by("redo").disabled = !state.can_redo;
-  fields.show(state.options);
+  fields.show(state.options, state.own);
   showSources();
   showSize();
   sheet.show(state.picture, state.sheet?.pitch_mm ?? null);
@@ -116,7 +118,8 @@ function show(next) {
     sheet.recolour((number) => isChosen(state.options, lines, number));
     showWhich(by("which"), state.options, set);
     showLines(by("lines"), state, set, under);
-    showCorrections(by("corrections"), state, goTo, async (number) => say((await link.do({ do: "correct", remove: number })) ?? ""));
+    showArrows(by("arrows"), state.options, goTo, set);
+    showCorrections(by("corrections"), state, goTo, (number) => act({ do: "correct", remove: number }));
   }
   showBusy();
   showCommands();
@@ -124,7 +127,16 @@ function show(next) {
   showFiles(by("files"), state.files);
   by("messages-card").hidden = state.messages.length === 0;
   showMessages(by("messages"), state.messages, goTo);
-  takeResult();
+  outcome.take(state);
+}
+
+function runs() {
+  return Boolean(state?.busy && state.busy.kind !== "lines");
+}
+
+// Whether the head is at work, and not the machine.
+function follows() {
+  return runs() && state.busy.kind !== "play";
 }
 
 function showSources() {
@@ -146,21 +158,27 @@ function showSize() {
 }
 
 function showBusy() {
-  const { busy } = state, runs = busy !== null && busy.kind !== "lines";
-  by("run-button").disabled = runs || !state.sheet;
-  for (const id of ["hold", "step", "stop"]) by(id).disabled = !runs;
+  const { busy } = state, { result } = outcome, at = follows();
+  by("run-button").disabled = runs() || !state.sheet;
+  for (const id of ["hold", "step", "stop"]) by(id).disabled = !runs();
   by("hold").textContent = busy?.held ? "Go on" : "Hold";
   by("progress").value = busy?.share ?? (result ? 1 : 0);
-  head.busy = runs;
-  sheet.strength = runs ? 0.35 : result ? 0.12 : 1; // the head's path, and the error's colours, stand out
+  head.busy = at;
+  const strength = at ? 0.35 : result ? 0.12 : 1; // the head's path, and the error's colours, stand out
+  if (strength !== sheet.strength || outcome.hidden !== at) {
+    Object.assign(sheet, { strength });
+    outcome.hidden = at;
+    sheet.renew();
+  }
   sheet.ask();
-  if (!runs) head.drawInset();
+  if (!at) head.drawInset();
   showWords(null);
 }
 
 function showWords(words) {
   const { busy } = state;
   if (words) showWords.last = words;
+  const { result } = outcome;
   let text = result ? (result.faults.length ? "ended early" : "done") : state.sheet ? "ready" : "no lines yet";
   if (busy && busy.kind !== "lines") {
     const doing = busy.what === "following the line" ? `the head is ${at(showWords.last ?? "")}` : busy.what || "begins";
@@ -178,7 +196,7 @@ function showCommands() {
   if (list.dataset.shown !== now) {
     const before = list.value || "run";
     list.dataset.shown = now;
-    list.replaceChildren(...kinds.map((kind) => element("option", { value: kind }, { run: "run", lines: "look", correct: "correct", program: "save program" }[kind] ?? `save ${kind}`)));
+    list.replaceChildren(...kinds.map((kind) => element("option", { value: kind }, { run: "run", lines: "look", correct: "correct", play: "play", program: "save program" }[kind] ?? `save ${kind}`)));
     list.value = kinds.includes(before) ? before : (kinds[1] ?? "");
   }
   showCommand();
@@ -186,48 +204,6 @@ function showCommands() {
 
 function showCommand() {
   by("command").textContent = state.commands[by("command-kind").value] ?? "morfax panel";
-}
-
-async function takeResult() {
-  const now = JSON.stringify(state.result?.of ?? null) + state.files.join() + (state.busy?.kind === "run");
-  by("stale").hidden = !state.result || state.result.is_of_now;
-  if (now === shownResult) return;
-  shownResult = now;
-  const answer = state.result ? await fetch("/result").catch(() => null) : null;
-  const taken = answer?.ok ? await answer.json() : null;
-  if (now !== shownResult) return;
-  const before = takeResult.ran;
-  takeResult.ran = true;
-  const same = taken && result && JSON.stringify(taken.figures) === JSON.stringify(result.figures);
-  result = taken;
-  by("result-card").hidden = by("machine").hidden = !result;
-  by("legend").hidden = !result;
-  showBusy();
-  if (same) return;
-  replay?.close();
-  replay = null;
-  drawResult.now = null;
-  if (result) {
-    const largest = errorScale(result.error);
-    result.paths = errorPaths(result.error, largest);
-    showResult(result, goTo);
-    if (state.busy === null && before) by("result-card").scrollIntoView({ block: "start", behavior: "smooth" });
-    showLegend(by("legend"), largest);
-    replay = new Replay(by("machine"), result, (now) => { drawResult.now = now; sheet.ask(); });
-  }
-  head.isHidden = Boolean(result);
-  sheet.ask();
-}
-
-function drawResult(context) {
-  if (!result?.paths || !sheet.pitch || (state.busy && state.busy.kind !== "lines")) return;
-  const perMm = sheet.view.scale / sheet.pitch, unit = devicePixelRatio / perMm;
-  const [x0, y0] = sheet.toScreen(sheet.toPx([0, 0]));
-  const style = getComputedStyle(sheet.canvas);
-  context.setTransform(perMm, 0, 0, -perMm, x0, y0);
-  drawErrors(context, result.paths, 3 * unit);
-  drawWorst(context, result.worst, unit, style.getPropertyValue("--head"));
-  if (drawResult.now) drawMachine(context, result.played, drawResult.now, unit, { way: "#20211f", down: style.getPropertyValue("--head"), up: "#4a7fae" });
 }
 
 function hover(x, y) {
@@ -250,28 +226,37 @@ function goTo(where) {
   sheet.canvas.focus({ preventScroll: false });
 }
 
-async function set(options) {
-  const why = await link.do({ do: "set", options });
+async function act(action) {
+  const why = await link.do(action);
   if (why) say(why);
+  return why;
 }
 
-async function open(name) {
-  if (!name) return;
-  const why = await link.do({ do: "open", drawing: name });
-  if (why) say(why);
+function set(options) {
+  return act({ do: "set", options });
+}
+
+function open(name) {
+  if (name) act({ do: "open", drawing: name });
+}
+
+// A line begins there, and goes that way; an arrow that begins as near is taken away.
+function arrow(drawn) {
+  const near = (12 * devicePixelRatio * sheet.pitch) / sheet.view.scale, whole = state.options["--lines"] === "all" ? { "--lines": "contours" } : {};
+  return link.do({ do: "set", options: { ...whole, "--start": null, "--direction": null, "--arrow": arrowText(withArrow(state.options, drawn, near)) } });
 }
 
 async function upload(file) {
   if (!file) return;
   say(`taking in ${file.name} …`);
-  const why = await link.upload(file).catch(() => "the file could not be sent; it may be larger than 256 MB");
+  const sent = file.name.toLowerCase().endsWith(".toml") ? link.own(file, "any") : link.upload(file);
+  const why = await sent.catch(() => "the file could not be sent; it may be larger than 256 MB");
   say(why ?? "");
   by("upload").value = "";
 }
 
-async function save(kind) {
-  const why = await link.do({ do: "save", as: kind });
-  if (why) say(why);
+function save(kind) {
+  return act({ do: "save", as: kind });
 }
 
 async function copy() {
@@ -296,6 +281,6 @@ function say(text) {
 function theme(name) {
   document.documentElement.dataset.theme = name;
   localStorage.setItem("theme", name);
-  sheet?.ask();
-  if (replay && result) { replay.close(); replay = new Replay(by("machine"), result, (now) => { drawResult.now = now; sheet.ask(); }); }
+  sheet?.renew();
+  if (outcome?.result) outcome.show(outcome.replay.share);
 }

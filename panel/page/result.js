@@ -4,15 +4,39 @@ import { element, length, place, time } from "./format.js";
 
 export const RAMP = ["#2b6ca3", "#3a8fa0", "#5aa56b", "#b3a52e", "#d98323", "#cf5027", "#ad1f2d"];
 
-// The error in seven colours, a Path2D each; in mm of the sheet.
+const PIECE = 400; // rows of a piece: what is out of sight is not drawn
+const STEPS = [1, 4, 16, 64]; // every so many rows, from near to far
+
+// The error in seven colours, in pieces, each at several steps as Path2Ds of mm, made when they are first drawn.
 export function errorPaths(error, largest) {
-  const paths = RAMP.map(() => new Path2D());
-  const { x_mm: x, y_mm: y, error_mm: e } = error;
-  for (let i = 1; i < x.length; i++) {
-    if (e[i] === null || Math.hypot(x[i] - x[i - 1], y[i] - y[i - 1]) > 1.5) continue;
-    const path = paths[Math.min(RAMP.length - 1, Math.floor((RAMP.length * e[i]) / largest))];
-    path.moveTo(x[i - 1], y[i - 1]);
-    path.lineTo(x[i], y[i]);
+  const { x_mm: x, y_mm: y } = error, pieces = [];
+  for (let first = 0; first < x.length - 1; first += PIECE) {
+    const last = Math.min(first + PIECE, x.length - 1), box = [Infinity, Infinity, -Infinity, -Infinity];
+    for (let i = first; i <= last; i++) {
+      box[0] = Math.min(box[0], x[i]); box[1] = Math.min(box[1], y[i]);
+      box[2] = Math.max(box[2], x[i]); box[3] = Math.max(box[3], y[i]);
+    }
+    pieces.push({ first, last, box, paths: new Map() });
+  }
+  let way = 0;
+  for (let i = 1; i < x.length; i++) way += Math.min(1.5, Math.hypot(x[i] - x[i - 1], y[i] - y[i - 1]));
+  return { error, largest, pieces, apart: way / Math.max(1, x.length - 1) };
+}
+
+// One piece in the seven colours; over several rows the largest error counts.
+function inColours({ error, largest }, { first, last }, step) {
+  const paths = RAMP.map(() => new Path2D()), { x_mm: x, y_mm: y, error_mm: e } = error;
+  for (let from = first; from < last; from += step) {
+    const to = Math.min(from + step, last);
+    let most = null;
+    for (let i = from + 1; i <= to; i++) {
+      if (Math.hypot(x[i] - x[i - 1], y[i] - y[i - 1]) > 1.5) most = NaN;
+      else if (e[i] !== null) most = Math.max(most ?? 0, e[i]);
+    }
+    if (most === null || Number.isNaN(most)) continue;
+    const path = paths[Math.min(RAMP.length - 1, Math.floor((RAMP.length * most) / largest))];
+    path.moveTo(x[from], y[from]);
+    path.lineTo(x[to], y[to]);
   }
   return paths;
 }
@@ -23,12 +47,19 @@ export function errorScale(error) {
   return known[Math.floor(0.98 * (known.length - 1))] || 1e-3;
 }
 
-export function drawErrors(context, paths, width) {
-  context.lineWidth = width;
+// `unit`: mm to a pixel of the screen; `seen`: what of the sheet is painted, mm, [left, bottom, right, top].
+export function drawErrors(context, errors, unit, seen) {
+  const step = STEPS.findLast((s) => s * errors.apart < Math.max(unit, errors.apart)) ?? 1;
+  context.lineWidth = 3 * unit;
   context.lineCap = "round";
-  paths.forEach((path, i) => {
-    context.strokeStyle = RAMP[i];
-    context.stroke(path);
+  const margin = 3 * unit;
+  const near = errors.pieces.filter(({ box }) => !seen || (box[0] - margin < seen[2] && box[2] + margin > seen[0] && box[1] - margin < seen[3] && box[3] + margin > seen[1]));
+  RAMP.forEach((colour, i) => {
+    context.strokeStyle = colour;
+    for (const piece of near) {
+      if (!piece.paths.has(step)) piece.paths.set(step, inColours(errors, piece, step));
+      context.stroke(piece.paths.get(step)[i]);
+    }
   });
 }
 

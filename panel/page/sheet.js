@@ -2,6 +2,7 @@
 //
 // Coordinates: "px" are the picture's own pixels from the upper left; "mm" are the sheet's, from the lower left.
 
+import { Ground } from "./ground.js";
 import { drawRuler } from "./ruler.js";
 import { LETTERING, Tiles } from "./tiles.js";
 
@@ -12,8 +13,10 @@ export class Sheet {
     this.canvas = canvas;
     this.context = canvas.getContext("2d", { alpha: false });
     this.tile = tile;
-    this.tiles = new Tiles(tile, () => this.ask());
-    this.layers = [];
+    this.tiles = new Tiles(tile, (level, column, row) => this.loaded(level, column, row));
+    this.ground = new Ground(this); // what lies still
+    this.layers = []; // what moves: drawn anew with each frame
+    this.rest = [0, 0]; // parts of a pixel that a pan has not moved yet
     this.picture = null;
     this.pitch = null;
     this.view = { x: 0, y: 0, scale: 1 };
@@ -31,12 +34,24 @@ export class Sheet {
     this.picture = picture;
     this.pitch = pitch;
     if (other) this.all();
+    this.renew();
+  }
+
+  // Paint everything anew.
+  renew() {
+    this.ground.renew();
+    this.ask();
+  }
+
+  loaded(level, column, row) {
+    const size = this.tile * 2 ** level;
+    this.ground.touch(column * size, row * size, (column + 1) * size, (row + 1) * size);
     this.ask();
   }
 
   recolour(chosen) {
     this.tiles.recolour(chosen);
-    this.ask();
+    this.renew();
   }
 
   toMm(px) {
@@ -58,11 +73,12 @@ export class Sheet {
   all() {
     if (!this.picture) return;
     const { width, height } = this.canvas;
-    const margin = 36 * devicePixelRatio;
-    const scale = Math.min((width - 2 * margin) / this.picture.columns, (height - 2 * margin) / this.picture.rows);
+    // the ruler is above, the tools are below
+    const [side, above, below] = [24, 32, this.below ?? 24].map((px) => px * devicePixelRatio);
+    const scale = Math.min((width - 2 * side) / this.picture.columns, (height - above - below) / this.picture.rows);
     this.view.scale = Math.max(scale, 1e-4);
     this.view.x = this.picture.columns / 2 - width / 2 / this.view.scale;
-    this.view.y = this.picture.rows / 2 - height / 2 / this.view.scale;
+    this.view.y = this.picture.rows / 2 - (height + above - below) / 2 / this.view.scale;
     this.whole = true;
     this.ask();
   }
@@ -87,9 +103,12 @@ export class Sheet {
     this.ask();
   }
 
+  // By whole pixels of the screen, so that what is painted can be moved; the rest waits for the next pan.
   pan(dx, dy) {
-    this.view.x -= dx / this.view.scale;
-    this.view.y -= dy / this.view.scale;
+    const wanted = [dx + this.rest[0], dy + this.rest[1]], by = wanted.map(Math.round);
+    this.rest = [wanted[0] - by[0], wanted[1] - by[1]];
+    this.view.x -= by[0] / this.view.scale;
+    this.view.y -= by[1] / this.view.scale;
     this.whole = false;
     this.ask();
   }
@@ -122,16 +141,7 @@ export class Sheet {
     context.fillStyle = style.getPropertyValue("--bench");
     context.fillRect(0, 0, canvas.width, canvas.height);
     if (!this.picture) return;
-    const [left, top] = this.toScreen([0, 0]);
-    const [width, height] = [this.picture.columns * this.view.scale, this.picture.rows * this.view.scale];
-    context.save();
-    context.shadowColor = style.getPropertyValue("--shade");
-    context.shadowBlur = 18 * devicePixelRatio;
-    context.shadowOffsetY = 3 * devicePixelRatio;
-    context.fillStyle = style.getPropertyValue("--paper");
-    context.fillRect(left, top, width, height);
-    context.restore();
-    this.drawTiles(context, this.view, canvas.width, canvas.height);
+    this.ground.show(context);
     for (const layer of this.layers) {
       context.save();
       layer(context, this);
@@ -141,13 +151,14 @@ export class Sheet {
   }
 
   // Also for the inset, which has a view of its own.
-  drawTiles(context, view, width, height) {
+  drawTiles(context, view, width, height, [left, top, right, bottom] = [0, 0, width, height]) {
     const level = Math.min(Math.max(0, Math.floor(-Math.log2(view.scale) + 0.25)), this.picture.levels - 1);
     const size = this.tile * 2 ** level;
-    const first = [Math.max(0, Math.floor(view.x / size)), Math.max(0, Math.floor(view.y / size))];
+    const at = (x, origin) => (x / view.scale + origin) / size;
+    const first = [Math.max(0, Math.floor(at(left, view.x))), Math.max(0, Math.floor(at(top, view.y)))];
     const last = [
-      Math.min(Math.ceil(this.picture.columns / size), Math.ceil((view.x + width / view.scale) / size)),
-      Math.min(Math.ceil(this.picture.rows / size), Math.ceil((view.y + height / view.scale) / size)),
+      Math.min(Math.ceil(this.picture.columns / size), Math.ceil(at(right, view.x))),
+      Math.min(Math.ceil(this.picture.rows / size), Math.ceil(at(bottom, view.y))),
     ];
     context.imageSmoothingEnabled = view.scale < 3;
     for (let row = first[1]; row < last[1]; row++)
@@ -174,8 +185,9 @@ export class Sheet {
     context.drawImage(sheet.image, 0, 0);
     context.globalAlpha = this.strength;
     context.drawImage(this.tiles.painted(lines), 0, 0);
-    Object.assign(sheet, { combined: canvas, over: lines.painted, overStrength: this.strength });
-    return canvas;
+    sheet.combined?.close();
+    Object.assign(sheet, { combined: canvas.transferToImageBitmap(), over: lines.painted, overStrength: this.strength });
+    return sheet.combined;
   }
 
   drawTile(context, view, kind, level, column, row) {
@@ -206,20 +218,25 @@ export class Sheet {
   }
 
   // The number of the line nearest to a place on the screen, within so many of its pixels; 0 for none.
-  numberAt(x, y, within = 7 * devicePixelRatio) {
-    if (!this.picture?.has_lines) return 0;
+  numberAt(x, y, within) {
+    return this.lineAt(x, y, within).number;
+  }
+
+  // The same with the place on the line, px.
+  lineAt(x, y, within = 7 * devicePixelRatio) {
+    if (!this.picture?.has_lines) return { number: 0, px: null };
     const level = Math.min(Math.max(0, Math.floor(-Math.log2(this.view.scale) + 0.25)), this.picture.levels - 1);
     const unit = 2 ** level, [px, py] = this.fromScreen(x, y).map((v) => v / unit);
     const reach = Math.max(1, Math.ceil(within / this.view.scale / unit));
-    let best = 0, near = Infinity;
+    let best = 0, near = Infinity, place = null;
     for (let dy = -reach; dy <= reach; dy++)
       for (let dx = -reach; dx <= reach; dx++) {
         const far = dx * dx + dy * dy;
         if (far >= near) continue;
         const number = this.tiles.numberAt(level, Math.floor(px + dx), Math.floor(py + dy));
-        if (number && number < LETTERING) [best, near] = [number, far];
+        if (number && number < LETTERING) [best, near, place] = [number, far, [(Math.floor(px + dx) + 0.5) * unit, (Math.floor(py + dy) + 0.5) * unit]];
       }
-    return best;
+    return { number: best, px: place };
   }
 
   listen() {

@@ -20,11 +20,19 @@ export class Tiles {
 
   clear(id) {
     this.id = id;
-    this.kept.clear();
+    this.forget("");
   }
 
   forget(kind) {
-    for (const key of [...this.kept.keys()]) if (key.startsWith(kind)) this.kept.delete(key);
+    for (const key of [...this.kept.keys()]) if (key.startsWith(kind)) this.drop(key);
+  }
+
+  // Bitmaps are given back at once: a collector of garbage does not see how large they are.
+  drop(key) {
+    const tile = this.kept.get(key);
+    this.kept.delete(key);
+    for (const bitmap of [tile.image, tile.painted, tile.combined]) bitmap?.close();
+    tile.dropped = true;
   }
 
   get(key) {
@@ -33,7 +41,10 @@ export class Tiles {
 
   recolour(chosen) {
     this.chosen = chosen;
-    for (const tile of this.kept.values()) tile.painted = null;
+    for (const tile of this.kept.values()) {
+      tile.painted?.close();
+      tile.painted = null;
+    }
   }
 
   of(kind, level, column, row) {
@@ -46,16 +57,17 @@ export class Tiles {
     }
     tile = { image: null, numbers: null, painted: null };
     this.kept.set(key, tile);
-    if (this.kept.size > MOST_TILES) this.kept.delete(this.kept.keys().next().value);
-    this.load(tile, `/tile/${this.id}/${kind}/${level}/${column}/${row}`, kind);
+    if (this.kept.size > MOST_TILES) this.drop(this.kept.keys().next().value);
+    this.load(tile, kind, level, column, row);
     return tile;
   }
 
-  async load(tile, address, kind) {
-    const answer = await fetch(address).catch(() => null);
+  async load(tile, kind, level, column, row) {
+    const answer = await fetch(`/tile/${this.id}/${kind}/${level}/${column}/${row}`).catch(() => null);
     if (!answer?.ok) return;
     const options = { premultiplyAlpha: "none", colorSpaceConversion: "none" };
     const image = await createImageBitmap(await answer.blob(), options);
+    if (tile.dropped) return image.close();
     if (kind === "lines") {
       const canvas = new OffscreenCanvas(image.width, image.height);
       const context = canvas.getContext("2d", { willReadFrequently: true });
@@ -63,7 +75,7 @@ export class Tiles {
       tile.numbers = context.getImageData(0, 0, image.width, image.height);
     }
     tile.image = image;
-    this.onLoaded();
+    this.onLoaded(level, column, row);
   }
 
   // A tile of lines in colours: chosen lines full, the others pale, what has no number grey.
@@ -81,7 +93,7 @@ export class Tiles {
     }
     const canvas = new OffscreenCanvas(width, height);
     canvas.getContext("2d").putImageData(made, 0, 0);
-    return (tile.painted = canvas);
+    return (tile.painted = canvas.transferToImageBitmap());
   }
 
   rgba(number) {

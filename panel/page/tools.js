@@ -1,5 +1,7 @@
 // The tools of the sheet: choose lines, measure a known length, drag the four corners of a sheet, begin somewhere.
 
+import { drawArrow } from "./orders.js";
+
 const MAGNIFIED = 5; // times, in the magnifier
 const WAYS = {
   left: "Click on the junction where the head is to turn left as it comes.",
@@ -42,6 +44,7 @@ export class Tools {
     if (name === "rub") this.say("Drag over the ink that is to go.");
     if (name === "bridge") this.say("Drag from one end of the line to the other.");
     if (name === "measure") this.say("Drag over a length that you know, then type it.");
+    if (name === "arrow") this.say("Drag on a line: from where it is to begin, the way it is to go.");
     if (name === "start") this.say("Click on the line where the head is to begin.");
     this.sheet.ask();
   }
@@ -118,10 +121,28 @@ export class Tools {
     };
   }
 
+  // Where a line begins, and which way the head goes from there.
+  arrow() {
+    const at = (x, y) => this.sheet.fromScreen(x, y);
+    return {
+      down: (x, y) => { this.places = [this.sheet.lineAt(x, y, 12 * devicePixelRatio).px ?? at(x, y), at(x, y)]; },
+      move: (x, y) => { this.places[1] = at(x, y); this.sheet.ask(); return true; },
+      up: async () => {
+        const [from, to] = this.places.map((px) => this.sheet.toMm(px));
+        const far = this.places[0] && Math.hypot(this.places[0][0] - this.places[1][0], this.places[0][1] - this.places[1][1]) * this.sheet.view.scale;
+        this.places = [];
+        this.sheet.ask();
+        if (!from) return this.say("The sheet has no scale yet; give its width or a known length first.");
+        if (!(far > 4 * devicePixelRatio)) return this.say("Drag a little way along the line: that is the direction.");
+        this.say((await this.onArrow([from, to])) ?? "");
+      },
+    };
+  }
+
   beginCorners() {
     const { columns, rows } = this.sheet.picture, x = columns * 0.12, y = rows * 0.12;
     this.places = [[x, y], [columns - x, y], [columns - x, rows - y], [x, rows - y]];
-    this.say("Drag the four corners onto those of the sheet (or choose one with Tab-less keys 1 to 4 and the arrows), then say its size.");
+    this.say("Drag the four corners onto those of the sheet (or choose one with the keys 1 to 4, and move it with the arrows), then say its size.");
     this.ask.open("Width × height", "297x210mm", async (text) => {
       const corners = this.places.map((p) => p.map((v) => v.toFixed(1)).join(",")).join(" ");
       const options = { "--width": null, "--dpi": null, "--known": null, "--flatten": `${corners}=${text.replaceAll(" ", "")}` };
@@ -212,6 +233,7 @@ export class Tools {
       context.stroke();
       if (this.name === "corners") { context.font = `${12 * ratio}px system-ui`; context.fillText(String(i + 1), x + 12 * ratio, y - 8 * ratio); }
     });
+    if (this.name === "arrow" && at.length === 2) drawArrow(context, ...at, colour);
     if (this.magnified) this.magnify(context, ...this.magnified);
   }
 

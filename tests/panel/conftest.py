@@ -53,6 +53,11 @@ def bench(tmp_path: Path) -> Bench:
     return bench
 
 
+def again(bench: Bench) -> Bench:
+    """A bench after the server was killed and started again."""
+    return Bench(bench.folder, bench.sources, _command_line(), Idle)
+
+
 @pytest.fixture
 def stranger(bench: Bench) -> Iterator[TestClient]:
     """A browser that has not opened the address with its token."""

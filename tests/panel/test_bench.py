@@ -37,6 +37,10 @@ def test_each_setting_is_in_the_command_that_is_shown(page: TestClient, bench: B
     assert "--cutter 3mm --side inside --climb" in command(page)
     assert not does(page, bench, do="set", option="--climb", value=None)
     assert "--climb" not in command(page)
+    assert not does(page, bench, do="set", option="--arrow", value="26,30 20,30; 16,23 18,23")
+    assert "--arrow 26,30 20,30 --arrow 16,23 18,23" in command(page)
+    assert not does(page, bench, do="set", option="--order", value="3,1")
+    assert "--order 3,1" in command(page)
 
 
 @pytest.mark.parametrize(
@@ -49,8 +53,10 @@ def test_each_setting_is_in_the_command_that_is_shown(page: TestClient, bench: B
         ("--start", "40", "40"),
         ("--machine", "../../etc/passwd", "may be"),
         ("--machine", "/tmp/my.toml", "may be"),
-        ("--card", "card.toml", "no option"),
-        ("--settings", "/etc/passwd", "no option"),
+        ("--card", "card.toml", "a file of your own"),
+        ("--settings", "/etc/passwd", "a file of your own"),
+        ("--arrow", "26,30", "--arrow"),
+        ("--order", "3,x", "no order of lines"),
         ("-o", "/tmp/x.wav", "no option"),
         ("--print-settings", True, "no option"),
         ("--edge", "yes", "cannot be"),
@@ -76,6 +82,8 @@ def test_nonsense_is_refused_as_a_terminal_refuses_it(
         {"do": "open", "drawing": "/etc/passwd"},
         {"do": "save", "as": "../x.wav"},
         {"do": "pace", "times": 1e9},
+        {"do": "override", "share": 0.5},
+        {"do": "override", "share": "50%"},
         {"do": "hold"},
     ],
 )
@@ -201,6 +209,24 @@ def test_a_run_that_was_cut_off_begins_anew(page: TestClient, bench: Bench) -> N
     assert kinds == ["lines", "run"]
 
 
+def test_an_override_has_the_machine_play_the_program_again(
+    page: TestClient, bench: Bench
+) -> None:
+    bench.kept.begin(bench.words())
+    placed = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
+    bench.kept.keep({"program": "cam.wav", "placed": placed, "override": 1.0, "figures": {}})
+    assert "10% to 200%" in does(page, bench, do="override", share=2.5)
+    assert not does(page, bench, do="override", share=0.5)
+    _, _, kind, (job, back, share) = bench.workshop.sent[-1]  # type: ignore[attr-defined]
+    assert (kind, back, share) == ("play", placed, 0.5)
+    assert (job.tape, job.control.feed_override) == (bench.folder / "cam.wav", 0.5)
+    ran = {"played": {}, "following": None, "override": 0.5, "faults": []}
+    bench.heard({"say": "done", "number": 1, "kind": "play", "result": ran})
+    said = page.get("/state").json()["state"]
+    assert shlex.split(said["commands"]["play"])[-2:] == ["--feed-override", "50%"]
+    assert said["result"]["override"] == 0.5 and said["busy"] is None
+
+
 def test_a_file_that_holds_no_state_is_refused_and_left_alone(tmp_path: Any) -> None:
     file = tmp_path / "state.json"
     for text in (
@@ -280,6 +306,5 @@ def test_the_path_of_a_long_run_has_a_bound(
         bench.path.add(
             {"fresh": [[k, i] for i in range(20)], "head": {}, "words": "", "run": 1}
         )
-    assert (
-        len(bench.path.places) <= 1020 and bench.path.places[-1] == [499, 19]
-    ) or bench.path.places[-1] == [499, 18]
+    last = bench.path.since(bench.path.life, len(bench.path) - 1)["fresh"]
+    assert len(bench.path) <= 1020 and last in ([[499.0, 19.0]], [[499.0, 18.0]])

@@ -1,64 +1,35 @@
 """The whole way in a browser: open, scale, choose, run, save; reload, kill, a second page; and what a screen
 reader needs.
 
-Chromium is Debian's (or the one that MORFAX_CHROMIUM names); without it these tests are left out. axe-core
-comes from npm: `.ci/run` fetches it, and MORFAX_AXE names its axe.min.js.
+axe-core comes from npm: `.ci/run` fetches it, and MORFAX_AXE names its axe.min.js.
 """
 
 from __future__ import annotations
 
 import os
-import shlex
 import shutil
 import signal
-import subprocess
-import sys
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
-CHROMIUM = os.environ.get("MORFAX_CHROMIUM") or shutil.which("chromium")
+from tests.panel.browsing import (
+    RUN_MS,
+    WAIT_MS,
+    Server,
+    api,
+    launched,
+    looked_at,
+    morfax,
+    on_screen,
+    opened,
+    ran,
+    soon,
+)
+
 AXE = os.environ.get("MORFAX_AXE")
-if CHROMIUM is None:
-    pytest.skip(
-        "no chromium: install Debian's, or name one with MORFAX_CHROMIUM",
-        allow_module_level=True,
-    )
-
-ROOT = Path(__file__).parents[2]
-RUN_MS = 300_000  # a run, where the kernels are compiled first, beside other work
-WAIT_MS = 120_000  # all else; what comes is awaited, so that only a failure takes as long
-
-
-class Server:
-    """`morfax panel` in a folder of its own."""
-
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
-        folder.mkdir(exist_ok=True)
-        shutil.copy(ROOT / "samples" / "bracket.png", folder)
-        self.start()
-
-    def start(self) -> None:
-        """Start the server, and take its address."""
-        words = [sys.executable, "-m", "morfax", "panel", "bracket.png", "--no-browser"]
-        environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-        self.process = subprocess.Popen(
-            words, cwd=self.folder, env=environment, stdout=subprocess.PIPE, text=True
-        )
-        assert self.process.stdout is not None
-        self.url = self.process.stdout.readline().strip()
-
-    def end(self, how: int = signal.SIGINT) -> None:
-        """End the server."""
-        self.process.send_signal(how)
-        self.process.wait(WAIT_MS / 1000)
-        assert self.process.stdout is not None
-        self.process.stdout.close()
 
 
 @pytest.fixture(scope="module")
@@ -72,65 +43,15 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
 @pytest.fixture(scope="module")
 def chromium() -> Iterator[Any]:
     """One browser for all."""
-    with api.sync_playwright() as playwright:
-        sandbox = ["--no-sandbox"] if hasattr(os, "getuid") and os.getuid() == 0 else []
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=sandbox)
+    with launched() as browser:
         yield browser
-        browser.close()
 
 
 @pytest.fixture
 def page(server: Server, chromium: Any) -> Iterator[Any]:
-    """The page, opened by its address; what it complains of is a failure."""
-    page = chromium.new_page(viewport={"width": 1280, "height": 800})
-    page.set_default_timeout(WAIT_MS)
-    complaints = list[str]()
-    page.on("pageerror", lambda error: complaints.append(str(error)))
-    page.on(
-        "console", lambda said: complaints.append(said.text) if said.type == "error" else None
-    )
-    opened(page, server)
-    yield page
-    page.close()
-    assert not [
-        text
-        for text in complaints
-        if "ERR_CONNECTION_REFUSED" not in text and "409" not in text
-    ]
-
-
-def opened(page: Any, server: Server) -> None:
-    """Open the page, and wait until the lines are there."""
-    page.goto(server.url)
-    page.wait_for_selector("#lines li", timeout=RUN_MS)
-
-
-def morfax(folder: Path, typed: str) -> None:
-    """Run a command as the page shows it."""
-    words = shlex.split(typed)
-    assert words.pop(0) == "morfax"
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    subprocess.run(
-        [sys.executable, "-m", "morfax", *words, "-q"],
-        cwd=folder,
-        env=environment,
-        check=True,
-        stdout=subprocess.DEVNULL,
-    )
-
-
-def soon(holds: Callable[[], bool]) -> None:
-    """Wait until something holds."""
-    late_s = time.monotonic() + WAIT_MS / 1000
-    while not holds():
-        assert time.monotonic() < late_s
-        time.sleep(0.05)
-
-
-def ran(page: Any) -> None:
-    """Wait until a run is done."""
-    page.wait_for_selector("#run-button:not([disabled])", timeout=RUN_MS)
-    page.wait_for_selector("#result-card:not([hidden])", timeout=RUN_MS)
+    """The page, opened by its address."""
+    with looked_at(chromium, server) as page:
+        yield page
 
 
 def with_a_result(page: Any) -> None:
@@ -250,13 +171,7 @@ def test_a_gap_of_6_mm_is_bridged_and_the_program_is_the_commands(
     page.wait_for_selector("#figures:has-text('ended')", timeout=RUN_MS)
     # 2. bridged from end to end, and run again: it closes
     page.click("#zoom-all")
-    box = page.locator("#sheet").bounding_box()
-    scale = min((box["width"] - 72) / 400, (box["height"] - 72) / 400)
-    left, top = (
-        box["x"] + box["width"] / 2 - 200 * scale,
-        box["y"] + box["height"] / 2 - 200 * scale,
-    )
-    places = [(left + scale * x, top + scale * y) for x, y in ends]
+    places = [on_screen(page, x, y) for x, y in ends]
     page.click("#help-open")
     page.click("[data-tool=bridge]")
     page.mouse.move(*places[0])
@@ -304,7 +219,7 @@ def test_a_reload_a_second_page_and_a_killed_server_lose_nothing(
     assert not kept.exists()
     server.start()
     opened(second, server)
-    api.expect(second.locator("#messages")).to_contain_text("begun anew", timeout=RUN_MS)
+    api.expect(second.locator("#messages")).to_contain_text("it goes on", timeout=RUN_MS)
     second.select_option("#command-kind", "run")
     api.expect(second.locator("#command")).to_have_text(command, timeout=WAIT_MS)
     ran(second)

@@ -50,6 +50,7 @@ def corrected(
         darkness=darkness,
         shapes=_shapes(drawing, laid),
         corrected=replace(laid, ink_changed=changed),
+        bare=drawing if changed else None,
     )
 
 

@@ -41,6 +41,7 @@ from morfax.tracer.drawing.shapes import outlined
 if TYPE_CHECKING:
     from morfax.tracer.corrections.on_sheet import OnSheet, StopAt, TurnAt
     from morfax.tracer.drawing.noise import Noise
+    from morfax.tracer.drawing.strokes import Sheet
     from morfax.tracer.flatten.flat import Flattening
 
 LEAST_CONTRAST = 10.0  # grey levels of 255 between paper and ink
@@ -61,7 +62,8 @@ class Drawing:
     Of filled shapes whose edges are asked for: `edges_mm`, closed polylines (n, 2) to which a run has to
     keep, and how many times `enlarged` the head sees the line along them. Otherwise `shapes` tells where
     filled shapes are, on the picture reduced by a whole number. `notes` on the file are for the operator;
-    `flattening` is how well a photograph was made flat; `corrected` what the operator has put right.
+    `flattening` is how well a photograph was made flat; `corrected` what the operator has put right, and
+    `bare` the drawing before its ink was put right.
     """
 
     darkness: Darkness
@@ -73,6 +75,7 @@ class Drawing:
     notes: tuple[str, ...] = ()
     flattening: Flattening | None = None
     corrected: OnSheet | None = None
+    bare: Drawing | None = None
 
     @property
     def told_turns(self) -> tuple[TurnAt, ...]:
@@ -93,6 +96,13 @@ class Drawing:
     def height_mm(self) -> float:
         """Height of the sheet, mm."""
         return self.darkness.shape[0] * self.pitch_mm
+
+    @cached_property
+    def sheet(self) -> Sheet:
+        """The patches of ink on it."""
+        from morfax.tracer.drawing.strokes import Sheet
+
+        return Sheet.of(self)
 
     @cached_property
     def noise(self) -> Noise:

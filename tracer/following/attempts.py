@@ -95,7 +95,7 @@ class Attempts:
         view, place = stance.view, tuple(stance.place_mm.tolist())
         seen = view.width_mm, view.usual_mm, view.level, view.cells.darkness.shape
         start = place, stance.heading_rad, stance.reference_mm, seen, repr(self.settings)
-        return memory.head(self.drawing, start, turns)
+        return memory.head(self.drawing, start, turns, view.cells.darkness)
 
     def asked_for(
         self,

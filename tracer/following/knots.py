@@ -3,14 +3,14 @@
 Signals: runs of the head in; for a run that begins as an earlier one did, the head at the last place before
 which both runs are the same.
 
-    first run     ●────k────k────k────k────✗ lost             a turn is told near ✗
+    first run     ●────k────k────k────k────✗ lost             near ✗ a turn is told, or ink is changed
     second run              (replayed)  k────┐                the head is taken up at the last knot
                                              └────────►       whose way is far from that place
 
 The head is deterministic: from the same state, with the same ink before it, it makes the same motion. A turn
-that was told or taken back counts within a few mm of its place, so up to there the two runs are one, to the
-last bit. A run on another drawing begins anew, also where only a little of the ink is another: the width and
-the darkness that the head is put down with are measured on all the ink of its line.
+that was told or taken back, and ink that was rubbed out or drawn, count within some mm of their place, so up
+to there the two runs are one, to the last bit. A run begins anew on another drawing, and where the head is
+put down otherwise than before (see `unchanged`).
 
 Only who asks for it keeps knots (`remembering`): the panel, which traces a drawing again and again.
 
@@ -24,14 +24,15 @@ import copy
 from collections.abc import Callable, Hashable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
+import cv2
 import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.tracer.corrections.on_sheet import REACH_MM, REACH_WIDTHS, TurnAt
-from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.drawing import Darkness, Drawing
 
 if TYPE_CHECKING:
     from morfax.tracer.following.follower import Follower
@@ -42,6 +43,8 @@ MOST_KNOTS = 64  # of a run, some 60 kB each; beyond, every second one is droppe
 MOST_RUNS = 8  # the last ones that are remembered: a line is tried both ways round, and with a few turns
 # how far ahead of the axis a told turn may count: twice its reach, and the legs that are felt there
 REACHES, LEGS = 3.0, 3.0
+APART_PX = 16  # changed pixels that are nearer to each other are one change
+MOST_CHANGES = 200  # places of changed ink; more are another drawing
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,21 +62,46 @@ class _Knot:
 
 @dataclass(slots=True)
 class _Run:
-    """The knots of one run, and the turns that were told for it."""
+    """The knots of one run, the turns that were told for it, and the ink that it sees."""
 
     at: tuple[TurnAt, ...]
+    darkness: Darkness
     knots: list[_Knot] = field(default_factory=list)
     apart_mm: float = APART_MM
 
-    def keep(self, head: Follower) -> None:
-        """Keep the head as it is now, if it has come far enough."""
+    def keep(self, head: Follower) -> bool:
+        """Keep the head as it is now, if it has come far enough; whether it was kept."""
         travel_mm = head.carriage.travel_mm
         if self.knots and travel_mm - self.knots[-1].travel_mm < self.apart_mm:
-            return
+            return False
+        if head.view.cells.darkness is not self.darkness:  # it looks through larger cells
+            return False
         if len(self.knots) == MOST_KNOTS:
             del self.knots[1::2]
             self.apart_mm *= 2
         self.knots.append(_Knot(travel_mm, _copied(head), head.carriage.trail.places()))
+        return True
+
+    def on(self, darkness: Darkness, count: int) -> list[_Knot]:
+        """The first knots, with heads that see other ink, which is the same up to there."""
+        if darkness is self.darkness:
+            return self.knots[:count]
+        return [
+            replace(knot, head=_copied(knot.head, {id(self.darkness): darkness}))
+            for knot in self.knots[:count]
+        ]
+
+    def cut_off(self, changed_mm: Array) -> None:
+        """Forget the knots from where the head came near to changed ink: boxes (n, 4) mm, x, y to x, y."""
+        while self.knots:
+            knot = self.knots[-1]
+            reach_mm = _reach_mm(knot.head) + knot.head.settings.gap_mm
+            reach_mm += knot.head.settings.recatch_mm
+            places = knot.places_mm[:, None]
+            beyond = np.maximum(changed_mm[:, :2] - places, places - changed_mm[:, 2:])
+            if np.hypot(*np.maximum(beyond, 0.0).transpose(2, 0, 1)).min() > reach_mm:
+                return
+            self.knots.pop()
 
     def last_before(self, at: tuple[TurnAt, ...]) -> int:
         """How many knots there are up to which a run with other turns told is the same."""
@@ -85,45 +113,79 @@ class _Run:
         return 0
 
 
-class Memory:
-    """The runs of the head on one drawing that are remembered."""
+Kept = Callable[[Hashable, tuple[TurnAt, ...], "Follower"], None]
 
-    def __init__(self) -> None:
+
+class Memory:
+    """The runs of the head on one drawing that are remembered; `kept` hears of each new knot."""
+
+    def __init__(self, kept: Kept | None = None) -> None:
         self._drawing: Drawing | None = None
         self._runs: dict[Hashable, _Run] = {}
+        self.kept = kept
         self.replayed_mm = 0.0  # in all: travel that was not run again
 
+    def take_in(self, key: Hashable, at: tuple[TurnAt, ...], head: Follower) -> None:
+        """Remember a run that another memory kept, by its last knot."""
+        knot = _Knot(head.carriage.travel_mm, head, head.carriage.trail.places())
+        self._runs[key] = _Run(at, head.view.cells.darkness, [knot])
+
     def head(
-        self, drawing: Drawing, start: Hashable, turns: Turns
+        self, drawing: Drawing, start: Hashable, turns: Turns, darkness: Darkness
     ) -> tuple[Follower | None, Callable[[Follower], None]]:
         """The head of an earlier run at the last knot that is the same, if there is one; and what keeps the
-        knots of the run that begins now.
+        knots of the run that begins now. `darkness` is what the head sees.
         """
         self._lay_on(drawing)
         key = start, turns._replace(at=())
         before = self._runs.pop(key, None)
-        run = _Run(turns.at)
+        run = _Run(turns.at, darkness)
         self._runs[key] = run
         while len(self._runs) > MOST_RUNS:
             del self._runs[next(iter(self._runs))]
+
+        def keep(head: Follower) -> None:
+            if run.keep(head) and self.kept is not None:
+                self.kept(key, turns.at, head)
+
         count = 0 if before is None else before.last_before(turns.at)
         if before is None or not count:
-            return None, run.keep
-        run.knots, run.apart_mm = before.knots[:count], before.apart_mm
+            return None, keep
+        run.knots, run.apart_mm = before.on(darkness, count), before.apart_mm
         head = _copied(run.knots[-1].head)
         head.take_up(turns)
         self.replayed_mm += head.carriage.travel_mm
-        return head, run.keep
+        return head, keep
 
     def _lay_on(self, drawing: Drawing) -> None:
-        """Forget all runs if another drawing lies on the table."""
-        if drawing is self._drawing:
-            return
+        """Cut off the runs where another drawing has other ink; forget them if it is another altogether."""
         old, self._drawing = self._drawing, drawing
-        if old is None or not (
-            old.pitch_mm == drawing.pitch_mm and np.array_equal(old.darkness, drawing.darkness)
-        ):
+        if old is None or old is drawing:
+            return
+        changed_mm = changes_mm(old, drawing)
+        if changed_mm is None:
             self._runs.clear()
+        elif len(changed_mm):
+            for run in self._runs.values():
+                run.cut_off(changed_mm)
+
+
+def changes_mm(old: Drawing, new: Drawing) -> Array | None:
+    """Where the ink of two drawings differs: boxes (n, 4) mm; None if they are two altogether."""
+    are_alike = old.pitch_mm == new.pitch_mm and old.darkness.shape == new.darkness.shape
+    if not are_alike or old.edges_mm or new.edges_mm:
+        return None
+    differs = (old.darkness != new.darkness).astype(np.uint8)
+    if not differs.any():
+        return np.empty((0, 4))
+    near = cv2.dilate(differs, np.ones((APART_PX + 1,) * 2, np.uint8))
+    count, _, boxes, _ = cv2.connectedComponentsWithStats(near)
+    if count - 1 > MOST_CHANGES:
+        return None
+    left, top, width, height = boxes[1:, :4].T
+    bottom = len(differs) - top - height
+    edges_px = np.column_stack([left, bottom, left + width, bottom + height])
+    return np.asarray(edges_px * new.pitch_mm, float)
 
 
 _MEMORY: ContextVar[Memory | None] = ContextVar("memory", default=None)
@@ -151,7 +213,9 @@ def _reach_mm(head: Follower) -> float:
     return turns_mm + LEGS * view.leg_mm + head.carriage.tuning.guard_lead_mm
 
 
-def _copied(head: Follower) -> Follower:
-    """A head that can be moved without moving the other; what it sees and where it was are shared."""
+def _copied(head: Follower, other: dict[int, Darkness] | None = None) -> Follower:
+    """A head that can be moved without moving the first; what it sees and where it was are shared, but for
+    `other` ink by the id of the first's.
+    """
     shared = [head.view.cells.darkness, *head.carriage.shared()]
-    return copy.deepcopy(head, {id(each): each for each in shared})
+    return copy.deepcopy(head, {**{id(each): each for each in shared}, **(other or {})})

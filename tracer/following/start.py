@@ -15,7 +15,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from morfax.motion.faults import LineFault
+from morfax.motion.faults import Fault, LineFault
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Sheet, Stroke
 from morfax.tracer.following.open_ends import at_ends, stances_at
@@ -26,6 +26,7 @@ from morfax.tracer.following.plain_places import (
     stances,
     view_of,
 )
+from morfax.tracer.following.unchanged import changed_of, is_far, on_ink
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.marks.reference import references
@@ -54,13 +55,12 @@ def put_down(
     catch_mm = max(CATCH_MM, CATCH_PX * sheet.drawing.pitch_mm)
     # 1. the line
     stroke = sheet.longest() if start_mm is None else sheet.nearest(start_mm, catch_mm)
+    for stance in _as_before(sheet, stroke, start_mm, settings, reference_mm):
+        yield stance, stroke.length_mm
     view = view_of(sheet, settings.aperture_mm, settings.line_width_mm or stroke.width_mm)
     # 2. its open ends
-    if start_mm is None:
-        ends = at_ends(view, sheet, stroke, settings.gap_mm, reference_mm)
-    else:
-        ends = _ends_near(view, stroke, start_mm, settings.gap_mm)
-    for stance in ends[:ENDS]:
+    ends = _ends(view, sheet, stroke, start_mm, settings, reference_mm)
+    for stance in ends:
         yield stance, stroke.length_mm
     # 3. its plain places
     plain = _plain(view, stroke, start_mm, catch_mm)
@@ -69,6 +69,51 @@ def put_down(
     if not plain and not ends:
         is_solid = bool(sheet.are_solid[stroke.patch])
         raise _nowhere_clean(view.width_mm, is_solid, settings.line_width_mm)
+
+
+def _ends(
+    view: View,
+    sheet: Sheet,
+    stroke: Stroke,
+    start_mm: tuple[float, float] | None,
+    settings: Settings,
+    reference_mm: tuple[float, float] | None,
+) -> list[Stance]:
+    """Stances at the open ends of a line, or at those near a place."""
+    if start_mm is not None:
+        return _ends_near(view, stroke, start_mm, settings.gap_mm)[:ENDS]
+    return at_ends(view, sheet, stroke, settings.gap_mm, reference_mm)[:ENDS]
+
+
+def _as_before(
+    sheet: Sheet,
+    stroke: Stroke,
+    start_mm: tuple[float, float] | None,
+    settings: Settings,
+    reference_mm: tuple[float, float] | None,
+) -> Iterator[Stance]:
+    """Of a line whose ink was changed elsewhere: the stances that the head had before, so that it runs the
+    same way up to there.
+    """
+    changed_mm = changed_of(sheet.drawing)
+    if changed_mm is None or sheet.drawing.bare is None:
+        return
+    # 1. where the head was put down on the bare drawing
+    try:
+        before = sheet.drawing.bare.sheet
+        catch_mm = max(CATCH_MM, CATCH_PX * sheet.drawing.pitch_mm)
+        old = before.longest() if start_mm is None else before.nearest(start_mm, catch_mm)
+    except Fault:
+        return
+    width_mm = settings.line_width_mm or old.width_mm
+    view = view_of(before, settings.aperture_mm, width_mm)
+    found = _ends(view, before, old, start_mm, settings, reference_mm)
+    found += _plain(view, old, start_mm, catch_mm)
+    # 2. the same on the ink as it is now, where that is still this line
+    now = view_of(sheet, settings.aperture_mm, width_mm).cells.darkness
+    for stance in found:
+        if stroke.is_at(stance.place_mm) and is_far(stance, changed_mm):
+            yield on_ink(stance, now)
 
 
 def _plain(

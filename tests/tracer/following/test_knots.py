@@ -67,15 +67,45 @@ def test_a_run_goes_on_at_the_last_knot_and_comes_to_what_a_run_from_the_beginni
     assert all(mm > 10 for mm in replayed[1:])  # not from the beginning
 
 
+def rub(x: float, y: float) -> Correction:
+    """Ink rubbed out."""
+    return Correction("rub", (Place(x, y, "mm"),))
+
+
+def bridge(*places: tuple[float, float]) -> Correction:
+    """Ink drawn."""
+    return Correction("bridge", tuple(Place(x, y, "mm") for x, y in places))
+
+
+@pytest.mark.parametrize("start", [START, None])
+def test_ink_that_is_changed_ahead_does_not_begin_the_run_anew(
+    start: tuple[float, float] | None,
+) -> None:
+    kept, replayed = Memory(), []
+    changes = [
+        (),
+        (rub(40, 20),),  # on the way, far from the start
+        (rub(40, 20), bridge((41.5, 20), (38.5, 20))),
+        (rub(75, 20),),
+        (),
+    ]
+    for corrections in changes:
+        drawing = told(COMB, *corrections)
+        before_mm = kept.replayed_mm
+        with remembering(kept):
+            again = trace(drawing, start)
+        replayed.append(kept.replayed_mm - before_mm)
+        assert same(again, trace(drawing, start))
+    assert replayed[0] == 0 and sum(mm > 5 for mm in replayed[1:]) >= 3
+
+
 def test_another_drawing_is_begun_anew() -> None:
-    """A little ink far off changes what the head is put down with: nothing is replayed."""
-    kept = Memory()
+    kept, other = Memory(), inked(polyline((6, 6), (6, 20), (60, 20), (60, 6), (6, 6)), seed=5)
     with remembering(kept):
         trace(COMB, START)
-        rubbed = told(COMB, Correction("rub", (Place(75, 20, "mm"),)))
-        again = trace(rubbed, START)
+        again = trace(other, START)
     assert kept.replayed_mm == 0
-    assert same(again, trace(rubbed, START))
+    assert same(again, trace(other, START))
 
 
 def test_whoever_watches_sees_the_way_up_to_the_knot() -> None:
