@@ -1,8 +1,8 @@
 """Run all benchmarks, or those named: `python -m benchmarks [tape …]`.
 
 `folder DIR` measures drawings, `flatten [N]` simulated photographs, `linuxcnc` the times of programs,
-`dropouts [N]` dropouts of each kind, `batch [N]` many drawings; these
-take a while and run only if named.
+`dropouts [N]` dropouts of each kind, `batch [N]` many drawings, `panel [DIR]` how its page pans; these take a
+while and run only if named.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ WITH_WORDS = (
     "linuxcnc",
     "dropouts",
     "batch",
+    "panel",
 )  # that take words of their own
 
 

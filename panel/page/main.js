@@ -38,7 +38,7 @@ async function begin() {
   sheet.onHover = hover;
   placeFields(first.fields);
   wire();
-  globalThis.panel = { sheet, link }; // for whoever looks at the page from its console
+  globalThis.panel = { sheet, head, link }; // for whoever looks at the page from its console
   onFrame({ state: first.state });
   document.documentElement.dataset.ready = "true";
 }

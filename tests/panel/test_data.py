@@ -117,3 +117,27 @@ def test_a_dropout_is_a_dip_of_its_track(tmp_path: Path) -> None:
         1.083, abs=0.01
     )
     assert levels(tmp_path / "a.ngc") is None
+    # the damage is where it is, on its track alone; without a format there is no deviation
+    (damage,) = seen["damage"]
+    assert damage["track"] == "Y" and damage["share"] < 0.1
+    assert damage["from_s"] == pytest.approx(1.0, abs=0.003)
+    assert damage["to_s"] == pytest.approx(1.0833, abs=0.003)
+    assert seen["deviation_hz"] is None and seen["lock"] is None
+
+
+def test_the_deviation_of_a_track_is_its_axis_speed_times_the_cycles(tmp_path: Path) -> None:
+    """20 cycles to a mm: at 10 mm/s the carrier of X is 200 Hz off the reference."""
+    from morfax.motion.motion import Path as MotionPath
+    from morfax.recorder.media import record
+
+    t_s = np.array([0.0, 1.0, 5.0, 6.0])
+    places = np.zeros((4, 3))
+    places[2:, 0] = 40.0
+    record(MotionPath(t_s, places).motion(), tmp_path / "a.wav")
+    seen = levels(tmp_path / "a.wav")
+    assert seen is not None
+    deviation_hz = np.array(seen["deviation_hz"])
+    under_way = np.abs(deviation_hz[0]) > 150
+    assert np.abs(deviation_hz[0][under_way]).mean() == pytest.approx(200.0, rel=0.02)
+    assert 0.3 < under_way.mean() < 0.7 and np.abs(deviation_hz[1:]).max() < 2.0
+    assert np.max(seen["lock"]) < 0.05 and not seen["damage"]
