@@ -5,7 +5,7 @@
 A sheet of 7000 × 5000 pixels with forty lines is opened in Chromium, 1280 × 800, and
 dragged to and fro, at one screen pixel to one of the picture and with all of it in view. Printed for both:
 
-    frames/s      that Chromium drew, from its own trace (DrawFrame), and its longest wait between two
+    frames/s      that Chromium drew, from its own trace (frames presented), and its longest wait between two
     main, ms      processor time of the page's own thread to a frame, from the trace
     all, ms       processor time of all of Chromium to a frame: with drawing in software, and no graphics card
 
@@ -87,7 +87,7 @@ def panned(page: Any, cdp: Any, chromium: int) -> dict[str, float]:
     cdp.send("Tracing.end")
     while not ended:
         page.wait_for_timeout(50)
-    frames = sorted(e["ts"] for e in events if e["name"] == "DrawFrame")
+    frames = sorted(e["ts"] for e in events if e["name"] == "AnimationFrame::Presentation")
     main = {
         (e["pid"], e["tid"])
         for e in events

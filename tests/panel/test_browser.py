@@ -198,9 +198,9 @@ def test_a_gap_of_6_mm_is_bridged_and_the_program_is_the_commands(
 def test_a_reload_a_second_page_and_a_killed_server_lose_nothing(
     server: Server, page: Any, chromium: Any
 ) -> None:
-    page.select_option("#pace", "0.1")  # so slow that it can be held
+    page.select_option("#pace", "1")  # so slow that it can be held
     page.click("#run-button")
-    page.wait_for_selector("#words:has-text('the head is')", timeout=RUN_MS)
+    page.wait_for_function("panel.head.now?.travel_mm > 25", timeout=RUN_MS)
     page.click("#hold")
     page.wait_for_selector("#words:has-text('held')")
     # 1. a reload in mid run, and a second page
@@ -219,7 +219,9 @@ def test_a_reload_a_second_page_and_a_killed_server_lose_nothing(
     assert not kept.exists()
     server.start()
     opened(second, server)
-    api.expect(second.locator("#messages")).to_contain_text("it goes on", timeout=RUN_MS)
+    said = second.locator("#messages")
+    api.expect(said).to_contain_text("the server was ended in the middle", timeout=RUN_MS)
+    api.expect(said).to_contain_text("the head goes on where it was", timeout=RUN_MS)
     second.select_option("#command-kind", "run")
     api.expect(second.locator("#command")).to_have_text(command, timeout=WAIT_MS)
     ran(second)
