@@ -26,7 +26,8 @@ async function begin() {
   const first = await link.begin().catch((error) => say(error.message));
   if (!first) return;
   sheet = new Sheet(by("sheet"), first.tile);
-  sheet.below = 68; // the tools
+  const bar = document.querySelector(".tools"); // above which the sheet is shown
+  new ResizeObserver(() => { sheet.below = bar.offsetHeight + 26; if (sheet.whole) sheet.all(); }).observe(bar);
   head = new Head(sheet, by("inset"), by("inset-canvas"));
   tools = new Tools(sheet, link, new Ask(), say);
   tools.onChoose = (number) => number && set(choosing(state.options, number));

