@@ -102,7 +102,8 @@ class LockFault(Fault):
 class DropoutFault(LockFault):
     """The way within a dropout is not known; `resume_mm` is where all axes are behind it, at `resume_at_s`.
 
-    Both are None where the tape does not tell it. The length of the dropout includes the filter's reach.
+    Both are None where the tape does not tell it; `error_cycles`, how far the count lies off behind it, is
+    then nan. The length of the dropout includes the filter's reach.
     """
 
     def __init__(
@@ -114,12 +115,13 @@ class DropoutFault(LockFault):
         position_mm: float,
         length_s: float,
         resumes: tuple[float, tuple[float, ...]] | None = None,
+        error_cycles: float = float("nan"),
     ) -> None:
         super().__init__(
             message,
             axis=axis,
             time_s=time_s,
-            error_cycles=float("nan"),
+            error_cycles=error_cycles,
             position_mm=position_mm,
         )
         self.length_s = length_s

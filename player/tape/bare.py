@@ -24,8 +24,8 @@ from collections.abc import Sequence
 from morfax.motion.arrays import Array
 from morfax.motion.faults import TapeFault
 from morfax.motion.motion import IN_WORK_BELOW_MM
-from morfax.player.tape.bridges import Bound
 from morfax.player.tape.discriminator import Phases
+from morfax.player.tape.told_bounds import ToldBounds
 from morfax.player.tape.warrant import Certain, Given, PlaceMm, StandsMm
 from morfax.recorder.tape.format import TapeFormat
 from morfax.recorder.tape.own_motion import OWN_CYCLES, STATED_CYCLES, OwnMotion
@@ -57,9 +57,9 @@ class BareTape:
     def bear(self, zero_cycles: Array | None, place_mm: PlaceMm) -> None:
         """Take the zeros of the axes, which nothing vouches for."""
 
-    def bound(self, axis: int, first: int, last: int) -> Bound | None:
+    def bounds(self) -> Sequence[ToldBounds]:
         """Nothing tells what the program asks for."""
-        return None
+        return ()
 
     def feed(self, certain: Certain, stands_mm: StandsMm, *, last: bool = False) -> Given:
         """Take the next rows and the fault behind them; give them on as they are."""

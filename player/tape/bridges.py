@@ -15,9 +15,17 @@ A parabola through the 6 ms before the gap (p0, v0, a0: held, as rewound past th
 The count is certain where no other whole number is possible:      H < 1 - |r| - 0.1     (cycles)
 and the way between where it lies within a twentieth of a cycle:   |r| / 2 + |dv| T / 8 < 0.05
 
-The way is laid as the cubic that joins both sides: of all motions the one with the least acceleration, root
-mean square. Any other motion between them that keeps to A, and to the largest speed V, lies between an upper
-and a lower edge; `freedom` is the furthest that an edge lies off what is laid.
+A program that starts, stops or goes round a corner within the gap changes its acceleration there once, from
+a0 to a1. The change of speed tells when (s rows from p0), and then the travel is another:
+
+    s = (dv' - a1 T) / (a0 - a1),    d = T v0 + a0 s (T - s / 2) + a1 (T - s)² / 2,    dv' = v1 - v0
+
+If what was measured agrees with that, the way is laid so (`turned`). A side on which the acceleration changed
+is tried again with two thirds of its rows.
+
+Else the way is laid as the cubic that joins both sides: of all motions the one with the least acceleration,
+root mean square. Any other motion between them that keeps to A, and to the largest speed V, lies between an
+upper and a lower edge; `freedom` is the furthest that an edge lies off what is laid.
 
     p      ___                  upper edge, at each t: the highest place from which one can still arrive
       0 __/   \\__ 1             speed s there, with  L(s) from the left and R(s) from the right:
@@ -45,6 +53,11 @@ ROUGH_CYCLES = 0.04  # what is left of the parabola; 26 dB of noise leave 0.015
 # the same of sides on which a changing acceleration would show: one of 0.5 m/s² that turns over leaves 0.008
 SMOOTH_CYCLES = 0.003
 SIDE_ROWS = 36  # of sound tape on each side, 6 ms at 6 kHz
+SHORT_ROWS = 24  # the same where the acceleration changes further off: 4 ms at 6 kHz
+# what is left of the travel with one change of acceleration, halved; with what sides of 4 ms may be off
+# beside a change (0.013 in 12 ms at 0.5 m/s²) well within a twentieth
+TURNED_CYCLES = 0.025
+TURNED_ROWS = 3.0  # beside the gap: half of what the band filter blurs
 LEAST_ACCELERATION = 1e-12  # cycles/row²: of an axis at rest; keeps it from dividing by zero
 
 
@@ -68,13 +81,17 @@ class Side:
 
 @dataclass(frozen=True, slots=True)
 class Bridge:
-    """A gap and what its sides say, in cycles: `reach` is H, `off` is r, `between` the error in the gap."""
+    """A gap and what its sides say, in cycles: `reach` is H, `off` is r, `between` the error in the gap.
+
+    `turn`: the row, from the one before the gap, at which the acceleration changes, if it changes once.
+    """
 
     travel: float
     off: float
     reach: float
     between: float
     misfit: float
+    turn: float | None = None
 
     @property
     def counted(self) -> bool:
@@ -111,6 +128,25 @@ def bridge(before: Side, after: Side, rows: int, acceleration: float) -> Bridge:
     )
 
 
+def turned(before: Side, after: Side, rows: int, acceleration: float) -> Bridge | None:
+    """The same gap, if the acceleration changes once within it; None where the sides do not say so."""
+    first, last, gained = 2 * before.bend, 2 * after.bend, after.speed - before.speed
+    if abs(first - last) < LEAST_ACCELERATION:
+        return None
+    turn = (gained - last * rows) / (first - last)
+    if not -TURNED_ROWS <= turn <= rows + TURNED_ROWS:
+        return None
+    left = rows - turn
+    travel = rows * before.speed + first * turn * (rows - turn / 2) + last * left**2 / 2
+    off = after.place - before.place - travel
+    off -= round(off)
+    if abs(off) / 2 > TURNED_CYCLES:
+        return None
+    reach = acceleration * rows**2 / 4
+    misfit = max(before.misfit, after.misfit)
+    return Bridge(travel + off, off, reach, abs(off) / 2, misfit, turn)
+
+
 def longest_s(acceleration_mm_s2: float, cycles_per_mm: float) -> float:
     """The longest gap with a certain count if both sides agree, with filter, s: A T² / 4 = 0.9 cycle."""
     return float(np.sqrt(4 * (1 - COUNT_MARGIN) / (acceleration_mm_s2 * cycles_per_mm)))
@@ -131,7 +167,7 @@ class Gap:
 
     `after.place` is where the axis is behind it as it was counted. `bound` is what the program asks for there
     at most, as far as the tape tells it. `short`: the count is certain even if the program asks for all that
-    the motors can do, as on a bare tape.
+    the motors can do, as on a bare tape. `steady`: it began with a surprise, while the level was right.
     """
 
     axis: int
@@ -142,6 +178,7 @@ class Gap:
     bridge: Bridge
     bound: Bound
     short: bool = False
+    steady: bool = False
 
     @property
     def rows(self) -> int:
@@ -172,8 +209,11 @@ class Gap:
 
     @property
     def sound_until(self) -> float:
-        """The row until which the way before it is sound: its side is not, where that is rough."""
-        rough = self.bridge.misfit >= ROUGH_CYCLES
+        """The row until which the way before it is sound: its side is not, where that is rough.
+
+        What surprises has led the axis astray for some rows, within what the program may ask for.
+        """
+        rough = self.steady or self.bridge.misfit >= ROUGH_CYCLES
         return float(self.first - SIDE_ROWS if rough else self.first)
 
     def moved(self, cycles: float) -> Gap:
@@ -190,13 +230,25 @@ class Gap:
         acceleration = max(self.bound.acceleration, later.bound.acceleration)
         speed = max(self.bound.speed, later.bound.speed)
         return replace(
-            self, last=later.last, after=later.after, bound=Bound(acceleration, speed)
+            self,
+            last=later.last,
+            after=later.after,
+            bridge=replace(self.bridge, turn=None),
+            bound=Bound(acceleration, speed),
         )
 
     def laid(self) -> Array:
         """The rows within."""
-        travel = self.after.place - self.before.place
-        return filled(self.before, self.after, travel, self.rows)
+        before, after, turn = self.before, self.after, self.bridge.turn
+        travel = after.place - before.place
+        if turn is None or round(travel - self.bridge.travel):
+            return filled(before, after, travel, self.rows)
+        t = np.arange(1, self.rows)
+        until = np.minimum(t, np.clip(turn, 0, self.rows))
+        way = before.speed * t + 2 * before.bend * until * (t - until / 2)
+        way += after.bend * (t - until) ** 2
+        u = t / self.rows
+        return np.asarray(before.place + way + self.bridge.off * u**2 * (3 - 2 * u))
 
 
 def freedom(before: Side, after: Side, rows: int, bound: Bound) -> float:

@@ -7,7 +7,9 @@ Source: patent ES 361967, figure 5 (fault circuit 162) asks for a stop. Question
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from typing import NamedTuple
 
 from morfax.motion.faults import DropoutFault, LockFault, TapeFault
 from morfax.player.tape.bridges import Gap
@@ -125,28 +127,33 @@ def no_end(time_s: float) -> TapeFault:
     )
 
 
+class Behind(NamedTuple):
+    """Where the axes are known again behind a gap: tape time, places, and how far its count lies off."""
+
+    time_s: float
+    places_mm: tuple[float, ...]
+    off_cycles: float
+
+
 def lost_way(
-    gap: Gap,
-    axis: str,
-    rate_hz: float,
-    position_mm: float,
-    resumes: tuple[float, tuple[float, ...]] | None,
+    gap: Gap, axis: str, rate_hz: float, position_mm: float, known: Behind | None
 ) -> DropoutFault:
-    """The fault of a gap whose way is not known; `resumes`: tape time and places behind it, s and mm."""
+    """The fault of a gap whose way is not known."""
     time_s, length_s = gap.first / rate_hz, (gap.last - gap.first) / rate_hz
     behind = "and the tape does not say where it is behind that: mend it (morfax mend) or copy it again"
-    if resumes is not None:
-        places = ",".join(f"{place_mm:.4f}" for place_mm in resumes[1])
+    if known is not None:
+        places = ",".join(f"{place_mm:.4f}" for place_mm in known.places_mm)
         behind = (
-            f"it is picked up again at {resumes[0]:.3f} s: have the way laid (morfax mend), copy the tape "
-            f"again, or go on there (--resume-at {resumes[0]:.6f}s --from={places})"
+            f"it is picked up again at {known.time_s:.3f} s: have the way laid (morfax mend), copy the tape "
+            f"again, or go on there (--resume-at {known.time_s:.6f}s --from={places})"
         )
     return DropoutFault(
         f"{axis.upper()} was lost for {length_s * 1e3:.1f} ms at {time_s:.3f} s, last certain position "
         f"{position_mm:.3f} mm: the way within is not known, {behind}",
         axis=axis,
         time_s=time_s,
+        error_cycles=math.nan if known is None else known.off_cycles,
         position_mm=position_mm,
         length_s=length_s,
-        resumes=resumes,
+        resumes=None if known is None else (known.time_s, known.places_mm),
     )

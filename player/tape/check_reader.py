@@ -73,7 +73,7 @@ class FrameReport:
     `said`: what each track says, None where its check sum is wrong; `late_s` against the clock of the
     reference, `delay_s` (tracks, parts) against track 1, and that of track 1 against its own carrier; nan
     where a track says nothing. `swing_s` is how far a delay swings within its parts, RMS; `damaged` are
-    tracks that say nothing though their level is right, `weak_rows` where symbols of each are weak.
+    tracks that say nothing though their level is right, `weak_rows` where each is weak.
     """
 
     number: int
@@ -234,8 +234,8 @@ class CheckReader:
     def _report(self) -> FrameReport:
         """Read the next frame of all tracks."""
         self._put_right()
-        bits, strengths, sizes, late, turns, swings = read_symbols(self._points, self._theta)
-        said = self._erasures.read(bits, strengths, sizes, self._number)
+        gates = read_symbols(self._points, self._theta)
+        said, late, turns = self._erasures.read(gates, self._number), gates.late, gates.turns
         for track, frame in enumerate(said):
             if frame is None or not np.isfinite(turns[track]).all():
                 said[track], late[track], turns[track] = None, np.nan, np.nan
@@ -252,12 +252,9 @@ class CheckReader:
             tuple(said),
             (late / self._reference_hz).tolist(),
             (apart * CYCLES_PER_SUBCARRIER / self._reference_hz).tolist(),
-            (swings * CYCLES_PER_SUBCARRIER / self._reference_hz).tolist(),
+            (gates.swings * CYCLES_PER_SUBCARRIER / self._reference_hz).tolist(),
             tuple(self._erasures.damaged),
-            [
-                self._rows(self._theta + CYCLES_PER_SYMBOL * at.astype(np.float64))
-                for at in self._erasures.weak
-            ],
+            [self._rows(self._theta + CYCLES_PER_SYMBOL * at) for at in self._erasures.weak],
         )
 
     def _put_right(self) -> None:

@@ -7,7 +7,8 @@ certain, with its fault.
 
 A row is lost while the level of its track (or of the reference) is a fifth off what it was 20 ms ago, or
 below a fifth of its level at standstill, and as long as the discriminator's filter reaches into such rows.
-What the rows on both sides say of the gap is in bridges.py.
+On a checked tape a row is lost as well where an axis moves as its program never does (surprises.py). What the
+rows on both sides say of the gap is in bridges.py.
 
     bare       a gap that is not certain by its sides is a fault; so is one of more than 0.1 s
     checked    every gap up to 1.1 s is bridged and told of; what vouches for the rows decides
@@ -19,8 +20,9 @@ given where the program is known to be smoother. A check signal tells it.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numba import njit
@@ -28,10 +30,12 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import Fault, LockFault, TapeFault
-from morfax.player.tape.bridges import SIDE_ROWS, Bound, Bridge, Gap, Side, bridge, side
+from morfax.player.tape.bridges import SIDE_ROWS, Bridge, Gap, Side, side
 from morfax.player.tape.discriminator import Discriminator, Phases
 from morfax.player.tape.predictor import recount
+from morfax.player.tape.riding import Riding
 from morfax.player.tape.standstill import LEVEL_STEADY
+from morfax.player.tape.surprises import Surprises
 from morfax.recorder.tape.format import TapeFormat
 
 LEVEL_KEPT = 0.2  # of the level at standstill
@@ -40,6 +44,11 @@ SIDE_S = 0.006  # of sound tape on each side
 LONGEST_S = 0.1  # a track that is away longer has ended
 # the same with a check signal: 1 s is asked, and the filter reaches 2 ms further; levels need some time
 LONGEST_CHECKED_S = 1.1
+
+# a frame of the check signal is read two symbols (10 ms at the lowest reference) behind its end
+TOLD_LATE_S = 0.02
+# of looking for surprises: what lies behind one that was bridged surprises less, or in another place
+TRIES = 3
 
 
 def under_way(rows: Phases, discriminator: Discriminator) -> Array:
@@ -64,19 +73,6 @@ def _count_on(
     discriminator.state[axis] = recount(cycles, discriminator.gains, state, surprise)
 
 
-@dataclass(frozen=True, slots=True)
-class Riding:
-    """How gaps are ridden over: the most that the machine's motors can do, cycles/row and cycles/row².
-
-    `bound`: what the program asks for at most between two rows of an axis, as far as the tape tells it; None
-    on a bare tape. `told`: whole cycles to add at a gap (row, axis), if what is not certain is no fault.
-    """
-
-    motors: Bound
-    bound: Callable[[int, int, int], Bound | None] | None = None
-    told: dict[tuple[int, int], int] | None = None
-
-
 class Gaps:
     """Bridges the gaps of one tape; holds rows back that the next rows may show to be lost."""
 
@@ -96,10 +92,14 @@ class Gaps:
         self._levels, self._tracked = levels, levels.copy()
         self._side = max(round(SIDE_S * self._rate_hz), 6)
         self._spread = -(-discriminator.filter_frames // (2 * discriminator.decimation))
-        self._longest_s = LONGEST_S if riding.bound is None else LONGEST_CHECKED_S
+        self._surprises = Surprises(discriminator.gains, len(fmt.axes))
+        told_late = 0 if riding.bounds is None else math.ceil(TOLD_LATE_S * self._rate_hz)
+        self._held = max(self._spread, told_late)
+        self._longest_s = LONGEST_S if riding.bounds is None else LONGEST_CHECKED_S
         # from `side` rows before the first that is not yet given out
         self._rows: Phases | None = None
         self._lost = np.zeros((0, len(levels)), bool)
+        self._surprised = np.zeros((0, len(fmt.axes)), bool)
         self._given: int | None = None  # the row up to which rows were given out
         # tape time in s and axis: length in s
         self.bridged: dict[tuple[float, str], float] = {}
@@ -119,19 +119,45 @@ class Gaps:
             phases.levels, self._levels * LEVEL_KEPT, LEVEL_STEADY, share, self._tracked, lost
         )
         self._lost = np.vstack([self._lost, lost])
+        self._surprised = np.vstack([self._surprised, np.zeros_like(lost[:, 1:])])
         self._given = phases.first_row if self._given is None else self._given
         rows = phases if self._rows is None else self._rows.joined(phases)
         self._rows = rows
-        ready = len(rows) - (0 if last else self._spread)
-        fault: tuple[int, Fault] | None = None
-        if self._lost.any():
-            ready, fault = self._bridge_all(rows, ready, last)
+        ready, fault = self._bridged(rows, last)
         out = rows.cut(self._given - rows.first_row, ready)
         self._given = max(self._given, rows.first_row + ready)
         fault = fault and (len(out), fault[1])
         keep = max(ready - self._side - self._spread, 0)
         self._rows, self._lost = rows.cut(keep, len(rows)), self._lost[keep:]
+        self._surprised = self._surprised[keep:]
         return out, fault
+
+    def _bridged(self, rows: Phases, last: bool) -> tuple[int, tuple[int, Fault] | None]:
+        """Bridge what is lost; and, on a checked tape, what surprises in the rows that would be given out."""
+        most = len(rows) - (0 if last else self._held)
+        ready, fault = self._bridge_all(rows, most, last)
+        for _ in range(TRIES if self._riding.bounds is not None else 0):
+            if not self._mark_surprises(rows, ready):
+                break
+            self._new.clear()
+            ready, fault = self._bridge_all(rows, most, last)
+        return ready, fault
+
+    def _mark_surprises(self, rows: Phases, ready: int) -> bool:
+        """Mark the rows at which an axis moves as its program never does; whether any was not lost before."""
+        assert self._riding.bounds is not None, (
+            "only a checked tape tells what a program asks for"
+        )
+        told = [
+            bounds.accelerations(rows.first_row, len(rows)) for bounds in self._riding.bounds()
+        ]
+        found = self._surprises.rows(rows, np.column_stack(told))
+        # what was given out reached to `spread` rows before those that are looked at
+        found[: max((self._given or 0) - rows.first_row + self._spread, 0)] = False
+        found[ready + self._spread :] = False
+        new = bool((found & ~self._surprised).any())
+        self._surprised |= found
+        return new
 
     def _bridge_all(
         self, rows: Phases, ready: int, last: bool
@@ -143,7 +169,7 @@ class Gaps:
                 if rows.first_row + b <= (self._given or 0):
                     continue
                 if (
-                    b + self._side + self._spread > len(rows)
+                    b + self._side + self._held > len(rows)
                     and not last
                     and b - a <= self._longest_s * self._rate_hz
                 ):
@@ -161,7 +187,9 @@ class Gaps:
 
     def _gaps_of(self, axis: int) -> list[tuple[int, int]]:
         """First and last row (past it) of each gap of an axis; gaps close to each other are one."""
-        lost = np.flatnonzero(self._lost[:, 0] | self._lost[:, axis + 1])
+        lost = np.flatnonzero(
+            self._lost[:, 0] | self._lost[:, axis + 1] | self._surprised[:, axis]
+        )
         if not len(lost):
             return []
         apart = self._side + 2 * self._spread
@@ -179,8 +207,10 @@ class Gaps:
             return self._ended(rows, axis, a, time_s)
         if a < self._side:
             return self._uncertain(axis, cycles[max(a - 1, 0)], time_s, (b - a) / self._rate_hz)
-        gap = self._joined(rows, axis, a, b)
-        if self._riding.bound is None and not gap.bridge.certain:
+        gap = self._riding.across(rows, axis, (a, b), self._side)
+        steady = self._surprised[min(a + self._spread, len(rows) - 1), axis]
+        gap = replace(gap, steady=bool(steady))
+        if self._riding.bounds is None and not gap.bridge.certain:
             if self._riding.told is None:
                 return self._uncertain(axis, gap.before.place, time_s, (b - a) / self._rate_hz)
             self.doubtful[gap.first, axis] = gap.bridge
@@ -191,19 +221,6 @@ class Gaps:
         self.bridged[time_s, self._names[axis]] = (b - a) / self._rate_hz
         self._new.append(gap)
         return None
-
-    def _joined(self, rows: Phases, axis: int, a: int, b: int) -> Gap:
-        """A gap as its sides suggest it."""
-        cycles, motors = rows.cycles[:, axis], self._riding.motors
-        before = side(cycles[a - self._side : a], self._side - 1)
-        after = side(np.unwrap(cycles[b : b + self._side], period=1.0), 0)
-        first, last = rows.first_row + a, rows.first_row + b
-        told = None if self._riding.bound is None else self._riding.bound(axis, first, last)
-        most = min(motors.acceleration, told.acceleration if told else np.inf)
-        found = bridge(before, after, b - a + 1, most)
-        short = bridge(before, after, b - a + 1, motors.acceleration).counted
-        after = replace(after, place=before.place + found.travel)
-        return Gap(axis, first, last, before, after, found, told or motors, short)
 
     def _ended(self, rows: Phases, axis: int, a: int, time_s: float) -> TapeFault:
         """The fault of a track that does not come back."""

@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.player.tape.symbols import Gates
 from morfax.recorder.tape.check_frame import NUMBERS, SYNC_SYMBOLS, Bits, CheckFrame, from_bits
 
 WEAK = 0.5  # of the usual strength; 15 dB of noise leave 0.75 (four standard deviations)
@@ -37,16 +38,15 @@ class Erasures:
         self._usual = np.full(tracks, np.nan)
         self._size = np.full(tracks, np.nan)  # of a symbol, at the median
         self.damaged: list[int] = []
-        self.weak: list[NDArray[np.int64]] = []
+        self.weak: list[Array] = []
 
-    def read(
-        self, bits: Bits, strengths: Array, sizes: Array, number: int
-    ) -> list[CheckFrame | None]:
-        """What the tracks (tracks, symbols) say in the frame of this number; None where it is lost.
+    def read(self, gates: Gates, number: int) -> list[CheckFrame | None]:
+        """What the tracks say in the frame of this number; None where it is lost.
 
         `damaged` are then the tracks that say nothing though few of their symbols are weak, and `weak` the
-        weak symbols of each track.
+        places of each track at which it is weak, in symbols from the first.
         """
+        bits, strengths, sizes, shares = gates.bits, gates.strengths, gates.sizes, gates.shares
         said = from_bits(bits)
         self.damaged, self.weak = [], []
         small = [
@@ -58,7 +58,11 @@ class Erasures:
             known = self._usual[track] if np.isfinite(self._usual[track]) else usual
             weak = np.flatnonzero(strengths[track] < WEAK * known)
             lost = max(len(small[0]), len(small[track])) > MOST_WEAK
-            self.weak.append(small[track] if lost else weak)
+            self.weak.append(
+                small[track].astype(np.float64)
+                if lost
+                else _places(shares[track] < WEAK * known)
+            )
             if len(weak) > MOST_WEAK:
                 frame = None
             elif frame is None:
@@ -70,6 +74,12 @@ class Erasures:
                 self.damaged.append(track)
             said[track] = frame
         return said
+
+
+def _places(weak: NDArray[np.bool_]) -> Array:
+    """The places of weak gates (gates, symbols), in symbols."""
+    gate, symbol = np.nonzero(weak)
+    return np.sort(symbol + (gate - 1) / 4)
 
 
 def _recovered(

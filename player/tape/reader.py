@@ -30,8 +30,9 @@ from morfax.player.tape.bare import BareTape
 from morfax.player.tape.bridges import Bound, Bridge
 from morfax.player.tape.check_reader import read_ahead, read_check
 from morfax.player.tape.discriminator import Discriminator, Phases, discriminate
-from morfax.player.tape.dropouts import Gaps, Riding, under_way
+from morfax.player.tape.dropouts import Gaps, under_way
 from morfax.player.tape.lost_ways import Laid
+from morfax.player.tape.riding import Riding
 from morfax.player.tape.standstill import STANDSTILL_S, Bearings, evened, take_bearings
 from morfax.player.tape.vouching import Vouching
 from morfax.player.tape.warrant import Certain, Warrant
@@ -182,7 +183,7 @@ class TapeReader:
             self._acceleration_mm_s2 * fmt.cycles_per_mm / rate_hz**2,
             fmt.largest_deviation_hz / rate_hz,
         )
-        return Riding(motors, warrant.bound if warrant.is_checked else None, self.told)
+        return Riding(motors, warrant.bounds if warrant.is_checked else None, self.told)
 
     def _bearings(
         self,

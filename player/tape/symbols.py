@@ -28,6 +28,9 @@ from morfax.recorder.tape.check_frame import SYMBOLS, SYNC, SYNC_SYMBOLS, Bits
 from morfax.recorder.tape.check_signal import CYCLES_PER_SYMBOL
 
 QUARTER = CYCLES_PER_SYMBOL / 4  # of a symbol, in cycles of the reference
+GATES = 3  # of a symbol: early, on, late
+# of the full strength, a quarter of a symbol beside one that passes over to the other sign: cos pi/4
+PASSING = math.sqrt(0.5)
 PARTS = 4  # of a frame, each with its own phase
 _WORD = SYNC.astype(np.float64)
 
@@ -37,12 +40,14 @@ class Gates(NamedTuple):
     turns, and how far the phase swings about them, RMS, beyond what noise does.
 
     `strengths` are along the sync word and grow with it; `sizes` are the largest of
-    the three gates of each symbol alone, whatever its phase, and wherever it begins.
+    the three gates of each symbol alone, whatever its phase, and wherever it begins. `shares` (tracks, gates,
+    symbols): how strong each gate is for what its symbol and the next one to it let expect; early, on, late.
     """
 
     bits: Bits
     strengths: Array
     sizes: Array
+    shares: Array
     late: Array
     turns: Array
     swings: Array
@@ -66,6 +71,7 @@ def read_symbols(points: Subcarrier, begins: float) -> Gates:
         np.empty((tracks, SYMBOLS), np.int8),
         np.empty((tracks, SYMBOLS)),
         np.empty((tracks, SYMBOLS)),
+        np.empty((tracks, GATES, SYMBOLS)),
         np.empty(tracks),
         np.empty((tracks, PARTS)),
         np.empty(tracks),
@@ -75,12 +81,12 @@ def read_symbols(points: Subcarrier, begins: float) -> Gates:
 
 
 @njit(cache=True, nogil=True)
-def _read(points, theta, begins, word, bits, strengths, sizes, late, turns, swings):  # type: ignore[no-untyped-def]
+def _read(points, theta, begins, word, bits, strengths, sizes, shares, late, turns, swings):  # type: ignore[no-untyped-def]
     """Read one frame of all tracks, whose symbols are 24 cycles of theta apart; see `Gates`."""
     tracks, symbols = bits.shape
-    gates = np.empty((tracks, 3, symbols), np.complex128)
+    gates = np.empty((tracks, GATES, symbols), np.complex128)
     # 1. early, on and late of each symbol, between the two points beside it
-    for gate in range(3):
+    for gate in range(GATES):
         at = 0
         for symbol in range(symbols):
             place = begins + symbol * CYCLES_PER_SYMBOL + (gate - 1) * QUARTER
@@ -104,9 +110,10 @@ def _read(points, theta, begins, word, bits, strengths, sizes, late, turns, swin
             strengths[track, symbol] = abs(along)
             ahead, behind = abs(gates[track, 0, symbol]), abs(gates[track, 2, symbol])
             sizes[track, symbol] = max(ahead, abs(seen), behind)
+        _share(gates[track], alike, bits[track], shares[track])
         # 3. with the signs known: how late, by a parabola through three gates; and the phase, part by part
-        sums = np.zeros(3)
-        for gate in range(3):
+        sums = np.zeros(GATES)
+        for gate in range(GATES):
             whole = 0j
             for symbol in range(symbols):
                 whole += gates[track, gate, symbol] * bits[track, symbol]
@@ -120,6 +127,21 @@ def _read(points, theta, begins, word, bits, strengths, sizes, late, turns, swin
             turns[track, number] = math.atan2(whole.imag, whole.real) / (2 * math.pi)
         # 4. noise moves a symbol along and across alike; what is across beyond that is a swing of the phase
         swings[track] = _swing(gates[track, 1], bits[track], turns[track], part)
+
+
+@njit(cache=True, nogil=True)
+def _share(gates, alike, bits, shares):  # type: ignore[no-untyped-def]
+    """How strong each gate is along `alike`, for what the symbols on both sides of it let expect."""
+    symbols = len(bits)
+    for symbol in range(symbols):
+        for gate in range(GATES):
+            beside = symbol + gate - 1
+            same = beside == symbol
+            if 0 <= beside < symbols and not same:
+                same = bits[beside] == bits[symbol]
+            seen = gates[gate, symbol]
+            along = (seen.real * alike.real + seen.imag * alike.imag) * bits[symbol]
+            shares[gate, symbol] = along if same else along / PASSING
 
 
 @njit(cache=True, nogil=True)

@@ -17,6 +17,9 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
+from morfax.motion.arrays import Array
 from morfax.player.tape.bridges import Bound
 from morfax.player.tape.check_reader import FrameReport
 from morfax.player.tape.symbols import PARTS
@@ -51,6 +54,14 @@ class ToldBounds:
             return None
         near = before + behind
         return Bound(max(one.acceleration for one in near), max(one.speed for one in near))
+
+    def accelerations(self, first: int, count: int) -> Array:
+        """The largest acceleration told of each of some rows, cycles/row²; nan where none is."""
+        told = np.full(count, np.nan)
+        for starts, ends, bound in self._told:
+            rows = slice(max(math.ceil(starts) - first, 0), max(math.ceil(ends) - first, 0))
+            told[rows] = np.fmax(told[rows], bound.acceleration)
+        return told
 
     def between(self, first: int, last: int) -> Bound | None:
         """The bound between two rows, or None where no frame tells it."""

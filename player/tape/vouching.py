@@ -18,6 +18,7 @@ Source: our own. Questions: none.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -25,7 +26,7 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.faults import Fault
 from morfax.player.tape import check_faults as faults
-from morfax.player.tape.bridges import Bound, Gap
+from morfax.player.tape.bridges import Gap
 from morfax.player.tape.check_reader import CheckReader, FrameReport
 from morfax.player.tape.delays import Delay
 from morfax.player.tape.discriminator import Phases
@@ -60,9 +61,8 @@ class Vouching:
         self._delays = [Delay(fmt.reference_hz, fmt.motion_rate_hz) for _ in fmt.axes]
         self._bounds = [ToldBounds(fmt.motion_rate_hz, frame_s) for _ in fmt.axes]
         self._ways = LostWays(len(fmt.axes), frame_s / SYMBOLS * self._rate_hz)
-        self._weak: list[list[float]] = [
-            [] for _ in fmt.axes
-        ]  # rows of symbols not yet explained
+        # rows of weak symbols that no gap explains yet
+        self._weak: list[list[float]] = [[] for _ in fmt.axes]
         self._lost: dict[int, Gap] = {}  # by axis: a gap at which the machine stops
         self.mended: list[Laid] = []
         self._held: Phases | None = None
@@ -89,10 +89,10 @@ class Vouching:
         if zero_cycles is not None:
             self._zero_cycles = zero_cycles.copy()
 
-    def bound(self, axis: int, first: int, last: int) -> Bound | None:
-        """The most that the program asks of an axis between two rows, as its track tells it."""
+    def bounds(self) -> Sequence[ToldBounds]:
+        """What the track of each axis tells of the program, as far as its frames were read."""
         self._take_reports()
-        return self._bounds[axis].between(first, last)
+        return self._bounds
 
     def end(self, time_s: float) -> None:
         """The tape ends, and has said so."""
@@ -282,18 +282,13 @@ class Vouching:
 
     def _lost_way(self, gap: Gap, behind: tuple[float, dict[int, float]] | None) -> Fault:
         """The fault of a gap; `behind`: a row at which all axes are known again, and how far off each is."""
-        resumes = None
+        known = None
         if behind is not None:
             row = math.ceil(behind[0])
-            places = tuple(
+            places_mm = tuple(
                 self._place_mm(axis, self._place(axis, row) - round(off))
                 for axis, off in sorted(behind[1].items())
             )
-            resumes = row / self._rate_hz, places
-        return faults.lost_way(
-            gap,
-            self._format.axes[gap.axis],
-            self._rate_hz,
-            self._place_mm(gap.axis, gap.before.place),
-            resumes,
-        )
+            known = faults.Behind(row / self._rate_hz, places_mm, behind[1][gap.axis])
+        name, place_mm = self._format.axes[gap.axis], self._place_mm(gap.axis, gap.before.place)
+        return faults.lost_way(gap, name, self._rate_hz, place_mm, known)

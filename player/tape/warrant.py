@@ -16,8 +16,9 @@ from typing import NamedTuple, Protocol
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import Fault
-from morfax.player.tape.bridges import Bound, Gap
+from morfax.player.tape.bridges import Gap
 from morfax.player.tape.discriminator import Phases
+from morfax.player.tape.told_bounds import ToldBounds
 from morfax.recorder.tape.tape import Stored
 
 StandsMm = Callable[[], Sequence[float]]  # where the machine stands, axis by axis
@@ -48,8 +49,8 @@ class Warrant(Protocol):
     def bear(self, zero_cycles: Array | None, place_mm: PlaceMm) -> None:
         """Take the zeros of the axes, or None on a tape that is resumed."""
 
-    def bound(self, axis: int, first: int, last: int) -> Bound | None:
-        """The most that the program asks of an axis between two rows, where the tape tells it."""
+    def bounds(self) -> Sequence[ToldBounds]:
+        """What the track of each axis tells of the program; of a bare tape nothing."""
         ...
 
     def feed(self, certain: Certain, stands_mm: StandsMm, *, last: bool = False) -> Given:

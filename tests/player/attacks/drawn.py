@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.signal import hilbert
 
 from tests.player.attacks import changes as do
 from tests.player.attacks.bench import RATE_HZ, Bench, Frames
@@ -114,6 +115,18 @@ def toned_hole(tape: Bench, random: Random) -> Frames:
     at, track = do.moment(tape, random, count), do.track(random)
     frames, turns = tape.frames.copy(), random.uniform(5800, 6200) * np.arange(count) / RATE_HZ
     frames[at : at + count, track] = 0.5 * np.sin(2 * np.pi * (turns + random.random()))
+    return frames
+
+
+def tone_in_phase(tape: Bench, random: Random) -> Frames:
+    """A short tone as loud as the carrier, nearly as fast, and up to a fifth of a cycle beside it."""
+    count = round(do.log_uniform(random, 0.0005, 0.006) * RATE_HZ)
+    at, track = do.moment(tape, random, count), do.track(random)
+    frames, around = tape.frames.copy(), tape.frames[at - 480 : at + 480, track]
+    phases = np.unwrap(np.angle(hilbert(around.astype(np.float64)))) / (2 * np.pi)
+    hz = (phases[600] - phases[360]) / 240 * RATE_HZ + random.uniform(-60, 60)
+    turns = phases[480] + random.uniform(-0.2, 0.2) + hz * np.arange(count) / RATE_HZ
+    frames[at : at + count, track] = 0.5 * np.cos(2 * np.pi * turns)
     return frames
 
 

@@ -85,6 +85,7 @@ KINDS: tuple[Kind, ...] = (
     Kind("a dropout in the first 50 ms", drawn.early_hole, EITHER),
     Kind("a dropout full of noise", drawn.noisy_hole, EITHER),
     Kind("a dropout full of a tone", drawn.toned_hole, EITHER),
+    Kind("a short tone nearly in phase with its track", drawn.tone_in_phase, EITHER),
     Kind("a dropout that hides lost samples", drawn.hole_and_slip, EITHER, False),
     Kind("a dropout while the speed changes", drawn.hole_at_speed, EITHER, False),
     # noise and what else a recorder adds

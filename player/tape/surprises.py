@@ -1,0 +1,95 @@
+"""Surprises: rows at which an axis moves as its program never does, though the level of its track is right.
+
+Signals in: how far each phase lay from the predicted one (predictor.py), cycles; the levels of the tracks;
+the most that the check signal tells of the axis' acceleration, cycles/row². Signals out: the rows that are
+lost, as in a dropout.
+
+    motion of acceleration a(t)   surprises by   sum of h(k) · a(t - k),    h: what a jump of the speed does
+    so at most by                 A · sum of |h|                            41.3 row² at 6 kHz
+    a row is lost at              |surprise| > A · sum of |h| + 6 sigma of noise,  and at least by 0.004 cycle
+
+A tone as loud as the carrier, and nearly in phase with it, leaves the level as it is, and may lie between the
+windows through which the check signal is seen (2 ms). Nothing else shows it.
+
+A program that jumps from speed to speed surprises as much itself. Where that hides a twentieth of a cycle, a
+row is lost as well where the level dips for a moment: where two waves meet that are e cycles apart, it falls
+by 1 - cos(pi e), 1.2 % for a twentieth.
+
+    dip   = 1 - level[k] / mean(level[k - 10], level[k + 10]),   lost beyond 6 sigma of noise and 1 %
+
+Source: our own; the bound is that of any linear filter (M. Vidyasagar, Nonlinear Systems Analysis, 1993:
+largest output over largest input is the integral of the impulse response's size). Questions: a bare tape
+tells no acceleration; there only a quarter of a cycle is a fault (standstill.py).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.motion.arrays import Array
+from morfax.player.tape.discriminator import Phases
+from morfax.player.tape.predictor import count_turns
+from morfax.player.tape.standstill import SILENT_LEVEL
+
+SETTLED_ROWS = (
+    400  # behind a jump: 65 ms at 6 kHz; what is left of the response is 1e-6 of its largest
+)
+SMALL_CYCLES = 1e-3  # of the jump that is tried, so that no turn is miscounted
+NOISE_SIGMAS = 6.0  # one row in 5e8
+MEDIAN_SIGMAS = 0.6745  # median of |noise| that is normal
+LEAST_CYCLES = (
+    0.004  # a tenth of what is allowed: rounding, and what the band filter bends at a corner
+)
+STRIDE = 8  # rows from one that tells the noise to the next: the filter spans as many
+HIDDEN_CYCLES = (
+    0.02  # a step of a twentieth of a cycle surprises by 0.03, less what noise of 40 dB adds
+)
+DIP_ROWS = 10  # 1.7 ms at 6 kHz: the filter blurs a moment over eight
+LEAST_DIP = 0.01  # of the level; flutter of 0.2 % makes 0.0016
+ENOUGH_ROWS = 600  # 0.1 s: fewer tell the noise too roughly
+
+
+class Surprises:
+    """Finds the surprising rows of the axes of one tape; holds how noisy they are."""
+
+    def __init__(self, gains: Array, axes: int) -> None:
+        self._gain_rows2 = acceleration_gain(gains)
+        self._noise_cycles: Array = np.zeros(axes)
+
+    def rows(self, rows: Phases, accelerations: Array) -> NDArray[np.bool_]:
+        """Which rows of the axes (n, axes) are lost; nan as acceleration (cycles/row²) where none is told."""
+        sizes = np.abs(rows.surprise)
+        noise = _noise(sizes)
+        enough = len(sizes) >= ENOUGH_ROWS
+        self._noise_cycles = noise if enough else np.maximum(noise, self._noise_cycles)
+        by_program = accelerations * self._gain_rows2
+        lost = sizes > by_program + np.maximum(self._noise_cycles, LEAST_CYCLES)
+        jumps = by_program > HIDDEN_CYCLES
+        if jumps.any():
+            dips = _dips(rows.levels)
+            lost |= jumps & (dips[:, :1] | dips[:, 1:])
+        return np.asarray(lost)
+
+
+def _noise(sizes: NDArray[np.float32]) -> Array:
+    """So many standard deviations of each column, told by its median."""
+    return np.asarray(np.median(sizes[::STRIDE], axis=0) * (NOISE_SIGMAS / MEDIAN_SIGMAS))
+
+
+def _dips(levels: NDArray[np.float32]) -> NDArray[np.bool_]:
+    """The rows of the tracks whose level dips, or rises, for a moment."""
+    dips = np.zeros(levels.shape, bool)
+    if len(levels) > 2 * DIP_ROWS:
+        beside = (levels[: -2 * DIP_ROWS] + levels[2 * DIP_ROWS :]) / 2
+        size = np.abs(levels[DIP_ROWS:-DIP_ROWS] / np.maximum(beside, SILENT_LEVEL) - 1)
+        dips[DIP_ROWS:-DIP_ROWS] = size > np.maximum(_noise(size), LEAST_DIP)
+    return dips
+
+
+def acceleration_gain(gains: Array) -> float:
+    """The largest surprise of a motion for each cycle/row² of its largest acceleration, rows²."""
+    ramp = SMALL_CYCLES * np.arange(float(SETTLED_ROWS))[None]
+    surprise = np.empty((SETTLED_ROWS, 1), np.float32)
+    count_turns(ramp, gains, np.zeros((1, 3)), np.empty(surprise.shape), surprise)
+    return float(np.abs(surprise).sum()) / SMALL_CYCLES
