@@ -63,7 +63,7 @@ def _run(page: Any, folder: Path) -> None:
     page.select_option("#pace", "")
     page.click("#hold")
     page.wait_for_selector("#result-card:not([hidden])", timeout=RUN_MS)
-    page.locator("#machine input[type=range]").evaluate(
+    page.locator("#machine .bar > input[type=range]").evaluate(
         "s => { s.value = 0.4 * s.max; s.dispatchEvent(new Event('input')); }"
     )
 

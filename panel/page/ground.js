@@ -62,7 +62,7 @@ export class Ground {
     context.fillRect(left, top, right - left, bottom - top);
     const corner = sheet.toScreen([0, 0]), size = [sheet.picture.columns * sheet.view.scale, sheet.picture.rows * sheet.view.scale];
     context.fillStyle = style.getPropertyValue("--shade");
-    context.fillRect(corner[0] + 2 * devicePixelRatio, corner[1] + 3 * devicePixelRatio, ...size);
+    context.fillRect(corner[0] + devicePixelRatio, corner[1] + 2 * devicePixelRatio, ...size);
     context.fillStyle = style.getPropertyValue("--paper");
     context.fillRect(...corner, ...size);
     sheet.drawTiles(context, sheet.view, sheet.canvas.width, sheet.canvas.height, rect);

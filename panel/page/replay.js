@@ -166,7 +166,7 @@ export class Replay {
     this.slider.setAttribute("aria-valuetext", `${time(this.t)}, X ${now.x.toFixed(2)}, Y ${now.y.toFixed(2)}, tool ${now.down ? "down" : "up"}`);
     this.clock.textContent = `${time(this.t)} / ${time(this.last)}`;
     this.feed.textContent = `${now.feed.toFixed(1)} mm/s at ${Math.round(100 * this.override)} %`;
-    this.tool.textContent = now.down ? "down, in the work" : "up";
+    this.tool.textContent = now.down ? "down" : "up";
     this.tool.className = now.down ? "tool down" : "tool up";
     this.done.textContent = time(this.t - this.first);
     this.left.textContent = time(this.last - this.t);

@@ -12,6 +12,7 @@ import pytest
 from PIL import Image
 
 from morfax.motion.pathfile import read_path
+from morfax.motion.polyline import area_mm2
 from tests.panel.browsing import (
     ROOT,
     RUN_MS,
@@ -131,7 +132,9 @@ def test_order_and_arrows_are_dragged_and_the_command_does_the_same(
         run[:, :2] for run in read_path(tmp_path / "plate.panel" / "plate.traced.csv").runs()
     ]
     assert [round(float(np.ptp(run[:, 0]))) for run in cut] == [8, 10, 40]  # 3, 2, 1
-    assert np.hypot(*(cut[2][0] - (26, 30))) < 0.5 and cut[2][600, 0] < 26  # to the left
+    # the head is put down at the plainest place within two widths of the line, 1 mm
+    assert np.hypot(*(cut[2][0] - (26, 30))) < 1.1
+    assert area_mm2(cut[2]) > 0  # to the left along the upper edge
     # 4. taken away, and undone
     page.click("[aria-label='Take arrow 1 away']")
     api.expect(page.locator("#arrows li")).to_have_count(1, timeout=WAIT_MS)
@@ -150,7 +153,7 @@ def test_the_machine_runs_again_at_the_override_and_the_tape_is_scrubbed(page: A
     told, stands = ([float(v) for v in cells[k : k + 3]] for k in (0, 3))
     assert np.allclose(told, stands, atol=0.05) and any(stands)
     assert " of " in page.inner_text(".dial:has-text('Following error') b")
-    assert page.inner_text(".tool") in ("up", "down, in the work")
+    assert page.inner_text(".tool") in ("up", "down")
     # 2. at 50 % it takes twice as long, and stands at the same share of its way
     page.locator("#override").evaluate(
         "s => { s.value = 50; s.dispatchEvent(new Event('change')); }"
