@@ -21,7 +21,13 @@ def test_the_historic_screw_as_worked_out(vectors: Callable[[str], Any]) -> None
     given = worked["params"]
     screw = LeadScrew(given["pitch_mm"], given["sectors"])
     assert screw.mm_per_cycle == given["mm_per_cycle"]
+    # a wheel of so many sectors and turns gives the reference; a count of 1/64 cycle is 2 um
+    assert given["sectors"] * given["n_ref_rev_s"] == given["f_ref_hz"]
+    assert screw.mm_per_cycle / 64 == given["mm_per_phase_count_1_64"]
     for row in worked["rows"]:
+        assert row["leadscrew_rev_s"] * given["pitch_mm"] == pytest.approx(
+            row["axis_speed_mm_s"], abs=1e-9
+        )
         speed_mm_s = row["axis_speed_mm_s"]
         assert screw.track_hz(given["f_ref_hz"], speed_mm_s) == pytest.approx(
             row["tape_hz"], abs=1e-9

@@ -219,6 +219,37 @@ def test_the_weights_and_what_they_make_of_the_speed(vectors: Vectors) -> None:
         )  # weights of 15 bits
 
 
+def test_the_largest_and_the_smallest_feeds_of_the_weights(vectors: Vectors) -> None:
+    """Where two and three axes move, by directions a degree apart and those that the vectors name."""
+    told = vectors("pw_feed_norm")
+    for axes in (2, 3):
+        extremes = told["two_axis" if axes == 2 else "three_axis"]
+        tilts = np.radians(np.arange(91.0)) if axes == 3 else np.zeros(1)
+        ways = [
+            [math.cos(turn) * math.cos(tilt), math.sin(turn) * math.cos(tilt), math.sin(tilt)]
+            for turn in np.radians(np.arange(0.0, 91.0))
+            for tilt in tilts
+        ]
+        if axes == 3:
+            ways += [extremes["max_at"], extremes["min_at"]]
+            assert ratio(np.array([1.0, 1.0, 0.0])) == pytest.approx(extremes["at_1_1_0"])
+        else:
+            for name in ("max_at_deg", "min_at_deg"):
+                turn = math.radians(extremes[name])
+                ways.append([math.cos(turn), math.sin(turn), 0.0])
+        ratios = [ratio(np.array(way, float)) for way in ways]
+        assert max(ratios) == pytest.approx(extremes["max_ratio"]) == pytest.approx(ratios[-2])
+        assert min(ratios) == pytest.approx(extremes["min_ratio"]) == pytest.approx(ratios[-1])
+        slowest, fastest = (100 / one - 100 for one in (max(ratios), min(ratios)))
+        assert [slowest, fastest] == pytest.approx(extremes["feed_error_percent"], abs=1e-3)
+
+
+def ratio(direction: np.ndarray) -> float:
+    """The patent's resultant speed over the true one."""
+    weighed = direction @ resultant_weights(direction, true_norm=False) / (GREATEST * EIGHTH)
+    return float(weighed / np.linalg.norm(direction))
+
+
 def test_the_unit_circuit(vectors: Vectors) -> None:
     for case in vectors("pw_unit_circuit")["cases"]:
         asked = case["position"], case["icr5"], 5

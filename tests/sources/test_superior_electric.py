@@ -111,6 +111,8 @@ def test_the_rings_are_those_of_figures_5_and_10(vectors: Vectors) -> None:
         along = np.cumsum(ours, axis=0)
         assert np.ptp(along[:, 0]) / 2 == ring["radius_half_extent"]
         lengths = np.hypot(*np.array(ours).T)
+        assert lengths.sum() / (2 * np.pi) == pytest.approx(ring["radius_perimeter"], abs=0.005)
+        assert ours[: len(ring["octant"])] == ring["octant"] and len(ours) == ring["n"]
         assert [lengths.min(), lengths.max()] == pytest.approx(
             [ring["len_min"], ring["len_max"]], abs=1e-4
         )

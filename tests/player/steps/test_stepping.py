@@ -14,8 +14,15 @@ from hypothesis import strategies as st
 from morfax.motion.motion import join
 from morfax.player.steps import motor as motor_module
 from morfax.player.steps import stepping
-from morfax.player.steps.motor import Motor, Motors
-from morfax.player.steps.ring_memory import MEMORY_ENTRIES, ring_memory
+from morfax.player.steps.motor import Motor, MotorCondition, Motors
+from morfax.player.steps.ring_memory import (
+    DOWN_X,
+    DOWN_Y,
+    MEMORY_ENTRIES,
+    UP_X,
+    UP_Y,
+    ring_memory,
+)
 from morfax.player.steps.stepping import (
     decode,
     play_steps,
@@ -52,6 +59,14 @@ def test_the_ring_memory_has_512_entries_and_answers_for_vectors_only() -> None:
     vectors = {(x + 8, y + 8) for ring in RINGS.values() for x, y in ring}
     answers = {(at >> 5, at >> 1 & 15) for at in np.flatnonzero(memory).tolist()}
     assert answers == vectors and len(vectors) == 148
+
+
+def test_the_ring_memory_s_next_and_previous_are_those_of_the_patent() -> None:
+    """Page 22: counts 13, 5 go to 12, 4 by "next", and to 14, 6 by "previous"."""
+    memory = ring_memory()
+    address = 13 << 5 | 5 << 1
+    assert memory[address | 1] == DOWN_X | DOWN_Y
+    assert memory[address] == UP_X | UP_Y
 
 
 @given(st.binary(max_size=300), FORMATS)
@@ -164,3 +179,14 @@ def test_the_kernels_do_as_plain_python_what_they_do_compiled(
         ]
         runs.append((*motors.run(pulses, tick_table(), 8), motors.lost))
     assert all((one == other).all() for one, other in zip(*runs, strict=True))
+
+
+def test_friction_slows_a_start_and_helps_a_stop() -> None:
+    """Half the torque: up by 5 of 10 steps from interval to interval, and down by 15."""
+    motors = Motors(1, INTERVAL_S, Motor(acceleration_steps_s2=10 / INTERVAL_S**2))
+    motors.conditions = [MotorCondition(friction_share=0.5)]
+    motors.run(np.full((10, 1), 20), tick_table(), 1)
+    started = int(motors.lost[0])
+    assert started == 15 + 10 + 5  # at 5, 10, 15 and then 20 steps to an interval
+    motors.run(np.zeros((10, 1), np.int64), tick_table(), 1)
+    assert motors.lost[0] - started == -5  # at 5, and it stands
