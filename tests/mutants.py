@@ -238,8 +238,9 @@ class Copy:
             "no:cacheprovider",
             *tests,
         ]
+        self._kernels = folder / "kernels"
         self._environment = os.environ | {
-            "NUMBA_CACHE_DIR": str(folder / "kernels"),
+            "NUMBA_CACHE_DIR": str(self._kernels),
             "PYTHONDONTWRITEBYTECODE": "1",
         }
 
@@ -260,13 +261,17 @@ class Copy:
         return found
 
     def _write(self, file: Path, text: str) -> None:
-        """Write a file, and touch those of its package whose kernels may have taken in one of it."""
+        """Write a file, and forget the compiled kernels of those files that may have taken in one of it.
+
+        numba knows a kernel by the text of its own file alone.
+        """
         (self.root / file).write_text(text, encoding="utf-8")
         name = "morfax." + ".".join(file.with_suffix("").parts)
         for other in (self.root / file.parts[0]).rglob("*.py"):
             asked = other.read_text(encoding="utf-8")
             if name in asked and "njit" in asked:
-                os.utime(other)
+                for kernel in self._kernels.rglob(f"{other.stem}.*"):
+                    kernel.unlink()
 
 
 def main() -> None:

@@ -223,3 +223,10 @@ def test_a_program_whose_words_are_longer_than_a_store_is_refused(tmp_path: Path
         play_cubic(file, historic=True)
     with pytest.raises(ProgramFault, match="X goes to"):
         play_cubic(file)
+
+
+@pytest.mark.parametrize(("share", "counts"), [(0.49, 5), (0.51, 6), (-0.49, 5), (-0.51, 4)])
+def test_a_register_is_read_to_the_nearest_count(share: float, counts: int) -> None:
+    register = CubicInterpolator(np.array([5]), 16)
+    whole = 1 << CubicInterpolator.digits_for(16)
+    assert register.counts(np.array([round((5 + share) * whole)])).tolist() == [counts]

@@ -207,3 +207,15 @@ def test_a_file_that_is_no_text_or_not_there(tmp_path: Path) -> None:
         read_rs274(file)
     with pytest.raises(FileFault, match="cannot read"):
         read_rs274(tmp_path / "none.ngc")
+
+
+@pytest.mark.parametrize(("apart_mm", "is_taken"), [(0.009, True), (0.012, False)])
+def test_the_ends_of_an_arc_may_lie_a_thousandth_of_its_radius_off_one_circle(
+    apart_mm: float, is_taken: bool
+) -> None:
+    lines = ["G1 X10 Y0 F100", f"G3 X{-10 - apart_mm} Y0 I-10 J0", "M2"]
+    if is_taken:
+        assert parse_rs274(lines).moves[-1].end_mm[0] == pytest.approx(-10 - apart_mm)
+        return
+    with pytest.raises(ProgramFault, match=r"may differ by 0.0100 mm"):
+        parse_rs274(lines)
