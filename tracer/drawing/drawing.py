@@ -31,7 +31,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.faults import DrawingFault
-from morfax.tracer.drawing import inks, paper, raster
+from morfax.tracer.drawing import grain, inks, paper, raster
 from morfax.tracer.drawing.border import without_border
 from morfax.tracer.drawing.components import Patches, runs_of, strips
 from morfax.tracer.drawing.scale import Scale
@@ -165,6 +165,9 @@ class Drawing:
         edges = without_border(darkness)
         if edges:
             notes = (*notes, _border_note(edges))
+        slit = grain.slit_for(darkness, pitch[0])
+        if slit is not None:
+            darkness = grain.behind(slit, darkness)
         return cls(darkness, pitch[0], scan.file, shapes=shapes, notes=notes)
 
 
