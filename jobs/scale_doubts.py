@@ -5,8 +5,11 @@ Signals in: a drawing, and the usual width of its lines (mm). Signals out: texts
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
+
+from morfax.tracer.drawing.scan import MM_PER_INCH
 
 if TYPE_CHECKING:
     from morfax.tracer.drawing.drawing import Drawing
@@ -15,6 +18,7 @@ if TYPE_CHECKING:
 THINNEST_MM, BROADEST_MM = 0.1, 2.0
 # of a line's width: below it the head sees fewer than one pixel between the edges
 FEWEST_PX = 3.0
+DPI_STEP = 50  # resolutions that are advised
 ALIKE = 0.007  # share by which the ratio of a format's sides is met: 2 mm on 297; by trial
 # share by which both sides are off: a scanner's margin, or a wrong scale; by trial
 SAME, NEAR = 0.012, 0.1
@@ -23,7 +27,7 @@ SAME, NEAR = 0.012, 0.1
 def scale_doubts(drawing: Drawing, line_width_mm: float | None) -> Iterator[str]:
     """What makes the scale of a drawing unlikely."""
     if line_width_mm is not None:
-        yield from _of_line_width(line_width_mm, drawing.pitch_mm / drawing.enlarged)
+        yield from _of_line_width(line_width_mm, drawing.pitch_mm * drawing.finer / drawing.enlarged)
     yield from _of_format(drawing.width_mm, drawing.height_mm)
 
 
@@ -35,9 +39,12 @@ def _of_line_width(width_mm: float, pitch_mm: float) -> Iterator[str]:
             f"{BROADEST_MM:g} mm: check the scale (--dpi, --width, --known)"
         )
     if width_mm < FEWEST_PX * pitch_mm:
+        wide_px = width_mm / pitch_mm
+        # a line of one pixel looks as if it had two
+        dpi = MM_PER_INCH / pitch_mm * 2 * FEWEST_PX / wide_px
         yield (
-            f"the lines are {width_mm / pitch_mm:.1f} pixels wide, and the head wants {FEWEST_PX:g}: scan at "
-            "a higher resolution"
+            f"the lines are {wide_px:.1f} pixels wide, and the head wants {FEWEST_PX:g}: scan at "
+            f"{DPI_STEP * math.ceil(dpi / DPI_STEP)} dpi"
         )
 
 

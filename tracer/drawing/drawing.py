@@ -31,16 +31,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.faults import DrawingFault
-from morfax.tracer.drawing import grain, inks, paper, raster
+from morfax.tracer.drawing import coarse, grain, inks, paper, raster
 from morfax.tracer.drawing.border import without_border
 from morfax.tracer.drawing.components import Patches, runs_of, strips
+from morfax.tracer.drawing.noise import Noise, grain_within, measured
 from morfax.tracer.drawing.scale import Scale
 from morfax.tracer.drawing.scan import Grey, Scan
 from morfax.tracer.drawing.shapes import outlined
 
 if TYPE_CHECKING:
     from morfax.tracer.corrections.on_sheet import OnSheet, StopAt, TurnAt
-    from morfax.tracer.drawing.noise import Noise
     from morfax.tracer.drawing.strokes import Sheet
     from morfax.tracer.flatten.flat import Flattening
 
@@ -63,7 +63,8 @@ class Drawing:
     keep, and how many times `enlarged` the head sees the line along them. Otherwise `shapes` tells where
     filled shapes are, on the picture reduced by a whole number. `notes` on the file are for the operator;
     `flattening` is how well a photograph was made flat; `corrected` what the operator has put right, and
-    `bare` the drawing before its ink was put right.
+    `bare` the drawing before its ink was put right. The pixels of a coarse scan are made so many
+    times `finer`.
     """
 
     darkness: Darkness
@@ -76,6 +77,7 @@ class Drawing:
     flattening: Flattening | None = None
     corrected: OnSheet | None = None
     bare: Drawing | None = None
+    finer: int = 1
 
     @property
     def told_turns(self) -> tuple[TurnAt, ...]:
@@ -107,9 +109,7 @@ class Drawing:
     @cached_property
     def noise(self) -> Noise:
         """What the picture is like: noise of paper and ink, softness of edges, width of the pen."""
-        from morfax.tracer.drawing import noise
-
-        return noise.measured(self.darkness, self.pitch_mm)
+        return measured(self.darkness, self.pitch_mm)
 
     @classmethod
     def open(
@@ -165,10 +165,17 @@ class Drawing:
         edges = without_border(darkness)
         if edges:
             notes = (*notes, _border_note(edges))
-        slit = grain.slit_for(darkness, pitch[0])
+        # 3. grain, and too large pixels
+        in_lines, width_px = grain_within(darkness)
+        slit = grain.slit_for(in_lines, width_px, pitch[0])
         if slit is not None:
             darkness = grain.behind(slit, darkness)
-        return cls(darkness, pitch[0], scan.file, shapes=shapes, notes=notes)
+        finer = coarse.times_finer(darkness, width_px)
+        if finer > 1:
+            darkness = coarse.finer(darkness, finer)
+        return cls(
+            darkness, pitch[0] / finer, scan.file, shapes=shapes, notes=notes, finer=finer
+        )
 
 
 def levelled(grey: Grey, pitch_mm: float) -> tuple[Darkness, Shapes]:

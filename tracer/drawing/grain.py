@@ -29,8 +29,6 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.tracer.drawing import noise
-
 Darkness = NDArray[np.float32]
 
 # Chosen by trial on `python -m benchmarks pencil`.
@@ -61,9 +59,8 @@ class Slit(NamedTuple):
         return math.ceil(SPREADS * self.along_px + beside) + 2
 
 
-def slit_for(darkness: Darkness, pitch_mm: float) -> Slit | None:
-    """The slit that the grain of a sheet asks for; None for ink without grain, and for too thin lines."""
-    grain, width_px = noise.grain_within(darkness)
+def slit_for(grain: float, width_px: float, pitch_mm: float) -> Slit | None:
+    """The slit that lines of a grain and width ask for; None without grain, and for too thin lines."""
     if not (grain > LEAST_GRAIN and width_px > LEAST_WIDTH_PX):
         return None
     along_px = max(ALONG_MM / pitch_mm, ALONG_WIDTHS * width_px)

@@ -1,0 +1,66 @@
+"""Coarse scans: details between large pixels are kept, and the advice for too few pixels works."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from morfax.jobs.scale_doubts import scale_doubts
+from morfax.motion.contour import distance
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.scale import Scale
+from morfax.tracer.drawing.scan import Scan, Stated
+from morfax.tracer.program.trace import trace
+from tests.tracer.inked import UM, Points, arc, inked, polyline
+
+WIDTH_MM = 0.5
+STEP = polyline(  # a contour with a slot of 3 mm, which a leg of twelve pixels of 0.25 mm would cut off
+    (6, 6), (40, 6), (40, 26), (25, 26), (25, 23), (22, 23), (22, 26), (6, 26), (6, 6)
+)
+
+
+def scanned(line: Points, dpi: float, seed: int = 1) -> Drawing:
+    """The drawing of a line in ink of 0.5 mm, as it is opened from a scan at a resolution."""
+    ink = inked(line, width_mm=WIDTH_MM, dpi=dpi, seed=seed).darkness
+    grey = np.clip(np.round(235 - 195 * ink), 0, 255).astype(np.uint8)
+    return Drawing.of(Scan(Path("made.png"), grey, Stated((dpi, dpi))), Scale())
+
+
+@pytest.mark.parametrize(("dpi", "rms_um"), [(125, 8), (100, 10), (76, 15)])
+def test_lines_of_two_and_a_half_to_one_and_a_half_pixels(dpi: float, rms_um: float) -> None:
+    """A fifteenth of a pixel RMS."""
+    line = arc((22.0, 22.0), 16.0)
+    run = trace(scanned(line, dpi)).lines[0]
+    assert run.ending == "closed"
+    assert distance(run.xy_mm[::4], line).path_to_reference.rms_mm < rms_um * UM
+
+
+def test_a_slot_of_a_few_pixels_is_not_cut_off() -> None:
+    drawing = scanned(STEP, 100)
+    run = trace(drawing).lines[0]
+    assert drawing.finer == 2
+    assert run.ending == "closed"
+    assert distance(run.xy_mm[::4], STEP).reference_to_path.max_mm < 0.15
+
+
+def test_a_fine_scan_stays_as_it_is() -> None:
+    drawing = scanned(arc((22.0, 22.0), 16.0), 300)
+    assert drawing.finer == 1
+    assert drawing.pitch_mm == pytest.approx(25.4 / 300)
+
+
+@pytest.mark.parametrize("dpi", [100, 76, 60])
+def test_the_resolution_that_is_advised_is_enough(dpi: float) -> None:
+    line = arc((22.0, 22.0), 16.0)
+
+    def doubts(at_dpi: float) -> list[str]:
+        drawing = scanned(line, at_dpi)
+        return list(scale_doubts(drawing, trace(drawing).lines[0].width_mm))
+
+    (advice,) = (text for text in doubts(dpi) if "pixels wide" in text)
+    found = re.search(r"scan at (\d+) dpi", advice)
+    assert found is not None
+    assert not any("pixels wide" in text for text in doubts(float(found[1])))

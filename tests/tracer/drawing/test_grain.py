@@ -1,0 +1,90 @@
+"""Pencil with grain, seen through a slit along the line, against drawings made with known grain.
+
+Bounds: the ink's own middle wanders with its grain, 20 to 25 um RMS with 45 %; 40 um is the worst of a hundred.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from morfax.motion.contour import distance
+from morfax.tracer.drawing import grain
+from morfax.tracer.drawing.drawing import Darkness, Drawing
+from morfax.tracer.drawing.noise import grain_within
+from morfax.tracer.drawing.scale import Scale
+from morfax.tracer.drawing.scan import MM_PER_INCH, Scan, Stated
+from morfax.tracer.program.trace import trace
+from tests.tracer.inked import DPI, UM, Points, arc, inked, polyline, together
+
+PITCH_MM = MM_PER_INCH / DPI
+FAINT, BLACK_LEVELS, NOISE_LEVELS = 1 / 3, 195.0, 8.0  # of 255, as a scanner has them
+GRAIN_PX = 1.2
+
+
+def pencilled(line: Points, share: float, seed: int, width_mm: float = 0.45) -> Darkness:
+    """Levels 0..255 of a line drawn with a pencil of a grain, as a scanner sees it."""
+    random = np.random.default_rng(seed)
+    ink = inked(line, width_mm=width_mm).darkness
+    wave = cv2.GaussianBlur(random.normal(size=ink.shape), (0, 0), GRAIN_PX)
+    ink = ink * np.clip(1 + share * wave / wave.std(), 0, 2) * FAINT
+    return np.asarray(235 - BLACK_LEVELS * ink + random.normal(0, NOISE_LEVELS, ink.shape))
+
+
+def opened(levels: Darkness) -> Drawing:
+    """The drawing of a picture of grey levels, as it is opened."""
+    grey = np.clip(np.round(levels), 0, 255).astype(np.uint8)
+    return Drawing.of(Scan(Path("made.png"), grey, Stated((DPI, DPI))), Scale())
+
+
+@pytest.mark.parametrize(("share", "seed"), [(0.35, 1), (0.45, 2), (0.45, 3)])
+def test_pencil_with_grain_is_one_closed_path(share: float, seed: int) -> None:
+    line = arc((22.0, 22.0), 16.0)
+    run = trace(opened(pencilled(line, share, seed))).lines[0]
+    apart = distance(run.xy_mm[::4], line)
+    assert run.ending == "closed"
+    assert apart.path_to_reference.rms_mm < 40 * UM
+    assert apart.reference_to_path.max_mm < 0.2
+
+
+def test_the_corners_of_a_pencilled_square_stay() -> None:
+    """A corner is rounded by some 0.1 mm; 0.3 mm is less than the line's width."""
+    line = polyline((6, 6), (30, 9), (27, 31), (5, 28), (6, 6))
+    run = trace(opened(pencilled(line, 0.4, 4))).lines[0]
+    apart = distance(run.xy_mm[::4], line)
+    assert run.ending == "closed"
+    assert apart.reference_to_path.max_mm < 0.3
+
+
+def test_a_pencilled_line_ends_where_it_was_drawn_to() -> None:
+    """Half of the slit is on paper at the end of a line. A quarter of a width is the grain's."""
+    run = trace(opened(pencilled(polyline((6, 10), (40, 10)), 0.35, 5))).lines[0]
+    assert run.ending == "ended"
+    ends = np.sort(run.xy_mm[[0, -1], 0])
+    assert ends == pytest.approx([6, 40], abs=0.4)
+
+
+def test_the_slit_takes_grain_away_and_leaves_the_paper() -> None:
+    levels = pencilled(arc((22.0, 22.0), 16.0), 0.45, 6)
+    darkness = np.asarray((235 - levels) / (BLACK_LEVELS * FAINT), np.float32)
+    before, width_px = grain_within(darkness)
+    slit = grain.slit_for(before, width_px, PITCH_MM)
+    assert slit is not None
+    seen = grain.behind(slit, darkness)
+    assert before > 0.2
+    assert grain_within(seen)[0] < 0.5 * before
+    assert np.abs(seen[150:220, 150:220]).max() < 0.3  # paper inside of the circle
+    assert darkness[150:220, 150:220].max() > 0.3
+
+
+def test_clean_ink_and_lines_of_several_pens_have_no_grain() -> None:
+    """A scanner's noise is no grain, nor is a second pen half as dark: each line is like itself."""
+    dark, pale = polyline((5, 5), (45, 8)), polyline((5, 20), (45, 26))
+    both = together((dark, 0.5), (pale, 0.5), seed=1).darkness
+    both[: len(both) // 2] *= 0.6
+    assert grain_within(both)[0] < 0.06
+    clean = inked(arc((22.0, 22.0), 16.0), seed=2)
+    assert grain.slit_for(*grain_within(clean.darkness), PITCH_MM) is None
