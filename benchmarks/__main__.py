@@ -1,8 +1,8 @@
 """Run all benchmarks, or those named: `python -m benchmarks [tape …]`.
 
 `folder DIR` measures drawings, `flatten [N]` simulated photographs, `linuxcnc` the times of programs,
-`dropouts [N]` dropouts of each kind, `batch [N]` many drawings, `panel [DIR]` how its page pans; these take a
-while and run only if named.
+`dropouts [N]` dropouts of each kind, `batch [N]` many drawings, `panel [DIR]` how its page pans,
+`pencil [N]` lines with grain, `coarse [N]` lines of few pixels; these take a while and run only if named.
 """
 
 from __future__ import annotations
@@ -19,6 +19,8 @@ WITH_WORDS = (
     "dropouts",
     "batch",
     "panel",
+    "pencil",
+    "coarse",
 )  # that take words of their own
 
 

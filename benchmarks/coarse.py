@@ -1,10 +1,9 @@
-"""Coarse and soft scans: lines of 3 pixels down to 1, blurred ones, JPEG, screenshots, spoiled photographs.
+"""Coarse and soft scans: lines of 3 pixels down to 1, blurred ones, JPEG, screenshots.
 
-    python -m benchmarks coarse [COUNT [FIRST]]    COUNT drawings a row (10), their numbers from FIRST (0)
+    python -m benchmarks coarse [COUNT [FIRST]] [-v]    COUNT drawings a row (10), their numbers from FIRST (0)
 
 The outlines are those of `pencil`, with a line of 0.5 mm in ink, and the columns are the same. "soft 1/2" is a
-blur whose spot is as broad at half its height as half of the line's width. Paper is lit and spoiled as each
-row says; at a shadow's edge the light falls to 45 % within a millimetre.
+blur whose spot is as broad at half its height as half of the line's width.
 """
 
 from __future__ import annotations
@@ -57,7 +56,8 @@ def painted(covered: Levels, case: Case, rng: np.random.Generator) -> Levels:
 
 def main(arguments: list[str] | None = None) -> None:
     """Print the table."""
-    count, first = (*map(int, arguments or []), *(10, 0)[len(arguments or []) :])
+    numbers = [int(word) for word in arguments or [] if word != "-v"]
+    count, first = (*numbers, *(10, 0)[len(numbers) :])
     print(HEAD)
     for case in CASES:
         dpi, found = case.wide_px / LINE_MM * MM_PER_INCH, []
@@ -69,6 +69,3 @@ def main(arguments: list[str] | None = None) -> None:
                 print("   ", number, found[-1].verdict, found[-1].said)
         told(case.name, found)
 
-
-if __name__ == "__main__":
-    main([word for word in sys.argv[1:] if word != "-v"])

@@ -1,6 +1,6 @@
 """Pencil: is a faint line with grain one closed path, and how far is it from what was drawn?
 
-    python -m benchmarks pencil [COUNT [FIRST]]    COUNT drawings a row (20), their numbers from FIRST (0)
+    python -m benchmarks pencil [COUNT [FIRST]] [-v]    COUNT drawings a row (20), their numbers from FIRST (0)
 
 Closed outlines (rounds, lobes, cams, polygons, rounded polygons, slots) are drawn with a line of 0.35 to 0.6
 mm at 300 dpi, a third as dark as ink, behind a scanner's lens, with a scanner's noise (8 levels of 255). The
@@ -141,7 +141,8 @@ HEAD = f"{'drawing':28s}{'of':>5s}{'right':>9s}{'told':>9s}{'refused':>9s}{'WRON
 
 def main(arguments: list[str] | None = None) -> None:
     """Print the table."""
-    count, first = (*map(int, arguments or []), *(20, 0)[len(arguments or []) :])
+    numbers = [int(word) for word in arguments or [] if word != "-v"]
+    count, first = (*numbers, *(20, 0)[len(numbers) :])
     print(HEAD)
     for grain in GRAINS:
         found = []
@@ -154,6 +155,3 @@ def main(arguments: list[str] | None = None) -> None:
                 print(number, grain, f"{width_mm:.2f}", one.verdict, one.said)
         told(f"pencil, grain {grain:.0%}", found)
 
-
-if __name__ == "__main__":
-    main([word for word in sys.argv[1:] if word != "-v"])
