@@ -1,9 +1,11 @@
 """Coarse and soft scans: lines of 3 pixels down to 1, blurred ones, JPEG, screenshots.
 
-    python -m benchmarks coarse [COUNT [FIRST]] [-v]    COUNT drawings a row (10), their numbers from FIRST (0)
+    python -m benchmarks coarse [COUNT [FIRST]] [-v]
 
-The outlines are those of `pencil`, with a line of 0.5 mm in ink, and the columns are the same. "soft 1/2" is a
-blur whose spot is as broad at half its height as half of the line's width.
+COUNT drawings a row (10), their numbers from FIRST (0); -v names those that are not right.
+
+The outlines and the columns are those of `pencil`; the line is 0.5 mm wide, in ink. "soft 0.5 widths" is a blur
+whose spot is as broad at half its height as half of the line's width.
 """
 
 from __future__ import annotations
@@ -64,8 +66,9 @@ def main(arguments: list[str] | None = None) -> None:
         for number in range(first, first + count):
             rng = np.random.default_rng([number, math.ceil(100 * case.wide_px)])
             line = outline(rng)
-            found.append(measured(line, LINE_MM, painted(coverage(line, LINE_MM, dpi), case, rng), dpi))
+            found.append(
+                measured(line, LINE_MM, painted(coverage(line, LINE_MM, dpi), case, rng), dpi)
+            )
             if found[-1].verdict != "right" and "-v" in sys.argv:
                 print("   ", number, found[-1].verdict, found[-1].said)
         told(case.name, found)
-

@@ -1,6 +1,8 @@
 """Pencil: is a faint line with grain one closed path, and how far is it from what was drawn?
 
-    python -m benchmarks pencil [COUNT [FIRST]] [-v]    COUNT drawings a row (20), their numbers from FIRST (0)
+    python -m benchmarks pencil [COUNT [FIRST]] [-v]
+
+COUNT drawings a row (20), their numbers from FIRST (0); -v names those that are not right.
 
 Closed outlines (rounds, lobes, cams, polygons, rounded polygons, slots) are drawn with a line of 0.35 to 0.6
 mm at 300 dpi, a third as dark as ink, behind a scanner's lens, with a scanner's noise (8 levels of 255). The
@@ -53,7 +55,8 @@ def outline(rng: np.random.Generator) -> Points:
     if kind == 1:
         radius = 1 + rng.uniform(0.1, 0.3) * np.cos(lobes * turns + phase)
     if kind == 2:
-        radius = 1 + sum(0.25 / k**1.5 * np.cos(k * turns + rng.uniform(0, math.tau)) for k in range(1, 6))
+        for k in range(1, 6):
+            radius = radius + 0.25 / k**1.5 * np.cos(k * turns + rng.uniform(0, math.tau))
     line = np.column_stack([radius * np.cos(turns), radius * np.sin(turns)])
     if kind in (3, 4):
         corners = rng.integers(3, 8)
@@ -121,22 +124,27 @@ def measured(line: Points, width_mm: float, levels: Levels, dpi: float = DPI) ->
     right = run.ending == "closed" and max(there.max_mm, back.max_mm) < width_mm
     is_said = run.ending != "closed" or bool(found.unexplained)
     verdict = "right" if right else "told" if is_said else "wrong"
-    said = f"{run.ending}, {run.length_mm:.0f} mm, at most {max(there.max_mm, back.max_mm):.2f} mm off"
+    off_mm = max(there.max_mm, back.max_mm)
+    said = f"{run.ending}, {run.length_mm:.0f} mm, at most {off_mm:.2f} mm off"
     return Found(verdict, there.rms_mm * UM, took_s, said)
 
 
 def told(name: str, found: list[Found]) -> None:
     """Print a row."""
-    counts = {v: sum(one.verdict == v for one in found) for v in ("right", "told", "refused", "wrong")}
+    verdicts = [one.verdict for one in found]
+    counts = [f"{verdicts.count(v):9d}" for v in ("right", "told", "refused", "wrong")]
     rms = [one.rms_um for one in found if one.verdict == "right"] or [math.nan]
     print(
-        f"{name:28s}{len(found):5d}" + "".join(f"{counts[v]:9d}" for v in counts)
-        + f"{np.median(rms):9.1f}{np.max(rms):8.1f}{np.mean([one.took_s for one in found]):8.2f}",
+        f"{name:28s}{len(found):5d}{''.join(counts)}"
+        f"{np.median(rms):9.1f}{np.max(rms):8.1f}{np.mean([one.took_s for one in found]):8.2f}",
         flush=True,
     )
 
 
-HEAD = f"{'drawing':28s}{'of':>5s}{'right':>9s}{'told':>9s}{'refused':>9s}{'WRONG':>9s}{'RMS um':>9s}{'worst':>8s}{'s':>8s}"
+HEAD = (
+    f"{'drawing':28s}{'of':>5s}{'right':>9s}{'told':>9s}{'refused':>9s}{'WRONG':>9s}"
+    f"{'RMS um':>9s}{'worst':>8s}{'s':>8s}"
+)
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -154,4 +162,3 @@ def main(arguments: list[str] | None = None) -> None:
             if one.verdict != "right" and "-v" in sys.argv:
                 print(number, grain, f"{width_mm:.2f}", one.verdict, one.said)
         told(f"pencil, grain {grain:.0%}", found)
-

@@ -27,7 +27,9 @@ SAME, NEAR = 0.012, 0.1
 def scale_doubts(drawing: Drawing, line_width_mm: float | None) -> Iterator[str]:
     """What makes the scale of a drawing unlikely."""
     if line_width_mm is not None:
-        yield from _of_line_width(line_width_mm, drawing.pitch_mm * drawing.finer / drawing.enlarged)
+        yield from _of_line_width(
+            line_width_mm, drawing.pitch_mm * drawing.finer / drawing.enlarged
+        )
     yield from _of_format(drawing.width_mm, drawing.height_mm)
 
 

@@ -111,7 +111,9 @@ def _kernel(slit: Slit, direction: float) -> NDArray[np.float32]:
 
 def _fit(slit: Slit, direction: float, through: Darkness) -> Darkness:
     """How much more the slit sees than its flanks."""
-    smooth = np.asarray(cv2.GaussianBlur(through, (0, 0), SMOOTH_WIDTHS * slit.width_px), np.float32)
+    smooth = np.asarray(
+        cv2.GaussianBlur(through, (0, 0), SMOOTH_WIDTHS * slit.width_px), np.float32
+    )
     aside = FLANK_WIDTHS * slit.width_px
     right, down = -aside * math.sin(direction), aside * math.cos(direction)
     flanks = sum(

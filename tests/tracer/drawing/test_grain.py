@@ -1,6 +1,7 @@
 """Pencil with grain, seen through a slit along the line, against drawings made with known grain.
 
-Bounds: the ink's own middle wanders with its grain, 20 to 25 um RMS with 45 %; 40 um is the worst of a hundred.
+Bounds: the ink's own middle wanders with its grain, 22 um RMS with 45 %. 40 um is
+the limit for three drawings.
 """
 
 from __future__ import annotations
