@@ -4,7 +4,7 @@
 
 COUNT drawings a row (10), their numbers from FIRST (0); -v names those that are not right.
 
-The outlines and the columns are those of `pencil`; the line is 0.5 mm wide, in ink. "soft 0.5 widths" is a blur
+The outlines and the columns are those of `pencil`; the line has 0.5 mm of ink. "soft 0.5 widths" is a blur
 whose spot is as broad at half its height as half of the line's width.
 """
 
