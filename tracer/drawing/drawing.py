@@ -72,6 +72,7 @@ class Drawing:
     file: Path | None = None
     enlarged: int = 1
     edges_mm: tuple[NDArray[np.float64], ...] = ()
+    shade: Darkness | None = None
     shapes: Shapes | None = None
     notes: tuple[str, ...] = ()
     flattening: Flattening | None = None
@@ -151,14 +152,14 @@ class Drawing:
         # 2. darkness
         notes = (*scan.notes, *scale.notes(scan))
         if edge:
-            line = outlined(grey, pitch[0])
-            finer = line.finer
+            rims = outlined(grey, pitch[0])
             return cls(
-                line.darkness,
-                pitch[0] / finer,
+                rims.darkness,
+                pitch[0] / rims.finer,
                 scan.file,
-                finer,
-                line.edges_mm,
+                rims.finer,
+                rims.edges_mm,
+                rims.shade,
                 notes=notes,
             )
         darkness, shapes = levelled(grey, pitch[0])

@@ -54,6 +54,7 @@ class Outlined:
     """
 
     darkness: Grey
+    shade: Grey
     finer: int
     edges_mm: tuple[Array, ...]
 
@@ -67,7 +68,8 @@ def outlined(grey: NDArray[Any], pitch_mm: float) -> Outlined:
     from skimage.measure import find_contours
 
     soft = cv2.GaussianBlur(grey.astype(np.float32), (0, 0), SOFT_PX)
-    share = _share(np.asarray(soft, np.float32), pitch_mm)
+    low, high = _levels(np.asarray(soft, np.float32), pitch_mm)
+    share = _share(soft, low, high)
     edges = [
         edge for edge in find_contours(share, 0.5) if _length_mm(edge, pitch_mm) > LEAST_MM
     ]
@@ -82,7 +84,7 @@ def outlined(grey: NDArray[Any], pitch_mm: float) -> Outlined:
     rows, columns = share.shape
     darkness = _inked(fine, (rows * times, columns * times), EDGE_MM / pitch_mm)
     edges_mm = tuple(_mm(edge.outline, share.shape, pitch_mm) for edge in sharp)
-    return Outlined(darkness, times, edges_mm)
+    return Outlined(darkness, _share(grey, low, high), times, edges_mm)
 
 
 def _mm(outline: Array, shape: tuple[int, ...], pitch_mm: float) -> Array:
@@ -96,8 +98,13 @@ def _none() -> DrawingFault:
     )
 
 
-def _share(soft: Grey, pitch_mm: float) -> Grey:
+def _share(grey: NDArray[Any], low: Grey, high: Grey) -> Grey:
     """How much of each pixel is the darker of paper and shape, 0..1."""
+    return np.asarray((high - grey) / np.maximum(high - low, LEAST_CONTRAST), np.float32)
+
+
+def _levels(soft: Grey, pitch_mm: float) -> tuple[Grey, Grey]:
+    """The levels of the darker and of the lighter of paper and shape round about each pixel."""
     eight_bits = np.clip(soft, 0, 255).astype(np.uint8)
     level = np.full_like(soft, cv2.threshold(eight_bits, 0, 255, cv2.THRESH_OTSU)[0])
     for _ in range(2):  # the second time by levels that are those of the place
@@ -108,7 +115,7 @@ def _share(soft: Grey, pitch_mm: float) -> Grey:
         level = 0.5 * (low + high)
     if float(np.median(high - low)) < LEAST_CONTRAST:
         raise _none()
-    return np.asarray((high - soft) / np.maximum(high - low, LEAST_CONTRAST), np.float32)
+    return low, high
 
 
 def _level(soft: Grey, part: NDArray[np.uint8], pitch_mm: float) -> Grey:

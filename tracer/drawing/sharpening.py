@@ -75,18 +75,29 @@ class EdgeLeg(NamedTuple):
 def sharpened(outline: Array, softness_px: float) -> Edge:
     """A closed outline (its last place its first) with its sharp corners put back, pixels."""
     places = _evenly(outline)
-    turns = _corners(places, softness_px)
     parts, middles, come = list[Array](), list[int](), 0
-    for k in range(len(turns)):
-        found = _corner(places, turns, k, softness_px)
-        if found is None:
-            continue
-        first, last, corner = found
-        if last > first >= come:
-            parts += [places[come : first + 1], corner]
-            middles.append(sum(map(len, parts)) - len(corner) + len(corner) // 2)
-            come = last
+    for corner in corners_of(places, softness_px):
+        parts += [places[come : corner.first + 1], corner.places]
+        middles.append(sum(map(len, parts)) - len(corner.places) + len(corner.places) // 2)
+        come = corner.last
     return Edge(np.vstack([*parts, places[come:], places[:1]]), np.array(middles, int))
+
+
+def corners_of(
+    places: Array, softness_px: float, *, is_closed: bool = True
+) -> list[PutBack]:
+    """The corners that the lens has rounded on an outline (n, 2) pixels, a place every `APART_PX`, in order.
+
+    Of a closed outline, or of a piece of one.
+    """
+    turns = _corners(places, softness_px, is_closed)
+    corners, come = list[PutBack](), 0
+    for k in range(len(turns)):
+        found = _corner(places, _room(places, turns, k, softness_px, is_closed), softness_px)
+        if found is not None and found.last > found.first >= come:
+            corners.append(found)
+            come = found.last
+    return corners
 
 
 def _evenly(outline: Array) -> Array:
@@ -105,10 +116,12 @@ def _turned(places: Array, reach: int) -> Array:
     return np.asarray(np.abs(np.arctan2(cross, np.einsum("ij,ij->i", back, on))))
 
 
-def _corners(places: Array, softness_px: float) -> list[int]:
+def _corners(places: Array, softness_px: float, is_closed: bool) -> list[int]:
     """Places about which the outline turns most, in order."""
     reach = max(2, min(round(CLEAR * softness_px / APART_PX), len(places) // 4))
     turned = uniform_filter1d(_turned(places, reach), reach, mode="wrap")
+    if not is_closed:  # about the ends it turns from one to the other
+        turned[: 2 * reach] = turned[-2 * reach :] = 0.0
     found = list[int]()
     for k in np.argsort(-turned):
         if turned[k] < LEAST_TURN:
@@ -119,12 +132,39 @@ def _corners(places: Array, softness_px: float) -> list[int]:
     return sorted(found)
 
 
-class _Instead(NamedTuple):
-    """Places (n, 2) that stand in an outline instead of those from the first to the last number."""
+class PutBack(NamedTuple):
+    """A corner as places (n, 2) that stand in an outline instead of those from the first to the last number.
+
+    One place is a sharp corner. Unit vectors tell the way into it and out of it.
+    """
 
     first: int
     last: int
     places: Array
+    into: Array
+    out: Array
+
+
+class _Room(NamedTuple):
+    """Where an outline turns, and how many of its places the legs before and after that may have."""
+
+    at: int
+    before: float
+    after: float
+
+
+def _room(
+    places: Array, turns: list[int], k: int, softness_px: float, is_closed: bool
+) -> _Room:
+    """The room for the legs of a corner: up to its neighbours, or to the ends of a piece of an outline."""
+    at, count = turns[k], len(places)
+    before = (at - turns[k - 1] - 1) % count + 1.0
+    after = (turns[(k + 1) % len(turns)] - at - 1) % count + 1.0
+    clear = CLEAR * softness_px / APART_PX
+    if not is_closed:
+        before = at + clear if k == 0 else before
+        after = count - 1 - at + clear if k == len(turns) - 1 else after
+    return _Room(at, before - clear, after - clear)
 
 
 class _Fit(NamedTuple):
@@ -157,19 +197,16 @@ class _Fit(NamedTuple):
         return self.touch <= away and self.way >= (1 - SHORT) * self.sharp - LEGS
 
 
-def _corner(places: Array, corners: list[int], k: int, softness_px: float) -> _Instead | None:
+def _corner(places: Array, room: _Room, softness_px: float) -> PutBack | None:
     """What stands in the place of a corner; None if it is no corner, or if the lens does not explain it."""
-    at, dense = corners[k], softness_px / APART_PX
-    before = (at - corners[k - 1] - 1) % len(places) + 1
-    after = (corners[(k + 1) % len(corners)] - at - 1) % len(places) + 1
+    at, dense = room.at, softness_px / APART_PX
     # 1. feel the legs, from further away where the corner that they make is narrow or round
     fit, angle, touch = None, math.pi / 2, 0.0
     for _ in range(TRIES):
         clear = CLEAR / max(math.sin(min(angle, math.pi / 2)), 0.2)
         away = max(clear, touch + CLEAR_OF_ROUND) * dense
         ends = [
-            min(away + LEG * dense, gap - CLEAR * dense, len(places) / 2)
-            for gap in (before, after)
+            min(away + LEG * dense, left, len(places) / 2) for left in (room.before, room.after)
         ]
         if min(ends) - away < SHORTEST_LEG * dense:
             break
@@ -185,7 +222,7 @@ def _corner(places: Array, corners: list[int], k: int, softness_px: float) -> _I
     corner = _rounded(fit, softness_px)
     if (corner[0] - places[first]) @ fit.t < 0 or (corner[-1] - places[last]) @ fit.w < 0:
         return None  # it would lie behind the ends of its legs
-    found = _Instead(first, last, corner)
+    found = PutBack(first, last, corner, fit.t, -fit.w)
     return found if _off(places, found) < (fit.taken_off + ASIDE) * softness_px else None
 
 
@@ -205,9 +242,9 @@ def _fit(outline: Array, legs: tuple[EdgeLeg, EdgeLeg], softness_px: float) -> _
     return _Fit(vertex, t, w, angle, way, sharp, radius)
 
 
-def _off(places: Array, found: _Instead) -> float:
+def _off(places: Array, found: PutBack) -> float:
     """How far the outline that a corner stands for is from the corner at most, pixels."""
-    first, last, corner = found
+    first, last, corner = found.first, found.last, found.places
     instead = with_places(np.vstack([places[first], corner, places[last]]), APART_PX)
     return float(cKDTree(instead).query(places[first : last + 1])[0].max())
 

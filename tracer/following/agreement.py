@@ -52,6 +52,19 @@ class Agreement:
         clear_mm = ahead_mm - guards_mm - LEFT_LEGS * view.leg_mm
         return clear_mm if clear_mm > LEAST_LEGS * view.leg_mm else 0.0
 
+    def goes_on_along(self, carriage: Carriage, view: View, seen: Array) -> bool:
+        """The same along the stations of an edge on which nothing is tight."""
+        off_mm, ahead_mm = cell_off_mm(carriage, seen)
+        if off_mm is None or off_mm > AGREES * view.width_mm or not carriage.sees_line:
+            self._overrule(carriage)
+            return False
+        guards_mm = carriage.tuning.guard_lead_mm - carriage.tuning.lead_mm
+        clear_mm = ahead_mm - guards_mm - LEFT_LEGS * view.leg_mm
+        if carriage.is_trusted or clear_mm < LEAST_LEGS * view.leg_mm:
+            return False
+        carriage.trust(clear_mm)
+        return True
+
     def goes_on(self, carriage: Carriage, view: View, seen: Array) -> bool:
         """Whether the cell goes on by itself along stations ahead; the carriage trusts it then."""
         on_mm = self.goes_on_mm(carriage, view, seen)

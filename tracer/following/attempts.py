@@ -30,6 +30,7 @@ from morfax.tracer.following.direction import Direction, goes, turned_about, tur
 from morfax.tracer.following.edge_check import kept_to
 from morfax.tracer.following.enlarger import enlarged, reduced
 from morfax.tracer.following.followed import THINNED, Followed
+from morfax.tracer.following.edge_follower import EdgeFollower
 from morfax.tracer.following.follower import Follower
 from morfax.tracer.following.ways_out import Turns
 from morfax.tracer.head.settings import Settings
@@ -80,7 +81,8 @@ class Attempts:
         follower, keep = self._taken_up(stance, wanted)
         if follower is None:
             put_down = enlarged(stance, times)
-            follower = Follower(put_down, self.settings, MOTION_RATE_HZ, wanted)
+            kind = EdgeFollower if put_down.view.on_edge else Follower
+            follower = kind(put_down, self.settings, MOTION_RATE_HZ, wanted)
         reduced_told = None if told is None else lambda come_mm: told(come_mm / times)
         run = reduced(follower.follow(times * self.longest_mm, reduced_told, keep))
         return kept_to(self.drawing.edges_mm, run)

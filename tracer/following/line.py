@@ -90,7 +90,7 @@ class Line:
         """What the head did, as a line of the drawing with its marks, but for the reference point's, and with
         the stops of the operator's corrections.
         """
-        marks = marks_along(run.view, run.positions_mm)
+        marks = [] if run.view.on_edge else marks_along(run.view, run.positions_mm)
         if reference_mm is not None:
             marks = [m for m in marks if math.dist(m.place_mm, reference_mm) >= REFERENCE_MM]
         told, served = with_told(marks, run.positions_mm, run.view.width_mm, stops)

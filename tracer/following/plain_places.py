@@ -20,6 +20,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.shapes import EDGE_MM
 from morfax.tracer.drawing.strokes import Sheet, Stroke
 from morfax.tracer.head.course import FELT_LEGS
 from morfax.tracer.head.stance import Stance
@@ -31,6 +32,7 @@ from morfax.tracer.sensing.view import View
 # All limits below were chosen by trial on the test drawings.
 APERTURE = 0.3  # of the line's width, within bounds that a scan's noise and a corner set
 LEAST_APERTURE_MM, LARGEST_APERTURE_MM = 0.1, 0.24
+EDGE_APERTURE_PX = 2.8  # on an edge: a spot of 0.7 pixels, standard deviation
 PLACES = 80  # tried along a line
 ABOUT_WIDTHS = 2.0  # to either side of a place that was asked for, places are tried
 FAINTEST = 0.2  # darkness: fainter ink is taken for this dark
@@ -55,6 +57,15 @@ def view_of(sheet: Sheet, aperture_mm: float | None, width_mm: float) -> View:
     """The sheet through cells for a line of a width."""
     aperture_mm = aperture_mm or aperture_for(sheet.drawing, width_mm)
     return View(photocell.behind_aperture(sheet.drawing, aperture_mm), width_mm)
+
+
+def edge_view_of(drawing: Drawing, aperture_mm: float | None) -> View:
+    """The filled shapes of a sheet through cells for their edges."""
+    assert drawing.shade is not None
+    pitch_mm = drawing.pitch_mm * drawing.enlarged
+    shade = replace(drawing, darkness=drawing.shade, pitch_mm=pitch_mm)
+    cells = photocell.behind_aperture(shade, aperture_mm or EDGE_APERTURE_PX * pitch_mm)
+    return View(cells, EDGE_MM, on_edge=True)
 
 
 def aperture_for(drawing: Drawing, width_mm: float) -> float:
@@ -94,7 +105,7 @@ def stances(view: View, places: Array) -> list[Scored]:
     """Stances at those places where the line is clean."""
     found = []
     for place in places:
-        local = local_view(view, place)
+        local = view if view.on_edge else local_view(view, place)
         heading = _heading(local, place)
         felt = None if heading is None else _both_ways(local, place, heading)
         if felt is not None:
@@ -107,6 +118,9 @@ def stances(view: View, places: Array) -> list[Scored]:
 
 def _heading(view: View, place: Array) -> float | None:
     """Heading of the line through a place; None if the ring does not see two arcs opposite each other."""
+    if view.on_edge:
+        found = view.edge_at(place)
+        return None if found is None else found[1]
     radius = max(RING_WIDTHS * view.width_mm, RING_PX * view.pitch_mm)
     arcs = view.ring(place, radius)
     if len(arcs) != 2:
@@ -118,11 +132,12 @@ def _heading(view: View, place: Array) -> float | None:
 
 def _both_ways(view: View, place: Array, heading: float) -> tuple[Leg, float] | None:
     """The line felt both ways from a place as one leg, and the length felt on the shorter side, mm."""
-    right, left = view.edges(place, heading, 2 * view.width_mm)
-    width_mm = left - right
-    if not math.isfinite(width_mm) or not NARROWEST < width_mm / view.width_mm < WIDEST:
-        return None
-    view = replace(view, width_mm=width_mm)
+    if not view.on_edge:
+        right, left = view.edges(place, heading, 2 * view.width_mm)
+        width_mm = left - right
+        if not math.isfinite(width_mm) or not NARROWEST < width_mm / view.width_mm < WIDEST:
+            return None
+        view = replace(view, width_mm=width_mm)
     ahead = view.feel(place, heading, FELT * view.leg_mm)
     behind = view.feel(place, heading + math.pi, FELT * view.leg_mm)
     shorter = min(len(ahead), len(behind))

@@ -21,6 +21,7 @@ from morfax.tracer.drawing.strokes import Sheet, Stroke
 from morfax.tracer.following.open_ends import at_ends, stances_at
 from morfax.tracer.following.plain_places import (
     ABOUT_WIDTHS,
+    edge_view_of,
     places_of,
     plainness,
     stances,
@@ -55,11 +56,15 @@ def put_down(
     catch_mm = max(CATCH_MM, CATCH_PX * sheet.drawing.pitch_mm)
     # 1. the line
     stroke = sheet.longest() if start_mm is None else sheet.nearest(start_mm, catch_mm)
-    for stance in _as_before(sheet, stroke, start_mm, settings, reference_mm):
-        yield stance, stroke.length_mm
-    view = view_of(sheet, settings.aperture_mm, settings.line_width_mm or stroke.width_mm)
-    # 2. its open ends
-    ends = _ends(view, sheet, stroke, start_mm, settings, reference_mm)
+    on_edge = sheet.drawing.shade is not None
+    if on_edge:
+        view = edge_view_of(sheet.drawing, settings.aperture_mm)
+    else:
+        for stance in _as_before(sheet, stroke, start_mm, settings, reference_mm):
+            yield stance, stroke.length_mm
+        view = view_of(sheet, settings.aperture_mm, settings.line_width_mm or stroke.width_mm)
+    # 2. its open ends; an edge has none
+    ends = [] if on_edge else _ends(view, sheet, stroke, start_mm, settings, reference_mm)
     for stance in ends:
         yield stance, stroke.length_mm
     # 3. its plain places

@@ -135,14 +135,50 @@ def _is_trusted(state):  # type: ignore[no-untyped-def]
 def _half_window(state, t):  # type: ignore[no-untyped-def]
     """Half of the parabola's window, mm: narrower in tight bends of a line that was felt clean."""
     bend = state.usual_bend_per_mm
-    if not _is_trusted(state) or bend <= t.tightest_per_mm:
+    may_narrow = _is_trusted(state) or t.balance_per_mm != 0.0
+    if not may_narrow or bend <= t.tightest_per_mm:
         return t.half_window_mm
     return max(t.half_window_mm * (t.tightest_per_mm / bend) ** 2, t.narrow_mm)
 
 
 @njit(cache=True)
+def _look_at_edge(cells, state, t):  # type: ignore[no-untyped-def]
+    """The same on the edge of a shape: the guard cells see the shape on one side, and paper on the other."""
+    way, curve = way_of(state), state.middle_mm / (t.lead_mm * t.lead_mm)
+    inward = -math.copysign(t.guard_mm, t.balance_per_mm)  # to the left
+    # 1. cell 102 and its relay
+    far = t.look_ahead_mm
+    inside = seen(cells, state, way, far, curve * far * far + inward)
+    outside = seen(cells, state, way, far, curve * far * far - inward)
+    if inside - outside < BLANK:
+        state.slow_periods = t.slow_periods
+    # 2. the guard cells
+    ahead = t.guard_lead_mm
+    on_edge = curve * ahead * ahead
+    beside = inward * math.hypot(1.0, 2.0 * curve * ahead)
+    inside = seen(cells, state, way, ahead, on_edge + beside)
+    outside = seen(cells, state, way, ahead, on_edge - beside)
+    state.guard_ahead += GUARD_FOLLOWS * (inside - state.guard_ahead)
+    state.guard_left += GUARD_FOLLOWS * (outside - state.guard_left)
+    state.guard_right = state.guard_left
+    # 3. what they say, and whether the swinging cell sees an edge
+    if state.swept_ink < LOST:
+        return JUNCTION
+    if t.direct_rad_s_mm > 0:
+        return MORE
+    state.usual_bend_per_mm += BEND_FOLLOWS * (_bend(state, t) - state.usual_bend_per_mm)
+    if state.usual_bend_per_mm > t.narrowest_per_mm:
+        return TIGHT
+    if not _is_trusted(state) and (state.guard_left > BESIDE or state.guard_ahead < BLANK):
+        return JUNCTION
+    return MORE
+
+
+@njit(cache=True)
 def _look(cells, state, t):  # type: ignore[no-untyped-def]
     """Read the guard cells and the look-ahead cell, once a sweep; why the head must stop following."""
+    if t.balance_per_mm != 0.0:
+        return _look_at_edge(cells, state, t)
     way, curve = (
         way_of(state),
         state.middle_mm / (t.lead_mm * t.lead_mm),

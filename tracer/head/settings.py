@@ -32,6 +32,9 @@ WINDOW_MM, WINDOW_WIDTHS, WINDOW_PX = 0.35, 0.6, 7  # half the window of the par
 POINT_MM, POINT_PX = 0.12, 1.2  # from the axis to the point that it steers for
 LEAD_SWEEPS = 2  # beyond window and point: a place is on the drum before the window needs it
 SWING_WIDTHS, SWING_PX = 0.6, 1.5  # amplitude of the sweep
+EDGE_SWING_WIDTHS, EDGE_SWING_PX = 0.25, 1.2  # on an edge: a shorter swing hears less noise for its slope
+EDGE_WINDOW_PX = 3  # an edge is as sharp as the lens: fewer pixels than a line's two edges need
+EDGE_STATIONS = 3  # along which an edge is measured: it may bend more than a line
 SWING_ALONG = 0.1  # of the amplitude: lengthwise half-axis of the eccentric pin's ellipse
 GUARD_MM, GUARD_PX = 0.17, 2  # from the line's edge to a guard cell beside it
 GUARD_AHEAD_MM, GUARD_AHEAD_PX = 0.15, 1.5  # from the swinging cell to the guard cells
@@ -184,13 +187,16 @@ def tune(stance: Stance, settings: Settings, rate_hz: float) -> Tuning:
     """What the kernels need to follow the line under a stance."""
     width, pitch = stance.view.width_mm, stance.view.pitch_mm
     # 1. sizes, where the settings leave them to the line
-    half_window = max(WINDOW_MM + WINDOW_WIDTHS * width, WINDOW_PX * pitch)
+    on_edge = stance.view.on_edge
+    window_px = EDGE_WINDOW_PX if on_edge else WINDOW_PX
+    half_window = max(WINDOW_MM + WINDOW_WIDTHS * width, window_px * pitch)
     point = max(POINT_MM, POINT_PX * pitch)
     sweeps_mm = LEAD_SWEEPS * settings.speed_mm_s / settings.sweep_hz
     lead = settings.lead_mm or half_window + point + sweeps_mm
-    amplitude = settings.amplitude_mm or max(SWING_WIDTHS * width, SWING_PX * pitch)
+    widths, pixels = (EDGE_SWING_WIDTHS, EDGE_SWING_PX) if on_edge else (SWING_WIDTHS, SWING_PX)
+    amplitude = settings.amplitude_mm or max(widths * width, pixels * pitch)
     # 2. the detector's characteristic, as measured on the line
-    slope, mean = _calibrate(stance, amplitude)
+    slope, mean, balance = _calibrate(stance, amplitude)
     # 3. gains per period
     steering_gain = 1.0
     if settings.steering_lag_s > 0:
@@ -210,11 +216,12 @@ def tune(stance: Stance, settings: Settings, rate_hz: float) -> Tuning:
         tightest_per_mm=TIGHTEST_RAD / half_window,
         amplitude_mm=amplitude,
         along_mm=SWING_ALONG * amplitude,
-        guard_mm=0.5 * width + max(GUARD_MM, GUARD_PX * pitch),
+        guard_mm=(0.0 if on_edge else 0.5 * width) + max(GUARD_MM, GUARD_PX * pitch),
         guard_lead_mm=lead + max(GUARD_AHEAD_MM, GUARD_AHEAD_PX * pitch),
         look_ahead_mm=settings.look_ahead_mm or lead + LOOK_AHEAD_MM,
         slope_per_mm=slope,
         mean=mean,
+        balance_per_mm=balance,
         drive_gain=settings.drive.gain(1 / rate_hz),
         drive_change_mm_s=settings.drive.acceleration_mm_s2 / rate_hz,
         steering_gain=steering_gain,
@@ -225,17 +232,26 @@ def tune(stance: Stance, settings: Settings, rate_hz: float) -> Tuning:
     )
 
 
-def _calibrate(stance: Stance, amplitude_mm: float) -> tuple[float, float]:
-    """Slope of the sweep's fundamental (per mm) and mean darkness, over a few stations ahead of a stance."""
+def _calibrate(stance: Stance, amplitude_mm: float) -> tuple[float, float, float]:
+    """Slope of the sweep's fundamental (per mm), its mean darkness and 0, over a few stations ahead of a stance.
+
+    On the edge of a shape: the slope, the size of the fundamental, and the slope of the mean (per mm).
+    """
     view, heading = stance.view, stance.heading_rad
+    stations = EDGE_STATIONS if view.on_edge else CALIBRATED_STATIONS
     aside = CALIBRATED_ASIDE * view.width_mm
     to_left, to_right = (-aside, amplitude_mm), (aside, amplitude_mm)
     way = np.array([math.cos(heading), math.sin(heading)])
-    slopes = means = 0.0
-    for k in range(CALIBRATED_STATIONS):
+    slopes = means = firsts = balances = 0.0
+    for k in range(stations):
         place = stance.place_mm + view.step_mm * k * way
         left = sweep(view.cells, place, heading, to_left, CALIBRATED_SAMPLES)
         right = sweep(view.cells, place, heading, to_right, CALIBRATED_SAMPLES)
-        slopes += (left[0] - right[0]) / (2 * aside) / CALIBRATED_STATIONS
-        means += (left[1] + right[1]) / 2 / CALIBRATED_STATIONS
-    return max(slopes, LEAST_SLOPE_PER_MM), means
+        slopes += (left[0] - right[0]) / (2 * aside) / stations
+        means += (left[1] + right[1]) / 2 / stations
+        firsts += abs(left[0] + right[0]) / 2 / stations
+        balances += (left[1] - right[1]) / (2 * aside) / stations
+    slope = max(slopes, LEAST_SLOPE_PER_MM)
+    if not view.on_edge:
+        return slope, means, 0.0
+    return slope, firsts, math.copysign(max(abs(balances), LEAST_SLOPE_PER_MM), balances)

@@ -6,11 +6,17 @@ of the heading) and the place of the line on the drum (sheet mm).
     first = 2/N · sum D·sin(phase)      its sign is the side on which the line is
     aside = first / (slope · ink)       how far, by the slope that was measured on the line
 
+On the edge of a filled shape the detector balances dark against light: half of the sweep is dark when its
+middle is on the edge. The fundamental tells only that there is an edge at all.
+
+    mean  = 1/N · sum D                 by how much it is over a half is the side, and how far
+    aside = (mean - 1/2) / balance      by the slope of the mean that was measured on the edge
+
 Cell and detector may be out of order: their gains, and noise in the cell's current, are settings. `heard`
 tells whether they work.
 
-Source: patent ES 361967, figure 1: cell 101, mount 42, pin 48, motor 45, amplifier FSA. Questions: see
-`kernel`.
+Source: patent ES 361967, figure 1: cell 101, mount 42, pin 48, motor 45, amplifier FSA. The balance is that
+of the edge tracers of flame cutters. Questions: see `kernel`.
 """
 
 from __future__ import annotations
@@ -25,6 +31,7 @@ from morfax.tracer.sensing.photocell import TWO_PI, darkness_at
 # Shares of the line's ink; chosen by trial on the test drawings.
 INK_FOLLOWS = 0.1  # share of a sweep's difference by which the ink is corrected
 PALEST, DARKEST = 0.3, 2.0  # a sweep counts as no less and no more of the ink than this
+BALANCED = 0.5  # of the sweep is dark, when its middle is on the edge of a shape
 FARTHEST_ASIDE = 0.5  # of the amplitude: a sweep that is further off is not on the line
 # of the random numbers: those of Numerical Recipes, "quick and dirty generators"
 NOISE_FACTOR, NOISE_STEP, NOISE_NUMBERS = 1664525, 1013904223, 2**32
@@ -76,10 +83,14 @@ def detect(state, t):  # type: ignore[no-untyped-def]
     """End of a sweep: the line's place goes onto the drum, and the next sweep is centred on it."""
     # 1. what the sweep tells
     mean = state.mean_sum / t.sweep_periods
-    state.swept_ink = mean / t.mean
-    state.ink += INK_FOLLOWS * (min(max(state.swept_ink, PALEST), DARKEST) - state.ink)
-    first = t.detector_gain * 2.0 * state.first_sum / t.sweep_periods
-    aside = first / (t.slope_per_mm * state.ink)
+    first = 2.0 * state.first_sum / t.sweep_periods
+    if t.balance_per_mm == 0.0:
+        state.swept_ink = mean / t.mean
+        state.ink += INK_FOLLOWS * (min(max(state.swept_ink, PALEST), DARKEST) - state.ink)
+        aside = t.detector_gain * first / (t.slope_per_mm * state.ink)
+    else:
+        state.swept_ink = abs(first) / t.mean
+        aside = t.detector_gain * (mean - BALANCED) / t.balance_per_mm
     state.sweep_periods = 0
     state.first_sum = state.mean_sum = 0.0
     # 2. without a drum, the mount turns with the head only

@@ -66,6 +66,8 @@ class _Found:
 def joined_to(line: Line, contour: Contour, setup: Setup) -> tuple[list[Line], float]:
     """Further lines of a contour's patch, besides the one followed on it, and the length of ink left, mm."""
     stroke, settings = contour.stroke, setup.settings
+    if setup.sheet.drawing.edges_mm:  # every edge is a line of its own
+        return [], 0.0
     shortest_mm = float(least_mm(stroke.width_mm))
     found = _Found([line], [line.places_mm])
     left = _left(stroke, found.tried)

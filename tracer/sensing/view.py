@@ -16,11 +16,13 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import lengths_mm
-from morfax.tracer.sensing import photocell, ray
+from morfax.tracer.sensing import edge_scout, photocell, ray
 from morfax.tracer.sensing.photocell import LEVEL, Cells
 from morfax.tracer.sensing.scout import CLEAN, REACH, REACH_PX, scout
 
 LEG_MM = 1.2  # how much of a leg is felt for its direction, at a line of 0.5 mm
+LEG_PX, EDGE_LEG_PX = 12, 6  # and at least so many pixels
+EDGE_STEP_PX = 0.35  # stations along an edge go round corners that are as sharp as the lens
 GRAIN = 0.4  # of the line's width: standard deviation of a cell that averages its grain
 GRAIN_LEVEL = 0.3  # an edge is at this share of the darkness then
 GRAIN_STATIONS = 20
@@ -31,13 +33,15 @@ class View:
     """What the head knows of the line it is on: what the cells see, and the line's width.
 
     `usual_mm` is the line's width as a rule, where the width here differs. What the head sees is `enlarged`
-    times as large as on the drawing.
+    times as large as on the drawing. `on_edge`: it is the edge of a filled shape, dark to one side, and the
+    width is that of a line which would be as fine.
     """
 
     cells: Cells
     width_mm: float
     usual_mm: float | None = None
     enlarged: float = 1.0
+    on_edge: bool = False
 
     @property
     def pitch_mm(self) -> float:
@@ -52,12 +56,15 @@ class View:
     @property
     def step_mm(self) -> float:
         """Distance of stations and rings."""
+        if self.on_edge:
+            return EDGE_STEP_PX * self.pitch_mm
         return max(0.05, 0.6 * self.pitch_mm)
 
     @property
     def leg_mm(self) -> float:
         """How much of a leg is felt for its direction."""
-        return max(LEG_MM, 12 * self.pitch_mm, 1.5 * self.width_mm)
+        pixels = EDGE_LEG_PX if self.on_edge else LEG_PX
+        return max(LEG_MM, pixels * self.pitch_mm, 1.5 * self.width_mm)
 
     def at_level(self, level: float) -> View:
         """The view with another darkness at an edge."""
@@ -90,7 +97,24 @@ class View:
         """Centres and widths (n, 3) of the line from a place on it along a heading, while it is clean."""
         stations = max(4, round(length_mm / self.step_mm) + 1)
         pose = float(place[0]), float(place[1]), float(heading)
+        if self.on_edge:
+            seen = edge_scout.along_edge(self.cells, pose, self.step_mm, stations)
+            seen[:, 2] = self.width_mm
+            return np.asarray(seen)
         return np.asarray(scout(self.cells, pose, self.width_mm, self.step_mm, stations))
+
+    def feel_edge(self, place: Array, heading: float, length_mm: float) -> Array:
+        """Places of an edge and how steep it is there (n, 3), from a place near it along a heading."""
+        pose = float(place[0]), float(place[1]), float(heading)
+        stations = max(4, round(length_mm / self.step_mm) + 1)
+        return np.asarray(edge_scout.along_edge(self.cells, pose, self.step_mm, stations))
+
+    def edge_at(self, place: Array) -> tuple[Array, float] | None:
+        """The place on an edge next to a place, and the heading along it with the shape to the left."""
+        x, y, inward_x, inward_y, _ = edge_scout.onto_edge(self.cells, place[0], place[1])
+        if math.isnan(x):
+            return None
+        return np.array([x, y]), math.atan2(-inward_x, inward_y)
 
     def feel_along(self, way: Array) -> Array:
         """Centres and widths (n, 3) of the line across a way (n, 2) mm, a step apart, where it is clean."""
