@@ -21,7 +21,13 @@ from morfax.motion.arrays import Array
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.head import kernel, screws, swinging, watched
 from morfax.tracer.head.leaders import CELL, MEMORY, STATIONS, Led, Log
-from morfax.tracer.head.settings import CALIBRATED_ASIDE, CALIBRATED_STATIONS, Settings, tune
+from morfax.tracer.head.settings import (
+    CALIBRATED_ASIDE,
+    CALIBRATED_STATIONS,
+    EDGE_STATIONS,
+    Settings,
+    tune,
+)
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.state import Home, Tuning, at_rest
 from morfax.tracer.head.trail import Trail
@@ -111,18 +117,23 @@ class Carriage:
     def hears(self, view: View) -> bool:
         """Whether the standing head's sweep, set a little to either side of the line, goes back to it.
 
-        Over a few places ahead, as the tuning was measured.
+        Over a few places ahead, as the tuning was measured. On an edge, which may bend more, the cell swings
+        under the axis.
         """
         if self.count > 1:  # a run that is taken up again
             return True
         off_mm, back_mm = CALIBRATED_ASIDE * view.width_mm, 0.0
-        for k in range(CALIBRATED_STATIONS):
+        stations, tuning = CALIBRATED_STATIONS, self.tuning
+        if view.on_edge:
+            stations, tuning = EDGE_STATIONS, tuning._replace(lead_mm=0.0)
+        for k in range(stations):
             for side in (-1.0, 1.0):
                 state = self.state.copy()
                 state.x_mm += k * view.step_mm * math.cos(self.heading_rad)
                 state.y_mm += k * view.step_mm * math.sin(self.heading_rad)
-                back_mm -= side * swinging.heard(view.cells, state, self.tuning, side * off_mm)
-        return back_mm > HEARD * 2 * CALIBRATED_STATIONS * off_mm
+                state.middle_mm = 0.0 if view.on_edge else state.middle_mm
+                back_mm -= side * swinging.heard(view.cells, state, tuning, side * off_mm)
+        return back_mm > HEARD * 2 * stations * off_mm
 
     @property
     def sees_line(self) -> bool:
