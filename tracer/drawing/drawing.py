@@ -49,6 +49,7 @@ ABOVE_NOISE = 6.0  # standard deviations of the paper: what is darker is no nois
 DARKER = 80.0  # percentile of the strokes' pixels: those that no edge makes lighter
 LEAST_STROKE_MM = 2.0  # shorter strokes are specks
 FEWEST_SAMPLES = 1 << 22  # pixels that tell the noise of the paper, and the darkness of the ink
+LEAST_RADIUS_MM, MOST_ENLARGED = 1.3, 4  # of an edge; by trial on round holes
 OBLONG = 1e-3  # sides of a pixel that differ by more than this share are made alike: a fax has such pixels
 
 Darkness = NDArray[np.float32]
@@ -79,6 +80,18 @@ class Drawing:
     corrected: OnSheet | None = None
     bare: Drawing | None = None
     finer: int = 1
+
+    def times_at(self, place_mm: NDArray[np.float64]) -> int:
+        """How many times enlarged the head follows the edge nearest to a place; 1 on a drawing of lines.
+
+        A short edge bends more than the head can follow as it is.
+        """
+        if not self.edges_mm:
+            return 1
+        away_mm = [np.hypot(*(edge - place_mm).T).min() for edge in self.edges_mm]
+        edge = self.edges_mm[int(np.argmin(away_mm))]
+        radius_mm = float(np.hypot(*np.diff(edge, axis=0).T).sum()) / math.tau
+        return min(MOST_ENLARGED, max(1, math.ceil(LEAST_RADIUS_MM / radius_mm)))
 
     @property
     def told_turns(self) -> tuple[TurnAt, ...]:

@@ -23,6 +23,7 @@ from morfax.tracer.junctions.rings import corner_in
 from morfax.tracer.sensing.view import View
 
 AGREES = 0.12  # of the width: on the test drawings 99 % of the clean lines are seen within 0.06
+AGREES_PX = 0.6  # on an edge, which has no width; by trial on filled shapes
 LEFT_LEGS = 0.25  # of a leg's length: the guard cells look out again before the felt line's end; by trial
 LEAST_LEGS = 0.25  # of a leg's length: the cell does not go on for less
 MOST_OVERRULED = 3  # times in a row; by trial on engravings
@@ -55,7 +56,7 @@ class Agreement:
     def goes_on_along(self, carriage: Carriage, view: View, seen: Array) -> bool:
         """The same along the stations of an edge on which nothing is tight."""
         off_mm, ahead_mm = cell_off_mm(carriage, seen)
-        if off_mm is None or off_mm > AGREES * view.width_mm or not carriage.sees_line:
+        if off_mm is None or off_mm > AGREES_PX * view.pitch_mm or not carriage.sees_line:
             self._overrule(carriage)
             return False
         guards_mm = carriage.tuning.guard_lead_mm - carriage.tuning.lead_mm

@@ -75,7 +75,7 @@ class Attempts:
 
     def run(self, stance: Stance, turns: tuple[int, ...] = ()) -> Followed:
         """Follow from a stance, with other turns at the junctions of those numbers."""
-        times, told = self.drawing.enlarged, self.told
+        times, told = self.drawing.times_at(stance.place_mm), self.told
         told_turns = tuple(turn.enlarged(times) for turn in self.drawing.told_turns)
         wanted = Turns(turns, self.sides, self.tips, told_turns)
         follower, keep = self._taken_up(stance, wanted)

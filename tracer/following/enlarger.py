@@ -38,7 +38,10 @@ def reduced(run: Followed) -> Followed:
 
 
 def _scaled(view: View, times: float) -> View:
-    """The view of a drawing at another scale."""
+    """The view of a drawing at another scale. An edge has no width of its own that would grow."""
+    if view.on_edge:
+        cells = view.cells._replace(pitch_mm=view.pitch_mm * times)
+        return replace(view, cells=cells, enlarged=view.enlarged * times)
     usual_mm = None if view.usual_mm is None else view.usual_mm * times
     return replace(
         view,

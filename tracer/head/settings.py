@@ -33,7 +33,9 @@ POINT_MM, POINT_PX = 0.12, 1.2  # from the axis to the point that it steers for
 LEAD_SWEEPS = 2  # beyond window and point: a place is on the drum before the window needs it
 SWING_WIDTHS, SWING_PX = 0.6, 1.5  # amplitude of the sweep
 EDGE_SWING_WIDTHS, EDGE_SWING_PX = 0.25, 1.2  # on an edge: a shorter swing hears less noise for its slope
-EDGE_WINDOW_PX = 3  # an edge is as sharp as the lens: fewer pixels than a line's two edges need
+EDGE_WINDOW_PX, EDGE_POINT_PX = 2, 0.6  # an edge is as sharp as the lens: fewer pixels than a line's two edges need
+EDGE_NARROWEST_RAD = 0.45
+EDGE_GUARD_PX, EDGE_GUARD_AHEAD_PX = 1.6, 0.6
 EDGE_STATIONS = 3  # along which an edge is measured: it may bend more than a line
 SWING_ALONG = 0.1  # of the amplitude: lengthwise half-axis of the eccentric pin's ellipse
 GUARD_MM, GUARD_PX = 0.17, 2  # from the line's edge to a guard cell beside it
@@ -188,13 +190,18 @@ def tune(stance: Stance, settings: Settings, rate_hz: float) -> Tuning:
     width, pitch = stance.view.width_mm, stance.view.pitch_mm
     # 1. sizes, where the settings leave them to the line
     on_edge = stance.view.on_edge
-    window_px = EDGE_WINDOW_PX if on_edge else WINDOW_PX
+    window_px, point_px = (EDGE_WINDOW_PX, EDGE_POINT_PX) if on_edge else (WINDOW_PX, POINT_PX)
     half_window = max(WINDOW_MM + WINDOW_WIDTHS * width, window_px * pitch)
-    point = max(POINT_MM, POINT_PX * pitch)
+    point = max(POINT_MM, point_px * pitch)
     sweeps_mm = LEAD_SWEEPS * settings.speed_mm_s / settings.sweep_hz
     lead = settings.lead_mm or half_window + point + sweeps_mm
     widths, pixels = (EDGE_SWING_WIDTHS, EDGE_SWING_PX) if on_edge else (SWING_WIDTHS, SWING_PX)
     amplitude = settings.amplitude_mm or max(widths * width, pixels * pitch)
+    guard = 0.5 * width + max(GUARD_MM, GUARD_PX * pitch)
+    ahead_px, narrowest_rad = GUARD_AHEAD_PX, NARROWEST_RAD
+    if on_edge:
+        narrowest_rad = EDGE_NARROWEST_RAD
+        guard, ahead_px = max(GUARD_MM, EDGE_GUARD_PX * pitch), EDGE_GUARD_AHEAD_PX
     # 2. the detector's characteristic, as measured on the line
     slope, mean, balance = _calibrate(stance, amplitude)
     # 3. gains per period
@@ -212,12 +219,12 @@ def tune(stance: Stance, settings: Settings, rate_hz: float) -> Tuning:
         point_mm=point,
         half_window_mm=half_window,
         narrow_mm=min(half_window, NARROW_LEGS * stance.view.leg_mm),
-        narrowest_per_mm=NARROWEST_RAD / (NARROW_LEGS * stance.view.leg_mm),
+        narrowest_per_mm=narrowest_rad / (NARROW_LEGS * stance.view.leg_mm),
         tightest_per_mm=TIGHTEST_RAD / half_window,
         amplitude_mm=amplitude,
         along_mm=SWING_ALONG * amplitude,
-        guard_mm=(0.0 if on_edge else 0.5 * width) + max(GUARD_MM, GUARD_PX * pitch),
-        guard_lead_mm=lead + max(GUARD_AHEAD_MM, GUARD_AHEAD_PX * pitch),
+        guard_mm=guard,
+        guard_lead_mm=lead + max(GUARD_AHEAD_MM, ahead_px * pitch),
         look_ahead_mm=settings.look_ahead_mm or lead + LOOK_AHEAD_MM,
         slope_per_mm=slope,
         mean=mean,

@@ -21,7 +21,7 @@ from morfax.tracer.sensing.photocell import LEVEL, Cells
 from morfax.tracer.sensing.scout import CLEAN, REACH, REACH_PX, scout
 
 LEG_MM = 1.2  # how much of a leg is felt for its direction, at a line of 0.5 mm
-LEG_PX, EDGE_LEG_PX = 12, 6  # and at least so many pixels
+LEG_PX, EDGE_LEG_PX = 12, 4  # and at least so many pixels
 EDGE_STEP_PX = 0.35  # stations along an edge go round corners that are as sharp as the lens
 GRAIN = 0.4  # of the line's width: standard deviation of a cell that averages its grain
 GRAIN_LEVEL = 0.3  # an edge is at this share of the darkness then
