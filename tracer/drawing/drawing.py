@@ -173,7 +173,7 @@ class Drawing:
                 rims.finer,
                 rims.edges_mm,
                 rims.shade,
-                notes=notes,
+                notes=(*notes, *rims.notes),
             )
         darkness, shapes = levelled(grey, pitch[0])
         edges = without_border(darkness)

@@ -28,9 +28,11 @@ from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault
 from morfax.motion.polyline import lengths_mm as lengths_px
 from morfax.motion.polyline import with_places
-from morfax.tracer.drawing.sharpening import APART_PX, sharpened
-from morfax.tracer.drawing.spacing import finer
+from morfax.tracer.drawing.closing import Closed, covers, note, places_of, streaks_of
+from morfax.tracer.drawing.sharpening import APART_PX, Edge, sharpened
+from morfax.tracer.drawing.spacing import finer, too_near
 
+CLOSINGS = 4  # times that edges are looked for: what was closed may leave others too near
 EDGE_MM = 0.4  # at 300 dpi less than five pixels; with 0.3 mm a gear of 24 teeth did not close
 SOFT_PX = 0.7  # standard deviation: against the noise of the paper
 LEAST_MM = 2.0  # a shorter outline is a speck's
@@ -50,41 +52,65 @@ Grey = NDArray[np.float32]
 class Outlined:
     """A line along the edges of filled shapes, on pixels so many times `finer` than the picture's.
 
-    Its darkness, and the edges (n, 2) in sheet mm.
+    Its darkness, and the edges (n, 2) in sheet mm. The `shade` of the picture itself, paper 0 and shape 1,
+    and notes for the operator.
     """
 
     darkness: Grey
     shade: Grey
     finer: int
     edges_mm: tuple[Array, ...]
+    notes: tuple[str, ...]
 
 
 def outlined(grey: NDArray[Any], pitch_mm: float) -> Outlined:
     """The line along the edges of filled shapes, finer where they are near one another.
 
-    Raises DrawingFault without any shape, if the border of the sheet cuts a shape, and if edges are so near
-    that the lens has run them together.
+    Raises DrawingFault without any shape, and if the border of the sheet cuts all of them.
     """
-    from skimage.measure import find_contours
-
     soft = cv2.GaussianBlur(grey.astype(np.float32), (0, 0), SOFT_PX)
     low, high = _levels(np.asarray(soft, np.float32), pitch_mm)
-    share = _share(soft, low, high)
+    share, shade = _share(soft, low, high), _share(grey, low, high)
+    # 1. the edges, without slits and bridges that are too thin for the lens
+    closed = list[Closed]()
+    for _ in range(CLOSINGS):
+        sharp, softness_px, notes = _edges(share, pitch_mm)
+        pairs = too_near(sharp, softness_px)
+        if not len(pairs.back):
+            break
+        closed += places_of(share, pairs, pitch_mm)
+        for cover in covers(share, pairs, softness_px):
+            share, shade = cover.over(share), cover.over(shade)
+    closed += streaks_of(share, softness_px, pitch_mm)
+    if closed:
+        notes = (*notes, note(closed, softness_px * pitch_mm))
+    # 2. where they are, as a line
+    times = finer(sharp, share.shape, pitch_mm)
+    fine = [(edge.outline + 0.5) * times - 0.5 for edge in sharp]
+    rows, columns = share.shape
+    darkness = _inked(fine, (rows * times, columns * times), EDGE_MM / pitch_mm)
+    edges_mm = tuple(_mm(edge.outline, share.shape, pitch_mm) for edge in sharp)
+    return Outlined(darkness, shade, times, edges_mm, notes)
+
+
+def _edges(share: Grey, pitch_mm: float) -> tuple[list[Edge], float, tuple[str, ...]]:
+    """The edges of whole shapes with their corners, the softness of the lens (pixels), and notes on others."""
+    from skimage.measure import find_contours
+
     edges = [
         edge for edge in find_contours(share, 0.5) if _length_mm(edge, pitch_mm) > LEAST_MM
     ]
     if not edges:
         raise _none()
     _refuse_lines(share, pitch_mm)
-    _refuse_cut(edges, share.shape, pitch_mm)
-    softness_px = _softness_px(share, edges)
-    sharp = [sharpened(edge, softness_px) for edge in _refined(edges, share)]
-    times = finer(sharp, share.shape, pitch_mm, softness_px)
-    fine = [(edge.outline + 0.5) * times - 0.5 for edge in sharp]
-    rows, columns = share.shape
-    darkness = _inked(fine, (rows * times, columns * times), EDGE_MM / pitch_mm)
-    edges_mm = tuple(_mm(edge.outline, share.shape, pitch_mm) for edge in sharp)
-    return Outlined(darkness, _share(grey, low, high), times, edges_mm)
+    whole = [edge for edge in edges if np.all(edge[0] == edge[-1])]
+    cut = [edge for edge in edges if np.any(edge[0] != edge[-1])]
+    if not whole:
+        raise DrawingFault(_cut(cut, share.shape, pitch_mm))
+    softness_px = _softness_px(share, whole)
+    sharp = [sharpened(edge, softness_px) for edge in _refined(whole, share)]
+    notes = (f"left out: {_cut(cut, share.shape, pitch_mm)}",) if cut else ()
+    return sharp, softness_px, notes
 
 
 def _mm(outline: Array, shape: tuple[int, ...], pitch_mm: float) -> Array:
@@ -150,15 +176,13 @@ def _refuse_lines(share: Grey, pitch_mm: float) -> None:
         )
 
 
-def _refuse_cut(edges: list[Array], shape: tuple[int, ...], pitch_mm: float) -> None:
-    """Raise DrawingFault if an edge runs off the sheet."""
-    for edge in edges:
-        if np.any(edge[0] != edge[-1]):
-            x, y = _mm(edge[:1], shape, pitch_mm)[0]
-            raise DrawingFault(
-                f"a filled shape is cut by the border of the sheet at {x:.1f},{y:.1f} mm;"
-                " scan it whole, with paper all round it (or cut a dark border off the scan)"
-            )
+def _cut(edges: list[Array], shape: tuple[int, ...], pitch_mm: float) -> str:
+    """What is wrong with edges that run off the sheet."""
+    x, y = _mm(edges[0][:1], shape, pitch_mm)[0]
+    return (
+        f"a filled shape is cut by the border of the sheet at {x:.1f},{y:.1f} mm;"
+        " scan it whole, with paper all round it (or cut a dark border off the scan)"
+    )
 
 
 def _softness_px(share: Grey, edges: list[Array]) -> float:

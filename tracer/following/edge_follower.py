@@ -29,6 +29,8 @@ FEWEST_STATIONS = 20
 class EdgeFollower(Follower):
     """A head on the edge of a filled shape."""
 
+    _was_plain = True  # the edge was felt plain where the cell took over last
+
     def _through_junction(self) -> Followed | None:
         """Take the head past the tight places ahead; returns what it did, if the edge is lost."""
         self.carriage.says("at a corner")
@@ -39,18 +41,18 @@ class EdgeFollower(Follower):
             if ahead is None:
                 return self._lost("no edge leads on", lost.CHECK_CELL)
             plan = ahead.plan(self.carriage.stands(), clear_mm, tuning.narrowest_per_mm)
-            room = len(ahead.felt) * self.view.step_mm - clear_mm
-            if plan is None or len(plan.leg.seen) * self.view.step_mm > clear_mm or room < 0:
+            if plan is None or len(plan.leg.seen) * self.view.step_mm > clear_mm:
                 break
         if plan is None:
             # a plain edge: either the guard cells were wrong, or the swinging cell is
             if self._agreement.goes_on_along(self.carriage, self.view, ahead.felt):
                 return None
-            if self._agreement.contradict:
+            if self._agreement.contradict and self._was_plain:
                 return self._lost(lost.CONTRADICT, lost.CHECK_CELL)
             plan = ahead.plain(self.carriage.stands(), self.view.leg_mm)
         if plan is None:
             return self._lost("no edge leads on", lost.CHECK_CELL)
+        self._was_plain = len(plan.leg.seen) * self.view.step_mm > clear_mm
         return self._pass(plan)
 
     def _felt(self, ahead_mm: float) -> EdgeAhead | None:

@@ -17,6 +17,7 @@ Source: our own. Questions: see `drawing.sharpening`, which puts the corners bac
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -35,9 +36,10 @@ from morfax.tracer.sensing.view import View
 
 # Chosen by trial on filled shapes.
 AVERAGED_RAD = 0.36  # that the edge may turn within half of the length over which stations are averaged
-LEAST_AVERAGED_PX = 2.0  # half of that length at least
+LEAST_AVERAGED_PX = 1.2  # half of that length at least
 NODES = 3  # within that half
 LEAST_NODES = 4  # stations to either side
+TIP_STATIONS, TIP_RAD = 4, math.radians(100)  # stations to either side of a tip, that turn by so much
 STEEPEST = 0.55  # of the fundamental: no edge is steeper behind an aperture
 
 
@@ -77,7 +79,7 @@ class EdgeAhead:
         evenly = np.column_stack([np.interp(at_px, along_px, c) for c in places.T / pitch_mm])
         found = corners_of(evenly, self.softness_mm / pitch_mm, is_closed=False)
         station = np.searchsorted(along_px, at_px)
-        return [
+        corners = [
             corner._replace(
                 first=int(station[corner.first]),
                 last=int(station[corner.last]),
@@ -85,6 +87,29 @@ class EdgeAhead:
             )
             for corner in found
         ]
+        return sorted([*corners, *self._tips(corners)], key=lambda corner: corner.first)
+
+    def _tips(self, corners: list[PutBack]) -> Iterator[PutBack]:
+        """Tips too narrow for their legs to show a vertex: they stay where the lens shows them."""
+        places, half = self.felt[:, :2], TIP_STATIONS
+        if len(places) < 2 * half + 1:
+            return
+        before = places[half:-half] - places[: -2 * half]
+        after = places[2 * half :] - places[half:-half]
+        cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
+        turned = np.abs(np.arctan2(cross, np.einsum("ij,ij->i", before, after)))
+        taken = np.zeros(len(places), bool)
+        for corner in corners:
+            taken[max(0, corner.first - half) : corner.last + half] = True
+        for k in np.argsort(-turned):
+            at = int(k) + half
+            if turned[k] < TIP_RAD:
+                break
+            if taken[at]:
+                continue
+            taken[at - 2 * half : at + 2 * half + 1] = True
+            into, out = (way / np.hypot(*way) for way in (before[k], after[k]))
+            yield PutBack(at - half, at + half, places[at : at + 1], into, out)
 
     @cached_property
     def nodes(self) -> list[Node]:
@@ -125,22 +150,22 @@ class EdgeAhead:
     def plan(self, stands: tuple[Array, float], clear_mm: float, bend_per_mm: float) -> Plan | None:
         """The way from where the head stands past the tight places ahead, until the edge is plain for a length.
 
-        Tight is what bends more than the swinging cell follows. None if nothing ahead is tight.
+        Tight is what bends more than the swinging cell follows; where the edge is tight to the end, the way
+        ends there. None if nothing ahead is tight.
         """
         tight = self._tight(stands[0], bend_per_mm)
         if not tight:
             return None
-        # 1. the last of the tight places that follow one another
+        # the last of the tight places that follow one another
         last = tight[0][1]
         clear = math.ceil(clear_mm / self.view.step_mm)
         for first, behind in tight:
             if first > last + clear:
                 break
             last = max(last, behind)
-        behind = [node for node in self.nodes if node.at >= last and node.at > self.here]
-        if not behind:
-            return None
-        return self._through(stands, behind[0])
+        ahead = [node for node in self.nodes if node.at > self.here]
+        behind = [node for node in ahead if node.at >= last] or ahead[-1:]
+        return self._through(stands, behind[0]) if behind else None
 
     def plain(self, stands: tuple[Array, float], length_mm: float) -> Plan | None:
         """The way along stations for a length; None if they end before."""

@@ -31,6 +31,10 @@ BALANCED = 0.5  # of the circle is dark on the edge
 TRIES = 3  # circles at a station: each is nearer to the edge than the one before
 FARTHEST_PX = 0.5  # by which a circle is moved at once
 FAINTEST = 0.04  # size of a fundamental that still is an edge: four times that of a scan's noise
+CERTAIN = 0.1  # size of one that shows the way
+SHORTEST, LONGEST = 0.3, 1.7  # steps that are one step on
+TURNS = 0.5  # cosine: a step turns less than 60 degrees
+TURN_SAMPLES = 36  # all round
 
 
 @njit(cache=True)
@@ -69,20 +73,50 @@ def onto_edge(cells, x_mm, y_mm):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
+def _round_about(cells, x_mm, y_mm, heading, side, step_mm):  # type: ignore[no-untyped-def]
+    """The next place of an edge a step on, found on a circle of that radius: from behind round through the shape.
+
+    NaN without shape and paper on it.
+    """
+    behind, before = heading + math.pi, math.nan
+    for k in range(1, TURN_SAMPLES):
+        a = behind - side * TWO_PI * k / TURN_SAMPLES
+        seen = darkness_at(cells, x_mm + step_mm * math.cos(a), y_mm + step_mm * math.sin(a))
+        if before >= BALANCED > seen:
+            a += side * TWO_PI / TURN_SAMPLES * (BALANCED - seen) / (before - seen)
+            return x_mm + step_mm * math.cos(a), y_mm + step_mm * math.sin(a)
+        before = seen
+    return math.nan, math.nan
+
+
+@njit(cache=True)
 def along_edge(cells, pose, step_mm, stations):  # type: ignore[no-untyped-def]
     """Feel along an edge from a pose (x mm, y mm, heading rad) near it, while there is one: (n, 3).
 
-    The shape stays on the side on which it is at the beginning.
+    The shape stays on the side on which it is at the beginning. At a tip so thin that the circle sees both of
+    its sides, the next place is looked for all round.
     """
     seen = np.empty((stations, 3))
     x, y, heading = pose
     x, y, inward_x, inward_y, size = onto_edge(cells, x, y)
     side = 1.0 if -math.sin(heading) * inward_x + math.cos(heading) * inward_y > 0 else -1.0
+    way_x, way_y = side * inward_y, -side * inward_x
     for k in range(stations):
         if math.isnan(x):
             return seen[:k].copy()
         seen[k, 0], seen[k, 1], seen[k, 2] = x, y, size
-        # the shape to the left is a quarter turn on from the way along the edge
-        x, y = x + side * step_mm * inward_y, y - side * step_mm * inward_x
-        x, y, inward_x, inward_y, size = onto_edge(cells, x, y)
+        # 1. by a step along the edge as the circle shows it: the shape is a quarter turn to its side
+        next_x, next_y, inward_x, inward_y, size = onto_edge(
+            cells, x + step_mm * way_x, y + step_mm * way_y
+        )
+        on_x, on_y = side * inward_y, -side * inward_x
+        dx, dy = next_x - x, next_y - y
+        come_mm = math.hypot(dx, dy)
+        turned = on_x * way_x + on_y * way_y
+        is_near = SHORTEST * step_mm < come_mm < LONGEST * step_mm
+        if not (size > CERTAIN and is_near and turned > TURNS and dx * way_x + dy * way_y > 0):
+            # 2. or all round
+            next_x, next_y = _round_about(cells, x, y, math.atan2(way_y, way_x), side, step_mm)
+            on_x, on_y = (next_x - x) / step_mm, (next_y - y) / step_mm
+        x, y, way_x, way_y = next_x, next_y, on_x, on_y
     return seen

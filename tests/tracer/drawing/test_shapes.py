@@ -4,6 +4,7 @@ lines of their own.
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import cv2
@@ -230,16 +231,76 @@ def test_small_holes_are_round(tmp_path: Path, radius_mm: float) -> None:
     )  # the hole is five to seven softnesses of the lens in radius
 
 
-@pytest.mark.parametrize("apart_mm", [0.15, 0.2])
-def test_edges_that_run_together_are_refused(tmp_path: Path, apart_mm: float) -> None:
-    bars = [
-        polyline((8, y), (28, y), (28, y + 8), (8, y + 8), (8, y)) for y in (8.0, 16 + apart_mm)
+def bars(apart_mm: float, times: float = 1.0) -> list[Points]:
+    """Two bars of 12 x 4 mm, a slit between them, drawn so many times as large."""
+    low, high = 4.0, 4.0 + apart_mm
+    return [
+        (8 + times * (polyline((0, y), (12, y), (12, y + 4), (0, y + 4), (0, y)) - [0, low - 4]))
+        for y in (low - 4, high)
     ]
-    with pytest.raises(
-        DrawingFault,
-        match=r"two edges are 0\.[012]\d mm apart at \d+\.\d,1[56]\.\d mm, .*--scale",
-    ):
-        Drawing.open(filled(tmp_path / "bars.png", *bars), edge=True)
+
+
+def test_edges_that_the_lens_cannot_part_are_closed_across_and_told_of(tmp_path: Path) -> None:
+    """One slit of 0.13 mm: the outline goes round both bars as one. It was refused."""
+    drawing = Drawing.open(filled(tmp_path / "bars.png", *bars(0.13)), edge=True)
+    run = trace_lines(drawing)
+    around = polyline((8, 8), (20, 8), (20, 16.13), (8, 16.13), (8, 8))
+    assert [line.ending for line in run.lines] == ["closed"]
+    found = distance(thin(run), around)
+    assert found.path_to_reference.rms_mm < 30 * UM and found.hausdorff_mm < 300 * UM, found
+    (note,) = drawing.notes
+    told = re.search(r"a slit of (0\.\d+) mm over (\d+\.\d) mm at 14\.\d,12\.[01] mm", note)
+    assert told is not None, note
+    assert abs(float(told[1]) - 0.13) < 0.04 and abs(float(told[2]) - 12) < 1
+
+
+def test_the_advice_on_a_slit_works(tmp_path: Path) -> None:
+    """Drawn so many times as large, with --scale as told, the slit is followed on both sides."""
+    (note,) = Drawing.open(filled(tmp_path / "bars.png", *bars(0.13)), edge=True).notes
+    told = re.search(r"print the shape (\S+) times as large and give --scale (\S+)$", note)
+    assert told is not None, note
+    times, scale = float(told[1]), float(told[2])
+    larger = bars(0.13, times)
+    drawing = Drawing.open(filled(tmp_path / "larger.png", *larger), edge=True)
+    run = trace_lines(drawing)
+    assert not drawing.notes and [line.ending for line in run.lines] == ["closed", "closed"]
+    assert distance(thin(run), larger).hausdorff_mm < 60 * UM
+    assert abs(scale * times - 1) < 0.001
+
+
+def test_a_slit_that_is_a_streak_only_is_told_of(tmp_path: Path) -> None:
+    drawing = Drawing.open(filled(tmp_path / "bars.png", *bars(0.05)), edge=True)
+    assert re.search(r"streak only, over 1\d\.\d mm at 14\.\d,12\.0 mm", drawing.notes[0])
+    assert Drawing.open(filled(tmp_path / "disc.png", CIRCLE), edge=True).notes == ()
+
+
+def test_a_bridge_that_is_too_thin_is_left_out_and_told_of(tmp_path: Path) -> None:
+    """A bridge of 0.1 mm over a gap of 2 mm: the plates are outlines of their own."""
+    plates = [
+        polyline((x, 8), (x + 8, 8), (x + 8, 14), (x, 14), (x, 8)) for x in (8.0, 18.0)
+    ]
+    bridge = polyline((15, 11), (19, 11), (19, 11.14), (15, 11.14), (15, 11))
+    drawing = Drawing.open(filled(tmp_path / "plates.png", *plates, bridge), edge=True)
+    run = trace_lines(drawing)
+    assert re.search(r"a bridge of 0\.1\d mm over [12]\.\d mm at 17\.\d,11\.\d mm", drawing.notes[0])
+    assert [line.ending for line in run.lines] == ["closed", "closed"]
+    assert distance(thin(run), plates).path_to_reference.rms_mm < 20 * UM
+
+
+def test_a_slit_of_0_2_mm_is_followed(tmp_path: Path) -> None:
+    """It was refused. Each edge is drawn to the other by the lens: 8 um of 200."""
+    outlines = bars(0.2)
+    run = trace_lines(Drawing.open(filled(tmp_path / "bars.png", *outlines), edge=True))
+    assert [line.ending for line in run.lines] == ["closed", "closed"]
+    assert distance(thin(run), outlines).hausdorff_mm < 40 * UM
+
+
+def test_a_cut_shape_does_not_keep_the_others_from_being_followed(tmp_path: Path) -> None:
+    cut = polyline((30, 26), (40, 26), (40, 32), (30, 32), (30, 26))
+    drawing = Drawing.open(filled(tmp_path / "two.png", CIRCLE, cut), edge=True)
+    assert "left out: a filled shape is cut by the border" in drawing.notes[0]
+    run = trace_lines(drawing)
+    assert distance(thin(run), CIRCLE).path_to_reference.rms_mm < 4 * UM
 
 
 def test_a_shape_cut_by_the_border_is_refused(tmp_path: Path) -> None:

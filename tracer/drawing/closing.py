@@ -1,0 +1,163 @@
+"""Closing across: where the edges of filled shapes are too near for the lens, the shape goes on without them.
+
+Signals: how dark each pixel is between paper and shape, and pairs of places of edges that are too near one
+another (pixels), in; the same picture with slits filled and thin bridges left out, and where that is, out.
+
+    ███████ ██████        ██████████████        A slit that narrows to less than two standard deviations of the
+    ███████ ██████   →    ██████████████        lens is filled from there on; a bridge of the shape that is as
+    ██████   █████        ██████   █████        thin is taken away. A slit so thin that the lens shows no edge of it is a streak in the shape: it is told of.
+
+Source: our own; an operator closes with the pen what the paper does not show.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from morfax.motion.arrays import Array
+from morfax.tracer.drawing.spacing import CLEAR, Pairs
+
+Grey = NDArray[np.float32]
+
+BEYOND = 2.0  # standard deviations of the lens: so far beyond the edges their softness goes
+STROKE_PX = 3  # of the strokes from edge to edge, which are a pixel apart
+TOGETHER_PX = 6.0  # places nearer to one another are of one slit
+TOLD = 3  # places that are told one by one
+ROOM = 1.15  # times the least distance: what is printed so large is followed
+NARROWS = 0.5  # of the usual distance: a slit that is nearer somewhere narrows to a tip
+# darkness of a streak, its depth in the shape (standard deviations of the lens), and its least length; by trial
+STREAK, STREAK_DEEP, STREAK_MM = 0.8, 4.0, 1.5
+SIXTEENTHS = 16  # of a pixel
+
+
+@dataclass(frozen=True, slots=True)
+class Closed:
+    """A place that was closed across: its middle, how far apart its edges are as a rule, and its length, mm.
+
+    Of a slit in a shape, or of a thin bridge. `narrows` to nothing, like the tip of a wedge. A streak has no
+    edges that were apart.
+    """
+
+    place_mm: tuple[float, float]
+    apart_mm: float
+    length_mm: float
+    is_slit: bool
+    narrows: bool
+
+    def __str__(self) -> str:
+        what = f"{'slit' if self.is_slit else 'bridge'} of {self.apart_mm:.2f} mm"
+        if not self.apart_mm:
+            what = "slit that shows as a streak only,"
+        return (
+            f"a {what} over {self.length_mm:.1f} mm at"
+            f" {self.place_mm[0]:.1f},{self.place_mm[1]:.1f} mm"
+        )
+
+
+class Cover(NamedTuple):
+    """What is laid over a picture: where (0 to 1), and how dark it is."""
+
+    where: Grey
+    darkness: float
+
+    def over(self, share: Grey) -> Grey:
+        """A picture with this over it."""
+        return np.asarray(share + self.where * (self.darkness - share), np.float32)
+
+
+def covers(share: Grey, pairs: Pairs, softness_px: float) -> Iterator[Cover]:
+    """What fills the slits and takes the bridges away where pairs of places are too near."""
+    slits = _are_slits(share, pairs)
+    for darkness, which in ((1.0, slits), (0.0, ~slits)):
+        if which.any():
+            where = _strokes(pairs.places[which], share.shape, BEYOND * softness_px)
+            soft = cv2.GaussianBlur(where, (0, 0), softness_px)
+            yield Cover(np.asarray(soft, np.float32), darkness)
+
+
+def places_of(share: Grey, pairs: Pairs, pitch_mm: float) -> list[Closed]:
+    """The slits and bridges that pairs of places are of, the longest first."""
+    middles = pairs.places.mean(axis=1)
+    near = cKDTree(middles).query_pairs(TOGETHER_PX, output_type="ndarray")
+    ones = np.ones(len(near), np.int8)
+    links = coo_array((ones, (near[:, 0], near[:, 1])), shape=(len(middles),) * 2)
+    count, group = connected_components(links, directed=False)
+    slits, found = _are_slits(share, pairs), list[Closed]()
+    for number in range(count):
+        mine = group == number
+        row, column = np.median(middles[mine], axis=0)
+        across = pairs.across[mine]
+        usual, along = float(np.median(across)), np.unique(np.round(pairs.along[mine][:, 0]))
+        found.append(
+            Closed(
+                ((column + 0.5) * pitch_mm, (share.shape[0] - row - 0.5) * pitch_mm),
+                usual * pitch_mm,
+                len(along) * pitch_mm,
+                bool(np.mean(slits[mine]) > 0.5),
+                bool(across.min() < NARROWS * usual),
+            )
+        )
+    return sorted(found, key=lambda closed: -closed.length_mm)
+
+
+def streaks_of(share: Grey, softness_px: float, pitch_mm: float) -> list[Closed]:
+    """Slits in the shapes that are too thin for the lens to show an edge of them, the longest first."""
+    border = np.concatenate([share[0], share[-1], share[:, 0], share[:, -1]])
+    shape = share if float(np.median(border)) < 0.5 else 1 - share
+    depth = cv2.distanceTransform((shape > 0.5).view(np.uint8), cv2.DIST_L2, 5)
+    pale = (shape < STREAK) & (depth > STREAK_DEEP * softness_px)
+    _, _, boxes, middles = cv2.connectedComponentsWithStats(pale.view(np.uint8))
+    found = list[Closed]()
+    for box, (column, row) in zip(boxes[1:], middles[1:], strict=True):
+        length_mm = math.hypot(box[2], box[3]) * pitch_mm
+        if length_mm > STREAK_MM:
+            x, y = (column + 0.5) * pitch_mm, (share.shape[0] - row - 0.5) * pitch_mm
+            found.append(Closed((float(x), float(y)), 0.0, length_mm, True, False))
+    return sorted(found, key=lambda closed: -closed.length_mm)
+
+
+def note(closed: list[Closed], softness_mm: float) -> str:
+    """What the operator should know of places that were closed across, and what to do."""
+    told = "; ".join(map(str, closed[:TOLD]))
+    more = f"; and {len(closed) - TOLD} more places" if len(closed) > TOLD else ""
+    least_mm = CLEAR * softness_mm
+    text = (
+        f"edges nearer than {least_mm:.2f} mm cannot be told apart on this scan, and are closed"
+        f" across: {told}{more}"
+    )
+    even = [each.apart_mm for each in closed if each.apart_mm and not each.narrows]
+    if not even:
+        return f"{text}; what they look like there only a finer scan, or a larger print, can show"
+    times = math.ceil(10 * ROOM * least_mm / min(even)) / 10
+    return (
+        f"{text}; to have them followed, print the shape {times:g} times as large and give --scale"
+        f" {1 / times:.4g}"
+    )
+
+
+def _are_slits(share: Grey, pairs: Pairs) -> NDArray[np.bool_]:
+    """Whether there is paper between the places of each pair, and not shape."""
+    rows, columns = np.round(pairs.places.mean(axis=1)).astype(int).T
+    limits = np.array(share.shape) - 1
+    return np.asarray(share[np.clip(rows, 0, limits[0]), np.clip(columns, 0, limits[1])] < 0.5)
+
+
+def _strokes(places: Array, shape: tuple[int, ...], beyond_px: float) -> Grey:
+    """Strokes from place to place of each pair (n, 2, 2), and so far beyond."""
+    across = places[:, 1] - places[:, 0]
+    ways = across / np.maximum(np.hypot(*across.T), 1e-9)[:, None]
+    ends = np.stack([places[:, 0] - beyond_px * ways, places[:, 1] + beyond_px * ways], axis=1)
+    cover = np.zeros(shape, np.uint8)
+    for stroke in np.round(SIXTEENTHS * ends[:, :, ::-1]).astype(np.int32):
+        cv2.polylines(cover, [stroke], False, 1, STROKE_PX, cv2.LINE_8, shift=4)
+    return cover.astype(np.float32)
