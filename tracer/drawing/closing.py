@@ -34,9 +34,11 @@ STROKE_PX = 3  # of the strokes from edge to edge, which are a pixel apart
 TOGETHER_PX = 6.0  # places nearer to one another are of one slit
 TOLD = 3  # places that are told one by one
 ROOM = 1.15  # times the least distance: what is printed so large is followed
+TIP_PERCENT = 10.0
 NARROWS = 0.5  # of the usual distance: a slit that is nearer somewhere narrows to a tip
 # darkness of a streak, its depth in the shape (standard deviations of the lens), and its least length; by trial
 STREAK, STREAK_DEEP, STREAK_MM = 0.8, 4.0, 1.5
+STREAK_GAP_MM = 0.3  # half of what noise breaks of it
 SIXTEENTHS = 16  # of a pixel
 
 
@@ -96,15 +98,18 @@ def places_of(share: Grey, pairs: Pairs, pitch_mm: float) -> list[Closed]:
     for number in range(count):
         mine = group == number
         row, column = np.median(middles[mine], axis=0)
-        across = pairs.across[mine]
-        usual, along = float(np.median(across)), np.unique(np.round(pairs.along[mine][:, 0]))
+        along = np.round(pairs.along[mine][:, 0]).astype(int)
+        gaps = np.full(along.max() + 1, np.inf)
+        np.minimum.at(gaps, along, pairs.across[mine])
+        gaps = gaps[np.isfinite(gaps)]  # straight across from each place
+        usual = float(np.median(gaps))
         found.append(
             Closed(
                 ((column + 0.5) * pitch_mm, (share.shape[0] - row - 0.5) * pitch_mm),
                 usual * pitch_mm,
-                len(along) * pitch_mm,
+                len(gaps) * pitch_mm,
                 bool(np.mean(slits[mine]) > 0.5),
-                bool(across.min() < NARROWS * usual),
+                bool(np.percentile(gaps, TIP_PERCENT) < NARROWS * usual),
             )
         )
     return sorted(found, key=lambda closed: -closed.length_mm)
@@ -115,8 +120,10 @@ def streaks_of(share: Grey, softness_px: float, pitch_mm: float) -> list[Closed]
     border = np.concatenate([share[0], share[-1], share[:, 0], share[:, -1]])
     shape = share if float(np.median(border)) < 0.5 else 1 - share
     depth = cv2.distanceTransform((shape > 0.5).view(np.uint8), cv2.DIST_L2, 5)
-    pale = (shape < STREAK) & (depth > STREAK_DEEP * softness_px)
-    _, _, boxes, middles = cv2.connectedComponentsWithStats(pale.view(np.uint8))
+    pale = ((shape < STREAK) & (depth > STREAK_DEEP * softness_px)).view(np.uint8)
+    joins = np.ones((2 * round(STREAK_GAP_MM / pitch_mm) + 1,) * 2, np.uint8)
+    pale = np.asarray(cv2.morphologyEx(pale, cv2.MORPH_CLOSE, joins), np.uint8)
+    _, _, boxes, middles = cv2.connectedComponentsWithStats(pale)
     found = list[Closed]()
     for box, (column, row) in zip(boxes[1:], middles[1:], strict=True):
         length_mm = math.hypot(box[2], box[3]) * pitch_mm

@@ -36,7 +36,7 @@ from morfax.tracer.sensing.view import View
 
 # Chosen by trial on filled shapes.
 AVERAGED_RAD = 0.36  # that the edge may turn within half of the length over which stations are averaged
-LEAST_AVERAGED_PX = 1.2  # half of that length at least
+LEAST_AVERAGED_PX = 1.6  # half of that length at least
 NODES = 3  # within that half
 LEAST_NODES = 4  # stations to either side
 TIP_STATIONS, TIP_RAD = 4, math.radians(100)  # stations to either side of a tip, that turn by so much

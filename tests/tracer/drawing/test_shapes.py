@@ -241,26 +241,29 @@ def bars(apart_mm: float, times: float = 1.0) -> list[Points]:
 
 
 def test_edges_that_the_lens_cannot_part_are_closed_across_and_told_of(tmp_path: Path) -> None:
-    """One slit of 0.13 mm: the outline goes round both bars as one. It was refused."""
-    drawing = Drawing.open(filled(tmp_path / "bars.png", *bars(0.13)), edge=True)
+    """One slit of 0.15 mm: the outline goes round both bars as one. It was refused."""
+    drawing = Drawing.open(filled(tmp_path / "bars.png", *bars(0.15)), edge=True)
     run = trace_lines(drawing)
-    around = polyline((8, 8), (20, 8), (20, 16.13), (8, 16.13), (8, 8))
+    around = polyline((8, 8), (20, 8), (20, 16.15), (8, 16.15), (8, 8))
     assert [line.ending for line in run.lines] == ["closed"]
     found = distance(thin(run), around)
-    assert found.path_to_reference.rms_mm < 30 * UM and found.hausdorff_mm < 300 * UM, found
+    assert found.hausdorff_mm < 400 * UM, found  # a notch at either mouth: the corners there are round
+    xy_mm = run.lines[0].xy_mm
+    beside = np.abs(xy_mm[:, 1] - 12) > 1
+    assert distance(xy_mm[beside][::4], around).path_to_reference.rms_mm < 6 * UM
     (note,) = drawing.notes
     told = re.search(r"a slit of (0\.\d+) mm over (\d+\.\d) mm at 14\.\d,12\.[01] mm", note)
     assert told is not None, note
-    assert abs(float(told[1]) - 0.13) < 0.04 and abs(float(told[2]) - 12) < 1
+    assert abs(float(told[1]) - 0.15) < 0.04 and abs(float(told[2]) - 12) < 1
 
 
 def test_the_advice_on_a_slit_works(tmp_path: Path) -> None:
     """Drawn so many times as large, with --scale as told, the slit is followed on both sides."""
-    (note,) = Drawing.open(filled(tmp_path / "bars.png", *bars(0.13)), edge=True).notes
+    (note,) = Drawing.open(filled(tmp_path / "bars.png", *bars(0.15)), edge=True).notes
     told = re.search(r"print the shape (\S+) times as large and give --scale (\S+)$", note)
     assert told is not None, note
     times, scale = float(told[1]), float(told[2])
-    larger = bars(0.13, times)
+    larger = bars(0.15, times)
     drawing = Drawing.open(filled(tmp_path / "larger.png", *larger), edge=True)
     run = trace_lines(drawing)
     assert not drawing.notes and [line.ending for line in run.lines] == ["closed", "closed"]
@@ -284,7 +287,8 @@ def test_a_bridge_that_is_too_thin_is_left_out_and_told_of(tmp_path: Path) -> No
     run = trace_lines(drawing)
     assert re.search(r"a bridge of 0\.1\d mm over [12]\.\d mm at 17\.\d,11\.\d mm", drawing.notes[0])
     assert [line.ending for line in run.lines] == ["closed", "closed"]
-    assert distance(thin(run), plates).path_to_reference.rms_mm < 20 * UM
+    found = distance(thin(run), plates)
+    assert found.path_to_reference.p95_mm < 20 * UM and found.hausdorff_mm < 400 * UM, found
 
 
 def test_a_slit_of_0_2_mm_is_followed(tmp_path: Path) -> None:
