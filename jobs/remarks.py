@@ -29,10 +29,10 @@ STEP_PER_MM = 10  # a gap is suggested in whole tenths of a mm
 def remarks(
     trace: Trace, settings: TraceSettings, gap_mm: float, enlarged: int
 ) -> Iterator[str]:
-    """Remarks on a trace, of a head that crossed gaps of up to `gap_mm` on a drawing that was enlarged."""
+    """Remarks on a trace, of a head that crossed gaps of up to `gap_mm`; some lines were `enlarged`."""
     if enlarged > 1:
         yield (
-            f"edges are close together: traced at {enlarged} times the scale, so the machine goes {enlarged} "
+            f"small outlines are traced at {enlarged} times the scale, so there the machine goes {enlarged} "
             "times slower than the head"
         )
     yield from _of_stops(trace)

@@ -95,7 +95,8 @@ class Tracing:
             is_all = self.settings.line.lines == "all"
             lines = None if is_all else followed.lines
             yield from correction_settings.not_served(drawing.corrected, lines)
-        yield from remarks(followed, self.settings, self.of_head.gap_mm, drawing.enlarged)
+        times = max((drawing.times_at(line.xy_mm[0]) for line in followed.lines), default=1)
+        yield from remarks(followed, self.settings, self.of_head.gap_mm, times)
         yield from of_order(followed, self.settings.line.order)
         if led is not None:
             yield from led.remarks()

@@ -41,7 +41,7 @@ def test_fine_details_are_followed_enlarged_and_told_of(morfax: Morfax, here: Pa
     answer = morfax(
         "trace", sheet, "--edge", "--lines", "contours", "-o", "plate.csv", "--json"
     )
-    assert answer.exit_code == 0 and "traced at 2 times the scale" in answer.err
+    assert answer.exit_code == 0 and "traced at 3 times the scale" in answer.err
     path = read_path(here / "plate.csv")
     assert distance(path, [CIRCLE, hole]).hausdorff_mm < 45 * UM  # as in test_silhouette
     again = morfax("trace", filled(here / "disc.png", CIRCLE), "--edge", "-o", "disc.csv")

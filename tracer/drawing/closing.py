@@ -3,9 +3,11 @@
 Signals: how dark each pixel is between paper and shape, and pairs of places of edges that are too near one
 another (pixels), in; the same picture with slits filled and thin bridges left out, and where that is, out.
 
-    ███████ ██████        ██████████████        A slit that narrows to less than two standard deviations of the
-    ███████ ██████   →    ██████████████        lens is filled from there on; a bridge of the shape that is as
-    ██████   █████        ██████   █████        thin is taken away. A slit so thin that the lens shows no edge of it is a streak in the shape: it is told of.
+    ███████ ██████        ██████████████        A slit that narrows to less than two standard deviations of
+    ███████ ██████   →    ██████████████        the lens is filled from there on; a bridge of the shape that
+    ██████   █████        ██████   █████        is as thin is taken away.
+
+A slit so thin that the lens shows no edge of it is a streak in the shape: it is told of.
 
 Source: our own; an operator closes with the pen what the paper does not show.
 """
@@ -36,7 +38,7 @@ TOLD = 3  # places that are told one by one
 ROOM = 1.15  # times the least distance: what is printed so large is followed
 TIP_PERCENT = 10.0
 NARROWS = 0.5  # of the usual distance: a slit that is nearer somewhere narrows to a tip
-# darkness of a streak, its depth in the shape (standard deviations of the lens), and its least length; by trial
+# darkness of a streak, its depth in the shape (standard deviations of the lens), its least length; by trial
 STREAK, STREAK_DEEP, STREAK_MM = 0.8, 4.0, 1.5
 STREAK_GAP_MM = 0.3  # half of what noise breaks of it
 SIXTEENTHS = 16  # of a pixel
@@ -144,7 +146,9 @@ def note(closed: list[Closed], softness_mm: float) -> str:
     )
     even = [each.apart_mm for each in closed if each.apart_mm and not each.narrows]
     if not even:
-        return f"{text}; what they look like there only a finer scan, or a larger print, can show"
+        return (
+            f"{text}; what they look like there only a finer scan, or a larger print, can show"
+        )
     times = math.ceil(10 * ROOM * least_mm / min(even)) / 10
     return (
         f"{text}; to have them followed, print the shape {times:g} times as large and give --scale"

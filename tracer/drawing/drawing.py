@@ -60,12 +60,13 @@ Shapes = NDArray[np.bool_]
 class Drawing:
     """A drawing as the cells see it: `darkness` (rows from the top, columns) on pixels of `pitch_mm`.
 
-    Of filled shapes whose edges are asked for: `edges_mm`, closed polylines (n, 2) to which a run has to
-    keep, and how many times `enlarged` the head sees the line along them. Otherwise `shapes` tells where
-    filled shapes are, on the picture reduced by a whole number. `notes` on the file are for the operator;
+    Of filled shapes whose edges are asked for: the darkness is a line where the edges are, so many times
+    `enlarged`; `edges_mm` are closed polylines (n, 2) to which a run has to keep; and the `shade` is what the
+    head's cells see, paper 0 and shape 1, on the picture's own pixels. Otherwise `shapes` tells where filled
+    shapes are, on the picture reduced by a whole number. `notes` on the file are for the operator;
     `flattening` is how well a photograph was made flat; `corrected` what the operator has put right, and
-    `bare` the drawing before its ink was put right. The pixels of a coarse scan are made so many
-    times `finer`.
+    `bare` the drawing before its ink was put right. The pixels of a coarse scan are made so many times
+    `finer`.
     """
 
     darkness: Darkness

@@ -1,14 +1,14 @@
-"""Silhouettes: the edge of a filled shape, drawn as a line that the head follows like any other.
+"""Silhouettes: where the edges of filled shapes are, and how dark the sheet is between paper and shape.
 
-Signals: grey levels in; out darkness 0..1 of a line of `EDGE_MM` whose middle is where the picture is half
-way between paper and shape, and that middle as outlines. The head does not see the outlines; they serve to
-check afterwards that it kept to them (see `edge_check`).
+Signals: grey levels in; out the shade that the head's cells see, 0 paper and 1 shape; and where edges are: a
+line of `EDGE_MM` whose middle is where the picture is half way, and that middle as outlines.
 
-The line is as a round pen would draw it along the edge: dark where the edge is within half the line's width.
-So corners look as inked corners do, and the head takes them in the same way: it finds its way by its own
-cells. What the scanner's lens has taken off the corners is put back (see `sharpening`). Where edges are near
-one another the line is finer, on finer pixels (see `spacing`); edges that the lens has run together are
-refused. Paper and shape may both be uneven: their levels are averaged over `ROUND_ABOUT_MM`.
+The head follows the edge by its own cells, and sees the shade only. The line tells which edges there are, how
+long they are and where the head may be put down; the outlines serve to check afterwards that it kept to them
+(see `edge_check`), and `compare` measures a path by the line. What the scanner's lens has taken off their
+corners is put back (see `sharpening`). Where edges are near one another the line is finer, on finer pixels
+(see `spacing`). Slits and bridges that are too thin for the lens are closed across (see `closing`). Paper and
+shape may both be uneven: their levels are averaged over `ROUND_ABOUT_MM`.
 
 Source: our own; the patent's follower has lines only. Questions: an edge is the same from both sides, so
 light shapes on dark paper need no option. Which of the two is paper matters only for ink that is too thin to
@@ -50,7 +50,7 @@ Grey = NDArray[np.float32]
 
 @dataclass(frozen=True, slots=True)
 class Outlined:
-    """A line along the edges of filled shapes, on pixels so many times `finer` than the picture's.
+    """Where the edges of filled shapes are: a line along them, on pixels so many times `finer`.
 
     Its darkness, and the edges (n, 2) in sheet mm. The `shade` of the picture itself, paper 0 and shape 1,
     and notes for the operator.
@@ -64,7 +64,7 @@ class Outlined:
 
 
 def outlined(grey: NDArray[Any], pitch_mm: float) -> Outlined:
-    """The line along the edges of filled shapes, finer where they are near one another.
+    """Where the edges of filled shapes are, and the picture between paper and shape.
 
     Raises DrawingFault without any shape, and if the border of the sheet cuts all of them.
     """
@@ -94,7 +94,7 @@ def outlined(grey: NDArray[Any], pitch_mm: float) -> Outlined:
 
 
 def _edges(share: Grey, pitch_mm: float) -> tuple[list[Edge], float, tuple[str, ...]]:
-    """The edges of whole shapes with their corners, the softness of the lens (pixels), and notes on others."""
+    """The edges of whole shapes with their corners, the lens's softness (pixels), and notes on others."""
     from skimage.measure import find_contours
 
     edges = [

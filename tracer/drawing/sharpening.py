@@ -83,13 +83,8 @@ def sharpened(outline: Array, softness_px: float) -> Edge:
     return Edge(np.vstack([*parts, places[come:], places[:1]]), np.array(middles, int))
 
 
-def corners_of(
-    places: Array, softness_px: float, *, is_closed: bool = True
-) -> list[PutBack]:
-    """The corners that the lens has rounded on an outline (n, 2) pixels, a place every `APART_PX`, in order.
-
-    Of a closed outline, or of a piece of one.
-    """
+def corners_of(places: Array, softness_px: float, *, is_closed: bool = True) -> list[PutBack]:
+    """The corners that the lens has rounded on an outline, or a piece of one, a place every `APART_PX`."""
     turns = _corners(places, softness_px, is_closed)
     corners, come = list[PutBack](), 0
     for k in range(len(turns)):

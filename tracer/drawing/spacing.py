@@ -102,6 +102,7 @@ class Pairs:
         """How near the places of a pair are; infinite if there is none."""
         return float(self.across.min(initial=np.inf))
 
+
 def _legs_of_corners(edges: list[Edge], pairs: Pairs) -> NDArray[np.bool_]:
     """Which pairs are on the two legs of one corner."""
     legs, lengths = np.zeros(len(pairs.back), bool), _lengths(edges)

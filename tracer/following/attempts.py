@@ -28,9 +28,9 @@ from morfax.tracer.drawing.strokes import INK
 from morfax.tracer.following import knots
 from morfax.tracer.following.direction import Direction, goes, turned_about, turned_to
 from morfax.tracer.following.edge_check import kept_to
+from morfax.tracer.following.edge_follower import EdgeFollower
 from morfax.tracer.following.enlarger import enlarged, reduced
 from morfax.tracer.following.followed import THINNED, Followed
-from morfax.tracer.following.edge_follower import EdgeFollower
 from morfax.tracer.following.follower import Follower
 from morfax.tracer.following.ways_out import Turns
 from morfax.tracer.head.settings import Settings

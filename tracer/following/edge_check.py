@@ -21,8 +21,8 @@ from morfax.motion.faults import LineFault
 from morfax.motion.polyline import lengths_mm, with_places
 from morfax.tracer.following.followed import Followed
 
-# a tip of 15 degrees that the head has put back where the outline shows the lens's round, or the other way about,
-# is as far off (way_inside, 6 standard deviations of a usual lens)
+# a tip of 15 degrees that one of both has put back, and the other has left round, is as far off: six standard
+# deviations of a lens (see `drawing.lens`)
 OFF_MM = 0.5
 EVERY_MM = 0.02  # between the places of an edge
 CHECKED = 8  # one position in 8 is checked: every 13 um at 10 mm/s

@@ -21,7 +21,11 @@ from morfax.tracer.junctions.edge_ahead import EdgeAhead
 
 # Chosen by trial on filled shapes.
 BACK_LEGS = 1.0  # legs behind the axis from which on the edge is felt
-AHEAD_LEGS = (1.5, 4.0, 10.0)  # legs beyond the guard cells: further, while the edge is tight there
+AHEAD_LEGS = (
+    1.5,
+    4.0,
+    10.0,
+)  # legs beyond the guard cells: further, while the edge is tight there
 CLEAR_LEADS = 1.3  # of a plain edge, before the cell leads again
 FEWEST_STATIONS = 20
 
@@ -58,7 +62,9 @@ class EdgeFollower(Follower):
     def _felt(self, ahead_mm: float) -> EdgeAhead | None:
         """The edge from behind the axis to so far ahead of it; None if it ends before."""
         back_mm = min(BACK_LEGS * self.view.leg_mm, self.carriage.travel_mm)
-        place, heading = self.carriage.trail.back(back_mm) if back_mm else self.carriage.stands()
+        place, heading = (
+            self.carriage.trail.back(back_mm) if back_mm else self.carriage.stands()
+        )
         felt: Array = self.view.feel_edge(place, heading, back_mm + ahead_mm)
         if len(felt) < FEWEST_STATIONS:
             return None

@@ -21,13 +21,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.head import kernel, screws, swinging, watched
 from morfax.tracer.head.leaders import CELL, MEMORY, STATIONS, Led, Log
-from morfax.tracer.head.settings import (
-    CALIBRATED_ASIDE,
-    CALIBRATED_STATIONS,
-    EDGE_STATIONS,
-    Settings,
-    tune,
-)
+from morfax.tracer.head.settings import CALIBRATED_ASIDE, Settings, tune, tuned_along
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.state import Home, Tuning, at_rest
 from morfax.tracer.head.trail import Trail
@@ -123,9 +117,9 @@ class Carriage:
         if self.count > 1:  # a run that is taken up again
             return True
         off_mm, back_mm = CALIBRATED_ASIDE * view.width_mm, 0.0
-        stations, tuning = CALIBRATED_STATIONS, self.tuning
+        stations, tuning = tuned_along(view), self.tuning
         if view.on_edge:
-            stations, tuning = EDGE_STATIONS, tuning._replace(lead_mm=0.0)
+            tuning = tuning._replace(lead_mm=0.0)
         for k in range(stations):
             for side in (-1.0, 1.0):
                 state = self.state.copy()

@@ -24,6 +24,7 @@ from morfax.motion.drive import Drive
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.state import Tuning
 from morfax.tracer.sensing.photocell import sweep
+from morfax.tracer.sensing.view import View
 
 OF_DRIVE = "drive_"  # the names of the drives' settings begin so
 
@@ -32,8 +33,14 @@ WINDOW_MM, WINDOW_WIDTHS, WINDOW_PX = 0.35, 0.6, 7  # half the window of the par
 POINT_MM, POINT_PX = 0.12, 1.2  # from the axis to the point that it steers for
 LEAD_SWEEPS = 2  # beyond window and point: a place is on the drum before the window needs it
 SWING_WIDTHS, SWING_PX = 0.6, 1.5  # amplitude of the sweep
-EDGE_SWING_WIDTHS, EDGE_SWING_PX = 0.25, 1.2  # on an edge: a shorter swing hears less noise for its slope
-EDGE_WINDOW_PX, EDGE_POINT_PX = 2, 0.6  # an edge is as sharp as the lens: fewer pixels than a line's two edges need
+EDGE_SWING_WIDTHS, EDGE_SWING_PX = (
+    0.25,
+    1.2,
+)  # on an edge: a shorter swing hears less noise for its slope
+EDGE_WINDOW_PX, EDGE_POINT_PX = (
+    2,
+    0.6,
+)  # an edge is as sharp as the lens: fewer pixels than a line's two edges need
 EDGE_NARROWEST_RAD = 0.45
 EDGE_GUARD_PX, EDGE_GUARD_AHEAD_PX = 1.6, 0.6
 EDGE_STATIONS = 3  # along which an edge is measured: it may bend more than a line
@@ -239,13 +246,18 @@ def tune(stance: Stance, settings: Settings, rate_hz: float) -> Tuning:
     )
 
 
+def tuned_along(view: View) -> int:
+    """The number of stations along which a line or an edge is measured."""
+    return EDGE_STATIONS if view.on_edge else CALIBRATED_STATIONS
+
+
 def _calibrate(stance: Stance, amplitude_mm: float) -> tuple[float, float, float]:
-    """Slope of the sweep's fundamental (per mm), its mean darkness and 0, over a few stations ahead of a stance.
+    """Slope of the sweep's fundamental (per mm), its mean darkness and 0, over a few stations ahead.
 
     On the edge of a shape: the slope, the size of the fundamental, and the slope of the mean (per mm).
     """
     view, heading = stance.view, stance.heading_rad
-    stations = EDGE_STATIONS if view.on_edge else CALIBRATED_STATIONS
+    stations = tuned_along(view)
     aside = CALIBRATED_ASIDE * view.width_mm
     to_left, to_right = (-aside, amplitude_mm), (aside, amplitude_mm)
     way = np.array([math.cos(heading), math.sin(heading)])

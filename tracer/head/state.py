@@ -81,8 +81,12 @@ class Tuning(NamedTuple):
     guard_lead_mm: float
     look_ahead_mm: float
     slope_per_mm: float  # of the sweep's fundamental at the middle of the line
-    mean: float  # darkness over a centred sweep; on an edge, the size of the sweep's fundamental
-    balance_per_mm: float  # of the sweep's mean as the edge of a shape moves to the left; 0 on a line
+    mean: (
+        float  # darkness over a centred sweep; on an edge, the size of the sweep's fundamental
+    )
+    balance_per_mm: (
+        float  # of the sweep's mean as the edge of a shape moves to the left; 0 on a line
+    )
     drive_gain: float  # share of the speed error that a drive makes good in one period
     drive_change_mm_s: float  # largest change of a drive's speed in one period
     steering_gain: (

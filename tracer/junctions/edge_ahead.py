@@ -35,11 +35,16 @@ from morfax.tracer.sensing.leg import Leg, centre_at, turn
 from morfax.tracer.sensing.view import View
 
 # Chosen by trial on filled shapes.
-AVERAGED_RAD = 0.36  # that the edge may turn within half of the length over which stations are averaged
+AVERAGED_RAD = (
+    0.36  # that the edge may turn within half of the length over which stations are averaged
+)
 LEAST_AVERAGED_PX = 1.6  # half of that length at least
 NODES = 3  # within that half
 LEAST_NODES = 4  # stations to either side
-TIP_STATIONS, TIP_RAD = 4, math.radians(100)  # stations to either side of a tip, that turn by so much
+TIP_STATIONS, TIP_RAD = (
+    4,
+    math.radians(100),
+)  # stations to either side of a tip, that turn by so much
 STEEPEST = 0.55  # of the fundamental: no edge is steeper behind an aperture
 
 
@@ -147,8 +152,10 @@ class EdgeAhead:
             half_mm = max(least_mm, AVERAGED_RAD / abs(leg.bend_per_mm))
         return leg, half_mm
 
-    def plan(self, stands: tuple[Array, float], clear_mm: float, bend_per_mm: float) -> Plan | None:
-        """The way from where the head stands past the tight places ahead, until the edge is plain for a length.
+    def plan(
+        self, stands: tuple[Array, float], clear_mm: float, bend_per_mm: float
+    ) -> Plan | None:
+        """The way from where the head stands past the tight places ahead, up to a length of plain edge.
 
         Tight is what bends more than the swinging cell follows; where the edge is tight to the end, the way
         ends there. None if nothing ahead is tight.
@@ -176,7 +183,9 @@ class EdgeAhead:
     def _tight(self, place: Array, bend_per_mm: float) -> list[tuple[int, int]]:
         """First and last stations of corners and tight bends ahead, in order."""
         ahead = [
-            (corner.first, corner.last) for corner in self.corners if self._is_ahead(corner, place)
+            (corner.first, corner.last)
+            for corner in self.corners
+            if self._is_ahead(corner, place)
         ]
         ahead += [
             (node.at, node.at + 1)
@@ -201,7 +210,12 @@ class EdgeAhead:
                 if mark.at <= self.here or mark.at > end.at:
                     continue
                 onto = mark.leg.end_mm - place
-                if not stretches and not way and float(np.hypot(*onto)) < near_mm and mark != end:
+                if (
+                    not stretches
+                    and not way
+                    and float(np.hypot(*onto)) < near_mm
+                    and mark != end
+                ):
                     continue
                 way.append(hermite(place, heading, mark.leg.end_mm, mark.leg.heading_rad))
                 place, heading = mark.leg.end_mm, mark.leg.heading_rad

@@ -1,4 +1,4 @@
-"""The edge scout: feels along the edge of a filled shape, station by station, with a cell that goes in circles.
+"""The edge scout: feels along the edge of a filled shape with a cell that goes in circles.
 
 Signals: a pose near the edge in; stations of the edge (n, 3: x and y, mm, and the size
 of the fundamental) out.
@@ -30,7 +30,9 @@ CIRCLE_SAMPLES = 12
 BALANCED = 0.5  # of the circle is dark on the edge
 TRIES = 3  # circles at a station: each is nearer to the edge than the one before
 FARTHEST_PX = 0.5  # by which a circle is moved at once
-FAINTEST = 0.04  # size of a fundamental that still is an edge: four times that of a scan's noise
+FAINTEST = (
+    0.04  # size of a fundamental that still is an edge: four times that of a scan's noise
+)
 CERTAIN = 0.1  # size of one that shows the way
 SHORTEST, LONGEST = 0.3, 1.7  # steps that are one step on
 TURNS = 0.5  # cosine: a step turns less than 60 degrees
@@ -73,11 +75,13 @@ def onto_edge(cells, x_mm, y_mm):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _round_about(cells, x_mm, y_mm, heading, side, step_mm):  # type: ignore[no-untyped-def]
-    """The next place of an edge a step on, found on a circle of that radius: from behind round through the shape.
+def _round_about(cells, pose, side, step_mm):  # type: ignore[no-untyped-def]
+    """The next place of an edge a step on from a pose, found on a circle of that radius.
 
-    NaN without shape and paper on it.
+    From behind round through the shape, which is to a side (1 left, -1 right). NaN without shape and paper on
+    it.
     """
+    x_mm, y_mm, heading = pose
     behind, before = heading + math.pi, math.nan
     for k in range(1, TURN_SAMPLES):
         a = behind - side * TWO_PI * k / TURN_SAMPLES
@@ -116,7 +120,8 @@ def along_edge(cells, pose, step_mm, stations):  # type: ignore[no-untyped-def]
         is_near = SHORTEST * step_mm < come_mm < LONGEST * step_mm
         if not (size > CERTAIN and is_near and turned > TURNS and dx * way_x + dy * way_y > 0):
             # 2. or all round
-            next_x, next_y = _round_about(cells, x, y, math.atan2(way_y, way_x), side, step_mm)
+            stands = (x, y, math.atan2(way_y, way_x))
+            next_x, next_y = _round_about(cells, stands, side, step_mm)
             on_x, on_y = (next_x - x) / step_mm, (next_y - y) / step_mm
         x, y, way_x, way_y = next_x, next_y, on_x, on_y
     return seen

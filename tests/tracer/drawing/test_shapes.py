@@ -235,7 +235,11 @@ def bars(apart_mm: float, times: float = 1.0) -> list[Points]:
     """Two bars of 12 x 4 mm, a slit between them, drawn so many times as large."""
     low, high = 4.0, 4.0 + apart_mm
     return [
-        (8 + times * (polyline((0, y), (12, y), (12, y + 4), (0, y + 4), (0, y)) - [0, low - 4]))
+        (
+            8
+            + times
+            * (polyline((0, y), (12, y), (12, y + 4), (0, y + 4), (0, y)) - [0, low - 4])
+        )
         for y in (low - 4, high)
     ]
 
@@ -247,7 +251,9 @@ def test_edges_that_the_lens_cannot_part_are_closed_across_and_told_of(tmp_path:
     around = polyline((8, 8), (20, 8), (20, 16.15), (8, 16.15), (8, 8))
     assert [line.ending for line in run.lines] == ["closed"]
     found = distance(thin(run), around)
-    assert found.hausdorff_mm < 400 * UM, found  # a notch at either mouth: the corners there are round
+    assert found.hausdorff_mm < 400 * UM, (
+        found
+    )  # a notch at either mouth: the corners there are round
     xy_mm = run.lines[0].xy_mm
     beside = np.abs(xy_mm[:, 1] - 12) > 1
     assert distance(xy_mm[beside][::4], around).path_to_reference.rms_mm < 6 * UM
@@ -279,13 +285,13 @@ def test_a_slit_that_is_a_streak_only_is_told_of(tmp_path: Path) -> None:
 
 def test_a_bridge_that_is_too_thin_is_left_out_and_told_of(tmp_path: Path) -> None:
     """A bridge of 0.1 mm over a gap of 2 mm: the plates are outlines of their own."""
-    plates = [
-        polyline((x, 8), (x + 8, 8), (x + 8, 14), (x, 14), (x, 8)) for x in (8.0, 18.0)
-    ]
+    plates = [polyline((x, 8), (x + 8, 8), (x + 8, 14), (x, 14), (x, 8)) for x in (8.0, 18.0)]
     bridge = polyline((15, 11), (19, 11), (19, 11.14), (15, 11.14), (15, 11))
     drawing = Drawing.open(filled(tmp_path / "plates.png", *plates, bridge), edge=True)
     run = trace_lines(drawing)
-    assert re.search(r"a bridge of 0\.1\d mm over [12]\.\d mm at 17\.\d,11\.\d mm", drawing.notes[0])
+    assert re.search(
+        r"a bridge of 0\.1\d mm over [12]\.\d mm at 17\.\d,11\.\d mm", drawing.notes[0]
+    )
     assert [line.ending for line in run.lines] == ["closed", "closed"]
     found = distance(thin(run), plates)
     assert found.path_to_reference.p95_mm < 20 * UM and found.hausdorff_mm < 400 * UM, found

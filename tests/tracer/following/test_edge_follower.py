@@ -33,9 +33,7 @@ def drawings(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Drawing]:
 
 
 @pytest.mark.parametrize("name", SHAPES)
-def test_its_own_cell_leads_outside_of_corners(
-    drawings: dict[str, Drawing], name: str
-) -> None:
+def test_its_own_cell_leads_outside_of_corners(drawings: dict[str, Drawing], name: str) -> None:
     run = trace(drawings[name])
     led_mm = run.lines[0].led.lengths_mm(run.xy_mm)
     assert run.ending == "closed"
@@ -72,7 +70,7 @@ def test_the_path_is_not_the_librarys(drawings: dict[str, Drawing]) -> None:
         drawing.pitch_mm,
         None,
         drawing.enlarged,
-        tuple(edge + [0.05, 0.0] for edge in drawing.edges_mm),
+        tuple(edge + np.array([0.05, 0.0]) for edge in drawing.edges_mm),
         drawing.shade,
     )
     assert distance(trace(moved).xy_mm[::4], CIRCLE).path_to_reference.rms_mm < 4 * UM
