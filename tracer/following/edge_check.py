@@ -24,6 +24,7 @@ from morfax.tracer.following.followed import Followed
 # a tip of 15 degrees that one of both has put back, and the other has left round, is as far off: six standard
 # deviations of a lens (see `drawing.lens`)
 OFF_MM = 0.5
+LEFT_MM = 0.15  # where the run was so far off it had left the edge; further than the head cuts a corner
 EVERY_MM = 0.02  # between the places of an edge
 CHECKED = 8  # one position in 8 is checked: every 13 um at 10 mm/s
 
@@ -40,7 +41,8 @@ def kept_to(edges_mm: tuple[Array, ...], run: Followed) -> Followed:
     off = np.flatnonzero(away_mm > OFF_MM)
     if len(off):
         why = f"it goes {away_mm.max():.2f} mm away from the edge"
-        return _lost(run, CHECKED * int(off[0]), why)
+        left = np.flatnonzero(away_mm[: off[0]] < LEFT_MM)
+        return _lost(run, CHECKED * int(left[-1] if len(left) else 0), why)
     # 2. a closed run passed every place of its own edge
     if run.ending == "closed":
         own = lines[int(np.bincount(owner[nearest]).argmax())]
