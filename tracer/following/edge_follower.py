@@ -38,25 +38,32 @@ class EdgeFollower(Follower):
     def _through_junction(self) -> Followed | None:
         """Take the head past the tight places ahead; returns what it did, if the edge is lost."""
         self.carriage.says("at a corner")
-        tuning = self.carriage.tuning
+        tuning, stands = self.carriage.tuning, self.carriage.stands()
         clear_mm = CLEAR_LEADS * tuning.lead_mm
+        # 1. the tight places ahead, felt until the edge is plain for the cell
         for legs in AHEAD_LEGS:
             ahead = self._felt(tuning.guard_lead_mm + legs * self.view.leg_mm)
             if ahead is None:
                 return self._lost("no edge leads on", lost.CHECK_CELL)
-            plan = ahead.plan(self.carriage.stands(), clear_mm, tuning.narrowest_per_mm)
-            if plan is None or len(plan.leg.seen) * self.view.step_mm > clear_mm:
+            plan = ahead.plan(stands, clear_mm, tuning.narrowest_per_mm)
+            if plan is None:
+                return self._on_plain(ahead)
+            self._was_plain = len(plan.leg.seen) * self.view.step_mm > clear_mm
+            if self._was_plain:
                 break
-        if plan is None:
-            # a plain edge: either the guard cells were wrong, or the swinging cell is
-            if self._agreement.goes_on_along(self.carriage, self.view, ahead.felt):
-                return None
-            if self._agreement.contradict and self._was_plain:
-                return self._lost(lost.CONTRADICT, lost.CHECK_CELL)
-            plan = ahead.plain(self.carriage.stands(), self.view.leg_mm)
+        # 2. through them
+        return self._pass(plan) if plan is not None else None
+
+    def _on_plain(self, ahead: EdgeAhead) -> Followed | None:
+        """Go on along a plain edge, on which either the guard cells were wrong or the swinging cell is."""
+        if self._agreement.goes_on_along(self.carriage, self.view, ahead.felt):
+            return None
+        if self._agreement.contradict and self._was_plain:
+            return self._lost(lost.CONTRADICT, lost.CHECK_CELL)
+        plan = ahead.plain(self.carriage.stands(), self.view.leg_mm)
         if plan is None:
             return self._lost("no edge leads on", lost.CHECK_CELL)
-        self._was_plain = len(plan.leg.seen) * self.view.step_mm > clear_mm
+        self._was_plain = True
         return self._pass(plan)
 
     def _felt(self, ahead_mm: float) -> EdgeAhead | None:

@@ -166,10 +166,10 @@ class EdgeAhead:
         # the last of the tight places that follow one another
         last = tight[0][1]
         clear = math.ceil(clear_mm / self.view.step_mm)
-        for first, behind in tight:
+        for first, over in tight:
             if first > last + clear:
                 break
-            last = max(last, behind)
+            last = max(last, over)
         ahead = [node for node in self.nodes if node.at > self.here]
         behind = [node for node in ahead if node.at >= last] or ahead[-1:]
         return self._through(stands, behind[0]) if behind else None
