@@ -47,7 +47,7 @@ class KeptKnots:
         self.folder = folder
         self._stamp = ""
         self._files: dict[Hashable, FilePath] = {}
-        self._next_s = 0.0
+        self._next_s, self._number = 0.0, 0
 
     def begin(self, stamp: str) -> None:
         """A run begins: what is kept of another is taken away."""
@@ -67,7 +67,10 @@ class KeptKnots:
         began_s = time.monotonic()
         if began_s < self._next_s:
             return
-        file = self._files.setdefault(key, self.folder / f"{len(self._files) + 1}{SUFFIX}")
+        if key not in self._files:
+            self._number += 1
+            self._files[key] = self.folder / f"{self._number}{SUFFIX}"
+        file = self._files[key]
         with contextlib.suppress(OSError):
             self.folder.mkdir(exist_ok=True)
             content = _packed((self._stamp, key, at, head), head)
@@ -87,6 +90,7 @@ class KeptKnots:
             if kept is None or kept[0] != stamp:
                 continue
             _, key, at, head = kept
+            self._number = max(self._number, int(file.stem) if file.stem.isdecimal() else 0)
             self._files[key] = file
             memory.take_in(key, at, head)
             come_mm += head.carriage.travel_mm / head.carriage.enlarged

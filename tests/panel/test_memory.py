@@ -126,7 +126,8 @@ def test_the_memory_of_an_hour_is_flat(serving: Serving) -> None:
         # 3. and a second one: what is kept has a bound
         kept = len(serving.bench.path)
         serving.stream(0, FRAMES)
-        page.wait_for_function(f"panel.head.count <= {head_path.MOST}")
+        page.wait_for_timeout(500)
+        assert page.evaluate("panel.head.count") <= head_path.MOST
         assert kept <= head_path.MOST and len(serving.bench.path) <= head_path.MOST
         assert resident_mb() - server_mb < SERVER_MB
         page.close()

@@ -108,7 +108,9 @@ def test_order_and_arrows_are_dragged_and_the_command_does_the_same(
     shows(page, "--order 3,2,1")
     assert page.evaluate("document.activeElement.dataset.handle") == "1"
     # 2. start and direction: an arrow dragged on a line, and one by keys
-    page.wait_for_function("panel.sheet.picture.has_lines && panel.sheet.ground.at")
+    soon(
+        lambda: page.evaluate("Boolean(panel.sheet.picture.has_lines && panel.sheet.ground.at)")
+    )
     page.keyboard.press("a")
     drag(page, at_mm(page, 26, 30), at_mm(page, 20, 30))
     shows(page, "--arrow 26")

@@ -60,5 +60,6 @@ def test_from_the_drawing_to_g_code_in_under_a_minute(page: Any, tmp_path: Path)
     program = next((tmp_path / "page" / "program.panel").glob("program.nc"))
     text = program.read_text(encoding="ascii")
     assert "G1" in text and "M3" in text
-    if os.getloadavg()[0] < (os.cpu_count() or 1):  # with other work the time says nothing
+    # measured 30 s on two cores with ten times their work; with still more the time says nothing
+    if os.getloadavg()[0] < 10 * (os.cpu_count() or 1):
         assert seconds < MINUTE_S

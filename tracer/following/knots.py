@@ -122,13 +122,14 @@ class Memory:
     def __init__(self, kept: Kept | None = None) -> None:
         self._drawing: Drawing | None = None
         self._runs: dict[Hashable, _Run] = {}
+        self._cut_off: dict[Hashable, _Run] = {}  # of another memory, until they go on
         self.kept = kept
         self.replayed_mm = 0.0  # in all: travel that was not run again
 
     def take_in(self, key: Hashable, at: tuple[TurnAt, ...], head: Follower) -> None:
         """Remember a run that another memory kept, by its last knot."""
         knot = _Knot(head.carriage.travel_mm, head, head.carriage.trail.places())
-        self._runs[key] = _Run(at, head.view.cells.darkness, [knot])
+        self._cut_off[key] = _Run(at, head.view.cells.darkness, [knot])
 
     def head(
         self, drawing: Drawing, start: Hashable, turns: Turns, darkness: Darkness
@@ -138,7 +139,7 @@ class Memory:
         """
         self._lay_on(drawing)
         key = start, turns._replace(at=())
-        before = self._runs.pop(key, None)
+        before = self._cut_off.pop(key, None) or self._runs.pop(key, None)
         run = _Run(turns.at, darkness)
         self._runs[key] = run
         while len(self._runs) > MOST_RUNS:
@@ -165,8 +166,9 @@ class Memory:
         changed_mm = changes_mm(old, drawing)
         if changed_mm is None:
             self._runs.clear()
+            self._cut_off.clear()
         elif len(changed_mm):
-            for run in self._runs.values():
+            for run in (*self._runs.values(), *self._cut_off.values()):
                 run.cut_off(changed_mm)
 
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import copy
+from collections.abc import Hashable
+
 import numpy as np
 import pytest
 
@@ -9,6 +12,7 @@ from morfax.tracer.corrections.corrections import Correction, Corrections, Place
 from morfax.tracer.drawing.corrected import corrected
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following import knots
+from morfax.tracer.following.follower import Follower
 from morfax.tracer.following.knots import Memory, remembering
 from morfax.tracer.head import watched
 from morfax.tracer.head.carriage import Carriage
@@ -141,3 +145,24 @@ def test_few_knots_serve_as_well(monkeypatch: pytest.MonkeyPatch) -> None:
         again = trace(drawing, START)
     assert kept.replayed_mm > 0
     assert same(again, trace(drawing, START))
+
+
+def test_all_runs_that_were_cut_off_go_on_however_many(monkeypatch: pytest.MonkeyPatch) -> None:
+    """More than are remembered of runs that were done: each line of a sheet has one."""
+    kept = dict[Hashable, Follower]()
+
+    def keep(key: Hashable, at: object, head: Follower) -> None:
+        kept[key] = copy.deepcopy(head)
+
+    with remembering(Memory(keep)):
+        trace(COMB, START)
+        trace(COMB, (60.0, 10.0))
+    monkeypatch.setattr(knots, "MOST_RUNS", 1)
+    again = Memory()
+    for key, head in kept.items():
+        again.take_in(key, (), head)
+    with remembering(again):
+        trace(COMB, START)
+        first_mm = again.replayed_mm
+        trace(COMB, (60.0, 10.0))
+    assert first_mm > 10 and again.replayed_mm - first_mm > 10
