@@ -92,7 +92,7 @@ class Gaps:
         self._levels, self._tracked = levels, levels.copy()
         self._side = max(round(SIDE_S * self._rate_hz), 6)
         self._spread = -(-discriminator.filter_frames // (2 * discriminator.decimation))
-        self._surprises = Surprises(discriminator.gains, len(fmt.axes))
+        self._surprises = Surprises(discriminator.gains, fmt)
         told_late = 0 if riding.bounds is None else math.ceil(TOLD_LATE_S * self._rate_hz)
         self._held = max(self._spread, told_late)
         self._longest_s = LONGEST_S if riding.bounds is None else LONGEST_CHECKED_S
@@ -148,10 +148,8 @@ class Gaps:
         assert self._riding.bounds is not None, (
             "only a checked tape tells what a program asks for"
         )
-        told = [
-            bounds.accelerations(rows.first_row, len(rows)) for bounds in self._riding.bounds()
-        ]
-        found = self._surprises.rows(rows, np.column_stack(told))
+        told = [bounds.most(rows.first_row, len(rows)) for bounds in self._riding.bounds()]
+        found = self._surprises.rows(rows, np.stack(told, axis=-1))
         # what was given out reached to `spread` rows before those that are looked at
         found[: max((self._given or 0) - rows.first_row + self._spread, 0)] = False
         found[ready + self._spread :] = False

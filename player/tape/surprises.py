@@ -15,7 +15,8 @@ A program that jumps from speed to speed surprises as much itself. Where that hi
 row is lost as well where the level dips for a moment: where two waves meet that are e cycles apart, it falls
 by 1 - cos(pi e), 1.2 % for a twentieth.
 
-    dip   = 1 - level[k] / mean(level[k - 10], level[k + 10]),   lost beyond 6 sigma of noise and 1 %
+    dip   = 1 - level[k] / mean(level[k - 10], level[k + 10]),   lost beyond 6 sigma of noise or 1 %,
+                                                                 and what the jump itself makes
 
 Source: our own; the bound is that of any linear filter (M. Vidyasagar, Nonlinear Systems Analysis, 1993:
 largest output over largest input is the integral of the impulse response's size). Questions: a bare tape
@@ -31,6 +32,8 @@ from morfax.motion.arrays import Array
 from morfax.player.tape.discriminator import Phases
 from morfax.player.tape.predictor import count_turns
 from morfax.player.tape.standstill import SILENT_LEVEL
+from morfax.recorder.tape.check_signal import GAUGE_S
+from morfax.recorder.tape.format import TapeFormat
 
 SETTLED_ROWS = (
     400  # behind a jump: 65 ms at 6 kHz; what is left of the response is 1e-6 of its largest
@@ -47,28 +50,37 @@ HIDDEN_CYCLES = (
 )
 DIP_ROWS = 10  # 1.7 ms at 6 kHz: the filter blurs a moment over eight
 LEAST_DIP = 0.01  # of the level; flutter of 0.2 % makes 0.0016
+# of the square of a jump in cycles/row: 2.3 was the most that jumps of 160 to 1600 Hz made the level dip
+KINK = 2.5
+SLOW = 0.2  # of the reference: the band filter is 0.08 % down there, and 1.3 % a fifteenth further off
 ENOUGH_ROWS = 600  # 0.1 s: fewer tell the noise too roughly
 
 
 class Surprises:
     """Finds the surprising rows of the axes of one tape; holds how noisy they are."""
 
-    def __init__(self, gains: Array, axes: int) -> None:
+    def __init__(self, gains: Array, fmt: TapeFormat) -> None:
+        self._gauge_rows = GAUGE_S * fmt.motion_rate_hz
+        self._slow = SLOW * fmt.reference_hz / fmt.motion_rate_hz
         self._gain_rows2 = acceleration_gain(gains)
-        self._noise_cycles: Array = np.zeros(axes)
+        self._noise_cycles: Array = np.zeros(len(fmt.axes))
 
-    def rows(self, rows: Phases, accelerations: Array) -> NDArray[np.bool_]:
-        """Which rows of the axes (n, axes) are lost; nan as acceleration (cycles/row²) where none is told."""
+    def rows(self, rows: Phases, told: Array) -> NDArray[np.bool_]:
+        """Which rows of the axes (n, axes) are lost.
+
+        `told` (2, n, axes): largest acceleration, cycles/row², and speed, cycles/row; nan where none is told.
+        """
+        accelerations, speeds = told
         sizes = np.abs(rows.surprise)
         noise = _noise(sizes)
         enough = len(sizes) >= ENOUGH_ROWS
         self._noise_cycles = noise if enough else np.maximum(noise, self._noise_cycles)
         by_program = accelerations * self._gain_rows2
         lost = sizes > by_program + np.maximum(self._noise_cycles, LEAST_CYCLES)
-        jumps = by_program > HIDDEN_CYCLES
+        jumps = (by_program > HIDDEN_CYCLES) & (speeds < self._slow)
         if jumps.any():
-            dips = _dips(rows.levels)
-            lost |= jumps & (dips[:, :1] | dips[:, 1:])
+            dips, own = _dips(rows.levels), KINK * (accelerations * self._gauge_rows) ** 2
+            lost |= jumps & (np.maximum(dips[:, :1], dips[:, 1:]) > own)
         return np.asarray(lost)
 
 
@@ -77,13 +89,13 @@ def _noise(sizes: NDArray[np.float32]) -> Array:
     return np.asarray(np.median(sizes[::STRIDE], axis=0) * (NOISE_SIGMAS / MEDIAN_SIGMAS))
 
 
-def _dips(levels: NDArray[np.float32]) -> NDArray[np.bool_]:
-    """The rows of the tracks whose level dips, or rises, for a moment."""
-    dips = np.zeros(levels.shape, bool)
+def _dips(levels: NDArray[np.float32]) -> Array:
+    """By how much each level dips, or rises, for a moment, beyond noise; below zero where it does not."""
+    dips = np.full(levels.shape, -1.0)
     if len(levels) > 2 * DIP_ROWS:
         beside = (levels[: -2 * DIP_ROWS] + levels[2 * DIP_ROWS :]) / 2
         size = np.abs(levels[DIP_ROWS:-DIP_ROWS] / np.maximum(beside, SILENT_LEVEL) - 1)
-        dips[DIP_ROWS:-DIP_ROWS] = size > np.maximum(_noise(size), LEAST_DIP)
+        dips[DIP_ROWS:-DIP_ROWS] = size - np.maximum(_noise(size), LEAST_DIP)
     return dips
 
 

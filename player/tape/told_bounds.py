@@ -55,12 +55,13 @@ class ToldBounds:
         near = before + behind
         return Bound(max(one.acceleration for one in near), max(one.speed for one in near))
 
-    def accelerations(self, first: int, count: int) -> Array:
-        """The largest acceleration told of each of some rows, cycles/row²; nan where none is."""
-        told = np.full(count, np.nan)
+    def most(self, first: int, count: int) -> Array:
+        """The largest acceleration and speed told of each of some rows (2, rows); nan where none is."""
+        told = np.full((2, count), np.nan)
         for starts, ends, bound in self._told:
             rows = slice(max(math.ceil(starts) - first, 0), max(math.ceil(ends) - first, 0))
-            told[rows] = np.fmax(told[rows], bound.acceleration)
+            told[0, rows] = np.fmax(told[0, rows], bound.acceleration)
+            told[1, rows] = np.fmax(told[1, rows], bound.speed)
         return told
 
     def between(self, first: int, last: int) -> Bound | None:

@@ -38,6 +38,7 @@ from morfax.recorder.tape.check_frame import SYMBOLS
 from morfax.recorder.tape.check_signal import CYCLES_PER_FRAME
 from morfax.recorder.tape.format import TapeFormat
 from morfax.recorder.tape.tape import Stored
+from morfax.recorder.tape.told_figures import Stated, demand_agreement
 
 # of a delay off the line through seven: 0.036 cycle; 26 dB of noise leave 2
 LARGEST_OFF_S = 6e-6
@@ -79,7 +80,7 @@ class Vouching:
 
     def begin(self, rows: Phases) -> Phases:
         """The first rows, put right as far as the first frames tell; raises TapeFault for a wrong track."""
-        self._demand_all_tracks()
+        self._demand_tracks_and_figures()
         self._take_reports()
         return self._corrected(rows)
 
@@ -97,14 +98,17 @@ class Vouching:
     def end(self, time_s: float) -> None:
         """The tape ends, and has said so."""
 
-    def _demand_all_tracks(self) -> None:
-        """Raise TapeFault unless each track says in the first block that it is what it should be."""
-        names = self._format.axes
+    def _demand_tracks_and_figures(self) -> None:
+        """Raise TapeFault unless each track is what it should be, and the text states what they say."""
+        fmt, names = self._format, self._format.axes
         for track, says in enumerate(self._check.tracks):
             if says is None:
                 raise faults.silent_track(track, names)
             if says != track:
                 raise faults.wrong_track(track, says, names, 0.0)
+        if fmt.stated is not None:
+            used = Stated(fmt.cycles_per_mm, fmt.axes, fmt.start_mm)
+            demand_agreement(self._check.found[0][0].said, fmt.stated, used)
 
     def _take_reports(self) -> None:
         """Take what the check reader has read by now."""

@@ -6,6 +6,8 @@ wrong.
     24 sync | 64 told | 32 CRC-32 of the 64                    most significant bit first
     told:  3 version | 1 last | 4 track | 16 number | 26 count | 7 speed | 7 acceleration
 
+What the reference's track says in place of the last three: told_figures.py.
+
 `count` is the axis' displacement at the frame's first instant, in sixteenths of a cycle, with a sign. `speed`
 and `acceleration` are the largest from that instant to the end of the next frame, in eighths of an octave,
 rounded up: a frame that is lost was told of by the one before it. `last`: at most one whole frame follows.
@@ -80,8 +82,8 @@ def to_bits(frame: CheckFrame) -> Bits:
         (frame.track, 4),
         (frame.number % NUMBERS, 16),
         (count % (1 << _COUNT_BITS), _COUNT_BITS),
-        (_code(frame.speed, LEAST_SPEED), _CODE_BITS),
-        (_code(frame.acceleration, LEAST_ACCELERATION), _CODE_BITS),
+        (to_code(frame.speed, LEAST_SPEED), _CODE_BITS),
+        (to_code(frame.acceleration, LEAST_ACCELERATION), _CODE_BITS),
     ):
         told = told << bits | value
     data = told.to_bytes(_TOLD_BYTES, "big")
@@ -114,13 +116,13 @@ def _frame(data: bytes) -> CheckFrame | None:
         track,
         number,
         count / COUNTS_PER_CYCLE,
-        _value(speed, LEAST_SPEED),
-        _value(acceleration, LEAST_ACCELERATION),
+        to_value(speed, LEAST_SPEED),
+        to_value(acceleration, LEAST_ACCELERATION),
         bool(last),
     )
 
 
-def _code(value: float, least: float) -> int:
+def to_code(value: float, least: float) -> int:
     """The code of a speed or acceleration, rounded up; the largest for all that is beyond it."""
     if not value > 0:
         return 0
@@ -128,7 +130,7 @@ def _code(value: float, least: float) -> int:
     return min(1 + math.ceil(octaves * _PER_OCTAVE - 1e-9), (1 << _CODE_BITS) - 1)
 
 
-def _value(code: int, least: float) -> float:
+def to_value(code: int, least: float) -> float:
     """The speed or acceleration of a code; infinite for the largest."""
     if not code:
         return 0.0

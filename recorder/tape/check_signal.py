@@ -33,6 +33,7 @@ from morfax.motion.arrays import Array
 from morfax.recorder.tape.carrier import Frames, _sine
 from morfax.recorder.tape.check_frame import SYMBOLS, SYNC, CheckFrame, to_bits
 from morfax.recorder.tape.format import CHECK_SHARE, TapeFormat
+from morfax.recorder.tape.told_figures import Stated, frame_of
 
 CYCLES_PER_SUBCARRIER = 6.0  # of the reference
 CYCLES_PER_SYMBOL = 24.0
@@ -47,6 +48,7 @@ class CheckWriter:
 
     def __init__(self, fmt: TapeFormat) -> None:
         pick_up = fmt.carrier
+        self._stated = Stated(fmt.cycles_per_mm, fmt.axes, fmt.start_mm)
         self._tracks, self._amplitude = fmt.tracks, CHECK_SHARE * fmt.level
         self._step = fmt.reference_hz / fmt.sample_rate_hz  # cycles of the reference in a frame
         self._rows_per_frame = CYCLES_PER_FRAME / pick_up.reference_cycles
@@ -108,7 +110,7 @@ class CheckWriter:
 
     def _said(self, last: bool) -> Iterator[CheckFrame]:
         """What each track says in the next frame."""
-        yield CheckFrame(0, self._number, 0.0, last=last)
+        yield frame_of(self._stated, self._number, last)
         first = self._row(self._number) - self._first_row
         ends = self._row(self._number + 2) - self._first_row + 2 * self._gauge
         rows = self._cycles[max(first - self._gauge, 0) : ends]

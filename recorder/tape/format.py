@@ -21,12 +21,13 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, dataclass, field, fields, replace
 from typing import Any, TypeGuard
 
 from morfax.motion.faults import TapeFault
 from morfax.recorder.tape.carrier import PickUp
 from morfax.recorder.tape.pickups import DEFAULT_PICK_UP, PICK_UPS, Sensor
+from morfax.recorder.tape.told_figures import Stated
 
 VERSION = 3  # the latest
 _NEW_ENTRIES = {"pickup": 2, "still": 3, "alike": 3}  # the first version that has it
@@ -65,6 +66,8 @@ class TapeFormat:
     alike: tuple[str, ...] = ()
     # the check signal is recorded; the text does not say so, the tracks do
     checked: bool = field(default=False, compare=False)
+    # what the text that it was read from states, whatever is given by hand
+    stated: Stated | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         _check_numbers(self)
@@ -163,7 +166,8 @@ class TapeFormat:
             name: tuple(v) if isinstance(v, list) else v for name, v in values.items()
         }
         try:
-            return cls(**as_tuples)
+            fmt = cls(**as_tuples)
+            return replace(fmt, stated=Stated(fmt.cycles_per_mm, fmt.axes, fmt.start_mm))
         except (TypeError, ValueError) as error:
             raise TapeFault(f"the tape's text chunk is wrong: {error}; {_AGAIN}") from None
 
@@ -216,7 +220,7 @@ def _entries(version: object) -> set[str]:
     number = version if _is_number(version) else 1
     return {
         field.name for field in fields(TapeFormat) if _NEW_ENTRIES.get(field.name, 1) <= number
-    } - {"checked"}
+    } - {"checked", "stated"}
 
 
 def _check_numbers(fmt: TapeFormat) -> None:

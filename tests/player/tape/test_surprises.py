@@ -7,9 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from morfax.motion.motion import Motion, join
 from morfax.player.tape.discriminator import Phases
+from morfax.player.tape.playback import play
 from morfax.player.tape.predictor import count_turns, predictor_gains
 from morfax.player.tape.surprises import Surprises, acceleration_gain
+from morfax.recorder.tape.format import TapeFormat
+from morfax.recorder.tape.tape import record
 from tests.player.attacks.bench import Bench, Kind
 from tests.player.attacks.drawn import tone_in_phase
 from tests.player.worn import corners
@@ -31,7 +35,8 @@ def phases(way: np.ndarray, noise: float = 0.0) -> Phases:
 
 def lost(rows: Phases, acceleration: float) -> np.ndarray:
     """The rows that are lost where the tape tells this acceleration."""
-    return Surprises(GAINS, 1).rows(rows, np.full((len(rows), 1), acceleration))[:, 0]
+    told = np.full((2, len(rows), 1), [[[acceleration]], [[0.03]]])  # at 9 mm/s
+    return Surprises(GAINS, TapeFormat(axes=("x",))).rows(rows, told)[:, 0]
 
 
 def swung(size: float) -> np.ndarray:
@@ -66,6 +71,15 @@ def test_a_dip_is_lost_only_where_the_program_jumps() -> None:
     rows.levels[700:704, 1] *= np.float32(0.97)
     assert not lost(rows, HARD).any()
     assert set(np.flatnonzero(lost(rows, 10 * HARD))) >= {700, 701, 702, 703}
+
+
+def test_a_program_that_jumps_from_speed_to_speed_plays(tmp_path: Path) -> None:
+    """A side of 3 mm is too short for 40 mm/s: the square jumps to it, and each jump makes the level dip."""
+    motion = Motion(corners(3.0))
+    record(motion, tmp_path / "square.wav")
+    playback = play(tmp_path / "square.wav")
+    join(playback)
+    assert not playback.bridged
 
 
 def test_a_short_tone_in_phase_with_its_track_is_never_silently_wrong(tmp_path: Path) -> None:
