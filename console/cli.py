@@ -19,6 +19,7 @@ from contextlib import contextmanager
 import click
 
 from morfax.jobs import kernels
+from morfax.jobs.damaged_kernels import compile_damaged_again
 from morfax.motion.faults import DrawingFault, Fault, FileFault
 
 VERBS = {
@@ -103,6 +104,7 @@ def cli() -> None:
 def main(words: Sequence[str] | None = None) -> int:
     """Run the command line; the exit code. Whatever goes wrong ends as one line on stderr."""
     kernels.choose_cache()
+    compile_damaged_again(lambda line: click.echo(line, err=True))
     with _stopped_by_signals():
         return _ended(words)
 
