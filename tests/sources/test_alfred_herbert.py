@@ -195,6 +195,15 @@ def test_claim_4_a_digital_counter_preset_by_the_initial_error() -> None:
         assert all(period.counter < 0 for period in periods[:first])
 
 
+@pytest.mark.parametrize(("word", "to"), [("G2", "X5 Y-5"), ("G3", "X5 Y5")])
+def test_an_arc_presets_the_counter_by_the_increments_of_its_quarters(
+    word: str, to: str
+) -> None:
+    """Three quarters round a radius of 5 mm, either way: both axes travel 5 mm in each."""
+    periods, _ = counted("G1 X0 Y0 F600", f"{word} {to} I5 J0 F1200")
+    assert periods[0].counter == -30_000
+
+
 def test_the_planned_move_of_the_z_unit_counts_as_the_servos_do() -> None:
     """`motion.ramp` plans with the same counter: its moves end by the count, and not by their last line."""
     for error_mm in (0.001, 0.3, 0.301, 12.3456):

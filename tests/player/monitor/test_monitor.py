@@ -224,3 +224,25 @@ def test_the_compiled_kernels_are_the_plain_ones(monkeypatch: pytest.MonkeyPatch
     assert allowed_mm(3.5, limit.rows, 0.0, 0.01) == allowed_mm.py_func(
         3.5, limit.rows, 0.0, 0.01
     )
+
+
+def test_a_speed_counts_on_while_the_drive_catches_up_after_a_stop() -> None:
+    """10 mm/s explain 1 mm; the drive, 0.4 mm behind, comes up in 10 ms, and the speed is held for 20."""
+    t_s = np.arange(1200) / 1000
+    demand = 10 * np.minimum(t_s, 0.2)
+    stays = demand - np.minimum(4 * t_s, 0.4)
+    catching_up = demand - (demand - stays) * np.exp(-np.maximum(t_s - 0.2, 0) / 0.01)
+    points = [(0.0, 0.0), (10.0, 1.0)]
+    for hold_s, actual, found_at_s in (
+        (0.02, catching_up, None),
+        (0.0, catching_up, 0.2),
+        # the limit of 0.01 + exp(-t / 20 ms) is at 0.4 mm after 20 ms · ln(1 / 0.39)
+        (0.02, stays, 0.2 + 0.02 * np.log(1 / 0.39)),
+    ):
+        limit = FollowingLimit.table(points, 0.01, hold_s=hold_s)
+        watch = Monitor("x", 1000, limit)
+        rows = watch.watch(demand[:, None], actual[:, None])
+        if found_at_s is None:
+            assert rows == len(demand)
+        else:
+            assert rows / 1000 == pytest.approx(found_at_s, abs=0.002)

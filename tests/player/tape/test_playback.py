@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 from morfax.motion.contour import distance
 from morfax.motion.faults import LockFault, TapeFault
 from morfax.motion.motion import Motion, join
+from morfax.motion.ramp import positions_mm
 from morfax.player.tape.playback import TapePlayback, play
 from morfax.recorder.tape.tape import TapeFormat, record
 from tests.player.carriers import (
@@ -260,3 +261,21 @@ def test_memory_does_not_grow_with_the_tape(tmp_path: Path) -> None:
         tracemalloc.stop()
     assert peaks[1] < 1.1 * peaks[0]
     assert peaks[0] < 20e6  # bytes: a few blocks of 1 MB
+
+
+@pytest.mark.parametrize(("off_mm", "is_fault"), [(0.011, False), (0.020, True)])
+def test_a_closed_program_may_end_a_quarter_of_a_cycle_off_its_start(
+    off_mm: float, is_fault: bool, tmp_path: Path
+) -> None:
+    """12.5 um; a cycle that was lost on the way is 50."""
+    x = np.vstack([positions_mm([0.0], [5.0], 10.0), positions_mm([5.0], [off_mm], 10.0)])
+    record(Motion(np.hstack([x, 0 * x, 0 * x])), tmp_path / "told.wav")
+    frames, rate_hz = soundfile.read(tmp_path / "told.wav")
+    soundfile.write(tmp_path / "bare.wav", frames, rate_hz, subtype="PCM_16")
+    by_hand = {"reference_hz": 6000.0, "cycles_per_mm": 20.0, "still": ("y", "z")}
+    playback = play(tmp_path / "bare.wav", closed=True, **by_hand)
+    if is_fault:
+        with pytest.raises(LockFault, match="from the end that the tape states"):
+            join(playback)
+    else:
+        assert len(join(playback).positions_mm) > len(x)

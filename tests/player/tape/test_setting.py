@@ -89,6 +89,15 @@ def test_the_following_error_grows_with_the_square_of_the_override(tmp_path: Pat
     ] == pytest.approx(4, rel=0.15)
 
 
+def test_a_tape_at_twice_its_speed_may_ask_for_a_quarter_of_the_motors_acceleration(
+    tape: Path,
+) -> None:
+    """As it is on the tape: the longest dropout that is bridged follows from it."""
+    for override in (0.5, 2.0):
+        most_mm_s2 = MOTORS["electric"].drive.acceleration_mm_s2 / override**2
+        assert play(tape, override=override).acceleration_mm_s2 == pytest.approx(most_mm_s2)
+
+
 def fast_turn(tmp_path: Path) -> Path:
     """X to and fro at 60 mm/s with 3 m/s²: the motors give 5."""
     t_s = np.arange(6000) / MOTION_RATE_HZ
