@@ -20,9 +20,19 @@ from morfax.motion.arrays import Array
 def nested(lines_mm: Sequence[Array], round_about: Sequence[bool]) -> NDArray[np.bool_]:
     """Which line (n, 2) mm lies inside which: `nested[i, j]` if j goes round about and i lies inside it."""
     inside = np.zeros((len(lines_mm), len(lines_mm)), bool)
-    for j, outer in enumerate(lines_mm):
-        for i, inner in enumerate(lines_mm):
-            inside[i, j] = round_about[j] and i != j and lies_inside(inner, outer)
+    if not len(lines_mm):
+        return inside
+    # a line can only lie in one that reaches further, and whose box its first place is in
+    firsts = np.array([line[0] for line in lines_mm], np.float32)
+    sizes_mm = np.array([np.ptp(line, axis=0) for line in lines_mm])
+    outlines = [np.asarray(line, np.float32) for line in lines_mm]
+    for j, outline in enumerate(outlines):
+        if not round_about[j]:
+            continue
+        may = (sizes_mm < sizes_mm[j]).all(axis=1)
+        may &= ((firsts >= outline.min(axis=0)) & (firsts <= outline.max(axis=0))).all(axis=1)
+        for i in np.flatnonzero(may):
+            inside[i, j] = lies_inside(lines_mm[int(i)], lines_mm[j])
     return inside
 
 

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numba import njit
@@ -25,7 +26,7 @@ Numbers = NDArray[np.int32]
 STRIP_PX = 1 << 24  # pixels that are worked on at a time
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Patches:
     """Runs of ink, by rows, and the patch of each (0 … count - 1)."""
 
@@ -42,12 +43,12 @@ class Patches:
         patch, count = joined(row, begin, end, True)
         return cls(row, begin, end, patch, int(count))
 
-    @property
+    @cached_property
     def areas(self) -> NDArray[np.float64]:
         """Pixels of each patch."""
         return np.asarray(np.bincount(self.patch, self.end - self.begin, self.count), float)
 
-    @property
+    @cached_property
     def boxes(self) -> Numbers:
         """First row, last row + 1, first column, last column + 1 of each patch; (n, 4) pixels."""
         edges = []
@@ -59,7 +60,7 @@ class Patches:
             edges += [least, most]
         return np.column_stack(edges)
 
-    @property
+    @cached_property
     def longer_sides(self) -> Numbers:
         """Width or height of each patch, whichever is more; pixels."""
         top, bottom, left, right = self.boxes.T
@@ -67,9 +68,8 @@ class Patches:
 
     def box(self, chosen: NDArray[np.bool_]) -> tuple[int, int, int, int]:
         """First row, last row + 1, first column, last column + 1 of the chosen patches."""
-        own = chosen[self.patch]
-        row, begin, end = self.row[own], self.begin[own], self.end[own]
-        return int(row.min()), int(row.max()) + 1, int(begin.min()), int(end.max())
+        tops, bottoms, lefts, rights = self.boxes[chosen].T
+        return int(tops.min()), int(bottoms.max()), int(lefts.min()), int(rights.max())
 
     def painted(
         self, chosen: NDArray[np.bool_], top: int, bottom: int, left: int, right: int

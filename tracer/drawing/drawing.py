@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from morfax.tracer.drawing.strokes import Sheet
     from morfax.tracer.flatten.flat import Flattening
 
+HALF = 0.5  # darkness from which a pixel is ink
 LEAST_CONTRAST = 10.0  # grey levels of 255 between paper and ink
 ABOVE_NOISE = 6.0  # standard deviations of the paper: what is darker is no noise
 DARKER = 80.0  # percentile of the strokes' pixels: those that no edge makes lighter
@@ -120,6 +121,14 @@ class Drawing:
         from morfax.tracer.drawing.strokes import Sheet
 
         return Sheet.of(self)
+
+    @cached_property
+    def ink_px(self) -> int:
+        """How many pixels are darker than half."""
+        return sum(
+            int(np.count_nonzero(self.darkness[top:bottom] > HALF))
+            for top, bottom, _ in strips(self.darkness.shape)
+        )
 
     @cached_property
     def noise(self) -> Noise:

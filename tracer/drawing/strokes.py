@@ -13,7 +13,7 @@ Source: patent ES 361967 leaves the choice of the line to the operator, who brin
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import cv2
@@ -27,12 +27,15 @@ from morfax.tracer.drawing.components import Mask, Patches, runs_of, strips
 from morfax.tracer.drawing.drawing import Drawing
 
 Pixels = NDArray[Any]
+Window = tuple[int, int, int, int]  # first row and column, row and column after the last
 
 INK = 0.5
 LEAST_LENGTH_MM = 2.0
 LEAST_LENGTH_PX = 12
 DEEPEST_PX = 200  # a line of 6 mm at 1200 dpi is 142 deep; the middle of a darker patch is not that of a line
 TILE_PX = 2048
+SMALL_PART = 0.25  # of a sheet; by trial
+ABOUT_PX = 64  # rows above and below a place in which the nearest ink is sought first; by trial
 SOLID = 0.5  # of a patch's ink is beside filled shapes: it is theirs
 LESS = 0.85  # ink about an end, of what is usual: half, and what the middle place lies within the end
 MOST_ENDS = 100
@@ -65,13 +68,18 @@ class Stroke:
 
 @dataclass(frozen=True, slots=True)
 class Sheet:
-    """The patches of ink on a drawing: their lengths and widths as lines, and which are filled shapes."""
+    """The patches of ink on a drawing: their lengths and widths as lines, and which are filled shapes.
+
+    `window`, first row and column and those after the last, is where the head will be: cells see paper
+    elsewhere.
+    """
 
     drawing: Drawing
     patches: Patches
     lengths_mm: Array
     widths_mm: Array
     are_solid: NDArray[np.bool_]
+    window: Window | None = None
 
     @classmethod
     def of(cls, drawing: Drawing) -> Sheet:
@@ -95,6 +103,17 @@ class Sheet:
                 "no line on the drawing: nothing on it is long enough; check the file and its scale"
             )
         return sheet
+
+    def about(self, patch: int, around_mm: float) -> Sheet:
+        """The sheet with a window about a patch; itself if that is no small part of it."""
+        around_px = math.ceil(around_mm / self.drawing.pitch_mm)
+        rows, columns = self.drawing.darkness.shape
+        top, bottom, left, right = (int(edge) for edge in self.patches.boxes[patch])
+        first = max(0, top - around_px), max(0, left - around_px)
+        last = min(rows, bottom + around_px), min(columns, right + around_px)
+        if (last[0] - first[0]) * (last[1] - first[1]) > SMALL_PART * rows * columns:
+            return self
+        return replace(self, window=(*first, *last))
 
     def longest(self) -> Stroke:
         """The longest line."""
@@ -129,21 +148,48 @@ class Sheet:
 
     def _nearest_ink(self, place_mm: tuple[float, float]) -> tuple[float, Array, int]:
         """Distance of the ink of a line nearest to a place, mm, where it is, and the number of its patch."""
-        runs = self.patches
-        nearest = round(place_mm[0] / self.drawing.pitch_mm - 0.5)
-        column = np.clip(nearest, runs.begin, runs.end - 1)
-        places = self._mm(runs.row, column)
-        distances = np.hypot(*(places - np.asarray(place_mm)).T)
-        distances[~self._long_enough()[runs.patch]] = np.inf
-        best = int(np.argmin(distances))
-        return float(distances[best]), places[best], int(runs.patch[best])
+        pitch_mm, rows = self.drawing.pitch_mm, self.drawing.darkness.shape[0]
+        row, about_px = rows - 1 - math.floor(place_mm[1] / pitch_mm), ABOUT_PX
+        while (
+            True
+        ):  # all runs of a large sheet take longer than those of the rows about the place
+            first, last = np.searchsorted(
+                self.patches.row, (row - about_px, row + about_px + 1)
+            )
+            found = self._nearest_of(place_mm, slice(first, last))
+            is_all = first == 0 and last == len(self.patches.row)
+            if is_all or found[0] < (about_px - 1) * pitch_mm:
+                return found
+            about_px *= 4
 
-    def middle_mm(self, patch: int) -> Array:
-        """The middle of a patch's box, sheet mm."""
-        top, bottom, left, right = self.patches.box(np.arange(self.patches.count) == patch)
+    def _nearest_of(
+        self, place_mm: tuple[float, float], runs: slice
+    ) -> tuple[float, Array, int]:
+        """The same of some runs; infinitely far, and no patch, if there is none."""
+        row, begin, end, patch = (
+            part[runs]
+            for part in (
+                self.patches.row,
+                self.patches.begin,
+                self.patches.end,
+                self.patches.patch,
+            )
+        )
+        column = np.clip(round(place_mm[0] / self.drawing.pitch_mm - 0.5), begin, end - 1)
+        places = self._mm(row, column)
+        distances = np.hypot(*(places - np.asarray(place_mm)).T)
+        distances[~self._long_enough()[patch]] = np.inf
+        if not len(distances):
+            return math.inf, np.zeros(2), -1
+        best = int(np.argmin(distances))
+        return float(distances[best]), places[best], int(patch[best])
+
+    def middles_mm(self, patches: Pixels) -> Array:
+        """The middles of the boxes of some patches, (n, 2) sheet mm."""
+        top, bottom, left, right = self.patches.boxes[patches].T
         rows = self.drawing.darkness.shape[0]
-        middle_px = np.array([0.5 * (left + right), rows - 0.5 * (top + bottom)])
-        return middle_px * self.drawing.pitch_mm
+        middles_px = np.column_stack([0.5 * (left + right), rows - 0.5 * (top + bottom)])
+        return np.asarray(middles_px * self.drawing.pitch_mm)
 
     def run_middles_mm(self, runs: Pixels) -> Array:
         """Middles of some runs of ink, (n, 2) sheet mm."""

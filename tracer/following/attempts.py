@@ -24,7 +24,6 @@ from morfax.motion.faults import LineFault
 from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.motion.polyline import evenly
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.drawing.strokes import INK
 from morfax.tracer.following import knots
 from morfax.tracer.following.direction import Direction, goes, turned_about, turned_to
 from morfax.tracer.following.edge_check import kept_to
@@ -57,7 +56,7 @@ Keep = Callable[[Follower], None]
 
 def longest_mm(drawing: Drawing, width_mm: float) -> float:
     """How far a run may go on a drawing before it is going round in circles, mm."""
-    ink_mm2 = float(np.count_nonzero(drawing.darkness > INK)) * drawing.pitch_mm**2
+    ink_mm2 = drawing.ink_px * drawing.pitch_mm**2
     return LONGEST * ink_mm2 / width_mm + LONGEST_MM
 
 

@@ -23,7 +23,7 @@ from morfax.tracer.following.plain_places import local_view
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.junctions.line_ahead import straight_on
 from morfax.tracer.marks.marks import longest_mm
-from morfax.tracer.marks.reference import Reference, references
+from morfax.tracer.marks.reference import LARGEST_MM, Reference, references
 from morfax.tracer.sensing.leg import Leg, leg_of, turn
 from morfax.tracer.sensing.probe import end_of, reach_of_ink, stroke_end, strokes_on
 from morfax.tracer.sensing.view import View
@@ -60,8 +60,10 @@ def at_ends(
         leading = _leading_away(view, stroke, reference_mm)
         if leading is not None:
             return [leading]
-    # 2. from one that is drawn
-    for place_mm, lead in _named_first(references(sheet, view, stroke), reference_mm):
+    # 2. from one that is drawn; one further away has neither a lead line here nor an end of this line near it
+    about_mm = LEAD_MM + NAMED_MM + LARGEST_MM + view.leg_mm + 4 * view.width_mm
+    drawn = references(sheet, view, stroke, about_mm)
+    for place_mm, lead in _named_first(drawn, reference_mm):
         if lead is not None and stroke.is_at(lead.end_mm):
             local = view.like(lead.end_mm, lead.heading_rad)
             return [Stance(lead.end_mm, lead.heading_rad, local, True, place_mm)]

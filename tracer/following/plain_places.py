@@ -56,7 +56,9 @@ class Scored(NamedTuple):
 def view_of(sheet: Sheet, aperture_mm: float | None, width_mm: float) -> View:
     """The sheet through cells for a line of a width."""
     aperture_mm = aperture_mm or aperture_for(sheet.drawing, width_mm)
-    return View(photocell.behind_aperture(sheet.drawing, aperture_mm), width_mm)
+    return View(
+        photocell.behind_aperture(sheet.drawing, aperture_mm, window=sheet.window), width_mm
+    )
 
 
 def edge_view_of(drawing: Drawing, aperture_mm: float | None) -> View:

@@ -84,10 +84,11 @@ def alone(sheet: Sheet, view: View) -> Iterator[tuple[int, Array]]:
     )
     small = (sides_mm > least_mm) & (sides_mm < largest_mm)
     full = patches.areas * pitch**2 > DOT_FULL * sides_mm**2
-    for patch in np.flatnonzero(small & full):
-        found = _disc(view, sheet.middle_mm(int(patch)))
+    chosen = np.flatnonzero(small & full)
+    for patch, middle in zip(chosen.tolist(), sheet.middles_mm(chosen), strict=True):
+        found = _disc(view, middle)
         if found is not None and not len(found[1]):
-            yield int(patch), found[0]
+            yield patch, found[0]
 
 
 def _disc(view: View, place: Array) -> tuple[Array, Array] | None:

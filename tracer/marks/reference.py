@@ -19,7 +19,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 import cv2
 import numpy as np
@@ -57,21 +57,28 @@ class Reference:
     lead: Leg | None = None
 
 
-def references(sheet: Sheet, view: View, stroke: Stroke | None = None) -> Iterator[Reference]:
-    """The reference points that stand alone on the sheet, and those that touch a line."""
+def references(
+    sheet: Sheet, view: View, stroke: Stroke | None = None, about_mm: float = math.inf
+) -> Iterator[Reference]:
+    """The reference points that stand alone on the sheet, and those that touch a line.
+
+    Of those that stand alone only such as are within `about_mm` of the box about the line.
+    """
     found: list[Reference] = []
-    for reference in _every(sheet, view, stroke):
+    for reference in _every(sheet, view, stroke, about_mm):
         if all(_apart(reference, other) > LEAST_MM for other in found):
             found.append(reference)
             yield reference
 
 
-def _every(sheet: Sheet, view: View, stroke: Stroke | None) -> Iterator[Reference]:
+def _every(
+    sheet: Sheet, view: View, stroke: Stroke | None, about_mm: float
+) -> Iterator[Reference]:
     """The reference points, some of them more than once."""
     if stroke is not None:
         yield from _crosses(view, stroke.ends_mm())
         yield from _rings(view, _holes(sheet, stroke.patch))
-    for patch, middle in _small_patches(sheet):
+    for patch, middle in _small_patches(sheet, stroke, about_mm):
         yield from _crosses(view, sheet.stroke(patch).ends_mm())
         yield from _rings(view, [middle])
 
@@ -87,19 +94,26 @@ def _apart(a: Reference, b: Reference) -> float:
     return math.dist(a.place_mm, b.place_mm)
 
 
-def _small_patches(sheet: Sheet) -> Iterator[tuple[int, Array]]:
-    """The patches of a reference point's size, about as high as wide, and their middles."""
-    pitch, patches = sheet.drawing.pitch_mm, sheet.patches
-    sides_mm = patches.longer_sides * pitch
-    for patch in np.flatnonzero((sides_mm >= LEAST_MM) & (sides_mm <= LARGEST_MM)):
-        top, bottom, left, right = patches.box(np.arange(patches.count) == patch)
-        if _is_square(bottom - top, right - left):
-            yield int(patch), sheet.middle_mm(int(patch))
+def _small_patches(
+    sheet: Sheet, stroke: Stroke | None, about_mm: float
+) -> Iterator[tuple[int, Array]]:
+    """The patches of a reference point's size, about as high as wide, near a line, and their middles."""
+    pitch_mm, boxes = sheet.drawing.pitch_mm, sheet.patches.boxes
+    high, wide = boxes[:, 1] - boxes[:, 0], boxes[:, 3] - boxes[:, 2]
+    sides_mm = sheet.patches.longer_sides * pitch_mm
+    small = (sides_mm >= LEAST_MM) & (sides_mm <= LARGEST_MM) & _is_square(high, wide)
+    patches = np.flatnonzero(small)
+    middles_mm = sheet.middles_mm(patches)
+    if stroke is not None:
+        low_mm, high_mm = stroke.middles_mm.min(axis=0), stroke.middles_mm.max(axis=0)
+        away_mm = np.hypot(*(middles_mm - np.clip(middles_mm, low_mm, high_mm)).T)
+        patches, middles_mm = patches[away_mm <= about_mm], middles_mm[away_mm <= about_mm]
+    yield from zip(patches.tolist(), middles_mm, strict=True)
 
 
-def _is_square(high: int, wide: int) -> bool:
-    """Whether a box is about as high as wide."""
-    return min(high, wide) > BOX * max(high, wide)
+def _is_square(high: Any, wide: Any) -> Any:
+    """Whether a box, or each of some, is about as high as wide."""
+    return np.minimum(high, wide) > BOX * np.maximum(high, wide)
 
 
 def _holes(sheet: Sheet, patch: int) -> Iterator[Array]:

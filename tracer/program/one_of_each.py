@@ -12,7 +12,10 @@ be put down is taken for a letter; a larger one counts as a lost line.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
+from numpy.typing import NDArray
 
 from morfax.motion import nesting
 from morfax.motion.arrays import Array
@@ -24,18 +27,24 @@ from morfax.tracer.program.selection import Contour, Which
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace import SHORT, followed, followed_from_an_end
 
+# from a patch to the edge of the window: the furthest that a reference point or a lead line is looked for, of
+# `following.open_ends`, and as much again
+ABOUT_MM, ABOUT_WIDTHS = 40.0, 20.0
+
 
 def one_of_each(setup: Setup, asked: list[Contour], which: Which) -> tuple[list[Line], int]:
     """One line of each patch that is asked for, and how many patches are letters."""
     total_mm = sum(contour.stroke.length_mm for contour in asked)
-    lines, letters = list[Line](), 0
+    lines, boxes_mm, letters, come_mm = list[Line](), list[Array](), 0, 0.0
     for contour in asked:
-        if _is_done(contour, lines) or (which == "outer" and _is_inner(contour, lines)):
+        near = [lines[k] for k in _near(contour, boxes_mm)]
+        if _is_done(contour, near, lines) or (which == "outer" and _is_inner(contour, lines)):
             continue
-        come_mm = sum(line.length_mm for line in lines)
-        line = _follow(setup.after(come_mm, total_mm), contour)
+        line = _follow_in_window(setup.after(come_mm, total_mm), contour)
         if line is not None:
             lines.append(line)
+            boxes_mm.append(np.array([line.places_mm.min(axis=0), line.places_mm.max(axis=0)]))
+            come_mm += line.length_mm
         elif isinstance(which, str) or contour.number not in which:
             letters += 1
         else:
@@ -55,16 +64,46 @@ def is_inside(line: Line, lines: list[Line]) -> bool:
     return any(nesting.lies_inside(line.places_mm, other.loop_mm) for other in around)
 
 
-def _is_done(contour: Contour, lines: list[Line]) -> bool:
-    """Whether a patch is the reference point of a line, or a line was followed along it already."""
+def _near(contour: Contour, boxes_mm: list[Array]) -> NDArray[np.int64]:
+    """The numbers of the boxes, lowest and highest place of a line, in which a patch may lie."""
+    if not boxes_mm:
+        return np.empty(0, np.int64)
+    low_mm, high_mm = np.swapaxes(np.array(boxes_mm), 0, 1)
+    places_mm, beside_mm = contour.stroke.middles_mm, selection.BESIDE_MM
+    meets = places_mm.max(axis=0) > low_mm - beside_mm
+    meets &= places_mm.min(axis=0) < high_mm + beside_mm
+    return np.flatnonzero(meets.all(axis=1))
+
+
+def _is_done(contour: Contour, near: list[Line], lines: list[Line]) -> bool:
+    """Whether a patch is the reference point of a line, or one near to it was followed along it already."""
     if are_of_reference(contour.stroke.middles_mm, lines):
         return True
-    return any(contour.lies_on(line.places_mm) for line in lines)
+    return any(contour.lies_on(line.places_mm) for line in near)
 
 
 def _is_inner(contour: Contour, lines: list[Line]) -> bool:
     """Whether a patch lies inside one of the lines."""
     return any(not line.is_open and contour.lies_in(line.loop_mm) for line in lines)
+
+
+def _follow_in_window(setup: Setup, contour: Contour) -> Line | None:
+    """Follow a line of a patch, with cells that see no more of a large sheet than what is about the patch;
+    with all of it unless the line closes on its own patch.
+    """
+    sheet, settings = setup.sheet, setup.settings
+    patch, width_mm = contour.stroke.patch, contour.stroke.width_mm
+    around_mm = ABOUT_MM + settings.gap_mm + settings.recatch_mm + ABOUT_WIDTHS * width_mm
+    near = sheet.about(patch, around_mm)
+    if near is sheet:
+        return _follow(setup, contour)
+    line = _follow(replace(setup, sheet=near), contour)
+    if line is not None and line.ending == "closed" and line.reference_mm is None:
+        own_mm = contour.stroke.middles_mm
+        low_mm, high_mm = own_mm.min(axis=0) - width_mm, own_mm.max(axis=0) + width_mm
+        if ((line.places_mm > low_mm) & (line.places_mm < high_mm)).all():
+            return line
+    return _follow(setup, contour)
 
 
 def _follow(setup: Setup, contour: Contour) -> Line | None:

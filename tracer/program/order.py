@@ -112,11 +112,17 @@ def _on_to_nearest(first, idle_mm, before):  # type: ignore[no-untyped-def]
     """From the first line always on to the nearest one all whose inner lines are cut."""
     lines = len(idle_mm)
     way, cut = np.empty(lines, np.int64), np.zeros(lines, np.bool_)
+    waits_for = np.zeros(
+        lines, np.int64
+    )  # how many lines that are cut before it are not yet cut
+    for i in range(lines):
+        waits_for += before[i]
     way[0], cut[first] = first, True
     for k in range(1, lines):
+        waits_for -= before[way[k - 1]]
         best = -1
         for i in range(lines):
-            waits = cut[i] or np.any(before[:, i] & ~cut)
+            waits = cut[i] or waits_for[i] > 0
             if not waits and (best < 0 or idle_mm[way[k - 1], i] < idle_mm[way[k - 1], best]):
                 best = i
         way[k], cut[best] = best, True
