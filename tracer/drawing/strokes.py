@@ -13,7 +13,7 @@ Source: patent ES 361967 leaves the choice of the line to the operator, who brin
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import cv2
@@ -34,6 +34,7 @@ LEAST_LENGTH_MM = 2.0
 LEAST_LENGTH_PX = 12
 DEEPEST_PX = 200  # a line of 6 mm at 1200 dpi is 142 deep; the middle of a darker patch is not that of a line
 TILE_PX = 2048
+FEW_PLACES = 2000  # of a stroke that is kept: 48 kB
 SMALL_PART = 0.25  # of a sheet; by trial
 ABOUT_PX = 64  # rows above and below a place in which the nearest ink is sought first; by trial
 SOLID = 0.5  # of a patch's ink is beside filled shapes: it is theirs
@@ -80,6 +81,7 @@ class Sheet:
     widths_mm: Array
     are_solid: NDArray[np.bool_]
     window: Window | None = None
+    _known: dict[int, Stroke] = field(default_factory=dict, repr=False, compare=False)
 
     @classmethod
     def of(cls, drawing: Drawing) -> Sheet:
@@ -211,7 +213,16 @@ class Sheet:
         return np.column_stack([columns + 0.5, up - 0.5]) * self.drawing.pitch_mm
 
     def stroke(self, patch: int) -> Stroke:
-        """A patch as a line, with its middle places."""
+        """A patch as a line, with its middle places; that of a small patch is looked for once."""
+        if patch in self._known:
+            return self._known[patch]
+        stroke = self._stroke(patch)
+        if len(stroke.middles_mm) < FEW_PLACES:
+            self._known[patch] = stroke
+        return stroke
+
+    def _stroke(self, patch: int) -> Stroke:
+        """A patch as a line, looked for on its ink."""
         chosen = np.arange(self.patches.count) == patch
         disc_px = max(4, round(1.5 * self.widths_mm[patch] / self.drawing.pitch_mm))
         top, bottom, left, right = self.patches.box(chosen)

@@ -61,7 +61,10 @@ def at_ends(
         if leading is not None:
             return [leading]
     # 2. from one that is drawn; one further away has neither a lead line here nor an end of this line near it
-    about_mm = LEAD_MM + NAMED_MM + LARGEST_MM + view.leg_mm + 4 * view.width_mm
+    about_mm = (
+        1.5 * LARGEST_MM + view.leg_mm + 4 * view.width_mm
+    )  # to where its lead line is felt
+    about_mm += LEAD_MM + NAMED_MM if ends else 0.0
     drawn = references(sheet, view, stroke, about_mm)
     for place_mm, lead in _named_first(drawn, reference_mm):
         if lead is not None and stroke.is_at(lead.end_mm):
