@@ -64,9 +64,11 @@ class KeptKnots:
 
     def keep(self, key: Hashable, at: tuple[TurnAt, ...], head: Follower) -> None:
         """Put a knot on disk, if the last one is some time ago; a full disk holds no head up."""
-        began_s = time.monotonic()
-        if began_s < self._next_s:
+        if time.monotonic() < self._next_s or not head.carriage.travel_mm:
             return
+        began_s = (
+            time.thread_time()
+        )  # of the processor: a busy computer is not the writing's fault
         if key not in self._files:
             self._number += 1
             self._files[key] = self.folder / f"{self._number}{SUFFIX}"
@@ -79,8 +81,8 @@ class KeptKnots:
                 content
             )  # not flushed to the disk: a program that is killed loses none of it
             beside.replace(file)
-        spent_s = time.monotonic() - began_s
-        self._next_s = began_s + max(EVERY_S, spent_s / SHARE)
+        spent_s = time.thread_time() - began_s
+        self._next_s = time.monotonic() + max(EVERY_S, spent_s / SHARE)
 
     def take_up(self, stamp: str, memory: Memory) -> float:
         """Have a memory know the knots of a run that was cut off; the travel of its heads, mm."""

@@ -102,4 +102,4 @@ def test_knots_are_written_twice_a_second_at_most(tmp_path: Path) -> None:
 
     with remembering(Memory(keep)):
         trace(COMB, START)
-    assert came[0] == 1.0 and sum(came) <= max(2, len(came) / 2)
+    assert 1.0 <= sum(came) <= max(2, len(came) / 2)
