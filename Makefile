@@ -49,10 +49,12 @@ SEED ?= 1
 mutants: $(VENV)/installed
 	$(BIN)/python -m tests.mutants $(ROOM) --sample $(SAMPLE) --seed $(SEED)
 
-# broken tapes until something breaks: RUNS=1000000
+# broken files and tapes until something breaks: SECONDS for each reader of text, then RUNS=1000000 tapes
+SECONDS ?= 60
 RUNS ?= 1000000
 fuzz: $(VENV)/installed
 	$(BIN)/pip install --quiet --disable-pip-version-check -e '.[fuzz]'
+	$(BIN)/python -m fuzz.readers $(SECONDS)
 	$(BIN)/python -m fuzz.tapes -runs=$(RUNS) -timeout=2 -rss_limit_mb=1024 -max_len=4096
 
 clean:
