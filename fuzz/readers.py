@@ -1,8 +1,8 @@
 """Fuzz the readers of text without any tool: `python -m fuzz.readers [SECONDS] [TARGET ...]`.
 
 Each target has a whole, right file; an input is that file after one to eight changes: bytes, stretches,
-digits, tokens that readers stumble over. Every input must be read or end in a fault of the domain. Another exception,
-or 2 s of the processor, is kept in `fuzz-TARGET-NUMBER` and told; the exit code is then 1.
+digits, tokens that readers stumble over. Every input must be read or end in a fault of the domain. Another
+exception, or 2 s of the processor, is kept in `fuzz-TARGET-NUMBER` and told; the exit code is then 1.
 """
 
 from __future__ import annotations
