@@ -7,7 +7,9 @@ Lissajous figures, as a pen of 0.4 mm draws them, scanned at 300 dpi with noise.
 the true lines that strokes run along (all, and the worst drawing), the length that is run more than once,
 strokes against the least that the net allows (half of its odd junctions), the distance of strokes from the
 true lines outside of junctions and at them, how often a true line that passes a junction is one stroke there,
-and processor time. Beside it the pieces into which scikit-image's skeleton falls at its junctions.
+and processor time; at the end the worst drawing of each figure, by which it can be made again. Beside it the
+pieces into which scikit-image's skeleton falls at its junctions, and, where `pyautotrace` is installed, the
+paths that autotrace makes of the middle lines.
 """
 
 from __future__ import annotations
@@ -42,6 +44,7 @@ AT_JUNCTION_MM = 2.0  # places nearer to a junction are left out of the RMS
 STEP_MM = 0.05
 PASSED_MM = 2.0  # before and behind a junction, where the partners are looked up
 UM = 1000.0
+LOW_SHARE = 0.995  # asked of a net
 
 
 def chords(rng: np.random.Generator) -> Strokes:
@@ -113,6 +116,8 @@ class Found(NamedTuple):
     right: int
     took_s: float
     pieces: int
+    autotraced: int | None
+    name: str
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -120,23 +125,27 @@ def main(arguments: list[str] | None = None) -> None:
     count, first = (*map(int, arguments or []), *(2, 0)[len(arguments or []) :])
     print(
         "kind        share  worst  twice  strokes/least  RMS um, at junctions  right partners"
-        "  skeleton pieces/stroke  s/m"
+        "  skeleton, autotrace pieces/stroke  s/m"
     )
     every = list[Found]()
     with tempfile.TemporaryDirectory() as folder:
         for name, kind in KINDS.items():
             found = [
                 measured(
-                    kind(np.random.default_rng([k, len(name)])), Path(folder) / "net.png", k
+                    kind(np.random.default_rng([k, len(name)])),
+                    Path(folder) / "net.png",
+                    k,
+                    name,
                 )
                 for k in range(first, first + count)
             ]
             every += found
             _tell(name, found)
     _tell("all", every)
+    _tell_worst(every)
 
 
-def measured(strokes: Strokes, file: Path, seed: int) -> Found:
+def measured(strokes: Strokes, file: Path, seed: int, name: str = "net") -> Found:
     """Draw a net, follow it, and hold what was followed against what was drawn."""
     drawn(strokes, file, seed)
     drawing, begun = Drawing.open(file), time.process_time()
@@ -170,6 +179,8 @@ def measured(strokes: Strokes, file: Path, seed: int) -> Found:
         sum(right),
         took_s,
         skeleton_pieces(drawing),
+        autotrace_pieces(drawing),
+        f"{name} {seed}",
     )
 
 
@@ -242,6 +253,17 @@ def skeleton_pieces(drawing: Drawing) -> int:
     return int(label(thin & (neighbours < 3), np.ones((3, 3)))[1])
 
 
+def autotrace_pieces(drawing: Drawing) -> int | None:
+    """How many paths autotrace makes of the middle lines of the ink; None where it is not installed."""
+    try:
+        from autotrace import Bitmap
+    except ImportError:
+        return None
+    levels = np.where(drawing.darkness > 0.5, 0, 255).astype(np.uint8)
+    bitmap = Bitmap(np.dstack([levels] * 3))
+    return len(bitmap.trace(centerline=True, background_color=(255, 255, 255)).paths)
+
+
 def _tell(name: str, found: list[Found]) -> None:
     """Print one row."""
     true_mm, followed_mm = sum(f.true_mm for f in found), sum(f.followed_mm for f in found)
@@ -252,12 +274,34 @@ def _tell(name: str, found: list[Found]) -> None:
         for ums in ([f.rms_um for f in found], [f.at_junctions_um for f in found])
     )
     right = sum(f.right for f in found) / max(1, sum(f.passes for f in found))
+    counts = [f.autotraced for f in found if f.autotraced is not None]
+    autotraced = f"{sum(counts) / strokes:6.1f}" if counts else "     –"
     print(
         f"{name:10s} {followed_mm / true_mm:6.1%} {worst:6.1%} "
         f"{sum(f.twice_mm for f in found) / true_mm:6.1%} {strokes:5d}/{least:<5d} {strokes / least:5.2f}"
         f"{outside_um:8.1f}{there_um:8.1f}{right:18.2%} {sum(f.pieces for f in found) / strokes:14.1f}"
-        f"{1000 * sum(f.took_s for f in found) / true_mm:16.1f}",
+        f"{autotraced}{1000 * sum(f.took_s for f in found) / true_mm:16.1f}",
         flush=True,
+    )
+
+
+def _tell_worst(found: list[Found]) -> None:
+    """Print the worst drawing of each figure."""
+    shares = [f.followed_mm / f.true_mm for f in found]
+    worst = {
+        "share": (min(shares), found[int(np.argmin(shares))].name, ".1%"),
+        "RMS um": max((f.rms_um, f.name, ".1f") for f in found),
+        "at junctions um": max((f.at_junctions_um, f.name, ".1f") for f in found),
+        "wrong partners": max((f.passes - f.right, f.name, "d") for f in found),
+    }
+    for figure, (value, name, form) in worst.items():
+        print(f"worst {figure}: {value:{form}} at {name}")
+    low = sum(share < LOW_SHARE for share in shares)
+    outside_um = float(np.median([f.rms_um for f in found]))
+    there_um = float(np.median([f.at_junctions_um for f in found]))
+    print(
+        f"drawings below {LOW_SHARE:.1%}: {low} of {len(found)}; "
+        f"median RMS {outside_um:.1f} um, at junctions {there_um:.1f} um"
     )
 
 

@@ -25,6 +25,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault, LineFault
 from morfax.tracer.drawing.components import Mask, Patches, runs_of, strips
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.numbering import ALIKE, Ink, longest_first
 
 Pixels = NDArray[Any]
 Window = tuple[int, int, int, int]  # first row and column, row and column after the last
@@ -40,6 +41,9 @@ ABOUT_PX = 64  # rows above and below a place in which the nearest ink is sought
 SOLID = 0.5  # of a patch's ink is beside filled shapes: it is theirs
 LESS = 0.85  # ink about an end, of what is usual: half, and what the middle place lies within the end
 MOST_ENDS = 100
+ONE_PEN = (
+    0.3  # lines whose widths are within this share of the usual width are one pen's; by trial
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,7 +123,34 @@ class Sheet:
 
     def longest(self) -> Stroke:
         """The longest line."""
-        return self.stroke(int(np.argmax(self.lengths_mm)))
+        lengths_mm = self.one_pen_mm()
+        long = np.flatnonzero(lengths_mm >= (1 - 2 * ALIKE) * lengths_mm.max())
+        return self.stroke(int(self.longest_first(long)[0]))
+
+    def longest_first(self, patches: Pixels) -> Pixels:
+        """Some patches in the order of their numbers."""
+        if len(patches) < 2:
+            return patches
+        runs = self.patches
+        places_mm = self.run_middles_mm(np.arange(len(runs.row)))
+        weights = (runs.end - runs.begin).astype(float)
+        sums = [np.bincount(runs.patch, weights * column, runs.count) for column in places_mm.T]
+        middles_mm = np.column_stack(sums)[patches] / runs.areas[patches][:, None]
+        order = longest_first(
+            self.one_pen_mm()[patches], middles_mm, Ink.of(places_mm, weights)
+        )
+        return patches[order]
+
+    def one_pen_mm(self) -> Array:
+        """Lengths of the patches, mm, by one width for all that one pen may have drawn: a scan measures a
+        width of three pixels a little differently at each angle.
+        """
+        areas_mm2 = self.lengths_mm * self.widths_mm
+        order = np.argsort(self.widths_mm)
+        sums = np.cumsum(areas_mm2[order])
+        usual_mm = self.widths_mm[order[np.searchsorted(sums, 0.5 * sums[-1])]]
+        is_pen = np.abs(self.widths_mm / usual_mm - 1) < ONE_PEN
+        return np.asarray(areas_mm2 / np.where(is_pen, usual_mm, self.widths_mm))
 
     def nearest(self, place_mm: tuple[float, float], within_mm: float) -> Stroke:
         """The line nearest to a place; raises LineFault, with its place, if it is out of reach."""

@@ -54,10 +54,10 @@ class FeltSheet:
         return list(runs), list(parted)
 
     @classmethod
-    def of(cls, whole_sheet: Sheet, settings: Settings) -> FeltSheet:
-        """Find and feel the stretches of a sheet."""
+    def of(cls, whole_sheet: Sheet, settings: Settings, ink: Mask | None = None) -> FeltSheet:
+        """Find and feel the stretches of a sheet, or of some of its ink."""
         seen = _Seen(whole_sheet.drawing, settings)
-        graph = Graph.of(_ink(whole_sheet))
+        graph = Graph.of(_ink(whole_sheet) if ink is None else ink)
         felt = _felt(graph, seen)
         return cls(graph, felt, _line_widths(graph, felt, graph.at_nodes(), settings), settings)
 

@@ -105,7 +105,7 @@ def lines_of(sheet: Sheet) -> NDArray[np.int64]:
     shortest_mm = 0.0 if sheet.drawing.edges_mm else least_mm(sheet.widths_mm)
     long_enough = sheet.lengths_mm >= shortest_mm
     patches = np.flatnonzero(long_enough | (_reach_mm(sheet) >= LETTER_MM))
-    return patches[np.argsort(-sheet.lengths_mm[patches], kind="stable")]
+    return np.asarray(sheet.longest_first(patches), np.int64)
 
 
 def others_than(

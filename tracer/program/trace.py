@@ -31,6 +31,7 @@ from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance, turned_round
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.marks_read import with_marks_read
+from morfax.tracer.program.net_outline import OfNet, of_net
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.selection import others_than
 from morfax.tracer.program.setup import HeadProgress, Setup
@@ -48,7 +49,8 @@ def trace(
     operator: Operator | None = None,
     progress: HeadProgress | None = None,
 ) -> Trace:
-    """Follow a line of the drawing: the one at `start_mm` (sheet mm), or the longest.
+    """Follow a line of the drawing: the one at `start_mm` (sheet mm), or the longest; of lines that cross or
+    touch the longest closed outline (see `net_outline`).
 
     `progress` hears how far the head has come and the length of the line, mm. Raises LineFault if no line is
     there to start on, CardFault for a stop that the operator cannot serve; a line that is lost on the way is
@@ -56,7 +58,8 @@ def trace(
     """
     operator = operator or Operator()
     setup = Setup(Sheet.of(drawing), settings or Settings(), operator, progress)
-    line = followed(setup, start_mm)
+    found = OfNet(setup) if start_mm is not None else of_net(setup)
+    line = found.line or followed(found.setup, start_mm)
     others = 0
     if start_mm is None:
         others = others_than(setup.sheet, line.places_mm, line.reference_mm)

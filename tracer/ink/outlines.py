@@ -1,0 +1,179 @@
+"""Outlines: the closed contours of a net of lines; asked for one line, the head follows the longest of them.
+
+Signals: the junctions of a net in; a closed chain of its lines out.
+
+    ╭───┬───╮      round about, straight on over the junctions: a closed chain, as a pen draws it
+    │   │   │
+    ╰───┴───╯      else round the net's outside, by lines that turn at its junctions: bars within it and
+                   spurs are no part of that
+
+Source: our own. Questions: of two circles that overlap, is the outline one of them or round both? One of
+them, as the pen drew it; round the outside is the outline where straight on leads round little of it.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from morfax.motion.arrays import Array
+from morfax.tracer.drawing.numbering import Ink, longest_first
+from morfax.tracer.ink.chains import Chain, Junctions, Link, Side
+
+# of the way round the net's outside: a closed chain that is shorter is a detail of the drawing; by trial
+MOST_OF_IT = 0.4
+Edge = tuple[
+    int, bool
+]  # a line of the net, and whether it is gone along from its last place to its first
+
+
+class Outline(NamedTuple):
+    """A closed chain of lines and its length by their ink, mm."""
+
+    chain: Chain
+    length_mm: float
+
+
+def outlines(junctions: Junctions) -> list[Outline]:
+    """The closed contours of a net, the longest first: closed chains, or the way round its outside."""
+    lines = junctions.net.lines
+    found = [
+        Outline(chain, sum(lines[link.line].length_mm for link in chain.links))
+        for chain in junctions.chains()
+        if chain.closed
+    ]
+    outside = _outside(junctions)
+    longest_mm = max((each.length_mm for each in found), default=0.0)
+    if outside is not None and longest_mm < MOST_OF_IT * outside.length_mm:
+        found.append(outside)
+    if len(found) < 2:
+        return found
+    places = [
+        np.vstack([run.places_mm for link in each.chain.links for run in lines[link.line].runs])
+        for each in found
+    ]
+    every = np.vstack(places)
+    order = longest_first(
+        np.array([each.length_mm for each in found]),
+        np.array([some.mean(axis=0) for some in places]),
+        Ink.of(every, np.ones(len(every))),
+    )
+    return [found[k] for k in order]
+
+
+def _outside(junctions: Junctions) -> Outline | None:
+    """The longest way round the outside of a net, without bars and spurs; None if nothing goes round."""
+    lines = junctions.net.lines
+    left = {n for n, line in enumerate(lines) if line.junctions[0] != line.junctions[1]}
+    while True:
+        spurs = _spurs(left, junctions) or _bars(left, junctions)
+        if not spurs:
+            break
+        left -= spurs
+    ways = [way for face in _faces(left, junctions) for way in _simple(face, junctions)]
+    if not ways:
+        return None
+    areas = [_area_mm2(way, junctions) for way in ways]
+    way = ways[int(np.argmin(areas))]  # the outside is gone round clockwise
+    links = [Link(line, back) for line, back in way]
+    length_mm = sum(lines[line].length_mm for line, _ in way)
+    return Outline(Chain(links, True), length_mm)
+
+
+def _spurs(left: set[int], junctions: Junctions) -> set[int]:
+    """The lines that lead nowhere."""
+    count = dict[int, int]()
+    for n in left:
+        for node in junctions.net.lines[n].junctions:
+            count[node] = count.get(node, 0) + 1
+    return {n for n in left if min(count[j] for j in junctions.net.lines[n].junctions) < 2}
+
+
+def _bars(left: set[int], junctions: Junctions) -> set[int]:
+    """The lines with the same area on both sides: they only lead from one part of a net to another."""
+    faces = [set(face) for face in _faces(left, junctions)]
+    return {n for n in left if any((n, False) in face and (n, True) in face for face in faces)}
+
+
+def _faces(left: set[int], junctions: Junctions) -> list[list[Edge]]:
+    """The ways round the areas that some lines part: areas within the net anticlockwise, the outside
+    clockwise.
+    """
+    onto = _next_edges(left, junctions)
+    faces, seen = list[list[Edge]](), set[Edge]()
+    for first in onto:
+        face, edge = list[Edge](), first
+        while edge not in seen:
+            seen.add(edge)
+            face.append(edge)
+            edge = onto[edge]
+        if face:
+            faces.append(face)
+    return faces
+
+
+def _next_edges(left: set[int], junctions: Junctions) -> dict[Edge, Edge]:
+    """For each line and sense the next one round the area to its left: the first to the left of the way
+    back.
+    """
+    leaving = dict[int, list[tuple[float, Edge]]]()
+    for number, there in junctions.by_number.items():
+        ends = np.array([leg.end_mm for leg in there.legs])
+        middle = ends.mean(axis=0)
+        for side, end, leg in zip(there.sides, ends, there.legs, strict=True):
+            if side.line not in left:
+                continue
+            out = end - middle
+            if math.hypot(*out) < leg.width_mm:  # few legs, near together: by where they head
+                out = -np.array([math.cos(leg.heading_rad), math.sin(leg.heading_rad)])
+            edge = side.line, side.last
+            leaving.setdefault(number, []).append((math.atan2(out[1], out[0]), edge))
+    onto = dict[Edge, Edge]()
+    for legs in leaving.values():
+        edges = [edge for _, edge in sorted(legs)]
+        for k, (line, back) in enumerate(edges):
+            # the same line comes in here the other way about, and goes on to the next one clockwise
+            onto[line, not back] = edges[k - 1]
+    return onto
+
+
+def _simple(face: list[Edge], junctions: Junctions) -> list[list[Edge]]:
+    """A way round in pieces that pass each junction once: where a net hangs together in one place."""
+    ways, trail, nodes = list[list[Edge]](), list[Edge](), list[int]()
+    for line, back in face:
+        nodes.append(junctions.net.lines[line].junctions[back])
+        trail.append((line, back))
+        far = junctions.net.lines[line].junctions[not back]
+        if far in nodes:
+            k = nodes.index(far)
+            ways.append(trail[k:])
+            del trail[k:], nodes[k:]
+    return ways
+
+
+def _area_mm2(way: list[Edge], junctions: Junctions) -> float:
+    """The area that a way goes round, mm²; anticlockwise is more than 0."""
+    x, y = _places(way, junctions).T
+    return 0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
+
+
+def _places(way: list[Edge], junctions: Junctions) -> Array:
+    """Places along a way, (n, 2) mm."""
+    pieces = list[Array]()
+    for line, back in way:
+        places = np.vstack([run.places_mm for run in junctions.net.lines[line].runs])
+        pieces.append(places[::-1] if back else places)
+    return np.vstack(pieces)
+
+
+def junctions_on(chain: Chain, junctions: Junctions) -> list[tuple[float, float]]:
+    """The places of the junctions along a chain, mm, in the order in which it comes to them."""
+    found = list[tuple[float, float]]()
+    for link in chain.links:
+        there = junctions.at(Side(link.line, not link.back))
+        if len(there.sides) > 2:
+            x, y = np.mean([leg.end_mm for leg in there.legs], axis=0)
+            found.append((float(x), float(y)))
+    return found

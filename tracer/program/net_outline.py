@@ -1,0 +1,131 @@
+"""The outline of a net: which line is taken of a sheet on which lines cross or touch, if nobody says which.
+
+Signals: a set-up in; out the longest closed outline on the sheet, as the head ran along it.
+
+A patch of ink that goes round two areas or more is a net. Its length is that of its longest closed outline
+(see `ink.outlines`), and if no other line of the sheet is longer, the head runs along that. From a place on a
+net the head might go straight on into another line; the net's junctions are solved first, so the choice
+depends neither on the place nor on how the sheet lay in the scanner.
+
+Source: our own; the operator of patent ES 361967 says which line. Questions: a drawn program (a reference
+point, a card, a turn or stop that was told) has one line, which its lead line leads to: it is no net.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.motion.arrays import Array
+from morfax.motion.faults import LineFault
+from morfax.motion.polyline import area_mm2, length_mm
+from morfax.tracer.drawing.components import Mask
+from morfax.tracer.drawing.enclosure import Enclosure
+from morfax.tracer.drawing.numbering import ALIKE
+from morfax.tracer.drawing.strokes import Sheet
+from morfax.tracer.following.line import Line
+from morfax.tracer.following.start import put_down
+from morfax.tracer.ink.chains import Junctions, solved
+from morfax.tracer.ink.outlines import Outline, junctions_on, outlines
+from morfax.tracer.ink.stretches import FeltSheet
+from morfax.tracer.ink.track import stroke_along
+from morfax.tracer.program.setup import Setup
+
+AREA_WIDTHS = 1.0  # squared: a smaller area of paper in a patch is a flaw of the ink; by trial
+MOST_PATCHES = 100_000  # of a sheet with more nobody expects one line
+
+
+class OfNet(NamedTuple):
+    """The set-up in which each net is as long as its longest outline; the line, if that is the longest."""
+
+    setup: Setup
+    line: Line | None = None
+
+
+def of_net(setup: Setup) -> OfNet:
+    """The longest closed outline of the sheet's nets, if no other line is longer."""
+    sheet = setup.sheet
+    if _is_program(setup) or sheet.drawing.edges_mm or sheet.patches.count > MOST_PATCHES:
+        return OfNet(setup)
+    are_nets = _nets(sheet)
+    lengths_mm = sheet.one_pen_mm()
+    longest_mm = float(np.max(lengths_mm[~are_nets], initial=0.0))
+    nets = np.flatnonzero(are_nets & (lengths_mm > (1 - ALIKE) * longest_mm))
+    if not len(nets) or _has_reference(setup):
+        return OfNet(setup)
+    # 1. the longest outline of each
+    found = dict[int, tuple[Outline, Junctions]]()
+    for patch in nets.tolist():
+        felt = FeltSheet.of(sheet, setup.settings, _ink_of(sheet, patch))
+        junctions = solved(felt)
+        closed = outlines(junctions)
+        if closed:
+            found[patch] = closed[0], junctions
+    # 2. the nets count by these
+    counted_mm = sheet.lengths_mm.copy()
+    for patch, (outline, _) in found.items():
+        counted_mm[patch] = outline.length_mm
+    counted = replace(sheet, lengths_mm=counted_mm)
+    longest = int(counted.longest_first(np.arange(len(counted_mm)))[0])
+    if longest not in found:
+        return OfNet(replace(setup, sheet=counted))
+    line = _line(setup, *found[longest])
+    return OfNet(setup, replace(line, ink_mm=float(sheet.lengths_mm[longest])))
+
+
+def _is_program(setup: Setup) -> bool:
+    """Whether somebody says where the line is, or which way it goes on."""
+    operator, drawing = setup.operator, setup.sheet.drawing
+    told = drawing.told_turns or drawing.told_stops or operator.card.is_about_stops
+    named = operator.reference_mm is not None or operator.marks == "on"
+    return bool(told or named or operator.direction in ("left", "right"))
+
+
+def _has_reference(setup: Setup) -> bool:
+    """Whether a line leads away from a reference point that is drawn."""
+    try:
+        stance, _ = next(put_down(setup.sheet, settings=setup.settings))
+    except LineFault:
+        return False
+    return stance.reference_mm is not None
+
+
+def _nets(sheet: Sheet) -> NDArray[np.bool_]:
+    """Which patches go round two areas or more."""
+    enclosure = Enclosure.of(sheet.patches, len(sheet.drawing.darkness))
+    least_px = (AREA_WIDTHS * sheet.widths_mm / sheet.drawing.pitch_mm) ** 2
+    return np.asarray((enclosure.loops(least_px) > 1) & ~sheet.are_solid)
+
+
+def _ink_of(sheet: Sheet, patch: int) -> Mask:
+    """The ink of one patch on the whole sheet."""
+    rows, columns = sheet.drawing.darkness.shape
+    return sheet.patches.painted(np.arange(sheet.patches.count) == patch, 0, rows, 0, columns)
+
+
+def _line(setup: Setup, outline: Outline, junctions: Junctions) -> Line:
+    """The head's run along an outline, the way round that is asked for."""
+    told = setup.told(outline.length_mm)
+    stroke = stroke_along(outline.chain, junctions, setup.settings, told)
+    way_mm, led = stroke.way_mm, stroke.led
+    places = junctions_on(outline.chain, junctions)
+    direction = setup.operator.direction
+    if direction is not None and (area_mm2(way_mm) > 0) != (direction == "ccw"):
+        way_mm, led, places = way_mm[::-1], led.turned_round(len(way_mm)), places[::-1]
+    return Line(
+        way_mm,
+        "closed",
+        stroke.width_mm,
+        length_mm(way_mm),
+        led=led,
+        junctions_mm=tuple(_from_start(places, way_mm)),
+    )
+
+
+def _from_start(places: list[tuple[float, float]], way_mm: Array) -> list[tuple[float, float]]:
+    """Places on a closed way in the order in which it comes to them."""
+    come = [int(np.argmin(np.hypot(*(way_mm - place).T))) for place in places]
+    return [places[k] for k in np.argsort(come, kind="stable")]
