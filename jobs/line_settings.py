@@ -30,6 +30,8 @@ class LineSettings:
     # where lines begin, and a place that way along them; without `lines` they pick the lines
     arrows_mm: tuple[tuple[Place, Place], ...] = ()
     order: tuple[int, ...] = ()  # numbers of the lines that are cut first, in this order
+    # of all the ink: lettering as high is followed, 0 all of it, infinite none; None: all, and nobody asked
+    lettering_mm: float | None = None
 
     @property
     def is_asked_for(self) -> bool:
@@ -48,8 +50,16 @@ class LineSettings:
             return (self.start_mm, *self.more_starts_mm)
         return () if self.lines is not None else tuple(place for place, _ in self.arrows_mm)
 
+    def _check_lettering(self) -> None:
+        """Raise WrongUse for lettering where not all the ink is asked for."""
+        if self.lettering_mm is not None and self.lines != "all":
+            raise WrongUse(
+                "--lettering says what --lines all does with letters; give --lines all too, or leave it out"
+            )
+
     def check(self) -> None:
         """Raise WrongUse for two that do not go together."""
+        self._check_lettering()
         if self.lines is not None and self.start_mm is not None:
             raise WrongUse("--start picks one line, --lines several; give one of them")
         if self.more_starts_mm and self.start_mm is None:

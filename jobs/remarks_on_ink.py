@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from morfax.tracer.following.line import Line
+    from morfax.tracer.ink.ledger import Balance
     from morfax.tracer.program.program import Trace
 
 # chosen by trial on the test drawings
@@ -43,10 +44,28 @@ def _of_all(trace: Trace) -> Iterator[str]:
             "are too short or too unclear to put the head down; the figures list their places, and "
             "--picture marks them; scan at a higher resolution"
         )
+    yield from _of_areas(trace.ink)
     if trace.ink.solid_mm > 0:
         yield (
             f"{trace.ink.solid_mm:.0f} mm of ink are the rims of filled shapes, and left out; --edge follows "
             "the outlines of filled shapes"
+        )
+
+
+def _of_areas(ink: Balance) -> Iterator[str]:
+    """Solid areas and letters among lines that were left out."""
+    solids = ink.solids
+    if solids:
+        are = "1 solid area is" if len(solids) == 1 else f"{len(solids)} solid areas are"
+        large_mm2 = sum(area.area_mm2 for area in solids)
+        (x, y), largest_mm2 = solids[0].place_mm, solids[0].area_mm2
+        yield (
+            f"{are} broader than a line, and left out ({large_mm2:.0f} mm2; the largest, "
+            f"{largest_mm2:.1f} mm2, at {x:.1f},{y:.1f} mm): --edge follows the outlines of filled shapes"
+        )
+    if ink.letters_mm > 0:
+        yield (
+            f"{ink.letters_mm:.0f} mm of ink are lettering, and left out; --lettering all follows it"
         )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -41,6 +42,24 @@ def ink(trace: Trace) -> dict[str, Any]:
         "ink_followed_mm": balance.followed_mm,
         "specks_left_out_mm": balance.specks_mm,
         "filled_shapes_left_out_mm": balance.solid_mm,
+        "lettering_followed_mm": balance.lettering_mm,
+        "lettering_left_out_mm": balance.letters_mm,
+        "solid_areas": [
+            {"solid_place_mm": area.place_mm, "solid_mm2": area.area_mm2}
+            for area in balance.solids
+        ]
+        or None,
+        "hatching": [
+            {
+                "hatching_place_mm": family.place_mm,
+                "strokes": len(family.strokes),
+                "hatching_mm": family.length_mm,
+                "apart_mm": family.apart_mm,
+                "heading_deg": math.degrees(family.heading_rad),
+            }
+            for family in balance.hatching
+        ]
+        or None,
         "places_left_out": [
             {"left_out_place_mm": (x, y), "left_out_mm": length_mm}
             for x, y, length_mm in balance.lost

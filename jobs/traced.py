@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from morfax.motion.motion import Path
     from morfax.recorder.media import Report
     from morfax.tracer.cutter.cutter import Cutter, Left
+    from morfax.tracer.ink.left_out import Area
     from morfax.tracer.program.program import Trace
 
 Place = tuple[float, float]
@@ -54,6 +55,11 @@ class Traced:
         if not self.several:
             return []
         return [(str(line.number), line.start_mm) for line in self.trace.lines]
+
+    @property
+    def left_out(self) -> tuple[Area, ...]:
+        """Solid areas and letters that were left out."""
+        return () if self.trace.ink is None else self.trace.ink.areas
 
     @property
     def marked_mm(self) -> dict[str, Place]:

@@ -177,7 +177,11 @@ class Tracing:
                 return trace_lines(drawing, "contours", self.of_head, self.operator, tell)
             # crosses and ticks are lines then: no turns and no stops
             return trace_ink(
-                replace(drawing, corrected=None), self.of_head, self.operator, tell
+                replace(drawing, corrected=None),
+                self.of_head,
+                self.operator,
+                tell,
+                line.lettering_mm or 0.0,
             )
 
 

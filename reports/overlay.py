@@ -18,7 +18,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.motion import Path
-from morfax.reports import leaders
+from morfax.reports import leaders, left_out
 from morfax.reports.canvas import REFERENCE, UM_PER_MM, View, new_figure, save, show_drawing
 from morfax.reports.corrected import draw_corrections
 
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
     from morfax.jobs.who_led import WhoLed
     from morfax.tracer.drawing.drawing import Drawing
+    from morfax.tracer.ink.left_out import Area
 
 COLOURS = ("#1f5fa8", "#5fa8d3", "#f2a65a", "#c1121f")  # no error … largest error
 PLAIN = "#c1121f"
@@ -56,6 +57,7 @@ class Picture:
     numbers_mm: Sequence[tuple[str, tuple[float, float]]] = ()
     stops_mm: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     led: WhoLed | None = None  # who led the head, in colours
+    left_out: Sequence[Area] = ()  # ink along which no stroke was to run
 
 
 def draw(picture: Picture, file: FilePath) -> None:
@@ -98,6 +100,7 @@ def _fill(figure: Figure, axes: Axes, picture: Picture, view: View) -> None:
     _ends(axes, picture.path)
     _numbers(axes, picture)
     _stops(axes, picture)
+    left_out.draw(axes, picture.left_out)
     if picture.drawing is not None and picture.drawing.corrected is not None:
         draw_corrections(axes, picture.drawing.corrected)
     axes.set(xlim=view[:2], ylim=view[2:], xlabel="X, mm", ylabel="Y, mm", aspect="equal")

@@ -48,6 +48,7 @@ def draw_traced(result: TraceResult) -> None:
         numbers_mm=traced.places_mm,
         stops_mm=traced.marked_mm,
         led=traced.led,
+        left_out=traced.left_out,
     )
     draw(picture, result.picture)
     _draw_flat(result.drawing, result.picture)

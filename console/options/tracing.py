@@ -18,6 +18,7 @@ from morfax.console.options.types import (
     CUTTER,
     DEPTH,
     LENGTH,
+    LETTERS,
     LINES,
     ORDER,
     PLACE,
@@ -56,6 +57,14 @@ SEVERAL = option(
     "such as 1,3; 1 is the longest.  [default: one line, the longest or that at --start; with --cutter and "
     "no --card contours]",
 )
+LETTERING = option(
+    "Line",
+    "--lettering",
+    "lettering_mm",
+    type=LETTERS,
+    help="With --lines all: the letters that are followed: all, none, or those of a height such as 2mm and "
+    "higher. What is left out is told.  [default: all]",
+)
 LINE_WIDTH = option(
     "Line",
     "--line-width",
@@ -82,6 +91,7 @@ TRACING_SPEED = option(
 _LINE = (
     START,
     SEVERAL,
+    LETTERING,
     LINE_WIDTH,
     GAP,
     option(

@@ -115,6 +115,22 @@ def _parse_order(text: str) -> tuple[int, ...]:
     return tuple(map(int, parts))
 
 
+def _parse_lettering(text: str) -> float:
+    """From which height on letters are followed, mm: 0 for "all", infinite for "none"."""
+    word = text.strip().lower()
+    if word in ("all", "none"):
+        return 0.0 if word == "all" else math.inf
+    try:
+        high_mm = parse_length_mm(word)
+    except ValueError:
+        high_mm = 0.0
+    if not high_mm > 0:
+        raise ValueError(
+            f"{text!r} names no letters; give all, none, or the height of the least, such as 2mm"
+        )
+    return high_mm
+
+
 def _parse_stops(text: str) -> str | tuple[int, ...]:
     """Which stop marks do not stop the head: "none", "all", or their numbers."""
     word = text.strip().lower()
@@ -269,6 +285,7 @@ LIMIT = Quantity("time", parse_time_s, above_zero=True)
 MEMORY = Quantity("memory", parse_memory_bytes, within="1GB to 1000TB")
 LINES = Quantity("lines", _parse_lines)
 ORDER = Quantity("lines", _parse_order)
+LETTERS = Quantity("all|none|length", _parse_lettering)
 STOPS = Quantity("stops", _parse_stops)
 TRACKS = Quantity("tracks", _tracks)
 AXES = Quantity("axes", _axes)

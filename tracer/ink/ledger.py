@@ -1,7 +1,7 @@
 """The ledger: how much of a sheet's ink the strokes have followed, and what is left.
 
-Signals: the sheet, the graph of its ink, and the ways of the head, (n, 2) sheet mm, in; the balance out, mm
-of line by the area of its ink.
+Signals: the sheet as it was felt, and the ways of the head, (n, 2) sheet mm, in; the balance out, mm of line
+by the area of its ink, and what was left out, by reason.
 
 The thinned ink says where the middles of all lines are: those near to a way have been followed.
 
@@ -21,6 +21,8 @@ from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.drawing.thinning import Indices
 from morfax.tracer.following.followed import THINNED
 from morfax.tracer.ink.graph import Graph
+from morfax.tracer.ink.hatching import Hatching, hatching
+from morfax.tracer.ink.left_out import Area, InkLeft
 
 EVERY_MM = 0.1  # ways are held against the ink so often
 BESIDE_WIDTHS = 0.7  # ink nearer to a way than this is that way's; by trial on drawings of nets
@@ -36,7 +38,9 @@ Patch = tuple[float, float, float]  # about where its middle is, and its length,
 class Balance(NamedTuple):
     """The ink of a sheet, mm of line by its area: followed, left, specks, and the rims of filled shapes.
 
-    `lost`: stretches on which no stroke runs, (place X, place Y, length) mm, the longest first.
+    `lost`: stretches on which no stroke runs, (place X, place Y, length) mm, the longest first. `letters_mm`
+    of lettering were left out, `lettering_mm` followed. `areas`: solid areas and letters that were left out.
+    `hatching`: families of strokes that are hatching, and were followed.
     """
 
     followed_mm: float
@@ -44,14 +48,23 @@ class Balance(NamedTuple):
     specks_mm: float
     solid_mm: float
     lost: tuple[Patch, ...] = ()
+    letters_mm: float = 0.0
+    lettering_mm: float = 0.0
+    areas: tuple[Area, ...] = ()
+    hatching: tuple[Hatching, ...] = ()
+
+    @property
+    def solids(self) -> list[Area]:
+        """The solid areas, the largest first."""
+        return [area for area in self.areas if area.what == "solid area"]
 
     @property
     def followed_share(self) -> float:
-        """Share of the lines' ink along which strokes run; specks and filled shapes apart."""
+        """Share of the lines' ink along which strokes run; what was left out on purpose apart."""
         return self.followed_mm / max(self.followed_mm + self.left_mm, TINY)
 
 
-def balance(sheet: Sheet, graph: Graph, ways: list[Array]) -> Balance:
+def balance(sheet: Sheet, graph: Graph, left: InkLeft, ways: list[Array]) -> Balance:
     """What has been followed along some ways (n, 2) mm, and what is left."""
     # 1. which of the thinned pixels are a way's
     places = graph.places_mm(sheet.drawing)
@@ -62,16 +75,29 @@ def balance(sheet: Sheet, graph: Graph, ways: list[Array]) -> Balance:
     # 2. by patches
     pixels = np.maximum(np.bincount(patch, minlength=sheet.patches.count), 1)
     shares = np.bincount(patch, is_near, sheet.patches.count) / pixels
-    lengths_mm, solid = sheet.lengths_mm, sheet.are_solid
-    specks = ~solid & (shares == 0) & (lengths_mm < SPECK_MM)
-    lines = ~solid & ~specks
+    lengths_mm, solid = _line_lengths_mm(sheet, left), sheet.are_solid
+    specks = ~solid & ~left.letters & (shares == 0) & (lengths_mm < SPECK_MM)
+    lines = ~solid & ~left.letters & ~specks
     return Balance(
         float(np.sum((shares * lengths_mm)[lines])),
         float(np.sum(((1 - shares) * lengths_mm)[lines])),
-        float(lengths_mm[specks].sum()),
+        float(lengths_mm[specks & (left.solid_px == 0)].sum()),
         float(lengths_mm[solid].sum()),
         tuple(_lost(graph, places, is_near)),
+        float(lengths_mm[left.letters].sum()),
+        float((shares * lengths_mm)[lines & left.lettering].sum()),
+        left.areas,
+        tuple(hatching(ways)),
     )
+
+
+def _line_lengths_mm(sheet: Sheet, left: InkLeft) -> Array:
+    """Lengths of the patches as lines, mm: without their solid areas."""
+    has_solids = left.solid_px > 0
+    if not has_solids.any():
+        return sheet.lengths_mm
+    ink_mm2 = (sheet.patches.areas - left.solid_px) * sheet.drawing.pitch_mm**2
+    return np.where(has_solids, ink_mm2 / _usual_mm(sheet), sheet.lengths_mm)
 
 
 def _usual_mm(sheet: Sheet) -> float:

@@ -4,8 +4,8 @@ Signals: the junctions of a net in; a closed chain of its lines out.
 
     ╭───┬───╮      round about, straight on over the junctions: a closed chain, as a pen draws it
     │   │   │
-    ╰───┴───╯      else round the net's outside, by lines that turn at its junctions: bars within it and
-                   spurs are no part of that
+    ╰───┴───╯      else round the net's outside, by lines that turn at its junctions; bars and spurs are no
+                   part of that
 
 Source: our own. Questions: of two circles that overlap, is the outline one of them or round both? One of
 them, as the pen drew it; round the outside is the outline where straight on leads round little of it.
@@ -21,9 +21,13 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.tracer.drawing.numbering import Ink, longest_first
 from morfax.tracer.ink.chains import Chain, Junctions, Link, Side
+from morfax.tracer.sensing.leg import turn
 
 # of the way round the net's outside: a closed chain that is shorter is a detail of the drawing; by trial
 MOST_OF_IT = 0.4
+STRAIGHT_ON = math.radians(
+    35
+)  # legs of a line that goes on over a junction turn by no more; by trial
 Edge = tuple[
     int, bool
 ]  # a line of the net, and whether it is gone along from its last place to its first
@@ -42,7 +46,7 @@ def outlines(junctions: Junctions) -> list[Outline]:
     found = [
         Outline(chain, sum(lines[link.line].length_mm for link in chain.links))
         for chain in junctions.chains()
-        if chain.closed
+        if chain.closed and _is_straight_on(chain, junctions)
     ]
     outside = _outside(junctions)
     longest_mm = max((each.length_mm for each in found), default=0.0)
@@ -61,6 +65,20 @@ def outlines(junctions: Junctions) -> list[Outline]:
         Ink.of(every, np.ones(len(every))),
     )
     return [found[k] for k in order]
+
+
+def _is_straight_on(chain: Chain, junctions: Junctions) -> bool:
+    """Whether a closed chain goes straight on over its junctions, and does not turn off at any."""
+    onward = [*chain.links[1:], chain.links[0]]
+    for link, onto in zip(chain.links, onward, strict=True):
+        far, near = Side(link.line, not link.back), Side(onto.line, onto.back)
+        there = junctions.at(far)
+        if len(there.sides) == 2:
+            continue
+        turned = turn(there.leg(far).heading_rad, there.leg(near).heading_rad + math.pi)
+        if abs(turned) > STRAIGHT_ON:
+            return False
+    return True
 
 
 def _outside(junctions: Junctions) -> Outline | None:

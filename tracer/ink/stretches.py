@@ -11,14 +11,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
-import cv2
 import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import length_mm
 from morfax.tracer.drawing.components import Mask
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.drawing.strokes import INK, Sheet
 from morfax.tracer.following.plain_places import FAINTEST, aperture_for
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.felt import Parted, feel_along, judged
@@ -29,9 +27,13 @@ from morfax.tracer.sensing.photocell import LEVEL, Cells
 from morfax.tracer.sensing.view import View
 
 # All limits below were chosen by trial on drawings of nets.
-SOFTENED_PX = 0.7  # as patches are found (see `drawing.strokes`)
 APERTURES_MM = 0.02  # cells of about one aperture are the same cells
 SHORT_WIDTHS = 30.0  # a shorter stretch is judged by the widths of those beside it, too
+# a short one, with those into which it goes straight on, is long enough to tell its width
+ENOUGH_WIDTHS = 6.0
+FAR = 6  # stretches straight on to either side
+STRAIGHT_COS = 0.85  # 32 degrees
+AWAY_WIDTHS = 3.0  # from a node, over which a stretch shows where it leads
 STEADY_WIDTHS, STEADY = 4.0, 0.15  # as long, and so evenly wide: that is the line's own width
 
 
@@ -54,12 +56,13 @@ class FeltSheet:
         return list(runs), list(parted)
 
     @classmethod
-    def of(cls, whole_sheet: Sheet, settings: Settings, ink: Mask | None = None) -> FeltSheet:
-        """Find and feel the stretches of a sheet, or of some of its ink."""
-        seen = _Seen(whole_sheet.drawing, settings)
-        graph = Graph.of(_ink(whole_sheet) if ink is None else ink)
+    def of(cls, drawing: Drawing, settings: Settings, ink: Mask) -> FeltSheet:
+        """Find and feel the stretches of some ink of a drawing."""
+        seen = _Seen(drawing, settings)
+        graph = Graph.of(ink)
         felt = _felt(graph, seen)
-        return cls(graph, felt, _line_widths(graph, felt, graph.at_nodes(), settings), settings)
+        widths = _line_widths(graph, felt, graph.at_nodes(), settings)
+        return cls(graph, felt, widths, settings)
 
 
 @dataclass(slots=True)
@@ -80,16 +83,6 @@ class _Seen:
         some = guide_mm[:: max(1, len(guide_mm) // 50)]
         dark = float(np.median([view.darkness_at(place) for place in some]))
         return view.at_level(LEVEL * max(dark, FAINTEST))
-
-
-def _ink(sheet: Sheet) -> Mask:
-    """The ink of a sheet's lines: without filled shapes."""
-    soft = cv2.GaussianBlur(sheet.drawing.darkness, (0, 0), SOFTENED_PX)
-    ink = (soft > INK).view(np.uint8)
-    if sheet.are_solid.any():
-        rows, columns = ink.shape
-        ink &= 1 - sheet.patches.painted(sheet.are_solid, 0, rows, 0, columns)
-    return ink
 
 
 def _felt(graph: Graph, seen: _Seen) -> list[Run]:
@@ -137,7 +130,7 @@ def _line_widths(
     if settings.line_width_mm:
         return [settings.line_width_mm] * len(own)
     lengths = [felt_mm(run) for run in felt]
-    found = []
+    found, straight = [], StraightOn(graph, felt, at)
     for n, stretch in enumerate(graph.stretches):
         if (
             lengths[n] > SHORT_WIDTHS * own[n]
@@ -146,12 +139,57 @@ def _line_widths(
         ):
             found.append(own[n])
             continue
-        beside = {n, *(m for node in stretch.nodes for m in at[node])}
-        further = {
-            m for k in beside for node in graph.stretches[k].nodes for m in at.get(node, ())
-        }
+        further = straight.through(n)
+        if sum(lengths[m] for m in further) < ENOUGH_WIDTHS * own[n]:
+            beside = {n, *(m for node in stretch.nodes for m in at[node])}
+            further = {
+                m for k in beside for node in graph.stretches[k].nodes for m in at.get(node, ())
+            }
         found.append(_weighted_median([own[m] for m in further], [lengths[m] for m in further]))
     return found
+
+
+@dataclass(frozen=True, slots=True)
+class StraightOn:
+    """Which stretches go straight on into which: hatching on a frame of another width is not of its line."""
+
+    graph: Graph
+    felt: list[Run]
+    at: dict[int, list[int]]
+
+    def through(self, number: int) -> set[int]:
+        """A stretch, and those into which it goes straight on at its ends, a few to either side."""
+        found = {number}
+        for last in (False, True):
+            here: tuple[int, bool] | None = (number, last)
+            for _ in range(FAR):
+                here = self._onto(*here) if here is not None else None
+                if here is None or here[0] in found:
+                    break
+                found.add(here[0])
+        return found
+
+    def _onto(self, number: int, last: bool) -> tuple[int, bool] | None:
+        """The stretch straight on from an end of another, and its far end; None if none is straight on."""
+        node = self.graph.stretches[number].nodes[last]
+        way = -self._away(number, last)
+        best, most = None, STRAIGHT_COS
+        for other in self.at[node]:
+            for other_last in (False, True):
+                if other == number or self.graph.stretches[other].nodes[other_last] != node:
+                    continue
+                straight = float(self._away(other, other_last) @ way)
+                if straight > most:
+                    best, most = (other, not other_last), straight
+        return best
+
+    def _away(self, number: int, last: bool) -> Array:
+        """The direction in which a stretch leaves the node at its end, (x, y)."""
+        run = self.felt[number]
+        places = run.places_mm[::-1] if last else run.places_mm
+        far = min(len(places) - 1, round(AWAY_WIDTHS * run.view.width_mm / run.view.step_mm))
+        chord = places[far] - places[0]
+        return np.asarray(chord / max(float(np.hypot(*chord)), 1e-9))
 
 
 def _is_steady(run: Run) -> bool:

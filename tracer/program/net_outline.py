@@ -59,7 +59,7 @@ def of_net(setup: Setup) -> OfNet:
     # 1. the longest outline of each
     found = dict[int, tuple[Outline, Junctions]]()
     for patch in nets.tolist():
-        felt = FeltSheet.of(sheet, setup.settings, _ink_of(sheet, patch))
+        felt = FeltSheet.of(sheet.drawing, setup.settings, _ink_of(sheet, patch))
         junctions = solved(felt)
         closed = outlines(junctions)
         if closed:

@@ -52,6 +52,25 @@ def one_of_each(setup: Setup, asked: list[Contour], which: Which) -> tuple[list[
     return lines, letters
 
 
+def with_least_numbers(lines: list[Line], asked: list[Contour]) -> list[Line]:
+    """The lines, each of several patches by the least of their numbers: which of equal pieces of a line with
+    gaps was followed first is chance.
+    """
+    taken = {line.number for line in lines}
+    numbered = list[Line]()
+    for line in lines:
+        pieces = [
+            contour.number
+            for contour in asked
+            if contour.number < line.number
+            and contour.number not in taken
+            and contour.lies_on(line.places_mm)
+        ]
+        numbered.append(replace(line, number=min(pieces)) if pieces else line)
+        taken.add(numbered[-1].number)
+    return numbered
+
+
 def are_of_reference(places: Array, lines: list[Line]) -> bool:
     """Whether places (n, 2) mm are the reference point from which a line, or a lead line, begins."""
     begins = [line.begin_mm for line in lines if line.is_lead or line.reference_mm is not None]

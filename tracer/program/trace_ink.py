@@ -21,6 +21,7 @@ from morfax.tracer.following.line import Line
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.chains import Junctions, solved
 from morfax.tracer.ink.ledger import balance
+from morfax.tracer.ink.left_out import FOLLOWED_MM, ink_left
 from morfax.tracer.ink.stretches import FeltSheet
 from morfax.tracer.ink.track import InkStroke, stroke_along
 from morfax.tracer.operator.operator import Operator
@@ -34,8 +35,9 @@ def trace_ink(
     settings: Settings | None = None,
     operator: Operator | None = None,
     progress: HeadProgress | None = None,
+    letters_from_mm: float = FOLLOWED_MM,
 ) -> Trace:
-    """Follow every stretch of line of a drawing, each once.
+    """Follow every stretch of line of a drawing, each once; lettering if it is as high as is given.
 
     `progress` hears how far the head has come and the length of all the ink, mm. Raises LineFault if the head
     can be put down nowhere.
@@ -43,7 +45,8 @@ def trace_ink(
     settings = settings or Settings()
     # 1. the lines and their junctions, and the head along each
     sheet = Sheet.of(drawing)
-    felt = FeltSheet.of(sheet, settings)
+    left = ink_left(sheet, letters_from_mm)
+    felt = FeltSheet.of(left.drawing, settings, left.ink)
     junctions = solved(felt)
     strokes = list(_strokes(junctions, settings, progress))
     if not strokes:
@@ -54,7 +57,7 @@ def trace_ink(
     # 2. the longest first, and in an order with short idle ways
     strokes.sort(key=lambda stroke: -length_mm(stroke.way_mm))
     lines = _in_order([_line(stroke, k) for k, stroke in enumerate(strokes, 1)])
-    ink = balance(sheet, felt.graph, [stroke.way_mm for stroke in strokes])
+    ink = balance(sheet, felt.graph, left, [stroke.way_mm for stroke in strokes])
     return Trace(tuple(lines), operator or Operator(), left_out_mm=ink.left_mm, ink=ink)
 
 

@@ -33,7 +33,12 @@ from morfax.tracer.program import order, selection
 from morfax.tracer.program.arrows import turned_round, with_arrows
 from morfax.tracer.program.joined_lines import joined_to
 from morfax.tracer.program.marks_read import with_marks_read
-from morfax.tracer.program.one_of_each import are_of_reference, is_inside, one_of_each
+from morfax.tracer.program.one_of_each import (
+    are_of_reference,
+    is_inside,
+    one_of_each,
+    with_least_numbers,
+)
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.selection import Contour, Which
 from morfax.tracer.program.setup import HeadProgress, Setup
@@ -134,6 +139,7 @@ def found_lines(setup: Setup, which: Which) -> FoundLines:
         patch_of = {line.number: patch for line, patch in further}
         others = [line for line, _ in further]
         lines += [line for line in others if which != "outer" or not is_inside(line, lines)]
+    lines = with_least_numbers(lines, asked)
     # 3. dots that stand alone
     lines += holes
     if beyond or (holes and which != "contours"):

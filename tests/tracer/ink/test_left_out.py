@@ -1,0 +1,115 @@
+"""What is no line is known as such: solid areas, letters, hatching; and where lines meet is no solid area."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from morfax.tracer.drawing.components import Mask
+from morfax.tracer.drawing.solids import Solids
+from morfax.tracer.ink.hatching import hatching
+from morfax.tracer.program.trace_ink import trace_ink
+from tests.tracer.inked import MM_PER_INCH, WIDTH_MM, Points, arc, inked, polyline
+
+FRAME = polyline((6, 6), (36, 6), (36, 36), (6, 36), (6, 6))
+WALL = polyline((6, 46), (40, 46), (40, 49), (6, 49), (6, 46))
+TO_WALL = polyline((20, 36), (20, 47))
+DOT = arc((44, 20), 1.2)
+TO_DOT = polyline((36, 20), (44, 20))
+AREA_MM2 = 34 * 3.0
+
+
+def star(lines: int, middle: tuple[float, float]) -> list[Points]:
+    """Lines through one place."""
+    turns = np.arange(lines) * math.pi / lines
+    way = 9 * np.column_stack([np.cos(turns), np.sin(turns)])
+    return [np.vstack([np.array(middle) - w, np.array(middle) + w]) for w in way]
+
+
+def ink_of(*lines: Points, specks: tuple[Points, ...] = ()) -> Mask:
+    return (inked(*lines, specks=specks, seed=2).darkness > 0.5).astype(np.uint8)
+
+
+def test_a_wall_and_a_dot_are_left_out_and_the_lines_end_at_them() -> None:
+    run = trace_ink(inked(FRAME, TO_WALL, TO_DOT, specks=(WALL, DOT), seed=1))
+    assert run.ink is not None
+    found = run.ink.solids
+    # the rim of a wall is half a pixel off, and where a line enters it is a little more
+    assert [area.area_mm2 for area in found] == pytest.approx(
+        [AREA_MM2, 1.44 * math.pi], rel=0.06
+    )
+    assert found[0].place_mm == pytest.approx((23, 47.5), abs=0.1)
+    assert run.ink.followed_share > 0.99
+    ends = np.vstack([line.xy_mm[[0, -1]] for line in run.lines])
+    ways = np.vstack([line.xy_mm for line in run.lines])
+    assert ways[:, 1].max() < 46.3 and ways[:, 0].max() < 43.1  # not into the wall, nor the dot
+    # a pen's end is round: half its width before the wall, and two pixels of the wall's soft rim
+    assert np.hypot(*(ends - (20, 46)).T).min() < 0.5 * WIDTH_MM + 2 * MM_PER_INCH / 300
+
+
+@pytest.mark.parametrize("lines", [2, 3, 4, 5])
+def test_a_place_where_lines_meet_is_no_solid_area(lines: int) -> None:
+    assert not Solids.of(ink_of(*star(lines, (20, 20)))).each
+
+
+def test_lines_side_by_side_and_at_a_flat_angle_are_no_solid_area() -> None:
+    flat = polyline((5, 20), (45, 22)), polyline((5, 22), (45, 20))
+    beside = polyline((5, 30), (45, 30)), polyline((5, 30.45), (45, 30.45))
+    assert not Solids.of(ink_of(*flat, *beside)).each
+
+
+def test_a_sheet_drawn_with_a_broad_pen_has_no_solid_areas() -> None:
+    ink = (inked(FRAME, TO_DOT, width_mm=2.0, seed=2).darkness > 0.5).astype(np.uint8)
+    assert not Solids.of(ink).each
+
+
+def test_hatching_on_a_broader_frame_is_known_and_the_frame_goes_straight_on() -> None:
+    """Short pieces of the frame between the hatching are as wide as the frame, and not as the hatching."""
+    tops = np.arange(8.0, 44.0, 1.7)
+    lines = list[Points]()
+    for c in tops:  # x + y = c + 6, within the frame
+        begin, end = (max(6.0, c - 30.0), min(36.0, c)), (min(36.0, c), max(6.0, c - 30.0))
+        if math.dist(begin, end) > 3:
+            lines.append(polyline(begin, end))
+    run = trace_ink(inked(FRAME, *lines, width_mm=0.35, seed=1))
+    assert run.ink is not None and len(run.ink.hatching) == 1
+    family = run.ink.hatching[0]
+    assert len(family.strokes) >= len(lines) - 2
+    assert math.degrees(family.heading_rad) == pytest.approx(135, abs=1)
+    assert family.apart_mm == pytest.approx(1.7 / math.sqrt(2), rel=0.05)
+    assert len(run.lines) <= len(lines) + 4
+
+
+def test_strokes_at_uneven_distances_are_no_hatching() -> None:
+    at = np.cumsum([2.0, 0.8, 3.1, 1.1, 2.6, 0.7, 3.3, 1.2, 2.9])
+    assert not hatching([polyline((x, 0), (x, 20)) for x in at])
+    assert hatching([polyline((x, 0), (x, 20)) for x in 1.5 * np.arange(9)])
+
+
+def test_letters_are_followed_or_left_out_by_their_height() -> None:
+    def word(x: float, y: float, high: float) -> list[Points]:
+        wide = 0.6 * high
+        letter_l = polyline((x, y + high), (x, y), (x + wide, y))
+        letter_v = polyline(
+            (x + 1.6 * wide, y + high), (x + 2.1 * wide, y), (x + 2.6 * wide, y + high)
+        )
+        letter_i = polyline((x + 3.3 * wide, y), (x + 3.3 * wide, y + high))
+        return [letter_l, letter_v, letter_i]
+
+    drawing = inked(FRAME, *word(10, 14, 3.0), *word(10, 24, 6.0), width_mm=0.3, seed=1)
+    lengths_mm = []
+    for letters_from_mm in (0.0, 4.5, math.inf):
+        run = trace_ink(drawing, letters_from_mm=letters_from_mm)
+        assert run.ink is not None
+        lengths_mm.append((len(run.lines), run.ink.lettering_mm, run.ink.letters_mm))
+        assert run.ink.followed_share > 0.99
+    assert [lines for lines, _, _ in lengths_mm] == [7, 4, 1]
+    small_mm, large_mm = (
+        3.0 * (1 + 0.6 + 2 * math.hypot(1, 0.3) + 1),
+        6.0 * (2.6 + 2 * math.hypot(1, 0.3)),
+    )
+    assert lengths_mm[0][1] == pytest.approx(small_mm + large_mm, rel=0.08)
+    assert lengths_mm[1][2] == pytest.approx(small_mm, rel=0.08)
+    assert lengths_mm[2][2] == pytest.approx(small_mm + large_mm, rel=0.08)

@@ -1,0 +1,68 @@
+"""The line that is taken of a net: its longest closed outline, the same at any angle, size and resolution."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+import shapely
+
+from morfax.motion.polyline import area_mm2
+from morfax.tracer.following.line import Line
+from morfax.tracer.operator.operator import Operator
+from morfax.tracer.program.trace import trace
+from tests.tracer.inked import WIDTH_MM, Points, arc, inked, polyline
+
+PLATE = polyline((8, 8), (40, 8), (44, 26), (26, 38), (8, 30), (8, 8))
+BARS = polyline((8, 16), (42, 17)), polyline((22, 8), (22, 36.2))
+SPUR = polyline((44, 26), (48, 30))
+SMALL, LARGE = arc((22, 24), 9), arc((32, 22), 11)
+
+
+def taken(*lines: Points, dpi: float = 300, width_mm: float = WIDTH_MM) -> Line:
+    """The line that is taken of a sheet."""
+    return trace(inked(*lines, dpi=dpi, width_mm=width_mm, seed=3)).lines[0]
+
+
+def lies_on(line: Line, truth: Points, within_mm: float) -> bool:
+    """Whether a line runs all along a true one and nowhere else."""
+    way, drawn = shapely.LineString(line.xy_mm[::20]), shapely.LineString(truth)
+    return bool(way.hausdorff_distance(drawn) < within_mm)
+
+
+def test_round_the_outside_and_not_along_bars_or_spurs() -> None:
+    line = taken(PLATE, *BARS, SPUR)
+    assert line.ending == "closed"
+    assert lies_on(line, PLATE, 0.15)  # the pen's corners
+    assert len(line.junctions_mm) == 5
+
+
+def test_of_circles_that_overlap_the_longest_as_the_pen_drew_it() -> None:
+    line = taken(SMALL, LARGE)
+    assert line.ending == "closed" and lies_on(line, LARGE, 0.05)
+
+
+@pytest.mark.parametrize("angle, size, dpi", [(17, 1.0, 300), (63, 0.8, 450), (200, 1.4, 200)])
+def test_the_same_line_at_any_angle_size_and_resolution(
+    angle: float, size: float, dpi: float
+) -> None:
+    c, s = size * math.cos(math.radians(angle)), size * math.sin(math.radians(angle))
+    every = [line @ np.array([[c, s], [-s, c]]) for line in (PLATE, *BARS, SPUR)]
+    moved = np.vstack(every).min(axis=0) - 6
+    every = [line - moved for line in every]
+    line = taken(*every, dpi=dpi, width_mm=size * WIDTH_MM)
+    assert line.ending == "closed" and lies_on(line, every[0], 0.2 * size)
+
+
+@pytest.mark.parametrize("direction", ["cw", "ccw"])
+def test_the_way_round_that_is_asked_for(direction: str) -> None:
+    drawing = inked(SMALL, LARGE, seed=3)
+    line = trace(drawing, operator=Operator(direction=direction)).lines[0]  # type: ignore[arg-type]
+    assert (area_mm2(line.xy_mm) > 0) == (direction == "ccw")
+
+
+def test_a_longer_line_beside_the_net_goes_before_it() -> None:
+    round_all = polyline((3, 3), (50, 3), (50, 45), (3, 45), (3, 3))
+    line = taken(round_all, PLATE, *BARS)
+    assert lies_on(line, round_all, 0.15)

@@ -1,0 +1,119 @@
+"""Left out: ink of a sheet along which no stroke is to run, by reason, and the ink that is left for strokes.
+
+Signals: the patches of a sheet, and how high lettering must be to be followed (mm), in; out the ink of lines,
+and beside it letters and solid areas.
+
+    filled shapes    their rims: the paper within was taken for dark paper (see `drawing.paper`)
+    solid areas      broader than a line (see `drawing.solids`)
+    letters          patches in rows (see `drawing.lettering`), if they are not to be followed
+
+Source: our own; the patent has one contour to a tape. Questions: letters that are joined to lines, or to each
+other, are lines.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Literal, NamedTuple
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.tracer.drawing.components import Mask
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.lettering import lettering
+from morfax.tracer.drawing.solids import Solids
+from morfax.tracer.drawing.strokes import INK, Sheet
+
+SOFTENED_PX = 0.7  # as patches are found (see `drawing.strokes`)
+RIM_PX = 1  # of a solid area beyond the place where it is half as dark
+FOLLOWED_MM, NONE_MM = 0.0, math.inf  # all lettering is followed, or none
+
+
+Box = tuple[float, float, float, float]  # left, bottom, right, top, mm
+
+
+class Area(NamedTuple):
+    """Ink that is left out: what it is, how large it is (mm²), and the box about it."""
+
+    what: Literal["solid area", "letter"]
+    area_mm2: float
+    box_mm: Box
+
+    @property
+    def place_mm(self) -> tuple[float, float]:
+        """The middle of its box, mm."""
+        left, bottom, right, top = self.box_mm
+        return 0.5 * (left + right), 0.5 * (bottom + top)
+
+
+class InkLeft(NamedTuple):
+    """The ink of a sheet's lines, the drawing without its solid areas, and what was left out.
+
+    Which patches are lettering, which of them are left out, the pixels of each patch that are solid areas,
+    and these.
+    """
+
+    ink: Mask
+    drawing: Drawing
+    lettering: NDArray[np.bool_]
+    letters: NDArray[np.bool_]
+    solid_px: NDArray[np.float64]
+    areas: tuple[Area, ...]
+
+
+def ink_left(sheet: Sheet, letters_from_mm: float = FOLLOWED_MM) -> InkLeft:
+    """The ink of lines; lettering as high as is given, or higher, is lines."""
+    soft = cv2.GaussianBlur(sheet.drawing.darkness, (0, 0), SOFTENED_PX)
+    ink = (soft > INK).view(np.uint8)
+    rows, columns = ink.shape
+    # 1. lettering, and the rims of filled shapes
+    patches, pitch_mm = sheet.patches, sheet.drawing.pitch_mm
+    is_lettering = np.zeros(patches.count, bool)
+    is_lettering[sorted(lettering(sheet))] = True
+    letters = np.zeros(patches.count, bool)
+    if is_lettering.any():
+        high_mm = (patches.boxes[:, 1] - patches.boxes[:, 0]) * pitch_mm
+        letters = is_lettering & (high_mm < letters_from_mm)
+    gone = letters | sheet.are_solid
+    if gone.any():
+        ink &= 1 - patches.painted(gone, 0, rows, 0, columns)
+    # 2. solid areas
+    solids = Solids.of(ink)
+    solid_px, drawing = np.zeros(patches.count), sheet.drawing
+    if solids.each:
+        solid_px = _pixels_of(sheet, solids.mask)
+        ink &= 1 - solids.mask
+        drawing = _without(drawing, solids.mask)
+    areas = [
+        Area("solid area", solid.pixels * pitch_mm**2, _box_mm(solid.box, rows, pitch_mm))
+        for solid in solids.each
+    ]
+    for patch in np.flatnonzero(letters):
+        box_mm = _box_mm(patches.boxes[patch].tolist(), rows, pitch_mm)
+        areas.append(Area("letter", float(patches.areas[patch]) * pitch_mm**2, box_mm))
+    return InkLeft(ink, drawing, is_lettering, letters, solid_px, tuple(areas))
+
+
+def _box_mm(box: Sequence[int], rows: int, pitch_mm: float) -> Box:
+    """A box (first row, last row + 1, first column, last column + 1) on the sheet."""
+    top, bottom, left, right = (pitch_mm * side for side in box)
+    return left, rows * pitch_mm - bottom, right, rows * pitch_mm - top
+
+
+def _without(drawing: Drawing, solid: Mask) -> Drawing:
+    """A drawing whose solid areas are paper, with their soft rims: the cells see where lines end at one."""
+    rims = cv2.dilate(solid, np.ones((2 * RIM_PX + 1,) * 2, np.uint8)) > 0
+    return replace(drawing, darkness=np.where(rims, np.float32(0), drawing.darkness))
+
+
+def _pixels_of(sheet: Sheet, mask: Mask) -> NDArray[np.float64]:
+    """How many pixels of each patch are in a mask."""
+    runs = sheet.patches
+    sums = np.zeros((mask.shape[0], mask.shape[1] + 1), np.int32)
+    np.cumsum(mask, axis=1, out=sums[:, 1:])
+    within = sums[runs.row, runs.end] - sums[runs.row, runs.begin]
+    return np.bincount(runs.patch, within, runs.count).astype(float)
