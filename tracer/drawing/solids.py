@@ -26,10 +26,12 @@ from morfax.tracer.drawing.components import Mask
 # All limits below were chosen by trial on own and fetched drawings, in usual widths of a line.
 BROAD, BROAD_PX = 2.2, 1.5  # a disc as broad goes into a solid area
 WALL = 5.0  # a long area as broad is a wall, and no line
-LONG = 4.0  # times its breadth: a longer area is a wall or a line of a broad pen
-SWELLING = 3.0  # a narrower one through which a line goes on is that line
+LONG = 3.0  # times its breadth: a longer area is a wall or a line of a broad pen
+SWELLING = 4.0  # a narrower one through which a line goes on is that line
 CORNER = 4.0  # ink no larger that hangs on a solid area is its corner
 OPEN = 0.5  # of its rim is paper at least: round a place where lines meet it is lines
+LEAST_PX = 7.0  # a narrower one is a line: few pixels tell no breadth
+FINEST_PX = 2.0  # a line that is finer counts as so broad, for the same reason
 RIDGE_PX = 0.3  # pixels no less deep than those about them are in the middle of ink
 
 
@@ -52,7 +54,7 @@ class Solids(NamedTuple):
         depth = cv2.distanceTransform(ink, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
         none = cls(np.zeros_like(ink))
         usual_px = _usual_px(depth)
-        reach_px = 0.5 * (BROAD * usual_px + BROAD_PX)
+        reach_px = 0.5 * max(BROAD * usual_px + BROAD_PX, LEAST_PX)
         cores = (depth > reach_px).view(np.uint8)
         if not cores.any():
             return none
@@ -76,7 +78,7 @@ class Solids(NamedTuple):
 def _usual_px(depth: NDArray[np.float32]) -> float:
     """The usual width of the lines of some ink by its depth, pixels."""
     ridge = (depth > 0) & (depth >= cv2.dilate(depth, np.ones((3, 3), np.uint8)) - RIDGE_PX)
-    return max(1.0, 2 * float(np.median(depth[ridge])) - 1) if ridge.any() else 1.0
+    return max(FINEST_PX, 2 * float(np.median(depth[ridge])) - 1) if ridge.any() else FINEST_PX
 
 
 def _about(box: NDArray[np.int32], shape: tuple[int, ...]) -> tuple[slice, slice]:
