@@ -51,7 +51,9 @@ class Solids(NamedTuple):
     @classmethod
     def of(cls, ink: Mask) -> Solids:
         """The solid areas of some ink."""
-        depth = cv2.distanceTransform(ink, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+        depth = np.asarray(
+            cv2.distanceTransform(ink, cv2.DIST_L2, cv2.DIST_MASK_PRECISE), np.float32
+        )
         none = cls(np.zeros_like(ink))
         usual_px = _usual_px(depth)
         reach_px = 0.5 * max(BROAD * usual_px + BROAD_PX, LEAST_PX)
@@ -90,7 +92,8 @@ def _about(box: NDArray[np.int32], shape: tuple[int, ...]) -> tuple[slice, slice
 
 def _is_solid(own: Mask, ink: Mask, depth: NDArray[np.float32], usual_px: float) -> bool:
     """Whether a part of the ink into which a disc goes is a solid area, and no line or junction."""
-    rim = cv2.dilate(own, np.ones((3, 3), np.uint8)) & (1 - own)
+    grown = np.asarray(cv2.dilate(own, np.ones((3, 3), np.uint8)), np.uint8)
+    rim = grown & (1 - own)
     inked = (rim & ink).astype(np.uint8)
     if float(inked.sum()) > (1 - OPEN) * float(rim.sum()):
         return False

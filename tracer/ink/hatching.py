@@ -21,6 +21,7 @@ from scipy.sparse.csgraph import connected_components
 
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import length_mm
+from morfax.tracer.drawing.thinning import Indices
 
 # All limits below were chosen by trial on drawings of parts with cut faces.
 STRAIGHT = 0.995  # its ends are as far apart, of its length
@@ -77,7 +78,7 @@ def hatching(ways: Sequence[Array]) -> list[Hatching]:
     return sorted(found, key=lambda each: -each.length_mm)
 
 
-def _neighbours(middles_mm: Array, headings: Array, long_mm: Array) -> tuple[Array, Array]:
+def _neighbours(middles_mm: Array, headings: Array, long_mm: Array) -> tuple[Indices, Array]:
     """Pairs of strokes (n, 2) each of which is the other's nearest on that side; their distances, mm."""
     nearest = dict[tuple[int, bool], tuple[float, int]]()
     for k, heading in enumerate(headings):
