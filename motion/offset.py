@@ -20,7 +20,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
+from morfax.motion.compiled import njit
 
 from morfax.motion.arm import PLAIN, SLIGHT, sagitta_rad, swung
 from morfax.motion.arrays import Array

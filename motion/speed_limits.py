@@ -13,7 +13,7 @@ Source: the backward and the forward pass that are usual in controls.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+from morfax.motion.compiled import njit
 
 from morfax.motion.arrays import Array
 

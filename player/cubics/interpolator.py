@@ -24,7 +24,7 @@ steps, and the next one starts there.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+from morfax.motion.compiled import njit
 from numpy.typing import NDArray
 
 from morfax.player.cubics import stores

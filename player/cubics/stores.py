@@ -21,7 +21,7 @@ is refused; a sum that needs more digits than its store has would lose them, as 
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+from morfax.motion.compiled import njit
 from numpy.typing import NDArray
 
 # digits of the stores I to IV, chosen: places of 2 m, then speeds, accelerations and their change, each with

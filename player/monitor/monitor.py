@@ -27,7 +27,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
+from morfax.motion.compiled import njit
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import FollowingFault

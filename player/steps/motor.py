@@ -26,7 +26,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
+from morfax.motion.compiled import njit
 from numpy.typing import NDArray
 
 ACCELERATION_STEPS_S2 = 25600.0  # one step more in each 1/160 s, page 13

@@ -25,7 +25,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from numba import njit
+from morfax.motion.compiled import njit
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array

@@ -47,7 +47,7 @@ import math
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numba import njit
+from morfax.motion.compiled import njit
 
 from morfax.motion.arrays import Array
 from morfax.motion.drive import SOUND, Drive, as_rows, conditioned_step

@@ -21,7 +21,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
+from morfax.motion.compiled import njit
 from numpy.typing import NDArray
 
 # natural frequency; measured beside it: 7.6e-4 cycle RMS at 40 dB of noise

@@ -20,7 +20,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
+from morfax.motion.compiled import njit
 
 from morfax.motion.arrays import Array
 from morfax.player.tape.subcarrier import Complexes, Subcarrier

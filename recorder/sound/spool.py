@@ -16,7 +16,7 @@ from types import TracebackType
 
 import numpy as np
 import soundfile
-from numba import njit
+from morfax.motion.compiled import njit
 
 from morfax.motion.faults import FileFault, TapeFault
 from morfax.motion.files import for_soundfile

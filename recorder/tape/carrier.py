@@ -33,7 +33,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
+from morfax.motion.compiled import njit
 from numpy.typing import ArrayLike, NDArray
 
 from morfax.recorder.tape.pickups import DEFAULT_PICK_UP, PICK_UPS, Sensor

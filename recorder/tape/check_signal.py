@@ -27,7 +27,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from numba import njit
+from morfax.motion.compiled import njit
 
 from morfax.motion.arrays import Array
 from morfax.recorder.tape.carrier import Frames, _sine

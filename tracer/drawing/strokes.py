@@ -18,7 +18,7 @@ from typing import Any
 
 import cv2
 import numpy as np
-from numba import njit
+from morfax.motion.compiled import njit
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array

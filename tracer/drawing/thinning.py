@@ -18,7 +18,7 @@ Source: Guo and Hall, "Parallel thinning with two-subiteration algorithms", Comm
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+from morfax.motion.compiled import njit
 from numpy.typing import NDArray
 
 from morfax.tracer.drawing.components import Mask

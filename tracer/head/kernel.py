@@ -39,7 +39,7 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
+from morfax.motion.compiled import njit
 
 from morfax.tracer.head.screws import move, owed_s
 from morfax.tracer.head.state import CHANGED, DRUM, HOME, JUNCTION, MORE, TIGHT

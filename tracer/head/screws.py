@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
+from morfax.motion.compiled import njit
 
 from morfax.motion.drive import drive_step
 

@@ -23,7 +23,7 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
+from morfax.motion.compiled import njit
 
 from morfax.motion.arrays import Array
 from morfax.tracer.junctions.corner import Corner, hides_outside, rounding

@@ -24,7 +24,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
+from morfax.motion.compiled import njit
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d
 

@@ -13,7 +13,7 @@ that the idle way back is as long as there, and a gain needs four distances only
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+from morfax.motion.compiled import njit
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array

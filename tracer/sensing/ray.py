@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from numba import njit
+from morfax.motion.compiled import njit
 
 from morfax.tracer.sensing.photocell import STEP_PX, darkness_at
 

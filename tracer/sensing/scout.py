@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
+from morfax.motion.compiled import njit
 
 from morfax.tracer.sensing.ray import edges
 

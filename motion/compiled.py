@@ -1,0 +1,175 @@
+"""Compiled kernels: `@njit` as numba has it, but a kernel that is kept on disk runs without numba.
+
+Importing numba and its registries takes longer than following a page, and a kernel that is on disk already needs
+none of it. So `njit` puts a Kernel in the function's place. When a Kernel is called, it looks for machine code that
+was kept for arguments of these types (`machine_code`); only if there is none, numba is imported and the function
+compiled, and its machine code is kept. Other kernels that the function calls are numba's own dispatchers to numba.
+
+Signals in: a function in the part of Python that numba compiles; arguments: numbers, arrays, records, tuples of
+these. Signals out: what the function returns. The plain function stays at hand as `py_func`, as with numba; with
+`NUMBA_DISABLE_JIT=1` it is called itself.
+
+Questions: numba's own cache finds a kernel by numba's types, which cannot be had without numba. Hence a second
+index, by the Python types of the arguments; the machine code is the same, and the results are, to the bit.
+"""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Callable
+from functools import update_wrapper
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from morfax.motion import machine_code
+
+_C, _F, _ALIGNED, _WRITEABLE = 0x1, 0x2, 0x100, 0x400  # numpy's flags of an array
+_FLAGS = _C | _F | _ALIGNED | _WRITEABLE
+_COMPILING = threading.RLock()
+
+hearers: list[Callable[[str], None]] = []  # called with the name of a kernel before it is compiled
+
+
+class Kernel:
+    """A function that runs as machine code, for each combination of argument types that it is called with."""
+
+    def __init__(self, py_func: Callable[..., Any], options: dict[str, Any]) -> None:
+        """Take the plain function and numba's options."""
+        self.py_func = py_func
+        self.options = options
+        self._ready: dict[tuple[Any, ...], Callable[..., Any]] = {}
+        self._dispatchers: dict[bool, Any] = {}
+        update_wrapper(self, py_func)
+
+    def __call__(self, *args: Any) -> Any:
+        """Run the machine code for arguments of these types; get it first if need be."""
+        key = tuple([_key(arg) for arg in args])
+        run = self._ready.get(key)
+        if run is None:
+            run = self._ready[key] = self._found(args)
+        return run(*args)
+
+    def __reduce__(self) -> str:
+        """Be pickled by name, as a function is."""
+        return self.py_func.__qualname__
+
+    def called(self) -> list[Kernel]:
+        """All kernels that this one calls, and those that they call, itself included."""
+        every = [self]
+        for kernel in every:
+            values = kernel._names().values()
+            every += [value for value in values if isinstance(value, Kernel) and value not in every]
+        return every
+
+    @property
+    def targetoptions(self) -> dict[str, Any]:
+        """numba's options: it reads here whether to put the function in place of a call."""
+        return self.options
+
+    @property
+    def _numba_type_(self) -> Any:
+        """What numba takes a kernel for that another one calls: its dispatcher."""
+        return self.dispatcher()._numba_type_
+
+    def dispatcher(self, *, kept: bool = True) -> Any:
+        """numba's dispatcher of the function; `kept`: numba keeps what it compiles."""
+        if kept not in self._dispatchers:
+            from numba import njit as with_numba
+
+            options = {**self.options, "cache": kept and self.options.get("cache", False)}
+            self._dispatchers[kept] = with_numba(**options)(self.py_func)
+        return self._dispatchers[kept]
+
+    def _names(self) -> dict[str, Any]:
+        """What the function's names stand for, also within modules of ours."""
+        found, names = self.py_func.__globals__, _names_in(self.py_func.__code__)
+        values = {name: found[name] for name in names if name in found}
+        modules = [value for value in values.values() if isinstance(value, ModuleType)]
+        for module in modules:
+            if module.__name__.startswith("morfax."):
+                within = vars(module)
+                values |= {f"{module.__name__}.{n}": within[n] for n in names if n in within}
+        return values
+
+    def frozen(self) -> str:
+        """The plain values that the compiled function holds by names, as a text to compare."""
+        plain = (bool, int, float, str, tuple)
+        return repr(sorted((n, repr(v)) for n, v in self._names().items() if isinstance(v, plain)))
+
+    def _found(self, args: tuple[Any, ...]) -> Callable[..., Any]:
+        """The machine code for arguments like these: kept, or compiled now."""
+        with _COMPILING:
+            if os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
+                return self.py_func
+            try:
+                types = " ".join(_described(arg) for arg in args)
+            except TypeError:
+                return self.dispatcher()
+            return machine_code.kept(self, types) or self._compiled(types, args)
+
+    def _compiled(self, types: str, args: tuple[Any, ...]) -> Callable[..., Any]:
+        """Compile for arguments like these, and keep the machine code."""
+        for hearer in hearers:
+            hearer(self.py_func.__name__)
+        if not machine_code.can_be_kept():
+            return self.dispatcher()
+        dispatcher = self.dispatcher(kept=False)
+        from numba import typeof
+
+        signature = tuple(typeof(arg) for arg in args)
+        dispatcher.compile(signature)
+        machine_code.keep(self, types, dispatcher.overloads[signature])
+        return dispatcher
+
+
+def njit(**options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """Make a Kernel of a function; the options are those of numba's `njit`."""
+    return lambda py_func: Kernel(py_func, options)
+
+
+def _names_in(code: Any) -> set[str]:
+    """Names that code and the functions within it look up."""
+    within = [const for const in code.co_consts if hasattr(const, "co_names")]
+    return set(code.co_names).union(*(_names_in(inner) for inner in within))
+
+
+def _key(arg: Any) -> Any:
+    """What of an argument decides the machine code, quick to make and to compare."""
+    kind = type(arg)
+    if kind is np.ndarray:
+        return (arg.dtype, arg.ndim, arg.flags.num & _FLAGS)
+    if kind in _PLAIN:
+        return kind
+    if isinstance(arg, tuple):
+        return (kind, *[_key(item) for item in arg])
+    if isinstance(arg, np.void | np.ndarray):
+        return (kind, arg.dtype)
+    return kind
+
+
+_PLAIN = {float: "f8", int: "i8", bool: "?", np.float64: "f8", np.int64: "i8", np.bool_: "?"}
+_PLAIN |= {kind: np.dtype(kind).str for kind in (np.float32, np.int32, np.uint8, np.uint32)}
+
+
+def _described(arg: Any) -> str:
+    """The same as a text that means the same in every process; TypeError for types that only numba tells."""
+    kind = type(arg)
+    if kind in _PLAIN:
+        return _PLAIN[kind]
+    if kind is np.ndarray:
+        flags = arg.flags.num
+        layout = "C" if flags & _C else "F" if flags & _F else "A"
+        rest = f"{'' if flags & _ALIGNED else 'u'}{'' if flags & _WRITEABLE else 'r'}"
+        return f"[{arg.dtype!r} {arg.ndim}{layout}{rest}]"
+    if kind is np.void or kind is np.record:
+        return f"{kind.__name__}<{arg.dtype!r}>"
+    if isinstance(arg, tuple):
+        fields = getattr(kind, "_fields", "")
+        of = f"{kind.__module__}.{kind.__qualname__}{fields}" if fields else ""
+        return f"{of}({' '.join(_described(item) for item in arg)})"
+    if arg is None:
+        return "none"
+    raise TypeError(f"no key for {kind}")
