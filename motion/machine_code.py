@@ -24,12 +24,14 @@ import importlib.machinery
 import importlib.util
 import marshal
 import os
+import pickle
 import sys
 import tempfile
 from collections.abc import Callable
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
+from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -122,6 +124,7 @@ class _Linker:
         dynfunc, helpers, runtime = (_extension(name) for name in EXTENSIONS)
         self._make_function, self._environment = dynfunc.make_function, dynfunc.Environment
         self._name_all(dynfunc.c_helpers, helpers.c_helpers, runtime.c_helpers)
+        _serve_pickles(helpers.c_helpers["unpickle"])
         machine = llvm.Target.from_triple(llvm.get_process_triple()).create_target_machine(
             jit=True, cpu=llvm.get_host_cpu_name()
         )
@@ -169,6 +172,33 @@ class _Linker:
     def _name(self, name: str, address: int) -> None:
         self._llvm.add_symbol(name, address)
         self.names.add(name)
+
+
+def _serve_pickles(unpickle_address: int) -> None:
+    """Have numba's C function that unpickles types (of the arrays and tuples that kernels give) do so by itself.
+
+    At its first call it asks `numba.core.serialize` for the Python function that does it, and keeps that.
+    """
+    asked = "numba.core.serialize"
+    if "numba" in sys.modules:
+        return
+    loaded: dict[tuple[int, bytes], Any] = {}
+
+    def unpickled(address: int, data: bytes, digest: bytes) -> Any:
+        if (address, digest) not in loaded:
+            loaded[address, digest] = pickle.loads(data)
+        return loaded[address, digest]
+
+    stand_ins = {name: ModuleType(name) for name in ("numba", asked)}
+    vars(stand_ins[asked])["_numba_unpickle"] = unpickled
+    sys.modules.update(stand_ins)
+    try:
+        call = ctypes.PYFUNCTYPE(ctypes.py_object, ctypes.c_char_p, ctypes.c_int, ctypes.c_char_p)
+        nothing = pickle.dumps(None)
+        call(unpickle_address)(nothing, len(nothing), bytes(20))
+    finally:
+        for name in stand_ins:
+            del sys.modules[name]
 
 
 @cache
