@@ -30,7 +30,9 @@ _C, _F, _ALIGNED, _WRITEABLE = 0x1, 0x2, 0x100, 0x400  # numpy's flags of an arr
 _FLAGS = _C | _F | _ALIGNED | _WRITEABLE
 _COMPILING = threading.RLock()
 
-hearers: list[Callable[[str], None]] = []  # called with the name of a kernel before it is compiled
+hearers: list[
+    Callable[[str], None]
+] = []  # called with the name of a kernel before it is compiled
 
 
 class Kernel:
@@ -61,7 +63,9 @@ class Kernel:
         every = [self]
         for kernel in every:
             values = kernel._names().values()
-            every += [value for value in values if isinstance(value, Kernel) and value not in every]
+            every += [
+                value for value in values if isinstance(value, Kernel) and value not in every
+            ]
         return every
 
     @property
@@ -97,7 +101,9 @@ class Kernel:
     def frozen(self) -> str:
         """The plain values that the compiled function holds by names, as a text to compare."""
         plain = (bool, int, float, str, tuple)
-        return repr(sorted((n, repr(v)) for n, v in self._names().items() if isinstance(v, plain)))
+        return repr(
+            sorted((n, repr(v)) for n, v in self._names().items() if isinstance(v, plain))
+        )
 
     def _found(self, args: tuple[Any, ...]) -> Callable[..., Any]:
         """The machine code for arguments like these: kept, or compiled now."""

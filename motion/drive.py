@@ -25,8 +25,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from morfax.motion.compiled import njit
 from numpy.typing import NDArray
+
+from morfax.motion.compiled import njit
 
 
 @dataclass(frozen=True, slots=True)

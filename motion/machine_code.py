@@ -91,15 +91,22 @@ def _entry(compiled: Any) -> Entry | None:
     known = _linker().names
     for function in module.functions:
         name = function.name
-        if function.is_declaration and not (name.startswith("llvm.") or name in known or _in_process(name)):
+        if function.is_declaration and not (
+            name.startswith("llvm.") or name in known or _in_process(name)
+        ):
             return None
-    others = [held for held in compiled._find_referenced_environments() if held is not compiled.environment]
+    others = [
+        held
+        for held in compiled._find_referenced_environments()
+        if held is not compiled.environment
+    ]
     held = [compiled.environment, *others]
     constants = [constant for environment in held for constant in environment.consts]
     if compiled.objectmode or not all(isinstance(constant, np.dtype) for constant in constants):
         return None
     environments = [
-        (of.env_name, of.globals["__name__"], [constant.str for constant in of.consts]) for of in held
+        (of.env_name, of.globals["__name__"], [constant.str for constant in of.consts])
+        for of in held
     ]
     _, _, (code, _) = compiled.library.serialize_using_object_code()
     return code, compiled.fndesc.llvm_cpython_wrapper_name, environments
@@ -143,7 +150,9 @@ class _Linker:
         plain = kernel.py_func
         address = self._engine.get_function_address(name)
         module = sys.modules[plain.__module__]
-        return self._make_function(module, plain.__name__, plain.__doc__ or "", address, own, (kernel,))
+        return self._make_function(
+            module, plain.__name__, plain.__doc__ or "", address, own, (kernel,)
+        )
 
     def _set_environment(self, name: str, module: str, constants: list[str]) -> None:
         """Give compiled code the names of the module that it was written in, as numba does."""
@@ -156,7 +165,9 @@ class _Linker:
         if address:
             ctypes.c_void_p.from_address(address).value = id(self._environments[name])
 
-    def _name_all(self, dynfunc: dict[str, int], helpers: dict[str, int], runtime: dict[str, int]) -> None:
+    def _name_all(
+        self, dynfunc: dict[str, int], helpers: dict[str, int], runtime: dict[str, int]
+    ) -> None:
         """Give names to C functions and exceptions as numba's `base`, `externals` and `nrt` do."""
         self._name("_Py_NoneStruct", id(None))
         for name, address in {**helpers, **dynfunc}.items():
@@ -193,7 +204,9 @@ def _serve_pickles(unpickle_address: int) -> None:
     vars(stand_ins[asked])["_numba_unpickle"] = unpickled
     sys.modules.update(stand_ins)
     try:
-        call = ctypes.PYFUNCTYPE(ctypes.py_object, ctypes.c_char_p, ctypes.c_int, ctypes.c_char_p)
+        call = ctypes.PYFUNCTYPE(
+            ctypes.py_object, ctypes.c_char_p, ctypes.c_int, ctypes.c_char_p
+        )
         nothing = pickle.dumps(None)
         call(unpickle_address)(nothing, len(nothing), bytes(20))
     finally:
@@ -259,8 +272,13 @@ def _surroundings() -> str:
     """Versions, processor and numba's settings."""
     settings = {name: value for name, value in os.environ.items() if name.startswith("NUMBA_")}
     settings.pop("NUMBA_CACHE_DIR", None)
-    versions = [_numba_folder() / "_version.py", _numba_folder().parent / "llvmlite" / "_version.py"]
-    return repr((FORMAT, sys.version, _linker().cpu, settings, [_stamp(str(file)) for file in versions]))
+    versions = [
+        _numba_folder() / "_version.py",
+        _numba_folder().parent / "llvmlite" / "_version.py",
+    ]
+    return repr(
+        (FORMAT, sys.version, _linker().cpu, settings, [_stamp(str(file)) for file in versions])
+    )
 
 
 @cache
@@ -276,6 +294,8 @@ def _file(kernel: Kernel) -> Path:
     source = Path(code.co_filename)
     given = os.environ.get("NUMBA_CACHE_DIR")
     mark = sha256(str(source.parent).encode()).hexdigest()[:16]
-    folder = Path(given) / f"{source.parent.name}_{mark}" if given else source.parent / "__pycache__"
+    folder = (
+        Path(given) / f"{source.parent.name}_{mark}" if given else source.parent / "__pycache__"
+    )
     tag = sys.implementation.cache_tag
     return folder / f"{source.stem}.{code.co_name}-{code.co_firstlineno}.{tag}.kernel"

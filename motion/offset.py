@@ -20,10 +20,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from morfax.motion.compiled import njit
 
 from morfax.motion.arm import PLAIN, SLIGHT, sagitta_rad, swung
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 from morfax.motion.polyline import (
     APART_MM,
     Nearest,

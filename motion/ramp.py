@@ -33,10 +33,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from morfax.motion.compiled import njit
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 from morfax.motion.motion import MOTION_RATE_HZ
 
 UP, CONSTANT, DOWN = 1, 0, -1

@@ -13,9 +13,9 @@ Source: the backward and the forward pass that are usual in controls.
 from __future__ import annotations
 
 import numpy as np
-from morfax.motion.compiled import njit
 
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 
 
 def braked(allowed_mm_s: Array, gain_mm2_s2: Array | float) -> Array:

@@ -24,9 +24,9 @@ steps, and the next one starts there.
 from __future__ import annotations
 
 import numpy as np
-from morfax.motion.compiled import njit
 from numpy.typing import NDArray
 
+from morfax.motion.compiled import njit
 from morfax.player.cubics import stores
 
 Words = NDArray[np.int64]

@@ -26,9 +26,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from morfax.motion.compiled import njit
 from numpy.typing import NDArray
 
+from morfax.motion.compiled import njit
 from morfax.player.cubics.time_base import TimeBase
 
 RIGHT_LAG = 0.5  # of a coarse digit

@@ -17,8 +17,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from morfax.motion.compiled import njit
 
+from morfax.motion.compiled import njit
 from morfax.motion.drive import Drive, conditioned_step
 from morfax.player.cubics.scales import Scales, measured
 from morfax.player.monitor.monitor import FollowingLimit

@@ -21,8 +21,9 @@ is refused; a sum that needs more digits than its store has would lose them, as 
 from __future__ import annotations
 
 import numpy as np
-from morfax.motion.compiled import njit
 from numpy.typing import NDArray
+
+from morfax.motion.compiled import njit
 
 # digits of the stores I to IV, chosen: places of 2 m, then speeds, accelerations and their change, each with
 # the 33 digits behind the point of 2048 steps

@@ -32,8 +32,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from morfax.motion.compiled import njit
 from numpy.typing import NDArray
+
+from morfax.motion.compiled import njit
 
 CLOCKS = 16  # of a recirculation
 FEED_BITS = 20  # of the feed number; chosen here

@@ -38,10 +38,10 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-from morfax.motion.compiled import njit
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 from morfax.motion.drive import SOUND, Drive, as_rows, conditioned_step
 
 PULSES_PER_COUNT = 2  # 0.0005 in and 0.001 in

@@ -34,9 +34,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from morfax.motion.compiled import njit
 from numpy.typing import NDArray
 
+from morfax.motion.compiled import njit
 from morfax.player.gcode.feed_control import (
     BLOCKED,
     EIGHTH,

@@ -37,10 +37,10 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
-from morfax.motion.compiled import njit
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 from morfax.motion.drive import SOUND, Drive, as_rows, conditioned_step
 from morfax.motion.motion import MOTION_RATE_HZ
 

@@ -26,8 +26,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from morfax.motion.compiled import njit
 from numpy.typing import NDArray
+
+from morfax.motion.compiled import njit
 
 ACCELERATION_STEPS_S2 = 25600.0  # one step more in each 1/160 s, page 13
 

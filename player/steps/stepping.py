@@ -32,11 +32,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from morfax.motion.compiled import njit
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.axis import TRAVEL_MM
+from morfax.motion.compiled import njit
 from morfax.motion.faults import ProgramFault
 from morfax.motion.motion import AXES, Motion
 from morfax.player.monitor.monitor import FollowingLimit, Supervised

@@ -26,9 +26,9 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from morfax.motion.compiled import njit
 from numpy.typing import NDArray
 
+from morfax.motion.compiled import njit
 from morfax.player.tape.band_filter import branches, translating_taps
 from morfax.player.tape.predictor import count_turns, predictor_gains
 

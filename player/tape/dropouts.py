@@ -25,10 +25,10 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from morfax.motion.compiled import njit
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 from morfax.motion.faults import Fault, LockFault, TapeFault
 from morfax.player.tape.bridges import SIDE_ROWS, Bridge, Gap, Side, side
 from morfax.player.tape.discriminator import Discriminator, Phases

@@ -47,9 +47,9 @@ import math
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from morfax.motion.compiled import njit
 
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 from morfax.motion.drive import SOUND, Drive, as_rows, conditioned_step
 from morfax.motion.ramp import positions_mm
 from morfax.player.monitor.monitor import FollowingLimit, learn_table

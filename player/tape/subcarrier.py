@@ -20,10 +20,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from morfax.motion.compiled import njit
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 from morfax.recorder.tape.check_signal import CYCLES_PER_SUBCARRIER
 from morfax.recorder.tape.tape import Stored
 

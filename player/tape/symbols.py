@@ -20,9 +20,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from morfax.motion.compiled import njit
 
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 from morfax.player.tape.subcarrier import Complexes, Subcarrier
 from morfax.recorder.tape.check_frame import SYMBOLS, SYNC, SYNC_SYMBOLS, Bits
 from morfax.recorder.tape.check_signal import CYCLES_PER_SYMBOL

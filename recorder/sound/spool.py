@@ -16,8 +16,8 @@ from types import TracebackType
 
 import numpy as np
 import soundfile
-from morfax.motion.compiled import njit
 
+from morfax.motion.compiled import njit
 from morfax.motion.faults import FileFault, TapeFault
 from morfax.motion.files import for_soundfile
 from morfax.recorder.sound.source import Frames

@@ -26,10 +26,10 @@ from itertools import product
 from typing import NamedTuple
 
 import numpy as np
-from morfax.motion.compiled import njit
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 from morfax.recorder.steps.rings import LARGEST, commands
 
 Steps = NDArray[np.int64]

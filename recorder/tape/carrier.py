@@ -33,9 +33,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from morfax.motion.compiled import njit
 from numpy.typing import ArrayLike, NDArray
 
+from morfax.motion.compiled import njit
 from morfax.recorder.tape.pickups import DEFAULT_PICK_UP, PICK_UPS, Sensor
 
 FADE_FROM, FADE_TO = 0.4, 0.475  # of the sample rate, as drawn above

@@ -27,9 +27,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from morfax.motion.compiled import njit
 
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 from morfax.recorder.tape.carrier import Frames, _sine
 from morfax.recorder.tape.check_frame import SYMBOLS, SYNC, CheckFrame, to_bits
 from morfax.recorder.tape.format import CHECK_SHARE, TapeFormat

@@ -24,10 +24,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from morfax.motion.compiled import njit
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 
 WOW_HZ, FLUTTER_HZ, SCRAPE_HZ, WEAVE_HZ = (0.5, 4.0), (4.0, 100.0), (100.0, 2000.0), (0.3, 20.0)
 TONES = 8  # to a band

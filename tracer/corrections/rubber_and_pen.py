@@ -25,8 +25,6 @@ from typing import NamedTuple
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import map_coordinates
-from scipy.special import erf
 
 from morfax.motion import curves
 from morfax.motion.arrays import Array
@@ -133,6 +131,8 @@ class Easel:
 
     def _ink(self, places_mm: Array, width_mm: float, dark: float) -> bool:
         """Draw a line of a width and darkness."""
+        from scipy.special import erf
+
         half_px = 0.5 * width_mm / self.pitch_mm
         soft_px = math.sqrt(2) * max(self.pen.soft_mm / self.pitch_mm, LEAST_SOFT_PX)
         changed = False
@@ -185,6 +185,8 @@ class Easel:
 
     def _pen_of(self, area_mm: float, peak: float) -> tuple[float, float]:
         """Width (mm) and darkness of a line by the area and the height of its profile."""
+        from scipy.special import erf
+
         dark = peak
         for _ in range(ROUNDS):
             width_mm = area_mm / dark
@@ -200,6 +202,8 @@ class Easel:
 
     def _seen(self, places_mm: Array) -> Array:
         """Darkness at places (n, k, 2) mm, (n, k)."""
+        from scipy.ndimage import map_coordinates
+
         columns = places_mm[..., 0] / self.pitch_mm - 0.5
         rows = len(self.darkness) - places_mm[..., 1] / self.pitch_mm - 0.5
         seen = map_coordinates(self.darkness, [rows, columns], output=float, order=1, cval=0.0)

@@ -17,8 +17,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from morfax.motion.compiled import njit
 from numpy.typing import NDArray
+
+from morfax.motion.compiled import njit
 
 Mask = NDArray[np.uint8]
 Numbers = NDArray[np.int32]

@@ -22,7 +22,6 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import map_coordinates
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import MotionFault
@@ -160,6 +159,8 @@ def _places(run: Array, every_mm: float = EVERY_MM) -> tuple[Array, Array]:
 
 def _profile(drawing: Drawing, points: Array, headings: Array, across: Array) -> Array:
     """Darkness (places, across) at distances to the left of a path."""
+    from scipy.ndimage import map_coordinates
+
     x = points[:, :1] - np.sin(headings)[:, None] * across
     y = points[:, 1:] + np.cos(headings)[:, None] * across
     columns = x / drawing.pitch_mm - 0.5

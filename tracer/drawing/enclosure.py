@@ -22,9 +22,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from morfax.motion.compiled import njit
 from numpy.typing import NDArray
 
+from morfax.motion.compiled import njit
 from morfax.tracer.drawing.components import Patches, joined
 
 NONE = -1  # no patch: the open paper

@@ -12,9 +12,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
 from morfax.motion.arrays import Array
 from morfax.tracer.drawing.strokes import Sheet
@@ -49,6 +46,10 @@ def lettering(sheet: Sheet) -> set[int]:
 
 def _rows(boxes_mm: Array) -> NDArray[np.int32]:
     """The row in which each of some boxes (top, bottom, left, right; downwards) stands."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+    from scipy.spatial import cKDTree
+
     top, bottom, left, right = boxes_mm.T
     middles = np.column_stack([0.5 * (left + right), 0.5 * (top + bottom)])
     high = bottom - top

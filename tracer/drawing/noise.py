@@ -28,8 +28,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import map_coordinates
-from scipy.special import erf
 
 from morfax.motion.arrays import Array
 from morfax.tracer.drawing.paper import ROBUST
@@ -193,6 +191,8 @@ def _slope(darkness: NDArray[np.float32], places: Array) -> Array:
 
 def _seen(darkness: NDArray[np.float32], places: Array) -> Array:
     """Darkness between pixels: places (2, n) or (n, 2, k), rows and columns."""
+    from scipy.ndimage import map_coordinates
+
     at = np.moveaxis(places, -2, 0)
     return np.asarray(map_coordinates(darkness, at, output=float, order=1, mode="nearest"))
 
@@ -231,6 +231,8 @@ def _middle(profiles: _Profiles) -> Array:
 
 def _pen(profiles: _Profiles, paper: float, ink: float) -> tuple[float, float]:
     """Softness and width, pixels."""
+    from scipy.special import erf
+
     seen, span_px = profiles.seen, STEP_PX * len(profiles.at_px)
     area, square = STEP_PX * seen.sum(axis=1), STEP_PX * (seen**2).sum(axis=1)
     peak = float(np.median(_middle(profiles)))

@@ -21,8 +21,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import polynomial
 from numpy.typing import NDArray
-from scipy.ndimage import uniform_filter1d
-from scipy.spatial import cKDTree
 
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import lengths_mm as lengths_px
@@ -113,6 +111,8 @@ def _turned(places: Array, reach: int) -> Array:
 
 def _corners(places: Array, softness_px: float, is_closed: bool) -> list[int]:
     """Places about which the outline turns most, in order."""
+    from scipy.ndimage import uniform_filter1d
+
     reach = max(2, min(round(CLEAR * softness_px / APART_PX), len(places) // 4))
     turned = uniform_filter1d(_turned(places, reach), reach, mode="wrap")
     if not is_closed:  # about the ends it turns from one to the other
@@ -239,6 +239,8 @@ def _fit(outline: Array, legs: tuple[EdgeLeg, EdgeLeg], softness_px: float) -> _
 
 def _off(places: Array, found: PutBack) -> float:
     """How far the outline that a corner stands for is from the corner at most, pixels."""
+    from scipy.spatial import cKDTree
+
     first, last, corner = found.first, found.last, found.places
     instead = with_places(np.vstack([places[first], corner, places[last]]), APART_PX)
     return float(cKDTree(instead).query(places[first : last + 1])[0].max())

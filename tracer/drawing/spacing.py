@@ -17,7 +17,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault
@@ -78,6 +77,8 @@ class Pairs:
 
     @classmethod
     def of(cls, edges: list[Edge], within_px: float) -> Pairs:
+        from scipy.spatial import cKDTree
+
         lines = [with_places(edge.outline, 1.0)[:-1] for edge in edges]
         places = np.vstack(lines)
         edge = np.repeat(np.arange(len(lines)), [len(line) for line in lines])

@@ -18,10 +18,10 @@ from typing import Any
 
 import cv2
 import numpy as np
-from morfax.motion.compiled import njit
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 from morfax.motion.faults import DrawingFault, LineFault
 from morfax.tracer.drawing.components import Mask, Patches, runs_of, strips
 from morfax.tracer.drawing.drawing import Drawing

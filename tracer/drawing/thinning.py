@@ -18,9 +18,9 @@ Source: Guo and Hall, "Parallel thinning with two-subiteration algorithms", Comm
 from __future__ import annotations
 
 import numpy as np
-from morfax.motion.compiled import njit
 from numpy.typing import NDArray
 
+from morfax.motion.compiled import njit
 from morfax.tracer.drawing.components import Mask
 
 Indices = NDArray[np.int64]

@@ -18,7 +18,6 @@ from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from morfax.motion.faults import LineFault
 from morfax.motion.motion import MOTION_RATE_HZ
@@ -225,6 +224,8 @@ class Attempts:
 
 def _goes_twice(run: Followed) -> bool:
     """Whether more than `TWICE` of a run goes along what it has followed before."""
+    from scipy.spatial import cKDTree
+
     step_mm = STEP * run.view.width_mm
     places = evenly(run.positions_mm[::THINNED], step_mm)
     near = cKDTree(places).query_pairs(2 * step_mm, output_type="ndarray")

@@ -14,7 +14,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault
@@ -31,6 +30,8 @@ CHECKED = 8  # one position in 8 is checked: every 13 um at 10 mm/s
 
 def kept_to(edges_mm: tuple[Array, ...], run: Followed) -> Followed:
     """The run, if it kept to the edges and, closed, left none of its edge out; else lost at that place."""
+    from scipy.spatial import cKDTree
+
     if not edges_mm:
         return run
     lines = [with_places(edge, EVERY_MM) for edge in edges_mm]

@@ -40,7 +40,6 @@ from __future__ import annotations
 import math
 
 from morfax.motion.compiled import njit
-
 from morfax.tracer.head.screws import move, owed_s
 from morfax.tracer.head.state import CHANGED, DRUM, HOME, JUNCTION, MORE, TIGHT
 from morfax.tracer.head.swinging import detect, seen, swing, way_of

@@ -14,7 +14,6 @@ from __future__ import annotations
 import math
 
 from morfax.motion.compiled import njit
-
 from morfax.motion.drive import drive_step
 
 # of the tracing speed: a head that starts from rest gets away within a few periods

@@ -24,7 +24,6 @@ from __future__ import annotations
 import math
 
 from morfax.motion.compiled import njit
-
 from morfax.tracer.head.state import DRUM
 from morfax.tracer.sensing.photocell import TWO_PI, darkness_at
 

@@ -13,10 +13,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from morfax.motion.arrays import Array
 from morfax.tracer.head.settings import Settings
@@ -27,6 +26,9 @@ from morfax.tracer.ink.stretches import FeltSheet
 from morfax.tracer.junctions.planner import Planner
 from morfax.tracer.sensing.leg import Leg, turn
 from morfax.tracer.sensing.probe import end_of, reach_of_ink
+
+if TYPE_CHECKING:
+    from scipy.spatial import cKDTree
 
 # Chosen by trial on drawings of nets.
 FOOT_WIDTHS = 4.0  # as far ahead a line that ends on others is sought
@@ -237,6 +239,8 @@ class Junctions:
     def _passing(self, there: Junction) -> cKDTree:
         """Places of the lines that pass a junction, from clean end to clean end."""
         if there.passing is None:
+            from scipy.spatial import cKDTree
+
             there.passing = cKDTree(np.vstack([self._way(there, pair) for pair in there.pairs]))
         return there.passing
 

@@ -19,10 +19,10 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from morfax.motion.compiled import njit
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.ink.run import Run, smooth
 from morfax.tracer.sensing.leg import ROBUST

@@ -13,7 +13,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import evenly
@@ -66,6 +65,8 @@ class Balance(NamedTuple):
 
 def balance(sheet: Sheet, graph: Graph, left: InkLeft, ways: list[Array]) -> Balance:
     """What has been followed along some ways (n, 2) mm, and what is left."""
+    from scipy.spatial import cKDTree
+
     # 1. which of the thinned pixels are a way's
     places = graph.places_mm(sheet.drawing)
     patch = _patches_at(sheet, graph.rows, graph.columns)

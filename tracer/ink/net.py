@@ -18,7 +18,6 @@ from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from morfax.motion.arrays import Array
 from morfax.tracer.head.settings import Settings
@@ -160,6 +159,8 @@ class _Same:
 
 def _bridge_gaps(net: Net, settings: Settings) -> None:
     """Make one junction of two free ends that face each other across a gap."""
+    from scipy.spatial import cKDTree
+
     ends = [
         (n, last) for n, line in enumerate(net.lines) for last in (False, True)
         if line.junctions[last] in net.free_ends

@@ -12,9 +12,9 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-from morfax.motion.compiled import njit
 
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 from morfax.tracer.head.course import FELT_LEGS
 from morfax.tracer.sensing.leg import Leg, leg_of
 from morfax.tracer.sensing.view import View

@@ -23,9 +23,9 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from morfax.motion.compiled import njit
 
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 from morfax.tracer.junctions.corner import Corner, hides_outside, rounding
 from morfax.tracer.sensing.leg import FEWEST_STATIONS, Leg, leg_of, turn
 from morfax.tracer.sensing.photocell import darkness_at

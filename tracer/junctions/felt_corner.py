@@ -13,7 +13,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from morfax.motion import curves
 from morfax.motion.arrays import Array
@@ -126,6 +125,8 @@ def is_as_felt(view: View, plan: Plan, seen: Array, deflection: float) -> bool:
     There the middle of the ink is inside of it. A pen of width w that turns by d about a vertex leaves the
     inner edge of its ink w/2/cos(d/2) from it, and the outer one w/2 before the aperture rounds it.
     """
+    from scipy.spatial import cKDTree
+
     inside_mm = 0.5 * view.width_mm * (1 / max(math.cos(deflection / 2), LEAST_COSINE) - 1)
     felt = cKDTree(with_places(seen[:, :2], curves.SPACING_MM))
     away_mm = felt.query(np.vstack(plan.stretches))[0]

@@ -24,11 +24,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from morfax.motion.compiled import njit
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
-from scipy.ndimage import maximum_filter1d
 
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.sensing.leg import FEWEST_STATIONS, LEAST_WIDTHS, Leg, leg_of
 from morfax.tracer.sensing.photocell import TWO_PI, ring
@@ -81,7 +81,8 @@ def corner_in(seen: Array, first: int) -> int | None:
     after = places[middle + reach] - places[middle + SKIPPED]
     cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
     turned = np.abs(np.arctan2(cross, np.sum(before * after, axis=1)))
-    most = turned == maximum_filter1d(turned, 2 * CHORD + 1)
+    about = sliding_window_view(np.pad(turned, CHORD, mode="symmetric"), 2 * CHORD + 1)
+    most = turned == about.max(axis=1)
     sharp = np.flatnonzero((turned > CORNER) & most)
     return int(middle[sharp[0]]) if len(sharp) else None
 

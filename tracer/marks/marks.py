@@ -25,9 +25,9 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-from morfax.motion.compiled import njit
 
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 from morfax.tracer.marks import dots, sizes
 from morfax.tracer.marks.head_path import HeadPath
 from morfax.tracer.marks.ticks import Base, SideStroke, crossing_mm, felt

@@ -18,9 +18,9 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from morfax.motion.compiled import njit
 
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 from morfax.tracer.marks import sizes
 from morfax.tracer.sensing.leg import LEAST_OFF_MM, OUTLIERS, ROBUST
 from morfax.tracer.sensing.photocell import STEP_PX

@@ -24,7 +24,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import nearest_mm
@@ -119,6 +118,8 @@ def _crowded(stroke: Stroke) -> Array:
 
     A line along the rows has two abreast, a sloping line has one.
     """
+    from scipy.spatial import cKDTree
+
     tree = cKDTree(stroke.middles_mm)
     counts = tree.query_ball_point(stroke.middles_mm, stroke.width_mm, return_length=True)
     return np.asarray(counts, float)

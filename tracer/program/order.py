@@ -22,10 +22,10 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
-from morfax.motion.compiled import njit
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 
 # All limits below were chosen by trial.
 FIRSTS = 16  # lines that are tried as the first of the order, and as the last

@@ -13,10 +13,10 @@ that the idle way back is as long as there, and a gain needs four distances only
 from __future__ import annotations
 
 import numpy as np
-from morfax.motion.compiled import njit
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 
 GAIN_MM = 1e-9  # a smaller gain is rounding
 SPAN = 2000  # strokes in a stretch that is turned at most; by trial: the time stays that of the ink

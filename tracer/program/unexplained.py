@@ -20,8 +20,6 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from scipy.ndimage import map_coordinates
-from scipy.spatial import cKDTree
 
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import lengths_mm
@@ -62,6 +60,8 @@ def _ink_beside(
     sheet: Sheet, closed: Sequence[Line], lines: Sequence[Line]
 ) -> Iterator[Unexplained]:
     """Ink of the closed lines' patches that lies beside all ways."""
+    from scipy.spatial import cKDTree
+
     patches = sheet.patches
     # 1. the patches on which closed lines run
     own = np.zeros(patches.count, bool)
@@ -102,6 +102,8 @@ def _bare_ways(sheet: Sheet, closed: Sequence[Line], gap_mm: float) -> Iterator[
 
 def _darkness(sheet: Sheet, places_mm: Array) -> Array:
     """Darkness of the drawing at places (n, 2) mm."""
+    from scipy.ndimage import map_coordinates
+
     darkness = sheet.drawing.darkness
     x, y = places_mm.T / sheet.drawing.pitch_mm
     at = np.array([darkness.shape[0] - y, x]) - 0.5

@@ -14,9 +14,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from morfax.motion.compiled import njit
 
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 
 # straight on is within this, and a leg turns off to a side by more than that
 STRAIGHT, TURNS_OFF = math.radians(40), math.radians(20)

@@ -25,8 +25,8 @@ from typing import NamedTuple
 
 import cv2
 import numpy as np
-from morfax.motion.compiled import njit
 
+from morfax.motion.compiled import njit
 from morfax.tracer.drawing.drawing import Darkness, Drawing
 from morfax.tracer.drawing.strokes import Window
 

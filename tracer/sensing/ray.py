@@ -16,7 +16,6 @@ import math
 from typing import NamedTuple
 
 from morfax.motion.compiled import njit
-
 from morfax.tracer.sensing.photocell import STEP_PX, darkness_at
 
 SPECK_PX, SPECK_MM = 2.2, 0.25  # no wider is a speck: one pixel seen through the aperture

@@ -10,8 +10,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from morfax.motion.compiled import njit
 
+from morfax.motion.compiled import njit
 from morfax.tracer.sensing.ray import edges
 
 # widths and pixels from where a line is expected, within which its edges are

@@ -10,9 +10,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from morfax.motion.compiled import njit
 
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 from morfax.tracer.sensing.photocell import STEP_PX
 from morfax.tracer.sensing.ray import Ray, crossing_mm
 from morfax.tracer.sensing.view import View

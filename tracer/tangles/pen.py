@@ -22,10 +22,10 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from morfax.motion.compiled import njit
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 from morfax.tracer.sensing.photocell import darkness_at
 
 # Chosen by trial on the test drawings.
