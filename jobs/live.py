@@ -137,11 +137,7 @@ class Outlet:
 
 
 def warmed(fmt: TapeFormat, *, plays: bool = False) -> None:
-    """Have the kernels compiled that a device's tape needs: compiling beside it would cost samples."""
-    from morfax.jobs import kernels
-
-    if not kernels.are_cold(("motion", "recorder", "player")):
-        return
+    """Have the kernels at hand that a device's tape needs: compiling or reading them beside it costs samples."""
     import io
 
     from morfax.motion.motion import Motion, thinned

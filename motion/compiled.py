@@ -1,16 +1,17 @@
 """Compiled kernels: `@njit` as numba has it, but a kernel that is kept on disk runs without numba.
 
-Importing numba and its registries takes longer than following a page, and a kernel that is on disk already needs
-none of it. So `njit` puts a Kernel in the function's place. When a Kernel is called, it looks for machine code that
-was kept for arguments of these types (`machine_code`); only if there is none, numba is imported and the function
-compiled, and its machine code is kept. Other kernels that the function calls are numba's own dispatchers to numba.
+Importing numba and its registries takes longer than following a page, and a kernel that is on disk already
+needs none of it. So `njit` puts a Kernel in the function's place. When a Kernel is called, it looks for machine
+code that was kept for arguments of these types (`machine_code`); only if there is none, numba is imported and
+the function compiled, and its machine code is kept.
 
-Signals in: a function in the part of Python that numba compiles; arguments: numbers, arrays, records, tuples of
-these. Signals out: what the function returns. The plain function stays at hand as `py_func`, as with numba; with
-`NUMBA_DISABLE_JIT=1` it is called itself.
+Signals in: a function in the part of Python that numba compiles; arguments: numbers, arrays, records, tuples
+of these. Signals out: what the function returns. The plain function stays at hand as `py_func`, as with numba;
+with `NUMBA_DISABLE_JIT=1` it is called itself.
 
-Questions: numba's own cache finds a kernel by numba's types, which cannot be had without numba. Hence a second
-index, by the Python types of the arguments; the machine code is the same, and the results are, to the bit.
+Questions: numba's own cache finds a kernel by numba's types, which cannot be had without numba, and does not
+see that a kernel within another one was changed. Hence an index of our own, by the Python types of the
+arguments. The machine code is numba's, so results are the same to the bit.
 """
 
 from __future__ import annotations
@@ -28,11 +29,32 @@ from morfax.motion import machine_code
 
 _C, _F, _ALIGNED, _WRITEABLE = 0x1, 0x2, 0x100, 0x400  # numpy's flags of an array
 _FLAGS = _C | _F | _ALIGNED | _WRITEABLE
-_COMPILING = threading.RLock()
+Hearer = Callable[
+    [int], None
+]  # called before a kernel is compiled, with how many were before it
 
-hearers: list[
-    Callable[[str], None]
-] = []  # called with the name of a kernel before it is compiled
+
+class _Compiler:
+    """How many kernels this process has compiled, and who hears of it."""
+
+    def __init__(self) -> None:
+        self.lock = threading.RLock()
+        self.count = 0
+        self.hearer: Hearer | None = None
+
+    def begins(self) -> None:
+        """Tell that a kernel is compiled now."""
+        if self.hearer is not None:
+            self.hearer(self.count)
+        self.count += 1
+
+
+_COMPILER = _Compiler()
+
+
+def hear(hearer: Hearer | None) -> None:
+    """Have somebody told before each kernel that has to be compiled, or nobody any more."""
+    _COMPILER.hearer = hearer
 
 
 class Kernel:
@@ -43,7 +65,7 @@ class Kernel:
         self.py_func = py_func
         self.options = options
         self._ready: dict[tuple[Any, ...], Callable[..., Any]] = {}
-        self._dispatchers: dict[bool, Any] = {}
+        self._dispatcher: Any = None
         update_wrapper(self, py_func)
 
     def __call__(self, *args: Any) -> Any:
@@ -78,14 +100,16 @@ class Kernel:
         """What numba takes a kernel for that another one calls: its dispatcher."""
         return self.dispatcher()._numba_type_
 
-    def dispatcher(self, *, kept: bool = True) -> Any:
-        """numba's dispatcher of the function; `kept`: numba keeps what it compiles."""
-        if kept not in self._dispatchers:
-            from numba import njit as with_numba
+    def dispatcher(self) -> Any:
+        """numba's dispatcher of the function; numba keeps what it compiles only where we cannot."""
+        if self._dispatcher is None:
+            from numba import njit as numba_njit
 
-            options = {**self.options, "cache": kept and self.options.get("cache", False)}
-            self._dispatchers[kept] = with_numba(**options)(self.py_func)
-        return self._dispatchers[kept]
+            options = dict(self.options)
+            if machine_code.can_be_kept():
+                options["cache"] = False
+            self._dispatcher = numba_njit(**options)(self.py_func)
+        return self._dispatcher
 
     def _names(self) -> dict[str, Any]:
         """What the function's names stand for, also within modules of ours."""
@@ -107,7 +131,7 @@ class Kernel:
 
     def _found(self, args: tuple[Any, ...]) -> Callable[..., Any]:
         """The machine code for arguments like these: kept, or compiled now."""
-        with _COMPILING:
+        with _COMPILER.lock:
             if os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
                 return self.py_func
             try:
@@ -118,16 +142,14 @@ class Kernel:
 
     def _compiled(self, types: str, args: tuple[Any, ...]) -> Callable[..., Any]:
         """Compile for arguments like these, and keep the machine code."""
-        for hearer in hearers:
-            hearer(self.py_func.__name__)
-        if not machine_code.can_be_kept():
-            return self.dispatcher()
-        dispatcher = self.dispatcher(kept=False)
-        from numba import typeof
+        dispatcher = self.dispatcher()
+        if machine_code.can_be_kept():
+            from numba import typeof
 
-        signature = tuple(typeof(arg) for arg in args)
-        dispatcher.compile(signature)
-        machine_code.keep(self, types, dispatcher.overloads[signature])
+            _COMPILER.begins()
+            signature = tuple(typeof(arg) for arg in args)
+            dispatcher.compile(signature)
+            machine_code.keep(self, types, dispatcher.overloads[signature])
         return dispatcher
 
 

@@ -1,19 +1,21 @@
-"""Machine code of kernels on disk: kept when numba has compiled a kernel, and run in later processes without numba.
+"""Machine code of kernels on disk: kept when numba has compiled a kernel, linked by later processes without numba.
 
-    first process    numba compiles -> object code, as numba keeps it -> NAME.kernel
+    first process    numba compiles -> object code, as numba's own cache has it -> NAME.kernel
     every other one  NAME.kernel -> llvmlite links the object code -> a Python function
 
-numba's object code needs little of numba to run: the C functions of its three extension modules, which are loaded
-by themselves here, and the names of the built-in exceptions. What a kernel was made with is kept beside it
-(versions, processor, sources of all kernels in it, values of constants), and a kernel whose makings have changed is
-compiled anew. Where something is not as it was with the versions that this was written for, nothing is kept, and
-numba runs the kernels as ever.
+numba's object code needs little of numba to run: the C functions of its three extension modules, which are
+loaded by themselves here, and the names of the built-in exceptions. What a kernel was made with is kept beside
+it (versions, processor, numba's settings, sources of all kernels in it, values of constants); a kernel whose
+makings have changed is compiled anew, and so is one whose file is damaged. Where something is not as it was
+with the versions that this was written for (numba 0.60 to 0.68), nothing is kept here, and numba runs the
+kernels with its own cache. `MORFAX_KERNELS=numba` asks for that.
 
 Signals in: a kernel, the types of its arguments as a text. Signals out: a Python function.
-Files: `NAME-LINE.TAG.kernel` in `__pycache__` beside the module, or in `NUMBA_CACHE_DIR`; marshalled dicts.
+Files: `MODULE.NAME-LINE.TAG.kernel` in `__pycache__` beside the module, or in `NUMBA_CACHE_DIR`: a SHA-256
+digest, then what the kernel was made with and its entries, marshalled.
 
-Questions: shared objects made when the wheel is built would need a compiler, a wheel for each kind of machine and
-code for the oldest processor of a kind; numba's own maker of them (`pycc`) is to be removed.
+Questions: shared objects made with the wheel would need a compiler there, a wheel for each kind of machine,
+and code for the oldest processor of that kind (docs/design.md, rejected designs).
 """
 
 from __future__ import annotations
@@ -186,7 +188,7 @@ class _Linker:
 
 
 def _serve_pickles(unpickle_address: int) -> None:
-    """Have numba's C function that unpickles types (of the arrays and tuples that kernels give) do so by itself.
+    """Have numba's C function that unpickles types (of what kernels give back) do so without numba.
 
     At its first call it asks `numba.core.serialize` for the Python function that does it, and keeps that.
     """
@@ -284,7 +286,7 @@ def _surroundings() -> str:
 @cache
 def _stamp(file: str) -> tuple[str, int, int]:
     """Name, time and size of a file."""
-    status = os.stat(file)
+    status = Path(file).stat()
     return Path(file).name, status.st_mtime_ns, status.st_size
 
 

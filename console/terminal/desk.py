@@ -52,8 +52,7 @@ class Desk:
 
     def compiling(self, what: str, packages: tuple[str, ...]) -> None:
         """Say that the first run takes longer, if it will."""
-        if kernels.are_cold(packages) and not kernels.told(packages):
-            self.note(f"compiling {what} (first run only, some ten seconds) ...")
+        kernels.announce(what, self.note)
 
     @contextmanager
     def progress(self, what: str, total: float) -> Iterator[Advance]:

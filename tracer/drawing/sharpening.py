@@ -19,7 +19,6 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.polynomial import polynomial
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
@@ -277,6 +276,8 @@ def _felt(places: Array, at: int, near: float, far: float) -> EdgeLeg:
     origin, end = (leg[-1], leg[0]) if near < 0 else (leg[0], leg[-1])
     along = (origin - end) / np.hypot(*(origin - end))
     u, v = (leg - origin) @ along, (leg - origin) @ np.array([-along[1], along[0]])
+    from numpy.polynomial import polynomial
+
     straight, bent = (polynomial.polyfit(u, v, degree) for degree in (1, 2))
     off = [float(np.std(v - polynomial.polyval(u, each))) for each in (straight, bent)]
     return EdgeLeg(origin, along, bent if off[1] < BENT * off[0] else straight)

@@ -30,10 +30,10 @@ CHECKED = 8  # one position in 8 is checked: every 13 um at 10 mm/s
 
 def kept_to(edges_mm: tuple[Array, ...], run: Followed) -> Followed:
     """The run, if it kept to the edges and, closed, left none of its edge out; else lost at that place."""
-    from scipy.spatial import cKDTree
-
     if not edges_mm:
         return run
+    from scipy.spatial import cKDTree
+
     lines = [with_places(edge, EVERY_MM) for edge in edges_mm]
     owner = np.repeat(np.arange(len(lines)), [len(line) for line in lines])
     positions = run.positions_mm[::CHECKED]

@@ -27,6 +27,7 @@ from morfax.tracer.drawing.components import joined
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
 from morfax.tracer.program.setup import Setup
+from morfax.tracer.sensing.photocell import Cells, darkness_along
 
 BEYOND_WIDTHS = 1.5  # beyond the edge of a line ink is no longer that line's
 BARE = 0.25  # darkness: paler places are paper
@@ -60,8 +61,6 @@ def _ink_beside(
     sheet: Sheet, closed: Sequence[Line], lines: Sequence[Line]
 ) -> Iterator[Unexplained]:
     """Ink of the closed lines' patches that lies beside all ways."""
-    from scipy.spatial import cKDTree
-
     patches = sheet.patches
     # 1. the patches on which closed lines run
     own = np.zeros(patches.count, bool)
@@ -70,6 +69,8 @@ def _ink_beside(
     if not len(runs):
         return
     # 2. how far both ends of their runs are from the ways
+    from scipy.spatial import cKDTree
+
     ways = cKDTree(np.vstack([line.places_mm for line in lines]))
     ends = np.vstack([sheet.run_begins_mm(runs), sheet.run_ends_mm(runs)])
     away_mm, _ = ways.query(ends)
@@ -101,10 +102,6 @@ def _bare_ways(sheet: Sheet, closed: Sequence[Line], gap_mm: float) -> Iterator[
 
 
 def _darkness(sheet: Sheet, places_mm: Array) -> Array:
-    """Darkness of the drawing at places (n, 2) mm."""
-    from scipy.ndimage import map_coordinates
-
-    darkness = sheet.drawing.darkness
-    x, y = places_mm.T / sheet.drawing.pitch_mm
-    at = np.array([darkness.shape[0] - y, x]) - 0.5
-    return np.asarray(map_coordinates(darkness, at, order=1))
+    """Darkness of the drawing at places (n, 2) mm, under a cell as small as a point."""
+    cells = Cells(sheet.drawing.darkness, sheet.drawing.pitch_mm, BARE)
+    return np.asarray(darkness_along(cells, places_mm))

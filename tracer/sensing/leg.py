@@ -159,10 +159,36 @@ def _parabola(x, y, weights, degree):  # type: ignore[no-untyped-def]
             right[i] += weights[k] * y[k] * x[k] ** i
             for j in range(n):
                 sums[i, j] += weights[k] * x[k] ** (i + j)
-    inverse = np.linalg.inv(sums + 1e-12 * np.eye(n))
+    inverse = _inverse(sums + 1e-12 * np.eye(n))
     found = np.zeros(3)
-    found[:n] = inverse @ right
+    for i in range(n):
+        for j in range(n):
+            found[i] += inverse[i, j] * right[j]
     return found, math.sqrt(abs(inverse[n - 1, n - 1]))
+
+
+@njit(cache=True)
+def _inverse(matrix):  # type: ignore[no-untyped-def]
+    """Inverse of a small matrix, by elimination; numpy's own would have numba load scipy.linalg (0.2 s)."""
+    n = len(matrix)
+    left, right = matrix.copy(), np.eye(n)
+    for k in range(n):
+        # 1. the largest of the column comes up
+        best = k + np.argmax(np.abs(left[k:, k]))
+        for j in range(n):
+            left[k, j], left[best, j] = left[best, j], left[k, j]
+            right[k, j], right[best, j] = right[best, j], right[k, j]
+        # 2. its row, with 1 in the column, is taken off the others
+        pivot = left[k, k]
+        for j in range(n):
+            left[k, j] /= pivot
+            right[k, j] /= pivot
+        for i in range(n):
+            share = left[i, k] if i != k else 0.0
+            for j in range(n):
+                left[i, j] -= share * left[k, j]
+                right[i, j] -= share * right[k, j]
+    return right
 
 
 def centre_at(seen: Array, i: int, half_mm: float) -> Leg:

@@ -90,6 +90,15 @@ def darkness_at(cells, x_mm, y_mm):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
+def darkness_along(cells, places_mm):  # type: ignore[no-untyped-def]
+    """Darkness under a cell at each of many places (n, 2) in sheet mm."""
+    seen = np.empty(len(places_mm))
+    for k in range(len(places_mm)):
+        seen[k] = darkness_at(cells, places_mm[k, 0], places_mm[k, 1])
+    return seen
+
+
+@njit(cache=True)
 def sweep(cells, place, heading, swing_mm, samples):  # type: ignore[no-untyped-def]
     """Fundamental and mean of one whole sweep (centre, amplitude) across a heading at a standing place."""
     (centre_mm, amplitude_mm), first, mean = swing_mm, 0.0, 0.0
