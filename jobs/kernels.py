@@ -1,9 +1,9 @@
 """Where the compiled kernels are kept, and who is told when some have to be compiled.
 
 The sample loops of head, recorder and machine are compiled on their first run and kept on disk
-(`motion/machine_code.py`): in `__pycache__` beside each module, or, where that folder cannot be written, in the
-user's cache folder (`$XDG_CACHE_HOME/morfax`, by default `~/.cache/morfax`), or at the worst in the folder for
-temporary files.
+(`motion/machine_code.py`): in `__pycache__` beside each module, or, where that folder cannot be written, in
+the user's cache folder (`$XDG_CACHE_HOME/morfax`, by default `~/.cache/morfax`), or at the worst in the folder
+for temporary files.
 """
 
 from __future__ import annotations

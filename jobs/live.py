@@ -137,7 +137,7 @@ class Outlet:
 
 
 def warmed(fmt: TapeFormat, *, plays: bool = False) -> None:
-    """Have the kernels at hand that a device's tape needs: compiling or reading them beside it costs samples."""
+    """Have the kernels at hand that a device's tape needs: getting them beside it costs samples."""
     import io
 
     from morfax.motion.motion import Motion, thinned

@@ -1,13 +1,13 @@
 """Compiled kernels: `@njit` as numba has it, but a kernel that is kept on disk runs without numba.
 
 Importing numba and its registries takes longer than following a page, and a kernel that is on disk already
-needs none of it. So `njit` puts a Kernel in the function's place. When a Kernel is called, it looks for machine
-code that was kept for arguments of these types (`machine_code`); only if there is none, numba is imported and
-the function compiled, and its machine code is kept.
+needs none of it. So `njit` puts a Kernel in the function's place. When a Kernel is called, it looks for
+machine code that was kept for arguments of these types (`machine_code`); only if there is none, numba is
+imported and the function compiled, and its machine code is kept.
 
 Signals in: a function in the part of Python that numba compiles; arguments: numbers, arrays, records, tuples
-of these. Signals out: what the function returns. The plain function stays at hand as `py_func`, as with numba;
-with `NUMBA_DISABLE_JIT=1` it is called itself.
+of these. Signals out: what the function returns. The plain function stays at hand as `py_func`, as with
+numba; with `NUMBA_DISABLE_JIT=1` it is called itself.
 
 Questions: numba's own cache finds a kernel by numba's types, which cannot be had without numba, and does not
 see that a kernel within another one was changed. Hence an index of our own, by the Python types of the

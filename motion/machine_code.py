@@ -1,14 +1,14 @@
-"""Machine code of kernels on disk: kept when numba has compiled a kernel, linked by later processes without numba.
+"""Machine code of kernels on disk: kept once numba has compiled a kernel, and linked later without numba.
 
     first process    numba compiles -> object code, as numba's own cache has it -> NAME.kernel
     every other one  NAME.kernel -> llvmlite links the object code -> a Python function
 
 numba's object code needs little of numba to run: the C functions of its three extension modules, which are
-loaded by themselves here, and the names of the built-in exceptions. What a kernel was made with is kept beside
-it (versions, processor, numba's settings, sources of all kernels in it, values of constants); a kernel whose
-makings have changed is compiled anew, and so is one whose file is damaged. Where something is not as it was
-with the versions that this was written for (numba 0.60 to 0.68), nothing is kept here, and numba runs the
-kernels with its own cache. `MORFAX_KERNELS=numba` asks for that.
+loaded by themselves here, and the names of the built-in exceptions. What a kernel was made with is kept
+beside it (versions, processor, numba's settings, sources of all kernels in it, values of constants); a kernel
+whose makings have changed is compiled anew, and so is one whose file is damaged. Where something is not as it
+was with the versions that this was written for (numba 0.68), nothing is kept here, and numba runs the kernels
+with its own cache. `MORFAX_KERNELS=numba` asks for that.
 
 Signals in: a kernel, the types of its arguments as a text. Signals out: a Python function.
 Files: `MODULE.NAME-LINE.TAG.kernel` in `__pycache__` beside the module, or in `NUMBA_CACHE_DIR`: a SHA-256

@@ -55,9 +55,34 @@ def closed_up(line_mm: Array) -> Array:
 
 def nearest_mm(places_mm: Array, others_mm: Array) -> Array:
     """Distance of each place (n, 2) from the nearest of other places (m, 2), mm."""
-    from scipy.spatial import cKDTree
+    others = np.ascontiguousarray(others_mm, float)
+    sorted_mm = others[np.argsort(others[:, 0], kind="stable")]
+    return np.asarray(_nearest(np.ascontiguousarray(places_mm, float), sorted_mm))
 
-    return np.asarray(cKDTree(others_mm).query(places_mm)[0])
+
+@njit(cache=True)
+def _nearest(places, others):  # type: ignore[no-untyped-def]
+    """Distance of each place from the nearest of others that are sorted by X.
+
+    Each place is compared with those to its left and right until these are further off in X alone: for
+    places near a line these are few, and no tree has to be built, nor scipy.spatial loaded for it (0.5 s).
+    """
+    nearest = np.empty(len(places))
+    for k in range(len(places)):
+        x, y = places[k]
+        middle = np.searchsorted(others[:, 0], x)
+        best = np.inf
+        for way in (-1, 1):
+            i = middle if way > 0 else middle - 1
+            while 0 <= i < len(others):
+                across = others[i, 0] - x
+                if across * across > best:
+                    break
+                along = others[i, 1] - y
+                best = min(best, across * across + along * along)
+                i += way
+        nearest[k] = math.sqrt(best)
+    return nearest
 
 
 def plain(line_mm: Array, within_mm: float) -> Array:

@@ -22,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.motion.polyline import lengths_mm
+from morfax.motion.polyline import lengths_mm, nearest_mm
 from morfax.tracer.drawing.components import joined
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
@@ -69,12 +69,9 @@ def _ink_beside(
     if not len(runs):
         return
     # 2. how far both ends of their runs are from the ways
-    from scipy.spatial import cKDTree
-
-    ways = cKDTree(np.vstack([line.places_mm for line in lines]))
+    ways = np.vstack([line.places_mm for line in lines])
     ends = np.vstack([sheet.run_begins_mm(runs), sheet.run_ends_mm(runs)])
-    away_mm, _ = ways.query(ends)
-    away_mm = away_mm.reshape(2, -1)
+    away_mm = nearest_mm(ends, ways).reshape(2, -1)
     width_mm = np.array([line.width_mm for line in closed]).max()
     widths_mm = np.maximum(sheet.widths_mm[patches.patch[runs]], width_mm)
     far = away_mm.max(axis=0) > (0.5 + BEYOND_WIDTHS) * widths_mm
