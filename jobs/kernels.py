@@ -2,7 +2,7 @@
 
 The sample loops of head, recorder and machine are compiled on their first run and kept on disk
 (`motion/machine_code.py`): in `__pycache__` beside each module, or, where that folder cannot be written, in
-the user's cache folder (`$XDG_CACHE_HOME/morfax`, by default `~/.cache/morfax`), or at the worst in the folder
+the user's cache folder (`$XDG_CACHE_HOME/morfax`, by default `~/.cache/morfax`), or at worst in the folder
 for temporary files.
 """
 
@@ -43,7 +43,7 @@ def announce(what: str, note: Callable[[str], None]) -> None:
         nonlocal next_s
         if time.monotonic() < next_s:
             return
-        how_far = f"{count} kernels so far" if count else "first run only, about half a minute"
+        how_far = f"{count} kernels so far" if count else "first run only"
         note(f"compiling {what} ({how_far}) ...")
         next_s = time.monotonic() + AGAIN_S
 

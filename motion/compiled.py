@@ -70,7 +70,7 @@ class Kernel:
 
     def __call__(self, *args: Any) -> Any:
         """Run the machine code for arguments of these types; get it first if need be."""
-        key = tuple([_key(arg) for arg in args])
+        key = tuple([kind if (kind := type(arg)) in _PLAIN else _key(arg) for arg in args])
         run = self._ready.get(key)
         if run is None:
             run = self._ready[key] = self._found(args)
@@ -169,8 +169,6 @@ def _key(arg: Any) -> Any:
     kind = type(arg)
     if kind is np.ndarray:
         return (arg.dtype, arg.ndim, arg.flags.num & _FLAGS)
-    if kind in _PLAIN:
-        return kind
     if isinstance(arg, tuple):
         return (kind, *[_key(item) for item in arg])
     if isinstance(arg, np.void | np.ndarray):

@@ -17,6 +17,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
@@ -115,8 +116,12 @@ class Rehearsal:
             window // WINDOWS,
             0,
         )
-        while first + window <= len(self._shown):
-            shakes = np.median(self._shown[first : first + window : SHAKE_STRIDE], axis=0)
+        count = max((len(self._shown) - window) // step + 1, 0)
+        if count:
+            windows = sliding_window_view(self._shown, window, axis=0)
+            shakes_each = np.median(windows[::step, :, ::SHAKE_STRIDE], axis=2)
+        for number in range(count):
+            shakes = shakes_each[number]
             self._loud = np.where(shakes > SHAKE_CYCLES, self._loud + 1, 0)
             if self._loud.max() >= WINDOWS:
                 axis = int(np.argmax(self._loud))

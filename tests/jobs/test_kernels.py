@@ -56,7 +56,7 @@ def test_compiling_is_announced_by_its_first_kernel_and_every_few_seconds(
         now_s += 1.0
     compiled.hear(None)
     assert said == [
-        "compiling the head (first run only, about half a minute) ...",
+        "compiling the head (first run only) ...",
         "compiling the head (5 kernels so far) ...",
         "compiling the head (10 kernels so far) ...",
     ]

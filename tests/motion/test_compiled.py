@@ -1,0 +1,141 @@
+"""Kernels that are kept on disk: run without numba, same to the bit, and compiled anew when they must be."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from morfax.motion import machine_code
+from morfax.motion.compiled import Kernel, hear
+from morfax.motion.drive import drive_step
+
+PART = """
+from morfax.motion.compiled import njit
+GAIN = 2.0
+
+@njit(cache=True, inline="always")
+def part(x):
+    return GAIN * x
+"""
+WHOLE = """
+from typing import NamedTuple
+import math
+import numpy as np
+from morfax.motion.compiled import njit
+import part_of_it
+from part_of_it import part
+
+class Found(NamedTuple):
+    sums: np.ndarray
+    count: int
+
+@njit(cache=True)
+def whole(values, places):
+    if len(values) == 0:
+        raise ValueError("nothing there")
+    sums = np.zeros(len(values))
+    for k in range(len(values)):
+        sums[k] = part(values[k]) + math.sin(places[0]) + part_of_it.part(places[1])
+    return Found(sums, len(values))
+"""
+ASKED = """
+import json, sys
+import numpy as np
+from morfax.motion import compiled
+heard = []
+compiled.hear(heard.append)
+from whole import whole
+values = np.arange(5.0) / 7.0
+found = [whole(v, (0.3, 1)) for v in (values, values[::2], values.astype(np.int64))]
+with_numba = "numba.core" in sys.modules
+try:
+    whole(values[:0], (0.3, 1))
+    said = ""
+except ValueError as error:
+    said = str(error)
+rows = [[f.sums.tolist(), f.count, type(f).__name__] for f in found]
+print(json.dumps([*rows, said, len(heard), with_numba]))
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A folder with a kernel that has another one in it, and a program that calls it with three types."""
+    (tmp_path / "part_of_it.py").write_text(PART)
+    (tmp_path / "whole.py").write_text(WHOLE)
+    return tmp_path
+
+
+def asked(folder: Path, **settings: str) -> list[Any]:
+    """What the program prints in a process of its own."""
+    done = subprocess.run(
+        [sys.executable, "-c", ASKED],
+        cwd=folder,
+        env={
+            **os.environ,
+            "NUMBA_CACHE_DIR": str(folder / "kept"),
+            "PYTHONPATH": os.pathsep.join([str(folder), *sys.path]),
+            **settings,
+        },
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return list(json.loads(done.stdout))
+
+
+@pytest.mark.skipif(not machine_code.can_be_kept(), reason="numba runs the kernels here")
+def test_a_kept_kernel_runs_without_numba_and_is_made_anew_when_what_is_in_it_changes(
+    folder: Path,
+) -> None:
+    # 1. three types of arguments are compiled, and kept
+    first = asked(folder)
+    assert first[3:5] == ["nothing there", 3]
+    plain = asked(folder, NUMBA_DISABLE_JIT="1")
+    for (sums, *rest), (expected, *others) in zip(first[:3], plain[:3], strict=True):
+        assert np.allclose(sums, expected, rtol=1e-15)  # one rounding of a sum of three numbers
+        assert rest == others
+    assert [row[1:] for row in first[:3]] == [[5, "Found"], [3, "Found"], [5, "Found"]]
+    # 2. the next process compiles nothing and has no numba; every bit is the same
+    assert asked(folder) == [*first[:4], 0, False]
+    # 3. a damaged file is compiled anew
+    (file,) = (folder / "kept").rglob("whole.*.kernel")
+    kept = file.read_bytes()
+    file.write_bytes(kept[:-3] + b"xyz")
+    assert asked(folder) == first
+    # 4. so is one whose kernel within has another constant
+    (folder / "part_of_it.py").write_text(PART.replace("GAIN = 2.0", "GAIN = 30.0"))
+    changed = asked(folder)
+    assert changed[4] == 3
+    assert changed[0] != first[0]
+
+
+def test_a_kernel_is_its_plain_function_where_compiling_is_turned_off(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv("NUMBA_DISABLE_JIT", "1")
+    heard: list[int] = []
+    hear(heard.append)
+    double = Kernel(lambda x: 2 * x, {"cache": True})
+    assert double("ab") == "abab"
+    hear(None)
+    assert heard == []
+
+
+def test_what_goes_into_a_kernel_is_known_by_its_makings(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """numba's settings and the source of a kernel within are part of what is compared."""
+    before = machine_code._makings(drive_step)
+    assert "drive.py" in before
+    machine_code._surroundings.cache_clear()
+    monkeypatch.setenv("NUMBA_OPT", "0")
+    assert machine_code._makings(drive_step) != before
+    machine_code._surroundings.cache_clear()
