@@ -116,12 +116,10 @@ class Rehearsal:
             window // WINDOWS,
             0,
         )
-        count = max((len(self._shown) - window) // step + 1, 0)
-        if count:
-            windows = sliding_window_view(self._shown, window, axis=0)
-            shakes_each = np.median(windows[::step, :, ::SHAKE_STRIDE], axis=2)
-        for number in range(count):
-            shakes = shakes_each[number]
+        if len(self._shown) < window:
+            return
+        windows = sliding_window_view(self._shown, window, axis=0)[::step, :, ::SHAKE_STRIDE]
+        for shakes in np.median(windows, axis=2):
             self._loud = np.where(shakes > SHAKE_CYCLES, self._loud + 1, 0)
             if self._loud.max() >= WINDOWS:
                 axis = int(np.argmax(self._loud))
