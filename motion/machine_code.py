@@ -41,8 +41,8 @@ import numpy as np
 if TYPE_CHECKING:
     from morfax.motion.compiled import Kernel
 
-# an entry: object code, name of the function in it, environments: name, module, types of numbers
-Entry = tuple[bytes, str, list[tuple[str, str, list[str]]]]
+# an entry: object code, name of the function in it, environments: name, module, pickled dtypes
+Entry = tuple[bytes, str, list[tuple[str, str, list[bytes]]]]
 FORMAT = 1  # of the files; another number with every change of Entry
 DIGEST = 32  # bytes of a SHA-256 digest, which stands before the rest of a file
 EXTENSIONS = ("_dynfunc", "_helperlib", "core.runtime._nrt_python")
@@ -107,7 +107,11 @@ def _entry(compiled: Any) -> Entry | None:
     if compiled.objectmode or not all(isinstance(constant, np.dtype) for constant in constants):
         return None
     environments = [
-        (of.env_name, of.globals["__name__"], [constant.str for constant in of.consts])
+        (
+            of.env_name,
+            of.globals["__name__"],
+            [pickle.dumps(constant) for constant in of.consts],
+        )
         for of in held
     ]
     _, _, (code, _) = compiled.library.serialize_using_object_code()
@@ -156,13 +160,15 @@ class _Linker:
             module, plain.__name__, plain.__doc__ or "", address, own, (kernel,)
         )
 
-    def _set_environment(self, name: str, module: str, constants: list[str]) -> None:
+    def _set_environment(self, name: str, module: str, constants: list[bytes]) -> None:
         """Give compiled code the names of the module that it was written in, as numba does."""
         if name not in self._environments:
             # code of numba's own modules looks nothing up: they need not be there
             names = vars(sys.modules[module]) if module in sys.modules else {"__name__": module}
             self._environments[name] = self._environment(names)
-            self._environments[name].consts.extend(np.dtype(constant) for constant in constants)
+            self._environments[name].consts.extend(
+                pickle.loads(constant) for constant in constants
+            )
         address = self._engine.get_global_value_address(name)
         if address:
             ctypes.c_void_p.from_address(address).value = id(self._environments[name])

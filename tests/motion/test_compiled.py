@@ -32,6 +32,8 @@ from morfax.motion.compiled import njit
 import part_of_it
 from part_of_it import part
 
+ROW = np.dtype([("sum", np.float64), ("number", np.int64)])
+
 class Found(NamedTuple):
     sums: np.ndarray
     count: int
@@ -40,9 +42,10 @@ class Found(NamedTuple):
 def whole(values, places):
     if len(values) == 0:
         raise ValueError("nothing there")
-    sums = np.zeros(len(values))
+    sums = np.zeros(len(values), ROW)
     for k in range(len(values)):
-        sums[k] = part(values[k]) + math.sin(places[0]) + part_of_it.part(places[1])
+        sums[k]["number"] = k
+        sums[k]["sum"] = part(values[k]) + math.sin(places[0]) + part_of_it.part(places[1])
     return Found(sums, len(values))
 """
 ASKED = """
@@ -60,7 +63,7 @@ try:
     said = ""
 except ValueError as error:
     said = str(error)
-rows = [[f.sums.tolist(), f.count, type(f).__name__] for f in found]
+rows = [[f.sums["sum"].tolist(), f.sums["number"].sum().item(), type(f).__name__] for f in found]
 print(json.dumps([*rows, said, len(heard), with_numba]))
 """
 
@@ -102,7 +105,7 @@ def test_a_kept_kernel_runs_without_numba_and_is_made_anew_when_what_is_in_it_ch
     for (sums, *rest), (expected, *others) in zip(first[:3], plain[:3], strict=True):
         assert np.allclose(sums, expected, rtol=1e-15)  # one rounding of a sum of three numbers
         assert rest == others
-    assert [row[1:] for row in first[:3]] == [[5, "Found"], [3, "Found"], [5, "Found"]]
+    assert [row[1:] for row in first[:3]] == [[10, "Found"], [3, "Found"], [10, "Found"]]
     # 2. the next process compiles nothing and has no numba; every bit is the same
     assert asked(folder) == [*first[:4], 0, False]
     # 3. a damaged file is compiled anew

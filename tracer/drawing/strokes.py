@@ -24,6 +24,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.faults import DrawingFault, LineFault
 from morfax.tracer.drawing.components import Mask, Patches, runs_of, strips
+from morfax.tracer.drawing.depth import depth_px
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.numbering import ALIKE, Ink, longest_first
 
@@ -95,7 +96,7 @@ class Sheet:
             ink = (cv2.GaussianBlur(drawing.darkness[rows], (0, 0), 0.7) > INK).view(np.uint8)
             inner = slice(top - rows.start, bottom - rows.start)
             runs.append(runs_of(ink[inner], top))
-            depths.append(_run_sums(_depth(ink)[inner], ink[inner], runs[-1]))
+            depths.append(_run_sums(depth_px(ink)[inner], ink[inner], runs[-1]))
         patches = Patches.of(runs)
         areas = patches.areas
         deep = np.bincount(patches.patch, np.concatenate(depths), patches.count) / areas
@@ -297,7 +298,7 @@ class Sheet:
         )
         if not ink[inner].any():
             return np.empty(0, int), np.empty(0, int), np.empty(0)
-        depth = _depth(ink)
+        depth = depth_px(ink)
         middle = (depth > 0) & (depth >= cv2.dilate(depth, np.ones((3, 3), np.uint8)) - 0.3)
         i, j = np.nonzero(middle[inner])
         disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * disc_px + 1,) * 2)
@@ -333,13 +334,6 @@ def _ink_about(ink, rows, columns, disc):  # type: ignore[no-untyped-def]
             ):
                 filled[k] += ink[rows[k] - half + i, columns[k] - half + j] * disc[i, j]
     return filled
-
-
-def _depth(ink: Mask) -> NDArray[np.float32]:
-    """How far each pixel of ink is from the paper, pixels."""
-    return np.asarray(
-        cv2.distanceTransform(ink, cv2.DIST_L2, cv2.DIST_MASK_PRECISE), np.float32
-    )
 
 
 def _run_sums(

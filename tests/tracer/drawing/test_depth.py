@@ -1,0 +1,30 @@
+"""Depth of ink: the same to the bit as OpenCV's exact distance, on sheets of lines as well."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+import pytest
+
+from morfax.tracer.drawing.depth import MUCH_INK, depth_px
+
+
+@pytest.mark.parametrize("width_px", [1, 3, 9])
+def test_lines_on_much_paper_are_as_deep_as_the_whole_sheet_says(width_px: int) -> None:
+    ink = np.zeros((301, 400), np.uint8)
+    cv2.ellipse(ink, (200, 150), (150, 90), 20, 0, 300, 1, width_px)
+    cv2.line(ink, (0, 10), (399, 0), 1, width_px)  # over three borders of the sheet
+    ink[250:, 5] = 1
+    assert 0 < ink.mean() <= MUCH_INK
+    exact = cv2.distanceTransform(ink, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+    assert np.array_equal(depth_px(ink), exact)
+
+
+def test_a_filled_shape_is_deep_and_paper_is_not() -> None:
+    ink = np.zeros((40, 40), np.uint8)
+    assert not depth_px(ink).any()
+    ink[10:31, 10:31] = 1
+    assert ink.mean() > MUCH_INK
+    depth = depth_px(ink)
+    assert depth[20, 20] == 11  # pixels from the middle of 21 to the first of paper
+    assert depth[9, 20] == 0
