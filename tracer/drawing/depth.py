@@ -4,7 +4,7 @@ Signals in: a mask of ink, (rows, columns). Signals out: depths in pixels, float
 outside the mask is no paper.
 
 The nearest paper of a pixel is as far down its own column, or that of a column beside it, as it is nearest
-there: d² = min over columns of (their distance² + their own depth²). On lines only a few columns are looked at.
+there: d² = min over columns of (their distance² + their own depth²). On lines that takes a few columns.
 
 Source: Felzenszwalb and Huttenlocher, Distance Transforms of Sampled Functions (2012), of which the second
 step is done by looking, since lines are narrow.
