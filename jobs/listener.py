@@ -35,7 +35,7 @@ class Listener(Protocol):
         """Hear what may not be meant so, with what to do about it."""
 
     def compiling(self, what: str, packages: tuple[str, ...]) -> None:
-        """Hear that kernels of these packages will run; by `kernels.are_cold` they are compiled first."""
+        """Hear that kernels of these packages will run; those that are not kept are compiled first."""
 
 
 class Silent:

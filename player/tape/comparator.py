@@ -23,7 +23,7 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
+from morfax.motion.compiled import njit
 
 
 @njit(cache=True, inline="always")

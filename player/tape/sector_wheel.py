@@ -30,10 +30,10 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from morfax.motion.arrays import Array
 from morfax.motion.axis import LeadScrew
+from morfax.motion.compiled import njit
 
 FEWEST_SECTORS = 10  # a step passes some of them, and they are counted modulo a turn
 LARGEST_SHARE = 0.1  # of the radius, and of a sector's width: a wheel further off is broken
