@@ -43,7 +43,7 @@ def announce(what: str, note: Callable[[str], None]) -> None:
         nonlocal next_s
         if time.monotonic() < next_s:
             return
-        how_far = f"{count} kernels so far" if count else "first run only"
+        how_far = f"{count} so far" if count else "first run only"
         note(f"compiling {what} ({how_far}) ...")
         next_s = time.monotonic() + AGAIN_S
 

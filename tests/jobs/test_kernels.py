@@ -57,6 +57,6 @@ def test_compiling_is_announced_by_its_first_kernel_and_every_few_seconds(
     compiled.hear(None)
     assert said == [
         "compiling the head (first run only) ...",
-        "compiling the head (5 kernels so far) ...",
-        "compiling the head (10 kernels so far) ...",
+        "compiling the head (5 so far) ...",
+        "compiling the head (10 so far) ...",
     ]
