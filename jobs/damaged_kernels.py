@@ -1,5 +1,7 @@
 """Damaged kernels: compiled kernels on disk that cannot be loaded are compiled again, once, and it is said.
 
+This is for kernels that numba keeps itself; `motion/machine_code.py` sees damage by a digest.
+
 A file that is cut short, garbage, empty or may not be read ends a run of numba with any kind of exception.
 Here such a kernel counts as not compiled: its index is removed, numba compiles it, and keeps it anew. Where
 that cannot be kept either, the run goes on without.

@@ -64,15 +64,18 @@ def keep(kernel: Kernel, types: str, compiled: Any) -> None:
         return
     entries = {**_read(kernel), types: entry}
     file = _file(kernel)
+    content = marshal.dumps((_makings(kernel), entries))
+    unfinished = None
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
         number, name = tempfile.mkstemp(dir=file.parent, prefix=file.name)
+        unfinished = Path(name)
         with os.fdopen(number, "wb") as stream:
-            content = marshal.dumps((_makings(kernel), entries))
             stream.write(sha256(content).digest() + content)
-        Path(name).replace(file)
-    except OSError:
-        return  # a folder that cannot be written: compiled again next time
+        unfinished.replace(file)
+    except OSError:  # a folder that cannot be written: compiled again next time
+        if unfinished is not None:
+            unfinished.unlink(missing_ok=True)
 
 
 @cache

@@ -22,9 +22,6 @@ from typing import NamedTuple
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
 from morfax.motion.arrays import Array
 from morfax.tracer.drawing.spacing import CLEAR, Pairs
@@ -91,6 +88,10 @@ def covers(share: Grey, pairs: Pairs, softness_px: float) -> Iterator[Cover]:
 
 def places_of(share: Grey, pairs: Pairs, pitch_mm: float) -> list[Closed]:
     """The slits and bridges that pairs of places are of, the longest first."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+    from scipy.spatial import cKDTree
+
     middles = pairs.places.mean(axis=1)
     near = cKDTree(middles).query_pairs(TOGETHER_PX, output_type="ndarray")
     ones = np.ones(len(near), np.int8)

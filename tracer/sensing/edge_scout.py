@@ -21,8 +21,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from morfax.motion.compiled import njit
 from morfax.tracer.sensing.photocell import TWO_PI, darkness_at
 
 CIRCLE_PX = 0.8  # radius
