@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from morfax.jobs.zero import Zero
     from morfax.tracer.cutter.cutter import Cutter, CutterSide
     from morfax.tracer.drawing.drawing import Drawing
+    from morfax.tracer.drawing.ruling import PaperKind
     from morfax.tracer.drawing.scale import Known, Scale
     from morfax.tracer.drawing.scan import Scan
     from morfax.tracer.flatten.flat import Flattening
@@ -41,6 +42,7 @@ class DrawingFile:
     width_mm: float | None = None
     ink: str | None = None
     edge: bool = False
+    paper: PaperKind = "auto"  # printed lines of squared or ruled paper are left out
     page: int | None = None  # of a file of several; None: the first, and it is said
     known: Known | None = None  # two places and their distance, instead of dpi or width
     flatten: FlattenSettings = field(default_factory=FlattenSettings)
@@ -55,7 +57,8 @@ class DrawingFile:
 
         ink = None if self.ink is None else inks.parsed(self.ink)
         scan, made = self._scanned(listener)
-        drawing = replace(Drawing.of(scan, self.scale(), ink, self.edge), flattening=made)
+        drawing = Drawing.of(scan, self.scale(), ink, self.edge, self.paper)
+        drawing = replace(drawing, flattening=made)
         for note in drawing.notes:
             listener.note(note)
         return self._corrected(drawing, scan, listener)

@@ -101,6 +101,15 @@ _DRAWING = (
     ),
     option(
         "Drawing",
+        "--paper",
+        type=click.Choice(("auto", "plain", "squared", "ruled")),
+        default="auto",
+        show_default=True,
+        help="Printed lines of squared or ruled paper, even if as dark as the drawing, are left out; auto: "
+        "if they go over the whole sheet; plain: none is left out.",
+    ),
+    option(
+        "Drawing",
         "--flatten",
         "wanted",
         type=FLATTEN,
@@ -143,7 +152,7 @@ def drawing_options(argument: str) -> Decorator:
     def with_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         @functools.wraps(verb)
         def with_drawing(*args: Any, **options: Any) -> Any:
-            names = ("dpi", "width_mm", "ink", "edge", "page", "known")
+            names = ("dpi", "width_mm", "ink", "edge", "paper", "page", "known")
             how = {name: options.pop(name) for name in names}
             how["flatten"] = FlattenSettings(options.pop("wanted"), options.pop("bar_mm"))
             used = not options.pop("no_corrections")

@@ -31,10 +31,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.faults import DrawingFault
-from morfax.tracer.drawing import coarse, grain, inks, paper, raster
+from morfax.tracer.drawing import coarse, grain, inks, paper, raster, ruling
 from morfax.tracer.drawing.border import without_border
 from morfax.tracer.drawing.components import Patches, runs_of, strips
 from morfax.tracer.drawing.noise import Noise, grain_within, measured
+from morfax.tracer.drawing.ruling import PaperKind
 from morfax.tracer.drawing.scale import Scale
 from morfax.tracer.drawing.scan import Grey, Scan
 from morfax.tracer.drawing.shapes import outlined
@@ -156,11 +157,17 @@ class Drawing:
 
     @classmethod
     def of(
-        cls, scan: Scan, scale: Scale, ink: inks.Colour | None = None, edge: bool = False
+        cls,
+        scan: Scan,
+        scale: Scale,
+        ink: inks.Colour | None = None,
+        edge: bool = False,
+        printed: PaperKind = "auto",
     ) -> Drawing:
         """Make a drawing of a scan that was opened; in colours where an ink is asked for.
 
-        Raises DrawingFault for a missing scale and for a scan that holds no line.
+        `printed` is the paper's kind: its printed lines are left out. Raises DrawingFault for a missing
+        scale, for a scan that holds no line, and for printed lines that are not there.
         """
         # 1. grey levels on square pixels
         pitch = scale.pitches_mm(scan)
@@ -186,6 +193,8 @@ class Drawing:
                 notes=(*notes, *rims.notes),
             )
         darkness, shapes = levelled(grey, pitch[0])
+        darkness, note = ruling.left_out(darkness, pitch[0], printed)
+        notes = notes if note is None else (*notes, note)
         edges = without_border(darkness)
         if edges:
             notes = (*notes, _border_note(edges))
