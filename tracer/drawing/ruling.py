@@ -229,10 +229,11 @@ def _comb(inked: Array, pitch_mm: float) -> _Comb | None:
 
 def _without(darkness: Darkness, family: Family) -> Darkness:
     """The sheet without a family of printed lines."""
-    rows, columns = np.indices(darkness.shape, np.float32)
+    rows = np.arange(darkness.shape[0], dtype=float)[:, None]
+    columns = np.arange(darkness.shape[1], dtype=float)[None, :]
     off = family.off_px(rows, columns)
     i, j = np.nonzero(np.abs(off) <= family.half_px)
-    off, seen = off[i, j], darkness[i, j]
+    off, seen = off[i, j], np.asarray(darkness[i, j], float)
     # 1. what is darker than printed lines are as a rule
     printed = _printed(seen, off)
     darker = np.where(seen - printed > EXCESS, seen - printed, 0.0)
