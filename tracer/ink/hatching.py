@@ -16,8 +16,6 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import length_mm
@@ -46,6 +44,9 @@ class Hatching(NamedTuple):
 
 def hatching(ways: Sequence[Array]) -> list[Hatching]:
     """The families of hatching among some strokes, the longest first."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
     long_mm = np.array([length_mm(way[:: max(1, len(way) // 200)]) for way in ways])
     begins, ends = np.array([way[0] for way in ways]), np.array([way[-1] for way in ways])
     chords = ends - begins
