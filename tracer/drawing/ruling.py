@@ -25,7 +25,6 @@ from typing import Literal, NamedTuple
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import map_coordinates
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault
@@ -262,6 +261,8 @@ def _printed(seen: Array, off_px: Array) -> Array:
 
 def _seen(darkness: Darkness, rows: Array, columns: Array) -> Array:
     """Darkness between pixels."""
+    from scipy.ndimage import map_coordinates
+
     return np.asarray(
         map_coordinates(darkness, [rows, columns], order=1, mode="nearest"), float
     )
