@@ -6,7 +6,7 @@ lost, as in a dropout.
 
     motion of acceleration a(t)   surprises by   sum of h(k) · a(t - k),    h: what a jump of the speed does
     so at most by                 A · sum of |h|                            41.3 row² at 6 kHz
-    a row is lost at              |surprise| > A · sum of |h| + 6 sigma of noise,  and at least by 0.004 cycle
+    a row is lost at              |surprise| > A · sum of |h| + 6 sigma of noise,  and at least by 0.005 cycle
 
 A tone as loud as the carrier, and nearly in phase with it, leaves the level as it is, and may lie between the
 windows through which the check signal is seen (2 ms). Nothing else shows it.
@@ -41,9 +41,9 @@ SETTLED_ROWS = (
 SMALL_CYCLES = 1e-3  # of the jump that is tried, so that no turn is miscounted
 NOISE_SIGMAS = 6.0  # one row in 5e8
 MEDIAN_SIGMAS = 0.6745  # median of |noise| that is normal
-LEAST_CYCLES = (
-    0.004  # a tenth of what is allowed: rounding, and what the band filter bends at a corner
-)
+# A tenth of what is allowed: rounding, what the band filter bends at a corner, and the end of an MP3 of 128
+# kbit/s, 0.0044.
+LEAST_CYCLES = 0.005
 STRIDE = 8  # rows from one that tells the noise to the next: the filter spans as many
 HIDDEN_CYCLES = (
     0.02  # a step of a twentieth of a cycle surprises by 0.03, less what noise of 40 dB adds

@@ -4,6 +4,7 @@ refuses.
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -48,7 +49,8 @@ def test_all_systems_side_by_side(morfax: Morfax, here: Path) -> None:
     assert (
         report.count('<img src="data:image/png;base64,') == report.count("<img") == 6
     )  # contours, errors, four runs
-    assert report.count("<tr>") == 6 and "@media print" in report and "http" not in report
+    text = re.sub(r'base64,[^"]*', "", report)  # letters of a picture may spell anything
+    assert text.count("<tr>") == 6 and "@media print" in text and "http" not in text
     assert [file.name for file in here.iterdir()] == ["report.html"]
 
 

@@ -29,6 +29,7 @@ if CHROMIUM is None:
 
 ROOT = Path(__file__).parents[2]
 RUN_MS = 300_000  # a run, where the kernels are compiled first, beside other work
+SETTLED_MS = 1000  # a result that was there is shown within
 WAIT_MS = 120_000  # all else; what comes is awaited, so that only a failure takes as long
 
 
@@ -115,6 +116,19 @@ def soon(holds: Callable[[], bool]) -> None:
     while not holds():
         assert time.monotonic() < late_s
         time.sleep(0.05)
+
+
+def settled(page: Any, selector: str) -> dict[str, float]:
+    """The box of an element once it has stayed where it is: what is shown later moves what is above it."""
+    boxes = [page.locator(selector).bounding_box()]
+
+    def stays() -> bool:
+        page.wait_for_timeout(SETTLED_MS)
+        boxes.append(page.locator(selector).bounding_box())
+        return bool(boxes[-1] == boxes[-2])
+
+    soon(stays)
+    return dict(boxes[-1])
 
 
 def ran(page: Any) -> None:

@@ -26,6 +26,7 @@ from tests.panel.browsing import (
     on_screen,
     opened,
     ran,
+    settled,
     soon,
 )
 
@@ -114,10 +115,10 @@ def test_what_the_page_saves_is_byte_for_byte_what_its_commands_write(
 def test_a_correction_on_the_page_is_the_one_that_its_command_writes(
     server: Server, page: Any, tmp_path: Path
 ) -> None:
-    box = page.locator("#sheet").bounding_box()
-    x, y = box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"]
     page.click("#help-open")
     page.click("[data-tool=rub]")
+    box = settled(page, "#sheet")
+    x, y = box["x"] + 0.5 * box["width"], box["y"] + 0.25 * box["height"]
     page.mouse.move(x, y)
     page.mouse.down()
     page.mouse.move(x + 30, y + 10, steps=4)
