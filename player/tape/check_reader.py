@@ -72,8 +72,8 @@ class FrameReport:
 
     `said`: what each track says, None where its check sum is wrong; `late_s` against the clock of the
     reference, `delay_s` (tracks, parts) against track 1, and that of track 1 against its own carrier; nan
-    where a track says nothing. `swing_s` is how far a delay swings within its parts, RMS; `damaged` are
-    tracks that say nothing though their level is right, `weak_rows` where each is weak.
+    where a track says nothing. `error_s` is the standard error of each told delay of a track, and
+    `swing_s` how far a delay swings within its parts, RMS; `damaged` are tracks that say nothing though their level is right, `weak_rows` where each is weak.
     """
 
     number: int
@@ -82,6 +82,7 @@ class FrameReport:
     said: tuple[CheckFrame | None, ...]
     late_s: list[float]
     delay_s: list[list[float]]
+    error_s: list[float]
     swing_s: list[float]
     damaged: tuple[int, ...]
     weak_rows: list[list[float]]
@@ -244,6 +245,7 @@ class CheckReader:
             self._turns[track] = turns[track, -1]
         turns -= self._zero_turns[:, None]
         apart = np.concatenate([-turns[:1], turns[:1] - turns[1:]])
+        errors = np.hypot(gates.errors, gates.errors[0])
         rows = self._rows(self._theta + MIDDLES)
         return FrameReport(
             self._number,
@@ -252,6 +254,7 @@ class CheckReader:
             tuple(said),
             (late / self._reference_hz).tolist(),
             (apart * CYCLES_PER_SUBCARRIER / self._reference_hz).tolist(),
+            (errors * CYCLES_PER_SUBCARRIER / self._reference_hz).tolist(),
             (gates.swings * CYCLES_PER_SUBCARRIER / self._reference_hz).tolist(),
             tuple(self._erasures.damaged),
             [self._rows(self._theta + CYCLES_PER_SYMBOL * at) for at in self._erasures.weak],

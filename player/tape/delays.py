@@ -7,15 +7,22 @@ out: phases without the delay.
               straight line through seven
     used      follows what is settled as far as leaves a dead zone of 0.5 us; a straight line between, and
               beyond the first and the last as fast as the seven there change
+    doubt     three standard errors of the straight line, at the last row of the tape:
+              3 s sqrt(1/7 + x² / sum x_i²),   x from the middle of seven, s of one told delay
     cycles   += used · (reference + speed of the axis)        the carrier's own delay, and that of the motion
 
-A tape without delays stays as it is, to the last digit.
+A tape without delays stays as it is, to the last digit. Behind the last delay told the line runs on for up to
+half a second, and what seven are off by themselves (a tone beside the subcarrier, of 3 % of the carrier, turns
+each by 4 us) counts there one and a half times.
 
 Source: our own. Questions: seven tell 0.4 us at 26 dB, that is 0.003 cycle; a delay that swings faster than
 once in two seconds is not followed.
 """
 
 from __future__ import annotations
+
+import math
+from collections import deque
 
 import numpy as np
 
@@ -25,6 +32,8 @@ WINDOW = 7  # of the delays told, 0.84 s: drift of 50 us/s is straight within it
 HALF = WINDOW // 2
 DEAD_ZONE_S = 0.5e-6  # noise of 26 dB tells 0.4; half a us is 0.003 cycle
 KEPT = 40  # delays: more than rows are held for
+DOUBT_ERRORS = 3.0  # standard errors: one line in 370
+HELD_ERRORS = 2  # of frames: seven delays come from two
 SPEED_S = 0.002  # to either side, over which a speed is told
 
 
@@ -37,6 +46,7 @@ class Delay:
         self._rows: list[float] = []
         self._told: list[float] = []
         self._used: list[float] = []
+        self._errors_s = deque([0.0], HELD_ERRORS)
         self._is_whole = True  # until the first that were told are no longer held
         self.moves = False  # whether a delay above the dead zone was ever told
 
@@ -50,8 +60,9 @@ class Delay:
         """The last row at which the delay was told."""
         return self._rows[-1] if self._rows else 0.0
 
-    def add(self, rows: list[float], delays_s: list[float]) -> None:
-        """Take the next rows at which the delay is told."""
+    def add(self, rows: list[float], delays_s: list[float], error_s: float) -> None:
+        """Take the next rows at which the delay is told, with the standard error of each."""
+        self._errors_s.append(error_s)
         self._rows += rows
         self._told += delays_s
         self.moves = self.moves or max(map(abs, delays_s)) > DEAD_ZONE_S
@@ -87,6 +98,15 @@ class Delay:
         rows = np.array(self._rows[-WINDOW:])
         line = told.mean() + self._slope(-WINDOW) * (rows - rows.mean())
         return float(np.abs(told - line).max())
+
+    def doubt_s(self, row: float) -> float:
+        """How far the delay at a row, on the straight line through the seven told last, may be off, s."""
+        if len(self._told) < WINDOW:
+            return 0.0
+        rows = np.array(self._rows[-WINDOW:])
+        middle = float(rows.mean())
+        spread = float(((rows - middle) ** 2).sum())
+        return DOUBT_ERRORS * max(self._errors_s) * math.sqrt(1 / WINDOW + (row - middle) ** 2 / spread)
 
     def _slope(self, first: int) -> float:
         """How fast the delay changes in seven that were told, from one on, s per row."""

@@ -141,15 +141,15 @@ def take_bearings(frames: Float32s, phases: Phases, fmt: TapeFormat) -> Bearings
 
 def _standing(cycles: Float64s, zero: Float64s, fmt: TapeFormat, least: int) -> int:
     """Rows of the standstill at the start, as long as all axes stay near their zero."""
-    stated = cycles[: round(0.9 * fmt.dwell_s * fmt.motion_rate_hz)]
-    if len(stated) < least:
+    stated = min(round(0.9 * fmt.dwell_s * fmt.motion_rate_hz), len(cycles))
+    if stated < least:
         return 0
-    moved = (np.abs(stated - zero) > STANDSTILL_CYCLES).mean(axis=1)
+    # one that starts in the last of these rows is known by those behind them
+    moved = (np.abs(cycles[: stated + least] - zero) > STANDSTILL_CYCLES).any(axis=1)
     # longer than a dropout
-    steps = np.flatnonzero(np.convolve(moved > 0, np.ones(least), "valid") == least)
-    return (
-        max(int(steps[0]) - least, 0) if len(steps) else len(stated)
-    )  # an axis may have crept before it was seen
+    steps = np.flatnonzero(np.convolve(moved, np.ones(least), "valid") == least)
+    # an axis may have crept before it was seen
+    return min(max(int(steps[0]) - least, 0), stated) if len(steps) else stated
 
 
 def _demand_standstill(cycles: Float64s, names: Sequence[str]) -> None:

@@ -37,7 +37,8 @@ _WORD = SYNC.astype(np.float64)
 
 class Gates(NamedTuple):
     """Symbols of a frame, +1 or -1, and how strong they are; how late, in cycles; phases of the parts, in
-    turns, and how far the phase swings about them, RMS, beyond what noise does.
+    turns, how far the phase swings about them, RMS, beyond what noise does, and their standard errors by what
+    lies across in each symbol (noise, or a tone).
 
     `strengths` are along the sync word and grow with it; `sizes` are the largest of
     the three gates of each symbol alone, whatever its phase, and wherever it begins. `shares` (tracks, gates,
@@ -51,6 +52,7 @@ class Gates(NamedTuple):
     late: Array
     turns: Array
     swings: Array
+    errors: Array
 
 
 def likeness(seen: Complexes) -> tuple[Complexes, Array]:
@@ -75,13 +77,14 @@ def read_symbols(points: Subcarrier, begins: float) -> Gates:
         np.empty(tracks),
         np.empty((tracks, PARTS)),
         np.empty(tracks),
+        np.empty(tracks),
     )
     _read(np.ascontiguousarray(points.points), points.theta, begins, _WORD, *gates)
     return gates
 
 
 @njit(cache=True, nogil=True)
-def _read(points, theta, begins, word, bits, strengths, sizes, shares, late, turns, swings):  # type: ignore[no-untyped-def]
+def _read(points, theta, begins, word, bits, strengths, sizes, shares, late, turns, swings, errors):  # type: ignore[no-untyped-def]
     """Read one frame of all tracks, whose symbols are 24 cycles of theta apart; see `Gates`."""
     tracks, symbols = bits.shape
     gates = np.empty((tracks, GATES, symbols), np.complex128)
@@ -126,7 +129,9 @@ def _read(points, theta, begins, word, bits, strengths, sizes, shares, late, tur
                 whole += gates[track, 1, symbol] * bits[track, symbol]
             turns[track, number] = math.atan2(whole.imag, whole.real) / (2 * math.pi)
         # 4. noise moves a symbol along and across alike; what is across beyond that is a swing of the phase
-        swings[track] = _swing(gates[track, 1], bits[track], turns[track], part)
+        across, noise = _across(gates[track, 1], bits[track], turns[track], part)
+        swings[track] = math.sqrt(max(across - noise, 0.0)) / (2 * math.pi)
+        errors[track] = math.sqrt(across / part) / (2 * math.pi)
 
 
 @njit(cache=True, nogil=True)
@@ -145,13 +150,13 @@ def _share(gates, alike, bits, shares):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
-def _swing(seen, bits, turns, part):  # type: ignore[no-untyped-def]
-    """How far the phases of the symbols swing about those of their parts, in turns, RMS; no weak symbols."""
+def _across(seen, bits, turns, part):  # type: ignore[no-untyped-def]
+    """The power across and the noise along of the symbols about the phases of their parts; no weak symbols."""
     usual = 0.0
     for symbol in range(len(seen)):
         usual += abs(seen[symbol]) / len(seen)
     if not usual > 0:
-        return 0.0
+        return 0.0, 0.0
     count, along, alongs, acrosses = 0, 0.0, 0.0, 0.0
     for symbol in range(part * len(turns)):
         if abs(seen[symbol]) < 0.5 * usual:
@@ -163,6 +168,5 @@ def _swing(seen, bits, turns, part):  # type: ignore[no-untyped-def]
         alongs += straight.real**2
         acrosses += straight.imag**2
     if not count:
-        return 0.0
-    noise = alongs / count - (along / count) ** 2
-    return math.sqrt(max(acrosses / count - noise, 0.0)) / (2 * math.pi)
+        return 0.0, 0.0
+    return acrosses / count, alongs / count - (along / count) ** 2

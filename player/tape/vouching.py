@@ -32,6 +32,7 @@ from morfax.player.tape.delays import Delay
 from morfax.player.tape.discriminator import Phases
 from morfax.player.tape.frame_order import FrameOrder
 from morfax.player.tape.lost_ways import COUNT_CYCLES, Laid, LostWays, laid
+from morfax.player.tape.standstill import ALLOWED_CYCLES
 from morfax.player.tape.told_bounds import ToldBounds
 from morfax.player.tape.warrant import Certain, Given, PlaceMm, StandsMm
 from morfax.recorder.tape.check_frame import SYMBOLS
@@ -177,7 +178,7 @@ class Vouching:
                 self._fault = self._tail_swings(axis)
 
     def _tail_swings(self, axis: int) -> Fault | None:
-        """The fault of an axis that moves behind the last delay told by more than its track said it would."""
+        """The fault of an axis whose delay at the end is in doubt, or that moves there more than it told."""
         held, delay = self._rows, self._delays[axis]
         last = held.first_row + len(held) - 1
         first = max(int(delay.told_row), held.first_row)
@@ -185,9 +186,10 @@ class Vouching:
         way = delay.corrected(held.cycles[:, axis], held.first_row)[first - held.first_row :]
         moved = float(np.ptp(way))
         allowed = TAIL_CYCLES + (bound.speed * len(way) if bound else 0.0)
-        if moved <= allowed:
+        off_s, doubt_s = (moved - allowed) / self._format.reference_hz, delay.doubt_s(last)
+        if off_s <= 0 and doubt_s * self._format.reference_hz <= ALLOWED_CYCLES:
             return None
-        off_s = (moved - allowed) / self._format.reference_hz
+        off_s = max(off_s, doubt_s)
         return faults.swings(axis + 1, self._format.axes, off_s, last / self._rate_hz)
 
     def _cut(self, held: Phases, upto: int) -> Phases:
@@ -220,7 +222,7 @@ class Vouching:
             return  # the reference says nothing
         self._counts[-1][1][axis] = said.cycles
         self._bounds[axis].add(report, axis + 1)
-        self._delays[axis].add(report.part_rows, delays_s)
+        self._delays[axis].add(report.part_rows, delays_s, report.error_s[axis + 1])
         off_s = self._delays[axis].off_s()
         if off_s > LARGEST_OFF_S and self._fault is None:
             time_s = report.row / self._rate_hz

@@ -12,13 +12,15 @@ import os
 import numpy as np
 import pytest
 
-from tests.player.attacks.bench import Bench, Kind
+from tests.player.attacks import changes as do
+from tests.player.attacks.bench import EITHER, RIGHT, Bench, Kind
 from tests.player.attacks.kinds import KINDS
 from tests.player.worn import corners, program
 
 SOAK = bool(os.environ.get("MORFAX_SOAK"))
 TAPES = int(os.environ.get("MORFAX_TAPES", "1170")) if SOAK else 1
 TRIED = KINDS if SOAK else KINDS[::4]
+LEVELS = (0.015, 0.035)  # of a tone, of the carrier: it turns delays by 2 to 4 us each
 
 
 @pytest.fixture(scope="module")
@@ -44,6 +46,33 @@ def test_an_attack(benches: tuple[Bench, Bench], kind: Kind) -> None:
         worst, faults = max(worst, verdict.error_cycles), faults + (verdict.fault is not None)
     if SOAK:
         print(f"{kind.name}: {TAPES} tapes, {faults} faults, at most {worst:.4f} cycle off")
+
+
+@pytest.mark.parametrize("seed", [249, 571])
+def test_a_tone_that_turns_the_delays_at_the_end(
+    benches: tuple[Bench, Bench], seed: int
+) -> None:
+    """The line through the last delays runs on to the end: by it these were 0.0504 and 0.0587 cycle off."""
+    kind = Kind(
+        "a tone of 2 to 4 %",
+        lambda t, r: do.with_tone(
+            t, r, r.uniform(800, 1200), do.log_uniform(r, *LEVELS), do.some(r)
+        ),
+        EITHER,
+    )
+    verdict = benches[seed % 2].tried(kind, seed)
+    assert verdict.keeps(EITHER), verdict.error_cycles
+    assert "swings by" in str(verdict.fault)
+
+
+@pytest.mark.parametrize("cut", [5300, 5900, 6911])
+def test_an_axis_that_starts_late_in_what_is_left_of_the_standstill(
+    benches: tuple[Bench, Bench], cut: int
+) -> None:
+    """Z starts less than 50 ms before nine tenths of the stated standstill are over."""
+    kind = Kind("cut", lambda t, r: t.frames[cut:], RIGHT, timed=False)
+    verdict = benches[1].tried(kind, 0)
+    assert verdict.keeps(RIGHT), str(verdict.fault)
 
 
 @pytest.mark.parametrize(

@@ -143,3 +143,14 @@ def test_a_jump_is_a_fault_with_axis_and_position(surprise: float, bad: bool) ->
 
 def test_decibels() -> None:
     assert (decibels(1.0), decibels(0.001), decibels(0.0)) == ("0 dB", "-60 dB", "none")
+
+
+@pytest.mark.parametrize("moves_at_s", [0.6, 0.86, 0.89])
+def test_an_axis_that_starts_before_the_stated_standstill_ends(moves_at_s: float) -> None:
+    """Nine tenths of a second count as standstill at most; what moves in the last of it is left out."""
+
+    def ramp(t_s: np.ndarray) -> np.ndarray:
+        return np.column_stack([0 * t_s, 0 * t_s, 8.0 * np.maximum(t_s - moves_at_s, 0)])
+
+    found = bearings(tracks(ramp, 1.2, Transport()))
+    assert found.zero_cycles == pytest.approx(0, abs=1e-3)

@@ -1,0 +1,41 @@
+"""The delay of one track: how certain it is behind the last that was told."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from morfax.player.tape.delays import DOUBT_ERRORS, WINDOW, Delay
+
+ROWS = 720.0  # from one told delay to the next: a quarter of a frame at 6 kHz
+ERROR_S = 1e-6
+
+
+def told(random: np.random.Generator, drift_s: float) -> Delay:
+    """A delay that drifts, told eight times with a standard error of 1 us."""
+    delay = Delay(6000.0, 6000.0)
+    for first in (0, 4):
+        numbers = np.arange(first, first + 4)
+        delays_s = drift_s * numbers + random.normal(0, ERROR_S, 4)
+        delay.add((ROWS * numbers).tolist(), delays_s.tolist(), ERROR_S)
+    return delay
+
+
+@pytest.mark.parametrize("beyond", [0.5, 2.5, 4.5])
+def test_the_doubt_is_what_the_line_may_be_off(beyond: float) -> None:
+    """Of 600 lines 1 in 370 is further off than three standard errors; half of them is not enough."""
+    random, drift_s = np.random.default_rng(3), 6e-6
+    row = ROWS * (WINDOW + beyond)
+    off_s, doubt_s = [], 0.0
+    for _ in range(600):
+        delay = told(random, drift_s)
+        moved = delay.corrected(np.zeros(round(row) + 50), 0)[round(row)]
+        off_s.append(abs(moved / 6000.0 - drift_s * row / ROWS))
+        doubt_s = delay.doubt_s(row)
+    # beyond the last the line goes on from what is used there, half a us of dead zone beside it
+    assert np.mean(np.array(off_s) > doubt_s + 0.5e-6) < 0.01
+    assert np.mean(np.array(off_s) > doubt_s / DOUBT_ERRORS / 2) > 0.3
+
+
+def test_what_was_told_too_seldom_is_not_judged() -> None:
+    assert Delay(6000.0, 6000.0).doubt_s(1e4) == 0.0
