@@ -274,6 +274,8 @@ class CheckReader:
 
     def _rows(self, theta: Array) -> list[float]:
         """The rows of the tape at some counts of the reference."""
+        if not len(theta):
+            return []
         frames = self._points.frames_at(theta)
         rows: list[float] = (
             self._first_row + frames / self._format.samples_per_motion

@@ -91,8 +91,10 @@ class Delay:
         return np.asarray(cycles + delay_s * (self._reference_hz + speed))
 
     def off_s(self) -> float:
-        """The largest of what was told last, off the straight line through it, s: what is not followed."""
-        if len(self._told) < WINDOW:
+        """The largest of what was told last, off the straight line through it, s: what is not followed.
+
+        0 while no delay was above the dead zone."""
+        if len(self._told) < WINDOW or not self.moves:
             return 0.0
         told = np.array(self._told[-WINDOW:])
         rows = np.array(self._rows[-WINDOW:])
@@ -106,7 +108,11 @@ class Delay:
         rows = np.array(self._rows[-WINDOW:])
         middle = float(rows.mean())
         spread = float(((rows - middle) ** 2).sum())
-        return DOUBT_ERRORS * max(self._errors_s) * math.sqrt(1 / WINDOW + (row - middle) ** 2 / spread)
+        return (
+            DOUBT_ERRORS
+            * max(self._errors_s)
+            * math.sqrt(1 / WINDOW + (row - middle) ** 2 / spread)
+        )
 
     def _slope(self, first: int) -> float:
         """How fast the delay changes in seven that were told, from one on, s per row."""

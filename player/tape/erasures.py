@@ -49,12 +49,14 @@ class Erasures:
         bits, strengths, sizes, shares = gates.bits, gates.strengths, gates.sizes, gates.shares
         said = from_bits(bits)
         self.damaged, self.weak = [], []
+        # of all tracks at once: one by one they were a tenth of the time of playing
+        usuals, usual_sizes = np.median(strengths, axis=1), np.median(sizes, axis=1)
         small = [
             np.flatnonzero(sizes[track] < WEAK * self._size[track])
             for track in range(len(said))
         ]
         for track, frame in enumerate(said):
-            usual = float(np.median(strengths[track]))
+            usual = float(usuals[track])
             known = self._usual[track] if np.isfinite(self._usual[track]) else usual
             weak = np.flatnonzero(strengths[track] < WEAK * known)
             lost = max(len(small[0]), len(small[track])) > MOST_WEAK
@@ -69,7 +71,7 @@ class Erasures:
                 frame = _recovered(bits[track], weak[weak >= SYNC_SYMBOLS], track, number)
             if frame is not None:
                 self._usual[track] = usual
-                self._size[track] = float(np.median(sizes[track]))
+                self._size[track] = usual_sizes[track]
             elif len(weak) <= MOST_WEAK:
                 self.damaged.append(track)
             said[track] = frame

@@ -84,7 +84,9 @@ def read_symbols(points: Subcarrier, begins: float) -> Gates:
 
 
 @njit(cache=True, nogil=True)
-def _read(points, theta, begins, word, bits, strengths, sizes, shares, late, turns, swings, errors):  # type: ignore[no-untyped-def]
+def _read(
+    points, theta, begins, word, bits, strengths, sizes, shares, late, turns, swings, errors
+):  # type: ignore[no-untyped-def]
     """Read one frame of all tracks, whose symbols are 24 cycles of theta apart; see `Gates`."""
     tracks, symbols = bits.shape
     gates = np.empty((tracks, GATES, symbols), np.complex128)

@@ -60,6 +60,8 @@ class ToldBounds:
         told = np.full((2, count), np.nan)
         for starts, ends, bound in self._told:
             rows = slice(max(math.ceil(starts) - first, 0), max(math.ceil(ends) - first, 0))
+            if rows.start >= min(rows.stop, count):
+                continue
             told[0, rows] = np.fmax(told[0, rows], bound.acceleration)
             told[1, rows] = np.fmax(told[1, rows], bound.speed)
         return told

@@ -229,7 +229,9 @@ def gates(bits: Bits, strengths: np.ndarray) -> Gates:
     """Symbols of one track as they are read, each as strong at all its gates."""
     shares = np.repeat(strengths[:, None], GATES, axis=1)
     none = np.zeros(len(bits))
-    return Gates(bits, strengths, strengths, shares, none, np.zeros((len(bits), PARTS)), none, none)
+    return Gates(
+        bits, strengths, strengths, shares, none, np.zeros((len(bits), PARTS)), none, none
+    )
 
 
 @pytest.mark.parametrize(("lost", "read"), [(3, True), (8, True), (9, False), (40, False)])

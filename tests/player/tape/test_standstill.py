@@ -145,7 +145,7 @@ def test_decibels() -> None:
     assert (decibels(1.0), decibels(0.001), decibels(0.0)) == ("0 dB", "-60 dB", "none")
 
 
-@pytest.mark.parametrize("moves_at_s", [0.6, 0.86, 0.89])
+@pytest.mark.parametrize("moves_at_s", [0.6, 0.853, 0.856, 0.89])
 def test_an_axis_that_starts_before_the_stated_standstill_ends(moves_at_s: float) -> None:
     """Nine tenths of a second count as standstill at most; what moves in the last of it is left out."""
 
