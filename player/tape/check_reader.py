@@ -72,8 +72,9 @@ class FrameReport:
 
     `said`: what each track says, None where its check sum is wrong; `late_s` against the clock of the
     reference, `delay_s` (tracks, parts) against track 1, and that of track 1 against its own carrier; nan
-    where a track says nothing. `error_s` is the standard error of each told delay of a track, and
-    `swing_s` how far a delay swings within its parts, RMS; `damaged` are tracks that say nothing though their level is right, `weak_rows` where each is weak.
+    where a track says nothing. `error_s` is the standard error of each told delay of a track, and `swing_s`
+    how far a delay swings within its parts, RMS; `damaged` are tracks that say nothing though their level is
+    right, `weak_rows` where each is weak.
     """
 
     number: int

@@ -12,8 +12,8 @@ out: phases without the delay.
     cycles   += used · (reference + speed of the axis)        the carrier's own delay, and that of the motion
 
 A tape without delays stays as it is, to the last digit. Behind the last delay told the line runs on for up to
-half a second, and what seven are off by themselves (a tone beside the subcarrier, of 3 % of the carrier, turns
-each by 4 us) counts there one and a half times.
+half a second, and an error of those told (a tone beside the subcarrier, of 3 % of the carrier, turns each by
+4 us) counts there one and a half times.
 
 Source: our own. Questions: seven tell 0.4 us at 26 dB, that is 0.003 cycle; a delay that swings faster than
 once in two seconds is not followed.
@@ -93,7 +93,8 @@ class Delay:
     def off_s(self) -> float:
         """The largest of what was told last, off the straight line through it, s: what is not followed.
 
-        0 while no delay was above the dead zone."""
+        0 while no delay was above the dead zone.
+        """
         if len(self._told) < WINDOW or not self.moves:
             return 0.0
         told = np.array(self._told[-WINDOW:])

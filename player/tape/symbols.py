@@ -84,9 +84,9 @@ def read_symbols(points: Subcarrier, begins: float) -> Gates:
 
 
 @njit(cache=True, nogil=True)
-def _read(
+def _read(  # type: ignore[no-untyped-def]
     points, theta, begins, word, bits, strengths, sizes, shares, late, turns, swings, errors
-):  # type: ignore[no-untyped-def]
+):
     """Read one frame of all tracks, whose symbols are 24 cycles of theta apart; see `Gates`."""
     tracks, symbols = bits.shape
     gates = np.empty((tracks, GATES, symbols), np.complex128)
@@ -153,7 +153,7 @@ def _share(gates, alike, bits, shares):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def _across(seen, bits, turns, part):  # type: ignore[no-untyped-def]
-    """The power across and the noise along of the symbols about the phases of their parts; no weak symbols."""
+    """Power across and noise along of the symbols about the phases of their parts; no weak symbols."""
     usual = 0.0
     for symbol in range(len(seen)):
         usual += abs(seen[symbol]) / len(seen)
