@@ -1,8 +1,8 @@
 """Figures as text for people and as JSON for programs.
 
 Signals in: figures (see `jobs.figures`); values of None are left out. Out: JSON with the same keys, or text
-with the figures in the unit that reads best. Dictionaries inside become the rows of one table; a list of them
-becomes a table of its own, whose rows are named after their first figure:
+with the figures in the unit that reads best. Dictionaries inside that share a figure become the rows of one
+table; a list of them becomes a table of its own, whose rows are named after their first figure:
 
     duration  26.4 s
                          RMS    95 %  largest
@@ -53,6 +53,7 @@ def as_text(figures: Figures) -> str:
     console = Console(file=out, width=_WIDEST, highlight=False, emoji=False, markup=False)
     told = {key: value for key, value in figures.items() if value is not None}
     rows = [(key, value) for key, value in told.items() if isinstance(value, Mapping)]
+    tables = _tables(rows)
     lists = [_named(value) for value in told.values() if _is_listing(value)]
     alone = {
         key: value
@@ -61,10 +62,24 @@ def as_text(figures: Figures) -> str:
     }
     if alone:
         console.print(_lines(alone))
-    for listing in (*lists, rows):
-        if listing:
-            console.print(_grid(listing))
+    for listing in (*lists, *tables):
+        console.print(_grid(listing))
     return printable("\n".join(line.rstrip() for line in out.getvalue().splitlines()))
+
+
+def _tables(rows: list[Row]) -> list[list[Row]]:
+    """The rows as tables: those that share a column are one."""
+    tables: list[list[Row]] = []
+    for row in rows:
+        like = (
+            table for table in tables if any(row[1].keys() & other.keys() for _, other in table)
+        )
+        table = next(like, None)
+        if table is None:
+            tables.append([row])
+        else:
+            table.append(row)
+    return tables
 
 
 def _is_listing(value: Any) -> bool:
