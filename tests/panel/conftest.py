@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -18,39 +17,17 @@ from morfax.console.verbs.panel import _command_line
 from morfax.panel.app import routes
 from morfax.panel.bench import Bench
 from morfax.panel.guard import Guard
-from morfax.panel.history import Step
+from tests.panel.serving import Idle, bench_in
 
-SAMPLES = Path(__file__).parents[2] / "samples"
 TOKEN = "a-token-of-the-tests"
 HOST = "127.0.0.1:8017"
 ORIGIN = {"origin": f"http://{HOST}"}
 
 
-class Idle:
-    """A worker that takes down what is sent to it."""
-
-    def __init__(self, heard):
-        self.heard, self.sent = heard, []
-
-    async def start(self):
-        """Start nothing."""
-
-    async def send(self, *message):
-        """Take a message down."""
-        self.sent.append(message)
-
-    async def close(self):
-        """End nothing."""
-
-
 @pytest.fixture
 def bench(tmp_path: Path) -> Bench:
     """A bench with the cam on it."""
-    shutil.copy(SAMPLES / "cam.png", tmp_path)
-    (tmp_path / "work").mkdir()
-    bench = Bench(tmp_path / "work", {"cam.png": tmp_path / "cam.png"}, _command_line(), Idle)
-    bench.history.add(Step("cam.png", {}))
-    return bench
+    return bench_in(tmp_path)
 
 
 def again(bench: Bench) -> Bench:

@@ -15,7 +15,8 @@ from morfax.motion.faults import FileFault
 from morfax.panel.app import _Pages
 from morfax.panel.bench import Bench
 from morfax.panel.history import History, Step
-from tests.panel.conftest import ORIGIN, Idle
+from tests.panel.conftest import ORIGIN
+from tests.panel.serving import Idle
 
 
 def does(page: TestClient, bench: Bench, **action: Any) -> str:

@@ -8,7 +8,8 @@ import pytest
 from starlette.testclient import TestClient
 
 from morfax.panel.bench import Bench
-from tests.panel.conftest import ORIGIN, SAMPLES, again
+from tests.panel.conftest import ORIGIN, again
+from tests.panel.serving import SAMPLES
 
 CARD = (SAMPLES / "program.toml").read_bytes()
 SETTINGS = b"sweep_hz = 50\n"

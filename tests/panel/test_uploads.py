@@ -12,7 +12,8 @@ from starlette.testclient import TestClient
 from morfax.motion.faults import DrawingFault
 from morfax.panel import uploads
 from morfax.panel.bench import Bench
-from tests.panel.conftest import ORIGIN, SAMPLES
+from tests.panel.conftest import ORIGIN
+from tests.panel.serving import SAMPLES
 
 
 def sent(page: TestClient, name: str, content: bytes, **headers: str) -> tuple[int, str]:
