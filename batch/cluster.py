@@ -18,14 +18,15 @@ machine) are opened by the workers, and have to be at the same place there.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
-from morfax.batch.one import trace_one
+from morfax.batch.one import failed, there_already, trace_one
 from morfax.batch.order import Order
-from morfax.batch.results import LocalResults, RemoteResults, Results
+from morfax.batch.results import LocalResults, RemoteResults, Results, file_system
 from morfax.batch.row import KILLED, MISTAKE, BatchRow
 from morfax.batch.search import is_address
 from morfax.jobs.wrong_use import WrongUse
@@ -64,6 +65,7 @@ class There:
                 LocalResults(out) if self.address is None else RemoteResults(self.address)
             )
             row = trace_one(self.order, here / _name(file), file, results)
+            row = replace(row, fault=row.fault.replace(str(here / _name(file)), file))
             written = out / row.folder
             if self.address is not None or not row.folder:
                 return row, {}
@@ -117,27 +119,29 @@ class Cluster:
             yield self._row(under_way.pop(future.key), future)
 
     def _before(self, file: str) -> BatchRow | None:
-        """The row of a drawing of this computer whose results are here already."""
-        if is_address(file) or isinstance(self.results, RemoteResults):
+        """The row of a drawing of this computer whose results are here already, or that cannot be read."""
+        try:
+            if not is_address(file) and isinstance(self.results, LocalResults):
+                return there_already(self.order, Path(file), file, self.results)
             return None
-        from morfax.batch.one import there_already
-
-        return there_already(self.order, Path(file), file, self.results)
+        except FileFault as fault:
+            return failed(file, "fault", fault.exit_code, str(fault))
 
     def _submitted(self, client: Client, file: str) -> Any:
         """Send a drawing, or its address, on its way."""
         address = self.results.address if isinstance(self.results, RemoteResults) else None
-        sent = None if is_address(file) else self._read(Path(file))
+        sent = None if is_address(file) else self._files_of(Path(file))
         return client.submit(
             There(self.order, address), file, sent, pure=False, retries=RETRIES
         )
 
-    def _read(self, file: Path) -> Files:
-        """A drawing of this computer with its corrections, to be sent; nothing if it cannot be read."""
+    def _files_of(self, file: Path) -> Files:
+        """A drawing of this computer with its corrections, to be sent; without those that cannot be read."""
         found = Files()
-        for part in (file, self.order.drawing.corrections.file_of(file)):
-            if part.is_file():
-                found[part.name] = part.read_bytes()
+        for part in (file, self.order.drawing.corrections.found(file)):
+            if part is not None:
+                with suppress(OSError):
+                    found[part.name] = part.read_bytes()
         return found
 
     def _row(self, file: str, future: Any) -> BatchRow:
@@ -149,8 +153,7 @@ class Cluster:
         except KilledWorker as error:
             return BatchRow(file, "killed", code=KILLED, fault=str(error))
         except Exception as error:
-            told = f"{type(error).__name__}: {error}"
-            return BatchRow(file, "mistake", code=MISTAKE, fault=" ".join(told.split()))
+            return failed(file, "mistake", MISTAKE, f"{type(error).__name__}: {error}")
         assert isinstance(row, BatchRow)
         if files:
             with self.results.folder(row.folder) as folder:
@@ -166,11 +169,9 @@ def _name(file: str) -> str:
 
 def _fetched(address: str) -> Files:
     """A drawing at an address, with its corrections if they are beside it; raises OSError."""
-    from fsspec.core import url_to_fs
-
     from morfax.tracer.corrections.correction_file import beside
 
-    system, path = url_to_fs(address)
+    system, path = file_system(address)
     found = {_name(address): bytes(system.cat_file(path))}
     corrections = str(Path(path).parent / beside(Path(path)).name)
     if system.exists(corrections):

@@ -178,6 +178,7 @@ class Crew:
         if seconds < limit_s:
             return None
         file = one.file
+        self._deaths.pop(file, None)
         self._dismiss(one)
         told = f"took longer than {format_time_s(limit_s)}; give more with --limit"
         return BatchRow(
@@ -200,7 +201,7 @@ class Crew:
             self._deaths[file] = deaths
             self._again.append(file)
             return None
-        self._deaths.pop(file)
+        self._deaths.pop(file, None)
         told = (
             f"{DEATHS} workers died over it; trace it alone to see why, or do it with --force"
         )

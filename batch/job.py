@@ -22,6 +22,7 @@ from morfax.batch.order import Order
 from morfax.batch.results import LocalResults, RemoteResults
 from morfax.batch.row import BatchRow
 from morfax.jobs.listener import SILENT, Listener
+from morfax.jobs.tracing import Tracing
 from morfax.jobs.wrong_use import WrongUse
 from morfax.motion.faults import FileFault
 
@@ -51,13 +52,18 @@ class BatchJob:
             raise FileFault(
                 f"{self.drawings} is no folder; give a folder of drawings, and one drawing to morfax trace"
             )
+        if not search.is_address(self.drawings) and next(self.names(), None) is None:
+            what = "drawing" if self.pattern is None else f"file that fits {self.pattern}"
+            raise FileFault(
+                f"no {what} in {self.drawings}; check the folder, and the pattern (--glob)"
+            )
+        self.order.drawing.check()
         self.order.unit.check(self.order.program)
-        self.order.settings.of_head()  # reads the card and the settings
+        Tracing.prepared(self.order.settings)  # reads the card and the settings
 
     def names(self) -> Iterator[str]:
         """The drawings, one after the other."""
-        beside = None if search.is_address(self.out) else Path(self.out)
-        return search.drawings(self.drawings, self.pattern, beside)
+        return search.drawings(self.drawings, self.pattern)
 
     @property
     def folder(self) -> Path:

@@ -67,7 +67,8 @@ def rows(folder: Path) -> Iterator[BatchRow]:
     """The rows of a folder's manifest, as they were written; raises FileFault if there is none."""
     file = folder / NAME
     try:
-        with file.open(encoding="utf-8") as stream:
+        # a letter that was cut in two makes a line that is no JSON
+        with file.open(encoding="utf-8", errors="replace") as stream:
             for line in stream:
                 row = _read(line)
                 if row is not None:

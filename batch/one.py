@@ -64,13 +64,13 @@ def trace_one(order: Order, file: Path, called: str, results: Results) -> BatchR
     try:
         row = _traced(order, file, called, results)
     except FileFault as fault:
-        row = _failed(called, "fault", fault.exit_code, str(fault))
+        row = failed(called, "fault", fault.exit_code, str(fault))
     except Exception as error:
         if is_out_of_memory(error):
-            row = _failed(called, "no memory", NO_MEMORY, NEEDED_MORE)
+            row = failed(called, "no memory", NO_MEMORY, NEEDED_MORE)
         else:
             told = f"a mistake in morfax: {type(error).__name__}: {error}"
-            row = _failed(called, "mistake", MISTAKE, told)
+            row = failed(called, "mistake", MISTAKE, told)
     seconds = round(time.monotonic() - began_s, 3)
     return replace(row, seconds=seconds, memory_mb=_largest_memory_mb())
 
@@ -88,7 +88,10 @@ def there_already(order: Order, file: Path, called: str, results: Results) -> Ba
     before = results.figures(name)
     if before is None:
         return None
-    row = BatchRow.of(before)
+    try:
+        row = BatchRow.of(before)
+    except TypeError:  # not ours
+        return None
     return replace(
         row, file=called, hash=hashed, folder=name, kept=True, figures=_alone(row.figures)
     )
@@ -122,7 +125,7 @@ def _traced(order: Order, file: Path, called: str, results: Results) -> BatchRow
         except FileFault:
             raise
         except (Fault, WrongUse) as fault:
-            row = _failed(called, "fault", getattr(fault, "exit_code", 2), str(fault))
+            row = failed(called, "fault", getattr(fault, "exit_code", 2), str(fault))
             _draw_sheet(job, folder / PICTURE)
         else:
             row = _ended(result, called, folder)
@@ -169,7 +172,7 @@ def _write(folder: Path, row: BatchRow) -> None:
         beside.write_text(as_json(row.as_plain()) + "\n", encoding="utf-8")
 
 
-def _failed(called: str, ending: Ending, code: int, fault: str) -> BatchRow:
+def failed(called: str, ending: Ending, code: int, fault: str) -> BatchRow:
     """The row of a drawing that gave no result."""
     return BatchRow(called, ending, code=code, fault=" ".join(fault.split()))
 

@@ -11,6 +11,7 @@ Source: our own. Questions: a page that a drawing links to is not read; no forma
 from __future__ import annotations
 
 import hashlib
+import os
 from collections.abc import Iterator
 from dataclasses import dataclass, field, fields, is_dataclass
 from functools import cached_property
@@ -24,9 +25,7 @@ from morfax.jobs.settings import DrawingFile, TraceSettings
 
 PROGRAM = Path("program.ngc")  # G-code is about a hundredth of a tape's size
 HASH_DIGITS = 12  # of 64: among a million drawings two are alike once in 500 batches
-STEM_LENGTH = (
-    100  # letters of a drawing's name that its folder has; file systems take 255 bytes
-)
+STEM_BYTES = 100  # of a drawing's name that its folder has; file systems take 255
 
 
 @dataclass(frozen=True)
@@ -42,12 +41,12 @@ class Order:
     def folder_name(self, file: Path) -> tuple[str, str]:
         """The name of a drawing's folder, and the whole hash; raises FileFault if it cannot be read."""
         sums = [self._told, sha256_of(file)]
-        corrections = self.drawing.corrections
-        beside = corrections.file_of(file)
-        if corrections.used and beside.is_file():
-            sums.append(sha256_of(beside))
+        corrections = self.drawing.corrections.found(file)
+        if corrections is not None:
+            sums.append(sha256_of(corrections))
         hashed = hashlib.sha256("\n".join(sums).encode()).hexdigest()
-        return f"{file.stem[:STEM_LENGTH]}-{hashed[:HASH_DIGITS]}", hashed
+        stem = os.fsencode(file.stem)[:STEM_BYTES].decode(errors="ignore")
+        return f"{stem}-{hashed[:HASH_DIGITS]}", hashed
 
     @cached_property
     def _told(self) -> str:

@@ -20,6 +20,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, Protocol
 
+from morfax.motion.faults import FileFault
 from morfax.motion.files import clear_leftovers, folder_written_beside
 
 FIGURES = "figures.json"
@@ -90,10 +91,21 @@ class RemoteResults:
 
     def _system(self) -> tuple[Any, str]:
         """The file system of the address, and the folder there."""
-        from fsspec.core import url_to_fs
+        system, root = file_system(self.address)
+        return system, root.rstrip("/")
 
-        system, root = url_to_fs(self.address)
-        return system, str(root).rstrip("/")
+
+def file_system(address: str) -> tuple[Any, str]:
+    """The file system of an address and the path there; raises FileFault for an address that nothing knows."""
+    from fsspec.core import url_to_fs
+
+    try:
+        system, path = url_to_fs(address)
+    except (ImportError, ValueError) as error:
+        raise FileFault(
+            f"{address} cannot be reached: {error}; give an address that fsspec knows here"
+        ) from None
+    return system, str(path)
 
 
 def _figures(text: bytes) -> Mapping[str, Any] | None:

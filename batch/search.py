@@ -13,10 +13,14 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
+from morfax.batch.results import FIGURES, file_system
 from morfax.jobs.files import kind_by_name
 from morfax.motion.faults import FileFault
 
 ANY = "**/*"
+FolderMark = tuple[
+    int, int
+]  # device and number of a folder, the same by whatever link it is reached
 
 
 def is_address(place: str) -> bool:
@@ -24,24 +28,29 @@ def is_address(place: str) -> bool:
     return "://" in place
 
 
-def drawings(
-    place: str, pattern: str | None = None, beside: Path | None = None
-) -> Iterator[str]:
+def drawings(place: str, pattern: str | None = None) -> Iterator[str]:
     """The drawings below a folder whose path there fits the pattern (**, * and ?); without a pattern all
-    files whose suffix is a drawing's. Hidden folders, and the folder `beside`, are passed over.
+    files whose suffix is a drawing's. Passed over are hidden folders, and those that hold `figures.json`:
+    the pictures of a batch are no drawings of the next.
 
-    Raises FileFault if the folder cannot be read.
+    Raises FileFault if the folder cannot be read, or nothing knows the address.
     """
     fits = re.compile(_expression(pattern or ANY)).fullmatch
-    found = _of_address(place) if is_address(place) else _of_folder(Path(place), "", beside)
+    found = _of_address(place) if is_address(place) else _of_folder(Path(place), "", ())
     for name, within in found:
         if fits(within) and (pattern is not None or kind_by_name(Path(name)) == "drawing"):
             yield name
 
 
-def _of_folder(folder: Path, within: str, beside: Path | None) -> Iterator[tuple[str, str]]:
-    """The files below a folder, and their paths in it."""
+def _of_folder(
+    folder: Path, within: str, above: tuple[FolderMark, ...]
+) -> Iterator[tuple[str, str]]:
+    """The files below a folder, and their paths in it; a link to one of the folders above leads nowhere."""
     try:
+        status = folder.stat()
+        mark = status.st_dev, status.st_ino
+        if mark in above or (within and (folder / FIGURES).exists()):
+            return
         entries = os.scandir(folder)
     except OSError as error:
         raise FileFault(
@@ -51,18 +60,20 @@ def _of_folder(folder: Path, within: str, beside: Path | None) -> Iterator[tuple
         for entry in entries:
             if entry.name.startswith("."):
                 continue
-            if not entry.is_dir():
+            if entry.is_dir():
+                yield from _of_folder(
+                    Path(entry.path), f"{within}{entry.name}/", (*above, mark)
+                )
+            else:
                 yield entry.path, within + entry.name
-            elif beside is None or not beside.exists() or not beside.samefile(entry.path):
-                yield from _of_folder(Path(entry.path), f"{within}{entry.name}/", beside)
 
 
 def _of_address(place: str) -> Iterator[tuple[str, str]]:
     """The files below an address, and their paths there."""
-    from fsspec.core import url_to_fs
-
-    system, root = url_to_fs(place)
+    system, root = file_system(place)
     for folder, _, files in system.walk(root):
+        if FIGURES in files:
+            continue
         for name in files:
             path = f"{folder.rstrip('/')}/{name}"
             within = path.removeprefix(root).lstrip("/")

@@ -33,6 +33,15 @@ class CorrectionSettings:
 
         return beside(drawing) if self.file is None else self.file
 
+    def found(self, drawing: FilePath) -> FilePath | None:
+        """The file of a drawing, if it is used and is there."""
+        file = self.file_of(drawing)
+        try:
+            is_there = file.is_file()
+        except OSError:  # too long a name
+            is_there = False
+        return file if self.used and is_there else None
+
     def of(self, drawing: FilePath, page: int, listener: Listener) -> Corrections | None:
         """The corrections of a page of a drawing, and a word on them to the listener; None without any.
 
@@ -44,8 +53,10 @@ class CorrectionSettings:
             raise WrongUse(
                 "--corrections and --no-corrections were both given; give one of them"
             )
-        file = self.file_of(drawing)
-        if not self.used or (self.file is None and not file.is_file()):
+        file = self.found(drawing)
+        if self.used and self.file is not None:
+            file = self.file
+        if file is None:
             return None
         corrections = read_corrections(file)
         why_not = _of_another(corrections, drawing, page)

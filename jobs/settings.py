@@ -55,6 +55,7 @@ class DrawingFile:
         from morfax.tracer.drawing import inks
         from morfax.tracer.drawing.drawing import Drawing
 
+        self.check()
         ink = None if self.ink is None else inks.parsed(self.ink)
         scan, made = self._scanned(listener)
         drawing = Drawing.of(scan, self.scale(), ink, self.edge, self.paper)
@@ -62,6 +63,14 @@ class DrawingFile:
         for note in drawing.notes:
             listener.note(note)
         return self._corrected(drawing, scan, listener)
+
+    def check(self) -> None:
+        """Raise WrongUse for options that do not go together, before the file is read."""
+        self.scale()
+        if self.edge and self.paper in ("squared", "ruled"):
+            raise WrongUse(
+                f"--paper {self.paper} is for drawn lines, --edge for filled shapes; give one of them"
+            )
 
     def scale(self) -> Scale:
         """The scale that is given; raises WrongUse for two."""

@@ -1,13 +1,15 @@
 """A batch at the terminal: drawings done and failed, a minute, and the time that is left.
 
-On a terminal the line is written anew as it changes; elsewhere, such as in a log, once a minute.
+On a terminal the line is written anew as it changes; elsewhere, such as in a log, once a minute. A drawing
+that failed has a line of its own above it.
 """
 
 from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Generator, Iterator
+from collections.abc import Generator
+from contextlib import closing
 from typing import TYPE_CHECKING
 
 import click
@@ -21,26 +23,22 @@ EVERY_S = {True: 0.2, False: 60.0}  # on a terminal, and elsewhere
 CLEAR = "\r\x1b[K"  # back to the beginning of the line, and clear it
 
 
-def counted(
-    rows: Generator[BatchRow, None, None], tally: Tally, desk: Desk
-) -> Iterator[BatchRow]:
-    """Pass rows on, counting them, and say how far the batch is."""
-    live = sys.stderr.isatty()
-    said_s = time.monotonic() if not live else 0.0
-    try:
+def count_all(rows: Generator[BatchRow, None, None], tally: Tally, desk: Desk) -> None:
+    """Count rows as they come; name each drawing that failed now, and say how far the batch is."""
+    live = sys.stderr.isatty() and not desk.quiet
+    said_s = 0.0 if live else time.monotonic()
+    with closing(rows):  # whatever happens ends the drawings that run
         for row in rows:
             tally.count(row)
+            if not (row.is_well or row.kept):
+                told_of = f"morfax: {row.file}: {row.ending}: {row.fault}"
+                click.echo(f"{CLEAR if live else ''}{told_of}", err=True)
             now_s = time.monotonic()
             if not desk.quiet and now_s - said_s >= EVERY_S[live]:
                 said_s = now_s
-                click.echo(
-                    f"{CLEAR}{told(tally)}" if live else told(tally), nl=not live, err=True
-                )
-            yield row
-    finally:
-        rows.close()  # ends the drawings that run
-        if live and not desk.quiet:
-            click.echo(CLEAR, nl=False, err=True)
+                click.echo(f"{CLEAR if live else ''}{told(tally)}", nl=not live, err=True)
+    if live:
+        click.echo(CLEAR, nl=False, err=True)
 
 
 def told(tally: Tally) -> str:

@@ -16,7 +16,7 @@ from morfax.console.options.groups import Verb, given, option
 from morfax.console.options.placement import unit_options
 from morfax.console.options.tracing import trace_options
 from morfax.console.options.types import LIMIT, MEMORY
-from morfax.console.terminal.counted import counted
+from morfax.console.terminal.counted import count_all
 
 if TYPE_CHECKING:
     from morfax.console.terminal.desk import Desk
@@ -138,9 +138,7 @@ def command(
 
     total = None if job.scheduler is not None else sum(1 for _ in job.names())
     tally = Tally(total, job.limits.workers)
-    for row in counted(job.rows(desk), tally, desk):
-        if not row.is_well and not row.kept:
-            click.echo(f"morfax: {row.file}: {row.ending}: {row.fault}", err=True)
+    count_all(job.rows(desk), tally, desk)
     desk.figures({**tally.figures(), "manifest": str(job.folder / MANIFEST)})
     ctx.exit(SOME_FAILED if tally.failed else 0)
 

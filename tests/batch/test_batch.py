@@ -18,11 +18,15 @@ from PIL import Image
 from morfax.batch import crew, manifest, search
 from morfax.batch.job import BatchJob
 from morfax.batch.manifest import Manifest
+from morfax.batch.one import there_already
 from morfax.batch.order import Order
 from morfax.batch.page import wants_eye, write_page
 from morfax.batch.results import LocalResults
 from morfax.batch.row import BatchRow
-from morfax.jobs.settings import HeadSettings, TraceSettings
+from morfax.batch.tally import Tally
+from morfax.console.terminal.counted import count_all
+from morfax.console.terminal.desk import Desk
+from morfax.jobs.settings import DrawingFile, HeadSettings, TraceSettings
 from morfax.motion.faults import FileFault
 from tests.console.conftest import Morfax, here, morfax
 
@@ -154,6 +158,56 @@ def test_a_manifest_survives_a_line_that_was_cut_short(tmp_path: Path) -> None:
     assert [row.file for row in manifest.rows(tmp_path)] == ["a.png", "c.png"]
 
 
+def test_a_manifest_survives_a_name_that_was_cut_within_a_letter(tmp_path: Path) -> None:
+    (tmp_path / manifest.NAME).write_bytes('{"file": "ä'.encode()[:-1])
+    with Manifest(tmp_path) as written:
+        written.append(BatchRow("b.png", "done"))
+    assert [row.file for row in manifest.rows(tmp_path)] == ["b.png"]
+
+
+def test_results_are_no_drawings_and_a_link_leads_round_once(scans: Path) -> None:
+    made = (
+        scans / "small-0123456789ab"
+    )  # as a batch leaves it whose results go into the same folder
+    made.mkdir()
+    for name in ("picture.png", "figures.json"):
+        (made / name).write_text("{}")
+    (scans / "deep" / "up").symlink_to("..")
+    found = [Path(name).name for name in search.drawings(str(scans))]
+    assert sorted(found) == ["bad.png", "empty.png", "large.png", "small.png"]
+
+
+def test_a_name_as_long_as_a_file_system_takes_has_a_folder(scans: Path) -> None:
+    file = scans / f"{'漢' * 83}.png"  # 253 of 255 bytes; its corrections' name would be longer
+    shutil.copy(scans / "small.png", file)
+    name, hashed = Order().folder_name(file)
+    assert name == f"{'漢' * 33}-{hashed[:12]}"
+    assert DrawingFile(file).open().file == file
+
+
+def test_a_folder_that_holds_other_figures_is_traced_again(scans: Path) -> None:
+    name, _ = Order().folder_name(scans / "small.png")
+    (scans / "out" / name).mkdir(parents=True)
+    (scans / "out" / name / "figures.json").write_text("{}")
+    results = LocalResults(scans / "out")
+    assert there_already(Order(), scans / "small.png", "small.png", results) is None
+
+
+def test_at_a_terminal_a_drawing_that_failed_has_a_line_of_its_own(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True)
+    rows = (
+        row for row in [BatchRow("a.png", "done"), BatchRow("b.png", "fault", fault="no line")]
+    )
+    count_all(rows, Tally(2), Desk())
+    said = capsys.readouterr().err
+    lines = [
+        line.split("\r\x1b[K")[-1] for line in said.split("\n")
+    ]  # what stays on the screen
+    assert lines == ["morfax: b.png: fault: no line", ""]
+
+
 def test_a_folder_appears_whole_or_not_at_all(tmp_path: Path) -> None:
     results = LocalResults(tmp_path)
     with suppress(KeyboardInterrupt), results.folder("a") as folder:
@@ -195,6 +249,13 @@ def test_what_wants_an_eye_comes_first() -> None:
         (("batch", "s3://a/b", "-o", "out"), 2, "give --scheduler, or a folder"),
         (("batch", "scans", "-o", "out", "--memory", "1MB"), 2, "1GB to 1000TB"),
         (("batch", "scans", "-o", "out", "--limit", "0s"), 2, "--limit"),
+        (
+            ("batch", "scans", "-o", "out", "--glob", "*.pdf"),
+            8,
+            "no file that fits *.pdf in scans",
+        ),
+        (("batch", "scans", "-o", "out", "--order", "3,1"), 2, "--order is for several lines"),
+        (("batch", "scans", "-o", "out", "--edge", "--paper", "ruled"), 2, "give one of them"),
         (("batch", "--report", "scans"), 8, "give the folder that morfax batch -o named"),
         (("batch", "--report", "scans", "-o", "out"), 2, "give it alone"),
         (

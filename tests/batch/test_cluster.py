@@ -51,6 +51,23 @@ def test_results_are_the_same_as_here(scans: Path, scheduler: str, at_address: b
     assert len(list(manifest.rows(Path("out")))) == 4
 
 
+def test_a_drawing_that_cannot_be_read_costs_no_other(scans: Path, scheduler: str) -> None:
+    for file in scans.rglob("*.png"):
+        file.unlink()
+    (scans / "a.png").symlink_to("nowhere.png")
+    (scans / "b.png").write_text("no picture")
+    rows = {
+        Path(row.file).name: row for row in BatchJob("scans", "out", scheduler=scheduler).rows()
+    }
+    assert rows["a.png"].fault == "scans/a.png cannot be read: No such file or directory"
+    assert "scans/b.png" in rows["b.png"].fault and "/tmp" not in rows["b.png"].fault
+
+
+def test_an_address_that_nothing_knows_is_a_fault(scans: Path, scheduler: str) -> None:
+    with pytest.raises(FileFault, match="give an address that fsspec knows here"):
+        list(BatchJob("nothing://a/scans", "out", scheduler=scheduler).rows())
+
+
 def test_a_scheduler_that_is_not_there_is_told(
     scans: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
