@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 import cv2
 import numpy as np
 import pytest
@@ -28,3 +30,18 @@ def test_a_filled_shape_is_deep_and_paper_is_not() -> None:
     depth = depth_px(ink)
     assert depth[20, 20] == 11  # pixels from the middle of 21 to the first of paper
     assert depth[9, 20] == 0
+
+
+def test_one_broad_shape_on_much_paper_is_left_to_opencv_soon() -> None:
+    """Looking along the rows of a square is work by its side's third power: 38 s on a sheet of 49 Mpx."""
+    ink = np.zeros((2000, 2000), np.uint8)
+    ink[300:900, 300:900] = 1
+    assert ink.mean() <= MUCH_INK
+    began = time.process_time()
+    depth = depth_px(ink)
+    looked_s = time.process_time() - began
+    began = time.process_time()
+    exact = cv2.distanceTransform(ink, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+    assert np.array_equal(depth, exact)
+    # twice OpenCV's time here, and eight times without a limit; the kernel is loaded by the tests before
+    assert looked_s < 5 * (time.process_time() - began)
