@@ -96,7 +96,7 @@ class RemoteResults:
 
 
 def file_system(address: str) -> tuple[Any, str]:
-    """The file system of an address and the path there; raises FileFault for an address that nothing knows."""
+    """The file system of an address, and the path there; raises FileFault if nothing knows it."""
     from fsspec.core import url_to_fs
 
     try:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from morfax.motion.polyline import (
     Nearest,
     crossings,
     lengths_mm,
+    nearest_mm,
     plain,
     with_places,
 )
@@ -103,3 +105,26 @@ def test_places_that_are_too_near_are_set_back_straight_and_no_others() -> None:
     assert back == pytest.approx(
         np.array([[5.0, 2.0], [6.0, 2.5], [7.0, -2.0]]), abs=0.1 * 1e-3
     )
+
+
+@given(st.integers(0, 40), st.integers(0, 60), st.integers(0, 2**32 - 1))
+def test_the_nearest_place_is_that_of_all_pairs(count: int, others: int, seed: int) -> None:
+    random = np.random.default_rng(seed)
+    places, line = random.normal(0, 5, (count, 2)), random.normal(0, 3, (others, 2))
+    line[: others // 2, 0] = 1.0  # upright for half of its length
+    apart = np.hypot(*np.moveaxis(places[:, None] - line[None], -1, 0))
+    assert nearest_mm(places, line) == pytest.approx(
+        apart.min(axis=1, initial=np.inf), abs=ROUNDING_MM
+    )
+
+
+def test_places_beside_an_upright_line_take_no_longer_than_beside_a_sloping_one() -> None:
+    """All of an upright line is as far in X: 4000 places beside 120 000 took seven seconds."""
+    along = np.linspace(0, 200, 60_000)
+    spent_s = []
+    for across in (0.5 * along, 0 * along):
+        line = np.column_stack([across, along])
+        began = time.process_time()
+        nearest_mm(line[::30] + [60.0, -30.0], line)
+        spent_s.append(time.process_time() - began)
+    assert spent_s[1] < 20 * spent_s[0]
