@@ -125,6 +125,6 @@ def test_places_beside_an_upright_line_take_no_longer_than_beside_a_sloping_one(
     for across in (0.5 * along, 0 * along):
         line = np.column_stack([across, along])
         began = time.process_time()
-        nearest_mm(line[::30] + [60.0, -30.0], line)
+        nearest_mm(line[::30] + np.array([60.0, -30.0]), line)
         spent_s.append(time.process_time() - began)
     assert spent_s[1] < 20 * spent_s[0]
