@@ -168,6 +168,7 @@ class Gap:
     `after.place` is where the axis is behind it as it was counted. `bound` is what the program asks for there
     at most, as far as the tape tells it. `short`: the count is certain even if the program asks for all that
     the motors can do, as on a bare tape. `steady`: it began with a surprise, while the level was right.
+    `noise`: six standard deviations of a row, cycles.
     """
 
     axis: int
@@ -179,6 +180,7 @@ class Gap:
     bound: Bound
     short: bool = False
     steady: bool = False
+    noise: float = 0.0
 
     @property
     def rows(self) -> int:
@@ -205,7 +207,19 @@ class Gap:
         motion which turns its acceleration over there and back within the gap alone is left out.
         """
         agreed = self.bridge.certain and (self.short or self.bridge.misfit < SMOOTH_CYCLES)
-        return self.known or agreed
+        return (self.known or agreed) and not (self.steady and self.astray)
+
+    @property
+    def astray(self) -> bool:
+        """Whether a side looks as if what surprised reached further than the gap.
+
+        The level did not show where it began and ended. A side is rougher than noise, or the places of both
+        are further apart than one change of speed within the gap explains, by half of what is allowed.
+        """
+        before, after, found = self.before, self.after, self.bridge
+        jolt = abs(after.speed - before.speed - self.rows * (before.bend + after.bend))
+        unexplained = abs(found.off) - jolt * self.rows / 2
+        return found.misfit > self.noise or unexplained > ALLOWED_CYCLES / 2
 
     @property
     def sound_until(self) -> float:

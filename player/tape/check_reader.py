@@ -198,8 +198,11 @@ class CheckReader:
             turn = np.angle(alike[start])
             bits = np.sign((seen[start : start + 4 * SYMBOLS : 4] * np.exp(-1j * turn)).real)
             said = from_bits(bits[None])[0]
-            if said is not None:
-                begins = self._centred(track, float(grid[start]))
+            if said is None:
+                continue
+            begins = float(grid[start]) if backwards else self._centred(track, float(grid[start]))
+            # a frame whose first symbol is cut off runs away from where it was found
+            if abs(begins - grid[start]) < CYCLES_PER_SYMBOL / 2:
                 found.append(Found(begins, float(turn / (2 * np.pi)), said))
         return sorted(found, key=lambda one: one.theta)
 

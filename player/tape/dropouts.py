@@ -207,7 +207,7 @@ class Gaps:
             return self._uncertain(axis, cycles[max(a - 1, 0)], time_s, (b - a) / self._rate_hz)
         gap = self._riding.across(rows, axis, (a, b), self._side)
         steady = self._surprised[min(a + self._spread, len(rows) - 1), axis]
-        gap = replace(gap, steady=bool(steady))
+        gap = replace(gap, steady=bool(steady), noise=self._surprises.noise(axis))
         if self._riding.bounds is None and not gap.bridge.certain:
             if self._riding.told is None:
                 return self._uncertain(axis, gap.before.place, time_s, (b - a) / self._rate_hz)

@@ -83,6 +83,10 @@ class Surprises:
             lost |= jumps & (np.maximum(dips[:, :1], dips[:, 1:]) > own)
         return np.asarray(lost)
 
+    def noise(self, axis: int) -> float:
+        """How far a row of an axis may lie off by noise, or by what a sound tape does itself, cycles."""
+        return max(float(self._noise_cycles[axis]), LEAST_CYCLES)
+
 
 def _noise(sizes: NDArray[np.float32]) -> Array:
     """So many standard deviations of each column, told by its median."""

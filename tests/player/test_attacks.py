@@ -65,6 +65,23 @@ def test_a_tone_that_turns_the_delays_at_the_end(
     assert "swings by" in str(verdict.fault)
 
 
+@pytest.mark.parametrize("seed", [87, 487])
+def test_a_tone_of_which_only_one_end_is_seen(benches: tuple[Bench, Bench], seed: int) -> None:
+    """What lies beside that end is the tone: bridged from there, these were 0.060 and 0.059 cycle off."""
+    kind = next(kind for kind in KINDS if kind.name.startswith("a short tone nearly in phase"))
+    verdict = benches[1].tried(kind, seed)
+    assert verdict.keeps(EITHER), verdict.error_cycles
+    assert "Z was lost for 1.8 ms" in str(verdict.fault)
+
+
+@pytest.mark.parametrize("cut", [26, 46])
+def test_a_start_cut_within_the_first_symbol(benches: tuple[Bench, Bench], cut: int) -> None:
+    """The first frame of the check signal is found and cannot be read whole; the next one can."""
+    kind = Kind("cut", lambda t, r: t.frames[cut:], RIGHT, timed=False)
+    verdict = benches[0].tried(kind, 0)
+    assert verdict.keeps(RIGHT), str(verdict.fault)
+
+
 @pytest.mark.parametrize("cut", [6860, 6911, 7100])
 def test_an_axis_that_starts_late_in_what_is_left_of_the_standstill(
     benches: tuple[Bench, Bench], cut: int

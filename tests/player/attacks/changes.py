@@ -1,6 +1,6 @@
 """The changes: what an attack does to the frames of a tape; most are made from a few numbers drawn at random.
 
-Moments are drawn where the axes run, between the standstills at both ends.
+Moments are drawn between the standstills that each tape has at both ends.
 """
 
 from __future__ import annotations
@@ -11,7 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import butter, hilbert, sosfiltfilt
 
-from tests.player.attacks.bench import RATE_HZ, Bench, Frames
+from tests.player.attacks.bench import (
+    CYCLES_PER_MM,
+    MOTION_RATE_HZ,
+    RATE_HZ,
+    RIGHT_CYCLES,
+    Bench,
+    Frames,
+)
 
 REFERENCE, X, Y, Z = range(4)
 ALL = (REFERENCE, X, Y, Z)
@@ -20,10 +27,24 @@ Floats = NDArray[np.float64]
 
 
 def moment(tape: Bench, random: Random, spare: int = 0) -> int:
-    """A frame where the axes run."""
+    """A frame between the standstills; the circle begins to run 0.1 s behind the first of them."""
     return int(
         random.integers(round(1.2 * RATE_HZ), len(tape.frames) - round(1.4 * RATE_HZ) - spare)
     )
+
+
+def under_way(tape: Bench, random: Random) -> int:
+    """A frame at which an axis is further from its start than a tape may be wrong, before the last standstill.
+
+    The circle stands still until 1.3 s: a tape whose start is cut before that is whole.
+    """
+    return int(random.integers(begins(tape), len(tape.frames) - round(1.4 * RATE_HZ)))
+
+
+def begins(tape: Bench) -> int:
+    """The first frame at which an axis is further from its start than a tape may be wrong."""
+    off = np.abs(tape.clean - tape.clean[0]).max(axis=1) * CYCLES_PER_MM
+    return int(np.argmax(off > RIGHT_CYCLES)) * (RATE_HZ // MOTION_RATE_HZ)
 
 
 def track(random: Random) -> int:

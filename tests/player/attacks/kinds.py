@@ -108,7 +108,8 @@ KINDS: tuple[Kind, ...] = (
     Kind("the check signal of another place", drawn.other_check, FAULT),
     # cuts and splices
     Kind("the start is cut within the standstill", lambda t, r: t.frames[r.integers(1, 40000) :], RIGHT, False),
-    Kind("the start is cut under way", lambda t, r: t.frames[do.moment(t, r) :], FAULT, False),
+    Kind("the start is cut, less than 0.1 s before an axis moves", lambda t, r: t.frames[do.begins(t) - r.integers(1, 4800) :], EITHER, False),
+    Kind("the start is cut under way", lambda t, r: t.frames[do.under_way(t, r) :], FAULT, False),
     Kind("the end is cut", lambda t, r: t.frames[: -r.integers(60000, len(t.frames) - 60000)], FAULT),
     Kind("the end is cut within the standstill", lambda t, r: t.frames[: -r.integers(1, 40000)], EITHER),
     Kind("a piece is cut out", drawn.spliced, EITHER, False),
