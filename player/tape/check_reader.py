@@ -200,7 +200,9 @@ class CheckReader:
             said = from_bits(bits[None])[0]
             if said is None:
                 continue
-            begins = float(grid[start]) if backwards else self._centred(track, float(grid[start]))
+            begins = (
+                float(grid[start]) if backwards else self._centred(track, float(grid[start]))
+            )
             # a frame whose first symbol is cut off runs away from where it was found
             if abs(begins - grid[start]) < CYCLES_PER_SYMBOL / 2:
                 found.append(Found(begins, float(turn / (2 * np.pi)), said))
