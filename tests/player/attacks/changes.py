@@ -34,7 +34,7 @@ def moment(tape: Bench, random: Random, spare: int = 0) -> int:
 
 
 def under_way(tape: Bench, random: Random) -> int:
-    """A frame, before the last standstill, at which an axis is off its start by more than a tape may be wrong.
+    """A frame before the last standstill at which an axis is off its start by more than is right.
 
     The circle stands still until 1.3 s: a tape whose start is cut before that is whole.
     """
