@@ -2,7 +2,8 @@
 
 `folder DIR` measures drawings, `flatten [N]` simulated photographs, `linuxcnc` the times of programs,
 `dropouts [N]` dropouts of each kind, `batch [N]` many drawings, `panel [DIR]` how its page pans,
-`pencil [N]` lines with grain, `coarse [N]` lines of few pixels; these take a while and run only if named.
+`pencil [N]` lines with grain, `coarse [N]` lines of few pixels, `rough [N]` ballpoint, felt pen, marker, chalk,
+shadows, folds, `nets [N]` all the ink of nets; these take a while and run only if named.
 """
 
 from __future__ import annotations
@@ -21,6 +22,8 @@ WITH_WORDS = (
     "panel",
     "pencil",
     "coarse",
+    "rough",
+    "nets",
 )  # that take words of their own
 
 
@@ -37,7 +40,6 @@ def main(names: list[str]) -> None:
     if unknown := [name for name in names if name not in here]:
         sys.exit(
             f"{unknown[0]} is no benchmark; give {', '.join(here)},"
-            f" or no name for all but {' and '.join(WITH_WORDS)}"
             f" or no name for all but {' and '.join(WITH_WORDS)}"
         )
     for name in names or [name for name in here if name not in WITH_WORDS]:

@@ -42,11 +42,17 @@ CORNER = math.radians(20)  # turned between the chords before and after a corner
 SUDDEN = math.radians(14)  # ... by so much more than before and behind it
 CHORD, SKIPPED = 7, 3  # stations of a chord, and between the chords and the corner
 MEANT = 2.0  # lengths of a leg: a longer line's own width counts, and not its neighbours'
+# a part at an end of the ink that is as long is line, however it tapers, if so much of it has two edges
+TAPERED_WIDTHS, FELT_SHARE = 1.0, 0.7
+STEADY_WIDTHS, STEADY = 4.0, 0.15  # as long, and so evenly wide: that is the line's own width
 
 
 Parted = tuple[
     list[Run], list[Array]
 ]  # clean runs, and places (n, 2) mm felt from each to the next
+
+
+Ends = tuple[bool, bool]  # whether the ink ends at the first station, and at the last
 
 
 class Felt(NamedTuple):
@@ -55,11 +61,11 @@ class Felt(NamedTuple):
     stations: Run
     clean: Flags
 
-    def runs(self) -> Parted:
-        """The clean runs, cut at corners, and what was felt between them."""
+    def runs(self, ends: Ends = (False, False)) -> Parted:
+        """The clean runs, cut at corners, and what was felt between them; `ends` says where the ink ends."""
         found, cuts_at = list[Run](), list[tuple[int, int]]()
-        for first, last in _runs_of(self.clean, self.stations.view):
-            run = self.stations.part(first, last)
+        for first, last, view in self._parts(ends):
+            run = replace(self.stations.part(first, last), view=view)
             cuts = [0, *_corners(run.places_mm), len(run)]
             for k, (begin, end) in enumerate(pairwise(cuts)):
                 a = begin + (SKIPPED if k else 0)
@@ -70,6 +76,33 @@ class Felt(NamedTuple):
         places = self.stations.places_mm
         parted = [places[b:a] for (_, b), (a, _) in pairwise(cuts_at)]
         return found, parted
+
+    def _parts(self, is_end: Ends) -> list[tuple[int, int, View]]:
+        """First station, the one after the last, and the view of each clean part.
+
+        Where a line becomes wider or narrower it is clean at its new width, if it keeps that. Where its ink
+        ends it may taper.
+        """
+        view = self.stations.view
+        spans = _runs_of(self.clean, view)
+        parts = [(*span, view) for span in spans]
+        if not spans:
+            return parts
+        last_place = len(self.stations)
+        ends = [0, *(at for span in spans for at in span), last_place]
+        for first, last in zip(ends[::2], ends[1::2], strict=True):
+            part = self.stations.part(first, last)
+            width_mm = usual_width_mm(part)
+            own = replace(view, width_mm=width_mm)
+            tip = math.ceil(0.5 * width_mm / view.step_mm) + MARGIN
+            if (first == 0 and is_end[0]) or (last == last_place and is_end[1]):
+                a, b = (first + tip, last - MARGIN) if first == 0 else (first + MARGIN, last - tip)
+                if (b - a) * view.step_mm > TAPERED_WIDTHS * width_mm and _is_felt(part):
+                    parts.append((a, b, own))
+            elif last - first > FEWEST_STATIONS and is_steady(part, width_mm):
+                clean = judged(replace(part, view=own), width_mm).clean
+                parts += [(first + a, first + b, own) for a, b in _runs_of(clean, own)]
+        return sorted(parts, key=lambda part: part[0])
 
 
 def feel_along(view: View, guide_mm: Array) -> Run:
@@ -106,6 +139,28 @@ def judged(stations: Run, width_mm: float) -> Felt:
     leaps = np.abs(steps - view.step_mm) > LEAP * width_mm + LEAP_PX * view.pitch_mm
     clean[1:] &= ~leaps
     return Felt(stations, clean)
+
+
+def _is_felt(run: Run) -> bool:
+    """Whether the ink has two edges along most stations."""
+    return bool(np.mean(np.isfinite(run.widths_mm)) > FELT_SHARE)
+
+
+def usual_width_mm(run: Run) -> float:
+    """The median width of some stations, mm; what their view says where the ink has no two edges."""
+    known = run.widths_mm[np.isfinite(run.widths_mm)]
+    return float(np.median(known)) if len(known) else run.view.width_mm
+
+
+def is_steady(run: Run, width_mm: float) -> bool:
+    """Whether a line is as wide everywhere, but near its ends: ink that two lines share is not."""
+    fifth = len(run) // 5
+    widths = run.widths_mm[fifth : len(run) - fifth]
+    known = widths[np.isfinite(widths)]
+    if run.length_mm < STEADY_WIDTHS * width_mm or len(known) < len(widths):
+        return False
+    narrow_mm, wide_mm = np.percentile(known, (10, 90))
+    return bool(wide_mm - narrow_mm < STEADY * wide_mm)
 
 
 def strands(stations: Run, width_mm: float) -> list[Run]:

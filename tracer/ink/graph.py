@@ -25,8 +25,9 @@ from morfax.tracer.drawing.components import Mask
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.thinning import Indices, neighbours, thinned
 
-# of the depth of the ink at its fork: a stretch that ends as near to it is a burr; by trial on nets
-BURR_DEPTHS, BURR_PX = 2.0, 2.0
+# a stretch that ends no further beyond the disc that fills the ink at its fork is a burr, in depths of the ink
+# there, and pixels; by trial on nets and line art
+BURR_DEPTHS, BURR_PX = 0.5, 1.5
 RING = -1  # in the place of a node: a stretch that comes round without one
 
 
@@ -113,7 +114,8 @@ class Graph:
         if sorted(counts)[0] != 1 or sorted(counts)[1] < 3:
             return False
         fork = stretch.pixels[0 if counts[0] > 1 else -1]
-        return len(stretch.pixels) - 1 < BURR_DEPTHS * self.depths_px[fork] + BURR_PX
+        beyond_px = len(stretch.pixels) - 1 - self.depths_px[fork]
+        return bool(beyond_px < BURR_DEPTHS * self.depths_px[fork] + BURR_PX)
 
     def _join_pairs(self) -> None:
         """Make one stretch of two that are alone at a node."""

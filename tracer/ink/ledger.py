@@ -25,7 +25,8 @@ from morfax.tracer.ink.left_out import Area, InkLeft
 
 EVERY_MM = 0.1  # ways are held against the ink so often
 BESIDE_WIDTHS = 0.7  # ink nearer to a way than this is that way's; by trial on drawings of nets
-SPECK_MM = 2.0  # a shorter patch of ink on which no stroke runs is a speck
+SPECK_MM = 2.0  # a shorter patch of ink on which no stroke runs is a speck ...
+DOT_WIDTHS = 2.5  # ... and one that is no longer in its own widths a dot; 1.8 is a round one
 LOST_MM = 1.0  # a stretch that is left is told if it is as long
 HALF = 0.5
 TINY = 1e-9  # so that a sheet of nothing but filled shapes has a share
@@ -77,7 +78,8 @@ def balance(sheet: Sheet, graph: Graph, left: InkLeft, ways: list[Array]) -> Bal
     pixels = np.maximum(np.bincount(patch, minlength=sheet.patches.count), 1)
     shares = np.bincount(patch, is_near, sheet.patches.count) / pixels
     lengths_mm, solid = _line_lengths_mm(sheet, left), sheet.are_solid
-    specks = ~solid & ~left.letters & (shares == 0) & (lengths_mm < SPECK_MM)
+    are_small = lengths_mm < np.maximum(SPECK_MM, DOT_WIDTHS * sheet.widths_mm)
+    specks = ~solid & ~left.letters & (shares == 0) & are_small
     lines = ~solid & ~left.letters & ~specks
     return Balance(
         float(np.sum((shares * lengths_mm)[lines])),

@@ -35,10 +35,8 @@ CLEAN_SHARE = 0.5  # of its length: more of it is clean line of its own
 SHARED = 1.15  # times the line's width: ink that two lines share is wider
 OWN_WIDTHS = 1.2  # a shorter one has no ink that is not the junction's
 COVERED = 0.6  # widths: ink nearer to a way through the junction is that way's
-LEAST_MM, LEAST_WIDTHS = (
-    1.0,
-    2.5,
-)  # a shorter line that hangs together with nothing is a speck: the larger
+# the middle of a line that hangs together with nothing: a shorter one is a speck or a dot; the larger
+LEAST_MM, LEAST_WIDTHS = 0.7, 1.0
 TRIMMED_SHARE = 0.3  # of a run is left out at an end at most
 FACING = math.radians(35)  # ends whose headings are so near to one line face each other
 ASIDE = 0.6  # widths: and miss each other by no more

@@ -19,7 +19,7 @@ from morfax.tracer.drawing.components import Mask
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.plain_places import FAINTEST, aperture_for
 from morfax.tracer.head.settings import Settings
-from morfax.tracer.ink.felt import Parted, feel_along, judged
+from morfax.tracer.ink.felt import Ends, Parted, feel_along, is_steady, judged, usual_width_mm
 from morfax.tracer.ink.graph import RING, Graph
 from morfax.tracer.ink.run import Run
 from morfax.tracer.sensing import photocell
@@ -34,7 +34,6 @@ ENOUGH_WIDTHS = 6.0
 FAR = 6  # stretches straight on to either side
 STRAIGHT_COS = 0.85  # 32 degrees
 AWAY_WIDTHS = 3.0  # from a node, over which a stretch shows where it leads
-STEADY_WIDTHS, STEADY = 4.0, 0.15  # as long, and so evenly wide: that is the line's own width
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,13 +44,15 @@ class FeltSheet:
     felt: list[Run]
     widths_mm: list[float]
     settings: Settings
+    ends: list[Ends]  # of each stretch, whether the ink ends there
     _runs: dict[tuple[int, float], Parted] = field(default_factory=dict)
 
     def runs(self, number: int) -> Parted:
         """The clean runs of a stretch, if its line is as wide as it is taken to be."""
         key = number, self.widths_mm[number]
         if key not in self._runs:
-            self._runs[key] = judged(with_width(self.felt[number], key[1]), key[1]).runs()
+            stations = with_width(self.felt[number], key[1])
+            self._runs[key] = judged(stations, key[1]).runs(self.ends[number])
         runs, parted = self._runs[key]
         return list(runs), list(parted)
 
@@ -61,8 +62,15 @@ class FeltSheet:
         seen = _Seen(drawing, settings)
         graph = Graph.of(ink)
         felt = _felt(graph, seen)
-        widths = _line_widths(graph, felt, graph.at_nodes(), settings)
-        return cls(graph, felt, widths, settings)
+        at = graph.at_nodes()
+        widths = _line_widths(graph, felt, at, settings)
+        ends = [(_is_end(s.nodes[0], at), _is_end(s.nodes[1], at)) for s in graph.stretches]
+        return cls(graph, felt, widths, settings, ends)
+
+
+def _is_end(node: int, at: dict[int, list[int]]) -> bool:
+    """Whether a single stretch is at a node."""
+    return len(at.get(node, ())) == 1
 
 
 @dataclass(slots=True)
@@ -123,10 +131,7 @@ def _line_widths(
     graph: Graph, felt: list[Run], at: dict[int, list[int]], settings: Settings
 ) -> list[float]:
     """The width of the line of each stretch, mm: its own, and of a short one that of those beside it."""
-    own = []
-    for run in felt:
-        known = run.widths_mm[np.isfinite(run.widths_mm)]
-        own.append(float(np.median(known)) if len(known) else run.view.width_mm)
+    own = [usual_width_mm(run) for run in felt]
     if settings.line_width_mm:
         return [settings.line_width_mm] * len(own)
     lengths = [felt_mm(run) for run in felt]
@@ -135,7 +140,7 @@ def _line_widths(
         if (
             lengths[n] > SHORT_WIDTHS * own[n]
             or stretch.nodes[0] == RING
-            or _is_steady(felt[n])
+            or is_steady(felt[n], felt[n].view.width_mm)
         ):
             found.append(own[n])
             continue
@@ -190,17 +195,6 @@ class StraightOn:
         far = min(len(places) - 1, round(AWAY_WIDTHS * run.view.width_mm / run.view.step_mm))
         chord = places[far] - places[0]
         return np.asarray(chord / max(float(np.hypot(*chord)), 1e-9))
-
-
-def _is_steady(run: Run) -> bool:
-    """Whether a line is as wide everywhere, but near its ends: ink that two lines share is not."""
-    fifth = len(run) // 5
-    widths = run.widths_mm[fifth : len(run) - fifth]
-    known = widths[np.isfinite(widths)]
-    if run.length_mm < STEADY_WIDTHS * run.view.width_mm or len(known) < len(widths):
-        return False
-    narrow_mm, wide_mm = np.percentile(known, (10, 90))
-    return bool(wide_mm - narrow_mm < STEADY * wide_mm)
 
 
 def _weighted_median(values: list[float], weights: list[float]) -> float:

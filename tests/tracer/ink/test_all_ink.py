@@ -13,7 +13,7 @@ from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.program.trace_ink import trace_ink
-from tests.tracer.inked import UM, WIDTH_MM, Points, arc, inked, polyline
+from tests.tracer.inked import UM, WIDTH_MM, Points, arc, dot, inked, polyline, together
 
 TWICE = 0.001  # of the length: what may be run more than once
 BESIDE_MM = 30 * UM  # strokes from the true line, junctions included
@@ -160,3 +160,44 @@ def test_the_same_strokes_on_a_sheet_that_is_mirrored() -> None:
     mirrored = Drawing(np.ascontiguousarray(drawing.darkness[:, ::-1]), drawing.pitch_mm)
     lengths = [sorted(s.length_mm for s in trace_ink(d).lines) for d in (drawing, mirrored)]
     assert sum(lengths[0]) == pytest.approx(sum(lengths[1]), abs=0.3)
+
+
+def reached(strokes: list[Line], places: list[tuple[float, float]]) -> float:
+    """How far the strokes stay away from the worst of some places, mm."""
+    run = np.vstack([stroke.xy_mm for stroke in strokes])
+    return max(float(np.hypot(*(run - place).T).min()) for place in places)
+
+
+def test_a_tuft_of_short_strokes_is_followed_to_every_tip() -> None:
+    tips = [(19.0, 21.4), (20.0, 21.7), (21.0, 21.4)]
+    strokes = all_of(SQUARE, *(polyline((20, 20), tip) for tip in tips))
+    # a round pen's ink ends half a width beyond each tip, where its edges bend round
+    assert reached(strokes, tips) < 0.5 * WIDTH_MM
+
+
+def test_a_twig_that_stands_out_by_a_width_is_no_burr() -> None:
+    strokes = all_of(SQUARE, polyline((20, 36), (20, 36.85)))
+    assert reached(strokes, [(20, 36.85)]) < 0.5 * WIDTH_MM
+
+
+def test_a_short_dash_is_a_stroke_and_a_dot_is_none() -> None:
+    dash, blot = polyline((15, 20), (16.1, 20)), dot((25, 20), 1.4)
+    trace = trace_ink(inked(SQUARE, dash, specks=(blot,), seed=1))
+    assert reached(list(trace.lines), [(15.5, 20)]) < BESIDE_MM
+    assert reached(list(trace.lines), [(25, 20)]) > 5
+    assert trace.ink is not None and trace.ink.followed_share > 0.995
+
+
+def test_a_line_that_becomes_broader_is_followed_at_both_widths() -> None:
+    narrow, broad = polyline((6, 20), (26, 20)), polyline((26, 20), (38, 20))
+    strokes = list(trace_ink(together((narrow, 0.5), (broad, 1.2), seed=1)).lines)
+    assert len(strokes) == 1
+    assert reached(strokes, [(6, 20), (16, 20), (30, 20), (37.5, 20)]) < 0.5 * WIDTH_MM
+
+
+def test_a_line_that_tapers_is_followed_to_its_tip() -> None:
+    tapering = [
+        (polyline((18 + k, 20), (19 + k, 20)), 0.7 - 0.04 * k) for k in range(10)
+    ]
+    drawing = together((polyline((6, 20), (18, 20)), 1.2), *tapering, seed=1)
+    assert reached(list(trace_ink(drawing).lines), [(10, 20), (22, 20), (27, 20)]) < 0.1
