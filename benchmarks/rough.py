@@ -50,7 +50,10 @@ from morfax.tracer.drawing.scan import MM_PER_INCH
 
 Random = np.random.Generator
 PX_PER_MM = DPI / MM_PER_INCH
-EVERY_MM, SKIPS_MM = 25.0, (0.2, 0.8)  # from one skip of the ballpoint to the next, and their lengths
+EVERY_MM, SKIPS_MM = (
+    25.0,
+    (0.2, 0.8),
+)  # from one skip of the ballpoint to the next, and their lengths
 BALLPOINT, GROOVE = 0.7, 0.35  # of ink's darkness; how much lighter the groove is
 RUNS_OUT_MM = 0.08
 SWELLS_MM = 8.0
@@ -116,7 +119,9 @@ def felt(line: Points, rng: Random) -> tuple[float, NDArray[np.float64]]:
     width_mm = float(rng.uniform(0.6, 1.0))
     # 1. away from the rim of the ink, mm, inside positive
     mask = (coverage(line, width_mm) > 0.5).astype(np.uint8)
-    away = cv2.distanceTransform(mask, cv2.DIST_L2, 5) - cv2.distanceTransform(1 - mask, cv2.DIST_L2, 5)
+    away = cv2.distanceTransform(mask, cv2.DIST_L2, 5) - cv2.distanceTransform(
+        1 - mask, cv2.DIST_L2, 5
+    )
     # 2. and as far as the ink has run
     run_px = RUNS_OUT_MM * PX_PER_MM * texture(mask.shape, 1.5, rng)
     ink = np.clip(away + run_px + 0.5, 0, 1)
@@ -130,7 +135,9 @@ def marker(line: Points, rng: Random) -> tuple[float, NDArray[np.float64]]:
     places = np.column_stack([np.interp(at_mm, along_mm, column) for column in line.T])
     knots = max(4, round(along_mm[-1] / SWELLS_MM))
     swells = rng.uniform(0, 1, knots)
-    share = np.interp(at_mm / along_mm[-1] * knots, np.arange(knots + 1), np.r_[swells, swells[:1]])
+    share = np.interp(
+        at_mm / along_mm[-1] * knots, np.arange(knots + 1), np.r_[swells, swells[:1]]
+    )
     widths = 0.8 + 2.2 * share * rng.uniform(0.6, 1)
     fine = 4
     rows, columns = coverage(line, 0.5).shape
@@ -149,7 +156,9 @@ def chalk(line: Points, rng: Random) -> tuple[float, NDArray[np.float64]]:
     ink = lens(coverage(line, width_mm))
     grain = np.clip(1 + CHALK_GRAIN * texture(ink.shape, 2.0, rng), 0, 1.6)
     board = BOARD + SMEARS * texture(ink.shape, 40.0, rng)
-    return width_mm, board + (CHALK - BOARD) * np.clip(ink * grain, 0, 1) + noise(ink.shape, rng)
+    return width_mm, board + (CHALK - BOARD) * np.clip(ink * grain, 0, 1) + noise(
+        ink.shape, rng
+    )
 
 
 def shadow(line: Points, rng: Random) -> tuple[float, NDArray[np.float64]]:

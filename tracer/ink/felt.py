@@ -96,7 +96,9 @@ class Felt(NamedTuple):
             own = replace(view, width_mm=width_mm)
             tip = math.ceil(0.5 * width_mm / view.step_mm) + MARGIN
             if (first == 0 and is_end[0]) or (last == last_place and is_end[1]):
-                a, b = (first + tip, last - MARGIN) if first == 0 else (first + MARGIN, last - tip)
+                a, b = (
+                    (first + tip, last - MARGIN) if first == 0 else (first + MARGIN, last - tip)
+                )
                 if (b - a) * view.step_mm > TAPERED_WIDTHS * width_mm and _is_felt(part):
                     parts.append((a, b, own))
             elif last - first > FEWEST_STATIONS and is_steady(part, width_mm):

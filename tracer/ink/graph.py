@@ -25,8 +25,8 @@ from morfax.tracer.drawing.components import Mask
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.thinning import Indices, neighbours, thinned
 
-# a stretch that ends no further beyond the disc that fills the ink at its fork is a burr, in depths of the ink
-# there, and pixels; by trial on nets and line art
+# beyond the disc that fills the ink at a fork, in depths of the ink there, and pixels: a stretch that ends no
+# further out is a burr; by trial on nets and line art
 BURR_DEPTHS, BURR_PX = 0.5, 1.5
 RING = -1  # in the place of a node: a stretch that comes round without one
 

@@ -196,8 +196,6 @@ def test_a_line_that_becomes_broader_is_followed_at_both_widths() -> None:
 
 
 def test_a_line_that_tapers_is_followed_to_its_tip() -> None:
-    tapering = [
-        (polyline((18 + k, 20), (19 + k, 20)), 0.7 - 0.04 * k) for k in range(10)
-    ]
+    tapering = [(polyline((18 + k, 20), (19 + k, 20)), 0.7 - 0.04 * k) for k in range(10)]
     drawing = together((polyline((6, 20), (18, 20)), 1.2), *tapering, seed=1)
     assert reached(list(trace_ink(drawing).lines), [(10, 20), (22, 20), (27, 20)]) < 0.1
