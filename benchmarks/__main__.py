@@ -2,8 +2,8 @@
 
 `folder DIR` measures drawings, `flatten [N]` simulated photographs, `linuxcnc` the times of programs,
 `dropouts [N]` dropouts of each kind, `batch [N]` many drawings, `panel [DIR]` how its page pans,
-`pencil [N]` lines with grain, `coarse [N]` lines of few pixels, `rough [N]` ballpoint, felt pen, marker, chalk,
-shadows, folds, `nets [N]` all the ink of nets; these take a while and run only if named.
+`pencil [N]` lines with grain, `coarse [N]` lines of few pixels, `rough [N]` rough pens, shadows
+and folds, `nets [N]` all the ink of nets; these take a while and run only if named.
 """
 
 from __future__ import annotations
