@@ -69,6 +69,11 @@ class LineSettings:
             raise WrongUse(
                 f"--arrow and {other} both say how a line begins; give --arrow alone"
             )
+        for place, towards in self.arrows_mm:
+            if place == towards:
+                raise WrongUse(
+                    f"--arrow {place[0]:g},{place[1]:g} goes nowhere; give a second place along the way"
+                )
         if self.lines == "all" and (self.arrows_mm or self.order):
             what = "--arrow" if self.arrows_mm else "--order"
             raise WrongUse(

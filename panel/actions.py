@@ -183,10 +183,12 @@ def _override(bench: Bench, action: dict[str, Any]) -> None:
 
 
 def override_words(bench: Bench, share: float) -> list[str]:
-    """The words of `morfax play` that run the result's program at an override."""
-    assert bench.kept.result is not None
-    program = bench.folder / str(bench.kept.result["program"])
-    return commands.play_words(program, bench.options, share)
+    """The words of `morfax play` that run the result's program at an override, on the machine that it is for:
+    another one may be set by now.
+    """
+    result, made_by = bench.kept.result, bench.kept.words or []
+    assert result is not None
+    return commands.play_words(bench.folder / str(result["program"]), made_by, share)
 
 
 def _control(what: str) -> Callable[[Bench, dict[str, Any]], None]:

@@ -144,10 +144,12 @@ def correct_words(drawing: FilePath, options: Options, asked: list[str]) -> list
     return [str(drawing), *_words(options, only=of_drawing), *asked]
 
 
-def play_words(program: FilePath, options: Options, override: float) -> list[str]:
-    """The words after `morfax play` that run a program at an override, 1 being the program's own feed."""
-    machine = options.get("--machine") if program.suffix.lower() != ".wav" else None
-    of_machine = ["--machine", machine] if isinstance(machine, str) else []
+def play_words(program: FilePath, made_by: list[str], override: float) -> list[str]:
+    """The words after `morfax play` that run a program at an override, 1 being the program's own feed; the
+    machine is that of the words that made it.
+    """
+    at = made_by.index("--machine") if "--machine" in made_by else None
+    of_machine = [] if at is None else made_by[at : at + 2]
     return [str(program), *of_machine, "--feed-override", f"{100 * override:g}%"]
 
 

@@ -195,7 +195,7 @@ def test_the_state_comes_back_after_the_server_was_killed(
     assert again.history.revision == bench.history.revision
 
 
-def test_a_run_that_was_cut_off_begins_anew(page: TestClient, bench: Bench) -> None:
+def test_a_run_that_was_cut_off_goes_on_by_itself(page: TestClient, bench: Bench) -> None:
     bench.sheet = {"figures": {}}
     assert not does(page, bench, do="run")
     assert "a run is under way" in does(page, bench, do="run")
@@ -226,6 +226,19 @@ def test_an_override_has_the_machine_play_the_program_again(
     said = page.get("/state").json()["state"]
     assert shlex.split(said["commands"]["play"])[-2:] == ["--feed-override", "50%"]
     assert said["result"]["override"] == 0.5 and said["busy"] is None
+
+
+def test_an_override_is_of_the_machine_that_the_program_is_for(
+    page: TestClient, bench: Bench
+) -> None:
+    """Another machine that is set after the run has not run yet."""
+    assert not does(page, bench, do="set", option="--machine", value="grbl-router")
+    bench.kept.begin(bench.words())
+    bench.kept.keep({"program": "cam.nc", "placed": [], "override": 1.0, "figures": {}})
+    assert not does(page, bench, do="set", option="--machine", value="marlin")
+    assert not does(page, bench, do="override", share=0.5)
+    _, _, _, (job, _, _) = bench.workshop.sent[-1]  # type: ignore[attr-defined]
+    assert job.control.given() and job.by_hand.machine == "grbl-router"
 
 
 def test_a_file_that_holds_no_state_is_refused_and_left_alone(tmp_path: Any) -> None:
