@@ -56,7 +56,8 @@ class LinesJob:
         seen = survey(setup)
         if self.follow and seen.entries:
             seen = _followed(seen, setup, listener)
-        for text in (*scale_doubts(drawing, seen.width_mm), *remarks_on_lines(seen)):
+        width_mm = None if drawing.edges_mm else seen.width_mm  # an edge has none
+        for text in (*scale_doubts(drawing, width_mm), *remarks_on_lines(seen)):
             listener.warning(text)
         written = {} if self.picture is None else {"picture": str(self.picture)}
         corrected = correction_settings.figures(drawing)
@@ -82,24 +83,24 @@ def _figures(drawing: Drawing, seen: Survey) -> dict[str, Any]:
     return {
         "sheet_width_mm": drawing.width_mm,
         "sheet_height_mm": drawing.height_mm,
-        "line_width_mm": seen.width_mm,
+        "line_width_mm": None if drawing.edges_mm else seen.width_mm,
         "dots": sum(entry.kind == "dot" for entry in seen.entries),
         "likely_letters": len(seen.lettering),
         "patches_left_out": len(seen.left_out),
         "ink_left_out_mm": seen.left_out_mm,
         "ink_not_followed_mm": seen.not_followed_mm,
-        "lines": [_row(entry) for entry in seen.entries],
+        "lines": [_row(entry, on_edges=bool(drawing.edges_mm)) for entry in seen.entries],
     }
 
 
-def _row(entry: Entry) -> dict[str, Any]:
+def _row(entry: Entry, *, on_edges: bool) -> dict[str, Any]:
     """One number, as figures."""
     return {
         "line": entry.number,
         "kind": entry.kind,
         "length_mm": entry.length_mm,
         "inside": entry.inside,
-        "line_width_mm": entry.width_mm,
+        "line_width_mm": None if on_edges else entry.width_mm,
         "joined_to": entry.joined_to,
         "place_mm": entry.place_mm,
         "in_contours": entry.is_in_contours,

@@ -10,14 +10,14 @@ if TYPE_CHECKING:
     from morfax.tracer.program.program import Trace
 
 
-def lines(trace: Trace) -> dict[str, Any]:
-    """What the head found of each line, in the order in which the lines are cut."""
-    rows = [
+def lines(trace: Trace, *, on_edges: bool = False) -> dict[str, Any]:
+    """What the head found of each line, in the order in which the lines are cut; an edge has no width."""
+    rows: list[dict[str, Any]] = [
         {
             "line": line.number,
             "ending": line.ending,
             "length_mm": line.length_mm,
-            "line_width_mm": line.width_mm,
+            **({} if on_edges else {"line_width_mm": line.width_mm}),
             "start_place_mm": line.start_mm,
             "cell_share": line.cell_share,
         }

@@ -43,6 +43,7 @@ class Traced:
     cutter: Cutter | None = None
     left: Left | None = None  # by the cutter
     led: WhoLed | None = None  # who led the head along the lines
+    on_edges: bool = False  # of filled shapes, which have no line's width
 
     @property
     def fault(self) -> Fault | None:
@@ -111,7 +112,7 @@ class Traced:
             "incomplete": self.fault is not None or None,
             "length_mm": trace.length_mm,
             "duration_s": float(self.path.t_s[-1] - self.path.t_s[0]),
-            "line_width_mm": trace.line_width_mm,
+            "line_width_mm": None if self.on_edges else trace.line_width_mm,
             "start_place_mm": trace.start_mm,
             "reference_place_mm": trace.reference_mm,
             **self._figures_of_lines(),
@@ -129,7 +130,9 @@ class Traced:
     def _figures_of_lines(self) -> dict[str, Any]:
         """Who led the head, and each line where there may be several."""
         led = self.led.figures() if self.led else {}
-        return led | (trace_figures.lines(self.trace) if self.several else {})
+        if not self.several:
+            return led
+        return led | trace_figures.lines(self.trace, on_edges=self.on_edges)
 
     def name(self, file: FilePath) -> FilePath:
         """The name for a result: marked if the line was lost."""

@@ -87,7 +87,8 @@ class Tracing:
         for text in (*of_contouring(beside, contouring), *of_tabs(beside)):
             listener.warning(text)
         several = self.settings.line.are_several
-        return Traced(beside, thin(beside), several, zero, cutter, left, led)
+        on_edges = bool(drawing.edges_mm)
+        return Traced(beside, thin(beside), several, zero, cutter, left, led, on_edges)
 
     def _remarks(self, drawing: Drawing, followed: Trace, led: WhoLed | None) -> Iterator[str]:
         """What is to be said of the way that the head has gone."""

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 LEAST_CELL_SHARE = (
     0.6  # of the way: below that the operator is told; the figure that was asked for
 )
+# the `LEADERS` as a reader of the figures understands them
+IN_WORDS = ("its_own_cell", "places_felt_ahead", "memory_of_corners", "redrawn_tangles")
 THINNED = 30  # one position in 30 is drawn: every 50 um at 10 mm/s
 
 
@@ -55,15 +57,13 @@ class WhoLed:
 
     def figures(self) -> dict[str, Any]:
         """The share of each leader, and of the cell outside of corners, junctions and tangles."""
-        from morfax.tracer.head.leaders import LEADERS
-
         all_mm = sum(self.lengths_mm)
         return {
             "cell_share": self.cell_share,
             "cell_on_lines_share": self.cell_on_lines_share,
             "led_by": {
-                f"{name.replace(' ', '_')}_share": mm / all_mm
-                for name, mm in zip(LEADERS, self.lengths_mm, strict=True)
+                f"{name}_share": mm / all_mm
+                for name, mm in zip(IN_WORDS, self.lengths_mm, strict=True)
             },
         }
 

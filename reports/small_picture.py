@@ -50,7 +50,7 @@ def draw_sheet(pixels: NDArray[Any], file: FilePath) -> None:
     import cv2
 
     scale = min(1.0, LARGEST_PX / max(pixels.shape[:2]))
-    small = cv2.resize(pixels, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
+    small = cv2.resize(pixels, _size(pixels, scale), interpolation=cv2.INTER_AREA)
     small = small.astype(np.uint8)
     _save(small if small.ndim == 2 else small[..., ::-1], file)
 
@@ -76,10 +76,15 @@ def _reduced(drawing: Drawing) -> tuple[NDArray[np.float32], float]:
     import cv2
 
     scale = min(1.0, LARGEST_PX / max(drawing.darkness.shape))
-    small = cv2.resize(
-        np.asarray(drawing.darkness), None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA
-    )
+    darkness = np.asarray(drawing.darkness)
+    small = cv2.resize(darkness, _size(darkness, scale), interpolation=cv2.INTER_AREA)
     return np.asarray(small, np.float32), scale
+
+
+def _size(pixels: NDArray[Any], scale: float) -> tuple[int, int]:
+    """Columns and rows of a picture at a scale; a narrow strip keeps a row."""
+    rows, columns = pixels.shape[:2]
+    return max(1, round(scale * columns)), max(1, round(scale * rows))
 
 
 def _pixels(xy_mm: Array, drawing: Drawing, scale: float) -> NDArray[np.int32]:

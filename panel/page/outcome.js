@@ -36,10 +36,7 @@ export class Outcome {
     this.result = taken;
     by("result-card").hidden = by("machine").hidden = by("legend").hidden = !taken;
     this.onNew();
-    if (same) {
-      taken.errors = this.errors;
-      return;
-    }
+    if (same) return;
     this.show(share);
     if (taken && state.busy === null && before && !ranAgain) by("result-card").scrollIntoView({ block: "start", behavior: "smooth" });
   }

@@ -31,7 +31,6 @@ from morfax.motion.faults import DrawingFault
 
 Darkness = NDArray[np.float32]
 PaperKind = Literal["auto", "plain", "squared", "ruled"]
-PAPERS: tuple[PaperKind, ...] = ("auto", "plain", "squared", "ruled")
 
 # Chosen by trial on drawings on printed paper.
 TILT_DEG, TILT_STEP_DEG = 4.0, 0.1  # of the paper on the scanner's glass

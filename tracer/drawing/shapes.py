@@ -81,6 +81,8 @@ def outlined(grey: NDArray[Any], pitch_mm: float) -> Outlined:
         closed += places_of(share, pairs, pitch_mm)
         for cover in covers(share, pairs, softness_px):
             share, shade = cover.over(share), cover.over(shade)
+    else:  # as they are after the last closing
+        sharp, softness_px, notes = _edges(share, pitch_mm)
     closed += streaks_of(share, softness_px, pitch_mm)
     if closed:
         notes = (*notes, note(closed, softness_px * pitch_mm))

@@ -68,7 +68,7 @@ def of_net(setup: Setup) -> OfNet:
     counted_mm = sheet.lengths_mm.copy()
     for patch, (outline, _) in found.items():
         counted_mm[patch] = outline.length_mm
-    counted = replace(sheet, lengths_mm=counted_mm)
+    counted = replace(sheet, lengths_mm=counted_mm, _known={})  # strokes hold their lengths
     longest = int(counted.longest_first(np.arange(len(counted_mm)))[0])
     if longest not in found:
         return OfNet(replace(setup, sheet=counted))
