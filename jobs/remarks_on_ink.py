@@ -123,9 +123,11 @@ def _of_unexplained(trace: Trace) -> Iterator[str]:
 
 def _of_others(trace: Trace) -> Iterator[str]:
     """Further lines of the sheet, where one was traced and nobody said which."""
-    if trace.others:
-        lines = "1 further line" if trace.others == 1 else f"{trace.others} further lines"
+    others = trace.others
+    if others.lines:
+        lines = "1 further line" if others.lines == 1 else f"{others.lines} further lines"
+        inside = f", {others.inside} of them inside it" if others.inside else ""
         yield (
-            f"one line is traced; the sheet has {lines}: `morfax lines` lists them, --lines all "
-            "traces them too"
+            f"one line is traced; the sheet has {lines}{inside}: --lines contours cuts a part with its holes,"
+            " holes first, --lines all traces every stretch of line, and `morfax lines` lists them"
         )

@@ -182,7 +182,14 @@ def test_several_starts_are_one_program_the_slot_before_its_outline(
 
 def test_a_plain_trace_says_what_else_is_on_the_sheet(morfax: Morfax, here: Path) -> None:
     told = morfax("trace", SAMPLES / "bracket.png", "-o", "outline.csv").err
-    assert "the sheet has 1 further line: `morfax lines` lists them" in told
+    assert "the sheet has 1 further line, 1 of them inside it: --lines contours cuts" in told
+    both = morfax(
+        "trace", SAMPLES / "bracket.png", "--lines", "contours", "-o", "b.csv", "--json"
+    )
+    assert [line["line"] for line in both.figures["lines"]] == [
+        2,
+        1,
+    ]  # as it says: the hole first
     for words in (("--start", "48,26"), ("--lines", "1")):
         told = morfax("trace", SAMPLES / "bracket.png", *words, "-o", "outline.csv").err
         assert told == ""

@@ -30,6 +30,7 @@ from morfax.tracer.ink.ledger import Balance
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.operator.work import Action, Work
 from morfax.tracer.program.passes import Passes
+from morfax.tracer.program.selection import NO_OTHERS, Others
 from morfax.tracer.program.tabs import Tab, tabs_of
 from morfax.tracer.program.unexplained import Unexplained
 
@@ -51,7 +52,7 @@ class Trace:
     rate_hz: float = MOTION_RATE_HZ
     left_out: int = 0
     left_out_mm: float = 0.0
-    others: int = 0
+    others: Others = NO_OTHERS
     ink: Balance | None = None
     unread: int = 0
     unexplained: tuple[Unexplained, ...] = ()

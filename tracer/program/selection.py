@@ -19,7 +19,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import groupby
+from typing import NamedTuple
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -28,6 +30,7 @@ from morfax.motion.faults import LineFault
 from morfax.motion.nesting import lies_inside
 from morfax.motion.polyline import nearest_mm
 from morfax.tracer.drawing.strokes import Sheet, Stroke
+from morfax.tracer.following.line import Line
 from morfax.tracer.marks.reference import LARGEST_MM
 
 Which = str | tuple[int, ...]  # "contours", "outer", or the numbers of lines
@@ -100,6 +103,16 @@ def plan(sheet: Sheet, which: Which) -> tuple[list[Contour], int]:
     return [contours[i] for i in widest_first], sheet.patches.count - len(patches)
 
 
+class Others(NamedTuple):
+    """Further lines of a sheet beside the one that was followed, and how many of them lie inside that."""
+
+    lines: int = 0
+    inside: int = 0
+
+
+NO_OTHERS = Others()
+
+
 def lines_of(sheet: Sheet) -> NDArray[np.int64]:
     """The patches that are lines, the longest first; every patch along the edge of a filled shape is one."""
     shortest_mm = 0.0 if sheet.drawing.edges_mm else least_mm(sheet.widths_mm)
@@ -108,22 +121,29 @@ def lines_of(sheet: Sheet) -> NDArray[np.int64]:
     return np.asarray(sheet.longest_first(patches), np.int64)
 
 
-def others_than(
-    sheet: Sheet, line_mm: Array, reference_mm: tuple[float, float] | None = None
-) -> int:
-    """How many patches are lines, have no ink on a followed line (n, 2) mm, and are not the reference point
-    from which it begins.
+def others_than(sheet: Sheet, line: Line) -> Others:
+    """The patches that are lines, have no ink on a followed line, and are not the reference point from which
+    it begins.
     """
     numbered = np.zeros(sheet.patches.count, bool)
     numbered[lines_of(sheet)] = True
     runs = np.flatnonzero(numbered[sheet.patches.patch])
     patch, middles_mm = sheet.patches.patch[runs], sheet.run_middles_mm(runs)
-    near = nearest_mm(middles_mm, line_mm) < 0.5 * sheet.widths_mm[patch]
+    near = nearest_mm(middles_mm, line.places_mm) < 0.5 * sheet.widths_mm[patch]
     others = numbered & (np.bincount(patch[near], minlength=len(numbered)) == 0)
-    if reference_mm is not None:
+    if line.reference_mm is not None:
         for number in np.flatnonzero(others):
-            others[number] = not are_about(middles_mm[patch == number], [reference_mm])
-    return int(np.count_nonzero(others))
+            others[number] = not are_about(middles_mm[patch == number], [line.reference_mm])
+    return Others(int(np.count_nonzero(others)), _inside(sheet, np.flatnonzero(others), line))
+
+
+def _inside(sheet: Sheet, patches: NDArray[np.int64], line: Line) -> int:
+    """How many patches lie inside a line, by the middles of their boxes; none inside one that is open."""
+    if line.is_open:
+        return 0
+    around = line.loop_mm[:: max(1, len(line.loop_mm) // LOOKED_AT)].astype(np.float32)
+    middles_mm = sheet.middles_mm(patches).tolist()
+    return sum(cv2.pointPolygonTest(around, (x, y), False) > 0 for x, y in middles_mm)
 
 
 def are_about(places: Array, references_mm: Iterable[tuple[float, float]]) -> bool:

@@ -33,7 +33,7 @@ from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.marks_read import with_marks_read
 from morfax.tracer.program.net_outline import OfNet, of_net
 from morfax.tracer.program.program import Trace
-from morfax.tracer.program.selection import others_than
+from morfax.tracer.program.selection import NO_OTHERS, others_than
 from morfax.tracer.program.setup import HeadProgress, Setup
 from morfax.tracer.program.unexplained import unexplained
 
@@ -60,9 +60,7 @@ def trace(
     setup = Setup(Sheet.of(drawing), settings or Settings(), operator, progress)
     found = OfNet(setup) if start_mm is not None else of_net(setup)
     line = found.line or followed(found.setup, start_mm)
-    others = 0
-    if start_mm is None:
-        others = others_than(setup.sheet, line.places_mm, line.reference_mm)
+    others = NO_OTHERS if start_mm is not None else others_than(setup.sheet, line)
     lines, unread = with_marks_read([line], operator)
     beside = unexplained(setup, lines)
     return Trace(tuple(lines), operator, others=others, unread=unread, unexplained=beside)
