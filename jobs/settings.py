@@ -32,6 +32,9 @@ if TYPE_CHECKING:
     from morfax.tracer.operator.operator import Marks, Operator, Panel
     from morfax.tracer.operator.work import Work
 
+# pieces of work that take long for a large sheet, or a page of many drawn lines
+READ, MEASURED = "reading the drawing", "measuring the ink"
+
 
 @dataclass(frozen=True, slots=True)
 class DrawingFile:
@@ -58,7 +61,8 @@ class DrawingFile:
         self.check()
         ink = None if self.ink is None else inks.parsed(self.ink)
         scan, made = self._scanned(listener)
-        drawing = Drawing.of(scan, self.scale(), ink, self.edge, self.paper)
+        with listener.progress(MEASURED, 1.0):
+            drawing = Drawing.of(scan, self.scale(), ink, self.edge, self.paper)
         drawing = replace(drawing, flattening=made)
         for note in drawing.notes:
             listener.note(note)
@@ -87,14 +91,17 @@ class DrawingFile:
 
     def _scanned(self, listener: Listener) -> tuple[Scan, Flattening | None]:
         """The picture as it is read, made flat if it is a photograph, and how well."""
-        from morfax.tracer.drawing import raster
-
         scale_given = bool(self.scale().given())
         self.flatten.check(scale_given)
-        scan = raster.read(
-            self.file, coloured=self.ink is not None, page=self.page, dpi=self.dpi
-        )
+        scan = self._read(listener, coloured=self.ink is not None)
         return self._flattened(scan, scale_given, listener)
+
+    def _read(self, listener: Listener, *, coloured: bool) -> Scan:
+        """The picture as the file has it; a page full of drawn lines is rendered for a while."""
+        from morfax.tracer.drawing import raster
+
+        with listener.progress(READ, 1.0):
+            return raster.read(self.file, coloured=coloured, page=self.page, dpi=self.dpi)
 
     def _corrected(self, drawing: Drawing, scan: Scan, listener: Listener) -> Drawing:
         """The drawing with its corrections, if it has any."""
@@ -112,15 +119,13 @@ class DrawingFile:
         self, scan: Scan, scale_given: bool, listener: Listener
     ) -> tuple[Scan, Flattening | None]:
         """The scan of a photograph made flat, and how well; any other scan as it is."""
-        from morfax.tracer.drawing import raster
-
         wanted = self.flatten.of(scan, scale_given)
         if wanted is None:
             if scale_given:
                 flattening.warn_of_tilt(scan, listener)
             return scan, None
         if self.ink is None:
-            scan = raster.read(self.file, coloured=True, page=self.page)
+            scan = self._read(listener, coloured=True)
         flat, made = flattening.made_flat(scan, wanted, self.flatten.bar_mm, listener)
         return (flat if self.ink is not None else flattening.in_grey(flat, made)), made
 

@@ -22,6 +22,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
 
 from morfax.jobs import kernels
+from morfax.jobs.damaged_kernels import compile_damaged_again
 from morfax.jobs.listener import Advance
 from morfax.panel import pipe
 from morfax.panel.kept_knots import KeptKnots
@@ -238,6 +239,7 @@ def main() -> None:
     os.dup2(2, 1)  # what a library prints is not for the pipe
     kernels.choose_cache()
     worker, jobs = Worker(out), queue.Queue[tuple[Any, ...]]()
+    compile_damaged_again(worker.teller.note)
     threading.Thread(target=worker.send_head, daemon=True).start()
     threading.Thread(target=_obey, args=(worker.lookout, jobs), daemon=True).start()
     while True:
