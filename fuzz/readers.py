@@ -1,4 +1,4 @@
-"""Fuzz the readers of text without any tool: `python -m fuzz.readers [SECONDS] [TARGET ...]`.
+"""Fuzz readers of text, programs and drawings, with no tool: `python -m fuzz.readers [SECONDS] [TARGET ...]`.
 
 Each target has a whole, right file; an input is that file after one to eight changes: bytes, stretches,
 digits, tokens that readers stumble over. Every input must be read or end in a fault of the domain. Another
@@ -13,88 +13,19 @@ import sys
 import tempfile
 import time
 import warnings
-from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import FrameType
 
-import numpy as np
-
+from fuzz.targets import Target, targets
 from morfax.motion.faults import Fault
-from morfax.motion.motion import Path as Course
-from morfax.motion.pathfile import read_path, write_path
-from morfax.player.gcode.rs274 import read_rs274
-from morfax.recorder.cubics.file import read_program as read_cubic
-from morfax.recorder.media import record
-from morfax.recorder.steps.file import read_program as read_steps
-from morfax.recorder.tape.format import TapeFormat
-from morfax.tracer.operator.card import Card
 
-Target = tuple[bytes, Callable[[bytes], object]]
 SLOW_S = 2.0
 TOKENS = (
     b"nan", b"inf", b"-1", b"0", b"1e308", b"1e-308", b"9" * 40, b"\x00", b"\xff\xfe", b"\r\n", b",", b'"',
     b"[[", b"]]", b"=", b"#", b"(", b")", b"G2 X1 Y1 R0", b"{", b"}", b"-0.0", b"%", b"M2", b"crc32",
 )  # fmt: skip
-CARD = b"""start = "2mm"
-passes = ["2mm", "4mm"]
-restart = "automatic"
-turns = ["straight", "left"]
-override = [3]
-
-[speeds]
-trace = "10mm/s"
-feed = "300mm/min"
-
-[[stop]]
-number = 1
-moves = [
-    { down = "7mm", feed = "2mm/s" },
-    { dwell = "500ms" },
-    { up = "7mm" },
-]
-"""
-
-
-def course() -> Course:
-    """A square of 5 mm, in the work, with a way down and up."""
-    t = np.arange(7.0)
-    xyz = np.array(
-        [[0, 0, 2], [0, 0, -1], [5, 0, -1], [5, 5, -1], [0, 5, -1], [0, 0, -1], [0, 0, 2]],
-        float,
-    )
-    return Course(t, xyz)  # fmt: skip
-
-
-def by_file(
-    folder: Path, suffix: str, read: Callable[[Path], object]
-) -> Callable[[bytes], object]:
-    """A reader of files as one of bytes."""
-    file = folder / f"input{suffix}"
-
-    def reads(data: bytes) -> object:
-        file.write_bytes(data)
-        return read(file)
-
-    return reads
-
-
-def targets(folder: Path) -> Iterator[tuple[str, Target]]:
-    """All targets: name, a right file, the reader."""
-    fmt = TapeFormat(end_mm=(1.0, 2.0, 3.0))
-    yield (
-        "chunk",
-        (
-            fmt.to_json().encode(),
-            lambda data: TapeFormat.from_json(data.decode("utf-8", "replace")),
-        ),
-    )
-    yield "card", (CARD, by_file(folder, ".toml", Card.open))
-    write_path(course(), folder / "right.csv")
-    yield "path", ((folder / "right.csv").read_bytes(), by_file(folder, ".csv", read_path))
-    for suffix, read in ((".steps", read_steps), (".cubic", read_cubic), (".ngc", read_rs274)):
-        whole = folder / f"right{suffix}"
-        record(course(), whole)
-        yield suffix[1:], (whole.read_bytes(), by_file(folder, suffix, read))
+# a file here is in memory: on a disk each input costs some ms
+IN_MEMORY = Path("/dev/shm")
 
 
 def changed(right: bytes, chance: random.Random) -> bytes:
@@ -150,7 +81,8 @@ def main(words: list[str]) -> int:
     warnings.simplefilter("ignore")
     signal.signal(signal.SIGVTALRM, too_slow)
     bad = 0
-    with tempfile.TemporaryDirectory() as folder:
+    where = IN_MEMORY if IN_MEMORY.is_dir() else None
+    with tempfile.TemporaryDirectory(dir=where) as folder:
         for name, target in targets(Path(folder)):
             if words[1:] and name not in words[1:]:
                 continue
