@@ -28,7 +28,8 @@ def read_path(file: FilePath, unit: str | None, feed_mm_s: float, listener: List
     """The path of a drawing from CAD at a feed; raises DrawingFault, FileFault."""
     from morfax.recorder.media import read_outline
 
-    outline = read_outline(file, unit)
+    with listener.progress("reading the drawing", 1.0):
+        outline = read_outline(file, unit)
     for note in outline.notes:
         listener.note(note)
     listener.detail(f"{file}: {len(outline.contours_mm)} contours")

@@ -29,6 +29,8 @@ from morfax.jobs.record import RecordJob
 from morfax.jobs.recording import RecordingUnit
 from morfax.jobs.run import RunJob
 from morfax.jobs.settings import (
+    MEASURED,
+    READ,
     DrawingFile,
     HeadSettings,
     ProgramSettings,
@@ -137,6 +139,8 @@ def test_trace(here: Path) -> None:
     assert result.picture == here / "curve.png"  # which a face draws
     assert ("compiling", "the head") in listener.said
     assert listener.done["following the line"][-1] > 0.9
+    # a page of many drawn lines takes long to read, and a large sheet to measure
+    assert list(listener.done)[:2] == [READ, MEASURED]
 
 
 def test_run_puts_all_in_a_folder(here: Path) -> None:

@@ -384,3 +384,25 @@ def test_a_drawing_without_lines_is_told(tmp_path: Path) -> None:
 def test_a_damaged_path_of_an_svg_is_told(tmp_path: Path, path: str) -> None:
     with pytest.raises(DrawingFault, match=r"a\.svg"):
         read_outline(svg(tmp_path / "a.svg", f'<path d="{path}"/>'))
+
+
+def repeated(times: int, deep: int) -> str:
+    """A line in groups of `use`, each of which repeats the one before."""
+    groups = '<path id="g0" d="M0 0L9 9"/>'
+    for k in range(1, deep + 1):
+        groups += f'<g id="g{k}">' + f'<use href="#g{k - 1}"/>' * times + "</g>"
+    return f'<defs>{groups}</defs><use href="#g{deep}"/>'
+
+
+def test_a_small_svg_of_very_many_elements_is_refused(tmp_path: Path) -> None:
+    """2 kB that are 100 million lines took 40 s and 0.9 GB until they were interrupted."""
+    many = svg(tmp_path / "many.svg", repeated(10, 8))
+    with pytest.raises(
+        DrawingFault, match=r"repeats its elements with `use`: 4.69e\+08 of them"
+    ):
+        read_outline(many)
+    within = svg(tmp_path / "within.svg", '<g id="a"><path d="M0 0L9 9"/><use href="#a"/></g>')
+    with pytest.raises(DrawingFault, match="repeats what it stands in, without end"):
+        read_outline(within)
+    some = svg(tmp_path / "some.svg", repeated(3, 2))
+    assert "8 lines are there twice, and taken once" in read_outline(some).notes
