@@ -82,6 +82,18 @@ class Patches:
         _paint(mask, self.row[own] - top, self.begin[own] - left, self.end[own] - left)
         return mask
 
+    def pixels_of(
+        self, chosen: NDArray[np.bool_], values: NDArray[np.float32]
+    ) -> NDArray[np.float32]:
+        """The values of a sheet, (rows, columns), at the pixels of the chosen patches; row by row."""
+        own = np.flatnonzero(chosen[self.patch])
+        lengths = self.end[own] - self.begin[own]
+        return np.asarray(
+            _taken(
+                values, self.row[own], self.begin[own], self.end[own], np.cumsum(lengths) - lengths
+            )
+        )
+
 
 def strips(shape: tuple[int, ...], halo: int = 0) -> Iterator[tuple[int, int, slice]]:
     """First row and last row + 1 of each strip of a sheet, and its rows with a halo of neighbours."""
@@ -108,6 +120,17 @@ def _paint(mask, row, begin, end):  # type: ignore[no-untyped-def]
     for k in range(len(row)):
         for column in range(max(begin[k], 0), min(end[k], mask.shape[1])):
             mask[row[k], column] = 1
+
+
+@njit(cache=True)
+def _taken(values, row, begin, end, places):  # type: ignore[no-untyped-def]
+    """The values along runs; each run's first goes to its place."""
+    last = len(row) - 1
+    taken = np.empty(places[last] + end[last] - begin[last] if len(row) else 0, values.dtype)
+    for k in range(len(row)):
+        for j in range(end[k] - begin[k]):
+            taken[places[k] + j] = values[row[k], begin[k] + j]
+    return taken
 
 
 @njit(cache=True)

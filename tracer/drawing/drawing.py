@@ -20,7 +20,6 @@ it is never guessed.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -32,8 +31,10 @@ from numpy.typing import NDArray
 
 from morfax.motion.faults import DrawingFault
 from morfax.tracer.drawing import coarse, grain, inks, paper, raster, ruling
+from morfax.tracer.drawing.blocks import runs_behind_spot
 from morfax.tracer.drawing.border import without_border
 from morfax.tracer.drawing.components import Patches, runs_of, strips
+from morfax.tracer.drawing.contrast import Contrast
 from morfax.tracer.drawing.noise import Noise, grain_within, measured
 from morfax.tracer.drawing.ruling import PaperKind
 from morfax.tracer.drawing.scale import Scale
@@ -50,7 +51,10 @@ LEAST_CONTRAST = 10.0  # grey levels of 255 between paper and ink
 ABOVE_NOISE = 6.0  # standard deviations of the paper: what is darker is no noise
 DARKER = 80.0  # percentile of the strokes' pixels: those that no edge makes lighter
 LEAST_STROKE_MM = 2.0  # shorter strokes are specks
-FEWEST_SAMPLES = 1 << 22  # pixels that tell the noise of the paper, and the darkness of the ink
+SURELY = 0.8  # of that: the noise of a sample tells that the noise of all pixels is less
+EVERY = 4  # pixels of a noisy sheet that tell its noise
+SOFT_PX = 1.0  # standard deviation of the spot behind which strokes are looked for
+FEWEST_SAMPLES = 1 << 22  # pixels that tell the darkness of the ink
 LEAST_RADIUS_MM, MOST_ENLARGED = 1.3, 4  # of an edge; by trial on round holes
 OBLONG = 1e-3  # sides of a pixel that differ by more than this share are made alike: a fax has such pixels
 
@@ -217,16 +221,9 @@ def levelled(grey: Grey, pitch_mm: float) -> tuple[Darkness, Shapes]:
     Where these are is told on a picture reduced by a whole number. Raises DrawingFault if nothing is long and
     dark enough to be a line.
     """
-    level = paper.Paper.of(grey, pitch_mm)
-    contrast = np.empty(grey.shape, np.float32)
-    for top, bottom, _ in strips(grey.shape):
-        behind = level.rows(top, bottom)
-        here = grey[top:bottom]
-        first, second = (behind, here) if level.is_light else (here, behind)
-        np.subtract(first, second, out=contrast[top:bottom], dtype=np.float32)
+    contrast = Contrast.of(grey, pitch_mm)
     ink = _ink_contrast(contrast, pitch_mm)
-    contrast /= np.float32(ink)
-    return contrast, level.shapes(ink)
+    return contrast.darkness(ink), contrast.paper.shapes(ink)
 
 
 def _border_note(edges: tuple[str, ...]) -> str:
@@ -238,16 +235,19 @@ def _border_note(edges: tuple[str, ...]) -> str:
     )
 
 
-def _ink_contrast(contrast: Darkness, pitch_mm: float) -> float:
+def _ink_contrast(contrast: Contrast, pitch_mm: float) -> float:
     """Contrast of the strokes against the paper, grey levels: that of the longer strokes' darker part."""
-    every = max(4, math.isqrt(contrast.size // FEWEST_SAMPLES))
-    sample = np.concatenate(
-        [soft[-top % every :: every, ::every].ravel() for top, soft in _softened(contrast)]
-    )
-    centre = float(np.median(sample))
-    noise = paper.ROBUST * float(np.median(np.abs(sample - centre)))
-    least = max(LEAST_CONTRAST, centre + ABOVE_NOISE * noise)
-    patches = Patches.of(runs_of(soft > least, top) for top, soft in _softened(contrast))
+    least = LEAST_CONTRAST
+    if _above_noise(contrast.sample(SOFT_PX)) < SURELY * LEAST_CONTRAST:
+        dark = contrast.above(least)
+        seen = contrast.within(dark)
+        runs = runs_behind_spot(seen, dark, contrast.blocks.by, SOFT_PX, least)
+    else:
+        seen = contrast.darkness(1.0)
+        soft = np.asarray(cv2.GaussianBlur(seen, (0, 0), SOFT_PX), np.float32)
+        least = max(least, _above_noise(soft[::EVERY, ::EVERY].ravel()))
+        runs = runs_of(soft > least, 0)
+    patches = Patches.of([runs])
     strokes = patches.longer_sides >= max(12, LEAST_STROKE_MM / pitch_mm)
     if not strokes.any():
         raise DrawingFault(
@@ -255,15 +255,10 @@ def _ink_contrast(contrast: Darkness, pitch_mm: float) -> float:
             " of 255 grey levels darker than the paper; check the file, or scan it with more contrast"
         )
     every = max(1, int(patches.areas[strokes].sum()) // (4 * FEWEST_SAMPLES))
-    inked = []
-    for top, bottom, _ in strips(contrast.shape):
-        mask = patches.painted(strokes, top, bottom, 0, contrast.shape[1]).view(bool)
-        inked.append(contrast[top:bottom][mask][::every])
-    return float(np.percentile(np.concatenate(inked), DARKER))
+    return float(np.percentile(patches.pixels_of(strokes, seen)[::every], DARKER))
 
 
-def _softened(contrast: Darkness) -> Iterator[tuple[int, Darkness]]:
-    """The picture behind a spot of one pixel (standard deviation), by strips: first row, and the strip."""
-    for top, bottom, rows in strips(contrast.shape, halo=8):
-        soft = cv2.GaussianBlur(contrast[rows], (0, 0), 1.0)
-        yield top, np.asarray(soft[top - rows.start : bottom - rows.start], np.float32)
+def _above_noise(sample: Darkness) -> float:
+    """What is above the noise of a sample."""
+    centre = float(np.median(sample))
+    return centre + ABOVE_NOISE * paper.ROBUST * float(np.median(np.abs(sample - centre)))

@@ -17,7 +17,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.tracer.drawing.components import strips
+from morfax.tracer.drawing.blocks import Blocks
 
 ROBUST = 1.4826  # standard deviations to a median absolute deviation of normal noise
 WIDEST_STROKE_MM = 6.0  # broader dark areas count as paper that is dark
@@ -36,7 +36,7 @@ class Paper:
     """
 
     reduced: Levels
-    by: int
+    by_px: int
     columns: int
     is_light: bool
     pitch_mm: float
@@ -44,20 +44,29 @@ class Paper:
     @classmethod
     def of(cls, grey: Grey, pitch_mm: float) -> Paper:
         """The paper of a picture of a pixel pitch."""
-        by = max(4, round(REDUCED_PITCH_MM / pitch_mm))
-        small = _reduced(grey, by)
+        by = cls.by(pitch_mm)
+        return cls.of_reduced(Blocks.of(grey, by).mean, by, grey.shape[1], pitch_mm)
+
+    @staticmethod
+    def by(pitch_mm: float) -> int:
+        """By what whole number a picture of a pixel pitch is reduced."""
+        return max(4, round(REDUCED_PITCH_MM / pitch_mm))
+
+    @classmethod
+    def of_reduced(cls, small: Levels, by: int, columns: int, pitch_mm: float) -> Paper:
+        """The paper of a picture of so many columns that was reduced already."""
         across = 2 * (max(24, round(WIDEST_STROKE_MM / pitch_mm)) // (2 * by)) + 1
         stroke = _disc(across // 2)
         relief = small - cv2.blur(small, (across, across))
         # strokes take less room than paper: the few stand out further
-        is_light = float((relief**3).sum()) <= 0
+        is_light = float((relief * relief * relief).sum()) <= 0
         level = cv2.morphologyEx(small, cv2.MORPH_CLOSE if is_light else cv2.MORPH_OPEN, stroke)
         smooth = np.asarray(cv2.GaussianBlur(level, (0, 0), across / 2), np.float32)
-        return cls(smooth, by, grey.shape[1], is_light, by * pitch_mm)
+        return cls(smooth, by, columns, is_light, by * pitch_mm)
 
     def rows(self, top: int, bottom: int) -> Levels:
         """The paper of some rows of the picture."""
-        by = self.by
+        by = self.by_px
         first, last = max(0, top // by - 1), min(len(self.reduced), -(-bottom // by) + 1)
         part = self.reduced[first:last]
         large = cv2.resize(part, None, fx=by, fy=by, interpolation=cv2.INTER_LINEAR)
@@ -81,17 +90,3 @@ def _disc(radius_px: int) -> NDArray[np.uint8]:
     """Mask of a disc."""
     across = 2 * radius_px + 1
     return np.asarray(cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (across, across)), np.uint8)
-
-
-def _reduced(grey: Grey, by: int) -> Levels:
-    """The mean of each square of `by` pixels; beyond the picture its last pixels are repeated."""
-    rows, columns = (-(-side // by) for side in grey.shape)
-    small = np.empty((rows, columns), np.float32)
-    for top, bottom, _ in strips((rows, columns * by * by)):
-        part = grey[top * by : bottom * by].astype(np.float32)
-        below, beside = (bottom - top) * by - part.shape[0], columns * by - part.shape[1]
-        whole = cv2.copyMakeBorder(part, 0, below, 0, beside, cv2.BORDER_REPLICATE)
-        small[top:bottom] = cv2.resize(
-            whole, (columns, bottom - top), interpolation=cv2.INTER_AREA
-        )
-    return small

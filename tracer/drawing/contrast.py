@@ -1,0 +1,195 @@
+"""Contrast: how much darker than the paper each pixel of a picture is, made where it is asked for.
+
+Signals: grey levels (0..255) and the level of the paper on a reduced picture in; contrast out, grey levels
+(float32), positive on the strokes whether they are dark on light or light on dark.
+
+The paper between the places of the reduced picture is interpolated, across first and then down, each time
+
+    between = left + share · (right - left)
+
+with one rounding, as OpenCV does it: where the picture is reduced by 4, 8 or 16, the result is the same to
+the bit.
+
+Source: our own.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.motion.compiled import njit
+from morfax.tracer.drawing.blocks import (
+    ABOUT,
+    Blocks,
+    Near,
+    in_parts,
+    mirrored,
+    near,
+    row_of_spot,
+    stretches_of,
+    weights_of,
+    with_mirrored,
+)
+from morfax.tracer.drawing.paper import Paper
+from morfax.tracer.drawing.scan import Grey
+
+Darkness = NDArray[np.float32]
+
+ROUNDED = 1e-3  # grey levels: more than interpolation and a spot's weights are rounded by
+EVERY_ROW, EVERY_COLUMN = 32, 4  # of a sample: pixels that are nearer are alike behind a spot
+MOST_ROWS = 64  # of a sample
+
+
+@dataclass(frozen=True, slots=True)
+class Contrast:
+    """The contrast of a picture against its paper."""
+
+    grey: Grey
+    paper: Paper
+    blocks: Blocks
+
+    @classmethod
+    def of(cls, grey: Grey, pitch_mm: float) -> Contrast:
+        """Find the paper of a picture of a pixel pitch."""
+        by = Paper.by(pitch_mm)
+        blocks = Blocks.of(grey, by)
+        level = Paper.of_reduced(blocks.mean, by, grey.shape[1], pitch_mm)
+        return cls(grey, level, blocks)
+
+    def above(self, least: float) -> Near:
+        """The blocks in which a pixel's contrast may be above a level, and those about them."""
+        paper, blocks = self.paper.reduced, self.blocks
+        if self.paper.is_light:
+            most = cv2.dilate(paper, ABOUT) - blocks.low
+        else:
+            most = blocks.high - cv2.erode(paper, ABOUT)
+        return near(np.asarray(most > least - ROUNDED))
+
+    def within(self, blocks: Near) -> Darkness:
+        """Contrast in some blocks and those about them; 0 elsewhere, which takes no memory."""
+        return self._filled(np.zeros(self.grey.shape, np.float32), near(blocks.view(bool)), 1.0)
+
+    def darkness(self, ink: float) -> Darkness:
+        """The whole sheet, where the contrast of ink is 1."""
+        everywhere = np.ones(self.blocks.mean.shape, np.uint8)
+        return self._filled(np.empty(self.grey.shape, np.float32), everywhere, ink)
+
+    def sample(self, spread_px: float) -> Darkness:
+        """The contrast of some pixels behind a spot of a standard deviation."""
+        rows, columns = self.grey.shape
+        every = max(EVERY_ROW, rows // MOST_ROWS)
+        chosen = np.arange(min(every // 2, rows - 1), rows, every)
+        seen = np.empty((len(chosen), columns), np.float32)
+        weights, how = weights_of(spread_px), self._by_and_sign(1.0)
+        _softened(self.grey, self.paper.reduced, how, chosen, weights, seen)
+        return seen[:, ::EVERY_COLUMN].ravel()
+
+    def _filled(self, seen: Darkness, blocks: Near, unit: float) -> Darkness:
+        """Fill in the contrast, in parts of a unit, within some blocks."""
+        how = self._by_and_sign(unit)
+        in_parts(
+            self.grey.size,
+            len(blocks),
+            lambda a, b: _fill(self.grey, self.paper.reduced, how, blocks, seen, a, b),
+        )
+        return seen
+
+    def _by_and_sign(self, unit: float) -> tuple[int, bool, np.float32]:
+        """By what the paper is reduced, whether the strokes are darker than it, and the unit."""
+        return self.blocks.by, self.paper.is_light, np.float32(unit)
+
+
+@njit(cache=True, nogil=True)
+def _fill(grey, paper, how, blocks, seen, first, last):  # type: ignore[no-untyped-def]
+    """Fill in the contrast in some rows of blocks."""
+    rows, columns = grey.shape
+    by = how[0]
+    wide = np.empty((3, columns), np.float32)  # the paper's rows above, at and below, interpolated
+    line = np.empty(columns, np.float32)
+    for k in range(3):
+        _across(paper[min(max(first - 1 + k, 0), len(paper) - 1)], by, wide[k])
+    for i in range(first, last):
+        above, at, below = (i - first) % 3, (i - first + 1) % 3, (i - first + 2) % 3
+        if i > first:
+            _across(paper[min(i + 1, len(paper) - 1)], by, wide[below])
+        stretches = stretches_of(blocks[i], by, columns)
+        for k in range(i * by, min(i * by + by, rows)):
+            upper, lower, share = above, at, (k - i * by + 0.5) / by + 0.5
+            if share >= 1.0:
+                upper, lower, share = at, below, share - 1.0
+            for stretch in stretches:
+                begin, end = stretch[0], stretch[1]
+                part = line[: end - begin]
+                _between(
+                    wide[upper, begin:end], wide[lower, begin:end], np.float32(share), part
+                )
+                _held_against(grey[k, begin:end], part, how, seen[k, begin:end])
+
+
+@njit(cache=True, nogil=True)
+def _softened(grey, paper, how, chosen, weights, seen):  # type: ignore[no-untyped-def]
+    """Fill in the contrast of the chosen rows behind a spot."""
+    rows, columns = grey.shape
+    by, reach = how[0], len(weights) // 2
+    wide, line = np.empty((2, columns), np.float32), np.empty(columns, np.float32)
+    down, longer = np.empty(columns, np.float32), np.empty(columns + 2 * reach, np.float32)
+    before = -2  # the row of the paper that is interpolated already
+    for n in range(len(chosen)):
+        down[:] = 0.0
+        for d in range(-reach, reach + 1):
+            k = mirrored(chosen[n] + d, rows)
+            at = (k + 0.5) / by - 0.5
+            upper = int(np.floor(at))
+            if upper != before:
+                _across(paper[max(upper, 0)], by, wide[0])
+                _across(paper[min(upper + 1, len(paper) - 1)], by, wide[1])
+                before = upper
+            _between(wide[0], wide[1], np.float32(at - upper), line)
+            _held_against(grey[k], line, how, line)
+            _add(weights[reach + d], line, down)
+        with_mirrored(down, -reach, longer)
+        row_of_spot(longer, weights, seen[n])
+
+
+@njit(cache=True, nogil=True)
+def _add(weight, line, total):  # type: ignore[no-untyped-def]
+    """Add a weighted line."""
+    for j in range(len(total)):
+        total[j] += weight * line[j]
+
+
+@njit(cache=True, nogil=True, fastmath={"contract"})
+def _across(paper, by, wide):  # type: ignore[no-untyped-def]
+    """Interpolate a row of the paper at each column."""
+    columns, last = len(wide), len(paper) - 1
+    half = by - by // 2  # the first pixel of a block beyond its middle, or at it
+    for block in range(-1, last + 1):
+        left, right = paper[max(block, 0)], paper[min(block + 1, last)]
+        step = right - left
+        begin = block * by + half if 2 * half == by else block * by + half - 1
+        for j in range(max(begin, 0), min(begin + by, columns)):
+            share = np.float32((j + 0.5) / by - 0.5 - block)
+            wide[j] = left + share * step
+
+
+@njit(cache=True, nogil=True, fastmath={"contract"})
+def _between(upper, lower, share, line):  # type: ignore[no-untyped-def]
+    """Interpolate between two rows."""
+    for j in range(len(line)):
+        line[j] = upper[j] + share * (lower[j] - upper[j])
+
+
+@njit(cache=True, nogil=True)
+def _held_against(grey, paper, how, seen):  # type: ignore[no-untyped-def]
+    """How much darker than the paper a row is, or lighter, in parts of the unit."""
+    unit = how[2]
+    if how[1]:
+        for j in range(len(seen)):
+            seen[j] = (paper[j] - np.float32(grey[j])) / unit
+    else:
+        for j in range(len(seen)):
+            seen[j] = (np.float32(grey[j]) - paper[j]) / unit
