@@ -61,15 +61,22 @@ def in_parts(pixels: int, count: int, work: Callable[[int, int], Any]) -> list[A
     """Work on rows 0 … count of a sheet of so many pixels, the two halves of a large one at the same time."""
     if pixels < MUCH_PX or count < 2:
         return [work(0, count)]
-    done = list[Any]()
-    other = threading.Thread(target=lambda: done.append(work(count // 2, count)))
+    done, faults = list[Any](), list[BaseException]()
+
+    def second_half() -> None:
+        try:
+            done.append(work(count // 2, count))
+        except BaseException as fault:  # raised again below, in the thread that asked
+            faults.append(fault)
+
+    other = threading.Thread(target=second_half)
     other.start()
     try:
         first = work(0, count // 2)
     finally:
         other.join()
-    if not done:
-        raise MemoryError
+    if faults:
+        raise faults[0]
     return [first, *done]
 
 

@@ -108,25 +108,26 @@ def _fill(grey, paper, how, blocks, seen, first, last):  # type: ignore[no-untyp
     """Fill in the contrast in some rows of blocks."""
     rows, columns = grey.shape
     by = how[0]
-    wide = np.empty((3, columns), np.float32)  # the paper's rows above, at and below, interpolated
+    wide = np.empty((3, columns), np.float32)  # rows of the paper, interpolated, each in its place
+    held = np.full(3, -1)  # which they are
     line = np.empty(columns, np.float32)
-    for k in range(3):
-        _across(paper[min(max(first - 1 + k, 0), len(paper) - 1)], by, wide[k])
     for i in range(first, last):
-        above, at, below = (i - first) % 3, (i - first + 1) % 3, (i - first + 2) % 3
-        if i > first:
-            _across(paper[min(i + 1, len(paper) - 1)], by, wide[below])
         stretches = stretches_of(blocks[i], by, columns)
+        if not len(stretches):
+            continue
+        for row in range(max(i - 1, 0), min(i + 2, len(paper))):
+            if held[row % 3] != row:
+                _across(paper[row], by, wide[row % 3])
+                held[row % 3] = row
         for k in range(i * by, min(i * by + by, rows)):
-            upper, lower, share = above, at, (k - i * by + 0.5) / by + 0.5
-            if share >= 1.0:
-                upper, lower, share = at, below, share - 1.0
+            at = (k + 0.5) / by - 0.5
+            above = int(np.floor(at))
+            share = np.float32(at - above)
+            upper, lower = max(above, 0) % 3, min(above + 1, len(paper) - 1) % 3
             for stretch in stretches:
                 begin, end = stretch[0], stretch[1]
                 part = line[: end - begin]
-                _between(
-                    wide[upper, begin:end], wide[lower, begin:end], np.float32(share), part
-                )
+                _between(wide[upper, begin:end], wide[lower, begin:end], share, part)
                 _held_against(grey[k, begin:end], part, how, seen[k, begin:end])
 
 

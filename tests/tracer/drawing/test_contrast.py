@@ -1,0 +1,50 @@
+"""Contrast: made where it is asked for, it is the picture held against OpenCV's interpolated paper."""
+
+import cv2
+import numpy as np
+import pytest
+
+from morfax.tracer.drawing.contrast import Contrast
+
+PITCH_MM = 25.4 / 600  # the paper is reduced by 8
+
+
+def page(is_light: bool) -> np.ndarray:
+    """A page lit from one side, with a line and some noise."""
+    rows, columns = 405, 610
+    grey = np.linspace(200, 240, columns) * np.ones((rows, 1))
+    cv2.line(grey, (50, 50), (500, 350), 40.0, 12)
+    grey += np.random.default_rng(2).normal(0, 1, grey.shape)
+    return (grey if is_light else 255 - grey).astype(np.uint8)
+
+
+@pytest.mark.parametrize("is_light", [True, False])
+def test_contrast_is_that_against_the_interpolated_paper(is_light: bool) -> None:
+    grey = page(is_light)
+    contrast = Contrast.of(grey, PITCH_MM)
+    assert contrast.paper.is_light == is_light
+    paper = contrast.paper.rows(0, len(grey))
+    expected = paper - grey if is_light else grey - paper
+    # where OpenCV was built without fused products it rounds once more: a bit of 255
+    assert np.abs(contrast.darkness(1.0) - expected).max() <= 2**-15
+    # ink of a contrast is 1
+    assert np.array_equal(contrast.darkness(160.0), contrast.darkness(1.0) / np.float32(160))
+
+
+def test_blocks_that_are_left_out_are_nowhere_above_the_level() -> None:
+    contrast = Contrast.of(page(True), PITCH_MM)
+    dark = contrast.above(10.0)
+    assert 0 < dark.mean() < 0.7
+    soft = cv2.GaussianBlur(contrast.darkness(1.0), (0, 0), 1.0)
+    pixels = np.kron(dark, np.ones((8, 8), np.uint8))[: soft.shape[0], : soft.shape[1]]
+    assert soft[pixels == 0].max() <= 10.0
+    within = contrast.within(dark)
+    assert np.array_equal(within[pixels == 1], contrast.darkness(1.0)[pixels == 1])
+
+
+def test_a_sample_is_as_noisy_as_the_whole_page() -> None:
+    contrast = Contrast.of(page(True), PITCH_MM)
+    soft = cv2.GaussianBlur(contrast.darkness(1.0), (0, 0), 1.0)
+    # quartiles: 12 rows of 153 pixels, and the noise of a spot is 0.28 levels
+    whole, some = (np.percentile(seen, [25, 75]) for seen in (soft, contrast.sample(1.0)))
+    assert np.abs(whole - some).max() < 0.1
