@@ -225,7 +225,7 @@ def with_mirrored(line, begin, part):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True, fastmath={"contract"})
 def row_of_spot(line, weights, seen):  # type: ignore[no-untyped-def]
-    """Weigh each pixel of a line with those beside it; the line is longer by the spot's reach at both ends."""
+    """Weigh each pixel with those beside it; the line is longer by the reach of the spot at both ends."""
     weight = weights[0]
     for j in range(len(seen)):
         seen[j] = weight * line[j]

@@ -90,7 +90,11 @@ class Patches:
         lengths = self.end[own] - self.begin[own]
         return np.asarray(
             _taken(
-                values, self.row[own], self.begin[own], self.end[own], np.cumsum(lengths) - lengths
+                values,
+                self.row[own],
+                self.begin[own],
+                self.end[own],
+                np.cumsum(lengths) - lengths,
             )
         )
 

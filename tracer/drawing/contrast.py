@@ -108,7 +108,9 @@ def _fill(grey, paper, how, blocks, seen, first, last):  # type: ignore[no-untyp
     """Fill in the contrast in some rows of blocks."""
     rows, columns = grey.shape
     by = how[0]
-    wide = np.empty((3, columns), np.float32)  # rows of the paper, interpolated, each in its place
+    wide = np.empty(
+        (3, columns), np.float32
+    )  # rows of the paper, interpolated, each in its place
     held = np.full(3, -1)  # which they are
     line = np.empty(columns, np.float32)
     for i in range(first, last):

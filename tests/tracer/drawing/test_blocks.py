@@ -39,9 +39,7 @@ def test_two_threads_see_what_one_sees(monkeypatch: pytest.MonkeyPatch) -> None:
     dark = near(darkest(picture, BY) > 0.5)
     alone = runs_behind_spot(picture, dark, BY, 0.7, 0.5)
     monkeypatch.setattr(blocks, "MUCH_PX", 1)
-    for one, other in zip(
-        alone, runs_behind_spot(picture, dark, BY, 0.7, 0.5), strict=True
-    ):
+    for one, other in zip(alone, runs_behind_spot(picture, dark, BY, 0.7, 0.5), strict=True):
         assert np.array_equal(one, other)
 
 
