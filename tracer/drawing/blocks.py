@@ -50,7 +50,8 @@ class Blocks(NamedTuple):
     def of(cls, grey: Picture, by: int) -> Blocks:
         """The blocks of a picture; beyond the picture its last pixels are repeated."""
         shape = tuple(-(-side // by) for side in grey.shape)
-        blocks = cls(*(np.empty(shape, np.float32) for _ in range(3)), by)
+        mean, low, high = (np.empty(shape, np.float32) for _ in range(3))
+        blocks = cls(mean, low, high, by)
         sums = np.uint32 if grey.dtype == np.uint8 else np.float32
         row = np.empty(grey.shape[1], sums)
         in_parts(grey.size, shape[0], lambda a, b: _of_blocks(grey, blocks, row.copy(), a, b))
