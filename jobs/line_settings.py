@@ -60,10 +60,19 @@ class LineSettings:
     def check(self) -> None:
         """Raise WrongUse for two that do not go together."""
         self._check_lettering()
+        self._check_places()
+        self._check_arrows()
+        self._check_order()
+
+    def _check_places(self) -> None:
+        """Raise WrongUse for places beside other ways to choose, or without a first one."""
         if self.lines is not None and self.start_mm is not None:
             raise WrongUse("--start picks one line, --lines several; give one of them")
         if self.more_starts_mm and self.start_mm is None:
             raise WrongUse("more_starts_mm are further places; give the first one as start_mm")
+
+    def _check_arrows(self) -> None:
+        """Raise WrongUse for arrows beside another word on how a line begins."""
         if self.arrows_mm and (self.start_mm is not None or self.direction is not None):
             other = "--start" if self.start_mm is not None else "--direction"
             raise WrongUse(
@@ -74,6 +83,9 @@ class LineSettings:
                 raise WrongUse(
                     f"--arrow {place[0]:g},{place[1]:g} goes nowhere; give a second place along the way"
                 )
+
+    def _check_order(self) -> None:
+        """Raise WrongUse for an order of what has its own, of one line, or with a line twice."""
         if self.lines == "all" and (self.arrows_mm or self.order):
             what = "--arrow" if self.arrows_mm else "--order"
             raise WrongUse(

@@ -186,10 +186,7 @@ def _described(arg: Any) -> str:
     if kind in _PLAIN:
         return _PLAIN[kind]
     if kind is np.ndarray:
-        flags = arg.flags.num
-        layout = "C" if flags & _C else "F" if flags & _F else "A"
-        rest = f"{'' if flags & _ALIGNED else 'u'}{'' if flags & _WRITEABLE else 'r'}"
-        return f"[{arg.dtype!r} {arg.ndim}{layout}{rest}]"
+        return _array_described(arg)
     if kind is np.void or kind is np.record:
         return f"{kind.__name__}<{arg.dtype!r}>"
     if isinstance(arg, tuple):
@@ -199,3 +196,11 @@ def _described(arg: Any) -> str:
     if arg is None:
         return "none"
     raise TypeError(f"no key for {kind}")
+
+
+def _array_described(array: np.ndarray[Any, Any]) -> str:
+    """The kind of an array: its data, its dimensions, how it lies in memory, whether it may be written to."""
+    flags = array.flags.num
+    layout = "C" if flags & _C else "F" if flags & _F else "A"
+    rest = f"{'' if flags & _ALIGNED else 'u'}{'' if flags & _WRITEABLE else 'r'}"
+    return f"[{array.dtype!r} {array.ndim}{layout}{rest}]"

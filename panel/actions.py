@@ -89,13 +89,17 @@ def _value(field: commands.Field, value: Any, bench: Bench) -> str | bool:
         return True
     if not isinstance(value, str) or field.kind == "switch" or len(value) > LONGEST_VALUE:
         raise WrongUse(f"{field.option} cannot be {str(value)[:40]!r}")
-    choices = (*field.choices, *bench.own) if field.kind == "file" else field.choices
-    if (choices or field.kind == "file") and value not in choices:
-        may = (
-            f"it may be {', '.join(choices)}" if choices else "give the page a file of your own"
-        )
-        raise WrongUse(f"{field.option} cannot be {value[:40]!r}; {may}")
+    own = tuple(bench.own) if field.kind == "file" else ()
+    is_choice = bool(field.choices) or field.kind == "file"
+    if is_choice and value not in field.choices + own:
+        raise _no_choice(field.option, value, field.choices + own)
     return value.strip()
+
+
+def _no_choice(option: str, value: str, choices: tuple[str, ...]) -> WrongUse:
+    """The refusal of a value that is none of the choices."""
+    may = f"it may be {', '.join(choices)}" if choices else "give the page a file of your own"
+    return WrongUse(f"{option} cannot be {value[:40]!r}; {may}")
 
 
 def _suffix(options: commands.Options) -> str:

@@ -210,30 +210,35 @@ class Bench:
     def _done(self, message: dict[str, Any]) -> None:
         """A job is done."""
         kind, result = message["kind"], message["result"]
-        if kind == "lines":
-            if (
-                message["number"] == self._job
-                or self.busy is None
-                or self.busy["kind"] == "lines"
-            ):
-                self._seen(result)
-        elif kind == "run":
-            self.kept.keep(result)
-            for text in result["faults"]:
-                self.tell("fault", text, result["fault_place_mm"])
-        elif kind == "play":
-            self.kept.play_again(result)
-            for text in result["faults"]:
-                self.tell("fault", text)
-        elif kind == "correct":
+        if kind == "correct":
             self.busy = None
             self.step(self.history.now)
             return
+        if kind == "lines":
+            is_newest = message["number"] == self._job
+            if is_newest or self.busy is None or self.busy["kind"] == "lines":
+                self._seen(result)
         else:
-            self.tell("saved", f"saved {FilePath(result['file']).name}")
-            if result["fault"]:
-                self.tell("fault", result["fault"])
+            {"run": self._run_done, "play": self._played}.get(kind, self._saved)(result)
         self._free(kind)
+
+    def _run_done(self, result: dict[str, Any]) -> None:
+        """A run has come to its end."""
+        self.kept.keep(result)
+        for text in result["faults"]:
+            self.tell("fault", text, result["fault_place_mm"])
+
+    def _played(self, result: dict[str, Any]) -> None:
+        """The last run was played again."""
+        self.kept.play_again(result)
+        for text in result["faults"]:
+            self.tell("fault", text)
+
+    def _saved(self, result: dict[str, Any]) -> None:
+        """A result was written."""
+        self.tell("saved", f"saved {FilePath(result['file']).name}")
+        if result["fault"]:
+            self.tell("fault", result["fault"])
 
     def _seen(self, seen: dict[str, Any]) -> None:
         """The drawing was looked at."""

@@ -176,14 +176,17 @@ def _words(options: Options, only: tuple[str, ...] | None = None) -> list[str]:
     """Options as words, in the order in which the page has them."""
     words = list[str]()
     for name in (name for group in OFFERED.values() for name in group):
-        value = options.get(name)
-        if value is None or value is False or (only is not None and name not in only):
-            continue
-        if name in MANY and isinstance(value, str):
-            for one in value.split(";"):
-                words += [name, *one.split()]
-            continue
-        words.append(name)
-        if isinstance(value, str):
-            words += value.split() if name in PAIRS else [value]
+        if only is None or name in only:
+            words += _option_words(name, options.get(name))
     return words
+
+
+def _option_words(name: str, value: str | bool | None) -> list[str]:
+    """One option as words; none if it is not given."""
+    if value is None or value is False:
+        return []
+    if value is True:
+        return [name]
+    if name in MANY:
+        return [word for one in value.split(";") for word in (name, *one.split())]
+    return [name, *(value.split() if name in PAIRS else [value])]

@@ -163,25 +163,26 @@ class Gaps:
         """Bridge the gaps of all axes; the number of certain rows, and the fault that ends the tape there."""
         first: tuple[int, Fault] | None = None
         for axis in range(len(self._names)):
-            for a, b in self._gaps_of(axis):
-                if rows.first_row + b <= (self._given or 0):
-                    continue
-                if (
-                    b + self._side + self._held > len(rows)
-                    and not last
-                    and b - a <= self._longest_s * self._rate_hz
-                ):
-                    ready = min(ready, a)  # what comes after it is not yet there
-                    break
-                fault = self._bridge(rows, axis, a, b)
-                if fault is not None:
-                    ready = min(ready, a)
-                    if first is None or a < first[0]:
-                        first = a, fault
-                    break
+            sure, fault = self._bridge_axis(rows, axis, last)
+            ready = min(ready, sure)
+            if fault is not None and (first is None or sure < first[0]):
+                first = sure, fault
         if first is not None and first[0] > ready:
             first = None  # an earlier gap is still open
         return ready, first
+
+    def _bridge_axis(self, rows: Phases, axis: int, last: bool) -> tuple[int, Fault | None]:
+        """Bridge the gaps of an axis; its certain rows, and the fault that ends the tape there."""
+        for a, b in self._gaps_of(axis):
+            if rows.first_row + b <= (self._given or 0):
+                continue
+            is_open = not last and b + self._side + self._held > len(rows)
+            if is_open and b - a <= self._longest_s * self._rate_hz:
+                return a, None  # what comes after it is not yet there
+            fault = self._bridge(rows, axis, a, b)
+            if fault is not None:
+                return a, fault
+        return len(rows), None
 
     def _gaps_of(self, axis: int) -> list[tuple[int, int]]:
         """First and last row (past it) of each gap of an axis; gaps close to each other are one."""

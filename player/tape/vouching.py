@@ -275,9 +275,7 @@ class Vouching:
                 self._counted[axis] = max(self._counted[axis], gap.sound_until)
             return
         if gap is not None:
-            self._held = laid(self._rows, gap, -whole)
-            near = self._bounds[axis].around(gap.first, gap.last)
-            self.mended.append(Laid(gap.ending(-whole), -whole, near or gap.bound))
+            self._lay(axis, gap, -whole)
         elif abs(off) > COUNT_CYCLES:
             name, time_s = self._format.axes[axis], row / self._rate_hz
             found = faults.miscounted(name, off, COUNT_CYCLES, time_s, stands_mm()[axis])
@@ -285,6 +283,12 @@ class Vouching:
             return
         self._ways.settle(axis, row, 0.0 if gap is None else float(-whole))
         self._counted[axis] = row
+
+    def _lay(self, axis: int, gap: Gap, more: int) -> None:
+        """Lay the way over a gap anew, so that so many cycles more lie behind it."""
+        self._held = laid(self._rows, gap, more)
+        near = self._bounds[axis].around(gap.first, gap.last)
+        self.mended.append(Laid(gap.ending(more), more, near or gap.bound))
 
     def _lost_way(self, gap: Gap, behind: tuple[float, dict[int, float]] | None) -> Fault:
         """The fault of a gap; `behind`: a row at which all axes are known again, and how far off each is."""

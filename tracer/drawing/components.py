@@ -143,9 +143,15 @@ def joined(row, begin, end, corners):  # type: ignore[no-untyped-def]
 
     Runs that touch only at a corner belong together if `corners` count.
     """
+    return _numbered(_roots(row, begin, end, 0 if corners else 1))
+
+
+@njit(cache=True)
+def _roots(row, begin, end, apart):  # type: ignore[no-untyped-def]
+    """The tree of each run: a run that it is joined to, or itself."""
     runs = len(row)
     parent = np.arange(runs)
-    above, apart = 0, 0 if corners else 1
+    above = 0
     for k in range(runs):
         while above < k and (
             row[above] < row[k] - 1
@@ -157,9 +163,15 @@ def joined(row, begin, end, corners):  # type: ignore[no-untyped-def]
             a, b = _root(parent, other), _root(parent, k)
             parent[max(a, b)] = min(a, b)
             other += 1
-    patch = np.empty(runs, np.int32)
+    return parent
+
+
+@njit(cache=True)
+def _numbered(parent):  # type: ignore[no-untyped-def]
+    """The tree's number of each run, in their order, and how many trees there are."""
+    patch = np.empty(len(parent), np.int32)
     count = 0
-    for k in range(runs):
+    for k in range(len(parent)):
         root = _root(parent, k)
         if root == k:
             patch[k] = count

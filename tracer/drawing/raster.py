@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.faults import DrawingFault, FileFault
+from morfax.motion.faults import DrawingFault, Fault, FileFault
 from morfax.motion.files import check_regular
 from morfax.tracer.drawing import exif
 from morfax.tracer.drawing import memory as room
@@ -73,28 +73,36 @@ def read(
 
                 register_heif_opener()
             return _picture(file, stream, coloured, page)
-    except UnidentifiedImageError:
-        if file.suffix.lower() in DRAWN_LINES:
-            raise DrawingFault(
-                f"{file} holds lines already, and nothing is to be traced; give it to morfax record"
-            ) from None
-        raise DrawingFault(
-            f"{file} is not an image that can be read; give a PNG, JPEG or TIFF file"
-        ) from None
-    except FileNotFoundError:
-        raise FileFault(f"{file} does not exist; check the name") from None
-    except MemoryError:
-        raise DrawingFault(
-            f"{file} is too large for the memory of this computer; scan it at a lower resolution"
-        ) from None
     except DrawingFault:
         raise
-    except (OSError, SyntaxError, ValueError) as error:
-        if isinstance(error, OSError) and error.errno is not None:
-            raise FileFault(f"{file} cannot be read: {error.strerror}") from None
-        raise DrawingFault(
-            f"{file} is a damaged image ({error}); scan or save it again"
-        ) from None
+    except UnidentifiedImageError:
+        raise _no_picture(file) from None
+    except (MemoryError, OSError, SyntaxError, ValueError) as error:
+        raise _unreadable(file, error) from None
+
+
+def _no_picture(file: Path) -> DrawingFault:
+    """The fault of a file that is no picture."""
+    if file.suffix.lower() in DRAWN_LINES:
+        return DrawingFault(
+            f"{file} holds lines already, and nothing is to be traced; give it to morfax record"
+        )
+    return DrawingFault(
+        f"{file} is not an image that can be read; give a PNG, JPEG or TIFF file"
+    )
+
+
+def _unreadable(file: Path, error: Exception) -> Fault:
+    """The fault of a picture that could not be read."""
+    if isinstance(error, FileNotFoundError):
+        return FileFault(f"{file} does not exist; check the name")
+    if isinstance(error, MemoryError):
+        return DrawingFault(
+            f"{file} is too large for the memory of this computer; scan it at a lower resolution"
+        )
+    if isinstance(error, OSError) and error.errno is not None:
+        return FileFault(f"{file} cannot be read: {error.strerror}")
+    return DrawingFault(f"{file} is a damaged image ({error}); scan or save it again")
 
 
 def _picture(file: Path, stream: BinaryIO, coloured: bool, page: int | None) -> Scan:

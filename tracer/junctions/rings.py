@@ -186,13 +186,7 @@ def _outward(cells, centre, ring_mm, inner):  # type: ignore[no-untyped-def]
     for k in range(len(seen)):
         begin, end = seen[k, 0], seen[k, 1]
         # 1. the arcs within on which it hangs
-        parents, parent, incoming, settled, found = 0, 0, 0, 0, False
-        for p in range(len(inner)):
-            if _overlap(inner[p]["begin"], inner[p]["end"], begin, end):
-                parents, parent = parents + 1, p
-                incoming += inner[p]["incoming"]
-                settled += inner[p]["incoming"] and inner[p]["clean"] > 1
-                found = found or inner[p]["found"]
+        parents, parent, incoming, settled, found = _parents(inner, begin, end)
         if len(inner) > 0 and parents == 0:
             continue
         arc = arcs[count]
@@ -214,6 +208,21 @@ def _outward(cells, centre, ring_mm, inner):  # type: ignore[no-untyped-def]
                 arc["middle_one_back"] = inner[parent]["middle"]
                 arc["middle_two_back"] = inner[parent]["middle_one_back"]
     return arcs[:count].copy()
+
+
+@njit(cache=True)
+def _parents(inner, begin, end):  # type: ignore[no-untyped-def]
+    """How many arcs of the ring within an arc (rad) hangs on; the last of them; how many are the way in,
+    and how many of these were clean twice; whether one is found.
+    """
+    parents, parent, incoming, settled, found = 0, 0, 0, 0, False
+    for p in range(len(inner)):
+        if _overlap(inner[p]["begin"], inner[p]["end"], begin, end):
+            parents, parent = parents + 1, p
+            incoming += inner[p]["incoming"]
+            settled += inner[p]["incoming"] and inner[p]["clean"] > 1
+            found = found or inner[p]["found"]
+    return parents, parent, incoming, settled, found
 
 
 @njit(cache=True)

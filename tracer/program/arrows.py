@@ -59,11 +59,16 @@ def _along(setup: Setup, line: Line, arrow: Arrow) -> Line:
     if line.is_lead or line.reference_mm is not None or line.is_dot:
         raise _refused(arrow, f"line {line.number} has its beginning drawn")
     goes = _goes_along(line, arrow)
-    if line.ending != "closed":
-        told = line if goes else turned_round(setup, line)
-        if told is line and not goes:
-            raise _refused(arrow, f"the head does not follow line {line.number} from there")
-        return told
+    if line.ending == "closed":
+        return _closed_along(setup, line, arrow, goes)
+    told = line if goes else turned_round(setup, line)
+    if told is line and not goes:
+        raise _refused(arrow, f"the head does not follow line {line.number} from there")
+    return told
+
+
+def _closed_along(setup: Setup, line: Line, arrow: Arrow, goes: bool) -> Line:
+    """A closed line from its arrow on; `goes`: the head goes that way already."""
     is_ccw = (area_mm2(line.loop_mm) > 0) == goes
     operator = replace(setup.operator, direction="ccw" if is_ccw else "cw")
     silent = replace(setup, operator=operator, progress=None)

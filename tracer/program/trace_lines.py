@@ -123,18 +123,18 @@ def found_lines(setup: Setup, which: Which) -> FoundLines:
 
     Numbers: patches, the longest first; dots that stand alone; lines that are joined to another.
     """
-    patches, holes = len(selection.lines_of(setup.sheet)), list[Line]()
-    if which == "contours" or (not isinstance(which, str) and max(which) > patches):
-        holes = [line for _, line in dots_alone(setup)]
-    beyond = not isinstance(which, str) and max(which) > patches + len(holes)
+    numbers = () if isinstance(which, str) else which
+    last, patches = max(numbers, default=0), len(selection.lines_of(setup.sheet))
+    holes = _dots_asked(setup, which, last > patches)
+    beyond = last > patches + len(holes)
     # 1. one line of each patch; only a line joined to another has a number beyond patches and dots
-    numbered = which if isinstance(which, str) else tuple(n for n in which if n <= patches)
+    numbered = tuple(n for n in numbers if n <= patches) if numbers else which
     asked, left_out = selection.plan(setup.sheet, "contours" if beyond else numbered)
     lines, letters = one_of_each(setup, asked, which)
     # 2. the other lines of those patches
     joined, left_mm = _joined(setup, asked, lines)
     patch_of = dict[int, int]()
-    if beyond or isinstance(which, str):
+    if beyond or not numbers:
         further = _numbered_on(joined, patches + len(holes))
         patch_of = {line.number: patch for line, patch in further}
         others = [line for line, _ in further]
@@ -142,9 +142,16 @@ def found_lines(setup: Setup, which: Which) -> FoundLines:
     lines = with_least_numbers(lines, asked)
     # 3. dots that stand alone
     lines += holes
-    if beyond or (holes and which != "contours"):
-        lines = _of_numbers(lines, which)
+    if beyond or (holes and numbers):
+        lines = _of_numbers(lines, numbers)
     return FoundLines(lines, left_out + letters - len(holes), left_mm, patch_of)
+
+
+def _dots_asked(setup: Setup, which: Which, are_numbered: bool) -> list[Line]:
+    """The dots that stand alone, where contours are asked for, or a number that one of them may have."""
+    if which == "contours" or are_numbered:
+        return [line for _, line in dots_alone(setup)]
+    return []
 
 
 def _joined(
@@ -172,7 +179,7 @@ def _numbered_on(joined: list[tuple[Line, int]], last: int) -> list[tuple[Line, 
     return [(replace(line, number=number), patch) for number, (line, patch) in numbered]
 
 
-def _of_numbers(lines: list[Line], numbers: Which) -> list[Line]:
+def _of_numbers(lines: list[Line], numbers: tuple[int, ...]) -> list[Line]:
     """The lines that have one of some numbers; raises LineFault for a number that none has."""
     have = {line.number for line in lines}
     for number in numbers:
