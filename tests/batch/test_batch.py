@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import shutil
+import subprocess
+import sys
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import replace
@@ -32,6 +34,13 @@ from tests.console.conftest import Morfax, here, morfax
 
 __all__ = ["here", "morfax"]
 FILES = {"path.csv", "program.ngc", "picture.png", "figures.json"}
+
+
+@pytest.fixture(autouse=True, scope="module")
+def kernels() -> None:
+    """Kernels are compiled before: else a worker does it within the time of its first drawing."""
+    root = Path(__file__).parents[2]
+    subprocess.run([sys.executable, "-c", "import morfax.batch.warm"], cwd=root, check=True)
 
 
 @pytest.fixture(autouse=True)
