@@ -19,7 +19,7 @@ from __future__ import annotations
 import os
 import threading
 from collections.abc import Callable
-from functools import update_wrapper
+from functools import cached_property, update_wrapper
 from types import ModuleType
 from typing import Any
 
@@ -82,13 +82,14 @@ class Kernel:
 
     def called(self) -> list[Kernel]:
         """All kernels that this one calls, and those that they call, itself included."""
-        every = [self]
-        for kernel in every:
-            values = kernel._names().values()
-            every += [
-                value for value in values if isinstance(value, Kernel) and value not in every
-            ]
-        return every
+        every = {id(self): self}
+        left = [self]
+        while left:
+            for kernel in left.pop()._within:
+                if id(kernel) not in every:
+                    every[id(kernel)] = kernel
+                    left.append(kernel)
+        return list(every.values())
 
     @property
     def targetoptions(self) -> dict[str, Any]:
@@ -111,8 +112,14 @@ class Kernel:
             self._dispatcher = numba_njit(**options)(self.py_func)
         return self._dispatcher
 
+    @cached_property
+    def _within(self) -> list[Kernel]:
+        """The kernels that the function itself names; looked up once, as other kernels ask for them again."""
+        return [value for value in self._names.values() if isinstance(value, Kernel)]
+
+    @cached_property
     def _names(self) -> dict[str, Any]:
-        """What the function's names stand for, also within modules of ours."""
+        """What the function's names stand for, also within modules of ours; looked up once."""
         found, names = self.py_func.__globals__, _names_in(self.py_func.__code__)
         values = {name: found[name] for name in names if name in found}
         modules = [value for value in values.values() if isinstance(value, ModuleType)]
@@ -122,11 +129,12 @@ class Kernel:
                 values |= {f"{module.__name__}.{n}": within[n] for n in names if n in within}
         return values
 
+    @cached_property
     def frozen(self) -> str:
         """The plain values that the compiled function holds by names, as a text to compare."""
         plain = (bool, int, float, str, tuple)
         return repr(
-            sorted((n, repr(v)) for n, v in self._names().items() if isinstance(v, plain))
+            sorted((n, repr(v)) for n, v in self._names.items() if isinstance(v, plain))
         )
 
     def _found(self, args: tuple[Any, ...]) -> Callable[..., Any]:

@@ -1,14 +1,12 @@
-"""Machine code of kernels on disk: kept once numba has compiled a kernel, and linked later without numba.
+"""Machine code of kernels on disk: kept once numba has compiled a kernel, and read by later processes.
 
     first process    numba compiles -> object code, as numba's own cache has it -> NAME.kernel
-    every other one  NAME.kernel -> llvmlite links the object code -> a Python function
+    every other one  NAME.kernel -> llvmlite links the object code -> a Python function (`kernel_linker`)
 
-numba's object code needs little of numba to run: the C functions of its three extension modules, which are
-loaded by themselves here, and the names of the built-in exceptions. What a kernel was made with is kept
-beside it (versions, processor, numba's settings, sources of all kernels in it, values of constants); a kernel
-whose makings have changed is compiled anew, and so is one whose file is damaged. Where something is not as it
-was with the versions that this was written for (numba 0.68), nothing is kept here, and numba runs the kernels
-with its own cache. `MORFAX_KERNELS=numba` asks for that.
+What a kernel was made with is kept beside it (versions, processor, numba's settings, sources of all kernels
+in it, values of constants); a kernel whose makings have changed is compiled anew, and so is one whose file is
+damaged. Where the linker cannot be made, or a kernel asks for a name that it does not know, nothing is kept
+here, and numba runs the kernels with its own cache. `MORFAX_KERNELS=numba` asks for that.
 
 Signals in: a kernel, the types of its arguments as a text. Signals out: a Python function.
 Files: `MODULE.NAME-LINE.TAG.kernel` in `__pycache__` beside the module, or in `NUMBA_CACHE_DIR`: a SHA-256
@@ -20,10 +18,6 @@ and code for the oldest processor of that kind (docs/design.md, rejected designs
 
 from __future__ import annotations
 
-import builtins
-import ctypes
-import importlib.machinery
-import importlib.util
 import marshal
 import os
 import pickle
@@ -33,19 +27,17 @@ from collections.abc import Callable
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
-from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from morfax.motion.kernel_linker import Entry, in_process, linker, numba_folder
+
 if TYPE_CHECKING:
     from morfax.motion.compiled import Kernel
 
-# an entry: object code, name of the function in it, environments: name, module, pickled dtypes
-Entry = tuple[bytes, str, list[tuple[str, str, list[bytes]]]]
 FORMAT = 1  # of the files; another number with every change of Entry
 DIGEST = 32  # bytes of a SHA-256 digest, which stands before the rest of a file
-EXTENSIONS = ("_dynfunc", "_helperlib", "core.runtime._nrt_python")
 
 
 def kept(kernel: Kernel, types: str) -> Callable[..., Any] | None:
@@ -54,7 +46,7 @@ def kept(kernel: Kernel, types: str) -> Callable[..., Any] | None:
         return None
     entries = _read(kernel)
     entry = entries.get(types)
-    return None if entry is None else _linker().function(kernel, entry)
+    return None if entry is None else linker().function(kernel, entry)
 
 
 def keep(kernel: Kernel, types: str, compiled: Any) -> None:
@@ -84,7 +76,7 @@ def can_be_kept() -> bool:
     if os.environ.get("MORFAX_KERNELS") == "numba":
         return False
     try:
-        _linker()
+        linker()
     except (ImportError, AttributeError, OSError, TypeError, RuntimeError):
         return False
     return True
@@ -93,11 +85,11 @@ def can_be_kept() -> bool:
 def _entry(compiled: Any) -> Entry | None:
     """What is kept of one compiled function; None if it holds more than machine code."""
     module = compiled.library._final_module
-    known = _linker().names
+    known = linker().names
     for function in module.functions:
         name = function.name
         if function.is_declaration and not (
-            name.startswith("llvm.") or name in known or _in_process(name)
+            name.startswith("llvm.") or name in known or in_process(name)
         ):
             return None
     others = [
@@ -121,142 +113,6 @@ def _entry(compiled: Any) -> Entry | None:
     return code, compiled.fndesc.llvm_cpython_wrapper_name, environments
 
 
-def _in_process(name: str) -> bool:
-    """Whether the process has a C function or variable of this name."""
-    return hasattr(ctypes.pythonapi, name)
-
-
-class _Linker:
-    """llvmlite's linker, with the C functions of numba that object code asks for."""
-
-    def __init__(self) -> None:
-        import llvmlite.binding as llvm
-
-        self._llvm = llvm
-        llvm.initialize_native_target()
-        llvm.initialize_native_asmprinter()
-        self.cpu = f"{llvm.get_host_cpu_name()} {llvm.get_host_cpu_features().flatten()}"
-        self.names: set[str] = set()
-        dynfunc, helpers, runtime = (_extension(name) for name in EXTENSIONS)
-        self._make_function, self._environment = dynfunc.make_function, dynfunc.Environment
-        self._name_all(dynfunc.c_helpers, helpers.c_helpers, runtime.c_helpers)
-        _serve_pickles(helpers.c_helpers["unpickle"])
-        machine = llvm.Target.from_triple(llvm.get_process_triple()).create_target_machine(
-            jit=True, cpu=llvm.get_host_cpu_name()
-        )
-        empty = llvm.parse_assembly(f'target triple = "{llvm.get_process_triple()}"')
-        self._engine = llvm.create_mcjit_compiler(empty, machine)
-        self._environments: dict[str, Any] = {}
-
-    def function(self, kernel: Kernel, entry: Entry) -> Callable[..., Any]:
-        """Link the object code of an entry; give its Python function."""
-        code, name, environments = entry
-        self._engine.add_object_file(self._llvm.ObjectFileRef.from_data(code))
-        self._engine.finalize_object()
-        for held in environments:
-            self._set_environment(*held)
-        own = self._environments[environments[0][0]]
-        plain = kernel.py_func
-        address = self._engine.get_function_address(name)
-        module = sys.modules[plain.__module__]
-        return self._make_function(
-            module, plain.__name__, plain.__doc__ or "", address, own, (kernel,)
-        )
-
-    def _set_environment(self, name: str, module: str, constants: list[bytes]) -> None:
-        """Give compiled code the names of the module that it was written in, as numba does."""
-        if name not in self._environments:
-            # code of numba's own modules looks nothing up: they need not be there
-            names = vars(sys.modules[module]) if module in sys.modules else {"__name__": module}
-            self._environments[name] = self._environment(names)
-            self._environments[name].consts.extend(
-                pickle.loads(constant) for constant in constants
-            )
-        address = self._engine.get_global_value_address(name)
-        if address:
-            ctypes.c_void_p.from_address(address).value = id(self._environments[name])
-
-    def _name_all(
-        self, dynfunc: dict[str, int], helpers: dict[str, int], runtime: dict[str, int]
-    ) -> None:
-        """Give names to C functions and exceptions as numba's `base`, `externals` and `nrt` do."""
-        self._name("_Py_NoneStruct", id(None))
-        for name, address in {**helpers, **dynfunc}.items():
-            self._name(f"numba_{name}", address)
-            if _in_process(name):
-                self._name(name, address)
-        for name, address in runtime.items():
-            self._name(name if name.startswith("_") else f"NRT_{name}", address)
-        for kind in vars(builtins).values():
-            if isinstance(kind, type) and issubclass(kind, BaseException):
-                self._name(f"PyExc_{kind.__name__}", id(kind))
-
-    def _name(self, name: str, address: int) -> None:
-        self._llvm.add_symbol(name, address)
-        self.names.add(name)
-
-
-def _serve_pickles(unpickle_address: int) -> None:
-    """Have numba's C function that unpickles types (of what kernels give back) do so without numba.
-
-    At its first call it asks `numba.core.serialize` for the Python function that does it, and keeps that.
-    """
-    asked = "numba.core.serialize"
-    if "numba" in sys.modules:
-        return
-    loaded: dict[tuple[int, bytes], Any] = {}
-
-    def unpickled(address: int, data: bytes, digest: bytes) -> Any:
-        if (address, digest) not in loaded:
-            loaded[address, digest] = pickle.loads(data)
-        return loaded[address, digest]
-
-    stand_ins = {name: ModuleType(name) for name in ("numba", asked)}
-    vars(stand_ins[asked])["_numba_unpickle"] = unpickled
-    sys.modules.update(stand_ins)
-    try:
-        call = ctypes.PYFUNCTYPE(
-            ctypes.py_object, ctypes.c_char_p, ctypes.c_int, ctypes.c_char_p
-        )
-        nothing = pickle.dumps(None)
-        call(unpickle_address)(nothing, len(nothing), bytes(20))
-    finally:
-        for name in stand_ins:
-            del sys.modules[name]
-
-
-@cache
-def _linker() -> _Linker:
-    """The linker of this process."""
-    return _Linker()
-
-
-def _extension(name: str) -> Any:
-    """One of numba's extension modules, loaded without the package's `__init__`."""
-    full = f"numba.{name}"
-    if full not in sys.modules:
-        folder = _numba_folder().joinpath(*name.split(".")[:-1])
-        stem = name.split(".")[-1]
-        endings = importlib.machinery.EXTENSION_SUFFIXES
-        file = next(file for ending in endings if (file := folder / f"{stem}{ending}").exists())
-        spec = importlib.util.spec_from_file_location(full, file)
-        if spec is None or spec.loader is None:
-            raise ImportError(full)
-        module = importlib.util.module_from_spec(spec)
-        spec.loader.exec_module(module)
-        sys.modules[full] = module
-    return sys.modules[full]
-
-
-@cache
-def _numba_folder() -> Path:
-    """Where numba is installed."""
-    spec = importlib.machinery.PathFinder.find_spec("numba")
-    if spec is None or spec.origin is None:
-        raise ImportError("numba")
-    return Path(spec.origin).parent
-
-
 def _read(kernel: Kernel) -> dict[str, Entry]:
     """The entries of a kernel that were made with what is there now; none if there is no such file."""
     try:
@@ -274,7 +130,7 @@ def _makings(kernel: Kernel) -> str:
     """What the machine code of a kernel depends on, as a text to compare."""
     called = kernel.called()
     sources = sorted({part.py_func.__code__.co_filename for part in called})
-    values = sorted(part.frozen() for part in called)
+    values = sorted(part.frozen for part in called)
     return repr((_surroundings(), [_stamp(source) for source in sources], values))
 
 
@@ -284,11 +140,11 @@ def _surroundings() -> str:
     settings = {name: value for name, value in os.environ.items() if name.startswith("NUMBA_")}
     settings.pop("NUMBA_CACHE_DIR", None)
     versions = [
-        _numba_folder() / "_version.py",
-        _numba_folder().parent / "llvmlite" / "_version.py",
+        numba_folder() / "_version.py",
+        numba_folder().parent / "llvmlite" / "_version.py",
     ]
     return repr(
-        (FORMAT, sys.version, _linker().cpu, settings, [_stamp(str(file)) for file in versions])
+        (FORMAT, sys.version, linker().cpu, settings, [_stamp(str(file)) for file in versions])
     )
 
 

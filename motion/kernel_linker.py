@@ -1,0 +1,167 @@
+"""Linking: object code that numba has made of a kernel becomes a Python function, without numba.
+
+numba's object code needs little of numba to run: the C functions of its three extension modules, which are
+loaded by themselves here, and the names of the built-in exceptions. Where these are not as they were with the
+version that this was written for (numba 0.68), no linker can be made, and numba runs the kernels.
+
+Signals in: a kernel and what is kept of it (`machine_code`). Signals out: a Python function.
+
+Source: numba's own `core.runtime`, `core.base` and `_helperlib`; llvmlite's MCJIT. Questions: none.
+"""
+
+from __future__ import annotations
+
+import builtins
+import ctypes
+import importlib.machinery
+import importlib.util
+import pickle
+import sys
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from morfax.motion.compiled import Kernel
+
+# an entry: object code, name of the function in it, environments: name, module, pickled dtypes
+Entry = tuple[bytes, str, list[tuple[str, str, list[bytes]]]]
+EXTENSIONS = ("_dynfunc", "_helperlib", "core.runtime._nrt_python")
+
+
+def in_process(name: str) -> bool:
+    """Whether the process has a C function or variable of this name."""
+    return hasattr(ctypes.pythonapi, name)
+
+
+class Linker:
+    """llvmlite's linker, with the C functions of numba that object code asks for."""
+
+    def __init__(self) -> None:
+        import llvmlite.binding as llvm
+
+        self._llvm = llvm
+        llvm.initialize_native_target()
+        llvm.initialize_native_asmprinter()
+        self.cpu = f"{llvm.get_host_cpu_name()} {llvm.get_host_cpu_features().flatten()}"
+        self.names: set[str] = set()
+        dynfunc, helpers, runtime = (_extension(name) for name in EXTENSIONS)
+        self._make_function, self._environment = dynfunc.make_function, dynfunc.Environment
+        self._name_all(dynfunc.c_helpers, helpers.c_helpers, runtime.c_helpers)
+        _serve_pickles(helpers.c_helpers["unpickle"])
+        machine = llvm.Target.from_triple(llvm.get_process_triple()).create_target_machine(
+            jit=True, cpu=llvm.get_host_cpu_name()
+        )
+        empty = llvm.parse_assembly(f'target triple = "{llvm.get_process_triple()}"')
+        self._engine = llvm.create_mcjit_compiler(empty, machine)
+        self._environments: dict[str, Any] = {}
+
+    def function(self, kernel: Kernel, entry: Entry) -> Callable[..., Any]:
+        """Link the object code of an entry; give its Python function."""
+        code, name, environments = entry
+        self._engine.add_object_file(self._llvm.ObjectFileRef.from_data(code))
+        self._engine.finalize_object()
+        for held in environments:
+            self._set_environment(*held)
+        own = self._environments[environments[0][0]]
+        plain = kernel.py_func
+        address = self._engine.get_function_address(name)
+        module = sys.modules[plain.__module__]
+        return self._make_function(
+            module, plain.__name__, plain.__doc__ or "", address, own, (kernel,)
+        )
+
+    def _set_environment(self, name: str, module: str, constants: list[bytes]) -> None:
+        """Give compiled code the names of the module that it was written in, as numba does."""
+        if name not in self._environments:
+            # code of numba's own modules looks nothing up: they need not be there
+            names = vars(sys.modules[module]) if module in sys.modules else {"__name__": module}
+            self._environments[name] = self._environment(names)
+            self._environments[name].consts.extend(
+                pickle.loads(constant) for constant in constants
+            )
+        address = self._engine.get_global_value_address(name)
+        if address:
+            ctypes.c_void_p.from_address(address).value = id(self._environments[name])
+
+    def _name_all(
+        self, dynfunc: dict[str, int], helpers: dict[str, int], runtime: dict[str, int]
+    ) -> None:
+        """Give names to C functions and exceptions as numba's `base`, `externals` and `nrt` do."""
+        self._name("_Py_NoneStruct", id(None))
+        for name, address in {**helpers, **dynfunc}.items():
+            self._name(f"numba_{name}", address)
+            if in_process(name):
+                self._name(name, address)
+        for name, address in runtime.items():
+            self._name(name if name.startswith("_") else f"NRT_{name}", address)
+        for kind in vars(builtins).values():
+            if isinstance(kind, type) and issubclass(kind, BaseException):
+                self._name(f"PyExc_{kind.__name__}", id(kind))
+
+    def _name(self, name: str, address: int) -> None:
+        self._llvm.add_symbol(name, address)
+        self.names.add(name)
+
+
+def _serve_pickles(unpickle_address: int) -> None:
+    """Have numba's C function that unpickles types (of what kernels give back) do so without numba.
+
+    At its first call it asks `numba.core.serialize` for the Python function that does it, and keeps that.
+    """
+    asked = "numba.core.serialize"
+    if "numba" in sys.modules:
+        return
+    loaded: dict[tuple[int, bytes], Any] = {}
+
+    def unpickled(address: int, data: bytes, digest: bytes) -> Any:
+        if (address, digest) not in loaded:
+            loaded[address, digest] = pickle.loads(data)
+        return loaded[address, digest]
+
+    stand_ins = {name: ModuleType(name) for name in ("numba", asked)}
+    vars(stand_ins[asked])["_numba_unpickle"] = unpickled
+    sys.modules.update(stand_ins)
+    try:
+        call = ctypes.PYFUNCTYPE(
+            ctypes.py_object, ctypes.c_char_p, ctypes.c_int, ctypes.c_char_p
+        )
+        nothing = pickle.dumps(None)
+        call(unpickle_address)(nothing, len(nothing), bytes(20))
+    finally:
+        for name in stand_ins:
+            del sys.modules[name]
+
+
+@cache
+def linker() -> Linker:
+    """The linker of this process."""
+    return Linker()
+
+
+def _extension(name: str) -> Any:
+    """One of numba's extension modules, loaded without the package's `__init__`."""
+    full = f"numba.{name}"
+    if full not in sys.modules:
+        folder = numba_folder().joinpath(*name.split(".")[:-1])
+        stem = name.split(".")[-1]
+        endings = importlib.machinery.EXTENSION_SUFFIXES
+        file = next(file for ending in endings if (file := folder / f"{stem}{ending}").exists())
+        spec = importlib.util.spec_from_file_location(full, file)
+        if spec is None or spec.loader is None:
+            raise ImportError(full)
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+        sys.modules[full] = module
+    return sys.modules[full]
+
+
+@cache
+def numba_folder() -> Path:
+    """Where numba is installed."""
+    spec = importlib.machinery.PathFinder.find_spec("numba")
+    if spec is None or spec.origin is None:
+        raise ImportError("numba")
+    return Path(spec.origin).parent
