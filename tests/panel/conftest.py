@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -48,3 +49,12 @@ def page(stranger: TestClient) -> TestClient:
     """A browser that has."""
     assert stranger.get(f"/?token={TOKEN}").status_code == 303
     return stranger
+
+
+@pytest.fixture(scope="module")
+def chromium() -> Iterator[Any]:
+    """One browser for all tests of a file."""
+    from tests.panel.browsing import launched
+
+    with launched() as browser:
+        yield browser

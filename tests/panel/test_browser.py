@@ -20,7 +20,6 @@ from tests.panel.browsing import (
     WAIT_MS,
     Server,
     api,
-    launched,
     looked_at,
     morfax,
     on_screen,
@@ -39,13 +38,6 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
     server = Server(tmp_path_factory.mktemp("panel") / "page")
     yield server
     server.end()
-
-
-@pytest.fixture(scope="module")
-def chromium() -> Iterator[Any]:
-    """One browser for all."""
-    with launched() as browser:
-        yield browser
 
 
 @pytest.fixture

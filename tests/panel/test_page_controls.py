@@ -20,7 +20,6 @@ from tests.panel.browsing import (
     Server,
     api,
     command,
-    launched,
     looked_at,
     morfax,
     on_screen,
@@ -47,13 +46,6 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
     server = Server(tmp_path_factory.mktemp("controls") / "page", drawing)
     yield server
     server.end()
-
-
-@pytest.fixture(scope="module")
-def chromium() -> Iterator[Any]:
-    """One browser for all."""
-    with launched() as browser:
-        yield browser
 
 
 @pytest.fixture

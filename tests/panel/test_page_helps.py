@@ -6,7 +6,6 @@ The gap and the blot are in `test_browser`; here are the grain, the wrong turn a
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +21,6 @@ from tests.panel.browsing import (
     Server,
     api,
     command,
-    launched,
     looked_at,
     morfax,
     on_screen,
@@ -31,13 +29,6 @@ from tests.panel.browsing import (
 from tests.tracer.inked import DPI, UM
 
 ON_PAGE = [case for case in CASES if case.name not in ("a gap of 6 mm", "a blot")]
-
-
-@pytest.fixture(scope="module")
-def chromium() -> Iterator[Any]:
-    """One browser for all."""
-    with launched() as browser:
-        yield browser
 
 
 def saved(case: Case, folder: Path) -> Path:
