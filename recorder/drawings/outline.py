@@ -19,9 +19,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.faults import DrawingFault
 from morfax.motion.motion import Path
 from morfax.motion.pathfile import FEED_MM_S, at_feed
 from morfax.motion.pathtable import PathTable
+from morfax.motion.units import LONGEST_MM
 
 JOINED_MM = (
     0.01  # the tolerance of a program: ends that CAD has snapped agree to a millionth of it
@@ -38,7 +40,16 @@ class Outline:
 
     @classmethod
     def of(cls, pieces_mm: Sequence[Array], notes: Sequence[str] = ()) -> Outline:
-        """Join the pieces of a file; a piece that is there twice is taken once."""
+        """Join the pieces of a file; a piece that is there twice is taken once.
+
+        Raises DrawingFault for a place more than a kilometre away, as path files are refused.
+        """
+        furthest_mm = max((float(np.abs(piece).max()) for piece in pieces_mm), default=0.0)
+        if furthest_mm > LONGEST_MM:
+            raise DrawingFault(
+                f"the drawing reaches {furthest_mm:.3g} mm from its zero, at most {LONGEST_MM:g} are taken; "
+                "check its unit, or give it with --unit"
+            )
         once = _once(pieces_mm)
         doubled = len(pieces_mm) - len(once)
         told = [f"{doubled} lines are there twice, and taken once"] if doubled else []

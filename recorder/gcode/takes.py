@@ -20,7 +20,8 @@ from typing import Any
 
 from morfax.motion.toml_fields import Field
 
-_CODE = re.compile(r"([GM])(\d+(?:\.\d)?)(?:-([GM])(\d+))?")
+# four digits are the most that a control has; more would make a range of them last
+_CODE = re.compile(r"([GM])(\d{1,4}(?:\.\d)?)(?:-([GM])(\d{1,4}))?")
 
 Code = tuple[str, float]  # such as ("G", 38.2)
 

@@ -406,3 +406,15 @@ def test_a_small_svg_of_very_many_elements_is_refused(tmp_path: Path) -> None:
         read_outline(within)
     some = svg(tmp_path / "some.svg", repeated(3, 2))
     assert "8 lines are there twice, and taken once" in read_outline(some).notes
+
+
+def test_a_drawing_of_more_than_a_kilometre_is_refused(tmp_path: Path) -> None:
+    """A circle of 1000 km was two million chords, and a program of 23 years, told after 17 s."""
+    file = dxf(
+        tmp_path / "far.dxf",
+        lambda document: document.modelspace().add_line((0, 0), (1.1e6, 0)),
+    )
+    with pytest.raises(
+        DrawingFault, match=r"reaches 1\.1e\+06 mm from its zero, at most 1e\+06"
+    ):
+        read_outline(file)

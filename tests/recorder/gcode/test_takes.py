@@ -23,6 +23,13 @@ def test_words_are_named_one_by_one_or_from_to() -> None:
     }
 
 
+def test_a_range_of_words_has_four_digits_at_most() -> None:
+    """M100-M1999999999 took minutes and all of the memory."""
+    assert len(codes("M0-M9999")) == 10_000
+    with pytest.raises(ValueError, match="is no word"):
+        codes("M100-M1999999999")
+
+
 def test_every_machine_takes_the_words_that_it_begins_and_ends_with() -> None:
     for name in names():
         made = machine(name)
