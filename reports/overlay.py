@@ -20,26 +20,26 @@ from morfax.motion.arrays import Array
 from morfax.motion.motion import Path
 from morfax.reports import leaders, left_out
 from morfax.reports.canvas import REFERENCE, UM_PER_MM, View, new_figure, save, show_drawing
+from morfax.reports.coloured import draw_error
 from morfax.reports.corrected import draw_corrections
+from morfax.reports.page import INSETS, Page, lay_out
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
     from morfax.jobs.who_led import WhoLed
     from morfax.tracer.drawing.drawing import Drawing
     from morfax.tracer.ink.left_out import Area
 
-COLOURS = ("#1f5fa8", "#5fa8d3", "#f2a65a", "#c1121f")  # no error … largest error
 PLAIN = "#c1121f"
 RAISED = "#1f5fbf"  # stops, and ways with the tool up
 UNMEASURED = "#8a8a8a"  # the path where its error cannot be measured
 MARGIN_SHARE = 0.06  # of the larger side, round the path
-# more points are gathered, and the largest error of each gathering is shown
-LARGEST_POINTS = 20_000
-INSETS = 3
 NARROWEST = 0.35  # shorter to longer side of what is shown
-WIDE = 0.6  # height to width
+FEW_NUMBERS = (
+    4  # along an enlargement: each number of all takes a hundredth of a picture's time
+)
+LETTERS_PER_IN = 14.0  # of a title: the mean of small letters of 10 points
 LIGHT = 3.2  # ink as light grey, for a path to lie on
 
 
@@ -64,37 +64,20 @@ def draw(picture: Picture, file: FilePath) -> None:
     """Write the picture, of the kind that the suffix says (.png, .svg, .pdf)."""
     insets = _worst_places(picture)
     view = view_of(picture)
-    figure = new_figure(layout="compressed")
-    main, beside = _axes(figure, len(insets), (view[3] - view[2]) / (view[1] - view[0]))
-    _fill(figure, main, picture, view)
-    for number, (axes, place_mm) in enumerate(zip(beside, insets, strict=True), 1):
-        _enlarge(axes, main, picture, place_mm, number)
-    save(figure, file)
+    figure = new_figure(layout="none")
+    shape = (view[3] - view[2]) / (view[1] - view[0])
+    page = lay_out(figure, shape, len(insets), has_bar=_is_measured(picture))
+    _fill(page, picture, view)
+    for number, (axes, place_mm) in enumerate(zip(page.insets, insets, strict=True), 1):
+        _enlarge(axes, page.main, picture, place_mm, number)
+    save(figure, file, trim=False)
 
 
-def _axes(figure: Figure, insets: int, height_to_width: float) -> tuple[Axes, list[Axes]]:
-    """The main axes, and one for each enlargement: in a column beside, or below if the main ones are wide."""
-    shape = float(np.clip(height_to_width, 0.2, 1.4))
-    if not insets:
-        figure.set_size_inches(8.5, 1.4 + 8 * shape)
-        return figure.add_subplot(), []
-    if shape < WIDE:
-        figure.set_size_inches(11, 4.5 + 10 * shape)
-        grid = figure.add_gridspec(2, INSETS, height_ratios=(10 * shape + 1, 3))
-        return figure.add_subplot(grid[0, :]), [
-            figure.add_subplot(grid[1, i]) for i in range(insets)
-        ]
-    figure.set_size_inches(11, 1.4 + 8 * shape)
-    grid = figure.add_gridspec(INSETS, 2, width_ratios=(3.2, 1))
-    return figure.add_subplot(grid[:, 0]), [
-        figure.add_subplot(grid[i, 1]) for i in range(insets)
-    ]
-
-
-def _fill(figure: Figure, axes: Axes, picture: Picture, view: View) -> None:
+def _fill(page: Page, picture: Picture, view: View) -> None:
     """Draw the whole contour, with its marks and the scale of the colours."""
+    axes = page.main
     ground(axes, picture, view)
-    coloured = _contour(axes, picture, line_pt=1.8)
+    coloured = _contour(axes, picture, view, line_pt=1.8)
     if picture.led is not None:
         leaders.draw(axes, picture.led)
     _ends(axes, picture.path)
@@ -104,16 +87,13 @@ def _fill(figure: Figure, axes: Axes, picture: Picture, view: View) -> None:
     if picture.drawing is not None and picture.drawing.corrected is not None:
         draw_corrections(axes, picture.drawing.corrected)
     axes.set(xlim=view[:2], ylim=view[2:], xlabel="X, mm", ylabel="Y, mm", aspect="equal")
-    axes.set_title(picture.title, fontsize=10)
-    if coloured is not None:
-        figure.colorbar(
-            coloured,
-            ax=axes,
-            orientation="horizontal",
-            shrink=0.7,
-            aspect=40,
-            label="error, µm",
-        )
+    letters = round(page.wide_in * LETTERS_PER_IN)
+    title = picture.title
+    title = title if len(title) <= letters else f"{title[: letters - 1]}…"
+    axes.set_title(title, fontsize=10)
+    if page.bar is not None:
+        figure = axes.figure
+        figure.colorbar(coloured, cax=page.bar, orientation="horizontal", label="error, µm")
 
 
 def ground(axes: Axes, picture: Picture, view: View) -> None:
@@ -125,47 +105,25 @@ def ground(axes: Axes, picture: Picture, view: View) -> None:
             axes.plot(*run.T, color=REFERENCE, linewidth=0.8, linestyle=(0, (4, 2)), zorder=1)
 
 
-def _contour(axes: Axes, picture: Picture, line_pt: float) -> Any:
+def _is_measured(picture: Picture) -> bool:
+    """Whether the error is known anywhere."""
+    error_mm = picture.error_mm
+    if picture.points_mm is None or error_mm is None:
+        return False
+    return bool(np.isfinite(error_mm).any())
+
+
+def _contour(axes: Axes, picture: Picture, view: View, line_pt: float) -> Any:
     """Draw the path, its error in colour if that is known; gives what a colour bar needs."""
-    measured = (
-        picture.points_mm is not None
-        and picture.error_mm is not None
-        and np.isfinite(picture.error_mm).any()
-    )
+    measured = _is_measured(picture)
     for run in picture.path.runs():
         axes.plot(
             *run.T, color=UNMEASURED if measured else PLAIN, linewidth=line_pt * 0.6, zorder=2
         )
-    return _coloured(axes, picture, line_pt) if measured else None
-
-
-def _coloured(axes: Axes, picture: Picture, line_pt: float) -> Any:
-    """Draw the error along the path in colours, where it is measured; gives what a colour bar needs."""
-    from matplotlib.collections import LineCollection
-    from matplotlib.colors import LinearSegmentedColormap
-
+    if not measured:
+        return None
     assert picture.points_mm is not None and picture.error_mm is not None
-    points, error_um = _gathered(picture.points_mm, np.abs(picture.error_mm) * UM_PER_MM)
-    steps = np.hypot(*np.diff(points, axis=0).T)
-    shown = steps <= 10 * np.median(steps) + 0.05  # a wider step is a way with the tool up
-    larger = np.fmax(error_um[:-1], error_um[1:])
-    shown &= np.isfinite(larger)
-    colours = LinearSegmentedColormap.from_list("error", COLOURS)
-    pieces = np.stack([points[:-1], points[1:]], axis=1)[shown]
-    lines = LineCollection(
-        list(pieces), cmap=colours, linewidths=line_pt, zorder=3, capstyle="round"
-    )
-    lines.set_array(larger[shown])
-    lines.set_clim(0, max(float(np.nanmax(error_um)), 1e-3))
-    axes.add_collection(lines)
-    return lines
-
-
-def _gathered(points: Array, error: Array) -> tuple[Array, Array]:
-    """As many points as can be seen; each shows the largest error of those that it stands for."""
-    step = -(-len(points) // LARGEST_POINTS)
-    starts = np.arange(0, len(points), step)
-    return points[starts], np.fmax.reduceat(error, starts)
+    return draw_error(axes, picture.points_mm, picture.error_mm, view, line_pt)
 
 
 def _ends(axes: Axes, path: Path) -> None:
@@ -239,8 +197,9 @@ def _enlarge(axes: Axes, main: Axes, picture: Picture, place_mm: Array, number: 
     x, y = place_mm
     view = (x - reach_mm, x + reach_mm, y - reach_mm, y + reach_mm)
     ground(axes, picture, view)
-    _contour(axes, picture, line_pt=2.2)
+    _contour(axes, picture, view, line_pt=2.2)
     axes.set(xlim=view[:2], ylim=view[2:], aspect="equal")
+    axes.locator_params(nbins=FEW_NUMBERS)
     axes.tick_params(labelsize=7)
     axes.set_title(f"{number}: {error_mm * UM_PER_MM:.3g} µm at {x:.1f}, {y:.1f}", fontsize=8)
     main.annotate(

@@ -30,7 +30,7 @@ from morfax.player.tape.erasures import Erasures
 from morfax.player.tape.slips import slip
 from morfax.player.tape.standstill import REFERENCE_BAND, strongest_hz
 from morfax.player.tape.subcarrier import Subcarrier
-from morfax.player.tape.symbols import PARTS, QUARTER, likeness, read_symbols
+from morfax.player.tape.symbols import PARTS, QUARTER, count_on, likeness, read_symbols
 from morfax.recorder.tape.check_frame import (
     SYMBOLS,
     CheckFrame,
@@ -242,26 +242,22 @@ class CheckReader:
         """Read the next frame of all tracks."""
         self._put_right()
         gates = read_symbols(self._points, self._theta)
-        said, late, turns = self._erasures.read(gates, self._number), gates.late, gates.turns
-        for track, frame in enumerate(said):
-            if frame is None or not np.isfinite(turns[track]).all():
-                said[track], late[track], turns[track] = None, np.nan, np.nan
-                continue
-            turns[track] -= np.rint(turns[track] - self._turns[track])
-            self._turns[track] = turns[track, -1]
-        turns -= self._zero_turns[:, None]
-        apart = np.concatenate([-turns[:1], turns[:1] - turns[1:]])
+        said = self._erasures.read(gates, self._number)
+        is_read = np.array([frame is not None for frame in said])
+        apart = np.empty(gates.turns.shape)
+        count_on((gates.turns, gates.late), is_read, self._turns, self._zero_turns, apart)
         errors = np.hypot(gates.errors, gates.errors[0])
         rows = self._rows(self._theta + MIDDLES)
+        turn_s = CYCLES_PER_SUBCARRIER / self._reference_hz
         return FrameReport(
             self._number,
             rows[0],
             rows[1:],
-            tuple(said),
-            (late / self._reference_hz).tolist(),
-            (apart * CYCLES_PER_SUBCARRIER / self._reference_hz).tolist(),
-            (errors * CYCLES_PER_SUBCARRIER / self._reference_hz).tolist(),
-            (gates.swings * CYCLES_PER_SUBCARRIER / self._reference_hz).tolist(),
+            tuple(frame if read else None for frame, read in zip(said, is_read, strict=True)),
+            (gates.late / self._reference_hz).tolist(),
+            (apart * turn_s).tolist(),
+            (errors * turn_s).tolist(),
+            (gates.swings * turn_s).tolist(),
             tuple(self._erasures.damaged),
             [self._rows(self._theta + CYCLES_PER_SYMBOL * at) for at in self._erasures.weak],
         )

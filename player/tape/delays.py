@@ -66,10 +66,12 @@ class Delay:
         self._rows += rows
         self._told += delays_s
         self.moves = self.moves or max(map(abs, delays_s)) > DEAD_ZONE_S
-        while len(self._told) - len(self._used) > HALF and len(self._told) >= WINDOW:
+        settled = len(self._told) - HALF if len(self._told) >= WINDOW else 0
+        if not self.moves:
+            self._used += [0.0] * (settled - len(self._used))
+        while len(self._used) < settled:
             last = self._used[-1] if self._used else 0.0
-            settled = self._settled(len(self._used)) if self.moves else 0.0
-            self._used.append(_towards(last, settled))
+            self._used.append(_towards(last, self._settled(len(self._used))))
         gone = max(min(len(self._used), len(self._rows) - WINDOW) - KEPT, 0)
         self._is_whole = self._is_whole and not gone
         del self._rows[:gone], self._told[:gone], self._used[:gone]

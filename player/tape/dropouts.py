@@ -148,8 +148,10 @@ class Gaps:
         assert self._riding.bounds is not None, (
             "only a checked tape tells what a program asks for"
         )
-        told = [bounds.most(rows.first_row, len(rows)) for bounds in self._riding.bounds()]
-        found = self._surprises.rows(rows, np.stack(told, axis=-1))
+        told = np.empty((2, *rows.cycles.shape))
+        for axis, bounds in enumerate(self._riding.bounds()):
+            bounds.tell(rows.first_row, told[:, :, axis])
+        found = self._surprises.rows(rows, told)
         # what was given out reached to `spread` rows before those that are looked at
         found[: max((self._given or 0) - rows.first_row + self._spread, 0)] = False
         found[ready + self._spread :] = False
@@ -162,6 +164,8 @@ class Gaps:
     ) -> tuple[int, tuple[int, Fault] | None]:
         """Bridge the gaps of all axes; the number of certain rows, and the fault that ends the tape there."""
         first: tuple[int, Fault] | None = None
+        if not (self._lost.any() or self._surprised.any()):
+            return ready, None
         for axis in range(len(self._names)):
             sure, fault = self._bridge_axis(rows, axis, last)
             ready = min(ready, sure)

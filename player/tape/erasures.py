@@ -23,12 +23,14 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import Array, median
+from morfax.motion.compiled import njit
 from morfax.player.tape.symbols import Gates
 from morfax.recorder.tape.check_frame import NUMBERS, SYNC_SYMBOLS, Bits, CheckFrame, from_bits
 
 WEAK = 0.5  # of the usual strength; 15 dB of noise leave 0.75 (four standard deviations)
 MOST_WEAK = 8  # symbols: two dropouts of 5 ms, or one of 25 ms
+_NONE: Array = np.zeros(0)
 
 
 class Erasures:
@@ -46,41 +48,59 @@ class Erasures:
         `damaged` are then the tracks that say nothing though few of their symbols are weak, and `weak` the
         places of each track at which it is weak, in symbols from the first.
         """
-        bits, strengths, sizes, shares = gates.bits, gates.strengths, gates.sizes, gates.shares
-        said = from_bits(bits)
+        said = from_bits(gates.bits)
         self.damaged, self.weak = [], []
-        # of all tracks at once: one by one they were a tenth of the time of playing
-        usuals, usual_sizes = np.median(strengths, axis=1), np.median(sizes, axis=1)
-        small = [
-            np.flatnonzero(sizes[track] < WEAK * self._size[track])
-            for track in range(len(said))
-        ]
-        for track, frame in enumerate(said):
-            usual = float(usuals[track])
-            known = self._usual[track] if np.isfinite(self._usual[track]) else usual
-            weak = np.flatnonzero(strengths[track] < WEAK * known)
-            lost = max(len(small[0]), len(small[track])) > MOST_WEAK
-            self.weak.append(
-                small[track].astype(np.float64)
-                if lost
-                else _places(shares[track] < WEAK * known)
-            )
-            if len(weak) > MOST_WEAK:
-                frame = None
-            elif frame is None:
-                frame = _recovered(bits[track], weak[weak >= SYNC_SYMBOLS], track, number)
-            if frame is not None:
-                self._usual[track] = usual
-                self._size[track] = usual_sizes[track]
-            elif len(weak) <= MOST_WEAK:
+        counts = np.empty((len(said), 3), np.int64)
+        least, usual = np.empty((2, len(said), 2))
+        held = (self._usual, self._size)
+        _weigh((gates.strengths, gates.sizes, gates.shares), held, usual, least, counts)
+        most_small = counts[0, 1] > MOST_WEAK
+        for track, (weak, small, faint) in enumerate(counts.tolist()):
+            if most_small or small > MOST_WEAK:
+                places = np.flatnonzero(gates.sizes[track] < least[track, 1])
+                self.weak.append(places.astype(np.float64))
+            else:
+                self.weak.append(
+                    _places(gates.shares[track], least[track, 0]) if faint else _NONE
+                )
+            if weak > MOST_WEAK:
+                said[track] = None
+                continue
+            if said[track] is None:
+                at = np.flatnonzero(gates.strengths[track] < least[track, 0])
+                at = at[at >= SYNC_SYMBOLS]
+                said[track] = _recovered(gates.bits[track], at, track, number)
+            if said[track] is None:
                 self.damaged.append(track)
-            said[track] = frame
+            else:
+                self._usual[track], self._size[track] = usual[track]
         return said
 
 
-def _places(weak: NDArray[np.bool_]) -> Array:
-    """The places of weak gates (gates, symbols), in symbols."""
-    gate, symbol = np.nonzero(weak)
+@njit(cache=True, nogil=True)
+def _weigh(seen, held, usual, least, counts):  # type: ignore[no-untyped-def]
+    """Weigh the strengths, sizes and shares of each track's symbols.
+
+    `held`: usual strength and size so far, nan where none is; `usual` (tracks, 2): those of this frame, at
+    the median; `least` (tracks, 2): below them a symbol is weak or small; `counts` (tracks, 3): weak ones,
+    small ones, faint gates.
+    """
+    strengths, sizes, shares = seen
+    for track in range(len(strengths)):
+        usual[track] = median(strengths[track]), median(sizes[track])
+        known = held[0][track] if np.isfinite(held[0][track]) else usual[track, 0]
+        least[track] = WEAK * known, WEAK * held[1][track]
+        counts[track] = 0
+        for symbol in range(strengths.shape[1]):
+            counts[track, 0] += strengths[track, symbol] < least[track, 0]
+            counts[track, 1] += sizes[track, symbol] < least[track, 1]
+            for gate in range(shares.shape[1]):
+                counts[track, 2] += shares[track, gate, symbol] < least[track, 0]
+
+
+def _places(shares: Array, least: float) -> Array:
+    """The places of faint gates (gates, symbols), in symbols."""
+    gate, symbol = np.nonzero(shares < least)
     return np.sort(symbol + (gate - 1) / 4)
 
 

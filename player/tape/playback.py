@@ -26,7 +26,7 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import Array, moved
 from morfax.motion.drive import SOUND
 from morfax.motion.faults import LockFault
 from morfax.motion.motion import AXES, Motion
@@ -218,12 +218,11 @@ class TapePlayback(Supervised):
                 bearings.first_fault(phases, fmt.motion_rate_hz, self.end_mm.tolist()) or gap
             )
             sound = len(phases) if found is None else min(found[0], len(phases))
-            cycles = (
-                phases.cycles[:sound] - bearings.zero_cycles + self._zero_mm * fmt.cycles_per_mm
-            )
-            places_mm = drives.follow(cycles) + rest_mm
+            zero_cycles = self._zero_mm * fmt.cycles_per_mm - bearings.zero_cycles
+            cycles = moved(phases.cycles[:sound], zero_cycles)
+            places_mm = moved(drives.follow(cycles), rest_mm)
             self.cell_edges = drives.cell_edges - adjusted_edges
-            demand_mm = cycles[: len(places_mm)] * fmt.mm_per_cycle + rest_mm
+            demand_mm = moved(cycles[: len(places_mm)], rest_mm, fmt.mm_per_cycle)
             monitor.rows_seen = phases.first_row
             rows = monitor.watch(demand_mm, places_mm)
             if rows:

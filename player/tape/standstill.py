@@ -74,9 +74,10 @@ class Bearings:
         self, phases: Phases, rate_hz: float, positions_mm: Sequence[float]
     ) -> tuple[int, Fault] | None:
         """The first row that no motion explains, and its fault; the screws stood at `positions_mm`."""
-        jumped = ~(np.abs(phases.surprise) < SURPRISE_CYCLES)
-        if not jumped.any():
+        sizes = np.abs(phases.surprise)
+        if sizes.max(initial=0.0) < SURPRISE_CYCLES:
             return None
+        jumped = ~(sizes < SURPRISE_CYCLES)
         row = int(np.argmax(jumped.any(axis=1)))
         time_s, axis = (phases.first_row + row) / rate_hz, int(np.argmax(jumped[row]))
         return row, self._jump(

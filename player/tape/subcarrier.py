@@ -58,17 +58,25 @@ class Subcarrier:
 
     def feed(self, frames: Stored) -> None:
         """Take the next frames of the tape."""
-        if len(self._tail):
-            frames = np.concatenate([self._tail, frames])
-        hops = len(frames) // self.hop
+        # 1. hops that end in these frames; only the first ones begin before them
+        hops = (len(self._tail) + len(frames)) // self.hop
         if hops < 2:
-            self._tail = frames.copy()
+            self._tail = (
+                np.concatenate([self._tail, frames]) if len(self._tail) else frames.copy()
+            )
             return
-        self._tail = frames[(hops - 1) * self.hop :].copy()
-        rows = frames[: hops * self.hop].reshape(hops, -1)
+        early = -(-len(self._tail) // self.hop)
+        own = early * self.hop - len(self._tail)  # frames that complete them
         scale = np.float32(1 / 32768 if frames.dtype == np.int16 else 1)
         halves = np.empty((frames.shape[1] + 1, 4, hops), np.float32)
-        _sum(rows, scale, self._rows_of_taps, halves)
+        begun = np.concatenate([self._tail, frames[:own]]) if early else frames[:0]
+        rest = frames[own : own + (hops - early) * self.hop]
+        for part, at in ((begun, slice(early)), (rest, slice(early, None))):
+            rows = part.reshape(-1, self.hop * frames.shape[1])
+            _sum(rows, scale, self._rows_of_taps, halves[:, :, at])
+        last = own + (hops - 1 - early) * self.hop
+        self._tail = frames[last:].copy() if last >= 0 else begun[-self.hop :].copy()
+        # 2. a point for each hop and the next
         points, turns = np.empty((frames.shape[1], hops - 1), complex), np.empty(hops - 1)
         per_point = np.array([self._step * self.hop, CYCLES_PER_SUBCARRIER])
         _turn_back(halves, self._next, per_point, self._state, turns, points)
@@ -89,10 +97,9 @@ class Subcarrier:
 
     def frames_at(self, theta: Array) -> Array:
         """The frames of the tape at some counts of the reference."""
-        numbers = np.interp(theta, self.theta, np.arange(len(self.theta)))
-        # beyond the first point and the last, at the nominal rate
-        off = np.minimum(theta - self.theta[0], 0) + np.maximum(theta - self.theta[-1], 0)
-        return self.frame_of(self.first + numbers) + off / self._step
+        frames = np.empty(len(theta))
+        _interpolate(theta, self.theta, (self.first, self.hop, self._step), frames)
+        return frames
 
     @property
     def lost(self) -> tuple[float, float]:
@@ -138,6 +145,22 @@ def _sum(rows, scale, taps, halves):  # type: ignore[no-untyped-def]
             for k in range(len(samples)):
                 total += taps[tap, k] * samples[k]
             halves[tap // 4, tap % 4, hop] = total * scale
+
+
+@njit(cache=True, nogil=True)
+def _interpolate(sought, theta, numbers, frames):  # type: ignore[no-untyped-def]
+    """Fill the frames of the tape at some counts of the reference, straight from point to point.
+
+    `numbers`: the first point, frames from point to point, cycles of the reference in a frame. Beyond the
+    first point and the last the reference runs at its nominal rate.
+    """
+    first, hop, step = numbers
+    last = len(theta) - 1
+    for k in range(len(sought)):
+        at = min(max(np.searchsorted(theta, sought[k], side="right") - 1, 0), last - 1)
+        within = min(max(sought[k], theta[0]), theta[last])
+        number = at + (within - theta[at]) / (theta[at + 1] - theta[at])
+        frames[k] = hop * (first + number + 1) - 0.5 + (sought[k] - within) / step
 
 
 @njit(cache=True, nogil=True)

@@ -28,7 +28,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import Array, median
+from morfax.motion.compiled import njit
 from morfax.player.tape.discriminator import Phases
 from morfax.player.tape.predictor import count_turns
 from morfax.player.tape.standstill import SILENT_LEVEL
@@ -70,15 +71,13 @@ class Surprises:
 
         `told` (2, n, axes): largest acceleration, cycles/row², and speed, cycles/row; nan where none is told.
         """
-        accelerations, speeds = told
-        sizes = np.abs(rows.surprise)
-        noise = _noise(sizes)
-        enough = len(sizes) >= ENOUGH_ROWS
+        noise = _noise(np.abs(rows.surprise[::STRIDE]))
+        enough = len(rows) >= ENOUGH_ROWS
         self._noise_cycles = noise if enough else np.maximum(noise, self._noise_cycles)
-        by_program = accelerations * self._gain_rows2
-        lost = sizes > by_program + np.maximum(self._noise_cycles, LEAST_CYCLES)
-        jumps = (by_program > HIDDEN_CYCLES) & (speeds < self._slow)
-        if jumps.any():
+        lost, jumps = np.empty((2, *rows.surprise.shape), bool)
+        least = np.maximum(self._noise_cycles, LEAST_CYCLES).astype(np.float64)
+        if _beyond(rows.surprise, told, (self._gain_rows2, self._slow), least, (lost, jumps)):
+            accelerations = told[0]
             dips, own = _dips(rows.levels), KINK * (accelerations * self._gauge_rows) ** 2
             lost |= jumps & (np.maximum(dips[:, :1], dips[:, 1:]) > own)
         return np.asarray(lost)
@@ -88,9 +87,35 @@ class Surprises:
         return max(float(self._noise_cycles[axis]), LEAST_CYCLES)
 
 
+@njit(cache=True, nogil=True)
+def _beyond(surprise, told, limits, least, marks):  # type: ignore[no-untyped-def]
+    """Mark the rows that surprise by more than told, and those where the program jumps; whether any does.
+
+    `limits`: of the surprise for a told acceleration, and of the speed at which jumps are looked for.
+    """
+    lost, jumps = marks
+    any_jumps = False
+    for row in range(len(surprise)):
+        for axis in range(surprise.shape[1]):
+            by_program = told[0, row, axis] * limits[0]
+            lost[row, axis] = abs(surprise[row, axis]) > by_program + least[axis]
+            jumps[row, axis] = by_program > HIDDEN_CYCLES and told[1, row, axis] < limits[1]
+            any_jumps |= jumps[row, axis]
+    return any_jumps
+
+
 def _noise(sizes: NDArray[np.float32]) -> Array:
     """So many standard deviations of each column, told by its median."""
-    return np.asarray(np.median(sizes[::STRIDE], axis=0) * (NOISE_SIGMAS / MEDIAN_SIGMAS))
+    medians = np.empty(sizes.shape[1], np.float32)
+    _medians(sizes, medians)
+    return np.asarray(medians * (NOISE_SIGMAS / MEDIAN_SIGMAS))
+
+
+@njit(cache=True, nogil=True)
+def _medians(sizes, medians):  # type: ignore[no-untyped-def]
+    """Fill the median of each column."""
+    for column in range(len(medians)):
+        medians[column] = median(sizes[:, column].copy())
 
 
 def _dips(levels: NDArray[np.float32]) -> Array:
@@ -99,7 +124,7 @@ def _dips(levels: NDArray[np.float32]) -> Array:
     if len(levels) > 2 * DIP_ROWS:
         beside = (levels[: -2 * DIP_ROWS] + levels[2 * DIP_ROWS :]) / 2
         size = np.abs(levels[DIP_ROWS:-DIP_ROWS] / np.maximum(beside, SILENT_LEVEL) - 1)
-        dips[DIP_ROWS:-DIP_ROWS] = size - np.maximum(_noise(size), LEAST_DIP)
+        dips[DIP_ROWS:-DIP_ROWS] = size - np.maximum(_noise(size[::STRIDE]), LEAST_DIP)
     return dips
 
 

@@ -83,6 +83,12 @@ def read_symbols(points: Subcarrier, begins: float) -> Gates:
     return gates
 
 
+@njit(cache=True, nogil=True, inline="always")
+def _power(point):  # type: ignore[no-untyped-def]
+    """Square of the size of a complex number; numba's own size takes care not to overflow, and its time."""
+    return point.real * point.real + point.imag * point.imag
+
+
 @njit(cache=True, nogil=True)
 def _read(  # type: ignore[no-untyped-def]
     points, theta, begins, word, bits, strengths, sizes, shares, late, turns, swings, errors
@@ -113,8 +119,8 @@ def _read(  # type: ignore[no-untyped-def]
             along = seen.real * alike.real + seen.imag * alike.imag
             bits[track, symbol] = 1 if along >= 0 else -1
             strengths[track, symbol] = abs(along)
-            ahead, behind = abs(gates[track, 0, symbol]), abs(gates[track, 2, symbol])
-            sizes[track, symbol] = max(ahead, abs(seen), behind)
+            ahead, behind = _power(gates[track, 0, symbol]), _power(gates[track, 2, symbol])
+            sizes[track, symbol] = math.sqrt(max(ahead, _power(seen), behind))
         _share(gates[track], alike, bits[track], shares[track])
         # 3. with the signs known: how late, by a parabola through three gates; and the phase, part by part
         sums = np.zeros(GATES)
@@ -156,15 +162,18 @@ def _across(seen, bits, turns, part):  # type: ignore[no-untyped-def]
     """Power across and noise along of the symbols about the phases of their parts; no weak symbols."""
     usual = 0.0
     for symbol in range(len(seen)):
-        usual += abs(seen[symbol]) / len(seen)
+        usual += math.sqrt(_power(seen[symbol])) / len(seen)
     if not usual > 0:
         return 0.0, 0.0
     count, along, alongs, acrosses = 0, 0.0, 0.0, 0.0
+    turned = 0j
     for symbol in range(part * len(turns)):
-        if abs(seen[symbol]) < 0.5 * usual:
+        if symbol % part == 0:
+            turn = -2 * math.pi * turns[symbol // part]
+            turned = complex(math.cos(turn), math.sin(turn)) / usual
+        if _power(seen[symbol]) < 0.25 * usual**2:
             continue
-        turn = -2 * math.pi * turns[symbol // part]
-        straight = seen[symbol] * bits[symbol] * complex(math.cos(turn), math.sin(turn)) / usual
+        straight = seen[symbol] * bits[symbol] * turned
         count += 1
         along += straight.real
         alongs += straight.real**2
@@ -172,3 +181,25 @@ def _across(seen, bits, turns, part):  # type: ignore[no-untyped-def]
     if not count:
         return 0.0, 0.0
     return acrosses / count, alongs / count - (along / count) ** 2
+
+
+@njit(cache=True, nogil=True)
+def count_on(gates, is_read, last, zero, apart):  # type: ignore[no-untyped-def]
+    """Count the turns of each track's parts on from its last frame; fill how far they are from track 1's.
+
+    `gates`: turns (tracks, parts) and how late; nan where a track is not read, or has no number.
+    """
+    turns, late = gates
+    for track in range(len(turns)):
+        is_read[track] &= np.isfinite(turns[track]).all()
+        if not is_read[track]:
+            late[track] = np.nan
+            turns[track] = np.nan
+            continue
+        turns[track] -= np.rint(turns[track] - last[track])
+        last[track] = turns[track, -1]
+    for track in range(len(turns)):
+        turns[track] -= zero[track]
+        for part in range(turns.shape[1]):
+            first = turns[0, part] if track else 0.0
+            apart[track, part] = first - turns[track, part]

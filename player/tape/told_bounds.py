@@ -16,8 +16,7 @@ Source: our own. Questions: an axis that asks for more than a frame can tell is 
 from __future__ import annotations
 
 import math
-
-import numpy as np
+from itertools import pairwise
 
 from morfax.motion.arrays import Array
 from morfax.player.tape.bridges import Bound
@@ -55,16 +54,18 @@ class ToldBounds:
         near = before + behind
         return Bound(max(one.acceleration for one in near), max(one.speed for one in near))
 
-    def most(self, first: int, count: int) -> Array:
-        """The largest acceleration and speed told of each of some rows (2, rows); nan where none is."""
-        told = np.full((2, count), np.nan)
-        for starts, ends, bound in self._told:
-            rows = slice(max(math.ceil(starts) - first, 0), max(math.ceil(ends) - first, 0))
-            if rows.start >= min(rows.stop, count):
-                continue
-            told[0, rows] = np.fmax(told[0, rows], bound.acceleration)
-            told[1, rows] = np.fmax(told[1, rows], bound.speed)
-        return told
+    def tell(self, first: int, told: Array) -> None:
+        """Fill the largest acceleration and speed told of each of some rows (2, rows); nan where none is."""
+        spans = [
+            (max(math.ceil(starts) - first, 0), max(math.ceil(ends) - first, 0), bound)
+            for starts, ends, bound in self._told
+        ]
+        # between two edges the same frames tell of all rows
+        edges = sorted({0, told.shape[1], *(edge for span in spans for edge in span[:2])})
+        for begins, ends in pairwise(edges):
+            near = [bound for one, other, bound in spans if one <= begins and other >= ends]
+            told[0, begins:ends] = max((bound.acceleration for bound in near), default=math.nan)
+            told[1, begins:ends] = max((bound.speed for bound in near), default=math.nan)
 
     def between(self, first: int, last: int) -> Bound | None:
         """The bound between two rows, or None where no frame tells it."""

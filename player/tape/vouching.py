@@ -23,7 +23,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import Array, between
 from morfax.motion.faults import Fault
 from morfax.player.tape import check_faults as faults
 from morfax.player.tape.bridges import Gap
@@ -257,7 +257,7 @@ class Vouching:
         near = self._delays[axis].corrected(
             held.cycles[first : at + span + 1, axis], held.first_row + first
         )
-        return float(np.interp(row - held.first_row - first, np.arange(len(near)), near))
+        return between(near, row - held.first_row - first)
 
     def _settle(self, axis: int, row: float, off: float, stands_mm: StandsMm) -> None:
         """Let a count vouch for the way until there; or note which gap lost it, or lay that gap anew."""

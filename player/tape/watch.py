@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 from morfax.motion.faults import Fault, LockFault, TapeFault
 from morfax.player.tape.band_filter import translating_taps
 from morfax.player.tape.discriminator import Frames, Phases
@@ -42,6 +43,7 @@ SHAKE_STRIDE = 4  # rows: the filter spans eight, so the rows between say little
 SHAKE_CYCLES = 0.0047
 # of full scale and of the carrier: below it noise may be the rounding of the samples
 STUCK_NOISE = 1e-4
+NEARLY = 1 - 1e-9  # of a limit: beyond it the exact sum is made; rounding is 1e-15
 
 Float32s = NDArray[np.float32]
 
@@ -52,7 +54,7 @@ class Watch:
     def __init__(self, fmt: TapeFormat, bearings: Bearings) -> None:
         self._format, self._bearings = fmt, bearings
         re, im = translating_taps(fmt.sample_rate_hz, fmt.reference_hz, fmt.samples_per_motion)
-        self._taps = re.astype(np.float64) + 1j * im
+        self._taps = np.array([re, im], np.float64)
         self._still_hz = bearings.reference_hz
         self.takes_skew = True  # False: the check signal tells it, and it is taken out
         self._sums, self._apart, self._moments = np.zeros(fmt.tracks), np.zeros(fmt.tracks), 0
@@ -116,15 +118,13 @@ class Watch:
 
     def _frequencies(self, frames: Frames) -> Array:
         """Frequency of each track at some moments, Hz (moments, tracks)."""
-        step, length = self._format.samples_per_motion, len(self._taps)
-        spare = len(frames) - length - step
+        step = self._format.samples_per_motion
+        spare = len(frames) - self._taps.shape[1] - step
         if spare < MOMENTS:
             return np.zeros((0, frames.shape[1]))
         starts = np.linspace(0, spare, MOMENTS).astype(np.int64)
-        at = starts[:, None] + np.arange(length + step)
-        seen = frames[at].astype(np.float64)
-        first = np.einsum("n,mnt->mt", self._taps, seen[:, :length])
-        after = np.einsum("n,mnt->mt", self._taps, seen[:, step:])
+        first, after = filtered = np.empty((2, MOMENTS, frames.shape[1]), np.complex128)
+        _filtered(frames, starts, step, self._taps, filtered)
         rate_hz, hz = self._format.sample_rate_hz / step, self._format.reference_hz
         # the taps do not turn along
         turned = np.angle(after * first.conj()) / (2 * np.pi) - hz / rate_hz
@@ -151,6 +151,10 @@ class Watch:
         skew_s = np.minimum(offset, np.abs(0.5 - offset)) / self._bearings.reference_hz
         rate_hz = self._format.motion_rate_hz
         stride = max(round(rate_hz * 0.002), 1)  # speeds over 2 ms, above the noise
+        if not _any_skewed(
+            phases.cycles, stride, NEARLY * ALLOWED_CYCLES * stride / rate_hz, skew_s
+        ):
+            return None
         speed = np.abs(phases.cycles[stride:] - phases.cycles[:-stride]) * (rate_hz / stride)
         wrong = speed * skew_s > ALLOWED_CYCLES
         if not wrong.any():
@@ -175,7 +179,7 @@ class Watch:
         """The first row of a window in which the phase of an axis shakes, and the fault."""
         window = shake_rows(self._format.motion_rate_hz)
         whole = len(phases) // window * window
-        if not whole:
+        if not _any_shaking(phases.surprise[:whole], window):
             return None
         parts = np.abs(phases.surprise[:whole:SHAKE_STRIDE]).reshape(
             whole // window, -1, phases.surprise.shape[1]
@@ -198,6 +202,52 @@ class Watch:
             error_cycles=float(shakes[at, axis]),
             position_mm=positions_mm[axis],
         )
+
+
+# The order of the sums is free (reassoc, contract), so that they run in vectors.
+@njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "nsz"})
+def _filtered(frames, starts, step, taps, out):  # type: ignore[no-untyped-def]
+    """The tracks through a filter (re and im, taps) that begins at some frames, and `step` further on.
+
+    `out` (2, moments, tracks).
+    """
+    length = taps.shape[1]
+    seen = np.empty(length + step)
+    for moment in range(len(starts)):
+        for track in range(frames.shape[1]):
+            for k in range(len(seen)):
+                seen[k] = frames[starts[moment] + k, track]
+            for late in range(2):
+                re, im = 0.0, 0.0
+                for k in range(length):
+                    re += taps[0, k] * seen[late * step + k]
+                    im += taps[1, k] * seen[late * step + k]
+                out[late, moment, track] = complex(re, im)
+
+
+@njit(cache=True, nogil=True)
+def _any_skewed(cycles, stride, travel_s, skew_s):  # type: ignore[no-untyped-def]
+    """Whether an axis travels, in so many rows, so far that its skew makes `travel_s` of it, cycles · s."""
+    skewed = 0
+    for axis in range(cycles.shape[1]):
+        for row in range(len(cycles) - stride):
+            way = abs(cycles[row + stride, axis] - cycles[row, axis])
+            skewed += way * skew_s[axis] > travel_s
+    return skewed > 0
+
+
+@njit(cache=True, nogil=True)
+def _any_shaking(surprise, window):  # type: ignore[no-untyped-def]
+    """Whether half of the rows of any window, every `SHAKE_STRIDE`-th, lie beyond what is allowed."""
+    enough = window // SHAKE_STRIDE / 2
+    for first in range(0, len(surprise), window):
+        for axis in range(surprise.shape[1]):
+            shaken = 0
+            for row in range(first, first + window, SHAKE_STRIDE):
+                shaken += abs(surprise[row, axis]) > SHAKE_CYCLES
+            if shaken >= enough:
+                return True
+    return False
 
 
 def shake_rows(rate_hz: float) -> int:

@@ -22,6 +22,7 @@ from __future__ import annotations
 import math
 import zlib
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -103,22 +104,19 @@ def _frame(data: bytes) -> CheckFrame | None:
     if zlib.crc32(data[:_TOLD_BYTES]) != int.from_bytes(data[_TOLD_BYTES:], "big"):
         return None
     told = int.from_bytes(data[:_TOLD_BYTES], "big")
-    values: list[int] = []
-    for bits_ in (_CODE_BITS, _CODE_BITS, _COUNT_BITS, 16, 4, 1, 3):
-        values.append(told & ((1 << bits_) - 1))
-        told >>= bits_
-    acceleration, speed, count, number, track, last, version = values
-    if version != VERSION:
+    if told >> 61 != VERSION:
         return None
+    codes, code_mask = told & ((1 << 2 * _CODE_BITS) - 1), (1 << _CODE_BITS) - 1
+    count = told >> 2 * _CODE_BITS & ((1 << _COUNT_BITS) - 1)
     if count >> (_COUNT_BITS - 1):
         count -= 1 << _COUNT_BITS
     return CheckFrame(
-        track,
-        number,
+        told >> 56 & (MOST_TRACKS - 1),
+        told >> 40 & (NUMBERS - 1),
         count / COUNTS_PER_CYCLE,
-        to_value(speed, LEAST_SPEED),
-        to_value(acceleration, LEAST_ACCELERATION),
-        bool(last),
+        to_value(codes >> _CODE_BITS, LEAST_SPEED),
+        to_value(codes & code_mask, LEAST_ACCELERATION),
+        bool(told >> 60 & 1),
     )
 
 
@@ -130,6 +128,7 @@ def to_code(value: float, least: float) -> int:
     return min(1 + math.ceil(octaves * _PER_OCTAVE - 1e-9), (1 << _CODE_BITS) - 1)
 
 
+@cache  # of 128 codes each
 def to_value(code: int, least: float) -> float:
     """The speed or acceleration of a code; infinite for the largest."""
     if not code:
