@@ -39,7 +39,7 @@ NARROWEST = 0.35  # shorter to longer side of what is shown
 FEW_NUMBERS = (
     4  # along an enlargement: each number of all takes a hundredth of a picture's time
 )
-LETTERS_PER_IN = 14.0  # of a title: the mean of small letters of 10 points
+LETTERS_PER_IN = 11.0  # of a title of 10 points: capitals and underscores too
 LIGHT = 3.2  # ink as light grey, for a path to lie on
 
 
