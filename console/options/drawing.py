@@ -105,8 +105,9 @@ _DRAWING = (
         type=click.Choice(("auto", "plain", "squared", "ruled")),
         default="auto",
         show_default=True,
-        help="Printed lines of squared or ruled paper, even if as dark as the drawing, are left out; auto: "
-        "if they go over the whole sheet; plain: none is left out.",
+        help="Leave out the printed lines of squared or ruled paper, even where they are as dark as the "
+        "drawing. auto: where they run over the whole sheet; squared, ruled: refuse a sheet without them; "
+        "plain: leave nothing out.",
     ),
     option(
         "Drawing",

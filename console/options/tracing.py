@@ -54,16 +54,16 @@ SEVERAL = option(
     type=LINES,
     help="Several lines as one program: all (every stretch of line, each once), contours (lines to be cut, "
     "inner before outer, without the bars between them), outer (contours inside no other), or numbers "
-    "such as 1,3; 1 is the longest.  [default: one line, the longest or that at --start; with --cutter and "
-    "no --card contours]",
+    "such as 1,3; 1 is the longest.  [default: one line, the longest or that at --start; contours with "
+    "--cutter or --kerf, unless there is a --card]",
 )
 LETTERING = option(
     "Line",
     "--lettering",
     "lettering_mm",
     type=LETTERS,
-    help="With --lines all: the letters that are followed: all, none, or those of a height such as 2mm and "
-    "higher. What is left out is told.  [default: all]",
+    help="With --lines all: which letters the head follows: all, none, or those as high as 2mm, say, and "
+    "higher. The figures list what is left out.  [default: all]",
 )
 LINE_WIDTH = option(
     "Line",
@@ -119,7 +119,7 @@ _LINE = (
         metavar="X,Y X,Y",
         help="Where a line begins, and a place to which the head goes from there, such as 40,26 50,26; "
         "several times for several lines. With --lines these lines begin so, without it they are the lines. "
-        "It counts before --climb and the machine's own direction.  [default: as it comes]",
+        "It goes before --climb and the machine's own direction.  [default: as it comes]",
     ),
     option(
         "Line",

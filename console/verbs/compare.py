@@ -77,7 +77,7 @@ Examples:
     "Systems",
     "--lines",
     type=LINES,
-    help="With --systems: several lines, all, outer or numbers, as in trace.",
+    help="With --systems: several lines: all, contours, outer or numbers, as in trace.",
 )
 @option(
     "Systems",
