@@ -48,6 +48,7 @@ if TYPE_CHECKING:
 
 HALF = 0.5  # darkness from which a pixel is ink
 LEAST_CONTRAST = 10.0  # grey levels of 255 between paper and ink
+BLACK = 255.0  # grey levels below paper: nothing is darker
 ABOVE_NOISE = 6.0  # standard deviations of the paper: what is darker is no noise
 DARKER = 80.0  # percentile of the strokes' pixels: those that no edge makes lighter
 LEAST_STROKE_MM = 2.0  # shorter strokes are specks
@@ -249,6 +250,11 @@ def _ink_contrast(contrast: Contrast, pitch_mm: float) -> float:
         runs = runs_of(soft > least, 0)
     patches = Patches.of([runs])
     strokes = patches.longer_sides >= max(12, LEAST_STROKE_MM / pitch_mm)
+    if not strokes.any() and least > BLACK:
+        raise DrawingFault(
+            "no line on the drawing: its grey levels vary everywhere, as of noise or a pattern, and no line "
+            "stands out; check the file"
+        )
     if not strokes.any():
         raise DrawingFault(
             f"no line on the drawing: nothing longer than {LEAST_STROKE_MM:g} mm is {least:.0f} or more"

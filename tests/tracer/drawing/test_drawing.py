@@ -338,3 +338,14 @@ def test_a_file_that_is_not_there_or_cannot_be_read_is_told(tmp_path: Path) -> N
         Drawing.open(tmp_path / "missing.png")
     with pytest.raises(FileFault, match="cannot be read"):
         Drawing.open(tmp_path)
+
+
+def test_a_pattern_that_is_all_over_the_sheet_is_told(tmp_path: Path) -> None:
+    """It was told as "580 or more of 255 grey levels"."""
+    y, x = np.mgrid[:400, :400]
+    board = np.asarray((x // 8 + y // 8) % 2 * 255, np.uint8)
+    Image.fromarray(board).save(tmp_path / "board.png", dpi=DPI)
+    with pytest.raises(
+        DrawingFault, match="grey levels vary everywhere, as of noise or a pattern"
+    ):
+        Drawing.open(tmp_path / "board.png")

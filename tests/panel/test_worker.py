@@ -1,0 +1,60 @@
+"""The worker compiles damaged kernels again, once, and tells the page so in one line."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+from morfax.panel import pipe
+
+ROOT = Path(__file__).parents[2]
+MODULE = """
+from numba import njit
+
+@njit(cache=True)
+def twice(x):
+    return 2 * x
+"""
+# a worker whose only kind of job runs that kernel
+RUN = """
+from morfax.panel import worker
+
+def run(self, number):
+    import loop
+    return {"is": loop.twice(number)}
+
+worker.Worker._twice = run
+worker.main()
+"""
+
+
+def told(home: Path) -> list[dict[str, Any]]:
+    """What the worker says until its job is done."""
+    with subprocess.Popen(
+        [sys.executable, "-c", RUN],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        cwd=ROOT,
+        env={"PYTHONPATH": f"{ROOT}:{home}"},
+    ) as process:
+        assert process.stdin is not None and process.stdout is not None
+        process.stdin.write(pipe.packed(("job", 1, "twice", 21)))
+        process.stdin.flush()
+        said = [pipe.read_from(process.stdout)]
+        while said[-1]["say"] not in ("done", "failed"):
+            said.append(pipe.read_from(process.stdout))
+        process.stdin.close()
+    return said
+
+
+def test_damaged_kernels_are_compiled_again_and_the_page_hears_of_it(tmp_path: Path) -> None:
+    (tmp_path / "loop.py").write_text(MODULE)
+    assert [one["say"] for one in told(tmp_path)] == ["begun", "done"]
+    kernel = next((tmp_path / "__pycache__").glob("loop.twice-*.nbc"))
+    kernel.write_bytes(b"\x80\x05garbage" * 40)
+    begun, note, done = told(tmp_path)
+    assert begun["say"] == "begun"
+    assert note["say"] == "note" and "are damaged: they are compiled again" in note["text"]
+    assert done["result"] == {"is": 42}
