@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 # chosen by trial on the test drawings
 LEFT_SHARE = 0.01  # of all the ink: more that was not followed is worth a remark
+TINY_MM = 1e-9  # so that a sheet of nothing but filled shapes has a share
 # of the ink that is joined to a line: if the line is less, the rest is worth a remark
 FEW_SHARE = 0.7
 
@@ -37,12 +38,21 @@ def _of_all(trace: Trace) -> Iterator[str]:
     """Ink that was left out, where all of it was asked for."""
     if trace.ink is None:
         return
-    left = 1 - trace.ink.followed_share
+    all_mm = max(trace.ink.followed_mm + trace.ink.left_mm + trace.ink.pale_mm, TINY_MM)
+    left = trace.ink.left_mm / all_mm
     if left > LEFT_SHARE:
         yield (
             f"{trace.ink.left_mm:.0f} mm of ink ({100 * left:.0f} %) could not be followed: stretches that "
             "are too short or too unclear to put the head down; the figures list their places, and "
             "--picture marks them; scan at a higher resolution"
+        )
+    pale = trace.ink.pale_mm / all_mm
+    if pale > LEFT_SHARE:
+        x, y, _ = trace.ink.pale[0]
+        yield (
+            f"{trace.ink.pale_mm:.0f} mm of line ({100 * pale:.0f} %) are less than half as dark as the rest "
+            f"and are left out (the longest at {x:.1f},{y:.1f} mm): if they are lines of the drawing, raise the "
+            "contrast of the picture until they are black too"
         )
     yield from _of_areas(trace.ink)
     if trace.ink.solid_mm > 0:

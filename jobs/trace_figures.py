@@ -41,6 +41,7 @@ def ink(trace: Trace) -> dict[str, Any]:
         "ink_followed_share": balance.followed_share,
         "ink_followed_mm": balance.followed_mm,
         "specks_left_out_mm": balance.specks_mm,
+        "pale_lines_left_out_mm": balance.pale_mm,
         "filled_shapes_left_out_mm": balance.solid_mm,
         "lettering_followed_mm": balance.lettering_mm,
         "lettering_left_out_mm": balance.letters_mm,

@@ -75,6 +75,8 @@ class Traced:
         if self.trace.ink is not None:
             lost = self.trace.ink.lost[:MARKED]
             stops_mm |= {f"left {k}": (x, y) for k, (x, y, _) in enumerate(lost, 1)}
+            pale = self.trace.ink.pale[:MARKED]
+            stops_mm |= {f"pale {k}": (x, y) for k, (x, y, _) in enumerate(pale, 1)}
         beside = enumerate(self.trace.unexplained[:MARKED], 1)
         stops_mm |= {f"unexplained {k}": place.place_mm for k, place in beside}
         if self.left is None:

@@ -22,6 +22,7 @@ from morfax.tracer.following.followed import THINNED
 from morfax.tracer.ink.graph import Graph
 from morfax.tracer.ink.hatching import Hatching, hatching
 from morfax.tracer.ink.left_out import Area, InkLeft
+from morfax.tracer.ink.pale import Pale, pale_lines
 
 EVERY_MM = 0.1  # ways are held against the ink so often
 BESIDE_WIDTHS = 0.7  # ink nearer to a way than this is that way's; by trial on drawings of nets
@@ -40,7 +41,7 @@ class Balance(NamedTuple):
 
     `lost`: stretches on which no stroke runs, (place X, place Y, length) mm, the longest first. `letters_mm`
     of lettering were left out, `lettering_mm` followed. `areas`: solid areas and letters that were left out.
-    `hatching`: families of strokes that are hatching, and were followed.
+    `hatching`: families of strokes that are hatching, and were followed. `pale`: lines too pale to be ink.
     """
 
     followed_mm: float
@@ -52,6 +53,12 @@ class Balance(NamedTuple):
     lettering_mm: float = 0.0
     areas: tuple[Area, ...] = ()
     hatching: tuple[Hatching, ...] = ()
+    pale: tuple[Pale, ...] = ()
+
+    @property
+    def pale_mm(self) -> float:
+        """The length of all pale lines."""
+        return sum(line.length_mm for line in self.pale)
 
     @property
     def solids(self) -> list[Area]:
@@ -60,8 +67,10 @@ class Balance(NamedTuple):
 
     @property
     def followed_share(self) -> float:
-        """Share of the lines' ink along which strokes run; what was left out on purpose apart."""
-        return self.followed_mm / max(self.followed_mm + self.left_mm, TINY)
+        """Share of the lines' ink, pale lines too, along which strokes run; what was left out on purpose
+        apart.
+        """
+        return self.followed_mm / max(self.followed_mm + self.left_mm + self.pale_mm, TINY)
 
 
 def balance(sheet: Sheet, graph: Graph, left: InkLeft, ways: list[Array]) -> Balance:
@@ -91,6 +100,7 @@ def balance(sheet: Sheet, graph: Graph, left: InkLeft, ways: list[Array]) -> Bal
         float((shares * lengths_mm)[lines & left.lettering].sum()),
         left.areas,
         tuple(hatching(ways)),
+        tuple(pale_lines(sheet.drawing)),
     )
 
 
