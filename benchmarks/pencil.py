@@ -27,11 +27,14 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.jobs.settings import LineSettings
+from morfax.jobs.skips import gap_across_skips
 from morfax.motion.contour import distance
 from morfax.motion.faults import Fault
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.scale import Scale
 from morfax.tracer.drawing.scan import MM_PER_INCH, Scan, Stated
+from morfax.tracer.head.settings import Settings
 from morfax.tracer.program.trace import trace
 
 Points = NDArray[np.float64]
@@ -115,7 +118,10 @@ def measured(line: Points, width_mm: float, levels: Levels, dpi: float = DPI) ->
     """Trace a picture of a closed line, and hold the path against the line."""
     begun = time.process_time()
     try:
-        found = trace(scanned(levels, dpi))
+        drawing = scanned(levels, dpi)
+        gap_mm = gap_across_skips(drawing, LineSettings(), Settings())
+        settings = Settings() if gap_mm is None else Settings(gap_mm=gap_mm)
+        found = trace(drawing, settings=settings)
     except Fault as fault:
         return Found("refused", math.nan, time.process_time() - begun, str(fault))
     took_s, run = time.process_time() - begun, found.lines[0]

@@ -93,14 +93,11 @@ def ballpoint(line: Points, rng: Random) -> tuple[float, NDArray[np.float64]]:
     along_mm = lengths_mm(line)
     for at_mm in np.arange(EVERY_MM / 2, along_mm[-1] - 2, EVERY_MM):
         begin_mm = at_mm + rng.uniform(-8, 8)
-        skip = np.linspace(begin_mm, begin_mm + rng.uniform(*SKIPS_MM), 20)
+        skip = begin_mm + np.array([0.0, rng.uniform(*SKIPS_MM)])
         part = np.column_stack([np.interp(skip, along_mm, column) for column in line.T])
         rows, columns = np.indices(ink.shape)
         x_mm, y_mm = (columns + 0.5) / PX_PER_MM, (len(ink) - rows - 0.5) / PX_PER_MM
-        near = np.zeros(ink.shape, bool)
-        # square ends: what is nearer to the skip than to the line beside it
-        near |= _within(x_mm, y_mm, part, width_mm)
-        ink[near] = 0
+        ink[_within(x_mm, y_mm, part, width_mm)] = 0
     return width_mm, inked(BALLPOINT * lens(ink), rng)
 
 
@@ -109,6 +106,8 @@ def _within(
 ) -> NDArray[np.bool_]:
     """Pixels between the ends of a short piece of line, within a width of it."""
     way = part[-1] - part[0]
+    if not way.any():
+        return np.zeros(x_mm.shape, bool)
     along = ((x_mm - part[0, 0]) * way[0] + (y_mm - part[0, 1]) * way[1]) / (way @ way)
     aside = (x_mm - part[0, 0]) * way[1] - (y_mm - part[0, 1]) * way[0]
     return (along > 0) & (along < 1) & (np.abs(aside) < width_mm * np.hypot(*way))

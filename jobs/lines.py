@@ -13,6 +13,7 @@ from morfax.jobs.listener import SILENT, Listener
 from morfax.jobs.remarks_on_lines import remarks_on_lines
 from morfax.jobs.scale_doubts import scale_doubts
 from morfax.jobs.settings import DrawingFile, TraceSettings
+from morfax.jobs.skips import gap_across_skips
 
 if TYPE_CHECKING:
     from morfax.jobs.figures import Figures
@@ -43,7 +44,6 @@ class LinesJob:
 
     def run(self, listener: Listener = SILENT, panel: Panel | None = None) -> LinesResult:
         """Look, and follow if asked; raises DrawingFault, FileFault and WrongUse."""
-        from morfax.tracer.drawing.strokes import Sheet
         from morfax.tracer.program.setup import Setup
         from morfax.tracer.program.survey import survey
 
@@ -52,7 +52,9 @@ class LinesJob:
             medium.outgoing(self.picture, self.drawing.file)
         drawing = self.drawing.open(listener)
         listener.compiling("the head", ("motion", "tracer"))
-        setup = Setup(Sheet.of(drawing), of_head)
+        gap_mm = gap_across_skips(drawing, self.line, of_head)
+        of_head = of_head if gap_mm is None else replace(of_head, gap_mm=gap_mm)
+        setup = Setup(drawing.sheet, of_head)
         seen = survey(setup)
         if self.follow and seen.entries:
             seen = _followed(seen, setup, listener)

@@ -51,7 +51,7 @@ def _of_all(trace: Trace) -> Iterator[str]:
         x, y, _ = trace.ink.pale[0]
         yield (
             f"{trace.ink.pale_mm:.0f} mm of line ({100 * pale:.0f} %) are less than half as dark as the rest "
-            f"and are left out (the longest at {x:.1f},{y:.1f} mm): if they are lines of the drawing, raise the "
+            f"and are left out (the longest at {x:.1f},{y:.1f} mm): if they belong to the drawing, raise the "
             "contrast of the picture until they are black too"
         )
     yield from _of_areas(trace.ink)

@@ -14,6 +14,7 @@ from morfax.jobs import correction_settings
 from morfax.jobs.contour_remarks import of_around, of_contouring, of_order
 from morfax.jobs.depths import of_tabs
 from morfax.jobs.remarks import of_cutter, remarks
+from morfax.jobs.skips import gap_across_skips
 from morfax.jobs.traced import Traced
 from morfax.jobs.who_led import WhoLed
 from morfax.jobs.wrong_use import WrongUse
@@ -64,7 +65,7 @@ class Tracing:
 
         Raises LineFault if there is no line to start on.
         """
-        return self._on(drawing)._traced(drawing, listener)
+        return self._across_skips(drawing, listener)._on(drawing)._traced(drawing, listener)
 
     def _traced(self, drawing: Drawing, listener: Listener) -> Traced:
         """Follow the drawing, and put the tool along or beside its lines."""
@@ -101,6 +102,17 @@ class Tracing:
         yield from of_order(followed, self.settings.line.order)
         if led is not None:
             yield from led.remarks()
+
+    def _across_skips(self, drawing: Drawing, listener: Listener) -> Tracing:
+        """The same across the gaps that the pen has left in its line, if nobody has set the widest gap."""
+        gap_mm = gap_across_skips(drawing, self.settings.line, self.of_head)
+        if gap_mm is None:
+            return self
+        listener.note(
+            f"the pen has skipped: gaps of up to {gap_mm:.1f} mm are crossed; --gap "
+            f"{self.of_head.gap_mm:g}mm ends lines at wider ones"
+        )
+        return replace(self, of_head=replace(self.of_head, gap_mm=gap_mm))
 
     def _on(self, drawing: Drawing) -> Tracing:
         """The same with the start, the direction and the reference point of the drawing's corrections, where

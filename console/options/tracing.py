@@ -78,7 +78,7 @@ GAP = option(
     "gap_mm",
     type=REACH,
     help="Widest gap in the line that the head crosses; with 0 only gaps of a scan, some 3 pixels.  "
-    f"[default: {DEFAULTS['gap_mm']}]",
+    f"[default: {DEFAULTS['gap_mm']}, or the widest skip of a pen that skips, up to 1mm]",
 )
 TRACING_SPEED = option(
     "Head",

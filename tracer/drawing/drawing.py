@@ -208,6 +208,7 @@ class Drawing:
         slit = grain.slit_for(in_lines, width_px, pitch[0])
         if slit is not None:
             darkness = grain.behind(slit, darkness)
+            notes = (*notes, grain.note(slit, pitch[0]))
         finer = coarse.times_finer(darkness, width_px)
         if finer > 1:
             darkness = coarse.finer(darkness, finer)

@@ -67,6 +67,15 @@ def slit_for(grain: float, width_px: float, pitch_mm: float) -> Slit | None:
     return Slit(along_px, max(ACROSS_WIDTHS * width_px, 0.5), width_px)
 
 
+def note(slit: Slit, pitch_mm: float) -> str:
+    """What the operator should know of a sheet that is seen through the slit."""
+    long_mm = 2 * slit.along_px * pitch_mm
+    return (
+        f"the lines have grain, as of a pencil: they are averaged over {long_mm:.1f} mm along each line, "
+        "which rounds corners by some 0.1 mm; lines that are inked over are followed more exactly"
+    )
+
+
 def behind(slit: Slit, darkness: Darkness) -> Darkness:
     """The darkness of a sheet as the slit sees it, tile by tile; paper without ink stays as it is."""
     seen, halo = darkness.copy(), slit.halo_px

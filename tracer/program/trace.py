@@ -22,7 +22,7 @@ import numpy as np
 
 from morfax.motion.faults import LineFault
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.drawing.strokes import Sheet, Stroke
+from morfax.tracer.drawing.strokes import Stroke
 from morfax.tracer.following.attempts import Attempts, longest_mm
 from morfax.tracer.following.direction import goes, turned_about
 from morfax.tracer.following.line import Line
@@ -57,7 +57,7 @@ def trace(
     no exception, but the trace's `fault`.
     """
     operator = operator or Operator()
-    setup = Setup(Sheet.of(drawing), settings or Settings(), operator, progress)
+    setup = Setup(drawing.sheet, settings or Settings(), operator, progress)
     found = OfNet(setup) if start_mm is not None else of_net(setup)
     line = found.line or followed(found.setup, start_mm)
     others = NO_OTHERS if start_mm is not None else others_than(setup.sheet, line)

@@ -16,7 +16,6 @@ import numpy as np
 from morfax.motion.faults import LineFault
 from morfax.motion.polyline import length_mm
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.chains import Junctions, solved
@@ -44,7 +43,7 @@ def trace_ink(
     """
     settings = settings or Settings()
     # 1. the lines and their junctions, and the head along each
-    sheet = Sheet.of(drawing)
+    sheet = drawing.sheet
     left = ink_left(sheet, letters_from_mm)
     felt = FeltSheet.of(left.drawing, settings, left.ink)
     junctions = solved(felt)

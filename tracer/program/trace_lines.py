@@ -74,7 +74,7 @@ def trace_lines(
     line is there to start on, or none has a number that is asked for.
     """
     operator = operator or Operator()
-    setup = Setup(Sheet.of(drawing), settings or Settings(), operator, progress)
+    setup = Setup(drawing.sheet, settings or Settings(), operator, progress)
     found = found_lines(setup, which)
     lines, unread = with_marks_read(with_arrows(setup, found.lines), operator)
     _refuse_none_begun(lines)
