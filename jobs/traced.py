@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
 Place = tuple[float, float]
 MARKED = 30  # of the places that the head left out, the longest are marked in the picture
+PALE_MARKED = 10  # of the pale lines: a plan has many
 REACHED_MM = 0.0125  # half a step of a plotter: so far below 0 a place is written as 0
 SHEET = ZeroOnSheet("sheet")
 
@@ -75,7 +76,7 @@ class Traced:
         if self.trace.ink is not None:
             lost = self.trace.ink.lost[:MARKED]
             stops_mm |= {f"left {k}": (x, y) for k, (x, y, _) in enumerate(lost, 1)}
-            pale = self.trace.ink.pale[:MARKED]
+            pale = self.trace.ink.pale[:PALE_MARKED]
             stops_mm |= {f"pale {k}": (x, y) for k, (x, y, _) in enumerate(pale, 1)}
         beside = enumerate(self.trace.unexplained[:MARKED], 1)
         stops_mm |= {f"unexplained {k}": place.place_mm for k, place in beside}
