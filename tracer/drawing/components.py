@@ -82,6 +82,17 @@ class Patches:
         _paint(mask, self.row[own] - top, self.begin[own] - left, self.end[own] - left)
         return mask
 
+    def runs_within(
+        self, chosen: NDArray[np.bool_], top: int, bottom: int, left: int, right: int
+    ) -> tuple[Numbers, Numbers, Numbers]:
+        """Row, begin and end of the runs of the chosen patches in a part of the sheet, from its corner."""
+        first, last = np.searchsorted(self.row, (top, bottom))
+        own = first + np.flatnonzero(chosen[self.patch[first:last]])
+        begin = np.maximum(self.begin[own] - np.int32(left), np.int32(0))
+        end = np.minimum(self.end[own] - np.int32(left), np.int32(right - left))
+        within = begin < end
+        return self.row[own][within] - np.int32(top), begin[within], end[within]
+
     def pixels_of(
         self, chosen: NDArray[np.bool_], values: NDArray[np.float32]
     ) -> NDArray[np.float32]:
@@ -97,6 +108,13 @@ class Patches:
                 np.cumsum(lengths) - lengths,
             )
         )
+
+
+def painted(row: Numbers, begin: Numbers, end: Numbers, shape: tuple[int, int]) -> Mask:
+    """Mask of runs, (rows, columns)."""
+    mask = np.zeros(shape, np.uint8)
+    _paint(mask, row, begin, end)
+    return mask
 
 
 def strips(shape: tuple[int, ...], halo: int = 0) -> Iterator[tuple[int, int, slice]]:

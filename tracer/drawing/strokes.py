@@ -23,15 +23,17 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.faults import DrawingFault, LineFault
-from morfax.tracer.drawing.components import Mask, Patches, runs_of, strips
-from morfax.tracer.drawing.depth import depth_px
-from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.blocks import BLOCK_PX, Runs, darkest, near, runs_behind_spot
+from morfax.tracer.drawing.components import Patches, strips
+from morfax.tracer.drawing.depth import depth_along
+from morfax.tracer.drawing.drawing import Darkness, Drawing
 from morfax.tracer.drawing.numbering import ALIKE, Ink, longest_first
 
 Pixels = NDArray[Any]
 Window = tuple[int, int, int, int]  # first row and column, row and column after the last
 
 INK = 0.5
+SOFTENED_PX = 0.7  # standard deviation of the spot behind which ink is told
 LEAST_LENGTH_MM = 2.0
 LEAST_LENGTH_PX = 12
 DEEPEST_PX = 200  # a line of 6 mm at 1200 dpi is 142 deep; the middle of a darker patch is not that of a line
@@ -91,15 +93,10 @@ class Sheet:
     @classmethod
     def of(cls, drawing: Drawing) -> Sheet:
         """Find the patches; raises DrawingFault if none is long enough to be a line."""
-        runs, depths = [], []
-        for top, bottom, rows in strips(drawing.darkness.shape, DEEPEST_PX):
-            ink = (cv2.GaussianBlur(drawing.darkness[rows], (0, 0), 0.7) > INK).view(np.uint8)
-            inner = slice(top - rows.start, bottom - rows.start)
-            runs.append(runs_of(ink[inner], top))
-            depths.append(_run_sums(depth_px(ink)[inner], ink[inner], runs[-1]))
-        patches = Patches.of(runs)
-        areas = patches.areas
-        deep = np.bincount(patches.patch, np.concatenate(depths), patches.count) / areas
+        runs = _inked(drawing.darkness)
+        patches = Patches.of([runs])
+        areas, shape = patches.areas, drawing.darkness.shape
+        deep = np.bincount(patches.patch, _depths(runs, shape), patches.count) / areas
         widths = np.maximum(
             4 * deep - 2, 1.0
         )  # a line of w pixels has depths 1, 2 … w/2 … 2, 1
@@ -291,22 +288,34 @@ class Sheet:
             edge for (a, b), size in zip((rows, columns), self.drawing.darkness.shape, strict=True)
             for edge in (max(0, a - halo), min(size, b + halo))
         ]  # fmt: skip
-        ink = self.patches.painted(chosen, *part)
-        inner = (
-            slice(rows[0] - part[0], rows[1] - part[0]),
-            slice(columns[0] - part[2], columns[1] - part[2]),
-        )
-        if not ink[inner].any():
-            return np.empty(0, int), np.empty(0, int), np.empty(0)
-        depth = depth_px(ink)
-        middle = (depth > 0) & (depth >= cv2.dilate(depth, np.ones((3, 3), np.uint8)) - 0.3)
-        i, j = np.nonzero(middle[inner])
+        row, begin, end = self.patches.runs_within(chosen, *part)
+        inner = rows[0] - part[0], rows[1] - part[0], columns[0] - part[2], columns[1] - part[2]
+        depth = depth_along(row, begin, end, (part[1] - part[0], part[3] - part[2]))
         disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * disc_px + 1,) * 2)
-        return (
-            i + rows[0],
-            j + columns[0],
-            _ink_about(ink, i + inner[0].start, j + inner[1].start, disc),
-        )
+        i, j, filled = _deepest(row, begin, end, depth, inner, disc)
+        return i + part[0], j + part[2], filled
+
+
+def _inked(darkness: Darkness) -> Runs:
+    """The runs of ink on a sheet."""
+    return runs_behind_spot(darkness, near(darkest(darkness) > INK), BLOCK_PX, SOFTENED_PX, INK)
+
+
+def _depths(runs: Runs, shape: tuple[int, int]) -> Array:
+    """The depth of the pixels of each run, added up."""
+    row, begin, end = runs
+    sums = np.zeros(len(row))
+    for top, bottom, rows in strips(shape, DEEPEST_PX):
+        first, own, own_end, last = np.searchsorted(row, (rows.start, top, bottom, rows.stop))
+        if own == own_end:
+            continue
+        part = slice(first, last)
+        depth = depth_along(
+            row[part] - rows.start, begin[part], end[part], (rows.stop - rows.start, shape[1])
+        ).astype(float)
+        places = np.r_[0, np.cumsum(end[part] - begin[part])[:-1]]
+        sums[own:own_end] = np.add.reduceat(depth, places)[own - first : own_end - first]
+    return sums
 
 
 def _are_solid(drawing: Drawing, patches: Patches) -> NDArray[np.bool_]:
@@ -323,28 +332,61 @@ def _are_solid(drawing: Drawing, patches: Patches) -> NDArray[np.bool_]:
 
 
 @njit(cache=True)
-def _ink_about(ink, rows, columns, disc):  # type: ignore[no-untyped-def]
-    """Pixels of ink under a disc centred on each of some pixels."""
+def _deepest(row, begin, end, depth, inner, disc):  # type: ignore[no-untyped-def]
+    """Row, column and ink about it of the pixels of some runs that lie deeper than all about them.
+
+    `inner` are first and last + 1 row and column of the pixels that count.
+    """
+    if not len(row):
+        return np.empty(0, np.int64), np.empty(0, np.int64), np.empty(0)
+    top, columns = row[0], end.max()
+    first = np.searchsorted(row, np.arange(top, row[-1] + 3))  # the first run of each row
+    places = np.zeros(len(row) + 1, np.int64)
+    places[1:] = np.cumsum(end - begin)
+    # 1. rows of depth: the one before, that of the pixels, and the one after
+    lines = np.zeros((3, columns + 2), np.float32)
+    found_row, found_column = np.empty(len(depth), np.int64), np.empty(len(depth), np.int64)
+    count = 0
+    for i in range(top, row[-1] + 1):
+        for k in range(i if i == top else i + 1, i + 2):
+            line = lines[k % 3]
+            line[:] = 0.0
+            for n in range(first[k - top], first[k - top + 1]):
+                line[begin[n] + 1 : end[n] + 1] = depth[places[n] : places[n + 1]]
+        if i == top:
+            lines[(i - 1) % 3][:] = 0.0
+        # 2. its pixels that are the deepest of nine
+        before, line, after = lines[(i - 1) % 3], lines[i % 3], lines[(i + 1) % 3]
+        for n in range(first[i - top], first[i - top + 1]):
+            for j in range(max(begin[n], inner[2]), min(end[n], inner[3])):
+                most = line[j]
+                for c in range(j, j + 3):
+                    most = max(most, before[c], line[c], after[c])
+                if inner[0] <= i < inner[1] and line[j + 1] >= most - np.float32(0.3):
+                    found_row[count], found_column[count] = i, j
+                    count += 1
+    found_row, found_column = found_row[:count].copy(), found_column[:count].copy()
+    filled = _ink_about(begin, end, first, top, found_row, found_column, disc)
+    return found_row, found_column, filled
+
+
+@njit(cache=True)
+def _ink_about(begin, end, first, top, rows, columns, disc):  # type: ignore[no-untyped-def]
+    """Pixels of ink under a disc centred on each of some pixels; the runs of each row begin at `first`."""
     half = len(disc) // 2
+    left, right = np.zeros(len(disc), np.int64), np.zeros(len(disc), np.int64)
+    for d in range(len(disc)):  # each row of a disc is one stretch
+        inside = np.flatnonzero(disc[d])
+        left[d], right[d] = inside[0] - half, inside[-1] - half + 1
     filled = np.zeros(len(rows))
     for k in range(len(rows)):
-        for i in range(max(0, half - rows[k]), min(len(disc), ink.shape[0] + half - rows[k])):
-            for j in range(
-                max(0, half - columns[k]), min(len(disc), ink.shape[1] + half - columns[k])
-            ):
-                filled[k] += ink[rows[k] - half + i, columns[k] - half + j] * disc[i, j]
+        for d in range(len(disc)):
+            at = rows[k] + d - half - top
+            if at < 0 or at >= len(first) - 1:
+                continue
+            low, high = columns[k] + left[d], columns[k] + right[d]
+            n = first[at] + np.searchsorted(end[first[at] : first[at + 1]], low)
+            while n < first[at + 1] and begin[n] < high:
+                filled[k] += max(0, min(end[n], high) - max(begin[n], low))
+                n += 1
     return filled
-
-
-def _run_sums(
-    values: NDArray[np.float32], ink: Mask, runs: tuple[Pixels, Pixels, Pixels]
-) -> Array:
-    """Sum of the values over each run of a strip."""
-    _, begin, end = runs
-    if not len(begin):
-        return np.empty(0)
-    return np.asarray(
-        np.add.reduceat(
-            values[ink.view(bool)].astype(float), np.r_[0, np.cumsum(end - begin)[:-1]]
-        )
-    )

@@ -8,7 +8,8 @@ import cv2
 import numpy as np
 import pytest
 
-from morfax.tracer.drawing.depth import MUCH_INK, depth_px
+from morfax.tracer.drawing.components import runs_of
+from morfax.tracer.drawing.depth import MUCH_INK, depth_along, depth_px
 
 
 @pytest.mark.parametrize("width_px", [1, 3, 9])
@@ -45,3 +46,15 @@ def test_one_broad_shape_on_much_paper_is_left_to_opencv_soon() -> None:
     assert np.array_equal(depth, exact)
     # twice OpenCV's time here, and eight times without a limit; the kernel is loaded by the tests before
     assert looked_s < 5 * (time.process_time() - began)
+
+
+@pytest.mark.parametrize("broad", [False, True])
+def test_along_runs_it_is_the_same_as_on_the_sheet(broad: bool) -> None:
+    """Lines, some of them along the edges of the sheet; and a shape that is too broad for looking."""
+    ink = np.zeros((400, 500), np.uint8)
+    for line in ((0, 20, 499, 380), (30, 0, 30, 399), (0, 0, 200, 0), (499, 100, 499, 300)):
+        cv2.line(ink, line[:2], line[2:], 1, 9)
+    if broad:
+        cv2.circle(ink, (300, 200), 180, 1, -1)
+    exact = cv2.distanceTransform(ink, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+    assert np.array_equal(depth_along(*runs_of(ink, 0), ink.shape), exact[ink > 0])
