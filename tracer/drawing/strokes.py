@@ -21,12 +21,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
-from morfax.motion.compiled import njit
 from morfax.motion.faults import DrawingFault, LineFault
 from morfax.tracer.drawing.blocks import BLOCK_PX, Runs, darkest, near, runs_behind_spot
 from morfax.tracer.drawing.components import Patches, strips
 from morfax.tracer.drawing.depth import depth_along
 from morfax.tracer.drawing.drawing import Darkness, Drawing
+from morfax.tracer.drawing.middles import deepest
 from morfax.tracer.drawing.numbering import ALIKE, Ink, longest_first
 
 Pixels = NDArray[Any]
@@ -292,7 +292,7 @@ class Sheet:
         inner = rows[0] - part[0], rows[1] - part[0], columns[0] - part[2], columns[1] - part[2]
         depth = depth_along(row, begin, end, (part[1] - part[0], part[3] - part[2]))
         disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * disc_px + 1,) * 2)
-        i, j, filled = _deepest(row, begin, end, depth, inner, disc)
+        i, j, filled = deepest(row, begin, end, depth, inner, disc)
         return i + part[0], j + part[2], filled
 
 
@@ -329,64 +329,3 @@ def _are_solid(drawing: Drawing, patches: Patches) -> NDArray[np.bool_]:
     beside = drawing.shapes[patches.row // down, (patches.begin + patches.end) // 2 // across]
     inked = np.bincount(patches.patch, beside * (patches.end - patches.begin), patches.count)
     return np.asarray(inked > SOLID * patches.areas)
-
-
-@njit(cache=True)
-def _deepest(row, begin, end, depth, inner, disc):  # type: ignore[no-untyped-def]
-    """Row, column and ink about it of the pixels of some runs that lie deeper than all about them.
-
-    `inner` are first and last + 1 row and column of the pixels that count.
-    """
-    if not len(row):
-        return np.empty(0, np.int64), np.empty(0, np.int64), np.empty(0)
-    top, columns = row[0], end.max()
-    first = np.searchsorted(row, np.arange(top, row[-1] + 3))  # the first run of each row
-    places = np.zeros(len(row) + 1, np.int64)
-    places[1:] = np.cumsum(end - begin)
-    # 1. rows of depth: the one before, that of the pixels, and the one after
-    lines = np.zeros((3, columns + 2), np.float32)
-    found_row, found_column = np.empty(len(depth), np.int64), np.empty(len(depth), np.int64)
-    count = 0
-    for i in range(top, row[-1] + 1):
-        for k in range(i if i == top else i + 1, i + 2):
-            line = lines[k % 3]
-            line[:] = 0.0
-            for n in range(first[k - top], first[k - top + 1]):
-                line[begin[n] + 1 : end[n] + 1] = depth[places[n] : places[n + 1]]
-        if i == top:
-            lines[(i - 1) % 3][:] = 0.0
-        # 2. its pixels that are the deepest of nine
-        before, line, after = lines[(i - 1) % 3], lines[i % 3], lines[(i + 1) % 3]
-        for n in range(first[i - top], first[i - top + 1]):
-            for j in range(max(begin[n], inner[2]), min(end[n], inner[3])):
-                most = line[j]
-                for c in range(j, j + 3):
-                    most = max(most, before[c], line[c], after[c])
-                if inner[0] <= i < inner[1] and line[j + 1] >= most - np.float32(0.3):
-                    found_row[count], found_column[count] = i, j
-                    count += 1
-    found_row, found_column = found_row[:count].copy(), found_column[:count].copy()
-    filled = _ink_about(begin, end, first, top, found_row, found_column, disc)
-    return found_row, found_column, filled
-
-
-@njit(cache=True)
-def _ink_about(begin, end, first, top, rows, columns, disc):  # type: ignore[no-untyped-def]
-    """Pixels of ink under a disc centred on each of some pixels; the runs of each row begin at `first`."""
-    half = len(disc) // 2
-    left, right = np.zeros(len(disc), np.int64), np.zeros(len(disc), np.int64)
-    for d in range(len(disc)):  # each row of a disc is one stretch
-        inside = np.flatnonzero(disc[d])
-        left[d], right[d] = inside[0] - half, inside[-1] - half + 1
-    filled = np.zeros(len(rows))
-    for k in range(len(rows)):
-        for d in range(len(disc)):
-            at = rows[k] + d - half - top
-            if at < 0 or at >= len(first) - 1:
-                continue
-            low, high = columns[k] + left[d], columns[k] + right[d]
-            n = first[at] + np.searchsorted(end[first[at] : first[at + 1]], low)
-            while n < first[at + 1] and begin[n] < high:
-                filled[k] += max(0, min(end[n], high) - max(begin[n], low))
-                n += 1
-    return filled
