@@ -109,8 +109,14 @@ class Traced:
 
     def figures(self) -> dict[str, Any]:
         """What the head found, as figures."""
+        if self.cutter is None or self.left is None:
+            return self._figures_of_head()
+        return self._figures_of_head() | trace_figures.of_cutter(self.cutter, self.left)
+
+    def _figures_of_head(self) -> dict[str, Any]:
+        """The same without those of the cutter."""
         trace = self.trace
-        figures = {
+        return {
             "ending": trace.ending,
             "incomplete": self.fault is not None or None,
             "length_mm": trace.length_mm,
@@ -126,9 +132,6 @@ class Traced:
             "passes_mm": list(trace.work.depths_mm) if trace.work.passes_mm else None,
             "junctions": trace_figures.junctions(trace, numbered=self.several) or None,
         }
-        if self.cutter is None or self.left is None:
-            return figures
-        return {**figures, **trace_figures.of_cutter(self.cutter, self.left)}
 
     def _figures_of_lines(self) -> dict[str, Any]:
         """Who led the head, and each line where there may be several."""

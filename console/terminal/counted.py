@@ -26,17 +26,16 @@ CLEAR = "\r\x1b[K"  # back to the beginning of the line, and clear it
 def count_all(rows: Generator[BatchRow, None, None], tally: Tally, desk: Desk) -> None:
     """Count rows as they come; name each drawing that failed now, and say how far the batch is."""
     live = sys.stderr.isatty() and not desk.quiet
-    said_s = 0.0 if live else time.monotonic()
+    said_s, clear = (0.0, CLEAR) if live else (time.monotonic(), "")
     with closing(rows):  # whatever happens ends the drawings that run
         for row in rows:
             tally.count(row)
             if not (row.is_well or row.kept):
-                told_of = f"morfax: {row.file}: {row.ending}: {row.fault}"
-                click.echo(f"{CLEAR if live else ''}{told_of}", err=True)
+                click.echo(f"{clear}morfax: {row.file}: {row.ending}: {row.fault}", err=True)
             now_s = time.monotonic()
             if not desk.quiet and now_s - said_s >= EVERY_S[live]:
                 said_s = now_s
-                click.echo(f"{CLEAR if live else ''}{told(tally)}", nl=not live, err=True)
+                click.echo(f"{clear}{told(tally)}", nl=not live, err=True)
     if live:
         click.echo(CLEAR, nl=False, err=True)
 
