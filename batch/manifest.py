@@ -14,9 +14,9 @@ from array import array
 from bisect import bisect_left
 from collections.abc import Iterator
 from pathlib import Path
-from types import TracebackType
 
 from morfax.batch.row import BatchRow
+from morfax.motion.ending import Ending
 from morfax.motion.faults import FileFault
 from morfax.motion.files import printable
 
@@ -24,7 +24,7 @@ NAME = "manifest.jsonl"
 _KNOWN_DIGITS = 16  # of a hash: 8 bytes of memory for each row that was there before
 
 
-class Manifest:
+class Manifest(Ending):
     """The manifest of a folder, open for more rows."""
 
     def __init__(self, folder: Path) -> None:
@@ -38,15 +38,8 @@ class Manifest:
         if is_cut_short:
             self._stream.write(b"\n")
 
-    def __enter__(self) -> Manifest:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def end(self, error: BaseException | None) -> None:
+        """Close the file."""
         self._stream.close()
 
     def append(self, row: BatchRow) -> None:

@@ -8,8 +8,9 @@ there is no terminal.
 
 from __future__ import annotations
 
-from types import TracebackType
 from typing import TYPE_CHECKING, TextIO
+
+from morfax.motion.ending import Ending
 
 if TYPE_CHECKING:
     from morfax.jobs.devices import Levels
@@ -18,22 +19,15 @@ BAR = 12  # characters
 LOWEST_DB = -48.0  # 4 dB to a character
 
 
-class Meters:
+class Meters(Ending):
     """The meters; a context manager that ends their line."""
 
     def __init__(self, out: TextIO, *, is_shown: bool = True) -> None:
         self._out, self._is_shown = out, is_shown and out.isatty()
         self._wrote = False
 
-    def __enter__(self) -> Meters:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        at: TracebackType | None,
-    ) -> None:
+    def end(self, error: BaseException | None) -> None:
+        """Leave the line that was written over and over."""
         if self._wrote:
             self._out.write("\n")
 

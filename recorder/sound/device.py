@@ -11,8 +11,10 @@ Source: PortAudio V19, by way of sounddevice, the extra `morfax[sound]`.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
-from types import ModuleType, TracebackType
+from types import ModuleType
 
 from morfax.motion.faults import DeviceFault
 
@@ -91,27 +93,16 @@ def rate_for(device: Device, wanted_hz: int, *, tracks: int, is_input: bool) -> 
     return wanted_hz
 
 
-class as_faults:  # noqa: N801 - reads as a statement
+@contextmanager
+def as_faults(device: Device) -> Iterator[None]:
     """Turn an error of PortAudio into a DeviceFault."""
-
-    def __init__(self, device: Device) -> None:
-        self._device = device
-
-    def __enter__(self) -> None:
-        return None
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        at: TracebackType | None,
-    ) -> None:
-        if error is not None and isinstance(error, sounddevice().PortAudioError):
-            name = self._device.name
-            raise DeviceFault(
-                f"the device {name!r} cannot be used: {error}; morfax devices lists the others",
-                device=name,
-            ) from error
+    try:
+        yield
+    except sounddevice().PortAudioError as error:
+        raise DeviceFault(
+            f"the device {device.name!r} cannot be used: {error}; morfax devices lists the others",
+            device=device.name,
+        ) from error
 
 
 def sounddevice() -> ModuleType:

@@ -14,11 +14,11 @@ from __future__ import annotations
 
 import queue
 import threading
-from types import TracebackType
 from typing import Any
 
 import numpy as np
 
+from morfax.motion.ending import Ending
 from morfax.motion.faults import DeviceFault
 from morfax.recorder.sound import device as portaudio
 from morfax.recorder.sound.device import Device
@@ -35,7 +35,7 @@ TAIL_S = 1.0  # of silence behind the tape: some drivers lose the end, and a pla
 PIECE_FRAMES = 8192  # of frames put in one piece into the queue, 0.17 s
 
 
-class DeviceSink:
+class DeviceSink(Ending):
     """Frames put out to a device; a context manager. Raises DeviceFault for an underrun or a lost device."""
 
     def __init__(self, device: Device, rate_hz: int, tracks: int) -> None:
@@ -49,15 +49,8 @@ class DeviceSink:
         self._lock = threading.Lock()
         self._stream: Any = None
 
-    def __enter__(self) -> DeviceSink:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        at: TracebackType | None,
-    ) -> None:
+    def end(self, error: BaseException | None) -> None:
+        """Play what is still to come, and give the device back; at once after an error."""
         try:
             if error is None:
                 self._queue.put(

@@ -17,11 +17,11 @@ import io
 import struct
 from collections.abc import Iterator
 from dataclasses import dataclass
-from types import TracebackType
 from typing import BinaryIO
 
 import numpy as np
 
+from morfax.motion.ending import Ending
 from morfax.motion.faults import TapeFault
 from morfax.recorder.sound.source import BLOCK_FRAMES, Frames, Stored
 
@@ -102,7 +102,7 @@ class PipeSource:
                 yield self._samples.frames(data[:whole])
 
 
-class PipeSink:
+class PipeSink(Ending):
     """A WAV of 16 bit put into a pipe; its header states no length, and its text stands in front."""
 
     def __init__(self, stream: BinaryIO, rate_hz: int, tracks: int, text: str) -> None:
@@ -117,15 +117,8 @@ class PipeSink:
             stream.write(struct.pack("<4sI", name, len(body)) + body)
         stream.write(struct.pack("<4sI", b"data", _UNKNOWN))
 
-    def __enter__(self) -> PipeSink:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        at: TracebackType | None,
-    ) -> None:
+    def end(self, error: BaseException | None) -> None:
+        """Have all that was written go out."""
         if error is None:
             self._stream.flush()
 

@@ -12,12 +12,12 @@ known to be small enough; the second has no larger kind and is refused beyond it
 from __future__ import annotations
 
 from pathlib import Path as FilePath
-from types import TracebackType
 
 import numpy as np
 import soundfile
 
 from morfax.motion.compiled import njit
+from morfax.motion.ending import Ending
 from morfax.motion.faults import FileFault, TapeFault
 from morfax.motion.files import for_soundfile
 from morfax.recorder.sound.source import Frames
@@ -52,7 +52,7 @@ def medium(file: FilePath, sample: str) -> tuple[str, str]:
     return CONTAINERS[suffix], SUBTYPES[sample]
 
 
-class Spool:
+class Spool(Ending):
     """A sound file that is being written; a context manager. Raises SoundFileError when the disk is full."""
 
     def __init__(
@@ -81,15 +81,8 @@ class Spool:
         if text and container != "W64":
             self._sound.comment = text
 
-    def __enter__(self) -> Spool:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        at: TracebackType | None,
-    ) -> None:
+    def end(self, error: BaseException | None) -> None:
+        """Close the file; it is whole if nothing went wrong."""
         self._sound.close()
         if error is None:
             self._check_whole()

@@ -12,10 +12,10 @@ from collections.abc import Iterable
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path as FilePath
-from types import TracebackType
 
 import soundfile
 
+from morfax.motion.ending import Ending
 from morfax.motion.faults import TapeFault
 from morfax.motion.files import disk_full_fault, written_beside
 from morfax.motion.motion import Motion, Path
@@ -33,24 +33,18 @@ TRACKS = 2  # of a file
 
 
 @dataclass(frozen=True)
-class Halves:
+class Halves(Ending):
     """A sink that shares its tracks out to two."""
 
     spools: tuple[Spool, Spool]
 
-    def __enter__(self) -> Halves:
-        for spool in self.spools:
-            spool.__enter__()
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        at: TracebackType | None,
-    ) -> None:
-        for spool in self.spools:
-            spool.__exit__(kind, error, at)
+    def end(self, error: BaseException | None) -> None:
+        """End both."""
+        with (
+            ExitStack() as ends
+        ):  # the second is closed where the first one's end is a fault, too
+            for spool in self.spools:
+                ends.callback(spool.end, error)
 
     def put(self, frames: Frames) -> None:
         """Take the next frames."""

@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Sequence
-from types import TracebackType
 
+from morfax.motion.ending import Ending
 from morfax.motion.faults import TapeFault
 from morfax.recorder.sound.source import (
     BLOCK_FRAMES,
@@ -30,7 +30,7 @@ __all__ = ["Recording", "Stored", "Tape", "TapeFormat", "full_scale", "record"]
 _FEWEST_TRACKS = 3  # reference, X, Y
 
 
-class Tape:
+class Tape(Ending):
     """An open tape; a context manager. One from a pipe or a device is read once."""
 
     def __init__(
@@ -94,15 +94,8 @@ class Tape:
             source.close()
             raise
 
-    def __enter__(self) -> Tape:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        at: TracebackType | None,
-    ) -> None:
+    def end(self, error: BaseException | None) -> None:
+        """Close the source."""
         self.close()
 
     def close(self) -> None:
