@@ -67,7 +67,10 @@ class RunJob:
         return (self.folder or FilePath(stem)) / f"{stem}{ending}"
 
     def run(self, listener: Listener = SILENT, panel: Panel | None = None) -> RunResult:
-        """Go the whole way; the faults of a lost line and of a drive are in the result, others are raised."""
+        """Go the whole way; the faults of a lost line and of a drive are in the result, others are raised.
+
+        Its three steps hand on nearly all that they make, and are read once from top to bottom.
+        """
         # 1. trace and record
         program_file, tracing = self.prepared(panel)
         tell_what_is_lost(self.settings, self.unit, program_file, listener)
