@@ -38,4 +38,6 @@ def tell(title: str, rows: list[Row]) -> None:
     print(title)
     for row in rows:
         ratio = "" if row.ratio is None else f"{row.ratio:8.2f} x {row.to_what}"
-        print(f"  {row.what:46s}{row.value:10.1f} {row.unit:18s}{ratio}".rstrip())
+        digits = 1 if abs(row.value) >= 10 else 2
+        value = f"{row.value:10.{digits}f}"
+        print(f"  {row.what:46s}{value} {row.unit:18s}{ratio}".rstrip())

@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.faults import FileFault, TapeFault
 from morfax.motion.files import for_soundfile
+from morfax.recorder.sound.plain import PlainSamples
 from morfax.recorder.sound.riff import read_sizes
 
 BLOCK_FRAMES = 65536  # 1.4 s at 48 kHz, a megabyte of four tracks
@@ -92,6 +93,7 @@ class FileSource:
         self.tracks, self.rate_hz = int(self._sound.channels), int(self._sound.samplerate)
         self.container, self.sample = str(self._sound.format), str(self._sound.subtype)
         self.text = text_of(self.file, self._sound)
+        self._plain = PlainSamples.of(self.file, self.container, self.sample, self.tracks)
 
     @property
     def frames(self) -> int:
@@ -101,6 +103,8 @@ class FileSource:
     def close(self) -> None:
         """Close the file."""
         self._sound.close()
+        if self._plain is not None:
+            self._plain.close()
 
     def stored_blocks(self, frames: int = BLOCK_FRAMES, first: int = 0) -> Iterator[Stored]:
         """The frames from `first` on in blocks; raises TapeFault where the file cannot be read on."""
@@ -124,8 +128,12 @@ class FileSource:
         kind = "int16" if self.sample == "PCM_16" else "float32"
         fault = _cut_short(self.file, done / self.rate_hz, self.frames / self.rate_hz)
         try:
-            block: Stored = self._sound.read(frames, dtype=kind, always_2d=True)
-        except soundfile.SoundFileError as error:
+            block: Stored = (
+                self._sound.read(frames, dtype=kind, always_2d=True)
+                if self._plain is None
+                else self._plain.read(done, min(frames, self.frames - done))
+            )
+        except (soundfile.SoundFileError, OSError) as error:
             raise fault from error
         if not len(block):
             raise fault
