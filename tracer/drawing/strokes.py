@@ -22,10 +22,10 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault, LineFault
-from morfax.tracer.drawing.blocks import BLOCK_PX, Runs, darkest, near, runs_behind_spot
+from morfax.tracer.drawing.blocks import BLOCK_PX, Runs, near, runs_behind_spot
 from morfax.tracer.drawing.components import Patches, strips
 from morfax.tracer.drawing.depth import depth_along
-from morfax.tracer.drawing.drawing import Darkness, Drawing
+from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.middles import deepest
 from morfax.tracer.drawing.numbering import ALIKE, Ink, longest_first
 
@@ -93,7 +93,7 @@ class Sheet:
     @classmethod
     def of(cls, drawing: Drawing) -> Sheet:
         """Find the patches; raises DrawingFault if none is long enough to be a line."""
-        runs = _inked(drawing.darkness)
+        runs = _inked(drawing)
         patches = Patches.of([runs])
         areas, shape = patches.areas, drawing.darkness.shape
         deep = np.bincount(patches.patch, _depths(runs, shape), patches.count) / areas
@@ -296,9 +296,10 @@ class Sheet:
         return i + part[0], j + part[2], filled
 
 
-def _inked(darkness: Darkness) -> Runs:
+def _inked(drawing: Drawing) -> Runs:
     """The runs of ink on a sheet."""
-    return runs_behind_spot(darkness, near(darkest(darkness) > INK), BLOCK_PX, SOFTENED_PX, INK)
+    dark = near(drawing.darkest > INK)
+    return runs_behind_spot(drawing.darkness, dark, BLOCK_PX, SOFTENED_PX, INK)
 
 
 def _depths(runs: Runs, shape: tuple[int, int]) -> Array:

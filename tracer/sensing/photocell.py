@@ -27,6 +27,7 @@ import cv2
 import numpy as np
 
 from morfax.motion.compiled import njit
+from morfax.tracer.drawing.blocks import BLOCK_PX
 from morfax.tracer.drawing.drawing import Darkness, Drawing
 from morfax.tracer.drawing.strokes import Window
 
@@ -34,6 +35,12 @@ TWO_PI = 2.0 * math.pi
 LEVEL = 0.5  # an edge is at this share of the line's darkness
 STEP_PX = 0.35  # how finely cells look along a ray and round a ring: three steps to a pixel
 HALO_SPREADS = 5.0  # standard deviations of a spot that OpenCV looks at, and one more
+FAINT = 0.1  # darkness: what is lighter is paper and its noise
+ABOUT_MM = (
+    4.0  # from what is drawn: no cell that is held against a level looks further; by trial
+)
+TILE_BLOCKS = 16  # blocks of a sheet to the side of a tile that is seen behind a spot at a time
+MOSTLY = 0.6  # of the tiles: the whole sheet at once takes less
 LEAST_SPREAD_PX = 0.2  # a smaller aperture changes no pixel by more than a scanner's noise
 
 
@@ -52,25 +59,57 @@ def behind_aperture(
     """The drawing's darkness averaged over an aperture centred on each pixel; paper beyond a window."""
     darkness, sigma_px = drawing.darkness, aperture_mm / 4 / drawing.pitch_mm
     if sigma_px >= LEAST_SPREAD_PX and window is None:
-        darkness = np.asarray(cv2.GaussianBlur(darkness, (0, 0), sigma_px), np.float32)
+        darkness = _near_ink(drawing, sigma_px)
     elif sigma_px >= LEAST_SPREAD_PX and window is not None:
         darkness = _blurred(darkness, sigma_px, window)
     return Cells(darkness, drawing.pitch_mm, level)
 
 
+def _near_ink(drawing: Drawing, sigma_px: float) -> Darkness:
+    """A sheet behind a spot, as far as anything is drawn; plain paper far from it is zeros."""
+    darkness = drawing.darkness
+    inked = (drawing.darkest > FAINT).view(np.uint8)
+    if not inked.any():
+        return np.zeros(darkness.shape, np.float32)
+    # 1. the tiles that are near something, in stretches of each row of tiles
+    tiles = [-(-side // TILE_BLOCKS) for side in inked.shape]
+    padded = np.zeros([side * TILE_BLOCKS for side in tiles], np.uint8)
+    about = 2 * math.ceil(ABOUT_MM / (BLOCK_PX * drawing.pitch_mm)) + 1
+    padded[: inked.shape[0], : inked.shape[1]] = cv2.dilate(
+        inked, np.ones((about, about), np.uint8)
+    )
+    near = padded.reshape(tiles[0], TILE_BLOCKS, tiles[1], TILE_BLOCKS).any(axis=(1, 3))
+    if near.mean() > MOSTLY:
+        return np.asarray(cv2.GaussianBlur(darkness, (0, 0), sigma_px), np.float32)
+    # 2. each stretch behind the spot
+    seen, halo = np.zeros(darkness.shape, np.float32), math.ceil(HALO_SPREADS * sigma_px) + 1
+    side = TILE_BLOCKS * BLOCK_PX
+    edges = np.diff(np.pad(near, ((0, 0), (1, 1))).astype(np.int8), axis=1)
+    row, begin = np.nonzero(edges == 1)
+    right = np.nonzero(edges == -1)[1]
+    for top, first, last in (side * np.column_stack([row, begin, right])).tolist():
+        _blur(darkness, sigma_px, (top, first, top + side, last), halo, seen)
+    return seen
+
+
 def _blurred(darkness: Darkness, sigma_px: float, window: Window) -> Darkness:
     """A window of a sheet behind a spot; the rest is zeros, which take neither time nor memory."""
-    halo = math.ceil(HALO_SPREADS * sigma_px) + 1
+    seen = np.zeros(darkness.shape, np.float32)
+    _blur(darkness, sigma_px, window, math.ceil(HALO_SPREADS * sigma_px) + 1, seen)
+    return seen
+
+
+def _blur(
+    darkness: Darkness, sigma_px: float, window: Window, halo: int, seen: Darkness
+) -> None:
+    """Fill in a window of a sheet behind a spot that looks a halo beyond it."""
     top, left, bottom, right = window
     above, beside = max(0, top - halo), max(0, left - halo)
     soft = cv2.GaussianBlur(
         darkness[above : bottom + halo, beside : right + halo], (0, 0), sigma_px
     )
-    seen = np.zeros(darkness.shape, np.float32)
-    seen[top:bottom, left:right] = soft[
-        top - above : bottom - above, left - beside : right - beside
-    ]
-    return seen
+    own = soft[top - above : bottom - above, left - beside : right - beside]
+    seen[top:bottom, left:right] = own
 
 
 @njit(cache=True, inline="always")
