@@ -55,7 +55,8 @@ class LinesJob:
         gap_mm = gap_across_skips(drawing, self.line, of_head)
         of_head = of_head if gap_mm is None else replace(of_head, gap_mm=gap_mm)
         setup = Setup(drawing.sheet, of_head)
-        seen = survey(setup)
+        with listener.progress("looking for lines", 1.0):
+            seen = survey(setup)
         if self.follow and seen.entries:
             seen = _followed(seen, setup, listener)
         width_mm = None if drawing.edges_mm else seen.width_mm  # an edge has none

@@ -47,6 +47,7 @@ DAMAGE = (
     AttributeError,
     StopIteration,
     ArithmeticError,
+    AssertionError,
     RecursionError,
 )
 LEAST_CHORDS = (

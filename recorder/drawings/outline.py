@@ -42,10 +42,10 @@ class Outline:
     def of(cls, pieces_mm: Sequence[Array], notes: Sequence[str] = ()) -> Outline:
         """Join the pieces of a file; a piece that is there twice is taken once.
 
-        Raises DrawingFault for a place more than a kilometre away, as path files are refused.
+        Raises DrawingFault for a place that is no number or more than a kilometre away, as of a path file.
         """
-        furthest_mm = max((float(np.abs(piece).max()) for piece in pieces_mm), default=0.0)
-        if furthest_mm > LONGEST_MM:
+        furthest_mm = float(np.max([np.abs(piece).max() for piece in pieces_mm], initial=0.0))
+        if not furthest_mm <= LONGEST_MM:
             raise DrawingFault(
                 f"the drawing reaches {furthest_mm:.3g} mm from its zero, at most {LONGEST_MM:g} are taken; "
                 "check its unit, or give it with --unit"

@@ -68,9 +68,9 @@ def read_svg(file: FilePath, unit: str | None = None) -> Outline:
     """Read an SVG; raises DrawingFault for one that is damaged, empty or without a unit, FileFault."""
     root = _root(file)
     sheet = _sheet(file, root, unit)
-    off = FLAT_MM / max(sheet.x_mm, sheet.y_mm)
     try:
         _demand_few(file, root)
+        off = FLAT_MM / max(sheet.x_mm, sheet.y_mm)
         pieces = [
             sheet.placed(places) for shape in _shapes(root) for places in _flattened(shape, off)
         ]
@@ -128,6 +128,8 @@ def _sheet(file: FilePath, root: ElementTree.Element, unit: str | None) -> _Shee
         return _from_zero(root, _Sheet(px_mm, px_mm, 0.0, high_mm or 0.0))
     if high_mm is None:
         high_mm = width_mm * box[3] / box[2]
+    if not high_mm > 0:
+        raise DrawingFault(f"{file}: height is {root.get('height')!r}; it must be above zero")
     return _from_zero(root, _laid(root, box, width_mm, high_mm))
 
 

@@ -418,3 +418,21 @@ def test_a_drawing_of_more_than_a_kilometre_is_refused(tmp_path: Path) -> None:
         DrawingFault, match=r"reaches 1\.1e\+06 mm from its zero, at most 1e\+06"
     ):
         read_outline(file)
+
+
+@pytest.mark.parametrize(
+    ("head", "says"),
+    [
+        (
+            'width="7mm" height="0mm" viewBox="0 0 7 7"',
+            "height is '0mm'; it must be above zero",
+        ),
+        ('width="7mm" viewBox="0 0 7 7" data-lower-left-mm="-1 nan"', "reaches nan mm"),
+    ],
+)
+def test_an_svg_without_height_or_place_is_refused(
+    tmp_path: Path, head: str, says: str
+) -> None:
+    """Found by fuzzing: a division by zero, and a place that is no number."""
+    with pytest.raises(DrawingFault, match=says):
+        read_outline(svg(tmp_path / "a.svg", '<path d="M0 0L7 7"/>', head))

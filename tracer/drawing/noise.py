@@ -163,7 +163,12 @@ def _profiles(darkness: NDArray[np.float32]) -> _Profiles | None:
     good = steep & alone
     if np.count_nonzero(good) < FEWEST_PROFILES:
         return None
-    return _Profiles(seen[good], at_px, middles[good], across[good])
+    found = _Profiles(seen[good], at_px, middles[good], across[good])
+    # of a pattern or a damaged picture: what is dark in them is not in their middle
+    is_line = (
+        float(np.median(_middle(found))) > 0 and float(np.median(seen[good].sum(axis=1))) > 0
+    )
+    return found if is_line else None
 
 
 def _runs(darkness: NDArray[np.float32]) -> Array:

@@ -10,6 +10,7 @@ Formats that a camera adds previews to (MPO) have one page.
 
 from __future__ import annotations
 
+import struct
 import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
@@ -48,6 +49,17 @@ PREVIEWS = ("MPO",)  # formats whose further pictures are no pages: a camera's p
 TURNED = (5, 6, 7, 8)  # orientations of Exif that put columns in the place of rows
 ORIENTATION = 0x112
 
+# what Pillow meets in damaged files: a TIFF without its size ends in a TypeError
+DAMAGE = (
+    OSError,
+    SyntaxError,
+    ValueError,
+    LookupError,
+    TypeError,
+    ArithmeticError,
+    struct.error,
+)
+
 
 def read(
     file: Path, *, coloured: bool, page: int | None = None, dpi: float | None = None
@@ -77,7 +89,7 @@ def read(
         raise
     except UnidentifiedImageError:
         raise _no_picture(file) from None
-    except (MemoryError, OSError, SyntaxError, ValueError) as error:
+    except (MemoryError, *DAMAGE) as error:
         raise _unreadable(file, error) from None
 
 

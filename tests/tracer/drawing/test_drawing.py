@@ -349,3 +349,15 @@ def test_a_pattern_that_is_all_over_the_sheet_is_told(tmp_path: Path) -> None:
         DrawingFault, match="grey levels vary everywhere, as of noise or a pattern"
     ):
         Drawing.open(tmp_path / "board.png")
+
+
+def test_a_tiff_whose_next_page_has_no_size_is_damaged(tmp_path: Path) -> None:
+    """Pillow ends with a TypeError."""
+    file = tmp_path / "a.tif"
+    Image.fromarray(np.full((40, 60), 255, np.uint8)).save(file, dpi=DPI)
+    whole = file.read_bytes()
+    next_at = 10 + 12 * int.from_bytes(whole[8:10], "little")  # behind all entries of the page
+    pointer = len(whole).to_bytes(4, "little")  # to a page of no entry
+    file.write_bytes(whole[:next_at] + pointer + whole[next_at + 4 :] + bytes(6))
+    with pytest.raises(DrawingFault, match=r"is a damaged image \(.*\); scan or save it again"):
+        Drawing.open(file)
