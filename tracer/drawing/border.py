@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.tracer.drawing.components import Patches, runs_of, strips
+from morfax.tracer.drawing.tiles import Tiles, paper_like
 
 INK = 0.5  # darkness
 # All limits below were chosen by trial on framed and badly cropped pictures.
@@ -32,7 +33,7 @@ MARGIN = 0.05  # of the shorter side: a border reaches no further into the pictu
 FRINGE_PX = 3  # beyond the border's ink its soft edge ends
 OTHER_PX = 40  # a longer patch is other ink
 
-Picture = NDArray[np.float32]
+Picture = NDArray[np.float32] | Tiles
 
 
 class _Band(NamedTuple):
@@ -116,4 +117,7 @@ def _make_paper(darkness: Picture, patches: Patches, which: NDArray[np.bool_]) -
     for top, bottom, rows in strips(darkness.shape, halo=FRINGE_PX):
         mask = patches.painted(which, rows.start, rows.stop, 0, darkness.shape[1])
         wide = cv2.dilate(mask, spot)[top - rows.start : bottom - rows.start].view(bool)
-        darkness[top:bottom][wide] = 0.0
+        if isinstance(darkness, Tiles):
+            paper_like(darkness, (slice(top, bottom), wide))
+        else:
+            darkness[top:bottom][wide] = 0.0

@@ -10,8 +10,8 @@ at their darkest.
 Sheet coordinates: mm from the lower-left corner, X right, Y up; pixel i covers [i, i+1) pitches, so the
 centre of pixel 0 is at half a pitch.
 
-A sheet may have a thousand million pixels: every pixel is worked on strip by strip, and only the darkness is
-kept as a whole.
+A sheet may have a thousand million pixels: a large one is worked on strip by strip, and of its darkness only
+the tiles with ink are kept (see `large` and `tiles`).
 
 Questions: the patent takes the drawing for granted. If the file states no resolution, the operator is asked;
 it is never guessed.
@@ -23,14 +23,14 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.faults import DrawingFault
-from morfax.tracer.drawing import coarse, grain, inks, paper, raster, ruling
+from morfax.tracer.drawing import coarse, grain, inks, large, paper, raster, ruling
 from morfax.tracer.drawing.blocks import BLOCK_PX, darkest, runs_behind_spot
 from morfax.tracer.drawing.border import without_border
 from morfax.tracer.drawing.components import Patches, runs_of
@@ -40,6 +40,7 @@ from morfax.tracer.drawing.ruling import PaperKind
 from morfax.tracer.drawing.scale import Scale
 from morfax.tracer.drawing.scan import Grey, Scan
 from morfax.tracer.drawing.shapes import outlined
+from morfax.tracer.drawing.tiles import Tiles
 
 if TYPE_CHECKING:
     from morfax.tracer.corrections.on_sheet import OnSheet, StopAt, TurnAt
@@ -76,7 +77,7 @@ class Drawing:
     `finer`.
     """
 
-    darkness: Darkness
+    darkness: Darkness  # of a large sheet Tiles, which hand out the same
     pitch_mm: float
     file: Path | None = None
     enlarged: int = 1
@@ -131,6 +132,8 @@ class Drawing:
     @cached_property
     def ink_px(self) -> int:
         """How many pixels are darker than half."""
+        if isinstance(self.darkness, Tiles):
+            return self.darkness.darker_px(HALF)
         count = 0
         for i, dark in enumerate(self.darkest > HALF):
             places = np.flatnonzero(dark)
@@ -191,12 +194,14 @@ class Drawing:
             grey = inks.covered(colours, ink, None if edge else pitch[0])
         if abs(pitch[0] / pitch[1] - 1) > OBLONG:
             size = grey.shape[1], round(grey.shape[0] * pitch[1] / pitch[0])
-            square = cv2.resize(grey.astype(np.float32), size, interpolation=cv2.INTER_LINEAR)
+            square = cv2.resize(
+                np.asarray(grey, np.float32), size, interpolation=cv2.INTER_LINEAR
+            )
             grey = np.asarray(square, np.float32)
         # 2. darkness
         notes = (*scan.notes, *scale.notes(scan))
         if edge:
-            rims = outlined(grey, pitch[0])
+            rims = outlined(np.asarray(grey), pitch[0])
             return cls(
                 rims.darkness,
                 pitch[0] / rims.finer,
@@ -206,7 +211,9 @@ class Drawing:
                 rims.shade,
                 notes=(*notes, *rims.notes),
             )
-        darkness, shapes = levelled(grey, pitch[0])
+        darkness: Any  # or tiles
+        is_large = grey.size >= large.LARGE_PX
+        darkness, shapes = (large.levelled if is_large else levelled)(grey, pitch[0])
         darkness, note = ruling.left_out(darkness, pitch[0], printed)
         notes = notes if note is None else (*notes, note)
         edges = without_border(darkness)
@@ -216,11 +223,11 @@ class Drawing:
         in_lines, width_px = grain_within(darkness)
         slit = grain.slit_for(in_lines, width_px, pitch[0])
         if slit is not None:
-            darkness = grain.behind(slit, darkness)
+            darkness = grain.behind(slit, np.asarray(darkness))
             notes = (*notes, grain.note(slit, pitch[0]))
         finer = coarse.times_finer(darkness, width_px)
         if finer > 1:
-            darkness = coarse.finer(darkness, finer)
+            darkness = coarse.finer(np.asarray(darkness), finer)
         return cls(
             darkness, pitch[0] / finer, scan.file, shapes=shapes, notes=notes, finer=finer
         )

@@ -31,6 +31,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.tracer.drawing.paper import ROBUST
+from morfax.tracer.drawing.tiles import Tiles
 
 INK = 0.5  # darker is ink
 SEARCHED = 1 << 18  # pixels of the rows that are searched for ink, and of the columns
@@ -78,7 +79,7 @@ class _Profiles(NamedTuple):
     across: Array
 
 
-def measured(darkness: NDArray[np.float32], pitch_mm: float) -> Noise:
+def measured(darkness: NDArray[np.float32] | Tiles, pitch_mm: float) -> Noise:
     """The noise of a drawing of darkness 0..1, (rows, columns), on pixels of a pitch."""
     paper = _paper(darkness)
     profiles = _profiles(darkness)
@@ -89,7 +90,7 @@ def measured(darkness: NDArray[np.float32], pitch_mm: float) -> Noise:
     return Noise(paper, ink, grain, softness_px, softness_px * pitch_mm, width_px * pitch_mm)
 
 
-def grain_within(darkness: NDArray[np.float32]) -> tuple[float, float]:
+def grain_within(darkness: NDArray[np.float32] | Tiles) -> tuple[float, float]:
     """The grain of the ink within single lines, and the width of the pen, pixels.
 
     Other than `Noise.grain` it does not grow where lines of several pens differ: the ink is held against the
@@ -110,10 +111,10 @@ def grain_within(darkness: NDArray[np.float32]) -> tuple[float, float]:
     return math.sqrt(max(differ**2 - INTERPOLATED_NOISE * paper**2, 0.0)), width_px
 
 
-def _paper(darkness: NDArray[np.float32]) -> float:
+def _paper(darkness: NDArray[np.float32] | Tiles) -> float:
     """Standard deviation of the paper's pixels, by the darker ones: scanners clip the white."""
     every = max(1, math.isqrt(darkness.size // PAPER_SAMPLES))
-    sample = darkness[::every, ::every]
+    sample = darkness.sample if isinstance(darkness, Tiles) else darkness[::every, ::every]
     if not np.any(sample < PAPER):
         return math.nan
     usual, darker = np.percentile(sample[sample < PAPER], [50.0, DARKER])
@@ -130,9 +131,9 @@ def _spread(values: NDArray[Any]) -> float:
 # the profiles
 
 
-def _profiles(darkness: NDArray[np.float32]) -> _Profiles | None:
+def _profiles(darkness: NDArray[np.float32] | Tiles) -> _Profiles | None:
     """Profiles across the lines; None if there are too few."""
-    crossings = [_runs(darkness), _runs(darkness.T)]
+    crossings = [_runs(darkness, across) for across in (False, True)]
     places = np.vstack(
         [crossings[0], crossings[1][:, ::-1, :]]
     )  # (n, row or column, begin or end)
@@ -171,12 +172,16 @@ def _profiles(darkness: NDArray[np.float32]) -> _Profiles | None:
     return found if is_line else None
 
 
-def _runs(darkness: NDArray[np.float32]) -> Array:
-    """Runs of ink in some of the rows, (n, 2, 2): row and column of their first and last edges."""
+def _runs(darkness: NDArray[np.float32] | Tiles, across: bool) -> Array:
+    """Runs of ink in some of the rows, (n, 2, 2): row and column of their first and last edges; or in some of
+    the columns, which then stand for rows.
+    """
     every = max(1, darkness.size // SEARCHED)
-    rows = np.arange(every // 2, darkness.shape[0], every)
-    dark = np.zeros((len(rows), darkness.shape[1] + 2), bool)
-    dark[:, 2:-2] = darkness[rows, 1:-1] > INK
+    long, wide = darkness.shape[::-1] if across else darkness.shape
+    rows = np.arange(every // 2, long, every)
+    dark = np.zeros((len(rows), wide + 2), bool)
+    places = np.ix_(rows, np.arange(1, wide - 1))
+    dark[:, 2:-2] = darkness[places[::-1] if across else places] > INK
     row, column = np.nonzero(dark[:, 1:] != dark[:, :-1])
     edges = np.column_stack([rows[row], column - 0.5]).astype(float)
     return np.stack([edges[::2], edges[1::2]], axis=2)
@@ -187,18 +192,20 @@ def _even(count: int) -> NDArray[np.int64]:
     return np.unique(np.linspace(0, max(count - 1, 0), min(count, MOST_PROFILES)).astype(int))
 
 
-def _slope(darkness: NDArray[np.float32], places: Array) -> Array:
+def _slope(darkness: NDArray[np.float32] | Tiles, places: Array) -> Array:
     """How much darker it gets per pixel down and to the right at places (n, 2)."""
     sides = SLOPE_PX * np.eye(2)
     steps = [_seen(darkness, (places + d).T) - _seen(darkness, (places - d).T) for d in sides]
     return np.column_stack(steps) / (2 * SLOPE_PX)
 
 
-def _seen(darkness: NDArray[np.float32], places: Array) -> Array:
+def _seen(darkness: NDArray[np.float32] | Tiles, places: Array) -> Array:
     """Darkness between pixels: places (2, n) or (n, 2, k), rows and columns."""
     from scipy.ndimage import map_coordinates
 
     at = np.moveaxis(places, -2, 0)
+    if isinstance(darkness, Tiles):
+        return darkness.between(*at)
     return np.asarray(map_coordinates(darkness, at, output=float, order=1, mode="nearest"))
 
 
@@ -212,7 +219,7 @@ def _smooth(seen: Array) -> Array:
 # what they say
 
 
-def _ink(darkness: NDArray[np.float32], profiles: _Profiles) -> tuple[float, float]:
+def _ink(darkness: NDArray[np.float32] | Tiles, profiles: _Profiles) -> tuple[float, float]:
     """Standard deviations of the ink: from pixel to pixel, and along the lines beyond that."""
     # 1. neighbouring pixels along the line differ by the noise of two
     pixel = np.round(profiles.middles).astype(int)

@@ -13,14 +13,14 @@ from __future__ import annotations
 import struct
 import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING, BinaryIO
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.faults import DrawingFault, Fault, FileFault
 from morfax.motion.files import check_regular
-from morfax.tracer.drawing import exif
+from morfax.tracer.drawing import by_rows, exif, large
 from morfax.tracer.drawing import memory as room
 from morfax.tracer.drawing.components import strips
 from morfax.tracer.drawing.scan import (
@@ -129,14 +129,29 @@ def _picture(file: Path, stream: BinaryIO, coloured: bool, page: int | None) -> 
         if taken - 1 != image.tell():
             image.info.pop("dpi", None)  # of the page before
             image.seek(taken - 1)
-        room.make_sure(file, *image.size)
-        image.load()
+        is_large = image.width * image.height >= large.LARGE_PX
+        parts = by_rows.rows_of(image, stream) if is_large and not coloured else None
+        pixels: Any = parts
+        if parts is None:
+            room.make_sure(file, *image.size)
+            image.load()
         camera = exif.camera(image.getexif())
         stated = _stated(image, camera)
-        ImageOps.exif_transpose(image, in_place=True)
-        pixels = np.array(image.convert("RGB")) if coloured else _grey(image)
+        if parts is None:
+            ImageOps.exif_transpose(image, in_place=True)
+            pixels = np.array(image.convert("RGB")) if coloured else _grey(image)
     notes = page_notes(file, taken, pages) if page is None else ()
+    if is_large and parts is None:
+        notes = (*notes, _held_note(file, pixels.shape))
     return Scan(file, pixels, stated, camera, taken, pages, notes)
+
+
+def _held_note(file: Path, shape: tuple[int, ...]) -> str:
+    """What the operator should know of a large picture that is held in memory."""
+    return (
+        f"{file.name} has {shape[0] * shape[1] / 1e6:.0f} million pixels and cannot be read by rows; a grey"
+        " PNG (not interlaced) or a TIFF of strips or tiles takes a tenth of the memory"
+    )
 
 
 def _stated(image: Image, camera: Camera | None) -> Stated | None:

@@ -28,8 +28,10 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault
+from morfax.tracer.drawing.tiles import Tiles
 
 Darkness = NDArray[np.float32]
+Kept = Darkness | Tiles
 PaperKind = Literal["auto", "plain", "squared", "ruled"]
 
 # Chosen by trial on drawings on printed paper.
@@ -87,11 +89,11 @@ class Family(NamedTuple):
         return Family(self.across, first_px, self.period_px * by, self.half_px * by)
 
 
-def families(darkness: Darkness, pitch_mm: float) -> list[Family]:
+def families(darkness: Kept, pitch_mm: float) -> list[Family]:
     """The families of printed lines on a sheet: two of squared paper, one of ruled paper, or none."""
     by = max(1, math.isqrt(max(1, darkness.size // SEARCHED_PX)))
-    small = darkness
-    if by > 1:
+    small = darkness.shrunk(by) if isinstance(darkness, Tiles) else darkness
+    if by > 1 and not isinstance(darkness, Tiles):
         size = darkness.shape[1] // by, darkness.shape[0] // by
         small = np.asarray(cv2.resize(darkness, size, interpolation=cv2.INTER_AREA), np.float32)
     if not _is_all_over(small):
@@ -100,9 +102,7 @@ def families(darkness: Darkness, pitch_mm: float) -> list[Family]:
     return [one.enlarged(by) for one in found if one is not None]
 
 
-def left_out(
-    darkness: Darkness, pitch_mm: float, paper: PaperKind
-) -> tuple[Darkness, str | None]:
+def left_out(darkness: Kept, pitch_mm: float, paper: PaperKind) -> tuple[Kept, str | None]:
     """The sheet without its printed lines, and what the operator should know; raises DrawingFault if printed
     lines were asked for and none are found.
     """
@@ -120,7 +120,7 @@ def left_out(
             " or name the line's colour with --ink"
         )
     for family in found:
-        darkness = _without(darkness, family)
+        darkness = _without(np.asarray(darkness), family)
     kind = "squared" if len(found) == 2 else "ruled"
     apart = " and ".join(f"{one.period_px * pitch_mm:.2f}" for one in found)
     return darkness, (

@@ -26,8 +26,10 @@ from morfax.tracer.drawing.blocks import BLOCK_PX, Runs, near, runs_behind_spot
 from morfax.tracer.drawing.components import Patches, strips
 from morfax.tracer.drawing.depth import depth_along
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.large import runs_darker
 from morfax.tracer.drawing.middles import deepest
 from morfax.tracer.drawing.numbering import ALIKE, Ink, longest_first
+from morfax.tracer.drawing.tiles import Tiles
 
 Pixels = NDArray[Any]
 Window = tuple[int, int, int, int]  # first row and column, row and column after the last
@@ -298,6 +300,10 @@ class Sheet:
 
 def _inked(drawing: Drawing) -> Runs:
     """The runs of ink on a sheet."""
+    if isinstance(drawing.darkness, Tiles):
+        found = runs_darker(drawing.darkness, SOFTENED_PX, INK)
+        row, begin, end = zip(*found, strict=True)
+        return np.concatenate(row), np.concatenate(begin), np.concatenate(end)
     dark = near(drawing.darkest > INK)
     return runs_behind_spot(drawing.darkness, dark, BLOCK_PX, SOFTENED_PX, INK)
 

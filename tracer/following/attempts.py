@@ -90,10 +90,12 @@ class Attempts:
         for that.
         """
         memory = knots.memory()
-        if memory is None:
+        if (
+            memory is None or stance.view.cells.tiles.rows
+        ):  # a large sheet's tiles are not copied
             return None, None
         view, place = stance.view, tuple(stance.place_mm.tolist())
-        seen = view.width_mm, view.usual_mm, view.level, view.cells.darkness.shape
+        seen = view.width_mm, view.usual_mm, view.level, view.cells.shape
         start = place, stance.heading_rad, stance.reference_mm, seen, repr(self.settings)
         return memory.head(self.drawing, start, turns, view.cells.darkness)
 

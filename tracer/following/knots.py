@@ -33,6 +33,7 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.tracer.corrections.on_sheet import REACH_MM, REACH_WIDTHS, TurnAt
 from morfax.tracer.drawing.drawing import Darkness, Drawing
+from morfax.tracer.drawing.tiles import Tiles
 
 if TYPE_CHECKING:
     from morfax.tracer.following.follower import Follower
@@ -174,6 +175,8 @@ class Memory:
 
 def changes_mm(old: Drawing, new: Drawing) -> Array | None:
     """Where the ink of two drawings differs: boxes (n, 4) mm; None if they are two altogether."""
+    if isinstance(old.darkness, Tiles) or isinstance(new.darkness, Tiles):
+        return None
     are_alike = old.pitch_mm == new.pitch_mm and old.darkness.shape == new.darkness.shape
     if not are_alike or old.edges_mm or new.edges_mm:
         return None

@@ -27,7 +27,7 @@ from morfax.tracer.drawing.components import joined
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
 from morfax.tracer.program.setup import Setup
-from morfax.tracer.sensing.photocell import Cells, darkness_along
+from morfax.tracer.sensing.photocell import darkness_along, without_aperture
 
 BEYOND_WIDTHS = 1.5  # beyond the edge of a line ink is no longer that line's
 BARE = 0.25  # darkness: paler places are paper
@@ -100,5 +100,5 @@ def _bare_ways(sheet: Sheet, closed: Sequence[Line], gap_mm: float) -> Iterator[
 
 def _darkness(sheet: Sheet, places_mm: Array) -> Array:
     """Darkness of the drawing at places (n, 2) mm, under a cell as small as a point."""
-    cells = Cells(sheet.drawing.darkness, sheet.drawing.pitch_mm, BARE)
+    cells = without_aperture(sheet.drawing, BARE)
     return np.asarray(darkness_along(cells, places_mm))

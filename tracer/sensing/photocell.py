@@ -30,6 +30,8 @@ from morfax.motion.compiled import njit
 from morfax.tracer.drawing.blocks import BLOCK_PX
 from morfax.tracer.drawing.drawing import Darkness, Drawing
 from morfax.tracer.drawing.strokes import Window
+from morfax.tracer.drawing.tiles import Tiles
+from morfax.tracer.sensing import aperture
 
 TWO_PI = 2.0 * math.pi
 LEVEL = 0.5  # an edge is at this share of the line's darkness
@@ -46,11 +48,33 @@ LEAST_SPREAD_PX = 0.2  # a smaller aperture changes no pixel by more than a scan
 
 class Cells(NamedTuple):
     """What the cells see of a sheet: the darkness behind their aperture, (rows, columns) float32, on pixels
-    of `pitch_mm`; and the darkness at which they see an edge."""
+    of `pitch_mm`; and the darkness at which they see an edge. That of a large sheet is empty: it is made
+    where the cells look, in `tiles`.
+    """
 
     darkness: Darkness
     pitch_mm: float
     level: float
+    tiles: aperture.MadeTiles = aperture.NONE
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns of the sheet."""
+        rows, columns = self.darkness.shape
+        return rows + self.tiles.rows, columns + self.tiles.columns
+
+    def window(self, top: int, bottom: int, left: int, right: int) -> Darkness:
+        """What the cells see in some rows and columns, those of them that are on the sheet."""
+        if self.tiles.rows:
+            return aperture.window(self.tiles, top, bottom, left, right)
+        return self.darkness[top:bottom, left:right]
+
+    def wider(self, spread_px: float) -> Cells:
+        """The same behind a further spot of a standard deviation."""
+        if self.tiles.rows:
+            return self._replace(darkness=_nothing(), tiles=self.tiles.wider(spread_px))
+        soft = cv2.GaussianBlur(self.darkness, (0, 0), spread_px)
+        return self._replace(darkness=np.asarray(soft, np.float32))
 
 
 def behind_aperture(
@@ -58,11 +82,25 @@ def behind_aperture(
 ) -> Cells:
     """The drawing's darkness averaged over an aperture centred on each pixel; paper beyond a window."""
     darkness, sigma_px = drawing.darkness, aperture_mm / 4 / drawing.pitch_mm
+    if isinstance(darkness, Tiles):
+        spread_px = sigma_px if sigma_px >= LEAST_SPREAD_PX else 0.0
+        made = aperture.MadeTiles.of(darkness, spread_px)
+        return Cells(_nothing(), drawing.pitch_mm, level, made)
     if sigma_px >= LEAST_SPREAD_PX and window is None:
         darkness = _near_ink(drawing, sigma_px)
     elif sigma_px >= LEAST_SPREAD_PX and window is not None:
         darkness = _blurred(darkness, sigma_px, window)
     return Cells(darkness, drawing.pitch_mm, level)
+
+
+def without_aperture(drawing: Drawing, level: float) -> Cells:
+    """The drawing through cells as small as a point."""
+    return behind_aperture(drawing, 0.0, level)
+
+
+def _nothing() -> Darkness:
+    """What stands for the darkness of a large sheet."""
+    return np.empty((0, 0), np.float32)
 
 
 def _near_ink(drawing: Drawing, sigma_px: float) -> Darkness:
@@ -115,14 +153,17 @@ def _blur(
 @njit(cache=True, inline="always")
 def darkness_at(cells, x_mm, y_mm):  # type: ignore[no-untyped-def]
     """Darkness under a cell at a place in sheet mm; paper outside the sheet."""
-    seen, pitch_mm = cells.darkness, cells.pitch_mm
-    rows, columns = seen.shape
+    seen, pitch_mm, tiles = cells.darkness, cells.pitch_mm, cells.tiles
+    # one of the two is empty
+    rows, columns = seen.shape[0] + tiles.rows, seen.shape[1] + tiles.columns
     x, y = x_mm / pitch_mm - 0.5, rows - y_mm / pitch_mm - 0.5
     i, j = math.floor(y), math.floor(x)
     if i < 0 or j < 0 or i >= rows - 1 or j >= columns - 1:
         return 0.0
     fx, fy = x - j, y - i
     i, j = int(i), int(j)
+    if tiles.rows > 0:
+        return aperture.between(tiles, i, j, fy, fx)
     above = seen[i, j] * (1 - fx) + seen[i, j + 1] * fx
     below = seen[i + 1, j] * (1 - fx) + seen[i + 1, j + 1] * fx
     return above * (1 - fy) + below * fy

@@ -11,7 +11,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-import cv2
 import numpy as np
 
 from morfax.motion.arrays import Array
@@ -159,8 +158,7 @@ class View:
         Its width and its darkness are those that these cells see at some stations (n, 3) of it.
         """
         sigma_px = GRAIN * self.width_mm / self.pitch_mm
-        soft = np.asarray(cv2.GaussianBlur(self.cells.darkness, (0, 0), sigma_px), np.float32)
-        larger = replace(self, cells=self.cells._replace(darkness=soft))
+        larger = replace(self, cells=self.cells.wider(sigma_px))
         places = stations[-GRAIN_STATIONS:, :2]
         darkness = float(np.median([larger.darkness_at(place) for place in places]))
         larger = larger.at_level(GRAIN_LEVEL * darkness)

@@ -74,7 +74,7 @@ def _inside(view: View, fronts: Fronts, ended: Flags) -> tuple[Flags, Darkness]:
     inside = (fronts.label >= 0) & ~ended[np.maximum(fronts.label, 0)]
     top, left = fronts.corner
     rows, columns = inside.shape
-    return inside, view.cells.darkness[top : top + rows, left : left + columns]
+    return inside, view.cells.window(top, top + rows, left, left + columns)
 
 
 def _legs(view: View, fronts: Fronts, reach_mm: float) -> tuple[list[Leg], Flags]:
@@ -166,7 +166,7 @@ def _ink(view: View, fronts: Fronts, ended: Flags) -> tuple[Array, Array, float]
     others = cv2.dilate(other, square, iterations=ABOUT_PX)
     i, j = np.nonzero(inside | ((about > 0) & (others == 0)))
     # 2. as places on the sheet
-    x, y = (j + left + 0.5) * pitch, (view.cells.darkness.shape[0] - i - top - 0.5) * pitch
+    x, y = (j + left + 0.5) * pitch, (view.cells.shape[0] - i - top - 0.5) * pitch
     places = np.column_stack([x, y])
     darkness = np.minimum(seen[i, j] / (2 * view.level), DARKEST).astype(float)
     # 3. some of them, if there are many

@@ -81,12 +81,12 @@ class Fronts:
 def fronts_from(view: View, place: Array, heading: float, reach_mm: float) -> Fronts:
     """The fronts of a wave that starts across the line at a place and runs ahead as far as `reach_mm`."""
     # 1. a window of the sheet about the place
-    rows, pitch = view.cells.darkness.shape[0], view.pitch_mm
+    rows, pitch = view.cells.shape[0], view.pitch_mm
     half = math.ceil(reach_mm / pitch) + MARGIN_PX
     x, y = place[0] / pitch - 0.5, rows - place[1] / pitch - 0.5
     row, column = round(y), round(x)
     top, left = max(0, row - half), max(0, column - half)
-    window = view.cells.darkness[top : row + half + 1, left : column + half + 1]
+    window = view.cells.window(top, row + half + 1, left, column + half + 1)
     # 2. the wave in it, and its fronts
     pose = float(x - left), float(y - top), float(heading)
     ground = _ground(window, view.level, pose, view.width_mm / pitch)
