@@ -177,7 +177,10 @@ def test_the_ink_in_tiles_is_that_of_the_whole_sheet(cam):
     assert kept.mean() < 0.5  # most of the sheet is paper
     assert tiled.ink_px == pytest.approx(whole.ink_px, rel=0.01)
     assert tiled.noise.paper == pytest.approx(whole.noise.paper, rel=0.2)
-    assert tiled.noise.width_mm == pytest.approx(whole.noise.width_mm, abs=2 * UM)
+    # noise lighter than the paper is cut off: a twentieth of a pixel of width
+    assert tiled.noise.width_mm == pytest.approx(
+        whole.noise.width_mm, abs=0.05 * whole.pitch_mm
+    )
     assert tiled.sheet.lengths_mm.max() == pytest.approx(
         whole.sheet.lengths_mm.max(), rel=0.002
     )
