@@ -37,13 +37,14 @@ def announce(what: str, note: Callable[[str], None]) -> None:
     """Have a line noted when the first kernel has to be compiled, and how far that is every few seconds."""
     from morfax.motion import compiled
 
-    next_s = 0.0
+    next_s, before = 0.0, None  # kernels compiled before anybody listened are not counted
 
     def hear(count: int) -> None:
-        nonlocal next_s
+        nonlocal next_s, before
+        before = count if before is None else before
         if time.monotonic() < next_s:
             return
-        how_far = f"{count} so far" if count else "first run only"
+        how_far = f"{count - before} so far" if count > before else "first run only"
         note(f"compiling {what} ({how_far}) ...")
         next_s = time.monotonic() + AGAIN_S
 

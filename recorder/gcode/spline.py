@@ -16,18 +16,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import lengths_mm
+from morfax.recorder.gcode.normal_equations import BREAK_RAD, normal, offs, solved
 from morfax.recorder.gcode.pieces import SPACING_MM, Piece, curvature_per_mm
 
 ROUNDS = 20  # of Levenberg and Marquardt; what has not settled by then is taken as it is
-BREAK_RAD = 1e-4  # a break that weighs as much as a place at the edge of the tolerance
-_STEP = 1e-7  # mm and rad, of the slopes by differences
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,12 +80,12 @@ class Spline:
             np.linspace(0, len(places) - 1, min(len(places), 60 * n + 20)).astype(int)
         )
         self.closed = n > 1 and math.dist(places[0], places[-1]) < SPACING_MM
-        columns = np.r_[np.full(2, -1), np.arange(2 * n - 2), np.full(2, -1)].reshape(
-            -1, 2
-        )  # of the joints; -1 is fixed
-        of_halves = np.where(curved, 2 * n - 3 + np.cumsum(curved), -1)
+        # the unknowns in the order of the path, so that those that meet are near each other; -1 is fixed
+        free = np.column_stack([np.arange(n) > 0, np.arange(n) > 0, curved])
+        number = np.where(free, np.cumsum(free).reshape(n, 3) - 1, -1)
+        ends = np.vstack([number[1:, :2], np.full((1, 2), -1)])
         # of each segment's five numbers
-        self.columns = np.column_stack([columns[:-1], columns[1:], of_halves])
+        self.columns = np.column_stack([number[:, :2], ends, number[:, 2]])
 
     def laid(self, tolerance_mm: float) -> Chain | None:
         """The chain by least squares, the worst places weighted more where needed; None if none fits."""
@@ -106,19 +104,17 @@ class Spline:
 
     def _settle(self, weights: Array, tolerance_mm: float) -> None:
         """Take steps by Levenberg and Marquardt until they no longer help."""
-        from scipy.sparse import identity  # half a second that `--help` need not wait for
-        from scipy.sparse.linalg import spsolve
-
         damping, cost = 1e-3, np.inf
         for _ in range(ROUNDS):
-            residuals, slopes = self._linearised(weights, tolerance_mm)
-            if not slopes.shape[1]:
+            cost, band, pull, seam = self._linearised(weights, tolerance_mm)
+            if not len(pull):
                 return
-            cost, before = float(residuals @ residuals), (self.joints, self.halves)
-            square, pull = (slopes.T @ slopes).tocsc(), slopes.T @ residuals
-            scale = identity(square.shape[0], format="csc") * float(square.diagonal().mean())
+            before = (self.joints, self.halves)
+            scale = float(band[:, 0].mean() + (seam**2).mean())
             for _ in range(5):
-                self._step(-spsolve(square + damping * 1e-4 * scale, pull), *before)
+                damped = band.copy()
+                damped[:, 0] += damping * 1e-4 * scale
+                self._step(-solved(damped, seam, pull), *before)
                 new = self._residuals(weights, tolerance_mm)
                 if (now := float(new @ new)) < cost:
                     break
@@ -138,7 +134,7 @@ class Spline:
 
     def _residuals(self, weights: Array, tolerance_mm: float) -> Array:
         """Distances in tolerances, and breaks of the tangent."""
-        off = _off_rows(self._rows()[self._owner(self.few)], self.places[self.few])
+        off = offs(self._table(), self.places[self.few], self._owner(self.few))
         return np.r_[weights * off / tolerance_mm, self._breaks() / BREAK_RAD]
 
     def _breaks(self) -> Array:
@@ -149,40 +145,23 @@ class Spline:
         jumps = (jumps + math.pi) % (2 * math.pi) - math.pi
         return jumps if self.closed else jumps[:-1]
 
-    def _linearised(self, weights: Array, tolerance_mm: float) -> tuple[Array, Any]:
-        """Residuals, and their slopes as a sparse matrix."""
-        from scipy.sparse import coo_matrix
-
-        residuals, n = self._residuals(weights, tolerance_mm), len(self.few)
-        table = np.column_stack([self.joints[:-1], self.joints[1:], self.halves])
-        owner = self._owner(self.few)
-        own = _off_table(table, self.places[self.few], owner)
-        rows, columns, values = [], [], []
-        for k in range(5):  # each distance depends on the five numbers of its own segment only
-            moved = table.copy()
-            moved[:, k] += _STEP
-            slope = (_off_table(moved, self.places[self.few], owner) - own) / _STEP
-            rows.append(np.arange(n))
-            columns.append(self.columns[owner, k])
-            values.append(slope * weights / tolerance_mm)
-        chords = np.diff(self.joints, axis=0)
-        turn = np.column_stack([-chords[:, 1], chords[:, 0]]) / (chords**2).sum(axis=1)[:, None]
-        # of a chord's direction, and of half an angle
-        slopes = np.column_stack([-turn, turn, np.ones(len(turn))])
-        for j in range(len(residuals) - n):
-            after = (j + 1) % len(turn)
-            for segment, sign in ((j, -1.0), (after, 1.0)):
-                rows.append(np.full(5, n + j))
-                columns.append(self.columns[segment])
-                values.append(slopes[segment] * [sign, sign, sign, sign, -1.0] / BREAK_RAD)
-        row, column, value = (
-            np.concatenate(rows),
-            np.concatenate(columns),
-            np.concatenate(values),
+    def _linearised(
+        self, weights: Array, tolerance_mm: float
+    ) -> tuple[float, Array, Array, Array]:
+        """The sum of the squared residuals, and the normal equations of their slopes: the band of the matrix
+        (unknowns, BAND), the right side, and the slopes of the seam's break, which are not in the band.
+        """
+        return normal(  # type: ignore[no-any-return]
+            self._table(),
+            (self.places[self.few], self._owner(self.few), weights / tolerance_mm),
+            self._breaks() / BREAK_RAD,
+            self.columns,
+            self.closed,
         )
-        free = column >= 0
-        shape = (len(residuals), int(self.columns.max()) + 1)
-        return residuals, coo_matrix((value[free], (row[free], column[free])), shape).tocsr()
+
+    def _table(self) -> Array:
+        """The ends of each segment and half the angle that it turns."""
+        return np.column_stack([self.joints[:-1], self.joints[1:], self.halves])
 
     def _owner(self, which: NDArray[np.int64]) -> NDArray[np.int64]:
         """The segment of each place, by its distance along the path."""
@@ -191,7 +170,7 @@ class Spline:
 
     def _rows(self) -> Array:
         """Begin, heading, length and curvature of each segment."""
-        return rows_of(np.column_stack([self.joints[:-1], self.joints[1:], self.halves]))
+        return rows_of(self._table())
 
 
 def segments(rows: Array) -> list[LineOrArc]:
@@ -210,11 +189,6 @@ def rows_of(table: Array) -> Array:
     return np.column_stack(
         [x0, y0, np.arctan2(y1 - y0, x1 - x0) - half, length, 2 * half / length]
     )
-
-
-def _off_table(table: Array, points: Array, owner: NDArray[np.int64]) -> Array:
-    """Distance of each point from the circle or line of its segment, given as in `rows_of`."""
-    return _off_rows(rows_of(table)[owner], points)
 
 
 def _off_rows(rows: Array, points: Array) -> Array:

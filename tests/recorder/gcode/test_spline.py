@@ -1,0 +1,90 @@
+"""The arc spline's least squares: the normal equations and their solution against numpy's."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from morfax.recorder.gcode import normal_equations, spline
+from morfax.recorder.gcode.arcs import fit
+from morfax.recorder.gcode.normal_equations import BREAK_RAD
+from morfax.recorder.gcode.pieces import longest_pieces, resample
+from morfax.recorder.gcode.spline import Spline, rows_of
+
+TOLERANCE_MM = 0.01
+BY_DIFFERENCES = (
+    1e-5  # of the largest slope: what differences over 1e-7 mm leave in double precision
+)
+
+
+def _wavy(closed: bool) -> Spline:
+    """A spline of some ten segments on a wavy ring of 20 mm, or on three quarters of it."""
+    angle = np.linspace(0, 2 * np.pi if closed else 1.5 * np.pi, 2000)
+    radius = 20 + np.sin(5 * angle)
+    places = resample(np.column_stack([radius * np.cos(angle), radius * np.sin(angle)]), 0.05)
+    if closed:
+        places[-1] = places[0]
+    pieces = longest_pieces(places, TOLERANCE_MM)
+    curved = np.ones(len(pieces), bool)
+    curved[1] = False  # a line among the arcs
+    return Spline(places, pieces, curved)
+
+
+def _dense(band: np.ndarray, seam: np.ndarray) -> np.ndarray:
+    """The matrix of the normal equations."""
+    square = np.outer(seam, seam)
+    for i, row in enumerate(band):
+        for k in range(min(i + 1, len(row))):
+            square[i, i - k] += row[k]
+            square[i - k, i] += row[k] if k else 0.0
+    return square
+
+
+@pytest.mark.parametrize("closed", [False, True])
+def test_the_right_side_is_the_slope_of_the_squared_residuals(closed):
+    laid = _wavy(closed)
+    weights = np.random.default_rng(1).uniform(0.5, 1, len(laid.few))
+    cost, band, pull, seam = laid._linearised(weights, TOLERANCE_MM)
+    assert laid.closed == closed == bool(seam.any())
+    before, step = (laid.joints, laid.halves), 1e-7
+    costs = []
+    for change in np.vstack([np.zeros(len(pull)), step * np.eye(len(pull))]):
+        laid._step(change, *before)
+        residuals = laid._residuals(weights, TOLERANCE_MM)
+        costs.append(residuals)
+    assert cost == pytest.approx(float(costs[0] @ costs[0]))
+    slopes = (np.array(costs[1:]) - costs[0]) / step
+    largest = np.abs(slopes).max()
+    assert (
+        np.abs(slopes @ costs[0] - pull).max() < BY_DIFFERENCES * np.abs(pull).max() + largest
+    )
+    assert np.abs(_dense(band, seam) - slopes @ slopes.T).max() < BY_DIFFERENCES * largest**2
+
+
+@pytest.mark.parametrize("closed", [False, True])
+def test_the_solution_is_numpys(closed):
+    laid = _wavy(closed)
+    _, band, pull, seam = laid._linearised(np.ones(len(laid.few)), TOLERANCE_MM)
+    band[:, 0] += 1e-4 * band[:, 0].mean()
+    wanted = np.linalg.solve(_dense(band, seam), pull)
+    found = normal_equations.solved(band.copy(), seam, pull)
+    assert (
+        np.abs(found - wanted).max() < 1e-6 * np.abs(wanted).max()
+    )  # both lose digits to BREAK_RAD
+
+
+def test_distances_are_those_of_the_rows():
+    laid = _wavy(True)
+    owner = laid._owner(np.arange(len(laid.s)))
+    wanted = spline._off_rows(rows_of(laid._table())[owner], laid.places)
+    assert (
+        np.abs(normal_equations.offs(laid._table(), laid.places, owner) - wanted).max() < 1e-9
+    )
+
+
+def test_a_ring_of_waves_is_laid_within_the_tolerance_and_without_breaks():
+    (chain,) = fit(_wavy(True).places, TOLERANCE_MM)
+    assert chain.deviation_mm <= TOLERANCE_MM
+    for one, after in pairwise(chain.segments):
+        turned = after.heading_rad - one.heading_rad - one.turned_rad
+        assert abs((turned + np.pi) % (2 * np.pi) - np.pi) < BREAK_RAD
