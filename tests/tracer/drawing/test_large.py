@@ -15,7 +15,7 @@ from PIL import Image
 
 from morfax.motion.motion import thin
 from morfax.motion.polyline import nearest_mm, with_places
-from morfax.tracer.drawing import by_rows, large, raster
+from morfax.tracer.drawing import by_rows, large, raster, tiff_rows
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.tiles import PAPER, TILE_PX, Tiles
 from morfax.tracer.program.trace import trace
@@ -88,7 +88,7 @@ def test_a_tiff_of_strips_is_the_same_by_rows(tmp_path, mode, packed):
     if packed == "group4" and mode != "1":
         mode = "1"
     file = tmp_path / "noise.tif"
-    _picture(mode).save(file, compression=packed, tiffinfo={by_rows.STRIP_ROWS: 16})
+    _picture(mode).save(file, compression=packed, tiffinfo={tiff_rows.STRIP_ROWS: 16})
     assert np.array_equal(_by_rows(file), _as_a_whole(file))
 
 
