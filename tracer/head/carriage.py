@@ -30,8 +30,7 @@ from morfax.tracer.sensing.view import View
 
 CHUNK = 6000  # samples that the kernel follows before it reports: a second at the motion rate
 SETTLE_LAGS = 7  # a stop lasts this many lags of the drives: 1/1000 of the last speed is left
-# of the lead: what was felt of a leg this far ahead tells where the cell will see it
-FELT_ENOUGH = 0.5
+FELT_ENOUGH = 0.5  # of the lead: felt so far ahead, a leg tells where the cell will see it
 HEARD = 0.1  # of what the sweep was set off; grain takes away less than the rest
 SPARE = 1000  # samples beside those that a course takes at the slowest
 
@@ -282,6 +281,8 @@ class Carriage:
 
     def _keep(self, positions: Array) -> None:
         """Keep positions of the screws, and mark the trail with them."""
+        if not len(positions):
+            return
         self._parts.append(positions.copy())
         self.count += len(positions)
         self.trail.add(positions)

@@ -16,9 +16,11 @@ from morfax.motion.arrays import Array
 from morfax.motion.drive import Drive
 from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.tracer.head import kernel, screws, swinging
+from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.settings import Settings, tune
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.state import CHANGED, JUNCTION, MORE, TIGHT, Home, Tuning, at_rest
+from morfax.tracer.sensing.leg import leg_of
 from morfax.tracer.sensing.photocell import LEVEL, Cells, behind_aperture
 from morfax.tracer.sensing.view import View
 from tests.tracer.inked import UM, inked, polyline
@@ -405,3 +407,13 @@ def test_the_screws_of_a_moving_head_come_onto_a_course_without_a_leap(tuning: T
     screws.run(state, tuning, way, np.full(2, SPEED_MM_S), out)
     steps = np.diff(np.vstack([PLACE, out])[:, 0])
     assert steps == pytest.approx(SPEED_MM_S * tuning.period_s, rel=1e-9)
+
+
+def test_following_that_comes_nowhere_leaves_the_next_as_it_was(seen: View) -> None:
+    """The cell may stop before the first position: on the drum is still what was felt."""
+    carriage = Carriage(Stance(PLACE, 0.0, seen), Settings(), MOTION_RATE_HZ)
+    carriage.aim(seen, leg_of(seen.feel(PLACE, 0.0, seen.leg_mm), False, seen.leg_mm))
+    nowhere = Home(0.0, 0.0, 0.0, from_travel_mm=1e9)
+    carriage.follow(seen, nowhere, samples=0)
+    carriage.follow(seen, nowhere, samples=100)
+    assert carriage.count == 101
