@@ -29,6 +29,7 @@ from morfax.motion.motion import Path
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.drawing.components import Mask, Numbers, Patches, runs_of, strips
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.tiles import Tiles
 
 EVERY_MM = 0.1  # between the places that are measured
 TOUCH_MM = 0.02  # between the places of a cutter's path
@@ -166,6 +167,8 @@ def _profile(drawing: Drawing, points: Array, headings: Array, across: Array) ->
     columns = x / drawing.pitch_mm - 0.5
     rows = drawing.darkness.shape[0] - y / drawing.pitch_mm - 0.5
     seen = np.empty(columns.shape)
+    if isinstance(drawing.darkness, Tiles):
+        return drawing.darkness.between(rows, columns)
     map_coordinates(drawing.darkness, [rows, columns], seen, order=1, mode="constant")
     return seen
 

@@ -22,13 +22,14 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.tracer.drawing.components import Mask
+from morfax.tracer.drawing.components import Mask, strips
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.lettering import lettering
 from morfax.tracer.drawing.solids import Solids
 from morfax.tracer.drawing.strokes import INK, Sheet
 
 SOFTENED_PX = 0.7  # as patches are found (see `drawing.strokes`)
+HALO_PX = 8  # beside a strip: softening looks no further
 RIM_PX = 1  # of a solid area beyond the place where it is half as dark
 FOLLOWED_MM, NONE_MM = 0.0, math.inf  # all lettering is followed, or none
 
@@ -67,8 +68,7 @@ class InkLeft(NamedTuple):
 
 def ink_left(sheet: Sheet, letters_from_mm: float = FOLLOWED_MM) -> InkLeft:
     """The ink of lines; lettering as high as is given, or higher, is lines."""
-    soft = cv2.GaussianBlur(sheet.drawing.darkness, (0, 0), SOFTENED_PX)
-    ink = (soft > INK).view(np.uint8)
+    ink = _ink(sheet.drawing)
     rows, columns = ink.shape
     # 1. lettering, and the rims of filled shapes
     patches, pitch_mm = sheet.patches, sheet.drawing.pitch_mm
@@ -96,6 +96,15 @@ def ink_left(sheet: Sheet, letters_from_mm: float = FOLLOWED_MM) -> InkLeft:
         box_mm = _box_mm(patches.boxes[patch].tolist(), rows, pitch_mm)
         areas.append(Area("letter", float(patches.areas[patch]) * pitch_mm**2, box_mm))
     return InkLeft(ink, drawing, is_lettering, letters, solid_px, tuple(areas))
+
+
+def _ink(drawing: Drawing) -> Mask:
+    """The ink of a sheet, softened, strip by strip: of a large sheet there is never more than that."""
+    ink = np.zeros(drawing.darkness.shape, np.uint8)
+    for top, bottom, rows in strips(ink.shape, halo=HALO_PX):
+        soft = cv2.GaussianBlur(drawing.darkness[rows], (0, 0), SOFTENED_PX)
+        ink[top:bottom] = soft[top - rows.start : bottom - rows.start] > INK
+    return ink
 
 
 def _box_mm(box: Sequence[int], rows: int, pitch_mm: float) -> Box:

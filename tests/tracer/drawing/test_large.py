@@ -15,9 +15,10 @@ from PIL import Image
 
 from morfax.motion.motion import thin
 from morfax.motion.polyline import nearest_mm, with_places
-from morfax.tracer.drawing import by_rows, large, raster, tiff_rows
+from morfax.tracer.drawing import by_rows, deviation, large, raster, tiff_rows
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.tiles import PAPER, TILE_PX, Tiles
+from morfax.tracer.ink.left_out import ink_left
 from morfax.tracer.program.trace import trace
 from morfax.tracer.sensing import aperture, photocell
 
@@ -227,3 +228,20 @@ def test_the_head_follows_a_large_sheet_as_any_other(cam):
     off_mm = nearest_mm(runs[0], with_places(runs[1], 0.5 * UM))
     assert np.sqrt(np.mean(off_mm**2)) < 1 * UM  # the path's own thinning is 0.2 um
     assert off_mm.max() < 5 * UM
+
+
+def test_all_of_the_ink_of_a_large_sheet_is_that_of_the_whole(cam):
+    """Softened strip by strip: pixels differ only where a byte's step decides at the level of ink."""
+    tiled, whole = (ink_left(drawing.sheet).ink for drawing in cam)
+    soft = cv2.GaussianBlur(cam[1].darkness, (0, 0), 0.7)
+    differs = tiled != whole
+    assert whole.any() and abs(soft[differs] - 0.5).max(initial=0.0) < STEP
+
+
+def test_the_ink_across_a_path_is_read_from_tiles(cam):
+    places = np.array(
+        [[20.0, 20.0], [21.0, 20.0], [300.0, 20.0]]
+    )  # the last is beyond the sheet
+    across = np.linspace(-1.0, 1.0, 9)
+    seen = [deviation._profile(each, places, np.zeros(3), across) for each in cam]
+    np.testing.assert_allclose(seen[0], seen[1], atol=STEP)
