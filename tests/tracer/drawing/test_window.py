@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-from typing import Any
-
 import numpy as np
 import pytest
 
+from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.sensing import photocell
 
 PITCH_MM = 25.4 / 300
@@ -19,9 +17,7 @@ ROUNDING = 2.4e-7  # of darkness 1: two units in the last place of float32; sums
 def test_cells_see_the_same_in_a_window(
     aperture_mm: float, window: tuple[int, int, int, int]
 ) -> None:
-    sheet: Any = SimpleNamespace(
-        darkness=np.random.default_rng(3).random((600, 700), np.float32), pitch_mm=PITCH_MM
-    )
+    sheet = Drawing(np.random.default_rng(3).random((600, 700), np.float32), PITCH_MM)
     top, left, bottom, right = window
     whole = photocell.behind_aperture(sheet, aperture_mm).darkness
     part = photocell.behind_aperture(sheet, aperture_mm, window=window).darkness
