@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import ast
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
-from tests.mutants import Mutant, mutants_of
+from tests.mutants import Copy, Mutant, mutants_of
 
 SOURCE = '''"""A module of 2 words."""
 LIMIT_MM: float = 0.3  # µm would be "3"
@@ -52,3 +54,12 @@ def test_every_mutant_can_be_read() -> None:
     for mutant in found():
         ast.parse(mutant.text(SOURCE))
         assert mutant.told(SOURCE).startswith(f"a.py:{mutant.line}: ")
+
+
+def test_a_copy_has_the_vectors_that_tests_ask_for(
+    tmp_path: Path, vectors: Callable[[str], Any]
+) -> None:
+    """Else those tests are left out, and a broken line of theirs is not noticed."""
+    assert vectors("se_clock")
+    copied = Copy(tmp_path, []).root.parent / "shared" / "vectors" / "se_clock.json"
+    assert copied.is_file()
