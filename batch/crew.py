@@ -37,9 +37,8 @@ from morfax.motion.faults import Fault
 from morfax.motion.units import format_time_s
 
 DEATHS = 2  # of workers, over one drawing
-FUTILE = (
-    20  # workers in a row that died before they had taken up anything: something else is wrong
-)
+# workers in a row that died before they had taken up anything: something else is wrong
+FUTILE = 20
 WARM = ("morfax.batch.warm",)
 ENDS_WITHIN_S = 5.0  # a worker that was told to end
 

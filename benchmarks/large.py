@@ -26,9 +26,8 @@ DPI, MM_PER_INCH, LINE_MM = 600, 25.4, 0.5
 A0_MM = 841.0, 1189.0
 A0_MPX = 558.0
 MARGIN_MM = 20.0
-NOISE_TILE_PX = (
-    512  # the noise of the paper comes again: a whole sheet of it takes a minute to make
-)
+# the noise of the paper comes again: a whole sheet of it takes a minute to make
+NOISE_TILE_PX = 512
 ASKED = {0.3: (3, 0.6), 30.0: (30, 0.6), 100.0: (90, 0.6)}  # s, GB
 
 

@@ -17,9 +17,8 @@ if TYPE_CHECKING:
     from morfax.tracer.following.line import Line
     from morfax.tracer.program.program import Trace
 
-LEAST_CELL_SHARE = (
-    0.6  # of the way: below that the operator is told; the figure that was asked for
-)
+# of the way: below that the operator is told; the figure that was asked for
+LEAST_CELL_SHARE = 0.6
 # the `LEADERS` as a reader of the figures understands them
 IN_WORDS = ("its_own_cell", "places_felt_ahead", "memory_of_corners", "redrawn_tangles")
 THINNED = 30  # one position in 30 is drawn: every 50 um at 10 mm/s

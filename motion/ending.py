@@ -8,10 +8,10 @@ Source: the context managers of Python, whose `__exit__` takes the error in thre
 from __future__ import annotations
 
 from types import TracebackType
-from typing import Self
+from typing import Protocol, Self
 
 
-class Ending:
+class Ending(Protocol):
     """Something for a `with` that gives itself, and whose `end` is called when that is left."""
 
     def __enter__(self) -> Self:

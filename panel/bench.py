@@ -219,20 +219,10 @@ class Bench:
             if is_newest or self.busy is None or self.busy["kind"] == "lines":
                 self._seen(result)
         else:
-            {"run": self._run_done, "play": self._played}.get(kind, self._saved)(result)
+            {"run": self.kept.keep, "play": self.kept.play_again}.get(kind, self._saved)(result)
+            for text in result.get("faults", ()):
+                self.tell("fault", text, result.get("fault_place_mm"))
         self._free(kind)
-
-    def _run_done(self, result: dict[str, Any]) -> None:
-        """A run has come to its end."""
-        self.kept.keep(result)
-        for text in result["faults"]:
-            self.tell("fault", text, result["fault_place_mm"])
-
-    def _played(self, result: dict[str, Any]) -> None:
-        """The last run was played again."""
-        self.kept.play_again(result)
-        for text in result["faults"]:
-            self.tell("fault", text)
 
     def _saved(self, result: dict[str, Any]) -> None:
         """A result was written."""

@@ -36,9 +36,8 @@ RAISED = "#1f5fbf"  # stops, and ways with the tool up
 UNMEASURED = "#8a8a8a"  # the path where its error cannot be measured
 MARGIN_SHARE = 0.06  # of the larger side, round the path
 NARROWEST = 0.35  # shorter to longer side of what is shown
-FEW_NUMBERS = (
-    4  # along an enlargement: each number of all takes a hundredth of a picture's time
-)
+# along an enlargement: each number of all takes a hundredth of a picture's time
+FEW_NUMBERS = 4
 LETTERS_PER_IN = 11.0  # of a title of 10 points: capitals and underscores too
 LIGHT = 3.2  # ink as light grey, for a path to lie on
 

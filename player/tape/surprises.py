@@ -36,9 +36,8 @@ from morfax.player.tape.standstill import SILENT_LEVEL
 from morfax.recorder.tape.check_signal import GAUGE_S
 from morfax.recorder.tape.format import TapeFormat
 
-SETTLED_ROWS = (
-    400  # behind a jump: 65 ms at 6 kHz; what is left of the response is 1e-6 of its largest
-)
+# behind a jump: 65 ms at 6 kHz; what is left of the response is 1e-6 of its largest
+SETTLED_ROWS = 400
 SMALL_CYCLES = 1e-3  # of the jump that is tried, so that no turn is miscounted
 NOISE_SIGMAS = 6.0  # one row in 5e8
 MEDIAN_SIGMAS = 0.6745  # median of |noise| that is normal
@@ -46,9 +45,8 @@ MEDIAN_SIGMAS = 0.6745  # median of |noise| that is normal
 # kbit/s, 0.0044.
 LEAST_CYCLES = 0.005
 STRIDE = 8  # rows from one that tells the noise to the next: the filter spans as many
-HIDDEN_CYCLES = (
-    0.02  # a step of a twentieth of a cycle surprises by 0.03, less what noise of 40 dB adds
-)
+# a step of a twentieth of a cycle surprises by 0.03, less what noise of 40 dB adds
+HIDDEN_CYCLES = 0.02
 DIP_ROWS = 10  # 1.7 ms at 6 kHz: the filter blurs a moment over eight
 LEAST_DIP = 0.01  # of the level; flutter of 0.2 % makes 0.0016
 # of the square of a jump in cycles/row: 2.3 was the most that jumps of 160 to 1600 Hz made the level dip

@@ -50,9 +50,8 @@ DAMAGE = (
     AssertionError,
     RecursionError,
 )
-LEAST_CHORDS = (
-    8  # of a spline between two knots, and of an ellipse: what lies between is found from there
-)
+# of a spline between two knots, and of an ellipse: what lies between is found from there
+LEAST_CHORDS = 8
 
 
 def read_dxf(file: FilePath, unit: str | None = None) -> Outline:

@@ -25,9 +25,8 @@ from morfax.motion.pathfile import FEED_MM_S, at_feed
 from morfax.motion.pathtable import PathTable
 from morfax.motion.units import LONGEST_MM
 
-JOINED_MM = (
-    0.01  # the tolerance of a program: ends that CAD has snapped agree to a millionth of it
-)
+# the tolerance of a program: ends that CAD has snapped agree to a millionth of it
+JOINED_MM = 0.01
 SAME_MM = 1e-3  # lines that are no further apart are one; what curves are flattened to
 
 

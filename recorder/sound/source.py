@@ -16,13 +16,13 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from pathlib import Path as FilePath
-from types import TracebackType
 from typing import Protocol
 
 import numpy as np
 import soundfile
 from numpy.typing import NDArray
 
+from morfax.motion.ending import Ending
 from morfax.motion.faults import FileFault, TapeFault
 from morfax.motion.files import for_soundfile
 from morfax.recorder.sound.plain import PlainSamples
@@ -57,19 +57,8 @@ class Source(Protocol):
         """Let go of it."""
 
 
-class Sink(Protocol):
-    """Where frames go; a context manager, which ends well only if all frames are there."""
-
-    def __enter__(self) -> Sink:
-        """Begin."""
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        at: TracebackType | None,
-    ) -> None:
-        """End; after an error nothing may look whole."""
+class Sink(Ending, Protocol):
+    """Where frames go; it ends well only if all are there, and after an error nothing may look whole."""
 
     def put(self, frames: Frames) -> None:
         """Take the next frames."""

@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.compiled import njit
+from morfax.motion.faults import DrawingFault
 from morfax.tracer.drawing.blocks import (
     ABOUT,
     Blocks,
@@ -34,14 +35,40 @@ from morfax.tracer.drawing.blocks import (
     weights_of,
     with_mirrored,
 )
+from morfax.tracer.drawing.components import Patches
 from morfax.tracer.drawing.paper import Paper
 from morfax.tracer.drawing.scan import Grey
 
 Darkness = NDArray[np.float32]
 
+LEAST_CONTRAST = 10.0  # grey levels of 255 between paper and ink
+BLACK = 255.0  # grey levels below paper: nothing is darker
+ABOVE_NOISE = 6.0  # standard deviations of the paper: what is darker is no noise
+DARKER = 80.0  # percentile of the strokes' pixels: those that no edge makes lighter
+LEAST_STROKE_MM, LEAST_STROKE_PX = 2.0, 12  # shorter strokes are specks
+SOFT_PX = 1.0  # standard deviation of the spot behind which strokes are looked for
 ROUNDED = 1e-3  # grey levels: more than interpolation and a spot's weights are rounded by
 EVERY_ROW, EVERY_COLUMN = 32, 4  # of a sample: pixels that are nearer are alike behind a spot
 MOST_ROWS = 64  # of a sample
+
+
+def strokes_of(patches: Patches, least: float, pitch_mm: float) -> NDArray[np.bool_]:
+    """Which patches of what is darker than the paper by `least` (grey levels) are strokes, and no specks.
+
+    Raises DrawingFault if none is.
+    """
+    strokes = patches.longer_sides >= max(LEAST_STROKE_PX, LEAST_STROKE_MM / pitch_mm)
+    if strokes.any():
+        return np.asarray(strokes)
+    if least > BLACK:
+        raise DrawingFault(
+            "no line on the drawing: its grey levels vary everywhere, as of noise or a pattern, and no line "
+            "stands out; check the file"
+        )
+    raise DrawingFault(
+        f"no line on the drawing: nothing longer than {LEAST_STROKE_MM:g} mm is {least:.0f} or more"
+        " of 255 grey levels darker than the paper; check the file, or scan it with more contrast"
+    )
 
 
 @dataclass(frozen=True, slots=True)

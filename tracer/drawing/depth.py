@@ -24,9 +24,8 @@ from morfax.tracer.drawing.components import Mask, Numbers, painted
 
 # Both by trial on sheets with lines and with filled squares.
 MUCH_INK = 0.1  # of the pixels: filled shapes, in which looking takes longer than OpenCV
-MOST_LOOKS = (
-    4  # to a pixel of the sheet: one broad shape takes more, and a sheet of lines takes 0.5
-)
+# to a pixel of the sheet: one broad shape takes more, and a sheet of lines takes 0.5
+MOST_LOOKS = 4
 MOST_LOOKS_EACH = 40  # to a pixel of ink
 
 

@@ -29,12 +29,18 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.faults import DrawingFault
 from morfax.tracer.drawing import coarse, grain, inks, large, paper, raster, ruling
 from morfax.tracer.drawing.blocks import BLOCK_PX, darkest, runs_behind_spot
 from morfax.tracer.drawing.border import without_border
 from morfax.tracer.drawing.components import Patches, runs_of
-from morfax.tracer.drawing.contrast import Contrast
+from morfax.tracer.drawing.contrast import (
+    ABOVE_NOISE,
+    DARKER,
+    LEAST_CONTRAST,
+    SOFT_PX,
+    Contrast,
+    strokes_of,
+)
 from morfax.tracer.drawing.noise import Noise, grain_within, measured
 from morfax.tracer.drawing.ruling import PaperKind
 from morfax.tracer.drawing.scale import Scale
@@ -48,14 +54,8 @@ if TYPE_CHECKING:
     from morfax.tracer.flatten.flat import Flattening
 
 HALF = 0.5  # darkness from which a pixel is ink
-LEAST_CONTRAST = 10.0  # grey levels of 255 between paper and ink
-BLACK = 255.0  # grey levels below paper: nothing is darker
-ABOVE_NOISE = 6.0  # standard deviations of the paper: what is darker is no noise
-DARKER = 80.0  # percentile of the strokes' pixels: those that no edge makes lighter
-LEAST_STROKE_MM = 2.0  # shorter strokes are specks
-SURELY = 0.8  # of that: the noise of a sample tells that the noise of all pixels is less
+SURELY = 0.8  # of the least contrast: the noise of a sample tells that the noise of all pixels is less
 EVERY = 4  # pixels of a noisy sheet that tell its noise
-SOFT_PX = 1.0  # standard deviation of the spot behind which strokes are looked for
 FEWEST_SAMPLES = 1 << 22  # pixels that tell the darkness of the ink
 LEAST_RADIUS_MM, MOST_ENLARGED = 1.3, 4  # of an edge; by trial on round holes
 OBLONG = 1e-3  # sides of a pixel that differ by more than this share are made alike: a fax has such pixels
@@ -266,17 +266,7 @@ def _ink_contrast(contrast: Contrast, pitch_mm: float) -> float:
         least = max(least, _above_noise(soft[::EVERY, ::EVERY].ravel()))
         runs = runs_of(soft > least, 0)
     patches = Patches.of([runs])
-    strokes = patches.longer_sides >= max(12, LEAST_STROKE_MM / pitch_mm)
-    if not strokes.any() and least > BLACK:
-        raise DrawingFault(
-            "no line on the drawing: its grey levels vary everywhere, as of noise or a pattern, and no line "
-            "stands out; check the file"
-        )
-    if not strokes.any():
-        raise DrawingFault(
-            f"no line on the drawing: nothing longer than {LEAST_STROKE_MM:g} mm is {least:.0f} or more"
-            " of 255 grey levels darker than the paper; check the file, or scan it with more contrast"
-        )
+    strokes = strokes_of(patches, least, pitch_mm)
     every = max(1, int(patches.areas[strokes].sum()) // (4 * FEWEST_SAMPLES))
     return float(np.percentile(patches.pixels_of(strokes, seen)[::every], DARKER))
 

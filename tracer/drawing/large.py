@@ -24,21 +24,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.compiled import njit
-from morfax.motion.faults import DrawingFault
 from morfax.tracer.drawing.components import Patches, runs_of
+from morfax.tracer.drawing.contrast import (
+    ABOVE_NOISE,
+    DARKER,
+    LEAST_CONTRAST,
+    SOFT_PX,
+    strokes_of,
+)
 from morfax.tracer.drawing.paper import Paper
 from morfax.tracer.drawing.tiles import PAPER, TILE_PX, Tiles
 
-LARGE_PX = (
-    1 << 26
-)  # pixels: A3 at 600 dpi is the first; smaller sheets are kept as a whole, in floats
-LEAST_CONTRAST = 10.0  # grey levels of 255 between paper and ink
-ABOVE_NOISE = 6.0  # standard deviations of the paper: what is darker is no noise
+# pixels: A3 at 600 dpi is the first; smaller sheets are kept as a whole, in floats
+LARGE_PX = 1 << 26
 NOISY = 84.13  # percentile one standard deviation above the median
-DARKER = 80.0  # percentile of the strokes' pixels: those that no edge makes lighter
-LEAST_STROKE_MM = 2.0  # shorter strokes are specks
 SAMPLE_PX = 1 << 20  # pixels that tell the noise of the paper
-SOFT_PX = 1.0  # standard deviation of the spot behind which strokes are found
 SOFTENED = 1 / (2 * math.sqrt(math.pi) * SOFT_PX)  # of white noise, behind that spot
 HALO_PX = 8  # rows about a band that a spot sees
 FRINGE_PX = 4  # beyond ink its soft edge ends
@@ -180,12 +180,7 @@ def runs_darker(tiles: Tiles, spot_px: float, least: float) -> Iterator[tuple[An
 def _ink_contrast(tiles: Tiles, least: float, pitch_mm: float) -> float:
     """Contrast of the strokes against the paper, grey levels: that of the longer strokes' darker part."""
     patches = Patches.of(runs_darker(tiles, SOFT_PX, least))
-    strokes = patches.longer_sides >= max(12, LEAST_STROKE_MM / pitch_mm)
-    if not strokes.any():
-        raise DrawingFault(
-            f"no line on the drawing: nothing longer than {LEAST_STROKE_MM:g} mm is {least:.0f} or more"
-            " of 255 grey levels darker than the paper; check the file, or scan it with more contrast"
-        )
+    strokes = strokes_of(patches, least, pitch_mm)
     every = max(1, int(patches.areas[strokes].sum()) // FEWEST_INKED)
     inked = []
     for top, bottom, _, columns in tiles.bands():

@@ -46,9 +46,8 @@ ABOUT_PX = 64  # rows above and below a place in which the nearest ink is sought
 SOLID = 0.5  # of a patch's ink is beside filled shapes: it is theirs
 LESS = 0.85  # ink about an end, of what is usual: half, and what the middle place lies within the end
 MOST_ENDS = 100
-ONE_PEN = (
-    0.3  # lines whose widths are within this share of the usual width are one pen's; by trial
-)
+# lines whose widths are within this share of the usual width are one pen's; by trial
+ONE_PEN = 0.3
 
 
 @dataclass(frozen=True, slots=True)

@@ -28,9 +28,8 @@ from morfax.tracer.drawing.thinning import neighbours, thinned
 SPOT_PX = 1.0  # standard deviation of the spot that averages the paper's noise
 LEFT_OF_NOISE = 0.5 / (math.sqrt(math.pi) * SPOT_PX)  # what it leaves of white noise
 ABOVE_NOISE = 6.0  # standard deviations of the paper, as for ink (see `drawing.drawing`)
-LEAST = (
-    0.15  # of ink's darkness: paler are what shines through a sheet and a JPEG's rims; by trial
-)
+# of ink's darkness: paler are what shines through a sheet and a JPEG's rims; by trial
+LEAST = 0.15
 RIM_PX, SPOTS = (
     3,
     3.0,

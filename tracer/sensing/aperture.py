@@ -28,9 +28,8 @@ from morfax.tracer.drawing import tiles as sheet
 SIDE_PX, SHIFT, WITHIN = 16, 4, 15
 ROOM = 4096  # made tiles that are kept, 5 MB: 2 m of a line at 600 dpi
 PAPER, NOT_MADE = -2, -1
-SPREADS = (
-    4.0  # standard deviations of the spot that are looked at to either side: as OpenCV does
-)
+# standard deviations of the spot that are looked at to either side: as OpenCV does
+SPREADS = 4.0
 
 
 class MadeTiles(NamedTuple):

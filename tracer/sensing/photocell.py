@@ -38,9 +38,8 @@ LEVEL = 0.5  # an edge is at this share of the line's darkness
 STEP_PX = 0.35  # how finely cells look along a ray and round a ring: three steps to a pixel
 HALO_SPREADS = 5.0  # standard deviations of a spot that OpenCV looks at, and one more
 FAINT = 0.1  # darkness: what is lighter is paper and its noise
-ABOUT_MM = (
-    4.0  # from what is drawn: no cell that is held against a level looks further; by trial
-)
+# from what is drawn: no cell that is held against a level looks further; by trial
+ABOUT_MM = 4.0
 TILE_BLOCKS = 16  # blocks of a sheet to the side of a tile that is seen behind a spot at a time
 MOSTLY = 0.6  # of the tiles: the whole sheet at once takes less
 LEAST_SPREAD_PX = 0.2  # a smaller aperture changes no pixel by more than a scanner's noise

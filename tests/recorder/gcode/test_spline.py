@@ -12,9 +12,8 @@ from morfax.recorder.gcode.pieces import longest_pieces, resample
 from morfax.recorder.gcode.spline import Spline, rows_of
 
 TOLERANCE_MM = 0.01
-BY_DIFFERENCES = (
-    1e-5  # of the largest slope: what differences over 1e-7 mm leave in double precision
-)
+# of the largest slope: what differences over 1e-7 mm leave in double precision
+BY_DIFFERENCES = 1e-5
 
 
 def _wavy(closed: bool) -> Spline:
