@@ -88,7 +88,7 @@ def test_the_lookout_shows_the_way_of_a_head_that_is_taken_up() -> None:
     lookout.set_pace(0.01)  # at which these positions would be waited for
     began = time.monotonic()
     lookout.taken_up(TakenUp())  # type: ignore[arg-type]
-    assert time.monotonic() - began < 1.0
+    assert time.monotonic() - began < 30.0  # s; at this pace the way would take 100
     assert len(lookout._fresh) == pytest.approx(10 / STEP_MM, abs=2)
 
 
