@@ -71,7 +71,7 @@ def _of_areas(ink: Balance) -> Iterator[str]:
         (x, y), largest_mm2 = solids[0].place_mm, solids[0].area_mm2
         yield (
             f"{are} broader than a line, and left out ({large_mm2:.0f} mm2; the largest, "
-            f"{largest_mm2:.1f} mm2, at {x:.1f},{y:.1f} mm): --edge follows the outlines of filled shapes"
+            f"{largest_mm2:.1f} mm2, at {x:.1f},{y:.1f} mm): --lines all --edge goes round their outlines"
         )
     if ink.letters_mm > 0:
         yield (

@@ -45,6 +45,7 @@ class DrawingFile:
     width_mm: float | None = None
     ink: str | None = None
     edge: bool = False
+    both: bool = False  # of filled shapes among lines the edges, and of the lines their middle
     paper: PaperKind = "auto"  # printed lines of squared or ruled paper are left out
     page: int | None = None  # of a file of several; None: the first, and it is said
     known: Known | None = None  # two places and their distance, instead of dpi or width
@@ -57,16 +58,24 @@ class DrawingFile:
         """
         from morfax.tracer.drawing import inks
         from morfax.tracer.drawing.drawing import Drawing
+        from morfax.tracer.drawing.shapes_among_lines import drawing_of_both
 
         self.check()
         ink = None if self.ink is None else inks.parsed(self.ink)
         scan, made = self._scanned(listener)
         with listener.progress(MEASURED, 1.0):
-            drawing = Drawing.of(scan, self.scale(), ink, self.edge, self.paper)
+            if self.both:
+                drawing = drawing_of_both(scan, self.scale(), ink)
+            else:
+                drawing = Drawing.of(scan, self.scale(), ink, self.edge, self.paper)
         drawing = replace(drawing, flattening=made)
         for note in drawing.notes:
             listener.note(note)
         return self._corrected(drawing, scan, listener)
+
+    def for_lines(self, line: LineSettings) -> DrawingFile:
+        """The same, read for both edges and lines where edges and all the ink are asked for."""
+        return replace(self, both=self.edge and line.lines == "all")
 
     def check(self) -> None:
         """Raise WrongUse for options that do not go together, before the file is read."""

@@ -76,7 +76,7 @@ class TraceJob:
     def run(self, listener: Listener = SILENT, panel: Panel | None = None) -> TraceResult:
         """Trace and write; raises WrongUse and every fault but that of a line that was lost on its way."""
         outputs, tracing = self.prepared(panel)
-        drawing = self.drawing.open(listener)
+        drawing = self.drawing.for_lines(tracing.settings.line).open(listener)
         size = f"{drawing.width_mm:.2f} x {drawing.height_mm:.2f} mm"
         listener.detail(f"{self.drawing.file}: sheet of {size}")
         if outputs.program is not None:

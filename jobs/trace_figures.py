@@ -17,7 +17,8 @@ def lines(trace: Trace, *, on_edges: bool = False) -> dict[str, Any]:
             "line": line.number,
             "ending": line.ending,
             "length_mm": line.length_mm,
-            **({} if on_edges else {"line_width_mm": line.width_mm}),
+            **({} if on_edges or line.on_edge else {"line_width_mm": line.width_mm}),
+            **({"outline": True} if line.on_edge else {}),
             "start_place_mm": line.start_mm,
             "cell_share": line.cell_share,
         }
@@ -48,6 +49,12 @@ def ink(trace: Trace) -> dict[str, Any]:
         "solid_areas": [
             {"solid_place_mm": area.place_mm, "solid_mm2": area.area_mm2}
             for area in balance.solids
+        ]
+        or None,
+        "outlined_areas": [
+            {"outlined_place_mm": area.place_mm, "outlined_mm2": area.area_mm2}
+            for area in balance.areas
+            if area.what == "outlined area"
         ]
         or None,
         "hatching": [

@@ -88,7 +88,7 @@ class Tracing:
         for text in (*of_contouring(beside, contouring), *of_tabs(beside)):
             listener.warning(text)
         several = self.settings.line.are_several
-        on_edges = bool(drawing.edges_mm)
+        on_edges = bool(drawing.edges_mm) or (drawing.both and followed.ink is None)
         return Traced(beside, thin(beside), several, zero, cutter, left, led, on_edges)
 
     def _remarks(self, drawing: Drawing, followed: Trace, led: WhoLed | None) -> Iterator[str]:
@@ -98,6 +98,8 @@ class Tracing:
             lines = None if is_all else followed.lines
             yield from correction_settings.not_served(drawing.corrected, lines)
         times = max((drawing.times_at(line.xy_mm[0]) for line in followed.lines), default=1)
+        times = max(times, followed.enlarged)
+        yield from followed.notes
         yield from remarks(followed, self.settings, self.of_head.gap_mm, times)
         yield from of_order(followed, self.settings.line.order)
         if led is not None:
@@ -170,6 +172,7 @@ class Tracing:
         """The line that the head followed, or the lines."""
         from morfax.tracer.program.trace import trace
         from morfax.tracer.program.trace_ink import trace_ink
+        from morfax.tracer.program.trace_ink_and_edges import trace_ink_and_edges
         from morfax.tracer.program.trace_lines import trace_lines, trace_places
 
         line = self.settings.line
@@ -189,7 +192,8 @@ class Tracing:
             if drawing.edges_mm:  # of filled shapes: every edge is a contour
                 return trace_lines(drawing, "contours", self.of_head, self.operator, tell)
             # crosses and ticks are lines then: no turns and no stops
-            return trace_ink(
+            follow = trace_ink_and_edges if drawing.both else trace_ink
+            return follow(
                 replace(drawing, corrected=None),
                 self.of_head,
                 self.operator,

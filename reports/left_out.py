@@ -18,7 +18,7 @@ def draw(axes: Axes, areas: Sequence[Area]) -> None:
     from matplotlib.patches import Rectangle
 
     named = set[str]()
-    for area in areas:
+    for area in (area for area in areas if area.what in COLOURS):
         left, bottom, right, top = area.box_mm
         box = Rectangle(
             (left, bottom),

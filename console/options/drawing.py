@@ -97,7 +97,7 @@ _DRAWING = (
         "Drawing",
         "--edge",
         is_flag=True,
-        help="Filled shapes: the head follows their edges.",
+        help="Filled shapes: the head follows their edges; with `--lines all` lines keep to their middle.",
     ),
     option(
         "Drawing",

@@ -5,12 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import pytest
+from PIL import Image
 
 from morfax.motion.contour import distance
 from morfax.motion.pathfile import read_path
 from tests.console.conftest import SAMPLES, Morfax
 from tests.tracer.drawing.test_shapes import CIRCLE, STEPPED, filled
-from tests.tracer.inked import UM, arc, polyline
+from tests.tracer.inked import UM, arc, inked, polyline
 
 
 def test_the_edge_is_traced_and_compared(morfax: Morfax, here: Path) -> None:
@@ -73,3 +75,21 @@ def test_a_filled_shape_without_edge_is_told(morfax: Morfax, here: Path) -> None
     assert "--edge" not in morfax("trace", SAMPLES / "bracket.png", "-o", "bracket.csv").err
     refused = morfax("trace", filled(here / "disc.png", CIRCLE), "-o", "disc.csv")
     assert refused.exit_code == 4 and "--edge" in refused.err
+
+
+def test_solid_areas_among_lines_are_outlined_in_the_same_run(
+    morfax: Morfax, here: Path
+) -> None:
+    sheet = here / "plan.png"
+    frame = polyline((6, 6), (36, 6), (36, 36), (6, 36), (6, 6))
+    wall = polyline((6, 46), (40, 46), (40, 49), (6, 49), (6, 46))
+    ink = inked(frame, polyline((20, 36), (20, 47)), specks=(wall,), seed=1).darkness
+    grey = np.clip(np.round(235 - 195 * ink), 0, 255).astype(np.uint8)
+    Image.fromarray(grey).save(sheet, dpi=(300, 300))
+    answer = morfax("trace", sheet, "--lines", "all", "--edge", "-o", "plan.csv", "--json")
+    assert answer.exit_code == 0 and "left out" not in answer.err
+    (area,) = answer.figures["outlined_areas"]
+    assert area["outlined_mm2"] == pytest.approx(34 * 3, rel=0.06)
+    outlines = [row for row in answer.figures["lines"] if row.get("outline")]
+    assert len(outlines) == 1 and "line_width_mm" not in outlines[0]
+    assert all("line_width_mm" in row for row in answer.figures["lines"] if row not in outlines)

@@ -74,7 +74,7 @@ class Drawing:
     shapes are, on the picture reduced by a whole number. `notes` on the file are for the operator;
     `flattening` is how well a photograph was made flat; `corrected` what the operator has put right, and
     `bare` the drawing before its ink was put right. The pixels of a coarse scan are made so many times
-    `finer`.
+    `finer`. Of `both` solid areas are as dark as lines (see `shapes_among_lines`).
     """
 
     darkness: Darkness  # of a large sheet Tiles, which hand out the same
@@ -89,6 +89,7 @@ class Drawing:
     corrected: OnSheet | None = None
     bare: Drawing | None = None
     finer: int = 1
+    both: bool = False
 
     def times_at(self, place_mm: NDArray[np.float64]) -> int:
         """How many times enlarged the head follows the edge nearest to a place; 1 on a drawing of lines.
@@ -192,12 +193,7 @@ class Drawing:
         if ink is not None:
             colours = np.asarray(scan.pixels, np.uint8)
             grey = inks.covered(colours, ink, None if edge else pitch[0])
-        if abs(pitch[0] / pitch[1] - 1) > OBLONG:
-            size = grey.shape[1], round(grey.shape[0] * pitch[1] / pitch[0])
-            square = cv2.resize(
-                np.asarray(grey, np.float32), size, interpolation=cv2.INTER_LINEAR
-            )
-            grey = np.asarray(square, np.float32)
+        grey = on_square_pixels(grey, pitch)
         # 2. darkness
         notes = (*scan.notes, *scale.notes(scan))
         if edge:
@@ -218,7 +214,7 @@ class Drawing:
         notes = notes if note is None else (*notes, note)
         edges = without_border(darkness)
         if edges:
-            notes = (*notes, _border_note(edges))
+            notes = (*notes, border_note(edges))
         # 3. grain, and too large pixels
         in_lines, width_px = grain_within(darkness)
         slit = grain.slit_for(in_lines, width_px, pitch[0])
@@ -233,6 +229,16 @@ class Drawing:
         )
 
 
+def on_square_pixels(grey: Grey, pitch_mm: tuple[float, float]) -> Grey:
+    """A picture whose pixels have a pitch across and down, on pixels of the pitch across."""
+    across_mm, down_mm = pitch_mm
+    if abs(across_mm / down_mm - 1) <= OBLONG:
+        return grey
+    size = grey.shape[1], round(grey.shape[0] * down_mm / across_mm)
+    square = cv2.resize(np.asarray(grey, np.float32), size, interpolation=cv2.INTER_LINEAR)
+    return np.asarray(square, np.float32)
+
+
 def levelled(grey: Grey, pitch_mm: float) -> tuple[Darkness, Shapes]:
     """Darkness of a grey picture (0..255): paper levelled to 0, the strokes' contrast 1; and filled shapes.
 
@@ -244,7 +250,7 @@ def levelled(grey: Grey, pitch_mm: float) -> tuple[Darkness, Shapes]:
     return contrast.darkness(ink), contrast.paper.shapes(ink)
 
 
-def _border_note(edges: tuple[str, ...]) -> str:
+def border_note(edges: tuple[str, ...]) -> str:
     """What the operator should know of a border that was left out."""
     which = f"{', '.join(edges)} edge" + ("s" if len(edges) > 1 else "")
     return (

@@ -95,6 +95,12 @@ def outlined(grey: NDArray[Any], pitch_mm: float) -> Outlined:
     return Outlined(darkness, shade, times, edges_mm, notes)
 
 
+def shade_of(grey: NDArray[Any], pitch_mm: float) -> Grey:
+    """How much of each pixel is the darker of paper and shape; raises DrawingFault without any contrast."""
+    soft = np.asarray(cv2.GaussianBlur(grey.astype(np.float32), (0, 0), SOFT_PX), np.float32)
+    return _share(grey, *_levels(soft, pitch_mm))
+
+
 def _edges(share: Grey, pitch_mm: float) -> tuple[list[Edge], float, tuple[str, ...]]:
     """The edges of whole shapes with their corners, the lens's softness (pixels), and notes on others."""
     from skimage.measure import find_contours

@@ -55,7 +55,7 @@ class Solids(NamedTuple):
             cv2.distanceTransform(ink, cv2.DIST_L2, cv2.DIST_MASK_PRECISE), np.float32
         )
         none = cls(np.zeros_like(ink))
-        usual_px = _usual_px(depth)
+        usual_px = usual_width_px(depth)
         reach_px = 0.5 * max(BROAD * usual_px + BROAD_PX, LEAST_PX)
         cores = (depth > reach_px).view(np.uint8)
         if not cores.any():
@@ -77,7 +77,7 @@ class Solids(NamedTuple):
         return cls(solid, _each(solid))
 
 
-def _usual_px(depth: NDArray[np.float32]) -> float:
+def usual_width_px(depth: NDArray[np.float32]) -> float:
     """The usual width of the lines of some ink by its depth, pixels."""
     ridge = (depth > 0) & (depth >= cv2.dilate(depth, np.ones((3, 3), np.uint8)) - RIDGE_PX)
     return max(FINEST_PX, 2 * float(np.median(depth[ridge])) - 1) if ridge.any() else FINEST_PX

@@ -77,6 +77,7 @@ class Line:
     led: Led = field(default_factory=Led)  # who led the head along it
     served: frozenset[int] = frozenset()  # numbers of the corrections that it went by
     leads: Leads | None = None  # that a cut was given; those drawn on paper are `loop_from`
+    on_edge: bool = False  # round a solid area among lines; its width is no line's
     as_told: bool = False  # the operator's arrow says where it begins, and which way it goes
 
     @classmethod

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import cv2
 import numpy as np
 
 from morfax.motion.arrays import Array
@@ -80,13 +81,15 @@ def balance(sheet: Sheet, graph: Graph, left: InkLeft, ways: list[Array]) -> Bal
     # 1. which of the thinned pixels are a way's
     places = graph.places_mm(sheet.drawing)
     patch = _patches_at(sheet, graph.rows, graph.columns)
-    near_mm = BESIDE_WIDTHS * np.maximum(sheet.widths_mm[patch], _usual_mm(sheet))
+    usual_mm = _usual_mm(sheet, left)
+    wide_mm = np.where(left.solid_px > 0, usual_mm, np.maximum(sheet.widths_mm, usual_mm))
+    near_mm = BESIDE_WIDTHS * wide_mm[patch]
     run = np.vstack([evenly(way[::THINNED], EVERY_MM) for way in ways])
     is_near = cKDTree(run).query(places)[0] < near_mm
     # 2. by patches
     pixels = np.maximum(np.bincount(patch, minlength=sheet.patches.count), 1)
     shares = np.bincount(patch, is_near, sheet.patches.count) / pixels
-    lengths_mm, solid = _line_lengths_mm(sheet, left), sheet.are_solid
+    lengths_mm, solid = _line_lengths_mm(sheet, left, usual_mm), sheet.are_solid
     are_small = lengths_mm < np.maximum(SPECK_MM, DOT_WIDTHS * sheet.widths_mm)
     specks = ~solid & ~left.letters & (shares == 0) & are_small
     lines = ~solid & ~left.letters & ~specks
@@ -104,17 +107,23 @@ def balance(sheet: Sheet, graph: Graph, left: InkLeft, ways: list[Array]) -> Bal
     )
 
 
-def _line_lengths_mm(sheet: Sheet, left: InkLeft) -> Array:
+def _line_lengths_mm(sheet: Sheet, left: InkLeft, usual_mm: float) -> Array:
     """Lengths of the patches as lines, mm: without their solid areas."""
     has_solids = left.solid_px > 0
     if not has_solids.any():
         return sheet.lengths_mm
     ink_mm2 = (sheet.patches.areas - left.solid_px) * sheet.drawing.pitch_mm**2
-    return np.where(has_solids, ink_mm2 / _usual_mm(sheet), sheet.lengths_mm)
+    return np.where(has_solids, ink_mm2 / usual_mm, sheet.lengths_mm)
 
 
-def _usual_mm(sheet: Sheet) -> float:
-    """The usual width of a sheet's lines, mm."""
+def _usual_mm(sheet: Sheet, left: InkLeft) -> float:
+    """The usual width of a sheet's lines, mm; that of a patch is no line's where solid areas are joined to it."""
+    if left.solid_px.any() and left.ink.any():
+        depth = cv2.distanceTransform(left.ink, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+        wide_px = (
+            4 * float(depth[left.ink > 0].mean()) - 2
+        )  # as of a patch, see `drawing.strokes`
+        return max(wide_px, 1.0) * sheet.drawing.pitch_mm
     weights = np.where(sheet.are_solid, TINY, sheet.lengths_mm)
     return float(np.average(sheet.widths_mm, weights=weights))
 

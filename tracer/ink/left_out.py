@@ -38,9 +38,9 @@ Box = tuple[float, float, float, float]  # left, bottom, right, top, mm
 
 
 class Area(NamedTuple):
-    """Ink that is left out: what it is, how large it is (mm²), and the box about it."""
+    """Ink that no stroke runs along: what it is, how large it is (mm²), and the box about it."""
 
-    what: Literal["solid area", "letter"]
+    what: Literal["solid area", "letter", "outlined area"]
     area_mm2: float
     box_mm: Box
 
@@ -55,7 +55,7 @@ class InkLeft(NamedTuple):
     """The ink of a sheet's lines, the drawing without its solid areas, and what was left out.
 
     Which patches are lettering, which of them are left out, the pixels of each patch that are solid areas,
-    and these.
+    these, and where they are.
     """
 
     ink: Mask
@@ -64,6 +64,7 @@ class InkLeft(NamedTuple):
     letters: NDArray[np.bool_]
     solid_px: NDArray[np.float64]
     areas: tuple[Area, ...]
+    solid: Mask
 
 
 def ink_left(sheet: Sheet, letters_from_mm: float = FOLLOWED_MM) -> InkLeft:
@@ -95,7 +96,7 @@ def ink_left(sheet: Sheet, letters_from_mm: float = FOLLOWED_MM) -> InkLeft:
     for patch in np.flatnonzero(letters):
         box_mm = _box_mm(patches.boxes[patch].tolist(), rows, pitch_mm)
         areas.append(Area("letter", float(patches.areas[patch]) * pitch_mm**2, box_mm))
-    return InkLeft(ink, drawing, is_lettering, letters, solid_px, tuple(areas))
+    return InkLeft(ink, drawing, is_lettering, letters, solid_px, tuple(areas), solids.mask)
 
 
 def _ink(drawing: Drawing) -> Mask:

@@ -16,11 +16,12 @@ import numpy as np
 from morfax.motion.faults import LineFault
 from morfax.motion.polyline import length_mm
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.chains import Junctions, solved
 from morfax.tracer.ink.ledger import balance
-from morfax.tracer.ink.left_out import FOLLOWED_MM, ink_left
+from morfax.tracer.ink.left_out import FOLLOWED_MM, InkLeft, ink_left
 from morfax.tracer.ink.stretches import FeltSheet
 from morfax.tracer.ink.track import InkStroke, stroke_along
 from morfax.tracer.operator.operator import Operator
@@ -41,10 +42,19 @@ def trace_ink(
     `progress` hears how far the head has come and the length of all the ink, mm. Raises LineFault if the head
     can be put down nowhere.
     """
-    settings = settings or Settings()
+    left = ink_left(drawing.sheet, letters_from_mm)
+    return trace_left(drawing.sheet, left, settings or Settings(), operator, progress)
+
+
+def trace_left(
+    sheet: Sheet,
+    left: InkLeft,
+    settings: Settings,
+    operator: Operator | None,
+    progress: HeadProgress | None,
+) -> Trace:
+    """Follow every stretch of the ink of a sheet that is left for strokes; raises LineFault as `trace_ink`."""
     # 1. the lines and their junctions, and the head along each
-    sheet = drawing.sheet
-    left = ink_left(sheet, letters_from_mm)
     felt = FeltSheet.of(left.drawing, settings, left.ink)
     junctions = solved(felt)
     strokes = list(_strokes(junctions, settings, progress))

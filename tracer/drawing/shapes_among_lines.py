@@ -1,0 +1,94 @@
+"""Shapes among lines: a scan read for both, its lines and the edges of its solid areas.
+
+Signals: grey levels in; out a drawing of lines on which solid areas are as dark as lines, whether that has
+lines at all, and a drawing of edges: those of its solid areas, or of all.
+
+    ━━━━━━━━━▶      the line is followed along its middle, and ends at the arrowhead; the arrowhead is cut
+                    off from it, and has an outline of its own
+
+Ink is a drawing of lines if most of its middle line lies in ink that is about as wide as is usual, and no
+broader than pens draw. All other drawings are silhouettes: their thin parts belong to the shapes.
+
+Source: our own. Questions: with the edges of all that is on a sheet, lines would be shapes too, and be gone
+round on both sides.
+"""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+
+from morfax.tracer.drawing.border import without_border
+from morfax.tracer.drawing.components import Mask
+from morfax.tracer.drawing.drawing import Darkness, Drawing, border_note, on_square_pixels
+from morfax.tracer.drawing.inks import Colour, covered
+from morfax.tracer.drawing.scale import Scale
+from morfax.tracer.drawing.scan import Scan
+from morfax.tracer.drawing.shapes import SOFT_PX, outlined, shade_of
+from morfax.tracer.drawing.solids import FINEST_PX, usual_width_px
+
+BLACK = 255.0  # grey levels between paper and shape
+BROADEST_MM = 2.0  # of a line: the broadest of ISO 128-2
+ALIKE = 0.4  # share of the usual width by which a pen's lines differ; by trial
+MOST = 0.6  # of the middle line, which is in lines; by trial
+INK = 0.5
+RIM_PX = 4  # a soft edge is no broader: as far as a solid area's own paper goes; by trial
+
+
+def drawing_of_both(scan: Scan, scale: Scale, ink: Colour | None = None) -> Drawing:
+    """Read a scan for its lines and its solid areas; raises DrawingFault for a missing scale, and without
+    anything that is darker than paper.
+    """
+    pitch_mm, pitch_down_mm = scale.pitches_mm(scan)
+    grey = np.asarray(scan.pixels)
+    if ink is not None:
+        grey = np.asarray(covered(np.asarray(scan.pixels, np.uint8), ink, None))
+    grey = on_square_pixels(grey, (pitch_mm, pitch_down_mm))
+    darkness = shade_of(grey, pitch_mm)
+    notes = (*scan.notes, *scale.notes(scan))
+    edges = without_border(darkness)
+    if edges:
+        notes = (*notes, border_note(edges))
+    return Drawing(darkness, pitch_mm, scan.file, notes=notes, both=True)
+
+
+def has_lines(drawing: Drawing) -> bool:
+    """Whether a drawing of lines is one, and no sheet of silhouettes."""
+    ink = (drawing.darkness > INK).view(np.uint8)
+    depth = np.asarray(
+        cv2.distanceTransform(ink, cv2.DIST_L2, cv2.DIST_MASK_PRECISE), np.float32
+    )
+    usual_px = usual_width_px(depth)
+    if usual_px * drawing.pitch_mm > BROADEST_MM:
+        return False
+    ridge = (depth > 0) & (depth >= cv2.dilate(depth, np.ones((3, 3), np.uint8)))
+    widths_px = np.maximum(2 * depth[ridge] - 1, FINEST_PX)
+    return bool(np.mean(np.abs(widths_px - usual_px) < ALIKE * usual_px + 1) > MOST)
+
+
+def edges_of(drawing: Drawing, solid: Mask | None = None) -> Drawing:
+    """The edges of the solid areas of a drawing of lines, or of all; raises DrawingFault if what is there is
+    too small for --edge.
+    """
+    share = drawing.darkness if solid is None else _only(drawing.darkness, solid)
+    rims = outlined(np.asarray(BLACK * (1 - share), np.float32), drawing.pitch_mm)
+    pitch_mm = drawing.pitch_mm / rims.finer
+    return Drawing(
+        rims.darkness,
+        pitch_mm,
+        drawing.file,
+        rims.finer,
+        rims.edges_mm,
+        rims.shade,
+        notes=rims.notes,
+    )
+
+
+def _only(darkness: Darkness, solid: Mask) -> Darkness:
+    """The darkness of solid areas with their soft rims, and without the lines that end at them."""
+    reach = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * RIM_PX + 1,) * 2)
+    about = np.asarray(cv2.dilate(solid, reach), np.uint8)
+    lines = (darkness > INK).view(np.uint8) & about & (1 - solid)
+    lines = np.asarray(cv2.dilate(lines, np.ones((3, 3), np.uint8)), np.uint8)
+    kept = (about & (1 - lines)) | solid
+    return np.asarray(cv2.GaussianBlur(kept.astype(np.float32), (0, 0), SOFT_PX) * darkness)
