@@ -117,12 +117,11 @@ def _line_lengths_mm(sheet: Sheet, left: InkLeft, usual_mm: float) -> Array:
 
 
 def _usual_mm(sheet: Sheet, left: InkLeft) -> float:
-    """The usual width of a sheet's lines, mm; that of a patch is no line's where solid areas are joined to it."""
+    """The usual width of a sheet's lines, mm; a patch with a solid area is broader than its lines."""
     if left.solid_px.any() and left.ink.any():
         depth = cv2.distanceTransform(left.ink, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
-        wide_px = (
-            4 * float(depth[left.ink > 0].mean()) - 2
-        )  # as of a patch, see `drawing.strokes`
+        # as of a patch, see `drawing.strokes`
+        wide_px = 4 * float(depth[left.ink > 0].mean()) - 2
         return max(wide_px, 1.0) * sheet.drawing.pitch_mm
     weights = np.where(sheet.are_solid, TINY, sheet.lengths_mm)
     return float(np.average(sheet.widths_mm, weights=weights))

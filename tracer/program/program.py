@@ -44,8 +44,8 @@ class Trace:
     `left_out` patches of ink were too short to be lines; `left_out_mm` of ink is joined to lines, but none.
     `others`: further lines of a sheet whose longest line was asked for. `ink`: how much of the ink of a sheet
     the strokes run along, where all of it was asked for. `unread`: ticks and dots that were taken for ink.
-    `unexplained`: places at which closed lines are not what is drawn. `enlarged`: how many times, at most, the
-    outlines of solid areas among lines; `notes` on these are for the operator.
+    `unexplained`: places at which closed lines are not what is drawn. `enlarged`: how many times at most
+    the outlines of solid areas among lines were; `notes` on these are for the operator.
     """
 
     lines: tuple[Line, ...]

@@ -53,7 +53,7 @@ def trace_left(
     operator: Operator | None,
     progress: HeadProgress | None,
 ) -> Trace:
-    """Follow every stretch of the ink of a sheet that is left for strokes; raises LineFault as `trace_ink`."""
+    """Follow every stretch of the ink that is left for strokes; raises LineFault as `trace_ink` does."""
     # 1. the lines and their junctions, and the head along each
     felt = FeltSheet.of(left.drawing, settings, left.ink)
     junctions = solved(felt)
