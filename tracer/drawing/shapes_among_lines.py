@@ -40,9 +40,9 @@ def drawing_of_both(scan: Scan, scale: Scale, ink: Colour | None = None) -> Draw
     anything that is darker than paper.
     """
     pitch_mm, pitch_down_mm = scale.pitches_mm(scan)
-    grey = np.asarray(scan.pixels)
+    grey = scan.pixels
     if ink is not None:
-        grey = np.asarray(covered(np.asarray(scan.pixels, np.uint8), ink, None))
+        grey = covered(np.asarray(scan.pixels, np.uint8), ink, None)
     grey = on_square_pixels(grey, (pitch_mm, pitch_down_mm))
     darkness = shade_of(grey, pitch_mm)
     notes = (*scan.notes, *scale.notes(scan))
