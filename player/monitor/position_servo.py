@@ -183,31 +183,15 @@ def _go(end, way, acceleration, common, conditions, state, registers, seen, told
     wanted = np.empty(axes)
     for row in range(len(told_mm)):
         # 1. the transducers, and the signals that they give for each increment
-        moved, left = 0, 0
-        for axis in range(axes):
-            now = round(state[axis, POSITION] / increment_mm)
-            moved += abs(now - seen[axis])
-            seen[axis] = now
-            left += abs(end[axis] - now)
+        moved, left = _look(end, state, increment_mm, seen)
         # 2. the counter, and the mode that it sets
-        if mode == UP:
-            counter, risen = counter + 2 * moved, risen + moved
-        elif mode == CONSTANT:
-            counter += moved
-        else:
-            risen -= moved
-        if mode != DOWN and counter >= 0:
-            mode, risen = DOWN, risen - counter
+        counter, risen, mode = _count(counter, risen, mode, moved)
         is_straight = way.sense == 0 or (mode == DOWN and risen <= STRAIGHT_INCREMENTS)
         if mode == DOWN and is_straight and left == 0:
             registers[COUNTER], registers[RISEN], registers[MODE] = counter, risen, ARRIVED
             return row
         # 3. the speed of the mode, and which way it points
-        least = CREEP_INCREMENTS if mode == DOWN else 1.0
-        speed = np.sqrt(2 * acceleration * way.increment_path_mm * max(float(risen), least))
-        if mode == UP and speed >= way.feed_mm_s:
-            mode = CONSTANT
-        speed = way.feed_mm_s if mode == CONSTANT else min(speed, way.feed_mm_s)
+        speed, mode = _speed(way, acceleration, risen, mode)
         _point(end, seen, way, is_straight, speed, gain_per_s, increment_mm, wanted)
         # 4. the servo units
         for axis in range(axes):
@@ -220,6 +204,44 @@ def _go(end, way, acceleration, common, conditions, state, registers, seen, told
             state[axis, POSITION] += state[axis, MOVING] * dt_s
     registers[COUNTER], registers[RISEN], registers[MODE] = counter, risen, mode
     return len(told_mm)
+
+
+@njit(cache=True, inline="always")
+def _look(end, state, increment_mm, seen):  # type: ignore[no-untyped-def]
+    """Have the transducers look: increments that all axes moved, and those that are left to the end."""
+    moved, left = 0, 0
+    for axis in range(len(end)):
+        now = round(state[axis, POSITION] / increment_mm)
+        moved += abs(now - seen[axis])
+        seen[axis] = now
+        left += abs(end[axis] - now)
+    return moved, left
+
+
+@njit(cache=True, inline="always")
+def _count(counter, risen, mode, moved):  # type: ignore[no-untyped-def]
+    """Count increments by the rule of the mode; the counter, how far the speed has risen, mode."""
+    if mode == UP:
+        counter, risen = counter + 2 * moved, risen + moved
+    elif mode == CONSTANT:
+        counter += moved
+    else:
+        risen -= moved
+    if mode != DOWN and counter >= 0:
+        mode, risen = DOWN, risen - counter
+    return counter, risen, mode
+
+
+@njit(cache=True, inline="always")
+def _speed(way, acceleration, risen, mode):  # type: ignore[no-untyped-def]
+    """The speed that an even acceleration reaches over the increments risen, mm/s, and the mode: at the feed
+    it is constant.
+    """
+    least = CREEP_INCREMENTS if mode == DOWN else 1.0
+    speed = np.sqrt(2 * acceleration * way.increment_path_mm * max(float(risen), least))
+    if mode == UP and speed >= way.feed_mm_s:
+        mode = CONSTANT
+    return way.feed_mm_s if mode == CONSTANT else min(speed, way.feed_mm_s), mode
 
 
 @njit(cache=True, inline="always")

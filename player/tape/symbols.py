@@ -94,9 +94,34 @@ def _read(  # type: ignore[no-untyped-def]
     points, theta, begins, word, bits, strengths, sizes, shares, late, turns, swings, errors
 ):
     """Read one frame of all tracks, whose symbols are 24 cycles of theta apart; see `Gates`."""
-    tracks, symbols = bits.shape
+    gates = _gates(points, theta, begins, bits.shape[1])
+    part = bits.shape[1] // turns.shape[1]
+    for track in range(len(bits)):
+        # 1. the sync word tells the phase, and so the sign of each symbol
+        seen = gates[track]
+        alike = 0j
+        for symbol in range(len(word)):
+            alike += seen[1, symbol] * word[symbol]
+        _signs(seen, alike, bits[track], strengths[track], sizes[track])
+        _share(seen, alike, bits[track], shares[track])
+        # 2. with the signs known: how late, by a parabola through three gates; and the phase, part by part
+        late[track] = _lateness(seen, bits[track])
+        for number in range(turns.shape[1]):
+            whole = 0j
+            for symbol in range(number * part, (number + 1) * part):
+                whole += seen[1, symbol] * bits[track, symbol]
+            turns[track, number] = math.atan2(whole.imag, whole.real) / (2 * math.pi)
+        # 3. noise moves a symbol along and across alike; what is across beyond that is a swing of the phase
+        across, noise = _across(seen[1], bits[track], turns[track], part)
+        swings[track] = math.sqrt(max(across - noise, 0.0)) / (2 * math.pi)
+        errors[track] = math.sqrt(across / part) / (2 * math.pi)
+
+
+@njit(cache=True, nogil=True)
+def _gates(points, theta, begins, symbols):  # type: ignore[no-untyped-def]
+    """Early, on and late of each symbol of all tracks, between the two points beside it."""
+    tracks = len(points)
     gates = np.empty((tracks, GATES, symbols), np.complex128)
-    # 1. early, on and late of each symbol, between the two points beside it
     for gate in range(GATES):
         at = 0
         for symbol in range(symbols):
@@ -108,38 +133,32 @@ def _read(  # type: ignore[no-untyped-def]
             for track in range(tracks):
                 before, after = points[track, at], points[track, at + 1]
                 gates[track, gate, symbol] = before + share * (after - before)
-    part = symbols // turns.shape[1]
-    for track in range(tracks):
-        # 2. the sync word tells the phase, and so the sign of each symbol
-        alike = 0j
-        for symbol in range(len(word)):
-            alike += gates[track, 1, symbol] * word[symbol]
-        for symbol in range(symbols):
-            seen = gates[track, 1, symbol]
-            along = seen.real * alike.real + seen.imag * alike.imag
-            bits[track, symbol] = 1 if along >= 0 else -1
-            strengths[track, symbol] = abs(along)
-            ahead, behind = _power(gates[track, 0, symbol]), _power(gates[track, 2, symbol])
-            sizes[track, symbol] = math.sqrt(max(ahead, _power(seen), behind))
-        _share(gates[track], alike, bits[track], shares[track])
-        # 3. with the signs known: how late, by a parabola through three gates; and the phase, part by part
-        sums = np.zeros(GATES)
-        for gate in range(GATES):
-            whole = 0j
-            for symbol in range(symbols):
-                whole += gates[track, gate, symbol] * bits[track, symbol]
-            sums[gate] = abs(whole)
-        bend = 2 * sums[1] - sums[0] - sums[2]
-        late[track] = QUARTER * (sums[2] - sums[0]) / (2 * bend) if bend > 0 else 0.0
-        for number in range(turns.shape[1]):
-            whole = 0j
-            for symbol in range(number * part, (number + 1) * part):
-                whole += gates[track, 1, symbol] * bits[track, symbol]
-            turns[track, number] = math.atan2(whole.imag, whole.real) / (2 * math.pi)
-        # 4. noise moves a symbol along and across alike; what is across beyond that is a swing of the phase
-        across, noise = _across(gates[track, 1], bits[track], turns[track], part)
-        swings[track] = math.sqrt(max(across - noise, 0.0)) / (2 * math.pi)
-        errors[track] = math.sqrt(across / part) / (2 * math.pi)
+    return gates
+
+
+@njit(cache=True, nogil=True)
+def _signs(gates, alike, bits, strengths, sizes):  # type: ignore[no-untyped-def]
+    """The sign of each symbol of a track along `alike`, how strong it is there, and its largest size."""
+    for symbol in range(len(bits)):
+        seen = gates[1, symbol]
+        along = seen.real * alike.real + seen.imag * alike.imag
+        bits[symbol] = 1 if along >= 0 else -1
+        strengths[symbol] = abs(along)
+        ahead, behind = _power(gates[0, symbol]), _power(gates[2, symbol])
+        sizes[symbol] = math.sqrt(max(ahead, _power(seen), behind))
+
+
+@njit(cache=True, nogil=True)
+def _lateness(gates, bits):  # type: ignore[no-untyped-def]
+    """How late a track is, by a parabola through the strengths of its three gates."""
+    sums = np.zeros(GATES)
+    for gate in range(GATES):
+        whole = 0j
+        for symbol in range(len(bits)):
+            whole += gates[gate, symbol] * bits[symbol]
+        sums[gate] = abs(whole)
+    bend = 2 * sums[1] - sums[0] - sums[2]
+    return QUARTER * (sums[2] - sums[0]) / (2 * bend) if bend > 0 else 0.0
 
 
 @njit(cache=True, nogil=True)

@@ -115,14 +115,11 @@ def _sheet(file: FilePath, root: ElementTree.Element, unit: str | None) -> _Shee
     box = _view_box(file, root)
     width, height = (_length(root.get(name)) for name in ("width", "height"))
     if unit is not None:
-        one_mm = unit_mm(unit)
-        left, top, _, high = box or (0.0, 0.0, 0.0, height[0] if height else 0.0)
-        sheet = _Sheet(one_mm, one_mm, -left * one_mm, (top + high) * one_mm)
-        return _from_zero(root, sheet)
+        box = box or (0.0, 0.0, 0.0, height[0] if height else 0.0)
+        return _from_zero(root, _in_units(box, unit_mm(unit)))
     width_mm, high_mm = _physical_mm(width), _physical_mm(height)
     if width_mm is None or not width_mm > 0:
-        got = f"its width is {root.get('width')!r}" if root.get("width") else "it has no width"
-        raise DrawingFault(NO_UNIT.format(file=file, why=got))
+        raise _without_width(file, root)
     if box is None:
         px_mm = UNITS_MM["px"]
         return _from_zero(root, _Sheet(px_mm, px_mm, 0.0, high_mm or 0.0))
@@ -137,6 +134,18 @@ def _physical_mm(length: tuple[float, str] | None) -> float | None:
     """A length of the file, mm; None if there is none, or in a unit that is no length on paper."""
     known = length is not None and length[1] in PHYSICAL_MM
     return length[0] * PHYSICAL_MM[length[1]] if length and known else None
+
+
+def _without_width(file: FilePath, root: ElementTree.Element) -> DrawingFault:
+    """What is said of a file that does not tell how wide it is."""
+    got = f"its width is {root.get('width')!r}" if root.get("width") else "it has no width"
+    return DrawingFault(NO_UNIT.format(file=file, why=got))
+
+
+def _in_units(box: tuple[float, float, float, float], one_mm: float) -> _Sheet:
+    """How a view box lies on a sheet if one of its units is so long."""
+    left, top, _, high = box
+    return _Sheet(one_mm, one_mm, -left * one_mm, (top + high) * one_mm)
 
 
 def _laid(

@@ -65,17 +65,11 @@ def normal(table, seen, breaks, columns, closed):  # type: ignore[no-untyped-def
     band, pull, seam = np.zeros((unknowns, BAND)), np.zeros(unknowns), np.zeros(unknowns)
     cost, slope, column = 0.0, np.empty(10), np.empty(10, np.int64)
     # 1. each distance depends on the five numbers of its own segment only
-    rows, moved, last = np.empty((6, 5)), np.empty(5), -1
+    rows, last = np.empty((6, 5)), -1
     for i in range(len(places)):
         if owner[i] != last:
             last = owner[i]
-            for k in range(6):
-                moved[:] = table[last]
-                if k < 5:
-                    moved[k] += STEP
-                one = _row(moved[0], moved[1], moved[2], moved[3], moved[4])
-                for m in range(5):
-                    rows[k, m] = one[m]
+            _rows_moved(table[last], rows)
         off = _off(rows[5], places[i, 0], places[i, 1])
         residual = weights[i] * off
         for k in range(5):
@@ -98,6 +92,19 @@ def normal(table, seen, breaks, columns, closed):  # type: ignore[no-untyped-def
         else:
             _add(band, pull, slope, column, breaks[j])
     return cost, band, pull, seam
+
+
+@njit(cache=True)
+def _rows_moved(own, rows):  # type: ignore[no-untyped-def]
+    """The row of a segment as it stands, the last of six, and with each of its five numbers moved a step."""
+    moved = np.empty(5)
+    for k in range(6):
+        moved[:] = own
+        if k < 5:
+            moved[k] += STEP
+        one = _row(moved[0], moved[1], moved[2], moved[3], moved[4])
+        for m in range(5):
+            rows[k, m] = one[m]
 
 
 @njit(cache=True)
@@ -132,9 +139,8 @@ def solved(band, seam, pull):  # type: ignore[no-untyped-def]
 
     The seam is brought in after J. Sherman and W. Morrison, 1950.
     """
-    n = len(band)
     # 1. Cholesky's factor of the band, in place: by row, the diagonal first
-    for i in range(n):
+    for i in range(len(band)):
         for k in range(min(i, BAND - 1), -1, -1):
             total = band[i, k]
             for m in range(k + 1, min(i, BAND - 1) + 1):
@@ -142,16 +148,21 @@ def solved(band, seam, pull):  # type: ignore[no-untyped-def]
                     total -= band[i, m] * band[i - k, m - k]
             band[i, k] = math.sqrt(total) if k == 0 else total / band[i - k, 0]
     # 2. forward and back, for both right sides
-    out = np.empty((2, n))
-    out[0], out[1] = pull, seam
-    for side in range(2):
-        x = out[side]
-        for i in range(n):
-            for k in range(1, min(i, BAND - 1) + 1):
-                x[i] -= band[i, k] * x[i - k]
-            x[i] /= band[i, 0]
-        for i in range(n - 1, -1, -1):
-            for k in range(1, min(n - 1 - i, BAND - 1) + 1):
-                x[i] -= band[i + k, k] * x[i + k]
-            x[i] /= band[i, 0]
-    return out[0] - out[1] * ((seam @ out[0]) / (1 + seam @ out[1]))
+    out, beside = pull.copy(), seam.copy()
+    _substitute(band, out)
+    _substitute(band, beside)
+    return out - beside * ((seam @ out) / (1 + seam @ beside))
+
+
+@njit(cache=True)
+def _substitute(band, x):  # type: ignore[no-untyped-def]
+    """Solve for one right side, in its place, by a band's factor."""
+    n = len(band)
+    for i in range(n):
+        for k in range(1, min(i, BAND - 1) + 1):
+            x[i] -= band[i, k] * x[i - k]
+        x[i] /= band[i, 0]
+    for i in range(n - 1, -1, -1):
+        for k in range(1, min(n - 1 - i, BAND - 1) + 1):
+            x[i] -= band[i + k, k] * x[i + k]
+        x[i] /= band[i, 0]

@@ -56,11 +56,22 @@ def depth_along(
 @njit(cache=True)
 def _along_runs(row, begin, end, rows, columns, most_looks):  # type: ignore[no-untyped-def]
     """The same for runs of lines; False where it is given up."""
-    first = np.zeros(len(row) + 1, np.int64)  # the place of each run's first pixel
+    first, depth = _in_columns(row, begin, end, rows, columns)
+    square, looks = np.empty(columns), 0
     for k in range(len(row)):
-        first[k + 1] = first[k] + end[k] - begin[k]
+        if looks > most_looks:
+            return depth, False
+        looks += _along(depth[first[k] : first[k + 1]], begin[k], columns, square)
+    return depth, True
+
+
+@njit(cache=True)
+def _in_columns(row, begin, end, rows, columns):  # type: ignore[no-untyped-def]
+    """How far paper is in each pixel's own column, for runs of lines, and where each run begins."""
+    first = np.zeros(len(row) + 1, np.int64)  # the place of each run's first pixel
+    first[1:] = np.cumsum(end - begin)
     depth = np.empty(first[-1], np.float32)
-    # 1. up and down: how far paper is in a pixel's own column; what was last met there, and in which row
+    # what was last met in each column, and in which row: downwards, then upwards
     last, met = np.zeros(columns, np.float32), np.full(columns, -2)
     for k in range(len(row)):
         for j in range(begin[k], end[k]):
@@ -77,26 +88,32 @@ def _along_runs(row, begin, end, rows, columns, most_looks):  # type: ignore[no-
                 deep = min(deep, last[j] + 1 if met[j] == row[k] + 1 else np.float32(1))
             last[j], met[j] = deep, row[k]
             depth[first[k] + j - begin[k]] = deep
-    # 2. along each run: the nearest paper in any column, looked for as far as it may be nearer
-    square, looks = np.empty(columns), 0
-    for k in range(len(row)):
-        if looks > most_looks:
-            return depth, False
-        run = depth[first[k] : first[k + 1]]
-        for j in range(len(run)):
-            square[j] = run[j] * run[j]
-        for j in range(len(run)):
-            best = square[j]
-            for way in (-1, 1):
-                step = 1
-                while step * step < best and 0 <= begin[k] + j + way * step < columns:
-                    beside = j + way * step
-                    there = square[beside] if 0 <= beside < len(run) else 0.0
-                    best = min(best, step * step + there)
-                    step += 1
-                looks += step
+    return first, depth
+
+
+@njit(cache=True)
+def _along(run, begin, columns, square):  # type: ignore[no-untyped-def]
+    """Make depths in their own columns those in any, looked for as far as paper may be nearer; the number of
+    looks that it took.
+
+    All beside the run is paper.
+    """
+    looks = 0
+    for j in range(len(run)):
+        square[j] = run[j] * run[j]
+    for j in range(len(run)):
+        best = square[j]
+        for way in (-1, 1):
+            step = 1
+            while step * step < best and 0 <= begin + j + way * step < columns:
+                beside = j + way * step
+                there = square[beside] if 0 <= beside < len(run) else 0.0
+                best = min(best, step * step + there)
+                step += 1
+            looks += step
+        if best > 0:
             run[j] = math.sqrt(best)
-    return depth, True
+    return looks
 
 
 @njit(cache=True)
@@ -113,21 +130,10 @@ def _of_lines(ink, most_looks):  # type: ignore[no-untyped-def]
         for j in range(columns):
             if depth[i, j] > 1:
                 depth[i, j] = min(depth[i, j], depth[i + 1, j] + 1)
-    # 2. along each row: the nearest paper in any column, looked for as far as it may be nearer
+    # 2. along each row: the nearest paper in any column
     square, looks = np.empty(columns), 0
     for i in range(rows):
         if looks > most_looks:
             return depth, False
-        for j in range(columns):
-            square[j] = depth[i, j] * depth[i, j]
-        for j in range(columns):
-            best = square[j]
-            for way in (-1, 1):
-                step = 1
-                while step * step < best and 0 <= j + way * step < columns:
-                    best = min(best, step * step + square[j + way * step])
-                    step += 1
-                looks += step
-            if best > 0:
-                depth[i, j] = math.sqrt(best)
+        looks += _along(depth[i], 0, columns, square)
     return depth, True

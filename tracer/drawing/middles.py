@@ -12,9 +12,8 @@ import numpy as np
 
 from morfax.motion.compiled import njit
 
-SHALLOWER = np.float32(
-    0.3
-)  # px: places of a slanting line are so much less deep from pixel to pixel
+# px: places of a slanting line are so much less deep from pixel to pixel
+SHALLOWER = np.float32(0.3)
 
 
 @njit(cache=True)
@@ -25,7 +24,7 @@ def deepest(row, begin, end, depth, inner, disc):  # type: ignore[no-untyped-def
     """
     if not len(row):
         return np.empty(0, np.int64), np.empty(0, np.int64), np.empty(0)
-    top, columns = row[0], end.max()
+    top, columns = row[0] - 1, end.max()  # from the row above the first, which is paper
     first = np.searchsorted(row, np.arange(top, row[-1] + 3))  # the first run of each row
     places = np.zeros(len(row) + 1, np.int64)
     places[1:] = np.cumsum(end - begin)
@@ -34,13 +33,10 @@ def deepest(row, begin, end, depth, inner, disc):  # type: ignore[no-untyped-def
     found_row, found_column = np.empty(len(depth), np.int64), np.empty(len(depth), np.int64)
     count = 0
     for i in range(top, row[-1] + 1):
-        for k in range(i if i == top else i + 1, i + 2):
-            line = lines[k % 3]
-            line[:] = 0.0
-            for n in range(first[k - top], first[k - top + 1]):
-                line[begin[n] + 1 : end[n] + 1] = depth[places[n] : places[n + 1]]
-        if i == top:
-            lines[(i - 1) % 3][:] = 0.0
+        line = lines[(i + 1) % 3]
+        line[:] = 0.0
+        for n in range(first[i + 1 - top], first[i + 2 - top]):
+            line[begin[n] + 1 : end[n] + 1] = depth[places[n] : places[n + 1]]
         # 2. its pixels that are the deepest of nine
         before, line, after = lines[(i - 1) % 3], lines[i % 3], lines[(i + 1) % 3]
         for n in range(first[i - top], first[i - top + 1]):

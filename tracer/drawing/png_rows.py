@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 Bytes = NDArray[np.uint8]
 
 AT_ONCE = 1 << 22  # bytes that are unpacked at a time
+BARE, BEFORE, ABOVE, MEAN = 0, 1, 2, 3  # filters of a line; the fourth is Paeth's
 CHANNELS = {0: 1, 2: 3, 3: 1}  # of a PNG: grey, colours, numbers of a palette
 
 
@@ -106,30 +107,36 @@ def _grey_rows(
 @njit(cache=True)
 def _unfilter(lines, before, step):  # type: ignore[no-untyped-def]
     """Take the filters off lines (the filter's number, then bytes), in place; `before` is the line above."""
-    width = lines.shape[1] - 1
     for i in range(len(lines)):
-        kind = lines[i, 0]
-        line = lines[i, 1:]
         above = lines[i - 1, 1:] if i else before
-        if kind == 0:
-            continue
-        if kind == 2:
-            for j in range(width):
-                line[j] += above[j]
-            continue
-        for j in range(width):
-            a = np.int64(line[j - step]) if j >= step else 0
-            b = np.int64(above[j])
-            if kind == 1:
-                guess = a
-            elif kind == 3:
-                guess = (a + b) // 2
-            else:
-                c = np.int64(above[j - step]) if j >= step else 0
-                to_a, to_b, to_c = abs(b - c), abs(a - c), abs(a + b - 2 * c)
-                guess = c
-                if to_a <= to_b and to_a <= to_c:
-                    guess = a
-                elif to_b <= to_c:
-                    guess = b
-            line[j] = np.uint8((line[j] + guess) & 255)
+        if lines[i, 0] == ABOVE:
+            lines[i, 1:] += above
+        elif lines[i, 0] != BARE:
+            _unfilter_line(lines[i, 1:], above, lines[i, 0], step)
+
+
+@njit(cache=True)
+def _unfilter_line(line, above, kind, step):  # type: ignore[no-untyped-def]
+    """Take the filter off one line whose guess is made of the bytes before, each after the other."""
+    for j in range(len(line)):
+        a = np.int64(line[j - step]) if j >= step else 0
+        b = np.int64(above[j])
+        if kind == BEFORE:
+            guess = a
+        elif kind == MEAN:
+            guess = (a + b) // 2
+        else:
+            guess = _nearest(a, b, np.int64(above[j - step]) if j >= step else 0)
+        line[j] = np.uint8((line[j] + guess) & 255)
+
+
+@njit(cache=True, inline="always")
+def _nearest(a, b, c):  # type: ignore[no-untyped-def]
+    """Which of the bytes before (a), above (b) and above that before (c) is nearest to a + b - c."""
+    to_a, to_b, to_c = abs(b - c), abs(a - c), abs(a + b - 2 * c)
+    guess = c
+    if to_a <= to_b and to_a <= to_c:
+        guess = a
+    elif to_b <= to_c:
+        guess = b
+    return guess

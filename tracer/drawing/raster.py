@@ -125,7 +125,7 @@ def _picture(file: Path, stream: BinaryIO, coloured: bool, page: int | None) -> 
     # by a stream, which is never mapped: Pillow turns maps wrongly
     with Image.open(stream) as image:
         pages = 1 if image.format in PREVIEWS else getattr(image, "n_frames", 1)
-        taken = page_asked_for(file, page, pages) if page is not None else image.tell() + 1
+        taken = image.tell() + 1 if page is None else page_asked_for(file, page, pages)
         if taken - 1 != image.tell():
             image.info.pop("dpi", None)  # of the page before
             image.seek(taken - 1)

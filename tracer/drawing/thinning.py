@@ -27,6 +27,7 @@ Indices = NDArray[np.int64]
 
 LISTED, INK = 2, 1  # bits of a pixel while the sheet is thinned
 NEIGHBOURS = 8
+ALL_INK = 255  # the pattern of a pixel with ink all round
 # rows and columns from a pixel to P2 … P9
 DOWN = np.array([-1, -1, 0, 1, 1, 1, 0, -1])
 RIGHT = np.array([0, 1, 1, 1, 0, -1, -1, -1])
@@ -75,9 +76,30 @@ def _pattern(sheet, at, width):  # type: ignore[no-untyped-def]
 def _thin(sheet, width, goes_first, goes_second):  # type: ignore[no-untyped-def]
     """Take pixels off a sheet (padded with paper, in one row after the other) until none goes."""
     # 1. at first the rim is looked at
+    listed = _rim(sheet, width)
+    # 2. in two turns each time: those that go, and then all that had one of them beside it
+    while len(listed):
+        gone = np.empty(9 * len(listed) + 16, np.int64)
+        first = _going(sheet, width, goes_first, listed, gone, 0)
+        for n in range(first):
+            sheet[gone[n]] &= LISTED
+        went = _going(sheet, width, goes_second, listed, gone, first)
+        went = _going_beside(sheet, width, goes_second, gone, first, went)
+        for at in listed:
+            sheet[at] &= INK
+        for n in range(went):
+            sheet[gone[n]] = 0
+        listed = _beside(sheet, width, gone[:went])
+    for at in range(len(sheet)):
+        sheet[at] &= INK
+
+
+@njit(cache=True)
+def _rim(sheet, width):  # type: ignore[no-untyped-def]
+    """List the pixels of ink that have paper beside them."""
     count = 0
     for at in range(len(sheet)):
-        if sheet[at] & INK and _pattern(sheet, at, width) != 255:
+        if sheet[at] & INK and _pattern(sheet, at, width) != ALL_INK:
             sheet[at] |= LISTED
             count += 1
     listed = np.empty(count, np.int64)
@@ -86,44 +108,46 @@ def _thin(sheet, width, goes_first, goes_second):  # type: ignore[no-untyped-def
         if sheet[at] & LISTED:
             listed[count] = at
             count += 1
-    # 2. in two turns each time: those that go, and then all that had one of them beside it
-    while len(listed):
-        gone = np.empty(9 * len(listed) + 16, np.int64)
-        went = 0
-        for turn in range(2):
-            begin = went
-            goes = goes_first if turn == 0 else goes_second
-            for at in listed:
-                if sheet[at] & INK and goes[_pattern(sheet, at, width)]:
-                    gone[went] = at
-                    went += 1
-            if turn == 1:  # and those on which the first turn has only just come
-                for n in range(begin):
-                    for k in range(NEIGHBOURS):
-                        at = gone[n] + DOWN[k] * width + RIGHT[k]
-                        unlisted = sheet[at] & INK and not sheet[at] & LISTED
-                        if unlisted and goes[_pattern(sheet, at, width)]:
-                            gone[went] = at
-                            went += 1
-                            sheet[at] |= LISTED
-            for n in range(begin, went):
-                sheet[gone[n]] &= LISTED
-        for at in listed:
-            sheet[at] &= INK
-        fresh = np.empty(NEIGHBOURS * went, np.int64)
-        count = 0
-        for n in range(went):
-            sheet[gone[n]] = 0
-        for n in range(went):
-            for k in range(NEIGHBOURS):
-                at = gone[n] + DOWN[k] * width + RIGHT[k]
-                if sheet[at] == INK:
-                    sheet[at] |= LISTED
-                    fresh[count] = at
-                    count += 1
-        listed = fresh[:count].copy()
-    for at in range(len(sheet)):
-        sheet[at] &= INK
+    return listed
+
+
+@njit(cache=True)
+def _going(sheet, width, goes, listed, gone, went):  # type: ignore[no-untyped-def]
+    """Note, after those that went, the listed pixels that go in a turn; how many there are now."""
+    for at in listed:
+        if sheet[at] & INK and goes[_pattern(sheet, at, width)]:
+            gone[went] = at
+            went += 1
+    return went
+
+
+@njit(cache=True)
+def _going_beside(sheet, width, goes, gone, first, went):  # type: ignore[no-untyped-def]
+    """Note also the pixels on which the first turn has only just come, beside its own that went."""
+    for n in range(first):
+        for k in range(NEIGHBOURS):
+            at = gone[n] + DOWN[k] * width + RIGHT[k]
+            unlisted = sheet[at] & INK and not sheet[at] & LISTED
+            if unlisted and goes[_pattern(sheet, at, width)]:
+                gone[went] = at
+                went += 1
+                sheet[at] |= LISTED
+    return went
+
+
+@njit(cache=True)
+def _beside(sheet, width, gone):  # type: ignore[no-untyped-def]
+    """List the pixels of ink beside those that have gone."""
+    fresh = np.empty(NEIGHBOURS * len(gone), np.int64)
+    count = 0
+    for place in gone:
+        for k in range(NEIGHBOURS):
+            at = place + DOWN[k] * width + RIGHT[k]
+            if sheet[at] == INK:
+                sheet[at] |= LISTED
+                fresh[count] = at
+                count += 1
+    return fresh[:count].copy()
 
 
 @njit(cache=True)

@@ -54,23 +54,29 @@ def put_down(
     sheet = drawing if isinstance(drawing, Sheet) else Sheet.of(drawing)
     settings = settings or Settings()
     catch_mm = max(CATCH_MM, CATCH_PX * sheet.drawing.pitch_mm)
-    # 1. the line
     stroke = sheet.longest() if start_mm is None else sheet.nearest(start_mm, catch_mm)
-    on_edge = sheet.drawing.shade is not None
-    if on_edge:
-        view = edge_view_of(sheet.drawing, settings.aperture_mm)
+    for stance in _stances(sheet, stroke, start_mm, settings, reference_mm):
+        yield stance, stroke.length_mm
+
+
+def _stances(
+    sheet: Sheet,
+    stroke: Stroke,
+    start_mm: tuple[float, float] | None,
+    settings: Settings,
+    reference_mm: tuple[float, float] | None,
+) -> Iterator[Stance]:
+    """Stances on a line, the best first: at its open ends, of which an edge has none, and at plain places."""
+    catch_mm = max(CATCH_MM, CATCH_PX * sheet.drawing.pitch_mm)
+    if sheet.drawing.shade is not None:
+        view, ends = edge_view_of(sheet.drawing, settings.aperture_mm), list[Stance]()
     else:
-        for stance in _as_before(sheet, stroke, start_mm, settings, reference_mm):
-            yield stance, stroke.length_mm
+        yield from _as_before(sheet, stroke, start_mm, settings, reference_mm)
         view = view_of(sheet, settings.aperture_mm, settings.line_width_mm or stroke.width_mm)
-    # 2. its open ends; an edge has none
-    ends = [] if on_edge else _ends(view, sheet, stroke, start_mm, settings, reference_mm)
-    for stance in ends:
-        yield stance, stroke.length_mm
-    # 3. its plain places
+        ends = _ends(view, sheet, stroke, start_mm, settings, reference_mm)
+    yield from ends
     plain = _plain(view, stroke, start_mm, catch_mm)
-    for stance in plain:
-        yield stance, stroke.length_mm
+    yield from plain
     if not plain and not ends:
         is_solid = bool(sheet.are_solid[stroke.patch])
         raise _nowhere_clean(view.width_mm, is_solid, settings.line_width_mm)

@@ -15,9 +15,11 @@ Source: our own.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
@@ -139,50 +141,59 @@ def _joined(two: list[Stretch], node: int) -> Stretch:
     return Stretch((int(pixels[0]), int(pixels[-1])), pixels)
 
 
+class _Walk(NamedTuple):
+    """What a walk along thinned pixels takes and leaves."""
+
+    beside: Indices  # the neighbours of each pixel, (n, 8)
+    links: Indices  # how many each has
+    walked: NDArray[np.bool_]  # (n, 8): the links that were walked
+    used: NDArray[np.bool_]  # the pixels that were come to
+    order: Indices  # the pixels of all stretches, as they were walked
+
+
 @njit(cache=True)
 def _stretches(beside):  # type: ignore[no-untyped-def]
     """Pixels along each stretch, one after the other, and where each begins and ends among them."""
     count = len(beside)
-    links = np.zeros(count, np.int64)
-    for n in range(count):
-        for k in range(8):
-            links[n] += beside[n, k] >= 0
-    order = np.empty(4 * count + 8, np.int64)
+    links = (beside >= 0).sum(axis=1)
+    walked, used = np.zeros(beside.shape, np.bool_), np.zeros(count, np.bool_)
+    walk = _Walk(beside, links, walked, used, np.empty(4 * count + 8, np.int64))
     begins, ends = np.empty(2 * count + 1, np.int64), np.empty(2 * count + 1, np.int64)
-    walked = np.zeros(beside.shape, np.bool_)
-    used = np.zeros(count, np.bool_)
     written = made = 0
-    # 1. from every node along each of its links; 2. what is left are rings
-    for turn in range(2):
+    # from every node along each of its links; then once round each ring, as what is left is
+    for are_nodes in (True, False):
         for start in range(count):
-            if (turn == 0 and links[start] == 2) or (
-                turn == 1 and (used[start] or links[start] != 2)
-            ):
+            if (links[start] != 2) != are_nodes or (used[start] and not are_nodes):
                 continue
-            for k in range(8):
-                if beside[start, k] < 0 or walked[start, k]:
+            for link in range(8):
+                if beside[start, link] < 0 or walked[start, link]:
                     continue
                 begins[made] = written
-                order[written] = start
-                written += 1
-                at, link = start, k
-                while True:
-                    walked[at, link] = True
-                    here = beside[at, link]
-                    walked[here, (link + 4) % 8] = True
-                    order[written] = here
-                    written += 1
-                    used[here] = True
-                    if links[here] != 2 or here == start:
-                        break
-                    back = (link + 4) % 8
-                    for other in range(8):
-                        if beside[here, other] >= 0 and other != back:
-                            at, link = here, other
-                            break
+                written = _walked(walk, start, link, written)
                 ends[made] = written
                 made += 1
-                if turn == 1:
-                    used[start] = True
+                if not are_nodes:
                     break
-    return order[:written].copy(), begins[:made].copy(), ends[:made].copy()
+    return walk.order[:written].copy(), begins[:made].copy(), ends[:made].copy()
+
+
+@njit(cache=True)
+def _walked(walk, start, link, written):  # type: ignore[no-untyped-def]
+    """Walk from a pixel along one of its links to the next node, or round to where it began; the number of
+    pixels written so far.
+    """
+    walk.order[written] = at = start
+    while True:
+        written += 1
+        walk.walked[at, link] = True
+        here = walk.beside[at, link]
+        back = (link + 4) % 8
+        walk.walked[here, back] = True
+        walk.used[here] = True
+        walk.order[written] = here
+        if walk.links[here] != 2 or here == start:
+            return written + 1
+        for other in range(8):
+            if walk.beside[here, other] >= 0 and other != back:
+                at, link = here, other
+                break

@@ -202,24 +202,14 @@ class EdgeAhead:
         """Stretches from where the head stands to a node: along nodes, and through corners by their legs."""
         place, heading = stands
         stretches, way, turned = list[Array](), list[Array](), False
-        near_mm = FELT_LEGS * self.view.leg_mm / NODES
-        marks: list[Node | PutBack] = [*self.nodes, *self.corners]
-        marks.sort(key=lambda mark: mark.at if isinstance(mark, Node) else mark.first + 0.5)
-        for mark in marks:
+        for mark in self._marks(stands[0], end):
             if isinstance(mark, Node):
-                if mark.at <= self.here or mark.at > end.at:
-                    continue
-                onto = mark.leg.end_mm - place
-                if (
-                    not stretches
-                    and not way
-                    and float(np.hypot(*onto)) < near_mm
-                    and mark != end
-                ):
+                is_first = not stretches and not way
+                if is_first and mark != end and self._is_near(mark, place):
                     continue
                 way.append(hermite(place, heading, mark.leg.end_mm, mark.leg.heading_rad))
                 place, heading = mark.leg.end_mm, mark.leg.heading_rad
-            elif mark.last <= end.at and self._is_ahead(mark, stands[0]):
+            else:
                 into, out = (math.atan2(v[1], v[0]) for v in (mark.into, mark.out))
                 way += [hermite(place, heading, mark.places[0], into), mark.places]
                 place, heading, turned = mark.places[-1], out, True
@@ -233,3 +223,16 @@ class EdgeAhead:
             end.leg.end_mm, end.leg.heading_rad, end.leg.bend_per_mm, self.view.width_mm, seen
         )
         return Plan(stretches, leg, None, MEMORY if turned else STATIONS)
+
+    def _marks(self, place: Array, end: Node) -> list[Node | PutBack]:
+        """The nodes and corners that are ahead, up to a node, in the order of the way."""
+        nodes = [node for node in self.nodes if self.here < node.at <= end.at]
+        corners = [c for c in self.corners if c.last <= end.at and self._is_ahead(c, place)]
+        marks: list[Node | PutBack] = [*nodes, *corners]
+        marks.sort(key=lambda mark: mark.at if isinstance(mark, Node) else mark.first + 0.5)
+        return marks
+
+    def _is_near(self, node: Node, place: Array) -> bool:
+        """Whether a node is too near a place for a curve of its own."""
+        near_mm = FELT_LEGS * self.view.leg_mm / NODES
+        return float(np.hypot(*(node.leg.end_mm - place))) < near_mm
