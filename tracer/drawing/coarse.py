@@ -10,6 +10,10 @@ nothing finer than its pixels, so the darkness between them is known: a windowed
 Scans of two levels, and engravings that were made small, have steps at their edges that no lens has softened,
 and gaps of a pixel. A wider aperture makes up for that.
 
+Down to a width of 1.25 pixels the outline of 0.5 mm that was tried with slots, spikes and bays of 1.5 mm and
+more was right or told in 60 of 60; with 1 pixel a spike was cut off now and then. The operator is warned
+of lines that look as wide as 1.5 pixels or less: how wide they are cannot be told more closely.
+
 Source: Lanczos' window, eight pixels across, as OpenCV has it. Questions: noise is spread as well, and the
 head averages less of it: 1 um RMS on smooth lines.
 """
@@ -22,6 +26,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.tracer.drawing.scan import MM_PER_INCH
+
 Darkness = NDArray[np.float32]
 
 FEWEST_PX = 3.0  # of the line's width: see `jobs.scale_doubts`
@@ -29,6 +35,13 @@ TIMES = 2  # three times finer is no better: the same details, 1 um more RMS
 # of a pixel: standard deviation of the aperture; at 0.35 the gaps of small engravings stay open; by trial
 APERTURE_PX = 0.6
 MOST_PX = 1 << 22  # of a sheet, before: large sheets are no coarse scans, and need the memory
+# pixels, as `noise.Within` says: a line of 1.5 looks 1.8 to 2.12 wide, one of 2 looks 2.16 or more; by trial
+SEEN_PX = 2.14
+DETAIL_PX = 6.0  # details that are smaller may be cut off; by trial
+WANTED_TIMES, DPI_STEP = (
+    3.0,
+    50,
+)  # a line of one pixel then has three; resolutions that are advised
 
 
 def times_finer(darkness: Darkness, width_px: float) -> int:
@@ -42,3 +55,13 @@ def finer(darkness: Darkness, times: int) -> Darkness:
     soft = cv2.GaussianBlur(darkness, (0, 0), APERTURE_PX)
     larger = cv2.resize(soft, None, fx=times, fy=times, interpolation=cv2.INTER_LANCZOS4)
     return np.asarray(larger, np.float32)
+
+
+def note(seen_px: float, pitch_mm: float) -> str:
+    """What the operator should know of lines that look so wide."""
+    dpi = DPI_STEP * math.ceil(WANTED_TIMES * MM_PER_INCH / pitch_mm / DPI_STEP)
+    return (
+        f"the lines look {seen_px:.1f} pixels wide, as lines of 1.5 pixels and less do: details below "
+        f"{DETAIL_PX * pitch_mm:.2g} mm may be cut off, and the path strays where lines touch; scan at {dpi} "
+        "dpi, or save the drawing so much larger"
+    )

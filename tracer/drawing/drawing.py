@@ -41,7 +41,7 @@ from morfax.tracer.drawing.contrast import (
     Contrast,
     strokes_of,
 )
-from morfax.tracer.drawing.noise import Noise, grain_within, measured
+from morfax.tracer.drawing.noise import Noise, measured, within
 from morfax.tracer.drawing.ruling import PaperKind
 from morfax.tracer.drawing.scale import Scale
 from morfax.tracer.drawing.scan import Grey, Scan
@@ -216,7 +216,9 @@ class Drawing:
         if edges:
             notes = (*notes, border_note(edges))
         # 3. grain, and too large pixels
-        in_lines, width_px = grain_within(darkness)
+        in_lines, width_px, seen_px = within(darkness)
+        if seen_px < coarse.SEEN_PX:
+            notes = (*notes, coarse.note(seen_px, pitch[0]))
         slit = grain.slit_for(in_lines, width_px, pitch[0])
         if slit is not None:
             darkness = grain.behind(slit, np.asarray(darkness))

@@ -45,6 +45,7 @@ OBLIQUE = 0.5  # cosine: a row or column that meets a line flatter than 60 degre
 PAPER = 0.25  # lighter is paper, and nothing else is drawn there
 GOLDEN = (math.sqrt(5) - 1) / 2  # its multiples fill the pixel evenly
 DARKER = 84.13  # percentile one standard deviation above the median
+RIGHT_ON_IT = 25.0  # percentile of how wide lines look: there a pixel lies right on the line
 OUTLIERS = 3.0  # robust standard deviations
 # darkness, softness and width settle to 1 % where a line is three times as wide as soft
 ROUNDS = 20
@@ -90,25 +91,46 @@ def measured(darkness: NDArray[np.float32] | Tiles, pitch_mm: float) -> Noise:
     return Noise(paper, ink, grain, softness_px, softness_px * pitch_mm, width_px * pitch_mm)
 
 
+class Within(NamedTuple):
+    """The grain of the ink within single lines, the width of the pen, pixels, and how wide lines look.
+
+    A line that is less wide than two pixels looks as wide as two, but where a pixel lies right on it: there
+    `seen_px`, the ink across it over the darkness in its middle, goes on falling.
+    """
+
+    grain: float
+    width_px: float
+    seen_px: float
+
+
 def grain_within(darkness: NDArray[np.float32] | Tiles) -> tuple[float, float]:
-    """The grain of the ink within single lines, and the width of the pen, pixels.
+    """The grain of the ink within single lines, and the width of the pen, pixels (see `within`)."""
+    return within(darkness)[:2]
+
+
+def within(darkness: NDArray[np.float32] | Tiles) -> Within:
+    """How even the ink of single lines is, and how wide they are.
 
     Other than `Noise.grain` it does not grow where lines of several pens differ: the ink is held against the
     ink of the same line a width farther on. NaN without any line.
     """
     profiles = _profiles(darkness)
     if profiles is None:
-        return math.nan, math.nan
+        return Within(math.nan, math.nan, math.nan)
     paper = _paper(darkness)
+    middle = np.maximum(_middle(profiles), PAPER)
+    looks_px = STEP_PX * profiles.seen.sum(axis=1) / middle
+    seen_px = float(np.percentile(looks_px, RIGHT_ON_IT))
     width_px = _pen(profiles, paper, _ink(darkness, profiles)[0])[1]
     along = profiles.across[:, ::-1] * [1, -1]
     here = _seen(darkness, profiles.middles.T)
     there = _seen(darkness, (profiles.middles + width_px * along).T)
     on_line = there > PAPER * float(np.median(here))
     if np.count_nonzero(on_line) < FEWEST_PROFILES:
-        return math.nan, width_px
+        return Within(math.nan, width_px, seen_px)
     differ = _spread((there - here)[on_line]) / math.sqrt(2)
-    return math.sqrt(max(differ**2 - INTERPOLATED_NOISE * paper**2, 0.0)), width_px
+    grain = math.sqrt(max(differ**2 - INTERPOLATED_NOISE * paper**2, 0.0))
+    return Within(grain, width_px, seen_px)
 
 
 def _paper(darkness: NDArray[np.float32] | Tiles) -> float:

@@ -52,6 +52,25 @@ def test_a_fine_scan_stays_as_it_is() -> None:
     assert drawing.pitch_mm == pytest.approx(25.4 / 300)
 
 
+@pytest.mark.parametrize("dpi", [76, 60, 51])
+def test_lines_of_one_and_a_half_pixels_and_less_are_told_of_and_the_advice_ends_it(
+    dpi: float,
+) -> None:
+    """Below 1.25 pixels details are cut off now and then, and no measure parts these from 1.5."""
+    (note,) = scanned(STEP, dpi).notes
+    found = re.search(r"details below ([\d.]+) mm .* scan at (\d+) dpi", note)
+    assert found is not None
+    assert float(found[1]) == pytest.approx(6 * 25.4 / dpi, rel=0.05)
+    assert not scanned(STEP, float(found[2])).notes
+
+
+@pytest.mark.parametrize("dpi", [300, 150, 108])
+def test_lines_of_two_pixels_and_more_are_not_told_of(dpi: float) -> None:
+    for seed in (1, 2, 3):
+        assert not scanned(arc((22.0, 22.0), 16.0), dpi, seed).notes
+        assert not scanned(STEP, dpi, seed).notes
+
+
 @pytest.mark.parametrize("dpi", [100, 76, 60])
 def test_the_resolution_that_is_advised_is_enough(dpi: float) -> None:
     line = arc((22.0, 22.0), 16.0)
