@@ -3,8 +3,8 @@
 Signals: Path, Motion, (n, 2) arrays of mm, or lists of such polylines in; distances and lengths in mm out. Of
 a Path or Motion only what is run with the tool in the work counts.
 
-Each polyline is sampled every 0.01 mm, its own points included. The nearest samples of the other are found in
-a k-d tree, and the sample is then projected on the straight pieces that meet there, so that equal curves with
+Each polyline is sampled every 0.01 mm, its own points included. `neighbours` finds the nearest samples of the
+other, and the sample is then projected on the straight pieces that meet there, so that equal curves with
 different points are zero apart, not half a sample. Figures are weighted with the length that each sample
 stands for: many points in a corner count no more than the corner is long.
 
@@ -24,6 +24,7 @@ from morfax.motion import polyline
 from morfax.motion.arrays import Array
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import IN_WORK_BELOW_MM, Motion, Path
+from morfax.motion.neighbours import Neighbours
 
 SAMPLE_MM = 0.01
 # beyond 10 m of path the samples stand further apart: memory stays below 200 MB
@@ -165,10 +166,8 @@ class _Finder:
     """Finds the nearest place on sampled polylines."""
 
     def __init__(self, sampled: _Sampled) -> None:
-        from scipy.spatial import cKDTree  # half a second that `--help` need not wait for
-
         self._sampled = sampled
-        self._tree = cKDTree(sampled.points_mm, balanced_tree=False, compact_nodes=False)
+        self._neighbours = Neighbours(sampled.points_mm)
 
     def distances_mm(self, points: Array) -> Array:
         """Distance of each point (n, 2) from the nearest straight piece, mm."""
@@ -181,9 +180,9 @@ class _Finder:
     def _some(self, points: Array) -> Array:
         """The same for a few points, so that memory stays small."""
         k = min(_NEIGHBOURS, len(self._sampled.points_mm))
-        near_mm, near = self._tree.query(points, k=k)
-        best = near_mm.reshape(len(points), k)[:, 0]
-        for column in near.reshape(len(points), k).T:
+        near = self._neighbours.several(points, k)
+        best = np.hypot(*(points - self._sampled.points_mm[near[:, 0]]).T)
+        for column in near.T:
             best = np.minimum(best, self._to_piece(points, column))
             best = np.minimum(best, self._to_piece(points, column - 1))
         return best

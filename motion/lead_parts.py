@@ -17,6 +17,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.motion import Path
+from morfax.motion.neighbours import Neighbours
 from morfax.motion.polyline import evenly, lengths_mm
 
 MEET_MM = 0.02  # two places as near are one: a contour closes within some um
@@ -61,15 +62,13 @@ def _raised(run: Array) -> Array:
 
 def _contour(line_mm: Array, long_mm: float) -> tuple[float, float]:
     """From where to where along a line (n, 2) mm it is closed, mm; the whole if it is not."""
-    from scipy.spatial import cKDTree
-
     if long_mm < 10 * LEAST_MM:
         return 0.0, long_mm
     places = np.vstack([evenly(line_mm, EVERY_MM), line_mm[-1:]])
     count = int(HALF * len(places))
     # most places have no other near: to find how far the nearest is would take ten times as long
     near_mm = (MEET_MM + TIES_MM) * (1 + 1e-9)
-    gaps, other = cKDTree(places[-count:]).query(places[:count], distance_upper_bound=near_mm)
+    gaps, other = Neighbours(places[-count:]).nearest(places[:count], within=near_mm)
     if gaps.min() > MEET_MM:
         return 0.0, long_mm
     near = np.flatnonzero(gaps <= gaps.min() + TIES_MM)

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
+from morfax.motion.neighbours import Neighbours
 
 UM = 1e-3  # mm
 APART_MM = 0.02  # between places that stand for a line
@@ -140,23 +141,22 @@ class Nearest:
     """Finds how far places are from lines, true to `WITHIN_MM` for places a radius away."""
 
     def __init__(self, lines_mm: Sequence[Array], radius_mm: float) -> None:
-        from scipy.spatial import cKDTree
-
         # half for the places left out, and half for the sagitta between those that stand for the line
         share_mm = 0.5 * WITHIN_MM
         apart_mm = math.sqrt(8 * radius_mm * share_mm)
-        self._tree = cKDTree(
-            np.vstack([with_places(plain(line, share_mm), apart_mm) for line in lines_mm])
+        self._lines = np.vstack(
+            [with_places(plain(line, share_mm), apart_mm) for line in lines_mm]
         )
+        self._neighbours = Neighbours(self._lines)
 
     def distances_mm(self, places_mm: Array) -> Array:
         """Distance of each place (n, 2) from the nearest line, mm."""
-        return np.asarray(self._tree.query(places_mm)[0])
+        return self._neighbours.nearest(places_mm)[0]
 
     def set_back(self, places_mm: Array, distance_mm: float) -> Array:
         """The places (n, 2), those nearer than a distance moved out to it, straight away from the line."""
-        away, index = self._tree.query(places_mm)
-        lines = np.asarray(self._tree.data)[index]
+        away, index = self._neighbours.nearest(places_mm)
+        lines = self._lines[index]
         out = np.maximum(1.0, distance_mm / np.maximum(away, UM))
         return np.asarray(lines + (places_mm - lines) * out[:, None])
 

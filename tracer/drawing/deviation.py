@@ -27,9 +27,9 @@ from morfax.motion.arrays import Array
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import Path
 from morfax.motion.polyline import lengths_mm
+from morfax.tracer.drawing.between import between
 from morfax.tracer.drawing.components import Mask, Numbers, Patches, runs_of, strips
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.drawing.tiles import Tiles
 
 EVERY_MM = 0.1  # between the places that are measured
 TOUCH_MM = 0.02  # between the places of a cutter's path
@@ -160,17 +160,11 @@ def _places(run: Array, every_mm: float = EVERY_MM) -> tuple[Array, Array]:
 
 def _profile(drawing: Drawing, points: Array, headings: Array, across: Array) -> Array:
     """Darkness (places, across) at distances to the left of a path."""
-    from scipy.ndimage import map_coordinates
-
     x = points[:, :1] - np.sin(headings)[:, None] * across
     y = points[:, 1:] + np.cos(headings)[:, None] * across
     columns = x / drawing.pitch_mm - 0.5
     rows = drawing.darkness.shape[0] - y / drawing.pitch_mm - 0.5
-    seen = np.empty(columns.shape)
-    if isinstance(drawing.darkness, Tiles):
-        return drawing.darkness.between(rows, columns)
-    map_coordinates(drawing.darkness, [rows, columns], seen, order=1, mode="constant")
-    return seen
+    return between(drawing.darkness, rows, columns, edge_goes_on=False)
 
 
 def _line_width(drawing: Drawing, places: list[tuple[Array, Array]]) -> float:

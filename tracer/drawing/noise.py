@@ -30,6 +30,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.tracer.drawing.between import between
 from morfax.tracer.drawing.paper import ROBUST
 from morfax.tracer.drawing.tiles import Tiles
 
@@ -223,12 +224,7 @@ def _slope(darkness: NDArray[np.float32] | Tiles, places: Array) -> Array:
 
 def _seen(darkness: NDArray[np.float32] | Tiles, places: Array) -> Array:
     """Darkness between pixels: places (2, n) or (n, 2, k), rows and columns."""
-    from scipy.ndimage import map_coordinates
-
-    at = np.moveaxis(places, -2, 0)
-    if isinstance(darkness, Tiles):
-        return darkness.between(*at)
-    return np.asarray(map_coordinates(darkness, at, output=float, order=1, mode="nearest"))
+    return between(darkness, *np.moveaxis(places, -2, 0), edge_goes_on=True)
 
 
 def _smooth(seen: Array) -> Array:
@@ -265,8 +261,6 @@ def _middle(profiles: _Profiles) -> Array:
 
 def _pen(profiles: _Profiles, paper: float, ink: float) -> tuple[float, float]:
     """Softness and width, pixels."""
-    from scipy.special import erf
-
     seen, span_px = profiles.seen, STEP_PX * len(profiles.at_px)
     area, square = STEP_PX * seen.sum(axis=1), STEP_PX * (seen**2).sum(axis=1)
     peak = float(np.median(_middle(profiles)))
@@ -277,7 +271,7 @@ def _pen(profiles: _Profiles, paper: float, ink: float) -> tuple[float, float]:
         in_noise = ink**2 * width_px + paper**2 * (span_px - width_px)
         lost = darkness * area - square + INTERPOLATED_NOISE * in_noise
         softness_px = _softness(float(np.median(lost)) / darkness**2, width_px)
-        darkness = peak / float(erf(width_px / (math.sqrt(8) * max(softness_px, 1e-3))))
+        darkness = peak / math.erf(width_px / (math.sqrt(8) * max(softness_px, 1e-3)))
     return math.sqrt(max(softness_px**2 - INTERPOLATED_PX2, 0.0)), width_px
 
 

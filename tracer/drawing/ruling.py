@@ -28,6 +28,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault
+from morfax.tracer.drawing.between import between
 from morfax.tracer.drawing.tiles import Tiles
 
 Darkness = NDArray[np.float32]
@@ -260,8 +261,4 @@ def _printed(seen: Array, off_px: Array) -> Array:
 
 def _seen(darkness: Darkness, rows: Array, columns: Array) -> Array:
     """Darkness between pixels."""
-    from scipy.ndimage import map_coordinates
-
-    return np.asarray(
-        map_coordinates(darkness, [rows, columns], order=1, mode="nearest"), float
-    )
+    return between(darkness, rows, columns, edge_goes_on=True)

@@ -17,6 +17,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault
+from morfax.motion.neighbours import Neighbours
 from morfax.motion.polyline import lengths_mm, with_places
 from morfax.tracer.following.followed import Followed
 
@@ -32,13 +33,11 @@ def kept_to(edges_mm: tuple[Array, ...], run: Followed) -> Followed:
     """The run, if it kept to the edges and, closed, left none of its edge out; else lost at that place."""
     if not edges_mm:
         return run
-    from scipy.spatial import cKDTree
-
     lines = [with_places(edge, EVERY_MM) for edge in edges_mm]
     owner = np.repeat(np.arange(len(lines)), [len(line) for line in lines])
     positions = run.positions_mm[::CHECKED]
     # 1. every position lies on an edge
-    away_mm, nearest = cKDTree(np.vstack(lines)).query(positions)
+    away_mm, nearest = Neighbours(np.vstack(lines)).nearest(positions)
     off = np.flatnonzero(away_mm > OFF_MM)
     if len(off):
         why = f"it goes {away_mm.max():.2f} mm away from the edge"
@@ -47,7 +46,7 @@ def kept_to(edges_mm: tuple[Array, ...], run: Followed) -> Followed:
     # 2. a closed run passed every place of its own edge
     if run.ending == "closed":
         own = lines[int(np.bincount(owner[nearest]).argmax())]
-        missed_mm, passed = cKDTree(positions).query(own)
+        missed_mm, passed = Neighbours(positions).nearest(own)
         worst = int(np.argmax(missed_mm))
         if missed_mm[worst] > OFF_MM:
             why = f"it passes some of the edge {missed_mm[worst]:.2f} mm away"

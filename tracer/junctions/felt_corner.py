@@ -16,6 +16,7 @@ import numpy as np
 
 from morfax.motion import curves
 from morfax.motion.arrays import Array
+from morfax.motion.neighbours import Neighbours
 from morfax.motion.polyline import with_places
 from morfax.tracer.head.course import ahead_mm
 from morfax.tracer.head.plan import Plan
@@ -125,9 +126,7 @@ def is_as_felt(view: View, plan: Plan, seen: Array, deflection: float) -> bool:
     There the middle of the ink is inside of it. A pen of width w that turns by d about a vertex leaves the
     inner edge of its ink w/2/cos(d/2) from it, and the outer one w/2 before the aperture rounds it.
     """
-    from scipy.spatial import cKDTree
-
     inside_mm = 0.5 * view.width_mm * (1 / max(math.cos(deflection / 2), LEAST_COSINE) - 1)
-    felt = cKDTree(with_places(seen[:, :2], curves.SPACING_MM))
-    away_mm = felt.query(np.vstack(plan.stretches))[0]
+    felt = Neighbours(with_places(seen[:, :2], curves.SPACING_MM))
+    away_mm = felt.nearest(np.vstack(plan.stretches))[0]
     return bool(away_mm.max() < inside_mm + AS_FELT * view.pitch_mm)
