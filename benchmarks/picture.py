@@ -1,7 +1,7 @@
 """A picture of 100 000 points with its error in colour, three enlargements and a scale; 0.3 s are asked.
 
 Beside it, in the same run: `LineCollection`, as one would first draw such a line, on axes without anything.
-Processor time, the best of three; matplotlib is imported before.
+Processor time, the best of three; matplotlib, which the second needs, is imported before.
 """
 
 from __future__ import annotations

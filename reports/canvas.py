@@ -1,4 +1,4 @@
-"""The canvas of all pictures: a figure of matplotlib, the drawing in grey, a file that is whole or absent.
+"""The canvas of pictures: a figure of matplotlib, the drawing in grey, a file that is whole or absent.
 
 matplotlib takes most of a second to import: nothing here does it before a picture is asked for.
 """
@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from morfax.motion.files import printable, written_beside
+from morfax.reports.plate import Ground, View
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,9 +25,18 @@ UM_PER_MM = 1000.0
 DPI = 130
 LARGEST_IMAGE_PX = 2000  # a larger drawing is reduced for the picture
 REFERENCE = "#555555"
+GREYS = (
+    255,
+    240,
+    217,
+    189,
+    150,
+    115,
+    82,
+    37,
+    0,
+)  # from no darkness to all: "Greys" of matplotlib
 COMPRESSION = 3  # of zlib: a fifth larger than with 6, in two fifths of the time
-
-View = tuple[float, float, float, float]  # left, right, bottom, top, mm on the sheet
 
 
 def new_figure(
@@ -55,8 +65,13 @@ def save(figure: Figure, file: FilePath, *, trim: bool = True) -> None:
     if kind == "png":
         how["pil_kwargs"] = {"compress_level": COMPRESSION}
     figure.savefig(made, format=kind, dpi=DPI, **how)
+    write(made.getvalue(), file)
+
+
+def write(picture: bytes, file: FilePath) -> None:
+    """Write a picture whole or not at all."""
     with written_beside(file) as unfinished:
-        unfinished.write_bytes(made.getvalue())
+        unfinished.write_bytes(picture)
 
 
 def _own_words(figure: Figure) -> Iterator[Any]:
@@ -79,6 +94,14 @@ def show_drawing(axes: Axes, drawing: Drawing, view: View, darkest: float) -> Vi
         zorder=0,
     )
     return extent
+
+
+def grey(drawing: Drawing, view: View, darkest: float) -> Ground:
+    """The part of the drawing in a view as a grey picture, ink as 1 / `darkest`."""
+    darkness, extent = _cut_out(drawing, view)
+    steps = np.linspace(0, 1 / darkest, 256)
+    shown = np.interp(steps, np.linspace(0, 1, len(GREYS)), GREYS).round().astype(np.uint8)
+    return Ground(shown[np.clip(darkness * 255, 0, 255).astype(np.uint8)], extent)
 
 
 def _cut_out(drawing: Drawing, view: View) -> tuple[Any, View]:

@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.reports.canvas import View, new_figure, save
+from morfax.reports.canvas import new_figure, save
+from morfax.reports.plate import View
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -1,29 +1,24 @@
 """The error along a contour in colours, drawn as few long lines.
 
 Signals in: points along a contour, mm, the error at each, mm, and the part of the sheet that is shown. Out:
-lines on the axes of a picture.
+lines for a plate, and its scale of colours.
 
     points closer than half a dot of the picture are one, with the largest error among them
     64 colours; all pieces of one colour are one line with gaps, the largest errors on top
 
-matplotlib draws a line a hundred times as fast as as many pieces of which each has a colour of its own.
+A line is drawn a hundred times as fast as as many pieces of which each has a colour of its own.
 
 Source: our own. Questions: none.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
-
 import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
-from morfax.reports.canvas import UM_PER_MM, View
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.path import Path
+from morfax.reports.canvas import UM_PER_MM
+from morfax.reports.plate import Colours, Line, View, shades
 
 COLOURS = ("#1f5fa8", "#5fa8d3", "#f2a65a", "#c1121f")  # no error … largest error
 SHADES = 64  # from no error to the largest: neighbours look alike
@@ -32,13 +27,10 @@ BESIDE = 0.1  # of a view: points this far outside of it still belong to what is
 SMALLEST_UM = 1e-3  # of the scale of colours
 
 
-def draw_error(
-    axes: Axes, points_mm: Array, error_mm: Array, view: View, line_pt: float
-) -> Any:
-    """Draw the error along the points, where it is a number; gives what a colour bar needs."""
-    from matplotlib.collections import PathCollection
-    from matplotlib.colors import LinearSegmentedColormap
-
+def error_lines(
+    points_mm: Array, error_mm: Array, view: View, line_pt: float
+) -> tuple[list[Line], Colours]:
+    """The error along the points as lines, where it is a number; and what their colours mean."""
     error_um = np.abs(error_mm) * UM_PER_MM
     most_um = max(float(np.nanmax(error_um)), SMALLEST_UM)
     # a wider step is a way with the tool up
@@ -50,16 +42,14 @@ def draw_error(
     whole = np.logical_and.reduceat(joined, starts[:-1]) if len(starts) > 1 else joined[:0]
     ends = np.stack([points_mm[starts[:-1]], points_mm[starts[1:]]], axis=1)
     shown = whole & np.isfinite(larger) & _within(ends, view)
-    shades = np.minimum(larger[shown] * (SHADES / most_um), SHADES - 1).astype(int)
-    numbers, lines = _lines(ends[shown], shades, np.flatnonzero(shown))
-    colours = LinearSegmentedColormap.from_list("error", COLOURS)
-    drawn = PathCollection(
-        lines, facecolors="none", cmap=colours, linewidths=line_pt, zorder=3, capstyle="round"
-    )
-    drawn.set_array((numbers + 0.5) * most_um / SHADES)
-    drawn.set_clim(0, most_um)
-    axes.add_collection(drawn, autolim=False)
-    return drawn
+    numbers = np.minimum(larger[shown] * (SHADES / most_um), SHADES - 1).astype(int)
+    there, lines = _lines(ends[shown], numbers, np.flatnonzero(shown))
+    colours = [f"#{shade:06x}" for shade in shades(COLOURS, SHADES)]
+    drawn = [
+        Line(places, colours[shade], line_pt, order=3)
+        for shade, places in zip(there, lines, strict=True)
+    ]
+    return drawn, Colours(COLOURS, most_um, "error, µm")
 
 
 def _seen(points: Array, way: Array, view: View) -> NDArray[np.int64]:
@@ -89,21 +79,17 @@ def _within(ends: Array, view: View) -> NDArray[np.bool_]:
 
 def _lines(
     pieces: Array, shades: NDArray[np.int64], numbers: NDArray[np.int64]
-) -> tuple[NDArray[np.int64], list[Path]]:
+) -> tuple[NDArray[np.int64], list[Array]]:
     """The shades that there are, the largest last, and a line with gaps for each; pieces by their number."""
-    from matplotlib.path import Path
-
     order = np.argsort(shades, kind="stable")
     pieces, shades, numbers = pieces[order], shades[order], numbers[order]
     goes_on = np.zeros(len(pieces), bool)
     goes_on[1:] = (np.diff(numbers) == 1) & (np.diff(shades) == 0)
-    # a piece that goes on from the one before needs its end only
-    kept = np.column_stack([~goes_on, np.ones_like(goes_on)])
-    codes = np.where([True, False], Path.MOVETO, Path.LINETO) * np.ones_like(kept, np.uint8)
+    # a gap, the begin of a piece, its end; a piece that goes on from the one before needs its end only
+    gap = np.full((len(pieces), 1, 2), np.nan)
+    places = np.concatenate([gap, pieces], axis=1)
+    kept = np.column_stack([~goes_on, ~goes_on, np.ones_like(goes_on)])
     counts = kept.sum(axis=1).cumsum()
     there, firsts = np.unique(shades, return_index=True)
     cuts = counts[firsts[1:] - 1]
-    parts = zip(
-        np.split(pieces[kept], cuts), np.split(codes[kept].astype(np.uint8), cuts), strict=True
-    )
-    return there, [Path(places, code) for places, code in parts]
+    return there, [line[1:] for line in np.split(places[kept], cuts)]

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.reports import corrected, vector
 from morfax.reports.canvas import LARGEST_IMAGE_PX, REFERENCE, new_figure, save
-from morfax.reports.corrected import draw_corrections
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -51,7 +51,8 @@ def draw_numbered(result: LinesResult) -> None:
         _number(axes, entry)
     axes.set(xlim=extent[:2], ylim=extent[2:], xlabel="X, mm", ylabel="Y, mm", aspect="equal")
     if drawing.corrected is not None:
-        draw_corrections(axes, drawing.corrected)
+        for mark in corrected.marks(drawing.corrected):
+            vector.put(axes, mark)
     _legend(axes, seen)
     name = drawing.file.name if drawing.file else "drawing"
     axes.set_title(f"{name}: numbers for --lines", fontsize=10)

@@ -4,7 +4,7 @@ Signals in: a path, and what it was compared with: the drawing it came from, or 
 at each of some points along the contour, all in mm. Out: a picture; its axes are sheet coordinates in mm. The
 worst places are shown once more, enlarged until the error can be seen.
 
-matplotlib takes most of a second to import: nothing here does it before a picture is asked for.
+A .png is drawn by `bitmap`, which needs no matplotlib, other kinds by `vector`, which does.
 """
 
 from __future__ import annotations
@@ -12,21 +12,19 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path as FilePath
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.motion import Path
-from morfax.reports import leaders, left_out
-from morfax.reports.canvas import REFERENCE, UM_PER_MM, View, new_figure, save, show_drawing
-from morfax.reports.coloured import draw_error
-from morfax.reports.corrected import draw_corrections
+from morfax.reports import corrected, leaders, left_out
+from morfax.reports.canvas import COMPRESSION, REFERENCE, UM_PER_MM, grey, save, write
+from morfax.reports.coloured import error_lines
 from morfax.reports.page import INSETS, Page, lay_out
+from morfax.reports.plate import BLACK, Colours, Line, Plate, Spot, View, Words, with_gaps
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from morfax.jobs.who_led import WhoLed
     from morfax.tracer.drawing.drawing import Drawing
     from morfax.tracer.ink.left_out import Area
@@ -38,6 +36,7 @@ MARGIN_SHARE = 0.06  # of the larger side, round the path
 NARROWEST = 0.35  # shorter to longer side of what is shown
 # along an enlargement: each number of all takes a hundredth of a picture's time
 FEW_NUMBERS = 4
+PIXELS = ".png"
 LETTERS_PER_IN = 11.0  # of a title of 10 points: capitals and underscores too
 LIGHT = 3.2  # ink as light grey, for a path to lie on
 
@@ -61,47 +60,49 @@ class Picture:
 
 def draw(picture: Picture, file: FilePath) -> None:
     """Write the picture, of the kind that the suffix says (.png, .svg, .pdf)."""
-    insets = _worst_places(picture)
-    view = view_of(picture)
-    figure = new_figure(layout="none")
+    places, view = _worst_places(picture), view_of(picture)
     shape = (view[3] - view[2]) / (view[1] - view[0])
-    page = lay_out(figure, shape, len(insets), has_bar=_is_measured(picture))
-    _fill(page, picture, view)
-    for number, (axes, place_mm) in enumerate(zip(page.insets, insets, strict=True), 1):
-        _enlarge(axes, page.main, picture, place_mm, number)
-    save(figure, file, trim=False)
+    page = lay_out(shape, len(places), has_bar=_is_measured(picture))
+    main, scale = _whole(picture, view, page)
+    plates = [(page.main, main)]
+    for number, (box, place_mm) in enumerate(zip(page.insets, places, strict=True), 1):
+        plates.append((box, _enlarged(picture, place_mm, number)))
+        at = (float(place_mm[0]), float(place_mm[1]))
+        main.add(Spot(at, "+", 9, BLACK, order=5), Words(at, str(number), 9, offset_pt=(9, 9)))
+    if file.suffix.lower() == PIXELS:
+        from morfax.reports import bitmap
+
+        write(bitmap.encoded(bitmap.drawn(page, plates, scale), COMPRESSION), file)
+    else:
+        from morfax.reports import vector
+
+        save(vector.figure_of(page, plates, scale), file, trim=False)
 
 
-def _fill(page: Page, picture: Picture, view: View) -> None:
-    """Draw the whole contour, with its marks and the scale of the colours."""
-    axes = page.main
-    ground(axes, picture, view)
-    coloured = _contour(axes, picture, view, line_pt=1.8)
-    if picture.led is not None:
-        leaders.draw(axes, picture.led)
-    _ends(axes, picture.path)
-    _numbers(axes, picture)
-    _stops(axes, picture)
-    left_out.draw(axes, picture.left_out)
-    if picture.drawing is not None and picture.drawing.corrected is not None:
-        draw_corrections(axes, picture.drawing.corrected)
-    axes.set(xlim=view[:2], ylim=view[2:], xlabel="X, mm", ylabel="Y, mm", aspect="equal")
-    letters = round(page.wide_in * LETTERS_PER_IN)
+def _whole(picture: Picture, view: View, page: Page) -> tuple[Plate, Colours | None]:
+    """The whole contour with its marks, and what its colours mean."""
+    letters = round(page.main.width_in * LETTERS_PER_IN)
     title = picture.title
-    title = title if len(title) <= letters else f"{title[: letters - 1]}…"
-    axes.set_title(title, fontsize=10)
-    if page.bar is not None:
-        figure = axes.figure
-        figure.colorbar(coloured, cax=page.bar, orientation="horizontal", label="error, µm")
+    plate = Plate(view, title if len(title) <= letters else f"{title[: letters - 1]}…")
+    _ground(plate, picture)
+    scale = _contour(plate, picture, line_pt=1.8)
+    if picture.led is not None:
+        plate.add(*leaders.lines(picture.led))
+    _ends(plate, picture.path)
+    _numbers(plate, picture)
+    _stops(plate, picture)
+    plate.add(*left_out.marks(picture.left_out))
+    if picture.drawing is not None and picture.drawing.corrected is not None:
+        plate.add(*corrected.marks(picture.drawing.corrected))
+    return plate, scale
 
 
-def ground(axes: Axes, picture: Picture, view: View) -> None:
+def _ground(plate: Plate, picture: Picture) -> None:
     """Draw what the path was compared with: the drawing in light grey, or the other path."""
     if picture.drawing is not None:
-        show_drawing(axes, picture.drawing, view, LIGHT)
-    if picture.reference is not None:
-        for run in picture.reference.runs():
-            axes.plot(*run.T, color=REFERENCE, linewidth=0.8, linestyle=(0, (4, 2)), zorder=1)
+        plate.ground = grey(picture.drawing, plate.view, LIGHT)
+    if picture.reference is not None and (runs := picture.reference.runs()):
+        plate.add(Line(with_gaps(runs), REFERENCE, 0.8, dash=(4, 2), order=1))
 
 
 def _is_measured(picture: Picture) -> bool:
@@ -112,99 +113,63 @@ def _is_measured(picture: Picture) -> bool:
     return bool(np.isfinite(error_mm).any())
 
 
-def _contour(axes: Axes, picture: Picture, view: View, line_pt: float) -> Any:
-    """Draw the path, its error in colour if that is known; gives what a colour bar needs."""
+def _contour(plate: Plate, picture: Picture, line_pt: float) -> Colours | None:
+    """Draw the path, its error in colour if that is known; gives what the colours mean."""
     measured = _is_measured(picture)
-    for run in picture.path.runs():
-        axes.plot(
-            *run.T, color=UNMEASURED if measured else PLAIN, linewidth=line_pt * 0.6, zorder=2
-        )
+    if runs := picture.path.runs():
+        colour = UNMEASURED if measured else PLAIN
+        plate.add(Line(with_gaps(runs), colour, line_pt * 0.6))
     if not measured:
         return None
     assert picture.points_mm is not None and picture.error_mm is not None
-    return draw_error(axes, picture.points_mm, picture.error_mm, view, line_pt)
+    lines, scale = error_lines(picture.points_mm, picture.error_mm, plate.view, line_pt)
+    plate.add(*lines)
+    return scale
 
 
-def _ends(axes: Axes, path: Path) -> None:
+def _ends(plate: Plate, path: Path) -> None:
     """Mark where the path starts and where it ends in the work."""
     runs = path.runs()
     if not runs:
         return
-    start, end = runs[0][0], runs[-1][-1]
-    style: dict[str, Any] = {
-        "linestyle": "none",
-        "markersize": 7,
-        "markerfacecolor": "none",
-        "zorder": 4,
-    }
-    axes.plot(*start, marker="o", color="#2a7f3f", label="start", **style)
-    axes.plot(*end, marker="s", color="#7a3fa0", label="end", **style)
-    axes.legend(loc="upper right", fontsize=8, framealpha=0.8)
+    (x, y), (end_x, end_y) = runs[0][0].tolist(), runs[-1][-1].tolist()
+    plate.add(
+        Spot((x, y), "o", 7, "#2a7f3f", "start"),
+        Spot((end_x, end_y), "s", 7, "#7a3fa0", "end"),
+    )
 
 
-def _numbers(axes: Axes, picture: Picture) -> None:
+def _numbers(plate: Plate, picture: Picture) -> None:
     """Number several lines, each beside its start, in a ring: the enlargements have plain numbers."""
-    ring = {
-        "boxstyle": "circle,pad=0.2",
-        "facecolor": "white",
-        "edgecolor": REFERENCE,
-        "alpha": 0.85,
-    }
     for number, place_mm in picture.numbers_mm:
-        axes.annotate(
-            number,
-            place_mm,
-            (-11, -11),
-            textcoords="offset points",
-            fontsize=8,
-            bbox=ring,
-            zorder=6,
-        )
+        plate.add(Words(place_mm, number, 8, offset_pt=(-11, -11), ring=REFERENCE))
 
 
-def _stops(axes: Axes, picture: Picture) -> None:
+def _stops(plate: Plate, picture: Picture) -> None:
     """Mark the stops, and the ways with the tool up."""
     if not picture.stops_mm:
         return
     raised = np.where(picture.path.tool[:, None], np.nan, picture.path.xy_mm)
-    axes.plot(
-        *raised.T, color=RAISED, linewidth=1.2, linestyle=(0, (4, 2)), zorder=2, label="tool up"
-    )
+    plate.add(Line(raised, RAISED, 1.2, dash=(4, 2), label="tool up"))
     for name, place_mm in picture.stops_mm.items():
-        axes.plot(
-            *place_mm, marker="D", markersize=6, markerfacecolor="none", color=RAISED, zorder=5
-        )
-        axes.annotate(
-            name,
-            place_mm,
-            (7, 7),
-            textcoords="offset points",
-            fontsize=8,
-            color=RAISED,
-            zorder=6,
-        )
-    axes.legend(loc="upper right", fontsize=8, framealpha=0.8)
+        plate.add(Spot(place_mm, "D", 6, RAISED, order=5))
+        plate.add(Words(place_mm, name, 8, RAISED, (7, 7)))
 
 
-def _enlarge(axes: Axes, main: Axes, picture: Picture, place_mm: Array, number: int) -> None:
-    """Draw one of the worst places so large that its error can be seen."""
+def _enlarged(picture: Picture, place_mm: Array, number: int) -> Plate:
+    """One of the worst places so large that its error can be seen."""
     assert picture.points_mm is not None and picture.error_mm is not None
     error_mm = float(
         np.nanmax(np.abs(picture.error_mm[(picture.points_mm == place_mm).all(axis=1)]))
     )
     reach_mm = float(np.clip(20 * error_mm, 0.5, 4.0))
-    x, y = place_mm
+    x, y = (float(side) for side in place_mm)
     view = (x - reach_mm, x + reach_mm, y - reach_mm, y + reach_mm)
-    ground(axes, picture, view)
-    _contour(axes, picture, view, line_pt=2.2)
-    axes.set(xlim=view[:2], ylim=view[2:], aspect="equal")
-    axes.locator_params(nbins=FEW_NUMBERS)
-    axes.tick_params(labelsize=7)
-    axes.set_title(f"{number}: {error_mm * UM_PER_MM:.3g} µm at {x:.1f}, {y:.1f}", fontsize=8)
-    main.annotate(
-        str(number), (x, y), xytext=(9, 9), textcoords="offset points", fontsize=9, zorder=5
-    )
-    main.plot(x, y, marker="+", markersize=9, color="black", zorder=5)
+    title = f"{number}: {error_mm * UM_PER_MM:.3g} µm at {x:.1f}, {y:.1f}"
+    plate = Plate(view, title, 8, numbers_pt=7, most_numbers=FEW_NUMBERS, names=None)
+    _ground(plate, picture)
+    _contour(plate, picture, line_pt=2.2)
+    return plate
 
 
 def _worst_places(picture: Picture) -> list[Array]:

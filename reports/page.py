@@ -1,7 +1,7 @@
-"""The page of a picture: where its axes stand, in inches, without a trial drawing to lay it out.
+"""Where a picture's axes stand on its page, in inches, without a trial drawing to lay it out.
 
 Signals in: height to width of what is shown, how many enlargements there are, and whether there is a scale of
-colours. Out: the axes on a figure of that size.
+colours. Out: the size of the page, and boxes on it.
 
     wide enough for a column                     wide and low
     +-----------+  +---+                         +------------------+
@@ -17,11 +17,7 @@ room for words is fixed: numbers of up to six digits, and a title of one line.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from typing import NamedTuple
 
 INSETS = 3  # at most
 WIDE = 0.6  # height to width, below which the enlargements stand below
@@ -31,24 +27,32 @@ LEFT_IN, RIGHT_IN = 0.75, 0.25  # room for numbers and names beside axes
 TITLE_IN, NAMES_IN = 0.45, 0.6  # above and below the main axes
 BAR_IN, BAR_HIGH_IN = 0.8, 0.16  # room for the scale of colours, and the scale itself
 ROW_IN = 3.0  # of enlargements below
-AROUND_IN = (
-    0.45,
-    0.55,
-)  # what an enlargement has beside and below or above it, for numbers and its title
+# what an enlargement has beside and below or above it, for numbers and its title
+AROUND_IN = (0.45, 0.55)
+
+
+class Box(NamedTuple):
+    """A rectangle on the page, from its lower left corner, inches."""
+
+    left_in: float
+    bottom_in: float
+    width_in: float
+    height_in: float
 
 
 @dataclass(frozen=True, slots=True)
 class Page:
-    """The axes of one picture: the main ones, the enlargements, and those of the scale of colours."""
+    """A page, inches: the boxes of the main axes, of the enlargements, and of the scale of colours."""
 
-    main: Axes
-    insets: list[Axes]
-    bar: Axes | None
-    wide_in: float  # of the main axes
+    width_in: float
+    height_in: float
+    main: Box
+    insets: list[Box]
+    bar: Box | None
 
 
-def lay_out(figure: Figure, height_to_width: float, insets: int, *, has_bar: bool) -> Page:
-    """Set the size of a figure, and put its axes on it."""
+def lay_out(height_to_width: float, insets: int, *, has_bar: bool) -> Page:
+    """Choose the size of a page, and the places of its axes."""
     shape = max(height_to_width, FLATTEST)
     high = WIDTH_IN * min(shape, TALLEST)
     wide = high / shape
@@ -56,15 +60,10 @@ def lay_out(figure: Figure, height_to_width: float, insets: int, *, has_bar: boo
     below = (BAR_IN if has_bar else 0.0) + (ROW_IN if is_low else 0.0)
     column = BESIDE_IN if insets and not is_low else 0.0
     width, height = LEFT_IN + wide + RIGHT_IN + column, TITLE_IN + high + NAMES_IN + below
-    figure.set_size_inches(width, height)
-
-    def axes(left: float, bottom: float, across: float, up: float) -> Axes:
-        return figure.add_axes((left / width, bottom / height, across / width, up / height))
-
-    main = axes(LEFT_IN, NAMES_IN + below, wide, high)
+    main = Box(LEFT_IN, NAMES_IN + below, wide, high)
     bar_wide, bar_low = 0.7 * wide, below - BAR_IN + 0.5
-    bar = axes(LEFT_IN + 0.15 * wide, bar_low, bar_wide, BAR_HIGH_IN) if has_bar else None
-    beside: list[Axes] = []
+    bar = Box(LEFT_IN + 0.15 * wide, bar_low, bar_wide, BAR_HIGH_IN) if has_bar else None
+    beside: list[Box] = []
     cell_wide = width / INSETS if is_low else column
     cell_high = ROW_IN if is_low else height / INSETS
     side = min(cell_wide - AROUND_IN[0] - 0.1, cell_high - AROUND_IN[1])
@@ -72,5 +71,5 @@ def lay_out(figure: Figure, height_to_width: float, insets: int, *, has_bar: boo
         left = number * cell_wide if is_low else width - column
         bottom = 0.0 if is_low else height - (number + 1) * cell_high
         left += AROUND_IN[0] + (cell_wide - AROUND_IN[0] - side) / 2 - 0.05
-        beside.append(axes(left, bottom + AROUND_IN[1] / 2, side, side))
-    return Page(main, beside, bar, wide)
+        beside.append(Box(left, bottom + AROUND_IN[1] / 2, side, side))
+    return Page(width, height, main, beside, bar)

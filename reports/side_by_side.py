@@ -14,8 +14,8 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import lengths_mm
-from morfax.reports.canvas import REFERENCE, UM_PER_MM, new_figure
-from morfax.reports.overlay import Picture, ground, view_of
+from morfax.reports.canvas import REFERENCE, UM_PER_MM, new_figure, show_drawing
+from morfax.reports.overlay import LIGHT, Picture, view_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -43,9 +43,8 @@ def contours(
     figure = new_figure(11, 11)
     grid = figure.add_gridspec(3, 3, height_ratios=(2.1, 1, 1))
     main = figure.add_subplot(grid[0, :])
-    picture = Picture(title, traced, drawing)
     view = view_of(Picture(title, traced, reference=traced))
-    ground(main, picture, view)
+    show_drawing(main, drawing, view, LIGHT)
     _lines(main, ran, traced, np.zeros(2), 1.0)
     main.set(xlim=view[:2], ylim=view[2:], xlabel="X, mm", ylabel="Y, mm", aspect="equal")
     main.set_title(title, fontsize=10)

@@ -10,22 +10,28 @@ from PIL import Image
 
 from morfax.motion.arrays import Array
 from morfax.motion.motion import Path
-from morfax.reports.canvas import DPI, new_figure
-from morfax.reports.coloured import SHADES, draw_error
+from morfax.reports.canvas import DPI
+from morfax.reports.coloured import SHADES, error_lines
 from morfax.reports.overlay import Picture, draw
 from morfax.reports.page import lay_out
+from morfax.reports.plate import shades
 
 VIEW = (0.0, 100.0, 0.0, 100.0)
 UM = 1e-3  # mm
 
 
-def drawn(points: Array, error_mm: Array) -> tuple[list[tuple[Array, Array]], Array]:
-    """The lines (places and codes) that were drawn, and the error that the colour of each stands for, um."""
-    axes = new_figure().add_subplot()
-    lines = draw_error(axes, points, error_mm, VIEW, 1.8)
-    return [(path.vertices, path.codes) for path in lines.get_paths()], np.asarray(
-        lines.get_array()
-    )
+def drawn(points: Array, error_mm: Array) -> tuple[list[Array], Array]:
+    """The lines (places, with gaps) that are drawn, and the error that the colour of each stands for, um."""
+    lines, scale = error_lines(points, error_mm, VIEW, 1.8)
+    colours = [f"#{shade:06x}" for shade in shades(scale.colours, SHADES)]
+    told = np.array([colours.index(line.colour) + 0.5 for line in lines])
+    return [line.places_mm for line in lines], told * scale.largest / SHADES
+
+
+def strokes(places: Array) -> list[Array]:
+    """The pieces of a line between its gaps."""
+    gaps = np.flatnonzero(np.isnan(places[:, 0]))
+    return [part[np.isfinite(part[:, 0])] for part in np.split(places, gaps)]
 
 
 def test_each_colour_is_one_line_and_the_largest_error_is_drawn_last() -> None:
@@ -36,8 +42,8 @@ def test_each_colour_is_one_line_and_the_largest_error_is_drawn_last() -> None:
     assert told_um == pytest.approx(
         [1.0, 4.0], abs=4.0 / SHADES
     )  # um, half a shade to either side
-    assert lines[1][0][:, 0].min() >= 49.9  # mm, one step of 0.05 before the change
-    assert [int((codes == 1).sum()) for _, codes in lines] == [1, 1]  # each in one stroke
+    assert lines[1][:, 0].min() >= 49.9  # mm, one step of 0.05 before the change
+    assert [len(strokes(line)) for line in lines] == [1, 1]  # each in one stroke
 
 
 def test_the_largest_error_shows_however_many_points_there_are() -> None:
@@ -46,10 +52,8 @@ def test_the_largest_error_shows_however_many_points_there_are() -> None:
     error_mm[70_003] = 8 * UM
     lines, told_um = drawn(points, error_mm)
     assert told_um[-1] == pytest.approx(8.0, abs=8.0 / SHADES)  # um
-    assert np.abs(lines[-1][0][:, 0] - 70.0).max() < 0.2  # mm: two dots of the picture
-    assert (
-        sum(len(places) for places, _ in lines) < 5000
-    )  # of 100 000: a dot of the picture each
+    assert np.abs(lines[-1][:, 0] - 70.0).max() < 0.2  # mm: two dots of the picture
+    assert sum(len(places) for places in lines) < 5000  # of 100 000: a dot of the picture each
 
 
 def test_a_way_with_the_tool_up_and_one_without_a_number_are_not_drawn() -> None:
@@ -57,8 +61,9 @@ def test_a_way_with_the_tool_up_and_one_without_a_number_are_not_drawn() -> None
     error_mm = np.full(len(x), 2 * UM)
     error_mm[100:201] = np.nan  # 10 to 20 mm
     lines, _ = drawn(np.column_stack([x, np.full(len(x), 50.0)]), error_mm)
-    ((places, codes),) = lines
-    begins, ends = places[codes == 1, 0], places[np.r_[codes[1:] == 1, True], 0]
+    pieces = strokes(lines[0])
+    begins, ends = [piece[0, 0] for piece in pieces], [piece[-1, 0] for piece in pieces]
+    assert len(lines) == 1
     assert begins == pytest.approx([0, 20, 60], abs=0.2)  # mm: two dots
     assert ends == pytest.approx([10, 40, 100], abs=0.2)
 
@@ -66,18 +71,16 @@ def test_a_way_with_the_tool_up_and_one_without_a_number_are_not_drawn() -> None
 @pytest.mark.parametrize("shape", [0.05, 0.5, 1.0, 1.4, 5.0])
 @pytest.mark.parametrize("insets", [0, 3])
 def test_axes_stand_apart_on_the_page_and_keep_their_shape(shape: float, insets: int) -> None:
-    figure = new_figure(layout="none")
-    page = lay_out(figure, shape, insets, has_bar=True)
-    boxes = [axes.get_position() for axes in figure.axes]
-    assert len(boxes) == insets + 2
-    for number, one in enumerate(boxes):
-        assert 0 < one.x0 < one.x1 < 1 and 0 < one.y0 < one.y1 < 1
-        for other in boxes[:number]:
-            assert (
-                one.x1 < other.x0 or other.x1 < one.x0 or one.y1 < other.y0 or other.y1 < one.y0
-            )
-    main, (width, height) = page.main.get_position(), figure.get_size_inches()
-    assert main.height * height / (main.width * width) == pytest.approx(max(shape, 0.2))
+    page = lay_out(shape, insets, has_bar=True)
+    assert page.bar is not None and len(page.insets) == insets
+    boxes = [page.main, page.bar, *page.insets]
+    for number, (left, low, wide, high) in enumerate(boxes):
+        assert 0 < left < left + wide < page.width_in
+        assert 0 < low < low + high < page.height_in
+        for other_left, other_low, other_wide, other_high in boxes[:number]:
+            apart = left + wide < other_left or other_left + other_wide < left
+            assert apart or low + high < other_low or other_low + other_high < low
+    assert page.main.height_in / page.main.width_in == pytest.approx(max(shape, 0.2))
 
 
 def test_a_long_title_stays_on_the_picture(tmp_path: FilePath) -> None:

@@ -1,0 +1,300 @@
+"""Plates as pixels: lines, spots, areas, the drawing in grey; words and numbers by `lettering`.
+
+Signals in: plates and the boxes in which they stand. Signals out: a page of pixels, (rows, columns, BGR).
+
+All but words is drawn `FINER` times as large and then reduced: OpenCV's lines are whole pixels wide.
+Source: the looks are those of matplotlib, which draws the same plates as SVG and PDF (`vector`).
+Questions: none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.motion.arrays import Array
+from morfax.reports import lettering
+from morfax.reports.canvas import DPI
+from morfax.reports.page import Box, Page
+from morfax.reports.plate import Area, Colours, Ground, Line, Plate, Spot, fitted, shades
+
+Pixels = NDArray[np.uint8]
+
+FINER = 2
+SOFT_PX = (
+    1.5  # OpenCV's soft edges make a line wider by about as much; by trial beside matplotlib's
+)
+SHIFT = 4  # binary places of a pixel in which OpenCV takes places
+PX_PER_PT = FINER * DPI / 72
+FRAME_PT, TICK_PT, SPOT_PT = (
+    0.8,
+    3.5,
+    1.0,
+)  # matplotlib's: frame and ticks, their length, edge of a spot
+EDGE_GREY = "#cccccc"  # of a legend
+LEGEND_ALPHA, RING_ALPHA = 0.8, 0.85
+MARGIN_PX = 50  # round a canvas: half of the widest line, and of a dash
+FARTHEST_PX = 1 << 24  # OpenCV takes places as 32 bits with `SHIFT` binary places
+THIRD, FIFTH = 1 / 3, 0.2 * np.pi
+OUTLINES: dict[str, list[tuple[float, float]]] = {  # of size 1 about 0, as matplotlib's markers
+    "s": [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)],
+    "D": [(0, -0.707), (0.707, 0), (0, 0.707), (-0.707, 0)],
+    "X": [
+        *[(-0.25, -0.5), (0, -0.25), (0.25, -0.5), (0.5, -0.25), (0.25, 0), (0.5, 0.25)],
+        *[(0.25, 0.5), (0, 0.25), (-0.25, 0.5), (-0.5, 0.25), (-0.25, 0), (-0.5, -0.25)],
+    ],
+    "P": [
+        *[(-THIRD / 2, -0.5), (THIRD / 2, -0.5), (THIRD / 2, -THIRD / 2), (0.5, -THIRD / 2)],
+        *[(0.5, THIRD / 2), (THIRD / 2, THIRD / 2), (THIRD / 2, 0.5), (-THIRD / 2, 0.5)],
+        *[(-THIRD / 2, THIRD / 2), (-0.5, THIRD / 2), (-0.5, -THIRD / 2)],
+        (-THIRD / 2, -THIRD / 2),
+    ],
+    "*": [
+        (
+            (0.19, 0.5)[k % 2 == 0] * np.sin(k * FIFTH),
+            -(0.19, 0.5)[k % 2 == 0] * np.cos(k * FIFTH),
+        )
+        for k in range(10)
+    ],
+    "o": [(0.5 * np.cos(a), 0.5 * np.sin(a)) for a in np.linspace(0, 2 * np.pi, 24)],
+}
+
+
+def drawn(page: Page, plates: Sequence[tuple[Box, Plate]], scale: Colours | None) -> Pixels:
+    """Draw a page with all its plates and its scale of colours."""
+    high, wide = (round(side * DPI) for side in (page.height_in, page.width_in))
+    canvas = np.full((high * FINER, wide * FINER, 3), 255, np.uint8)
+    for box, plate in plates:
+        left, top, right, bottom = corners_px(page, box)
+        canvas[top:bottom, left:right] = _Field(plate, right - left, bottom - top).drawn()
+        _frame(canvas, corners_px(page, box))
+        for at, is_upright in lettering.ticks(plate, box):
+            _tick(canvas, corners_px(page, box), at, is_upright)
+    if scale is not None and page.bar is not None:
+        _fill_scale(canvas, corners_px(page, page.bar), scale)
+        for share, _ in lettering.scale_numbers(scale, page.bar):
+            _tick(canvas, corners_px(page, page.bar), share, is_upright=False)
+    small = cv2.resize(canvas, (wide, high), interpolation=cv2.INTER_AREA)
+    return lettering.written(np.asarray(small, np.uint8), page, plates, scale)
+
+
+def corners_px(page: Page, box: Box) -> tuple[int, int, int, int]:
+    """Left, top, right and bottom of a box on the fine canvas, pixels."""
+    high = round(page.height_in * DPI)
+    left, right = box.left_in * DPI, (box.left_in + box.width_in) * DPI
+    top, bottom = high - (box.bottom_in + box.height_in) * DPI, high - box.bottom_in * DPI
+    at = [round(side) * FINER for side in (left, top, right, bottom)]
+    return at[0], at[1], at[2], at[3]
+
+
+class _Field:
+    """What lies within the frame of a plate, on pixels of its own."""
+
+    def __init__(self, plate: Plate, wide_px: int, high_px: int) -> None:
+        self.plate = plate
+        self.view = fitted(plate.view, high_px / wide_px)
+        self.px_per_mm = wide_px / (self.view[1] - self.view[0])
+        self.canvas = np.full((high_px, wide_px, 3), 255, np.uint8)
+
+    def drawn(self) -> Pixels:
+        """Draw all but words."""
+        if self.plate.ground is not None:
+            self._ground(self.plate.ground)
+        for mark in self.plate.lowest_first:
+            if isinstance(mark, Line):
+                self._line(self._px(mark.places_mm), mark)
+            elif isinstance(mark, Spot):
+                self._spot(self._px(np.array([mark.place_mm]))[0], mark)
+            elif isinstance(mark, Area):
+                self._area(self._px(mark.corners_mm), mark)
+        for words in self.plate.words:
+            if words.ring:
+                middle, radius_px = lettering.ring(words)
+                at = self._px(np.array([words.place_mm]))[0] + FINER * np.array(middle)
+                self._ring(at, FINER * radius_px, words.ring)
+        self._legend()
+        return self.canvas
+
+    def _px(self, places_mm: Array) -> Array:
+        """Places on the canvas, columns and rows, pixels."""
+        left, _, _, top = self.view
+        x, y = places_mm[:, 0] - left, top - places_mm[:, 1]
+        return np.column_stack([x, y]) * self.px_per_mm - 0.5
+
+    def _ground(self, ground: Ground) -> None:
+        """The drawing in grey."""
+        left, right, low, high = ground.extent
+        ends = np.round(self._px(np.array([[left, high], [right, low]])) + 0.5).astype(int)
+        (first, top), (last, bottom) = ends
+        if last <= first or bottom <= top:
+            return
+        is_smaller = last - first < ground.grey.shape[1]
+        how = cv2.INTER_AREA if is_smaller else cv2.INTER_NEAREST
+        grey = cv2.resize(
+            ground.grey, (int(last - first), int(bottom - top)), interpolation=how
+        )
+        rows, columns = self.canvas.shape[:2]
+        to = self.canvas[max(top, 0) : min(bottom, rows), max(first, 0) : min(last, columns)]
+        to[:] = grey[
+            max(-top, 0) : max(-top, 0) + to.shape[0],
+            max(-first, 0) : max(-first, 0) + to.shape[1],
+            None,
+        ]
+
+    def _line(self, at_px: Array, line: Line) -> None:
+        """A line with its gaps."""
+        strokes = _strokes(_seen(at_px, self.canvas.shape))
+        if line.dash is not None:
+            on, off = (line.width_pt * PX_PER_PT * times for times in line.dash)
+            strokes = [dash for stroke in strokes for dash in _dashes(stroke, on, off)]
+        _polylines(self.canvas, strokes, line.colour, line.width_pt, closed=False)
+
+    def _spot(self, at_px: Array, spot: Spot) -> None:
+        """The outline of a spot, or a cross."""
+        size_px = spot.size_pt * PX_PER_PT
+        if spot.shape == "+":
+            arms = [np.array([[-0.5, 0], [0.5, 0]]), np.array([[0, -0.5], [0, 0.5]])]
+            strokes, closed = [at_px + size_px * arm for arm in arms], False
+        else:
+            strokes, closed = [at_px + size_px * np.array(OUTLINES[spot.shape])], True
+        _polylines(self.canvas, strokes, spot.colour, SPOT_PT, closed=closed)
+
+    def _area(self, corners_px: Array, area: Area) -> None:
+        """An area that what lies under it shines through."""
+        _blend(self.canvas, corners_px, area.colour, area.alpha)
+        if area.edged:
+            _polylines(self.canvas, [corners_px], area.colour, SPOT_PT, closed=True)
+
+    def _ring(self, middle: Array, radius_px: float, colour: str) -> None:
+        """A white disc with an edge."""
+        edge = middle + 2 * radius_px * np.array(OUTLINES["o"])
+        _blend(self.canvas, edge, "#ffffff", RING_ALPHA)
+        _polylines(self.canvas, [edge], colour, SPOT_PT, closed=True)
+
+    def _legend(self) -> None:
+        """The legend's box, with a sample of each mark in it."""
+        box = lettering.legend(self.plate, self.canvas.shape[1] / FINER)
+        if box is None:
+            return
+        left, top, right, bottom = (FINER * side for side in box.sides_px)
+        corners = np.array([[left, top], [right, top], [right, bottom], [left, bottom]])
+        _blend(self.canvas, corners, "#ffffff", LEGEND_ALPHA)
+        _polylines(self.canvas, [corners], EDGE_GREY, SPOT_PT, closed=True)
+        for mark, (begin, end, row) in zip(self.plate.legend, box.samples_px, strict=True):
+            sample = FINER * np.array([[begin, row], [end, row]])
+            if isinstance(mark, Line):
+                self._line(sample, mark)
+            elif isinstance(mark, Spot):
+                self._spot(sample.mean(axis=0), mark)
+            else:
+                up = FINER * np.array([0, box.half_high_px])
+                self._area(np.vstack([sample - up, sample[::-1] + up]), mark)
+
+
+def _bgr(colour: str) -> tuple[int, int, int]:
+    """Blue, green and red of #rrggbb."""
+    return int(colour[5:7], 16), int(colour[3:5], 16), int(colour[1:3], 16)
+
+
+def _polylines(
+    canvas: Pixels, strokes: list[Array], colour: str, width_pt: float, *, closed: bool
+) -> None:
+    """Draw strokes, each (n, 2) columns and rows."""
+    places = [
+        np.round(np.clip(stroke, -FARTHEST_PX, FARTHEST_PX) * (1 << SHIFT)).astype(np.int32)
+        for stroke in strokes
+    ]
+    width_px = max(2, round(width_pt * PX_PER_PT - SOFT_PX))
+    cv2.polylines(canvas, places, closed, _bgr(colour), width_px, cv2.LINE_AA, SHIFT)
+
+
+def _blend(canvas: Pixels, corners_px: Array, colour: str, alpha: float) -> None:
+    """Lay a colour over a polygon, so that what lies under it shines through."""
+    low = np.maximum(np.floor(corners_px.min(axis=0)).astype(int) - 1, 0)
+    high = np.ceil(corners_px.max(axis=0)).astype(int) + 2
+    under = canvas[low[1] : max(high[1], 0), low[0] : max(high[0], 0)]
+    if not under.size:
+        return
+    over = under.copy()
+    places = np.round((corners_px - low) * (1 << SHIFT)).astype(np.int32)
+    cv2.fillPoly(over, [places], _bgr(colour), cv2.LINE_AA, SHIFT)
+    under[:] = cv2.addWeighted(over, alpha, np.ascontiguousarray(under), 1 - alpha, 0.0)
+
+
+def _seen(at_px: Array, shape: tuple[int, ...]) -> Array:
+    """A line (n, 2) with gaps where it runs outside of a canvas, and without places less than a pixel on."""
+    if len(at_px) < 2:
+        return at_px
+    ends = np.stack([at_px[:-1], at_px[1:]])
+    with np.errstate(invalid="ignore"):
+        meets = (ends.max(axis=0) > -MARGIN_PX) & (
+            ends.min(axis=0) < np.array(shape[1::-1]) + MARGIN_PX
+        )
+    shown = meets.all(axis=1)
+    near = np.where((np.r_[shown, False] | np.r_[False, shown])[:, None], at_px, np.nan)
+    way = np.floor(np.cumsum(np.r_[0.0, np.nan_to_num(np.hypot(*np.diff(near, axis=0).T))]))
+    is_there = np.isfinite(near[:, 0])
+    last = np.r_[is_there[:-1] & ~is_there[1:], True]
+    return np.asarray(
+        near[np.r_[True, np.diff(way) > 0] | ~is_there | np.r_[True, ~is_there[:-1]] | last]
+    )
+
+
+def _strokes(places: Array) -> list[Array]:
+    """The pieces of a line between its gaps."""
+    is_there = np.isfinite(places).all(axis=1)
+    ends = np.flatnonzero(np.diff(np.r_[False, is_there, False].astype(np.int8)))
+    return [places[a:b] for a, b in ends.reshape(-1, 2)]
+
+
+def _dashes(stroke: Array, on_px: float, off_px: float) -> list[Array]:
+    """A stroke's dashes."""
+    way = np.r_[0.0, np.cumsum(np.hypot(*np.diff(stroke, axis=0).T))]
+    dashes = list[Array]()
+    for begin in np.arange(0.0, way[-1], on_px + off_px):
+        end = min(begin + on_px, float(way[-1]))
+        at = np.r_[begin, way[(way > begin) & (way < end)], end]
+        dashes.append(np.column_stack([np.interp(at, way, side) for side in stroke.T]))
+    return dashes
+
+
+def _frame(canvas: Pixels, corners: tuple[int, int, int, int]) -> None:
+    """The frame of axes, a pixel of the page wide."""
+    left, top, right, bottom = corners
+    for column in (left, right):
+        canvas[top : bottom + FINER, column : column + FINER] = 0
+    for row in (top, bottom):
+        canvas[row : row + FINER, left : right + FINER] = 0
+
+
+def _tick(
+    canvas: Pixels, corners: tuple[int, int, int, int], share: float, is_upright: bool
+) -> None:
+    """A tick below or to the left of axes, at a share of their width or height."""
+    left, top, right, bottom = corners
+    long = round(TICK_PT * PX_PER_PT)
+    if is_upright:
+        row = round((bottom + share * (top - bottom)) / FINER) * FINER
+        canvas[row : row + FINER, left - long : left] = 0
+    else:
+        column = round((left + share * (right - left)) / FINER) * FINER
+        canvas[bottom : bottom + long, column : column + FINER] = 0
+
+
+def _fill_scale(canvas: Pixels, corners: tuple[int, int, int, int], scale: Colours) -> None:
+    """A scale of colours from left to right, in a frame."""
+    left, top, right, bottom = corners
+    rgb = np.array(shades(scale.colours, right - left))
+    canvas[top:bottom, left:right] = np.stack([rgb & 255, rgb >> 8 & 255, rgb >> 16], axis=1)
+    _frame(canvas, corners)
+
+
+def encoded(pixels: Pixels, compression: int) -> bytes:
+    """The pixels as a PNG."""
+    made: Any
+    _, made = cv2.imencode(".png", pixels, [cv2.IMWRITE_PNG_COMPRESSION, compression])
+    return bytes(made.tobytes())
