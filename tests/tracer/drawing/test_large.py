@@ -5,6 +5,7 @@ A small drawing is taken for a large one: what is asked of A0 is asked of the co
 
 import io
 import warnings
+from contextlib import suppress
 from pathlib import Path
 
 import cv2
@@ -13,6 +14,7 @@ import pytest
 import tifffile
 from PIL import Image
 
+from morfax.motion.faults import DrawingFault
 from morfax.motion.motion import thin
 from morfax.motion.polyline import nearest_mm, with_places
 from morfax.tracer.drawing import by_rows, deviation, large, raster, tiff_rows
@@ -134,12 +136,23 @@ def test_what_cannot_be_read_by_rows_is_read_as_a_whole_and_told(tmp_path, as_la
 
 
 def test_a_file_that_ends_too_early_is_a_damaged_image(tmp_path, as_large):
-    from morfax.motion.faults import DrawingFault
-
     file = tmp_path / "cut.png"
     file.write_bytes(CAM.read_bytes()[: CAM.stat().st_size // 2])
     with pytest.raises(DrawingFault, match="damaged"):
         raster.read(file, coloured=False)
+
+
+@pytest.mark.parametrize("tiled", [False, True])
+def test_strips_or_tiles_without_a_height_are_not_read_by_rows(tmp_path, as_large, tiled):
+    """Whoever states a height of zero rows gets a fault of the tree or the picture, and no division by it."""
+    file, levels = tmp_path / "noise.tif", np.asarray(_picture("L"))
+    kind = {"tile": (128, 160)} if tiled else {"rowsperstrip": 16}
+    tifffile.imwrite(file, levels, compression="zlib", **kind)
+    tag = tiff_rows.TILE_HEIGHT if tiled else tiff_rows.STRIP_ROWS
+    with tifffile.TiffFile(file, mode="r+") as tiff:
+        tiff.pages[0].tags[tag].overwrite(0)
+    with suppress(DrawingFault):
+        assert np.array_equal(raster.read(file, coloured=False).pixels, levels)
 
 
 def test_parts_of_tiles_are_those_of_the_whole():
