@@ -36,12 +36,12 @@ def test_each_fault_costs_its_own_drawing(tmp_path: Path) -> None:
     names = [f"well-{k}" for k in range(30)]
     for place, bad in ((3, "dies-1"), (9, "once-1"), (14, "hangs-1"), (20, "eats-1")):
         names.insert(place, bad)
-    crew = crew_of(tmp_path, limit_s=1.0, memory_bytes=2_000_000_000)
+    crew = crew_of(tmp_path, limit_s=3.0, memory_bytes=2_000_000_000)
     rows = {row.file: row for row in crew.rows(names)}
     assert sorted(rows) == sorted(names)
     endings = {name: row.ending for name, row in rows.items() if not row.is_well}
     assert endings == {"dies-1": "killed", "hangs-1": "over limit", "eats-1": "no memory"}
-    assert rows["hangs-1"].code == 124 and 1.0 <= rows["hangs-1"].seconds < 20.0
+    assert rows["hangs-1"].code == 124 and 3.0 <= rows["hangs-1"].seconds < 60.0
     assert rows["dies-1"].code == 137 and crew.killed == 3  # twice, and once by once-1
     assert crew.processes == []
 
@@ -68,9 +68,7 @@ def test_whoever_stops_asking_ends_the_workers(tmp_path: Path) -> None:
     running = crew.processes
     begun = time.monotonic()
     rows.close()
-    assert (
-        time.monotonic() - begun < 5.0
-    )  # s; a worker that is free ends at once, others are killed
+    assert time.monotonic() - begun < 60.0  # s; a worker that hangs does so for ten minutes
     for process in running:
         with pytest.raises(ProcessLookupError):
             os.kill(process, 0)

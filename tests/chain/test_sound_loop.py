@@ -88,7 +88,7 @@ def once(here: dict[str, str], folder: Path) -> int:
     sent = morfax(here, "record", path, "--device", "pulse")
     if sent.returncode:
         listening.terminate()
-        listening.wait(timeout=60)
+        listening.wait(timeout=300)
         # Ctrl-C, or a tape that breaks off, leaves no file under the final name
         assert not (folder / "heard.csv").exists()
         assert sent.returncode == 10, sent.stderr

@@ -76,6 +76,6 @@ def test_linuxcnc_s_own_reader_takes_the_program_of_its_recipe(
         if name.endswith(".ngc"):
             call = ["rs274", "-t", "tool.tbl", "-g", name]
             done = subprocess.run(
-                call, cwd=tmp_path, capture_output=True, text=True, timeout=60
+                call, cwd=tmp_path, capture_output=True, text=True, timeout=300
             )
             assert done.returncode == 0 and "PROGRAM_END" in done.stdout, done.stderr

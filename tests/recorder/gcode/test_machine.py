@@ -254,7 +254,7 @@ def test_linuxcnc_reads_every_program_to_its_end(name: str, tmp_path: Path) -> N
     (tmp_path / "tool.tbl").touch()  # else it looks for the example's of a whole installation
     told = subprocess.run(
         ["rs274", "-t", "tool.tbl", "-g", f"part{machine(name).suffix}"],
-        cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False,
+        cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False,
     )  # fmt: skip
     assert told.returncode == 0, told.stderr
     assert "PROGRAM_END" in told.stdout

@@ -214,4 +214,4 @@ def rs274(lines: list[str], folder: Path) -> int:
     (folder / "tool.tbl").touch()
     (folder / "part.ngc").write_text("\n".join([*lines, "M2", ""]))
     words = ["rs274", "-t", "tool.tbl", "-g", "part.ngc"]
-    return subprocess.run(words, cwd=folder, capture_output=True, timeout=30).returncode
+    return subprocess.run(words, cwd=folder, capture_output=True, timeout=300).returncode

@@ -156,6 +156,6 @@ def test_linuxcnc_s_reader_takes_every_program_whose_words_it_knows(
     (tmp_path / "tool.tbl").touch()
     (tmp_path / "part.ngc").write_text(text if "\nM2" in text else text + "M2\n")
     words = ["rs274", "-t", "tool.tbl", "-g", "part.ngc"]
-    read = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    read = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, timeout=300)
     assert read.returncode == 0, read.stdout[-400:] + read.stderr[-400:]
     assert read.stdout.count("ARC_FEED") + read.stdout.count("STRAIGHT_FEED") > 20
