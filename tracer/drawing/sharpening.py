@@ -147,14 +147,12 @@ class _Room(NamedTuple):
     after: float
 
 
-def _room(
-    places: Array, turns: list[int], k: int, softness_px: float, is_closed: bool
-) -> _Room:
+def _room(places: Array, turns: list[int], k: int, blur_px: float, is_closed: bool) -> _Room:
     """The room for the legs of a corner: up to its neighbours, or to the ends of a piece of an outline."""
     at, count = turns[k], len(places)
     before = (at - turns[k - 1] - 1) % count + 1.0
     after = (turns[(k + 1) % len(turns)] - at - 1) % count + 1.0
-    clear = CLEAR * softness_px / APART_PX
+    clear = CLEAR * blur_px / APART_PX
     if not is_closed:
         before = at + clear if k == 0 else before
         after = count - 1 - at + clear if k == len(turns) - 1 else after

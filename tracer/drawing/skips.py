@@ -19,7 +19,8 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.drawing.strokes import INK, Sheet, Stroke
+from morfax.tracer.drawing.inked import INK
+from morfax.tracer.drawing.strokes import Sheet, Stroke
 
 # All limits below were chosen by trial on `python -m benchmarks rough`.
 WIDEST_MM = 1.0  # over a wider gap a leg's own bend does not lead any more

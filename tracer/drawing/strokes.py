@@ -22,28 +22,22 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault, LineFault
-from morfax.tracer.drawing.blocks import BLOCK_PX, Runs, near, runs_behind_spot
-from morfax.tracer.drawing.components import Patches, strips
+from morfax.tracer.drawing.components import Patches
 from morfax.tracer.drawing.depth import depth_along
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.drawing.large import runs_darker
+from morfax.tracer.drawing.inked import DEEPEST_PX, are_solid, depths_px, inked
 from morfax.tracer.drawing.middles import deepest
 from morfax.tracer.drawing.numbering import ALIKE, Ink, longest_first
-from morfax.tracer.drawing.tiles import Tiles
 
 Pixels = NDArray[Any]
 Window = tuple[int, int, int, int]  # first row and column, row and column after the last
 
-INK = 0.5
-SOFTENED_PX = 0.7  # standard deviation of the spot behind which ink is told
 LEAST_LENGTH_MM = 2.0
 LEAST_LENGTH_PX = 12
-DEEPEST_PX = 200  # a line of 6 mm at 1200 dpi is 142 deep; the middle of a darker patch is not that of a line
 TILE_PX = 2048
 FEW_PLACES = 2000  # of a stroke that is kept: 48 kB
 SMALL_PART = 0.25  # of a sheet; by trial
 ABOUT_PX = 64  # rows above and below a place in which the nearest ink is sought first; by trial
-SOLID = 0.5  # of a patch's ink is beside filled shapes: it is theirs
 LESS = 0.85  # ink about an end, of what is usual: half, and what the middle place lies within the end
 MOST_ENDS = 100
 # lines whose widths are within this share of the usual width are one pen's; by trial
@@ -94,15 +88,15 @@ class Sheet:
     @classmethod
     def of(cls, drawing: Drawing) -> Sheet:
         """Find the patches; raises DrawingFault if none is long enough to be a line."""
-        runs = _inked(drawing)
+        runs = inked(drawing)
         patches = Patches.of([runs])
         areas, shape = patches.areas, drawing.darkness.shape
-        deep = np.bincount(patches.patch, _depths(runs, shape), patches.count) / areas
+        deep = np.bincount(patches.patch, depths_px(runs, shape), patches.count) / areas
         widths = np.maximum(
             4 * deep - 2, 1.0
         )  # a line of w pixels has depths 1, 2 … w/2 … 2, 1
         lengths_mm, widths_mm = areas / widths * drawing.pitch_mm, widths * drawing.pitch_mm
-        sheet = cls(drawing, patches, lengths_mm, widths_mm, _are_solid(drawing, patches))
+        sheet = cls(drawing, patches, lengths_mm, widths_mm, are_solid(drawing, patches))
         if not sheet._long_enough().any():
             raise DrawingFault(
                 "no line on the drawing: nothing on it is long enough; check the file and its scale"
@@ -295,43 +289,3 @@ class Sheet:
         disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * disc_px + 1,) * 2)
         i, j, filled = deepest(row, begin, end, depth, inner, disc)
         return i + part[0], j + part[2], filled
-
-
-def _inked(drawing: Drawing) -> Runs:
-    """The runs of ink on a sheet."""
-    if isinstance(drawing.darkness, Tiles):
-        found = runs_darker(drawing.darkness, SOFTENED_PX, INK)
-        row, begin, end = zip(*found, strict=True)
-        return np.concatenate(row), np.concatenate(begin), np.concatenate(end)
-    dark = near(drawing.darkest > INK)
-    return runs_behind_spot(drawing.darkness, dark, BLOCK_PX, SOFTENED_PX, INK)
-
-
-def _depths(runs: Runs, shape: tuple[int, int]) -> Array:
-    """The depth of the pixels of each run, added up."""
-    row, begin, end = runs
-    sums = np.zeros(len(row))
-    for top, bottom, rows in strips(shape, DEEPEST_PX):
-        first, own, own_end, last = np.searchsorted(row, (rows.start, top, bottom, rows.stop))
-        if own == own_end:
-            continue
-        part = slice(first, last)
-        depth = depth_along(
-            row[part] - rows.start, begin[part], end[part], (rows.stop - rows.start, shape[1])
-        ).astype(float)
-        places = np.r_[0, np.cumsum(end[part] - begin[part])[:-1]]
-        sums[own:own_end] = np.add.reduceat(depth, places)[own - first : own_end - first]
-    return sums
-
-
-def _are_solid(drawing: Drawing, patches: Patches) -> NDArray[np.bool_]:
-    """Which patches of ink are the rims of filled shapes."""
-    if drawing.shapes is None:
-        return np.zeros(patches.count, bool)
-    down, across = (
-        math.ceil(whole / part)
-        for whole, part in zip(drawing.darkness.shape, drawing.shapes.shape, strict=True)
-    )
-    beside = drawing.shapes[patches.row // down, (patches.begin + patches.end) // 2 // across]
-    inked = np.bincount(patches.patch, beside * (patches.end - patches.begin), patches.count)
-    return np.asarray(inked > SOLID * patches.areas)

@@ -24,9 +24,10 @@ from numpy.typing import NDArray
 
 from morfax.tracer.drawing.components import Mask, strips
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.inked import INK
 from morfax.tracer.drawing.lettering import lettering
 from morfax.tracer.drawing.solids import Solids
-from morfax.tracer.drawing.strokes import INK, Sheet
+from morfax.tracer.drawing.strokes import Sheet
 
 SOFTENED_PX = 0.7  # as patches are found (see `drawing.strokes`)
 HALO_PX = 8  # beside a strip: softening looks no further

@@ -22,7 +22,7 @@ import numpy as np
 
 from morfax.tracer.drawing.components import Mask, strips
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.drawing.strokes import INK
+from morfax.tracer.drawing.inked import INK
 from morfax.tracer.drawing.thinning import neighbours, thinned
 
 SPOT_PX = 1.0  # standard deviation of the spot that averages the paper's noise

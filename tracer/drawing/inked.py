@@ -1,0 +1,67 @@
+"""Inked: where on a sheet there is ink, how deep it is, and which of it belongs to filled shapes.
+
+Signals: a Drawing in; runs of pixels of ink (see `components`) and figures of them out. Ink is what is darker
+than half behind a small spot. Paper takes no time: blocks of a sheet without anything dark are not looked at.
+
+Source: our own.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.motion.arrays import Array
+from morfax.tracer.drawing.blocks import BLOCK_PX, Runs, near, runs_behind_spot
+from morfax.tracer.drawing.components import Patches, strips
+from morfax.tracer.drawing.depth import depth_along
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.large import runs_darker
+from morfax.tracer.drawing.tiles import Tiles
+
+INK = 0.5
+SOFTENED_PX = 0.7  # standard deviation of the spot behind which ink is told
+DEEPEST_PX = 200  # a line of 6 mm at 1200 dpi is 142 deep; the middle of a darker patch is not that of a line
+SOLID = 0.5  # of a patch's ink is beside filled shapes: it is theirs
+
+
+def inked(drawing: Drawing) -> Runs:
+    """The runs of ink on a sheet."""
+    if isinstance(drawing.darkness, Tiles):
+        found = runs_darker(drawing.darkness, SOFTENED_PX, INK)
+        row, begin, end = zip(*found, strict=True)
+        return np.concatenate(row), np.concatenate(begin), np.concatenate(end)
+    dark = near(drawing.darkest > INK)
+    return runs_behind_spot(drawing.darkness, dark, BLOCK_PX, SOFTENED_PX, INK)
+
+
+def depths_px(runs: Runs, shape: tuple[int, int]) -> Array:
+    """The depth of the pixels of each run, added up."""
+    row, begin, end = runs
+    sums = np.zeros(len(row))
+    for top, bottom, rows in strips(shape, DEEPEST_PX):
+        first, own, own_end, last = np.searchsorted(row, (rows.start, top, bottom, rows.stop))
+        if own == own_end:
+            continue
+        part = slice(first, last)
+        depth = depth_along(
+            row[part] - rows.start, begin[part], end[part], (rows.stop - rows.start, shape[1])
+        ).astype(float)
+        places = np.r_[0, np.cumsum(end[part] - begin[part])[:-1]]
+        sums[own:own_end] = np.add.reduceat(depth, places)[own - first : own_end - first]
+    return sums
+
+
+def are_solid(drawing: Drawing, patches: Patches) -> NDArray[np.bool_]:
+    """Which patches of ink are the rims of filled shapes."""
+    if drawing.shapes is None:
+        return np.zeros(patches.count, bool)
+    down, across = (
+        math.ceil(whole / part)
+        for whole, part in zip(drawing.darkness.shape, drawing.shapes.shape, strict=True)
+    )
+    beside = drawing.shapes[patches.row // down, (patches.begin + patches.end) // 2 // across]
+    inked = np.bincount(patches.patch, beside * (patches.end - patches.begin), patches.count)
+    return np.asarray(inked > SOLID * patches.areas)
