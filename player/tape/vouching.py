@@ -141,10 +141,9 @@ class Vouching:
         upto = len(held) if ended else min(int(self._vouched) - held.first_row, len(held))
         upto = max(upto, self._given)
         out = self._cut(held, upto)
-        if self._fault is not None:
-            return out, (len(out), self._fault)
-        if certain.fault is not None:
-            return out, (len(out), certain.fault[1])
+        fault = self._fault or (certain.fault and certain.fault[1])
+        if fault is not None:
+            return out, (len(out), fault)
         keep = max(upto - self._delays[0].span, 0)
         self._held, self._given = held.cut(keep, len(held)), upto - keep
         return out, None
@@ -167,8 +166,8 @@ class Vouching:
         """Note the fault of a tape that ends where it does not say so, or in a dropout."""
         if self._fault is not None or certain.fault is not None:
             return
-        left = min(self._lost.values(), key=lambda gap: gap.first, default=None)
-        left = left or self._ways.unsettled()
+        lost = min(self._lost.values(), key=lambda gap: gap.first, default=None)
+        left = lost or self._ways.unsettled()
         if left is not None:
             self._fault = self._lost_way(left, None)
         elif not self._order.ended:
@@ -184,12 +183,11 @@ class Vouching:
         first = max(int(delay.told_row), held.first_row)
         bound = self._bounds[axis].between(first, last)
         way = delay.corrected(held.cycles[:, axis], held.first_row)[first - held.first_row :]
-        moved = float(np.ptp(way))
         allowed = TAIL_CYCLES + (bound.speed * len(way) if bound else 0.0)
-        off_s, doubt_s = (moved - allowed) / self._format.reference_hz, delay.doubt_s(last)
-        if off_s <= 0 and doubt_s * self._format.reference_hz <= ALLOWED_CYCLES:
+        off, doubt_s = float(np.ptp(way)) - allowed, delay.doubt_s(last)
+        if off <= 0 and doubt_s * self._format.reference_hz <= ALLOWED_CYCLES:
             return None
-        off_s = max(off_s, doubt_s)
+        off_s = max(off / self._format.reference_hz, doubt_s)
         return faults.swings(axis + 1, self._format.axes, off_s, last / self._rate_hz)
 
     def _cut(self, held: Phases, upto: int) -> Phases:
@@ -251,12 +249,10 @@ class Vouching:
 
     def _place(self, axis: int, row: float) -> float:
         """Where an axis is at a row that is held, cycles, without the delay of its track."""
-        held, span = self._rows, 2 * self._delays[axis].span
+        held, delay, span = self._rows, self._delays[axis], 2 * self._delays[axis].span
         at = max(int(row) - held.first_row, 0)
         first = max(at - span, 0)
-        near = self._delays[axis].corrected(
-            held.cycles[first : at + span + 1, axis], held.first_row + first
-        )
+        near = delay.corrected(held.cycles[first : at + span + 1, axis], held.first_row + first)
         return between(near, row - held.first_row - first)
 
     def _settle(self, axis: int, row: float, off: float, stands_mm: StandsMm) -> None:
@@ -265,8 +261,8 @@ class Vouching:
         self._weak[axis] = self._weak[axis][len(before) :]
         replaced = self._ways.bare(axis, before)
         if replaced is not None:
-            other = faults.replaced(axis + 1, self._format.axes, replaced / self._rate_hz)
-            self._fault = self._fault or other
+            time_s = replaced / self._rate_hz
+            self._fault = self._fault or faults.replaced(axis + 1, self._format.axes, time_s)
             return
         gap, whole = self._ways.lost(axis, row, off), round(off)
         if gap is not None and not self._mends:
