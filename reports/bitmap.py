@@ -204,10 +204,11 @@ def _polylines(
     canvas: Pixels, strokes: list[Array], colour: str, width_pt: float, *, closed: bool
 ) -> None:
     """Draw strokes, each (n, 2) columns and rows."""
-    places = [
-        np.round(np.clip(stroke, -FARTHEST_PX, FARTHEST_PX) * (1 << SHIFT)).astype(np.int32)
-        for stroke in strokes
-    ]
+    if not strokes:
+        return
+    whole = np.clip(np.concatenate(strokes), -FARTHEST_PX, FARTHEST_PX)
+    ends = np.cumsum([len(stroke) for stroke in strokes])
+    places = np.split(np.round(whole * (1 << SHIFT)).astype(np.int32), ends[:-1])
     width_px = max(2, round(width_pt * PX_PER_PT - SOFT_PX))
     cv2.polylines(canvas, places, closed, _bgr(colour), width_px, cv2.LINE_AA, SHIFT)
 
@@ -229,19 +230,21 @@ def _seen(at_px: Array, shape: tuple[int, ...]) -> Array:
     """A line (n, 2) with gaps where it runs outside of a canvas, and without places less than a pixel on."""
     if len(at_px) < 2:
         return at_px
-    ends = np.stack([at_px[:-1], at_px[1:]])
-    with np.errstate(invalid="ignore"):
-        meets = (ends.max(axis=0) > -MARGIN_PX) & (
-            ends.min(axis=0) < np.array(shape[1::-1]) + MARGIN_PX
-        )
-    shown = meets.all(axis=1)
-    near = np.where((np.r_[shown, False] | np.r_[False, shown])[:, None], at_px, np.nan)
-    way = np.floor(np.cumsum(np.r_[0.0, np.nan_to_num(np.hypot(*np.diff(near, axis=0).T))]))
-    is_there = np.isfinite(near[:, 0])
-    last = np.r_[is_there[:-1] & ~is_there[1:], True]
-    return np.asarray(
-        near[np.r_[True, np.diff(way) > 0] | ~is_there | np.r_[True, ~is_there[:-1]] | last]
-    )
+    # 1. without pieces of which both ends are beyond the same side
+    shown = np.ones(len(at_px) - 1, bool)
+    for at, size in zip(at_px.T, shape[1::-1], strict=True):
+        before, beyond = at < -MARGIN_PX, at > size + MARGIN_PX
+        shown &= ~(before[:-1] & before[1:]) & ~(beyond[:-1] & beyond[1:])
+    kept = np.flatnonzero(np.r_[shown, False] | np.r_[False, shown])
+    near = np.insert(at_px[kept], np.flatnonzero(np.diff(kept) > 1) + 1, np.nan, axis=0)
+    if len(near) < 2:
+        return near
+    # 2. a place of each pixel of the way, and both places beside a gap
+    x, y = near.T
+    way = np.floor(np.cumsum(np.nan_to_num(np.hypot(np.diff(x), np.diff(y)))))
+    is_gap = np.isnan(x)
+    ends = np.r_[True, is_gap[:-1]] | is_gap | np.r_[is_gap[1:], True]
+    return np.asarray(near[ends | np.r_[True, np.diff(way, prepend=0.0) > 0]])
 
 
 def _strokes(places: Array) -> list[Array]:
