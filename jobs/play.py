@@ -187,7 +187,7 @@ class PlayJob:
 
     def _record(self, path: Path, file: FilePath, listener: Listener) -> None:
         """Record the machine's path in the medium that a name says, for the usual machine of that."""
-        from morfax.recorder.gcode.program_head import Made
+        from morfax.recorder.gcode.made import Made
 
         unit = RecordingUnit(made=Made(f"{self.tape.name}, played"))
         unit.record(path.motion(), file, listener)

@@ -146,7 +146,7 @@ class RecordJob:
                 "--orders is for step programs, .steps; give -o such a name, or leave it out"
             )
         if not medium.is_tape(program):
-            from morfax.recorder.gcode.program_head import Made
+            from morfax.recorder.gcode.made import Made
 
             unit = replace(self.unit, made=Made(self.source.name))
             return steps | unit.program_settings(program)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from morfax.motion.motion import Motion
     from morfax.motion.placement import Placement
     from morfax.recorder.gcode.machine import Machine
-    from morfax.recorder.gcode.program_head import Made
+    from morfax.recorder.gcode.made import Made
     from morfax.recorder.media import Report
     from morfax.recorder.tape.tape import TapeFormat
     from morfax.tracer.cutter.contouring import Milling

@@ -58,13 +58,14 @@ class DrawingFile:
         """
         from morfax.tracer.drawing import inks
         from morfax.tracer.drawing.drawing import Drawing
-        from morfax.tracer.drawing.shapes_among_lines import drawing_of_both
 
         self.check()
         ink = None if self.ink is None else inks.parsed(self.ink)
         scan, made = self._scanned(listener)
         with listener.progress(MEASURED, 1.0):
             if self.both:
+                from morfax.tracer.drawing.shapes_among_lines import drawing_of_both
+
                 drawing = drawing_of_both(scan, self.scale(), ink)
             else:
                 drawing = Drawing.of(scan, self.scale(), ink, self.edge, self.paper)

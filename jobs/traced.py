@@ -94,7 +94,7 @@ class Traced:
         """The recording unit with the zero of this program, and with what its head says: the drawing's name
         and the tool as text, the size of the part, and where the zero is.
         """
-        from morfax.recorder.gcode.program_head import Made
+        from morfax.recorder.gcode.made import Made
 
         start_mm = self.path.positions_mm[0]
         placed = unit.at(self.zero.origin_mm(unit.placement.about(start_mm)))

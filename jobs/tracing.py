@@ -171,9 +171,6 @@ class Tracing:
     def _followed(self, drawing: Drawing, listener: Listener) -> Trace:
         """The line that the head followed, or the lines."""
         from morfax.tracer.program.trace import trace
-        from morfax.tracer.program.trace_ink import trace_ink
-        from morfax.tracer.program.trace_ink_and_edges import trace_ink_and_edges
-        from morfax.tracer.program.trace_lines import trace_lines, trace_places
 
         line = self.settings.line
         with listener.progress("following the line", 1.0) as advance:
@@ -184,13 +181,20 @@ class Tracing:
             if line.arrows_mm or line.more_starts_mm:
                 starts_mm = line.starts_mm
                 if starts_mm:
+                    from morfax.tracer.program.trace_lines import trace_places
+
                     return trace_places(drawing, starts_mm, self.of_head, self.operator, tell)
             if line.lines is None:
                 return trace(drawing, line.start_mm, self.of_head, self.operator, tell)
+            from morfax.tracer.program.trace_lines import trace_lines
+
             if line.lines != "all":
                 return trace_lines(drawing, line.lines, self.of_head, self.operator, tell)
             if drawing.edges_mm:  # of filled shapes: every edge is a contour
                 return trace_lines(drawing, "contours", self.of_head, self.operator, tell)
+            from morfax.tracer.program.trace_ink import trace_ink
+            from morfax.tracer.program.trace_ink_and_edges import trace_ink_and_edges
+
             # crosses and ticks are lines then: no turns and no stops
             follow = trace_ink_and_edges if drawing.both else trace_ink
             return follow(

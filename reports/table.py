@@ -11,9 +11,9 @@ table; a list of them becomes a table of its own, whose rows are named after the
 
 from __future__ import annotations
 
-import io
 import json
 import math
+import unicodedata
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
@@ -25,7 +25,7 @@ Row = tuple[str, Figures]  # of a table: its name, and its figures
 
 _LABELS = {"rms": "RMS", "p95": "95 %", "max": "largest"}
 _LENGTH_DECIMALS = 5  # of a mm; a smaller part is the rounding of the files
-_WIDEST = 1000  # columns; a table is never wrapped, so that a program can read it line by line
+_APART = "  "  # between columns; a table is never wrapped, so that a program can read it line by line
 
 _UNITS: dict[str, Callable[[Any], str]] = {
     "_mm_s": units.format_speed_mm_s,
@@ -47,10 +47,6 @@ def as_json(figures: Figures) -> str:
 
 def as_text(figures: Figures) -> str:
     """The figures as text: one line each, then those inside as a table."""
-    from rich.console import Console
-
-    out = io.StringIO()
-    console = Console(file=out, width=_WIDEST, highlight=False, emoji=False, markup=False)
     told = {key: value for key, value in figures.items() if value is not None}
     rows = [(key, value) for key, value in told.items() if isinstance(value, Mapping)]
     tables = _tables(rows)
@@ -60,11 +56,10 @@ def as_text(figures: Figures) -> str:
         for key, value in told.items()
         if not (isinstance(value, Mapping) or _is_listing(value))
     }
-    if alone:
-        console.print(_lines(alone))
+    said = _in_columns([_told(key, value) for key, value in alone.items()], 2)
     for listing in (*lists, *tables):
-        console.print(_grid(listing))
-    return printable("\n".join(line.rstrip() for line in out.getvalue().splitlines()))
+        said += _in_columns(as_cells(listing), 1)
+    return printable("\n".join(said))
 
 
 def _tables(rows: list[Row]) -> list[list[Row]]:
@@ -100,29 +95,27 @@ def _named(listing: list[Figures]) -> list[Row]:
     ]
 
 
-def _lines(figures: Figures) -> Any:
-    """One line for each figure: its label and its value."""
-    from rich.table import Table
+def _in_columns(rows: Sequence[Sequence[str]], left: int) -> list[str]:
+    """Rows of cells as lines of text; so many of the columns begin at their left edge, the rest end right."""
+    rows = [[" ".join(cell.split("\n")) for cell in row] for row in rows]
+    widths = [max(_width(cell) for cell in column) for column in zip(*rows, strict=True)]
+    lines = list[str]()
+    for row in rows:
+        fill = [" " * (width - _width(cell)) for cell, width in zip(row, widths, strict=True)]
+        cells = [cell + space for cell, space in zip(row[:left], fill[:left], strict=True)]
+        cells += [space + cell for cell, space in zip(row[left:], fill[left:], strict=True)]
+        lines.append(_APART.join(cells).rstrip())
+    return lines
 
-    table = Table(box=None, show_header=False, pad_edge=False, padding=(0, 2, 0, 0))
-    table.add_column()
-    table.add_column()
-    for key, value in figures.items():
-        table.add_row(*_told(key, value))
-    return table
 
-
-def _grid(rows: Sequence[Row]) -> Any:
-    """One row for each dictionary, one column for each figure that any of them has."""
-    from rich.table import Table
-
-    header, *lines = as_cells(rows)
-    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
-    for number, label in enumerate(header):
-        table.add_column(label, justify="right" if number else "left")
-    for line in lines:
-        table.add_row(*line)
-    return table
+def _width(text: str) -> int:
+    """How many columns of a terminal a text takes."""
+    return sum(
+        0
+        if unicodedata.combining(letter)
+        else 1 + (unicodedata.east_asian_width(letter) in "WF")
+        for letter in text
+    )
 
 
 def as_cells(rows: Sequence[Row]) -> list[list[str]]:

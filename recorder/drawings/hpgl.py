@@ -29,8 +29,8 @@ from morfax.recorder.drawings.chords import box, chords
 from morfax.recorder.drawings.cut_lines import CutLine, cut_lines_of
 from morfax.recorder.drawings.drawings import TOLERANCE_MM, DrawingReport
 from morfax.recorder.gcode.machine import HPGL, Machine, machine
+from morfax.recorder.gcode.made import Made
 from morfax.recorder.gcode.plan import Feeds, Writing
-from morfax.recorder.gcode.program_head import Made
 from morfax.recorder.gcode.running_time import running_time_s
 from morfax.recorder.gcode.tooling import without_z
 

@@ -16,7 +16,6 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from itertools import islice, pairwise
 
 import numpy as np
@@ -33,6 +32,7 @@ from morfax.recorder.gcode.arc_places import (
 )
 from morfax.recorder.gcode.closing import loop
 from morfax.recorder.gcode.machine import Machine
+from morfax.recorder.gcode.made import Made
 from morfax.recorder.gcode.plan import BlockPlan
 from morfax.recorder.gcode.program_text import CUTS, RAPID, WORDS, Block, digits
 
@@ -43,20 +43,6 @@ SHARP_RAD = math.radians(20)  # between two blocks of a bend it is less; chosen 
 STEP = 1e-3  # of a block's way, for its direction
 
 Place2 = tuple[float, float]
-
-
-@dataclass(frozen=True, slots=True)
-class Made:
-    """What a program is made from: the drawing's or path's name, and the tool, as text; '' not known.
-
-    Width and height of the part, mm, and where on the sheet the program's zero is, mm; None: not known, or
-    that of the sheet.
-    """
-
-    source: str = ""
-    tool: str = ""
-    part_mm: tuple[float, float] | None = None
-    zero_mm: Place2 | None = None
 
 
 def head(

@@ -19,14 +19,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple
+from typing import NamedTuple, TYPE_CHECKING
 
 import numpy as np
 from numpy.polynomial import polynomial
 
-from morfax.motion.arrays import Array
 from morfax.motion.curves import hermite
-from morfax.motion.offset import OffsetPath
 from morfax.motion.polyline import (
     APART_MM,
     at_places,
@@ -37,10 +35,14 @@ from morfax.motion.polyline import (
     with_places,
 )
 from morfax.tracer.following.line import Line
-from morfax.tracer.operator.operator import Operator
-from morfax.tracer.operator.work import Halt
-from morfax.tracer.program.program import Trace
 from morfax.tracer.sensing.leg import turn
+
+if TYPE_CHECKING:
+    from morfax.motion.offset import OffsetPath
+    from morfax.motion.arrays import Array
+    from morfax.tracer.program.program import Trace
+    from morfax.tracer.operator.work import Halt
+    from morfax.tracer.operator.operator import Operator
 
 # All limits below were chosen by trial on the test drawings.
 # the heading at a place is felt so far to either side, the furthest over which the contour is a cubic ...

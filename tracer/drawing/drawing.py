@@ -45,7 +45,6 @@ from morfax.tracer.drawing.noise import Noise, measured, within
 from morfax.tracer.drawing.ruling import PaperKind
 from morfax.tracer.drawing.scale import Scale
 from morfax.tracer.drawing.scan import Grey, Scan
-from morfax.tracer.drawing.shapes import outlined
 from morfax.tracer.drawing.tiles import Tiles
 
 if TYPE_CHECKING:
@@ -197,6 +196,8 @@ class Drawing:
         # 2. darkness
         notes = (*scan.notes, *scale.notes(scan))
         if edge:
+            from morfax.tracer.drawing.shapes import outlined
+
             rims = outlined(np.asarray(grey), pitch[0])
             return cls(
                 rims.darkness,

@@ -20,7 +20,6 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.drawing.shapes import EDGE_MM
 from morfax.tracer.drawing.strokes import Sheet, Stroke
 from morfax.tracer.head.course import FELT_LEGS
 from morfax.tracer.head.stance import Stance
@@ -63,6 +62,8 @@ def view_of(sheet: Sheet, aperture_mm: float | None, width_mm: float) -> View:
 
 def edge_view_of(drawing: Drawing, aperture_mm: float | None) -> View:
     """The filled shapes of a sheet through cells for their edges."""
+    from morfax.tracer.drawing.shapes import EDGE_MM
+
     assert drawing.shade is not None
     pitch_mm = drawing.pitch_mm * drawing.enlarged
     shade = replace(drawing, darkness=drawing.shade, pitch_mm=pitch_mm)

@@ -14,7 +14,7 @@ point, a card, a turn or stop that was told) has one line, which its lead line l
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,11 +28,11 @@ from morfax.tracer.drawing.numbering import ALIKE
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.start import put_down
-from morfax.tracer.ink.chains import Junctions, solved
-from morfax.tracer.ink.outlines import Outline, junctions_on, outlines
-from morfax.tracer.ink.stretches import FeltSheet
-from morfax.tracer.ink.track import stroke_along
 from morfax.tracer.program.setup import Setup
+
+if TYPE_CHECKING:
+    from morfax.tracer.ink.chains import Junctions
+    from morfax.tracer.ink.outlines import Outline
 
 AREA_WIDTHS = 1.0  # squared: a smaller area of paper in a patch is a flaw of the ink; by trial
 MOST_PATCHES = 100_000  # of a sheet with more nobody expects one line
@@ -56,6 +56,10 @@ def of_net(setup: Setup) -> OfNet:
     nets = np.flatnonzero(are_nets & (lengths_mm > (1 - ALIKE) * longest_mm))
     if not len(nets) or _has_reference(setup):
         return OfNet(setup)
+    from morfax.tracer.ink.chains import solved
+    from morfax.tracer.ink.outlines import outlines
+    from morfax.tracer.ink.stretches import FeltSheet
+
     # 1. the longest outline of each
     found = dict[int, tuple[Outline, Junctions]]()
     for patch in nets.tolist():
@@ -108,6 +112,9 @@ def _ink_of(sheet: Sheet, patch: int) -> Mask:
 
 def _line(setup: Setup, outline: Outline, junctions: Junctions) -> Line:
     """The head's run along an outline, the way round that is asked for."""
+    from morfax.tracer.ink.outlines import junctions_on
+    from morfax.tracer.ink.track import stroke_along
+
     told = setup.told(outline.length_mm)
     stroke = stroke_along(outline.chain, junctions, setup.settings, told)
     way_mm, led = stroke.way_mm, stroke.led

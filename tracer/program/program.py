@@ -22,17 +22,20 @@ from itertools import pairwise, zip_longest
 
 import numpy as np
 
-from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault
 from morfax.motion.motion import MOTION_RATE_HZ, Motion
-from morfax.tracer.following.line import Line
-from morfax.tracer.ink.ledger import Balance
 from morfax.tracer.operator.operator import Operator
-from morfax.tracer.operator.work import Action, Work
 from morfax.tracer.program.passes import Passes
 from morfax.tracer.program.selection import NO_OTHERS, Others
 from morfax.tracer.program.tabs import Tab, tabs_of
-from morfax.tracer.program.unexplained import Unexplained
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from morfax.tracer.program.unexplained import Unexplained
+    from morfax.tracer.operator.work import Action, Work
+    from morfax.tracer.ink.ledger import Balance
+    from morfax.tracer.following.line import Line
+    from morfax.motion.arrays import Array
 
 ENDINGS = ("lost", "joined", "ended", "closed")  # the one to be told first comes first
 

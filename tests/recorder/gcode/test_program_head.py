@@ -9,7 +9,7 @@ import pytest
 
 from morfax.motion.motion import Path as MotionPath
 from morfax.recorder.gcode.blocks import record_blocks
-from morfax.recorder.gcode.program_head import Made
+from morfax.recorder.gcode.made import Made
 from tests.recorder.gcode.test_machine import part
 
 
