@@ -50,6 +50,21 @@ def test_dictionaries_inside_become_one_table() -> None:
     assert ink.split() == ["played", "to", "ink", "3", "mm", "–"]
 
 
+def test_columns_stand_below_each_other_whatever_letters_are_in_them() -> None:
+    text = as_text(
+        {
+            "drawing": "日本.png",
+            "lines": [{"line": 1, "of": "日本"}, {"line": 20, "of": "abcdef"}],
+        }
+    )
+    first, _, one, twenty = text.splitlines()
+    assert first == "drawing  日本.png"
+    assert (one, twenty) == (
+        "line 1     日本",
+        "line 20  abcdef",
+    )  # a wide letter takes two columns
+
+
 def test_a_place_and_a_list_of_lengths_in_a_table_read_as_such() -> None:
     """What a cutter cannot reach has a place, and a stop a list of positions of Z."""
     text = as_text(

@@ -19,7 +19,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple, TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.polynomial import polynomial
@@ -38,11 +38,11 @@ from morfax.tracer.following.line import Line
 from morfax.tracer.sensing.leg import turn
 
 if TYPE_CHECKING:
-    from morfax.motion.offset import OffsetPath
     from morfax.motion.arrays import Array
-    from morfax.tracer.program.program import Trace
-    from morfax.tracer.operator.work import Halt
+    from morfax.motion.offset import OffsetPath
     from morfax.tracer.operator.operator import Operator
+    from morfax.tracer.operator.work import Halt
+    from morfax.tracer.program.program import Trace
 
 # All limits below were chosen by trial on the test drawings.
 # the heading at a place is felt so far to either side, the furthest over which the contour is a cubic ...

@@ -19,6 +19,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise, zip_longest
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -28,14 +29,13 @@ from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.passes import Passes
 from morfax.tracer.program.selection import NO_OTHERS, Others
 from morfax.tracer.program.tabs import Tab, tabs_of
-from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from morfax.tracer.program.unexplained import Unexplained
-    from morfax.tracer.operator.work import Action, Work
-    from morfax.tracer.ink.ledger import Balance
-    from morfax.tracer.following.line import Line
     from morfax.motion.arrays import Array
+    from morfax.tracer.following.line import Line
+    from morfax.tracer.ink.ledger import Balance
+    from morfax.tracer.operator.work import Action, Work
+    from morfax.tracer.program.unexplained import Unexplained
 
 ENDINGS = ("lost", "joined", "ended", "closed")  # the one to be told first comes first
 

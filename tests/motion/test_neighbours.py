@@ -1,0 +1,70 @@
+"""Neighbours: the same as trying every point, whatever order the points come in."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from morfax.motion.neighbours import LEAF, Neighbours
+
+ROUNDING = 1e-12  # of places up to 100
+
+
+def tried(points: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """The distance of each place from each point."""
+    return np.hypot(*(places[:, None] - points[None]).transpose(2, 0, 1))
+
+
+@settings(max_examples=40)
+@given(
+    st.integers(0, 10_000),
+    st.integers(1, 5 * LEAF + 1),
+    st.sampled_from(["in order", "at random", "on a grid", "all alike"]),
+)
+def test_the_nearest_is_that_of_trying_all(seed: int, count: int, kind: str) -> None:
+    random = np.random.default_rng(seed)
+    points = random.uniform(-50, 50, (count, 2))
+    if kind == "in order":
+        points = np.cumsum(random.normal(0, 1, (count, 2)), axis=0)
+    elif kind == "on a grid":
+        points = np.round(points / 20)
+    elif kind == "all alike":
+        points[:] = points[0]
+    places = np.vstack([random.uniform(-80, 80, (30, 2)), points[:5]])
+    away, number = Neighbours(points).nearest(places)
+    every = tried(points, places)
+    assert away == pytest.approx(every.min(axis=1), abs=ROUNDING)
+    assert every[np.arange(len(places)), number] == pytest.approx(away, abs=ROUNDING)
+    few = min(4, count)
+    several = Neighbours(points).several(places, few)
+    found = np.take_along_axis(every, several, axis=1)
+    assert found == pytest.approx(np.sort(every, axis=1)[:, :few], abs=ROUNDING)
+    assert all(len(set(row)) == few for row in several.tolist())
+
+
+def test_of_points_as_near_the_first_is_found() -> None:
+    points = np.column_stack([np.arange(40) % 2, np.zeros(40)])
+    away, number = Neighbours(points).nearest([[0.5, 0.0], [0.6, 0.0]])
+    assert away == pytest.approx([0.5, 0.4])
+    assert number.tolist() == [0, 1]
+
+
+def test_beyond_a_limit_nothing_is_found() -> None:
+    points = np.column_stack([np.linspace(0, 10, 101), np.zeros(101)])
+    away, number = Neighbours(points).nearest([[5.0, 0.3], [5.0, 0.2]], within=0.25)
+    assert away.tolist() == [np.inf, pytest.approx(0.2)]
+    assert number.tolist() == [101, 50]
+
+
+def test_points_in_any_order_are_put_in_order_first() -> None:
+    """Else every box would be as large as all, and each place would try every point."""
+    random = np.random.default_rng(1)
+    points = random.uniform(0, 100, (4096, 2))
+    found = Neighbours(points)
+    leaves = found._boxes[len(found._boxes) // 2 :]
+    sides = (leaves[:, 2:] - leaves[:, :2])[: 4096 // LEAF]
+    # a square for 8 of 4096 points has sides of 4.4
+    assert np.median(sides) < 6.0
+    assert np.array_equal(found.nearest(points)[1], np.arange(4096))
