@@ -38,6 +38,7 @@ def unit_options(verb: Callable[..., Any]) -> Callable[..., Any]:
     @option(
         GROUP,
         "--machine",
+        metavar="MACHINE",
         help="The machine that G-code or a plotter file is for: a name that `morfax machines` lists, or a "
         ".toml file of your own.  [default: linuxcnc; hpgl for .plt]",
     )

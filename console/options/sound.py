@@ -19,7 +19,7 @@ DEVICE = "a sound device: its number, its name or a part of it, as `morfax devic
 def intake_options(verb: Callable[..., Any]) -> Callable[..., Any]:
     """Give a verb the options of a device that a tape comes from, and hand it the `intake`."""
 
-    @option("Tape", "--device", help=f"Take the tape in from {DEVICE}.")
+    @option("Tape", "--device", metavar="DEVICE", help=f"Take the tape in from {DEVICE}.")
     @option(
         "Tape",
         "--wait",
@@ -40,7 +40,7 @@ def intake_options(verb: Callable[..., Any]) -> Callable[..., Any]:
 def outlet_options(verb: Callable[..., Any]) -> Callable[..., Any]:
     """Give a verb the options of where a tape goes, and hand it the `outlet`."""
 
-    @option("Tape", "--device", help=f"Play the tape out of {DEVICE}.")
+    @option("Tape", "--device", metavar="DEVICE", help=f"Play the tape out of {DEVICE}.")
     @option(
         "Tape",
         "--label",

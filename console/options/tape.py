@@ -18,6 +18,7 @@ CYCLES_PER_MM = NUMBER
 FOR_MACHINE = option(
     "Machine",
     "--machine",
+    metavar="MACHINE",
     help="The machine that a G-code program is for, as `morfax machines` lists them, or its .toml file: "
     "its words tell when the tool is in the work.  [default: what the program says]",
 )

@@ -78,7 +78,12 @@ PARTS: tuple[tuple[str, str, Any, str], ...] = (
     ),
     ("--print-through", "print_db", DECIBELS, "Echo of the layers above and below, dB below."),
     ("--dropouts", "dropouts_per_min", click.FloatRange(min=0), "Dropouts in a minute."),
-    ("--dropout-length", "dropout_s", TIME, "Their length, in the middle."),
+    (
+        "--dropout-length",
+        "dropout_s",
+        TIME,
+        "Their length: half of them are shorter, half longer.",
+    ),
     ("--dropout-depth", "dropout_db", DECIBELS, "Their depth, dB."),
     ("--hum", "hum_db", DECIBELS, "Hum, dB below the carrier."),
     ("--hum-frequency", "hum_hz", FREQUENCY, "Frequency of the hum."),

@@ -32,6 +32,7 @@ Examples:
 @option(
     "Machine",
     "--machine",
+    metavar="MACHINE",
     help="The machine that shall run it: a name that `morfax machines` lists, or a .toml file of your "
     "own.  [default: the one that the program names, or linuxcnc]",
 )

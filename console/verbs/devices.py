@@ -31,9 +31,15 @@ Examples:
     "Tape",
     "--test-tone",
     "tone",
+    metavar="DEVICE",
     help="Play the reference on all tracks, at the level of a tape, out of this device.",
 )
-@option("Tape", "--meters", help="Show the levels that come from this device.")
+@option(
+    "Tape",
+    "--meters",
+    metavar="DEVICE",
+    help="Show the levels that come from this device.",
+)
 @option(
     "Tape",
     "--for",

@@ -37,6 +37,7 @@ Examples:
     "--paper",
     default="a4",
     show_default=True,
+    metavar="FORMAT",
     help="Format of the paper: a4, letter or a3.",
 )
 @option(
