@@ -178,7 +178,7 @@ def _key(arg: Any) -> Any:
     if kind is np.ndarray:
         return (arg.dtype, arg.ndim, arg.flags.num & _FLAGS)
     if isinstance(arg, tuple):
-        return (kind, *[_key(item) for item in arg])
+        return (kind, *[of if (of := type(item)) in _PLAIN else _key(item) for item in arg])
     if isinstance(arg, np.void | np.ndarray):
         return (kind, arg.dtype)
     return kind

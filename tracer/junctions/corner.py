@@ -22,6 +22,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.curves import hermite
+from morfax.motion.median import median
 from morfax.tracer.head.course import SMOOTH, ahead_mm, along_leg, onto
 from morfax.tracer.sensing.leg import Leg, meet, turn
 from morfax.tracer.sensing.view import View
@@ -202,7 +203,7 @@ def _edge_mm(view: View, corner: Corner, side: int) -> float:
         edge = _edge_outward(view, place, outward, (corner.width_mm, reach))
         # outside, the pen's round leaves the tangent by off²/width
         edges_mm.append(edge + (off * off / corner.width_mm if side > 0 else 0.0))
-    return float(np.median(edges_mm))
+    return median(edges_mm)
 
 
 def _edge_outward(

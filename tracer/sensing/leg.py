@@ -17,6 +17,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
+from morfax.motion.median import median
 
 # straight on is within this, and a leg turns off to a side by more than that
 STRAIGHT, TURNS_OFF = math.radians(40), math.radians(20)
@@ -93,8 +94,8 @@ def leg_of(seen: Array, last: bool, length_mm: float) -> Leg:
 def _without_blot(seen: Array, last: bool) -> Array:
     """The stations without those next to the junction whose width shows its ink: a third at most."""
     widths = seen[::-1, 2] if last else seen[:, 2]
-    usual = float(np.median(widths))
-    spread = ROBUST * float(np.median(np.abs(widths - usual)))
+    usual = median(widths)
+    spread = ROBUST * median(np.abs(widths - usual))
     most = len(seen) // 3
     clean = np.abs(widths[: most + 1] - usual) < max(OUTLIERS * spread, 0.03 * usual)
     first = int(np.argmax(clean)) if clean.any() else most
@@ -108,7 +109,7 @@ def _leg(near: Array, end: Array, seen: Array) -> tuple[Leg, float]:
     d = near[:, :2] - end[:2]
     (slope, offset, bend), misfit = _fit(d @ t, d @ n)
     curvature = bend / (1 + slope * slope) ** 1.5
-    width = float(np.median(near[:, 2]))
+    width = median(near[:, 2])
     leg = Leg(end[:2] + offset * n, heading + math.atan(slope), curvature, width, seen)
     return leg, misfit
 
@@ -200,9 +201,9 @@ def centre_at(seen: Array, i: int, half_mm: float) -> Leg:
     near = np.flatnonzero(np.hypot(*d.T) < half_mm)
     heading, t, n = _chord(d[near[-1]] - d[near[0]])
     x, y = d[near] @ t, d[near] @ n
-    width = float(np.median(seen[near, 2]))
+    width = median(seen[near, 2])
     off = np.abs(seen[near, 2] / width - 1)
-    usual = max(OUTLIERS * ROBUST * float(np.median(off)), BITTEN)
+    usual = max(OUTLIERS * ROBUST * median(off), BITTEN)
     weights = np.maximum(1 - (x / half_mm) ** 2, 0.05) / (1 + (off / usual) ** 4)
     offset, slope, bend = _parabola(x, y, weights, 2)[0]
     curvature = 2 * bend / (1 + slope * slope) ** 1.5

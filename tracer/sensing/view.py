@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.median import median
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.sensing import edge_scout, photocell, ray
 from morfax.tracer.sensing.photocell import LEVEL, Cells
@@ -141,12 +142,12 @@ class View:
         way = np.array([math.cos(heading), math.sin(heading)])
         # more places than a speck spoils
         places = [place + 2 * k * self.step_mm * way for k in range(5)]
-        ink = float(np.median([self.darkness_at(p) for p in places]))
+        ink = median([self.darkness_at(p) for p in places])
         here = self.at_level(LEVEL * min(max(ink, self.level), 4 * self.level))
         reach = 1.5 * self.width_mm + 2 * self.pitch_mm
         found = [here.edges(p, heading, reach) for p in places]
         # NaN if any has no edge
-        width = float(np.median([left - right for right, left in found]))
+        width = median([left - right for right, left in found])
         usual = self.usual_mm or self.width_mm
         if not 0.5 < width / usual < 1.6:
             return self
@@ -160,8 +161,8 @@ class View:
         sigma_px = GRAIN * self.width_mm / self.pitch_mm
         larger = replace(self, cells=self.cells.wider(sigma_px))
         places = stations[-GRAIN_STATIONS:, :2]
-        darkness = float(np.median([larger.darkness_at(place) for place in places]))
+        darkness = median([larger.darkness_at(place) for place in places])
         larger = larger.at_level(GRAIN_LEVEL * darkness)
         found = [larger.edges(place, heading, 3 * self.width_mm) for place in places]
         widths = [left - right for right, left in found if math.isfinite(left - right)]
-        return replace(larger, width_mm=float(np.median(widths))) if widths else self
+        return replace(larger, width_mm=median(widths)) if widths else self

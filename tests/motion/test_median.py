@@ -1,0 +1,20 @@
+"""The median of a few numbers: numpy's, to the bit."""
+
+import math
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from morfax.motion.median import median
+
+
+@given(st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=40))
+def test_it_is_that_of_numpy_to_the_bit(values: list[float]) -> None:
+    assert median(values) == float(np.median(values))
+    assert median(np.array(values)) == float(np.median(values))
+
+
+def test_a_number_that_is_none_leaves_none() -> None:
+    assert math.isnan(median([1.0, math.nan, 2.0]))
+    assert math.isnan(median([]))
