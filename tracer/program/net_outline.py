@@ -61,7 +61,7 @@ def of_net(setup: Setup) -> OfNet:
     from morfax.tracer.ink.stretches import FeltSheet
 
     # 1. the longest outline of each
-    found = dict[int, tuple[Outline, Junctions]]()
+    found: dict[int, tuple[Outline, Junctions]] = {}
     for patch in nets.tolist():
         felt = FeltSheet.of(sheet.drawing, setup.settings, _ink_of(sheet, patch))
         junctions = solved(felt)
