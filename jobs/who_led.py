@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from morfax.motion.long_array import one_in
+
 if TYPE_CHECKING:
     from morfax.motion.arrays import Array
     from morfax.tracer.following.line import Line
@@ -79,4 +81,4 @@ class WhoLed:
 def _runs(line: Line) -> Iterator[tuple[int, Array]]:
     """The thinned runs of each leader along a line."""
     for leader, positions in line.led.runs(line.xy_mm):
-        yield leader, np.vstack([positions[:-1:THINNED], positions[-1:]])
+        yield leader, np.vstack([one_in(positions[:-1], THINNED), positions[-1:]])

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from morfax.jobs import files as medium
 from morfax.jobs.wrong_use import WrongUse
+from morfax.motion.long_array import blocks
 
 if TYPE_CHECKING:
     from morfax.jobs.figures import Figures
@@ -36,11 +37,11 @@ OF_PART = ("lower-left", "centre")
 
 @dataclass(frozen=True, slots=True)
 class ZeroOnSheet:
-    """The zero that is asked for, its place on the sheet, and places (n, 2) mm of the part, if any."""
+    """The zero that is asked for, its place on the sheet, and the places of the part, (n, 2) mm each line."""
 
     asked: Zero
     place_mm: Place = (0.0, 0.0)
-    part_mm: NDArray[np.float64] | None = None
+    part_mm: tuple[NDArray[np.float64], ...] = ()
 
     @classmethod
     def of(cls, settings: TraceSettings, drawing: Drawing, followed: Trace) -> ZeroOnSheet:
@@ -60,24 +61,37 @@ class ZeroOnSheet:
 
     def origin_mm(self, placement: Placement) -> Place:
         """What a placement about a known point takes off, so that the zero is where it is asked for."""
-        if self.asked not in OF_PART or self.part_mm is None:
+        if self.asked not in OF_PART or not self.part_mm:
             return self.place_mm
-        return on_part_mm(self.asked, placement.places(self.part_mm))
+        return on_part_mm(self.asked, self._bounds_mm(placement))
 
     def part_size_mm(self, placement: Placement) -> Place | None:
         """Width and height of the part as it is placed, mm; None if it is not known."""
-        if self.part_mm is None:
+        if not self.part_mm:
             return None
-        width_mm, height_mm = np.ptp(placement.places(self.part_mm), axis=0).tolist()
+        width_mm, height_mm = np.ptp(self._bounds_mm(placement), axis=0).tolist()
         return width_mm, height_mm
 
+    def _bounds_mm(self, placement: Placement) -> NDArray[np.float64]:
+        """The lowest X and Y of the part as it is placed, and the highest, (2, 2) mm."""
+        outermost = list[NDArray[np.float64]]()
+        for line_mm in self.part_mm:
+            for block in blocks(line_mm):
+                for along in (block @ row for row in placement.matrix):
+                    outermost += [
+                        block[np.argmin(along)].copy(),
+                        block[np.argmax(along)].copy(),
+                    ]
+        placed = placement.places(np.array(outermost))
+        return np.array([placed.min(axis=0), placed.max(axis=0)])
 
-def _part_mm(trace: Trace) -> NDArray[np.float64]:
-    """Places of what is cut along the lines, (n, 2) mm; of drill points alone the points."""
+
+def _part_mm(trace: Trace) -> tuple[NDArray[np.float64], ...]:
+    """Places of what is cut along the lines, (n, 2) mm each; of drill points alone the points."""
     from morfax.tracer.cutter.contour import planned
 
     cuts = [cut.places_mm for _, cut in planned(trace) if cut is not None]
-    return np.vstack(cuts) if cuts else trace.xy_mm
+    return tuple(cuts) or (trace.xy_mm,)
 
 
 def on_part_mm(zero: Zero, places_mm: NDArray[np.float64]) -> Place:

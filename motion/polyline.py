@@ -10,13 +10,14 @@ Source: our own; fewer places as by Douglas and Peucker, The Canadian Cartograph
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
+from morfax.motion.long_array import blocks
 from morfax.motion.neighbours import Neighbours
 
 UM = 1e-3  # mm
@@ -36,6 +37,17 @@ def steps_mm(line_mm: Array) -> Array:
 def lengths_mm(line_mm: Array) -> Array:
     """Length of a polyline up to each of its places, (n,) mm."""
     return np.r_[0.0, np.cumsum(steps_mm(line_mm))]
+
+
+def lengths_by_blocks(line_mm: Array) -> Iterator[tuple[int, Array, Array]]:
+    """The number of a block's first place, its places, and the length up to each, mm; one block of a line
+    that is in memory. Each block begins with the last place of the one before.
+    """
+    first, come_mm = 0, 0.0
+    for places in blocks(line_mm, before=1):
+        lengths = np.cumsum(np.r_[come_mm, steps_mm(places)])
+        yield first, places, lengths
+        first, come_mm = first + len(places) - 1, float(lengths[-1])
 
 
 def length_mm(line_mm: Array) -> float:

@@ -25,12 +25,14 @@ import numpy as np
 from numpy.polynomial import polynomial
 
 from morfax.motion.curves import hermite
+from morfax.motion.long_array import LongArray
 from morfax.motion.polyline import (
     APART_MM,
     at_places,
     crossings,
     evenly,
     length_mm,
+    lengths_by_blocks,
     lengths_mm,
     with_places,
 )
@@ -117,6 +119,8 @@ def _places(line: Line, first: int) -> Array:
     guides = [guide for guide in line.guides if guide.leave > first]
     begins = [first, *(guide.back for guide in guides)]
     ends = [*(guide.leave for guide in guides), len(line.xy_mm) - 1]
+    if not guides:
+        return line.xy_mm[first:]
     whole = np.empty((0, 2))
     for k, (a, b) in enumerate(zip(begins, ends, strict=True)):
         part = line.xy_mm[a : b + 1]
@@ -140,11 +144,15 @@ def _bridge(before: Array, after: Array) -> Array:
 
 def _closed(places_mm: Array) -> Array:
     """Places of a closed contour (n, 2) mm, brought together where it begins and ends some um apart."""
-    lengths = lengths_mm(places_mm)
-    gap_mm = 0.5 * (places_mm[-1] - places_mm[0])
-    after = np.clip(1 - lengths / MET_MM, 0.0, 1.0)
-    before = np.clip(1 - (lengths[-1] - lengths) / MET_MM, 0.0, 1.0)
-    return np.asarray(places_mm + (after - before)[:, None] * gap_mm)
+    for _, _, lengths in lengths_by_blocks(places_mm):
+        whole_mm = lengths[-1]
+    gap_mm, closed = 0.5 * (places_mm[-1] - places_mm[0]), LongArray()
+    for first, places, lengths in lengths_by_blocks(places_mm):
+        after = np.clip(1 - lengths / MET_MM, 0.0, 1.0)
+        before = np.clip(1 - (whole_mm - lengths) / MET_MM, 0.0, 1.0)
+        moved = places + (after - before)[:, None] * gap_mm
+        closed.add(moved[1:] if first else moved)
+    return closed.whole()
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from morfax.motion.long_array import LongArray, blocks
 from morfax.tracer.following.followed import Followed
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.sensing.view import View
@@ -28,9 +29,14 @@ def enlarged(stance: Stance, times: float) -> Stance:
 def reduced(run: Followed) -> Followed:
     """What the head did on an enlarged drawing, in the drawing's own mm."""
     by = run.view.enlarged
+    if by == 1:
+        return run
+    positions = LongArray()
+    for block in blocks(run.positions_mm):
+        positions.add(block / by)
     return replace(
         run,
-        positions_mm=run.positions_mm / by,
+        positions_mm=positions.whole(),
         travel_mm=run.travel_mm / by,
         view=_scaled(run.view, 1 / by),
         junctions_mm=tuple((x / by, y / by) for x, y in run.junctions_mm),

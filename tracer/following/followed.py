@@ -15,7 +15,7 @@ from dataclasses import dataclass, field, replace
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault
-from morfax.motion.polyline import lengths_mm
+from morfax.motion.polyline import lengths_by_blocks
 from morfax.tracer.head.leaders import Led
 from morfax.tracer.head.loop import loop_in
 from morfax.tracer.junctions.guides import GuideLine
@@ -57,5 +57,6 @@ def without_repeat(run: Followed) -> Followed:
         return run
     first, last = found
     kept = run.positions_mm[: last + 1]
-    travel_mm = float(lengths_mm(kept)[-1])
+    *_, (_, _, lengths) = lengths_by_blocks(kept)
+    travel_mm = float(lengths[-1])
     return replace(run, positions_mm=kept, travel_mm=travel_mm, loop_from=first)

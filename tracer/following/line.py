@@ -17,8 +17,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import Array, between
 from morfax.motion.faults import LineFault
+from morfax.motion.long_array import one_in
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.corrections.on_sheet import StopAt
 from morfax.tracer.following.followed import THINNED, Followed
@@ -138,12 +139,12 @@ class Line:
     @property
     def places_mm(self) -> Array:
         """Places along it, (n, 2) mm."""
-        return self.xy_mm[::THINNED]
+        return one_in(self.xy_mm, THINNED)
 
     @property
     def loop_mm(self) -> Array:
         """Places along its loop, without the lead line before that, (n, 2) mm."""
-        return self.xy_mm[self.loop_from or 0 :: THINNED]
+        return one_in(self.xy_mm[self.loop_from or 0 :], THINNED)
 
     @property
     def own_mm(self) -> Array:
@@ -261,6 +262,5 @@ class Line:
 
     def place(self, at: float) -> tuple[float, float]:
         """Where the axis is at a position, fractions included, mm."""
-        rows = np.arange(len(self.xy_mm))
-        x, y = (float(np.interp(at, rows, column)) for column in self.xy_mm.T)
+        x, y = (between(column, at) for column in self.xy_mm.T)
         return x, y

@@ -3,8 +3,8 @@
 Signals: a leg to follow from, or a course to run (sheet mm, mm/s) in; positions of the screws (n, 2) mm at
 the motion rate out.
 
-The carriage keeps every position that its screws took (`positions_mm`), and the trail of them by which the
-head knows where it has been.
+The carriage keeps every position that its screws took (`positions_mm`; in a file, beyond some metres of
+line), and the trail of them by which the head knows where it has been.
 
 Source: patent ES 361967, figure 1: lead screws 111 with their motors 17 and 12, and the head that they carry.
 """
@@ -18,6 +18,7 @@ import numpy as np
 
 from morfax.motion import curves
 from morfax.motion.arrays import Array
+from morfax.motion.long_array import LongArray
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.head import kernel, screws, swinging, watched
 from morfax.tracer.head.leaders import CELL, MEMORY, STATIONS, Led, Log
@@ -40,7 +41,6 @@ class Mark(NamedTuple):
 
     state: Any
     tuning: Tuning
-    parts: int
     positions: int
     leads: int
     cell_from_mm: float
@@ -54,8 +54,8 @@ class Carriage:
         self.tuning = tune(stance, settings, rate_hz)
         self.trail = Trail(stance.place_mm, stance.view.step_mm)
         self.state = at_rest(stance.place_mm)
-        self._parts: list[Array] = [stance.place_mm[None].copy()]
-        self.count = 1  # positions so far
+        self._positions = LongArray()
+        self._positions.add(stance.place_mm[None])
         self.enlarged = stance.view.enlarged  # of the positions: so many times the drawing's mm
         self._watcher = watched.watcher()
         if self._watcher is not None:
@@ -64,6 +64,11 @@ class Carriage:
         self._log, self._leads, self._cell_from_mm = Log(), STATIONS, 0.0
         self._log.add(0, STATIONS)
         self.cell_led_mm = 0.0  # how far the swinging cell has led so far
+
+    @property
+    def count(self) -> int:
+        """How many positions there are so far."""
+        return len(self._positions)
 
     @property
     def travel_mm(self) -> float:
@@ -82,7 +87,7 @@ class Carriage:
 
     def shared(self) -> list[Any]:
         """What a copy of the carriage may share with it: it is never changed."""
-        return [self._watcher, *self._parts]
+        return [self._watcher]
 
     def taken_up(self) -> None:
         """Go on as a copy of a carriage: whoever watches now sees it as it stands."""
@@ -93,7 +98,7 @@ class Carriage:
     @property
     def positions_mm(self) -> Array:
         """Every position of the screws so far, (n, 2) mm."""
-        return np.vstack(self._parts)
+        return self._positions.whole()
 
     @property
     def led(self) -> Led:
@@ -162,7 +167,7 @@ class Carriage:
         n, why = kernel.follow(view.cells, self.state, self.tuning, home, out)
         first = 0
         if felt_mm > 0:
-            come_mm = lengths_mm(np.vstack([self._parts[-1][-1], out[:n]]))[1:]
+            come_mm = lengths_mm(np.vstack([self._positions.last, out[:n]]))[1:]
             first = int(np.searchsorted(come_mm, felt_mm))
         if first < n:
             self._log.add(self.count + first, CELL)
@@ -175,7 +180,6 @@ class Carriage:
         return Mark(
             self.state.copy(),
             self.tuning,
-            len(self._parts),
             self.count,
             self._leads,
             self._cell_from_mm,
@@ -184,15 +188,13 @@ class Carriage:
     def back_to(self, mark: Mark) -> None:
         """Bring the carriage back to a mark, as if it had gone no further."""
         self.state, self.tuning = mark.state.copy(), mark.tuning
-        del self._parts[mark.parts :]
-        self.count = mark.positions
+        self._positions.cut(mark.positions)
         self._leads, self._cell_from_mm = mark.leads, mark.cell_from_mm
         self._log.back_to(self.count)
 
     def since(self, mark: Mark) -> Array:
         """The positions since a mark, (n, 2) mm."""
-        newest = self._parts[mark.parts :]
-        return np.vstack(newest) if newest else np.empty((0, 2))
+        return self._positions.since(mark.positions)
 
     def run(self, stretches: list[Array], end_mm_s: float = 0.0, leader: int = MEMORY) -> None:
         """Run along stretches, swivelling between them, and end at a speed; `leader` laid them."""
@@ -283,8 +285,7 @@ class Carriage:
         """Keep positions of the screws, and mark the trail with them."""
         if not len(positions):
             return
-        self._parts.append(positions.copy())
-        self.count += len(positions)
+        self._positions.add(positions)
         self.trail.add(positions)
         if self._watcher is not None:
             self._watcher.moved(self, positions)

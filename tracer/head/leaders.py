@@ -21,6 +21,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.motion.long_array import blocks, one_in
+from morfax.motion.polyline import steps_mm
 
 CELL, STATIONS, MEMORY, REDRAWN = range(4)
 LEADERS = ("swinging cell", "stations", "memory", "redrawn ink")
@@ -33,14 +35,15 @@ class Led:
     firsts: tuple[int, ...] = ()
     leaders: tuple[int, ...] = ()
 
-    def of(self, count: int) -> NDArray[np.int8]:
-        """The leader of each of the first `count` positions."""
-        bounds = np.minimum(np.append(self.firsts, count), count).astype(int)
+    def of(self, count: int, first: int = 0) -> NDArray[np.int8]:
+        """The leader of each of `count` positions from one on."""
+        end = first + count
+        bounds = np.clip(np.append(self.firsts, end), first, end).astype(int)
         return np.repeat(np.array(self.leaders, np.int8), np.diff(bounds))
 
     def thinned(self, positions: Array, every: int) -> tuple[Array, NDArray[np.int8]]:
         """One position in so many, (n, 2) mm, and the leader of each."""
-        return positions[::every], self.of(len(positions))[::every]
+        return one_in(positions, every), self.of(len(positions))[::every]
 
     @classmethod
     def along(cls, leaders: NDArray[np.int8]) -> Led:
@@ -54,9 +57,13 @@ class Led:
 
     def lengths_mm(self, positions: Array) -> Array:
         """How far each of the `LEADERS` led along positions (n, 2) mm."""
-        steps_mm = np.hypot(*np.diff(positions, axis=0).T)
-        leaders = self.of(len(positions))[1:]
-        led_mm = np.bincount(leaders, steps_mm[: len(leaders)], minlength=len(LEADERS))
+        led_mm, first = list[float]([0.0] * len(LEADERS)), 0
+        for block in blocks(positions, before=1):
+            leaders = self.of(len(block) - 1, first + 1)
+            steps = steps_mm(block)[: len(leaders)]
+            who = np.r_[np.arange(len(LEADERS)), leaders]
+            led_mm = np.bincount(who, np.r_[led_mm, steps], minlength=len(LEADERS)).tolist()
+            first += len(block) - 1
         return np.asarray(led_mm, float)
 
     def runs(self, positions: Array) -> Iterator[tuple[int, Array]]:

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
-from morfax.motion.polyline import crossings, lengths_mm
+from morfax.motion.polyline import crossings, lengths_by_blocks
 
 # Chosen by trial on the test drawings.
 STEP_MM = 0.03  # between the places that are compared
@@ -36,11 +36,9 @@ ALIKE = math.cos(math.radians(30))  # cosine between headings that are about one
 def loop_in(positions: Array, width_mm: float) -> tuple[int, int] | None:
     """First and last position of the loop with which a run ends; None if its end is not on its own way."""
     # 1. places of the run at equal distances, and the earlier one that is nearest to the run's end
-    lengths = lengths_mm(positions)
-    at_mm = np.arange(0.0, lengths[-1], STEP_MM)
-    if not len(at_mm):
+    index = _index_every(positions)
+    if not len(index):
         return None
-    index = np.searchsorted(lengths, at_mm)
     places = positions[index]
     m = len(places) - 1
     old = places[: max(0, m - round(FRESH_MM / STEP_MM))]
@@ -60,6 +58,18 @@ def loop_in(positions: Array, width_mm: float) -> tuple[int, int] | None:
     same = np.flatnonzero(apart[:back] < ON_IT * width_mm)
     back = int(same[-1]) if len(same) else 0
     return int(index[j - back]), int(index[m - back])
+
+
+def _index_every(positions: Array) -> NDArray[np.int64]:
+    """The first positions of a run that have come so far: one every `STEP_MM`."""
+    found, count = list[NDArray[np.int64]](), 0
+    for first, places, lengths in lengths_by_blocks(positions):
+        at_mm = STEP_MM * np.arange(count, np.ceil(lengths[-1] / STEP_MM))
+        if first + len(places) < len(positions):
+            at_mm = at_mm[at_mm <= lengths[-1]]
+        found.append(first + np.searchsorted(lengths, at_mm))
+        count += len(at_mm)
+    return np.concatenate(found)
 
 
 def _crossed(

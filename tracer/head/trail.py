@@ -3,6 +3,10 @@
 Signals: positions of the screws (n, 2) mm in, of which a place every step is kept; places behind the head,
 and whether a leg has been followed already, out.
 
+    ┌────────┐┌────────┐┌──         every `BOXED` places have a box about them: what is asked of one place of
+    │ · · · ·││· · · · ││ · ·       a long trail is asked of the places in the few boxes that are near to it,
+    └────────┘└────────┘└──         so that a line of 100 m costs 300 times as much as one of 0.3 m
+
 Source: our own.
 """
 
@@ -20,6 +24,7 @@ from morfax.tracer.sensing.leg import Leg
 # Chosen by trial on the test drawings.
 MEMORY_MM = 8.0  # how far back the rings know the way in: more than they grow
 ROOM = 1024  # places to begin with
+BOXED = 256  # places to a box: 7 mm of travel
 CHORD = 4  # places on either side, that a heading is taken over
 NEAR = 0.3  # of the line's width: a place of a leg this near to the trail has been followed
 MOSTLY = 0.5  # of a leg's first third: so many of its places
@@ -33,6 +38,9 @@ class Trail:
         self._places = np.empty((ROOM, 2))
         self._places[0] = place
         self._count = 1
+        # lowest x, y and highest x, y of each full box
+        self._boxes = np.empty((ROOM // BOXED, 4))
+        self._boxed = 0
 
     def add(self, positions: Array) -> None:
         """Remember positions (n, 2) in the order of travel."""
@@ -42,9 +50,32 @@ class Trail:
         marks = np.floor(come_mm / self.step_mm)
         kept = positions[np.flatnonzero(np.diff(marks, prepend=0.0) > 0)]
         while self._count + len(kept) > len(self._places):
-            self._places = np.vstack([self._places, np.empty_like(self._places)])
+            self._places, self._boxes = _longer(self._places), _longer(self._boxes)
         self._places[self._count : self._count + len(kept)] = kept
         self._count += len(kept)
+        self._box_up()
+
+    def _box_up(self) -> None:
+        """Have a box about each full set of places."""
+        full = self._count // BOXED
+        groups = self._places[self._boxed * BOXED : full * BOXED].reshape(-1, BOXED, 2)
+        if len(groups):
+            self._boxes[self._boxed : full, :2] = groups.min(axis=1)
+            self._boxes[self._boxed : full, 2:] = groups.max(axis=1)
+            self._boxed = full
+
+    def _within(self, low: Array, high: Array, count: int) -> Array:
+        """The first `count` places of those that lie within a corner (x, y) and another, in their order."""
+        boxes = self._boxes[: self._boxed]
+        meets = np.all((boxes[:, :2] < high) & (boxes[:, 2:] > low), axis=1)
+        numbers = np.append(
+            np.flatnonzero(meets), self._boxed
+        )  # and the places beyond all boxes
+        parts = [
+            self._places[n * BOXED : min((n + 1) * BOXED, count)] for n in numbers.tolist()
+        ]
+        near = np.vstack([part for part in parts if len(part)] or [np.empty((0, 2))])
+        return np.asarray(near[np.all((near > low) & (near < high), axis=1)])
 
     def places(self) -> Array:
         """All places so far, (n, 2)."""
@@ -64,6 +95,10 @@ class Trail:
 
     def comes_again(self, width_mm: float) -> bool:
         """Whether the axis runs along its own trail, in the same sense."""
+        newest, beside_mm = self._places[self._count - 1], 2 * loop.TOGETHER * width_mm
+        before = max(0, self._count - 2 * round(loop.FRESH_MM / self.step_mm))
+        if not len(self._within(newest - beside_mm, newest + beside_mm, before)):
+            return False
         return loop.comes_again(self._places[: self._count], self.step_mm, width_mm)
 
     def comes_back(self, leg: Leg) -> bool:
@@ -75,12 +110,19 @@ class Trail:
     def holds(self, leg: Leg, width_mm: float) -> bool:
         """Whether the beginning of a leg has been followed already, in either sense."""
         # 1. the places of the trail about the leg's first third
-        old = self._places[: max(0, self._count - round(loop.FRESH_MM / self.step_mm))]
+        before = max(0, self._count - round(loop.FRESH_MM / self.step_mm))
         first = leg.seen[: max(3, len(leg.seen) // 3), :2]
         low, high = first.min(axis=0) - width_mm, first.max(axis=0) + width_mm
-        old = old[np.all((old > low) & (old < high), axis=1)]
+        old = self._within(low, high, before)
         if not len(old):
             return False
         # 2. how many of the leg's places are on them
         near = [np.min(np.hypot(*(old - place).T)) < NEAR * width_mm for place in first]
         return bool(np.mean(near) > MOSTLY)
+
+
+def _longer(rows: Array) -> Array:
+    """The same rows with room for as many more, which takes no memory before it is used."""
+    longer = np.empty((2 * len(rows), rows.shape[1]))
+    longer[: len(rows)] = rows
+    return longer

@@ -16,6 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from morfax.motion import long_array
 from morfax.motion.arrays import Array
 from morfax.tracer.junctions.line_ahead import FARTHEST_WIDTHS, straight_on
 from morfax.tracer.sensing.leg import FEWEST, leg_of
@@ -44,10 +45,9 @@ def breaks(view: View, way_mm: Array, at_start: bool) -> tuple[Break, ...]:
 def _gap_mm(view: View, way_mm: Array) -> float | None:
     """The gap that must be allowed to go on straight from the end of a way; None if no ink goes on there."""
     felt_mm = FELT_LEGS * view.leg_mm
-    before = np.hypot(*(way_mm - way_mm[-1]).T) > felt_mm
-    if not before.any():
+    place = _last_beyond(way_mm, felt_mm)
+    if place is None:
         return None
-    place = way_mm[np.flatnonzero(before)[-1]]
     along = way_mm[-1] - place
     seen = view.feel(place, math.atan2(along[1], along[0]), felt_mm)
     if len(seen) < FEWEST:
@@ -59,3 +59,13 @@ def _gap_mm(view: View, way_mm: Array) -> float | None:
     return next(
         (round(float(gap), 1) for gap in gaps if straight_on(view, leg, gap) is not None), None
     )
+
+
+def _last_beyond(way_mm: Array, away_mm: float) -> Array | None:
+    """The last place of a way that is further than this from its end; None if none is."""
+    for end in range(len(way_mm), 0, -long_array.BLOCK_ROWS):
+        some = way_mm[max(0, end - long_array.BLOCK_ROWS) : end]
+        beyond = np.flatnonzero(np.hypot(*(some - way_mm[-1]).T) > away_mm)
+        if len(beyond):
+            return np.asarray(some[beyond[-1]])
+    return None

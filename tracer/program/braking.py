@@ -17,18 +17,22 @@ The cell sees the mark one lead before the axis, which is enough for it at 10 mm
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
-from morfax.motion import curves
+from morfax.motion import curves, long_array
 from morfax.motion.arrays import Array
+from morfax.motion.long_array import LongArray, released
 from morfax.motion.polyline import at_lengths, at_places, lengths_mm, steps_mm
 from morfax.motion.speed_limits import reachable
 
 _NOTHING_MM = 1e-9  # a shorter step is the head standing
 _NOTHING_S = 1e-12  # so that no time is divided by zero
+ROUNDED = 1e-6  # of a period: what rounding adds
 CORNER = np.radians(
     20
 )  # a sharper turn is a corner, at which the head stops to swivel; by trial
@@ -40,20 +44,11 @@ def pieces(
     xy_mm: Array, halts: Sequence[float], acceleration_mm_s2: float, rate_hz: float
 ) -> list[Array]:
     """The way cut at its halts: one piece more than `halts`, at rest at the cuts; before the first row 0."""
-    # 1. the halts as nodes among the positions
-    at = np.clip(np.asarray(halts, float), 0, len(xy_mm) - 1)
-    nodes = np.unique(np.r_[np.arange(len(xy_mm), dtype=float), at])
-    places = at_places(xy_mm, nodes)
-    # 2. the time of each step, longer where the axis brakes
-    way_mm, steps_s = steps_mm(places), np.diff(nodes) / rate_hz
-    cuts = np.searchsorted(nodes, at)
-    speeds = _speeds(way_mm, steps_s, cuts, acceleration_mm_s2)
-    mean = np.maximum(0.5 * (speeds[1:] + speeds[:-1]), SLOWEST_MM_S)
-    took_s = np.maximum(steps_s, way_mm / mean)
-    # 3. the pieces
+    bounds = [0.0, *np.clip(np.asarray(halts, float), 0, len(xy_mm) - 1), len(xy_mm) - 1.0]
+    gain = 2 * acceleration_mm_s2
     return [
-        _timed(places[a : b + 1], took_s[a:b], speeds[a : b + 1], rate_hz)
-        for a, b in pairwise([0, *cuts, len(nodes) - 1])
+        _Piece(xy_mm, (float(a), float(b)), (k > 0, k < len(halts)), gain, rate_hz).timed()
+        for k, (a, b) in enumerate(pairwise(bounds))
     ]
 
 
@@ -94,22 +89,21 @@ def _corners(places: Array) -> list[int]:
     return [int(i) + 1 for i in np.flatnonzero(turned > CORNER)]
 
 
-def _speeds(way_mm: Array, steps_s: Array, cuts: Array, acceleration_mm_s2: float) -> Array:
-    """Speed at each node: the former speed, or what braking for the nearest cut allows, mm/s."""
-    was = np.r_[way_mm / np.maximum(steps_s, _NOTHING_S), 0.0]
-    was[1:-1] = 0.5 * (was[1:-1] + was[:-2])
-    braking = np.full(len(was), np.inf)
-    braking[cuts] = 0.0
-    return np.minimum(was, reachable(braking, 2 * acceleration_mm_s2 * way_mm))
-
-
 def _timed(places: Array, took_s: Array, speeds: Array, rate_hz: float) -> Array:
     """Nodes with the times of their steps, as positions at a uniform rate: first and last exactly."""
     times = np.r_[0.0, np.cumsum(took_s)]
     if times[-1] <= 0 or len(places) < 2:
         return places[:1]
+    uniform = np.arange(1, int(np.ceil(times[-1] * rate_hz - ROUNDED))) / rate_hz
+    between = _at_times(uniform, times, places, took_s, speeds)
+    return np.vstack([places[:1], between, places[-1:]])
+
+
+def _at_times(
+    uniform: Array, times: Array, places: Array, took_s: Array, speeds: Array
+) -> Array:
+    """Where the axis is at some times, (n, 2) mm: between nodes, of which the times and speeds are known."""
     # 1. the step at each period, and the share of its time that has passed
-    uniform = np.arange(1, int(np.ceil(times[-1] * rate_hz - 1e-6))) / rate_hz
     i = np.clip(np.searchsorted(times, uniform, side="right") - 1, 0, len(took_s) - 1)
     share = (uniform - times[i]) / np.maximum(took_s[i], _NOTHING_S)
     # 2. the share of its way: at even acceleration, or from rest to rest
@@ -118,5 +112,111 @@ def _timed(places: Array, took_s: Array, speeds: Array, rate_hz: float) -> Array
     from_rest = np.where(share < 0.5, 2 * share**2, 1 - 2 * (1 - share) ** 2)
     moves = mean * took_s[i] > 0.5 * steps_mm(places)[i]
     share = np.where(moves, even, from_rest)
-    between = places[i] + share[:, None] * (places[i + 1] - places[i])
-    return np.vstack([places[:1], between, places[-1:]])
+    return np.asarray(places[i] + share[:, None] * (places[i + 1] - places[i]))
+
+
+@dataclass(frozen=True, slots=True)
+class _Piece:
+    """A way (n, 2) mm from one of its positions to another (fractions included), whether the axis is at rest
+    there, what the square of its speed may gain in a mm, mm/s2, and the rate of the positions.
+
+    Its nodes are the positions between, and both ends. They are looked at in blocks.
+    """
+
+    xy_mm: Array
+    ends: tuple[float, float]
+    rests: tuple[bool, bool]
+    gain_mm_s2: float
+    rate_hz: float
+
+    @property
+    def _count(self) -> int:
+        """How many nodes there are."""
+        return math.ceil(self.ends[1]) - math.floor(self.ends[0]) + 1
+
+    def _nodes(self, first: int, end: int) -> tuple[Array, Array]:
+        """The numbers of some nodes among the positions, and their places, (n, 2) mm."""
+        low = math.floor(self.ends[0])
+        numbers = np.clip(np.arange(low + first, low + end, dtype=float), *self.ends)
+        low = math.floor(numbers[0])
+        near = self.xy_mm[low : math.ceil(numbers[-1]) + 1]
+        places = at_places(near, numbers - low)
+        released(near)
+        return numbers, places
+
+    def _bounds(self) -> list[tuple[int, int]]:
+        """First and last node of each block, which the next begins with."""
+        firsts = range(0, self._count - 1, long_array.BLOCK_ROWS)
+        return [
+            (first, min(first + long_array.BLOCK_ROWS, self._count - 1)) for first in firsts
+        ]
+
+    def timed(self) -> Array:
+        """The way at a uniform rate, slower where the axis brakes: its ends exactly."""
+        out, bounds, start_s, leaves = LongArray(), self._bounds(), 0.0, self._leaves()
+        out.add(self._nodes(0, 1)[1])
+        if self.ends[0] == self.ends[1]:
+            return out.whole()
+        arrives = self._arrives()
+        for first, last in bounds:
+            numbers, places, was = self._was(first, last)
+            way_mm, steps_s = steps_mm(places), np.diff(numbers) / self.rate_hz
+            # 1. the speeds, and the time of each step, longer where the axis brakes
+            bound = np.minimum(leaves(way_mm), arrives(first, last))
+            speeds = np.minimum(was, np.sqrt(bound))
+            mean = np.maximum(0.5 * (speeds[1:] + speeds[:-1]), SLOWEST_MM_S)
+            took_s = np.maximum(steps_s, way_mm / mean)
+            times = np.cumsum(np.r_[start_s, took_s])
+            # 2. the positions up to the last node; the next block has that one
+            until = times[-1] * self.rate_hz
+            uniform = np.arange(len(out), int(np.ceil(until - ROUNDED))) / self.rate_hz
+            if last < self._count - 1:
+                uniform = uniform[uniform < times[-1]]
+            out.add(_at_times(uniform, times, places, took_s, speeds))
+            start_s = float(times[-1])
+        if start_s > 0:
+            out.add(self._nodes(self._count - 1, self._count)[1])
+        return out.whole()
+
+    def _was(self, first: int, last: int) -> tuple[Array, Array, Array]:
+        """Numbers, places and former speeds (mm/s) of the nodes from one to another."""
+        before, after = int(first > 0), int(last < self._count - 1)
+        numbers, places = self._nodes(first - before, last + 1 + after)
+        steps_s = np.maximum(np.diff(numbers) / self.rate_hz, _NOTHING_S)
+        was = np.r_[steps_mm(places) / steps_s, 0.0]
+        was[1:-1] = 0.5 * (was[1:-1] + was[:-2])
+        own = slice(before, len(was) - after)
+        return numbers[own], places[own], was[own]
+
+    def _leaves(self) -> Callable[[Array], Array]:
+        """What gives the squares of speeds reached from rest, mm2/s2, for the steps of block after block."""
+        reached = np.array([0.0 if self.rests[0] else np.inf])
+
+        def along(way_mm: Array) -> Array:
+            nonlocal reached
+            reached = np.cumsum(np.r_[reached[-1], self.gain_mm_s2 * way_mm])
+            return reached
+
+        return along
+
+    def _arrives(self) -> Callable[[int, int], Array]:
+        """What gives the squares of speeds from which the axis comes to rest, mm2/s2, at a block's nodes."""
+        count, squares = self._count, np.array([0.0 if self.rests[1] else np.inf])
+        if self.rests[1]:
+            fastest = max(float(self._was(*bound)[2].max()) for bound in self._bounds())
+            # back from the end, as far as it matters
+            while len(squares) < count and squares[-1] <= fastest**2:
+                end = count - len(squares) + 1
+                _, places = self._nodes(max(0, end - long_array.BLOCK_ROWS), end)
+                gains = self.gain_mm_s2 * steps_mm(places)[::-1]
+                squares = np.r_[squares, np.cumsum(np.r_[squares[-1], gains])[1:]]
+        squares, begin = squares[::-1], count - len(squares)
+
+        def at(first: int, last: int) -> Array:
+            out = np.full(last - first + 1, np.inf)
+            low, high = max(first, begin), last + 1
+            if low < high:
+                out[low - first :] = squares[low - begin : high - begin]
+            return out
+
+        return at

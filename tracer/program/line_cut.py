@@ -16,27 +16,31 @@ Source: patent ES 361967, section on use, for the passes; ramps and tabs are our
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-
-import numpy as np
+from collections.abc import Callable, Iterator, Sequence
+from functools import cached_property
 
 from morfax.motion import ramp
 from morfax.motion.arrays import Array
 from morfax.motion.faults import MotionFault
+from morfax.motion.long_array import released
 from morfax.motion.motion import BLOCK_SAMPLES
 from morfax.tracer.following.line import Line
 from morfax.tracer.operator.operator import Operator
-from morfax.tracer.operator.work import Action, Descent, Work
-from morfax.tracer.operator.zunit import QuillMove, z_moves
+from morfax.tracer.operator.work import Action, Descent
+from morfax.tracer.operator.zunit import QuillMove
 from morfax.tracer.program import braking
 from morfax.tracer.program.tabs import Tab
-from morfax.tracer.program.tool_height import ToolHeight, slowed
+from morfax.tracer.program.tool_height import (
+    ToolHeight,
+    at_height,
+    rapid,
+    slowed,
+    standing,
+)
 from morfax.tracer.program.way import Rest, Way, in_order
 
 BRAKE_MM_S2 = 500.0  # of X and Y, as the head's own
 SHORTEST_MM = 0.1  # in which the tool goes to and fro down a ramp: less is no way
-
-PlaceMm = Array | tuple[float, float]
 
 
 class LineCut:
@@ -57,9 +61,18 @@ class LineCut:
         self.top_mm = -math.inf
         if self.work.tabs is not None:
             self.top_mm = self.work.tabs.height_mm - self.depths_mm[-1]
-        self.whole, self.loop = Way.whole(line), Way.loop(line)
         # the position up to which the loop is not yet deep: there the tool went down a slope
         self.shallow_to: float | None = None
+
+    @cached_property
+    def whole(self) -> Way:
+        """The way along the line; asked for where the tool goes down on its way."""
+        return Way.whole(self.line)
+
+    @cached_property
+    def loop(self) -> Way:
+        """The way along the loop; asked for as well where the tool goes down on its way."""
+        return Way.loop(self.line)
 
     def passes(self) -> Iterator[Array]:
         """The line at each of its depths, up to where the tool goes up, (n, 3) mm."""
@@ -91,7 +104,7 @@ class LineCut:
             self.shallow_to = self.whole.position(begin_mm + down.entry.length_mm)
         rests = in_order(rests, last)
         pieces = self._resting(self.line.xy_mm, [rest.at for rest in rests])
-        yield from self._pieces(pieces[:-1], rests, self.whole)
+        yield from self._pieces(pieces[:-1], rests, lambda: self.whole)
 
     def _on_down(self) -> Iterator[Array]:
         """Further rounds of a closed line until the tool is at the end of its slope, (n, 3) mm."""
@@ -152,7 +165,7 @@ class LineCut:
             pieces = self._resting(line.xy_mm[a:b], [0, *(rest.at - a for rest in here)])
             if before is not None:
                 yield from self._piece(self._straight(before, line.xy_mm[a]), 0.0)
-            yield from self._pieces(pieces[1:-1], here, self.loop, self.loop.mm_at(a))
+            yield from self._pieces(pieces[1:-1], here, lambda: self.loop, a)
             before = line.xy_mm[b - 1]
         if slope is not None and tool.entry is None:
             self.shallow_to = self.loop.position(slope.length_mm - come_mm)
@@ -161,15 +174,19 @@ class LineCut:
         self,
         pieces: Sequence[Array],
         rests: Sequence[Rest] = (),
-        way: Way | None = None,
-        come_mm: float = 0.0,
+        way: Callable[[], Way] | None = None,
+        at: float = 0.0,
     ) -> Iterator[Array]:
-        """Pieces (n, 2) mm of a way, and what is done at the rest at the end of each, (n, 3) mm."""
+        """Pieces (n, 2) mm of a way from a position on, with what is done at the end of each,
+        (n, 3) mm.
+        """
         for k, piece in enumerate(pieces):
-            rest = rests[k] if k < len(rests) else None
-            mm = come_mm if way is None or rest is None else way.mm_at(rest.at)
-            yield from self._piece(piece, mm - come_mm)
-            come_mm = mm
+            rest, length_mm = rests[k] if k < len(rests) else None, 0.0
+            if way is not None and rest is not None:
+                if self.tool.entry is not None:  # only a slope asks how long the way is
+                    length_mm = way().mm_at(rest.at) - way().mm_at(at)
+                at = rest.at
+            yield from self._piece(piece, length_mm)
             if rest is not None and rest.tab is not None:
                 yield from self._at_tab(piece[-1], rest)
             if rest is not None and rest.action is not None:
@@ -177,10 +194,14 @@ class LineCut:
 
     def _piece(self, xy_mm: Array, length_mm: float) -> Iterator[Array]:
         """A piece (n, 2) mm that is so long on the line, at the height of the tool, (n, 3) mm."""
-        slopes = self.tool.entry is not None
+        if self.tool.entry is None:
+            for first in range(0, len(xy_mm), BLOCK_SAMPLES):
+                some = xy_mm[first : first + BLOCK_SAMPLES]
+                yield at_height(some, self.tool.along(some, 0.0))
+                released(some)
+            return
         positions_mm = at_height(xy_mm, self.tool.along(xy_mm, length_mm))
-        if slopes:
-            positions_mm = slowed(positions_mm, self.work.feed_mm_s, self.rate_hz)
+        positions_mm = slowed(positions_mm, self.work.feed_mm_s, self.rate_hz)
         for first in range(0, len(positions_mm), BLOCK_SAMPLES):
             yield positions_mm[first : first + BLOCK_SAMPLES]
 
@@ -275,22 +296,3 @@ class LineCut:
     def _resting(self, xy_mm: Array, at: Sequence[float]) -> list[Array]:
         """Positions (n, 2) mm cut at some of them, at rest there."""
         return braking.pieces(xy_mm, at, BRAKE_MM_S2, self.rate_hz)
-
-
-def rapid(work: Work, start_mm: PlaceMm, end_mm: PlaceMm, rate_hz: float) -> Array:
-    """Straight from a place to another at clearance, (n, 3) mm."""
-    way = ramp.positions_mm(start_mm, end_mm, work.rapid_mm_s, rate_hz=rate_hz)
-    return at_height(way, work.clearance_mm)
-
-
-def standing(
-    work: Work, xy_mm: Array, from_mm: float, moves: Sequence[QuillMove], rate_hz: float
-) -> Array:
-    """X and Y stand while Z makes its moves, (n, 3) mm."""
-    z_mm = z_moves(from_mm, moves, work.acceleration_mm_s2, rate_hz)
-    return np.column_stack([np.tile(xy_mm, (len(z_mm), 1)), z_mm])
-
-
-def at_height(xy_mm: Array, z_mm: float | Array) -> Array:
-    """X and Y move while Z stands, or moves with them, (n, 3) mm."""
-    return np.column_stack([xy_mm, np.broadcast_to(z_mm, len(xy_mm))])

@@ -25,15 +25,9 @@ from morfax.tracer.operator.operator import Operator
 from morfax.tracer.operator.work import Action, Work
 from morfax.tracer.operator.zunit import QuillMove
 from morfax.tracer.program import braking
-from morfax.tracer.program.line_cut import (
-    BRAKE_MM_S2,
-    LineCut,
-    PlaceMm,
-    at_height,
-    rapid,
-    standing,
-)
+from morfax.tracer.program.line_cut import BRAKE_MM_S2, LineCut
 from morfax.tracer.program.tabs import Tab
+from morfax.tracer.program.tool_height import PlaceMm, at_height, rapid, standing
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""The height of the tool along a pass: level, on a slope down into the work, raised over a tab.
+"""The height of the tool: level, on a slope down into the work, raised over a tab, at clearance above it.
 
 Signals: positions of X and Y along the way, (n, 2) mm, in; Z beside them out, mm.
 
@@ -10,16 +10,21 @@ Source: our own; the moves of Z while X and Y stand are the Z unit's (see `zunit
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from morfax.motion import ramp
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import lengths_mm
-from morfax.tracer.operator.work import Descent
+from morfax.tracer.operator.work import Descent, Work
+from morfax.tracer.operator.zunit import QuillMove, z_moves
 
 ROUNDED = 1e-9  # of the feed, and of a period: what rounding adds
 ARRIVED_MM = 1e-9  # of a slope: what rounding leaves of it
+
+PlaceMm = Array | tuple[float, float]
 
 
 @dataclass(slots=True)
@@ -74,3 +79,22 @@ def slowed(positions_mm: Array, feed_mm_s: float, rate_hz: float) -> Array:
     uniform = np.arange(1, int(np.ceil(times[-1] - ROUNDED)))
     between = [np.interp(uniform, times, column) for column in positions_mm.T]
     return np.vstack([positions_mm[:1], np.column_stack(between), positions_mm[-1:]])
+
+
+def rapid(work: Work, start_mm: PlaceMm, end_mm: PlaceMm, rate_hz: float) -> Array:
+    """Straight from a place to another at clearance, (n, 3) mm."""
+    way = ramp.positions_mm(start_mm, end_mm, work.rapid_mm_s, rate_hz=rate_hz)
+    return at_height(way, work.clearance_mm)
+
+
+def standing(
+    work: Work, xy_mm: Array, from_mm: float, moves: Sequence[QuillMove], rate_hz: float
+) -> Array:
+    """X and Y stand while Z makes its moves, (n, 3) mm."""
+    z_mm = z_moves(from_mm, moves, work.acceleration_mm_s2, rate_hz)
+    return np.column_stack([np.tile(xy_mm, (len(z_mm), 1)), z_mm])
+
+
+def at_height(xy_mm: Array, z_mm: float | Array) -> Array:
+    """X and Y move while Z stands, or moves with them, (n, 3) mm."""
+    return np.column_stack([xy_mm, np.broadcast_to(z_mm, len(xy_mm))])

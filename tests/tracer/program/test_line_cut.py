@@ -19,8 +19,8 @@ from morfax.tracer.marks.marks import Mark
 from morfax.tracer.operator.card import Card
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.operator.work import Tabs, Work
-from morfax.tracer.program.line_cut import rapid
 from morfax.tracer.program.program import Trace
+from morfax.tracer.program.tool_height import rapid
 
 UM = 1e-3
 SPEED_MM_S = 10.0

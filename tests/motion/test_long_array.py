@@ -1,0 +1,142 @@
+"""Long arrays: what is in a file is what would be in memory, and memory is given back."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from morfax.motion import long_array
+from morfax.motion.faults import FileFault
+from morfax.motion.long_array import LongArray, blocks, is_mapped, one_in
+from morfax.motion.polyline import lengths_by_blocks, lengths_mm
+
+ROWS = np.random.default_rng(1).normal(size=(2000, 2))
+LIMIT_ROWS = 100  # in memory, in these tests
+
+
+@pytest.fixture(autouse=True)
+def short_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A hundred rows are long, and 70 of them a block."""
+    monkeypatch.setattr(long_array, "IN_MEMORY_BYTES", 16 * LIMIT_ROWS)
+    monkeypatch.setattr(long_array, "BLOCK_ROWS", 70)
+
+
+def grown(rows: int = len(ROWS), parts: int = 37) -> LongArray:
+    """A long array of some rows, that came in parts."""
+    array = LongArray()
+    for part in np.array_split(ROWS[:rows], parts):
+        array.add(part)
+    return array
+
+
+@pytest.mark.parametrize("rows", [0, 1, 99, 101, 2000])
+def test_all_rows_are_there_in_memory_or_mapped(rows: int) -> None:
+    array = grown(rows)
+    assert np.array_equal(array.whole(), ROWS[:rows]) and len(array) == rows
+    assert is_mapped(array.whole()) == (rows > LIMIT_ROWS)
+    if rows:
+        assert np.array_equal(array.last, ROWS[rows - 1])
+        assert np.array_equal(array.since(rows // 2), ROWS[rows // 2 : rows])
+
+
+def test_what_comes_is_copied() -> None:
+    array, part = LongArray(), ROWS[:50].copy()
+    array.add(part)
+    part[:] = 0
+    assert np.array_equal(array.whole(), ROWS[:50])
+
+
+@settings(max_examples=30)
+@given(first=st.integers(0, 2000), then=st.integers(0, 300), other=st.integers(0, 2000))
+def test_copies_go_on_by_themselves_also_when_rows_are_cut(
+    first: int, then: int, other: int
+) -> None:
+    array = grown()
+    copied = copy.deepcopy(array)
+    array.cut(first)
+    copied.cut(other)
+    for each in (array, copied):
+        each.add(ROWS[:then])
+    assert np.array_equal(array.whole(), np.vstack([ROWS[:first], ROWS[:then]]))
+    assert np.array_equal(copied.whole(), np.vstack([ROWS[:other], ROWS[:then]]))
+
+
+def test_another_process_has_all_rows() -> None:
+    assert np.array_equal(pickle.loads(pickle.dumps(grown())).whole(), ROWS)
+
+
+@pytest.mark.parametrize("before", [0, 1, 2])
+def test_blocks_are_the_rows_with_those_before(before: int) -> None:
+    found = list(map(np.copy, blocks(grown().whole(), before)))
+    assert len(found) == 29 and max(map(len, found)) == 70 + before
+    assert np.array_equal(np.vstack([found[0], *(some[before:] for some in found[1:])]), ROWS)
+    assert len(list(blocks(ROWS, before))) == 1
+
+
+@pytest.mark.parametrize("every", [1, 7, 30])
+def test_one_in_so_many_is_a_slice(every: int) -> None:
+    thinned = one_in(grown().whole()[5:], every)
+    assert np.array_equal(thinned, ROWS[5::every]) and not is_mapped(thinned)
+
+
+def test_lengths_by_blocks_are_the_lengths_to_the_last_bit() -> None:
+    found = list(lengths_by_blocks(grown().whole()))
+    firsts = [first for first, _, _ in found]
+    assert firsts[:3] == [0, 69, 139]  # each begins with the last place of the one before
+    whole = np.concatenate([found[0][2], *(lengths[1:] for _, _, lengths in found[1:])])
+    assert np.array_equal(whole, lengths_mm(ROWS))
+
+
+def resident_bytes() -> int:
+    """What this process holds of files without a name, that are mapped."""
+    held, counts = 0, False
+    for line in Path("/proc/self/smaps").read_text().splitlines():
+        if "-" in line.split(" ")[0]:
+            counts = "(deleted)" in line and tempfile.gettempdir() in line
+        elif counts and line.startswith("Rss:"):
+            held += 1024 * int(line.split()[1])
+    return held
+
+
+def through_blocks(rows: np.ndarray) -> None:
+    """Go through all rows block by block."""
+    for block in blocks(rows):
+        block.sum()
+
+
+def through_one_in(rows: np.ndarray) -> None:
+    """Take one row in thirty."""
+    one_in(rows, 30)
+
+
+@pytest.mark.parametrize("through", [through_blocks, through_one_in])
+def test_memory_is_given_back(
+    through: Callable[[np.ndarray], None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of 32 MB that were gone through no more is held than of two blocks of 3.2 MB."""
+    monkeypatch.setattr(long_array, "BLOCK_ROWS", 200_000)
+    array = LongArray()
+    array.add(np.ones((2_000_000, 2)))
+    rows, before = array.whole(), resident_bytes()
+    rows.sum()
+    assert resident_bytes() - before >= 30e6
+    through(rows)
+    assert resident_bytes() - before <= 6.4e6
+
+
+def test_a_folder_without_room_is_told_in_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    def full() -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(tempfile, "TemporaryFile", full)
+    with pytest.raises(FileFault, match=r"No space left on device; .* set TMPDIR") as told:
+        grown()
+    assert "\n" not in str(told.value)
