@@ -101,10 +101,20 @@ def serpentine(across_mm: float, up_mm: float, length_mm: float) -> NDArray[np.f
     return np.vstack([there, far, back, near, there[:1]])
 
 
-def used(file: Path) -> tuple[float, float]:
+def used(file: Path, *options: str) -> tuple[float, float]:
     """Processor time, s, and largest memory, GB, of tracing a sheet."""
     path = file.with_suffix(".csv")
-    words = [sys.executable, "-m", "morfax", "trace", str(file), "-o", str(path), "-q"]
+    words = [
+        sys.executable,
+        "-m",
+        "morfax",
+        "trace",
+        str(file),
+        "-o",
+        str(path),
+        "-q",
+        *options,
+    ]
     process = subprocess.Popen(words)
     _, status, usage = os.wait4(process.pid, 0)
     if status:

@@ -32,6 +32,7 @@ from morfax.tracer.drawing.contrast import (
     SOFT_PX,
     strokes_of,
 )
+from morfax.tracer.drawing.memory import make_sure_of_ink
 from morfax.tracer.drawing.paper import Paper
 from morfax.tracer.drawing.tiles import PAPER, TILE_PX, Tiles
 
@@ -64,7 +65,7 @@ class _Look:
 def levelled(grey: Any, pitch_mm: float) -> tuple[Tiles, Shapes]:
     """Darkness of a grey picture whose rows can be read: paper 0, the strokes 1; and filled shapes.
 
-    Raises DrawingFault if nothing is long and dark enough to be a line.
+    Raises DrawingFault if nothing is long and dark enough to be a line, or the ink does not fit into memory.
     """
     by = Paper.by(pitch_mm)
     look = _look(grey, by)
@@ -73,6 +74,8 @@ def levelled(grey: Any, pitch_mm: float) -> tuple[Tiles, Shapes]:
     centre, darker = (float(v) for v in np.percentile(sample, [50.0, NOISY]))
     noise = darker - centre  # by the darker ones: scanners clip the white
     marked = _inked(grey, look, paper, max(LEAST_CONTRAST, centre + ABOVE_NOISE * noise))
+    inked_px = TILE_PX**2 * int(np.count_nonzero(marked != PAPER))
+    make_sure_of_ink(inked_px, grey.shape[0] * grey.shape[1])
     tiles = replace(_kept(grey, paper, marked), sample=sample)
     ink = _ink_contrast(
         tiles, max(LEAST_CONTRAST, centre + ABOVE_NOISE * SOFTENED * noise), pitch_mm

@@ -25,6 +25,7 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
@@ -78,7 +79,7 @@ def marks_along(view: View, positions: Array) -> list[Mark]:
 
 def _ticks(view: View, path: HeadPath) -> list[float]:
     """Feet of the ticks, mm along the path."""
-    every = [stroke for side in (1, -1) for stroke in _strokes(view, path, side)]
+    every = _strokes(view, path)
     feet: list[float] = []
     for stroke in every:
         is_new = all(abs(stroke.foot_mm - other) >= view.width_mm for other in feet)
@@ -148,15 +149,23 @@ def _mostly_on(view: View, stroke: SideStroke, others: Array) -> bool:
     return bool(np.mean(np.array(away_mm) < 0.5 * view.width_mm) > 0.5)
 
 
-def _strokes(view: View, path: HeadPath, side: int) -> list[SideStroke]:
-    """Strokes of about a line's width that stand beside the path on one side."""
+def _strokes(view: View, path: HeadPath) -> list[SideStroke]:
+    """Strokes of about a line's width that stand beside the path: first those to its left."""
     row_mm = max(0.5 * view.width_mm, 2 * view.pitch_mm)
     rows = view.width_mm + np.arange(0.0, sizes.FARTHEST_MM + 0.1, row_mm)
+    dark = _are_dark(view, path, np.r_[rows, -rows])
+    left, right = dark[: len(rows)], dark[len(rows) :]
+    return [*_of_side(view, path, 1, rows, left), *_of_side(view, path, -1, rows, right)]
+
+
+def _of_side(
+    view: View, path: HeadPath, side: int, rows: Array, dark: NDArray[np.bool_]
+) -> list[SideStroke]:
+    """The strokes of one side, from where the cells of its rows see ink."""
     least_mm, most_mm = sizes.SEEN[0] * view.width_mm, 2 * sizes.SEEN[1] * view.width_mm
     found: list[SideStroke] = []
-    for away in rows:
-        seen = _row(view.cells, path.places, path.along, side * away)
-        for begin, end in _pulses(seen > view.level):
+    for away, ink in zip(rows, dark, strict=True):
+        for begin, end in _pulses(ink):
             if not least_mm < (end - begin) * path.step_mm < most_mm:
                 continue
             i = (begin + end) // 2
@@ -173,20 +182,31 @@ def _is_among(view: View, stroke: SideStroke, found: list[SideStroke]) -> bool:
     return any(abs(stroke.foot_mm - o.foot_mm) <= within_mm for o in found)
 
 
-def _pulses(dark: Array) -> Iterator[tuple[int, int]]:
+def _pulses(dark: NDArray[np.bool_]) -> Iterator[tuple[int, int]]:
     """First and last number + 1 of each run of true values."""
     edges = np.flatnonzero(np.diff(np.r_[False, dark, False].astype(np.int8)))
     yield from zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)
 
 
-@njit(cache=True)
-def _row(cells, places, along, away_mm):  # type: ignore[no-untyped-def]
-    """Darkness that a cell sees running beside a path, `away_mm` to its left."""
-    out = np.empty(len(places))
-    for k in range(len(places)):
-        x, y = places[k, 0] - away_mm * along[k, 1], places[k, 1] + away_mm * along[k, 0]
-        out[k] = photocell.darkness_at(cells, x, y)
+def _are_dark(view: View, path: HeadPath, away_mm: Array) -> NDArray[np.bool_]:
+    """Where cells that run beside a path, so far to its left, see ink: a row for each cell."""
+    out = np.empty((len(away_mm), len(path.places)), bool)
+    _look_beside(
+        view.cells, path.places, path.along, np.asarray(away_mm, float), view.level, out
+    )
     return out
+
+
+@njit(cache=True)
+def _look_beside(cells, places, along, away_mm, level, out):  # type: ignore[no-untyped-def]
+    """Fill `out`: all cells at one place, then at the next, so that tiles of a large sheet are made
+    once.
+    """
+    for k in range(len(places)):
+        for row in range(len(away_mm)):
+            x = places[k, 0] - away_mm[row] * along[k, 1]
+            y = places[k, 1] + away_mm[row] * along[k, 0]
+            out[row, k] = photocell.darkness_at(cells, x, y) > level
 
 
 # dots
@@ -195,9 +215,9 @@ def _row(cells, places, along, away_mm):  # type: ignore[no-untyped-def]
 def _dots(view: View, path: HeadPath) -> list[Mark]:
     """Dots on the path and at its ends (see `dots`)."""
     beside_mm = 0.75 * sizes.DOT_LEAST_WIDTHS * view.width_mm
-    rows = [_row(view.cells, path.places, path.along, side * beside_mm) for side in (1, -1)]
+    left, right = _are_dark(view, path, np.array([beside_mm, -beside_mm]))
     found: list[Mark] = []
-    for begin, end in _pulses(np.minimum(*rows) > view.level):
+    for begin, end in _pulses(left & right):
         middle = (begin + end - 1) // 2
         beside = _beside_dot(view, path, begin, end)
         centre = dots.disc(beside, path.places[middle], path.along[middle])

@@ -26,7 +26,7 @@ import numpy as np
 
 from morfax.motion import curves, long_array
 from morfax.motion.arrays import Array
-from morfax.motion.long_array import LongArray, released
+from morfax.motion.long_array import LongArray, blocks, released
 from morfax.motion.polyline import at_lengths, at_places, lengths_mm, steps_mm
 from morfax.motion.speed_limits import reachable
 
@@ -140,7 +140,9 @@ class _Piece:
         numbers = np.clip(np.arange(low + first, low + end, dtype=float), *self.ends)
         low = math.floor(numbers[0])
         near = self.xy_mm[low : math.ceil(numbers[-1]) + 1]
-        places = at_places(near, numbers - low)
+        at = numbers - low
+        is_between = bool((at[[0, -1]] % 1).any())  # only the ends may be
+        places = at_places(near, at) if is_between else np.array(near)
         released(near)
         return numbers, places
 
@@ -188,6 +190,16 @@ class _Piece:
         own = slice(before, len(was) - after)
         return numbers[own], places[own], was[own]
 
+    def _fastest_mm2_s2(self) -> float:
+        """No less than the square of the highest of the former speeds."""
+        fastest_mm2 = 0.0
+        for block in blocks(
+            self.xy_mm[math.floor(self.ends[0]) : math.ceil(self.ends[1]) + 1], 1
+        ):
+            x_mm, y_mm = np.diff(block, axis=0).T
+            fastest_mm2 = max(fastest_mm2, float((x_mm * x_mm + y_mm * y_mm).max(initial=0.0)))
+        return fastest_mm2 * self.rate_hz**2 * (1 + ROUNDED)
+
     def _leaves(self) -> Callable[[Array], Array]:
         """What gives the squares of speeds reached from rest, mm2/s2, for the steps of block after block."""
         reached = np.array([0.0 if self.rests[0] else np.inf])
@@ -203,9 +215,9 @@ class _Piece:
         """What gives the squares of speeds from which the axis comes to rest, mm2/s2, at a block's nodes."""
         count, squares = self._count, np.array([0.0 if self.rests[1] else np.inf])
         if self.rests[1]:
-            fastest = max(float(self._was(*bound)[2].max()) for bound in self._bounds())
+            fastest_mm2_s2 = self._fastest_mm2_s2()
             # back from the end, as far as it matters
-            while len(squares) < count and squares[-1] <= fastest**2:
+            while len(squares) < count and squares[-1] <= fastest_mm2_s2:
                 end = count - len(squares) + 1
                 _, places = self._nodes(max(0, end - long_array.BLOCK_ROWS), end)
                 gains = self.gain_mm_s2 * steps_mm(places)[::-1]

@@ -17,7 +17,7 @@ from PIL import Image
 from morfax.motion.faults import DrawingFault
 from morfax.motion.motion import thin
 from morfax.motion.polyline import nearest_mm, with_places
-from morfax.tracer.drawing import by_rows, deviation, large, raster, tiff_rows
+from morfax.tracer.drawing import by_rows, deviation, large, memory, raster, tiff_rows
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.tiles import PAPER, TILE_PX, Tiles
 from morfax.tracer.ink.left_out import ink_left
@@ -258,3 +258,16 @@ def test_the_ink_across_a_path_is_read_from_tiles(cam):
     across = np.linspace(-1.0, 1.0, 9)
     seen = [deviation._profile(each, places, np.zeros(3), across) for each in cam]
     np.testing.assert_allclose(seen[0], seen[1], atol=STEP)
+
+
+def test_ink_that_does_not_fit_into_memory_is_told_before_it_is_kept(as_large, monkeypatch):
+    """Asked are the tiles with ink alone: the cam has them on a small part of its sheet."""
+    monkeypatch.setattr(memory, "SMALL_PX", 0)
+    monkeypatch.setattr(memory, "free_bytes", lambda: 310_000_000)  # 10 MB beyond what is fixed
+    assert Drawing.open(CAM).darkness.kept.nbytes * memory.PER_INKED_PIXEL < 10_000_000
+    monkeypatch.setattr(memory, "free_bytes", lambda: 300_000_000)
+    monkeypatch.setattr(large, "_kept", None)  # nothing is kept before it is asked
+    with pytest.raises(
+        DrawingFault, match=r"ink on or beside \d+ % of .* 0.3 GB are free; scan"
+    ):
+        Drawing.open(CAM)
