@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo test check bench figures docs soak fuzz mutants clean
+.PHONY: demo test check bench bench-long figures docs soak fuzz mutants clean
 
 $(VENV)/installed: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -25,6 +25,12 @@ check: $(VENV)/installed
 
 bench: $(VENV)/installed
 	$(BIN)/python -m benchmarks
+
+# large sheets, plates of many holes and batches: half an hour, 3 GB of disk
+bench-long: $(VENV)/installed
+	$(BIN)/python -m benchmarks large
+	$(BIN)/python -m benchmarks holes
+	$(BIN)/python -m benchmarks batch
 
 figures: $(VENV)/installed
 	$(BIN)/python -m docs.figures
