@@ -43,6 +43,9 @@ ON_IT_MM = 0.5 * PEN_MM  # a true place is followed if a stroke comes as near
 AT_JUNCTION_MM = 2.0  # places nearer to a junction are left out of the RMS
 STEP_MM = 0.05
 PASSED_MM = 2.0  # before and behind a junction, where the partners are looked up
+PASSED_ASIDE_MM = (
+    0.1  # a quarter of the pen's width: a line so near to the true one there is its stroke
+)
 UM = 1000.0
 LOW_SHARE = 0.995  # asked of a net
 
@@ -204,11 +207,18 @@ def partners(strokes: Strokes, junctions: Points, lines: Strokes) -> list[bool]:
         for k in np.flatnonzero(nearest):
             if not reach <= k < len(truth) - reach:
                 continue
-            a, b = tree.query(truth[[k - reach, k + reach]])[1]
-            count = len(placed[which[a]])
-            apart = abs(int(at[a]) - int(at[b]))
-            apart = min(apart, abs(count - apart)) if which[a] == which[b] else count
-            right.append(which[a] == which[b] and abs(apart - 2 * reach) < 0.5 * reach)
+            # at either place another line may cross as near
+            before, behind = tree.query_ball_point(
+                truth[[k - reach, k + reach]], PASSED_ASIDE_MM
+            )
+            a, b = np.array(np.meshgrid(before, behind), int)
+            a, b = a[which[a] == which[b]], b[which[a] == which[b]]
+            counts, apart = (
+                np.array([len(line) for line in placed])[which[a]],
+                abs(at[a] - at[b]),
+            )
+            apart = np.minimum(apart, abs(counts - apart))
+            right.append(bool(np.any(abs(apart - 2 * reach) < 0.5 * reach)))
     return right
 
 
