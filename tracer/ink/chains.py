@@ -11,17 +11,20 @@ Source: our own.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.curves import hermite
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.trail import Trail
 from morfax.tracer.ink.net import COVERED, Inner, Net, end_leg, net_of, trimmed
 from morfax.tracer.ink.partners import Pair, meeting_place, partners, way_through
+from morfax.tracer.ink.run import Run
+from morfax.tracer.ink.shared_ink import SharedInk
 from morfax.tracer.ink.stretches import FeltSheet
 from morfax.tracer.junctions.planner import Planner
 from morfax.tracer.sensing.leg import Leg, turn
@@ -39,23 +42,36 @@ WIDE_WIDTHS, TRIM, LEGS = 4.0, 0.1, 0.5
 # of a line's width: two that go on from both its ends, so narrow and so straight on, run together in it
 NARROWER, TOGETHER = 0.8, math.radians(25)
 COVERED_SHARE = 0.7  # of a stretch within a junction, along which ways go
-SOLVED_AGAIN = 3  # times at most, with more lines
+SOLVED_AGAIN = 5  # times at most, with more lines
 
 
 def solved(sheet: FeltSheet) -> Junctions:
-    """The junctions of a sheet. A stretch within one along which no way goes is a line of its own."""
-    own = set[int]()
+    """The junctions of a sheet. A stretch within one along which no way goes is a line of its own, or two.
+
+    A stretch that turns out to be two lines that run together lies within a junction, or is too long for
+    that; then all is asked anew, for these two may be what goes along another stretch.
+    """
+    parted, two, bare = set[int](), set[int](), set[int]()
     for _ in range(SOLVED_AGAIN):
-        junctions = Junctions(net_of(sheet, own), sheet.settings)
+        junctions = Junctions(net_of(sheet, two | bare), sheet.settings)
+        lines = [line.stretch for line in junctions.net.lines]
+        together = {
+            stretch: width_mm
+            for n, stretch in enumerate(lines)
+            if stretch not in parted | bare and (width_mm := junctions.single_mm(n)) is not None
+        }
+        too_long = parted.intersection(lines) - two - bare
         more = {inner.stretch for inner in junctions.net.inner if not junctions.covers(inner)}
-        for n, line in enumerate(junctions.net.lines):
-            width_mm = None if line.stretch in own else junctions.single_mm(n)
-            if width_mm is not None:
-                sheet.widths_mm[line.stretch] = width_mm
-                more.add(line.stretch)
-        if not more:
+        if together or too_long:
+            for stretch, width_mm in together.items():
+                sheet.widths_mm[stretch] = width_mm
+            parted |= set(together)
+            two |= too_long
+            bare = set()
+        elif more:
+            bare |= more
+        else:
             break
-        own |= more
     return junctions
 
 
@@ -87,7 +103,21 @@ class Junction:
     sides: list[Side]
     legs: list[Leg]
     is_free: bool  # an end of the ink
+    inked: list[Run] = field(default_factory=list)  # what was felt of its own ink
     passing: cKDTree | None = None
+
+    @cached_property
+    def ink(self) -> SharedInk | None:
+        """Its own ink and the ways through it; None if nothing was felt within it."""
+        if not self.inked:
+            return None
+        ways = [
+            hermite(one.end_mm, one.heading_rad, onto.end_mm, onto.heading_rad)
+            for one, onto in (
+                (self.legs[a], self.legs[b].turned_round()) for a, b in self.pairs
+            )
+        ]
+        return SharedInk(self.inked, ways)
 
     @cached_property
     def pairs(self) -> list[Pair]:
@@ -128,6 +158,9 @@ class Junctions:
                 there = found.setdefault(number, Junction([], [], number in self.net.free_ends))
                 there.sides.append(Side(n, last))
                 there.legs.append(end_leg(line, last))
+        for inner in self.net.inner:
+            if inner.junction in found:
+                found[inner.junction].inked.append(inner.run)
         return found
 
     def _trim(self) -> None:
@@ -183,7 +216,7 @@ class Junctions:
         there = self.by_number.get(inner.junction)
         if there is None or not there.pairs:
             return False
-        away_mm, _ = self._passing(there).query(inner.places_mm)
+        away_mm, _ = self._passing(there).query(inner.run.places_mm)
         return bool(np.mean(away_mm < COVERED * there.legs[0].width_mm) > COVERED_SHARE)
 
     def single_mm(self, number: int) -> float | None:
@@ -250,4 +283,4 @@ class Junctions:
         view = self.net.lines[there.sides[pair[0]].line].runs[0].view
         stands = one.end_mm, one.heading_rad
         planner = Planner(view, stands, Trail(one.end_mm, view.step_mm), self.settings)
-        return np.vstack(way_through(planner, one, other, None))
+        return np.vstack(way_through(planner, (one, other), None, there.ink))

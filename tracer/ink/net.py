@@ -59,11 +59,11 @@ class FeltLine:
 
 
 class Inner(NamedTuple):
-    """A stretch within a junction: its number, the junction's, and places along it."""
+    """A stretch within a junction: its number, the junction's, and what was felt along it."""
 
     stretch: int
     junction: int
-    places_mm: Array
+    run: Run
 
 
 @dataclass(slots=True)
@@ -110,7 +110,7 @@ def net_of(sheet: FeltSheet, own: set[int]) -> Net:
     for n in inner:
         if felt_mm(felt[n]) > OWN_WIDTHS * widths[n]:
             junction = same.of(graph.stretches[n].nodes[0])
-            net.inner.append(Inner(n, junction, felt[n].places_mm))
+            net.inner.append(Inner(n, junction, felt[n]))
     _bridge_gaps(net, sheet.settings)
     return net
 

@@ -25,6 +25,7 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.curves import hermite
 from morfax.tracer.head.course import SMOOTH, on_ink, through_nodes
+from morfax.tracer.ink.shared_ink import SharedInk, kept_in_ink
 from morfax.tracer.junctions.corner import Corner, sharp_corner
 from morfax.tracer.junctions.planner import BEYOND_MM, Planner
 from morfax.tracer.sensing.leg import Leg, turn
@@ -68,15 +69,22 @@ def meeting_place(legs: Sequence[Leg]) -> Array:
 
 
 def way_through(
-    planner: Planner, incoming: Leg, outgoing: Leg, between: Array | None
+    planner: Planner, legs: tuple[Leg, Leg], between: Array | None, ink: SharedInk | None = None
 ) -> list[Array]:
     """Stretches (n, 2) mm from where the planner's head stands to the outgoing leg's clean end, or beyond.
 
+    `legs` are the incoming and the outgoing one, and `ink` is what was felt of the junction's own ink.
     `between` holds places that were felt between two legs that are alone there, if they are: then their ink
     shows whether their corner is round.
     """
+    incoming, outgoing = legs
     onto = outgoing.end_mm, outgoing.heading_rad
-    smooth, corner = [hermite(*planner.stands, *onto)], Corner.of(incoming, outgoing)
+    straight = hermite(*planner.stands, *onto)
+    smooth = [straight]
+    if ink is not None:
+        others = ink.besides(np.vstack([incoming.end_mm, outgoing.end_mm]))
+        smooth = [kept_in_ink(straight, ink, planner.view.width_mm, others)]
+    corner = Corner.of(incoming, outgoing)
     ways = list[list[Array]]()
     if between is not None:
         ways.append(planner.through(incoming, outgoing, corner).stretches)

@@ -34,6 +34,7 @@ from morfax.tracer.head.state import CHANGED, MORE, Home
 from morfax.tracer.ink.chains import Chain, Junctions, Side
 from morfax.tracer.ink.partners import way_through
 from morfax.tracer.ink.run import Run
+from morfax.tracer.ink.shared_ink import SharedInk
 from morfax.tracer.junctions.planner import Planner
 from morfax.tracer.sensing.leg import Leg
 from morfax.tracer.sensing.view import View
@@ -68,11 +69,12 @@ class InkStroke(NamedTuple):
 class Piece(NamedTuple):
     """A clean run of a chain, and what was felt between it and the one before, (n, 2) mm.
 
-    None if other lines meet there.
+    None if other lines meet there; then what was felt along the stretches within their junction.
     """
 
     run: Run
     between: Array | None
+    ink: SharedInk | None = None
 
 
 def stroke_along(
@@ -114,10 +116,11 @@ def _pieces(chain: Chain, junctions: Junctions) -> list[Piece]:
     pieces = list[Piece]()
     for link in chain.links:
         line = junctions.net.lines[link.line]
-        alone = len(junctions.at(Side(link.line, link.back)).sides) == 2
+        there = junctions.at(Side(link.line, link.back))
+        alone = len(there.sides) == 2
         runs = [run.turned_round() for run in line.runs[::-1]] if link.back else line.runs
         parted = [places[::-1] for places in line.parted[::-1]] if link.back else line.parted
-        pieces.append(Piece(runs[0], NOTHING if alone else None))
+        pieces.append(Piece(runs[0], NOTHING if alone else None, there.ink))
         pieces += [Piece(run, places) for run, places in zip(runs[1:], parted, strict=True)]
     return pieces
 
@@ -125,10 +128,10 @@ def _pieces(chain: Chain, junctions: Junctions) -> list[Piece]:
 def _cut_open(pieces: list[Piece]) -> list[Piece]:
     """The pieces of a closed chain from the middle of its longest run round to there."""
     k = max(range(len(pieces)), key=lambda n: len(pieces[n].run))
-    run, between = pieces[k]
+    run, between, ink = pieces[k]
     middle = len(run) // 2
     later, sooner = run.part(middle, len(run)), run.part(0, middle + 1)
-    return [Piece(later, NOTHING), *pieces[k + 1 :], *pieces[:k], Piece(sooner, between)]
+    return [Piece(later, NOTHING), *pieces[k + 1 :], *pieces[:k], Piece(sooner, between, ink)]
 
 
 @dataclass
@@ -201,7 +204,7 @@ class InkHead:
             onto = incoming.at(-back_mm), incoming.heading_at(-back_mm)
             before, stands = [self._course(run, self._station(run, self.at), onto)], onto
         planner = Planner(run.view, stands, self.carriage.trail, self.settings)
-        way = way_through(planner, incoming, outgoing, onward.between)
+        way = way_through(planner, (incoming, outgoing), onward.between, onward.ink)
         self.carriage.run([np.vstack([*before, way[0]]), *way[1:]], self.settings.speed_mm_s)
         # aimed at the line where the way has come onto it
         along_mm = max(0.0, -course.ahead_mm(way[-1][-1], outgoing))

@@ -1,0 +1,106 @@
+"""Shared ink: the way of a line through a junction is kept within the ink that it shares with others there.
+
+Signals: a way (n, 2) mm, what was felt along the stretches within the junction, and the line's width in; the
+way, moved aside where half the line's width would lie on paper, out.
+
+    ════════════════      two lines run together for a while: the rims say where their ink is, W wide; a line
+      ╲__________╱        of width w has its middle no further from the ink's middle than
+
+        limit = (W - w) / 2, and a little more
+
+Where two ways lie in the same ink, one has the one rim and the other the other. The move is averaged along the way over two widths, and fades towards its ends, where the line is known.
+
+Source: our own.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from morfax.motion.arrays import Array
+from morfax.motion.polyline import lengths_mm
+from morfax.tracer.ink.run import Run
+
+# All limits below were chosen by trial on drawings of nets.
+ALONG_COS = 0.94  # 20 degrees: a stretch that goes another way is not this line's
+BESIDE = 0.75  # of the ink's width: a way further from its middle is not in it
+AVERAGED, FADES = 2.0, 1.0  # widths of the line
+SLACK = 0.12  # of the line's width: where two lines cross, the rims of their ink are felt so much too near
+SAME_MM = 1e-6  # ends of one way
+EVERY_MM = 0.05  # a way is looked at
+
+
+class SharedInk(NamedTuple):
+    """What was felt along the stretches within a junction, and about how lines go through it, (n, 2) mm."""
+
+    runs: Sequence[Run] = ()
+    ways: Sequence[Array] = ()
+
+    def besides(self, way: Array) -> list[Array]:
+        """The ways of the other lines: those that begin and end elsewhere."""
+        ends = way[[0, -1]]
+        return [
+            other
+            for other in self.ways
+            if min(np.abs(other[[0, -1]] - ends).max(), np.abs(other[[-1, 0]] - ends).max())
+            > SAME_MM
+        ]
+
+
+def kept_in_ink(
+    way: Array, ink: SharedInk, width_mm: float, others: Sequence[Array] = ()
+) -> Array:
+    """A way through a junction, moved to where a line of a width lies within the ink; (n, 2) mm.
+
+    Where one other way lies in the same ink each has its own rim.
+    """
+    from scipy.spatial import cKDTree
+
+    known = [np.isfinite(run.widths_mm) for run in ink.runs]
+    come_mm = lengths_mm(way)
+    if not any(some.any() for some in known) or come_mm[-1] < FADES * width_mm:
+        return way
+    # 1. the station of the ink beside each of some places
+    at_mm = np.linspace(0.0, come_mm[-1], 2 + math.ceil(come_mm[-1] / EVERY_MM))
+    some = np.column_stack([np.interp(at_mm, come_mm, column) for column in way.T])
+    felt = [
+        np.column_stack([run.places_mm, run.headings_rad, run.widths_mm]) for run in ink.runs
+    ]
+    stations = np.vstack([part[k] for part, k in zip(felt, known, strict=True)])
+    away, near = cKDTree(stations[:, :2]).query(some)
+    middles, headings, widths = stations[near, :2], stations[near, 2], stations[near, 3]
+    normals = np.column_stack([-np.sin(headings), np.cos(headings)])
+    # 2. how far the line would lie beside the ink there, or beside its own rim of it
+    ways = np.gradient(some, axis=0)
+    across = np.abs(np.sum(ways * normals, axis=1)) / np.maximum(np.hypot(*ways.T), 1e-9)
+    is_its_own = (across < math.sqrt(1 - ALONG_COS**2)) & (away < BESIDE * widths)
+    aside = np.sum((some - middles) * normals, axis=1)
+    limit = 0.5 * np.maximum(widths - width_mm, 0.0)
+    wanted, beside = np.clip(aside, -limit, limit), np.zeros(len(some), int)
+    for other in others:
+        apart, nearest = cKDTree(other).query(middles)
+        is_beside = apart < BESIDE * widths
+        beside += is_beside
+        further = np.sum((other[nearest] - middles) * normals, axis=1)
+        wanted = np.where(is_beside, np.where(aside > further, limit, -limit), wanted)
+    wanted = np.where(beside > 1, np.clip(aside, -limit, limit), wanted)
+    off = wanted - aside
+    move = np.where(
+        is_its_own, np.sign(off) * np.maximum(np.abs(off) - SLACK * width_mm, 0.0), 0.0
+    )
+    # 3. moved smoothly, and not at the ends
+    moves = _averaged(move[:, None] * normals, AVERAGED * width_mm / (at_mm[1] - at_mm[0]))
+    fade = np.minimum(at_mm, at_mm[-1] - at_mm) / (FADES * width_mm)
+    moves *= np.clip(fade, 0.0, 1.0)[:, None]
+    return np.asarray(way + np.column_stack([np.interp(come_mm, at_mm, m) for m in moves.T]))
+
+
+def _averaged(moves: Array, places: float) -> Array:
+    """Moves (n, 2) averaged over so many places, as many before as behind."""
+    from scipy.ndimage import uniform_filter1d
+
+    return np.asarray(uniform_filter1d(moves, max(1, round(places)), axis=0, mode="nearest"))
