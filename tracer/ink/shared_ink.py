@@ -8,7 +8,8 @@ way, moved aside where half the line's width would lie on paper, out.
 
         limit = (W - w) / 2, and a little more
 
-Where two ways lie in the same ink, one has the one rim and the other the other. The move is averaged along the way over two widths, and fades towards its ends, where the line is known.
+Where two ways lie in the same ink, one has the one rim and the other the other. The move is averaged along
+the way over two widths, and fades towards its ends, where the line is known.
 
 Source: our own.
 """
@@ -40,6 +41,15 @@ class SharedInk(NamedTuple):
     runs: Sequence[Run] = ()
     ways: Sequence[Array] = ()
 
+    def stations(self) -> Array:
+        """The stations whose width is known: X, Y, heading, width; (n, 4)."""
+        felt = [
+            np.column_stack([run.places_mm, run.headings_rad, run.widths_mm])
+            for run in self.runs
+        ]
+        every = np.vstack(felt)
+        return np.asarray(every[np.isfinite(every[:, 3])])
+
     def besides(self, way: Array) -> list[Array]:
         """The ways of the other lines: those that begin and end elsewhere."""
         ends = way[[0, -1]]
@@ -56,47 +66,46 @@ def kept_in_ink(
 ) -> Array:
     """A way through a junction, moved to where a line of a width lies within the ink; (n, 2) mm.
 
-    Where one other way lies in the same ink each has its own rim.
+    Where one of the `others` lies in the same ink each has its own rim.
     """
-    from scipy.spatial import cKDTree
-
-    known = [np.isfinite(run.widths_mm) for run in ink.runs]
     come_mm = lengths_mm(way)
-    if not any(some.any() for some in known) or come_mm[-1] < FADES * width_mm:
+    stations = ink.stations()
+    if not len(stations) or come_mm[-1] < FADES * width_mm:
         return way
-    # 1. the station of the ink beside each of some places
+    # 1. how far each of some places of the way is from where the line would lie
     at_mm = np.linspace(0.0, come_mm[-1], 2 + math.ceil(come_mm[-1] / EVERY_MM))
     some = np.column_stack([np.interp(at_mm, come_mm, column) for column in way.T])
-    felt = [
-        np.column_stack([run.places_mm, run.headings_rad, run.widths_mm]) for run in ink.runs
-    ]
-    stations = np.vstack([part[k] for part, k in zip(felt, known, strict=True)])
+    move = _move(some, stations, width_mm, others)
+    # 2. moved smoothly, and not at the ends
+    moves = _averaged(move, AVERAGED * width_mm / (at_mm[1] - at_mm[0]))
+    fade = np.minimum(at_mm, at_mm[-1] - at_mm) / (FADES * width_mm)
+    moves *= np.clip(fade, 0.0, 1.0)[:, None]
+    return np.asarray(way + np.column_stack([np.interp(come_mm, at_mm, m) for m in moves.T]))
+
+
+def _move(some: Array, stations: Array, width_mm: float, others: Sequence[Array]) -> Array:
+    """How far places of a way are to be moved, (n, 2) mm."""
+    from scipy.spatial import cKDTree
+
     away, near = cKDTree(stations[:, :2]).query(some)
     middles, headings, widths = stations[near, :2], stations[near, 2], stations[near, 3]
     normals = np.column_stack([-np.sin(headings), np.cos(headings)])
-    # 2. how far the line would lie beside the ink there, or beside its own rim of it
     ways = np.gradient(some, axis=0)
     across = np.abs(np.sum(ways * normals, axis=1)) / np.maximum(np.hypot(*ways.T), 1e-9)
     is_its_own = (across < math.sqrt(1 - ALONG_COS**2)) & (away < BESIDE * widths)
     aside = np.sum((some - middles) * normals, axis=1)
     limit = 0.5 * np.maximum(widths - width_mm, 0.0)
-    wanted, beside = np.clip(aside, -limit, limit), np.zeros(len(some), int)
+    within = wanted = np.clip(aside, -limit, limit)
+    beside = np.zeros(len(some), int)
     for other in others:
         apart, nearest = cKDTree(other).query(middles)
         is_beside = apart < BESIDE * widths
         beside += is_beside
         further = np.sum((other[nearest] - middles) * normals, axis=1)
         wanted = np.where(is_beside, np.where(aside > further, limit, -limit), wanted)
-    wanted = np.where(beside > 1, np.clip(aside, -limit, limit), wanted)
-    off = wanted - aside
-    move = np.where(
-        is_its_own, np.sign(off) * np.maximum(np.abs(off) - SLACK * width_mm, 0.0), 0.0
-    )
-    # 3. moved smoothly, and not at the ends
-    moves = _averaged(move[:, None] * normals, AVERAGED * width_mm / (at_mm[1] - at_mm[0]))
-    fade = np.minimum(at_mm, at_mm[-1] - at_mm) / (FADES * width_mm)
-    moves *= np.clip(fade, 0.0, 1.0)[:, None]
-    return np.asarray(way + np.column_stack([np.interp(come_mm, at_mm, m) for m in moves.T]))
+    off = np.where(beside > 1, within, wanted) - aside
+    move = np.sign(off) * np.maximum(np.abs(off) - SLACK * width_mm, 0.0)
+    return np.asarray(np.where(is_its_own, move, 0.0)[:, None] * normals)
 
 
 def _averaged(moves: Array, places: float) -> Array:
