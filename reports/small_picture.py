@@ -1,7 +1,7 @@
 """Small pictures of many drawings: the sheet in grey with the traced line on it, and how much ink it follows.
 
 Signals in: a traced drawing. Signals out: a PNG of at most `LARGEST_PX` pixels, within some milliseconds (the
-pictures of `overlay`, which matplotlib lays out, take half a second); the share of the ink's pixels on that
+pages of `overlay`, with axes and words, take a third of a second); the share of the ink's pixels on that
 picture that lie within half a line's width, and one pixel, of the head's path.
 
 Source: our own. Questions: ink that no line is, such as lettering, counts as ink that was not followed.
