@@ -37,6 +37,7 @@ FRAME_PT, TICK_PT, SPOT_PT = (
 )  # matplotlib's: frame and ticks, their length, edge of a spot
 EDGE_GREY = "#cccccc"  # of a legend
 LEGEND_ALPHA, RING_ALPHA = 0.8, 0.85
+MANY = 2000  # places: fewer are drawn sooner than looked through
 MARGIN_PX = 50  # round a canvas: half of the widest line, and of a dash
 FARTHEST_PX = 1 << 24  # OpenCV takes places as 32 bits with `SHIFT` binary places
 THIRD, FIFTH = 1 / 3, 0.2 * np.pi
@@ -147,7 +148,9 @@ class _Field:
 
     def _line(self, at_px: Array, line: Line) -> None:
         """A line with its gaps."""
-        strokes = _strokes(_seen(at_px, self.canvas.shape))
+        if line.dash is not None or len(at_px) > MANY:
+            at_px = _seen(at_px, self.canvas.shape)
+        strokes = _strokes(at_px)
         if line.dash is not None:
             on, off = (line.width_pt * PX_PER_PT * times for times in line.dash)
             strokes = [dash for stroke in strokes for dash in _dashes(stroke, on, off)]
