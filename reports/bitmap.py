@@ -14,32 +14,21 @@ from typing import Any
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.reports import lettering
 from morfax.reports.canvas import DPI
 from morfax.reports.page import Box, Page
+from morfax.reports.pixels import Pixels, blend, dashes, polylines, seen, strokes_of
 from morfax.reports.plate import Area, Colours, Ground, Line, Plate, Spot, fitted, shades
 
-Pixels = NDArray[np.uint8]
-
 FINER = 2
-SOFT_PX = (
-    1.5  # OpenCV's soft edges make a line wider by about as much; by trial beside matplotlib's
-)
-SHIFT = 4  # binary places of a pixel in which OpenCV takes places
 PX_PER_PT = FINER * DPI / 72
-FRAME_PT, TICK_PT, SPOT_PT = (
-    0.8,
-    3.5,
-    1.0,
-)  # matplotlib's: frame and ticks, their length, edge of a spot
+TICK_PT = 3.5  # length of a tick, matplotlib's
+SPOT_PX = 1.0 * PX_PER_PT  # edge of a spot, matplotlib's
 EDGE_GREY = "#cccccc"  # of a legend
 LEGEND_ALPHA, RING_ALPHA = 0.8, 0.85
 MANY = 2000  # places: fewer are drawn sooner than looked through
-MARGIN_PX = 50  # round a canvas: half of the widest line, and of a dash
-FARTHEST_PX = 1 << 24  # OpenCV takes places as 32 bits with `SHIFT` binary places
 THIRD, FIFTH = 1 / 3, 0.2 * np.pi
 OUTLINES: dict[str, list[tuple[float, float]]] = {  # of size 1 about 0, as matplotlib's markers
     "s": [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)],
@@ -149,12 +138,12 @@ class _Field:
     def _line(self, at_px: Array, line: Line) -> None:
         """A line with its gaps."""
         if line.dash is not None or len(at_px) > MANY:
-            at_px = _seen(at_px, self.canvas.shape)
-        strokes = _strokes(at_px)
+            at_px = seen(at_px, self.canvas.shape)
+        strokes = strokes_of(at_px)
         if line.dash is not None:
             on, off = (line.width_pt * PX_PER_PT * times for times in line.dash)
-            strokes = [dash for stroke in strokes for dash in _dashes(stroke, on, off)]
-        _polylines(self.canvas, strokes, line.colour, line.width_pt, closed=False)
+            strokes = [dash for stroke in strokes for dash in dashes(stroke, on, off)]
+        polylines(self.canvas, strokes, line.colour, line.width_pt * PX_PER_PT, closed=False)
 
     def _spot(self, at_px: Array, spot: Spot) -> None:
         """The outline of a spot, or a cross."""
@@ -164,19 +153,19 @@ class _Field:
             strokes, closed = [at_px + size_px * arm for arm in arms], False
         else:
             strokes, closed = [at_px + size_px * np.array(OUTLINES[spot.shape])], True
-        _polylines(self.canvas, strokes, spot.colour, SPOT_PT, closed=closed)
+        polylines(self.canvas, strokes, spot.colour, SPOT_PX, closed=closed)
 
     def _area(self, corners_px: Array, area: Area) -> None:
         """An area that what lies under it shines through."""
-        _blend(self.canvas, corners_px, area.colour, area.alpha)
+        blend(self.canvas, corners_px, area.colour, area.alpha)
         if area.edged:
-            _polylines(self.canvas, [corners_px], area.colour, SPOT_PT, closed=True)
+            polylines(self.canvas, [corners_px], area.colour, SPOT_PX, closed=True)
 
     def _ring(self, middle: Array, radius_px: float, colour: str) -> None:
         """A white disc with an edge."""
         edge = middle + 2 * radius_px * np.array(OUTLINES["o"])
-        _blend(self.canvas, edge, "#ffffff", RING_ALPHA)
-        _polylines(self.canvas, [edge], colour, SPOT_PT, closed=True)
+        blend(self.canvas, edge, "#ffffff", RING_ALPHA)
+        polylines(self.canvas, [edge], colour, SPOT_PX, closed=True)
 
     def _legend(self) -> None:
         """The legend's box, with a sample of each mark in it."""
@@ -185,8 +174,8 @@ class _Field:
             return
         left, top, right, bottom = (FINER * side for side in box.sides_px)
         corners = np.array([[left, top], [right, top], [right, bottom], [left, bottom]])
-        _blend(self.canvas, corners, "#ffffff", LEGEND_ALPHA)
-        _polylines(self.canvas, [corners], EDGE_GREY, SPOT_PT, closed=True)
+        blend(self.canvas, corners, "#ffffff", LEGEND_ALPHA)
+        polylines(self.canvas, [corners], EDGE_GREY, SPOT_PX, closed=True)
         for mark, (begin, end, row) in zip(self.plate.legend, box.samples_px, strict=True):
             sample = FINER * np.array([[begin, row], [end, row]])
             if isinstance(mark, Line):
@@ -196,76 +185,6 @@ class _Field:
             else:
                 up = FINER * np.array([0, box.half_high_px])
                 self._area(np.vstack([sample - up, sample[::-1] + up]), mark)
-
-
-def _bgr(colour: str) -> tuple[int, int, int]:
-    """Blue, green and red of #rrggbb."""
-    return int(colour[5:7], 16), int(colour[3:5], 16), int(colour[1:3], 16)
-
-
-def _polylines(
-    canvas: Pixels, strokes: list[Array], colour: str, width_pt: float, *, closed: bool
-) -> None:
-    """Draw strokes, each (n, 2) columns and rows."""
-    if not strokes:
-        return
-    whole = np.clip(np.concatenate(strokes), -FARTHEST_PX, FARTHEST_PX)
-    ends = np.cumsum([len(stroke) for stroke in strokes])
-    places = np.split(np.round(whole * (1 << SHIFT)).astype(np.int32), ends[:-1])
-    width_px = max(2, round(width_pt * PX_PER_PT - SOFT_PX))
-    cv2.polylines(canvas, places, closed, _bgr(colour), width_px, cv2.LINE_AA, SHIFT)
-
-
-def _blend(canvas: Pixels, corners_px: Array, colour: str, alpha: float) -> None:
-    """Lay a colour over a polygon, so that what lies under it shines through."""
-    low = np.maximum(np.floor(corners_px.min(axis=0)).astype(int) - 1, 0)
-    high = np.ceil(corners_px.max(axis=0)).astype(int) + 2
-    under = canvas[low[1] : max(high[1], 0), low[0] : max(high[0], 0)]
-    if not under.size:
-        return
-    over = under.copy()
-    places = np.round((corners_px - low) * (1 << SHIFT)).astype(np.int32)
-    cv2.fillPoly(over, [places], _bgr(colour), cv2.LINE_AA, SHIFT)
-    under[:] = cv2.addWeighted(over, alpha, np.ascontiguousarray(under), 1 - alpha, 0.0)
-
-
-def _seen(at_px: Array, shape: tuple[int, ...]) -> Array:
-    """A line (n, 2) with gaps where it runs outside of a canvas, and without places less than a pixel on."""
-    if len(at_px) < 2:
-        return at_px
-    # 1. without pieces of which both ends are beyond the same side
-    shown = np.ones(len(at_px) - 1, bool)
-    for at, size in zip(at_px.T, shape[1::-1], strict=True):
-        before, beyond = at < -MARGIN_PX, at > size + MARGIN_PX
-        shown &= ~(before[:-1] & before[1:]) & ~(beyond[:-1] & beyond[1:])
-    kept = np.flatnonzero(np.r_[shown, False] | np.r_[False, shown])
-    near = np.insert(at_px[kept], np.flatnonzero(np.diff(kept) > 1) + 1, np.nan, axis=0)
-    if len(near) < 2:
-        return near
-    # 2. a place of each pixel of the way, and both places beside a gap
-    x, y = near.T
-    way = np.floor(np.cumsum(np.nan_to_num(np.hypot(np.diff(x), np.diff(y)))))
-    is_gap = np.isnan(x)
-    ends = np.r_[True, is_gap[:-1]] | is_gap | np.r_[is_gap[1:], True]
-    return np.asarray(near[ends | np.r_[True, np.diff(way, prepend=0.0) > 0]])
-
-
-def _strokes(places: Array) -> list[Array]:
-    """The pieces of a line between its gaps."""
-    is_there = np.isfinite(places).all(axis=1)
-    ends = np.flatnonzero(np.diff(np.r_[False, is_there, False].astype(np.int8)))
-    return [places[a:b] for a, b in ends.reshape(-1, 2)]
-
-
-def _dashes(stroke: Array, on_px: float, off_px: float) -> list[Array]:
-    """A stroke's dashes."""
-    way = np.r_[0.0, np.cumsum(np.hypot(*np.diff(stroke, axis=0).T))]
-    dashes = list[Array]()
-    for begin in np.arange(0.0, way[-1], on_px + off_px):
-        end = min(begin + on_px, float(way[-1]))
-        at = np.r_[begin, way[(way > begin) & (way < end)], end]
-        dashes.append(np.column_stack([np.interp(at, way, side) for side in stroke.T]))
-    return dashes
 
 
 def _frame(canvas: Pixels, corners: tuple[int, int, int, int]) -> None:
