@@ -136,6 +136,17 @@ def _put(away: float, i: int, squared: Array, number: NDArray[np.int64]) -> None
 
 
 @njit(cache=True, nogil=True)
+def _look_through(
+    points: Array, first: int, place: Array, squared: Array, number: NDArray[np.int64]
+) -> None:
+    """Put the points of a leaf among the nearest of a place, as far as they are."""
+    for i in range(first, min(first + LEAF, len(points))):
+        away = _apart(points[i], place)
+        if away < squared[-1] or (away == squared[-1] and i < number[-1]):
+            _put(away, i, squared, number)
+
+
+@njit(cache=True, nogil=True)
 def _searched(
     points: Array, boxes: Array, places: Array, squared: Array, number: NDArray[np.int64]
 ) -> None:
@@ -158,11 +169,7 @@ def _searched(
             if _off(boxes[box], place[0], place[1]) > min(limit, far[-1]):
                 continue
             if box >= leaves:
-                first = (box - leaves) * LEAF
-                for i in range(first, min(first + LEAF, len(points))):
-                    away = _apart(points[i], place)
-                    if away < far[-1] or (away == far[-1] and i < found[-1]):
-                        _put(away, i, far, found)
+                _look_through(points, (box - leaves) * LEAF, place, far, found)
                 continue
             near, other = 2 * box, 2 * box + 1
             if _off(boxes[other], place[0], place[1]) < _off(boxes[near], place[0], place[1]):

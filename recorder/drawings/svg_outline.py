@@ -1,17 +1,12 @@
 """SVG read: paths and shapes of a drawing, as an outline in mm.
 
 Signals in: an SVG. Signals out: an Outline; X to the right, Y up, from the lower left corner of the sheet, or
-from where the file says its zero is (`data-lower-left-mm`, which morfax writes).
-
-    width="210mm" viewBox="0 0 210 297"     one unit of the drawing is 210 mm / 210
-    width="210mm", no viewBox               one unit is 1/96 inch (CSS)
-    width="794", in px or in percent        says nothing: refused, unless the unit is given
+from where the file says its zero is.
 
 What is hidden (display, visibility), neither stroked nor filled, or only filled in white (paper) is left out.
 So are words and pictures, and it is said.
 
-Source: SVG 1.1, 7.7 viewBox, 7.8 preserveAspectRatio, 8.3 paths; CSS 2.1, 4.3.2 lengths. Questions: clip
-paths are not applied. A drawing on a sheet of another shape is in its middle (xMidYMid), whatever it says.
+Source: SVG 1.1, 8.3 paths; how large a drawing is, see `svg_sheet`. Questions: clip paths are not applied.
 """
 
 from __future__ import annotations
@@ -19,11 +14,10 @@ from __future__ import annotations
 import copy
 import io
 import math
-import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path as FilePath
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree
 
 import numpy as np
@@ -31,17 +25,13 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault, FileFault
 from morfax.recorder.drawings.curve_chords import FLAT_MM, bezier, chords_of
-from morfax.recorder.drawings.drawn_units import INCH_MM, NO_UNIT, UNITS_MM, ZERO, unit_mm
 from morfax.recorder.drawings.outline import Outline
+from morfax.recorder.drawings.svg_sheet import sheet_of
 
 if TYPE_CHECKING:
     from svgelements import Arc, Path
 
 SVG = "http://www.w3.org/2000/svg"
-LENGTH = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([a-zA-Z%]*)\s*")
-PHYSICAL_MM = {"mm": 1.0, "cm": 10.0, "in": INCH_MM, "pt": INCH_MM / 72, "pc": INCH_MM / 6,
-               "q": 0.25}  # fmt: skip
-SHAPED = 1e-6  # width and height that differ in scale by a smaller share are rounded
 # what svgelements meets in damaged files
 DAMAGE = (ValueError, LookupError, TypeError, AttributeError, ArithmeticError, RecursionError)
 WORDS = ("text", "image", "foreignObject")
@@ -50,24 +40,10 @@ HREF = "{http://www.w3.org/1999/xlink}href"
 MOST_REPEATED = 100_000
 
 
-class _Sheet(NamedTuple):
-    """How the drawing lies on its sheet: mm per unit in X and Y, and where its zero comes to lie, mm."""
-
-    x_mm: float
-    y_mm: float
-    left_mm: float
-    top_mm: float
-
-    def placed(self, places: Array) -> Array:
-        """Places of the drawing, in its units and Y down, on the sheet, mm and Y up."""
-        x, y = places.T
-        return np.column_stack([self.left_mm + self.x_mm * x, self.top_mm - self.y_mm * y])
-
-
 def read_svg(file: FilePath, unit: str | None = None) -> Outline:
     """Read an SVG; raises DrawingFault for one that is damaged, empty or without a unit, FileFault."""
     root = _root(file)
-    sheet = _sheet(file, root, unit)
+    sheet = sheet_of(file, root, unit)
     try:
         _demand_few(file, root)
         off = FLAT_MM / max(sheet.x_mm, sheet.y_mm)
@@ -96,108 +72,14 @@ def _root(file: FilePath) -> ElementTree.Element:
     except (ElementTree.ParseError, ValueError, RecursionError) as error:
         raise DrawingFault(f"{file} is a damaged SVG ({error}); save it again") from None
     if _tag(root) != "svg":
-        raise DrawingFault(
-            f"{file} is no SVG: it begins with {_tag(root)[:40]!r}; give another"
-        )
+        got = repr(_tag(root)[:40])
+        raise DrawingFault(f"{file} is no SVG: it begins with {got}; give another")
     return root
 
 
 def _tag(element: ElementTree.Element) -> str:
     """The name of an element without its namespace."""
     return str(element.tag).rpartition("}")[2]
-
-
-# how large it is
-
-
-def _sheet(file: FilePath, root: ElementTree.Element, unit: str | None) -> _Sheet:
-    """How the drawing lies on its sheet; raises DrawingFault if the file does not say how large it is."""
-    box = _view_box(file, root)
-    width, height = (_length(root.get(name)) for name in ("width", "height"))
-    if unit is not None:
-        box = box or (0.0, 0.0, 0.0, height[0] if height else 0.0)
-        return _from_zero(root, _in_units(box, unit_mm(unit)))
-    width_mm, high_mm = _physical_mm(width), _physical_mm(height)
-    if width_mm is None or not width_mm > 0:
-        raise _without_width(file, root)
-    if box is None:
-        px_mm = UNITS_MM["px"]
-        return _from_zero(root, _Sheet(px_mm, px_mm, 0.0, high_mm or 0.0))
-    if high_mm is None:
-        high_mm = width_mm * box[3] / box[2]
-    if not high_mm > 0:
-        raise DrawingFault(f"{file}: height is {root.get('height')!r}; it must be above zero")
-    return _from_zero(root, _laid(root, box, width_mm, high_mm))
-
-
-def _physical_mm(length: tuple[float, str] | None) -> float | None:
-    """A length of the file, mm; None if there is none, or in a unit that is no length on paper."""
-    known = length is not None and length[1] in PHYSICAL_MM
-    return length[0] * PHYSICAL_MM[length[1]] if length and known else None
-
-
-def _without_width(file: FilePath, root: ElementTree.Element) -> DrawingFault:
-    """What is said of a file that does not tell how wide it is."""
-    got = f"its width is {root.get('width')!r}" if root.get("width") else "it has no width"
-    return DrawingFault(NO_UNIT.format(file=file, why=got))
-
-
-def _in_units(box: tuple[float, float, float, float], one_mm: float) -> _Sheet:
-    """How a view box lies on a sheet if one of its units is so long."""
-    left, top, _, high = box
-    return _Sheet(one_mm, one_mm, -left * one_mm, (top + high) * one_mm)
-
-
-def _laid(
-    root: ElementTree.Element,
-    box: tuple[float, float, float, float],
-    wide_mm: float,
-    high_mm: float,
-) -> _Sheet:
-    """How a view box lies on a sheet."""
-    left, top, wide, high = box
-    x_mm, y_mm = wide_mm / wide, high_mm / high
-    how = root.get("preserveAspectRatio", "")
-    if "none" not in how and abs(x_mm / y_mm - 1) > SHAPED:
-        x_mm = y_mm = max(x_mm, y_mm) if "slice" in how else min(x_mm, y_mm)
-    aside_mm, down_mm = (wide_mm - wide * x_mm) / 2, (high_mm - high * y_mm) / 2
-    return _Sheet(x_mm, y_mm, aside_mm - left * x_mm, high_mm - down_mm + top * y_mm)
-
-
-def _from_zero(root: ElementTree.Element, sheet: _Sheet) -> _Sheet:
-    """The sheet moved to where the file says that its lower left corner is."""
-    try:
-        left_mm, low_mm = (float(word) for word in root.get(ZERO, "").split())
-    except ValueError:
-        return sheet
-    return sheet._replace(left_mm=sheet.left_mm + left_mm, top_mm=sheet.top_mm + low_mm)
-
-
-def _length(text: str | None) -> tuple[float, str] | None:
-    """A length and its unit, None if it is none."""
-    found = LENGTH.fullmatch(text or "")
-    return (float(found[1]), found[2].lower()) if found else None
-
-
-def _view_box(
-    file: FilePath, root: ElementTree.Element
-) -> tuple[float, float, float, float] | None:
-    """Left, top, width and height of the view box, None if there is none."""
-    text = root.get("viewBox")
-    if text is None:
-        return None
-    try:
-        left, top, wide, high = (float(word) for word in text.replace(",", " ").split())
-    except ValueError:
-        left = top = wide = high = math.nan
-    if not (math.isfinite(left + top) and 0 < wide < math.inf and 0 < high < math.inf):
-        raise DrawingFault(
-            f"{file}: viewBox is {text[:40]!r}; it must be four numbers, the last two above zero"
-        )
-    return left, top, wide, high
-
-
-# what is on it
 
 
 def _demand_few(file: FilePath, root: ElementTree.Element) -> None:

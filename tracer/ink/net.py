@@ -93,26 +93,28 @@ def net_of(sheet: FeltSheet, own: set[int]) -> Net:
         elif n not in own and not is_ring and _is_inner(run, some, width_mm, min(ends)):
             same.join(*stretch.nodes)
             inner.append(n)
-        else:
-            two = strands(run, width_mm) if n in own and _is_shared(run, width_mm) else []
+        elif n in own and _is_shared(run, width_mm) and (two := strands(run, width_mm)):
             kept += [(n, ([strand], [])) for strand in two]
-            if not two:
-                kept.append((n, (some, parted) if some else ([whole(run)], [])))
+        else:
+            kept.append((n, (some, parted) if some else ([whole(run)], [])))
     # 2. the others are lines
-    for n, (runs, parted) in kept:
-        stretch = graph.stretches[n]
-        one, other = (
-            ((-1 - n,) * 2) if stretch.nodes[0] == RING else map(same.of, stretch.nodes)
-        )
-        net.lines.append(FeltLine(runs, parted, (one, other), widths[n], felt_mm(felt[n]), n))
+    net.lines += [_line_of(sheet, n, parted, same) for n, parted in kept]
     free = {node for node, numbers in at.items() if len(numbers) == 1}
     net.free_ends = {node for node in free if not same.has_joined(node)}
-    for n in inner:
-        if felt_mm(felt[n]) > OWN_WIDTHS * widths[n]:
-            junction = same.of(graph.stretches[n].nodes[0])
-            net.inner.append(Inner(n, junction, felt[n]))
+    net.inner += [
+        Inner(n, same.of(graph.stretches[n].nodes[0]), felt[n])
+        for n in inner
+        if felt_mm(felt[n]) > OWN_WIDTHS * widths[n]
+    ]
     _bridge_gaps(net, sheet.settings)
     return net
+
+
+def _line_of(sheet: FeltSheet, n: int, parted: Parted, same: _Same) -> FeltLine:
+    """A stretch, or a strand of one, as a line between the junctions that its ends have become."""
+    nodes = sheet.graph.stretches[n].nodes
+    ends = (-1 - n, -1 - n) if nodes[0] == RING else (same.of(nodes[0]), same.of(nodes[1]))
+    return FeltLine(*parted, ends, sheet.widths_mm[n], felt_mm(sheet.felt[n]), n)
 
 
 def _is_inner(run: Run, clean: list[Run], width_mm: float, fewest: int) -> bool:
