@@ -45,9 +45,10 @@ class Agreement:
             self._overrule(carriage)
             return 0.0
         # past a corner the stations go, though its ink does not show how sharp it is; and where the cell
-        # stopped though it was trusted, the line bends too much for it
+        # stopped though it was trusted, the line bends too much for it; one that has not led since a corner
+        # may have the other side of its tip in view
         here = int(np.argmin(np.hypot(*(seen[:, :2] - carriage.stands()[0]).T)))
-        if carriage.is_trusted or corner_in(seen, here) is not None:
+        if carriage.is_trusted or carriage.by_memory or corner_in(seen, here) is not None:
             return 0.0
         guards_mm = carriage.tuning.guard_lead_mm - carriage.tuning.lead_mm
         clear_mm = ahead_mm - guards_mm - LEFT_LEGS * view.leg_mm

@@ -70,12 +70,13 @@ class Attempts:
     told: Told | None = None
     other_turns: bool = True  # tried where straight on does not come back
     tips: bool = False  # go back from a tip in which two lines end
+    by_stations: bool = False  # the slow cell does not lead
 
     def run(self, stance: Stance, turns: tuple[int, ...] = ()) -> Followed:
         """Follow from a stance, with other turns at the junctions of those numbers."""
         times, told = self.drawing.times_at(stance.place_mm), self.told
         told_turns = tuple(turn.enlarged(times) for turn in self.drawing.told_turns)
-        wanted = Turns(turns, self.sides, self.tips, told_turns)
+        wanted = Turns(turns, self.sides, self.tips, self.by_stations, told_turns)
         follower, keep = self._taken_up(stance, wanted)
         if follower is None:
             put_down = enlarged(stance, times)
@@ -122,7 +123,7 @@ class Attempts:
         come back with other turns.
         """
         # 1. straight on
-        run = self.run(stance)
+        run = self._straight_on(stance)
         if stance.at_end or (run.ending == "closed" and not run.junctions_mm):
             return self._with_doubts(stance, run)
         there_and_back = self._through_tips(stance, run)
@@ -130,7 +131,7 @@ class Attempts:
             return there_and_back
         # 2. the other way round
         about = turned_about(stance)
-        other = self.run(about)
+        other = self._straight_on(about)
         if run.ending == "closed":
             is_other = other.ending == "closed" and other.travel_mm < SHORTER * run.travel_mm
             return self._with_doubts(*((about, other) if is_other else (stance, run)))
@@ -139,6 +140,16 @@ class Attempts:
             return there_and_back
         # 3. back from an end, or on with other turns
         return self._back_or_on(stance, run, other)
+
+    def _straight_on(self, stance: Stance) -> Followed:
+        """The run from a stance; by stations, if only that closes: on a line of two or three pixels, a few
+        um decide what is a leg of a junction.
+        """
+        run = self.run(stance)
+        if run.ending == "closed" or not run.went_slowly:
+            return run
+        other = replace(self, by_stations=True).run(stance)
+        return other if other.ending == "closed" else run
 
     def _back_or_on(self, stance: Stance, run: Followed, other: Followed) -> Followed:
         """What follows a run that did not close, nor end in a tip, when the other way round is known."""

@@ -38,6 +38,7 @@ class Followed:
     loop_from: int | None = None  # the position where the loop of a joined line begins
     guides: tuple[GuideLine, ...] = ()
     at_tip: bool = False  # another line, not followed yet, ends in the same tip
+    went_slowly: bool = False  # the slow cell led for a stretch
     # junctions where another way out fits as well: the junction's number, and the rank of that way
     doubts: tuple[tuple[int, int], ...] = ()
     # numbers of the corrections that the head went by at junctions

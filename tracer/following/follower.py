@@ -15,22 +15,25 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault
 from morfax.tracer.following import lost
 from morfax.tracer.following.agreement import Agreement
+from morfax.tracer.following.felt_line import (
+    Anchor,
+    clean_from,
+    felt_ahead,
+    nearest_station,
+    slow_stretch,
+    trail_behind,
+)
 from morfax.tracer.following.followed import Followed, without_repeat
 from morfax.tracer.following.way_home import WayHome
 from morfax.tracer.following.ways_out import (
     STRAIGHT_ON,
-    Anchor,
     Turns,
     WaysOut,
     aimed_at,
-    clean_from,
     leads_to_dot,
-    nearest_station,
-    trail_behind,
 )
 from morfax.tracer.head import course
 from morfax.tracer.head.carriage import Carriage
@@ -51,7 +54,6 @@ from morfax.tracer.tangles.solution import Approach
 
 # the share of a change of a clean line's width that the head takes over at once; by trial
 SWELLS = 0.5
-FROM_BEHIND = (1.0, 0.6, 0.3)  # legs behind the axis: nearer, if a speck spoils the first place
 AWAY_LEADS, AWAY_WIDTHS = 4.0, 3.0  # the head is away from home after this travel
 
 
@@ -64,7 +66,7 @@ class Follower:
         """Put a head down at a stance, and tell it how to leave the junctions."""
         self.view, self.settings = stance.view, settings
         self._ways_out = WaysOut(turns, stance.reference_mm is not None)
-        self._at_tip = False
+        self._at_tip = self._went_slowly = False
         self.carriage = Carriage(stance, settings, rate_hz)
         self._tangles, self._agreement = Tangles(), Agreement()
         by_lead_mm = AWAY_LEADS * self.carriage.tuning.lead_mm
@@ -117,7 +119,7 @@ class Follower:
         """Take the head through the junction ahead; returns what the head did, if that was the end."""
         self.carriage.says("at a junction")
         # 1. feel the line ahead; the axis has been on the line even where none is clean behind it
-        seen = self._feel_ahead()
+        self.view, seen = felt_ahead(self.view, self.carriage, self._anchor)
         if len(seen) < FEWEST_STATIONS or self.carriage.ahead(seen[-1, :2]) < 0:
             seen = trail_behind(self.view, self.carriage)
         here = nearest_station(seen, self.carriage.stands()[0])
@@ -197,22 +199,6 @@ class Follower:
         """What plans the way on from where the head stands."""
         return Planner(self.view, self.carriage.stands(), self.carriage.trail, self.settings)
 
-    def _feel_ahead(self) -> Array:
-        """The line felt from behind the axis forward until it is no longer clean, (n, 3)."""
-        leg_mm, come_mm = self.view.leg_mm, self.carriage.travel_mm - self._anchor[2]
-        for share in FROM_BEHIND:
-            back_mm = share * leg_mm
-            if come_mm > back_mm:
-                place, heading = self.carriage.trail.back(back_mm)
-            else:
-                (place, heading, _), back_mm = self._anchor, come_mm
-            self.view = self.view.like(place, heading)
-            length_mm = back_mm + self.carriage.tuning.guard_lead_mm + leg_mm
-            seen = self.view.feel(place, heading, length_mm)
-            if len(seen) >= FEWEST_STATIONS:
-                break
-        return seen
-
     def _at_end(self, incoming: Leg, choices: int) -> Followed | None:
         """Run to the end of the line, or to where it meets what was followed before."""
         end = end_of(self.view, incoming)
@@ -258,10 +244,22 @@ class Follower:
         if cut is not None:
             self.carriage.run(cut, leader=plan.leader)
             return self._done("closed")
+        why = self._by_cell(plan)
+        if why is not None:
+            return self._go_home() if why == HOME else None
         self.carriage.run(plan.stretches, self.settings.speed_mm_s, plan.leader)
         clean = None if plan.seen is None else clean_from(self.view, self.carriage, plan)
         self._aim(plan.leg, clean)
         return None
+
+    def _by_cell(self, plan: Plan) -> int | None:
+        """Why the cell stopped that went a way which stations would lead; None if it does not keep to it."""
+        stretch = slow_stretch(self.view, self.carriage, plan)
+        if stretch is None or self._ways_out.turns.by_stations:
+            return None
+        why = self.carriage.follow_slowly(self.view, self._home.for_kernel(), stretch)
+        self._went_slowly |= why is not None
+        return why
 
     def _aim(self, leg: Leg, clean_from: Anchor | None = None) -> None:
         """Follow from the clean end of a leg; the line is clean from there, or from further back."""
@@ -281,6 +279,7 @@ class Follower:
             fault,
             guides=junctions.guides(positions),
             at_tip=self._at_tip,
+            went_slowly=self._went_slowly,
             led=self.carriage.led,
             served=frozenset(self._ways_out.served),
             doubts=self._tangles.doubts(self.carriage.trail, self.view.width_mm),

@@ -17,6 +17,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.tracer.corrections.on_sheet import REACH_MM, REACH_WIDTHS, TurnAt
+from morfax.tracer.following.felt_line import nearest_station, station_before
 from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.plan import Plan
 from morfax.tracer.junctions.choice import Asked, Choice, WayIn, is_aside, survey
@@ -30,7 +31,6 @@ from morfax.tracer.sensing.view import View
 
 # a junction that the head comes back to is no further ahead: a speck may end the clean line before it
 BACK_MM = 4.0
-Anchor = tuple[Array, float, float]  # where the line begins to be clean: place, heading, travel
 COMES_FROM = (
     0.5  # cosine of 60 degrees: a head so far off the side that a correction names is another's
 )
@@ -42,12 +42,14 @@ class Turns(NamedTuple):
     At the junctions in `other` it takes the second straightest leg, the third where a number stands twice. At
     the first, the second … it turns off to its side in `sides`, where there is one, and comes back if the
     line that it takes ends; with `back_from_tips` also from where two lines end together. At the places `at`
-    it goes as the operator's corrections say, and comes back from nowhere.
+    it goes as the operator's corrections say, and comes back from nowhere. With
+    `by_stations` the slow cell does not lead.
     """
 
     other: tuple[int, ...] = ()
     sides: tuple[Side | None, ...] = ()
     back_from_tips: bool = False
+    by_stations: bool = False
     at: tuple[TurnAt, ...] = ()
 
 
@@ -170,35 +172,6 @@ def _told_by(view: View, incoming: Leg, turn_at: TurnAt) -> bool:
         return True
     come = np.subtract(turn_at.place_mm, turn_at.coming_from_mm)
     return bool(come @ ahead > COMES_FROM * float(np.hypot(*come)))
-
-
-def clean_from(view: View, carriage: Carriage, plan: Plan) -> Anchor:
-    """The place about a leg's length behind the end of a course from which the line was felt clean."""
-    seen = plan.seen
-    assert seen is not None
-    here = nearest_station(seen, plan.leg.end_mm)
-    i = max(0, here - round(view.leg_mm / view.step_mm))
-    way = seen[i + 2, :2] - seen[i, :2]
-    travel_mm = carriage.travel_mm - (here - i) * view.step_mm
-    return seen[i, :2], math.atan2(way[1], way[0]), travel_mm
-
-
-def trail_behind(view: View, carriage: Carriage) -> Array:
-    """The last stretch of the trail as stations of the line, (n, 3)."""
-    stations = round(view.leg_mm / view.step_mm)
-    places = np.vstack([carriage.trail.recent()[-stations:], carriage.stands()[0]])
-    return np.column_stack([places, np.full(len(places), view.width_mm)])
-
-
-def station_before(view: View, seen: Array, here: int, guard_mm: float) -> tuple[int, Leg]:
-    """The station before ink beside a clean line, the guard cells' lead ahead, and the leg up to there."""
-    station = here + round(guard_mm / view.step_mm) - 3
-    return station, leg_of(seen[: station + 1], True, view.leg_mm)
-
-
-def nearest_station(seen: Array, place_mm: Array) -> int:
-    """Which station of a felt line (n, 3) is nearest to a place."""
-    return int(np.argmin(np.hypot(*(seen[:, :2] - place_mm).T)))
 
 
 def leads_to_dot(view: View, incoming: Leg, outgoing: Leg | None) -> bool:

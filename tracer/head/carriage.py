@@ -20,18 +20,18 @@ from morfax.motion import curves
 from morfax.motion.arrays import Array
 from morfax.motion.long_array import LongArray
 from morfax.motion.polyline import lengths_mm
-from morfax.tracer.head import kernel, screws, swinging, watched
+from morfax.tracer.head import kernel, mount, screws, slow_cell, swinging, watched
 from morfax.tracer.head.leaders import CELL, MEMORY, STATIONS, Led, Log
 from morfax.tracer.head.settings import CALIBRATED_ASIDE, Settings, tune, tuned_along
+from morfax.tracer.head.slow_cell import Stretch
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.state import Home, Tuning, at_rest
 from morfax.tracer.head.trail import Trail
-from morfax.tracer.sensing.leg import Leg, turn
+from morfax.tracer.sensing.leg import Leg, heading_of, turn
 from morfax.tracer.sensing.view import View
 
 CHUNK = 6000  # samples that the kernel follows before it reports: a second at the motion rate
 SETTLE_LAGS = 7  # a stop lasts this many lags of the drives: 1/1000 of the last speed is left
-FELT_ENOUGH = 0.5  # of the lead: felt so far ahead, a leg tells where the cell will see it
 HEARD = 0.1  # of what the sweep was set off; grain takes away less than the rest
 SPARE = 1000  # samples beside those that a course takes at the slowest
 
@@ -53,7 +53,7 @@ class Carriage:
         self.settings, self.rate_hz = settings, rate_hz
         self.tuning = tune(stance, settings, rate_hz)
         self.trail = Trail(stance.place_mm, stance.view.step_mm)
-        self.state = at_rest(stance.place_mm)
+        self.state = at_rest(stance.place_mm, self.tuning.lead_mm)
         self._positions = LongArray()
         self._positions.add(stance.place_mm[None])
         self.enlarged = stance.view.enlarged  # of the positions: so many times the drawing's mm
@@ -108,7 +108,7 @@ class Carriage:
     @property
     def cell_mm(self) -> Array:
         """The place on the sheet where the swinging cell takes the line to be."""
-        place, lead, aside = self.stands()[0], self.tuning.lead_mm, self.state.middle_mm
+        place, lead, aside = self.stands()[0], self.state.lead_mm, self.state.middle_mm
         c, s = math.cos(self.heading_rad), math.sin(self.heading_rad)
         return place + np.array([lead * c - aside * s, lead * s + aside * c])
 
@@ -127,6 +127,7 @@ class Carriage:
         for k in range(stations):
             for side in (-1.0, 1.0):
                 state = self.state.copy()
+                state.lead_mm = tuning.lead_mm
                 state.x_mm += k * view.step_mm * math.cos(self.heading_rad)
                 state.y_mm += k * view.step_mm * math.sin(self.heading_rad)
                 state.middle_mm = 0.0 if view.on_edge else state.middle_mm
@@ -142,6 +143,11 @@ class Carriage:
     def is_trusted(self) -> bool:
         """Whether the cell is on its way past what the guard cells say."""
         return bool(self.state.travel_mm < self.state.trusted_mm)
+
+    @property
+    def by_memory(self) -> bool:
+        """Whether the drum still leads by what was felt after a corner, and not by what the cell has seen."""
+        return self._leads == MEMORY and self.travel_mm < self._cell_from_mm
 
     def trust(self, length_mm: float) -> None:
         """Go on by the swinging cell for a length, mm, past what the guard cells say: it was felt clean."""
@@ -160,20 +166,35 @@ class Carriage:
 
     def follow(self, view: View, home: Home, samples: int = CHUNK) -> int:
         """Follow the line until something happens, or for so many samples; why it stopped (see `state`)."""
-        out = np.empty((samples, 2))
+        out, from_mm = np.empty((samples, 2)), self.travel_mm
         self.says("following")
-        from_mm = max(self.travel_mm, self._cell_from_mm)
-        felt_mm = self._cell_from_mm - self.travel_mm
         n, why = kernel.follow(view.cells, self.state, self.tuning, home, out)
-        first = 0
-        if felt_mm > 0:
-            come_mm = lengths_mm(np.vstack([self._positions.last, out[:n]]))[1:]
-            first = int(np.searchsorted(come_mm, felt_mm))
-        if first < n:
-            self._log.add(self.count + first, CELL)
-        self.cell_led_mm += max(self.travel_mm - from_mm, 0.0)
-        self._keep(out[:n])
+        self._followed(out[:n], from_mm)
         return int(why)
+
+    def follow_slowly(self, view: View, home: Home, stretch: Stretch) -> int | None:
+        """Follow a stretch that was felt by the slow cell, if it keeps to that; why it stopped."""
+        tuning = slow_cell.slowly(self.tuning, view.width_mm, stretch.way)
+        tried = slow_cell.along(view.cells, self.state, tuning, home, stretch)
+        if tried is None:
+            return None
+        if tried.felt_mm > 0:
+            self._log.add(self.count, STATIONS)
+            self._cell_from_mm = self.travel_mm + tried.felt_mm
+        from_mm, self.state = self.travel_mm, tried.state
+        self._followed(tried.positions, from_mm)
+        return tried.why
+
+    def _followed(self, positions: Array, from_mm: float) -> None:
+        """Keep positions to which the drum has led; the cell's are those after what it held of stations."""
+        first, felt_mm = 0, self._cell_from_mm - from_mm
+        if felt_mm > 0:
+            come_mm = lengths_mm(np.vstack([self._positions.last, positions]))[1:]
+            first = int(np.searchsorted(come_mm, felt_mm))
+        if first < len(positions):
+            self._log.add(self.count + first, CELL)
+        self.cell_led_mm += max(self.travel_mm - max(from_mm, self._cell_from_mm), 0.0)
+        self._keep(positions)
 
     def mark(self) -> Mark:
         """What the carriage is known by now, so that it can be brought back here."""
@@ -206,11 +227,11 @@ class Carriage:
             if len(way) < 2:
                 continue
             if k > 0:
-                self.swivel(_heading(way[1] - way[0]))
+                self.swivel(heading_of(way[1] - way[0]))
             last = k == len(stretches) - 1
             limits = curves.speeds(way, speed, acceleration, end_mm_s if last else 0.0)
             self._run(way, limits)
-            self.state.heading_rad = _heading(way[-1] - way[-2])
+            self.state.heading_rad = heading_of(way[-1] - way[-2])
             if limits[-1] == 0.0:
                 self._stand(SETTLE_LAGS * self.settings.drive.lag_s)
 
@@ -248,38 +269,21 @@ class Carriage:
         s = self.state
         s.heading_rad, s.bend_per_mm = leg.heading_rad, leg.bend_per_mm
         s.turn_rad_s = s.speed_mm_s * leg.bend_per_mm
-        s.middle_mm = self._middle_mm(leg, felt)
+        s.lead_mm = self.tuning.lead_mm
+        s.middle_mm = mount.middle_on(leg, felt, s.lead_mm)
         s.point_x_mm, s.point_y_mm = leg.at(self.tuning.point_mm)
         s.trusted_mm = 0.0
         s.guard_left = s.guard_right = 0.0
         s.guard_ahead = s.ink = s.swept_ink = 1.0
-        self._begin_sweep()
+        mount.begin_sweep(s)
         s.drum_mm[: len(felt)] = felt
         s.places = len(felt)
 
-    def _middle_mm(self, leg: Leg, felt: Array) -> float:
-        """Where the swinging cell will see a leg, mm aside: by what was felt ahead, else by its bend."""
-        lead = self.tuning.lead_mm
-        c, n = math.cos(leg.heading_rad), math.sin(leg.heading_rad)
-        along = aside = 0.0
-        if len(felt):
-            along, aside = (felt[-1] - leg.end_mm) @ np.array([[c, -n], [n, c]])
-        if along > FELT_ENOUGH * lead:
-            return float(aside * (lead / along) ** 2)
-        return 0.5 * leg.bend_per_mm * lead * lead
-
     def retune(self, view: View) -> None:
         """Tune the moving head to the line as it is seen now."""
-        old = self.tuning.lead_mm
         self.tuning = tune(Stance(*self.stands(), view), self.settings, self.rate_hz)
-        self.state.middle_mm *= (self.tuning.lead_mm / old) ** 2
+        mount.set_to(self.state, self.tuning.lead_mm)
         self.state.ink = 1.0
-        self._begin_sweep()
-
-    def _begin_sweep(self) -> None:
-        """Begin a sweep anew: the detector is empty."""
-        self.state.sweep_periods = 0
-        self.state.first_sum = self.state.mean_sum = 0.0
 
     def _keep(self, positions: Array) -> None:
         """Keep positions of the screws, and mark the trail with them."""
@@ -294,8 +298,3 @@ class Carriage:
         """Tell whoever watches what the head does, in words."""
         if self._watcher is not None:
             self._watcher.says(what)
-
-
-def _heading(step: Array) -> float:
-    """Heading of a step (x, y), rad."""
-    return math.atan2(step[1], step[0])

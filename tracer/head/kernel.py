@@ -121,7 +121,9 @@ def _fit(state, t):  # type: ignore[no-untyped-def]
 @njit(cache=True, inline="always")
 def _bend(state, t):  # type: ignore[no-untyped-def]
     """The larger bend of the line at the point and of the sweep's curve, 1/mm."""
-    return max(abs(state.bend_per_mm), 2.0 * abs(state.middle_mm) / (t.lead_mm * t.lead_mm))
+    return max(
+        abs(state.bend_per_mm), 2.0 * abs(state.middle_mm) / (state.lead_mm * state.lead_mm)
+    )
 
 
 @njit(cache=True, inline="always")
@@ -143,7 +145,7 @@ def _half_window(state, t):  # type: ignore[no-untyped-def]
 @njit(cache=True)
 def _look_at_edge(cells, state, t):  # type: ignore[no-untyped-def]
     """The same on the edge of a shape: the guard cells see the shape on one side, and paper on the other."""
-    way, curve = way_of(state), state.middle_mm / (t.lead_mm * t.lead_mm)
+    way, curve = way_of(state), state.middle_mm / (state.lead_mm * state.lead_mm)
     inward = -math.copysign(t.guard_mm, t.balance_per_mm)  # to the left
     # 1. cell 102 and its relay
     far = t.look_ahead_mm
@@ -180,7 +182,7 @@ def _look(cells, state, t):  # type: ignore[no-untyped-def]
         return _look_at_edge(cells, state, t)
     way, curve = (
         way_of(state),
-        state.middle_mm / (t.lead_mm * t.lead_mm),
+        state.middle_mm / (state.lead_mm * state.lead_mm),
     )  # aside = curve · ahead²
     # 1. cell 102 and its relay
     far = t.look_ahead_mm

@@ -19,7 +19,10 @@ FLOATS = (
     *("x_mm", "y_mm", "vx_mm_s", "vy_mm_s"),  # the two screws, and their speeds
     *("heading_rad", "turn_rad_s", "speed_mm_s"),  # of the steering, and the speed along it
     *("first_sum", "mean_sum"),  # the sweep so far: sum of darkness·sin(phase), sum of darkness
-    "middle_mm",  # of the sweep, to the left of the heading
+    *(
+        "lead_mm",
+        "middle_mm",
+    ),  # of the mount: ahead of the axis, and to the left of the heading
     *("swept_x_mm", "swept_y_mm"),  # where the axis stood in the middle of the sweep
     "swept_ink",  # darkness of the last sweep, as a share of what it was when the head was tuned
     "ink",  # the line's darkness, as a share of what it was when the head was tuned
@@ -67,7 +70,7 @@ class Tuning(NamedTuple):
     slow_periods: float  # how long the relay holds
     acceleration_mm_s2: float
     sweep_periods: int
-    lead_mm: float
+    lead_mm: float  # to which the mount slides out
     point_mm: float  # from the axis to the point that it steers for
     half_window_mm: float  # of the parabola about that point
     narrow_mm: (
@@ -92,15 +95,19 @@ class Tuning(NamedTuple):
     steering_gain: (
         float  # share of the turn rate's error that the servo makes good in one period
     )
+    aslant_mm2: float  # the line's width squared, where the sweep's cut is made good; else 0
     direct_rad_s_mm: float  # turn rate per mm that the cell sees the line aside; 0: by the drum
     cell_gain: float  # of the swinging cell's current
     detector_gain: float  # of the synchronous detector
     cell_noise: float  # of the cell's current, standard deviation
 
 
-def at_rest(place_mm: Array) -> Any:
-    """The state of a head that stands at a place (x, y): a record, which the kernels change."""
+def at_rest(place_mm: Array, lead_mm: float) -> Any:
+    """The state of a head that stands at a place (x, y) with its mount at a lead: a record, which the kernels
+    change.
+    """
     state = np.zeros(1, STATE).view(np.recarray)[0]
     state.x_mm, state.y_mm = place_mm
+    state.lead_mm = lead_mm
     state.ink = state.swept_ink = 1.0
     return state

@@ -31,6 +31,9 @@ from morfax.tracer.sensing.photocell import TWO_PI, darkness_at
 INK_FOLLOWS = 0.1  # share of a sweep's difference by which the ink is corrected
 PALEST, DARKEST = 0.3, 2.0  # a sweep counts as no less and no more of the ink than this
 BALANCED = 0.5  # of the sweep is dark, when its middle is on the edge of a shape
+MOST_ASLANT = (
+    0.5  # of the lead aside: a line that turns more than 50 degrees is no arc up to there
+)
 FARTHEST_ASIDE = 0.5  # of the amplitude: a sweep that is further off is not on the line
 # of the random numbers: those of Numerical Recipes, "quick and dirty generators"
 NOISE_FACTOR, NOISE_STEP, NOISE_NUMBERS = 1664525, 1013904223, 2**32
@@ -66,7 +69,7 @@ def swing(cells, state, t):  # type: ignore[no-untyped-def]
     phase = TWO_PI * (state.sweep_periods + 0.5) / t.sweep_periods
     sine = math.sin(phase)
     aside = state.middle_mm + t.amplitude_mm * sine
-    ahead = t.lead_mm + t.along_mm * math.cos(phase)
+    ahead = state.lead_mm + t.along_mm * math.cos(phase)
     darkness = t.cell_gain * seen(cells, state, way_of(state), ahead, aside)
     if t.cell_noise > 0.0:
         darkness += t.cell_noise * _hiss(state)
@@ -75,6 +78,18 @@ def swing(cells, state, t):  # type: ignore[no-untyped-def]
     state.sweep_periods += 1
     if state.sweep_periods == t.sweep_periods // 2:
         state.swept_x_mm, state.swept_y_mm = state.x_mm, state.y_mm
+
+
+@njit(cache=True, inline="always")
+def _on_line(state, t):  # type: ignore[no-untyped-def]
+    """The line's middle to the left of the heading, where a sweep is centred on both edges, mm.
+
+    A line that bends is cut aslant: the middle of its cut lies nearer to the inside of the bend.
+    """
+    lead2, aside = state.lead_mm * state.lead_mm, state.middle_mm
+    if t.aslant_mm2 == 0.0 or abs(aside) > MOST_ASLANT * state.lead_mm:
+        return aside
+    return aside - t.aslant_mm2 * lead2 * (aside / (lead2 - aside * aside)) ** 3
 
 
 @njit(cache=True)
@@ -103,10 +118,16 @@ def detect(state, t):  # type: ignore[no-untyped-def]
     middle = state.heading_rad - 0.5 * t.sweep_periods * t.period_s * state.turn_rad_s
     c, s = math.cos(middle), math.sin(middle)
     if abs(aside) < limit:
-        place = state.places % DRUM
-        state.drum_mm[place, 0] = state.swept_x_mm + t.lead_mm * c - state.middle_mm * s
-        state.drum_mm[place, 1] = state.swept_y_mm + t.lead_mm * s + state.middle_mm * c
+        place, on_line = state.places % DRUM, _on_line(state, t)
+        state.drum_mm[place, 0] = state.swept_x_mm + state.lead_mm * c - on_line * s
+        state.drum_mm[place, 1] = state.swept_y_mm + state.lead_mm * s + on_line * c
         state.places += 1
+    # 4. the mount slides out to its lead by as much as the axis goes in a sweep
+    if state.lead_mm < t.lead_mm:
+        lead_mm = state.lead_mm + state.speed_mm_s * t.sweep_periods * t.period_s
+        lead_mm = min(t.lead_mm, lead_mm)
+        state.middle_mm *= (lead_mm / state.lead_mm) ** 2
+        state.lead_mm = lead_mm
 
 
 @njit(cache=True)

@@ -214,6 +214,11 @@ def centre_at(seen: Array, i: int, half_mm: float) -> Leg:
 # two legs
 
 
+def heading_of(step: Array) -> float:
+    """Heading of a step (x, y), rad."""
+    return math.atan2(step[1], step[0])
+
+
 def turn(a: float, b: float) -> float:
     """Angle from heading a to heading b, -pi..pi."""
     return math.remainder(b - a, math.tau)

@@ -10,11 +10,13 @@ import pytest
 
 from morfax.tracer.following.attempts import Attempts
 from morfax.tracer.following.followed import Followed
+from morfax.tracer.following.start import put_down
+from morfax.tracer.head.leaders import CELL, STATIONS
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.sensing.photocell import Cells
 from morfax.tracer.sensing.view import View
-from tests.tracer.inked import inked, polyline
+from tests.tracer.inked import arc, inked, polyline
 
 DRAWING = inked(polyline((4, 4), (14, 4)))
 VIEW = View(Cells(DRAWING.darkness, DRAWING.pitch_mm, 0.5), 0.5)
@@ -89,3 +91,40 @@ def test_a_tip_that_leads_nowhere_leaves_the_longest_run(
         (False, True): run("lost", 70),
     }
     assert chosen(monkeypatch, runs) is runs[False, False]
+
+
+def test_a_line_that_closes_only_without_the_slow_cell_is_run_so(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A line of two pixels' width ended at a junction after 110 of 129 mm. Without a slow stretch, no run
+    would be another.
+    """
+    tried: list[bool] = []
+
+    def run_of(went_slowly: bool, by_stations: str) -> Followed:
+        def known(self: Attempts, stance: Stance, turns: tuple[int, ...] = ()) -> Followed:
+            tried.append(self.by_stations)
+            if self.by_stations:
+                return run(by_stations, 129)
+            return replace(run("ended", 110), went_slowly=went_slowly)
+
+        monkeypatch.setattr(Attempts, "run", known)
+        return Attempts(DRAWING, Settings(), 100.0).all_of_it(replace(STANCE, at_end=True))
+
+    assert run_of(went_slowly=True, by_stations="closed").ending == "closed"
+    assert run_of(went_slowly=True, by_stations="joined").ending == "ended"
+    tried.clear()
+    assert run_of(went_slowly=False, by_stations="closed").ending == "ended"
+    assert not any(tried)
+
+
+def test_stations_lead_where_the_slow_cell_is_left_out() -> None:
+    """Round a circle of 1.2 mm, on which no fast cell keeps."""
+    drawing = inked(arc((8, 8), 1.2), seed=1)
+    stance, _ = next(iter(put_down(drawing)))
+    attempts = Attempts(drawing, Settings(), 40.0)
+    for by_stations in (False, True):
+        done = replace(attempts, by_stations=by_stations).run(stance)
+        led = done.led.lengths_mm(done.positions_mm)
+        assert done.went_slowly is not by_stations
+        assert (led[CELL] > led[STATIONS]) is not by_stations

@@ -1,0 +1,139 @@
+"""The slow cell: it follows tight bends by itself, and what was felt only checks it.
+
+The wave bends up to 0.73 per mm, twice what a fast cell may follow unasked. Broken on purpose, with `lead_mm`
+of `slowly` left at the fast head's: the cell's share of a wave falls to a half; with `aslant_mm2` left at 0,
+the path of a hole of 1.2 mm lies 11 um inside of it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from morfax.motion.arrays import Array
+from morfax.motion.contour import distance, distances_mm
+from morfax.motion.motion import MOTION_RATE_HZ
+from morfax.tracer.following.follower import Follower
+from morfax.tracer.following.start import put_down
+from morfax.tracer.head import slow_cell
+from morfax.tracer.head.leaders import CELL, STATIONS
+from morfax.tracer.head.settings import Settings
+from morfax.tracer.head.slow_cell import Stretch, Tried, along, is_steady, keeps_mm, slowly
+from morfax.tracer.head.state import Home
+from morfax.tracer.program.trace import trace
+from tests.tracer.inked import UM, WIDTH_MM, arc, inked
+
+NEVER_HOME = Home(0.0, 0.0, 0.0, 1e9)
+RADIUS_MM = 2.0  # a fast cell stops here: 0.5 per mm
+
+
+def wave() -> Array:
+    """A sine of 1.5 mm and 9 mm wavelength: its bends change throughout, up to 0.73 per mm."""
+    x = np.linspace(0, 36, 3600)
+    return np.column_stack([x + 4, 6 + 1.5 * np.sin(2 * np.pi * x / 9)])
+
+
+@pytest.fixture(scope="module")
+def head() -> Follower:
+    """A head put down on a small circle."""
+    stance, _ = next(iter(put_down(inked(arc((8, 8), RADIUS_MM), seed=1))))
+    return Follower(stance, Settings(), MOTION_RATE_HZ)
+
+
+def ahead(head: Follower, radius_mm: float, length_mm: float = 1.5) -> Array:
+    """A way along the circle from where the head stands, on a circle of another radius, (n, 2) mm."""
+    place, heading = head.carriage.stands()
+    out = place - (8.0, 8.0)
+    c, s = np.cos(heading), np.sin(heading)
+    side = np.sign(out[0] * s - out[1] * c)
+    at = np.arctan2(out[1], out[0]) + side * np.linspace(0, length_mm / RADIUS_MM, 80)
+    return 8.0 + radius_mm * np.column_stack([np.cos(at), np.sin(at)])
+
+
+def tried(head: Follower, radius_mm: float, within_mm: float) -> Tried | None:
+    """The slow cell along such a way."""
+    carriage = head.carriage
+    way = Stretch(ahead(head, radius_mm), within_mm)
+    tuning = slowly(carriage.tuning, WIDTH_MM, way.way)
+    return along(head.view.cells, carriage.state, tuning, NEVER_HOME, way)
+
+
+def test_the_cell_steers_and_not_what_was_felt(head: Follower) -> None:
+    """A way 15 um outside of the line is kept to within 30 um, and the head is on the line all the same."""
+    went = tried(head, RADIUS_MM + 15 * UM, 30 * UM)
+    assert went is not None and went.felt_mm == 0
+    off_mm = distances_mm(went.positions[::8], arc((8, 8), RADIUS_MM))
+    assert len(off_mm) > 100 and off_mm.max() < 10 * UM
+
+
+def test_a_way_beside_the_line_is_not_the_cell_s(head: Follower) -> None:
+    """60 um off what was felt it has lost the line; then the head has not moved."""
+    before = head.carriage.state.copy()
+    assert tried(head, RADIUS_MM + 60 * UM, 30 * UM) is None
+    assert (
+        head.carriage.state.x_mm == before.x_mm and head.carriage.state.places == before.places
+    )
+
+
+def test_a_cell_that_has_lost_the_line_begins_on_what_was_felt(head: Follower) -> None:
+    """Its sweep nearly a mm off the line: the drum is filled with what was felt."""
+    carriage = head.carriage
+    state = carriage.state.copy()
+    state.middle_mm += 4.0
+    way = Stretch(ahead(head, RADIUS_MM), 20 * UM)
+    tuning = slowly(carriage.tuning, WIDTH_MM, way.way)
+    went = along(head.view.cells, state, tuning, NEVER_HOME, way)
+    assert went is not None and went.felt_mm == pytest.approx(tuning.lead_mm - tuning.point_mm)
+
+
+def test_the_mount_slides_out_again_without_a_gap_in_the_drum(head: Follower) -> None:
+    """After a stretch with a short lead, places on the drum are no further apart than two sweeps' way."""
+    went = tried(head, RADIUS_MM, 30 * UM)
+    assert went is not None
+    fast, state = head.carriage.tuning, went.state
+    assert state.lead_mm < 0.75 * fast.lead_mm
+    first = state.places
+    state.trusted_mm = np.inf
+    slow_cell.kernel.follow(head.view.cells, state, fast, NEVER_HOME, np.empty((1200, 2)))
+    places = state.drum_mm[first - 1 : state.places]
+    two_sweeps_mm = 2 * fast.speed_mm_s * fast.sweep_periods * fast.period_s
+    assert state.lead_mm == fast.lead_mm
+    assert (
+        np.hypot(*np.diff(places, axis=0).T).max() < 1.3 * two_sweeps_mm
+    )  # the bend's outside
+
+
+def test_a_rough_line_may_be_seen_further_off(head: Follower) -> None:
+    """Three standard deviations of the middle: half of those of the width. 0.2 pixels are 17 um."""
+    widths = 0.5 + 40 * UM * np.random.default_rng(1).normal(size=400)
+    seen = np.column_stack([np.zeros((400, 2)), widths])
+    assert keeps_mm(head.view, seen) == pytest.approx(3 * 20 * UM, rel=0.15)
+    seen[:, 2] = 0.5
+    assert keeps_mm(head.view, seen) == pytest.approx(17 * UM, abs=1 * UM)
+
+
+def test_tight_bends_are_the_cell_s() -> None:
+    """95 % of a wave whose every crest stopped the fast cell; 31 % of it were the cell's before."""
+    line = trace(inked(wave(), seed=1)).lines[0]
+    led = line.led.lengths_mm(line.xy_mm)
+    assert led[CELL] > 0.95 * (led[CELL] + led[STATIONS])
+    assert distance(line.xy_mm, wave()).path_to_reference.rms_mm < 8 * UM
+
+
+def test_a_small_circle_is_not_cut() -> None:
+    """A sweep across a tight bend would move the path inward by 11 um; the lens moves it by 2 um."""
+    radius_mm = 1.2
+    line = trace(inked(arc((8, 8), radius_mm), seed=1)).lines[0]
+    led = line.led.lengths_mm(line.xy_mm)
+    assert led[CELL] > led[STATIONS]
+    beside_mm = np.hypot(*(line.xy_mm - 8).T).mean() - radius_mm
+    assert abs(beside_mm) < 4 * UM
+
+
+def test_an_arc_is_told_from_a_bend_that_changes() -> None:
+    """With stations 2 um off at random, as a scan's are."""
+    angles = np.linspace(0, 0.75, 60)
+    spiral = np.cumsum(np.column_stack([np.cos(angles**2), np.sin(angles**2)]), axis=0) / 40
+    noise = 2 * UM * np.random.default_rng(1).normal(size=(60, 2))
+    assert is_steady(2.0 * np.column_stack([np.cos(angles), np.sin(angles)]) + noise)
+    assert not is_steady(spiral + noise)

@@ -1,0 +1,81 @@
+"""The felt line: the stations that the head feels along its line, behind the axis and ahead of it.
+
+Signals: a view, the carriage and a place from which the line is clean in; stations (n, 3), x, y and width in
+sheet mm, out; and a stretch of them for the slow cell (see `head.slow_cell`).
+
+Source: our own; an operator looks along the line in the same way.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from morfax.motion.arrays import Array
+from morfax.tracer.head.carriage import Carriage
+from morfax.tracer.head.leaders import STATIONS
+from morfax.tracer.head.plan import Plan
+from morfax.tracer.head.slow_cell import Stretch, keeps_mm
+from morfax.tracer.sensing.leg import FEWEST_STATIONS, Leg, leg_of
+from morfax.tracer.sensing.view import View
+
+FROM_BEHIND = (1.0, 0.6, 0.3)  # legs behind the axis: nearer, if a speck spoils the first place
+# of the lead, before what stops the slow cell: room to plan, as a fast head has it; by trial
+ROOM_LEADS = 0.4
+Anchor = tuple[Array, float, float]  # where the line begins to be clean: place, heading, travel
+
+
+def felt_ahead(view: View, carriage: Carriage, anchor: Anchor) -> tuple[View, Array]:
+    """The view of the line, and its stations from behind the axis forward until it is no longer clean."""
+    come_mm = carriage.travel_mm - anchor[2]
+    for share in FROM_BEHIND:
+        back_mm = share * view.leg_mm
+        if come_mm > back_mm:
+            place, heading = carriage.trail.back(back_mm)
+        else:
+            (place, heading, _), back_mm = anchor, come_mm
+        view = view.like(place, heading)
+        length_mm = back_mm + carriage.tuning.guard_lead_mm + view.leg_mm
+        seen = view.feel(place, heading, length_mm)
+        if len(seen) >= FEWEST_STATIONS:
+            break
+    return view, seen
+
+
+def slow_stretch(view: View, carriage: Carriage, plan: Plan) -> Stretch | None:
+    """What the slow cell is to keep to along a plan that stations made; None along any other."""
+    if plan.leader != STATIONS or len(plan.stretches) != 1 or view.on_edge:
+        return None
+    seen = plan.leg.seen if plan.seen is None else plan.seen
+    room_mm = ROOM_LEADS * carriage.tuning.lead_mm
+    return Stretch(plan.stretches[0], keeps_mm(view, seen), room_mm)
+
+
+def clean_from(view: View, carriage: Carriage, plan: Plan) -> Anchor:
+    """The place about a leg's length behind the end of a course from which the line was felt clean."""
+    seen = plan.seen
+    assert seen is not None
+    here = nearest_station(seen, plan.leg.end_mm)
+    i = max(0, here - round(view.leg_mm / view.step_mm))
+    way = seen[i + 2, :2] - seen[i, :2]
+    travel_mm = carriage.travel_mm - (here - i) * view.step_mm
+    return seen[i, :2], math.atan2(way[1], way[0]), travel_mm
+
+
+def trail_behind(view: View, carriage: Carriage) -> Array:
+    """The last stretch of the trail as stations of the line, (n, 3)."""
+    stations = round(view.leg_mm / view.step_mm)
+    places = np.vstack([carriage.trail.recent()[-stations:], carriage.stands()[0]])
+    return np.column_stack([places, np.full(len(places), view.width_mm)])
+
+
+def station_before(view: View, seen: Array, here: int, guard_mm: float) -> tuple[int, Leg]:
+    """The station before ink beside a clean line, the guard cells' lead ahead, and the leg up to there."""
+    station = here + round(guard_mm / view.step_mm) - 3
+    return station, leg_of(seen[: station + 1], True, view.leg_mm)
+
+
+def nearest_station(seen: Array, place_mm: Array) -> int:
+    """Which station of a felt line (n, 3) is nearest to a place."""
+    return int(np.argmin(np.hypot(*(seen[:, :2] - place_mm).T)))
