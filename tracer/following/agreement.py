@@ -31,9 +31,13 @@ MOST_OVERRULED = 3  # times in a row; by trial on engravings
 
 @dataclass(slots=True)
 class Agreement:
-    """What the head knows of its cell: how often in a row stations have overruled it."""
+    """What the head knows of its cell: how often in a row stations have overruled it.
+
+    `by_stations` the slow cell does not lead, and stations do not wait for the cell past a corner.
+    """
 
     overruled: int = 0
+    by_stations: bool = False
     _led_mm: float = 0.0  # how far the cell had led when it was last overruled
 
     def goes_on_mm(self, carriage: Carriage, view: View, seen: Array) -> float:
@@ -48,7 +52,8 @@ class Agreement:
         # stopped though it was trusted, the line bends too much for it; one that has not led since a corner
         # may have the other side of its tip in view
         here = int(np.argmin(np.hypot(*(seen[:, :2] - carriage.stands()[0]).T)))
-        if carriage.is_trusted or carriage.by_memory or corner_in(seen, here) is not None:
+        doubtful = carriage.is_trusted or (carriage.by_memory and not self.by_stations)
+        if doubtful or corner_in(seen, here) is not None:
             return 0.0
         guards_mm = carriage.tuning.guard_lead_mm - carriage.tuning.lead_mm
         clear_mm = ahead_mm - guards_mm - LEFT_LEGS * view.leg_mm

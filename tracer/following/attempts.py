@@ -120,10 +120,19 @@ class Attempts:
 
     def all_of_it(self, stance: Stance) -> Followed:
         """Follow a line from a stance: either way round, an open one from end to end, and one that does not
-        come back with other turns.
+        come back with other turns. By stations, if only that closes: on a line of two or three pixels, a few
+        um decide what is a leg of a junction.
         """
+        run = self._all_ways(stance)
+        if run.ending == "closed" or not run.went_slowly:
+            return run
+        other = replace(self, by_stations=True)._all_ways(stance)
+        return other if other.ending == "closed" else run
+
+    def _all_ways(self, stance: Stance) -> Followed:
+        """The run from a stance, the other way round, back from an end, or with other turns."""
         # 1. straight on
-        run = self._straight_on(stance)
+        run = self.run(stance)
         if stance.at_end or (run.ending == "closed" and not run.junctions_mm):
             return self._with_doubts(stance, run)
         there_and_back = self._through_tips(stance, run)
@@ -131,7 +140,7 @@ class Attempts:
             return there_and_back
         # 2. the other way round
         about = turned_about(stance)
-        other = self._straight_on(about)
+        other = self.run(about)
         if run.ending == "closed":
             is_other = other.ending == "closed" and other.travel_mm < SHORTER * run.travel_mm
             return self._with_doubts(*((about, other) if is_other else (stance, run)))
@@ -140,16 +149,6 @@ class Attempts:
             return there_and_back
         # 3. back from an end, or on with other turns
         return self._back_or_on(stance, run, other)
-
-    def _straight_on(self, stance: Stance) -> Followed:
-        """The run from a stance; by stations, if only that closes: on a line of two or three pixels, a few
-        um decide what is a leg of a junction.
-        """
-        run = self.run(stance)
-        if run.ending == "closed" or not run.went_slowly:
-            return run
-        other = replace(self, by_stations=True).run(stance)
-        return other if other.ending == "closed" else run
 
     def _back_or_on(self, stance: Stance, run: Followed, other: Followed) -> Followed:
         """What follows a run that did not close, nor end in a tip, when the other way round is known."""

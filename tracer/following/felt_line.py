@@ -13,16 +13,19 @@ import math
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.polyline import lengths_mm
 from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.leaders import STATIONS
 from morfax.tracer.head.plan import Plan
 from morfax.tracer.head.slow_cell import Stretch, keeps_mm
-from morfax.tracer.sensing.leg import FEWEST_STATIONS, Leg, leg_of
+from morfax.tracer.sensing.leg import FEWEST_STATIONS, Leg, heading_of, leg_of
+from morfax.tracer.sensing.scout import REACH, REACH_PX
 from morfax.tracer.sensing.view import View
 
 FROM_BEHIND = (1.0, 0.6, 0.3)  # legs behind the axis: nearer, if a speck spoils the first place
 # of the lead, before what stops the slow cell: room to plan, as a fast head has it; by trial
 ROOM_LEADS = 0.4
+STUB_WIDTHS = 1.5  # of the line's width: where it is wider something leaves it; by trial
 Anchor = tuple[Array, float, float]  # where the line begins to be clean: place, heading, travel
 
 
@@ -47,9 +50,23 @@ def slow_stretch(view: View, carriage: Carriage, plan: Plan) -> Stretch | None:
     """What the slow cell is to keep to along a plan that stations made; None along any other."""
     if plan.leader != STATIONS or len(plan.stretches) != 1 or view.on_edge:
         return None
+    if not _is_bare(view, plan.stretches[0]):
+        return None
     seen = plan.leg.seen if plan.seen is None else plan.seen
     room_mm = ROOM_LEADS * carriage.tuning.lead_mm
     return Stretch(plan.stretches[0], keeps_mm(view, seen), room_mm)
+
+
+def _is_bare(view: View, way: Array) -> bool:
+    """Whether nothing leaves a line along a way (n, 2) mm: a tick or a stub draws the cell to its side."""
+    come_mm = lengths_mm(way)
+    places = way[np.searchsorted(come_mm, np.arange(0.0, come_mm[-1], view.step_mm))]
+    reach_mm = REACH * view.width_mm + REACH_PX * view.pitch_mm
+    for place, step in zip(places[1:], np.diff(places, axis=0), strict=True):
+        right, left = view.edges(place, heading_of(step), reach_mm)
+        if not left - right <= STUB_WIDTHS * view.width_mm:  # NaN: no edge in reach
+            return False
+    return True
 
 
 def clean_from(view: View, carriage: Carriage, plan: Plan) -> Anchor:

@@ -68,7 +68,8 @@ class Follower:
         self._ways_out = WaysOut(turns, stance.reference_mm is not None)
         self._at_tip = self._went_slowly = False
         self.carriage = Carriage(stance, settings, rate_hz)
-        self._tangles, self._agreement = Tangles(), Agreement()
+        self._tangles = Tangles()
+        self._agreement = Agreement(by_stations=turns.by_stations)
         by_lead_mm = AWAY_LEADS * self.carriage.tuning.lead_mm
         self._home = WayHome(stance, max(by_lead_mm, AWAY_WIDTHS * self.view.width_mm))
         self._aim(stance.leg_ahead())
