@@ -13,7 +13,7 @@ import math
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.motion.polyline import lengths_mm
+from morfax.motion.polyline import at_lengths, length_mm
 from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.leaders import STATIONS
 from morfax.tracer.head.plan import Plan
@@ -59,8 +59,7 @@ def slow_stretch(view: View, carriage: Carriage, plan: Plan) -> Stretch | None:
 
 def _is_bare(view: View, way: Array) -> bool:
     """Whether nothing leaves a line along a way (n, 2) mm: a tick or a stub draws the cell to its side."""
-    come_mm = lengths_mm(way)
-    places = way[np.searchsorted(come_mm, np.arange(0.0, come_mm[-1], view.step_mm))]
+    places = at_lengths(way, np.arange(0.0, length_mm(way), view.step_mm))
     reach_mm = REACH * view.width_mm + REACH_PX * view.pitch_mm
     for place, step in zip(places[1:], np.diff(places, axis=0), strict=True):
         right, left = view.edges(place, heading_of(step), reach_mm)
