@@ -53,10 +53,21 @@ def put_down(
     """
     sheet = drawing if isinstance(drawing, Sheet) else Sheet.of(drawing)
     settings = settings or Settings()
-    catch_mm = max(CATCH_MM, CATCH_PX * sheet.drawing.pitch_mm)
-    stroke = sheet.longest() if start_mm is None else sheet.nearest(start_mm, catch_mm)
+    stroke = _stroke_at(sheet, start_mm)
     for stance in _stances(sheet, stroke, start_mm, settings, reference_mm):
         yield stance, stroke.length_mm
+
+
+def _catch_mm(sheet: Sheet) -> float:
+    """How far from a given place the line may be."""
+    return max(CATCH_MM, CATCH_PX * sheet.drawing.pitch_mm)
+
+
+def _stroke_at(sheet: Sheet, start_mm: tuple[float, float] | None) -> Stroke:
+    """The line nearest to a place, or the longest; raises LineFault if none is near."""
+    if start_mm is None:
+        return sheet.longest()
+    return sheet.nearest(start_mm, _catch_mm(sheet))
 
 
 def _stances(
@@ -67,7 +78,6 @@ def _stances(
     reference_mm: tuple[float, float] | None,
 ) -> Iterator[Stance]:
     """Stances on a line, the best first: at its open ends, of which an edge has none, and at plain places."""
-    catch_mm = max(CATCH_MM, CATCH_PX * sheet.drawing.pitch_mm)
     if sheet.drawing.shade is not None:
         view, ends = edge_view_of(sheet.drawing, settings.aperture_mm), list[Stance]()
     else:
@@ -75,7 +85,7 @@ def _stances(
         view = view_of(sheet, settings.aperture_mm, settings.line_width_mm or stroke.width_mm)
         ends = _ends(view, sheet, stroke, start_mm, settings, reference_mm)
     yield from ends
-    plain = _plain(view, stroke, start_mm, catch_mm)
+    plain = _plain(view, stroke, start_mm, _catch_mm(sheet))
     yield from plain
     if not plain and not ends:
         is_solid = bool(sheet.are_solid[stroke.patch])
@@ -112,14 +122,13 @@ def _as_before(
     # 1. where the head was put down on the bare drawing
     try:
         before = sheet.drawing.bare.sheet
-        catch_mm = max(CATCH_MM, CATCH_PX * sheet.drawing.pitch_mm)
-        old = before.longest() if start_mm is None else before.nearest(start_mm, catch_mm)
+        old = _stroke_at(before, start_mm)
     except Fault:
         return
     width_mm = settings.line_width_mm or old.width_mm
     view = view_of(before, settings.aperture_mm, width_mm)
     found = _ends(view, before, old, start_mm, settings, reference_mm)
-    found += _plain(view, old, start_mm, catch_mm)
+    found += _plain(view, old, start_mm, _catch_mm(before))
     # 2. the same on the ink as it is now, where that is still this line
     now = view_of(sheet, settings.aperture_mm, width_mm).cells.darkness
     for stance in found:

@@ -38,9 +38,8 @@ KEEPS_FINE_WIDTHS, KEEPS_FINE_MM = 0.12, 0.017
 KEEPS_ROUGH = 3.0  # standard deviations of a rough line's middle, as its width shows them
 CHECKED = 8  # one position in 8 is held against the way: every 4 um at 3 mm/s
 LEAST_MM = 0.3  # for less the cell does not go on, ...
-SHORTEST_MM = (
-    0.75  # ... nor along a shorter stretch: a corner follows, and stations lead up to that
-)
+# ... nor along a shorter stretch: a corner follows, and stations lead up to that
+SHORTEST_MM = 0.75
 FELT_EVERY_MM = 0.04  # as fast sweeps lie on the drum, at 10 mm/s
 # of the narrowest half window of a fast cell: in an arc, and where the bend changes
 WINDOW_STEADY, WINDOW = 1.3, 0.75
