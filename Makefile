@@ -42,10 +42,11 @@ docs: $(VENV)/installed
 
 # the tests of trust at full length: every pair of wear, ten thousand dropouts, tapes of three and six hours; 12 GB, about an hour.
 # Then the table of attacks, TAPES of each kind on every core: 100 000 in all, some hours
-TAPES ?= 1170
+TAPES ?= 1137
+JOBS ?= $(shell nproc)
 soak: $(VENV)/installed
 	MORFAX_SOAK=1 $(BIN)/pytest tests/player/test_worn.py tests/player/test_long.py tests/console/test_killed.py -s
-	MORFAX_SOAK=1 MORFAX_TAPES=$(TAPES) $(BIN)/pytest tests/player/test_attacks.py -n auto -rA
+	$(BIN)/python -m tests.player.attacks $(TAPES) 0 $(JOBS)
 	$(BIN)/python -m benchmarks dropouts 1000
 
 # one wrong line at a time into a room, and whether its tests notice: ROOM=player/gcode SAMPLE=60 (0: all of them)

@@ -148,10 +148,9 @@ class Gaps:
         assert self._riding.bounds is not None, (
             "only a checked tape tells what a program asks for"
         )
-        told = np.empty((2, *rows.cycles.shape))
-        for axis, bounds in enumerate(self._riding.bounds()):
-            bounds.tell(rows.first_row, told[:, :, axis])
-        found = self._surprises.rows(rows, told)
+        found = self._surprises.rows(rows, self._riding.bounds())
+        if found is None:
+            return False
         # what was given out reached to `spread` rows before those that are looked at
         found[: max((self._given or 0) - rows.first_row + self._spread, 0)] = False
         found[ready + self._spread :] = False

@@ -90,7 +90,7 @@ def play(
 
     with open_tape() as tape:
         fmt, frames = _ending(tape.format, closed), tape.frames
-        found = None if order or resume_at_s else found_order(tape)
+        found, check = (None, None) if order or resume_at_s else found_order(tape)
     order = order or found
     if (
         resume_at_s and fmt.end_mm is not None
@@ -101,6 +101,8 @@ def play(
     _check_resumption(resume_at_s, start_mm, frames / fmt.sample_rate_hz)
     playback = TapePlayback(open_tape, fmt, frames, setting, acceleration_mm_s2, resume_at_s)
     playback.found_order = found
+    if found is None:
+        playback.reader.begun = check
     return playback
 
 

@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager
+from copy import deepcopy
 from dataclasses import replace
 from itertools import chain
 from typing import NamedTuple
@@ -28,7 +29,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.faults import Fault, TapeFault
 from morfax.player.tape.bare import BareTape
 from morfax.player.tape.bridges import Bound, Bridge
-from morfax.player.tape.check_reader import read_ahead, read_check
+from morfax.player.tape.check_reader import CheckReader, read_ahead, read_check
 from morfax.player.tape.discriminator import Discriminator, Phases, discriminate
 from morfax.player.tape.dropouts import Gaps, under_way
 from morfax.player.tape.lost_ways import Laid
@@ -60,7 +61,8 @@ class TapeReader:
     Of the last time through: `bridged`, the dropouts that were ridden over (tape time in s, axis: length in
     s). With `told`, whole cycles to add at dropouts (row, axis) of a bare tape, none is too uncertain to be
     ridden over; those that would have been are then in `doubtful`. If it `mends`, those of a checked tape are
-    laid anew, and are in `mended` with the whole cycles put back.
+    laid anew, and are in `mended` with the whole cycles put back. `begun`: the reader of the check signal, as
+    it is behind the first blocks of the tape, if somebody has read them already.
     """
 
     def __init__(
@@ -76,6 +78,7 @@ class TapeReader:
         self.bridged: dict[tuple[float, str], float] = {}
         self.told: dict[tuple[int, int], int] | None = None
         self.doubtful: dict[tuple[int, int], Bridge] = {}
+        self.begun: CheckReader | None = None
         self.is_checked = False  # whether the tape has a check signal
         self.mends = (
             False  # whether the way of dropouts is laid anew, where counts behind them tell it
@@ -168,7 +171,7 @@ class TapeReader:
 
     def _warrant(self, ahead: list[Stored], first_row: int) -> Warrant:
         """What vouches for the rows of this tape: its check signal, or what can be found out without."""
-        check = read_check(ahead, self._format, first_row)
+        check = deepcopy(self.begun) or read_check(ahead, self._format, first_row)
         self.is_checked = check is not None
         if check is None:
             return BareTape(self._format, self._start_mm)

@@ -25,6 +25,8 @@ tells no acceleration; there only a quarter of a cycle is a fault (standstill.py
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -33,6 +35,7 @@ from morfax.motion.compiled import njit
 from morfax.player.tape.discriminator import Phases
 from morfax.player.tape.predictor import count_turns
 from morfax.player.tape.standstill import SILENT_LEVEL
+from morfax.player.tape.told_bounds import ToldBounds
 from morfax.recorder.tape.check_signal import GAUGE_S
 from morfax.recorder.tape.format import TapeFormat
 
@@ -64,21 +67,27 @@ class Surprises:
         self._gain_rows2 = acceleration_gain(gains)
         self._noise_cycles: Array = np.zeros(len(fmt.axes))
 
-    def rows(self, rows: Phases, told: Array) -> NDArray[np.bool_]:
-        """Which rows of the axes (n, axes) are lost.
-
-        `told` (2, n, axes): largest acceleration, cycles/row², and speed, cycles/row; nan where none is told.
-        """
+    def rows(self, rows: Phases, bounds: Sequence[ToldBounds]) -> NDArray[np.bool_] | None:
+        """Which rows of the axes (n, axes) are lost, or None; `bounds`: what the tape tells of each axis."""
         noise = _noise(np.abs(rows.surprise[::STRIDE]))
         enough = len(rows) >= ENOUGH_ROWS
         self._noise_cycles = noise if enough else np.maximum(noise, self._noise_cycles)
-        lost, jumps = np.empty((2, *rows.surprise.shape), bool)
         least = np.maximum(self._noise_cycles, LEAST_CYCLES).astype(np.float64)
+        if not _any_beyond(rows.surprise, least) and not self._may_jump(bounds):
+            return None
+        told = np.empty((2, *rows.cycles.shape))
+        for axis, bound in enumerate(bounds):
+            bound.tell(rows.first_row, told[:, :, axis])
+        lost, jumps = np.empty((2, *rows.surprise.shape), bool)
         if _beyond(rows.surprise, told, (self._gain_rows2, self._slow), least, (lost, jumps)):
             accelerations = told[0]
             dips, own = _dips(rows.levels), KINK * (accelerations * self._gauge_rows) ** 2
             lost |= jumps & (np.maximum(dips[:, :1], dips[:, 1:]) > own)
         return np.asarray(lost)
+
+    def _may_jump(self, bounds: Sequence[ToldBounds]) -> bool:
+        """Whether any axis was told of accelerations that hide a jump."""
+        return any(self._gain_rows2 * bound.largest > HIDDEN_CYCLES for bound in bounds)
 
     def noise(self, axis: int) -> float:
         """How far a row of an axis may lie off by noise, or by what a sound tape does itself, cycles."""
@@ -86,9 +95,20 @@ class Surprises:
 
 
 @njit(cache=True, nogil=True)
+def _any_beyond(surprise, least):  # type: ignore[no-untyped-def]
+    """Whether any row of an axis surprises by more than a sound tape does itself."""
+    for axis in range(surprise.shape[1]):
+        for row in range(len(surprise)):
+            if abs(surprise[row, axis]) > least[axis]:
+                return True
+    return False
+
+
+@njit(cache=True, nogil=True)
 def _beyond(surprise, told, limits, least, marks):  # type: ignore[no-untyped-def]
     """Mark the rows that surprise by more than told, and those where the program jumps; whether any does.
 
+    `told` (2, n, axes): largest acceleration, cycles/row², and speed, cycles/row; nan where none is told.
     `limits`: of the surprise for a told acceleration, and of the speed at which jumps are looked for.
     """
     lost, jumps = marks

@@ -34,6 +34,11 @@ class ToldBounds:
         self._rate_hz, self._frame_rows = rate_hz, frame_s * rate_hz
         self._told: list[tuple[float, float, Bound]] = []  # first row, last row, bound
 
+    @property
+    def largest(self) -> float:
+        """The largest acceleration told of late, cycles/row²."""
+        return max((bound.acceleration for *_, bound in self._told), default=0.0)
+
     def add(self, report: FrameReport, track: int) -> None:
         """Take what a track says in a frame that was read."""
         said = report.said[track]

@@ -21,7 +21,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import TapeFault
-from morfax.player.tape.check_reader import read_ahead, read_check
+from morfax.player.tape.check_reader import CheckReader, read_ahead, read_check
 from morfax.player.tape.discriminator import Discriminator, discriminate
 from morfax.player.tape.standstill import Bearings, strongest_hz, take_bearings
 from morfax.player.tape.watch import Watch
@@ -34,12 +34,21 @@ END_CYCLES = 0.25
 MOST_AXES = 6  # whose orders are gone through
 
 
-def found_order(tape: Tape) -> tuple[int, ...] | None:
-    """The tracks with reference, X, Y … if in another order than these; raises TapeFault if unknown."""
+def found_order(tape: Tape) -> tuple[tuple[int, ...] | None, CheckReader | None]:
+    """The tracks with reference, X, Y … if in another order than these, and the reader of the check signal.
+
+    Raises TapeFault if the order is unknown.
+    """
     fmt = tape.format
     check = read_check(read_ahead(tape.stored_blocks(), fmt), fmt)
     if check is not None:
-        return _told_order(check.tracks)
+        return _told_order(check.tracks), check
+    return _by_the_watch(tape), None
+
+
+def _by_the_watch(tape: Tape) -> tuple[int, ...] | None:
+    """The order of the tracks of a bare tape, if the reference is not the first."""
+    fmt = tape.format
     watch: Watch | None = None
     time_s = 0.0
     for block in tape.stored_blocks():

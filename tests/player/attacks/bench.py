@@ -15,10 +15,12 @@ from morfax.motion.motion import Motion, join
 from morfax.player.tape.playback import play
 from morfax.recorder.sound.source import FileSource
 from morfax.recorder.tape.tape import record
+from tests.player.worn import corners, program
 
 RATE_HZ, MOTION_RATE_HZ = 48000, 6000
 RIGHT_CYCLES = 0.05
 CYCLES_PER_MM = 20
+GRAIN_MM = 1e-5  # rows closer than that are one place: 0.0002 cycle
 FINER = 8  # samples of the finer tape to one: a straight line between them is true to 0.2 %
 
 Frames = NDArray[np.float32]
@@ -61,10 +63,9 @@ class MemorySource:
 
     container, sample, name = "WAV", "16", "changed.wav"
 
-    def __init__(self, frames: Frames, text: str, rate_hz: int = RATE_HZ) -> None:
-        scaled = np.rint(np.clip(frames, -1, 1 - 2**-15) * 32768)
-        self._stored = np.nan_to_num(scaled).astype(np.int16)
-        self.tracks, self.rate_hz, self.text = frames.shape[1], rate_hz, text
+    def __init__(self, stored: NDArray[np.int16], text: str, rate_hz: int = RATE_HZ) -> None:
+        self._stored = stored
+        self.tracks, self.rate_hz, self.text = stored.shape[1], rate_hz, text
 
     @property
     def frames(self) -> int:
@@ -78,6 +79,14 @@ class MemorySource:
 
     def close(self) -> None:
         """Nothing to let go of."""
+
+
+def as_stored(frames: Frames) -> NDArray[np.int16]:
+    """Frames as a file of 16 bit holds them; what is no number is silence."""
+    scaled = frames * np.float32(32768)
+    if not np.isfinite(scaled).all():
+        scaled = np.nan_to_num(scaled)
+    return np.clip(np.rint(scaled, out=scaled), -32768, 32767).astype(np.int16)
 
 
 class Bench:
@@ -95,7 +104,10 @@ class Bench:
         finer = resample_poly(self.frames.astype(np.float64), FINER, 1, axis=0)
         self._finer = finer.astype(np.float32)
         self.clean = join(play(tape)).positions_mm
-        self._tree = cKDTree(self.clean)
+        # rows that stand still are one: a tree of thousands of rows in one place is as slow as a list
+        moves = np.abs(np.diff(np.rint(self.clean / GRAIN_MM), axis=0)).max(axis=1) > 0
+        self._way = self.clean[np.r_[True, moves]]
+        self._tree = cKDTree(self._way)
 
     def at(self, places: NDArray[np.float64], track: int | None = None) -> Frames:
         """The frames of all tracks, or of one, at places between them."""
@@ -109,10 +121,10 @@ class Bench:
     def tried(self, kind: Kind, seed: int) -> Verdict:
         """Play the tape after one attack."""
         random = np.random.default_rng(seed)
-        frames = kind.change(self, random)
+        stored = as_stored(kind.change(self, random))
         blocks, fault = [], None
         try:
-            for block in play(lambda: MemorySource(frames, self.text)):
+            for block in play(lambda: MemorySource(stored, self.text)):
                 blocks.append(block.positions_mm)
         except Fault as met:
             fault = met
@@ -135,12 +147,14 @@ class Bench:
         """The largest distance off the clean path, mm."""
         if not len(went):
             return 0.0
+        stands = np.abs(np.diff(np.rint(went / GRAIN_MM), axis=0)).max(axis=1) == 0
+        went = went[np.r_[True, ~stands]]
         nearest, at = self._tree.query(went)
         far = nearest > RIGHT_CYCLES / CYCLES_PER_MM / 10
         best = np.where(far, np.inf, nearest)
         for step in (-1, 1):
-            one = self.clean[at]
-            other = self.clean[np.clip(at + step, 0, len(self.clean) - 1)]
+            one = self._way[at]
+            other = self._way[np.clip(at + step, 0, len(self._way) - 1)]
             along = other - one
             share = ((went - one) * along).sum(axis=1) / np.maximum(
                 (along**2).sum(axis=1), 1e-30
@@ -148,3 +162,11 @@ class Bench:
             foot = one + np.clip(share, 0, 1)[:, None] * along
             best = np.minimum(best, np.linalg.norm(went - foot, axis=1))
         return float(best.max())
+
+
+def benches(folder: object) -> tuple[Bench, Bench]:
+    """A circle at 60 mm/s, and a square that stops at its corners from 40 mm/s; Z moves too."""
+    fast, square = program(10.0, 60.0), corners(6.0, 40.0)
+    fast[:, 2] = 2 - 1.5 * fast[:, 1] / 10.0
+    square[:, 2] = 2 - 2 * np.clip(np.arange(len(square)) / 1500, 0, 1)
+    return Bench(folder, fast), Bench(folder, square)

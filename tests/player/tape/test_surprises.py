@@ -8,10 +8,12 @@ import numpy as np
 import pytest
 
 from morfax.motion.motion import Motion, join
+from morfax.player.tape.bridges import Bound
 from morfax.player.tape.discriminator import Phases
 from morfax.player.tape.playback import play
 from morfax.player.tape.predictor import count_turns, predictor_gains
 from morfax.player.tape.surprises import Surprises, acceleration_gain
+from morfax.player.tape.told_bounds import ToldBounds
 from morfax.recorder.tape.format import TapeFormat
 from morfax.recorder.tape.tape import record
 from tests.player.attacks.bench import Bench, Kind
@@ -33,10 +35,19 @@ def phases(way: np.ndarray, noise: float = 0.0) -> Phases:
     return Phases(0, cycles, surprise, np.full((len(way), 2), 0.5, np.float32))
 
 
+class SameThroughout(ToldBounds):
+    """Bounds that are the same in all rows."""
+
+    def __init__(self, bound: Bound) -> None:
+        super().__init__(RATE_HZ, 0.48)
+        self._told = [(0.0, float(ROWS), bound)]
+
+
 def lost(rows: Phases, acceleration: float) -> np.ndarray:
     """The rows that are lost where the tape tells this acceleration."""
-    told = np.full((2, len(rows), 1), [[[acceleration]], [[0.03]]])  # at 9 mm/s
-    return Surprises(GAINS, TapeFormat(axes=("x",))).rows(rows, told)[:, 0]
+    told = SameThroughout(Bound(acceleration, 0.03))  # at 9 mm/s
+    found = Surprises(GAINS, TapeFormat(axes=("x",))).rows(rows, [told])
+    return np.zeros(len(rows), bool) if found is None else found[:, 0]
 
 
 def swung(size: float) -> np.ndarray:
