@@ -1,18 +1,18 @@
 """Where the compiled kernels are kept, and who is told when some have to be compiled.
 
-The sample loops of head, recorder and machine are compiled on their first run and kept on disk
-(`motion/machine_code.py`): in `__pycache__` beside each module, or, where that folder cannot be written, in
-the user's cache folder (`$XDG_CACHE_HOME/morfax`, by default `~/.cache/morfax`), or at worst in the folder
-for temporary files.
+The sample loops of head, recorder and machine are compiled on their first run and kept in the user's folder
+of kernels (`motion/machine_code.py`, `motion/kernel_folder.py`). Where numba runs them with a cache of its
+own, that is `__pycache__` beside each module, or the same folder of the user's where it cannot be written.
 """
 
 from __future__ import annotations
 
 import os
-import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
+
+from morfax.motion.kernel_folder import kernel_folder, writable
 
 HOUSE = Path(__file__).parents[1]  # the package morfax
 AGAIN_S = 5.0  # between two lines that tell how far compiling is
@@ -20,17 +20,14 @@ PACKAGES = ("motion", "tracer", "recorder", "player")
 
 
 def choose_cache() -> None:
-    """Send the kernels to a folder that can be written; call this before the first kernel runs."""
+    """Send numba's own cache to a folder that can be written; call this before the first kernel runs."""
     if "NUMBA_CACHE_DIR" in os.environ or all(
-        _writable(HOUSE / package / "__pycache__") for package in PACKAGES
+        writable(HOUSE / package / "__pycache__") for package in PACKAGES
     ):
         return
-    user = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "morfax"
-    temporary = (
-        Path(tempfile.gettempdir())
-        / f"morfax-{os.getuid() if hasattr(os, 'getuid') else 'user'}"
-    )
-    os.environ["NUMBA_CACHE_DIR"] = str(user if _writable(user) else temporary)
+    folder = kernel_folder()
+    if folder is not None:
+        os.environ["NUMBA_CACHE_DIR"] = str(folder)
 
 
 def announce(what: str, note: Callable[[str], None]) -> None:
@@ -49,12 +46,3 @@ def announce(what: str, note: Callable[[str], None]) -> None:
         next_s = time.monotonic() + AGAIN_S
 
     compiled.hear(hear)
-
-
-def _writable(folder: Path) -> bool:
-    """Whether files can be made in a folder, which is made if need be."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError:
-        return False
-    return os.access(folder, os.W_OK)

@@ -9,8 +9,9 @@ damaged. Where the linker cannot be made, or a kernel asks for a name that it do
 here, and numba runs the kernels with its own cache. `MORFAX_KERNELS=numba` asks for that.
 
 Signals in: a kernel, the types of its arguments as a text. Signals out: a Python function.
-Files: `MODULE.NAME-LINE.TAG.kernel` in `__pycache__` beside the module, or in `NUMBA_CACHE_DIR`: a SHA-256
-digest, then what the kernel was made with and its entries, marshalled.
+Files: `MODULE.NAME.TAG.MAKINGS.kernel` in the user's folder of kernels (`kernel_folder`): a SHA-256 digest,
+then what the kernel was made with and its entries, marshalled. Sources count by what is in them, not by
+where or when they were installed.
 
 Questions: shared objects made with the wheel would need a compiler there, a wheel for each kind of machine,
 and code for the oldest processor of that kind (docs/design.md, rejected designs).
@@ -31,12 +32,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from morfax.motion.kernel_folder import kernel_folder
 from morfax.motion.kernel_linker import Entry, in_process, linker, numba_folder
 
 if TYPE_CHECKING:
     from morfax.motion.compiled import Kernel
 
-FORMAT = 1  # of the files; another number with every change of Entry
+FORMAT = 2  # of the files; another number with every change of Entry
+VERSIONS = 8  # of one kernel are kept beside each other: an upgrade, a checkout, settings that were tried
 DIGEST = 32  # bytes of a SHA-256 digest, which stands before the rest of a file
 
 
@@ -54,20 +57,29 @@ def keep(kernel: Kernel, types: str, compiled: Any) -> None:
     entry = _entry(compiled)
     if entry is None:
         return
-    entries = {**_read(kernel), types: entry}
     file = _file(kernel)
-    content = marshal.dumps((_makings(kernel), entries))
+    if file is None:
+        return
+    content = marshal.dumps((_makings(kernel), {**_read(kernel), types: entry}))
     unfinished = None
     try:
-        file.parent.mkdir(parents=True, exist_ok=True)
         number, name = tempfile.mkstemp(dir=file.parent, prefix=file.name)
         unfinished = Path(name)
         with os.fdopen(number, "wb") as stream:
             stream.write(sha256(content).digest() + content)
         unfinished.replace(file)
-    except OSError:  # a folder that cannot be written: compiled again next time
+        _clear_old(file)
+    except OSError:  # a full disk: compiled again next time
         if unfinished is not None:
             unfinished.unlink(missing_ok=True)
+
+
+def _clear_old(file: Path) -> None:
+    """Delete the oldest files of a kernel where there are more than VERSIONS of it."""
+    kernel = file.name.rsplit(".", 2)[0]
+    every = sorted(file.parent.glob(f"{kernel}.*.kernel"), key=lambda of: of.stat().st_mtime_ns)
+    for old in every[:-VERSIONS]:
+        old.unlink(missing_ok=True)
 
 
 @cache
@@ -115,8 +127,9 @@ def _entry(compiled: Any) -> Entry | None:
 
 def _read(kernel: Kernel) -> dict[str, Entry]:
     """The entries of a kernel that were made with what is there now; none if there is no such file."""
+    file = _file(kernel)
     try:
-        data = _file(kernel).read_bytes()
+        data = file.read_bytes() if file is not None else b""
     except OSError:
         return {}
     digest, content = data[:DIGEST], data[DIGEST:]
@@ -139,30 +152,24 @@ def _surroundings() -> str:
     """Versions, processor and numba's settings."""
     settings = {name: value for name, value in os.environ.items() if name.startswith("NUMBA_")}
     settings.pop("NUMBA_CACHE_DIR", None)
-    versions = [
-        numba_folder() / "_version.py",
-        numba_folder().parent / "llvmlite" / "_version.py",
-    ]
+    folder = numba_folder()
+    versions = [folder / "_version.py", folder.parent / "llvmlite" / "_version.py"]
     return repr(
         (FORMAT, sys.version, linker().cpu, settings, [_stamp(str(file)) for file in versions])
     )
 
 
 @cache
-def _stamp(file: str) -> tuple[str, int, int]:
-    """Name, time and size of a file."""
-    status = Path(file).stat()
-    return Path(file).name, status.st_mtime_ns, status.st_size
+def _stamp(file: str) -> tuple[str, str]:
+    """Name of a file, and a digest of what is in it."""
+    return Path(file).name, sha256(Path(file).read_bytes()).hexdigest()
 
 
-def _file(kernel: Kernel) -> Path:
-    """Where the machine code of a kernel is kept."""
-    code = kernel.py_func.__code__
-    source = Path(code.co_filename)
-    given = os.environ.get("NUMBA_CACHE_DIR")
-    mark = sha256(str(source.parent).encode()).hexdigest()[:16]
-    folder = (
-        Path(given) / f"{source.parent.name}_{mark}" if given else source.parent / "__pycache__"
-    )
-    tag = sys.implementation.cache_tag
-    return folder / f"{source.stem}.{code.co_name}-{code.co_firstlineno}.{tag}.kernel"
+def _file(kernel: Kernel) -> Path | None:
+    """Where the machine code of a kernel is kept; None where it cannot be."""
+    folder = kernel_folder()
+    if folder is None:
+        return None
+    function, tag = kernel.py_func, sys.implementation.cache_tag
+    makings = sha256(_makings(kernel).encode()).hexdigest()[:16]
+    return folder / f"{function.__module__}.{function.__name__}.{tag}.{makings}.kernel"

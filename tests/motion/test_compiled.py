@@ -109,7 +109,7 @@ def test_a_kept_kernel_runs_without_numba_and_is_made_anew_when_what_is_in_it_ch
     # 2. the next process compiles nothing and has no numba; every bit is the same
     assert asked(folder) == [*first[:4], 0, False]
     # 3. a damaged file is compiled anew
-    (file,) = (folder / "kept").rglob("whole.*.kernel")
+    (file,) = (folder / "kept").glob("whole.whole.*.kernel")
     kept = file.read_bytes()
     file.write_bytes(kept[:-3] + b"xyz")
     assert asked(folder) == first
@@ -118,6 +118,28 @@ def test_a_kept_kernel_runs_without_numba_and_is_made_anew_when_what_is_in_it_ch
     changed = asked(folder)
     assert changed[4] == 3
     assert changed[0] != first[0]
+    # 5. the same kernels elsewhere, as after an upgrade or beside a checkout, are not compiled again
+    elsewhere = folder / "elsewhere"
+    elsewhere.mkdir()
+    for name in ("part_of_it.py", "whole.py"):
+        (elsewhere / name).write_text((folder / name).read_text())
+        (folder / name).unlink()
+    moved = asked(elsewhere, NUMBA_CACHE_DIR=str(folder / "kept"))
+    assert moved == [*changed[:4], 0, False]
+
+
+def test_only_the_newest_versions_of_a_kernel_are_kept(tmp_path: Path) -> None:
+    for age in range(machine_code.VERSIONS + 3):
+        file = tmp_path / f"a.part.cpython-311.{age:016x}.kernel"
+        file.touch()
+        os.utime(file, (1e9 - age, 1e9 - age))
+    another = tmp_path / "a.part_of_it.cpython-311.0.kernel"
+    another.touch()
+    os.utime(another, (1.0, 1.0))
+    machine_code._clear_old(tmp_path / f"a.part.cpython-311.{0:016x}.kernel")
+    left = {file.name.split(".")[3] for file in tmp_path.glob("a.part.*")}
+    assert left == {f"{age:016x}" for age in range(machine_code.VERSIONS)}
+    assert another.exists()
 
 
 def test_a_kernel_is_its_plain_function_where_compiling_is_turned_off(

@@ -1,7 +1,7 @@
 """The wheel: what is in it, and that it works in an empty folder of an environment that has no checkout.
 
 Nothing is downloaded: the build uses the setuptools that is installed (extra `dev`), and the new environment
-sees the dependencies of the present one. The kernels are compiled anew there, which takes most of the time.
+sees the dependencies of the present one. Kernels that the checkout has compiled serve there too.
 """
 
 from __future__ import annotations
