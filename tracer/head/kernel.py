@@ -58,7 +58,7 @@ HOME_COSINE = 0.8  # of the angle between the heading and home's
 SHORTEST = 0.2  # of the distance to the point: the axis may have come so near to it
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def follow(cells, state, t, home, out):  # type: ignore[no-untyped-def]
     """Follow the line until something happens or `out` (n, 2) is full; (positions written, why)."""
     for n in range(len(out)):
@@ -77,7 +77,7 @@ def follow(cells, state, t, home, out):  # type: ignore[no-untyped-def]
     return len(out), MORE
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def _fit(state, t):  # type: ignore[no-untyped-def]
     """Lay a parabola through the drum's places about the point ahead of the axis: where the line is there,
     and its bend.
@@ -132,7 +132,7 @@ def _is_trusted(state):  # type: ignore[no-untyped-def]
     return state.travel_mm < state.trusted_mm
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def _half_window(state, t):  # type: ignore[no-untyped-def]
     """Half of the parabola's window, mm: narrower in tight bends of a line that was felt clean."""
     bend = state.usual_bend_per_mm
@@ -142,7 +142,7 @@ def _half_window(state, t):  # type: ignore[no-untyped-def]
     return max(t.half_window_mm * (t.tightest_per_mm / bend) ** 2, t.narrow_mm)
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def _look_at_edge(cells, state, t):  # type: ignore[no-untyped-def]
     """The same on the edge of a shape: the guard cells see the shape on one side, and paper on the other."""
     way, curve = way_of(state), state.middle_mm / (state.lead_mm * state.lead_mm)
@@ -175,7 +175,7 @@ def _look_at_edge(cells, state, t):  # type: ignore[no-untyped-def]
     return MORE
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def _look(cells, state, t):  # type: ignore[no-untyped-def]
     """Read the guard cells and the look-ahead cell, once a sweep; why the head must stop following."""
     if t.balance_per_mm != 0.0:
@@ -214,7 +214,7 @@ def _look(cells, state, t):  # type: ignore[no-untyped-def]
     return CHANGED if abs(state.ink - 1.0) > ALTERED else MORE
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def _at_home(state, t, home):  # type: ignore[no-untyped-def]
     """Whether home lies just ahead on the line."""
     x_mm, y_mm, heading_rad, from_travel_mm = home
@@ -227,7 +227,7 @@ def _at_home(state, t, home):  # type: ignore[no-untyped-def]
     return on_it and math.cos(heading_rad - state.heading_rad) > HOME_COSINE
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def _steer(state, t):  # type: ignore[no-untyped-def]
     """One period of relay, steering servo, sine and cosine, and the two drives."""
     # 1. speed, as the relay has it

@@ -26,7 +26,7 @@ def owed_s(gain, period_s):  # type: ignore[no-untyped-def]
     return period_s * (1.0 - gain) / gain
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def move(state, t, demand_x_mm_s, demand_y_mm_s):  # type: ignore[no-untyped-def]
     """One period of the two drives: their screws turn, and the head moves with them."""
     x, y = state.x_mm, state.y_mm
@@ -37,7 +37,7 @@ def move(state, t, demand_x_mm_s, demand_y_mm_s):  # type: ignore[no-untyped-def
     state.travel_mm += math.hypot(state.x_mm - x, state.y_mm - y)
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def run(state, t, points, speeds, out):  # type: ignore[no-untyped-def]
     """Run along a course (n, 2) mm, at each point at most at its speed (n,) mm/s; positions written."""
     owed = owed_s(t.drive_gain, t.period_s)
@@ -68,7 +68,7 @@ def run(state, t, points, speeds, out):  # type: ignore[no-untyped-def]
     return len(out)
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def _hasten(state, t, gap_mm, speed_mm_s, next_mm_s):  # type: ignore[no-untyped-def]
     """Bring the speed towards what braking for the next point, the course and the relay allow."""
     change = t.acceleration_mm_s2 * t.period_s
@@ -80,7 +80,7 @@ def _hasten(state, t, gap_mm, speed_mm_s, next_mm_s):  # type: ignore[no-untyped
     state.speed_mm_s = max(min(state.speed_mm_s + change, allowed), SLOWEST * t.speed_mm_s)
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def stand(state, t, out):  # type: ignore[no-untyped-def]
     """Stand for the length of `out` while the drives come to rest."""
     state.speed_mm_s = 0.0

@@ -53,7 +53,7 @@ def seen(cells, state, towards, ahead, aside):  # type: ignore[no-untyped-def]
     return darkness_at(cells, x, y)
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def _hiss(state):  # type: ignore[no-untyped-def]
     """Noise of standard deviation 1: twelve random numbers of a linear congruential generator, summed."""
     hiss = -6.0
@@ -63,7 +63,7 @@ def _hiss(state):  # type: ignore[no-untyped-def]
     return hiss
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def swing(cells, state, t):  # type: ignore[no-untyped-def]
     """One period of the swinging cell: its current goes into the synchronous detector."""
     phase = TWO_PI * (state.sweep_periods + 0.5) / t.sweep_periods
@@ -92,7 +92,7 @@ def _on_line(state, t):  # type: ignore[no-untyped-def]
     return aside - t.aslant_mm2 * lead2 * (aside / (lead2 - aside * aside)) ** 3
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def detect(state, t):  # type: ignore[no-untyped-def]
     """End of a sweep: the line's place goes onto the drum, and the next sweep is centred on it."""
     # 1. what the sweep tells
@@ -130,7 +130,7 @@ def detect(state, t):  # type: ignore[no-untyped-def]
         state.lead_mm = lead_mm
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def heard(cells, state, t, off_mm):  # type: ignore[no-untyped-def]
     """By how much a standing head moves its sweep when that is set off to the left by `off_mm`, mm.
 

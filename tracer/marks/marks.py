@@ -197,7 +197,7 @@ def _are_dark(view: View, path: HeadPath, away_mm: Array) -> NDArray[np.bool_]:
     return out
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def _look_beside(cells, places, along, away_mm, level, out):  # type: ignore[no-untyped-def]
     """Fill `out`: all cells at one place, then at the next, so that tiles of a large sheet are made
     once.

@@ -116,6 +116,16 @@ def _weights(spread_px: float) -> Array:
 
 
 @njit(cache=True)
+def darkness_at(tiles, x_px, y_px):  # type: ignore[no-untyped-def]
+    """Darkness behind the spot at a place in pixels from the sheet's lower-left corner; paper outside."""
+    x, y = x_px - 0.5, tiles.rows - y_px - 0.5
+    i, j = math.floor(y), math.floor(x)
+    if i < 0 or j < 0 or i >= tiles.rows - 1 or j >= tiles.columns - 1:
+        return 0.0
+    return between(tiles, int(i), int(j), y - i, x - j)
+
+
+@njit(cache=True)
 def between(tiles, i, j, down, along):  # type: ignore[no-untyped-def]
     """Darkness behind the spot, a share of a pixel down and along from pixel i, j."""
     place = tiles.place[i >> SHIFT, j >> SHIFT]
@@ -129,7 +139,7 @@ def between(tiles, i, j, down, along):  # type: ignore[no-untyped-def]
     return above * (1 - down) + below * down
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=True)
 def _make(tiles, up, across):  # type: ignore[no-untyped-def]
     """Make a tile, in the place of the oldest; its place, or PAPER where there is no ink about it."""
     weights, half = tiles.weights, len(tiles.weights) // 2

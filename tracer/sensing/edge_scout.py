@@ -39,7 +39,7 @@ TURNS = 0.5  # cosine: a step turns less than 60 degrees
 TURN_SAMPLES = 36  # all round
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def circle(cells, x_mm, y_mm):  # type: ignore[no-untyped-def]
     """Mean, and fundamental along X and Y, of what a cell sees once round a place."""
     radius = CIRCLE_PX * cells.pitch_mm
@@ -54,7 +54,7 @@ def circle(cells, x_mm, y_mm):  # type: ignore[no-untyped-def]
     return mean, first_x, first_y
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def onto_edge(cells, x_mm, y_mm):  # type: ignore[no-untyped-def]
     """The place on the edge next to a place, the unit vector into the shape, and the size of the fundamental.
 
@@ -74,7 +74,7 @@ def onto_edge(cells, x_mm, y_mm):  # type: ignore[no-untyped-def]
     return x_mm, y_mm, inward_x, inward_y, size
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def _round_about(cells, pose, side, step_mm):  # type: ignore[no-untyped-def]
     """The next place of an edge a step on from a pose, found on a circle of that radius.
 

@@ -151,18 +151,20 @@ def _blur(
 
 @njit(cache=True, inline="always")
 def darkness_at(cells, x_mm, y_mm):  # type: ignore[no-untyped-def]
-    """Darkness under a cell at a place in sheet mm; paper outside the sheet."""
-    seen, pitch_mm, tiles = cells.darkness, cells.pitch_mm, cells.tiles
-    # one of the two is empty
-    rows, columns = seen.shape[0] + tiles.rows, seen.shape[1] + tiles.columns
+    """Darkness under a cell at a place in sheet mm; paper outside the sheet.
+
+    A small sheet does not name `tiles`: numba would count references to all its arrays.
+    """
+    seen, pitch_mm = cells.darkness, cells.pitch_mm
+    rows, columns = seen.shape
+    if rows == 0:
+        return aperture.darkness_at(cells.tiles, x_mm / pitch_mm, y_mm / pitch_mm)
     x, y = x_mm / pitch_mm - 0.5, rows - y_mm / pitch_mm - 0.5
     i, j = math.floor(y), math.floor(x)
     if i < 0 or j < 0 or i >= rows - 1 or j >= columns - 1:
         return 0.0
     fx, fy = x - j, y - i
     i, j = int(i), int(j)
-    if tiles.rows > 0:
-        return aperture.between(tiles, i, j, fy, fx)
     above = seen[i, j] * (1 - fx) + seen[i, j + 1] * fx
     below = seen[i + 1, j] * (1 - fx) + seen[i + 1, j + 1] * fx
     return above * (1 - fy) + below * fy
@@ -172,12 +174,18 @@ def darkness_at(cells, x_mm, y_mm):  # type: ignore[no-untyped-def]
 def darkness_along(cells, places_mm):  # type: ignore[no-untyped-def]
     """Darkness under a cell at each of many places (n, 2) in sheet mm."""
     seen = np.empty(len(places_mm))
-    for k in range(len(places_mm)):
-        seen[k] = darkness_at(cells, places_mm[k, 0], places_mm[k, 1])
+    _look_along(cells, places_mm, seen)
     return seen
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
+def _look_along(cells, places_mm, out):  # type: ignore[no-untyped-def]
+    """Fill `out` with the darkness at each of many places."""
+    for k in range(len(out)):
+        out[k] = darkness_at(cells, places_mm[k, 0], places_mm[k, 1])
+
+
+@njit(cache=True, _nrt=False)
 def sweep(cells, place, heading, swing_mm, samples):  # type: ignore[no-untyped-def]
     """Fundamental and mean of one whole sweep (centre, amplitude) across a heading at a standing place."""
     (centre_mm, amplitude_mm), first, mean = swing_mm, 0.0, 0.0
@@ -191,6 +199,15 @@ def sweep(cells, place, heading, swing_mm, samples):  # type: ignore[no-untyped-
     return 2.0 * first / samples, mean / samples
 
 
+@njit(cache=True, _nrt=False)
+def _look_round(cells, centre, radius_mm, out):  # type: ignore[no-untyped-def]
+    """Fill `out` with what a cell sees going once round a centre."""
+    for k in range(len(out)):
+        a = TWO_PI * k / len(out)
+        x, y = centre[0] + radius_mm * math.cos(a), centre[1] + radius_mm * math.sin(a)
+        out[k] = darkness_at(cells, x, y)
+
+
 @njit(cache=True)
 def ring(cells, centre, radius_mm):  # type: ignore[no-untyped-def]
     """Dark arcs that a cell sees going once round a centre: (n, 2) rad, begin and end (end > begin).
@@ -199,10 +216,7 @@ def ring(cells, centre, radius_mm):  # type: ignore[no-untyped-def]
     """
     samples = max(24, math.ceil(TWO_PI * radius_mm / (STEP_PX * cells.pitch_mm)))
     seen, level = np.empty(samples), cells.level
-    for k in range(samples):
-        a = TWO_PI * k / samples
-        x, y = centre[0] + radius_mm * math.cos(a), centre[1] + radius_mm * math.sin(a)
-        seen[k] = darkness_at(cells, x, y)
+    _look_round(cells, centre, radius_mm, seen)
     arcs = np.empty((samples // 2 + 1, 2))
     first_light = -1
     for k in range(samples):

@@ -40,7 +40,7 @@ def seen_on(cells, ray, u_mm):  # type: ignore[no-untyped-def]
     return darkness_at(cells, x, y)
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def crossing_mm(cells, ray, begin_mm, end_mm, speck_mm):  # type: ignore[no-untyped-def]
     """Distance along a ray at which ink changes to paper, or paper to ink; NaN if neither happens.
 
@@ -64,7 +64,7 @@ def crossing_mm(cells, ray, begin_mm, end_mm, speck_mm):  # type: ignore[no-unty
     return math.nan
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def end_of_ink(cells, ray, begin_mm, end_mm):  # type: ignore[no-untyped-def]
     """Distance along a ray at which the ink ends; NaN if the ray begins on paper, or the ink goes on."""
     if seen_on(cells, ray, begin_mm) < cells.level:
@@ -72,7 +72,7 @@ def end_of_ink(cells, ray, begin_mm, end_mm):  # type: ignore[no-untyped-def]
     return crossing_mm(cells, ray, begin_mm, end_mm, 0.0)
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def edge_along(cells, x_mm, y_mm, direction, reach_mm):  # type: ignore[no-untyped-def]
     """How far the ink under (x, y) goes on in a direction, mm, past specks of paper; NaN if there is no ink,
     or if it reaches farther.
@@ -83,7 +83,7 @@ def edge_along(cells, x_mm, y_mm, direction, reach_mm):  # type: ignore[no-untyp
     return crossing_mm(cells, ray, 0.0, reach_mm, min(SPECK_PX * cells.pitch_mm, SPECK_MM))
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def edges(cells, x_mm, y_mm, heading, reach_mm):  # type: ignore[no-untyped-def]
     """Where the line under (x, y) ends to the right and to the left of a heading, mm; NaN for an edge out of
     reach or no ink.
