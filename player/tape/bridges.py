@@ -25,27 +25,23 @@ is tried again with two thirds of its rows.
 
 Else the way is laid as the cubic that joins both sides: of all motions the one with the least acceleration,
 root mean square. Any other motion between them that keeps to A, and to the largest speed V, lies between an
-upper and a lower edge; `freedom` is the furthest that an edge lies off what is laid.
+upper and a lower edge (motion_edges.py); `freedom` is the furthest that an edge lies off what is laid, from
+the ends of the parabolas; `furthest` the same from ends that need no parabola.
 
-    p      ___                  upper edge, at each t: the highest place from which one can still arrive
-      0 __/   \\__ 1             speed s there, with  L(s) from the left and R(s) from the right:
-        \\__ __/                    L(s) = p0 + v0 t + A t²/2 - (v0 + A t - s)² / 4A
-           ‾                     R(s) the same, back from p1;  the highest of min(L, R), where L(s) = R(s)
-
-Source: patent ES 361967, figure 5 (fault circuit 162) asks for it; the bounds: docs/background/player.md; the
-edges: motion that keeps to an acceleration is quickest with all of it, one way and then the other (A. E.
-Bryson and Y.-C. Ho, Applied Optimal Control, 1975, section 3.9).
+Source: patent ES 361967, figure 5 (fault circuit 162) asks for it; the bounds: docs/background/player.md.
 Questions: a motion that changes its acceleration several times within the 6 ms of a side is no parabola; so
 what both sides do not agree in (`between`) is added to the freedom before a gap is called known.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.player.tape.motion_edges import LEAST_ACCELERATION, upper_edge
 from morfax.player.tape.standstill import ALLOWED_CYCLES
 
 COUNT_MARGIN = 0.1  # cycles, for noise
@@ -58,7 +54,6 @@ SHORT_ROWS = 24  # the same where the acceleration changes further off: 4 ms at 
 # beside a change (0.013 in 12 ms at 0.5 m/s²) well within a twentieth
 TURNED_CYCLES = 0.025
 TURNED_ROWS = 3.0  # beside the gap: half of what the band filter blurs
-LEAST_ACCELERATION = 1e-12  # cycles/row²: of an axis at rest; keeps it from dividing by zero
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,7 +163,8 @@ class Gap:
     `after.place` is where the axis is behind it as it was counted. `bound` is what the program asks for there
     at most, as far as the tape tells it. `short`: the count is certain even if the program asks for all that
     the motors can do, as on a bare tape. `steady`: it began with a surprise, while the level was right.
-    `noise`: six standard deviations of a row, cycles.
+    `noise`: six standard deviations of a row, cycles. `furthest`: of any motion within the bound off what is
+    laid, whatever the shape of its sides (motion_edges.py), if that was asked for.
     """
 
     axis: int
@@ -181,6 +177,7 @@ class Gap:
     short: bool = False
     steady: bool = False
     noise: float = 0.0
+    furthest: float = math.inf
 
     @property
     def rows(self) -> int:
@@ -196,6 +193,8 @@ class Gap:
     def known(self) -> bool:
         """Whether the way between is known, if the count behind it is vouched for."""
         found = self.bridge
+        if self.furthest < ALLOWED_CYCLES and found.misfit < self.noise:
+            return True
         known = self.freedom + found.between < ALLOWED_CYCLES
         return known and found.misfit < ROUGH_CYCLES
 
@@ -233,11 +232,12 @@ class Gap:
     def moved(self, cycles: float) -> Gap:
         """The same gap of an axis that stands some cycles further on."""
         before = replace(self.before, place=self.before.place + cycles)
-        return replace(self, before=before).ending(cycles)
+        return replace(self.ending(cycles), before=before, furthest=self.furthest)
 
     def ending(self, cycles: float) -> Gap:
         """The same gap with some cycles more behind it."""
-        return replace(self, after=replace(self.after, place=self.after.place + cycles))
+        after = replace(self.after, place=self.after.place + cycles)
+        return replace(self, after=after, furthest=math.inf if cycles else self.furthest)
 
     def upto(self, later: Gap) -> Gap:
         """One gap from the start of this to the end of a later one."""
@@ -249,6 +249,7 @@ class Gap:
             after=later.after,
             bridge=replace(self.bridge, turn=None),
             bound=Bound(acceleration, speed),
+            furthest=math.inf,
         )
 
     def laid(self) -> Array:
@@ -269,29 +270,6 @@ def freedom(before: Side, after: Side, rows: int, bound: Bound) -> float:
     """The furthest that a motion within a bound may lie off the cubic between two sides, cycles."""
     ends = np.array([before.place, before.speed, after.place, after.speed])
     laid = filled(before, after, after.place - before.place, rows)
-    above = _upper(ends, rows, bound) - laid
-    below = _upper(-ends, rows, bound) + laid
+    above = upper_edge(ends, rows, bound.acceleration, bound.speed) - laid
+    below = upper_edge(-ends, rows, bound.acceleration, bound.speed) + laid
     return float(max(np.abs(above).max(initial=0.0), np.abs(below).max(initial=0.0)))
-
-
-def _upper(ends: Array, rows: int, bound: Bound) -> Array:
-    """The upper edge of all motions between two ends (place, speed, place, speed) at the rows between."""
-    p0, v0, p1, v1 = ends.tolist()
-    # at least what the two ends ask for as they were measured, with their noise
-    swerve = p1 - p0 - rows * (v0 + v1) / 2
-    asked = abs(v1 - v0) / rows + 4 * abs(swerve) / rows**2
-    most = max(bound.acceleration, asked, LEAST_ACCELERATION)
-    t = np.arange(1, rows)
-    left = rows - t
-    # 1. the fastest that it may be going, and how high it is then: from the left, and back from the right
-    s0, top0 = v0 + most * t, p0 + v0 * t + most * t**2 / 2
-    s1, top1 = v1 - most * left, p1 - v1 * left + most * left**2 / 2
-    # 2. the speed at which both are as high
-    apart = np.maximum(s0 - s1, LEAST_ACCELERATION)
-    s = (s0**2 - s1**2 - 4 * most * (top0 - top1)) / (2 * apart)
-    s = np.clip(s, np.minimum(s0, s1), np.maximum(s0, s1))
-    edge = np.minimum(top0 - (s - s0) ** 2 / (4 * most), top1 - (s - s1) ** 2 / (4 * most))
-    # 3. no faster than the program runs
-    return np.asarray(
-        np.minimum(edge, np.minimum(p0 + bound.speed * t, p1 + bound.speed * left))
-    )

@@ -32,6 +32,7 @@ from morfax.motion.compiled import njit
 from morfax.motion.faults import Fault, LockFault, TapeFault
 from morfax.player.tape.bridges import SIDE_ROWS, Bridge, Gap, Side, side
 from morfax.player.tape.discriminator import Discriminator, Phases
+from morfax.player.tape.motion_edges import END_ROWS, furthest
 from morfax.player.tape.predictor import recount
 from morfax.player.tape.riding import Riding
 from morfax.player.tape.standstill import LEVEL_STEADY
@@ -71,6 +72,15 @@ def _count_on(
     """Count an axis anew from a place on to the discriminator's last row."""
     state = np.array([at.place - at.speed + at.bend, at.speed - 2 * at.bend, at.bend])
     discriminator.state[axis] = recount(cycles, discriminator.gains, state, surprise)
+
+
+def _furthest(gap: Gap, cycles: Array, within: tuple[int, int]) -> float:
+    """The furthest that a motion within the bound may lie off what is laid from row to before row, cycles."""
+    a, b = within
+    behind = np.unwrap(cycles[b : b + END_ROWS], period=1.0)
+    behind += round(gap.after.place - behind[0])
+    most = (gap.bound.acceleration, gap.bound.speed)
+    return furthest((cycles[a - END_ROWS : a], behind), gap.laid(), most, gap.noise)
 
 
 class Gaps:
@@ -211,7 +221,10 @@ class Gaps:
             return self._uncertain(axis, cycles[max(a - 1, 0)], time_s, (b - a) / self._rate_hz)
         gap = self._riding.across(rows, axis, (a, b), self._side)
         steady = self._surprised[min(a + self._spread, len(rows) - 1), axis]
-        gap = replace(gap, steady=bool(steady), noise=self._surprises.noise(axis))
+        noise = self._surprises.noise(axis)
+        gap = replace(gap, steady=bool(steady), noise=noise)
+        if self._riding.bounds is not None and not gap.certain:
+            gap = replace(gap, furthest=_furthest(gap, cycles, (a, b)))
         if self._riding.bounds is None and not gap.bridge.certain:
             if self._riding.told is None:
                 return self._uncertain(axis, gap.before.place, time_s, (b - a) / self._rate_hz)
