@@ -40,15 +40,40 @@ def _move(rows, by, scale, out):  # type: ignore[no-untyped-def]
 @njit(cache=True, nogil=True)
 def median(values):  # type: ignore[no-untyped-def]
     """The median of some values, for kernels; nan where one is."""
-    half, largest = len(values) // 2, -np.inf
+    count = len(values)
     for value in values:
         if np.isnan(value):
             return np.nan
-    if not half:
-        return float(values[0]) if len(values) else np.nan
-    ordered = np.partition(values, half)
-    if len(values) % 2:
-        return float(ordered[half])
-    for value in ordered[:half]:
-        largest = max(largest, float(value))
-    return (largest + ordered[half]) / 2
+    if count < 2:
+        return float(values[0]) if count else np.nan
+    ordered, half = values.copy(), count // 2
+    upper = float(_settled(ordered, half))
+    if count % 2:
+        return upper
+    largest = float(ordered[0])
+    for at in range(1, half):
+        largest = max(largest, float(ordered[at]))
+    return (largest + upper) / 2
+
+
+@njit(cache=True, nogil=True)
+def _settled(values, at):  # type: ignore[no-untyped-def]
+    """The value at a place of the ordered values, which are moved so that none before it is larger."""
+    first, last = 0, len(values) - 1
+    while first < last:
+        pivot, low, high = values[(first + last) // 2], first, last
+        while low <= high:
+            while values[low] < pivot:
+                low += 1
+            while values[high] > pivot:
+                high -= 1
+            if low <= high:
+                values[low], values[high] = values[high], values[low]
+                low, high = low + 1, high - 1
+        if at <= high:
+            last = high
+        elif at >= low:
+            first = low
+        else:
+            break
+    return values[at]

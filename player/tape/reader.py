@@ -17,7 +17,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager
-from copy import deepcopy
 from dataclasses import replace
 from itertools import chain
 from typing import NamedTuple
@@ -62,7 +61,7 @@ class TapeReader:
     s). With `told`, whole cycles to add at dropouts (row, axis) of a bare tape, none is too uncertain to be
     ridden over; those that would have been are then in `doubtful`. If it `mends`, those of a checked tape are
     laid anew, and are in `mended` with the whole cycles put back. `begun`: the reader of the check signal, as
-    it is behind the first blocks of the tape, if somebody has read them already.
+    it is behind the first blocks of the tape, if somebody has read them already; it is used once.
     """
 
     def __init__(
@@ -171,7 +170,8 @@ class TapeReader:
 
     def _warrant(self, ahead: list[Stored], first_row: int) -> Warrant:
         """What vouches for the rows of this tape: its check signal, or what can be found out without."""
-        check = deepcopy(self.begun) or read_check(ahead, self._format, first_row)
+        check = self.begun or read_check(ahead, self._format, first_row)
+        self.begun = None
         self.is_checked = check is not None
         if check is None:
             return BareTape(self._format, self._start_mm)

@@ -65,6 +65,7 @@ def _whitening() -> NDArray[np.uint8]:
 
 
 _WHITE = _whitening()
+_WHITE_BITS = _WHITE > 0
 SYNC: Bits = np.array(
     [1 if _SYNC >> bit & 1 else -1 for bit in range(SYNC_SYMBOLS - 1, -1, -1)], np.int8
 )
@@ -95,8 +96,9 @@ def to_bits(frame: CheckFrame) -> Bits:
 
 def from_bits(bits: Bits) -> list[CheckFrame | None]:
     """What rows of 120 symbols of +1 and -1 say; None where the check sum is wrong."""
-    white = (bits[:, SYNC_SYMBOLS:] > 0).astype(np.uint8) ^ _WHITE
-    return [_frame(row.tobytes()) for row in np.packbits(white, axis=1)]
+    data = np.packbits((bits[:, SYNC_SYMBOLS:] > 0) ^ _WHITE_BITS, axis=1).tobytes()
+    size = _TOLD_BYTES + _CRC_BYTES
+    return [_frame(data[at : at + size]) for at in range(0, len(data), size)]
 
 
 def _frame(data: bytes) -> CheckFrame | None:

@@ -24,7 +24,7 @@ def way(random: np.random.Generator, rows: int) -> np.ndarray:
 
 
 def across(cycles: np.ndarray) -> tuple[Gap, float]:
-    """The gap in the middle of a way as it is laid from sides of 6 ms, and the furthest that it may be off."""
+    """The gap in the middle of a way, laid from sides of 6 ms, and the furthest that it may be off."""
     a, b = SIDE, SIDE + GAP
     before, after = side(cycles[:a], a - 1), side(cycles[b:], 0)
     found = bridge(before, after, GAP + 1, MOST)
