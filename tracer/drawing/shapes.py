@@ -68,9 +68,7 @@ def outlined(grey: NDArray[Any], pitch_mm: float) -> Outlined:
 
     Raises DrawingFault without any shape, and if the border of the sheet cuts all of them.
     """
-    soft = cv2.GaussianBlur(grey.astype(np.float32), (0, 0), SOFT_PX)
-    low, high = _levels(np.asarray(soft, np.float32), pitch_mm)
-    share, shade = _share(soft, low, high), _share(grey, low, high)
+    share, shade = _shares(grey, pitch_mm)
     # 1. the edges, without slits and bridges that are too thin for the lens
     closed = list[Closed]()
     for _ in range(CLOSINGS):
@@ -97,8 +95,7 @@ def outlined(grey: NDArray[Any], pitch_mm: float) -> Outlined:
 
 def shade_of(grey: NDArray[Any], pitch_mm: float) -> Grey:
     """How much of each pixel is the darker of paper and shape; raises DrawingFault without any contrast."""
-    soft = np.asarray(cv2.GaussianBlur(grey.astype(np.float32), (0, 0), SOFT_PX), np.float32)
-    return _share(grey, *_levels(soft, pitch_mm))
+    return _shares(grey, pitch_mm)[1]
 
 
 def _edges(share: Grey, pitch_mm: float) -> tuple[list[Edge], float, tuple[str, ...]]:
@@ -132,33 +129,51 @@ def _none() -> DrawingFault:
     )
 
 
-def _share(grey: NDArray[Any], low: Grey, high: Grey) -> Grey:
-    """How much of each pixel is the darker of paper and shape, 0..1."""
-    return np.asarray((high - grey) / np.maximum(high - low, LEAST_CONTRAST), np.float32)
+# The scan may have 36 million pixels and more: each picture of float32 is then 144 MB, so that they are changed
+# in place, and three of them are held at most beside what is handed out.
+def _shares(grey: NDArray[Any], pitch_mm: float) -> tuple[Grey, Grey]:
+    """How much of each pixel is the darker of paper and shape, 0..1: of the scan made soft, and of the scan."""
+    blurred = cv2.GaussianBlur(grey.astype(np.float32), (0, 0), SOFT_PX)
+    soft = np.asarray(blurred, np.float32)
+    low, high = _levels(soft, pitch_mm)
+    span = np.maximum(np.subtract(high, low, out=low), LEAST_CONTRAST, out=low)
+    for level in (soft, grey):
+        share = np.subtract(high, level, out=soft if level is soft else high)
+        share /= span
+    return soft, high
 
 
 def _levels(soft: Grey, pitch_mm: float) -> tuple[Grey, Grey]:
     """The levels of the darker and of the lighter of paper and shape round about each pixel."""
     eight_bits = np.clip(soft, 0, 255).astype(np.uint8)
-    level = np.full_like(soft, cv2.threshold(eight_bits, 0, 255, cv2.THRESH_OTSU)[0])
-    for _ in range(2):  # the second time by levels that are those of the place
-        dark = (soft <= level).view(np.uint8)
-        if not 0 < int(dark.sum()) < dark.size:
-            raise _none()
-        low, high = _level(soft, dark, pitch_mm), _level(soft, 1 - dark, pitch_mm)
-        level = 0.5 * (low + high)
-    if float(np.median(high - low)) < LEAST_CONTRAST:
+    dark = (soft <= cv2.threshold(eight_bits, 0, 255, cv2.THRESH_OTSU)[0]).view(np.uint8)
+    del eight_bits
+    low, high = _both_levels(soft, dark, pitch_mm)
+    # the second time by levels that are those of the place
+    level = np.add(low, high, out=low)
+    level *= 0.5
+    dark = (soft <= level).view(np.uint8)
+    del low, high, level
+    low, high = _both_levels(soft, dark, pitch_mm)
+    if float(np.median(high - low, overwrite_input=True)) < LEAST_CONTRAST:
         raise _none()
     return low, high
+
+
+def _both_levels(soft: Grey, dark: NDArray[np.uint8], pitch_mm: float) -> tuple[Grey, Grey]:
+    """The levels where it is dark and where it is light; raises DrawingFault where it is only one of them."""
+    if not 0 < int(dark.sum()) < dark.size:
+        raise _none()
+    return _level(soft, dark, pitch_mm), _level(soft, 1 - dark, pitch_mm)
 
 
 def _level(soft: Grey, part: NDArray[np.uint8], pitch_mm: float) -> Grey:
     """The level of one part of the picture round about each pixel; far from the part its usual level."""
     inner = cv2.erode(part, np.ones((2 * FADES_PX + 1,) * 2, np.uint8))
-    inner = (inner if inner.any() else part).astype(np.float32)
+    inner = inner if inner.any() else part
     rows, columns = soft.shape
     reduced = max(1, columns // REDUCED), max(1, rows // REDUCED)
-    usual = float(np.median(soft[inner > 0]))
+    usual = float(np.median(soft[inner > 0], overwrite_input=True))
     about_px = ROUND_ABOUT_MM / pitch_mm / REDUCED
 
     def about(values: NDArray[Any]) -> Grey:
@@ -166,9 +181,17 @@ def _level(soft: Grey, part: NDArray[np.uint8], pitch_mm: float) -> Grey:
         mean = cv2.GaussianBlur(small, (0, 0), about_px, borderType=cv2.BORDER_REFLECT)
         return np.asarray(mean, np.float32)
 
-    off = about((soft - usual) * inner) / (about(inner) + 1e-3)
-    whole = cv2.resize(off, (columns, rows), interpolation=cv2.INTER_LINEAR)
-    return np.asarray(usual + whole, np.float32)
+    values = soft - np.float32(usual)
+    values *= inner
+    off = about(values)
+    np.copyto(values, inner)
+    off /= about(values) + 1e-3
+    del values
+    whole = np.asarray(
+        cv2.resize(off, (columns, rows), interpolation=cv2.INTER_LINEAR), np.float32
+    )
+    whole += np.float32(usual)
+    return whole
 
 
 def _refuse_lines(share: Grey, pitch_mm: float) -> None:

@@ -1,7 +1,7 @@
 """The table of attacks at length: `python -m tests.player.attacks SEEDS [FIRST] [JOBS]`.
 
 One tape of every kind for each seed, from FIRST on, on so many processes (1). A verdict that the table does
-not allow is told at once; the table of all kinds comes at the end, and after every hundredth seed.
+not allow is told at once; the table of all kinds comes at the end, and after every tenth seed.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from functools import cache
 from tests.player.attacks.bench import Bench, Verdict, benches
 from tests.player.attacks.kinds import KINDS
 
-TABLE_EVERY = 100  # seeds
+TABLE_EVERY = 10  # seeds
 
 
 @dataclass
