@@ -129,10 +129,10 @@ def _none() -> DrawingFault:
     )
 
 
-# The scan may have 36 million pixels and more: each picture of float32 is then 144 MB, so that they are changed
-# in place, and three of them are held at most beside what is handed out.
+# A scan may have 36 million pixels and more: each picture of float32 is then 144 MB. So they are changed in
+# place, and three are held at most beside what is handed out.
 def _shares(grey: NDArray[Any], pitch_mm: float) -> tuple[Grey, Grey]:
-    """How much of each pixel is the darker of paper and shape, 0..1: of the scan made soft, and of the scan."""
+    """How much of each pixel is the darker of paper and shape, 0..1: of the soft scan, and of the scan."""
     blurred = cv2.GaussianBlur(grey.astype(np.float32), (0, 0), SOFT_PX)
     soft = np.asarray(blurred, np.float32)
     low, high = _levels(soft, pitch_mm)
