@@ -4,7 +4,7 @@
 `dropouts [N]` dropouts of each kind, `batch [N]` many drawings, `panel [DIR]` how its page pans,
 `pencil [N]` lines with grain, `coarse [N]` lines of few pixels, `rough [N]` rough pens, shadows
 and folds, `nets [N]` all the ink of nets, `large [MPX METRES]` large sheets, `holes [N …]` plates of
-many holes; these take a while and run only if named.
+many holes, `first [--write]` the first run on a machine; these take a while and run only if named.
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ WITH_WORDS = (
     "nets",
     "large",
     "holes",
+    "first",
 )  # that take words of their own
 
 

@@ -25,7 +25,7 @@ from typing import Any
 
 import numpy as np
 
-from morfax.motion import machine_code
+from morfax.motion import compile_ahead, machine_code
 
 _C, _F, _ALIGNED, _WRITEABLE = 0x1, 0x2, 0x100, 0x400  # numpy's flags of an array
 _FLAGS = _C | _F | _ALIGNED | _WRITEABLE
@@ -43,9 +43,11 @@ class _Compiler:
         self.hearer: Hearer | None = None
 
     def begins(self) -> None:
-        """Tell that a kernel is compiled now."""
+        """Tell that a kernel is compiled now; with the first one, other cores begin with the next ones."""
         if self.hearer is not None:
             self.hearer(self.count)
+        if self.count == 0:
+            compile_ahead.begin()
         self.count += 1
 
 
@@ -143,22 +145,34 @@ class Kernel:
             if os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
                 return self.py_func
             try:
-                types = " ".join(_described(arg) for arg in args)
+                types = described(args)
             except TypeError:
                 return self.dispatcher()
             return machine_code.kept(self, types) or self._compiled(types, args)
 
     def _compiled(self, types: str, args: tuple[Any, ...]) -> Callable[..., Any]:
         """Compile for arguments like these, and keep the machine code."""
-        dispatcher = self.dispatcher()
-        if machine_code.can_be_kept():
-            from numba import typeof
+        if not machine_code.can_be_kept():
+            return self.dispatcher()
+        _COMPILER.begins()
+        with compile_ahead.claimed(f"{self.py_func.__module__}.{self.py_func.__name__}"):
+            found = machine_code.kept(self, types)  # by a process that had claimed it
+            return found or self._compiled_here(types, args)
 
-            _COMPILER.begins()
-            signature = tuple(typeof(arg) for arg in args)
-            dispatcher.compile(signature)
-            machine_code.keep(self, types, dispatcher.overloads[signature])
+    def _compiled_here(self, types: str, args: tuple[Any, ...]) -> Callable[..., Any]:
+        """Compile in this process."""
+        from numba import typeof
+
+        dispatcher = self.dispatcher()
+        signature = tuple(typeof(arg) for arg in args)
+        dispatcher.compile(signature)
+        machine_code.keep(self, types, dispatcher.overloads[signature])
         return dispatcher
+
+    def compile_for(self, types: str, args: tuple[Any, ...]) -> None:
+        """Have machine code kept for arguments like these, if there is none; the kernel is not run."""
+        if machine_code.kept(self, types) is None:
+            self._compiled(types, args)
 
 
 def njit(**options: Any) -> Callable[[Callable[..., Any]], Any]:
@@ -184,25 +198,33 @@ def _key(arg: Any) -> Any:
     return kind
 
 
-_PLAIN = {float: "f8", int: "i8", bool: "?", np.float64: "f8", np.int64: "i8", np.bool_: "?"}
-_PLAIN |= {kind: np.dtype(kind).str for kind in (np.float32, np.int32, np.uint8, np.uint32)}
+_PLAIN = {float: "f8", int: "i8", bool: "b1", np.float64: "f8", np.int64: "i8", np.bool_: "b1"}
+_PLAIN |= {kind: kind.__name__ for kind in (np.float32, np.int32, np.uint8, np.uint32)}
+
+
+def described(args: tuple[Any, ...]) -> str:
+    """The types of arguments, as an expression that means the same in every process.
+
+    `compile_ahead.examples` makes arguments of it again. Raises TypeError for types that only numba can tell.
+    """
+    return "".join(f"{_described(arg)}, " for arg in args).rstrip()
 
 
 def _described(arg: Any) -> str:
-    """The same as a text that means the same in every process; TypeError for types that only numba tells."""
+    """The type of one argument."""
     kind = type(arg)
     if kind in _PLAIN:
         return _PLAIN[kind]
     if kind is np.ndarray:
         return _array_described(arg)
     if kind is np.void or kind is np.record:
-        return f"{kind.__name__}<{arg.dtype!r}>"
+        return f"{kind.__name__}({arg.dtype!r})"
     if isinstance(arg, tuple):
-        fields = getattr(kind, "_fields", "")
-        of = f"{kind.__module__}.{kind.__qualname__}{fields}" if fields else ""
-        return f"{of}({' '.join(_described(item) for item in arg)})"
+        fields = getattr(kind, "_fields", None)
+        of = "" if fields is None else f"named({kind.__module__!r}, {kind.__qualname__!r})"
+        return f"{of}({described(arg)})"
     if arg is None:
-        return "none"
+        return "None"
     raise TypeError(f"no key for {kind}")
 
 
@@ -211,4 +233,4 @@ def _array_described(array: np.ndarray[Any, Any]) -> str:
     flags = array.flags.num
     layout = "C" if flags & _C else "F" if flags & _F else "A"
     rest = f"{'' if flags & _ALIGNED else 'u'}{'' if flags & _WRITEABLE else 'r'}"
-    return f"[{array.dtype!r} {array.ndim}{layout}{rest}]"
+    return f"array({array.dtype!r}, {array.ndim}, {layout + rest!r})"

@@ -38,7 +38,7 @@ from morfax.motion.kernel_linker import Entry, in_process, linker, numba_folder
 if TYPE_CHECKING:
     from morfax.motion.compiled import Kernel
 
-FORMAT = 2  # of the files; another number with every change of Entry
+FORMAT = 3  # of the files; another number with every change of Entry
 VERSIONS = 8  # of one kernel are kept beside each other: an upgrade, a checkout, settings that were tried
 DIGEST = 32  # bytes of a SHA-256 digest, which stands before the rest of a file
 

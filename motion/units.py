@@ -122,6 +122,11 @@ def format_length_mm(length_mm: float) -> str:
     return f"{_figures(length_mm)} mm"
 
 
+def drawn_length_mm(length_mm: float) -> str:
+    """The same for a picture, whose letters have a µ: not every terminal's have."""
+    return format_length_mm(length_mm).replace(" um", " µm")
+
+
 def format_speed_mm_s(speed_mm_s: float) -> str:
     """Speed in mm/s with four significant figures."""
     return f"{_figures(speed_mm_s)} mm/s"

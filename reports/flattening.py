@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from morfax.motion.units import format_length_mm
+from morfax.motion.units import drawn_length_mm
 from morfax.reports.canvas import new_figure, save, show_drawing
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ def draw_flattening(drawing: Drawing, file: FilePath) -> None:
         flat, drawing, (0.0, drawing.width_mm, 0.0, drawing.height_mm), DARKEST
     )
     flat.set(xlim=extent[:2], ylim=extent[2:], xlabel="X, mm", ylabel="Y, mm", aspect="equal")
-    finest_mm, coarsest_mm = (format_length_mm(pixel_mm) for pixel_mm in made.mm_per_px)
+    finest_mm, coarsest_mm = (drawn_length_mm(pixel_mm) for pixel_mm in made.mm_per_px)
     flat.set_title(f"flat: {made.told}; a pixel is {finest_mm} to {coarsest_mm}", fontsize=9)
     flat.grid(linewidth=0.3, alpha=0.4)
     save(figure, file)
@@ -91,5 +91,5 @@ def _draw_residual(axes: Axes, made: Flattening) -> str:
         color=ARROW,
         width=ARROW_WIDTH,
     )
-    rms, largest = (format_length_mm(off * made.scale) for off in (fit.rms_mm, fit.max_mm))
+    rms, largest = (drawn_length_mm(off * made.scale) for off in (fit.rms_mm, fit.max_mm))
     return f"; {made.seen} off {rms} RMS, {largest} at most (arrows: {enlarged} times)"

@@ -10,7 +10,7 @@ from pathlib import Path as FilePath
 from typing import TYPE_CHECKING
 
 from morfax.motion.files import written_beside
-from morfax.motion.units import format_length_mm
+from morfax.motion.units import drawn_length_mm
 from morfax.reports import following, table
 from morfax.reports.canvas import save
 from morfax.reports.overlay import Picture, draw
@@ -69,7 +69,7 @@ def draw_start(
 def draw_run(result: RunResult) -> None:
     """Draw the played path over the drawing, its distance from the ink's centre in colour."""
     name = result.drawing.file.stem if result.drawing.file else "drawing"
-    largest = format_length_mm(result.from_ink.largest_mm)
+    largest = drawn_length_mm(result.from_ink.largest_mm)
     picture = Picture(
         f"{name}, played: largest distance from the ink's centre {largest}",
         result.played,
@@ -95,7 +95,7 @@ def draw_compared(result: CompareResult, names: str, file: FilePath) -> None:
     found, paths = result.found, result.paths
     reference = paths[1] if len(paths) > 1 else None
     picture = Picture(
-        f"{names}: largest distance {format_length_mm(found.largest_mm)}",
+        f"{names}: largest distance {drawn_length_mm(found.largest_mm)}",
         paths[0],
         result.drawing,
         reference,

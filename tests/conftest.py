@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 from hypothesis import settings
 
+from morfax.motion.compile_ahead import SWITCH
 from tests.programs import NO_CONTROL, Programs
 
 SHARED = Path(__file__).parents[2] / "shared"
@@ -24,7 +25,8 @@ settings.load_profile("house")
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Have every program that the tests write read by the controls' own rules."""
+    """Have every program that the tests write read by the controls' own rules, and no other core compile."""
+    os.environ[SWITCH] = "0"  # the tests have all cores already
     config.addinivalue_line("markers", f"{NO_CONTROL}: its programs are spoilt on purpose")
     config.pluginmanager.register(Programs())
 

@@ -40,12 +40,11 @@ LEAST_MM = 0.1  # a smaller lead is none
 ACROSS = math.radians(45)  # at which a straight lead meets the path
 
 
-def shaped(
-    place_mm: Array, heading: Array, left: bool, lead: Lead, size_mm: float, *, leaving: bool
-) -> Array:
-    """A lead of a size from its place on the path outwards, scrap on the left or right, (n, 2) mm."""
-    along = heading if leaving else -heading
-    across = np.array([-heading[1], heading[0]]) * (1 if left else -1)
+def shaped(place_mm: Array, along: Array, across: Array, lead: Lead, size_mm: float) -> Array:
+    """A lead of a size from its place on the path outwards, (n, 2) mm.
+
+    It begins in the direction `along` the path and turns `across`, into the scrap; both are unit vectors.
+    """
     if lead.kind == "line":
         end = math.cos(ACROSS) * along + math.sin(ACROSS) * across
         return with_places(np.array([place_mm, place_mm + size_mm * end]), APART_MM)

@@ -107,11 +107,13 @@ class StartPlaces:
         """The longest lead that has room at a place, from the path outwards, and its size; None without."""
         if lead is None or self.scrap is None:
             return None, 0.0
+        along = way if leaving else -way
+        across = np.array([-way[1], way[0]]) * (1 if path.scrap_left else -1)
         for share in SIZES:
             size_mm = share * lead.size_mm
             if size_mm < LEAST_MM:
                 break
-            made = shaped(place, way, path.scrap_left, lead, size_mm, leaving=leaving)
+            made = shaped(place, along, across, lead, size_mm)
             deep_mm = depth_mm(lead, size_mm)
             if self.scrap.holds(made, path.points_mm, path.own, deep_mm, path.scrap_inside):
                 return made, size_mm

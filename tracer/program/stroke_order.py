@@ -75,10 +75,10 @@ def _turn_stretches(places, way, turned, span, passes):  # type: ignore[no-untyp
         better = False
         for i in range(count):
             for j in range(i, min(count, i + span)):
-                was = _apart(places, way, turned, i - 1, 1, i, 0)
-                was += _apart(places, way, turned, j, 1, j + 1, 0)
-                will = _apart(places, way, turned, i - 1, 1, j, 1)
-                will += _apart(places, way, turned, i, 0, j + 1, 0)
+                was = _apart(places, way, turned, (i - 1, 1), (i, 0))
+                was += _apart(places, way, turned, (j, 1), (j + 1, 0))
+                will = _apart(places, way, turned, (i - 1, 1), (j, 1))
+                will += _apart(places, way, turned, (i, 0), (j + 1, 0))
                 if was - will > GAIN_MM:
                     way[i : j + 1] = way[i : j + 1][::-1].copy()
                     turned[i : j + 1] = ~turned[i : j + 1][::-1]
@@ -88,10 +88,14 @@ def _turn_stretches(places, way, turned, span, passes):  # type: ignore[no-untyp
 
 
 @njit(cache=True, inline="always")
-def _apart(places, way, turned, a, a_end, b, b_end):  # type: ignore[no-untyped-def]
-    """From an end (1 the last) of one stroke to an end of another, mm; 0 beyond the order's ends."""
+def _apart(places, way, turned, one, other):  # type: ignore[no-untyped-def]
+    """From an end of one stroke to an end of another, mm; 0 beyond the order's ends.
+
+    Each is a place in the order and an end, 0 the first and 1 the last.
+    """
+    (a, a_end), (b, b_end) = one, other
     if a < 0 or b >= len(way):
         return 0.0
-    one = places[way[a], 1 - a_end if turned[a] else a_end]
-    other = places[way[b], 1 - b_end if turned[b] else b_end]
-    return np.hypot(other[0] - one[0], other[1] - one[1])
+    begin = places[way[a], 1 - a_end if turned[a] else a_end]
+    end = places[way[b], 1 - b_end if turned[b] else b_end]
+    return np.hypot(end[0] - begin[0], end[1] - begin[1])
