@@ -74,7 +74,8 @@ class CompareJob:
         else:
             paths = [_on_sheet(drawing, paths[0], zero)]
             radius_mm = (self.cutter_mm or 0.0) / 2
-            found = comparison.from_drawing(drawing, paths[0], radius_mm=radius_mm)
+            ink = comparison.measured_on(drawing)
+            found = comparison.from_drawing(ink, paths[0], radius_mm=radius_mm)
         if found.is_elsewhere:
             listener.warning(
                 f"only {100 * found.measured_share:.0f} % of the path lies along the drawing's ink: it is"

@@ -51,6 +51,13 @@ class Comparison:
         return {**(self.missed or {}), **self.rows}
 
 
+def measured_on(drawing: Drawing) -> Drawing:
+    """The drawing with whose ink paths are compared: of lines and solid areas, rims in place of these."""
+    from morfax.tracer.ink.lines_and_rims import lines_and_rims
+
+    return lines_and_rims(drawing) if drawing.both else drawing
+
+
 def from_path(path: Path, reference: Path, names: tuple[str, str] = ("a", "b")) -> Comparison:
     """Compare a path with another one; `names` are what the figures call the two."""
     from morfax.motion.contour import distance, pointwise

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
-from morfax.jobs import correction_settings
+from morfax.jobs import correction_settings, trace_figures
 from morfax.jobs import files as medium
 from morfax.jobs.line_settings import LineSettings
 from morfax.jobs.listener import SILENT, Listener
@@ -18,6 +18,7 @@ from morfax.jobs.skips import gap_across_skips
 if TYPE_CHECKING:
     from morfax.jobs.figures import Figures
     from morfax.tracer.drawing.drawing import Drawing
+    from morfax.tracer.ink.left_out import Area
     from morfax.tracer.operator.operator import Panel
     from morfax.tracer.program.setup import Setup
     from morfax.tracer.program.survey import Entry, Survey
@@ -50,7 +51,7 @@ class LinesJob:
         of_head = TraceSettings(self.line).of_head()
         if self.picture is not None:
             medium.outgoing(self.picture, self.drawing.file)
-        drawing = self.drawing.open(listener)
+        drawing, areas = self._without_areas(self.drawing.for_lines(self.line).open(listener))
         listener.compiling("the head", ("motion", "tracer"))
         gap_mm = gap_across_skips(drawing, self.line, of_head)
         of_head = of_head if gap_mm is None else replace(of_head, gap_mm=gap_mm)
@@ -65,8 +66,17 @@ class LinesJob:
         written = {} if self.picture is None else {"picture": str(self.picture)}
         corrected = correction_settings.figures(drawing)
         figures = {"drawing": str(self.drawing.file), **written, **corrected}
-        figures |= _figures(drawing, seen)
+        figures |= _figures(drawing, seen) | trace_figures.solid_areas(areas)
         return LinesResult(figures, drawing, seen, self.picture)
+
+    @staticmethod
+    def _without_areas(drawing: Drawing) -> tuple[Drawing, tuple[Area, ...]]:
+        """The lines of a drawing that was read for both, and its solid areas; any other as it is."""
+        if not drawing.both:
+            return drawing, ()
+        from morfax.tracer.ink.lines_and_rims import lines_and_areas
+
+        return lines_and_areas(drawing)
 
 
 def _followed(seen: Survey, setup: Setup, listener: Listener) -> Survey:

@@ -69,9 +69,15 @@ def _of_areas(ink: Balance) -> Iterator[str]:
         are = "1 solid area is" if len(solids) == 1 else f"{len(solids)} solid areas are"
         large_mm2 = sum(area.area_mm2 for area in solids)
         (x, y), largest_mm2 = solids[0].place_mm, solids[0].area_mm2
+        advice = (
+            "an outline needs an area of 1 mm across, whole on the sheet: scan it with paper all round, or "
+            "a larger print, with --scale"
+            if ink.outlines_asked
+            else "--lines all --edge goes round their outlines"
+        )
         yield (
             f"{are} broader than a line, and left out ({large_mm2:.0f} mm2; the largest, "
-            f"{largest_mm2:.1f} mm2, at {x:.1f},{y:.1f} mm): --lines all --edge goes round their outlines"
+            f"{largest_mm2:.1f} mm2, at {x:.1f},{y:.1f} mm): {advice}"
         )
     if ink.letters_mm > 0:
         yield (
@@ -114,9 +120,10 @@ def _of_rest(line: Line) -> Iterator[str]:
 def _of_unexplained(trace: Trace) -> Iterator[str]:
     """Closed lines that may be other lines than those drawn."""
     beside = [place for place in trace.unexplained if place.is_ink]
-    bare = [place for place in trace.unexplained if not place.is_ink]
+    bare = [p for p in trace.unexplained if not p.is_ink and p.wants_dpi is None]
+    pale = [p for p in trace.unexplained if p.wants_dpi is not None]
     if beside:
-        (x, y), long_mm, _ = beside[0]
+        (x, y), long_mm = beside[0][:2]
         many = "1 piece of ink" if len(beside) == 1 else f"{len(beside)} pieces of ink"
         yield (
             f"{many} joined to the closed line beside its way, up to {long_mm:.1f} mm from it, at "
@@ -124,10 +131,17 @@ def _of_unexplained(trace: Trace) -> Iterator[str]:
             "marks it, and --lines all follows other lines too"
         )
     if bare:
-        (x, y), long_mm, _ = bare[0]
+        (x, y), long_mm = bare[0][:2]
         yield (
             f"the closed line runs over {long_mm:.1f} mm of bare paper at {x:.1f},{y:.1f} mm, where no ink "
             "leads: look at --picture, and draw the line there"
+        )
+    if pale:
+        (x, y), dpi = pale[0].place_mm, pale[0].wants_dpi
+        places = "1 place" if len(pale) == 1 else f"{len(pale)} places"
+        yield (
+            f"not sure that the closed line is the one drawn: the pixels are too large to tell at {places}, "
+            f"the first at {x:.1f},{y:.1f} mm, where a spike or a bay may be cut off; scan at {dpi} dpi"
         )
 
 

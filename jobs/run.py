@@ -74,7 +74,7 @@ class RunJob:
         # 1. trace and record
         program_file, tracing = self.prepared(panel)
         tell_what_is_lost(self.settings, self.unit, program_file, listener)
-        drawing = self.drawing.open(listener)
+        drawing = self.drawing.for_lines(tracing.settings.line).open(listener)
         self._make_folder()
         traced = tracing.trace(drawing, listener)
         source = correction_settings.named(self.drawing.file.name, drawing.corrected)
@@ -92,7 +92,8 @@ class RunJob:
         path = about.back(played.path)
         picture = traced.name(self.file(".png"))
         listener.detail("comparing drawing, traced path and played path")
-        from_ink = comparison.from_drawing(drawing, path, "played", _radius_mm(traced))
+        ink = comparison.measured_on(drawing)
+        from_ink = comparison.from_drawing(ink, path, "played", _radius_mm(traced))
         written = {
             medium.called(program): str(program),
             "traced_path": str(traced_file),
@@ -104,7 +105,7 @@ class RunJob:
             **written,
             **flattening.figures(drawing, picture),
             **correction_settings.figures(drawing),
-            **_compared(drawing, traced, path, from_ink),
+            **_compared(ink, traced, path, from_ink),
             **traced.zero_figures(unit),
             **unit.figures(),
         }

@@ -83,9 +83,10 @@ class SystemsJob:
                 f"{file} is no drawing; --systems traces one and plays it on each system"
             )
         # 2. trace, record, play, measure
-        drawing = self.drawing.open(listener)
+        drawing = self.drawing.for_lines(tracing.settings.line).open(listener)
         traced = tracing.trace(drawing, listener)
-        measured = _Measuring(drawing, traced, tracing.of_head.speed_mm_s)
+        ink = comparison.measured_on(drawing)
+        measured = _Measuring(ink, traced, tracing.of_head.speed_mm_s)
         results = measured.systems(self.systems, listener)
         # 3. judge
         largest_mm = max((r.from_ink.largest_mm for r in results if r.from_ink), default=0.0)

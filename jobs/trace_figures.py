@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from morfax.tracer.cutter.cutter import Cutter, Left
+    from morfax.tracer.ink.left_out import Area
     from morfax.tracer.program.program import Trace
+    from morfax.tracer.program.unexplained import Unexplained
 
 
 def lines(trace: Trace, *, on_edges: bool = False) -> dict[str, Any]:
@@ -33,6 +36,12 @@ def lines(trace: Trace, *, on_edges: bool = False) -> dict[str, Any]:
     }
 
 
+def solid_areas(areas: Sequence[Area]) -> dict[str, Any]:
+    """Where solid areas among lines are, and how large."""
+    rows = [{"solid_place_mm": area.place_mm, "solid_mm2": area.area_mm2} for area in areas]
+    return {"solid_areas": rows or None}
+
+
 def ink(trace: Trace) -> dict[str, Any]:
     """How much of the ink was followed, and what was left out, where all of it was asked for."""
     if trace.ink is None:
@@ -46,11 +55,7 @@ def ink(trace: Trace) -> dict[str, Any]:
         "filled_shapes_left_out_mm": balance.solid_mm,
         "lettering_followed_mm": balance.lettering_mm,
         "lettering_left_out_mm": balance.letters_mm,
-        "solid_areas": [
-            {"solid_place_mm": area.place_mm, "solid_mm2": area.area_mm2}
-            for area in balance.solids
-        ]
-        or None,
+        **solid_areas(balance.solids),
         "outlined_areas": [
             {"outlined_place_mm": area.place_mm, "outlined_mm2": area.area_mm2}
             for area in balance.areas
@@ -82,10 +87,17 @@ def unexplained(trace: Trace) -> list[dict[str, Any]]:
         {
             "unexplained_place_mm": place.place_mm,
             "unexplained_mm": place.length_mm,
-            "what": "ink beside the way" if place.is_ink else "way without ink",
+            "what": _what(place),
         }
         for place in trace.unexplained
     ]
+
+
+def _what(place: Unexplained) -> str:
+    """What is at a place that closed lines do not explain."""
+    if place.is_ink:
+        return "ink beside the way"
+    return "way without ink" if place.wants_dpi is None else "pixels too large to tell"
 
 
 def leads(trace: Trace) -> list[dict[str, Any]]:

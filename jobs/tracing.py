@@ -193,11 +193,9 @@ class Tracing:
             if drawing.edges_mm:  # of filled shapes: every edge is a contour
                 return trace_lines(drawing, "contours", self.of_head, self.operator, tell)
             from morfax.tracer.program.trace_ink import trace_ink
-            from morfax.tracer.program.trace_ink_and_edges import trace_ink_and_edges
 
             # crosses and ticks are lines then: no turns and no stops
-            follow = trace_ink_and_edges if drawing.both else trace_ink
-            return follow(
+            return trace_ink(
                 replace(drawing, corrected=None),
                 self.of_head,
                 self.operator,

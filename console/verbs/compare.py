@@ -77,7 +77,8 @@ Examples:
     "Systems",
     "--lines",
     type=LINES,
-    help="With --systems: several lines: all, contours, outer or numbers, as in trace.",
+    help="With --systems: several lines: all, contours, outer or numbers, as in trace. --lines all --edge "
+    "also compares a path with lines and with the outlines of the solid areas among them.",
 )
 @option(
     "Systems",
@@ -142,9 +143,11 @@ def _two(
 ) -> bool | None:
     """Compare A with B, draw and print; whether that is within the tolerance, None without one."""
     picture: FilePath | None = options["output"]
-    if any(given(name) for name in OF_SYSTEMS):
+    both = a.for_lines(LineSettings(lines=options["lines"]))
+    if any(given(name) for name in OF_SYSTEMS if not (both.both and name == "lines")):
         raise click.UsageError(
-            "--start, --lines and --speed are for --systems; without it nothing is traced"
+            "--start, --lines and --speed are for --systems; without it nothing is traced (but --edge"
+            " --lines all compares with lines and outlines)"
         )
     if picture is not None and picture.suffix.lower() == REPORT:
         raise click.BadParameter(
@@ -154,7 +157,7 @@ def _two(
     compared = {
         name: options[name] for name in ("tolerance_mm", "cutter_mm", "zero", "drawn_unit")
     }
-    result = CompareJob(a, b, picture=picture, by_hand=by_hand, **compared).run(desk)
+    result = CompareJob(both, b, picture=picture, by_hand=by_hand, **compared).run(desk)
     if picture is not None:
         from morfax.reports.pictures import draw_compared
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path as FilePath
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import click
 
@@ -24,6 +24,7 @@ Examples:
   morfax lines samples/bracket.png
   morfax lines scan.png --width 210mm --picture numbers.png
   morfax lines plan.png --follow --json
+  morfax lines plan.png --lines all --edge
 """
 
 
@@ -34,6 +35,13 @@ Examples:
     "--follow",
     is_flag=True,
     help="Follow all lines first (slower): lines that cross or touch then have a number each.",
+)
+@option(
+    "Line",
+    "--lines",
+    type=click.Choice(["all"]),
+    help="With --edge, what trace --lines all --edge takes: the lines without the solid areas among them, and"
+    " these areas.",
 )
 @LINE_WIDTH
 @GAP
@@ -48,6 +56,7 @@ Examples:
 def command(
     drawing: DrawingFile,
     follow: bool,
+    lines: Literal["all"] | None,
     line_width_mm: float | None,
     gap_mm: float | None,
     picture: FilePath | None,
@@ -57,10 +66,15 @@ def command(
 
     Nothing is traced. The numbers are those that `morfax trace --lines 1,3` takes, with the same options of
     the drawing and of the line: lines that stand apart, the longest first; dots; then, with --follow, the
-    other lines of those that cross or touch. The notes say what --lines contours leaves out, and what is
+    other lines of those that cross or touch. With --edge --lines all the numbers are this table's own. The
+    notes say what --lines contours leaves out, and what is
     wrong with the scale, if anything is.
     """
-    line = LineSettings(line_width_mm=line_width_mm, gap_mm=gap_mm)
+    if lines is not None and not drawing.edge:
+        raise click.UsageError(
+            "--lines all is for --edge here; without --edge the table has all lines in any case"
+        )
+    line = LineSettings(lines=lines, line_width_mm=line_width_mm, gap_mm=gap_mm)
     result = LinesJob(drawing, line, follow, picture).run(desk)
     if result.picture is not None:
         from morfax.reports.numbered import draw_numbered

@@ -57,11 +57,15 @@ def finer(darkness: Darkness, times: int) -> Darkness:
     return np.asarray(larger, np.float32)
 
 
+def wanted_dpi(pitch_mm: float) -> int:
+    """The resolution that is enough where lines are a pixel wide."""
+    return DPI_STEP * math.ceil(WANTED_TIMES * MM_PER_INCH / pitch_mm / DPI_STEP)
+
+
 def note(seen_px: float, pitch_mm: float) -> str:
     """What the operator should know of lines that look so wide."""
-    dpi = DPI_STEP * math.ceil(WANTED_TIMES * MM_PER_INCH / pitch_mm / DPI_STEP)
     return (
         f"the lines look {seen_px:.1f} pixels wide, as lines of 1.5 pixels and less do: details below "
-        f"{DETAIL_PX * pitch_mm:.2g} mm may be cut off, and the path strays where lines touch; scan at {dpi} "
-        "dpi, or save the drawing so much larger"
+        f"{DETAIL_PX * pitch_mm:.2g} mm may be cut off, and the path strays where lines touch; scan at "
+        f"{wanted_dpi(pitch_mm)} dpi, or save the drawing so much larger"
     )

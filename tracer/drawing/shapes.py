@@ -17,6 +17,7 @@ be a shape: paper is what covers most of the sheet's border.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -48,6 +49,14 @@ REDUCED = 4  # levels are estimated on a picture reduced by this
 Grey = NDArray[np.float32]
 
 
+class NoShape(DrawingFault):
+    """Nothing on the drawing is broad enough, or has an edge sharp enough, to be gone round."""
+
+
+class ShapeCut(DrawingFault):
+    """The border of the sheet cuts every shape."""
+
+
 @dataclass(frozen=True, slots=True)
 class Outlined:
     """Where the edges of filled shapes are: a line along them, on pixels so many times `finer`.
@@ -66,7 +75,7 @@ class Outlined:
 def outlined(grey: NDArray[Any], pitch_mm: float) -> Outlined:
     """Where the edges of filled shapes are, and the picture between paper and shape.
 
-    Raises DrawingFault without any shape, and if the border of the sheet cuts all of them.
+    Raises NoShape without any shape, and ShapeCut if the border of the sheet cuts all of them.
     """
     share, shade = _shares(grey, pitch_mm)
     # 1. the edges, without slits and bridges that are too thin for the lens
@@ -88,13 +97,13 @@ def outlined(grey: NDArray[Any], pitch_mm: float) -> Outlined:
     times = finer(sharp, share.shape, pitch_mm)
     fine = [(edge.outline + 0.5) * times - 0.5 for edge in sharp]
     rows, columns = share.shape
-    darkness = _inked(fine, (rows * times, columns * times), EDGE_MM / pitch_mm)
+    darkness = pen_along(fine, (rows * times, columns * times), EDGE_MM / pitch_mm)
     edges_mm = tuple(_mm(edge.outline, share.shape, pitch_mm) for edge in sharp)
     return Outlined(darkness, shade, times, edges_mm, notes)
 
 
 def shade_of(grey: NDArray[Any], pitch_mm: float) -> Grey:
-    """How much of each pixel is the darker of paper and shape; raises DrawingFault without any contrast."""
+    """How much of each pixel is the darker of paper and shape; raises NoShape without any contrast."""
     return _shares(grey, pitch_mm)[1]
 
 
@@ -111,7 +120,7 @@ def _edges(share: Grey, pitch_mm: float) -> tuple[list[Edge], float, tuple[str, 
     whole = [edge for edge in edges if np.all(edge[0] == edge[-1])]
     cut = [edge for edge in edges if np.any(edge[0] != edge[-1])]
     if not whole:
-        raise DrawingFault(_cut(cut, share.shape, pitch_mm))
+        raise ShapeCut(_cut(cut, share.shape, pitch_mm))
     softness_px = _softness_px(share, whole)
     sharp = [sharpened(edge, softness_px) for edge in _refined(whole, share)]
     notes = (f"left out: {_cut(cut, share.shape, pitch_mm)}",) if cut else ()
@@ -123,8 +132,8 @@ def _mm(outline: Array, shape: tuple[int, ...], pitch_mm: float) -> Array:
     return np.column_stack([outline[:, 1] + 0.5, shape[0] - outline[:, 0] - 0.5]) * pitch_mm
 
 
-def _none() -> DrawingFault:
-    return DrawingFault(
+def _none() -> NoShape:
+    return NoShape(
         "no filled shape on the drawing: nothing on it has an edge; leave --edge out for lines"
     )
 
@@ -195,13 +204,13 @@ def _level(soft: Grey, part: NDArray[np.uint8], pitch_mm: float) -> Grey:
 
 
 def _refuse_lines(share: Grey, pitch_mm: float) -> None:
-    """Raise DrawingFault if nothing on the sheet is as broad as a shape."""
+    """Raise NoShape if nothing on the sheet is as broad as a shape."""
     border = np.concatenate([share[0], share[-1], share[:, 0], share[:, -1]])
     shapes = (share < 0.5) if float(np.median(border)) > 0.5 else (share > 0.5)
     depth_px = cv2.distanceTransform(shapes.view(np.uint8), cv2.DIST_L2, 5)
     broadest_mm = 2 * pitch_mm * float(depth_px.max())
     if broadest_mm < LEAST_SHAPE_MM:
-        raise DrawingFault(
+        raise NoShape(
             f"no filled shape on the drawing: what is on it is {broadest_mm:.2g} mm broad at most,"
             f" and a shape is {LEAST_SHAPE_MM:g} mm or more; leave --edge out to follow lines"
         )
@@ -253,19 +262,19 @@ def _refined(edges: list[Array], share: Grey) -> list[Array]:
     return refined
 
 
-def _inked(edges: list[Array], shape: tuple[int, ...], reach_px: float) -> Grey:
-    """What a round pen of this width leaves along the edges."""
+def pen_along(edges: Sequence[Array], shape: tuple[int, ...], width_px: float) -> Grey:
+    """The darkness that a round pen of a width leaves along edges (n, 2), rows and columns."""
     from scipy.spatial import cKDTree
 
     near = np.zeros(shape, np.uint8)
     for edge in edges:
         pixels = np.round(edge[:, ::-1]).astype(np.int32)
-        cv2.polylines(near, [pixels], False, 1, 2 * round(reach_px) + 3)
+        cv2.polylines(near, [pixels], False, 1, 2 * round(width_px) + 3)
     rows, columns = np.nonzero(near)
     tree = cKDTree(np.vstack([with_places(edge, 0.1) for edge in edges]))
     away_px = tree.query(np.column_stack([rows, columns]))[0]
     darkness = np.zeros(shape, np.float32)
-    darkness[rows, columns] = np.clip(0.5 * reach_px - away_px + 0.5, 0, 1)
+    darkness[rows, columns] = np.clip(0.5 * width_px - away_px + 0.5, 0, 1)
     return darkness
 
 

@@ -67,8 +67,8 @@ def has_lines(drawing: Drawing) -> bool:
 
 
 def edges_of(drawing: Drawing, solid: Mask | None = None) -> Drawing:
-    """The edges of the solid areas of a drawing of lines, or of all; raises DrawingFault if what is there is
-    too small for --edge.
+    """The edges of the solid areas of a drawing of lines, or of all; raises NoShape if what is there is too
+    small for --edge, and ShapeCut if the border of the sheet cuts it.
     """
     share = drawing.darkness if solid is None else _only(drawing.darkness, solid)
     rims = outlined(np.asarray(BLACK * (1 - share), np.float32), drawing.pitch_mm)

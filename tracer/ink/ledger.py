@@ -55,6 +55,7 @@ class Balance(NamedTuple):
     areas: tuple[Area, ...] = ()
     hatching: tuple[Hatching, ...] = ()
     pale: tuple[Pale, ...] = ()
+    outlines_asked: bool = False  # round the solid areas
 
     @property
     def pale_mm(self) -> float:

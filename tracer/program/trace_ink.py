@@ -1,7 +1,7 @@
 """All the ink of a drawing as one program: every stretch of line, in few long strokes and short idle ways.
 
-Signals: a Drawing in; out a Trace over its strokes. Crosses, ticks and dots are ink like all other: nothing
-stops the head.
+Signals: a Drawing in; out a Trace over its strokes; of a drawing that was read for both, also over the
+outlines of its solid areas. Crosses, ticks and dots are ink like all other: nothing stops the head.
 
 Source: our own (see `tracer.ink`); patent ES 361967 has one contour to a tape.
 """
@@ -16,6 +16,7 @@ import numpy as np
 from morfax.motion.faults import LineFault
 from morfax.motion.polyline import length_mm
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.shapes_among_lines import has_lines
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.settings import Settings
@@ -28,6 +29,7 @@ from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program import stroke_order
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.setup import HeadProgress
+from morfax.tracer.program.trace_solids import of_silhouettes, with_outlines
 
 
 def trace_ink(
@@ -40,20 +42,22 @@ def trace_ink(
     """Follow every stretch of line of a drawing, each once; lettering if it is as high as is given.
 
     `progress` hears how far the head has come and the length of all the ink, mm. Raises LineFault if the head
-    can be put down nowhere.
+    can be put down nowhere, DrawingFault for silhouettes that have no edges.
     """
+    settings, operator = settings or Settings(), operator or Operator()
+    if drawing.both and not has_lines(drawing):
+        return of_silhouettes(drawing, settings, operator, progress)
     left = ink_left(drawing.sheet, letters_from_mm)
-    return trace_left(drawing.sheet, left, settings or Settings(), operator, progress)
+    trace = _of_strokes(drawing.sheet, left, settings, progress)
+    if drawing.both:
+        trace = with_outlines(trace, drawing, left, settings)
+    return replace(trace, operator=operator)
 
 
-def trace_left(
-    sheet: Sheet,
-    left: InkLeft,
-    settings: Settings,
-    operator: Operator | None,
-    progress: HeadProgress | None,
+def _of_strokes(
+    sheet: Sheet, left: InkLeft, settings: Settings, progress: HeadProgress | None
 ) -> Trace:
-    """Follow every stretch of the ink that is left for strokes; raises LineFault as `trace_ink` does."""
+    """Follow every stretch of the ink that is left for strokes."""
     # 1. the lines and their junctions, and the head along each
     felt = FeltSheet.of(left.drawing, settings, left.ink)
     junctions = solved(felt)
@@ -67,7 +71,7 @@ def trace_left(
     strokes.sort(key=lambda stroke: -length_mm(stroke.way_mm))
     lines = _in_order([_line(stroke, k) for k, stroke in enumerate(strokes, 1)])
     ink = balance(sheet, felt.graph, left, [stroke.way_mm for stroke in strokes])
-    return Trace(tuple(lines), operator or Operator(), left_out_mm=ink.left_mm, ink=ink)
+    return Trace(tuple(lines), Operator(), left_out_mm=ink.left_mm, ink=ink)
 
 
 def _strokes(

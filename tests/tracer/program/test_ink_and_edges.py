@@ -12,7 +12,7 @@ from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.scale import Scale
 from morfax.tracer.drawing.scan import Scan, Stated
 from morfax.tracer.drawing.shapes_among_lines import drawing_of_both, has_lines
-from morfax.tracer.program.trace_ink_and_edges import trace_ink_and_edges
+from morfax.tracer.program.trace_ink import trace_ink
 from tests.tracer.inked import UM, Points, arc, inked, polyline
 
 FRAME = polyline((6, 6), (36, 6), (36, 36), (6, 36), (6, 6))
@@ -40,7 +40,7 @@ def both(*lines: Points, shapes: tuple[Points, ...] = (), width_mm: float = 0.5)
 
 
 def test_lines_by_their_middle_and_solid_areas_by_their_edge() -> None:
-    run = trace_ink_and_edges(both(FRAME, TO_WALL, TO_DISC, shapes=(WALL, DISC)))
+    run = trace_ink(both(FRAME, TO_WALL, TO_DISC, shapes=(WALL, DISC)))
     outlines = {round(line.length_mm): line for line in run.lines if line.on_edge}
     assert len(outlines) == 2 and all(line.ending == "closed" for line in outlines.values())
     disc, wall = (outlines[k] for k in sorted(outlines))
@@ -60,7 +60,7 @@ def test_lines_by_their_middle_and_solid_areas_by_their_edge() -> None:
 
 
 def test_an_area_too_small_for_an_edge_is_left_out_and_told() -> None:
-    run = trace_ink_and_edges(both(FRAME, TO_SMALL, shapes=(SMALL,), width_mm=0.3))
+    run = trace_ink(both(FRAME, TO_SMALL, shapes=(SMALL,), width_mm=0.3))
     assert run.ink is not None
     assert (
         not any(line.on_edge for line in run.lines) or run.ink.areas[0].what == "outlined area"
@@ -74,7 +74,7 @@ def test_silhouettes_are_gone_round_with_their_thin_parts() -> None:
     star = (18, 18) + radii[:, None] * np.column_stack([np.cos(turns), np.sin(turns)])
     drawing = both(shapes=(star,))
     assert not has_lines(drawing)
-    run = trace_ink_and_edges(drawing)
+    run = trace_ink(drawing)
     assert run.ink is None and len(run.lines) == 1
     assert run.lines[0].ending == "closed"
     assert distance(run.lines[0].xy_mm[::4], star).path_to_reference.rms_mm < 20 * UM

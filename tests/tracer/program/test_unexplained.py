@@ -15,6 +15,7 @@ from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace import trace
 from morfax.tracer.program.trace_lines import trace_lines
 from morfax.tracer.program.unexplained import unexplained
+from tests.tracer.drawing.test_coarse import scanned
 from tests.tracer.inked import Points, arc, inked, polyline
 
 WIDTH_MM = 0.5
@@ -78,3 +79,32 @@ def test_a_clean_outline_explains_its_ink_and_a_bar_from_it_does_not() -> None:
     (bar,) = trace(with_bar, (30, 10)).unexplained
     assert bar.place_mm == pytest.approx((58 + WIDTH_MM / 2, 25), abs=2 * PIXEL_MM)
     assert trace_lines(inked(outline, arc((30, 25), 6), seed=1)).unexplained == ()
+
+
+BAY = polyline(
+    (6, 6), (40, 6), (40, 26), (24.5, 26), (24.5, 25), (22.5, 25), (22.5, 26), (6, 26), (6, 6)
+)
+ACROSS = polyline((6, 6), (40, 6), (40, 26), (6, 26), (6, 6))
+COARSE_DPI, LOOKS_MM = 51.0, 0.92  # a line of one pixel, and how wide it looks
+
+
+def coarse(places_mm: Points) -> Line:
+    """A line that came round on a coarse scan."""
+    return replace(closed(places_mm), width_mm=LOOKS_MM)
+
+
+def test_a_small_bay_that_is_cut_off_on_a_coarse_scan_is_told_with_a_resolution() -> None:
+    drawing = scanned(BAY, COARSE_DPI)
+    told = unexplained(Setup(drawing.sheet), [coarse(ACROSS)])
+    assert {place.wants_dpi for place in told if not place.is_ink} == {200}
+    places_mm = np.array([place.place_mm for place in told])
+    assert np.hypot(*(places_mm - (23.5, 25.5)).T).max() < 1.5  # of a bay of 2 by 1 mm
+    assert unexplained(Setup(drawing.sheet), [coarse(BAY)]) == ()
+    assert unexplained(Setup(replace(drawing, finer=1).sheet), [coarse(ACROSS)]) == ()
+
+
+def test_a_coarse_line_counts_a_pixel_less_wide_than_it_looks() -> None:
+    drawing, circle = scanned(with_tip(1.4), COARSE_DPI), coarse(arc((20, 20), 12))
+    (left,) = unexplained(Setup(drawing.sheet), [circle])
+    assert left.is_ink and left.length_mm == pytest.approx(1.4, abs=0.5)  # a pixel
+    assert unexplained(Setup(replace(drawing, finer=1).sheet), [circle]) == ()
