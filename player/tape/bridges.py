@@ -187,7 +187,7 @@ class Gap:
     @property
     def freedom(self) -> float:
         """The furthest that the motion may lie off what was laid, if the count is right, cycles."""
-        return freedom(self.before, self.after, self.rows, self.bound)
+        return freedom(self.before, self.after, self.laid(), self.bound)
 
     @property
     def known(self) -> bool:
@@ -259,17 +259,18 @@ class Gap:
         if turn is None or round(travel - self.bridge.travel):
             return filled(before, after, travel, self.rows)
         t = np.arange(1, self.rows)
-        until = np.minimum(t, np.clip(turn, 0, self.rows))
+        until = np.minimum(
+            t, turn
+        )  # a turn just before the gap counts from there, as in its travel
         way = before.speed * t + 2 * before.bend * until * (t - until / 2)
         way += after.bend * (t - until) ** 2
         u = t / self.rows
         return np.asarray(before.place + way + self.bridge.off * u**2 * (3 - 2 * u))
 
 
-def freedom(before: Side, after: Side, rows: int, bound: Bound) -> float:
-    """The furthest that a motion within a bound may lie off the cubic between two sides, cycles."""
-    ends = np.array([before.place, before.speed, after.place, after.speed])
-    laid = filled(before, after, after.place - before.place, rows)
+def freedom(before: Side, after: Side, laid: Array, bound: Bound) -> float:
+    """The furthest that a motion within a bound may lie off what is laid between two sides, cycles."""
+    ends, rows = np.array([before.place, before.speed, after.place, after.speed]), len(laid) + 1
     above = upper_edge(ends, rows, bound.acceleration, bound.speed) - laid
     below = upper_edge(-ends, rows, bound.acceleration, bound.speed) + laid
     return float(max(np.abs(above).max(initial=0.0), np.abs(below).max(initial=0.0)))
