@@ -144,12 +144,13 @@ def _line_widths(
         ):
             found.append(own[n])
             continue
-        further = straight.through(n)
+        # its own width says nothing where two lines run together in it
+        further = straight.through(n) - {n}
         if sum(lengths[m] for m in further) < ENOUGH_WIDTHS * own[n]:
             beside = {n, *(m for node in stretch.nodes for m in at[node])}
             further = {
                 m for k in beside for node in graph.stretches[k].nodes for m in at.get(node, ())
-            }
+            } - {n} or {n}
         found.append(_weighted_median([own[m] for m in further], [lengths[m] for m in further]))
     return found
 
