@@ -52,7 +52,8 @@ class Agreement:
         # stopped though it was trusted, the line bends too much for it; one that has not led since a corner
         # may have the other side of its tip in view
         here = int(np.argmin(np.hypot(*(seen[:, :2] - carriage.stands()[0]).T)))
-        doubtful = carriage.is_trusted or (carriage.by_memory and not self.by_stations)
+        by_memory = carriage.travel_mm < carriage.memory_to_mm
+        doubtful = carriage.is_trusted or (by_memory and not self.by_stations)
         if doubtful or corner_in(seen, here) is not None:
             return 0.0
         guards_mm = carriage.tuning.guard_lead_mm - carriage.tuning.lead_mm

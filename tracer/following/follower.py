@@ -16,7 +16,7 @@ import math
 from collections.abc import Callable
 
 from morfax.motion.faults import LineFault
-from morfax.tracer.following import lost
+from morfax.tracer.following import clean_line, lost
 from morfax.tracer.following.agreement import Agreement
 from morfax.tracer.following.felt_line import (
     Anchor,
@@ -86,13 +86,14 @@ class Follower:
         keep: Callable[[Follower], None] | None = None,
     ) -> Followed:
         """Follow until the line closes, ends or is lost; `told` hears the travel, mm, `keep` may copy."""
-        home = self._home.for_kernel()
+        home, on_mm = self._home.for_kernel(), 0.0 if keep is not None else longest_mm
         if not (self.carriage.hears(self.view) or self.settings.direct_rad_s_mm > 0):
             return self._lost(lost.CONTRADICT, lost.CHECK_CELL)
         while self.carriage.travel_mm < longest_mm:
             if keep is not None:
                 keep(self)
-            why = self.carriage.follow(self.view, home)
+            knows = clean_line.Knows(home, self._anchor, self._ways_out.turns, on_mm)
+            self.view, why = clean_line.follow(self.carriage, self.view, knows)
             if told is not None:
                 told(self.carriage.travel_mm)
             ending = self._after(why)
@@ -289,10 +290,9 @@ class Follower:
 
     def _lost(self, why: str, instead: str = lost.BRIDGE) -> Followed:
         """The end of a line that was lost: the fault says where, and what to do instead."""
-        (x, y), heading = self.carriage.stands()
-        times = self.view.enlarged
-        place = float(x / times), float(y / times)
         self.carriage.says(f"lost: {why}")
+        stands, travel_mm = self.carriage.stands(), self.carriage.travel_mm
         because = f"{why}; look at the drawing there, {instead}"
-        fault = lost.line_lost(place, heading, self.carriage.travel_mm / times, because)
-        return self._done("lost", fault)
+        return self._done(
+            "lost", lost.line_lost(stands, travel_mm, self.view.enlarged, because)
+        )

@@ -1,12 +1,13 @@
 """Why a line was lost: the reasons, and what to do instead, as the fault says them.
 
-Signals: the place (mm), heading (rad) and travel (mm) of the head, and a reason in; the fault out.
+Signals: place (mm), heading (rad) and travel (mm) of the head, and a reason in; the fault out.
 """
 
 from __future__ import annotations
 
 import math
 
+from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault
 
 NO_GUARDS = "the swinging cell sees no more ink, and this head has no guard cells to find on by"
@@ -17,12 +18,16 @@ BRIDGE = "bridge a gap with --gap, or scan at a higher resolution"
 
 
 def line_lost(
-    place_mm: tuple[float, float], heading_rad: float, travel_mm: float, why: str
+    stands: tuple[Array, float], travel_mm: float, times: float, why: str
 ) -> LineFault:
-    """The fault of a line that was lost at a place, with the reason and what to do."""
-    (x, y), degrees = place_mm, round(math.degrees(heading_rad)) % 360
+    """The fault of a line that was lost where the head stands, with the reason and what to do.
+
+    Place and travel are those of a drawing that the head sees so many `times` as large.
+    """
+    (x, y), heading_rad = (stands[0] / times).tolist(), stands[1]
+    degrees, come_mm = round(math.degrees(heading_rad)) % 360, travel_mm / times
     return LineFault(
-        f"line lost at {x:.2f},{y:.2f} mm, heading {degrees} degrees, after {travel_mm:.1f} mm: {why}",
+        f"line lost at {x:.2f},{y:.2f} mm, heading {degrees} degrees, after {come_mm:.1f} mm: {why}",
         x_mm=x,
         y_mm=y,
         heading_rad=heading_rad,

@@ -12,7 +12,7 @@ Source: patent ES 361967, figure 1: lead screws 111 with their motors 17 and 12,
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -25,8 +25,8 @@ from morfax.tracer.head.leaders import CELL, MEMORY, STATIONS, Led, Log
 from morfax.tracer.head.settings import CALIBRATED_ASIDE, Settings, tune, tuned_along
 from morfax.tracer.head.slow_cell import Stretch
 from morfax.tracer.head.stance import Stance
-from morfax.tracer.head.state import Home, Tuning, at_rest
-from morfax.tracer.head.trail import Trail
+from morfax.tracer.head.state import Home, Mark, at_rest
+from morfax.tracer.head.trail import Marks, Trail
 from morfax.tracer.sensing.leg import Leg, heading_of, turn
 from morfax.tracer.sensing.view import View
 
@@ -34,16 +34,6 @@ CHUNK = 6000  # samples that the kernel follows before it reports: a second at t
 SETTLE_LAGS = 7  # a stop lasts this many lags of the drives: 1/1000 of the last speed is left
 HEARD = 0.1  # of what the sweep was set off; grain takes away less than the rest
 SPARE = 1000  # samples beside those that a course takes at the slowest
-
-
-class Mark(NamedTuple):
-    """What a carriage was at a moment: the head's state and tuning, and how much it had recorded."""
-
-    state: Any
-    tuning: Tuning
-    positions: int
-    leads: int
-    cell_from_mm: float
 
 
 class Carriage:
@@ -145,9 +135,9 @@ class Carriage:
         return bool(self.state.travel_mm < self.state.trusted_mm)
 
     @property
-    def by_memory(self) -> bool:
-        """Whether the drum still leads by what was felt after a corner, and not by what the cell has seen."""
-        return self._leads == MEMORY and self.travel_mm < self._cell_from_mm
+    def memory_to_mm(self) -> float:
+        """The travel up to which the drum leads by what was felt after a corner, not by what the cell saw."""
+        return self._cell_from_mm if self._leads == MEMORY else -math.inf
 
     def trust(self, length_mm: float) -> None:
         """Go on by the swinging cell for a length, mm, past what the guard cells say: it was felt clean."""
@@ -169,8 +159,15 @@ class Carriage:
         out, from_mm = np.empty((samples, 2)), self.travel_mm
         self.says("following")
         n, why = kernel.follow(view.cells, self.state, self.tuning, home, out)
-        self._followed(out[:n], from_mm)
+        self._led(out[:n], from_mm)
+        self._keep(out[:n])
         return int(why)
+
+    def took(self, positions: Array, from_mm: float, marks: Marks) -> None:
+        """Keep positions (n, 2) along which a kernel has followed from a travel on, and marked the trail."""
+        self._led(positions, from_mm)
+        self._positions.add(positions)
+        self.trail.took(marks)
 
     def follow_slowly(self, view: View, home: Home, stretch: Stretch) -> int | None:
         """Follow a stretch that was felt by the slow cell, if it keeps to that; why it stopped."""
@@ -182,11 +179,12 @@ class Carriage:
             self._log.add(self.count, STATIONS)
             self._cell_from_mm = self.travel_mm + tried.felt_mm
         from_mm, self.state = self.travel_mm, tried.state
-        self._followed(tried.positions, from_mm)
+        self._led(tried.positions, from_mm)
+        self._keep(tried.positions)
         return tried.why
 
-    def _followed(self, positions: Array, from_mm: float) -> None:
-        """Keep positions to which the drum has led; the cell's are those after what it held of stations."""
+    def _led(self, positions: Array, from_mm: float) -> None:
+        """Log who led to positions, by the drum: the cell to those after what it held of stations."""
         first, felt_mm = 0, self._cell_from_mm - from_mm
         if felt_mm > 0:
             come_mm = lengths_mm(np.vstack([self._positions.last, positions]))[1:]
@@ -194,7 +192,6 @@ class Carriage:
         if first < len(positions):
             self._log.add(self.count + first, CELL)
         self.cell_led_mm += max(self.travel_mm - max(from_mm, self._cell_from_mm), 0.0)
-        self._keep(positions)
 
     def mark(self) -> Mark:
         """What the carriage is known by now, so that it can be brought back here."""

@@ -102,6 +102,16 @@ class Tuning(NamedTuple):
     cell_noise: float  # of the cell's current, standard deviation
 
 
+class Mark(NamedTuple):
+    """What a carriage was at a moment: the head's state and tuning, and how much it had recorded."""
+
+    state: Any
+    tuning: Tuning
+    positions: int
+    leads: int
+    cell_from_mm: float
+
+
 def at_rest(place_mm: Array, lead_mm: float) -> Any:
     """The state of a head that stands at a place (x, y) with its mount at a lead: a record, which the kernels
     change.

@@ -13,11 +13,13 @@ Source: our own.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
-from morfax.motion.polyline import lengths_mm
+from morfax.motion.compiled import njit
 from morfax.tracer.head import loop
 from morfax.tracer.sensing.leg import Leg
 
@@ -28,6 +30,16 @@ BOXED = 256  # places to a box: 7 mm of travel
 CHORD = 4  # places on either side, that a heading is taken over
 NEAR = 0.3  # of the line's width: a place of a leg this near to the trail has been followed
 MOSTLY = 0.5  # of a leg's first third: so many of its places
+
+
+class Marks(NamedTuple):
+    """A trail as kernels take it: its places, of which `marked` (1,) are there, and the boxes about them."""
+
+    places: Array
+    marked: NDArray[np.int64]
+    boxes: Array
+    boxed: int
+    step_mm: float
 
 
 class Trail:
@@ -46,13 +58,20 @@ class Trail:
         """Remember positions (n, 2) in the order of travel."""
         if not len(positions):
             return
-        come_mm = lengths_mm(np.vstack([self._places[self._count - 1], positions]))[1:]
-        marks = np.floor(come_mm / self.step_mm)
-        kept = positions[np.flatnonzero(np.diff(marks, prepend=0.0) > 0)]
-        while self._count + len(kept) > len(self._places):
+        marks = self.marks(len(positions))
+        mark_along(marks, np.asarray(positions, float))
+        self.took(marks)
+
+    def marks(self, room: int) -> Marks:
+        """The trail for a kernel, with room for so many more places."""
+        while self._count + room > len(self._places):
             self._places, self._boxes = _longer(self._places), _longer(self._boxes)
-        self._places[self._count : self._count + len(kept)] = kept
-        self._count += len(kept)
+        count = np.array([self._count])
+        return Marks(self._places, count, self._boxes, self._boxed, self.step_mm)
+
+    def took(self, marks: Marks) -> None:
+        """Remember what a kernel has marked."""
+        self._count = int(marks.marked[0])
         self._box_up()
 
     def _box_up(self) -> None:
@@ -87,17 +106,12 @@ class Trail:
 
     def back(self, distance_mm: float) -> tuple[Array, float]:
         """Place and heading of the axis a distance ago."""
-        places = self.recent()
-        i = max(0, len(places) - 1 - round(distance_mm / self.step_mm))
-        j = min(i + CHORD, len(places) - 1)
-        way = places[j] - places[max(0, j - CHORD)]
-        return places[i], math.atan2(way[1], way[0])
+        x, y, heading = place_back(self.marks(0), float(distance_mm))
+        return np.array([x, y]), heading
 
     def comes_again(self, width_mm: float) -> bool:
         """Whether the axis runs along its own trail, in the same sense."""
-        newest, beside_mm = self._places[self._count - 1], 2 * loop.TOGETHER * width_mm
-        before = max(0, self._count - 2 * round(loop.FRESH_MM / self.step_mm))
-        if not len(self._within(newest - beside_mm, newest + beside_mm, before)):
+        if not is_near_itself(self.marks(0), float(width_mm)):
             return False
         return loop.comes_again(self._places[: self._count], self.step_mm, width_mm)
 
@@ -126,3 +140,57 @@ def _longer(rows: Array) -> Array:
     longer = np.empty((2 * len(rows), rows.shape[1]))
     longer[: len(rows)] = rows
     return longer
+
+
+@njit(cache=True, _nrt=False)
+def mark_along(marks, positions):  # type: ignore[no-untyped-def]
+    """Mark a place every step along positions (n, 2), from the newest place on."""
+    places, count = marks.places, marks.marked[0]
+    x, y = places[count - 1, 0], places[count - 1, 1]
+    come_mm = steps = 0.0
+    for k in range(len(positions)):
+        come_mm += math.hypot(positions[k, 0] - x, positions[k, 1] - y)
+        x, y = positions[k, 0], positions[k, 1]
+        now = math.floor(come_mm / marks.step_mm)
+        if now > steps:
+            places[count, 0], places[count, 1] = x, y
+            count += 1
+        steps = now
+    marks.marked[0] = count
+
+
+@njit(cache=True, _nrt=False)
+def place_back(marks, distance_mm):  # type: ignore[no-untyped-def]
+    """Place and heading of the axis a distance ago: (x mm, y mm, rad)."""
+    places, count = marks.places, marks.marked[0]
+    first = max(0, count - round(MEMORY_MM / marks.step_mm))
+    i = max(first, count - 1 - round(distance_mm / marks.step_mm))
+    j = min(i + CHORD, count - 1)
+    before = max(first, j - CHORD)
+    heading = math.atan2(places[j, 1] - places[before, 1], places[j, 0] - places[before, 0])
+    return places[i, 0], places[i, 1], heading
+
+
+@njit(cache=True, _nrt=False)
+def is_near_itself(marks, width_mm):  # type: ignore[no-untyped-def]
+    """Whether an earlier place of the trail is near to the newest: it may run along itself."""
+    places, boxes, beside_mm = marks.places, marks.boxes, 2 * loop.TOGETHER * width_mm
+    x, y = places[marks.marked[0] - 1, 0], places[marks.marked[0] - 1, 1]
+    end = marks.marked[0] - 2 * round(loop.FRESH_MM / marks.step_mm)
+    k = 0
+    while k < end:
+        box = k // BOXED
+        # 1. a box that is far away
+        if box < marks.boxed and not (
+            boxes[box, 0] < x + beside_mm
+            and boxes[box, 1] < y + beside_mm
+            and boxes[box, 2] > x - beside_mm
+            and boxes[box, 3] > y - beside_mm
+        ):
+            k = (box + 1) * BOXED
+            continue
+        # 2. the places in it
+        if abs(places[k, 0] - x) < beside_mm and abs(places[k, 1] - y) < beside_mm:
+            return True
+        k += 1
+    return False

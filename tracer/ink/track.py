@@ -26,11 +26,11 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.tracer.head import course
-from morfax.tracer.head.carriage import CHUNK, Carriage, Mark
+from morfax.tracer.head.carriage import CHUNK, Carriage
 from morfax.tracer.head.leaders import STATIONS, Led
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance
-from morfax.tracer.head.state import CHANGED, MORE, Home
+from morfax.tracer.head.state import CHANGED, MORE, Home, Mark
 from morfax.tracer.ink.chains import Chain, Junctions, Side
 from morfax.tracer.ink.partners import way_through
 from morfax.tracer.ink.run import Run

@@ -24,14 +24,13 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.sensing.leg import FEWEST_STATIONS, LEAST_WIDTHS, Leg, leg_of
-from morfax.tracer.sensing.photocell import TWO_PI, ring
+from morfax.tracer.sensing.photocell import TWO_PI, darkness_at, ring
 from morfax.tracer.sensing.view import View
 
 # Chosen by trial on the test drawings; stations are a view's step apart.
@@ -73,18 +72,33 @@ def corner_in(seen: Array, first: int) -> int | None:
     Chords before and after it differ more there than anywhere within a chord's length, by more than `CORNER`.
     It is found before there are legs; how sharp it is, its ink says (see `corner`).
     """
-    places, reach = seen[:, :2], CHORD + SKIPPED
-    middle = np.arange(max(first, reach), len(seen) - reach - LEANS)
-    if not len(middle):
-        return None
-    before = places[middle - SKIPPED] - places[middle - reach]
-    after = places[middle + reach] - places[middle + SKIPPED]
-    cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
-    turned = np.abs(np.arctan2(cross, np.sum(before * after, axis=1)))
-    about = sliding_window_view(np.pad(turned, CHORD, mode="symmetric"), 2 * CHORD + 1)
-    most = turned == about.max(axis=1)
-    sharp = np.flatnonzero((turned > CORNER) & most)
-    return int(middle[sharp[0]]) if len(sharp) else None
+    station = corner_at(seen, first)
+    return None if station < 0 else int(station)
+
+
+@njit(cache=True)
+def corner_at(seen, first):  # type: ignore[no-untyped-def]
+    """The same for kernels: -1 without a corner."""
+    reach = CHORD + SKIPPED
+    begin = max(first, reach)
+    turned = np.zeros(max(0, len(seen) - reach - LEANS - begin))
+    for k in range(len(turned)):
+        i = begin + k
+        bx, by = (
+            seen[i - SKIPPED, 0] - seen[i - reach, 0],
+            seen[i - SKIPPED, 1] - seen[i - reach, 1],
+        )
+        ax, ay = (
+            seen[i + reach, 0] - seen[i + SKIPPED, 0],
+            seen[i + reach, 1] - seen[i + SKIPPED, 1],
+        )
+        turned[k] = abs(math.atan2(bx * ay - by * ax, bx * ax + by * ay))
+    for k in range(len(turned)):
+        if turned[k] > CORNER:
+            about = turned[max(0, k - CHORD) : k + CHORD + 1]
+            if turned[k] == about.max():
+                return begin + k
+    return -1
 
 
 def fork_in(view: View, seen: Array, first: int) -> int | None:
@@ -93,19 +107,43 @@ def fork_in(view: View, seen: Array, first: int) -> int | None:
     Where the felt line has left the straight one by nearly a width, its own ink no longer reaches there: ink
     there is that of another leg.
     """
+    station = fork_at(view.cells, float(view.width_mm), seen, first)
+    return None if station < 0 else int(station)
+
+
+@njit(cache=True)
+def fork_at(cells, width_mm, seen, first):  # type: ignore[no-untyped-def]
+    """The same for kernels: -1 without a fork."""
     for i in range(max(first, FORK_CHORD), len(seen) - FORK_ENDS, FORK_EVERY):
-        way = seen[i, :2] - seen[i - FORK_CHORD, :2]
-        t = way / np.hypot(*way)
-        d = seen[i:, :2] - seen[i, :2]
-        aside = np.abs(d[:, 1] * t[0] - d[:, 0] * t[1])
-        away = np.flatnonzero(aside > FORK_ASIDE * view.width_mm)
-        if not len(away):
-            break
-        along = float(d[away[0]] @ t)
-        shares = np.linspace(0, along + FORK_BEYOND * view.width_mm, FORK_PLACES)
-        if all(view.dark(seen[i, :2] + share * t) for share in shares):
+        x, y = seen[i, 0], seen[i, 1]
+        way_x, way_y = x - seen[i - FORK_CHORD, 0], y - seen[i - FORK_CHORD, 1]
+        length = math.hypot(way_x, way_y)
+        c, s = way_x / length, way_y / length
+        # 1. where the felt line has left the straight one
+        k = i
+        while k < len(seen):
+            if abs((seen[k, 1] - y) * c - (seen[k, 0] - x) * s) > FORK_ASIDE * width_mm:
+                break
+            k += 1
+        if k == len(seen):
+            return -1
+        # 2. whether ink goes straight on to there, and beyond
+        along = (seen[k, 0] - x) * c + (seen[k, 1] - y) * s
+        if _is_inked(cells, (x, y, c, s), along + FORK_BEYOND * width_mm):
             return i
-    return None
+    return -1
+
+
+@njit(cache=True, _nrt=False)
+def _is_inked(cells, ray, end_mm):  # type: ignore[no-untyped-def]
+    """Whether there is ink at `FORK_PLACES` places along a ray (place, direction) up to its end."""
+    x, y, c, s = ray
+    step = end_mm / (FORK_PLACES - 1)
+    for k in range(FORK_PLACES):
+        away_mm = end_mm if k == FORK_PLACES - 1 else k * step
+        if not darkness_at(cells, x + away_mm * c, y + away_mm * s) > cells.level:
+            return False
+    return True
 
 
 def legs_around(view: View, centre: Array, trail: Array) -> list[Leg]:

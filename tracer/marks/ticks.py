@@ -23,10 +23,10 @@ from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.tracer.marks import sizes
 from morfax.tracer.sensing.leg import LEAST_OFF_MM, OUTLIERS, ROBUST
-from morfax.tracer.sensing.photocell import STEP_PX
+from morfax.tracer.sensing.photocell import LEVEL, STEP_PX
 from morfax.tracer.sensing.probe import is_tip
 from morfax.tracer.sensing.ray import Ray, end_of_ink, seen_on
-from morfax.tracer.sensing.view import LEVEL, View
+from morfax.tracer.sensing.view import View
 
 TURNS = 3  # the cells are turned this often: by then they stand square to a stroke
 ACROSS = 1.2  # widths, along the path from a stroke's middle: its edges are nearer

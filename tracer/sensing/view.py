@@ -17,11 +17,13 @@ from morfax.motion.arrays import Array
 from morfax.motion.median import median
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.sensing import edge_scout, photocell, ray
-from morfax.tracer.sensing.photocell import LEVEL, Cells
+from morfax.tracer.sensing.gauge import gauge
+from morfax.tracer.sensing.photocell import Cells
 from morfax.tracer.sensing.scout import CLEAN, REACH, REACH_PX, scout
 
 LEG_MM = 1.2  # how much of a leg is felt for its direction, at a line of 0.5 mm
 LEG_PX, EDGE_LEG_PX = 12, 4  # and at least so many pixels
+LEG_WIDTHS = 1.5  # and so many widths of a wide line
 EDGE_STEP_PX = 0.35  # stations along an edge go round corners that are as sharp as the lens
 GRAIN = 0.4  # of the line's width: standard deviation of a cell that averages its grain
 GRAIN_LEVEL = 0.3  # an edge is at this share of the darkness then
@@ -64,7 +66,7 @@ class View:
     def leg_mm(self) -> float:
         """How much of a leg is felt for its direction."""
         pixels = EDGE_LEG_PX if self.on_edge else LEG_PX
-        return max(LEG_MM, pixels * self.pitch_mm, 1.5 * self.width_mm)
+        return max(LEG_MM, pixels * self.pitch_mm, LEG_WIDTHS * self.width_mm)
 
     def at_level(self, level: float) -> View:
         """The view with another darkness at an edge."""
@@ -139,19 +141,13 @@ class View:
 
         Lines swell and fade. The usual width follows by a share of how far the width differs from it.
         """
-        way = np.array([math.cos(heading), math.sin(heading)])
-        # more places than a speck spoils
-        places = [place + 2 * k * self.step_mm * way for k in range(5)]
-        ink = median([self.darkness_at(p) for p in places])
-        here = self.at_level(LEVEL * min(max(ink, self.level), 4 * self.level))
-        reach = 1.5 * self.width_mm + 2 * self.pitch_mm
-        found = [here.edges(p, heading, reach) for p in places]
-        # NaN if any has no edge
-        width = median([left - right for right, left in found])
-        usual = self.usual_mm or self.width_mm
-        if not 0.5 < width / usual < 1.6:
+        widths_mm = float(self.width_mm), float(self.usual_mm or self.width_mm)
+        pose = float(place[0]), float(place[1]), float(heading)
+        level, width, usual = gauge(self.cells, pose, widths_mm, self.step_mm, follows)
+        if math.isnan(level):
             return self
-        return replace(here, width_mm=width, usual_mm=usual + follows * (width - usual))
+        cells = self.cells._replace(level=level)
+        return replace(self, cells=cells, width_mm=width, usual_mm=usual)
 
     def through_larger(self, stations: Array, heading: float) -> View:
         """The line through cells as large as it is wide, which average its grain.

@@ -15,8 +15,9 @@ from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.junctions.rings import corner_in, legs_around
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.leg import Leg, centre_at, leg_of, meet, turn
+from morfax.tracer.sensing.photocell import LEVEL
 from morfax.tracer.sensing.probe import end_of, reach_of_ink, stroke_end
-from morfax.tracer.sensing.view import LEVEL, View
+from morfax.tracer.sensing.view import View
 from tests.tracer.inked import UM, WIDTH_MM, arc, inked, polyline
 
 ALONG_PIXELS_MM = 6 * UM  # a line along pixels of 85 um is seen 5 um off its middle
