@@ -1,9 +1,9 @@
 """Compiling ahead: on a first run, the processor's other cores compile the kernels that will be needed next.
 
-The process that meets the first kernel which nobody has compiled starts others (`begin`). They go through a
-list of kernels in the order in which a run needs them, and compile what is not kept yet. Each kernel is
-compiled by one process at a time (`claimed`); whoever needs it meanwhile waits for it. They end with the
-list, or with the process that started them.
+The process that meets the first kernel which nobody has compiled starts others (`begin`). They share a list
+of kernels in the order in which a run needs them: with one beside the run, it takes every second kernel and
+leaves the others to the run, then what is left. Each kernel is compiled by one process at a time (`claimed`);
+whoever needs it meanwhile waits for it. They end with the list, or with the process that started them.
 
 Signals in: `kernels.tsv`: module, function and types of arguments (`compiled.described`), a line each.
 Signals out: files of machine code (`machine_code`). `MORFAX_COMPILE_AHEAD=0` turns it off.
@@ -39,12 +39,12 @@ def begin() -> None:
     count = min(len(_cores()) - 1, MOST)
     if os.environ.get(SWITCH) == "0" or count < 1 or kernel_folder() is None:
         return
-    command = [sys.executable, "-m", __name__, str(os.getpid())]
+    command = [sys.executable, "-m", __name__, str(os.getpid()), str(count + 1)]
     nowhere = subprocess.DEVNULL
-    for _ in range(count):
+    for number in range(1, count + 1):
         with suppress(OSError):  # no process to be had: this one compiles alone
             started = subprocess.Popen(
-                command,
+                [*command, str(number)],
                 stdin=nowhere,
                 stdout=nowhere,
                 stderr=nowhere,
@@ -82,9 +82,14 @@ def examples(types: str) -> tuple[Any, ...]:
     return found
 
 
-def compile_listed(parent: int) -> None:
-    """Compile all kernels of the list that are not kept yet, while the process that asked is there."""
-    for line in LIST.read_text(encoding="utf-8").splitlines():
+def compile_listed(parent: int, processes: int, number: int) -> None:
+    """Compile the kernels of the list that are not kept yet, while the process that asked is there.
+
+    Of so many processes, the one with this number takes its own kernels first, then those of the others.
+    """
+    lines = LIST.read_text(encoding="utf-8").splitlines()
+    own = lines[number::processes]
+    for line in dict.fromkeys([*own, *lines]):
         if os.getppid() != parent:
             return
         module, name, types = line.split("\t")
@@ -138,4 +143,4 @@ def _named(module: str, name: str) -> Any:
 
 
 if __name__ == "__main__":
-    compile_listed(int(sys.argv[1]))
+    compile_listed(*(int(word) for word in sys.argv[1:]))

@@ -45,7 +45,7 @@ import os
 from pathlib import Path
 from morfax.motion import compile_ahead
 compile_ahead.LIST = Path("list.tsv")
-compile_ahead.compile_listed(os.getppid())
+compile_ahead.compile_listed(os.getppid(), 2, 1)
 """
 ARRAYS = (
     np.zeros((3, 4)),
@@ -126,6 +126,31 @@ def test_of_two_processes_that_need_a_kernel_one_compiles_it(folder: Path) -> No
     said = [process.communicate()[0] for process in both]
     assert [process.returncode for process in both] == [0, 0]
     assert sum(text.count("compiled") for text in said) == 1
+
+
+def test_each_takes_its_own_share_first_and_one_is_the_run_s(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Else all would stand before the same kernel, and one of them compile."""
+    taken: list[str] = []
+
+    class Kernels:
+        def __getattr__(self, name: str) -> Any:
+            return self
+
+        def compile_for(self, types: str, args: tuple[Any, ...]) -> None:
+            taken.append(types)
+
+    monkeypatch.setattr(compile_ahead, "LIST", tmp_path / "list.tsv")
+    compile_ahead.LIST.write_text("\n".join(f"a\tb\tnamed({k}, 'x')" for k in range(7)))
+    monkeypatch.setattr(compile_ahead, "examples", lambda types: ())
+    monkeypatch.setattr(compile_ahead.importlib, "import_module", lambda name: Kernels())
+    compile_ahead.compile_listed(os.getppid(), 3, 1)
+    assert [int(types[6]) for types in taken] == [1, 4, 0, 2, 3, 5, 6]
+    # and none for a process that has ended
+    taken.clear()
+    compile_ahead.compile_listed(-1, 3, 1)
+    assert taken == []
 
 
 @pytest.mark.parametrize(
