@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 # chosen by trial on the test drawings
 UNEVEN = 1.25  # the widest gap of a dashed line against the widest that was met
 UNCUT_SHARE = 0.2  # of a line; corners alone leave less
+# widths: ends so near to each other, so far on, are those of a closed line without a corner, perhaps
+BESIDE_WIDTHS, FAR_WIDTHS = 2.5, 10.0
 STEP_PER_MM = 10  # a gap is suggested in whole tenths of a mm
 
 
@@ -40,6 +42,7 @@ def remarks(
     yield from _of_reference(trace, settings)
     yield from _of_gaps(trace, gap_mm)
     yield from _of_breaks(trace, gap_mm)
+    yield from _of_open(trace)
     yield from _of_stems(trace)
     yield from _of_crossing_guides(trace)
     yield from of_ink(trace, several=settings.line.are_several)
@@ -176,6 +179,27 @@ def _of_breaks(trace: Trace, gap_mm: float) -> Iterator[str]:
         f"{_named(line, trace)} ends at {x:.1f},{y:.1f} mm, and ink goes on straight ahead of it{more}: if "
         f"that is one line, dashed or with gaps, --gap {wide_mm:g}mm takes the head across"
     )
+
+
+def _of_open(trace: Trace) -> Iterator[str]:
+    """One line that comes back to where it began, or where it ends, and does not close."""
+    line = trace.lines[0]
+    plain = line.gap_mm is None and not line.breaks and not line.is_guide
+    if len(trace.lines) > 1 or line.ending != "ended" or not plain:
+        return
+    end = line.passes_its_end(line.width_mm, FAR_WIDTHS * line.width_mm)
+    apart_mm = math.dist(line.begin_mm, line.end_mm)
+    if end is not None:
+        yield (
+            f"the line is open, but runs past its own end at {end[0]:.1f},{end[1]:.1f} mm: if a closed line "
+            "is meant, --lines contours takes that"
+        )
+    elif apart_mm < BESIDE_WIDTHS * line.width_mm and line.length_mm > FAR_WIDTHS * apart_mm:
+        x, y = line.begin_mm
+        yield (
+            f"the line is open, and ends {apart_mm:.1f} mm from its beginning, at {x:.1f},{y:.1f} mm: if a "
+            "closed line is meant, draw what is missing there, on the sheet or by `morfax correct --bridge`"
+        )
 
 
 def _of_stems(trace: Trace) -> Iterator[str]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from morfax.jobs.line_settings import LineSettings
 from morfax.jobs.listener import Silent
 from morfax.jobs.settings import TraceSettings
@@ -9,7 +11,7 @@ from morfax.jobs.tracing import Tracing
 from morfax.tracer.drawing.drawing import Drawing
 from tests.tracer.drawing.test_skips import ring
 from tests.tracer.ink.test_pale import with_pale_bar
-from tests.tracer.inked import inked
+from tests.tracer.inked import Points, inked, polyline
 
 
 class Heard(Silent):
@@ -45,3 +47,28 @@ def test_pale_lines_are_told_where_all_ink_is_asked_for() -> None:
     assert any("mm of line (17 %) are left out" in text for text in said)
     said, _ = said_of(with_pale_bar(0.0), LineSettings(lines="all"))
     assert not any("left out" in text for text in said)
+
+
+def open_where(line: LineSettings, places_mm: Points) -> tuple[list[str], list[str]]:
+    """What is said of a line that is perhaps closed, and how its lines end."""
+    said, endings = said_of(inked(places_mm, width_mm=0.6, seed=1), line)
+    return [text for text in said if "if a closed line is meant" in text], endings
+
+
+def test_a_line_that_runs_past_its_own_end_is_told_and_the_advice_closes_it() -> None:
+    """A tip of two lines in one, narrower than they are: the head is put down in it."""
+    turns = np.linspace(0, 2 * np.pi, 600)
+    radii = 18 + 3 * np.cos(3 * turns)
+    round_mm = 30 + radii[:, None] * np.column_stack([np.cos(turns), np.sin(turns)])
+    tip_mm = round_mm[100] + [[4.0, 6.0]]
+    tufted = np.vstack([round_mm[:101], tip_mm, round_mm[103:]])
+    (said,), endings = open_where(LineSettings(), tufted)
+    assert endings == ["ended"] and "--lines contours takes that" in said
+    assert open_where(LineSettings(lines="contours"), tufted) == ([], ["closed"])
+
+
+def test_a_line_without_one_of_its_corners_is_told() -> None:
+    cornerless = polyline((8.0, 8.8), (10, 40), (40, 42), (42, 10), (8.8, 8.2))
+    (said,), endings = open_where(LineSettings(), cornerless)
+    assert endings == ["ended"] and "morfax correct --bridge" in said
+    assert open_where(LineSettings(), cornerless[:-1]) == ([], ["ended"])

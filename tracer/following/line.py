@@ -141,6 +141,16 @@ class Line:
         """Places along it, (n, 2) mm."""
         return one_in(self.xy_mm, THINNED)
 
+    def passes_its_end(self, within_mm: float, beyond_mm: float) -> Array | None:
+        """An end (x, y) that its own way comes as near to, more than so far on; None if it passes neither."""
+        places, come_mm = self.places_mm, lengths_mm(self.places_mm)
+        for end, gone_mm in ((places[0], come_mm), (places[-1], come_mm[-1] - come_mm)):
+            between_mm = np.minimum(gone_mm, come_mm[-1] - gone_mm)  # from both ends
+            near = np.hypot(*(places - end).T) < within_mm
+            if np.any(near & (gone_mm > beyond_mm) & (between_mm > within_mm)):
+                return np.asarray(end)
+        return None
+
     @property
     def loop_mm(self) -> Array:
         """Places along its loop, without the lead line before that, (n, 2) mm."""
