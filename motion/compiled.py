@@ -186,12 +186,23 @@ def _names_in(code: Any) -> set[str]:
     return set(code.co_names).union(*(_names_in(inner) for inner in within))
 
 
+_LASTING: dict[int, tuple[Any, Any]] = {}
+
+
+def lasting(arg: Any) -> Any:
+    """A tuple that lives as long as the process: what decides the machine code is made out once."""
+    _LASTING[id(arg)] = (arg, _key(arg))
+    return arg
+
+
 def _key(arg: Any) -> Any:
     """What of an argument decides the machine code, quick to make and to compare."""
     kind = type(arg)
     if kind is np.ndarray:
         return (arg.dtype, arg.ndim, arg.flags.num & _FLAGS)
     if isinstance(arg, tuple):
+        if (known := _LASTING.get(id(arg))) is not None:
+            return known[1]
         return (kind, *[of if (of := type(item)) in _PLAIN else _key(item) for item in arg])
     if isinstance(arg, np.void | np.ndarray):
         return (kind, arg.dtype)

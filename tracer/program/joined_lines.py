@@ -104,7 +104,8 @@ def _left(stroke: Stroke, ways: list[Array]) -> Stroke:
     """The part of a stroke that none of some ways passes."""
     beside_mm = BESIDE_WIDTHS * stroke.width_mm
     near = np.any([nearest_mm(stroke.middles_mm, way) < beside_mm for way in ways], axis=0)
-    share = float(np.average(~near, weights=1 / _crowded(stroke)))
+    # all of it, as a rule: nothing to weigh, and scipy is not imported
+    share = 0.0 if near.all() else float(np.average(~near, weights=1 / _crowded(stroke)))
     return replace(
         stroke,
         middles_mm=stroke.middles_mm[~near],

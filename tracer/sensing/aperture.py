@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
-from morfax.motion.compiled import njit
+from morfax.motion.compiled import lasting, njit
 from morfax.tracer.drawing import tiles as sheet
 
 SIDE_PX, SHIFT, WITHIN = 16, 4, 15
@@ -81,18 +81,20 @@ class MadeTiles(NamedTuple):
         return MadeTiles.of(whole, math.hypot(self.spread_px, spread_px))
 
 
-NONE = MadeTiles(
-    0,
-    0,
-    np.empty((0, 0), np.int32),
-    np.empty((0, 0, 0), np.uint8),
-    0.0,
-    0.0,
-    np.empty(0),
-    np.empty((0, 0), np.int32),
-    np.empty((0, 0, 0), np.float32),
-    np.empty((0, 2), np.int32),
-    np.zeros(1, np.int64),
+NONE = lasting(
+    MadeTiles(
+        0,
+        0,
+        np.empty((0, 0), np.int32),
+        np.empty((0, 0, 0), np.uint8),
+        0.0,
+        0.0,
+        np.empty(0),
+        np.empty((0, 0), np.int32),
+        np.empty((0, 0, 0), np.float32),
+        np.empty((0, 2), np.int32),
+        np.zeros(1, np.int64),
+    )
 )
 
 
