@@ -29,6 +29,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault
 from morfax.tracer.drawing.between import between
+from morfax.tracer.drawing.blocks import BLOCK_PX, darkest
 from morfax.tracer.drawing.tiles import Tiles
 
 Darkness = NDArray[np.float32]
@@ -95,6 +96,8 @@ def families(darkness: Kept, pitch_mm: float) -> list[Family]:
     by = max(1, math.isqrt(max(1, darkness.size // SEARCHED_PX)))
     small = darkness.shrunk(by) if isinstance(darkness, Tiles) else darkness
     if by > 1 and not isinstance(darkness, Tiles):
+        if not _may_be_all_over(darkness, by):
+            return []
         size = darkness.shape[1] // by, darkness.shape[0] // by
         small = np.asarray(cv2.resize(darkness, size, interpolation=cv2.INTER_AREA), np.float32)
     if not _is_all_over(small):
@@ -138,6 +141,23 @@ def _is_all_over(darkness: Darkness) -> bool:
     inked = np.asarray(darkness > INKED, np.float32)
     tiles = cv2.resize(inked, (TILES, TILES), interpolation=cv2.INTER_AREA)
     return bool(np.mean(tiles > INK_IN) >= INK_OVER)
+
+
+def _may_be_all_over(darkness: Darkness, by: int) -> bool:
+    """Whether there may be ink nearly everywhere on the sheet reduced so much, by its darkest pixels alone.
+
+    To ask them takes a fifth of the time of reducing the sheet. A reduced pixel is ink only if one of those
+    that it is made of is.
+    """
+    inked = np.asarray(darkest(darkness) > INKED, np.uint8)
+    # blocks: the edges of reduced pixels and of tiles fall within blocks
+    about = 2 * (3 + by // BLOCK_PX) + 1
+    inked = np.asarray(cv2.dilate(inked, np.ones((about, about), np.uint8)), np.uint8)
+    places = [np.arange(TILES) * side // TILES for side in inked.shape]
+    tiles = np.maximum.reduceat(
+        np.maximum.reduceat(inked, places[0], axis=0), places[1], axis=1
+    )
+    return bool(np.mean(tiles) >= INK_OVER)
 
 
 def _family(darkness: Darkness, pitch_mm: float, is_upright: bool) -> Family | None:

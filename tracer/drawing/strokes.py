@@ -84,6 +84,8 @@ class Sheet:
     are_solid: NDArray[np.bool_]
     window: Window | None = None
     _known: dict[int, Stroke] = field(default_factory=dict, repr=False, compare=False)
+    # what the cells see of it through the aperture that was asked for last (see `plain_places.view_of`)
+    seen: dict[float, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @classmethod
     def of(cls, drawing: Drawing) -> Sheet:

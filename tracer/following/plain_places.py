@@ -55,9 +55,12 @@ class Scored(NamedTuple):
 def view_of(sheet: Sheet, aperture_mm: float | None, width_mm: float) -> View:
     """The sheet through cells for a line of a width."""
     aperture_mm = aperture_mm or aperture_for(sheet.drawing, width_mm)
-    return View(
-        photocell.behind_aperture(sheet.drawing, aperture_mm, window=sheet.window), width_mm
-    )
+    # a line's ends and its plain places are looked for in turn: its sheet is made once for both
+    if aperture_mm not in sheet.seen:
+        sheet.seen.clear()
+        cells = photocell.behind_aperture(sheet.drawing, aperture_mm, window=sheet.window)
+        sheet.seen[aperture_mm] = cells
+    return View(sheet.seen[aperture_mm], width_mm)
 
 
 def edge_view_of(drawing: Drawing, aperture_mm: float | None) -> View:

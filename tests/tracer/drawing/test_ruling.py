@@ -8,11 +8,13 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
 
 from morfax.motion.contour import distance
 from morfax.motion.faults import DrawingFault
+from morfax.tracer.drawing import ruling
 from morfax.tracer.drawing.drawing import Darkness, Drawing
 from morfax.tracer.drawing.ruling import PaperKind, families
 from morfax.tracer.drawing.scale import Scale
@@ -95,3 +97,26 @@ def test_plain_paper_stays_as_it_is_and_a_drawn_grid_is_kept() -> None:
 def test_printed_lines_that_are_not_there_are_refused() -> None:
     with pytest.raises(DrawingFault, match="no printed lines are found"):
         opened(on_paper(LINE, (), 0.0), "squared")
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_the_darkest_pixels_never_rule_out_ink_all_over(seed: int) -> None:
+    """Spots of ink at random, as many as are nearly, or just, all over the sheet when it is reduced."""
+    rng = np.random.default_rng(seed)
+    rows, columns = (int(side) for side in rng.integers(1500, 2600, 2))
+    darkness = np.zeros((rows, columns), np.float32)
+    by = int(rng.integers(2, 5))
+    for _ in range(int(rng.integers(150, 500))):
+        row, column = int(rng.integers(rows)), int(rng.integers(columns))
+        darkness[row : row + 40, column : column + 40] = rng.uniform(0.1, 0.4)
+    size = columns // by, rows // by
+    small = np.asarray(cv2.resize(darkness, size, interpolation=cv2.INTER_AREA), np.float32)
+    all_over = ruling._is_all_over(small)
+    assert ruling._may_be_all_over(darkness, by) or not all_over
+
+
+def test_a_line_on_plain_paper_is_not_reduced(monkeypatch: pytest.MonkeyPatch) -> None:
+    darkness = np.zeros((3200, 3200), np.float32)
+    cv2.circle(darkness, (1200, 1200), 400, 1.0, 12)
+    monkeypatch.setattr(ruling.cv2, "resize", None)  # whoever reduced it would fail
+    assert ruling.families(darkness, 0.04) == []
