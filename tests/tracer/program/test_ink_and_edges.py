@@ -78,3 +78,9 @@ def test_silhouettes_are_gone_round_with_their_thin_parts() -> None:
     assert run.ink is None and len(run.lines) == 1
     assert run.lines[0].ending == "closed"
     assert distance(run.lines[0].xy_mm[::4], star).path_to_reference.rms_mm < 20 * UM
+
+
+def test_a_long_wall_counts_as_outlined_wherever_it_lies_between_the_pixels() -> None:
+    """Its edge is where the lens is half open, up to a pixel outside of the box of its pixels."""
+    run = trace_ink(both(FRAME, shapes=(WALL + 0.04,)))
+    assert run.ink is not None and [area.what for area in run.ink.areas] == ["outlined area"]
