@@ -93,7 +93,7 @@ def _of_solids(trace: Trace) -> Iterator[str]:
         yield (
             f"the ink at {x:.1f},{y:.1f} mm is the rim of a dark area broader than a line: if that is a "
             "filled "
-            "shape, --edge follows its outline"
+            "shape, --edge follows its outline, and --lines all --edge the lines beside it too"
         )
 
 

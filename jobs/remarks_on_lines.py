@@ -78,7 +78,7 @@ def _of_solids(seen: Survey) -> Iterator[str]:
     if solid:
         yield (
             f"{numbered('line', solid)} the rim of a dark area broader than a line: if that is a filled "
-            "shape, --edge follows its outline"
+            "shape, --edge follows its outline, and --lines all --edge the lines beside it too"
         )
 
 
