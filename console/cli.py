@@ -13,8 +13,9 @@ import signal
 import sys
 import threading
 import traceback
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from typing import Any
 
 import click
 
@@ -22,6 +23,7 @@ from morfax.jobs import kernels
 from morfax.jobs.damaged_kernels import compile_damaged_again
 from morfax.motion.faults import DrawingFault, Fault, FileFault
 
+AGAIN_S = 0.1  # from an interrupt that was lost to the next: what lost it is over by then, or loses that too
 VERBS = {
     "lines": "Say what is on a drawing: a numbered table of its lines, dots and likely lettering.",
     "correct": "Put right what the head got wrong: rub out, bridge, turn, stop.",
@@ -164,11 +166,31 @@ def _stopped_by_signals() -> Iterator[None]:
             )  # SIGHUP: not on every system; ignored under nohup
             if number is not None and signal.getsignal(number) is not signal.SIG_IGN:
                 before[number] = signal.signal(number, stop)
+    hook, sys.unraisablehook = sys.unraisablehook, _comes_again(sys.unraisablehook)
     try:
         yield
     finally:
+        sys.unraisablehook = hook
         for number, handler in before.items():
             signal.signal(number, handler)
+
+
+def _comes_again(hook: Callable[[Any], object]) -> Callable[[Any], object]:
+    """A hook for exceptions that no one can catch, which sends an interrupt that was lost so once more.
+
+    While LLVM compiles a kernel it calls Python back, and what is raised there ends in a printed traceback.
+    """
+
+    def lost(unraisable: Any) -> None:
+        if not issubclass(unraisable.exc_type, KeyboardInterrupt):
+            hook(unraisable)
+            return
+        number = _signal_of(unraisable.exc_value or KeyboardInterrupt())
+        again = threading.Timer(AGAIN_S, os.kill, (os.getpid(), number))
+        again.daemon = True
+        again.start()
+
+    return lost
 
 
 def _signal_of(stop: BaseException) -> int:

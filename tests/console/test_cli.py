@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import importlib
 import os
 import re
@@ -131,6 +132,30 @@ def test_a_lack_of_memory_says_what_to_do(
     monkeypatch.setattr(cli.cli, "get_command", too_large)
     answer = morfax("trace", "a.png")
     assert answer.exit_code == 3 and "resolution" in answer.fault
+
+
+def test_an_interrupt_that_was_lost_where_none_can_be_caught_comes_again(
+    morfax: Morfax, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As in the middle of compiling: LLVM calls Python, and what is raised there is printed and forgotten."""
+    calls: list[int] = []
+
+    def interrupted() -> None:
+        calls.append(1)
+        os.kill(os.getpid(), signal.SIGTERM)
+        for _ in range(1000):  # the handler runs here
+            pass
+
+    def compiling(ctx: click.Context, name: str) -> None:
+        ctypes.CFUNCTYPE(None)(interrupted)()
+        for _ in range(3000):
+            time.sleep(0.01)
+
+    monkeypatch.setattr(cli.cli, "get_command", compiling)
+    answer = morfax("trace", "a.png")
+    assert calls == [1]
+    assert answer.exit_code == 128 + signal.SIGTERM
+    assert answer.fault.startswith("morfax: interrupted")
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
