@@ -29,6 +29,7 @@ from morfax.recorder.tape.check_signal import CYCLES_PER_FRAME
 from morfax.recorder.tape.format import TapeFormat
 
 LARGEST_DELAY_S = 200e-6  # what is asked; half a cycle of the subcarrier is 500
+TOLD_WITHIN_S = 1e-6  # a delay of exactly that much is told so true, at 26 dB of noise too
 LARGEST_LATE_S = 250e-6  # of the symbols: the delay, and 50 us for the gates
 LARGEST_STEP_S = 16e-6  # of a delay in two parts of a frame, 0.24 s: 50 us/s of drift are 12
 MOST_MISSING = 4  # frames in a row of one track: 1 s of dropout reaches into four
@@ -107,7 +108,7 @@ class FrameOrder:
             delay for delay in report.delay_s[track] if math.isfinite(delay)
         ]
         longest_s = max(map(abs, told), default=0.0)
-        if abs(late_s) > LARGEST_LATE_S or longest_s > LARGEST_DELAY_S:
+        if abs(late_s) > LARGEST_LATE_S or longest_s > LARGEST_DELAY_S + TOLD_WITHIN_S:
             late_s = late_s if abs(late_s) > LARGEST_LATE_S else longest_s
             return faults.too_late(track, self._names, late_s, LARGEST_DELAY_S, time_s)
         step_s = max((abs(b - a) for a, b in zip(told, told[2:], strict=False)), default=0.0)
