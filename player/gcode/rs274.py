@@ -41,6 +41,7 @@ from morfax.player.gcode.moves import (
     Move,
     Program,
 )
+from morfax.recorder.gcode.check_sum import demand_right
 
 INCH_MM = 25.4
 LONGEST_DWELL_S = 86400.0  # a day: more is a mistake of the unit
@@ -60,9 +61,9 @@ def read_rs274(
 
 
 def text_of(file: str | os.PathLike[str]) -> str:
-    """The text of a program; raises ProgramFault for what is none, FileFault for an unreadable file."""
+    """The text of a program; raises ProgramFault (no text, a wrong check sum), FileFault (unreadable)."""
     try:
-        return FilePath(file).read_bytes().decode("ascii")
+        text = FilePath(file).read_bytes().decode("ascii")
     except UnicodeDecodeError as error:
         line = FilePath(file).read_bytes()[: error.start].count(b"\n") + 1
         raise ProgramFault(
@@ -70,6 +71,8 @@ def text_of(file: str | os.PathLike[str]) -> str:
         ) from None
     except OSError as error:
         raise FileFault(f"cannot read {file}: {error.strerror}; check the name") from error
+    demand_right(text, str(file))
+    return text
 
 
 def parse_rs274(

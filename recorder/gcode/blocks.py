@@ -28,6 +28,7 @@ from typing import Any
 
 from morfax.motion.files import written_beside
 from morfax.motion.segments import Source
+from morfax.recorder.gcode.check_sum import summed
 from morfax.recorder.gcode.machine import DEFAULT, Machine, machine
 from morfax.recorder.gcode.made import Made
 from morfax.recorder.gcode.plan import Feeds, Writing, plan
@@ -89,7 +90,7 @@ def record_blocks(
     seconds = float(running_time_s(start_mm, blocks, wanted))
     comments = head(planned, blocks, seconds, wanted, made or Made())
     with written_beside(file) as beside:
-        text = program_text(start_mm, blocks, wanted, comments)
+        text = summed(program_text(start_mm, blocks, wanted, comments), wanted)
         beside.write_text("\n".join([*text, ""]), encoding="ascii")
     turned, dwells = planned.count("G2", "G3"), planned.count("G4")
     return BlockReport(

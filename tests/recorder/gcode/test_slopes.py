@@ -27,7 +27,9 @@ def program(tmp_path: Path, *legs: Leg, feeds: Feeds | None = None) -> list[str]
     record_blocks([Motion(np.vstack(moves))], tmp_path / "a.ngc", feeds=feeds)
     lines = (tmp_path / "a.ngc").read_text().splitlines()
     begin = next(k for k, text in enumerate(lines) if text.startswith("G0 X"))
-    return [_NUMBER.sub(_to_a_um, text) for text in lines[begin:-2]]
+    return [
+        _NUMBER.sub(_to_a_um, text) for text in lines[begin:-3]
+    ]  # without check sum, M5, M2
 
 
 def _to_a_um(number: re.Match[str]) -> str:
