@@ -139,6 +139,7 @@ class CheckReader:
         self._zero_turns = np.zeros(fmt.tracks)
         self._number, self._theta = 0, 0.0  # the next frame, and where it begins
         self._erasures = Erasures(fmt.tracks)
+        self._clock_lost = False  # whether the reference said nothing in the last frame
         self._sound_from = -1.0  # the last point before which the reference is counted right
         if self.is_checked:
             self._begin()
@@ -246,6 +247,11 @@ class CheckReader:
         is_read = np.array([frame is not None for frame in said])
         apart = np.empty(gates.turns.shape)
         count_on((gates.turns, gates.late), is_read, self._turns, self._zero_turns, apart)
+        if self._clock_lost and len(self._erasures.weak[0]):
+            apart[:] = (
+                np.nan
+            )  # the clock was put right within this frame only: all seemed late by as much
+        self._clock_lost = said[0] is None
         errors = np.hypot(gates.errors, gates.errors[0])
         rows = self._rows(self._theta + MIDDLES)
         turn_s = CYCLES_PER_SUBCARRIER / self._reference_hz

@@ -83,8 +83,15 @@ class FrameOrder:
         return faults.unreadable(track, self._names, time_s)
 
     def _swinging(self, track: int, report: FrameReport) -> Fault | None:
-        """The fault of a track whose delay swings faster than can be followed."""
+        """The fault of a track whose delay swings faster than can be followed.
+
+        While the reference is lost, in a dropout, its clock is counted on, and put right behind: what all
+        axes then swing alike is the clock's.
+        """
         swing_s = report.swing_s[track]
+        if report.said[0] is None or report.weak_rows[0]:
+            axes = zip(report.swing_s[1:], report.said[1:], strict=True)
+            swing_s -= min((swing for swing, said in axes if said is not None), default=0.0)
         if not swing_s > LARGEST_SWING_S:
             return None
         return faults.swings(track, self._names, swing_s, report.row / self._rate_hz)
