@@ -1,9 +1,10 @@
 """Compiling ahead: on a first run, the processor's other cores compile the kernels that will be needed next.
 
 The process that meets the first kernel which nobody has compiled starts others (`begin`). They share a list
-of kernels in the order in which a run needs them: with one beside the run, it takes every second kernel and
-leaves the others to the run, then what is left. Each kernel is compiled by one process at a time (`claimed`);
-whoever needs it meanwhile waits for it. They end with the list, or with the process that started them.
+of kernels in the order in which a run needs them: one beside the run begins in the middle of the list, two
+at a third and at two thirds. Neighbours in the list have kernels within them in common, which each process
+has to compile for itself. Each kernel is compiled by one process at a time (`claimed`); whoever needs it
+meanwhile waits for it. They end with the list, or with the process that started them.
 
 Signals in: `kernels.tsv`: module, function and types of arguments (`compiled.described`), a line each.
 Signals out: files of machine code (`machine_code`). `MORFAX_COMPILE_AHEAD=0` turns it off.
@@ -85,11 +86,11 @@ def examples(types: str) -> tuple[Any, ...]:
 def compile_listed(parent: int, processes: int, number: int) -> None:
     """Compile the kernels of the list that are not kept yet, while the process that asked is there.
 
-    Of so many processes, the one with this number takes its own kernels first, then those of the others.
+    Of so many processes, the one with this number begins with its part of the list and goes on from there.
     """
     lines = LIST.read_text(encoding="utf-8").splitlines()
-    own = lines[number::processes]
-    for line in dict.fromkeys([*own, *lines]):
+    first = number * len(lines) // processes
+    for line in [*lines[first:], *lines[:first]]:
         if os.getppid() != parent:
             return
         module, name, types = line.split("\t")

@@ -128,7 +128,7 @@ def test_of_two_processes_that_need_a_kernel_one_compiles_it(folder: Path) -> No
     assert sum(text.count("compiled") for text in said) == 1
 
 
-def test_each_takes_its_own_share_first_and_one_is_the_run_s(
+def test_each_begins_with_a_part_of_its_own_and_the_first_is_the_run_s(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Else all would stand before the same kernel, and one of them compile."""
@@ -146,7 +146,7 @@ def test_each_takes_its_own_share_first_and_one_is_the_run_s(
     monkeypatch.setattr(compile_ahead, "examples", lambda types: ())
     monkeypatch.setattr(compile_ahead.importlib, "import_module", lambda name: Kernels())
     compile_ahead.compile_listed(os.getppid(), 3, 1)
-    assert [int(types[6]) for types in taken] == [1, 4, 0, 2, 3, 5, 6]
+    assert [int(types[6]) for types in taken] == [2, 3, 4, 5, 6, 0, 1]
     # and none for a process that has ended
     taken.clear()
     compile_ahead.compile_listed(-1, 3, 1)
