@@ -2,6 +2,7 @@
 
     text       a tape's text chunk, card, settings, corrections, machine, batch's manifest, paths
     programs   .steps, .cubic, .ngc
+    tapes      a moment of tape in five kinds of sound file, and one through a pipe
     drawings   PNG, JPEG, TIFF and PDF of a ring, as `trace` opens them; SVG and DXF of a square
 
 Questions: none.
@@ -13,6 +14,7 @@ import io
 import json
 import re
 from collections.abc import Callable, Iterator
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -20,14 +22,18 @@ import numpy as np
 from morfax.batch.manifest import NAME as MANIFEST
 from morfax.batch.manifest import rows
 from morfax.batch.row import BatchRow
+from morfax.motion.motion import Motion
 from morfax.motion.motion import Path as Course
 from morfax.motion.pathfile import read_path, write_path
 from morfax.player.gcode.rs274 import read_rs274
 from morfax.recorder.cubics.file import read_program as read_cubic
 from morfax.recorder.gcode.machine import as_toml, machine
 from morfax.recorder.media import read_outline, record
+from morfax.recorder.sound.pipe import PipeSource
 from morfax.recorder.steps.file import read_program as read_steps
 from morfax.recorder.tape.format import TapeFormat
+from morfax.recorder.tape.tape import Tape
+from morfax.recorder.tape.tape import record as record_tape
 from morfax.tracer.corrections.correction_file import read_corrections
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.head.settings import Settings
@@ -81,6 +87,7 @@ def targets(folder: Path) -> Iterator[tuple[str, Target]]:
     yield from _texts(folder)
     yield from _programs(folder)
     yield from _drawings(folder)
+    yield from _tapes(folder)
 
 
 def _texts(folder: Path) -> Iterator[tuple[str, Target]]:
@@ -136,6 +143,30 @@ def _drawings(folder: Path) -> Iterator[tuple[str, Target]]:
             suffix[1:],
             (whole.read_bytes(), _by_file(folder / f"input{suffix}", read_outline)),
         )
+
+
+def _tapes(folder: Path) -> Iterator[tuple[str, Target]]:
+    """A moment of tape in every kind of sound file, from a disk and through a pipe."""
+    fmt, motion = TapeFormat(dwell_s=0.0), Motion(np.zeros((4, 3)))
+    for suffix in (".wav", ".rf64", ".w64", ".aiff", ".flac"):
+        whole = folder / f"right{suffix}"
+        record_tape(motion, whole, fmt)
+        right, name = whole.read_bytes(), f"tape-{suffix[1:]}"
+        yield name, (right, _by_file(folder / f"input{suffix}", _play_file))
+        if suffix == ".wav":
+            yield "pipe", (right, lambda data: _played(Tape.of(PipeSource(io.BytesIO(data)))))
+
+
+def _play_file(file: Path) -> None:
+    """Read a tape in a file; not every kind of file has room for the text that says its format."""
+    by_hand = {} if file.suffix == ".wav" else {"reference_hz": 6000.0, "cycles_per_mm": 20.0}
+    _played(Tape.open(file, **by_hand))
+
+
+def _played(opened: Tape) -> None:
+    """Read some blocks of a tape, and close it."""
+    with opened as tape:
+        list(islice(tape.blocks(1000), 20))
 
 
 def _by_file(file: Path, read: Reader) -> Callable[[bytes], object]:
