@@ -120,7 +120,9 @@ class RunJob:
 
     def prepared(self, panel: Panel | None = None) -> tuple[FilePath, Tracing]:
         """The program's name, and the head as it is set; raises WrongUse, CardFault and FileFault."""
-        tracing, program_file = Tracing.prepared(self.settings, panel), self._program_file()
+        program_file = self._program_file()
+        usual = self.settings.with_usual_lines(self.unit.usual_lines(program_file))
+        tracing = Tracing.prepared(usual, panel)
         self.unit.check(program_file)
         return program_file, tracing.on_machine(self.unit, program_file)
 

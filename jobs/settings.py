@@ -21,6 +21,7 @@ from morfax.jobs.wrong_use import WrongUse, settings_checked
 
 if TYPE_CHECKING:
     from morfax.jobs.zero import Zero
+    from morfax.recorder.gcode.machine import Lines
     from morfax.tracer.cutter.cutter import Cutter, CutterSide
     from morfax.tracer.drawing.drawing import Drawing
     from morfax.tracer.drawing.ruling import PaperKind
@@ -196,14 +197,21 @@ class TraceSettings:
     depths: DepthSettings = field(default_factory=DepthSettings)
     contour: ContourSettings = field(default_factory=ContourSettings)
 
-    def with_usual_lines(self) -> TraceSettings:
-        """The same, with all contours where a cutter runs beside lines and nobody asks for some of them: a
-        part is cut with its holes. A card is for one drawn program.
+    def with_usual_lines(self, of_machine: Lines | None = None) -> TraceSettings:
+        """The same, with the lines that a cutter or the machine is for, where nobody asks for some of them.
+
+        Beside lines a cutter runs round all contours: a part is cut with its holes. A card is for one drawn
+        program, and so are marks and directions, which are no lines of a machine that draws all the ink.
         """
-        line, of_card = self.line, self.program.card_file is not None
-        if self.tool.cutter_mm is None or line.is_asked_for or of_card:
+        line, program = self.line, self.program
+        usual = of_machine if self.tool.cutter_mm is None else "contours"
+        if usual is None or line.is_asked_for or program.card_file is not None:
             return self
-        return replace(self, line=replace(line, lines="contours"))
+        of_a_program = line.reference_mm, line.direction, program.stop_override
+        is_program = program.marks == "on" or any(given is not None for given in of_a_program)
+        if usual == "all" and (is_program or line.order):
+            return self
+        return replace(self, line=replace(line, lines=usual))
 
     def card(self) -> Card:
         """The operator's card, an empty one if no file is given; raises CardFault for a mistake on it."""

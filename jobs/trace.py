@@ -85,7 +85,8 @@ class TraceJob:
 
     def prepared(self, panel: Panel | None = None) -> tuple[TraceOutputs, Tracing]:
         """The names for the results, and the head as it is set; raises WrongUse, CardFault and FileFault."""
-        tracing = Tracing.prepared(self.settings, panel)
+        usual = self.settings.with_usual_lines(self.unit.usual_lines(self.outputs.program))
+        tracing = Tracing.prepared(usual, panel)
         outputs = self.outputs.checked(self.drawing.file)
         self.unit.check(outputs.program)
         return outputs, tracing.on_machine(self.unit, outputs.program)

@@ -151,6 +151,7 @@ FIELDS: dict[str, tuple[str, Any]] = {
     "longest_line": ("longest_line", _longest),
     "line_numbers": ("line_numbers", _line_numbers),
     "direction": ("milling", lambda held: held.choice("climb", "conventional")),
+    "lines": ("lines", lambda held: held.choice("all", "contours")),
     "feed": ("feeds", lambda held: held.choice("program", "machine") == "program"),
     "rapid": ("rapids_have_feed", lambda held: held.choice("program", "machine") == "program"),
     "rapid_mm_s": ("rapid_mm_s", lambda held: _three(held, "speeds in mm/s")),

@@ -16,6 +16,7 @@ import pytest
 from docs.figures import recipes
 
 PAGES = recipes.pages()
+CHECK_SUM = re.compile(r"crc32 [0-9a-f]{8}")
 NUMBER = re.compile(r"-?\d+\.?\d*")
 MACHINES = {
     "grbl-laser",
@@ -30,8 +31,8 @@ MACHINES = {
 
 
 def shape(program: str) -> list[str]:
-    """The lines of a program without their numbers, which may differ in the last digit."""
-    return NUMBER.sub("#", program).splitlines()
+    """The lines of a program without numbers, which may differ in the last digit, and their check sum."""
+    return NUMBER.sub("#", CHECK_SUM.sub("crc32 #", program)).splitlines()
 
 
 @pytest.mark.parametrize("page", PAGES, ids=[page.stem for page in PAGES])
