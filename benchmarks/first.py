@@ -1,7 +1,7 @@
 """The first run on a machine: how long it takes while kernels are compiled, alone and on all cores, and warm.
 
 Signals out: seconds and processor seconds of `morfax run` of a sample with an empty folder for kernels.
-`--write` makes the list that is compiled ahead (`motion/kernels.tsv`) of what COMMANDS need, in that order.
+`--write` makes the list that is compiled ahead (`motion/kernels.tsv`) of what COMMANDS call, in that order.
 """
 
 from __future__ import annotations
@@ -25,13 +25,15 @@ COMMANDS = (  # one that most will use first, then others in the order of how ma
 )
 LISTED = """
 import sys
+from contextlib import suppress
 from morfax.motion import compiled
-compile_it = compiled.Kernel._compiled_here
-def told(kernel, types, args):
-    with open({file!r}, "a") as file:
+find = compiled.Kernel._found
+def found(kernel, args):
+    with suppress(TypeError), open({file!r}, "a") as file:  # types that only numba tells are not kept
+        types = compiled.described(args)
         print(kernel.py_func.__module__, kernel.py_func.__name__, types, sep="\\t", file=file)
-    return compile_it(kernel, types, args)
-compiled.Kernel._compiled_here = told
+    return find(kernel, args)
+compiled.Kernel._found = found
 from morfax.console.cli import main
 sys.exit(main({words!r}))
 """
@@ -49,16 +51,16 @@ def used_s(name: str, folder: str, ahead: str) -> tuple[float, float]:
 
 
 def write_list() -> None:
-    """Write down which kernels the commands compile, in the order in which they do."""
+    """Write down which kernels the commands call, in the order in which they do."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "list"
-        environment = {**os.environ, "NUMBA_CACHE_DIR": f"{folder}/kernels", SWITCH: "0"}
         for command in COMMANDS:
             words = command.format(folder=folder, name="run").split()
             told = LISTED.format(file=str(file), words=words)
-            subprocess.run([sys.executable, "-c", told], check=True, env=environment)
-        LIST.write_text(file.read_text(encoding="utf-8"), encoding="utf-8")
-    print(f"{len(LIST.read_text(encoding='utf-8').splitlines())} kernels in {LIST}")
+            subprocess.run([sys.executable, "-c", told], check=True)
+        lines = dict.fromkeys(file.read_text(encoding="utf-8").splitlines())
+    LIST.write_text("".join(f"{line}\n" for line in lines), encoding="utf-8")
+    print(f"{len(lines)} kernels in {LIST}")
 
 
 def main(words: list[str]) -> None:
