@@ -98,7 +98,10 @@ def test_the_parent_holds_no_more_of_many_drawings_than_of_few(tmp_path: Path) -
     tracemalloc.start(8)
     try:
         for count, _ in enumerate(crew_of(tmp_path).rows(f"well-{k}" for k in range(1801))):
-            if count in (800, 1800):  # what is made once and kept is all there after some hundred
+            if count in (
+                800,
+                1800,
+            ):  # what is made once and kept is all there after some hundred
                 held[count] = held_bytes()
     finally:
         tracemalloc.stop()
