@@ -109,6 +109,7 @@ def test_drawings_tables_and_type_hints_are_in_the_wheel(wheel: Path) -> None:
     names = set(zipfile.ZipFile(wheel).namelist())
     data = [*(ROOT / "samples").glob("*.png")]
     data += [file for room in ROOMS for file in (ROOT / room).rglob("*.toml")]
+    data += [ROOT / "motion" / "kernels.tsv"]
     assert "samples/program.toml" in {file.relative_to(ROOT).as_posix() for file in data}
     assert {f"morfax/{file.relative_to(ROOT).as_posix()}" for file in data} <= names
     assert "morfax/py.typed" in names
